@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace condyle {
+
+/// Perspective camera that looks at a point of the case, mm, LPS.
+struct Camera {
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = {0, -1, 0};  // unit, from the target toward the eye
+  Eigen::Vector3d up = {0, 0, 1};
+  double distance_mm = 600;
+  double field_of_view_deg = 24;  // vertical
+};
+
+/// Names of the standard views: front back left right three-quarter above below. `spin` is a
+/// turntable about the vertical axis, one turn over the recording.
+const std::vector<std::string>& camera_names();
+
+/// A standard view that fits the box [low, high] with a little air around it.
+/// throws: InputError for an unknown name, listing the known ones.
+Camera standard_camera(const std::string& name, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                       double aspect);
+
+/// Turned about the vertical axis through the target.
+Camera turned(const Camera& camera, double angle_rad);
+
+Eigen::Matrix4f view_matrix(const Camera& camera);
+Eigen::Matrix4f projection_matrix(const Camera& camera, double aspect, double near_mm, double far_mm);
+
+}  // namespace condyle

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace condyle {
+
+/// 8-bit sRGB picture with straight alpha, rows from the top, 4 bytes a pixel.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+/// PNG bytes (libpng, level 1, SUB filter: fast, and the same bytes every time).
+std::string encode_png(const Image& image);
+/// throws: MachineError when it cannot be written; the old file stays whole.
+void write_png(const std::filesystem::path& file, const Image& image);
+/// throws: InputError when the file is missing, damaged or larger than 16384 a side.
+Image read_png(const std::filesystem::path& file);
+
+}  // namespace condyle

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "render/camera.h"
+#include "render/image.h"
+#include "sim/frame/frame_state.h"
+#include "sim/frame/part.h"
+
+namespace condyle {
+
+/// How a picture is drawn.
+struct PictureSettings {
+  int width = 1280, height = 720;
+  int samples = 4;           // of multisampling; what the context cannot give is lowered
+  bool shadows = true;
+  bool contacts = true;      // mark contact points
+  bool transparent_background = false;
+  double skin_opacity = 1.0; // 0 hides the face
+  std::map<std::string, double> part_opacity;  // by part name; missing = 1; 0 hides
+};
+
+/// Draws a case at a frame. Needs a current OpenGL 3.3 core context for its whole life.
+class SceneRenderer {
+ public:
+  /// Uploads every part once. The parts must outlive the renderer.
+  explicit SceneRenderer(std::span<const Part> parts);
+  ~SceneRenderer();
+  SceneRenderer(const SceneRenderer&) = delete;
+  SceneRenderer& operator=(const SceneRenderer&) = delete;
+
+  /// Box of everything that can be drawn, at rest, mm.
+  std::pair<Eigen::Vector3d, Eigen::Vector3d> bounds() const;
+
+  /// Takes over poses, face and contacts of a frame (normals of the face are made here).
+  void update(const FrameState& frame);
+
+  /// Draws into the framebuffer that is bound, over its whole viewport of width x height.
+  void draw(const Camera& camera, const PictureSettings& settings);
+
+  /// Draws off-screen and reads the picture back.
+  Image picture(const Camera& camera, const PictureSettings& settings);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace condyle

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/case/landmarks.h"
+#include "sim/frame/part.h"
+
+namespace condyle {
+
+/// Path of both condyle centres in the sagittal plane, from the seated position.
+struct CondylarPath {
+  std::vector<double> forward_mm;  // toward -y, increasing, starts at or below 0
+  std::vector<double> drop_mm;     // toward -z, one per entry
+};
+
+/// A patient at rest, ready to simulate: DICOM LPS, mm.
+struct Case {
+  std::string name;
+  std::vector<Part> parts;
+  Landmarks landmarks;
+  std::optional<CondylarPath> condylar_path;  // when the joint's own path is known
+  std::string source_units = "mm";  // as declared at import
+  std::string source_frame = "LPS";
+  std::vector<std::string> notes;  // what import found and did, for people
+
+  const Part* find(Role role) const {
+    for (const auto& part : parts)
+      if (part.role == role) return &part;
+    return nullptr;
+  }
+};
+
+}  // namespace condyle

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/case/case.h"
+#include "sim/frame/contact_set.h"
+
+namespace condyle {
+
+struct ContactSettings {
+  int max_contacts = 64;          // reported per pair
+  double slack_mm = 0.02;         // how much deeper than at rest counts as penetrating
+  double stop_gap_mm = 0.01;      // clearance left when a pose is stopped at a surface
+};
+
+/// The colliders of a case (one BVH per bone or arch) and its pairs, each with its overlap at rest.
+class ContactModel {
+ public:
+  explicit ContactModel(const Case& patient, const ContactSettings& settings = {});
+  ~ContactModel();
+  ContactModel(ContactModel&&) noexcept;
+
+  /// Contacts at the pose, warm-started from an earlier answer (may be null). Pairs run on `threads`
+  /// threads; the result has the same bits for any number.
+  ContactSet find(const Pose& X_CM, const ContactSet* previous, int threads = 1) const;
+
+  /// The pose farthest along the straight way from `from` (free) to `wanted` at which no pair is
+  /// deeper than at rest. Thin shells are not tunnelled through.
+  struct Stop {
+    Pose X_CM;
+    bool stopped = false;
+    ContactSet contacts;  // at X_CM
+  };
+  Stop stop_at_contact(const Pose& from, const Pose& wanted, const ContactSet* previous,
+                       int threads = 1) const;
+
+  const ContactSet& at_rest() const;
+  /// What could not be judged (open shells) and what overlaps at rest, for people.
+  const std::vector<std::string>& notes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace condyle

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "engine/core/stage_times.h"
+#include "engine/math/pose.h"
+#include "sim/frame/contact_set.h"
+#include "sim/frame/measures.h"
+#include "sim/frame/tissue_state.h"
+
+namespace condyle {
+
+/// What drives one step.
+struct StepInput {
+  double time_s = 0;
+  Pose X_CM_wanted;        // where the motion, or the hand, wants the mandible
+  bool obey_contact = true;  // false plays a recording as it is
+};
+
+/// Everything that is true at one time: a plain value to copy to a thread, a file or a test.
+struct FrameState {
+  double time_s = 0;
+  Pose X_CM_wanted;
+  Pose X_CM;  // maps the mandible from rest to now
+  bool stopped = false;  // contact kept the mandible from the wanted pose
+  ContactSet contacts;
+  TissueState tissue;
+  std::vector<Eigen::Vector3f> face;  // vertices of the displayed face, mm; empty when not asked for
+  Measures measures;
+  StageTimes times;
+  std::uint64_t state_hash = 0;  // of everything above but the times
+};
+
+}  // namespace condyle

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/core/progress.h"
+#include "sim/case/case.h"
+#include "sim/frame/tissue_state.h"
+
+namespace condyle {
+
+/// Soft tissue between face and bone of one patient; built once, then read only.
+struct TissueModel;
+
+struct TissueSettings {
+  int layers = 3;
+  int surface_nodes = 520;  // of one sheet, about
+};
+
+/// How far one frame's minimisation goes.
+struct TissueBudget {
+  double tolerance_mm = 1e-3;  // stop when a step moves no node farther than this, estimated
+  int max_iterations = 2000;
+  int threads = 1;  // the result has the same bits for any number
+};
+
+/// What the builder made, and what it had to leave out, for reports and people.
+struct TissueSummary {
+  int nodes = 0, springs = 0, prisms = 0, layers = 0;
+  int attached_to_cranium = 0, attached_to_mandible = 0, boundary = 0;
+  bool lips_cut = false;
+  std::vector<std::string> notes;
+};
+
+/// Null when the case has no face. throws: InputError saying what is wrong with the face and where.
+std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const TissueSettings& settings = {},
+                                                const Progress& progress = {});
+const TissueSummary& summary(const TissueModel& model);
+
+/// The unmoved tissue.
+TissueState rest_tissue(const TissueModel& model);
+
+/// The tissue of minimum energy with the mandible at X_CM, warm-started from `previous`.
+TissueState follow(const TissueModel& model, const TissueState& previous, const Pose& X_CM,
+                   const TissueBudget& budget = {});
+
+/// Vertices of the displayed face (the case's face part, in its order), carried by the tissue.
+void deform_face(const TissueModel& model, const TissueState& state, std::vector<Eigen::Vector3f>& face);
+
+/// A point of the face surface carried by the tissue (soft landmarks), mm.
+Eigen::Vector3d carried_point(const TissueModel& model, const TissueState& state, const Eigen::Vector3d& rest);
+
+}  // namespace condyle
