@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "engine/mesh/tri_mesh.h"
+
+namespace condyle {
+
+/// A point of a surface, as found by a query. `triangle` is -1 when nothing was in reach.
+struct SurfacePoint {
+  double distance = std::numeric_limits<double>::infinity();  // mm; negative inside where signed
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();            // mm
+  Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();      // of the triangle's three corners
+  int triangle = -1;                                          // index into the mesh's triangles
+};
+
+/// Box tree over the triangles of a surface. It copies what it needs: the mesh may go away.
+/// Queries are const, may run on several threads at once, and give the same bits each time.
+/// Triangles without area are never an answer.
+class TriangleTree {
+ public:
+  /// Indices must be valid and coordinates finite. Corners at equal coordinates count as one
+  /// vertex.
+  explicit TriangleTree(const TriMesh& mesh);
+
+  bool empty() const { return corners_.empty(); }
+
+  /// Nearest surface point not farther than `reach` (mm); unsigned distance.
+  SurfacePoint nearest(const Eigen::Vector3d& p,
+                       double reach = std::numeric_limits<double>::infinity()) const;
+
+  /// The same with the distance negative on the inner side of the nearest surface (angle-weighted
+  /// pseudonormals): inside a closed mesh. Of overlapping closed shells the nearest one decides;
+  /// `winding_number` tells the inside of their union.
+  SurfacePoint signed_nearest(const Eigen::Vector3d& p,
+                              double reach = std::numeric_limits<double>::infinity()) const;
+
+  double signed_distance(const Eigen::Vector3d& p) const { return signed_nearest(p).distance; }
+
+  /// Outward normal (unit) of the face, edge or corner on which a found point lies.
+  Eigen::Vector3d pseudonormal(const SurfacePoint& found) const;
+
+  /// First hit of the ray origin + t * direction, 0 <= t <= max_t; `distance` is t (in lengths of
+  /// `direction`). Both sides of a triangle count.
+  std::optional<SurfacePoint> ray_cast(
+      const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+      double max_t = std::numeric_limits<double>::infinity()) const;
+
+  /// How often the surface goes round p: 1 inside, 0 outside a closed mesh, n inside n shells; in
+  /// between where shells are open. Exact sum over the triangles, with far ones lumped by clusters
+  /// (error below about 0.01). source: Barill et al. 2018, first order.
+  double winding_number(const Eigen::Vector3d& p) const;
+
+ private:
+  struct Node {
+    Eigen::Vector3d low, high;
+    int first = 0;  // of a leaf: its triangles; of an inner node: the right child (left is next)
+    int count = 0;  // 0 for inner nodes
+  };
+  struct Cluster {  // of a node, for the winding number
+    Eigen::Vector3d center, area_normal;
+    double radius = 0;
+  };
+  using Corners = std::array<Eigen::Vector3d, 3>;
+
+  int build(std::vector<int>& order, const std::vector<Eigen::Vector3d>& centers, int first,
+            int last, const TriMesh& mesh);
+  void make_pseudonormals(const TriMesh& mesh);
+  void make_clusters();
+
+  std::vector<Node> nodes_;              // depth first
+  std::vector<Cluster> clusters_;        // one per node
+  std::vector<Corners> corners_;         // in leaf order
+  std::vector<int> triangle_;            // leaf order -> mesh
+  std::vector<int> slot_;                // mesh -> leaf order, -1 without area
+  std::vector<Corners> edge_normals_;    // leaf order; edge k runs from corner k to k + 1
+  std::vector<Corners> corner_normals_;  // leaf order
+  std::vector<Eigen::Vector3d> face_normals_;
+};
+
+}  // namespace condyle
