@@ -30,7 +30,7 @@ struct FrameState {
   std::vector<Eigen::Vector3f> face;  // vertices of the displayed face, mm; empty when not asked for
   Measures measures;
   StageTimes times;
-  std::uint64_t state_hash = 0;  // of everything above but the times
+  std::uint64_t state_hash = 0;  // of poses, contacts, tissue and measures
 };
 
 }  // namespace condyle

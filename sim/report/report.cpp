@@ -1,0 +1,228 @@
+#include "sim/report/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace condyle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int cold_samples = 8;
+
+/// An emergent quantity beside the band that is accepted for healthy adults.
+Json banded(double value, double low, double high) {
+  return {{"value", value}, {"band", {low, high}}, {"within", value >= low && value <= high}};
+}
+
+double round_to(double value, double unit) { return std::round(value / unit) * unit; }
+
+/// How the soft tissue answered at one frame. Empty without tissue or landmarks.
+Json soft_response(const Scene& scene, const FrameState& frame) {
+  Json json;
+  if (!scene.tissue || frame.tissue.nodes.empty()) return json;
+  const auto& marks = scene.patient.landmarks;
+  const auto carried = [&](const Eigen::Vector3d& p) {
+    return carried_point(*scene.tissue, frame.tissue, p);
+  };
+  if (const auto soft = marks.find("soft_pogonion")) {
+    const Eigen::Vector3d bone = marks.find("pogonion").value_or(*soft);
+    const Eigen::Vector3d bone_move = frame.X_CM * bone - bone;
+    const Eigen::Vector3d soft_move = carried(*soft) - *soft;
+    if (bone_move.norm() > 1)
+      json["soft_pogonion_follows_bone"] = soft_move.dot(bone_move) / bone_move.squaredNorm();
+  }
+  if (const auto nose = marks.find("pronasale"))
+    json["nose_tip_moves_mm"] = (carried(*nose) - *nose).norm();
+  const auto upper = marks.find("labrale_superius"), lower = marks.find("labrale_inferius");
+  if (upper && lower) {
+    const double gap = (carried(*upper) - carried(*lower)).norm() - (*upper - *lower).norm();
+    json["lip_gap_mm"] = gap;
+    if (frame.measures.opening_mm > 1) json["lip_gap_over_opening"] = gap / frame.measures.opening_mm;
+  }
+  return json;
+}
+
+}  // namespace
+
+StageSummary summarise(std::vector<double> ms) {
+  if (ms.empty()) return {};
+  std::sort(ms.begin(), ms.end());
+  const auto at = [&](double q) {
+    return ms[static_cast<std::size_t>(std::ceil(q * static_cast<double>(ms.size()))) - 1];
+  };
+  return {at(0.5), at(0.95)};
+}
+
+MotionReport::MotionReport(const Scene& scene, const Motion& motion, const SimulatorSettings& settings)
+    : scene_(scene),
+      motion_name_(motion.name),
+      recorded_(motion.recorded),
+      duration_s_(motion.duration_s),
+      settings_(settings),
+      pairs_(scene.contacts.at_rest().pairs.size()) {
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    pairs_[i].rest_depth = scene.contacts.at_rest().pairs[i].rest_depth_mm;
+}
+
+void MotionReport::add(const FrameState& frame) {
+  const auto& rest = scene_.patient.landmarks;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const auto& pair = frame.contacts.pairs[i];
+    auto& record = pairs_[i];
+    const double distance = pair.touching ? 0 : pair.distance_mm;
+    const double beyond = pair.depth_mm - pair.rest_depth_mm;
+    if (pair.touching) {
+      ++record.touching_frames;
+      if (record.first_touch < 0) record.first_touch = frames_;
+    }
+    if (beyond > settings_.contact.slack_mm) ++record.penetrating_frames;
+    if (record.worst_frame < 0 || distance < record.least_distance ||
+        (distance == record.least_distance && pair.depth_mm > record.deepest))
+      record.worst_frame = frames_;
+    record.least_distance = std::min(record.least_distance, distance);
+    record.deepest = std::max(record.deepest, pair.depth_mm);
+  }
+  if (frame.stopped) {
+    ++stopped_frames_;
+    if (first_stopped_ < 0) first_stopped_ = frames_;
+  }
+  if (frame.tissue.inverted_prisms > 0) ++inverted_frames_;
+  if (!frame.tissue.converged) ++unconverged_frames_;
+  max_rotation_deg_ = std::max(max_rotation_deg_, frame.measures.rotation_deg);
+  if (const auto left = rest.find("left_condyle"))
+    left_travel_mm_ = std::max(left_travel_mm_, (frame.measures.left_condyle - *left).norm());
+  if (const auto right = rest.find("right_condyle"))
+    right_travel_mm_ = std::max(right_travel_mm_, (frame.measures.right_condyle - *right).norm());
+  if (frames_ == 0 || frame.measures.opening_mm > widest_.measures.opening_mm) {
+    widest_ = frame;
+    widest_.face.clear();
+    widest_frame_ = frames_;
+  }
+  const double next_sample =
+      duration_s_ * (static_cast<double>(samples_.size()) + 0.5) / static_cast<double>(cold_samples);
+  if (samples_.size() < cold_samples && frame.time_s >= next_sample) {
+    samples_.push_back(frame);
+    samples_.back().face.clear();
+  }
+  iterations_.push_back(frame.tissue.iterations);
+  for (std::size_t i = 0; i < stage_names.size(); ++i)
+    stage_ms_[std::string(stage_names[i])].push_back(frame.times.ms[i]);
+  ++frames_;
+}
+
+std::string MotionReport::json() const {
+  Json json;
+  json["about"] = "Condyle; for research and education, not for clinical use";
+  json["case"] = scene_.patient.name;
+  json["motion"] = {{"name", motion_name_}, {"recorded", recorded_}, {"duration_s", duration_s_}};
+  json["frames"] = frames_;
+  json["step_s"] = settings_.step_s;
+  const auto& w = widest_.measures;
+  json["opening"] = {
+      {"max_opening_mm", banded(w.opening_mm, 42, 58)},
+      {"frame", widest_frame_},
+      {"time_s", widest_.time_s},
+      {"interincisal_mm", w.interincisal_mm},
+      {"max_rotation_deg", banded(max_rotation_deg_, 28, 45)},
+      {"left_condylar_travel_mm", banded(left_travel_mm_, 10, 20)},
+      {"right_condylar_travel_mm", banded(right_travel_mm_, 10, 20)}};
+
+  Json pairs = Json::array();
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const auto& rest = scene_.contacts.at_rest().pairs[i];
+    const auto& record = pairs_[i];
+    const auto name = [&](int part) {
+      return scene_.patient.parts[static_cast<std::size_t>(part)].name;
+    };
+    Json pair = {{"a", name(rest.part_a)},
+                 {"b", name(rest.part_b)},
+                 {"overlap_at_rest_mm", record.rest_depth},
+                 {"distance_at_rest_mm", rest.touching ? 0 : rest.distance_mm},
+                 {"min_distance_mm", record.least_distance},
+                 {"deepest_mm", record.deepest},
+                 {"beyond_rest_mm", std::max(0.0, record.deepest - record.rest_depth)},
+                 {"touching_frames", record.touching_frames},
+                 {"penetrating_frames", record.penetrating_frames}};
+    if (record.first_touch >= 0) pair["first_touching_frame"] = record.first_touch;
+    pairs.push_back(pair);
+  }
+  json["contact"] = {{"pairs", pairs}, {"stopped_frames", stopped_frames_}};
+  if (first_stopped_ >= 0) json["contact"]["first_stopped_frame"] = first_stopped_;
+
+  if (scene_.tissue) {
+    const auto& made = summary(*scene_.tissue);
+    Json tissue = {{"nodes", made.nodes},
+                   {"springs", made.springs},
+                   {"prisms", made.prisms},
+                   {"layers", made.layers},
+                   {"attached_to_cranium", made.attached_to_cranium},
+                   {"attached_to_mandible", made.attached_to_mandible},
+                   {"boundary", made.boundary},
+                   {"lips_cut", made.lips_cut},
+                   {"frames_with_inverted_prisms", inverted_frames_},
+                   {"frames_not_converged", unconverged_frames_},
+                   {"at_widest_opening", soft_response(scene_, widest_)},
+                   {"notes", made.notes}};
+    std::vector<double> warm, cold;
+    for (const auto& frame : samples_) {
+      TissueBudget budget = settings_.tissue_budget;
+      budget.threads = settings_.threads;
+      warm.push_back(frame.tissue.iterations);
+      cold.push_back(follow(*scene_.tissue, rest_tissue(*scene_.tissue), frame.X_CM, budget).iterations);
+    }
+    const double warm_median = summarise(warm).median, cold_median = summarise(cold).median;
+    tissue["iterations"] = {{"warm_median", warm_median},
+                            {"cold_median", cold_median},
+                            {"warm_over_cold", cold_median > 0 ? warm_median / cold_median : 0}};
+    json["tissue"] = tissue;
+  }
+  Json stages;
+  for (const auto name : stage_names) {
+    const auto times = summarise(stage_ms_.at(std::string(name)));
+    stages[std::string(name)] = {{"median", round_to(times.median, 1e-4)},
+                                 {"p95", round_to(times.p95, 1e-4)}};
+  }
+  json["stage_ms"] = stages;
+  json["patient_notes"] = scene_.patient.notes;
+  json["contact_notes"] = scene_.contacts.notes();
+  return json.dump(2) + "\n";
+}
+
+std::string MotionReport::text() const {
+  const auto& m = widest_.measures;
+  std::string text = fmt::format(
+      "{} frames; widest opening {:.1f} mm (between incisors {:.1f} mm) at {:.2f} s, rotation "
+      "{:.1f} deg, condyles travel {:.1f} mm left, {:.1f} mm right\n",
+      frames_, m.opening_mm, m.interincisal_mm, widest_.time_s, max_rotation_deg_, left_travel_mm_,
+      right_travel_mm_);
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const auto& rest = scene_.contacts.at_rest().pairs[i];
+    const auto& a = scene_.patient.parts[static_cast<std::size_t>(rest.part_a)].name;
+    const auto& b = scene_.patient.parts[static_cast<std::size_t>(rest.part_b)].name;
+    const auto& record = pairs_[i];
+    text += fmt::format("{} and {}: ", a, b);
+    if (record.rest_depth > 0) text += fmt::format("overlap {:.2f} mm at rest, ", record.rest_depth);
+    if (record.penetrating_frames > 0)
+      text += fmt::format("up to {:.2f} mm deeper than at rest in {} frames\n",
+                          record.deepest - record.rest_depth, record.penetrating_frames);
+    else if (record.touching_frames > 0)
+      text += fmt::format("touch in {} frames, never deeper than at rest\n", record.touching_frames);
+    else
+      text += fmt::format("at least {:.2f} mm apart\n", record.least_distance);
+  }
+  if (stopped_frames_ > 0)
+    text += fmt::format("stopped at a contact in {} frames, first in frame {}\n", stopped_frames_,
+                        first_stopped_);
+  if (scene_.tissue) {
+    text += fmt::format("soft tissue: {} nodes, {} prisms, inverted in {} frames\n",
+                        summary(*scene_.tissue).nodes, summary(*scene_.tissue).prisms,
+                        inverted_frames_);
+  }
+  return text;
+}
+
+}  // namespace condyle

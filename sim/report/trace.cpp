@@ -1,0 +1,71 @@
+#include "sim/report/trace.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "engine/core/error.h"
+
+namespace condyle {
+
+const char* TraceWriter::header() {
+  return "frame,time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz,incisor_x_mm,incisor_y_mm,incisor_z_mm,"
+         "opening_mm,interincisal_mm,rotation_deg,left_condyle_x_mm,left_condyle_y_mm,"
+         "left_condyle_z_mm,right_condyle_x_mm,right_condyle_y_mm,right_condyle_z_mm,contacts,"
+         "min_clearance_mm,max_penetration_mm,tissue_iterations,tissue_energy,tissue_residual,"
+         "inverted_prisms,motion_ms,contact_ms,tissue_ms,render_ms,state_hash,stopped";
+}
+
+TraceWriter::TraceWriter(const std::filesystem::path& file)
+    : file_(file), beside_(file.parent_path() / ("." + file.filename().string() + ".part")) {
+  stream_ = std::fopen(beside_.c_str(), "wb");
+  if (!stream_)
+    throw MachineError(file_.string() + ": cannot be written: " + std::strerror(errno));
+  put(std::string(header()) + "\n");
+}
+
+TraceWriter::~TraceWriter() {
+  if (!stream_) return;
+  std::fclose(stream_);
+  ::unlink(beside_.c_str());
+}
+
+void TraceWriter::put(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stream_) != text.size())
+    throw MachineError(file_.string() + ": cannot be written: " + std::strerror(errno));
+}
+
+void TraceWriter::add(int frame, const FrameState& s) {
+  const auto& m = s.measures;
+  const auto point = [](const Eigen::Vector3d& p) {
+    return fmt::format("{},{},{}", p.x(), p.y(), p.z());
+  };
+  const double clearance = s.contacts.min_clearance_mm();
+  put(fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.4f},{:.4f},"
+                  "{:.4f},{:.4f},{:016x},{}\n",
+                  frame, s.time_s, point(s.X_CM.t), s.X_CM.R.w(), s.X_CM.R.x(), s.X_CM.R.y(),
+                  s.X_CM.R.z(), point(m.incisor), m.opening_mm, m.interincisal_mm, m.rotation_deg,
+                  point(m.left_condyle), point(m.right_condyle), s.contacts.contact_count(),
+                  std::isfinite(clearance) ? fmt::format("{}", clearance) : "",
+                  s.contacts.max_penetration_mm(), s.tissue.iterations, s.tissue.energy,
+                  s.tissue.residual, s.tissue.inverted_prisms, s.times[Stage::motion],
+                  s.times[Stage::contact], s.times[Stage::tissue] + s.times[Stage::face],
+                  s.times[Stage::render], s.state_hash, s.stopped ? 1 : 0));
+}
+
+void TraceWriter::finish() {
+  const bool flushed = std::fflush(stream_) == 0;
+  const int reason = errno;
+  const bool closed = std::fclose(stream_) == 0;
+  stream_ = nullptr;
+  if (!flushed || !closed || ::rename(beside_.c_str(), file_.c_str()) != 0) {
+    const int why = flushed ? errno : reason;
+    ::unlink(beside_.c_str());
+    throw MachineError(file_.string() + ": cannot be written: " + std::strerror(why));
+  }
+}
+
+}  // namespace condyle

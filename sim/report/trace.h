@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "sim/frame/frame_state.h"
+
+namespace condyle {
+
+/// Writes trace.csv, a row per frame. Rows go to a file beside the target, which takes its place in
+/// `finish`; until then an earlier trace stays whole.
+class TraceWriter {
+ public:
+  /// throws: MachineError when the file cannot be made.
+  explicit TraceWriter(const std::filesystem::path& file);
+  ~TraceWriter();
+  TraceWriter(const TraceWriter&) = delete;
+  TraceWriter& operator=(const TraceWriter&) = delete;
+
+  void add(int frame, const FrameState& state);
+  void finish();
+
+  static const char* header();
+
+ private:
+  void put(const std::string& text);
+
+  std::filesystem::path file_, beside_;
+  std::FILE* stream_ = nullptr;
+};
+
+}  // namespace condyle

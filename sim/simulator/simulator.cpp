@@ -1,0 +1,105 @@
+#include "sim/simulator/simulator.h"
+
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "sim/motion/measures.h"
+#include "sim/simulator/state_hash.h"
+
+namespace condyle {
+
+Scene make_scene(Case patient, const SimulatorSettings& settings, const Progress& progress) {
+  report(progress, "building the collision models", 0.0);
+  ContactModel contacts(patient, settings.contact);
+  std::shared_ptr<const TissueModel> tissue;
+  if (settings.tissue) {
+    report(progress, "building the soft tissue", 0.3);
+    tissue = build_tissue(patient, settings.tissue_model, progress);
+  }
+  report(progress, "building the soft tissue", 1.0);
+  return {std::move(patient), std::move(contacts), std::move(tissue)};
+}
+
+FrameState rest_frame(const Scene& scene) {
+  FrameState frame;
+  frame.contacts = scene.contacts.at_rest();
+  if (scene.tissue) frame.tissue = rest_tissue(*scene.tissue);
+  frame.measures = measure(scene.patient, frame.X_CM);
+  frame.state_hash = state_hash(frame);
+  return frame;
+}
+
+FrameState step(const Scene& scene, const FrameState& previous, const StepInput& input,
+                const SimulatorSettings& settings) {
+  FrameState now;
+  now.time_s = input.time_s;
+  now.X_CM_wanted = input.X_CM_wanted;
+  {
+    const StageTimer timer(now.times, Stage::contact);
+    if (input.obey_contact) {
+      auto stop = scene.contacts.stop_at_contact(previous.X_CM, input.X_CM_wanted,
+                                                 &previous.contacts, settings.threads);
+      now.X_CM = stop.X_CM;
+      now.stopped = stop.stopped;
+      now.contacts = std::move(stop.contacts);
+    } else {
+      now.X_CM = input.X_CM_wanted;
+      now.contacts = scene.contacts.find(now.X_CM, &previous.contacts, settings.threads);
+    }
+  }
+  if (scene.tissue) {
+    const StageTimer timer(now.times, Stage::tissue);
+    TissueBudget budget = settings.tissue_budget;
+    budget.threads = settings.threads;
+    now.tissue = follow(*scene.tissue, previous.tissue, now.X_CM, budget);
+  }
+  {
+    const StageTimer timer(now.times, Stage::measures);
+    now.measures = measure(scene.patient, now.X_CM);
+    now.state_hash = state_hash(now);
+  }
+  return now;
+}
+
+void carry_face(const Scene& scene, FrameState& frame) {
+  if (!scene.tissue) return;
+  const StageTimer timer(frame.times, Stage::face);
+  deform_face(*scene.tissue, frame.tissue, frame.face);
+}
+
+Playback::Playback(const Scene& scene, Motion motion, const SimulatorSettings& settings,
+                   bool respect_contact)
+    : scene_(scene),
+      motion_(std::move(motion)),
+      settings_(settings),
+      obey_contact_(respect_contact || !motion_.recorded),
+      now_(step_to(0, rest_frame(scene))) {}
+
+FrameState Playback::step_to(double time_s, const FrameState& from) const {
+  StageTimes motion_time;
+  StepInput input{.time_s = time_s, .X_CM_wanted = {}, .obey_contact = obey_contact_};
+  {
+    const StageTimer timer(motion_time, Stage::motion);
+    input.X_CM_wanted = motion_.wanted(time_s);
+  }
+  FrameState next = step(scene_, from, input, settings_);
+  next.times[Stage::motion] = motion_time[Stage::motion];
+  return next;
+}
+
+FrameState Playback::at(double time_s) {
+  constexpr double same_time_s = 1e-9;
+  assert(time_s >= static_cast<double>(step_) * settings_.step_s - same_time_s);
+  while (static_cast<double>(step_ + 1) * settings_.step_s <= time_s + same_time_s) {
+    ++step_;
+    now_ = step_to(static_cast<double>(step_) * settings_.step_s, now_);
+  }
+  const bool on_step = std::abs(time_s - now_.time_s) <= same_time_s;
+  FrameState shown = on_step ? now_ : step_to(time_s, now_);
+  shown.time_s = time_s;
+  if (settings_.face) carry_face(scene_, shown);
+  return shown;
+}
+
+}  // namespace condyle

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/case/case_io.h"
+#include "sim/motion/motion.h"
+
+/// One function per subcommand; each returns the program's exit code.
+namespace condyle {
+
+struct CommonOptions {
+  bool json = false;   // the result as JSON on standard output
+  bool quiet = false;  // no progress and no summary on standard error
+  int threads = 2;
+};
+
+/// Who moves, and how.
+struct MotionOptions {
+  std::filesystem::path patient;  // case folder; empty = the built-in patient
+  std::string motion;
+  OpeningSettings opening;
+  bool respect_contact = false;  // stop recorded motion at contact, too
+  bool tissue = true;
+  int surface_nodes = 520;
+};
+
+struct RecordOptions {
+  MotionOptions motion;
+  std::filesystem::path out;
+  int frames = 0;  // 0 = duration x fps
+  double fps = 30;
+  bool plots = false;
+  // pictures; `run` has none
+  bool pictures = false;
+  std::string size = "1280x720";
+  std::string camera = "three-quarter";
+  std::string show = "all";
+  bool film = false;
+  bool resume = false;
+};
+
+struct CheckOptions {
+  MotionOptions motion;
+  std::filesystem::path out;
+  double margin_mm = 0;
+};
+
+struct ViewOptions {
+  MotionOptions motion;
+  double ui_scale = 1;
+};
+
+struct ImportOptions {
+  ImportRequest request;
+  std::filesystem::path out;
+};
+
+struct BenchOptions {
+  std::filesystem::path patient;
+  int repeats = 3;  // whole openings
+};
+
+int run_record(const RecordOptions& options, const CommonOptions& common);
+int run_check(const CheckOptions& options, const CommonOptions& common);
+int run_view(const ViewOptions& options, const CommonOptions& common);
+int run_import(const ImportOptions& options, const CommonOptions& common);
+int run_info(const std::filesystem::path& what, const CommonOptions& common);
+int run_phantom(const std::filesystem::path& out, const CommonOptions& common);
+int run_bench_frame(const BenchOptions& options, const CommonOptions& common);
+
+}  // namespace condyle

@@ -1,0 +1,148 @@
+#include "tools/common.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "sim/phantom/phantom.h"
+
+namespace condyle {
+
+ProgressBar::ProgressBar(const CommonOptions& common)
+    : terminal_(!common.quiet && ::isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() { clear(); }
+
+void ProgressBar::show(std::string_view what, double fraction) {
+  if (!terminal_) return;
+  constexpr int width = 30;
+  const int full = static_cast<int>(std::lround(std::clamp(fraction, 0.0, 1.0) * width));
+  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} %  {}", std::string(static_cast<std::size_t>(full), '#'),
+             std::string(static_cast<std::size_t>(width - full), '.'), fraction * 100, what);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+void ProgressBar::clear() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
+  drawn_ = false;
+}
+
+Progress ProgressBar::callback() {
+  return [this](std::string_view what, double fraction) { show(what, fraction); };
+}
+
+Case open_patient(const std::filesystem::path& folder, const CommonOptions& common, ProgressBar& bar) {
+  if (!folder.empty()) return load_case(folder);
+  // Making the patient takes some seconds once; a reader of a log should know what is going on.
+  bool told = false;
+  return builtin_patient([&](std::string_view what, double fraction) {
+    if (!told && !common.quiet) fmt::print(stderr, "making the built-in patient (once; then it is cached)\n");
+    told = true;
+    bar.show(what, fraction);
+  });
+}
+
+SimulatorSettings simulator_settings(const MotionOptions& options, const CommonOptions& common) {
+  SimulatorSettings settings;
+  settings.threads = common.threads;
+  settings.tissue = options.tissue;
+  settings.tissue_model.surface_nodes = options.surface_nodes;
+  return settings;
+}
+
+std::pair<int, int> parse_size(const std::string& text) {
+  int width = 0, height = 0, used = 0;
+  const bool parsed = std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used) == 2 &&
+                      used == static_cast<int>(text.size());
+  if (!parsed || width < 16 || height < 16 || width > 8192 || height > 8192)
+    throw InputError("--size " + text + ": must be WIDTHxHEIGHT, each 16 to 8192, e.g. 1280x720");
+  return {width, height};
+}
+
+void apply_show_list(const std::string& list, std::span<const Part> parts, PictureSettings& settings) {
+  const std::map<std::string, std::set<Role>> groups = {
+      {"bones", {Role::skull, Role::maxilla, Role::mandible}},
+      {"teeth", {Role::upper_teeth, Role::lower_teeth}},
+      {"skin", {Role::face, Role::eyes}},
+      {"mouth", {Role::upper_gums, Role::lower_gums, Role::tongue}},
+  };
+  const auto known = [&] {
+    std::string names = "all, contacts";
+    for (const auto& [name, roles] : groups) names += ", " + name;
+    for (const auto& part : parts) names += ", " + part.name;
+    return names;
+  };
+  std::map<std::string, double> opacity;
+  for (const auto& part : parts) opacity[part.name] = 0;
+  settings.contacts = false;
+  std::size_t start = 0;
+  while (start <= list.size()) {
+    const auto end = std::min(list.find(',', start), list.size());
+    std::string item = list.substr(start, end - start);
+    start = end + 1;
+    double value = 1;
+    if (const auto colon = item.find(':'); colon != std::string::npos) {
+      char* rest = nullptr;
+      const std::string number = item.substr(colon + 1);
+      value = std::strtod(number.c_str(), &rest);
+      if (number.empty() || *rest != '\0' || !(value >= 0 && value <= 1))
+        throw InputError("--show " + item + ": the opacity must be a number from 0 to 1");
+      item.resize(colon);
+    }
+    bool found = item == "all" || item == "contacts";
+    if (found) settings.contacts = true;
+    for (const auto& part : parts) {
+      const auto group = groups.find(item);
+      const bool chosen = item == "all" || item == part.name ||
+                          (group != groups.end() && group->second.contains(part.role));
+      if (chosen) opacity[part.name] = value;
+      found |= chosen || group != groups.end();
+    }
+    if (!found) throw InputError("--show " + item + ": unknown; known are " + known());
+  }
+  for (const auto& part : parts)
+    if (part.role == Role::face) settings.skin_opacity = opacity[part.name];
+  settings.part_opacity = std::move(opacity);
+}
+
+Camera parse_camera(const std::string& text, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                    double aspect) {
+  if (!text.ends_with(".json")) return standard_camera(text, low, high, aspect);
+  const auto json = nlohmann::json::parse(read_file(text, 1 << 20), nullptr, false);
+  if (!json.is_object()) throw InputError(text, "", "is not a JSON object");
+  Camera camera = standard_camera("front", low, high, aspect);
+  const auto vector = [&](const char* name, Eigen::Vector3d& value) {
+    if (!json.contains(name)) return;
+    const auto& list = json[name];
+    if (!list.is_array() || list.size() != 3 || !list[0].is_number() || !list[1].is_number() ||
+        !list[2].is_number())
+      throw InputError(text, name, "must be three numbers");
+    value = {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()};
+  };
+  const auto number = [&](const char* name, double& value, double least, double most) {
+    if (!json.contains(name)) return;
+    if (!json[name].is_number()) throw InputError(text, name, "must be a number");
+    value = json[name].get<double>();
+    if (!(value >= least && value <= most))
+      throw InputError(text, name, fmt::format("is {}; must be {} to {}", value, least, most));
+  };
+  vector("target", camera.target);
+  vector("direction", camera.direction);
+  vector("up", camera.up);
+  number("distance_mm", camera.distance_mm, 10, 10000);
+  number("field_of_view_deg", camera.field_of_view_deg, 1, 120);
+  if (camera.direction.norm() < 1e-9) throw InputError(text, "direction", "must not be zero");
+  camera.direction.normalize();
+  if (camera.direction.cross(camera.up).norm() < 1e-6)
+    throw InputError(text, "up", "must not be zero or along the direction");
+  return camera;
+}
+
+}  // namespace condyle

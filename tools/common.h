@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "render/camera.h"
+#include "render/scene_renderer.h"
+#include "sim/simulator/simulator.h"
+#include "tools/commands.h"
+
+namespace condyle {
+
+/// A bar on standard error while it is a terminal; silent elsewhere and with --quiet.
+class ProgressBar {
+ public:
+  explicit ProgressBar(const CommonOptions& common);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void show(std::string_view what, double fraction);
+  void clear();
+  Progress callback();
+
+ private:
+  bool terminal_;
+  bool drawn_ = false;
+};
+
+/// The case in the folder, or the built-in patient when it is empty.
+Case open_patient(const std::filesystem::path& folder, const CommonOptions& common, ProgressBar& bar);
+
+SimulatorSettings simulator_settings(const MotionOptions& options, const CommonOptions& common);
+
+/// "1280x720". throws: InputError unless both are between 16 and 8192.
+std::pair<int, int> parse_size(const std::string& text);
+
+/// Fills opacities from a list such as "bones,teeth,skin:0.4"; "all" shows everything.
+/// throws: InputError for an unknown name, listing the known ones.
+void apply_show_list(const std::string& list, std::span<const Part> parts, PictureSettings& settings);
+
+/// A standard view by name, or a JSON file {target, direction, up, distance_mm, field_of_view_deg}.
+Camera parse_camera(const std::string& text, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                    double aspect);
+
+}  // namespace condyle

@@ -1,0 +1,31 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/commands.h"
+
+namespace condyle {
+
+int run_import(const ImportOptions& options, const CommonOptions& common) {
+  const Case patient = import_meshes(options.request);
+  save_case(patient, options.out);
+  if (common.json) {
+    nlohmann::ordered_json json = {{"case", options.out.string()}, {"name", patient.name}};
+    for (const auto& part : patient.parts)
+      json["parts"].push_back({{"name", part.name},
+                               {"role", role_name(part.role)},
+                               {"triangles", part.mesh.triangles.size()}});
+    json["landmarks"] = patient.landmarks.points.size();
+    json["notes"] = patient.notes;
+    fmt::print("{}\n", json.dump(2));
+  }
+  if (!common.quiet) {
+    for (const auto& note : patient.notes) fmt::print(stderr, "note: {}\n", note);
+    fmt::print(stderr, "{}: {} parts, {} landmarks. Next: condyle record {} --motion opening --out out --film\n",
+               options.out.string(), patient.parts.size(), patient.landmarks.points.size(),
+               options.out.string());
+  }
+  return 0;
+}
+
+}  // namespace condyle

@@ -1,0 +1,216 @@
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <thread>
+
+#include "engine/core/error.h"
+#include "tools/commands.h"
+
+namespace {
+
+using namespace condyle;
+
+constexpr const char* examples = R"(
+Examples
+  condyle                                                    the window, on the built-in patient
+  condyle record --motion opening --out out --film           a film of the opening mouth, no display needed
+  condyle import meshes --mandible jaw.stl --maxilla maxilla.stl --landmarks marks.csv --out mycase
+  condyle check mycase --motion opening --margin 1 --out out collisions and clearances
+  condyle run mycase --motion chew.csv --out out             a recorded motion, without pictures
+
+Exit codes: 0 done; 1 the machine or the program failed; 2 the input or the command line is wrong;
+3 check found a violation. For research and education, not for clinical use.)";
+
+void add_motion(CLI::App* command, MotionOptions& motion, bool motion_required) {
+  command->add_option("CASE", motion.patient, "Folder with case.json (default: the built-in patient)");
+  auto* option = command->add_option("--motion", motion.motion,
+                                     "Built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
+                                         ") or a pose file (CSV: time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz)");
+  if (motion_required) option->required();
+  command->add_option("--opening", motion.opening.opening_mm,
+                      "Opening wanted at the incisors, mm (default: what suits the patient)")
+      ->check(CLI::Range(1.0, 80.0));
+  command->add_option("--duration", motion.opening.duration_s, "Time to open and close, s (3)")
+      ->check(CLI::Range(0.2, 600.0));
+  command->add_option("--early-translation", motion.opening.early_translation,
+                      "0 hinge first ... 1 translation from the start (default: as early as the joint requires)")
+      ->check(CLI::Range(0.0, 1.0));
+  command->add_flag("--respect-contact", motion.respect_contact,
+                    "Stop a recorded motion, too, where bones meet (built-in motions always stop)");
+}
+
+void add_tissue(CLI::App* command, MotionOptions& motion) {
+  command->add_flag("!--no-tissue", motion.tissue, "Leave the soft tissue where it is");
+  command->add_option("--surface-nodes", motion.surface_nodes,
+                      "Soft-tissue nodes of one layer, about (520)")
+      ->check(CLI::Range(100, 20000));
+}
+
+void add_recording(CLI::App* command, RecordOptions& record) {
+  add_motion(command, record.motion, true);
+  add_tissue(command, record.motion);
+  command->add_option("--out", record.out, "Folder for the results")->required();
+  command->add_option("--frames", record.frames, "The whole motion in this many frames, both ends included")
+      ->check(CLI::Range(1, 1000000));
+  command->add_option("--fps", record.fps, "Frames a second of the motion's own time (30)")
+      ->check(CLI::Range(0.1, 1000.0));
+  command->add_flag("--plots", record.plots, "Also draw plots (SVG)");
+}
+
+CLI::App* add_command(CLI::App& app, const char* name, const char* what, const char* example) {
+  auto* command = app.add_subcommand(name, what);
+  command->footer(std::string("\nExample\n  ") + example);
+  return command;
+}
+
+/// CLI11 calls an unknown verb an unexpected argument; a person wants to hear which verbs there are.
+std::string unknown_verb(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  std::string known;
+  for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == argv[1]) return {};
+    known += " " + command->get_name();
+  }
+  return std::string("unknown command \"") + argv[1] + "\"; known are" + known;
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App app{"Condyle: real-time jaw-motion simulator with collision handling", "condyle"};
+  app.footer(examples);
+  app.set_version_flag("--version", CONDYLE_VERSION);
+  app.fallthrough();
+  CommonOptions common;
+  common.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 8u));
+  app.add_flag("--json", common.json, "Print the result as JSON on standard output");
+  app.add_flag("--quiet", common.quiet, "No progress and no summary");
+  app.add_option("--threads", common.threads, "Threads; results have the same bits for any number")
+      ->check(CLI::Range(1, 64));
+
+  ViewOptions view;
+  auto* view_command = add_command(app, "view", "Open the window", "condyle view mycase --motion opening");
+  add_motion(view_command, view.motion, false);
+  add_tissue(view_command, view.motion);
+  view_command->add_option("--ui-scale", view.ui_scale, "Size of the panels (1)")->check(CLI::Range(0.5, 4.0));
+
+  RecordOptions record;
+  record.pictures = true;
+  auto* record_command =
+      add_command(app, "record", "Record a motion as pictures, off-screen",
+                  "condyle record --motion opening --out out --camera spin --show bones,teeth,skin:0.4 --film");
+  add_recording(record_command, record);
+  record_command->add_option("--size", record.size, "Picture size, WIDTHxHEIGHT (1280x720)");
+  record_command->add_option("--camera", record.camera,
+                             "front back left right three-quarter above below spin, or a JSON file (three-quarter)");
+  record_command->add_option("--show", record.show,
+                             "What to draw: all bones teeth skin mouth contacts or part names, each with "
+                             "an opacity if wanted, e.g. bones,teeth,skin:0.4 (all)");
+  record_command->add_flag("--film", record.film, "Also make film.mp4 (needs the ffmpeg program)");
+  record_command->add_flag("--resume", record.resume, "Complete an interrupted recording");
+
+  RecordOptions run;
+  auto* run_command = add_command(app, "run", "Simulate a motion without pictures",
+                                  "condyle run mycase --motion chew.csv --out out --json");
+  add_recording(run_command, run);
+
+  CheckOptions check;
+  check.motion.motion = "opening";
+  check.motion.tissue = false;
+  auto* check_command =
+      add_command(app, "check", "Check the bones for collisions and clearances along a motion",
+                  "condyle check mycase --motion opening --margin 1 --out out; echo $?");
+  add_motion(check_command, check.motion, false);
+  check_command->add_option("--margin", check.margin_mm, "Clearance that bones must keep, mm (0)")
+      ->check(CLI::Range(0.0, 50.0));
+  check_command->add_option("--out", check.out, "Folder for report.json and pairs.csv");
+
+  ImportOptions import;
+  auto* import_command = add_command(app, "import", "Make a case from your files",
+                                     "condyle import meshes --mandible jaw.stl --maxilla maxilla.stl --out mycase");
+  import_command->require_subcommand(1);
+  auto* meshes = add_command(*import_command, "meshes", "From surfaces: STL, PLY, OBJ or GLB",
+                             "condyle import meshes --mandible jaw.stl --maxilla maxilla.ply --face skin.obj\n"
+                             "      --landmarks marks.csv --units m --frame RAS --out mycase");
+  struct RoleOption {
+    const char* name;
+    Role role;
+    std::vector<std::filesystem::path> files;
+  };
+  std::vector<RoleOption> roles = {{"--skull", Role::skull, {}},
+                                   {"--maxilla", Role::maxilla, {}},
+                                   {"--mandible", Role::mandible, {}},
+                                   {"--upper-teeth", Role::upper_teeth, {}},
+                                   {"--lower-teeth", Role::lower_teeth, {}},
+                                   {"--face", Role::face, {}}};
+  for (auto& role : roles)
+    meshes->add_option(role.name, role.files, "Surface file; may be given several times")->type_name("FILE");
+  meshes->add_option("--landmarks", import.request.landmarks,
+                     "CSV with name,x_mm,y_mm,z_mm, or 3D Slicer .mrk.json");
+  meshes->add_option("--units", import.request.units, "Unit of the files: mm m cm in (mm)");
+  meshes->add_option("--frame", import.request.frame, "Axes of the files: LPS, RAS, ... (LPS)");
+  meshes->add_option("--name", import.request.name, "Name of the case");
+  meshes->add_option("--out", import.out, "Folder of the new case")->required();
+
+  std::filesystem::path what;
+  auto* info_command =
+      add_command(app, "info", "Tell what a case or a surface file holds", "condyle info mycase --json");
+  info_command->add_option("CASE|FILE", what, "Case folder or surface file (default: the built-in patient)");
+
+  std::filesystem::path phantom_out;
+  auto* phantom_command = add_command(app, "phantom", "Write the built-in patient as a case folder",
+                                      "condyle phantom --out patient");
+  phantom_command->add_option("--out", phantom_out, "Folder of the case")->required();
+
+  BenchOptions bench;
+  auto* bench_command =
+      add_command(app, "bench", "Measure speed", "condyle bench frame --json");
+  bench_command->require_subcommand(1);
+  auto* bench_frame = add_command(*bench_command, "frame", "Each stage of a frame, median and 95th percentile",
+                                  "condyle bench frame --json");
+  bench_frame->add_option("CASE", bench.patient, "Case folder (default: the built-in patient)");
+  bench_frame->add_option("--repeats", bench.repeats, "Openings to measure (3)")->check(CLI::Range(1, 1000));
+
+  if (const auto problem = unknown_verb(app, argc, argv); !problem.empty()) throw InputError(problem);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    throw InputError(std::string(error.what()) + ". See condyle --help");
+  }
+
+  if (record_command->parsed()) return run_record(record, common);
+  if (run_command->parsed()) return run_record(run, common);
+  if (check_command->parsed()) return run_check(check, common);
+  if (meshes->parsed()) {
+    for (const auto& role : roles)
+      for (const auto& file : role.files) import.request.files.push_back({role.role, file});
+    return run_import(import, common);
+  }
+  if (info_command->parsed()) return run_info(what, common);
+  if (phantom_command->parsed()) return run_phantom(phantom_out, common);
+  if (bench_frame->parsed()) return run_bench_frame(bench, common);
+  return run_view(view, common);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an error of the write, told below
+  try {
+    const int code = run_program(argc, argv);
+    if (std::fflush(stdout) != 0 || !std::cout.flush())
+      throw MachineError("standard output cannot be written");
+    return code;
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "condyle: %s\n", error.what());
+    return 2;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "condyle: not enough memory\n");
+    return 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "condyle: %s\n", error.what());
+    return 1;
+  }
+}
