@@ -1,0 +1,97 @@
+#include "sim/case/soft_landmarks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+namespace condyle {
+namespace {
+
+constexpr double bin_mm = 0.5;
+
+/// The most anterior crossing of a surface with the plane x = x0, by height: z bin -> y.
+std::map<int, double> profile(const TriMesh& mesh, double x0) {
+  std::map<int, double> front;
+  for (const auto& t : mesh.triangles) {
+    for (int e = 0; e < 3; ++e) {
+      const Eigen::Vector3d& a = mesh.vertices[static_cast<std::size_t>(t[e])];
+      const Eigen::Vector3d& b = mesh.vertices[static_cast<std::size_t>(t[(e + 1) % 3])];
+      if ((a.x() < x0) == (b.x() < x0)) continue;
+      const Eigen::Vector3d p = a + (x0 - a.x()) / (b.x() - a.x()) * (b - a);
+      const int bin = static_cast<int>(std::floor(p.z() / bin_mm));
+      const auto [it, fresh] = front.try_emplace(bin, p.y());
+      if (!fresh) it->second = std::min(it->second, p.y());
+    }
+  }
+  return front;
+}
+
+double height(int bin) { return (bin + 0.5) * bin_mm; }
+
+using Found = std::optional<Eigen::Vector3d>;
+
+Found most_anterior(const std::map<int, double>& front, double x0, double low, double high) {
+  Found best;
+  for (const auto& [bin, y] : front) {
+    const double z = height(bin);
+    if (z < low || z > high) continue;
+    if (!best || y < best->y()) best = Eigen::Vector3d(x0, y, z);
+  }
+  return best;
+}
+
+/// Between the lips: the widest gap of the profile, or where it lies farthest back.
+Found mouth(const std::map<int, double>& front, double x0, double low, double high) {
+  Found gap, valley;
+  double widest = 3 * bin_mm;
+  std::optional<std::pair<double, double>> above;  // z, y of the sample before, going up
+  for (const auto& [bin, y] : front) {
+    const double z = height(bin);
+    if (z < low || z > high) continue;
+    if (above && z - above->first > widest) {
+      widest = z - above->first;
+      gap = Eigen::Vector3d(x0, std::max(y, above->second), 0.5 * (z + above->first));
+    }
+    if (!valley || y > valley->y()) valley = Eigen::Vector3d(x0, y, z);
+    above = {z, y};
+  }
+  return gap ? gap : valley;
+}
+
+}  // namespace
+
+void estimate_profile_landmarks(Case& patient) {
+  auto& marks = patient.landmarks.points;
+  const auto upper = patient.landmarks.find("upper_incisal_point");
+  const auto lower = patient.landmarks.find("lower_incisal_point");
+  if (!upper || !lower) return;
+  const double x0 = 0.5 * (upper->x() + lower->x());
+  std::string added;
+  const auto add = [&](const char* name, const Found& point) {
+    if (!point || marks.contains(name)) return;
+    marks[name] = *point;
+    added += (added.empty() ? "" : ", ") + std::string(name);
+  };
+
+  double chin_z = lower->z() - 30;
+  if (const Part* mandible = patient.find(Role::mandible)) {
+    const auto chin = most_anterior(profile(mandible->mesh, x0), x0, lower->z() - 60, lower->z() - 18);
+    add("pogonion", chin);
+    if (const auto found = patient.landmarks.find("pogonion")) chin_z = found->z();
+  }
+  if (const Part* face = patient.find(Role::face)) {
+    const auto front = profile(face->mesh, x0);
+    const double middle = 0.5 * (upper->z() + lower->z());
+    add("pronasale", most_anterior(front, x0, upper->z() + 15, upper->z() + 80));
+    add("stomion", mouth(front, x0, middle - 9, middle + 9));
+    if (const auto stomion = patient.landmarks.find("stomion")) {
+      add("labrale_superius", most_anterior(front, x0, stomion->z() + 0.5, stomion->z() + 9));
+      add("labrale_inferius", most_anterior(front, x0, stomion->z() - 9, stomion->z() - 0.5));
+    }
+    add("soft_pogonion", most_anterior(front, x0, chin_z - 8, chin_z + 8));
+  }
+  if (!added.empty()) patient.notes.push_back("landmarks estimated from the surfaces: " + added);
+}
+
+}  // namespace condyle

@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "sim/report/clearance.h"
+#include "sim/report/plots.h"
+#include "sim/report/report.h"
+#include "sim/report/trace.h"
+#include "tests/support/boxes.h"
+#include "tests/support/program.h"
+
+namespace condyle::test {
+namespace {
+
+Motion lift(double height_mm) {
+  return {"lift", 0.5, true, [height_mm](double t) {
+            Pose pose;
+            pose.t = {0, 0, height_mm * std::clamp(t, 0.0, 0.5) / 0.5};
+            return pose;
+          }};
+}
+
+}  // namespace
+
+TEST(Trace, HasTheColumnsOfTheContractAndAnEarlierTraceStaysUntilFinish) {
+  const Folder folder;
+  const auto file = folder.path() / "trace.csv";
+  write_text(file, "earlier");
+  {
+    TraceWriter dropped(file);
+    dropped.add(0, {});
+    EXPECT_EQ(read_text(file), "earlier");
+  }
+  EXPECT_EQ(read_text(file), "earlier");
+  TraceWriter trace(file);
+  FrameState frame;
+  frame.X_CM.t = {1.0 / 3, 0, 0};
+  trace.add(0, frame);
+  trace.finish();
+  std::istringstream text(read_text(file));
+  std::string header, row;
+  std::getline(text, header);
+  std::getline(text, row);
+  EXPECT_TRUE(header.starts_with("frame,time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz,incisor_x_mm,"));
+  EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
+  EXPECT_TRUE(row.starts_with("0,0,0.3333333333333333,0,0,1,")) << row;
+}
+
+TEST(Clearance, MarginAndPenetrationAreToldApart) {
+  const Scene scene = make_scene(box_patient());
+  const auto verdict = [&](double height, double margin) {
+    return check_clearance(scene, lift(height), margin, {}).pairs.at(0);
+  };
+  EXPECT_NEAR(verdict(0.4, 0).least_distance_mm, 0.6, 1e-9);
+  EXPECT_FALSE(verdict(0.4, 0.5).violates_margin);
+  EXPECT_TRUE(verdict(0.6, 0.5).violates_margin);
+  EXPECT_FALSE(verdict(0.6, 0.5).penetrates);
+  const auto deep = verdict(3, 0);
+  EXPECT_TRUE(deep.penetrates);
+  EXPECT_NEAR(deep.beyond_rest_mm, 2.0, 1e-6);
+  EXPECT_NEAR(deep.first_touch / 120.0, 1.0 / 6, 1.01 / 120);  // 1 mm of the 6 mm/s
+}
+
+TEST(Report, CountsWhatTheFramesDid) {
+  const Scene scene = make_scene(box_patient());
+  Playback playback(scene, lift(3), {});
+  MotionReport report(scene, playback.motion(), {});
+  for (int i = 0; i <= 60; ++i) report.add(playback.at(i / 120.0));
+  const auto json = nlohmann::json::parse(report.json());
+  EXPECT_EQ(json["frames"], 61);
+  const auto& pair = json["contact"]["pairs"][0];
+  EXPECT_NEAR(pair["beyond_rest_mm"].get<double>(), 2.0, 1e-6);
+  EXPECT_EQ(pair["overlap_at_rest_mm"], 0.0);
+  EXPECT_NEAR(pair["penetrating_frames"].get<int>(), 40, 2);
+}
+
+TEST(Summary, MedianAndPercentile) {
+  std::vector<double> ms;
+  for (int i = 100; i >= 1; --i) ms.push_back(i);
+  EXPECT_EQ(summarise(ms).median, 50);
+  EXPECT_EQ(summarise(ms).p95, 95);
+  EXPECT_EQ(summarise({}).median, 0);
+}
+
+TEST(Plot, CurvesLieWithinTheAxes) {
+  const auto svg = plot_svg({{"a", {0, 1, 2}, {-5, 50, 3}}}, {.title = "t", .x_label = "x", .y_label = "y"});
+  EXPECT_NE(svg.find("</svg>"), std::string::npos);
+  std::istringstream points(svg.substr(svg.find("points=\"") + 8));
+  double x = 0, y = 0;
+  char comma = 0;
+  int count = 0;
+  while (points >> x >> comma >> y) {
+    EXPECT_GE(x, 70);
+    EXPECT_LE(x, 620);
+    EXPECT_GE(y, 44);
+    EXPECT_LE(y, 424);
+    ++count;
+  }
+  EXPECT_EQ(count, 3);
+}
+
+}  // namespace condyle::test
