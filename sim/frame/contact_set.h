@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "engine/math/pose.h"
+
 namespace condyle {
 
 /// One contact between surfaces A and B, in the cranium's frame.
 struct ContactPoint {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();   // mm
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ(); // unit, from A to B
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // mm
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, from A to B
 };
 
 /// What one pair of parts does at one pose.
@@ -16,8 +18,8 @@ struct PairContact {
   int part_a = 0;  // index into the case's parts; A belongs to the cranium
   int part_b = 0;  // B belongs to the mandible
   bool touching = false;
-  std::vector<ContactPoint> contacts;  // capped
-  double distance_mm = 0;              // exact minimum distance, 0 when touching
+  std::vector<ContactPoint> contacts;                   // capped
+  double distance_mm = 0;                               // exact minimum distance, 0 when touching
   Eigen::Vector3d witness_a = Eigen::Vector3d::Zero();  // nearest points when apart
   Eigen::Vector3d witness_b = Eigen::Vector3d::Zero();
   int triangle_a = -1, triangle_b = -1;  // triangles of the witness points: the next query's start
@@ -37,6 +39,8 @@ struct ContactSet {
   double min_clearance_mm() const;
   /// Deepest overlap beyond what was there at rest, over the pairs.
   double max_penetration_mm() const;
+
+  Pose X_CM;  // where it was taken
 };
 
 }  // namespace condyle

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "engine/math/pose.h"
+#include "engine/mesh/tri_mesh.h"
+
+namespace condyle {
+
+/// A triangle of each surface.
+struct TrianglePair {
+  int a = -1, b = -1;
+};
+
+/// Exact minimum distance of two surfaces, 0 when they cross or touch. Witness points in the world.
+struct MeshDistance {
+  double distance_mm = 0;
+  Eigen::Vector3d witness_a = Eigen::Vector3d::Zero();
+  Eigen::Vector3d witness_b = Eigen::Vector3d::Zero();
+  TrianglePair triangles;  // of the witness points: the start of the next query
+};
+
+/// One pair of crossing triangles.
+struct MeshContact {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // middle of the common segment, world
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, from A to B, of the outward normals
+  double overlap_mm = 0;                              // least move that parts the two triangles
+  TrianglePair triangles;
+};
+
+/// A surface with its tree of boxes (FCL's BVHModel<OBBRSS>), in its body's own coordinates: built
+/// once, moved by its pose alone. Queries are const and may run on several threads at once.
+class CollisionMesh {
+ public:
+  /// At least one triangle, valid indices, finite coordinates.
+  explicit CollisionMesh(const TriMesh& mesh);
+  ~CollisionMesh();
+  CollisionMesh(CollisionMesh&&) noexcept;
+  CollisionMesh& operator=(CollisionMesh&&) noexcept;
+
+  struct Tree;
+  const Tree& tree() const { return *tree_; }
+
+ private:
+  std::unique_ptr<Tree> tree_;
+};
+
+/// Minimum distance, to rounding (about 1e-13 mm). `start`: where an earlier answer was; any valid
+/// pair gives the same distance, a near one sooner.
+MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
+                      const Pose& X_WB, TrianglePair start = {});
+
+/// distance(...) == 0, without the distance.
+bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
+              TrianglePair start = {});
+
+/// Pairs of crossing triangles in the tree's order; the search ends after `max_count`.
+std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
+                                  const Pose& X_WB, int max_count);
+
+}  // namespace condyle
