@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/mesh/topology.h"
-#include "engine/mesh_io/mesh_io.h"
+#include "engine/mesh_io/mesh_files.h"
 #include "tools/common.h"
 
 namespace condyle {
@@ -13,14 +13,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json describe(const TriMesh& mesh) {
-  const auto topology = examine(mesh);
+  const Topology topology = inspect(mesh);
   const auto [low, high] = bounding_box(mesh);
   return {{"vertices", mesh.vertices.size()},
           {"triangles", mesh.triangles.size()},
           {"components", topology.components},
-          {"closed", topology.closed},
+          {"closed", topology.closed()},
           {"boundary_edges", topology.boundary_edges},
-          {"non_manifold_edges", topology.non_manifold_edges},
+          {"non_manifold_edges", topology.nonmanifold_edges},
           {"low_mm", {low.x(), low.y(), low.z()}},
           {"high_mm", {high.x(), high.y(), high.z()}}};
 }

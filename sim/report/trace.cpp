@@ -40,20 +40,34 @@ void TraceWriter::put(const std::string& text) {
 
 void TraceWriter::add(int frame, const FrameState& s) {
   const auto& m = s.measures;
-  const auto point = [](const Eigen::Vector3d& p) {
-    return fmt::format("{},{},{}", p.x(), p.y(), p.z());
+  const auto& q = s.X_CM.R;
+  std::string row = std::to_string(frame);
+  const auto numbers = [&row](std::initializer_list<double> values) {
+    for (const double value : values) row += std::isfinite(value) ? fmt::format(",{}", value) : ",";
   };
-  const double clearance = s.contacts.min_clearance_mm();
-  put(fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.4f},{:.4f},"
-                  "{:.4f},{:.4f},{:016x},{}\n",
-                  frame, s.time_s, point(s.X_CM.t), s.X_CM.R.w(), s.X_CM.R.x(), s.X_CM.R.y(),
-                  s.X_CM.R.z(), point(m.incisor), m.opening_mm, m.interincisal_mm, m.rotation_deg,
-                  point(m.left_condyle), point(m.right_condyle), s.contacts.contact_count(),
-                  std::isfinite(clearance) ? fmt::format("{}", clearance) : "",
-                  s.contacts.max_penetration_mm(), s.tissue.iterations, s.tissue.energy,
-                  s.tissue.residual, s.tissue.inverted_prisms, s.times[Stage::motion],
-                  s.times[Stage::contact], s.times[Stage::tissue] + s.times[Stage::face],
-                  s.times[Stage::render], s.state_hash, s.stopped ? 1 : 0));
+  const auto point = [&](const Eigen::Vector3d& p) { numbers({p.x(), p.y(), p.z()}); };
+  const auto count = [&row](int value) { row += fmt::format(",{}", value); };
+  const auto ms = [&row](double value) { row += fmt::format(",{:.4f}", value); };
+
+  numbers({s.time_s});
+  point(s.X_CM.t);
+  numbers({q.w(), q.x(), q.y(), q.z()});
+  point(m.incisor);
+  numbers({m.opening_mm, m.interincisal_mm, m.rotation_deg});
+  point(m.left_condyle);
+  point(m.right_condyle);
+  count(s.contacts.contact_count());
+  numbers({s.contacts.min_clearance_mm(), s.contacts.max_penetration_mm()});
+  count(s.tissue.iterations);
+  numbers({s.tissue.energy, s.tissue.residual});
+  count(s.tissue.inverted_prisms);
+  ms(s.times[Stage::motion]);
+  ms(s.times[Stage::contact]);
+  ms(s.times[Stage::tissue] + s.times[Stage::face]);
+  ms(s.times[Stage::render]);
+  row += fmt::format(",{:016x}", s.state_hash);
+  count(s.stopped ? 1 : 0);
+  put(row + "\n");
 }
 
 void TraceWriter::finish() {
