@@ -1,0 +1,30 @@
+#include "render/window/layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace condyle {
+
+Layout lay_out(double width, double height, double scale, bool with_panels) {
+  Layout layout;
+  width = std::max(1.0, width);
+  height = std::max(1.0, height);
+  if (!with_panels) {
+    layout.top = layout.left = layout.right = layout.bottom = {0, 0, 0, 0};
+    layout.view = {0, 0, width, height};
+    return layout;
+  }
+  // Whole pixels, and a hair's breadth between neighbours.
+  const auto px = [&](double units) { return std::round(units * scale); };
+  const double gap = std::max(1.0, px(1));
+  const double top = px(46), bottom = px(92), left = px(244), right = px(286);
+  const double middle = std::max(1.0, height - top - bottom - 2 * gap);
+  layout.top = {0, 0, width, top};
+  layout.bottom = {0, height - bottom, width, bottom};
+  layout.left = {0, top + gap, left, middle};
+  layout.right = {width - right, top + gap, right, middle};
+  layout.view = {left + gap, top + gap, std::max(1.0, width - left - right - 2 * gap), middle};
+  return layout;
+}
+
+}  // namespace condyle

@@ -1,0 +1,98 @@
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "render/window/panels_drawing.h"
+
+namespace condyle {
+namespace {
+
+// Centred, above everything, with the rest dimmed. ImGui needs a width or it draws nothing useful.
+bool begin_dialog(Pen& pen, const char* name, float dialog_width, double width, double height) {
+  if (!ImGui::IsPopupOpen(name)) ImGui::OpenPopup(name);
+  ImGui::SetNextWindowPos({static_cast<float>(width) / 2, static_cast<float>(height) / 2}, 0,
+                          {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::min(dialog_width, static_cast<float>(width) - pen.px(20)), 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, pen.px(24, 20));
+  const bool open =
+      ImGui::BeginPopupModal(name, nullptr,
+                             ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                 ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs);
+  ImGui::PopStyleVar();
+  if (open) {
+    pen.panel = name;
+    const ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    pen.items.push_back({name, "", {low.x, low.y, size.x, size.y}});
+  }
+  return open;
+}
+
+bool close_button(Pen& pen, const char* name) {
+  const float wide = pen.px(96);
+  ImGui::SetCursorPos(
+      {ImGui::GetWindowContentRegionMax().x - wide, ImGui::GetCursorPosY() + pen.px(8)});
+  const bool pressed = word_button(pen, name, "Close", {wide, pen.px(30)}, true);
+  return pressed;
+}
+
+void help_columns(const Theme& theme, Pen& pen) {
+  // Two columns of two groups each.
+  const float column = ImGui::GetContentRegionAvail().x / 2;
+  const float left = ImGui::GetCursorPosX(), top = ImGui::GetCursorPosY();
+  const float keys_width = pen.px(150);
+  const auto groups = help_groups();
+  float lowest = top;
+  for (std::size_t c = 0; c < 2; ++c) {
+    ImGui::SetCursorPosY(top);
+    for (std::size_t g = c; g < groups.size(); g += 2) {
+      const float x = left + column * static_cast<float>(c);
+      ImGui::SetCursorPosX(x);
+      text(theme.bold, colour::accent, std::string(groups[g].title));
+      for (const HelpLine& line : groups[g].lines) {
+        ImGui::SetCursorPosX(x);
+        text(theme.regular, colour::text, std::string(line.keys));
+        ImGui::SameLine(x + keys_width);
+        text(theme.regular, colour::text_dim, std::string(line.meaning));
+      }
+      ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(12));
+    }
+    lowest = std::max(lowest, ImGui::GetCursorPosY());
+  }
+  ImGui::SetCursorPosY(lowest);
+}
+
+}  // namespace
+
+void Panels::Drawing::dialogs() {
+  const Theme& theme = panels.theme_;
+  // An error comes before the help. A dialog that was left by its key must still be drawn once
+  // more, or ImGui would go on waiting for it.
+  const bool error = !panels.errors_.empty();
+  if ((error || ImGui::IsPopupOpen("error")) &&
+      begin_dialog(pen, "error", pen.px(460), display_width, display_height)) {
+    if (error) {
+      text(theme.bold, colour::warning, "Something did not work");
+      ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
+      ImGui::PushTextWrapPos(0);
+      text(theme.regular, colour::text, panels.errors_.front());
+      ImGui::PopTextWrapPos();
+      if (close_button(pen, "close-error")) panels.errors_.pop_front();
+    }
+    if (panels.errors_.empty()) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+  }
+  const bool help = panels.help_open_ && !error;
+  if ((help || ImGui::IsPopupOpen("help")) &&
+      begin_dialog(pen, "help", pen.px(820), display_width, display_height)) {
+    if (help) {
+      text(theme.bold, colour::text, "Keys and mouse");
+      ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(6));
+      help_columns(theme, pen);
+      if (close_button(pen, "close-help")) panels.help_open_ = false;
+    }
+    if (!help || !panels.help_open_) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+  }
+}
+
+}  // namespace condyle

@@ -1,0 +1,267 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/window/panels_drawing.h"
+#include "render/window/playback.h"
+
+namespace condyle {
+namespace {
+
+constexpr double step_budget_ms = 1000.0 / 60;
+constexpr double usual_low_mm = 42, usual_high_mm = 58;  // accepted band of the largest opening
+constexpr double deeper_mm = 0.01;  // overlap beyond the one at rest that is called penetration
+
+// A line with a dim name at the left and a value at the right.
+void reading(const Theme& theme, const std::string& name, const std::string& value,
+             ImU32 tint = colour::text) {
+  text(theme.regular, colour::text_dim, name);
+  ImGui::SameLine();
+  text_right(theme.regular, tint, value);
+}
+
+// Worse pairs first: deepest beyond rest, then touching, then nearest.
+bool worse(const PairContact& a, const PairContact& b) {
+  const double deep_a = std::max(0.0, a.depth_mm - a.rest_depth_mm);
+  const double deep_b = std::max(0.0, b.depth_mm - b.rest_depth_mm);
+  if (deep_a != deep_b) return deep_a > deep_b;
+  if (a.touching != b.touching) return a.touching;
+  return a.distance_mm < b.distance_mm;
+}
+
+std::string part_name(const WindowScene& scene, int index) {
+  const auto i = static_cast<std::size_t>(index);
+  return index >= 0 && i < scene.parts.size() ? display_name(scene.parts[i].name) : "?";
+}
+
+}  // namespace
+
+void Panels::Drawing::readings() {
+  begin_panel(pen, "right", layout.right);
+  opening();
+  // Contacts get the height that tissue and times leave.
+  const float line = ImGui::GetTextLineHeight() + pen.px(7);
+  const bool has_tissue = input.frame && !input.frame->tissue.nodes.empty();
+  const float below = (has_tissue ? pen.px(42) + 3 * line : 0) + pen.px(42) +
+                      static_cast<float>(stage_names.size()) * pen.px(19) + pen.px(40) + 2 * line;
+  const float heading_height = pen.px(42);
+  const float pairs = input.frame ? static_cast<float>(input.frame->contacts.pairs.size()) : 0;
+  const float room = std::max(2 * line, ImGui::GetContentRegionAvail().y - below - heading_height);
+  contacts(std::min(room, std::max(1.0f, pairs) * line));
+  if (has_tissue) tissue();
+  times();
+  end_panel();
+}
+
+void Panels::Drawing::opening() {
+  const Theme& theme = panels.theme_;
+  const bool held = view.opening_mm.has_value();
+  const double live = input.frame ? input.frame->measures.opening_mm : 0;
+  heading(pen, "Opening", held ? "held by hand" : "from the motion");
+
+  const float top = ImGui::GetCursorPosY();
+  const std::string number = input.frame ? fmt::format("{:.1f}", live) : "-";
+  text(theme.large, colour::text, number);
+  const float after = ImGui::GetCursorPosY();
+  ImGui::SetCursorPos(
+      {ImGui::GetStyle().WindowPadding.x + text_width(theme.large, number) + pen.px(6),
+       top + (theme.large->FontSize - theme.regular->FontSize) * 0.78f});
+  text(theme.regular, colour::text_dim, "mm");
+  if (held) {
+    const float wide = pen.px(76), high = pen.px(26);
+    ImGui::SetCursorPos({ImGui::GetWindowContentRegionMax().x - wide, top + pen.px(3)});
+    if (word_button(pen, "release", "Let go", {wide, high}, false)) view.opening_mm.reset();
+    tooltip(pen, "Back to the motion");
+  }
+  ImGui::SetCursorPosY(after);
+
+  // Slider with ticks; a mark shows where the jaw really is while the hand holds it.
+  const double most = std::max(1.0, input.scene.max_opening_mm);
+  const float width = ImGui::GetContentRegionAvail().x, knob = pen.px(6.5f);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  double wanted = held ? *view.opening_mm : std::clamp(live, 0.0, most);
+  if (slider(pen, "opening", wanted, {.high = most, .width = width, .held = held})) {
+    view.opening_mm = wanted;
+    view.playing = false;
+  }
+  tooltip(pen, "Drag to open the mouth by hand");
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto x_of = [&](double mm) {
+    return at.x + knob + (width - 2 * knob) * static_cast<float>(std::clamp(mm / most, 0.0, 1.0));
+  };
+  const float y = at.y + ImGui::GetFrameHeight() / 2 + pen.px(8);
+  if (most > usual_low_mm)
+    list.AddRectFilled({x_of(usual_low_mm), y}, {x_of(usual_high_mm), y + pen.px(3)}, colour::good);
+  const double step = most > 80 ? 20 : 10;
+  for (double mm = 0; mm <= most + 1e-9; mm += step) {
+    const std::string label = fmt::format("{:g}", mm);
+    list.AddLine({x_of(mm), y}, {x_of(mm), y + pen.px(4)}, colour::text_faint,
+                 std::max(1.0f, pen.px(1)));
+    list.AddText(theme.small, theme.small->FontSize,
+                 {x_of(mm) - text_width(theme.small, label) / 2, y + pen.px(5)}, colour::text_faint,
+                 label.c_str());
+  }
+  if (held && input.frame) {
+    const float x = x_of(live), r = pen.px(4);
+    list.AddTriangleFilled({x, y - pen.px(1)}, {x - r, y + r * 1.5f}, {x + r, y + r * 1.5f},
+                           colour::text);
+  }
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(13));
+
+  const Measures none;
+  const Measures& m = input.frame ? input.frame->measures : none;
+  const Pose rest = input.frame ? input.frame->X_CM.inverse() : Pose{};
+  const double left = (m.left_condyle - rest * m.left_condyle).norm();
+  const double right = (m.right_condyle - rest * m.right_condyle).norm();
+  reading(theme, "Between incisors", fmt::format("{:.1f} mm", m.interincisal_mm));
+  reading(theme, "Rotation", fmt::format("{:.1f}\u00b0", m.rotation_deg));
+  reading(theme, "Condyle travel", fmt::format("L {:.1f}   R {:.1f} mm", left, right));
+}
+
+void Panels::Drawing::contacts(float list_height) {
+  const Theme& theme = panels.theme_;
+  std::string summary;
+  std::vector<PairContact const*> pairs;
+  if (input.frame) {
+    for (const PairContact& pair : input.frame->contacts.pairs) pairs.push_back(&pair);
+    std::stable_sort(pairs.begin(), pairs.end(), [](auto a, auto b) { return worse(*a, *b); });
+    const double deepest = input.frame->contacts.max_penetration_mm();
+    const double clearance = input.frame->contacts.min_clearance_mm();
+    if (input.frame->stopped)
+      summary = "stopped";
+    else if (deepest > deeper_mm)
+      summary = fmt::format("{:.2f} mm too deep", deepest);
+    else if (std::isfinite(clearance) && clearance > 0)
+      summary = fmt::format("least {:.1f} mm", clearance);
+  }
+  heading(pen, "Contact", summary);
+  ImGui::BeginChild("contact-list", {0, list_height});
+  if (pairs.empty()) text(theme.regular, colour::text_faint, "No pairs to check");
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const PairContact& pair = *pairs[i];
+    const double deeper = pair.depth_mm - pair.rest_depth_mm;
+    std::string value = fmt::format("{:.1f} mm", pair.distance_mm);
+    ImU32 tint = pair.distance_mm < 2 ? colour::text : colour::text_dim;
+    if (deeper > deeper_mm) {
+      value = fmt::format("{:.2f} mm deep", deeper);
+      tint = colour::bad;
+    } else if (pair.touching) {
+      value = pair.rest_depth_mm > deeper_mm ? "as at rest" : "touching";
+      tint = colour::warning;
+    }
+    const float end = ImGui::GetContentRegionAvail().x, dot = pen.px(4);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 centre = {at.x + dot, at.y + theme.regular->FontSize / 2 + pen.px(1)};
+    if (pair.touching) {
+      list.AddCircleFilled(centre, dot, tint, 16);
+    } else {
+      list.AddCircle(centre, dot - pen.px(0.5f), colour::text_faint, 16, pen.px(1));
+    }
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 2 * dot + pen.px(8));
+    const float room = end - 2 * dot - pen.px(8) - text_width(theme.regular, value) - pen.px(10);
+    const std::string both =
+        part_name(input.scene, pair.part_a) + " / " + part_name(input.scene, pair.part_b);
+    text(theme.regular, pair.touching ? colour::text : colour::text_dim,
+         fitted(theme.regular, both, room));
+    tooltip(pen,
+            fmt::format(
+                "{}\nDistance {:.3f} mm, depth {:.3f} mm (at rest {:.3f} mm), {} contact points",
+                both, pair.distance_mm, pair.depth_mm, pair.rest_depth_mm, pair.contacts.size())
+                .c_str());
+    pen.mark(fmt::format("pair:{}", i));
+    ImGui::SameLine();
+    text_right(theme.regular, tint, value);
+  }
+  ImGui::EndChild();
+}
+
+void Panels::Drawing::tissue() {
+  const Theme& theme = panels.theme_;
+  const TissueState& state = input.frame->tissue;
+  heading(pen, "Tissue", fmt::format("{} nodes", state.nodes.size()));
+  reading(theme, "Iterations",
+          fmt::format("{}{}", state.iterations, state.converged ? "" : ", not converged"),
+          state.converged ? colour::text : colour::warning);
+  reading(theme, "Energy, residual", fmt::format("{:.3g}, {:.1e}", state.energy, state.residual));
+  reading(theme, "Inverted prisms", fmt::format("{}", state.inverted_prisms),
+          state.inverted_prisms ? colour::bad : colour::text);
+}
+
+void Panels::Drawing::times() {
+  const Theme& theme = panels.theme_;
+  StageTimes times = input.frame ? input.frame->times : StageTimes{};
+  times[Stage::render] = input.pictures.picture_ms;
+  double total = 0;
+  for (std::size_t i = 0; i < times.ms.size(); ++i)
+    if (static_cast<Stage>(i) != Stage::render) total += times.ms[i];
+  heading(pen, "Time of a step", fmt::format("{:.1f} ms", total));
+
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float name_width = text_width(theme.small, "measures") + pen.px(10);
+  const float value_width = text_width(theme.small, "0000.0 ms") + pen.px(4);
+  const float bar = width - name_width - value_width;
+  const double full = std::max({step_budget_ms, total, times[Stage::render]});
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  for (std::size_t i = 0; i < stage_names.size(); ++i) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool picture = static_cast<Stage>(i) == Stage::render;
+    const float text_y = at.y + (pen.px(19) - theme.small->FontSize) / 2, mid = at.y + pen.px(9.5f);
+    const std::string name = picture ? "picture" : std::string(stage_names[i]);
+    const std::string value = fmt::format("{:.1f} ms", times.ms[i]);
+    list.AddText(theme.small, theme.small->FontSize, {at.x, text_y}, colour::text_dim,
+                 name.c_str());
+    list.AddRectFilled({at.x + name_width, mid - pen.px(3)},
+                       {at.x + name_width + bar, mid + pen.px(3)}, colour::field, pen.px(3));
+    const float fill = bar * static_cast<float>(std::clamp(times.ms[i] / full, 0.0, 1.0));
+    if (fill > 0.5f)
+      list.AddRectFilled({at.x + name_width, mid - pen.px(3)},
+                         {at.x + name_width + std::max(fill, pen.px(3)), mid + pen.px(3)},
+                         picture ? colour::text_faint : colour::accent, pen.px(3));
+    list.AddText(theme.small, theme.small->FontSize,
+                 {at.x + width - text_width(theme.small, value), text_y}, colour::text,
+                 value.c_str());
+    ImGui::Dummy({width, pen.px(19) - ImGui::GetStyle().ItemSpacing.y});
+  }
+
+  // The last steps as a curve, with the time that 60 steps a second allow as a line.
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
+  const ImVec2 low = ImGui::GetCursorScreenPos();
+  const float curve = pen.px(32);
+  list.AddRectFilled(low, {low.x + width, low.y + curve}, colour::rgb(0x14181c), pen.px(3));
+  const auto& history = panels.step_ms_;
+  float highest = static_cast<float>(step_budget_ms) * 1.25f;
+  for (const float ms : history) highest = std::max(highest, ms * 1.1f);
+  const auto y_of = [&](float ms) { return low.y + curve - curve * ms / highest; };
+  const float budget_y = y_of(static_cast<float>(step_budget_ms));
+  list.AddLine({low.x, budget_y}, {low.x + width, budget_y}, colour::rgb(0x4a545f),
+               std::max(1.0f, pen.px(1)));
+  if (history.size() > 1) {
+    std::vector<ImVec2> points;
+    const float dx = width / 119.0f;
+    for (std::size_t i = 0; i < history.size(); ++i)
+      points.push_back(
+          {low.x + width - dx * static_cast<float>(history.size() - 1 - i), y_of(history[i])});
+    list.AddPolyline(points.data(), static_cast<int>(points.size()), colour::accent, 0,
+                     std::max(1.0f, pen.px(1.3f)));
+  }
+  ImGui::Dummy({width, curve});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 3));
+  text(theme.small, colour::text_dim,
+       fmt::format("{:.0f} steps/s, {:.0f} pictures/s", input.loop.steps_per_second,
+                   input.pictures.pictures_per_second));
+  if (input.pictures.render_scale < 1 || input.pictures.samples < 4) {
+    ImGui::SameLine();
+    text_right(theme.small, colour::text_faint,
+               input.pictures.render_scale < 1
+                   ? fmt::format("picture at {:.0f} %", 100 * input.pictures.render_scale)
+                   : "faster picture");
+    tooltip(pen,
+            "While things move on a slow machine the picture is coarser. It is full again at rest");
+  }
+  ImGui::PopStyleVar();
+}
+
+}  // namespace condyle

@@ -1,0 +1,165 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "render/window/panels_drawing.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Face {
+  const char* letter;
+  Vector3d normal, up;
+  Command command;
+};
+
+const std::array<Face, 6>& faces() {
+  static const std::array<Face, 6> all = {{
+      {"L", {1, 0, 0}, {0, 0, 1}, Command::view_left},
+      {"R", {-1, 0, 0}, {0, 0, 1}, Command::view_right},
+      {"P", {0, 1, 0}, {0, 0, 1}, Command::view_back},
+      {"A", {0, -1, 0}, {0, 0, 1}, Command::view_front},
+      {"S", {0, 0, 1}, {0, 1, 0}, Command::view_above},
+      {"I", {0, 0, -1}, {0, -1, 0}, Command::view_below},
+  }};
+  return all;
+}
+
+// Letters of an anatomical direction, the strongest first: "L", or "LA" between two.
+std::string direction_letters(const Vector3d& direction) {
+  std::array<std::pair<double, const char*>, 3> axes;
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    axes[k] = {std::abs(direction[i]), faces()[2 * k + (direction[i] < 0)].letter};
+  }
+  std::sort(axes.begin(), axes.end(), [](auto a, auto b) { return a.first > b.first; });
+  std::string letters = axes[0].second;
+  if (axes[1].first > 0.38) letters += axes[1].second;
+  return letters;
+}
+
+bool inside(const std::array<ImVec2, 4>& quad, ImVec2 p) {
+  bool any_left = false, any_right = false;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const ImVec2 a = quad[i], b = quad[(i + 1) % 4];
+    const float side = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+    any_left |= side > 0;
+    any_right |= side < 0;
+  }
+  return !(any_left && any_right);
+}
+
+}  // namespace
+
+void Panels::Drawing::view_signs() {
+  const Theme& theme = panels.theme_;
+  const ViewRect& r = layout.view;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ImVec2 centre = {static_cast<float>(r.x + r.width / 2),
+                         static_cast<float>(r.y + r.height / 2)};
+
+  if (!input.progress.empty()) {
+    const float wide = pen.px(260), thick = pen.px(3);
+    const ImVec2 at = {centre.x - wide / 2, centre.y};
+    const std::string words =
+        fitted(theme.regular, input.progress, static_cast<float>(r.width) - pen.px(40));
+    list.AddText(theme.regular, theme.regular->FontSize,
+                 {centre.x - text_width(theme.regular, words) / 2, at.y - pen.px(30)}, colour::text,
+                 words.c_str());
+    list.AddRectFilled({at.x, at.y - thick}, {at.x + wide, at.y + thick}, colour::field, thick);
+    const float done = static_cast<float>(std::clamp(input.progress_fraction, 0.0, 1.0));
+    list.AddRectFilled({at.x, at.y - thick}, {at.x + wide * done, at.y + thick}, colour::accent,
+                       thick);
+  }
+  if (input.scene.parts.empty()) return;
+
+  // Where the patient's sides are, at the edges of the view.
+  const Eigen::Matrix3d axes = picture_axes(input.camera);
+  const Vector3d right = axes.row(0), up = axes.row(1);
+  const float margin = pen.px(12);
+  const auto letter = [&](const Vector3d& direction, float ax, float ay) {
+    const std::string words = direction_letters(direction);
+    const ImVec2 size = theme.bold->CalcTextSizeA(theme.bold->FontSize, 1e6f, 0, words.c_str());
+    const float x =
+        centre.x + ax * (static_cast<float>(r.width) / 2 - margin - size.x / 2) - size.x / 2;
+    const float y =
+        centre.y + ay * (static_cast<float>(r.height) / 2 - margin - size.y / 2) - size.y / 2;
+    // A dark edge keeps them readable over bone and skin.
+    const float d = std::max(1.0f, pen.px(1));
+    for (const auto& [dx, dy] : {std::pair{-d, 0.f}, {d, 0.f}, {0.f, -d}, {0.f, d}})
+      list.AddText(theme.bold, theme.bold->FontSize, {x + dx, y + dy}, colour::rgb(0x0f1215, 200),
+                   words.c_str());
+    list.AddText(theme.bold, theme.bold->FontSize, {x, y}, colour::rgb(0xc4ccd4), words.c_str());
+  };
+  letter(right, 1, 0);
+  letter(-right, -1, 0);
+  letter(up, 0, -1);
+  letter(-up, 0, 1);
+  cube();
+}
+
+void Panels::Drawing::cube() {
+  const Theme& theme = panels.theme_;
+  const double side = std::round(pen.px(92)), margin = std::round(pen.px(10));
+  const ViewRect& r = layout.view;
+  if (r.width < 3 * side || r.height < 3 * side) return;  // no room beside the patient
+  const ViewRect place = {r.x + r.width - side - margin, r.y + r.height - side - margin, side,
+                          side};
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, colour::rgb(0, 0));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
+  begin_panel(pen, "cube", place);
+  ImGui::InvisibleButton("cube-area", {static_cast<float>(side), static_cast<float>(side)});
+  const bool hovered = ImGui::IsItemHovered(), pressed = ImGui::IsItemActivated();
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+
+  const Eigen::Matrix3d axes = picture_axes(input.camera);
+  const ImVec2 centre = {static_cast<float>(place.x + side / 2),
+                         static_cast<float>(place.y + side / 2)};
+  const float half = static_cast<float>(side) * 0.28f;
+  const auto project = [&](const Vector3d& p) {
+    const Vector3d q = axes * p;
+    return ImVec2{centre.x + half * static_cast<float>(q.x()),
+                  centre.y - half * static_cast<float>(q.y())};
+  };
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  for (const Face& face : faces()) {
+    const double facing = axes.row(2).dot(face.normal);
+    if (facing < 0.02) continue;
+    const Vector3d across = face.up.cross(face.normal);
+    const std::array<ImVec2, 4> quad = {
+        project(face.normal - across + face.up), project(face.normal + across + face.up),
+        project(face.normal + across - face.up), project(face.normal - across - face.up)};
+    const bool over = hovered && inside(quad, mouse);
+    if (over && pressed) commands.push_back(face.command);
+    // Lighter when it faces us.
+    const auto shade = static_cast<std::uint32_t>(52 + 46 * facing);
+    const ImU32 fill = over ? colour::accent_dark
+                            : colour::rgb((shade << 16) | ((shade + 6) << 8) | (shade + 13), 235);
+    list.AddQuadFilled(quad[0], quad[1], quad[2], quad[3], fill);
+    list.AddQuad(quad[0], quad[1], quad[2], quad[3], colour::rgb(0x8a96a3),
+                 std::max(1.0f, pen.px(1)));
+
+    // The letter lies in the face: drawn flat at the centre, then its corners are moved there.
+    ImFont* font = theme.large;
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6f, 0, face.letter);
+    const ImVec2 flat = {centre.x - size.x / 2, centre.y - size.y / 2};
+    const int first = list.VtxBuffer.Size;
+    list.AddText(font, font->FontSize, flat, over ? colour::rgb(0xffffff) : colour::text,
+                 face.letter);
+    const float unit = 1.2f / font->FontSize;  // letter height against the face's side of 2
+    for (int i = first; i < list.VtxBuffer.Size; ++i) {
+      ImVec2& p = list.VtxBuffer[i].pos;
+      const double u = (p.x - centre.x) * unit, v = (p.y - centre.y) * unit;
+      p = project(face.normal + u * across - v * face.up);
+    }
+  }
+  end_panel();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+}
+
+}  // namespace condyle

@@ -1,0 +1,179 @@
+#include "render/window/panels.h"
+
+#include <imgui.h>
+
+#include <array>
+#include <bit>
+#include <cctype>
+
+#include "render/window/panels_drawing.h"
+#include "render/window/playback.h"
+
+namespace condyle {
+namespace {
+
+constexpr double said_for_s = 6;
+constexpr std::size_t curve_length = 120;
+
+struct ViewButton {
+  const char* letter;
+  Command command;
+  const char* tip;
+};
+constexpr std::array<ViewButton, 6> view_buttons = {{
+    {"A", Command::view_front, "From the front (anterior). Key A or keypad 1"},
+    {"P", Command::view_back, "From behind (posterior). Key P or Shift with keypad 1"},
+    {"L", Command::view_left, "From the patient's left. Key L or keypad 3"},
+    {"R", Command::view_right, "From the patient's right. Key R or Shift with keypad 3"},
+    {"S", Command::view_above, "From above (superior). Key S or keypad 7"},
+    {"I", Command::view_below, "From below (inferior). Key I or Shift with keypad 7"},
+}};
+
+}  // namespace
+
+std::string display_name(const std::string& part_name) {
+  std::string name = part_name;
+  for (char& c : name)
+    if (c == '_') c = ' ';
+  if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name;
+}
+
+Panels::Panels(float scale) : theme_(apply_theme(scale)) {}
+
+void Panels::set_scale(float scale) {
+  if (scale != theme_.scale) theme_ = apply_theme(scale);
+}
+
+void Panels::report_error(const std::string& sentence) {
+  // The same trouble in every frame is one dialog.
+  if (errors_.empty() || errors_.back() != sentence) errors_.push_back(sentence);
+}
+
+void Panels::say(const std::string& sentence) {
+  said_ = sentence;
+  said_until_ = -1;  // the clock is ImGui's: set at the next drawing
+}
+
+bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
+  const double step = scene.step_s, duration = scene.duration_s;
+  switch (command) {
+    case Command::toggle_play:
+      toggle_playing(view, duration);
+      return true;
+    case Command::step_back:
+      step_clock(view, -step, duration);
+      return true;
+    case Command::step_forward:
+      step_clock(view, step, duration);
+      return true;
+    case Command::jump_back:
+      step_clock(view, -10 * step, duration);
+      return true;
+    case Command::jump_forward:
+      step_clock(view, 10 * step, duration);
+      return true;
+    case Command::toggle_skin:
+      if (view.skin_opacity > 0) {
+        skin_before_ = view.skin_opacity;
+        view.skin_opacity = 0;
+      } else {
+        view.skin_opacity = skin_before_;
+      }
+      return true;
+    case Command::toggle_panels:
+      shown_ = !shown_;
+      return true;
+    case Command::help:
+      help_open_ = !help_open_;
+      return true;
+    case Command::close_dialog:
+      if (!errors_.empty()) {
+        errors_.pop_front();
+      } else {
+        help_open_ = false;
+      }
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, double width,
+                                  double height) {
+  items_.clear();
+  view.parts.resize(input.scene.parts.size());
+  if (said_until_ < 0) said_until_ = ImGui::GetTime() + said_for_s;
+  if (ImGui::GetTime() > said_until_) said_.clear();
+  if (input.frame) {
+    const std::uint64_t step =
+        input.frame->state_hash ^ std::bit_cast<std::uint64_t>(input.frame->time_s);
+    if (step != last_step_) {
+      double total = 0;
+      for (std::size_t i = 0; i < input.frame->times.ms.size(); ++i)
+        if (static_cast<Stage>(i) != Stage::render) total += input.frame->times.ms[i];
+      if (step_ms_.size() >= curve_length) step_ms_.erase(step_ms_.begin());
+      step_ms_.push_back(static_cast<float>(total));
+      last_step_ = step;
+    }
+  }
+
+  ImGui::PushFont(theme_.regular);
+  Drawing drawing{*this, input, view, layout(width, height), width, height, Pen{theme_, items_, ""},
+                  {}};
+  if (shown_) {
+    drawing.top_bar();
+    drawing.parts();
+    drawing.readings();
+    drawing.timeline();
+  }
+  drawing.view_signs();
+  drawing.dialogs();
+  ImGui::PopFont();
+  return std::move(drawing.commands);
+}
+
+void Panels::Drawing::top_bar() {
+  const Theme& theme = panels.theme_;
+  begin_panel(pen, "top", layout.top);
+  const float side = pen.px(30), gap = pen.px(5), wide_gap = pen.px(16);
+  const float y = (static_cast<float>(layout.top.height) - side) / 2;
+  const float buttons = side * 9 + gap * 6 + wide_gap * 2;
+  const float right = static_cast<float>(layout.top.width) - pen.px(12);
+
+  // Names, as far as there is room for them.
+  const float room = right - buttons - pen.px(14) - wide_gap;
+  const std::string name = fitted(theme.bold, input.scene.case_name, room * 0.6f);
+  ImGui::SetCursorPos(
+      {pen.px(14), (static_cast<float>(layout.top.height) - theme.bold->FontSize) / 2});
+  text(theme.bold, colour::text, name);
+  if (!input.scene.motion_name.empty()) {
+    const float used = text_width(theme.bold, name) + pen.px(14);
+    ImGui::SameLine(0, pen.px(14));
+    text(theme.regular, colour::text_dim,
+         fitted(theme.regular, input.scene.motion_name, room - used));
+  }
+
+  ImGui::SetCursorPos({right - buttons, y});
+  for (const ViewButton& button : view_buttons) {
+    const std::string id = std::string("view:") + button.letter;
+    if (word_button(pen, id.c_str(), button.letter, {side, side}, false))
+      commands.push_back(button.command);
+    tooltip(pen, button.tip);
+    ImGui::SameLine(0, gap);
+  }
+  if (sign_button(pen, "view:home", Sign::reset, {side, side}, colour::field))
+    commands.push_back(Command::reset_view);
+  tooltip(pen, "The first view again. Key 0 or Home");
+  ImGui::SameLine(0, wide_gap);
+  if (sign_button(pen, "picture", Sign::camera, {side, side}, colour::field))
+    commands.push_back(Command::picture);
+  tooltip(pen, "Save the picture as PNG. F12; with Shift the whole window");
+  ImGui::SameLine(0, wide_gap);
+  if (sign_button(pen, "help-button", Sign::help, {side, side}, colour::field))
+    panels.help_open_ = true;
+  tooltip(pen, "Keys and mouse. F1");
+  end_panel();
+}
+
+}  // namespace condyle

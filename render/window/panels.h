@@ -1,0 +1,79 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/window/camera_control.h"
+#include "render/window/layout.h"
+#include "render/window/shortcuts.h"
+#include "render/window/theme.h"
+#include "render/window/view_state.h"
+#include "sim/frame/frame_state.h"
+
+namespace condyle {
+
+/// What the panels show. Everything is read only.
+struct PanelInput {
+  const WindowScene& scene;
+  const FrameState* frame = nullptr;  // none until the first is simulated
+  LoopStatistics loop;
+  PictureStatistics pictures;
+  Camera camera;
+  std::string progress;          // what is being prepared; empty when nothing is
+  double progress_fraction = 0;  // 0 to 1
+};
+
+/// A panel, or a thing in it that can be used, as last drawn. Names: panels "top", "left", "right",
+/// "bottom", "help", "error"; items "play", "scrub", "opening", "speed", "show:mandible", ...
+struct DrawnItem {
+  std::string name;
+  std::string panel;  // the panel that holds it; empty for a panel itself
+  ViewRect rect;      // pixels from the top left
+};
+
+/// Panels of the window, drawn into the current ImGui frame (between NewFrame and Render). They
+/// know neither GLFW nor GL, so tests draw them with scripted input.
+class Panels {
+ public:
+  /// Loads the theme into the current ImGui context.
+  explicit Panels(float scale);
+
+  /// Draws all panels over a display of this size; changes `view` by what the person does.
+  /// gives: commands that the window must carry out (views, pictures, quit).
+  std::vector<Command> draw(const PanelInput& input, ViewState& view, double width, double height);
+
+  /// Carries out what concerns playing, panels and dialogs. gives: false for the window's commands.
+  bool run(Command command, const WindowScene& scene, ViewState& view);
+
+  /// Shows a sentence in a dialog until it is closed; several wait in a row.
+  void report_error(const std::string& sentence);
+  /// Shows a sentence at the foot of the window for a few seconds.
+  void say(const std::string& sentence);
+
+  /// Loads fonts and sizes for another scale; the renderer's font texture must be made anew.
+  void set_scale(float scale);
+  const Theme& theme() const { return theme_; }
+
+  bool dialog_open() const { return help_open_ || !errors_.empty(); }
+  bool shown() const { return shown_; }
+  Layout layout(double width, double height) const {
+    return lay_out(width, height, theme_.scale, shown_);
+  }
+  const std::vector<DrawnItem>& items() const { return items_; }
+
+ private:
+  struct Drawing;  // one pass over all panels: panels_*.cpp
+  Theme theme_;
+  bool shown_ = true, help_open_ = false;
+  double skin_before_ = 1;  // opacity to come back to
+  std::deque<std::string> errors_;
+  std::string said_;
+  double said_until_ = 0;
+  std::vector<float> step_ms_;  // the last steps' times, for the curve; of bounded length
+  std::uint64_t last_step_ = 0;
+  std::vector<DrawnItem> items_;
+};
+
+}  // namespace condyle

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/window/panels.h"
+#include "render/window/widgets.h"
+
+namespace condyle {
+
+/// One pass over all panels. Only for this room: each function stands in its own file.
+struct Panels::Drawing {
+  Panels& panels;
+  const PanelInput& input;
+  ViewState& view;
+  Layout layout;
+  double display_width, display_height;  // pixels
+  Pen pen;
+  std::vector<Command> commands;
+
+  void top_bar();     // panels.cpp
+  void timeline();    // panel_timeline.cpp
+  void parts();       // panel_parts.cpp
+  void readings();    // panel_readings.cpp
+  void view_signs();  // panel_view.cpp: letters at the edges, cube, progress
+  void dialogs();     // panel_dialogs.cpp
+
+ private:
+  void opening();
+  void contacts(float list_height);
+  void tissue();
+  void times();
+  void cube();
+};
+
+/// "upper_teeth" as "Upper teeth".
+std::string display_name(const std::string& part_name);
+
+}  // namespace condyle

@@ -1,0 +1,41 @@
+#include "render/window/playback.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace condyle {
+
+void advance_clock(ViewState& view, double elapsed_s, double duration_s, double shown_s) {
+  if (!view.playing || duration_s <= 0) return;
+  double lead = view.time_s - shown_s;
+  if (view.loop && lead < 0) lead += duration_s;  // the clock has wrapped, the frame has not yet
+  const double step = std::max(0.0, elapsed_s) * view.speed;
+  view.time_s += std::clamp(max_lead_s - lead, 0.0, step);
+  if (view.time_s < duration_s) return;
+  if (view.loop) {
+    view.time_s = std::fmod(view.time_s, duration_s);
+  } else {
+    view.time_s = duration_s;
+    view.playing = false;
+  }
+}
+
+void toggle_playing(ViewState& view, double duration_s) {
+  if (duration_s <= 0) return;
+  view.playing = !view.playing;
+  if (!view.playing) return;
+  view.opening_mm.reset();
+  if (view.time_s >= duration_s) view.time_s = 0;
+}
+
+void step_clock(ViewState& view, double delta_s, double duration_s) {
+  view.playing = false;
+  seek(view, view.time_s + delta_s, duration_s);
+}
+
+void seek(ViewState& view, double time_s, double duration_s) {
+  view.opening_mm.reset();
+  view.time_s = std::clamp(time_s, 0.0, std::max(0.0, duration_s));
+}
+
+}  // namespace condyle

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "render/window/view_state.h"
+
+namespace condyle {
+
+/// The clock may be this far ahead of the last simulated frame: a slow simulation slows the
+/// playback instead of losing its steps.
+constexpr double max_lead_s = 0.1;
+
+/// Moves the playing clock on by `elapsed_s` of real time. At the end it starts over, or stops
+/// there when `loop` is off. `shown_s` is the time of the last simulated frame.
+void advance_clock(ViewState& view, double elapsed_s, double duration_s, double shown_s);
+
+/// Starts or stops playing; starting at the end begins anew, and lets go of a held opening.
+void toggle_playing(ViewState& view, double duration_s);
+
+/// Moves the stopped clock by `delta_s`, within the motion.
+void step_clock(ViewState& view, double delta_s, double duration_s);
+
+/// Puts the clock at a time of the motion, and lets go of a held opening.
+void seek(ViewState& view, double time_s, double duration_s);
+
+}  // namespace condyle

@@ -1,0 +1,41 @@
+#include "render/window/quality.h"
+
+#include <algorithm>
+#include <array>
+
+namespace condyle {
+namespace {
+
+constexpr double wanted_ms = 33;  // 30 pictures a second
+
+// From the best down. Without a GPU multisampling costs most, then the shadow map, then pixels.
+constexpr std::array<Quality, 5> levels = {{
+    {.render_scale = 1, .samples = 4, .shadows = true},
+    {.render_scale = 1, .samples = 1, .shadows = true},
+    {.render_scale = 1, .samples = 1, .shadows = false},
+    {.render_scale = 0.8, .samples = 1, .shadows = false},
+    {.render_scale = 0.66, .samples = 1, .shadows = false},
+}};
+
+}  // namespace
+
+Quality QualityGovernor::choose(bool moving) const {
+  return moving ? levels[static_cast<std::size_t>(level_)] : levels[0];
+}
+
+void QualityGovernor::measured(bool moving, double picture_ms) {
+  if (!moving) return;
+  // Down at once when far too slow, up only after a long calm: the picture must not flicker.
+  slow_ = picture_ms > wanted_ms ? slow_ + 1 : 0;
+  fast_ = picture_ms < 0.3 * wanted_ms ? fast_ + 1 : 0;
+  const int last = static_cast<int>(levels.size()) - 1;
+  if (slow_ >= 3 || picture_ms > 3 * wanted_ms) {
+    level_ = std::min(level_ + 1, last);
+    slow_ = 0;
+  } else if (fast_ >= 60) {
+    level_ = std::max(level_ - 1, 0);
+    fast_ = 0;
+  }
+}
+
+}  // namespace condyle

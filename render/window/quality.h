@@ -1,0 +1,27 @@
+#pragma once
+
+namespace condyle {
+
+/// How good a picture may be.
+struct Quality {
+  double render_scale = 1;  // of each side
+  int samples = 4;
+  bool shadows = true;
+};
+
+/// Lowers the picture while things move on a slow driver, so that it stays fluent; never the
+/// simulation. At rest the picture is always the best.
+class QualityGovernor {
+ public:
+  /// Best picture when nothing moves, else the best that kept to the wanted time so far.
+  Quality choose(bool moving) const;
+
+  /// Told how long the last picture took, ms.
+  void measured(bool moving, double picture_ms);
+
+ private:
+  int level_ = 0;            // of the moving picture; 0 is the best
+  int slow_ = 0, fast_ = 0;  // pictures in a row
+};
+
+}  // namespace condyle

@@ -1,0 +1,109 @@
+#include "render/window/shortcuts.h"
+
+#include <GLFW/glfw3.h>
+
+#include <array>
+
+namespace condyle {
+namespace {
+
+// A key, the same key with Shift. Keys with Ctrl are apart: there are few.
+struct Binding {
+  int key;
+  Command plain, shifted;
+};
+constexpr std::array bindings = {
+    Binding{GLFW_KEY_SPACE, Command::toggle_play, Command::toggle_play},
+    Binding{GLFW_KEY_LEFT, Command::step_back, Command::jump_back},
+    Binding{GLFW_KEY_RIGHT, Command::step_forward, Command::jump_forward},
+    Binding{GLFW_KEY_KP_1, Command::view_front, Command::view_back},
+    Binding{GLFW_KEY_KP_3, Command::view_left, Command::view_right},
+    Binding{GLFW_KEY_KP_7, Command::view_above, Command::view_below},
+    Binding{GLFW_KEY_KP_0, Command::reset_view, Command::reset_view},
+    Binding{GLFW_KEY_1, Command::view_front, Command::view_back},
+    Binding{GLFW_KEY_3, Command::view_left, Command::view_right},
+    Binding{GLFW_KEY_7, Command::view_above, Command::view_below},
+    Binding{GLFW_KEY_0, Command::reset_view, Command::reset_view},
+    Binding{GLFW_KEY_HOME, Command::reset_view, Command::reset_view},
+    Binding{GLFW_KEY_A, Command::view_front, Command::view_back},
+    Binding{GLFW_KEY_P, Command::view_back, Command::view_front},
+    Binding{GLFW_KEY_L, Command::view_left, Command::view_right},
+    Binding{GLFW_KEY_R, Command::view_right, Command::view_left},
+    Binding{GLFW_KEY_S, Command::view_above, Command::view_below},
+    Binding{GLFW_KEY_I, Command::view_below, Command::view_above},
+    Binding{GLFW_KEY_K, Command::toggle_skin, Command::toggle_skin},
+    Binding{GLFW_KEY_TAB, Command::toggle_panels, Command::toggle_panels},
+    Binding{GLFW_KEY_F12, Command::picture, Command::window_picture},
+    Binding{GLFW_KEY_F1, Command::help, Command::help},
+    Binding{GLFW_KEY_ESCAPE, Command::close_dialog, Command::close_dialog},
+};
+
+constexpr std::array mouse_lines = {
+    HelpLine{"left drag", "turn around the patient"},
+    HelpLine{"middle drag, Shift+left", "move the picture"},
+    HelpLine{"wheel, right drag", "nearer, farther"},
+    HelpLine{"Ctrl+left", "roll the picture"},
+};
+constexpr std::array view_lines = {
+    HelpLine{"A P L R S I", "front, back, left, right, above, below"},
+    HelpLine{"keypad 1 3 7", "front, left, above"},
+    HelpLine{"Shift with these", "the opposite side"},
+    HelpLine{"0, Home", "first view"},
+};
+constexpr std::array play_lines = {
+    HelpLine{"Space", "play, pause"},
+    HelpLine{"left, right", "a step back, forward"},
+    HelpLine{"Shift+left, right", "ten steps"},
+};
+constexpr std::array window_lines = {
+    HelpLine{"K", "skin on, off"},
+    HelpLine{"Tab", "panels on, off"},
+    HelpLine{"F12", "save the picture as PNG"},
+    HelpLine{"Shift+F12", "save the whole window"},
+    HelpLine{"F1", "this help"},
+    HelpLine{"Esc", "close a dialog"},
+    HelpLine{"Ctrl+Q", "quit"},
+};
+constexpr std::array groups = {
+    HelpGroup{"Mouse", mouse_lines},
+    HelpGroup{"Views", view_lines},
+    HelpGroup{"Motion", play_lines},
+    HelpGroup{"Window", window_lines},
+};
+
+}  // namespace
+
+std::optional<Command> command_of(const KeyPress& press) {
+  if (press.ctrl) {
+    if (press.key == GLFW_KEY_Q) return Command::quit;
+    return std::nullopt;
+  }
+  for (const Binding& binding : bindings)
+    if (binding.key == press.key) return press.shift ? binding.shifted : binding.plain;
+  return std::nullopt;
+}
+
+std::string_view camera_of(Command command) {
+  switch (command) {
+    case Command::view_front:
+      return "front";
+    case Command::view_back:
+      return "back";
+    case Command::view_left:
+      return "left";
+    case Command::view_right:
+      return "right";
+    case Command::view_above:
+      return "above";
+    case Command::view_below:
+      return "below";
+    case Command::reset_view:
+      return "three-quarter";
+    default:
+      return {};
+  }
+}
+
+std::span<const HelpGroup> help_groups() { return groups; }
+
+}  // namespace condyle

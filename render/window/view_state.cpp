@@ -1,0 +1,21 @@
+#include "render/window/view_state.h"
+
+namespace condyle {
+
+bool ViewState::shows_face(const WindowScene& scene) const {
+  if (skin_opacity <= 0) return false;
+  for (std::size_t i = 0; i < scene.parts.size(); ++i)
+    if (scene.parts[i].role == Role::face && i < parts.size() && parts[i].shown &&
+        parts[i].opacity > 0)
+      return true;
+  return false;
+}
+
+std::map<std::string, double> part_opacities(const WindowScene& scene, const ViewState& view) {
+  std::map<std::string, double> opacities;
+  for (std::size_t i = 0; i < scene.parts.size() && i < view.parts.size(); ++i)
+    opacities[scene.parts[i].name] = view.parts[i].shown ? view.parts[i].opacity : 0;
+  return opacities;
+}
+
+}  // namespace condyle

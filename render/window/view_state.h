@@ -1,0 +1,65 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/frame/part.h"
+
+namespace condyle {
+
+/// What a window shows. Plain data; the parts must outlive the window or the next scene.
+struct WindowScene {
+  std::span<const Part> parts;
+  std::string case_name;
+  std::string motion_name;
+  double duration_s = 0;           // of the motion; 0 when there is none
+  double step_s = 1.0 / 30;        // what one press of an arrow key moves
+  double max_opening_mm = 50;      // end of the opening slider
+  std::vector<std::string> notes;  // sentences about this case, e.g. overlap at rest
+};
+
+/// How one part is wanted.
+struct PartView {
+  bool shown = true;
+  double opacity = 1;  // 0 to 1
+};
+
+/// What the person at the window asks for. The loop reads it and answers with a FrameState; nothing
+/// here steps the simulation.
+struct ViewState {
+  bool playing = false;
+  bool loop = true;
+  double speed = 1;                  // times real time, 0.1 to 2
+  double time_s = 0;                 // of the motion, 0 to duration
+  std::optional<double> opening_mm;  // while set, this opening is wanted instead of the motion's
+  bool obey_contact = true;          // false plays the motion through the contact
+  bool mark_contacts = true;
+  bool shadows = true;
+  double skin_opacity = 1;      // of parts with the role `face`, on top of their own
+  std::vector<PartView> parts;  // one per part of the scene, in its order
+
+  /// Whether any face is visible: without one the loop may leave out the face and its tissue.
+  bool shows_face(const WindowScene& scene) const;
+};
+
+/// Opacity of every part by name, hidden ones 0: what a SceneRenderer wants.
+std::map<std::string, double> part_opacities(const WindowScene& scene, const ViewState& view);
+
+/// How the loop behind the window does. Zero where it is not known.
+struct LoopStatistics {
+  double steps_per_second = 0;  // of the simulation
+  std::string message;          // one line for the foot of the window; empty for none
+};
+
+/// What the drawing does, measured by the window itself.
+struct PictureStatistics {
+  double pictures_per_second = 0;
+  double picture_ms = 0;    // the 3-D picture alone
+  double render_scale = 1;  // 1 is full resolution
+  int samples = 1;          // of multisampling
+};
+
+}  // namespace condyle

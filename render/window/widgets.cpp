@@ -1,0 +1,250 @@
+#include "render/window/widgets.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace condyle {
+namespace {
+
+ImVec2 operator+(ImVec2 a, ImVec2 b) { return {a.x + b.x, a.y + b.y}; }
+
+ImU32 ink(bool hovered, bool active) {
+  return active ? colour::accent : hovered ? colour::rgb(0xffffff) : colour::text;
+}
+
+// A sign inside the square of side 2r about c.
+void draw_sign(ImDrawList& list, Sign sign, ImVec2 c, float r, ImU32 ink_colour) {
+  const auto at = [&](float x, float y) { return c + ImVec2{x * r, y * r}; };
+  const float line = std::max(1.5f, r * 0.2f);
+  const auto triangle = [&](float tip, float base) {  // pointing along x
+    list.AddTriangleFilled(at(tip, 0), at(base, -0.8f), at(base, 0.8f), ink_colour);
+  };
+  switch (sign) {
+    case Sign::play:
+      list.AddTriangleFilled(at(-0.62f, -0.95f), at(1.0f, 0), at(-0.62f, 0.95f), ink_colour);
+      break;
+    case Sign::pause:
+      list.AddRectFilled(at(-0.75f, -0.9f), at(-0.2f, 0.9f), ink_colour, r * 0.12f);
+      list.AddRectFilled(at(0.2f, -0.9f), at(0.75f, 0.9f), ink_colour, r * 0.12f);
+      break;
+    case Sign::step_forward:
+      triangle(0.5f, -0.8f);
+      list.AddRectFilled(at(0.55f, -0.8f), at(0.85f, 0.8f), ink_colour);
+      break;
+    case Sign::step_back:
+      triangle(-0.5f, 0.8f);
+      list.AddRectFilled(at(-0.85f, -0.8f), at(-0.55f, 0.8f), ink_colour);
+      break;
+    case Sign::to_start:
+      list.AddRectFilled(at(-1.0f, -0.8f), at(-0.72f, 0.8f), ink_colour);
+      list.AddTriangleFilled(at(-0.7f, 0), at(0.15f, -0.8f), at(0.15f, 0.8f), ink_colour);
+      list.AddTriangleFilled(at(0.1f, 0), at(0.95f, -0.8f), at(0.95f, 0.8f), ink_colour);
+      break;
+    case Sign::loop: {
+      list.PathArcTo(c, r * 0.8f, -0.9f, 4.4f, 28);
+      list.PathStroke(ink_colour, 0, line);
+      const ImVec2 end = at(0.8f * std::cos(-0.9f), 0.8f * std::sin(-0.9f));
+      list.AddTriangleFilled(end + ImVec2{-0.55f * r, -0.1f * r},
+                             end + ImVec2{0.25f * r, -0.4f * r}, end + ImVec2{0.2f * r, 0.45f * r},
+                             ink_colour);
+      break;
+    }
+    case Sign::camera:
+      list.AddRectFilled(at(-0.4f, -0.85f), at(0.4f, -0.4f), ink_colour, r * 0.15f);
+      list.AddRect(at(-1, -0.6f), at(1, 0.8f), ink_colour, r * 0.25f, 0, line);
+      list.AddCircle(at(0, 0.1f), r * 0.38f, ink_colour, 20, line);
+      break;
+    case Sign::help:
+      break;  // a letter, drawn by the caller
+    case Sign::reset:
+      list.AddTriangleFilled(at(0, -0.95f), at(-1, 0), at(1, 0), ink_colour);
+      list.AddRectFilled(at(-0.65f, -0.1f), at(0.65f, 0.85f), ink_colour);
+      break;
+  }
+}
+
+}  // namespace
+
+void Pen::mark(const std::string& name) {
+  if (!ImGui::IsItemVisible()) return;
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  items.push_back({name, panel, {low.x, low.y, high.x - low.x, high.y - low.y}});
+}
+
+void begin_panel(Pen& pen, const char* name, const ViewRect& rect) {
+  ImGui::SetNextWindowPos({static_cast<float>(rect.x), static_cast<float>(rect.y)});
+  ImGui::SetNextWindowSize({static_cast<float>(rect.width), static_cast<float>(rect.height)});
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+  const ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  pen.panel = name;
+  pen.items.push_back({name, "", {low.x, low.y, size.x, size.y}});
+}
+
+void end_panel() { ImGui::End(); }
+
+float text_width(ImFont* font, const std::string& words) {
+  return font->CalcTextSizeA(font->FontSize, 1e6f, 0, words.c_str()).x;
+}
+
+std::string fitted(ImFont* font, const std::string& words, float width) {
+  if (text_width(font, words) <= width) return words;
+  std::string cut = words;
+  while (!cut.empty() && text_width(font, cut + "...") > width) {
+    // Whole UTF-8 letters only.
+    while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xc0) == 0x80) cut.pop_back();
+    if (!cut.empty()) cut.pop_back();
+  }
+  return cut + "...";
+}
+
+void text(ImFont* font, ImU32 colour, const std::string& words) {
+  ImGui::PushFont(font);
+  ImGui::PushStyleColor(ImGuiCol_Text, colour);
+  ImGui::TextUnformatted(words.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+}
+
+void text_right(ImFont* font, ImU32 colour, const std::string& words) {
+  const float right = ImGui::GetWindowContentRegionMax().x;
+  ImGui::SetCursorPosX(std::max(0.0f, right - text_width(font, words)));
+  text(font, colour, words);
+}
+
+void heading(Pen& pen, const char* words, const std::string& right) {
+  const float top = ImGui::GetCursorPosY();
+  if (top > ImGui::GetStyle().WindowPadding.y + 1) {
+    ImGui::SetCursorPosY(top + pen.px(7));
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddLine(at, {at.x + ImGui::GetContentRegionAvail().x, at.y},
+                                        colour::panel_edge, std::max(1.0f, pen.px(1)));
+    ImGui::SetCursorPosY(top + pen.px(17));
+  }
+  text(pen.theme.bold, colour::text, words);
+  if (!right.empty()) {
+    ImGui::SameLine();
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() +
+                         (pen.theme.bold->FontSize - pen.theme.small->FontSize) * 0.7f);
+    text_right(pen.theme.small, colour::text_dim, right);
+  }
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(2));
+}
+
+void tooltip(Pen& pen, const char* words) {
+  if (!ImGui::IsItemHovered() || ImGui::GetCurrentContext() == nullptr) return;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, pen.px(10, 7));
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(pen.px(300));
+  text(pen.theme.small, colour::text, words);
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+  ImGui::PopStyleVar();
+}
+
+bool sign_button(Pen& pen, const char* name, Sign sign, ImVec2 size, ImU32 background) {
+  const bool pressed = ImGui::InvisibleButton(name, size);
+  pen.mark(name);
+  const bool hovered = ImGui::IsItemHovered(), active = ImGui::IsItemActive();
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const ImVec2 centre = {(low.x + high.x) / 2, (low.y + high.y) / 2};
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 fill = hovered && background == colour::field ? colour::field_hovered : background;
+  list.AddRectFilled(low, high, fill, pen.px(5));
+  if (hovered && background != colour::field)
+    list.AddRectFilled(low, high, colour::rgb(0xffffff, 26), pen.px(5));
+  const float r = std::min(size.x, size.y) * 0.24f;
+  if (sign == Sign::help) {
+    const ImVec2 extent = pen.theme.bold->CalcTextSizeA(pen.theme.bold->FontSize, 1e6f, 0, "?");
+    list.AddText(pen.theme.bold, pen.theme.bold->FontSize,
+                 {centre.x - extent.x / 2, centre.y - extent.y / 2}, ink(hovered, active), "?");
+  } else {
+    draw_sign(list, sign, centre, r, ink(hovered, active));
+  }
+  return pressed;
+}
+
+bool word_button(Pen& pen, const char* name, const char* label, ImVec2 size, bool on) {
+  const bool pressed = ImGui::InvisibleButton(name, size);
+  pen.mark(name);
+  const bool hovered = ImGui::IsItemHovered(), active = ImGui::IsItemActive();
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 fill = on || active ? colour::accent_dark
+                     : hovered    ? colour::field_hovered
+                                  : colour::field;
+  list.AddRectFilled(low, high, fill, pen.px(5));
+  ImFont* font = pen.theme.regular;
+  const ImVec2 extent = font->CalcTextSizeA(font->FontSize, 1e6f, 0, label);
+  list.AddText(
+      font, font->FontSize,
+      {std::round((low.x + high.x - extent.x) / 2), std::round((low.y + high.y - extent.y) / 2)},
+      colour::text, label);
+  return pressed;
+}
+
+bool slider(Pen& pen, const char* name, double& value, const SliderLook& look) {
+  const float height = ImGui::GetFrameHeight(), knob = pen.px(6.5f);
+  ImGui::InvisibleButton(name, {look.width, height});
+  pen.mark(name);
+  const ImVec2 low = ImGui::GetItemRectMin();
+  const float span = std::max(1.0f, look.width - 2 * knob);
+  const auto fraction_of = [&](double v) {
+    const double f = look.logarithmic ? std::log(v / look.low) / std::log(look.high / look.low)
+                                      : (v - look.low) / (look.high - look.low);
+    return static_cast<float>(std::clamp(f, 0.0, 1.0));
+  };
+  bool changed = false;
+  if (ImGui::IsItemActive()) {
+    const double f = std::clamp((ImGui::GetIO().MousePos.x - low.x - knob) / span, 0.0f, 1.0f);
+    const double wanted = look.logarithmic ? look.low * std::pow(look.high / look.low, f)
+                                           : look.low + f * (look.high - look.low);
+    // A click that does not move must still count: the hand takes over.
+    changed = wanted != value || ImGui::IsItemActivated();
+    value = wanted;
+  }
+  const bool lit = ImGui::IsItemHovered() || ImGui::IsItemActive();
+  const float y = low.y + height / 2, x = low.x + knob + span * fraction_of(value);
+  const float thick = pen.px(2);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImU32 tint = look.held ? colour::warning : colour::accent;
+  list.AddRectFilled({low.x, y - thick}, {low.x + look.width, y + thick}, colour::rgb(0x3a424d),
+                     thick);
+  if (look.filled) list.AddRectFilled({low.x, y - thick}, {x, y + thick}, tint, thick);
+  list.AddCircleFilled({x, y}, lit ? knob : knob * 0.85f, lit ? colour::rgb(0xffffff) : tint, 24);
+  return changed;
+}
+
+bool tick_box(Pen& pen, const char* name, const char* label, bool& on) {
+  ImFont* font = pen.theme.regular;
+  const float side = pen.px(15), gap = pen.px(8);
+  const float width = side + gap + text_width(font, label), height = ImGui::GetFrameHeight();
+  const bool pressed = ImGui::InvisibleButton(name, {width, height});
+  pen.mark(name);
+  if (pressed) on = !on;
+  const ImVec2 low = ImGui::GetItemRectMin();
+  const float y = std::round(low.y + (height - side) / 2);
+  const bool hovered = ImGui::IsItemHovered();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled({low.x, y}, {low.x + side, y + side},
+                     on        ? colour::accent
+                     : hovered ? colour::field_hovered
+                               : colour::field,
+                     pen.px(3));
+  if (on) {
+    const ImVec2 mark[3] = {{low.x + side * 0.22f, y + side * 0.52f},
+                            {low.x + side * 0.43f, y + side * 0.74f},
+                            {low.x + side * 0.80f, y + side * 0.28f}};
+    list.AddPolyline(mark, 3, colour::panel, 0, pen.px(2));
+  } else {
+    list.AddRect({low.x, y}, {low.x + side, y + side}, colour::rgb(0x4a545f), pen.px(3));
+  }
+  list.AddText(font, font->FontSize,
+               {low.x + side + gap, std::round(low.y + (height - font->FontSize) / 2)},
+               on ? colour::text : colour::text_dim, label);
+  return pressed;
+}
+
+}  // namespace condyle

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+#include <vector>
+
+#include "render/window/panels.h"
+
+namespace condyle {
+
+/// What every widget needs: sizes, fonts, and the list of what was drawn. Only for this room.
+struct Pen {
+  const Theme& theme;
+  std::vector<DrawnItem>& items;
+  std::string panel;  // the one being drawn
+
+  float px(float units) const { return units * theme.scale; }
+  ImVec2 px(float x, float y) const { return {x * theme.scale, y * theme.scale}; }
+  /// Notes the last ImGui item, when any of it can be seen.
+  void mark(const std::string& name);
+};
+
+/// A fixed panel: no title, no moving. Always pair with end_panel.
+void begin_panel(Pen& pen, const char* name, const ViewRect& rect);
+void end_panel();
+
+/// A heading in small letters, with a line above unless it is the first of its panel; `right` is
+/// set in a dim colour at the other end.
+void heading(Pen& pen, const char* text, const std::string& right = {});
+
+/// Text with its own font and colour; text_right ends at the right edge of the content.
+void text(ImFont* font, ImU32 colour, const std::string& words);
+void text_right(ImFont* font, ImU32 colour, const std::string& words);
+/// The words, cut with an ellipsis to fit the width in this font.
+std::string fitted(ImFont* font, const std::string& words, float width);
+float text_width(ImFont* font, const std::string& words);
+
+void tooltip(Pen& pen, const char* words);
+
+/// Buttons with a drawn sign.
+enum class Sign { play, pause, step_back, step_forward, to_start, loop, camera, help, reset };
+bool sign_button(Pen& pen, const char* name, Sign sign, ImVec2 size, ImU32 background);
+/// A button with a word or a letter; `on` fills it with the accent.
+bool word_button(Pen& pen, const char* name, const char* label, ImVec2 size, bool on);
+
+/// A flat slider: a thin bar with a round handle over `width`. gives: true while it changes.
+struct SliderLook {
+  double low = 0, high = 1;
+  float width = 100;  // pixels
+  bool logarithmic = false;
+  bool filled = true;  // bar filled up to the handle
+  bool held = false;   // handle in the warning colour: the hand overrides the motion
+};
+bool slider(Pen& pen, const char* name, double& value, const SliderLook& look);
+
+/// A box to tick with its label.
+bool tick_box(Pen& pen, const char* name, const char* label, bool& on);
+
+}  // namespace condyle
