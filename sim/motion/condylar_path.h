@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "engine/math/pchip.h"
+#include "sim/case/case.h"
+#include "sim/motion/joint_surfaces.h"
+
+namespace condyle {
+
+constexpr double radian_per_degree = 3.14159265358979323846 / 180;
+
+/// How far the condyles have moved forward when the jaw has turned by theta: a hinge first, then
+/// both together; `early` mixes in translation from the start.
+struct Coupling {
+  double hinge = 12 * radian_per_degree;        // rad turned before translation begins
+  double rad_per_mm = 1.5 * radian_per_degree;  // of forward travel after that
+  double early = 0;                             // 0 hinge first, 1 in proportion from the start
+
+  double forward_mm(double theta) const;
+  /// Inverse; 0 for 0.
+  double theta(double forward_mm) const;
+};
+
+/// Drop of the condyle centres (toward -z, mm) by their forward travel (toward -y, mm).
+/// The path of a patient whose joint is known.
+Pchip known_path(const CondylarPath& path);
+/// An average joint: 40 deg secant over the first 5 mm, flat past the crest of the eminence.
+Pchip average_path();
+/// At each forward step the drop at which the condyles, turned as the coupling tells, keep the gap
+/// they have at rest; never rising again, rounded off, and not nearer than at rest.
+Pchip seated_path(JointSurfaces& joint, const Eigen::Vector3d& center, const Eigen::Vector3d& axis,
+                  const Coupling& coupling);
+
+}  // namespace condyle

@@ -1,0 +1,73 @@
+#include "sim/motion/joint_surfaces.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace condyle {
+namespace {
+
+constexpr double condyle_radius_mm = 15;  // of the mandible about the landmark
+constexpr double fossa_radius_mm = 45;    // of the cranium: the condyle travels some 20 mm
+constexpr double largest_gap_mm = 8;      // a farther surface is no fossa
+constexpr double least_gap_mm = 0.02;     // a nearer one cannot be kept free
+
+/// Appends the triangles of `mesh` that have a corner within `radius` of `center`.
+void append_near(const TriMesh& mesh, const Eigen::Vector3d& center, double radius, TriMesh& out) {
+  std::vector<int> index(mesh.vertices.size(), -1);
+  for (const auto& t : mesh.triangles) {
+    const auto close = [&](int v) {
+      return (mesh.vertices[v] - center).squaredNorm() <= radius * radius;
+    };
+    if (!close(t[0]) && !close(t[1]) && !close(t[2])) continue;
+    Eigen::Vector3i copy;
+    for (int k = 0; k < 3; ++k) {
+      int& v = index[t[k]];
+      if (v < 0) {
+        v = static_cast<int>(out.vertices.size());
+        out.vertices.push_back(mesh.vertices[t[k]]);
+      }
+      copy[k] = v;
+    }
+    out.triangles.push_back(copy);
+  }
+}
+
+}  // namespace
+
+std::optional<JointSurfaces> JointSurfaces::find(const Case& patient) {
+  JointSurfaces joint;
+  for (const char* name : {"left_condyle", "right_condyle"}) {
+    const auto center = patient.landmarks.find(name);
+    if (!center) return std::nullopt;
+    TriMesh condyle, fossa;
+    for (const auto& part : patient.parts) {
+      if (part.role == Role::mandible) append_near(part.mesh, *center, condyle_radius_mm, condyle);
+      if (part.role == Role::skull || part.role == Role::maxilla)
+        append_near(part.mesh, *center, fossa_radius_mm, fossa);
+    }
+    if (condyle.empty() || fossa.empty()) return std::nullopt;
+    Side side{CollisionMesh(condyle), CollisionMesh(fossa), 0, {}};
+    const MeshDistance rest = distance(side.fossa, {}, side.condyle, {});
+    if (rest.distance_mm < least_gap_mm || rest.distance_mm > largest_gap_mm) return std::nullopt;
+    side.rest_gap_mm = rest.distance_mm;
+    side.last = rest.triangles;
+    joint.sides_.push_back(std::move(side));
+  }
+  return joint;
+}
+
+double JointSurfaces::rest_gap_mm() const {
+  return std::min(sides_[0].rest_gap_mm, sides_[1].rest_gap_mm);
+}
+
+double JointSurfaces::slack_mm(const Pose& X_CM) {
+  double least = std::numeric_limits<double>::infinity();
+  for (auto& side : sides_) {
+    const MeshDistance now = distance(side.fossa, {}, side.condyle, X_CM, side.last);
+    side.last = now.triangles;
+    least = std::min(least, now.distance_mm - side.rest_gap_mm);
+  }
+  return least;
+}
+
+}  // namespace condyle
