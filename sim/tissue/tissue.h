@@ -47,7 +47,9 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
                    const TissueBudget& budget = {});
 
 /// Vertices of the displayed face (the case's face part, in its order), carried by the tissue.
-void deform_face(const TissueModel& model, const TissueState& state, std::vector<Eigen::Vector3f>& face);
+/// Same bits for any number of threads.
+void deform_face(const TissueModel& model, const TissueState& state,
+                 std::vector<Eigen::Vector3f>& face, int threads = 1);
 
 /// A point of the face surface carried by the tissue (soft landmarks), mm.
 Eigen::Vector3d carried_point(const TissueModel& model, const TissueState& state, const Eigen::Vector3d& rest);

@@ -1,0 +1,245 @@
+#include "engine/tissue/spring_prism.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/parallel.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The prism's volume is a sum of determinants of its corners taken from corner 0, which makes the
+/// numbers small. Each row: three corners and a weight in sixths of a half.
+struct Term {
+  int p, q, r;
+  double weight;
+};
+constexpr std::array<Term, 7> terms = {{
+    {3, 4, 5, -2},  // floor, seen from below
+    {1, 3, 4, 1},   // side 0-1
+    {2, 1, 4, 1},   // side 1-2, both splits
+    {2, 4, 5, 1},
+    {2, 1, 5, 1},
+    {1, 4, 5, 1},
+    {2, 5, 3, 1},  // side 2-0
+}};
+constexpr double sixth_of_half = 1.0 / 12.0;
+
+using Corners = std::array<Vector3d, 6>;
+
+Corners relative_corners(const Nodes& x, const std::array<int, 6>& prism) {
+  Corners c;
+  c[0].setZero();
+  for (int k = 1; k < 6; ++k) c[k] = x[prism[k]] - x[prism[0]];
+  return c;
+}
+
+double det(const Vector3d& a, const Vector3d& b, const Vector3d& c) { return a.dot(b.cross(c)); }
+
+double volume_of(const Corners& c) {
+  double sum = 0;
+  for (const Term& t : terms) sum += t.weight * det(c[t.p], c[t.q], c[t.r]);
+  return sum * sixth_of_half;
+}
+
+double volume_and_gradient(const Corners& c, Corners& gradient) {
+  for (auto& g : gradient) g.setZero();
+  double sum = 0;
+  for (const Term& t : terms) {
+    const Vector3d qr = c[t.q].cross(c[t.r]);
+    sum += t.weight * c[t.p].dot(qr);
+    gradient[t.p] += t.weight * qr;
+    gradient[t.q] += t.weight * c[t.r].cross(c[t.p]);
+    gradient[t.r] += t.weight * c[t.p].cross(c[t.q]);
+  }
+  Vector3d total = Vector3d::Zero();
+  for (int k = 1; k < 6; ++k) {
+    gradient[k] *= sixth_of_half;
+    total += gradient[k];
+  }
+  gradient[0] = -total;
+  return sum * sixth_of_half;
+}
+
+/// First and second derivative of the volume along d.
+void volume_derivatives(const Corners& c, const Corners& d, double& first, double& second) {
+  first = second = 0;
+  for (const Term& t : terms) {
+    const Vector3d qr = c[t.q].cross(c[t.r]);
+    const Vector3d dqr = d[t.q].cross(c[t.r]) + c[t.q].cross(d[t.r]);
+    first += t.weight * (d[t.p].dot(qr) + c[t.p].dot(dqr));
+    second += t.weight * 2 * (d[t.p].dot(dqr) + det(c[t.p], d[t.q], d[t.r]));
+  }
+  first *= sixth_of_half;
+  second *= sixth_of_half;
+}
+
+/// Energy of a prism of share j = v / rest, without the factor weight * rest^2, and derivatives in j.
+struct VolumeLaw {
+  double e, de, dde;
+};
+VolumeLaw volume_law(double j, double barrier_share, double barrier_weight) {
+  VolumeLaw law{(j - 1) * (j - 1), 2 * (j - 1), 2};
+  if (j < barrier_share) {
+    const double u = barrier_share - j, r = u / j;
+    law.e += barrier_weight * u * u * r;
+    law.de -= barrier_weight * (3 * u * r + u * r * r);
+    law.dde += barrier_weight * (6 * r + 6 * r * r + 2 * r * r * r);
+  }
+  return law;
+}
+
+struct Range {
+  std::size_t first, last;
+};
+Range share(std::size_t count, int chunk, int chunks) {
+  return {count * chunk / chunks, count * (chunk + 1) / chunks};
+}
+
+}  // namespace
+
+double prism_volume(const Nodes& nodes, const std::array<int, 6>& prism) {
+  return volume_of(relative_corners(nodes, prism));
+}
+
+double prism_volume_gradient(const Nodes& nodes, const std::array<int, 6>& prism,
+                             std::array<Eigen::Vector3d, 6>& gradient) {
+  return volume_and_gradient(relative_corners(nodes, prism), gradient);
+}
+
+double volume_stiffness(double share_of_rest, double barrier_share, double barrier_weight) {
+  return volume_law(share_of_rest, barrier_share, barrier_weight).dde;
+}
+
+SpringPrismEnergy::SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads)
+    : net_(net), loads_(loads), threads_(threads) {
+  for (auto& nodes : partial_) nodes.resize(net.node_count);
+}
+
+double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, Nodes& gradient) const {
+  for (auto& g : gradient) g.setZero();
+  double spring_energy = 0;
+  const Range springs = share(net_.spring_a.size(), chunk, chunks_);
+  for (std::size_t s = springs.first; s < springs.last; ++s) {
+    const int a = net_.spring_a[s], b = net_.spring_b[s];
+    const Vector3d d = x[b] - x[a];
+    const double length = std::sqrt(d.squaredNorm());
+    const double stretch = length - net_.rest_length[s];
+    const double k = net_.stiffness[s];
+    spring_energy += k * stretch * stretch;
+    const Vector3d force = (2 * k * stretch / length) * d;
+    gradient[a] -= force;
+    gradient[b] += force;
+  }
+  const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);
+  for (std::size_t i = anchors.first; i < anchors.last; ++i) {
+    const int node = net_.anchor_node[i];
+    const Vector3d d = x[node] - loads_.anchor_target[i];
+    spring_energy += net_.anchor_stiffness[i] * d.squaredNorm();
+    gradient[node] += (2 * net_.anchor_stiffness[i]) * d;
+  }
+  const Range slides = share(net_.slide_node.size(), chunk, chunks_);
+  for (std::size_t i = slides.first; i < slides.last; ++i) {
+    const int node = net_.slide_node[i];
+    const double gap = loads_.slide_normal[i].dot(x[node]) - loads_.slide_offset[i];
+    if (gap >= 0) continue;
+    spring_energy += net_.slide_stiffness[i] * gap * gap;
+    gradient[node] += (2 * net_.slide_stiffness[i] * gap) * loads_.slide_normal[i];
+  }
+  // Springs and volumes share the gradient: the volumes' part is scaled to the springs' weight.
+  const double lambda = net_.lambda, volume_scale = (1 - lambda) / lambda;
+  double volume_energy = 0;
+  const Range prisms = share(net_.prisms.size(), chunk, chunks_);
+  Corners slope;
+  for (std::size_t p = prisms.first; p < prisms.last; ++p) {
+    const auto& prism = net_.prisms[p];
+    const double rest = net_.rest_volume[p];
+    const double j = volume_and_gradient(relative_corners(x, prism), slope) / rest;
+    if (!(j > 1e-3)) return std::numeric_limits<double>::infinity();
+    const VolumeLaw law = volume_law(j, net_.barrier_share, net_.barrier_weight);
+    const double scale = volume_scale * net_.volume_weight[p] * rest;
+    volume_energy += scale * rest * law.e;
+    const double pressure = scale * law.de;
+    for (int k = 0; k < 6; ++k) gradient[prism[k]] += pressure * slope[k];
+  }
+  return lambda * (spring_energy + volume_energy);
+}
+
+double SpringPrismEnergy::value_and_gradient(const Nodes& x, Nodes& gradient) {
+  std::array<double, chunks_> energy{};
+  parallel_for(chunks_, threads_, [&](std::size_t c) {
+    energy[c] = chunk_energy(static_cast<int>(c), x, partial_[c]);
+  });
+  double total = 0;
+  for (double e : energy) total += e;
+  gradient.resize(net_.node_count);
+  for (int i = 0; i < net_.node_count; ++i) {
+    Vector3d sum = partial_[0][i];
+    for (int c = 1; c < chunks_; ++c) sum += partial_[c][i];
+    gradient[i] = net_.lambda * sum;
+  }
+  return total;
+}
+
+SpringPrismEnergy::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& x,
+                                                                const Nodes& d) const {
+  Curvature springs_sum, volumes_sum;
+  const Range springs = share(net_.spring_a.size(), chunk, chunks_);
+  for (std::size_t s = springs.first; s < springs.last; ++s) {
+    const int a = net_.spring_a[s], b = net_.spring_b[s];
+    const Vector3d e = x[b] - x[a], de = d[b] - d[a];
+    const double length2 = e.squaredNorm();
+    const double along = e.dot(de);
+    const double along2 = along * along / length2;
+    const double across2 = de.squaredNorm() - along2;
+    const double tension = 1 - net_.rest_length[s] / std::sqrt(length2);
+    const double k2 = 2 * net_.stiffness[s];
+    springs_sum.exact += k2 * (along2 + tension * across2);
+    springs_sum.gauss_newton += k2 * (along2 + (tension > 0 ? tension * across2 : 0));
+  }
+  double linear = 0;  // parts whose curvature is exact and never negative
+  const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);
+  for (std::size_t i = anchors.first; i < anchors.last; ++i)
+    linear += 2 * net_.anchor_stiffness[i] * d[net_.anchor_node[i]].squaredNorm();
+  const Range slides = share(net_.slide_node.size(), chunk, chunks_);
+  for (std::size_t i = slides.first; i < slides.last; ++i) {
+    const int node = net_.slide_node[i];
+    if (loads_.slide_normal[i].dot(x[node]) >= loads_.slide_offset[i]) continue;
+    const double speed = loads_.slide_normal[i].dot(d[node]);
+    linear += 2 * net_.slide_stiffness[i] * speed * speed;
+  }
+  const Range prisms = share(net_.prisms.size(), chunk, chunks_);
+  for (std::size_t p = prisms.first; p < prisms.last; ++p) {
+    const Corners c = relative_corners(x, net_.prisms[p]);
+    double first, second;
+    volume_derivatives(c, relative_corners(d, net_.prisms[p]), first, second);
+    const double rest = net_.rest_volume[p];
+    const VolumeLaw law = volume_law(volume_of(c) / rest, net_.barrier_share, net_.barrier_weight);
+    const double weight = net_.volume_weight[p];
+    const double square = weight * law.dde * first * first;
+    const double bend = weight * rest * law.de * second;
+    volumes_sum.exact += square + bend;
+    volumes_sum.gauss_newton += square;
+  }
+  const double lambda = net_.lambda;
+  return {lambda * (springs_sum.exact + linear) + (1 - lambda) * volumes_sum.exact,
+          lambda * (springs_sum.gauss_newton + linear) + (1 - lambda) * volumes_sum.gauss_newton};
+}
+
+SpringPrismEnergy::Curvature SpringPrismEnergy::curvature(const Nodes& x, const Nodes& d) {
+  std::array<Curvature, chunks_> parts;
+  parallel_for(chunks_, threads_, [&](std::size_t c) {
+    parts[c] = chunk_curvature(static_cast<int>(c), x, d);
+  });
+  Curvature total;
+  for (const auto& part : parts) {
+    total.exact += part.exact;
+    total.gauss_newton += part.gauss_newton;
+  }
+  return total;
+}
+
+}  // namespace condyle

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace condyle {
+
+using Nodes = std::vector<Eigen::Vector3d>;  // mm
+
+/// A body of springs and volume elements (prisms) over nodes. Structure of arrays; the order of the
+/// springs and prisms fixes the order of every sum.
+struct SpringPrismNet {
+  int node_count = 0;
+
+  // Springs between two nodes.
+  std::vector<int> spring_a, spring_b;
+  std::vector<double> rest_length;  // mm
+  std::vector<double> stiffness;    // N/mm; the spring's energy is stiffness * (l - rest)^2
+
+  // Zero-length springs from a node to a point that is given at each evaluation: energy is
+  // stiffness * |d|^2, so nothing is divided by a length.
+  std::vector<int> anchor_node;
+  std::vector<double> anchor_stiffness;
+
+  // Nodes that may slide on, and leave, but not pass a plane that is given at each evaluation.
+  std::vector<int> slide_node;
+  std::vector<double> slide_stiffness;
+
+  // Prisms: corners 0 1 2 counter-clockwise seen from outside, 3 4 5 below them.
+  std::vector<std::array<int, 6>> prisms;
+  std::vector<double> rest_volume;    // mm^3
+  std::vector<double> volume_weight;  // energy is weight * (v - rest)^2, N/mm^5
+
+  double lambda = 0.5;  // weight of the springs; 1 - lambda that of the volumes
+  /// Below this share of its rest volume a prism resists ever more, without bound at zero.
+  double barrier_share = 0.5;
+  double barrier_weight = 4.0;
+};
+
+/// What the outer world asks at one time.
+struct NetLoads {
+  Nodes anchor_target;               // one per anchor
+  Nodes slide_normal;                // unit, out of the body that must not be entered; one per slide
+  std::vector<double> slide_offset;  // normal . x >= offset is free
+};
+
+/// Signed volume, the mean over both splits of each side quad; positive for the corner order above.
+double prism_volume(const Nodes& nodes, const std::array<int, 6>& prism);
+
+/// The same, and its derivative by each corner.
+double prism_volume_gradient(const Nodes& nodes, const std::array<int, 6>& prism,
+                             std::array<Eigen::Vector3d, 6>& gradient);
+
+/// Second derivative of a prism's energy, over its weight, by its volume, at v = share * rest.
+double volume_stiffness(double share, double barrier_share, double barrier_weight);
+
+/// Energy, gradient and curvature of a net; keeps its work space. The sums are taken in an order
+/// that does not depend on the number of threads.
+class SpringPrismEnergy {
+ public:
+  SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads);
+
+  /// Energy (mJ) and its gradient (N). Infinite where a prism has no positive volume.
+  double value_and_gradient(const Nodes& x, Nodes& gradient);
+
+  struct Curvature {
+    double exact = 0;         // second derivative along d
+    double gauss_newton = 0;  // without its negative parts, never below zero
+  };
+  Curvature curvature(const Nodes& x, const Nodes& d);
+
+ private:
+  static constexpr int chunks_ = 4;  // fixed: the sums must not know the number of threads
+  double chunk_energy(int chunk, const Nodes& x, Nodes& gradient) const;
+  Curvature chunk_curvature(int chunk, const Nodes& x, const Nodes& d) const;
+
+  const SpringPrismNet& net_;
+  const NetLoads& loads_;
+  int threads_;
+  std::array<Nodes, chunks_> partial_;
+};
+
+}  // namespace condyle

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "engine/mesh/triangle_tree.h"
+#include "sim/case/case.h"
+
+namespace condyle {
+
+/// Where things lie on this patient at rest: landmarks, or what can be read off the bones when a
+/// landmark is missing (said in the notes). mm, LPS.
+struct Anatomy {
+  Eigen::Vector3d condyles = Eigen::Vector3d::Zero();  // midpoint of both
+  Eigen::Vector3d incisors = Eigen::Vector3d::Zero();  // midpoint of upper and lower incisal point
+  double mandible_low = 0;   // z of the lowest point of the mandible
+  double mandible_back = 0;  // y of its rearmost point
+
+  /// Height of the bite above a point: the plane through the incisors that rises to the back by the
+  /// usual angle between occlusal and Frankfort plane.
+  double bite_height(double y) const { return incisors.z() + 0.1 * (y - incisors.y()); }
+};
+
+/// The bones and teeth that a march from the skin can meet.
+struct Bones {
+  TriangleTree cranium, mandible;  // bone with teeth
+  TriangleTree teeth;              // of both jaws, where they are separate; may be empty
+};
+
+Anatomy read_anatomy(const Case& patient, std::vector<std::string>& notes);
+Bones collect_bones(const Case& patient);
+
+}  // namespace condyle

@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "engine/core/error.h"
+#include "engine/tissue/layered_net.h"
+#include "engine/tissue/net_weights.h"
+#include "sim/tissue/attachment.h"
+#include "sim/tissue/coarse_skin.h"
+#include "sim/tissue/columns.h"
+#include "sim/tissue/model.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double bone_stiffness = 2.0;      // N/mm, some 50 times a skin spring
+constexpr double boundary_stiffness = 2.0;  // N/mm
+constexpr double slide_stiffness = 1.0;     // N/mm
+
+/// Layers from the skin inward. source: skin and cheek 30 to 40 kPa in vivo, deeper layers softer.
+struct Layers {
+  std::vector<double> share;
+  std::vector<LayerMaterial> material;
+};
+Layers layers_of(int count) {
+  const LayerMaterial skin{0.040, 0.12}, fat{0.015, 0.12}, muscle{0.025, 0.12};
+  switch (count) {
+    case 1: return {{1.0}, {{0.025, 0.12}}};
+    case 2: return {{0.35, 0.65}, {skin, muscle}};
+    case 3: return {{0.22, 0.38, 0.40}, {skin, fat, muscle}};
+    case 5: return {{0.12, 0.18, 0.22, 0.24, 0.24}, {skin, skin, fat, muscle, muscle}};
+    default: throw InputError("soft tissue: layers must be 1, 2, 3 or 5, not " + std::to_string(count));
+  }
+}
+
+double smoothstep(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+/// How much the rim of a face that ends below the jaw goes with the mandible: fully at it, not at
+/// all from this far on.
+double rim_follows(double to_mandible_mm) { return 1 - smoothstep((to_mandible_mm - 15) / 65); }
+
+}  // namespace
+
+std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const TissueSettings& settings,
+                                                const Progress& progress) {
+  const Part* face = patient.find(Role::face);
+  if (!face || face->mesh.empty()) return nullptr;
+  if (settings.surface_nodes < 60 || settings.surface_nodes > 50000)
+    throw InputError("soft tissue: surface nodes must be 60 to 50000, not " +
+                     std::to_string(settings.surface_nodes));
+  const Layers layers = layers_of(settings.layers);
+  auto model = std::make_shared<TissueModel>();
+  TissueSummary& summary = model->summary;
+
+  report(progress, "soft tissue: skin", 0.0);
+  const Anatomy anatomy = read_anatomy(patient, summary.notes);
+  const Bones bones = collect_bones(patient);
+  const SkinRegion region = cut_region(face->mesh, patient.landmarks, anatomy, summary.notes);
+  const CoarseSkin skin = make_coarse_skin(region, settings.surface_nodes);
+
+  report(progress, "soft tissue: layers", 0.5);
+  ColumnSettings column_settings;
+  column_settings.layer_share = layers.share;
+  const auto columns = march_columns(skin, bones, column_settings, summary.notes);
+  const int sheets = settings.layers + 1;
+  model->columns = static_cast<int>(columns.size());
+  model->sheets = sheets;
+  model->triangles = skin.mesh.triangles;
+  model->rest = column_nodes(skin, columns, column_settings);
+  model->net = layered_net(skin.mesh.triangles, sheets, model->rest, layers.material);
+  SpringPrismNet& net = model->net;
+  for (double v : net.rest_volume)
+    if (v <= 0) throw InputError("face: the skin folds so that tissue below it turns inside out; smooth the face");
+
+  // Bone springs, and slides for what rests on the teeth unattached.
+  const auto hold = hold_columns(skin, columns, anatomy);
+  std::vector<int> given;
+  std::vector<double> given_share;
+  const auto anchor = [&](int node, double share, double stiffness) {
+    net.anchor_node.push_back(node);
+    net.anchor_stiffness.push_back(stiffness);
+    model->anchor_share.push_back(share);
+  };
+  for (int c = 0; c < model->columns; ++c) {
+    const int inner = node_of(c, sheets - 1, sheets);
+    if (skin.rim[c]) continue;
+    if (hold[c] != Hold::free) {
+      const double share = hold[c] == Hold::mandible ? 1 : 0;
+      anchor(inner, share, bone_stiffness);
+      given.push_back(inner);
+      given_share.push_back(share);
+      ++(hold[c] == Hold::mandible ? summary.attached_to_mandible : summary.attached_to_cranium);
+    } else if (columns[c].ground != Ground::none && columns[c].to_mouth < 25) {
+      // The plane touches what the march met; tissue already behind it at rest may stay there.
+      const Vector3d met = skin.mesh.vertices[c] + columns[c].met_depth * columns[c].inward;
+      const Vector3d normal = -columns[c].inward;
+      const Vector3d point = normal.dot(model->rest[inner] - met) < 0 ? model->rest[inner] : met;
+      net.slide_node.push_back(inner);
+      net.slide_stiffness.push_back(slide_stiffness);
+      model->slides.push_back({point, normal, columns[c].ground == Ground::mandible});
+    }
+  }
+
+  // Boundary springs: every node of the rim stays put. A border of the face's own (a mask that ends
+  // below the jaw) goes with the mandible as far as the tissue wants to and the distance allows.
+  for (int c = 0; c < model->columns; ++c)
+    if (skin.rim[c])
+      for (int s = 0; s < sheets; ++s) {
+        given.push_back(node_of(c, s, sheets));
+        given_share.push_back(0);
+        anchor(node_of(c, s, sheets), 0, boundary_stiffness);
+        ++summary.boundary;
+      }
+  const auto wish = harmonic_shares(net, given, given_share);
+  for (int c = 0; c < model->columns; ++c)
+    if (skin.border[c] && !skin.rim[c])
+      for (int s = 0; s < sheets; ++s) {
+        const int node = node_of(c, s, sheets);
+        const double distance =
+            bones.mandible.empty() ? 1e9 : bones.mandible.nearest(model->rest[node]).distance;
+        const double share = wish[node] * rim_follows(distance);
+        if (s + 1 == sheets && hold[c] != Hold::free) continue;
+        given.push_back(node);
+        given_share.push_back(share);
+        anchor(node, share, boundary_stiffness);
+        ++summary.boundary;
+      }
+  model->node_share = harmonic_shares(net, given, given_share);
+
+  report(progress, "soft tissue: displayed face", 0.8);
+  model->region = region.shape;
+  model->slit = LipSlit(region.mesh, region.mouth);
+  model->handles = make_handles(skin.mesh.triangles, sheets, model->rest);
+  model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, 30);
+  const auto region_side = sides_of(region.mesh, region.mouth, model->slit, 30);
+  model->face_rest = face->mesh.vertices;
+  model->face_side.assign(face->mesh.vertices.size(), 0);
+  for (std::size_t v = 0; v < region.face_vertex.size(); ++v)
+    if (region.face_vertex[v] >= 0) model->face_side[region.face_vertex[v]] = region_side[v];
+  for (std::size_t v = 0; v < model->face_rest.size(); ++v) {
+    const CarriedPoint point = carry_face_point(*model, model->face_rest[v], model->face_side[v]);
+    if (point.fade <= 0) continue;
+    model->carried_vertex.push_back(static_cast<int>(v));
+    model->carried.push_back(point);
+  }
+
+  summary.nodes = net.node_count;
+  summary.springs = static_cast<int>(net.spring_a.size() + net.anchor_node.size());
+  summary.prisms = static_cast<int>(net.prisms.size());
+  summary.layers = settings.layers;
+  summary.lips_cut = region.mouth.found();
+  report(progress, "soft tissue", 1.0);
+  return model;
+}
+
+const TissueSummary& summary(const TissueModel& model) { return model.summary; }
+
+}  // namespace condyle

@@ -1,0 +1,108 @@
+#include "sim/tissue/coarse_skin.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/tissue/remesh.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// How much longer than at the lips edges may be, by the distance to the mouth (mm).
+double coarseness(double to_mouth) { return 1 + 1.6 * std::clamp((to_mouth - 6) / 70, 0.0, 1.0); }
+
+}  // namespace
+
+CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes) {
+  const TriMesh& fine = region.mesh;
+  std::vector<Vector3d> lips;
+  for (const auto* run : {&region.mouth.upper, &region.mouth.lower})
+    for (std::size_t i = 0; i < run->size(); i += 1 + run->size() / 24)
+      lips.push_back(fine.vertices[(*run)[i]]);
+  const auto to_mouth = [&](const Vector3d& p) {
+    double best = lips.empty() ? 60 * 60 : 1e18;
+    for (const auto& lip : lips) best = std::min(best, (p - lip).squaredNorm());
+    return std::sqrt(best);
+  };
+
+  // An even triangle net of edge l has 2 / sqrt(3) / l^2 vertices per area.
+  double wanted = 0;
+  for (const auto& t : fine.triangles) {
+    const Vector3d &a = fine.vertices[t[0]], &b = fine.vertices[t[1]], &c = fine.vertices[t[2]];
+    const double l = coarseness(to_mouth((a + b + c) / 3));
+    wanted += 0.5 * (b - a).cross(c - a).norm() * 2 / std::sqrt(3.0) / (l * l);
+  }
+  double scale = std::sqrt(wanted / nodes);
+  RemeshSettings settings;
+  if (region.mouth.found()) settings.pinned = {region.mouth.right_corner, region.mouth.left_corner};
+  Remeshed coarse;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    settings.edge_length = [&](const Vector3d& p) { return scale * coarseness(to_mouth(p)); };
+    coarse = remesh(fine, settings);
+    const double got = static_cast<double>(coarse.mesh.vertices.size());
+    if (std::abs(got / nodes - 1) < 0.04) break;
+    scale *= std::sqrt(got / nodes);
+  }
+
+  CoarseSkin skin;
+  skin.mesh = std::move(coarse.mesh);
+  skin.rim.assign(skin.mesh.vertices.size(), 0);
+  skin.border.assign(skin.mesh.vertices.size(), 0);
+
+  // Border vertices slid along the fine borders: each asks the nearest fine border vertex what it is.
+  enum class Kind { rim, border };
+  std::vector<std::pair<Vector3d, Kind>> marks;
+  for (int v : region.rim) marks.emplace_back(fine.vertices[v], Kind::rim);
+  for (int v : region.border) marks.emplace_back(fine.vertices[v], Kind::border);
+  const auto loops = border_loops(skin.mesh);
+  int mouth_loop = -1;
+  if (region.mouth.found())
+    for (std::size_t l = 0; l < loops.size(); ++l)
+      if (std::find(loops[l].begin(), loops[l].end(), coarse.pinned[0]) != loops[l].end())
+        mouth_loop = static_cast<int>(l);
+  for (std::size_t l = 0; l < loops.size(); ++l) {
+    if (static_cast<int>(l) == mouth_loop) continue;
+    for (int v : loops[l]) {
+      double best = 1e18;
+      Kind kind = Kind::rim;
+      for (const auto& [p, k] : marks)
+        if ((p - skin.mesh.vertices[v]).squaredNorm() < best) {
+          best = (p - skin.mesh.vertices[v]).squaredNorm();
+          kind = k;
+        }
+      (kind == Kind::rim ? skin.rim : skin.border)[v] = 1;
+    }
+  }
+  if (mouth_loop >= 0) {
+    skin.mouth.right_corner = coarse.pinned[0];
+    skin.mouth.left_corner = coarse.pinned[1];
+    const auto& loop = loops[mouth_loop];
+    const int n = static_cast<int>(loop.size());
+    const int right = static_cast<int>(std::find(loop.begin(), loop.end(), coarse.pinned[0]) - loop.begin());
+    std::vector<int> one, other;
+    int i = (right + 1) % n;
+    for (; loop[i] != coarse.pinned[1] && i != right; i = (i + 1) % n) one.push_back(loop[i]);
+    for (i = (i + 1) % n; i != right && i != (right + n) % n; i = (i + 1) % n) other.push_back(loop[i]);
+    std::reverse(other.begin(), other.end());
+    // The runs of the fine outline say which is the upper one.
+    const auto distance_to = [&](const std::vector<int>& run, const std::vector<int>& fine_run) {
+      double sum = 0;
+      for (int v : run) {
+        double best = 1e18;
+        for (int f : fine_run) best = std::min(best, (fine.vertices[f] - skin.mesh.vertices[v]).norm());
+        sum += best;
+      }
+      return sum;
+    };
+    const bool one_is_upper = distance_to(one, region.mouth.upper) + distance_to(other, region.mouth.lower) <=
+                              distance_to(one, region.mouth.lower) + distance_to(other, region.mouth.upper);
+    skin.mouth.upper = one_is_upper ? one : other;
+    skin.mouth.lower = one_is_upper ? other : one;
+  }
+  return skin;
+}
+
+}  // namespace condyle

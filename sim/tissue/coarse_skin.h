@@ -1,0 +1,11 @@
+#pragma once
+
+#include "sim/tissue/columns.h"
+#include "sim/tissue/skin_region.h"
+
+namespace condyle {
+
+/// The sheet that is simulated: about `nodes` vertices over the region, finest at the lips.
+CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes);
+
+}  // namespace condyle

@@ -1,0 +1,186 @@
+#include "sim/tissue/columns.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/mesh/measure.h"
+#include "engine/tissue/layered_net.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+std::vector<std::vector<int>> rings_of(const TriMesh& mesh) {
+  std::vector<std::vector<int>> ring(mesh.vertices.size());
+  for (const auto& [a, b] : edges_of(mesh.triangles)) {
+    ring[a].push_back(b);
+    ring[b].push_back(a);
+  }
+  return ring;
+}
+
+/// Inward directions: mean normals, averaged over the rings several times. The mouth's border takes
+/// its direction from the skin around it, since the lip's own normal turns into the mouth.
+std::vector<Vector3d> smooth_inward(const CoarseSkin& skin, const std::vector<std::vector<int>>& ring) {
+  const auto normals = vertex_normals(skin.mesh);
+  std::vector<Vector3d> inward(normals.size());
+  for (std::size_t v = 0; v < normals.size(); ++v) inward[v] = -normals[v];
+  std::vector<char> lip(normals.size(), 0);
+  if (skin.mouth.found()) {
+    for (int v : skin.mouth.upper) lip[v] = 1;
+    for (int v : skin.mouth.lower) lip[v] = 1;
+    lip[skin.mouth.left_corner] = lip[skin.mouth.right_corner] = 1;
+  }
+  for (int round = 0; round < 8; ++round) {
+    std::vector<Vector3d> next = inward;
+    for (std::size_t v = 0; v < inward.size(); ++v) {
+      Vector3d sum = lip[v] ? Vector3d(0.2 * inward[v]) : inward[v];
+      for (int n : ring[v])
+        if (!lip[n] || lip[v]) sum += inward[n];
+      next[v] = sum.normalized();
+    }
+    inward.swap(next);
+  }
+  return inward;
+}
+
+void march(const CoarseSkin& skin, const Bones& bones, const ColumnSettings& settings,
+           std::size_t v, Column& column) {
+  const Vector3d& p = skin.mesh.vertices[v];
+  const auto cranium = bones.cranium.empty()
+                           ? std::nullopt
+                           : bones.cranium.ray_cast(p, column.inward, settings.march_mm);
+  const auto mandible = bones.mandible.empty()
+                            ? std::nullopt
+                            : bones.mandible.ray_cast(p, column.inward, settings.march_mm);
+  if (!cranium && !mandible) return;
+  const bool lower = mandible && (!cranium || mandible->distance < cranium->distance);
+  const SurfacePoint& met = lower ? *mandible : *cranium;
+  column.ground = lower ? Ground::mandible : Ground::cranium;
+  column.met_depth = met.distance;
+  column.met_normal = (lower ? bones.mandible : bones.cranium).pseudonormal(met);
+  if (!bones.teeth.empty()) {
+    const auto tooth = bones.teeth.ray_cast(p, column.inward, settings.march_mm);
+    column.met_teeth = tooth && tooth->distance < met.distance + 0.5;
+  }
+}
+
+/// Depths where nothing was met come from their neighbours; then all are smoothed, never passing
+/// deeper than what was met.
+void smooth_depths(const std::vector<std::vector<int>>& ring, const ColumnSettings& settings,
+                   std::vector<Column>& columns) {
+  const std::size_t count = columns.size();
+  std::vector<double> depth(count), limit(count, settings.greatest_depth_mm);
+  for (std::size_t v = 0; v < count; ++v) {
+    depth[v] = settings.default_depth_mm;
+    if (columns[v].ground == Ground::none) continue;
+    // Room is left before teeth: the lips slide on them.
+    const double met = columns[v].met_depth - (columns[v].met_teeth ? 1.0 : 0.0);
+    depth[v] = std::clamp(met, settings.least_depth_mm, settings.greatest_depth_mm);
+    limit[v] = std::max(settings.least_depth_mm, met);
+  }
+  for (int round = 0; round < 40; ++round)  // fill
+    for (std::size_t v = 0; v < count; ++v) {
+      if (columns[v].ground != Ground::none) continue;
+      double sum = settings.default_depth_mm;  // and drift to the default far from bone
+      for (int n : ring[v]) sum += depth[n];
+      depth[v] = sum / (1.0 + static_cast<double>(ring[v].size()));
+    }
+  for (int round = 0; round < 4; ++round) {
+    std::vector<double> next(count);
+    for (std::size_t v = 0; v < count; ++v) {
+      double sum = 0;
+      for (int n : ring[v]) sum += depth[n];
+      next[v] = std::min(0.5 * depth[v] + 0.5 * sum / static_cast<double>(ring[v].size()), limit[v]);
+    }
+    depth.swap(next);
+  }
+  for (std::size_t v = 0; v < count; ++v) columns[v].depth = depth[v];
+}
+
+}  // namespace
+
+Nodes column_nodes(const CoarseSkin& skin, const std::vector<Column>& columns,
+                   const ColumnSettings& settings) {
+  const int sheets = static_cast<int>(settings.layer_share.size()) + 1;
+  Nodes nodes(columns.size() * sheets);
+  for (std::size_t v = 0; v < columns.size(); ++v) {
+    double fraction = 0;
+    for (int sheet = 0; sheet < sheets; ++sheet) {
+      nodes[node_of(static_cast<int>(v), sheet, sheets)] =
+          skin.mesh.vertices[v] + fraction * columns[v].depth * columns[v].inward;
+      if (sheet + 1 < sheets) fraction += settings.layer_share[sheet];
+    }
+  }
+  return nodes;
+}
+
+std::vector<Column> march_columns(const CoarseSkin& skin, const Bones& bones,
+                                  const ColumnSettings& settings, std::vector<std::string>& notes) {
+  const auto ring = rings_of(skin.mesh);
+  std::vector<Column> columns(skin.mesh.vertices.size());
+  const auto inward = smooth_inward(skin, ring);
+  for (std::size_t v = 0; v < columns.size(); ++v) {
+    columns[v].inward = inward[v];
+    march(skin, bones, settings, v, columns[v]);
+    const auto near_lip = [&](int lip) {
+      columns[v].to_mouth =
+          std::min(columns[v].to_mouth, (skin.mesh.vertices[lip] - skin.mesh.vertices[v]).norm());
+    };
+    if (skin.mouth.found()) {
+      for (int lip : skin.mouth.upper) near_lip(lip);
+      for (int lip : skin.mouth.lower) near_lip(lip);
+      near_lip(skin.mouth.left_corner);
+      near_lip(skin.mouth.right_corner);
+    }
+  }
+  smooth_depths(ring, settings, columns);
+
+  // Thin the columns of weak prisms, and turn them towards their neighbours, until all are sound.
+  const int sheets = static_cast<int>(settings.layer_share.size()) + 1;
+  std::vector<char> changed(columns.size(), 0);
+  int weak_left = 0;
+  for (int round = 0; round < 80; ++round) {
+    const Nodes nodes = column_nodes(skin, columns, settings);
+    std::vector<char> weak(columns.size(), 0);
+    weak_left = 0;
+    for (const auto& t : skin.mesh.triangles) {
+      const Vector3d& p = skin.mesh.vertices[t[0]];
+      const double area = 0.5 * (skin.mesh.vertices[t[1]] - p).cross(skin.mesh.vertices[t[2]] - p).norm();
+      const double depth = (columns[t[0]].depth + columns[t[1]].depth + columns[t[2]].depth) / 3;
+      for (int layer = 0; layer + 1 < sheets; ++layer) {
+        std::array<int, 6> prism;
+        for (int k = 0; k < 3; ++k) {
+          prism[k] = node_of(t[k], layer, sheets);
+          prism[k + 3] = node_of(t[k], layer + 1, sheets);
+        }
+        if (prism_volume(nodes, prism) > 0.3 * area * depth * settings.layer_share[layer]) continue;
+        ++weak_left;
+        for (int k = 0; k < 3; ++k) weak[t[k]] = 1;
+        break;
+      }
+    }
+    if (weak_left == 0) break;
+    const auto before = columns;
+    for (std::size_t v = 0; v < columns.size(); ++v) {
+      if (!weak[v]) continue;
+      changed[v] = 1;
+      columns[v].depth *= 0.93;
+      Vector3d sum = before[v].inward;
+      for (int n : ring[v]) sum += before[n].inward / static_cast<double>(ring[v].size());
+      columns[v].inward = sum.normalized();
+    }
+  }
+  const auto thinned = std::count(changed.begin(), changed.end(), 1);
+  if (thinned > 0)
+    notes.push_back(std::to_string(thinned) + " of " + std::to_string(columns.size()) +
+                    " tissue columns were made thinner, where straight ones would cross");
+  if (weak_left > 0)
+    notes.push_back(std::to_string(weak_left) + " prisms stay thin: the skin folds there");
+  return columns;
+}
+
+}  // namespace condyle

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "engine/tissue/spring_prism.h"
+#include "sim/tissue/anatomy.h"
+#include "sim/tissue/skin_region.h"
+
+namespace condyle {
+
+/// What a column of tissue stands on.
+enum class Ground { none, cranium, mandible };
+
+/// One column per vertex of the coarse skin, from the skin inward.
+struct Column {
+  Eigen::Vector3d inward = Eigen::Vector3d::Zero();  // unit
+  double depth = 0;                                  // mm, of the innermost node
+  Ground ground = Ground::none;   // bone met within reach
+  bool met_teeth = false;
+  double met_depth = 0;           // mm, of what was met
+  Eigen::Vector3d met_normal = Eigen::Vector3d::Zero();  // outward, of what was met
+  double to_mouth = 1e9;          // mm from the opening between the lips
+};
+
+/// Coarse skin: the simulated surface with what the builder knows about its vertices.
+struct CoarseSkin {
+  TriMesh mesh;
+  std::vector<char> rim;     // stays put
+  std::vector<char> border;  // on a border of the face's own, the mouth left out
+  MouthOutline mouth;
+};
+
+struct ColumnSettings {
+  std::vector<double> layer_share;  // of the depth, outermost first; sums to 1
+  double least_depth_mm = 3, greatest_depth_mm = 22;
+  double default_depth_mm = 12;     // where there is no bone in reach
+  double march_mm = 25;
+};
+
+/// Marches from the skin to the bone along smoothed normals and smooths the depths, then thins
+/// columns until every prism has a good volume.
+std::vector<Column> march_columns(const CoarseSkin& skin, const Bones& bones,
+                                  const ColumnSettings& settings, std::vector<std::string>& notes);
+
+/// Nodes of the columns in `node_of` order.
+Nodes column_nodes(const CoarseSkin& skin, const std::vector<Column>& columns,
+                   const ColumnSettings& settings);
+
+}  // namespace condyle

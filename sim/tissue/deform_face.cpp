@@ -1,0 +1,58 @@
+#include <algorithm>
+#include <numeric>
+
+#include "engine/core/parallel.h"
+#include "sim/tissue/model.h"
+
+namespace condyle {
+
+using Eigen::Vector3d;
+
+CarriedPoint carry_face_point(const TissueModel& model, const Vector3d& p, int side) {
+  CarriedPoint point;
+  const double inside = model.region.inside(p);
+  if (inside <= 0) {
+    point.fade = 0;
+    return point;
+  }
+  const int own = side != 0 ? side : model.slit.side(p);
+  std::vector<int> all(model.handles.node.size());
+  std::iota(all.begin(), all.end(), 0);
+  point = carry(all, [&](int h) {
+    return model.slit.distance(p, own, model.rest[model.handles.node[h]], model.handle_side[h]);
+  });
+  const double t = std::min(1.0, inside / 12);  // toward the rim all motion fades out
+  point.fade = static_cast<float>(t * t * (3 - 2 * t));
+  return point;
+}
+
+void deform_face(const TissueModel& model, const TissueState& state,
+                 std::vector<Eigen::Vector3f>& face, int threads) {
+  const std::size_t count = model.face_rest.size();
+  if (face.size() != count) face.resize(count);
+  for (std::size_t v = 0; v < count; ++v) face[v] = model.face_rest[v].cast<float>();
+  const HandleMotion motion = handle_motion(model.handles, model.rest, state.nodes);
+  constexpr std::size_t block = 2048;
+  const std::size_t blocks = (model.carried.size() + block - 1) / block;
+  parallel_for(blocks, threads, [&](std::size_t b) {
+    const std::size_t last = std::min(model.carried.size(), (b + 1) * block);
+    for (std::size_t i = b * block; i < last; ++i) {
+      const int v = model.carried_vertex[i];
+      face[v] = carried(model.carried[i], model.handles, model.rest, motion, model.face_rest[v])
+                    .cast<float>();
+    }
+  });
+}
+
+Vector3d carried_point(const TissueModel& model, const TissueState& state, const Vector3d& rest) {
+  // A point on a lip belongs to the lip of the nearest vertex of the face.
+  std::size_t nearest = 0;
+  for (std::size_t v = 1; v < model.face_rest.size(); ++v)
+    if ((model.face_rest[v] - rest).squaredNorm() < (model.face_rest[nearest] - rest).squaredNorm())
+      nearest = v;
+  const CarriedPoint point = carry_face_point(model, rest, model.face_side[nearest]);
+  const HandleMotion motion = handle_motion(model.handles, model.rest, state.nodes);
+  return carried(point, model.handles, model.rest, motion, rest);
+}
+
+}  // namespace condyle

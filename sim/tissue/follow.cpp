@@ -1,0 +1,72 @@
+#include <algorithm>
+
+#include "engine/tissue/conjugate_gradient.h"
+#include "sim/tissue/model.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+NetLoads loads_at(const TissueModel& model, const Pose& X_CM) {
+  NetLoads loads;
+  const auto& net = model.net;
+  loads.anchor_target.resize(net.anchor_node.size());
+  for (std::size_t i = 0; i < net.anchor_node.size(); ++i) {
+    const Vector3d& X = model.rest[net.anchor_node[i]];
+    const double share = model.anchor_share[i];
+    loads.anchor_target[i] = share == 0 ? X : Vector3d(X + share * (X_CM * X - X));
+  }
+  for (const auto& slide : model.slides) {
+    const Vector3d normal = slide.on_mandible ? Vector3d(X_CM.R * slide.normal) : slide.normal;
+    const Vector3d point = slide.on_mandible ? X_CM * slide.point : slide.point;
+    loads.slide_normal.push_back(normal);
+    loads.slide_offset.push_back(normal.dot(point));
+  }
+  return loads;
+}
+
+int count_inverted(const SpringPrismNet& net, const Nodes& x) {
+  int count = 0;
+  for (const auto& prism : net.prisms) count += prism_volume(x, prism) <= 0;
+  return count;
+}
+
+}  // namespace
+
+TissueState rest_tissue(const TissueModel& model) {
+  TissueState state;
+  state.nodes = model.rest;
+  return state;
+}
+
+TissueState follow(const TissueModel& model, const TissueState& previous, const Pose& X_CM,
+                   const TissueBudget& budget) {
+  const NetLoads loads = loads_at(model, X_CM);
+  TissueState state;
+  state.X_CM = X_CM;
+  // Foresee: each node goes its share of the way that the mandible would take it.
+  const Pose step = X_CM * previous.X_CM.inverse();
+  state.nodes = previous.nodes;
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
+    const double share = model.node_share[i];
+    if (share != 0) state.nodes[i] += share * (step * previous.nodes[i] - previous.nodes[i]);
+  }
+  if (count_inverted(model.net, state.nodes) > 0) state.nodes = previous.nodes;
+
+  MinimizeSettings settings;
+  settings.tolerance_mm = budget.tolerance_mm;
+  settings.max_iterations = budget.max_iterations;
+  settings.nodes_per_column = model.sheets;
+  settings.threads = budget.threads;
+  const MinimizeResult result = minimize(model.net, loads, settings, state.nodes);
+  state.iterations = result.iterations;
+  state.evaluations = result.evaluations;
+  state.converged = result.converged;
+  state.energy = result.energy;
+  state.residual = result.residual;
+  state.inverted_prisms = count_inverted(model.net, state.nodes);
+  return state;
+}
+
+}  // namespace condyle

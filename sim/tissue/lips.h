@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "engine/mesh/tri_mesh.h"
+#include "sim/case/case.h"
+
+namespace condyle {
+
+/// The opening between the lips of a face surface: one closed run of border vertices, from the
+/// right corner along the upper lip to the left corner and back along the lower lip.
+struct MouthOutline {
+  int right_corner = -1, left_corner = -1;
+  std::vector<int> upper, lower;  // right to left, corners left out
+  bool found() const { return right_corner >= 0; }
+};
+
+/// Border loops of a welded mesh, each a run of vertices in the order of the surface's own edges.
+std::vector<std::vector<int>> border_loops(const TriMesh& mesh);
+
+/// The border loop at the mouth, if the face has one. `incisors`: midpoint of the incisal points.
+MouthOutline find_mouth(const TriMesh& face, const Landmarks& landmarks,
+                        const Eigen::Vector3d& incisors);
+
+/// Cuts a face whose lips are one surface along the lip line, from corner to corner, by doubling
+/// vertices (at the end of the list; colours too), and returns the new opening; empty where no lip
+/// line can be found.
+MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Eigen::Vector3d& incisors,
+                          std::vector<std::string>& notes);
+
+/// Gives the patient's face an opening between the lips when it has none, so that the displayed
+/// face can part; says so in the case's notes. Does nothing when there is an opening already.
+void part_lips(Case& patient);
+
+}  // namespace condyle

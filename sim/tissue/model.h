@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "engine/tissue/frame_embedding.h"
+#include "engine/tissue/spring_prism.h"
+#include "sim/tissue/skin_region.h"
+#include "sim/tissue/slit.h"
+#include "sim/tissue/tissue.h"
+
+namespace condyle {
+
+/// See tissue.h. Nodes in `node_of` order (layered_net.h), mm, at rest in the cranium's frame.
+struct TissueModel {
+  int columns = 0, sheets = 0;
+  std::vector<Eigen::Vector3i> triangles;  // of the columns, seen from outside
+  Nodes rest;
+  SpringPrismNet net;
+
+  // A share of 1 goes with the mandible, 0 with the cranium: a point X asks for X + share (X_CM X - X).
+  std::vector<double> anchor_share;
+  struct Slide {
+    Eigen::Vector3d point, normal;  // of the plane at rest
+    bool on_mandible = false;
+  };
+  std::vector<Slide> slides;       // one per slide of the net
+  std::vector<double> node_share;  // of every node, to foresee where a motion takes it
+
+  // The displayed face.
+  RegionShape region;
+  LipSlit slit;
+  HandleSet handles;
+  std::vector<signed char> handle_side;  // +1 above the lip line, -1 below
+  std::vector<int> carried_vertex;       // of the face part
+  std::vector<CarriedPoint> carried;
+  std::vector<Eigen::Vector3d> face_rest;
+  std::vector<signed char> face_side;
+
+  TissueSummary summary;
+};
+
+/// How the face's point p with its side (0 = unknown) is carried.
+CarriedPoint carry_face_point(const TissueModel& model, const Eigen::Vector3d& p, int side);
+
+}  // namespace condyle

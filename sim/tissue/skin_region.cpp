@@ -1,0 +1,234 @@
+#include "sim/tissue/skin_region.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/core/error.h"
+#include "engine/mesh/measure.h"
+#include "engine/mesh/topology.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+double smoothstep(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+/// Keeps the triangles told of, and the vertices they use; `source` follows.
+TriMesh kept_part(const TriMesh& mesh, const std::vector<char>& keep, std::vector<int>& source) {
+  TriMesh out;
+  std::vector<int> index(mesh.vertices.size(), -1);
+  std::vector<int> from;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (!keep[t]) continue;
+    Eigen::Vector3i tri = mesh.triangles[t];
+    for (int k = 0; k < 3; ++k) {
+      int& i = index[tri[k]];
+      if (i < 0) {
+        i = static_cast<int>(out.vertices.size());
+        out.vertices.push_back(mesh.vertices[tri[k]]);
+        from.push_back(source[tri[k]]);
+      }
+      tri[k] = i;
+    }
+    out.triangles.push_back(tri);
+  }
+  source = std::move(from);
+  return out;
+}
+
+double triangle_area(const TriMesh& mesh, const Eigen::Vector3i& t) {
+  return 0.5 * (mesh.vertices[t[1]] - mesh.vertices[t[0]])
+                   .cross(mesh.vertices[t[2]] - mesh.vertices[t[0]])
+                   .norm();
+}
+
+/// Drops what is not the largest piece (by area).
+void keep_largest(TriMesh& mesh, std::vector<int>& source) {
+  const Components parts = find_components(mesh);
+  if (parts.count < 2) return;
+  std::vector<double> area(parts.count, 0.0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    area[parts.of_triangle[t]] += triangle_area(mesh, mesh.triangles[t]);
+  const int largest = static_cast<int>(std::max_element(area.begin(), area.end()) - area.begin());
+  std::vector<char> keep(mesh.triangles.size());
+  for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = parts.of_triangle[t] == largest;
+  mesh = kept_part(mesh, keep, source);
+}
+
+/// Triangles use the first of all vertices at equal coordinates; no vertex goes.
+void join_equal_points(TriMesh& mesh) {
+  std::vector<int> order(mesh.vertices.size()), first(mesh.vertices.size());
+  for (std::size_t v = 0; v < order.size(); ++v) order[v] = static_cast<int>(v);
+  const auto key = [&](int v) {
+    const Vector3d& p = mesh.vertices[v];
+    return std::array<double, 3>{p.x(), p.y(), p.z()};
+  };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+  std::vector<Eigen::Vector3i> kept;
+  for (auto t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) t[k] = first[t[k]];
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) kept.push_back(t);
+  }
+  mesh.triangles = std::move(kept);
+}
+
+/// Drops triangles until every edge has one or two that agree on outside. Returns how many went.
+int make_manifold(TriMesh& mesh, std::vector<int>& source) {
+  std::vector<char> keep(mesh.triangles.size(), 1);
+  int dropped = 0;
+  const EdgeList list = find_edges(mesh);
+  for (const auto& edge : list.edges) {
+    int forward = 0, backward = 0;
+    for (int s = edge.first; s < edge.first + edge.count; ++s) {
+      const EdgeSide& side = list.sides[s];
+      if (!keep[side.triangle]) continue;
+      int& seen = side.forward ? forward : backward;
+      if (++seen > 1) {
+        keep[side.triangle] = 0;
+        ++dropped;
+      }
+    }
+  }
+  if (dropped > 0) mesh = kept_part(mesh, keep, source);
+  return dropped;
+}
+
+/// Gives each fan of triangles around a vertex its own vertex, so that no two fans hang on a point.
+void separate_fans(TriMesh& mesh, std::vector<int>& source) {
+  std::vector<std::vector<int>> around(mesh.vertices.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) around[mesh.triangles[t][k]].push_back(static_cast<int>(t));
+  const std::size_t count = mesh.vertices.size();
+  for (std::size_t v = 0; v < count; ++v) {
+    std::vector<int> left = around[v];
+    bool first = true;
+    while (!left.empty()) {
+      std::vector<int> fan{left.back()};
+      left.pop_back();
+      for (std::size_t i = 0; i < fan.size(); ++i) {
+        const auto& a = mesh.triangles[fan[i]];
+        for (std::size_t j = 0; j < left.size();) {
+          const auto& b = mesh.triangles[left[j]];
+          int shared = 0;
+          for (int k = 0; k < 3; ++k) shared += (a.array() == b[k]).any();
+          if (shared >= 2) {
+            fan.push_back(left[j]);
+            left.erase(left.begin() + static_cast<std::ptrdiff_t>(j));
+          } else {
+            ++j;
+          }
+        }
+      }
+      if (!first) {
+        const int twin = static_cast<int>(mesh.vertices.size());
+        const Vector3d p = mesh.vertices[v];
+        mesh.vertices.push_back(p);
+        const int from = source[v];
+        source.push_back(from);
+        for (int t : fan)
+          for (int k = 0; k < 3; ++k)
+            if (mesh.triangles[t][k] == static_cast<int>(v)) mesh.triangles[t][k] = twin;
+      }
+      first = false;
+    }
+  }
+}
+
+}  // namespace
+
+double RegionShape::inside(const Vector3d& p) const {
+  const double height = p.z() - anatomy.condyles.z();
+  // Above: below the eyes. Behind: before the ear, and below the ear lobe around to the neck's side.
+  const double top = 13 - height;
+  const double back_limit = anatomy.condyles.y() + 3 + 50 * smoothstep((-24 - height) / 30);
+  const double back = back_limit - p.y();
+  return std::min({top, back, p.z() - floor_z});
+}
+
+SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Anatomy& anatomy,
+                      std::vector<std::string>& notes) {
+  SkinRegion region;
+  TriMesh mesh{face.vertices, face.triangles, {}};
+  std::vector<int> source(mesh.vertices.size());
+  for (std::size_t v = 0; v < source.size(); ++v) source[v] = static_cast<int>(v);
+  join_equal_points(mesh);
+  if (const int dropped = make_manifold(mesh, source))
+    notes.push_back("face: " + std::to_string(dropped) +
+                    " triangles at edges shared by more than two were left out of the soft tissue");
+  keep_largest(mesh, source);
+  separate_fans(mesh, source);
+
+  MouthOutline mouth = find_mouth(mesh, landmarks, anatomy.incisors);
+  if (!mouth.found()) {
+    mouth = cut_lip_line(mesh, landmarks, anatomy.incisors, notes);
+    source.resize(mesh.vertices.size(), -1);
+  }
+
+  region.shape.anatomy = anatomy;
+  // A closed bust has a flat underside, which is no skin; far below the jaw nothing moves.
+  const Box box = bounding_box(mesh);
+  region.shape.floor_z = std::max(box.low.z() + 4, anatomy.mandible_low - 85);
+  const bool open_below = box.low.z() > anatomy.mandible_low - 45;  // a mask: its rim may move
+  if (open_below) region.shape.floor_z = box.low.z() - 100;
+
+  std::vector<char> on_own_border(mesh.vertices.size(), 0);
+  for (const auto& loop : border_loops(mesh))
+    for (int v : loop) on_own_border[v] = 1;
+  std::vector<char> keep(mesh.triangles.size());
+  for (std::size_t t = 0; t < keep.size(); ++t) {
+    double least = 1e9;
+    for (int k = 0; k < 3; ++k)
+      least = std::min(least, region.shape.inside(mesh.vertices[mesh.triangles[t][k]]));
+    keep[t] = least > 0;
+  }
+  std::vector<int> kept_vertex(mesh.vertices.size());
+  for (std::size_t v = 0; v < kept_vertex.size(); ++v) kept_vertex[v] = static_cast<int>(v);
+  TriMesh part = kept_part(mesh, keep, kept_vertex);
+  keep_largest(part, kept_vertex);
+  separate_fans(part, kept_vertex);
+  if (part.triangles.size() < 100)
+    throw InputError("face: no skin found around the jaw; check that face and bones are in the same "
+                     "place, unit and frame");
+
+  std::vector<int> new_index(mesh.vertices.size(), -1);
+  for (std::size_t v = 0; v < kept_vertex.size(); ++v)
+    if (new_index[kept_vertex[v]] < 0) new_index[kept_vertex[v]] = static_cast<int>(v);
+  std::vector<char> is_mouth(part.vertices.size(), 0);
+  const auto moved = [&](int v) {
+    const int n = new_index[v];
+    if (n >= 0) is_mouth[n] = 1;
+    return n;
+  };
+  if (mouth.found()) {
+    region.mouth.right_corner = moved(mouth.right_corner);
+    region.mouth.left_corner = moved(mouth.left_corner);
+    for (int v : mouth.upper) region.mouth.upper.push_back(moved(v));
+    for (int v : mouth.lower) region.mouth.lower.push_back(moved(v));
+    bool whole = region.mouth.right_corner >= 0 && region.mouth.left_corner >= 0;
+    for (int v : region.mouth.upper) whole = whole && v >= 0;
+    for (int v : region.mouth.lower) whole = whole && v >= 0;
+    if (!whole) throw InputError("face: the mouth lies outside the region around the jaw; check the landmarks");
+  } else {
+    notes.push_back("no opening between the lips was found and none could be cut: the mouth stays shut");
+  }
+  for (const auto& loop : border_loops(part))
+    for (int v : loop) {
+      if (is_mouth[v]) continue;
+      (on_own_border[kept_vertex[v]] ? region.border : region.rim).push_back(v);
+    }
+  region.face_vertex.resize(part.vertices.size());
+  for (std::size_t v = 0; v < part.vertices.size(); ++v)
+    region.face_vertex[v] = source[kept_vertex[v]];
+  region.mesh = std::move(part);
+  return region;
+}
+
+}  // namespace condyle

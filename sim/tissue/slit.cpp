@@ -1,0 +1,106 @@
+#include "sim/tissue/slit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "engine/tissue/layered_net.h"
+
+namespace condyle {
+
+using Eigen::Vector3d;
+
+namespace {
+
+double height_at(const std::vector<std::pair<double, double>>& run, double x) {
+  if (x <= run.front().first) return run.front().second;
+  if (x >= run.back().first) return run.back().second;
+  for (std::size_t i = 1; i < run.size(); ++i)
+    if (x <= run[i].first) {
+      const double width = run[i].first - run[i - 1].first;
+      const double s = width > 0 ? (x - run[i - 1].first) / width : 0;
+      return run[i - 1].second + s * (run[i].second - run[i - 1].second);
+    }
+  return run.back().second;
+}
+
+}  // namespace
+
+LipSlit::LipSlit(const TriMesh& skin, const MouthOutline& mouth) {
+  if (!mouth.found()) return;
+  right_ = skin.vertices[mouth.right_corner];
+  left_ = skin.vertices[mouth.left_corner];
+  const auto run = [&](const std::vector<int>& lip) {
+    std::vector<std::pair<double, double>> points{{right_.x(), right_.z()}, {left_.x(), left_.z()}};
+    for (int v : lip) points.emplace_back(skin.vertices[v].x(), skin.vertices[v].z());
+    std::sort(points.begin(), points.end());
+    return points;
+  };
+  const auto upper = run(mouth.upper), lower = run(mouth.lower);
+  constexpr int samples = 33;
+  for (int i = 0; i < samples; ++i) {
+    const double x = right_.x() + (left_.x() - right_.x()) * i / (samples - 1);
+    x_.push_back(x);
+    z_.push_back(0.5 * (height_at(upper, x) + height_at(lower, x)));
+  }
+}
+
+double LipSlit::height(const Vector3d& p) const {
+  if (!found()) return 1;
+  const double at = (p.x() - x_.front()) / (x_.back() - x_.front()) * static_cast<double>(x_.size() - 1);
+  const double clamped = std::clamp(at, 0.0, static_cast<double>(x_.size() - 1));
+  const std::size_t i = std::min(static_cast<std::size_t>(clamped), x_.size() - 2);
+  return p.z() - (z_[i] + (clamped - static_cast<double>(i)) * (z_[i + 1] - z_[i]));
+}
+
+double LipSlit::distance(const Vector3d& p, int side_p, const Vector3d& q, int side_q) const {
+  const double straight = (p - q).norm();
+  if (!found() || side_p == side_q) return straight;
+  // Where the straight way crosses the slit; points whose height contradicts their side (lips that
+  // overlap a little) count as just beside it.
+  const double up = std::max(side_p * height(p), 0.01), down = std::max(side_q * height(q), 0.01);
+  const double x = p.x() + up / (up + down) * (q.x() - p.x());
+  if (x <= x_.front() || x >= x_.back()) return straight;
+  return std::min((p - right_).norm() + (right_ - q).norm(), (p - left_).norm() + (left_ - q).norm());
+}
+
+std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth, const LipSlit& slit,
+                                  double reach) {
+  std::vector<signed char> side(skin.vertices.size());
+  for (std::size_t v = 0; v < side.size(); ++v)
+    side[v] = static_cast<signed char>(slit.side(skin.vertices[v]));
+  if (!mouth.found()) return side;
+
+  std::vector<std::vector<int>> ring(skin.vertices.size());
+  for (const auto& [a, b] : edges_of(skin.triangles)) {
+    ring[a].push_back(b);
+    ring[b].push_back(a);
+  }
+  std::vector<double> way(skin.vertices.size(), std::numeric_limits<double>::infinity());
+  std::set<std::pair<double, int>> open;
+  const auto start = [&](const std::vector<int>& lip, signed char s) {
+    for (int v : lip) {
+      way[v] = 0;
+      side[v] = s;
+      open.insert({0.0, v});
+    }
+  };
+  start(mouth.upper, 1);
+  start(mouth.lower, -1);
+  while (!open.empty()) {
+    const auto [d, v] = *open.begin();
+    open.erase(open.begin());
+    for (int n : ring[v]) {
+      const double next = d + (skin.vertices[n] - skin.vertices[v]).norm();
+      if (next >= way[n] || next > reach) continue;
+      open.erase({way[n], n});
+      way[n] = next;
+      side[n] = side[v];
+      open.insert({next, n});
+    }
+  }
+  return side;
+}
+
+}  // namespace condyle
