@@ -21,13 +21,14 @@ const std::vector<std::string>& camera_names();
 
 /// A standard view that fits the box [low, high] with a little air around it.
 /// throws: InputError for an unknown name, listing the known ones.
-Camera standard_camera(const std::string& name, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
-                       double aspect);
+Camera standard_camera(const std::string& name, const Eigen::Vector3d& low,
+                       const Eigen::Vector3d& high, double aspect);
 
 /// Turned about the vertical axis through the target.
 Camera turned(const Camera& camera, double angle_rad);
 
 Eigen::Matrix4f view_matrix(const Camera& camera);
-Eigen::Matrix4f projection_matrix(const Camera& camera, double aspect, double near_mm, double far_mm);
+Eigen::Matrix4f projection_matrix(const Camera& camera, double aspect, double near_mm,
+                                  double far_mm);
 
 }  // namespace condyle

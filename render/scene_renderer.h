@@ -16,11 +16,11 @@ namespace condyle {
 /// How a picture is drawn.
 struct PictureSettings {
   int width = 1280, height = 720;
-  int samples = 4;           // of multisampling; what the context cannot give is lowered
+  int samples = 4;  // of multisampling; what the context cannot give is lowered
   bool shadows = true;
-  bool contacts = true;      // mark contact points
+  bool contacts = true;  // mark contact points
   bool transparent_background = false;
-  double skin_opacity = 1.0; // 0 hides the face
+  double skin_opacity = 1.0;                   // 0 hides the face
   std::map<std::string, double> part_opacity;  // by part name; missing = 1; 0 hides
 };
 

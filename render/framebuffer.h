@@ -1,0 +1,47 @@
+#pragma once
+
+#include "render/gl_objects.h"
+#include "render/image.h"
+
+namespace condyle {
+
+/// Colour (RGBA, 8 bit) and depth off the screen, with or without multisampling.
+class Framebuffer {
+ public:
+  /// `samples` is lowered to what the context gives.
+  /// throws: MachineError when the size is beyond the driver's limit or memory.
+  Framebuffer(int width, int height, int samples);
+
+  void bind() const;
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int samples() const { return samples_; }
+  GLuint name() const { return framebuffer_; }
+
+  /// Sends the picture to another framebuffer of the same size (0 is the window's). Averages
+  /// samples.
+  void resolve_to(GLuint target) const;
+  /// Pixels, rows from the top. Only without multisampling.
+  Image read() const;
+
+ private:
+  GlFramebuffer framebuffer_;
+  GlRenderbuffer color_, depth_;
+  int width_, height_, samples_;
+};
+
+/// A square depth picture for shadows, sampled with comparison.
+class DepthMap {
+ public:
+  explicit DepthMap(int side);
+  void bind() const;
+  int side() const { return side_; }
+  GLuint texture() const { return depth_; }
+
+ private:
+  GlFramebuffer framebuffer_;
+  GlTexture depth_;
+  int side_;
+};
+
+}  // namespace condyle

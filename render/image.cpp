@@ -1,0 +1,126 @@
+#include "render/image.h"
+
+#include <png.h>
+
+#include <csetjmp>
+#include <cstring>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+
+namespace condyle {
+namespace {
+
+constexpr int max_side = 16384;
+
+struct Bytes {
+  const std::string& content;
+  std::size_t at = 0;
+};
+
+void append(png_structp png, png_bytep data, png_size_t size) {
+  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(data), size);
+}
+
+void take(png_structp png, png_bytep data, png_size_t size) {
+  auto& bytes = *static_cast<Bytes*>(png_get_io_ptr(png));
+  if (size > bytes.content.size() - bytes.at) png_error(png, "the file ends early");
+  std::memcpy(data, bytes.content.data() + bytes.at, size);
+  bytes.at += size;
+}
+
+void keep_message(png_structp png, png_const_charp message) {
+  *static_cast<std::string*>(png_get_error_ptr(png)) = message;
+  png_longjmp(png, 1);
+}
+
+void no_warning(png_structp, png_const_charp) {}
+
+// The two functions that libpng leaves by longjmp hold no object with a destructor of their own.
+bool compress(png_structp png, png_infop info, const Image& image) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width),
+               static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_set_compression_level(png, 1);
+  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+  png_write_info(png, info);
+  for (int row = 0; row < image.height; ++row)
+    png_write_row(png, image.rgba.data() + std::size_t{4} * image.width * row);
+  png_write_end(png, info);
+  return true;
+}
+
+bool decompress(png_structp png, png_infop info, Image& image) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_set_user_limits(png, max_side, max_side);
+  png_read_info(png, info);
+  const int type = png_get_color_type(png, info);
+  png_set_expand(png);
+  png_set_scale_16(png);
+  if (!(type & PNG_COLOR_MASK_COLOR)) png_set_gray_to_rgb(png);
+  png_set_add_alpha(png, 255, PNG_FILLER_AFTER);
+  const int passes = png_set_interlace_handling(png);
+  png_read_update_info(png, info);
+  image.width = static_cast<int>(png_get_image_width(png, info));
+  image.height = static_cast<int>(png_get_image_height(png, info));
+  const std::size_t stride = std::size_t{4} * image.width;
+  if (png_get_rowbytes(png, info) != stride) png_error(png, "its pixels have an unknown form");
+  image.rgba.assign(stride * image.height, 0);
+  for (int pass = 0; pass < passes; ++pass)
+    for (int row = 0; row < image.height; ++row)
+      png_read_row(png, image.rgba.data() + stride * row, nullptr);
+  png_read_end(png, nullptr);
+  return true;
+}
+
+}  // namespace
+
+std::string encode_png(const Image& image) {
+  if (image.width < 1 || image.height < 1 ||
+      image.rgba.size() != std::size_t{4} * image.width * image.height)
+    throw MachineError("a picture without its pixels cannot be written as PNG");
+  std::string bytes, message;
+  bytes.reserve(image.rgba.size() / 4);
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, keep_message, no_warning);
+  png_infop info = png ? png_create_info_struct(png) : nullptr;
+  bool done = false;
+  if (info) {
+    png_set_write_fn(png, &bytes, append, nullptr);
+    done = compress(png, info, image);
+  }
+  png_destroy_write_struct(&png, &info);
+  if (!done) throw MachineError("PNG: " + (message.empty() ? "out of memory" : message));
+  return bytes;
+}
+
+void write_png(const std::filesystem::path& file, const Image& image) {
+  write_file(file, encode_png(image));
+}
+
+Image read_png(const std::filesystem::path& file) {
+  const std::string content = read_file(file, std::size_t{2} << 30);
+  if (content.size() < 8 ||
+      png_sig_cmp(reinterpret_cast<png_const_bytep>(content.data()), 0, 8) != 0)
+    throw InputError(file, "", "is not a PNG picture");
+  Bytes bytes{content};
+  Image image;
+  std::string message;
+  png_structp png =
+      png_create_read_struct(PNG_LIBPNG_VER_STRING, &message, keep_message, no_warning);
+  png_infop info = png ? png_create_info_struct(png) : nullptr;
+  bool done = false;
+  if (info) {
+    png_set_read_fn(png, &bytes, take);
+    done = decompress(png, info, image);
+  }
+  png_destroy_read_struct(&png, &info, nullptr);
+  if (!done)
+    throw InputError(file, "",
+                     "is damaged (" + (message.empty() ? "out of memory" : message) + ")");
+  return image;
+}
+
+}  // namespace condyle

@@ -1,0 +1,198 @@
+#include "render/shaders.h"
+
+namespace condyle {
+namespace {
+
+// `invariant`: a translucent part is drawn twice and must fall on the same depth both times.
+const char* const vertex_source = R"(#version 330 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 color;  // sRGB, occlusion with everything at rest
+layout(location = 3) in vec4 extra;  // occlusion by its own body, curvature, gloss
+uniform mat4 model;            // rigid
+uniform mat4 view_projection;
+uniform mat4 shadow_matrix;
+uniform vec3 eye;
+uniform float together;        // 1 with everything as at rest, 0 far from it
+uniform vec2 cavity;           // y where the mouth's darkness starts, 1/length; 0 length = none
+invariant gl_Position;
+out vec3 to_eye;
+out vec3 world_normal;
+out vec3 albedo;               // linear
+out vec3 shadow_place;
+out vec4 traits;               // occlusion, curvature, gloss, depth in the mouth
+void main() {
+  vec4 world = model * vec4(position, 1.0);
+  gl_Position = view_projection * world;
+  to_eye = eye - world.xyz;
+  world_normal = mat3(model) * normal;
+  albedo = pow(color.rgb, vec3(2.2));
+  // Moved out along the normal, so that a surface does not shade itself.
+  vec4 s = shadow_matrix * vec4(world.xyz + 0.9 * world_normal, 1.0);
+  shadow_place = s.xyz;
+  traits = vec4(mix(extra.x, color.a, together), extra.y, extra.z,
+                exp(-max(world.y - cavity.x, 0.0) * cavity.y));
+}
+)";
+
+const char* const lighting_source = R"(#version 330 core
+in vec3 to_eye;
+in vec3 world_normal;
+in vec3 albedo;
+in vec3 shadow_place;
+in vec4 traits;
+uniform vec3 key_direction, key_color;
+uniform vec3 fill_direction, fill_color;
+uniform vec3 rim_direction, rim_color;
+uniform vec3 sky_direction, sky_color, ground_color, front_color;
+uniform sampler2DShadow shadow_map;
+uniform float shadows;         // 0 off, 1 on
+uniform float shadow_texel;
+uniform float opacity;
+out vec4 result;
+
+// Nine bilinear comparisons over about 2 mm.
+float key_visibility() {
+  if (shadows < 0.5) return 1.0;
+  float r = 1.6 * shadow_texel;
+  float sum = 0.0;
+  for (int j = -1; j <= 1; ++j)
+    for (int i = -1; i <= 1; ++i)
+      sum += texture(shadow_map, shadow_place + vec3(r * float(i), r * float(j), 0.0));
+  return sum * (1.0 / 9.0);
+}
+
+float wrapped(float cosine, float wrap) {
+  return max(cosine + wrap, 0.0) / ((1.0 + wrap) * (1.0 + wrap));
+}
+
+vec3 ambient_light(vec3 n, vec3 v) {
+  float up = 0.5 + 0.5 * dot(n, sky_direction);
+  return mix(ground_color, sky_color, up) + front_color * max(dot(n, v), 0.0);
+}
+
+// Light bounced between the walls of a crease takes on their colour.
+// source: Jimenez and others, Practical Real-Time Strategies for Accurate Indirect Occlusion, 2016
+vec3 colored_occlusion(float ao, vec3 base) {
+  vec3 a = 2.0404 * base - 0.3324, b = -4.7951 * base + 0.6417, c = 2.7552 * base + 0.6903;
+  return max(vec3(ao), ((ao * a + b) * ao + c) * ao);
+}
+
+// GGX with the product of Fresnel and masking fitted for real time.
+float specular(vec3 n, vec3 v, vec3 l, float rough) {
+  vec3 h = normalize(l + v);
+  float nh = max(dot(n, h), 0.0), lh = max(dot(l, h), 0.0);
+  float a2 = rough * rough * rough * rough;
+  float d = nh * nh * (a2 - 1.0) + 1.00001;
+  return a2 / (d * d * max(0.1, lh * lh) * (4.0 * rough * rough + 2.0)) * max(dot(n, l), 0.0);
+}
+
+float fresnel(float nv, float f0) {
+  float m = 1.0 - nv;
+  float m2 = m * m;
+  return f0 + (1.0 - f0) * m2 * m2 * m;
+}
+
+// Straight up to 0.72, then a shoulder that keeps the hue; then sRGB.
+vec3 display(vec3 c) {
+  float peak = max(c.r, max(c.g, c.b));
+  const float knee = 0.72, room = 1.0 - knee;
+  if (peak > knee) {
+    float toned = 1.0 - room * room / (peak + room - knee);
+    c *= toned / peak;
+    c = mix(c, vec3(toned), 1.0 - 1.0 / (0.25 * (peak - toned) + 1.0));
+  }
+  c = clamp(c, 0.0, 1.0);
+  return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+}
+)";
+
+const char* const surface_source = R"(
+uniform float roughness, reflectance, wrap;
+uniform vec3 scatter;  // colour of the light that comes through at grazing angles
+uniform float coat;    // strength of the second, sharp reflection of wet or enamelled surfaces
+void main() {
+  vec3 v = normalize(to_eye);
+  vec3 n = normalize(world_normal);
+  // An open surface is lit from whichever side is seen.
+  if (!gl_FrontFacing) n = -n;
+  float nv = clamp(dot(n, v), 0.0, 1.0);
+  float ao = traits.x, depth = traits.w;
+  float lit = key_visibility() * depth;
+  float kn = dot(n, key_direction);
+  vec3 soft = vec3(wrapped(kn, wrap)) + scatter * (wrapped(kn, wrap + 0.45) - wrapped(kn, wrap));
+  vec3 occlusion = colored_occlusion(ao, albedo);
+  vec3 light = key_color * soft * lit
+             + (fill_color * wrapped(dot(n, fill_direction), wrap + 0.2)
+             + rim_color * wrapped(dot(n, rim_direction), 0.0)) * depth * occlusion
+             + ambient_light(n, v) * occlusion * depth;
+  float open = ao * ao * depth;
+  vec3 shine = key_color * specular(n, v, key_direction, roughness) * lit
+             + fill_color * specular(n, v, fill_direction, roughness) * open
+             + rim_color * specular(n, v, rim_direction, roughness) * open;
+  vec3 c = albedo * light + reflectance * shine;
+  vec3 mirrored = reflect(-v, n);
+  c += ambient_light(mirrored, v) * fresnel(nv, reflectance) * (1.0 - roughness) * open;
+  if (coat > 0.0)
+    c += coat * reflectance * (key_color * specular(n, v, key_direction, 0.16) * lit
+       + fill_color * specular(n, v, fill_direction, 0.2) * open);
+  float a = opacity >= 1.0 ? 1.0 : 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35));
+  result = vec4(display(c), a);
+}
+)";
+
+const char* const skin_source = R"(
+uniform sampler2D skin_table;  // diffuse light by cosine and curvature
+void main() {
+  vec3 v = normalize(to_eye);
+  vec3 n = normalize(world_normal);
+  float nv = clamp(dot(n, v), 0.0, 1.0);
+  float ao = traits.x, gloss = traits.z;
+  float lit = key_visibility();
+  // Light that enters beside a shadow's edge comes out red inside it.
+  vec3 tinted = pow(vec3(lit), vec3(0.55, 1.0, 1.15));
+  vec3 through = texture(skin_table, vec2(0.5 + 0.5 * dot(n, key_direction), traits.y)).rgb;
+  vec3 occlusion = colored_occlusion(ao, albedo);
+  const vec3 bleed = vec3(0.42, 0.24, 0.16);
+  float fn = dot(n, fill_direction), rn = dot(n, rim_direction);
+  vec3 fill = max(vec3(fn) + bleed, 0.0) / ((1.0 + bleed) * (1.0 + bleed));
+  vec3 rim = max(vec3(rn) + 0.5 * bleed, 0.0) / ((1.0 + 0.5 * bleed) * (1.0 + 0.5 * bleed));
+  vec3 light = key_color * through * tinted + (fill_color * fill + rim_color * rim) * occlusion
+             + ambient_light(n, v) * occlusion;
+  float open = ao * ao;
+  float wide = mix(0.50, 0.40, gloss), tight = mix(0.34, 0.22, gloss);
+  vec3 shine = key_color * lit * (0.75 * specular(n, v, key_direction, wide)
+                                + 0.25 * specular(n, v, key_direction, tight))
+             + open * (fill_color * specular(n, v, fill_direction, wide)
+                     + rim_color * specular(n, v, rim_direction, wide));
+  vec3 c = albedo * light + mix(0.028, 0.05, gloss) * shine;
+  c += 0.5 * ambient_light(reflect(-v, n), v) * fresnel(nv, 0.028) * (1.0 - wide) * open;
+  float a = opacity >= 1.0 ? 1.0 : 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35));
+  result = vec4(display(c), a);
+}
+)";
+
+// The mucous side: dark, red and a little wet; no shadow map, the darkness is in the colour.
+const char* const interior_source = R"(
+void main() {
+  vec3 v = normalize(to_eye);
+  vec3 n = -normalize(world_normal);
+  float nv = clamp(dot(n, v), 0.0, 1.0);
+  float lit = wrapped(dot(n, key_direction), 0.3) + 0.35;
+  vec3 c = vec3(0.085, 0.022, 0.018) * (lit * (0.35 + 0.65 * nv));
+  float a = opacity >= 1.0 ? 1.0 : 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35));
+  result = vec4(display(c), a);
+}
+)";
+
+}  // namespace
+
+ShaderSource surface_shaders() {
+  return {vertex_source, std::string(lighting_source) + surface_source};
+}
+ShaderSource skin_shaders() { return {vertex_source, std::string(lighting_source) + skin_source}; }
+ShaderSource interior_shaders() {
+  return {vertex_source, std::string(lighting_source) + interior_source};
+}
+
+}  // namespace condyle

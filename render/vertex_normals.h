@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace condyle {
+
+/// Unit normals of a triangle surface, area-weighted over each vertex's triangles; (0,0,1) where a
+/// vertex has none. Writes into `normals`, whose memory is kept from frame to frame.
+void vertex_normals(std::span<const Eigen::Vector3f> vertices,
+                    std::span<const Eigen::Vector3i> triangles,
+                    std::vector<Eigen::Vector3f>& normals);
+
+/// How strongly the surface bends at each vertex, 1/mm, unsigned: turn of the normal over the edge
+/// length, averaged over the edges and then smoothed twice along them.
+std::vector<float> vertex_curvature(std::span<const Eigen::Vector3f> vertices,
+                                    std::span<const Eigen::Vector3i> triangles,
+                                    std::span<const Eigen::Vector3f> normals);
+
+/// Whether along every edge as many triangles run one way as the other: such a surface has no rim
+/// and never shows its back.
+bool is_closed_surface(std::span<const Eigen::Vector3i> triangles);
+
+}  // namespace condyle
