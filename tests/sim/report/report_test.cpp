@@ -19,7 +19,7 @@ Motion lift(double height_mm) {
             Pose pose;
             pose.t = {0, 0, height_mm * std::clamp(t, 0.0, 0.5) / 0.5};
             return pose;
-          }};
+          }, {}};
 }
 
 }  // namespace

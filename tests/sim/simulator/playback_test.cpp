@@ -18,7 +18,7 @@ Motion nodding(bool recorded = false) {
             pose.R = Eigen::AngleAxisd(0.1 * s, Eigen::Vector3d::UnitX());
             pose.t = {0, 0, -20 * s};
             return pose;
-          }};
+          }, {}};
 }
 
 /// Pushes the mandible 5 mm up, into the maxilla.
@@ -27,7 +27,7 @@ Motion biting(bool recorded) {
             Pose pose;
             pose.t = {0, 0, 10 * std::clamp(t, 0.0, 0.5)};
             return pose;
-          }};
+          }, {}};
 }
 
 std::vector<std::uint64_t> hashes(const Scene& scene, int threads, const std::vector<double>& times) {

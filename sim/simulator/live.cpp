@@ -1,0 +1,117 @@
+#include "sim/simulator/live.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "sim/motion/measures.h"
+
+namespace condyle {
+namespace {
+
+/// A time farther ahead than this is a jump of the scrub bar, not time running on.
+constexpr double jump_s = 0.25;
+
+/// Time of the way to full opening at which the motion opens by `opening_mm`. Bisection.
+double time_of_opening(const Case& patient, const Motion& motion, double opening_mm) {
+  constexpr int samples = 200;
+  double widest = 0, end = 0;
+  for (int i = 0; i <= samples; ++i) {
+    const double t = motion.duration_s * i / samples;
+    const double opening = measure(patient, motion.wanted(t)).opening_mm;
+    if (opening > widest) {
+      widest = opening;
+      end = t;
+    }
+    if (opening >= opening_mm) break;
+  }
+  double low = 0, high = end;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (measure(patient, motion.wanted(middle)).opening_mm < opening_mm ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+LiveSimulation::LiveSimulation(const Scene& scene, Motion motion, const SimulatorSettings& settings)
+    : scene_(scene), motion_(std::move(motion)), settings_(settings), thread_([this] { work(); }) {}
+
+LiveSimulation::~LiveSimulation() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void LiveSimulation::request(const LiveRequest& wanted) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (wanted == wanted_) return;
+    wanted_ = wanted;
+  }
+  changed_.notify_all();
+}
+
+std::optional<FrameState> LiveSimulation::take() {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  return std::exchange(newest_, std::nullopt);
+}
+
+double LiveSimulation::steps_per_second() const {
+  const std::lock_guard lock(mutex_);
+  return steps_per_second_;
+}
+
+StepInput LiveSimulation::input(const LiveRequest& wanted, double time_s) const {
+  const double t = wanted.opening_mm ? time_of_opening(scene_.patient, motion_, *wanted.opening_mm) : time_s;
+  return {.time_s = time_s, .X_CM_wanted = motion_.wanted(t), .obey_contact = wanted.obey_contact};
+}
+
+void LiveSimulation::work() {
+  using Clock = std::chrono::steady_clock;
+  FrameState now = rest_frame(scene_);
+  std::optional<LiveRequest> answered;
+  try {
+    while (true) {
+      LiveRequest wanted;
+      {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return stop_ || answered != wanted_; });
+        if (stop_) return;
+        wanted = wanted_;
+      }
+      const double target_s = std::round(wanted.time_s / settings_.step_s) * settings_.step_s;
+      const double ahead_s = target_s - now.time_s;
+      const bool runs_on = !wanted.opening_mm && ahead_s > 1.5 * settings_.step_s && ahead_s < jump_s;
+      const double time_s = runs_on ? now.time_s + settings_.step_s : target_s;
+      const auto start = Clock::now();
+      StageTimes motion_time;
+      StepInput step_input;
+      {
+        const StageTimer timer(motion_time, Stage::motion);
+        step_input = input(wanted, time_s);
+      }
+      now = step(scene_, now, step_input, settings_);
+      now.times[Stage::motion] = motion_time[Stage::motion];
+      if (!runs_on) {  // steps on the way there are not shown
+        if (wanted.face) carry_face(scene_, now);
+        answered = wanted;
+      }
+      const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      const std::lock_guard lock(mutex_);
+      if (!runs_on) newest_ = now;
+      steps_per_second_ = 0.9 * steps_per_second_ + 0.1 / std::max(seconds, 1e-6);
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+  }
+}
+
+}  // namespace condyle

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "sim/simulator/simulator.h"
+
+namespace condyle {
+
+/// What a person at the window wants simulated.
+struct LiveRequest {
+  double time_s = 0;                 // of the motion
+  std::optional<double> opening_mm = std::nullopt;  // wanted instead of the motion's pose
+  bool obey_contact = true;
+  bool face = true;  // carry the displayed face
+  bool operator==(const LiveRequest&) const = default;
+};
+
+/// Steps a scene on a thread of its own toward the newest request: in fixed steps while the time runs
+/// on, in one step when it jumps. Pictures may be slow; the steps stay what they are.
+class LiveSimulation {
+ public:
+  /// The scene must outlive the simulation.
+  LiveSimulation(const Scene& scene, Motion motion, const SimulatorSettings& settings);
+  ~LiveSimulation();
+  LiveSimulation(const LiveSimulation&) = delete;
+  LiveSimulation& operator=(const LiveSimulation&) = delete;
+
+  void request(const LiveRequest& wanted);
+
+  /// The newest frame when there is one that was not taken yet. Rethrows what stopped the thread.
+  std::optional<FrameState> take();
+
+  double steps_per_second() const;
+
+ private:
+  void work();
+  StepInput input(const LiveRequest& wanted, double time_s) const;
+
+  const Scene& scene_;
+  Motion motion_;
+  SimulatorSettings settings_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  LiveRequest wanted_;
+  std::optional<FrameState> newest_;
+  std::exception_ptr failure_;
+  double steps_per_second_ = 0;
+  bool stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace condyle

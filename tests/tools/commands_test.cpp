@@ -1,0 +1,196 @@
+// The program as people use it: real files, real pixels, exit codes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/support/program.h"
+
+namespace condyle::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Row = std::map<std::string, double>;
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream text(line);
+  for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+struct Trace {
+  std::vector<Row> rows;
+  std::vector<std::string> hashes;
+  std::vector<std::string> bits;  // every row without its times of computation
+};
+
+Trace read_trace(const fs::path& file) {
+  Trace trace;
+  std::istringstream text(read_text(file));
+  std::string line;
+  std::getline(text, line);
+  const auto names = split(line);
+  while (std::getline(text, line)) {
+    const auto cells = split(line);
+    Row row;
+    std::string bits;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i] == "state_hash")
+        trace.hashes.push_back(cells[i]);
+      else
+        row[names[i]] = std::strtod(cells[i].c_str(), nullptr);
+      if (!names[i].ends_with("_ms")) bits += cells[i] + ",";
+    }
+    trace.rows.push_back(row);
+    trace.bits.push_back(bits);
+  }
+  return trace;
+}
+
+std::map<std::string, std::string> pictures(const fs::path& folder) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::directory_iterator(folder))
+    all[entry.path().filename().string()] = read_text(entry.path());
+  return all;
+}
+
+const std::string pose_header = "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n";
+
+}  // namespace
+
+TEST(Run, TraceRepeatsToTheBitForOneAndTwoThreads) {
+  const Folder folder;
+  const std::string patient = box_case(folder);
+  const auto trace = [&](const std::string& threads) {
+    const std::string out = folder / ("out" + threads);
+    EXPECT_EQ(condyle({"run", patient, "--motion", "opening", "--out", out, "--frames", "31", "--threads",
+                       threads})
+                  .code,
+              0);
+    return read_trace(out + "/trace.csv");
+  };
+  const auto one = trace("1"), two = trace("2");
+  ASSERT_EQ(one.rows.size(), 31u);
+  EXPECT_EQ(one.bits, two.bits);
+  EXPECT_NE(one.hashes[3], one.hashes[9]);
+  EXPECT_EQ(one.rows[0].at("time_s"), 0);
+  EXPECT_EQ(one.rows[30].at("time_s"), 3);
+  EXPECT_EQ(one.rows[0].at("opening_mm"), 0);
+  EXPECT_NEAR(one.rows[30].at("opening_mm"), 0, 1e-9);
+  double widest = 0;
+  for (const auto& row : one.rows) widest = std::max(widest, row.at("opening_mm"));
+  EXPECT_GT(widest, 25);
+}
+
+TEST(Run, RecordedPosesAreTheTracesPoses) {
+  const Folder folder;
+  const std::string patient = box_case(folder), motion = folder / "nod.csv";
+  const double angle = 0.2;
+  std::ostringstream csv;
+  csv.precision(17);
+  csv << pose_header << "0,0,0,0,1,0,0,0\n0.5,1,-2,-3," << std::cos(angle / 2) << ',' << std::sin(angle / 2)
+      << ",0,0\n1,0,0,0,1,0,0,0\n";
+  write_text(motion, csv.str());
+  ASSERT_EQ(condyle({"run", patient, "--motion", motion, "--out", folder / "out", "--frames", "3"}).code, 0);
+  const auto row = read_trace(folder / "out/trace.csv").rows.at(1);
+  EXPECT_EQ(row.at("ty_mm"), -2);
+  // The incisal point (0, -92, -41) turned about x and moved, by hand.
+  EXPECT_NEAR(row.at("incisor_y_mm"), -92 * std::cos(angle) + 41 * std::sin(angle) - 2, 1e-9);
+  EXPECT_NEAR(row.at("incisor_z_mm"), -92 * std::sin(angle) - 41 * std::cos(angle) - 3, 1e-9);
+  EXPECT_NEAR(row.at("rotation_deg"), angle * 180 / M_PI, 1e-9);
+}
+
+TEST(Run, PushedIntoBoneStopsWhenContactIsRespected) {
+  const Folder folder;
+  const std::string patient = box_case(folder), motion = folder / "bite.csv";
+  write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n1,0,0,6,1,0,0,0\n");
+  ASSERT_EQ(condyle({"run", patient, "--motion", motion, "--out", folder / "free"}).code, 0);
+  ASSERT_EQ(condyle({"run", patient, "--motion", motion, "--respect-contact", "--out", folder / "kept"}).code, 0);
+  EXPECT_NEAR(read_trace(folder / "free/trace.csv").rows.back().at("max_penetration_mm"), 5, 1e-6);
+  const auto kept = read_trace(folder / "kept/trace.csv").rows.back();
+  EXPECT_LE(kept.at("max_penetration_mm"), 0.02);
+  EXPECT_NEAR(kept.at("tz_mm"), 1, 0.05);
+  EXPECT_EQ(kept.at("stopped"), 1);
+}
+
+TEST(Check, ExitCodeTellsAViolation) {
+  const Folder folder;
+  const std::string patient = box_case(folder), motion = folder / "bite.csv";
+  write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n1,0,0,6,1,0,0,0\n");
+  EXPECT_EQ(condyle({"check", patient, "--motion", motion, "--out", folder / "out"}).code, 3);
+  const auto report = nlohmann::json::parse(read_text(folder / "out/report.json"));
+  EXPECT_TRUE(report["violation"].get<bool>());
+  EXPECT_TRUE(fs::exists(folder / "out/pairs.csv"));
+  write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n1,0,0,-6,1,0,0,0\n");
+  EXPECT_EQ(condyle({"check", patient, "--motion", motion}).code, 0);
+  EXPECT_EQ(condyle({"check", patient, "--motion", motion, "--margin", "1.5"}).code, 3);
+}
+
+TEST(Json, GoesAloneToStandardOutput) {
+  const Folder folder;
+  const std::string patient = box_case(folder);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"info", patient, "--json"},
+        {"run", patient, "--motion", "opening", "--out", folder / "out", "--frames", "3", "--json"},
+        {"check", patient, "--json"}}) {
+    const auto outcome = condyle(command);
+    EXPECT_TRUE(nlohmann::json::accept(outcome.out)) << command[0] << "\n" << outcome.out;
+    EXPECT_EQ(outcome.err.find('\r'), std::string::npos) << "a progress bar without a terminal";
+  }
+  EXPECT_EQ(condyle({"info", patient, "--quiet"}).err, "");
+}
+
+TEST(Record, KilledAtAnyMomentLeavesWholeFramesAndResumesToTheSameBits) {
+  const Folder folder;
+  const std::string patient = box_case(folder);
+  const auto command = [&](const std::string& out) {
+    return std::vector<std::string>{"record", patient, "--motion", "opening", "--out", folder / out,
+                                    "--frames", "40", "--size", "320x240", "--film"};
+  };
+  ASSERT_EQ(condyle(command("whole")).code, 0);
+  const auto whole = pictures(folder / "whole/frames");
+  ASSERT_EQ(whole.size(), 40u);
+  const std::string film = read_text(folder / "whole/film.mp4");
+  ASSERT_GT(film.size(), 1000u);
+
+  int interrupted = 0;
+  for (const double after_s : {0.5, 0.9, 1.4, 2.2}) {
+    const std::string out = "killed" + std::to_string(after_s);
+    const auto killed = condyle(command(out), {.kill_after_s = after_s});
+    if (fs::exists(folder / (out + "/frames"))) {
+      for (const auto& [name, png] : pictures(folder / (out + "/frames"))) {
+        if (name.ends_with(".png") && name.front() != '.') {
+          ASSERT_TRUE(whole.contains(name));
+          EXPECT_EQ(png, whole.at(name)) << name;
+        }
+      }
+    }
+    if (killed.code == 0) continue;
+    ++interrupted;
+    auto resume = command(out);
+    resume.push_back("--resume");
+    const auto resumed = condyle(resume);
+    ASSERT_EQ(resumed.code, 0) << resumed.err;
+    EXPECT_EQ(pictures(folder / (out + "/frames")), whole);
+    EXPECT_EQ(read_text(folder / (out + "/film.mp4")), film);
+    EXPECT_EQ(read_trace(folder / (out + "/trace.csv")).bits,
+              read_trace(folder / "whole/trace.csv").bits);
+  }
+  EXPECT_GT(interrupted, 0);
+}
+
+TEST(Info, TellsWhatAFileHolds) {
+  const Folder folder;
+  write_box_patient(folder.path());
+  const auto outcome = condyle({"info", folder / "mandible.stl", "--json"});
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["triangles"], 12);
+  EXPECT_TRUE(json["closed"].get<bool>());
+}
+
+}  // namespace condyle::test
