@@ -1,0 +1,57 @@
+#include "engine/mesh/simplify.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+
+#include "engine/mesh/measure.h"
+#include "engine/mesh/repair.h"
+#include "engine/mesh/topology.h"
+
+namespace condyle {
+namespace {
+
+TriMesh collapsed(const TriMesh& mesh, const std::vector<float>& positions,
+                  const std::vector<unsigned int>& indices, int target) {
+  std::vector<unsigned int> kept(indices.size());
+  kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), positions.data(),
+                               mesh.vertices.size(), 3 * sizeof(float),
+                               3 * static_cast<std::size_t>(target), 1.0f, 0, nullptr));
+  TriMesh result{mesh.vertices, {}, mesh.colors};
+  result.triangles.reserve(kept.size() / 3);
+  for (std::size_t i = 0; i + 2 < kept.size(); i += 3)
+    result.triangles.emplace_back(static_cast<int>(kept[i]), static_cast<int>(kept[i + 1]),
+                                  static_cast<int>(kept[i + 2]));
+  drop_duplicates(result);
+  drop_unreferenced(result);
+  return result;
+}
+
+}  // namespace
+
+TriMesh simplify(const TriMesh& mesh, int target_triangles) {
+  const int count = static_cast<int>(mesh.triangles.size());
+  if (count <= target_triangles || count < 4) return mesh;
+  int target = std::max(target_triangles, 4);
+
+  // Relative to the middle: floats far from the origin would lose the detail.
+  const Eigen::Vector3d middle = bounding_box(mesh).center();
+  std::vector<float> positions;
+  positions.reserve(3 * mesh.vertices.size());
+  for (const auto& v : mesh.vertices)
+    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(v[k] - middle[k]));
+  std::vector<unsigned int> indices;
+  indices.reserve(3 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) indices.push_back(static_cast<unsigned int>(t[k]));
+
+  const bool closed = inspect(mesh).closed();
+  while (target < count) {
+    TriMesh result = collapsed(mesh, positions, indices, target);
+    if (!closed || inspect(result).closed()) return result;
+    target += std::max(target / 4, 4);
+  }
+  return mesh;
+}
+
+}  // namespace condyle

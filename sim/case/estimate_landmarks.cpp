@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sim/case/import_checks.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+std::string at(const Vector3d& p) {
+  return fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z());
+}
+
+void adopt(Case& patient, const std::string& name, const Vector3d& p, const std::string& how) {
+  patient.landmarks.points[name] = p;
+  patient.notes.push_back(
+      fmt::format("landmark {} was not given: estimated at {} from {}", name, at(p), how));
+}
+
+/// Middle of the box of the top 10 mm of the hind quarter of one side. `side` is 1 left, -1 right.
+std::optional<Vector3d> condyle_center(const std::vector<const Part*>& mandibles, double middle,
+                                       double side) {
+  Box whole;
+  for (const Part* part : mandibles) whole.add(bounding_box(part->mesh));
+  const double hind = whole.high.y() - 0.3 * whole.size().y();
+  const auto is_of_side = [&](const Vector3d& p) {
+    return p.y() > hind && side * (p.x() - middle) > 15;
+  };
+  double top = -std::numeric_limits<double>::infinity();
+  for (const Part* part : mandibles)
+    for (const auto& p : part->mesh.vertices)
+      if (is_of_side(p)) top = std::max(top, p.z());
+  Box box;
+  for (const Part* part : mandibles)
+    for (const auto& p : part->mesh.vertices)
+      if (is_of_side(p) && p.z() > top - 10) box.add(p);
+  if (box.empty()) return std::nullopt;
+  return box.center();
+}
+
+/// The vertex near the midline farthest forward and, times `up`, upward.
+std::optional<Vector3d> incisal_point(const Part& part, double middle, double up) {
+  std::optional<Vector3d> best;
+  double most = -std::numeric_limits<double>::infinity();
+  for (const auto& p : part.mesh.vertices) {
+    if (std::abs(p.x() - middle) > 5) continue;
+    const double reach = up * p.z() - p.y();
+    if (reach > most) most = reach, best = p;
+  }
+  return best;
+}
+
+}  // namespace
+
+void estimate_landmarks(Case& patient) {
+  std::vector<const Part*> mandibles;
+  for (const auto& part : patient.parts)
+    if (part.role == Role::mandible) mandibles.push_back(&part);
+  if (mandibles.empty()) return;
+  const auto known = [&](const char* name) { return patient.landmarks.find(name); };
+
+  // The midline: from points where there are some, else from the most symmetric thing there is.
+  double middle = 0;
+  if (known("left_condyle") && known("right_condyle")) {
+    middle = 0.5 * (known("left_condyle")->x() + known("right_condyle")->x());
+  } else if (known("upper_incisal_point")) {
+    middle = known("upper_incisal_point")->x();
+  } else if (known("lower_incisal_point")) {
+    middle = known("lower_incisal_point")->x();
+  } else {
+    const Part* part = patient.find(Role::skull);
+    if (!part) part = patient.find(Role::maxilla);
+    if (!part) part = mandibles.front();
+    middle = bounding_box(part->mesh).center().x();
+  }
+
+  const auto estimate_condyle = [&](const std::string& name, double side) {
+    if (patient.landmarks.find(name)) return;
+    if (const auto p = condyle_center(mandibles, middle, side))
+      adopt(patient, name, *p, "the top of the mandible's hind end");
+  };
+  estimate_condyle("left_condyle", 1);
+  estimate_condyle("right_condyle", -1);
+  for (const auto& [name, other] :
+       {std::pair("left_condyle", "right_condyle"), std::pair("right_condyle", "left_condyle")}) {
+    const auto opposite = known(other);
+    if (known(name) || !opposite) continue;
+    adopt(patient, name, {2 * middle - opposite->x(), opposite->y(), opposite->z()},
+          "the other side, mirrored: this mandible has no such condyle");
+  }
+
+  if (!known("lower_incisal_point")) {
+    const Part* part = patient.find(Role::lower_teeth);
+    if (!part) part = mandibles.front();
+    if (const auto p = incisal_point(*part, middle, 1))
+      adopt(patient, "lower_incisal_point", *p, "the foremost top of the midline of " + part->name);
+  }
+  if (!known("upper_incisal_point")) {
+    const Part* part = patient.find(Role::upper_teeth);
+    if (!part) part = patient.find(Role::maxilla);
+    if (!part) part = patient.find(Role::skull);
+    if (!part) return;
+    if (const auto p = incisal_point(*part, middle, -1))
+      adopt(patient, "upper_incisal_point", *p,
+            "the foremost bottom of the midline of " + part->name);
+  }
+}
+
+}  // namespace condyle

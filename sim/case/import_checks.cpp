@@ -1,0 +1,133 @@
+#include "sim/case/import_checks.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/core/error.h"
+#include "sim/case/source_frame.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double least_head_mm = 40, largest_head_mm = 600;
+
+/// "0.2 mm", "200 m": a length as people say it.
+std::string length_text(double mm) {
+  return mm >= 10'000 ? fmt::format("{:.3g} m", mm / 1000) : fmt::format("{:.3g} mm", mm);
+}
+
+/// How the mandible lies, from its shape alone: the chin's part is one piece at the midline, the
+/// rami are two pieces at the sides and reach highest.
+bool lies_as_lps(const std::vector<Vector3d>& points) {
+  Box box;
+  for (const auto& p : points) box.add(p);
+  const Vector3d size = box.size();
+  const double middle = box.center().x();
+  int front = 0, back = 0, tops = 0, bottoms = 0;
+  double top_y = 0, bottom_y = 0;
+  for (const auto& p : points) {
+    const bool median = std::abs(p.x() - middle) < 0.12 * size.x();
+    front += median && p.y() < box.low.y() + 0.3 * size.y();
+    back += median && p.y() > box.high.y() - 0.3 * size.y();
+    if (p.z() > box.high.z() - 0.15 * size.z()) top_y += p.y(), ++tops;
+    if (p.z() < box.low.z() + 0.15 * size.z()) bottom_y += p.y(), ++bottoms;
+  }
+  return front > 0 && back == 0 && top_y / tops > bottom_y / bottoms;
+}
+
+struct JawPoints {
+  std::optional<Vector3d> left_condyle, right_condyle, incisal;
+};
+
+JawPoints jaw_points(const Landmarks& landmarks) {
+  return {landmarks.find("left_condyle"), landmarks.find("right_condyle"),
+          landmarks.find("lower_incisal_point")};
+}
+
+/// What contradicts LPS in the jaw's points; empty when nothing does.
+std::string contradiction(const JawPoints& jaw) {
+  if (jaw.left_condyle && jaw.right_condyle && jaw.left_condyle->x() <= jaw.right_condyle->x())
+    return fmt::format(
+        "the left condyle (x = {:.1f}) is to the right of the right one (x = {:.1f})",
+        jaw.left_condyle->x(), jaw.right_condyle->x());
+  for (const auto& [side, condyle] :
+       {std::pair("left", jaw.left_condyle), std::pair("right", jaw.right_condyle)}) {
+    if (!condyle || !jaw.incisal) continue;
+    if (condyle->y() <= jaw.incisal->y())
+      return fmt::format(
+          "the {} condyle (y = {:.1f}) is in front of the incisal point (y = {:.1f})", side,
+          condyle->y(), jaw.incisal->y());
+    if (condyle->z() <= jaw.incisal->z())
+      return fmt::format("the {} condyle (z = {:.1f}) is below the incisal point (z = {:.1f})",
+                         side, condyle->z(), jaw.incisal->z());
+  }
+  return "";
+}
+
+/// The first usual frame in which mandible and points would lie as they should.
+std::string fitting_frame(const std::vector<Vector3d>& mandible, const JawPoints& jaw,
+                          const ImportRequest& request) {
+  const Eigen::Matrix3d back = source_frame("mm", request.frame).to_lps_mm.inverse();
+  for (const auto& frame : all_frames()) {
+    const Eigen::Matrix3d turn = source_frame("mm", frame).to_lps_mm * back;
+    std::vector<Vector3d> points;
+    points.reserve(mandible.size());
+    for (const auto& p : mandible) points.push_back(turn * p);
+    JawPoints turned;
+    if (jaw.left_condyle) turned.left_condyle = turn * *jaw.left_condyle;
+    if (jaw.right_condyle) turned.right_condyle = turn * *jaw.right_condyle;
+    if (jaw.incisal) turned.incisal = turn * *jaw.incisal;
+    if (lies_as_lps(points) && contradiction(turned).empty()) return frame;
+  }
+  return "";
+}
+
+}  // namespace
+
+void check_size(const Box& box, const ImportRequest& request) {
+  const double size = box.size().maxCoeff();
+  if (size >= least_head_mm && size <= largest_head_mm) return;
+  std::string fits;
+  double best = std::log(largest_head_mm / 200.0);
+  for (const auto& units : all_units()) {
+    const double other = size / unit_mm(request.units) * unit_mm(units);
+    const double off = std::abs(std::log(other / 200.0));
+    if (other < least_head_mm || other > largest_head_mm || off >= best) continue;
+    best = off;
+    fits = units;
+  }
+  throw InputError(
+      request.files.front().file, "",
+      fmt::format("the patient is {} wide with --units {}; a head is 100 to 300 mm: {}",
+                  length_text(size), request.units,
+                  fits.empty() ? "no unit fits, so check which file this is"
+                               : "did you mean --units " + fits + "?"));
+}
+
+void check_frame(const Case& patient, const ImportRequest& request) {
+  const Part* mandible = patient.find(Role::mandible);
+  if (!mandible) return;
+  const JawPoints jaw = jaw_points(patient.landmarks);
+  std::string problem = contradiction(jaw);
+  if (problem.empty()) {
+    // A point apiece proves the frame; the shape is asked only when there is none.
+    const bool proved = jaw.incisal && (jaw.left_condyle || jaw.right_condyle);
+    if (proved || lies_as_lps(mandible->mesh.vertices)) return;
+    problem = "the mandible's rami are not behind and above its chin";
+  }
+  const std::string fits = fitting_frame(mandible->mesh.vertices, jaw, request);
+  throw InputError(request.files.front().file, "",
+                   fmt::format("with --frame {} {}: the axes or the landmarks are wrong; {}",
+                               request.frame, problem,
+                               fits.empty() || fits == request.frame
+                                   ? "check which way x, y and z of the files point"
+                                   : "did you mean --frame " + fits + "?"));
+}
+
+}  // namespace condyle

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "engine/mesh/measure.h"
+#include "sim/case/case.h"
+#include "sim/case/case_io.h"
+
+namespace condyle {
+
+/// Refuses a patient whose box is not of a head's size, naming the unit that would fit.
+void check_size(const Box& box, const ImportRequest& request);
+
+/// Adds condyle centres and incisal points that are missing, estimated from the meshes, each with a
+/// note. Does nothing for a point that is there.
+void estimate_landmarks(Case& patient);
+
+/// Refuses a mandible that is upside down, back to front or side to side in LPS, naming a frame
+/// that would fit. `patient` is as converted by the request.
+void check_frame(const Case& patient, const ImportRequest& request);
+
+}  // namespace condyle

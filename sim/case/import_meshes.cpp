@@ -1,0 +1,255 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "engine/core/error.h"
+#include "engine/mesh/measure.h"
+#include "engine/mesh/repair.h"
+#include "engine/mesh/topology.h"
+#include "engine/mesh_io/mesh_files.h"
+#include "sim/case/case_format.h"
+#include "sim/case/case_io.h"
+#include "sim/case/import_checks.h"
+#include "sim/case/landmark_files.h"
+#include "sim/case/source_frame.h"
+
+namespace condyle {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+/// A file read and converted, not yet cleaned.
+struct Surface {
+  ImportFile source;
+  TriMesh mesh;
+};
+
+bool is_bone(Role role) {
+  return role == Role::skull || role == Role::maxilla || role == Role::mandible;
+}
+
+std::string at(const Vector3d& p) {
+  return fmt::format("({:.0f}, {:.0f}, {:.0f})", p.x(), p.y(), p.z());
+}
+
+std::string counted(long count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+/// Cleans the mesh; the note says what it is and what was done to it.
+void clean(Surface& surface, std::vector<std::string>& notes) {
+  TriMesh& mesh = surface.mesh;
+  // A file's single precision is 4e-6 mm on a head: corners nearer than that are one.
+  const int welded = weld(mesh, 1e-5);
+  const int flat = drop_degenerate(mesh);
+  const int twice = drop_duplicates(mesh);
+  const Orientation turned = orient_outward(mesh);
+  const int unused = drop_unreferenced(mesh);
+  if (mesh.triangles.empty())
+    throw InputError(surface.source.file, "",
+                     "has no triangle with an area; export the surface again");
+
+  const Topology found = inspect(mesh);
+  std::string note = fmt::format(
+      "{} ({}): {} in {}", role_name(surface.source.role), surface.source.file.filename().string(),
+      counted(static_cast<long>(mesh.triangles.size()), "triangle", "triangles"),
+      counted(found.components, "piece", "pieces"));
+  if (found.closed()) note += fmt::format(", closed, {:.1f} cm3", found.volume_mm3 / 1000);
+  if (found.boundary_edges > 0) {
+    const auto& longest = found.boundary.front();
+    note += fmt::format("; open: {} in {}, the longest ({:.0f} mm) around {}",
+                        counted(found.boundary_edges, "boundary edge", "boundary edges"),
+                        counted(static_cast<long>(found.boundary.size()), "rim", "rims"),
+                        longest.length_mm, at(longest.box.center()));
+  }
+  if (found.nonmanifold_edges > 0)
+    note += fmt::format("; {} of three or more triangles around {}",
+                        counted(found.nonmanifold_edges, "edge", "edges"),
+                        at(found.nonmanifold_box.center()));
+  if (!found.closed()) note += "; inside and outside cannot be told for certain";
+  if (found.misoriented_edges > 0)
+    note += fmt::format("; neighbours disagree about outside at {}",
+                        counted(found.misoriented_edges, "edge", "edges"));
+  notes.push_back(note);
+
+  std::string done;
+  const auto add = [&](long count, const char* one, const char* many) {
+    if (count > 0) done += (done.empty() ? "" : ", ") + counted(count, one, many);
+  };
+  add(welded, "vertex welded", "vertices welded");
+  add(flat, "triangle without area dropped", "triangles without area dropped");
+  add(twice, "repeated triangle dropped", "repeated triangles dropped");
+  add(turned.turned, "triangle turned to agree or to face outward",
+      "triangles turned to agree or to face outward");
+  add(unused, "unused vertex dropped", "unused vertices dropped");
+  if (!done.empty())
+    notes.push_back(fmt::format("{} ({}): {}", role_name(surface.source.role),
+                                surface.source.file.filename().string(), done));
+}
+
+/// The FDI number in a file's name ("tooth_36.ply", "36.stl", "FDI36"); 0 when there is none.
+int fdi_of(const fs::path& file) {
+  const std::string name = file.stem().string();
+  int found = 0;
+  for (std::size_t i = 0; i < name.size();) {
+    std::size_t end = i;
+    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
+    if (end == i) {
+      ++i;
+      continue;
+    }
+    if (end - i == 2) {
+      const int number = (name[i] - '0') * 10 + (name[i + 1] - '0');
+      if (is_fdi(number)) found = number;
+    }
+    i = end;
+  }
+  return found;
+}
+
+/// 1 and 2 (5 and 6) are upper quadrants, 3 and 4 (7 and 8) lower ones.
+bool is_upper(int fdi) { return (fdi / 10 - 1) % 4 < 2; }
+
+void append(TriMesh& whole, const TriMesh& piece) {
+  const int offset = static_cast<int>(whole.vertices.size());
+  const bool colored =
+      piece.colors.size() == piece.vertices.size() && whole.colors.size() == whole.vertices.size();
+  whole.vertices.insert(whole.vertices.end(), piece.vertices.begin(), piece.vertices.end());
+  for (const auto& t : piece.triangles)
+    whole.triangles.push_back(t + Eigen::Vector3i::Constant(offset));
+  if (colored)
+    whole.colors.insert(whole.colors.end(), piece.colors.begin(), piece.colors.end());
+  else
+    whole.colors.clear();
+}
+
+/// One part of all files of an arch, with a run of triangles for each file named by a tooth.
+Part join_teeth(Role role, const std::vector<Surface>& surfaces, std::vector<std::string>& notes) {
+  Part part{role_name(role), role, {}, {}};
+  std::set<int> numbers;
+  int unnamed = 0;
+  const auto count = std::count_if(surfaces.begin(), surfaces.end(),
+                                   [&](const Surface& s) { return s.source.role == role; });
+  for (const auto& surface : surfaces) {
+    if (surface.source.role != role) continue;
+    const int first = static_cast<int>(part.mesh.triangles.size());
+    append(part.mesh, surface.mesh);
+    const int fdi = fdi_of(surface.source.file);
+    if (fdi == 0) {
+      ++unnamed;
+      continue;
+    }
+    if (is_upper(fdi) != (role == Role::upper_teeth))
+      throw InputError(
+          surface.source.file, "",
+          fmt::format("is tooth {}, which is no {} tooth; give it to --{}-teeth", fdi,
+                      is_upper(fdi) ? "lower" : "upper", is_upper(fdi) ? "upper" : "lower"));
+    if (!numbers.insert(fdi).second)
+      throw InputError(surface.source.file, "",
+                       fmt::format("is tooth {}, which another file is already", fdi));
+    part.teeth.push_back({fdi, first, static_cast<int>(surface.mesh.triangles.size())});
+  }
+  if (unnamed > 0 && count > 1)
+    notes.push_back(fmt::format(
+        "{}: {} no FDI number in the name (as in tooth_36.ply), so its teeth are not told apart",
+        part.name, unnamed == 1 ? "1 file has" : fmt::format("{} files have", unnamed)));
+  return part;
+}
+
+std::vector<Part> make_parts(std::vector<Surface>& surfaces, std::vector<std::string>& notes) {
+  std::vector<Part> parts;
+  std::set<std::string> names;
+  for (auto& surface : surfaces) {
+    const Role role = surface.source.role;
+    std::string name = role_name(role);
+    if (is_teeth(role)) {
+      if (names.insert(name).second) parts.push_back(join_teeth(role, surfaces, notes));
+      continue;
+    }
+    for (int n = 2; !names.insert(name).second; ++n)
+      name = fmt::format("{}-{}", role_name(role), n);
+    parts.push_back({name, role, std::move(surface.mesh), {}});
+  }
+  return parts;
+}
+
+Landmarks import_landmarks(const ImportRequest& request, const SourceFrame& frame, const Box& box,
+                           std::vector<std::string>& notes) {
+  if (request.landmarks.empty()) return {};
+  LandmarkTable table = read_landmark_table(request.landmarks);
+  constexpr double margin_mm = 100;
+  const auto strays = [&](const Eigen::Matrix3d& turn) {
+    return std::find_if(table.rows.begin(), table.rows.end(), [&](const LandmarkRow& row) {
+      return !box.contains(turn * row.point, margin_mm);
+    });
+  };
+  // A file that tells its own frame is LPS mm already. Others are as the meshes; only where that
+  // puts them off the patient and the millimetres of their column names do not, those count.
+  Eigen::Matrix3d turn = frame.to_lps_mm;
+  if (table.own_frame) {
+    turn.setIdentity();
+  } else if (request.units != "mm" && strays(turn) != table.rows.end()) {
+    const Eigen::Matrix3d in_mm = turn / unit_mm(request.units);
+    if (strays(in_mm) == table.rows.end()) {
+      turn = in_mm;
+      notes.push_back("landmarks: taken in mm, as their columns say; in " + request.units +
+                      " they would lie off the patient");
+    }
+  }
+  if (const auto stray = strays(turn); stray != table.rows.end()) {
+    const Vector3d p = turn * stray->point;
+    throw InputError(
+        request.landmarks, stray->where,
+        fmt::format(
+            "\"{}\" at {} mm is more than {} mm away from the surfaces, which reach from {} to "
+            "{}: check its units, frame and patient",
+            stray->name.substr(0, 40), at(p), margin_mm, at(box.low), at(box.high)));
+  }
+  for (auto& row : table.rows) row.point = turn * row.point;
+  return name_landmarks(request.landmarks, table);
+}
+
+}  // namespace
+
+Case import_meshes(const ImportRequest& request) {
+  if (std::none_of(request.files.begin(), request.files.end(),
+                   [](const ImportFile& file) { return is_bone(file.role); }))
+    throw InputError("no bone is given; name one with --skull, --maxilla or --mandible");
+  const SourceFrame frame = source_frame(request.units, request.frame);
+
+  std::vector<Surface> surfaces;
+  Box box;
+  const ImportFile* face = nullptr;
+  for (const auto& file : request.files) {
+    if (file.role == Role::face) {
+      if (face) throw InputError(file.file, "", "is a second face; give one face only");
+      face = &file;
+    }
+    Surface surface{file, read_mesh(file.file)};
+    for (auto& v : surface.mesh.vertices) v = frame.to_lps_mm * v;
+    if (frame.mirrored) flip(surface.mesh);
+    drop_unreferenced(surface.mesh);
+    box.add(bounding_box(surface.mesh));
+    surfaces.push_back(std::move(surface));
+  }
+  check_size(box, request);
+
+  Case patient;
+  patient.name = request.name;
+  patient.source_units = request.units;
+  patient.source_frame = request.frame;
+  std::transform(patient.source_frame.begin(), patient.source_frame.end(),
+                 patient.source_frame.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  for (auto& surface : surfaces) clean(surface, patient.notes);
+  patient.landmarks = import_landmarks(request, frame, box, patient.notes);
+  patient.parts = make_parts(surfaces, patient.notes);
+  check_frame(patient, request);
+  estimate_landmarks(patient);
+  return patient;
+}
+
+}  // namespace condyle

@@ -1,0 +1,93 @@
+#include "sim/case/json_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+
+namespace condyle {
+namespace {
+
+using nlohmann::json;
+
+/// The value as it may stand in a message.
+std::string shown(const json& value) {
+  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+  return text.size() > 60 ? text.substr(0, 60) + "..." : text;
+}
+
+/// nlohmann's text without its "[json.exception...]" and position.
+std::string reason_of(const json::exception& error) {
+  const std::string what = error.what();
+  const std::size_t end = what.find("; last read");
+  const std::size_t colon = what.find(": ", what.find("] ") + 2);
+  if (colon == std::string::npos) return what;
+  return what.substr(colon + 2, end == std::string::npos ? end : end - colon - 2);
+}
+
+}  // namespace
+
+void JsonItem::refuse(const std::string& problem) const {
+  throw InputError(*file_, name_.empty() ? "the file" : name_, problem);
+}
+
+JsonItem JsonItem::at(const std::string& key) const {
+  if (auto item = find(key)) return *item;
+  refuse("\"" + key + "\" is missing");
+}
+
+std::optional<JsonItem> JsonItem::find(const std::string& key) const {
+  if (!value_->is_object()) refuse("is " + shown(*value_) + "; an object {...} is needed");
+  const auto found = value_->find(key);
+  if (found == value_->end() || found->is_null()) return std::nullopt;
+  return JsonItem(*file_, *found, name_.empty() ? key : name_ + "." + key);
+}
+
+JsonItem JsonItem::at(std::size_t index) const {
+  if (index >= size()) refuse(fmt::format("has {} items; more are needed", size()));
+  return JsonItem(*file_, (*value_)[index], fmt::format("{}[{}]", name_, index));
+}
+
+std::size_t JsonItem::size() const {
+  if (!value_->is_array()) refuse("is " + shown(*value_) + "; a list [...] is needed");
+  return value_->size();
+}
+
+std::string JsonItem::text() const {
+  if (!value_->is_string()) refuse("is " + shown(*value_) + "; a text \"...\" is needed");
+  return value_->get<std::string>();
+}
+
+int JsonItem::integer(int low, int high) const {
+  if (value_->is_number_integer()) {
+    // Unsigned values above the signed range compare as doubles.
+    const double n = value_->get<double>();
+    if (n >= low && n <= high) return value_->get<int>();
+  }
+  refuse(fmt::format("is {}; a whole number from {} to {} is needed", shown(*value_), low, high));
+}
+
+double JsonItem::number(double low, double high) const {
+  if (value_->is_number()) {
+    const double n = value_->get<double>();
+    if (n >= low && n <= high) return n;
+  }
+  refuse(fmt::format("is {}; a number from {} to {} is needed", shown(*value_), low, high));
+}
+
+JsonFile::JsonFile(const std::filesystem::path& file, std::string_view text) : file_(file) {
+  try {
+    value_ = json::parse(text.begin(), text.end());
+  } catch (const json::parse_error& error) {
+    const auto at = std::min<std::size_t>(error.byte, text.size());
+    const auto line =
+        1 + std::count(text.begin(),
+                       text.begin() + static_cast<std::ptrdiff_t>(at > 0 ? at - 1 : 0), '\n');
+    throw InputError(file, fmt::format("line {}", line), "is not valid JSON: " + reason_of(error));
+  } catch (const json::exception& error) {
+    throw InputError(file, "", "is not valid JSON: " + reason_of(error));
+  }
+}
+
+}  // namespace condyle

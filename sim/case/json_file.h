@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace condyle {
+
+/// A value in a JSON file that knows its name there ("parts[2].role"): asking it for what it is not
+/// throws an InputError with file, name and value.
+class JsonItem {
+ public:
+  JsonItem(const std::filesystem::path& file, const nlohmann::json& value, std::string name)
+      : file_(&file), value_(&value), name_(std::move(name)) {}
+
+  const nlohmann::json& value() const { return *value_; }
+  const std::string& name() const { return name_; }
+
+  JsonItem at(const std::string& key) const;  // of an object; must be there
+  std::optional<JsonItem> find(
+      const std::string& key) const;     // of an object; may be absent or null
+  JsonItem at(std::size_t index) const;  // of a list
+  std::size_t size() const;              // of a list
+  std::string text() const;
+  int integer(int low, int high) const;
+  double number(double low, double high) const;
+
+  [[noreturn]] void refuse(const std::string& problem) const;
+
+ private:
+  const std::filesystem::path* file_;
+  const nlohmann::json* value_;
+  std::string name_;
+};
+
+/// A parsed JSON text. throws: InputError naming the line that is wrong.
+class JsonFile {
+ public:
+  JsonFile(const std::filesystem::path& file, std::string_view text);
+  JsonItem root() const { return {file_, value_, ""}; }
+
+ private:
+  std::filesystem::path file_;
+  nlohmann::json value_;
+};
+
+}  // namespace condyle

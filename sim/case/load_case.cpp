@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/mesh_io/mesh_files.h"
+#include "sim/case/case_format.h"
+#include "sim/case/case_io.h"
+#include "sim/case/json_file.h"
+#include "sim/case/landmark_files.h"
+
+namespace condyle {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The path of a file named in case.json, which must lie in the case's folder, links followed.
+fs::path inside(const fs::path& folder, const JsonItem& item) {
+  const std::string name = item.text();
+  const fs::path relative(name);
+  const bool climbs = std::any_of(relative.begin(), relative.end(),
+                                  [](const fs::path& step) { return step == ".."; });
+  const std::string rule = "; a case speaks only of files in its own folder";
+  if (name.empty() || relative.is_absolute() || climbs || name.find('\0') != std::string::npos)
+    item.refuse("\"" + name + "\" is not a file in the case's folder" + rule);
+  const fs::path file = folder / relative;
+  std::error_code error;
+  if (!fs::exists(file, error)) item.refuse("the file \"" + name + "\" is missing from the folder");
+  const fs::path home = fs::canonical(folder, error), target = fs::canonical(file, error);
+  const auto [end, rest] = std::mismatch(home.begin(), home.end(), target.begin(), target.end());
+  if (error || end != home.end())
+    item.refuse("\"" + name + "\" is a link that leads out of the folder" + rule);
+  return file;
+}
+
+std::vector<Tooth> load_teeth(const JsonItem& list, int triangles) {
+  std::vector<Tooth> teeth;
+  std::set<int> numbers;
+  int free_from = 0;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const JsonItem item = list.at(i);
+    Tooth tooth;
+    tooth.fdi = item.at("fdi").integer(11, 85);
+    if (!is_fdi(tooth.fdi))
+      item.at("fdi").refuse(fmt::format("{} is no FDI tooth number (11 to 48)", tooth.fdi));
+    if (!numbers.insert(tooth.fdi).second)
+      item.at("fdi").refuse(fmt::format("the tooth {} comes twice", tooth.fdi));
+    tooth.first_triangle = item.at("first_triangle").integer(free_from, triangles);
+    tooth.triangle_count = item.at("triangle_count").integer(1, triangles - tooth.first_triangle);
+    free_from = tooth.first_triangle + tooth.triangle_count;
+    teeth.push_back(tooth);
+  }
+  return teeth;
+}
+
+Part load_part(const fs::path& folder, const JsonItem& item) {
+  Part part;
+  part.name = item.at("name").text();
+  if (!is_part_name(part.name))
+    item.at("name").refuse("\"" + part.name + "\" is no part name; use letters, digits, - and _");
+  const std::string role = item.at("role").text();
+  if (const auto known = role_named(role))
+    part.role = *known;
+  else
+    item.at("role").refuse("the role \"" + role + "\" is unknown; known are " + known_roles());
+  part.mesh = read_mesh(inside(folder, item.at("file")));
+  if (const auto teeth = item.find("teeth"))
+    part.teeth = load_teeth(*teeth, static_cast<int>(part.mesh.triangles.size()));
+  return part;
+}
+
+CondylarPath load_path(const JsonItem& item) {
+  CondylarPath path;
+  const JsonItem forward = item.at("forward_mm"), drop = item.at("drop_mm");
+  for (std::size_t i = 0; i < forward.size(); ++i) {
+    path.forward_mm.push_back(forward.at(i).number(-100, 100));
+    if (i > 0 && !(path.forward_mm[i] > path.forward_mm[i - 1]))
+      forward.at(i).refuse("the values must increase");
+  }
+  for (std::size_t i = 0; i < drop.size(); ++i)
+    path.drop_mm.push_back(drop.at(i).number(-100, 100));
+  if (path.forward_mm.size() != path.drop_mm.size() || path.forward_mm.size() < 2)
+    item.refuse(
+        fmt::format("forward_mm has {} values and drop_mm {}; both need the same number, 2 or more",
+                    path.forward_mm.size(), path.drop_mm.size()));
+  if (path.forward_mm.front() > 0) forward.at(0).refuse("the path must start at or below 0");
+  return path;
+}
+
+void check_format(const fs::path& file, const JsonItem& root) {
+  const std::string how =
+      "; make a case from surfaces with: condyle import meshes --mandible FILE --maxilla FILE ... "
+      "--out FOLDER";
+  if (!root.value().is_object() || !root.value().contains("format") ||
+      root.value()["format"] != case_format)
+    throw InputError(
+        file, "",
+        std::string("is not a Condyle case (no \"format\": \"") + case_format + "\")" + how);
+  const int version = root.at("version").integer(1, 1'000'000);
+  if (version > case_version)
+    root.at("version").refuse(
+        fmt::format("is {}; this program reads cases up to version {}: use a newer program",
+                    version, case_version));
+}
+
+}  // namespace
+
+Case load_case(const fs::path& given) {
+  const fs::path folder = given.filename() == "case.json" ? given.parent_path() / "." : given;
+  std::error_code error;
+  if (!fs::exists(folder, error)) throw InputError(given, "", "no such folder");
+  if (!fs::is_directory(folder, error))
+    throw InputError(given, "", "is a file; a case is a folder with a case.json");
+  const fs::path file = folder / "case.json";
+  if (!fs::exists(file, error))
+    throw InputError(given, "",
+                     "has no case.json, so it is not a case; make one from surfaces with: condyle "
+                     "import meshes --mandible FILE --maxilla FILE ... --out FOLDER");
+  const JsonFile json(file, read_file(file, max_case_json_bytes));
+  const JsonItem root = json.root();
+  check_format(file, root);
+
+  Case patient;
+  patient.name = root.at("name").text();
+  patient.source_units = root.at("source_units").text();
+  patient.source_frame = root.at("source_frame").text();
+  const JsonItem parts = root.at("parts");
+  if (parts.size() == 0) parts.refuse("is empty; a case needs one part or more");
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    patient.parts.push_back(load_part(folder, parts.at(i)));
+    if (!names.insert(patient.parts.back().name).second)
+      parts.at(i).at("name").refuse("the part \"" + patient.parts.back().name + "\" comes twice");
+  }
+  if (const auto landmarks = root.find("landmarks")) {
+    // The names are canonical already: taken as they are.
+    const fs::path points = inside(folder, *landmarks);
+    for (const auto& row : read_landmark_table(points).rows)
+      if (!patient.landmarks.points.try_emplace(row.name, row.point).second)
+        throw InputError(points, row.where, "the landmark \"" + row.name + "\" comes twice");
+  }
+  if (const auto path = root.find("condylar_path")) patient.condylar_path = load_path(*path);
+  if (const auto notes = root.find("notes"))
+    for (std::size_t i = 0; i < notes->size(); ++i) patient.notes.push_back(notes->at(i).text());
+  return patient;
+}
+
+}  // namespace condyle

@@ -1,0 +1,163 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/mesh_io/mesh_files.h"
+#include "sim/case/case_format.h"
+#include "sim/case/case_io.h"
+#include "sim/case/landmark_files.h"
+
+namespace condyle {
+namespace {
+
+namespace fs = std::filesystem;
+using json = nlohmann::ordered_json;
+
+json to_json(const Part& part) {
+  json item = {{"name", part.name}, {"role", role_name(part.role)}, {"file", part.name + ".ply"}};
+  for (const auto& tooth : part.teeth)
+    item["teeth"].push_back({{"fdi", tooth.fdi},
+                             {"first_triangle", tooth.first_triangle},
+                             {"triangle_count", tooth.triangle_count}});
+  return item;
+}
+
+json to_json(const Case& patient) {
+  json root = {{"format", case_format},
+               {"version", case_version},
+               {"name", patient.name},
+               {"source_units", patient.source_units},
+               {"source_frame", patient.source_frame},
+               {"parts", json::array()}};
+  for (const auto& part : patient.parts) root["parts"].push_back(to_json(part));
+  if (!patient.landmarks.points.empty()) root["landmarks"] = "landmarks.csv";
+  if (patient.condylar_path)
+    root["condylar_path"] = {{"forward_mm", patient.condylar_path->forward_mm},
+                             {"drop_mm", patient.condylar_path->drop_mm}};
+  root["notes"] = patient.notes;
+  return root;
+}
+
+/// A case that could not be loaded again must not be written.
+void check(const Case& patient, const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& part : patient.parts) {
+    if (!is_part_name(part.name) || !names.insert(part.name).second)
+      throw InputError(folder, "part \"" + part.name + "\"",
+                       "the name must be unique and of letters, digits, - and _");
+    if (part.mesh.empty())
+      throw InputError(folder, "part \"" + part.name + "\"", "has no triangles");
+  }
+  if (patient.parts.empty()) throw InputError(folder, "", "a case without parts cannot be saved");
+  for (const auto& [name, point] : patient.landmarks.points)
+    if (!point.allFinite()) throw InputError(folder, "landmark " + name, "its place is not finite");
+}
+
+/// Whether everything in the folder was written by an earlier save: it may be replaced.
+void check_replaceable(const fs::path& folder) {
+  std::set<std::string> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    files.insert(entry.path().filename().string());
+  if (files.empty()) return;
+  const auto refuse = [&](const std::string& problem) {
+    throw InputError(folder, "", problem + "; choose a new or empty folder for the case");
+  };
+  const auto saved = [&] {
+    try {
+      return json::parse(read_file(folder / "case.json", max_case_json_bytes));
+    } catch (const std::exception&) {
+      return json();
+    }
+  }();
+  if (!saved.is_object() || !saved.contains("format") || saved["format"] != case_format)
+    refuse("holds " + *files.begin() + " and is not a case");
+  files.erase("case.json");
+  files.erase("landmarks.csv");
+  if (saved.contains("parts") && saved["parts"].is_array())
+    for (const auto& part : saved["parts"])
+      if (part.is_object() && part.contains("file") && part["file"].is_string())
+        files.erase(part["file"].get<std::string>());
+  if (!files.empty()) refuse("holds " + *files.begin() + ", which is not part of the case there");
+}
+
+void put_in_place(const fs::path& made, const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::exists(folder, ignored)) {
+    if (::rename(made.c_str(), folder.c_str()) == 0) return;
+  } else if (::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, folder.c_str(), RENAME_EXCHANGE) == 0) {
+    fs::remove_all(made, ignored);  // now the earlier case
+    return;
+  } else if (errno == EINVAL || errno == ENOSYS) {
+    // No exchange on this file system: two steps, the first undone when the second fails.
+    const fs::path earlier = made.string() + ".earlier";
+    if (::rename(folder.c_str(), earlier.c_str()) == 0) {
+      if (::rename(made.c_str(), folder.c_str()) == 0) {
+        fs::remove_all(earlier, ignored);
+        return;
+      }
+      const int reason = errno;
+      if (::rename(earlier.c_str(), folder.c_str()) != 0)
+        throw MachineError(folder.string() +
+                           ": could not be replaced; the earlier case is now at " +
+                           earlier.string());
+      errno = reason;
+    }
+  }
+  throw MachineError(folder.string() +
+                     ": the case cannot be put in place: " + std::strerror(errno));
+}
+
+}  // namespace
+
+bool is_part_name(const std::string& name) {
+  return !name.empty() && name.size() <= 100 &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; });
+}
+
+bool is_fdi(int number) {
+  const int quadrant = number / 10, place = number % 10;
+  return quadrant >= 1 && quadrant <= 8 && place >= 1 && place <= (quadrant <= 4 ? 8 : 5);
+}
+
+void save_case(const Case& patient, const fs::path& given) {
+  check(patient, given);
+  std::error_code error;
+  // Through links and without a trailing slash: the folder itself is what gets replaced.
+  fs::path folder = fs::weakly_canonical(given, error);
+  if (error || folder.empty()) folder = fs::absolute(given);
+  if (!folder.has_filename()) folder = folder.parent_path();
+  if (fs::exists(folder, error)) {
+    if (!fs::is_directory(folder, error))
+      throw InputError(given, "", "is a file; name a folder for the case");
+    check_replaceable(folder);
+  }
+  if (folder.has_parent_path()) make_folder(folder.parent_path());
+  const fs::path made =
+      folder.parent_path() / fmt::format(".{}.{}.part", folder.filename().string(), ::getpid());
+  try {
+    make_folder(made);
+    for (const auto& part : patient.parts) write_ply(part.mesh, made / (part.name + ".ply"));
+    if (!patient.landmarks.points.empty())
+      write_file(made / "landmarks.csv", landmarks_csv(patient.landmarks));
+    write_file(made / "case.json",
+               to_json(patient).dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+    put_in_place(made, folder);
+  } catch (...) {
+    fs::remove_all(made, error);
+    throw;
+  }
+}
+
+}  // namespace condyle
