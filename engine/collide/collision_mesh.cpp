@@ -6,6 +6,7 @@
 #include <fcl/narrowphase/detail/traversal/distance/mesh_distance_traversal_node.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -28,6 +29,33 @@ fcl::Transform3d transform(const Pose& X) {
   return T;
 }
 
+/// Ball around a node of the tree: a first, cheap bound.
+struct Ball {
+  Eigen::Vector3d center;
+  double radius;
+};
+
+/// The tree is cut at this depth into regions of its surface.
+constexpr int region_depth = 6;
+constexpr int region_count = 1 << region_depth;
+
+struct Surface {
+  Model model;
+  std::vector<Ball> balls;  // one per node
+  std::vector<int> region;  // of each node; -1 above the cut
+};
+
+void describe_nodes(Surface& surface, int node, int depth, int region) {
+  const auto& bounds = surface.model.getBV(node);
+  surface.balls[node] = {bounds.bv.obb.To, bounds.bv.obb.extent.norm()};
+  surface.region[node] = depth >= region_depth ? region % region_count : -1;
+  if (bounds.isLeaf()) return;
+  // The path from the root, written as bits, numbers the regions.
+  const int next = depth < region_depth ? 2 * region : region;
+  describe_nodes(surface, bounds.leftChild(), depth + 1, next);
+  describe_nodes(surface, bounds.rightChild(), depth + 1, depth < region_depth ? next + 1 : next);
+}
+
 Triangle corners(const Model& model, int triangle) {
   const fcl::Triangle& t = model.tri_indices[triangle];
   return {model.vertices[t[0]], model.vertices[t[1]], model.vertices[t[2]]};
@@ -43,12 +71,12 @@ Triangle corners(const Model& model, int triangle, const fcl::Transform3d& X) {
 /// A's coordinates.
 class NearestPair final : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<double> {
  public:
-  NearestPair(const Model& a, const Model& b, const fcl::Transform3d& X, TrianglePair start,
+  NearestPair(const Surface& a, const Surface& b, const fcl::Transform3d& X, TrianglePair start,
               double bound_mm2)
-      : a_(a), b_(b), X_(X), start_(start) {
+      : a_(a.model), b_(b.model), balls_a_(a.balls), balls_b_(b.balls), X_(X), start_(start) {
     best.squared_mm2 = bound_mm2;
     best_mm = std::sqrt(bound_mm2);
-    fcl::detail::initialize(*this, a, fcl::Transform3d::Identity(), b, X, request_, result_);
+    fcl::detail::initialize(*this, a_, fcl::Transform3d::Identity(), b_, X, request_, result_);
   }
 
   void preprocess() override {
@@ -57,6 +85,11 @@ class NearestPair final : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<do
   }
   void postprocess() override {}
 
+  double BVTesting(int node_a, int node_b) const override {
+    const Ball &a = balls_a_[node_a], &b = balls_b_[node_b];
+    const double gap = (X_ * b.center - a.center).norm() - a.radius - b.radius;
+    return gap >= best_mm ? gap : MeshDistanceTraversalNodeOBBRSS::BVTesting(node_a, node_b);
+  }
   void leafTesting(int node_a, int node_b) const override {
     measure({a_.getBV(node_a).primitiveId(), b_.getBV(node_b).primitiveId()});
   }
@@ -78,54 +111,62 @@ class NearestPair final : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<do
 
   const Model& a_;
   const Model& b_;
+  const std::vector<Ball>&balls_a_, &balls_b_;
   fcl::Transform3d X_;
   TrianglePair start_;
   fcl::DistanceRequestd request_;
   fcl::DistanceResultd result_;
 };
 
-/// Collects crossing triangles.
+/// Collects crossing triangles, in each region of A at most `per_region`.
 class CrossingPairs final : public fcl::detail::MeshCollisionTraversalNodeOBBRSS<double> {
  public:
-  CrossingPairs(const Model& a, const Model& b, const fcl::Transform3d& X, std::size_t max_count)
-      : a_(a), b_(b), X_(X), max_count_(max_count) {
-    fcl::detail::initialize(*this, a, fcl::Transform3d::Identity(), b, X, request_, result_);
+  CrossingPairs(const Surface& a, const Surface& b, const fcl::Transform3d& X, std::size_t total,
+                int per_region)
+      : a_(a.model), b_(b.model), region_(a.region), X_(X), total_(total), per_region_(per_region) {
+    fcl::detail::initialize(*this, a_, fcl::Transform3d::Identity(), b_, X, request_, result_);
   }
 
+  bool BVTesting(int node_a, int node_b) const override {
+    const int region = region_[node_a];
+    if (region >= 0 && count_[region] >= per_region_) return true;  // full: passed over
+    return MeshCollisionTraversalNodeOBBRSS::BVTesting(node_a, node_b);
+  }
   void leafTesting(int node_a, int node_b) const override {
     const TrianglePair pair{a_.getBV(node_a).primitiveId(), b_.getBV(node_b).primitiveId()};
     const Triangle ta = corners(a_, pair.a), tb = corners(b_, pair.b, X_);
     const TriangleCrossing crossing = triangle_crossing(ta, tb);
     if (!crossing.crosses) return;
-    MeshContact contact;
-    contact.point = 0.5 * (crossing.from + crossing.to);
     const Eigen::Vector3d na = (ta[1] - ta[0]).cross(ta[2] - ta[0]).normalized();
     const Eigen::Vector3d nb = (tb[1] - tb[0]).cross(tb[2] - tb[0]).normalized();
     const Eigen::Vector3d between = na - nb;
+    MeshContact contact;
+    contact.point = 0.5 * (crossing.from + crossing.to);
     contact.normal = between.norm() > 1e-6 ? between.normalized() : na;
     if (contact.normal.squaredNorm() < 0.5) contact.normal = Eigen::Vector3d::UnitZ();
-    contact.overlap_mm = triangle_overlap(ta, tb);
     contact.triangles = pair;
     found.push_back(contact);
+    if (region_[node_a] >= 0) ++count_[region_[node_a]];
   }
-  bool canStop() const override { return found.size() >= max_count_; }
+  bool canStop() const override { return found.size() >= total_; }
 
   mutable std::vector<MeshContact> found;
 
  private:
   const Model& a_;
   const Model& b_;
+  const std::vector<int>& region_;
   fcl::Transform3d X_;
-  std::size_t max_count_;
+  std::size_t total_;
+  int per_region_;
+  mutable std::array<int, region_count> count_{};
   fcl::CollisionRequestd request_;
   fcl::CollisionResultd result_;
 };
 
 }  // namespace
 
-struct CollisionMesh::Tree {
-  Model model;
-};
+struct CollisionMesh::Tree : Surface {};
 
 CollisionMesh::CollisionMesh(const TriMesh& mesh) : tree_(std::make_unique<Tree>()) {
   assert(!mesh.empty());
@@ -138,6 +179,9 @@ CollisionMesh::CollisionMesh(const TriMesh& mesh) : tree_(std::make_unique<Tree>
   model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices.size()));
   model.addSubModel(mesh.vertices, triangles);
   model.endModel();
+  tree_->balls.resize(static_cast<std::size_t>(model.getNumBVs()));
+  tree_->region.resize(tree_->balls.size());
+  describe_nodes(*tree_, 0, 0, 0);
 }
 
 CollisionMesh::~CollisionMesh() = default;
@@ -147,7 +191,7 @@ CollisionMesh& CollisionMesh::operator=(CollisionMesh&&) noexcept = default;
 MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
                       const Pose& X_WB, TrianglePair start) {
   if (start.a < 0 || start.b < 0) start = {0, 0};
-  NearestPair nearest(a.tree().model, b.tree().model, transform(X_WA.inverse() * X_WB), start,
+  NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
                       std::numeric_limits<double>::infinity());
   fcl::detail::distance(&nearest);
   return {nearest.best_mm, X_WA * nearest.best.p, X_WA * nearest.best.q, nearest.triangles};
@@ -156,22 +200,28 @@ MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionM
 bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
               TrianglePair start) {
   constexpr double just_above_touch_mm2 = 2e-24;
-  NearestPair nearest(a.tree().model, b.tree().model, transform(X_WA.inverse() * X_WB), start,
+  NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
                       just_above_touch_mm2);
   fcl::detail::distance(&nearest);
   return nearest.best_mm == 0;
 }
 
 std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
-                                  const Pose& X_WB, int max_count) {
-  CrossingPairs crossing(a.tree().model, b.tree().model, transform(X_WA.inverse() * X_WB),
-                         static_cast<std::size_t>(std::max(max_count, 0)));
-  if (max_count > 0) fcl::detail::collide(&crossing);
+                                  const Pose& X_WB, ContactLimits limits) {
+  CrossingPairs crossing(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB),
+                         static_cast<std::size_t>(std::max(limits.total, 0)), limits.per_region);
+  if (limits.total > 0 && limits.per_region > 0) fcl::detail::collide(&crossing);
   for (auto& contact : crossing.found) {
     contact.point = X_WA * contact.point;
     contact.normal = X_WA.R * contact.normal;
   }
   return std::move(crossing.found);
+}
+
+double overlap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
+               TrianglePair triangles) {
+  return triangle_overlap(corners(a.tree().model, triangles.a),
+                          corners(b.tree().model, triangles.b, transform(X_WA.inverse() * X_WB)));
 }
 
 }  // namespace condyle

@@ -56,8 +56,18 @@ MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionM
 bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
               TrianglePair start = {});
 
-/// Pairs of crossing triangles in the tree's order; the search ends after `max_count`.
+/// Crossing triangles are many where bones grind: a report wants some, spread over the surface.
+struct ContactLimits {
+  int total = 4096;
+  int per_region = 4096;  // in each of up to 64 regions of A's surface
+};
+
+/// Pairs of crossing triangles, in the tree's order, up to the limits.
 std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
-                                  const Pose& X_WB, int max_count);
+                                  const Pose& X_WB, ContactLimits limits = {});
+
+/// Length of the shortest move that parts the two triangles of a contact, mm.
+double overlap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
+               TrianglePair triangles);
 
 }  // namespace condyle

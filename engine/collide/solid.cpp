@@ -11,6 +11,7 @@ namespace condyle {
 namespace {
 
 constexpr int leaf_size = 4;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Every edge is run along as often one way as the other.
 std::vector<bool> find_closed(const TriMesh& mesh, const Components& components) {
@@ -67,7 +68,9 @@ Solid::Solid(const TriMesh& mesh) {
   }
   const std::size_t outward_count = shells_.size();
   for (const std::size_t c : inward) {
-    const auto holds = [&](const Shell& shell) { return depth_in(shell, samples_[c], 0) > 0; };
+    const auto holds = [&](const Shell& shell) {
+      return depth_in(shell, samples_[c], 0, infinity) > 0;
+    };
     if (std::any_of(shells_.begin(), shells_.begin() + static_cast<std::ptrdiff_t>(outward_count),
                     holds))
       continue;  // a cavity
@@ -108,10 +111,10 @@ int Solid::build_balls(std::vector<Eigen::Vector3d>& points, int first, int last
 }
 
 /// Depth of p inside the shell, negative outside; -infinity when a ball of `radius` about p cannot
-/// reach it.
-double Solid::depth_in(const Shell& shell, const Eigen::Vector3d& p, double radius) {
-  if (distance_to(shell.box, p) > radius) return -std::numeric_limits<double>::infinity();
-  return -shell.tree.signed_distance(p);
+/// reach it. `reach`: no less than the distance of p from the shell's surface, if known.
+double Solid::depth_in(const Shell& shell, const Eigen::Vector3d& p, double radius, double reach) {
+  if (distance_to(shell.box, p) > radius) return -infinity;
+  return -shell.tree.signed_nearest(p, reach).distance;
 }
 
 double Solid::signed_distance(const Eigen::Vector3d& p) const {
@@ -121,26 +124,36 @@ double Solid::signed_distance(const Eigen::Vector3d& p) const {
 }
 
 /// `center_depth` is the depth of the ball's centre. Depth changes by at most a millimetre per
-/// millimetre: no vertex of the ball is deeper than center_depth + radius.
+/// millimetre: no vertex of the ball is deeper than center_depth + radius, and the distance of a
+/// point near the centre is known well enough to keep its query short.
 void Solid::search(const Shell& shell, const Pose& X, int ball_index, double center_depth,
                    Deepest& best) const {
+  constexpr double rounding_mm = 1e-9;
   const Ball& ball = balls_[ball_index];
   if (center_depth + ball.radius <= best.depth_mm) return;
   if (ball.right == 0) {
     for (int i = ball.first; i < ball.first + ball.count; ++i) {
+      const double step = (points_[i] - ball.center).norm();
+      if (center_depth + step <= best.depth_mm) continue;
       const Eigen::Vector3d p = X * points_[i];
       if (!shell.box.contains(p)) continue;
-      const SurfacePoint found = shell.tree.signed_nearest(p);
+      const SurfacePoint found =
+          shell.tree.signed_nearest(p, std::abs(center_depth) + step + rounding_mm);
       if (-found.distance > best.depth_mm)
         best = {-found.distance, p, shell.tree.pseudonormal(found)};
     }
     return;
   }
-  int child[2] = {ball_index + 1, ball.right};
+  const int child[2] = {ball_index + 1, ball.right};
   double depth[2], bound[2];
   for (int k = 0; k < 2; ++k) {
-    depth[k] = depth_in(shell, X * balls_[child[k]].center, balls_[child[k]].radius);
-    bound[k] = depth[k] + balls_[child[k]].radius;
+    const Ball& part = balls_[child[k]];
+    const double step = (part.center - ball.center).norm();
+    depth[k] = -infinity;
+    if (center_depth + step + part.radius > best.depth_mm)
+      depth[k] = depth_in(shell, X * part.center, part.radius,
+                          std::abs(center_depth) + step + rounding_mm);
+    bound[k] = depth[k] + part.radius;
   }
   const int nearer = bound[1] > bound[0] ? 1 : 0;
   search(shell, X, child[nearer], depth[nearer], best);
@@ -151,13 +164,13 @@ void Solid::search(const Shell& shell, const Pose& X, int ball_index, double cen
 void Solid::deepest_inside(const Solid& other, const Pose& X_OS, Deepest& best) const {
   const Ball& all = balls_.front();
   for (const Shell& shell : other.shells_)
-    search(shell, X_OS, 0, depth_in(shell, X_OS * all.center, all.radius), best);
+    search(shell, X_OS, 0, depth_in(shell, X_OS * all.center, all.radius, infinity), best);
 }
 
 bool Solid::has_shell_inside(const Solid& other, const Pose& X_OS) const {
   for (const auto& sample : samples_)
     for (const auto& shell : other.shells_)
-      if (depth_in(shell, X_OS * sample, 0) > 0) return true;
+      if (depth_in(shell, X_OS * sample, 0, infinity) > 0) return true;
   return false;
 }
 

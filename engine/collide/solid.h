@@ -51,7 +51,7 @@ class Solid {
   int build_balls(std::vector<Eigen::Vector3d>& points, int first, int last);
   void search(const Shell& shell, const Pose& X, int ball, double center_depth,
               Deepest& best) const;
-  static double depth_in(const Shell& shell, const Eigen::Vector3d& p, double radius);
+  static double depth_in(const Shell& shell, const Eigen::Vector3d& p, double radius, double reach);
 
   void deepest_inside(const Solid& other, const Pose& X_OS, Deepest& best) const;
   bool has_shell_inside(const Solid& other, const Pose& X_OS) const;

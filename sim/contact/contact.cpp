@@ -12,8 +12,10 @@
 namespace condyle {
 namespace {
 
-// Crossing triangles looked at per pair. 2 x 50k bones in grinding contact have some hundreds.
-constexpr int crossing_limit = 4096;
+// Crossing triangles looked at: all (arches in full bite have some thousands) where the depth is
+// judged from them, else a few from each part of the surface.
+constexpr ContactLimits all_crossings{.total = 8192, .per_region = 8192};
+constexpr ContactLimits some_crossings{.total = 1024, .per_region = 8};
 // Ways shorter than this are judged by their ends alone. A tenth of a millimetre is a third of the
 // thinnest wall met in real anatomy (0.3 mm), so nothing is passed through unseen.
 constexpr double proof_step_mm = 0.1;
@@ -64,20 +66,26 @@ PairContact judge(const ColliderPair& pair, const Pose& X_CM, TrianglePair start
 
   out.touching = true;
   out.distance_mm = 0;
-  const OverlapDepth overlap = overlap_depth(a.solid, X_CC, b.solid, X_CM);
-  out.depth_mm = overlap.depth_mm;
+  const OverlapDepth deepest = overlap_depth(a.solid, X_CC, b.solid, X_CM);
+  out.depth_mm = deepest.depth_mm;
   if (!crossing) {
-    out.contacts.push_back({overlap.point, overlap.normal});
+    out.contacts.push_back({deepest.point, deepest.normal});
     return out;
   }
-  const auto all = contacts(a.surface, X_CC, b.surface, X_CM, crossing_limit);
-  out.contacts = thin(all, max_contacts);
-  if (all.empty() && max_contacts > 0)  // they touch in a point
-    out.contacts.push_back({nearest.witness_a, overlap.normal});
   // Open shells have no inside, and edges may cross without a corner inside: then the depth is the
   // largest move that parts one pair of crossing triangles (bounded by their size).
-  if (out.depth_mm == 0 || a.solid.open_shell_count() > 0 || b.solid.open_shell_count() > 0)
-    for (const auto& contact : all) out.depth_mm = std::max(out.depth_mm, contact.overlap_mm);
+  const bool by_triangles =
+      out.depth_mm == 0 || a.solid.open_shell_count() > 0 || b.solid.open_shell_count() > 0;
+  if (!by_triangles && max_contacts == 0) return out;
+  const auto all =
+      contacts(a.surface, X_CC, b.surface, X_CM, by_triangles ? all_crossings : some_crossings);
+  out.contacts = thin(all, max_contacts);
+  if (all.empty() && max_contacts > 0)  // they touch in a point
+    out.contacts.push_back({nearest.witness_a, deepest.normal});
+  if (by_triangles)
+    for (const auto& contact : all)
+      out.depth_mm =
+          std::max(out.depth_mm, overlap(a.surface, X_CC, b.surface, X_CM, contact.triangles));
   return out;
 }
 
