@@ -249,9 +249,10 @@ void Panels::Drawing::times() {
   }
   ImGui::Dummy({width, curve});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 3));
+  const double pictures = input.pictures.pictures_per_second;
   text(theme.small, colour::text_dim,
-       fmt::format("{:.0f} steps/s, {:.0f} pictures/s", input.loop.steps_per_second,
-                   input.pictures.pictures_per_second));
+       fmt::format("{:.0f} steps/s, ", input.loop.steps_per_second) +
+           (pictures > 0 ? fmt::format("{:.0f} pictures/s", pictures) : "picture at rest"));
   if (input.pictures.render_scale < 1 || input.pictures.samples < 4) {
     ImGui::SameLine();
     text_right(theme.small, colour::text_faint,

@@ -18,10 +18,10 @@ namespace condyle {
 struct PanelInput {
   const WindowScene& scene;
   const FrameState* frame = nullptr;  // none until the first is simulated
-  LoopStatistics loop;
-  PictureStatistics pictures;
-  Camera camera;
-  std::string progress;          // what is being prepared; empty when nothing is
+  LoopStatistics loop = {};
+  PictureStatistics pictures = {};
+  Camera camera = {};
+  std::string progress = {};     // what is being prepared; empty when nothing is
   double progress_fraction = 0;  // 0 to 1
 };
 
@@ -57,6 +57,8 @@ class Panels {
   const Theme& theme() const { return theme_; }
 
   bool dialog_open() const { return help_open_ || !errors_.empty(); }
+  /// Whether something said is still on show, so that it must be taken away in time.
+  bool talking() const { return !said_.empty(); }
   bool shown() const { return shown_; }
   Layout layout(double width, double height) const {
     return lay_out(width, height, theme_.scale, shown_);

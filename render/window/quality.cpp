@@ -24,7 +24,13 @@ Quality QualityGovernor::choose(bool moving) const {
 }
 
 void QualityGovernor::measured(bool moving, double picture_ms) {
-  if (!moving) return;
+  if (!moving) {
+    // The first picture at rest already tells what this machine is.
+    if (!known_ && picture_ms > 3 * wanted_ms) level_ = 2;
+    known_ = true;
+    return;
+  }
+  known_ = true;
   // Down at once when far too slow, up only after a long calm: the picture must not flicker.
   slow_ = picture_ms > wanted_ms ? slow_ + 1 : 0;
   fast_ = picture_ms < 0.3 * wanted_ms ? fast_ + 1 : 0;

@@ -7,6 +7,7 @@ struct Quality {
   double render_scale = 1;  // of each side
   int samples = 4;
   bool shadows = true;
+  bool operator==(const Quality&) const = default;
 };
 
 /// Lowers the picture while things move on a slow driver, so that it stays fluent; never the
@@ -21,6 +22,7 @@ class QualityGovernor {
 
  private:
   int level_ = 0;            // of the moving picture; 0 is the best
+  bool known_ = false;       // whether any picture was measured
   int slow_ = 0, fast_ = 0;  // pictures in a row
 };
 

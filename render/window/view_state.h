@@ -12,13 +12,13 @@ namespace condyle {
 
 /// What a window shows. Plain data; the parts must outlive the window or the next scene.
 struct WindowScene {
-  std::span<const Part> parts;
-  std::string case_name;
-  std::string motion_name;
-  double duration_s = 0;           // of the motion; 0 when there is none
-  double step_s = 1.0 / 30;        // what one press of an arrow key moves
-  double max_opening_mm = 50;      // end of the opening slider
-  std::vector<std::string> notes;  // sentences about this case, e.g. overlap at rest
+  std::span<const Part> parts = {};
+  std::string case_name = {};
+  std::string motion_name = {};
+  double duration_s = 0;                // of the motion; 0 when there is none
+  double step_s = 1.0 / 30;             // what one press of an arrow key moves
+  double max_opening_mm = 50;           // end of the opening slider
+  std::vector<std::string> notes = {};  // sentences about this case, e.g. overlap at rest
 };
 
 /// How one part is wanted.
@@ -51,7 +51,7 @@ std::map<std::string, double> part_opacities(const WindowScene& scene, const Vie
 /// How the loop behind the window does. Zero where it is not known.
 struct LoopStatistics {
   double steps_per_second = 0;  // of the simulation
-  std::string message;          // one line for the foot of the window; empty for none
+  std::string message = {};     // one line for the foot of the window; empty for none
 };
 
 /// What the drawing does, measured by the window itself.

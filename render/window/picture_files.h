@@ -1,0 +1,11 @@
+#pragma once
+
+#include <filesystem>
+
+namespace condyle {
+
+/// A file for the next saved picture, named by the local time: condyle-20240131-140509.png, with a
+/// number where that is taken already.
+std::filesystem::path next_picture_file(const std::filesystem::path& folder);
+
+}  // namespace condyle

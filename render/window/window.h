@@ -1,0 +1,82 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/image.h"
+#include "render/window/panels.h"
+#include "render/window/view_state.h"
+#include "sim/frame/frame_state.h"
+
+namespace condyle {
+
+struct WindowOptions {
+  std::string title = "Condyle";
+  int width = 1280, height = 720;              // screen coordinates, before the screen's own scale
+  double ui_scale = 1;                         // of panels and text, times the screen's own scale
+  std::filesystem::path picture_folder = ".";  // where F12 saves
+};
+
+/// The window on a case. It asks by a ViewState and shows what it is given; the simulation runs
+/// elsewhere, best in another thread:
+///
+///     Window window({.title = "Condyle"});
+///     window.set_scene({.parts = parts, .case_name = "Built-in patient", .duration_s = 4});
+///     while (window.open()) {
+///       simulation.want(window.poll());
+///       if (simulation.has_news()) window.show(simulation.newest(), {.steps_per_second = 60});
+///       else window.draw();
+///     }
+///
+/// One window at a time, on the main thread; only wake() may be called from others.
+class Window {
+ public:
+  /// throws: MachineError when there is no display or no OpenGL 3.3, saying what to do instead.
+  explicit Window(const WindowOptions& options = {});
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  /// Shows another case, from its first view. `start` may hold other settings than the defaults.
+  /// Uploads the parts, which must outlive the window or the next scene.
+  void set_scene(const WindowScene& scene, const ViewState& start = {});
+
+  /// False once the person has closed the window.
+  bool open() const;
+
+  /// Handles events, moves the playing clock and gives what is wanted now. Waits for the next
+  /// picture's time while something moves (at most 1/60 s) and up to 1/4 s when nothing does.
+  const ViewState& poll();
+
+  /// Takes over a frame and draws if anything has changed. The same frame again costs nothing.
+  void show(FrameState frame, const LoopStatistics& loop = {});
+  /// Draws if anything has changed: when there is no new frame.
+  void draw();
+
+  /// Shows what is being prepared, 0 to 1, and handles events meanwhile; empty when it is done.
+  void show_progress(const std::string& what, double fraction);
+  /// Shows a sentence in a dialog.
+  void report_error(const std::string& sentence);
+  /// Ends the wait of poll(), e.g. when a frame is ready. From any thread, while the window lives.
+  static void wake();
+
+  const ViewState& view() const;
+  const Camera& camera() const;
+  void set_camera(const Camera& camera);
+  const PictureStatistics& pictures() const;
+  /// Panels and what can be used in them, as last drawn, screen coordinates of the window.
+  const std::vector<DrawnItem>& items() const;
+  /// Where the 3-D view is.
+  ViewRect view_rect() const;
+  /// Draws now and gives the whole window.
+  Image picture();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace condyle

@@ -1,0 +1,185 @@
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "render/window/picture_files.h"
+#include "render/window/window_state.h"
+
+namespace condyle {
+namespace {
+
+constexpr double calm_s = 0.25;  // nothing has moved for so long: full quality
+
+bool same(const PictureSettings& a, const PictureSettings& b) {
+  return a.width == b.width && a.height == b.height && a.shadows == b.shadows &&
+         a.contacts == b.contacts && a.skin_opacity == b.skin_opacity &&
+         a.part_opacity == b.part_opacity;
+}
+
+}  // namespace
+
+std::pair<int, int> Window::State::size() const {
+  int w = 0, h = 0;
+  glfwGetWindowSize(window, &w, &h);
+  return {std::max(1, w), std::max(1, h)};
+}
+
+ViewRect Window::State::view_rect() const {
+  const auto [w, h] = size();
+  return panels->layout(w, h).view;
+}
+
+PictureSettings Window::State::settings() const {
+  const ViewRect rect = view_rect();
+  int pixels = 0, ignored = 0;
+  glfwGetFramebufferSize(window, &pixels, &ignored);
+  const double density = std::max(1, pixels) / static_cast<double>(size().first);
+  PictureSettings wanted;
+  wanted.width = std::max(1, static_cast<int>(std::lround(rect.width * density)));
+  wanted.height = std::max(1, static_cast<int>(std::lround(rect.height * density)));
+  wanted.shadows = view.shadows;
+  wanted.contacts = view.mark_contacts;
+  wanted.skin_opacity = view.skin_opacity;
+  wanted.part_opacity = part_opacities(scene, view);
+  return wanted;
+}
+
+bool Window::State::moving() const {
+  return view.playing || drag != CameraDrag::none || seconds_since(last_change) < calm_s;
+}
+
+void Window::State::fit_scale() {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(window, &x, &y);
+  const auto [w, h] = size();
+  const float scale = fitting_scale(std::max(x, y) * options.ui_scale, w, h);
+  if (scale == panels->theme().scale) return;
+  panels->set_scale(scale);
+  ImGui_ImplOpenGL3_DestroyDeviceObjects();  // made anew, with the new fonts, by the next frame
+}
+
+void Window::State::interface_frame() {
+  fit_scale();
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  // The backend only knows where the mouse is now; the queue knows each press and where it was.
+  const MouseMoment moment = mouse.take();
+  ImGuiIO& io = ImGui::GetIO();
+  io.MousePos = {static_cast<float>(moment.x), static_cast<float>(moment.y)};
+  for (std::size_t i = 0; i < moment.down.size(); ++i) io.MouseDown[i] = moment.down[i];
+  ImGui::NewFrame();
+  const auto [w, h] = size();
+  const ViewRect r = view_rect();
+  if (const unsigned texture = view_picture->texture(); texture && renderer) {
+    const ImVec2 low = {static_cast<float>(r.x), static_cast<float>(r.y)};
+    const ImVec2 high = {static_cast<float>(r.x + r.width), static_cast<float>(r.y + r.height)};
+    // GL keeps the first row at the bottom.
+    ImGui::GetBackgroundDrawList()->AddImage(
+        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), low, high, {0, 1},
+        {1, 0});
+  }
+  const PanelInput input{.scene = scene,
+                         .frame = has_frame ? &frame : nullptr,
+                         .loop = loop,
+                         .pictures = pictures,
+                         .camera = camera,
+                         .progress = progress,
+                         .progress_fraction = progress_fraction};
+  const std::vector<Command> commands = panels->draw(input, view, w, h);
+  ImGui::Render();
+  for (const Command command : commands) run(command);
+}
+
+void Window::State::draw_scene(const PictureSettings& wanted) {
+  if (!renderer) return;
+  if (frame_new) {
+    renderer->update(frame);
+    frame_new = false;
+    scene_changed = true;
+  }
+  const bool in_motion = moving();
+  const Quality quality = governor.choose(in_motion);
+  if (!scene_changed && quality == drawn_quality) return;
+  scene_changed = false;  // also when it fails: the next change tries again
+  drawn_settings = wanted;
+  drawn_quality = quality;
+  const double ms = view_picture->draw(*renderer, camera, wanted, quality);
+  governor.measured(in_motion, ms);
+  pictures.picture_ms = ms;
+  pictures.render_scale = quality.render_scale;
+  pictures.samples = std::max(1, view_picture->samples());
+  ++counted_pictures;
+  const double counted_s = seconds_since(counted_from);
+  if (counted_s > 0.5) {
+    pictures.pictures_per_second = in_motion && counted_s < 2 ? counted_pictures / counted_s : 0;
+    counted_pictures = 0;
+    counted_from = Clock::now();
+  }
+}
+
+void Window::State::draw(bool always, Image* copy) {
+  const PictureSettings wanted = settings();
+  if (renderer && !same(wanted, drawn_settings)) {
+    scene_changed = true;
+    last_change = Clock::now();
+  }
+  const bool better_due = renderer && !(governor.choose(moving()) == drawn_quality);
+  const bool due = frames_due > 0 || scene_changed || frame_new || better_due || save_window ||
+                   panels->talking();
+  // A hair early is in time: the wait before was for this picture.
+  if (!always && (!due || seconds_since(last_draw) < 0.9 * picture_interval_s)) return;
+  last_draw = Clock::now();
+  try {
+    draw_scene(wanted);
+  } catch (const std::exception& error) {
+    panels->report_error(error.what());
+  }
+  interface_frame();
+
+  int w = 0, h = 0;
+  glfwGetFramebufferSize(window, &w, &h);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, w, h);
+  const ImVec4 back = ImGui::ColorConvertU32ToFloat4(colour::window);
+  glClearColor(back.x, back.y, back.z, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  if (copy) *copy = read_back();
+  if (save_window) {
+    save_window = false;
+    save(read_back());
+  }
+  glfwSwapBuffers(window);
+  frames_due = std::max(0, frames_due - 1);
+}
+
+Image Window::State::read_back() const {
+  Image image;
+  glfwGetFramebufferSize(window, &image.width, &image.height);
+  const std::size_t stride = std::size_t{4} * static_cast<std::size_t>(image.width);
+  std::vector<std::uint8_t> rows(stride * static_cast<std::size_t>(image.height));
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glReadPixels(0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE, rows.data());
+  for (std::size_t i = 3; i < rows.size(); i += 4) rows[i] = 255;
+  image.rgba.reserve(rows.size());
+  for (std::size_t row = static_cast<std::size_t>(image.height); row-- > 0;)
+    image.rgba.insert(image.rgba.end(), rows.begin() + static_cast<std::ptrdiff_t>(row * stride),
+                      rows.begin() + static_cast<std::ptrdiff_t>((row + 1) * stride));
+  return image;
+}
+
+void Window::State::save(const Image& image) {
+  try {
+    const std::filesystem::path file = next_picture_file(options.picture_folder);
+    write_png(file, image);
+    panels->say("Saved " + file.string());
+  } catch (const std::exception& error) {
+    panels->report_error(error.what());
+  }
+}
+
+}  // namespace condyle

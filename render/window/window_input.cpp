@@ -1,0 +1,126 @@
+#include <algorithm>
+
+#include "render/window/window_state.h"
+
+namespace condyle {
+namespace {
+
+constexpr double idle_wait_s = 0.25;
+constexpr double attentive_s = 0.5;  // after an event answers may come without wake()
+
+}  // namespace
+
+void Window::State::install_callbacks() {
+  glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+    if (action != GLFW_RELEASE) guarded(w, [&](State& s) { s.on_key(key, scancode, mods); });
+  });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
+    guarded(w, [&](State& s) { s.on_button(button, action == GLFW_PRESS, mods); });
+  });
+  glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+    guarded(w, [&](State& s) { s.on_move(x, y); });
+  });
+  glfwSetScrollCallback(window, [](GLFWwindow* w, double, double clicks) {
+    guarded(w, [&](State& s) { s.on_wheel(clicks); });
+  });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) {
+    guarded(w, [](State& s) { s.scene_changed = true; });
+  });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { guarded(w, [](State&) {}); });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { guarded(w, [](State&) {}); });
+}
+
+void Window::State::on_key(int key, int scancode, int mods) {
+  // Letters are meant as they are written on the keys, whatever the layout.
+  if (const char* name = glfwGetKeyName(key, scancode);
+      name && name[0] >= 'a' && name[0] <= 'z' && name[1] == 0)
+    key = GLFW_KEY_A + (name[0] - 'a');
+  const auto command = command_of({.key = key,
+                                   .shift = (mods & GLFW_MOD_SHIFT) != 0,
+                                   .ctrl = (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0});
+  if (command) run(*command);
+}
+
+bool Window::State::over_view(double x, double y) const {
+  if (panels->dialog_open() || !view_rect().contains(x, y)) return false;
+  // The cube floats on the view.
+  return std::none_of(panels->items().begin(), panels->items().end(), [&](const DrawnItem& item) {
+    return item.panel.empty() && item.rect.contains(x, y);
+  });
+}
+
+void Window::State::on_button(int button, bool down, int mods) {
+  mouse.pressed(button, down);
+  const MouseMoment& now = mouse.now();
+  if (down && drag == CameraDrag::none && over_view(now.x, now.y)) {
+    drag = drag_of({.left = button == GLFW_MOUSE_BUTTON_LEFT,
+                    .middle = button == GLFW_MOUSE_BUTTON_MIDDLE,
+                    .right = button == GLFW_MOUSE_BUTTON_RIGHT,
+                    .shift = (mods & GLFW_MOD_SHIFT) != 0,
+                    .ctrl = (mods & GLFW_MOD_CONTROL) != 0});
+    drag_button = button;
+  } else if (!down && button == drag_button) {
+    drag = CameraDrag::none;
+    drag_button = -1;
+  }
+}
+
+void Window::State::on_move(double x, double y) {
+  const MouseMoment before = mouse.now();
+  mouse.moved(x, y);
+  if (drag == CameraDrag::none) return;
+  camera = dragged(camera, drag, {before.x, before.y}, {x, y}, view_rect(), zoom);
+  scene_changed = true;
+  last_change = Clock::now();
+}
+
+void Window::State::on_wheel(double clicks) {
+  const MouseMoment& now = mouse.now();
+  if (!over_view(now.x, now.y)) return;
+  camera = wheeled(camera, clicks, {now.x, now.y}, view_rect(), zoom);
+  scene_changed = true;
+  last_change = Clock::now();
+}
+
+void Window::State::run(Command command) {
+  if (panels->run(command, scene, view)) return;
+  switch (command) {
+    case Command::quit:
+      glfwSetWindowShouldClose(window, GLFW_TRUE);
+      break;
+    case Command::window_picture:
+      save_window = true;
+      break;
+    case Command::picture:
+      if (renderer) save(renderer->picture(camera, settings()));
+      break;
+    default:
+      set_standard_view(camera_of(command));
+  }
+}
+
+void Window::State::set_standard_view(std::string_view name) {
+  if (!renderer || name.empty()) return;
+  const ViewRect rect = view_rect();
+  const auto [low, high] = renderer->bounds();
+  camera = standard_camera(std::string(name), low, high, rect.width / rect.height);
+  const double size = std::max(1.0, (high - low).norm());
+  zoom = {.nearest_mm = 0.05 * size, .farthest_mm = 12 * size};
+  scene_changed = true;
+}
+
+void Window::State::wait_for_events() {
+  const bool active = moving() || frames_due > 0 || scene_changed || frame_new;
+  const double wait =
+      active ? picture_interval_s - seconds_since(last_draw)
+             : (seconds_since(last_event) < attentive_s ? picture_interval_s : idle_wait_s);
+  if (wait > 0) {
+    glfwWaitEventsTimeout(wait);
+  } else {
+    glfwPollEvents();
+  }
+  // Each press and release has its own pass over the panels, so that none is lost between pictures.
+  while (mouse.waiting()) interface_frame();
+}
+
+}  // namespace condyle

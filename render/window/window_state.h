@@ -1,0 +1,112 @@
+#pragma once
+
+#include <epoxy/gl.h>
+// GLFW after epoxy, which brings the GL header.
+#include <GLFW/glfw3.h>
+
+#include <chrono>
+#include <exception>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "render/scene_renderer.h"
+#include "render/window/glfw_session.h"
+#include "render/window/mouse_queue.h"
+#include "render/window/quality.h"
+#include "render/window/view_picture.h"
+#include "render/window/window.h"
+
+struct ImGuiContext;
+
+namespace condyle {
+
+/// What a Window holds. Only for window*.cpp.
+struct Window::State {
+  using Clock = std::chrono::steady_clock;
+
+  explicit State(const WindowOptions& options);
+  ~State();
+
+  // In the order of their making; undone backwards.
+  GlfwSession session;
+  GLFWwindow* window = nullptr;
+  ImGuiContext* imgui = nullptr;
+  std::optional<Panels> panels;
+  std::optional<ViewPicture> view_picture;
+  std::optional<SceneRenderer> renderer;
+
+  WindowOptions options;
+  WindowScene scene;
+  ViewState view;
+  FrameState frame;
+  bool has_frame = false;
+  bool frame_new = false;  // the renderer has not seen it
+  LoopStatistics loop;
+  Camera camera;
+  ZoomLimits zoom;
+  std::string progress;
+  double progress_fraction = 0;
+
+  MouseQueue mouse;
+  CameraDrag drag = CameraDrag::none;
+  int drag_button = -1;
+
+  QualityGovernor governor;
+  Quality drawn_quality;
+  PictureSettings drawn_settings;
+  PictureStatistics pictures;
+  bool scene_changed = true;  // the 3-D picture is out of date
+  bool save_window = false;
+  int frames_due = 3;        // pictures of the panels still to draw
+  int counted_pictures = 0;  // since counted_from
+  Clock::time_point last_poll = Clock::now(), last_draw = last_poll, last_change = last_poll,
+                    last_event = last_poll, counted_from = last_poll;
+
+  // window_input.cpp
+  void install_callbacks();
+  void on_key(int key, int scancode, int mods);
+  void on_button(int button, bool down, int mods);
+  void on_move(double x, double y);
+  void on_wheel(double clicks);
+  bool over_view(double x, double y) const;
+  void run(Command command);
+  void set_standard_view(std::string_view name);
+  void wait_for_events();
+  /// GLFW is C: nothing may be thrown through it.
+  template <class Work>
+  static void guarded(GLFWwindow* w, Work&& work) {
+    State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
+    state.noticed();
+    try {
+      work(state);
+    } catch (const std::exception& error) {
+      state.panels->report_error(error.what());
+    }
+  }
+  /// Something happened: ImGui needs some pictures to settle what is hovered and held.
+  void noticed() {
+    frames_due = 3;
+    last_event = Clock::now();
+  }
+
+  // window_drawing.cpp
+  std::pair<int, int> size() const;
+  ViewRect view_rect() const;
+  PictureSettings settings() const;
+  bool moving() const;
+  void fit_scale();
+  void interface_frame();
+  void draw_scene(const PictureSettings& wanted);
+  void draw(bool always, Image* copy = nullptr);
+  Image read_back() const;
+  void save(const Image& image);
+};
+
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+constexpr double picture_interval_s = 1.0 / 60;  // no more pictures than this
+
+}  // namespace condyle

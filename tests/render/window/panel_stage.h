@@ -1,0 +1,66 @@
+#pragma once
+
+#include <imgui.h>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/framebuffer.h"
+#include "render/gl_context.h"
+#include "render/image.h"
+#include "render/window/panels.h"
+
+namespace condyle {
+
+/// A closed box as a part, mm.
+Part box_part(const std::string& name, Role role, const Eigen::Vector3d& low,
+              const Eigen::Vector3d& high);
+
+/// A small patient of boxes: skull, maxilla, teeth, mandible and face.
+std::vector<Part> box_patient();
+
+/// A frame of the box patient with the mouth open by so much, every reading filled in.
+FrameState box_frame(double time_s, double opening_mm);
+
+/// Panels drawn off the screen, with a scripted mouse.
+class PanelStage {
+ public:
+  PanelStage(int width, int height, float scale);
+  ~PanelStage();
+
+  /// One picture of the panels with the mouse there.
+  void step(double x, double y, bool down);
+  void rest(int pictures = 3);
+  /// Presses and releases the middle of an item; or slides from one part of its width to another.
+  void click(const std::string& item);
+  void slide(const std::string& item, double from, double to);
+
+  /// The item as last drawn; fails the test when it is not there.
+  DrawnItem item(const std::string& name) const;
+  bool has(const std::string& name) const;
+  Image image() const { return picture_.read(); }
+
+  std::vector<Part> parts = box_patient();
+  WindowScene scene;
+  ViewState view;
+  FrameState frame = box_frame(1.2, 23.4);
+  Camera camera;
+  std::vector<Command> commands;  // all so far
+  std::string progress;
+  std::unique_ptr<Panels> panels;
+  std::function<void()> each_step;  // before each picture
+
+ private:
+  OffscreenContext context_;
+  ImGuiContext* imgui_ = nullptr;
+  int width_, height_;
+  Framebuffer picture_;
+};
+
+/// Where looked-at pictures go when CONDYLE_KEEP_PICTURES names a folder; empty otherwise.
+std::filesystem::path kept_picture(const std::string& name);
+
+}  // namespace condyle

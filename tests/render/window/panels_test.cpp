@@ -1,0 +1,238 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "panel_stage.h"
+
+namespace condyle {
+namespace {
+
+struct Screen {
+  int width, height;
+  float scale;
+};
+
+class PanelsOn : public testing::TestWithParam<Screen> {
+ protected:
+  PanelStage stage{GetParam().width, GetParam().height,
+                   fitting_scale(GetParam().scale, GetParam().width, GetParam().height)};
+
+  void keep(const std::string& what) {
+    const auto file =
+        kept_picture("panels-" + what + "-" + std::to_string(GetParam().width) + "x" +
+                     std::to_string(GetParam().height) + "-" +
+                     std::to_string(static_cast<int>(GetParam().scale * 100)) + ".png");
+    if (!file.empty()) write_png(file, stage.image());
+  }
+};
+
+bool overlap(const ViewRect& a, const ViewRect& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+bool within(const ViewRect& a, const ViewRect& b) {
+  return a.x >= b.x && a.y >= b.y && a.x + a.width <= b.x + b.width + 0.5 &&
+         a.y + a.height <= b.y + b.height + 0.5;
+}
+
+TEST_P(PanelsOn, NothingOverlapsOrLeavesTheScreen) {
+  stage.view.opening_mm = 20;  // the fullest state: with the button to let go
+  stage.rest();
+  const auto& items = stage.panels->items();
+  const ViewRect screen{0, 0, static_cast<double>(GetParam().width),
+                        static_cast<double>(GetParam().height)};
+  int panels = 0, pairs = 0;
+  for (const DrawnItem& a : items) {
+    EXPECT_TRUE(within(a.rect, screen)) << a.name;
+    if (a.panel.empty()) {
+      ++panels;
+    } else {
+      EXPECT_TRUE(within(a.rect, stage.item(a.panel).rect)) << a.name;
+    }
+    for (const DrawnItem& b : items) {
+      // Things are compared with their like: panels with panels, items with items.
+      if (&a == &b || a.panel.empty() != b.panel.empty()) continue;
+      EXPECT_FALSE(overlap(a.rect, b.rect)) << a.name << " and " << b.name;
+      ++pairs;
+    }
+  }
+  EXPECT_EQ(panels, 5);  // top, left, right, bottom, cube
+  EXPECT_GT(pairs, 500);
+  for (const char* name : {"play", "scrub", "speed", "loop", "opening", "release", "skin",
+                           "show:mandible", "opacity:mandible", "obey-contact", "shadows", "view:A",
+                           "view:I", "picture", "help-button", "pair:0", "pair:5"})
+    EXPECT_TRUE(stage.has(name)) << name;
+  keep("held");
+}
+
+TEST_P(PanelsOn, ItemNamesAreUnique) {
+  std::set<std::string> names;
+  for (const DrawnItem& item : stage.panels->items())
+    EXPECT_TRUE(names.insert(item.name).second) << item.name;
+  EXPECT_GT(names.size(), 30u);
+  keep("rest");
+}
+
+TEST_P(PanelsOn, PlayTogglesPlaying) {
+  ASSERT_FALSE(stage.view.playing);
+  stage.click("play");
+  EXPECT_TRUE(stage.view.playing);
+  stage.click("play");
+  EXPECT_FALSE(stage.view.playing);
+}
+
+TEST_P(PanelsOn, DraggingTheScrubBarMovesTime) {
+  stage.view.playing = true;
+  stage.slide("scrub", 0.1, 0.5);
+  EXPECT_NEAR(stage.view.time_s, 0.5 * stage.scene.duration_s, 0.02);
+  EXPECT_FALSE(stage.view.playing);
+  stage.slide("scrub", 0.5, 1.6);  // beyond the end of the bar
+  EXPECT_DOUBLE_EQ(stage.view.time_s, stage.scene.duration_s);
+  stage.click("to-start");
+  EXPECT_EQ(stage.view.time_s, 0);
+  stage.click("step-forward");
+  EXPECT_DOUBLE_EQ(stage.view.time_s, stage.scene.step_s);
+}
+
+TEST_P(PanelsOn, TickBoxHidesAPart) {
+  stage.click("show:mandible");
+  EXPECT_FALSE(stage.view.parts[4].shown);
+  EXPECT_EQ(part_opacities(stage.scene, stage.view).at("mandible"), 0);
+  EXPECT_EQ(part_opacities(stage.scene, stage.view).at("maxilla"), 1);
+  stage.click("show:mandible");
+  EXPECT_TRUE(stage.view.parts[4].shown);
+  stage.slide("opacity:skull", 0.9, 0.5);
+  EXPECT_NEAR(stage.view.parts[0].opacity, 0.5, 0.02);
+}
+
+TEST_P(PanelsOn, SkinIsSetBySliderAndButtons) {
+  ASSERT_TRUE(stage.view.shows_face(stage.scene));
+  stage.slide("skin", 0.9, 0.25);
+  EXPECT_NEAR(stage.view.skin_opacity, 0.25, 0.02);
+  stage.click("skin:off");
+  EXPECT_EQ(stage.view.skin_opacity, 0);
+  EXPECT_FALSE(stage.view.shows_face(stage.scene));
+  stage.click("skin:full");
+  EXPECT_EQ(stage.view.skin_opacity, 1);
+}
+
+TEST_P(PanelsOn, OpeningSliderTakesTheJawAndLetsGo) {
+  stage.view.playing = true;
+  stage.slide("opening", 0.2, 0.5);
+  ASSERT_TRUE(stage.view.opening_mm.has_value());
+  EXPECT_NEAR(*stage.view.opening_mm, 0.5 * stage.scene.max_opening_mm, 0.3);
+  EXPECT_FALSE(stage.view.playing);
+  stage.click("release");
+  EXPECT_FALSE(stage.view.opening_mm.has_value());
+}
+
+TEST_P(PanelsOn, SpeedStaysWithinItsBounds) {
+  stage.slide("speed", 0.5, -3);
+  EXPECT_NEAR(stage.view.speed, 0.1, 1e-9);
+  stage.slide("speed", 0.05, 4);
+  EXPECT_NEAR(stage.view.speed, 2, 1e-9);
+}
+
+TEST_P(PanelsOn, ButtonsAndCubeAskForViews) {
+  stage.click("view:L");
+  ASSERT_EQ(stage.commands, std::vector{Command::view_left});
+  stage.camera = standard_camera("front", {-80, -95, -90}, {80, 100, 130}, 1.3);
+  stage.rest();
+  stage.click("cube");
+  EXPECT_EQ(stage.commands, (std::vector{Command::view_left, Command::view_front}));
+}
+
+TEST_P(PanelsOn, HelpOpensInsideTheScreenAndCloses) {
+  stage.click("help-button");
+  ASSERT_TRUE(stage.panels->dialog_open());
+  stage.rest(4);
+  const ViewRect screen{0, 0, static_cast<double>(GetParam().width),
+                        static_cast<double>(GetParam().height)};
+  EXPECT_TRUE(within(stage.item("help").rect, screen));
+  EXPECT_TRUE(within(stage.item("close-help").rect, stage.item("help").rect));
+  keep("help");
+  const bool before = stage.view.playing;
+  stage.click("play");  // the dialog is in front
+  EXPECT_EQ(stage.view.playing, before);
+  stage.click("close-help");
+  EXPECT_FALSE(stage.panels->dialog_open());
+  EXPECT_FALSE(stage.has("help"));
+  stage.click("play");
+  EXPECT_NE(stage.view.playing, before);
+}
+
+TEST_P(PanelsOn, ErrorsWaitInARowAndCloseByButtonOrKey) {
+  const std::string sentence =
+      "The picture could not be saved: /media/stick/condyle.png: no space left on the device. Free "
+      "some space or start the window in another folder.";
+  stage.panels->report_error(sentence);
+  stage.panels->report_error(sentence);  // the same trouble again is one dialog
+  stage.panels->report_error("The second sentence.");
+  stage.rest(4);
+  EXPECT_TRUE(stage.has("error"));
+  keep("error");
+  stage.click("close-error");
+  EXPECT_TRUE(stage.panels->dialog_open());
+  stage.panels->run(Command::close_dialog, stage.scene, stage.view);
+  EXPECT_FALSE(stage.panels->dialog_open());
+  stage.rest(3);
+  EXPECT_FALSE(stage.has("error"));
+  stage.click("play");
+  EXPECT_TRUE(stage.view.playing);
+}
+
+TEST_P(PanelsOn, PanelsCanBePutAway) {
+  stage.panels->run(Command::toggle_panels, stage.scene, stage.view);
+  stage.rest();
+  EXPECT_FALSE(stage.has("left"));
+  const Layout layout = stage.panels->layout(GetParam().width, GetParam().height);
+  EXPECT_EQ(layout.view.width, GetParam().width);
+  EXPECT_EQ(layout.view.height, GetParam().height);
+}
+
+TEST_P(PanelsOn, AnEmptySceneAndLongNamesAreDrawn) {
+  stage.parts.clear();
+  stage.scene = {};
+  stage.frame = {};
+  stage.progress = "Building the patient";
+  stage.rest();
+  EXPECT_TRUE(stage.has("bottom"));
+  keep("progress");
+
+  const std::string name = "a_very_long_part_name_that_a_user_gave_to_the_left_fibula_transplant";
+  for (int i = 0; i < 40; ++i)
+    stage.parts.push_back(box_part(name + std::to_string(i), Role::skull, {0, 0, 0}, {1, 1, 1}));
+  stage.scene.parts = stage.parts;
+  stage.scene.case_name = name + name + name + name + name;
+  stage.scene.notes = std::vector<std::string>(30, name);
+  stage.progress.clear();
+  stage.rest();
+  for (const DrawnItem& a : stage.panels->items()) {
+    for (const DrawnItem& b : stage.panels->items()) {
+      if (&a == &b || a.panel.empty() != b.panel.empty()) continue;
+      EXPECT_FALSE(overlap(a.rect, b.rect)) << a.name << " and " << b.name;
+    }
+  }
+  EXPECT_TRUE(stage.has("shadows"));  // the long list leaves room for what stands below it
+  keep("long");
+}
+
+INSTANTIATE_TEST_SUITE_P(Screens, PanelsOn,
+                         testing::Values(Screen{1280, 720, 1}, Screen{3840, 2160, 1},
+                                         Screen{3840, 2160, 2.5f}),
+                         [](const auto& screen) {
+                           return std::to_string(screen.param.width) + "x" +
+                                  std::to_string(screen.param.height) + "scale" +
+                                  std::to_string(static_cast<int>(screen.param.scale * 100));
+                         });
+
+TEST(Theme, ScaleIsLoweredWherePanelsWouldNotFit) {
+  EXPECT_FLOAT_EQ(fitting_scale(1, 1280, 720), 1);
+  EXPECT_FLOAT_EQ(fitting_scale(2, 3840, 2160), 2);
+  EXPECT_LT(fitting_scale(3, 1280, 720), 1.1f);
+  EXPECT_GE(fitting_scale(1, 10, 10), 0.5f);
+}
+
+}  // namespace
+}  // namespace condyle
