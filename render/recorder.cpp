@@ -1,0 +1,207 @@
+#include "render/recorder.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "render/film.h"
+
+namespace condyle {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t waiting_most = 3;  // pictures held for the writer: 25 MB at 1080p
+
+bool is_frame_name(const std::string& name) {
+  return name.size() >= 10 && name.ends_with(".png") &&
+         std::all_of(name.begin(), name.end() - 4, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// What a killed run of ours left: .000012.png.4711.part, .film.mp4.4711.part, …
+bool is_leftover(const std::string& name) {
+  if (!name.starts_with('.') || !name.ends_with(".part")) return false;
+  const std::string inner = name.substr(1, name.size() - 6);
+  const std::string target = inner.substr(0, inner.rfind('.'));
+  return is_frame_name(target) || target == "film.mp4" || target == "recording.json";
+}
+
+template <class Wanted>
+void remove_files(const fs::path& folder, const Wanted& wanted) {
+  std::error_code error;
+  std::vector<fs::path> found;
+  for (auto it = fs::directory_iterator(folder, error); !error && it != fs::directory_iterator();
+       it.increment(error))
+    if (wanted(it->path().filename().string()) && !it->is_directory()) found.push_back(it->path());
+  for (const auto& file : found)
+    if (!fs::remove(file, error) && error)
+      throw MachineError(file.string() + ": cannot be removed: " + error.message());
+}
+
+}  // namespace
+
+struct Recorder::State {
+  RecorderSettings settings;
+  RecordingSheet sheet;
+  std::vector<char> present;
+  bool begun = false;  // the folder is this recording's
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<std::pair<int, Image>> waiting;
+  bool busy = false, ending = false;
+  std::exception_ptr trouble;
+  std::thread writer;
+
+  fs::path frames() const { return settings.folder / "frames"; }
+  fs::path frame_file(int frame) const { return frames() / fmt::format("{:06d}.png", frame); }
+  fs::path sheet_file() const { return settings.folder / "recording.json"; }
+  fs::path film_file() const { return settings.folder / "film.mp4"; }
+
+  void clean() {
+    for (const auto& folder : {settings.folder, frames()})
+      if (fs::is_directory(folder)) remove_files(folder, is_leftover);
+  }
+
+  /// Puts this recording in the place of an earlier one. In this order, so that a kill at any
+  /// moment leaves no frame under a sheet that is not its own.
+  void begin() {
+    if (begun) return;
+    std::error_code error;
+    fs::remove(sheet_file(), error);
+    fs::remove(film_file(), error);
+    make_folder(frames());
+    remove_files(frames(), is_frame_name);
+    write_recording_sheet(sheet_file(), sheet);
+    begun = true;
+  }
+
+  void write_all() {
+    for (;;) {
+      std::pair<int, Image> next;
+      {
+        std::unique_lock lock(mutex);
+        changed.wait(lock, [&] { return ending || !waiting.empty(); });
+        if (waiting.empty()) return;
+        next = std::move(waiting.front());
+        waiting.pop_front();
+        busy = true;
+      }
+      std::exception_ptr failed;
+      try {
+        const std::string bytes = encode_png(next.second);
+        begin();
+        write_file(frame_file(next.first), bytes);
+      } catch (...) {
+        failed = std::current_exception();
+      }
+      const std::lock_guard lock(mutex);
+      busy = false;
+      if (failed) {
+        if (!trouble) trouble = failed;
+        waiting.clear();
+      } else {
+        present[static_cast<std::size_t>(next.first)] = 1;
+      }
+      changed.notify_all();
+    }
+  }
+
+  void rethrow() const {
+    if (trouble) std::rethrow_exception(trouble);
+  }
+};
+
+Recorder::Recorder(const RecorderSettings& settings) : state_(std::make_unique<State>()) {
+  auto& s = *state_;
+  s.settings = settings;
+  s.settings.folder = fs::absolute(settings.folder);
+  s.sheet = settings.identity;
+  s.sheet["width"] = std::to_string(settings.width);
+  s.sheet["height"] = std::to_string(settings.height);
+  s.sheet["frames"] = std::to_string(settings.frames);
+  s.sheet["frames_per_second"] = fmt::format("{:.6g}", settings.frames_per_second);
+  s.present.assign(static_cast<std::size_t>(std::max(settings.frames, 0)), 0);
+  make_folder(s.settings.folder);
+  if (::access(s.settings.folder.c_str(), W_OK | X_OK) != 0)
+    throw MachineError(s.settings.folder.string() + ": the folder cannot be written");
+  const auto before = settings.resume ? read_recording_sheet(s.sheet_file()) : std::nullopt;
+  if (before) {
+    const std::string differs = difference(*before, s.sheet);
+    if (!differs.empty())
+      throw InputError(s.sheet_file(), "",
+                       "holds another recording (" + differs +
+                           "); give the same options, another --out, or leave out --resume");
+  }
+  s.clean();
+  if (before) {
+    s.begun = true;
+    make_folder(s.frames());
+    for (int frame = 0; frame < settings.frames; ++frame)
+      s.present[static_cast<std::size_t>(frame)] =
+          is_whole_png(s.frame_file(frame), settings.width, settings.height);
+  }
+  s.writer = std::thread([&s] { s.write_all(); });
+}
+
+Recorder::~Recorder() {
+  {
+    const std::lock_guard lock(state_->mutex);
+    state_->ending = true;
+  }
+  state_->changed.notify_all();
+  state_->writer.join();
+}
+
+bool Recorder::has(int frame) const {
+  const std::lock_guard lock(state_->mutex);
+  return frame >= 0 && frame < static_cast<int>(state_->present.size()) &&
+         state_->present[static_cast<std::size_t>(frame)];
+}
+
+int Recorder::kept_frames() const {
+  const std::lock_guard lock(state_->mutex);
+  return static_cast<int>(std::count(state_->present.begin(), state_->present.end(), 1));
+}
+
+void Recorder::add(int frame, Image picture) {
+  auto& s = *state_;
+  if (frame < 0 || frame >= s.settings.frames || picture.width != s.settings.width ||
+      picture.height != s.settings.height)
+    throw MachineError(fmt::format("frame {} of {}x{} is not of this recording ({} frames, {}x{})",
+                                   frame, picture.width, picture.height, s.settings.frames,
+                                   s.settings.width, s.settings.height));
+  std::unique_lock lock(s.mutex);
+  s.changed.wait(lock, [&] { return s.trouble || s.waiting.size() < waiting_most; });
+  s.rethrow();
+  s.waiting.emplace_back(frame, std::move(picture));
+  s.changed.notify_all();
+}
+
+void Recorder::finish() {
+  auto& s = *state_;
+  {
+    std::unique_lock lock(s.mutex);
+    s.changed.wait(lock, [&] { return s.trouble || (s.waiting.empty() && !s.busy); });
+    s.rethrow();
+  }
+  const auto missing = std::find(s.present.begin(), s.present.end(), 0);
+  if (missing != s.present.end())
+    throw MachineError(s.frame_file(static_cast<int>(missing - s.present.begin())).string() +
+                       ": this frame was never drawn; go on with --resume");
+  if (s.settings.film)
+    make_film(s.settings.folder, s.film_file(), s.settings.frames, s.settings.frames_per_second);
+}
+
+std::filesystem::path Recorder::frame_file(int frame) const { return state_->frame_file(frame); }
+std::filesystem::path Recorder::film_file() const { return state_->film_file(); }
+
+}  // namespace condyle

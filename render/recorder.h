@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "render/image.h"
+#include "render/recording_sheet.h"
+
+namespace condyle {
+
+struct RecorderSettings {
+  std::filesystem::path folder;
+  int width = 1280, height = 720;
+  int frames = 0;                 // of the whole recording
+  double frames_per_second = 30;  // of the film
+  bool film = false;
+  bool resume = false;      // keep the whole frames of the same recording
+  RecordingSheet identity;  // what else decides the pictures: camera, case and motion hashes …
+};
+
+/// Writes frames/000000.png … and film.mp4 into a folder. A frame is written beside and renamed, so
+/// that whatever kills the program leaves whole frames; `recording.json` says what they are of.
+/// Pictures are packed and written on a thread of their own, a few behind the drawing.
+class Recorder {
+ public:
+  /// Touches nothing but leftovers of a killed run: the results of an earlier recording go only
+  /// when the first new frame is ready.
+  /// throws: MachineError when the folder cannot be made or written;
+  /// InputError when `resume` meets another recording, saying what differs.
+  explicit Recorder(const RecorderSettings& settings);
+  /// Waits for the frames in hand; makes no film.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// Whether the frame is there already and need not be drawn again.
+  bool has(int frame) const;
+  int kept_frames() const;
+
+  /// Takes a picture of the wanted size; frames in any order.
+  /// throws: MachineError of this or an earlier frame that could not be written.
+  void add(int frame, Image picture);
+
+  /// Waits for the last frame and makes the film.
+  /// throws: MachineError; the frames stay whole when only the film fails.
+  void finish();
+
+  std::filesystem::path frame_file(int frame) const;
+  std::filesystem::path film_file() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace condyle

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace condyle {
+
+/// What a recording is of, by name: size, frames, camera, hashes of case and motion. Two recordings
+/// with the same sheet have the same pictures.
+using RecordingSheet = std::map<std::string, std::string>;
+
+/// Nothing when the folder has none or it is not readable as one: then nothing in it can be
+/// trusted.
+std::optional<RecordingSheet> read_recording_sheet(const std::filesystem::path& file);
+/// throws: MachineError.
+void write_recording_sheet(const std::filesystem::path& file, const RecordingSheet& sheet);
+
+/// "frames was 60, is 90; …", or empty when they are the same.
+std::string difference(const RecordingSheet& before, const RecordingSheet& now);
+
+/// Whether the file is a PNG of that size with all its chunks intact, to the last.
+bool is_whole_png(const std::filesystem::path& file, int width, int height);
+
+}  // namespace condyle
