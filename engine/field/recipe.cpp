@@ -1,0 +1,67 @@
+#include "engine/field/recipe.h"
+
+#include <cmath>
+
+#include "engine/field/smooth.h"
+
+namespace condyle {
+
+void FieldRecipe::push(Act act, Primitive primitive, double k) {
+  const double margin = k + 3;
+  Eigen::AlignedBox3d reach(primitive.box.min().array() - margin,
+                            primitive.box.max().array() + margin);
+  if (act == Act::keep) reach = unbounded_box();
+  steps_.push_back({act, std::move(primitive), k, reach});
+}
+
+void FieldRecipe::add(Primitive primitive, double k) { push(Act::add, std::move(primitive), k); }
+void FieldRecipe::cut(Primitive primitive, double k) { push(Act::cut, std::move(primitive), k); }
+void FieldRecipe::keep(Primitive primitive, double k) { push(Act::keep, std::move(primitive), k); }
+
+double FieldRecipe::apply(const Step& step, double d, const Eigen::Vector3d& p) {
+  const double e = step.primitive.distance(p);
+  switch (step.act) {
+    case Act::add:
+      return smooth_min(d, e, step.k);
+    case Act::cut:
+      return smooth_max(d, -e, step.k);
+    default:
+      return smooth_max(d, e, step.k);
+  }
+}
+
+double FieldRecipe::operator()(const Eigen::Vector3d& at) const {
+  Eigen::Vector3d p = at;
+  if (symmetry_ == Symmetry::mirror_x) p.x() = std::abs(p.x());
+  double d = nothing;
+  for (const auto& step : steps_)
+    if (step.reach.contains(p)) d = apply(step, d, p);
+  return d;
+}
+
+std::vector<int> FieldRecipe::steps_near(const Eigen::AlignedBox3d& box) const {
+  std::vector<int> near;
+  for (std::size_t i = 0; i < steps_.size(); ++i)
+    if (steps_[i].reach.intersects(box)) near.push_back(static_cast<int>(i));
+  return near;
+}
+
+std::vector<int> FieldRecipe::steps_near(const Eigen::AlignedBox3d& box,
+                                         const std::vector<int>& among) const {
+  std::vector<int> near;
+  for (const int i : among)
+    if (steps_[static_cast<std::size_t>(i)].reach.intersects(box)) near.push_back(i);
+  return near;
+}
+
+double FieldRecipe::value(const Eigen::Vector3d& p, const std::vector<int>& steps) const {
+  double d = nothing;
+  for (const int i : steps) d = apply(steps_[static_cast<std::size_t>(i)], d, p);
+  return d;
+}
+
+Primitive FieldRecipe::as_primitive(const Eigen::AlignedBox3d& box) const {
+  return {[recipe = *this](const Eigen::Vector3d& p) { return recipe(p); }, box};
+}
+
+}  // namespace condyle

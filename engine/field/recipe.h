@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/field/primitives.h"
+
+namespace condyle {
+
+/// Which half of space a solid is described in.
+enum class Symmetry { none, mirror_x };  // mirror_x: the field at x is the field at |x|
+
+/// A solid made by joining and cutting primitives in order, each with its own rounding k (mm).
+/// A primitive counts only within k + 3 mm of its box, which leaves the surface as it is.
+class FieldRecipe {
+ public:
+  explicit FieldRecipe(Symmetry symmetry = Symmetry::none) : symmetry_(symmetry) {}
+
+  void add(Primitive primitive, double k);   // union
+  void cut(Primitive primitive, double k);   // minus the primitive
+  void keep(Primitive primitive, double k);  // intersection; acts everywhere
+
+  /// Signed distance, mm; `nothing` far from every primitive.
+  double operator()(const Eigen::Vector3d& p) const;
+
+  /// Indices of the steps that can matter inside a box of the described half of space.
+  std::vector<int> steps_near(const Eigen::AlignedBox3d& box) const;
+  std::vector<int> steps_near(const Eigen::AlignedBox3d& box, const std::vector<int>& among) const;
+  /// Signed distance by these steps only.
+  double value(const Eigen::Vector3d& p, const std::vector<int>& steps) const;
+
+  Symmetry symmetry() const { return symmetry_; }
+  /// The whole solid as one primitive of another recipe.
+  Primitive as_primitive(const Eigen::AlignedBox3d& box) const;
+
+  static constexpr double nothing = 50;  // mm, before the first step
+
+ private:
+  enum class Act { add, cut, keep };
+  struct Step {
+    Act act;
+    Primitive primitive;
+    double k;
+    Eigen::AlignedBox3d reach;
+  };
+  void push(Act act, Primitive primitive, double k);
+  static double apply(const Step& step, double d, const Eigen::Vector3d& p);
+
+  Symmetry symmetry_;
+  std::vector<Step> steps_;
+};
+
+}  // namespace condyle

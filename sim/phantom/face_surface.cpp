@@ -1,0 +1,98 @@
+#include <cmath>
+
+#include "engine/field/decimate.h"
+#include "engine/field/isosurface.h"
+#include "engine/field/mesh_facts.h"
+#include "engine/field/smooth.h"
+#include "sim/phantom/soft_shapes.h"
+#include "sim/phantom/surfaces.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+// The closed lips touch along a slit too fine for any grid. So the face is sampled with the lips
+// apart by a known map, and its vertices are mapped back.
+constexpr double rest_half_gap = 0.08;  // mm, half of what stays between the lips
+
+/// Half the height of the slit while it is sampled; negative beyond the mouth corner.
+double half_gap(double x) {
+  const double s = std::abs(x) / mouth_corner_x;
+  if (s >= 1) return mouth_corner_x - std::abs(x);
+  return 1.35 * std::sqrt(1 - std::pow(s, 6));
+}
+
+/// From the space with parted lips to the patient at rest.
+Vector3d closed_lips(const Vector3d& p) {
+  const double gap = std::max(half_gap(p.x()), 0.0), line = lip_line(p.x());
+  const double above = p.z() - line, far = std::abs(above) - gap;
+  const double rest = std::min(rest_half_gap, gap);
+  double z = p.z();
+  if (gap <= 0) return p;
+  if (far <= 0) {
+    z = line + above * rest / gap;
+  } else {
+    z -= std::copysign((gap - rest) * (1 - smooth_step(far / 13)), above);
+  }
+  return {p.x(), p.y(), z};
+}
+
+/// The slit between the parted lips.
+Primitive slit() {
+  return {[](const Vector3d& p) {
+            return std::max(std::abs(p.z() - lip_line(p.x())) - half_gap(p.x()), p.y() + 76);
+          },
+          {Vector3d(0, -125, -60), Vector3d(mouth_corner_x, -76, -42)}};
+}
+
+FieldRecipe parted_face() {
+  const FieldRecipe skin = skin_recipe(Lips::none);
+  const Eigen::AlignedBox3d mouth(Vector3d(0, -130, -68), Vector3d(mouth_corner_x, -60, -34));
+  FieldRecipe face(Symmetry::mirror_x);
+  face.add({[skin](const Vector3d& p) { return skin(closed_lips(p)); },
+            {Vector3d(0, -130, -195), Vector3d(130, 120, 135)}},
+           0);
+  const Primitive space = oral_space();
+  face.cut({[space](const Vector3d& p) { return space.distance(closed_lips(p)); }, space.box}, 1.5);
+  face.cut(slit(), 3);
+  face.cut(ellipsoid(eye_center, Vector3d::Constant(eye_radius + .1)), 0);
+  return face;
+}
+
+/// Positive where the surface is not skin: deep behind the lips, and the eye sockets.
+double hidden(const Vector3d& p, const Primitive& space, const Primitive& lids) {
+  const double mouth = std::min(0.6 - space.distance(p),
+                                std::max(std::abs(p.z() - lip_line(p.x())) - 6.5, p.y() + 79));
+  const double socket = std::min(eye_radius + .6 - (p - eye_center).norm(), lids.distance(p) - 1.5);
+  return std::max(mouth, socket);
+}
+
+/// Fine where looks and tissue need it: lips, eyes and nose, then the rest of the face.
+double importance(const Vector3d& p) {
+  const auto bump = [&](double x, double y, double z, double r) {
+    return std::exp(-(p - Vector3d(x, y, z)).squaredNorm() / (r * r));
+  };
+  const double front = smooth_step((-45 - p.y()) / 30) * smooth_step((p.z() + 115) / 15) *
+                       smooth_step((65 - p.z()) / 20);
+  return 1 + 60 * front + 250 * (bump(12, -98, -50, 15) + bump(32, -82, 15, 17)) +
+         120 * (bump(0, -112, -18, 17) + bump(28, -86, 35, 16)) + 40 * bump(78, 12, 0, 28);
+}
+
+}  // namespace
+
+TriMesh face_surface() {
+  const Eigen::AlignedBox3d box(Vector3d(0, -126, -191.5), Vector3d(112, 116, 126));
+  TriMesh half = isosurface(sample_field(parted_face(), box, {.spacing = 0.75}));
+  for (auto& p : half.vertices) p = closed_lips(p);
+  const Primitive space = oral_space(), lids = lid_opening();
+  std::vector<double> values;
+  for (const auto& p : half.vertices) values.push_back(hidden(p, space, lids));
+  half = largest_piece(clipped(half, values));
+  half = decimated(half, {.target_triangles = 50000, .importance = importance, .evenness = 0.01});
+  TriMesh face = with_mirror_image(half);
+  for (const auto& p : face.vertices) face.colors.push_back(skin_color(p));
+  return face;
+}
+
+}  // namespace condyle

@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <cmath>
+
+#include "engine/field/smooth.h"
+#include "sim/phantom/lookup.h"
+#include "sim/phantom/soft_shapes.h"
+#include "sim/phantom/surfaces.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Smooth blotches of about `size` mm, -1 to 1: a few crossed waves.
+double mottle(const Vector3d& p, double size) {
+  const double f = 2 / size;
+  return (std::sin(f * (1.0 * p.x() + 0.7 * p.z()) + 0.3) *
+              std::sin(f * (0.9 * p.y() - 0.4 * p.z())) +
+          std::sin(f * 1.7 * (0.6 * p.y() + 0.8 * p.z()) + 1.1) *
+              std::sin(f * 1.9 * (0.8 * p.x() - 0.5 * p.y()))) /
+         2;
+}
+
+}  // namespace
+
+Eigen::Vector3f skin_color(const Vector3d& at) {
+  static const Lookup brow_height({8, 10, 20, 34, 46, 50}, {31, 31.5, 34.5, 36.6, 33.2, 32}),
+      brow_width({8, 12, 20, 34, 46, 50}, {.6, 2.6, 2.9, 2.2, .9, .5}),
+      hair_line({-95, -80, -50, -20, 30, 100}, {78, 74, 48, 18, -22, -38});
+  static const Primitive lids = lid_opening();
+  const double x = std::abs(at.x()), y = at.y(), z = at.z();
+  const Vector3d p(x, y, z);
+  Vector3d color(.86, .66, .55);
+  const auto mix = [&](const Vector3d& other, double weight) {
+    const double w = std::clamp(weight, 0.0, 1.0);
+    color = color * (1 - w) + other * w;
+  };
+  const auto spot = [&](const Vector3d& c, const Vector3d& r) {
+    return std::exp(-((p - c).cwiseQuotient(r)).squaredNorm());
+  };
+  mix({.82, .58, .48}, .25 * mottle(at, 26) + .12 * mottle(at, 7));
+  mix({.84, .50, .43}, .42 * spot({42, -76, -14}, {17, 25, 15}));  // cheek
+  mix({.84, .50, .43}, .40 * spot({0, -116, -16}, {12, 10, 9}));   // nose tip
+  if (x > 68)
+    mix({.82, .50, .42}, .6 * smooth_step((x - 68) / 8) * spot({84, 14, 0}, {14, 25, 38}));
+  mix({.70, .50, .44}, .35 * spot({31, -84, 16}, {17, 14, 9}));  // around the eye
+  mix({.74, .58, .50}, .30 * spot({0, -100, -72}, {30, 22, 30}) +
+                           .18 * spot({0, -106, -36}, {20, 12, 9}));  // beard shadow
+
+  if (y < -76) {  // lips
+    const double s = std::min(x / 25, 1.0);
+    const double top = -50.6 + (7.6 - 1.6 * std::exp(-std::pow(x / 2.5, 2))) *
+                                   std::sqrt(std::max(1 - std::pow(s, 1.6), 0.0));
+    const double bottom = -50.9 - 9.4 * std::sqrt(1 - s * s);
+    const double inside = std::min(top - z, z - bottom);
+    const double lip = smooth_step(inside / 1.6 + .5) * smooth_step((26 - x) / 1.5);
+    mix({.74, .43, .40}, .85 * lip);
+    mix({.55, .28, .26}, .45 * lip * std::exp(-std::pow((z - lip_line(x)) / 1.1, 2)));
+    mix({.66, .33, .32}, .8 * smooth_step((y + 101 - 14 * s * s) / 4) * lip);  // moist inner side
+  }
+  if (y < -58) {  // brows
+    const double across = (z - brow_height(x)) / (brow_width(x) + .6);
+    const double hairs = .8 + .2 * std::sin(2.3 * x + 1.4 * z) * std::sin(1.1 * x - 2.0 * z);
+    const double ends = smooth_step((x - 8.5) / 4) * smooth_step((49 - x) / 8);
+    mix({.27, .19, .14}, .78 * hairs * ends * std::exp(-std::pow(std::abs(across), 2.6)));
+  }
+  const double from_eye = (p - eye_center).norm();
+  if (from_eye < eye_radius + 3 && y < -74) {  // lash line
+    const double lid = lids.distance({x, -100, z});
+    mix({.36, .23, .19}, .75 * std::exp(-std::pow(lid / 0.9, 2)));
+  }
+  mix({.78, .62, .53}, .25 * smooth_step((z - hair_line(y)) / 14 + .5));  // shaved scalp
+  return color.cast<float>();
+}
+
+}  // namespace condyle
