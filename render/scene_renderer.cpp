@@ -64,6 +64,7 @@ struct SceneRenderer::State {
   GpuPoints contacts;
   // Of the last frame:
   Pose X_CM;
+  bool face_moved = false;
   std::vector<Eigen::Vector3f> normals;  // kept for its memory
   // Kept from picture to picture of one size:
   std::optional<Framebuffer> sampled, resolved;
@@ -92,6 +93,10 @@ struct SceneRenderer::State {
     return box.isEmpty() ? 1.f : static_cast<float>(0.5 * box.diagonal().norm() + 45);
   }
 
+  void send_face(Drawable& drawable, std::span<const Eigen::Vector3f> positions) {
+    vertex_normals(positions, drawable.part->mesh.triangles, normals);
+    drawable.mesh.send_shape(positions, normals);
+  }
   std::vector<Item> items(const PictureSettings& settings);
   void draw_shadow_map(const std::vector<Item>& items, const Eigen::Matrix4f& matrix);
   void begin(GlProgram& program, const Item& item, const struct View& view);
@@ -244,13 +249,19 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> SceneRenderer::bounds() const {
 void SceneRenderer::update(const FrameState& frame) {
   auto& s = *state_;
   s.X_CM = frame.X_CM;
-  for (auto& drawable : s.drawables)
-    if (drawable.part->role == Role::face &&
-        frame.face.size() == drawable.part->mesh.vertices.size()) {
-      vertex_normals(frame.face, drawable.part->mesh.triangles, s.normals);
-      drawable.mesh.send_shape(frame.face, s.normals);
-      break;
+  for (auto& drawable : s.drawables) {
+    if (drawable.part->role != Role::face) continue;
+    const auto& rest = drawable.part->mesh.vertices;
+    if (frame.face.size() == rest.size()) {
+      s.send_face(drawable, frame.face);
+    } else if (s.face_moved) {
+      std::vector<Eigen::Vector3f> positions;
+      for (const auto& v : rest) positions.push_back(v.cast<float>());
+      s.send_face(drawable, positions);
     }
+    s.face_moved = frame.face.size() == rest.size();
+    break;
+  }
   std::vector<Eigen::Vector3f> points;
   for (const auto& pair : frame.contacts.pairs)
     for (const auto& contact : pair.contacts) points.push_back(contact.point.cast<float>());

@@ -12,7 +12,7 @@ layout(location = 3) in vec4 extra;  // occlusion by its own body, curvature, gl
 uniform mat4 model;            // rigid
 uniform mat4 view_projection;
 uniform mat4 shadow_matrix;
-uniform vec3 eye;
+uniform vec3 eye, key_direction;
 uniform float together;        // 1 with everything as at rest, 0 far from it
 uniform vec2 cavity;           // y where the mouth's darkness starts, 1/length; 0 length = none
 invariant gl_Position;
@@ -27,8 +27,9 @@ void main() {
   to_eye = eye - world.xyz;
   world_normal = mat3(model) * normal;
   albedo = pow(color.rgb, vec3(2.2));
-  // Moved out along the normal, so that a surface does not shade itself.
-  vec4 s = shadow_matrix * vec4(world.xyz + 0.9 * world_normal, 1.0);
+  // Moved toward the light's side along the normal, so that a surface does not shade itself.
+  float side = dot(world_normal, key_direction) < 0.0 ? -0.9 : 0.9;
+  vec4 s = shadow_matrix * vec4(world.xyz + side * world_normal, 1.0);
   shadow_place = s.xyz;
   traits = vec4(mix(extra.x, color.a, together), extra.y, extra.z,
                 exp(-max(world.y - cavity.x, 0.0) * cavity.y));

@@ -8,6 +8,8 @@
 namespace condyle {
 namespace {
 
+/// Light that spreads this far to one side, whatever it does along the other: the plane's Gaussians
+/// integrated over lines. (Taken round the ring as they are, the wide red ones would nearly vanish.)
 Eigen::Vector3d profile(double distance_mm) {
   struct Gaussian {
     double variance;
@@ -20,7 +22,7 @@ Eigen::Vector3d profile(double distance_mm) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const auto& g : gaussians)
     sum += g.weight * (std::exp(-distance_mm * distance_mm / (2 * g.variance)) /
-                       (2 * std::numbers::pi * g.variance));
+                       std::sqrt(2 * std::numbers::pi * g.variance));
   return sum;
 }
 

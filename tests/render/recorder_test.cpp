@@ -1,0 +1,224 @@
+#include "render/recorder.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+
+namespace condyle {
+namespace {
+namespace fs = std::filesystem;
+
+class Recording : public testing::Test {
+ protected:
+  // A % in the folder's name must not be read as a frame number.
+  fs::path top = fs::temp_directory_path() / ("condyle rec%03d-" + std::to_string(::getpid()));
+  void SetUp() override { fs::create_directories(top); }
+  void TearDown() override {
+    fs::permissions(top, fs::perms::owner_all);
+    fs::remove_all(top);
+  }
+
+  RecorderSettings settings(const std::string& name, int frames = 12) const {
+    RecorderSettings s;
+    s.folder = top / name;
+    s.width = 65;  // odd: the film is padded
+    s.height = 48;
+    s.frames = frames;
+    s.film = have_ffmpeg();
+    s.identity = {{"camera", "front"}, {"motion", "opening"}};
+    return s;
+  }
+  static bool have_ffmpeg() { return std::system("ffmpeg -version >/dev/null 2>&1") == 0; }
+
+  static Image frame(const RecorderSettings& s, int k) {
+    Image image{s.width, s.height, {}};
+    for (int y = 0; y < s.height; ++y)
+      for (int x = 0; x < s.width; ++x)
+        for (const int value : {x * 3, y * 5, 20 * k, 255})
+          image.rgba.push_back(static_cast<std::uint8_t>(value));
+    return image;
+  }
+  /// Draws what is missing; the number drawn.
+  static int record(const RecorderSettings& s, int until = 1 << 20, bool finish = true) {
+    Recorder recorder(s);
+    int drawn = 0;
+    for (int k = 0; k < s.frames && k < until; ++k)
+      if (!recorder.has(k)) recorder.add(k, frame(s, k)), ++drawn;
+    if (finish) recorder.finish();
+    return drawn;
+  }
+  /// Every file by its path in the folder.
+  static std::map<std::string, std::string> content(const fs::path& folder) {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+      if (entry.is_regular_file())
+        all[fs::relative(entry.path(), folder).string()] = read_file(entry.path());
+    return all;
+  }
+};
+
+TEST_F(Recording, GivesNamedFramesAndTheSameBytesTwice) {
+  EXPECT_EQ(record(settings("a")), 12);
+  EXPECT_EQ(record(settings("b")), 12);
+  const auto a = content(top / "a");
+  EXPECT_EQ(a, content(top / "b"));
+  EXPECT_TRUE(a.contains("frames/000000.png") && a.contains("frames/000011.png"));
+  EXPECT_EQ(a.size(), have_ffmpeg() ? 14u : 13u);
+}
+
+TEST_F(Recording, AKilledOneIsCompletedToTheSameBits) {
+  record(settings("whole"));
+  record(settings("killed"), 7, false);
+  const fs::path frames = top / "killed/frames";
+  // As a kill or a power cut may leave it: half files beside, a torn frame, a missing one.
+  write_file(frames / ".000007.png.4711.part", "half");
+  write_file(top / "killed/.film.mp4.4711.part", "half");
+  const std::string third = read_file(frames / "000003.png");
+  std::ofstream(frames / "000003.png", std::ios::binary) << third.substr(0, third.size() / 2);
+  fs::remove(frames / "000001.png");
+  auto again = settings("killed");
+  again.resume = true;
+  EXPECT_EQ(record(again), 12 - 7 + 2);
+  EXPECT_EQ(content(top / "killed"), content(top / "whole"));
+  EXPECT_EQ(record(again), 0);
+  EXPECT_EQ(content(top / "killed"), content(top / "whole"));
+}
+
+TEST_F(Recording, ResumingAnotherRecordingIsRefusedWithWhatDiffers) {
+  record(settings("a"));
+  const auto before = content(top / "a");
+  auto other = settings("a", 20);
+  other.resume = true;
+  other.identity["camera"] = "left";
+  try {
+    const Recorder recorder(other);
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    for (const char* word : {"camera was front, is left", "frames was 12, is 20", "recording.json"})
+      EXPECT_NE(text.find(word), std::string::npos) << text;
+  }
+  EXPECT_EQ(content(top / "a"), before);
+}
+
+TEST_F(Recording, EarlierResultsStayUntilTheFirstNewFrameIsReady) {
+  record(settings("a"));
+  write_file(top / "a/frames/notes.txt", "mine");
+  const auto before = content(top / "a");
+  auto other = settings("a", 3);
+  other.identity["camera"] = "left";
+  { const Recorder recorder(other); }
+  EXPECT_EQ(content(top / "a"), before);
+  record(other);
+  const auto after = content(top / "a");
+  EXPECT_TRUE(after.contains("frames/000002.png"));
+  EXPECT_FALSE(after.contains("frames/000003.png"));
+  EXPECT_EQ(after.at("frames/notes.txt"), "mine");
+}
+
+TEST_F(Recording, ResumingNothingStartsAndFramesOfUnknownOriginAreNotTrusted) {
+  auto s = settings("new");
+  s.resume = true;
+  fs::create_directories(s.folder / "frames");
+  write_png(s.folder / "frames/000000.png", frame(s, 5));
+  EXPECT_EQ(record(s), 12);
+  record(settings("b"));
+  EXPECT_EQ(content(top / "new"), content(top / "b"));
+}
+
+TEST_F(Recording, TheFilmHasEveryFrameAndEvenSides) {
+  if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
+  record(settings("a"));
+  const std::string command =
+      "ffprobe -v error -count_frames -select_streams v -show_entries "
+      "stream=nb_read_frames,width,height,pix_fmt,codec_name -of csv=p=0 '" +
+      (top / "a/film.mp4").string() + "'";
+  FILE* pipe = ::popen(command.c_str(), "r");
+  ASSERT_TRUE(pipe);
+  char line[200] = "";
+  ASSERT_TRUE(std::fgets(line, sizeof line, pipe));
+  EXPECT_EQ(::pclose(pipe), 0);
+  EXPECT_STREQ(line, "h264,66,48,yuv420p,12\n");
+}
+
+TEST_F(Recording, WithoutFfmpegTheFramesStayAndTheWayOutIsNamed) {
+  auto s = settings("a");
+  s.film = true;
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", "/nowhere", 1);
+  try {
+    record(s);
+    ADD_FAILURE();
+  } catch (const MachineError& error) {
+    EXPECT_NE(std::string(error.what()).find("install ffmpeg"), std::string::npos) << error.what();
+  }
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(content(top / "a").size(), 13u);
+  s.resume = true;
+  if (have_ffmpeg()) {
+    EXPECT_EQ(record(s), 0);
+  }
+}
+
+TEST_F(Recording, AFailingFfmpegIsQuotedAndTheOldFilmKept) {
+  auto s = settings("a");
+  record(s);
+  write_file(s.folder / "film.mp4", "old film");
+  fs::create_directories(top / "bin");
+  write_file(top / "bin/ffmpeg",
+             "#!/bin/sh\necho first >&2\necho 'No space left on device' >&2\nexit 1\n");
+  fs::permissions(top / "bin/ffmpeg", fs::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", ((top / "bin").string() + ":" + path).c_str(), 1);
+  s.film = s.resume = true;
+  try {
+    record(s);
+    ADD_FAILURE();
+  } catch (const MachineError& error) {
+    EXPECT_NE(std::string(error.what()).find("No space left on device"), std::string::npos);
+  }
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(read_file(s.folder / "film.mp4"), "old film");
+}
+
+TEST_F(Recording, AFolderThatCannotBeWrittenIsNamed) {
+  auto s = settings("a");
+  s.folder = "/proc/condyle-cannot/out";
+  EXPECT_THROW(Recorder{s}, MachineError);
+  write_file(top / "file", "in the way");
+  s.folder = top / "file";
+  EXPECT_THROW(Recorder{s}, MachineError);
+}
+
+TEST_F(Recording, AFrameThatCannotBeWrittenStopsTheRecordingWithItsName) {
+  const auto s = settings("a");
+  fs::create_directories(s.folder / "frames/000002.png/in the way");
+  try {
+    record(s);
+    FAIL();
+  } catch (const MachineError& error) {
+    EXPECT_NE(std::string(error.what()).find("000002.png"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(Recording, APictureOfAnotherSizeIsRefused) {
+  const auto s = settings("a");
+  auto small = s;
+  small.width = 10;
+  Recorder recorder(s);
+  EXPECT_THROW(recorder.add(0, frame(small, 0)), MachineError);
+  EXPECT_THROW(recorder.add(99, frame(s, 0)), MachineError);
+  EXPECT_THROW(recorder.finish(), MachineError);  // frames are missing
+}
+
+}  // namespace
+}  // namespace condyle

@@ -1,0 +1,236 @@
+#include <cstdlib>
+
+#include "tests/render/scene_fixture.h"
+
+namespace condyle {
+namespace {
+
+using Scene = WithContext;
+
+TEST(Context, NeedsNoDisplay) {
+  ::unsetenv("DISPLAY");
+  ::unsetenv("WAYLAND_DISPLAY");
+  try {
+    const OffscreenContext context;
+    EXPECT_NE(context.description().find("EGL"), std::string::npos) << context.description();
+  } catch (const MachineError& error) {
+    EXPECT_NE(std::string(error.what()).find("libegl1"), std::string::npos) << error.what();
+    GTEST_SKIP() << error.what();
+  }
+}
+
+TEST_F(Scene, ABallIsARoundDiscInTheMiddle) {
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30))};
+  SceneRenderer renderer(parts);
+  const Image image = renderer.picture(front_camera(), mask_settings());
+  const Blob blob = blob_of(image);
+  // The outline of a ball seen from near is that of a slightly larger disc.
+  const double radius = 200 / 100.0 * 30 / std::sqrt(1 - 30.0 * 30 / (500.0 * 500));
+  EXPECT_NEAR(blob.area, M_PI * radius * radius, 0.01 * blob.area);
+  EXPECT_NEAR(blob.centre.x(), 100, 0.1);
+  EXPECT_NEAR(blob.centre.y(), 100, 0.1);
+  EXPECT_NEAR(blob.variance.x(), radius * radius / 4, 0.01 * blob.variance.x());
+  EXPECT_NEAR(blob.variance.y(), blob.variance.x(), 0.005 * blob.variance.x());
+}
+
+TEST_F(Scene, BoneIsWarmAndLightAndTheBackgroundAQuietGrey) {
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30))};
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = settings.height = 200;
+  const Image image = renderer.picture(front_camera(), settings);
+  const Pixel bone = pixel(image, 90, 88);
+  EXPECT_GT(bone.r, 170);
+  EXPECT_GT(bone.r, bone.g);
+  EXPECT_GT(bone.g, bone.b + 8);
+  for (const auto& [x, y] : {std::pair{2, 2}, {197, 2}, {2, 197}, {197, 197}, {100, 5}}) {
+    const Pixel p = pixel(image, x, y);
+    EXPECT_EQ(p.a, 255);
+    EXPECT_LT(std::max({p.r, p.g, p.b}), 110);
+    EXPECT_LT(std::max({p.r, p.g, p.b}) - std::min({p.r, p.g, p.b}), 16);
+  }
+}
+
+TEST_F(Scene, TheSamePictureTwiceHasTheSameBytes) {
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30)),
+                                   make_part("face", Role::face, ball({0, -5, 0}, 33))};
+  PictureSettings settings;
+  settings.width = 320;
+  settings.height = 240;
+  settings.skin_opacity = 0.5;
+  SceneRenderer first(parts), second(parts);
+  const Image a = first.picture(front_camera(), settings);
+  settings.width = 64;
+  first.picture(front_camera(), settings);  // another size in between changes nothing
+  settings.width = 320;
+  EXPECT_EQ(a.rgba, first.picture(front_camera(), settings).rgba);
+  EXPECT_EQ(a.rgba, second.picture(front_camera(), settings).rgba);
+}
+
+TEST_F(Scene, OpacityZeroEqualsAbsence) {
+  const std::vector<Part> both = {make_part("skull", Role::skull, ball({0, 0, 0}, 25)),
+                                  make_part("face", Role::face, ball({0, 0, 0}, 35))};
+  const std::vector<Part> bare = {both[0],
+                                  make_part("face", Role::face, {both[1].mesh.vertices, {}, {}})};
+  PictureSettings settings;
+  settings.width = settings.height = 160;
+  SceneRenderer with(both), without(bare);
+  const Image whole = with.picture(front_camera(), settings);
+  settings.skin_opacity = 0;
+  const Image skin_hidden = with.picture(front_camera(), settings);
+  settings.skin_opacity = 1;
+  settings.part_opacity["face"] = 0;
+  const Image part_hidden = with.picture(front_camera(), settings);
+  const Image absent = without.picture(front_camera(), settings);
+  EXPECT_NE(whole.rgba, skin_hidden.rgba);
+  EXPECT_EQ(skin_hidden.rgba, part_hidden.rgba);
+  EXPECT_EQ(skin_hidden.rgba, absent.rgba);
+}
+
+TEST_F(Scene, HalfOpaqueSkinShowsWhatLiesUnderItBetweenBothPictures) {
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 25)),
+                                   make_part("face", Role::face, ball({0, 0, 0}, 35))};
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = settings.height = 160;
+  settings.shadows = false;
+  const auto blue = [&](double opacity) {
+    settings.skin_opacity = opacity;
+    return pixel(renderer.picture(front_camera(), settings), 70, 70).b;
+  };
+  const int skin = blue(1), half = blue(0.5), bone = blue(0);
+  ASSERT_GT(bone, skin + 20);
+  EXPECT_GT(half, skin + 5);
+  EXPECT_LT(half, bone - 5);
+}
+
+TEST_F(Scene, TheMandibleMovesByItsPoseAndTheSkullStays) {
+  const std::vector<Part> jaw = {make_part("mandible", Role::mandible, ball({0, 0, 0}, 15)),
+                                 make_part("skull", Role::skull, ball({0, 0, 30}, 5))};
+  SceneRenderer renderer(jaw);
+  auto settings = mask_settings();
+  settings.part_opacity["skull"] = 0;
+  const Blob rest = blob_of(renderer.picture(front_camera(), settings));
+  FrameState frame;
+  frame.X_CM.t = {10, 0, -20};
+  renderer.update(frame);
+  const Blob moved = blob_of(renderer.picture(front_camera(), settings));
+  // The patient's left is on the right of a front view; 2 pixels a millimetre.
+  EXPECT_NEAR(moved.centre.x() - rest.centre.x(), 20, 0.2);
+  EXPECT_NEAR(moved.centre.y() - rest.centre.y(), 40, 0.2);
+  settings.part_opacity = {{"mandible", 0.0}};
+  const Blob skull = blob_of(renderer.picture(front_camera(), settings));
+  EXPECT_NEAR(skull.centre.y(), 100 - 60, 0.2);
+  EXPECT_NEAR(skull.centre.x(), 100, 0.2);
+}
+
+TEST_F(Scene, TheFaceFollowsTheFrame) {
+  const std::vector<Part> parts = {make_part("face", Role::face, ball({0, 0, 0}, 15))};
+  SceneRenderer renderer(parts);
+  FrameState frame;
+  for (const auto& v : parts[0].mesh.vertices)
+    frame.face.push_back((v + Eigen::Vector3d(0, 0, 10)).cast<float>());
+  renderer.update(frame);
+  const Blob moved = blob_of(renderer.picture(front_camera(), mask_settings()));
+  EXPECT_NEAR(moved.centre.y(), 100 - 20, 0.2);
+  renderer.update(FrameState{});  // a frame without a face shows it at rest
+  const Blob rest = blob_of(renderer.picture(front_camera(), mask_settings()));
+  EXPECT_NEAR(rest.centre.y(), 100, 0.2);
+}
+
+TEST_F(Scene, TransparentBackgroundIsEmptyOutsideAndStraightAtTheEdge) {
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30))};
+  SceneRenderer renderer(parts);
+  const Image image = renderer.picture(front_camera(), mask_settings());
+  EXPECT_EQ(pixel(image, 3, 3).a, 0);
+  EXPECT_EQ(pixel(image, 100, 100).a, 255);
+  int edges = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const Pixel p = pixel(image, x, y);
+      if (p.a == 0) {
+        EXPECT_EQ(p.r + p.g + p.b, 0);
+      }
+      if (p.a == 0 || p.a == 255) continue;
+      ++edges;
+      // Straight alpha: an edge pixel has the bone's own brightness, not one mixed with black.
+      if (x < 100 && y < 100) {
+        EXPECT_GT(p.r, 110) << x << ' ' << y << " alpha " << p.a;
+      }
+    }
+  EXPECT_GT(edges, 50);
+}
+
+TEST_F(Scene, AnOpenShellIsDrawnFromBothSides) {
+  TriMesh square;
+  square.vertices = {{-20, 0, -20}, {20, 0, -20}, {20, 0, 20}, {-20, 0, 20}};
+  square.triangles = {{0, 1, 2}, {0, 2, 3}};  // outward toward -y
+  const std::vector<Part> parts = {make_part("maxilla", Role::maxilla, square)};
+  SceneRenderer renderer(parts);
+  const auto front = renderer.picture(front_camera(), mask_settings());
+  const auto back = renderer.picture(turned(front_camera(), M_PI), mask_settings());
+  EXPECT_NEAR(blob_of(front).area, 80 * 80, 80);
+  EXPECT_NEAR(blob_of(back).area, 80 * 80, 80);
+  EXPECT_NEAR(pixel(front, 100, 100).r, pixel(back, 100, 100).r, 12);
+}
+
+TEST_F(Scene, ContactsAreMarkedInVermilionAndCanBeSwitchedOff) {
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30))};
+  SceneRenderer renderer(parts);
+  FrameState frame;
+  frame.contacts.pairs.emplace_back();
+  frame.contacts.pairs[0].contacts.push_back({{0, -30, 0}, {0, 0, 1}});
+  renderer.update(frame);
+  PictureSettings settings;
+  settings.width = settings.height = 400;
+  const auto vermilion = [&] {
+    const Image image = renderer.picture(front_camera(), settings);
+    int count = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const Pixel p = pixel(image, x, y);
+        count += p.r > 150 && p.g < 0.6 * p.r && p.b < 40;
+      }
+    return count;
+  };
+  EXPECT_GT(vermilion(), 12);
+  settings.contacts = false;
+  EXPECT_EQ(vermilion(), 0);
+}
+
+TEST_F(Scene, ShadowsDarkenOnlyWhatIsShaded) {
+  // A small ball between the key light, up on the viewer's left, and a large one.
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30)),
+                                   make_part("maxilla", Role::maxilla, ball({-26, -34, 32}, 8))};
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = settings.height = 200;
+  settings.shadows = false;
+  const Image lit = renderer.picture(front_camera(120), settings);
+  settings.shadows = true;
+  const Image shaded = renderer.picture(front_camera(120), settings);
+  int darker = 0, brighter = 0, ball_pixels = 0;
+  for (int y = 0; y < 200; ++y)
+    for (int x = 0; x < 200; ++x) {
+      const int before = pixel(lit, x, y).r, after = pixel(shaded, x, y).r;
+      ball_pixels += before > 120;
+      darker += after < before - 25;
+      brighter += after > before + 2;
+    }
+  EXPECT_GT(darker, 100);
+  EXPECT_EQ(brighter, 0);
+  EXPECT_LT(darker, ball_pixels / 3);  // no acne over the lit side
+}
+
+TEST_F(Scene, APictureBeyondTheDriversLimitIsRefusedInWords) {
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30))};
+  SceneRenderer renderer(parts);
+  auto settings = mask_settings();
+  settings.width = 1 << 20;
+  EXPECT_THROW(renderer.picture(front_camera(), settings), MachineError);
+  settings.width = 64;
+  EXPECT_EQ(renderer.picture(front_camera(), settings).width, 64);
+}
+
+}  // namespace
+}  // namespace condyle
