@@ -26,10 +26,12 @@ Vector nearest_on_segment(const Vector& p, const Vector& a, const Vector& b) {
 struct Prepared {
   const Triangle& corner;
   std::array<Vector, 3> edge;
+  std::array<double, 3> length2;
   Vector normal;  // not unit; zero without area
   double normal2;
 
   explicit Prepared(const Triangle& t) : corner(t), edge{t[1] - t[0], t[2] - t[1], t[0] - t[2]} {
+    for (int k = 0; k < 3; ++k) length2[k] = edge[k].squaredNorm();
     normal = edge[0].cross(edge[1]);
     normal2 = normal.squaredNorm();
   }
@@ -117,10 +119,14 @@ TriangleGap triangle_distance(const Triangle& ta, const Triangle& tb, double bou
       if (n2 <= 0) continue;
       const Vector w = tb[j] - ta[i];
       const double h = w.dot(n);
-      if (h * h >= gap.squared_mm2 * n2) continue;  // even the lines are farther apart
+      // Even the lines are farther apart, rounding of h (1e-15 of its factors) allowed for.
+      const double doubt2 = 1e-30 * w.squaredNorm() * a.length2[i] * b.length2[j];
+      if (h * h >= 2 * (gap.squared_mm2 * n2 + doubt2)) continue;
       const double s = w.cross(b.edge[j]).dot(n) / n2, t = w.cross(a.edge[i]).dot(n) / n2;
       if (s <= 0 || s >= 1 || t <= 0 || t >= 1) continue;
-      offer(ta[i] + s * a.edge[i], tb[j] + t * b.edge[j]);
+      // s and t err apart from each other, along the edges: let one point answer the other.
+      const Vector p = ta[i] + s * a.edge[i];
+      offer(p, nearest_on_segment(p, tb[j], tb[(j + 1) % 3]));
     }
   if (gap.squared_mm2 <= touch_mm2) gap.squared_mm2 = 0;
   return gap;
