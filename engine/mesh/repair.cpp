@@ -81,9 +81,19 @@ bool is_flat(const TriMesh& mesh, const Vector3i& t) {
   return u.cross(v).norm() <= 1e-9 * longest;
 }
 
+std::vector<Edge>::const_iterator find_edge(const EdgeList& list, int a, int b) {
+  const std::pair key(std::min(a, b), std::max(a, b));
+  const auto found = std::lower_bound(
+      list.edges.begin(), list.edges.end(), key,
+      [](const Edge& e, const std::pair<int, int>& k) { return std::pair(e.low, e.high) < k; });
+  const bool there = found != list.edges.end() && std::pair(found->low, found->high) == key;
+  return there ? found : list.edges.end();
+}
+
 /// Replaces flat triangle `flat` and the one across its longest edge by two across the other
 /// diagonal. False when it has no single neighbour there or the new pair would be flat as well.
-bool split_neighbour(TriMesh& mesh, int flat, int neighbour, int apex_corner) {
+bool split_neighbour(TriMesh& mesh, const EdgeList& list, int flat, int neighbour,
+                     int apex_corner) {
   const Vector3i t = mesh.triangles[flat];
   const int c = t[apex_corner], a = t[(apex_corner + 1) % 3], b = t[(apex_corner + 2) % 3];
   const Vector3i n = mesh.triangles[neighbour];
@@ -95,6 +105,7 @@ bool split_neighbour(TriMesh& mesh, int flat, int neighbour, int apex_corner) {
   for (int k = 0; k < 3; ++k) forward |= n[k] == b && n[(k + 1) % 3] == a;
   if (!forward) return false;
   const Vector3i one(c, a, d), two(b, c, d);
+  if (find_edge(list, c, d) != list.edges.end()) return false;
   if (is_flat(mesh, one) || is_flat(mesh, two)) return false;
   mesh.triangles[flat] = one;
   mesh.triangles[neighbour] = two;
@@ -165,18 +176,12 @@ int drop_degenerate(TriMesh& mesh) {
             (mesh.vertices[t[(k + 1) % 3]] - mesh.vertices[t[(k + 2) % 3]]).squaredNorm();
         if (d > longest) longest = d, apex = k;
       }
-      const int a = std::min(t[(apex + 1) % 3], t[(apex + 2) % 3]);
-      const int b = std::max(t[(apex + 1) % 3], t[(apex + 2) % 3]);
-      const auto edge = std::lower_bound(list.edges.begin(), list.edges.end(), std::pair(a, b),
-                                         [](const Edge& e, const std::pair<int, int>& key) {
-                                           return std::pair(e.low, e.high) < key;
-                                         });
-      if (edge == list.edges.end() || edge->low != a || edge->high != b || edge->count != 2)
-        continue;
+      const auto edge = find_edge(list, t[(apex + 1) % 3], t[(apex + 2) % 3]);
+      if (edge == list.edges.end() || edge->count != 2) continue;
       const int one = list.sides[edge->first].triangle, two = list.sides[edge->first + 1].triangle;
       const int neighbour = one == i ? two : one;
       if (touched[i] || touched[neighbour]) continue;
-      if (split_neighbour(mesh, i, neighbour, apex))
+      if (split_neighbour(mesh, list, i, neighbour, apex))
         touched[i] = touched[neighbour] = 1, changed = true;
     }
     if (!changed) break;

@@ -3,6 +3,7 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <array>
 
 #include "engine/mesh/measure.h"
 #include "engine/mesh/repair.h"
@@ -10,6 +11,29 @@
 
 namespace condyle {
 namespace {
+
+/// Edge collapses can leave two triangles back to back on the same corners: a flap without
+/// thickness. Both go; dropping one would leave a hole.
+void cancel_flaps(TriMesh& mesh) {
+  std::vector<std::array<int, 4>> keys(mesh.triangles.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    std::copy_n(mesh.triangles[i].data(), 3, keys[i].begin());
+    std::sort(keys[i].begin(), keys[i].begin() + 3);
+    keys[i][3] = static_cast<int>(i);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<char> gone(keys.size(), 0);
+  for (std::size_t i = 0; i + 1 < keys.size(); ++i)
+    if (std::equal(keys[i].begin(), keys[i].begin() + 3, keys[i + 1].begin())) {
+      gone[static_cast<std::size_t>(keys[i][3])] = gone[static_cast<std::size_t>(keys[i + 1][3])] =
+          1;
+      ++i;
+    }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < gone.size(); ++i)
+    if (!gone[i]) mesh.triangles[kept++] = mesh.triangles[i];
+  mesh.triangles.resize(kept);
+}
 
 TriMesh collapsed(const TriMesh& mesh, const std::vector<float>& positions,
                   const std::vector<unsigned int>& indices, int target) {
@@ -22,7 +46,7 @@ TriMesh collapsed(const TriMesh& mesh, const std::vector<float>& positions,
   for (std::size_t i = 0; i + 2 < kept.size(); i += 3)
     result.triangles.emplace_back(static_cast<int>(kept[i]), static_cast<int>(kept[i + 1]),
                                   static_cast<int>(kept[i + 2]));
-  drop_duplicates(result);
+  cancel_flaps(result);
   drop_unreferenced(result);
   return result;
 }

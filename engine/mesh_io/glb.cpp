@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "engine/core/error.h"
+#include "engine/mesh_io/json_depth.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "engine/mesh_io/readers.h"
 
@@ -75,6 +76,8 @@ class GlbReader {
     if (text.size() > max_json_bytes)
       refuse("chunk 0",
              fmt::format("has {} bytes of JSON; at most {} are read", text.size(), max_json_bytes));
+    if (json_depth(text) > max_json_depth)
+      refuse("chunk 0", "nests its JSON too deep: the file is damaged");
     gltf_ = json::parse(text.begin(), text.end(), nullptr, false);
     if (!gltf_.is_object()) refuse("chunk 0", "is not valid JSON: the file is damaged");
   }

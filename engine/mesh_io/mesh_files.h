@@ -8,7 +8,7 @@ namespace condyle {
 
 /// Largest mesh that is read; a surface of a head has 0.01 to 1 million triangles.
 constexpr int max_mesh_vertices = 10'000'000;
-constexpr int max_mesh_triangles = 10'000'000;
+constexpr int max_mesh_triangles = 5'000'000;
 
 /// Reads STL (binary, ASCII), PLY (ASCII, binary of either byte order), OBJ and GLB by the file's
 /// extension. Coordinates stay in the file's own unit and axes (nothing but STL tells no corners

@@ -57,6 +57,7 @@ void check_result(const fs::path& file, const TriMesh& mesh) {
 TriMesh read_mesh(const fs::path& file) {
   if (std::error_code error; fs::is_directory(file, error))
     throw InputError(file, "", "is a folder; name one .stl, .ply, .obj or .glb file");
+  if (std::error_code error; !fs::exists(file, error)) throw InputError(file, "", "no such file");
   const Reader reader = reader_for(file);
   try {
     const std::string content = read_file(file, max_bytes);

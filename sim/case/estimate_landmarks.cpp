@@ -41,14 +41,15 @@ std::optional<Vector3d> condyle_center(const std::vector<const Part*>& mandibles
   return box.center();
 }
 
-/// The vertex near the midline farthest forward and, times `up`, upward.
+/// The place of the vertex near the midline farthest forward and, times `up`, upward; on the
+/// midline, which runs between the two middle teeth.
 std::optional<Vector3d> incisal_point(const Part& part, double middle, double up) {
   std::optional<Vector3d> best;
   double most = -std::numeric_limits<double>::infinity();
   for (const auto& p : part.mesh.vertices) {
     if (std::abs(p.x() - middle) > 5) continue;
     const double reach = up * p.z() - p.y();
-    if (reach > most) most = reach, best = p;
+    if (reach > most) most = reach, best = Vector3d(middle, p.y(), p.z());
   }
   return best;
 }

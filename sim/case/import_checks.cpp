@@ -19,7 +19,8 @@ constexpr double least_head_mm = 40, largest_head_mm = 600;
 
 /// "0.2 mm", "200 m": a length as people say it.
 std::string length_text(double mm) {
-  return mm >= 10'000 ? fmt::format("{:.3g} m", mm / 1000) : fmt::format("{:.3g} mm", mm);
+  if (mm >= 10'000) return fmt::format("{:.0f} m", mm / 1000);
+  return mm >= 10 ? fmt::format("{:.0f} mm", mm) : fmt::format("{:.2g} mm", mm);
 }
 
 /// How the mandible lies, from its shape alone: the chin's part is one piece at the midline, the
@@ -122,6 +123,8 @@ void check_frame(const Case& patient, const ImportRequest& request) {
     problem = "the mandible's rami are not behind and above its chin";
   }
   const std::string fits = fitting_frame(mandible->mesh.vertices, jaw, request);
+  // A piece of a mandible has no such shape in any frame.
+  if (fits.empty() && contradiction(jaw).empty()) return;
   throw InputError(request.files.front().file, "",
                    fmt::format("with --frame {} {}: the axes or the landmarks are wrong; {}",
                                request.frame, problem,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <set>
 
 #include "engine/core/error.h"
@@ -13,6 +14,7 @@
 #include "sim/case/case_io.h"
 #include "sim/case/import_checks.h"
 #include "sim/case/landmark_files.h"
+#include "sim/case/soft_landmarks.h"
 #include "sim/case/source_frame.h"
 
 namespace condyle {
@@ -21,10 +23,15 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-/// A file read and converted, not yet cleaned.
+/// A file read, converted and cleaned.
 struct Surface {
   ImportFile source;
   TriMesh mesh;
+};
+
+/// What cleaning did to the files of one part.
+struct Cleaning {
+  int welded = 0, flat = 0, twice = 0, turned = 0, unused = 0;
 };
 
 bool is_bone(Role role) {
@@ -32,32 +39,50 @@ bool is_bone(Role role) {
 }
 
 std::string at(const Vector3d& p) {
-  return fmt::format("({:.0f}, {:.0f}, {:.0f})", p.x(), p.y(), p.z());
+  // Rounded first: no "-0".
+  return fmt::format("({:.0f}, {:.0f}, {:.0f})", std::round(p.x()) + 0.0, std::round(p.y()) + 0.0,
+                     std::round(p.z()) + 0.0);
 }
 
 std::string counted(long count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-/// Cleans the mesh; the note says what it is and what was done to it.
-void clean(Surface& surface, std::vector<std::string>& notes) {
-  TriMesh& mesh = surface.mesh;
-  // A file's single precision is 4e-6 mm on a head: corners nearer than that are one.
-  const int welded = weld(mesh, 1e-5);
-  const int flat = drop_degenerate(mesh);
-  const int twice = drop_duplicates(mesh);
-  const Orientation turned = orient_outward(mesh);
-  const int unused = drop_unreferenced(mesh);
-  if (mesh.triangles.empty())
+/// Joins corners that differ by less than single precision can tell on a head, where that closes
+/// rims and does no harm; equal ones always.
+int weld_file(TriMesh& mesh) {
+  int welded = weld(mesh);
+  const Topology exact = inspect(mesh);
+  if (exact.boundary_edges == 0) return welded;
+  TriMesh joined = mesh;
+  const int more = weld(joined, 1e-4);
+  const Topology found = inspect(joined);
+  if (more == 0 || found.boundary_edges >= exact.boundary_edges ||
+      found.nonmanifold_edges > exact.nonmanifold_edges)
+    return welded;
+  mesh = std::move(joined);
+  return welded + more;
+}
+
+void clean(Surface& surface, Cleaning& done) {
+  done.welded += weld_file(surface.mesh);
+  done.flat += drop_degenerate(surface.mesh);
+  done.twice += drop_duplicates(surface.mesh);
+  done.turned += orient_outward(surface.mesh).turned;
+  done.unused += drop_unreferenced(surface.mesh);
+  if (surface.mesh.triangles.empty())
     throw InputError(surface.source.file, "",
                      "has no triangle with an area; export the surface again");
+}
 
-  const Topology found = inspect(mesh);
-  std::string note = fmt::format(
-      "{} ({}): {} in {}", role_name(surface.source.role), surface.source.file.filename().string(),
-      counted(static_cast<long>(mesh.triangles.size()), "triangle", "triangles"),
-      counted(found.components, "piece", "pieces"));
-  if (found.closed()) note += fmt::format(", closed, {:.1f} cm3", found.volume_mm3 / 1000);
+/// What the part is and what is wrong with it, as people say it.
+std::string description(const Part& part, const std::string& files) {
+  const Topology found = inspect(part.mesh);
+  std::string note =
+      fmt::format("{} ({}): {} in {}", part.name, files,
+                  counted(static_cast<long>(part.mesh.triangles.size()), "triangle", "triangles"),
+                  counted(found.components, "piece", "pieces"));
+  if (found.closed()) return note + fmt::format(", closed, {:.1f} cm3", found.volume_mm3 / 1000);
   if (found.boundary_edges > 0) {
     const auto& longest = found.boundary.front();
     note += fmt::format("; open: {} in {}, the longest ({:.0f} mm) around {}",
@@ -69,25 +94,25 @@ void clean(Surface& surface, std::vector<std::string>& notes) {
     note += fmt::format("; {} of three or more triangles around {}",
                         counted(found.nonmanifold_edges, "edge", "edges"),
                         at(found.nonmanifold_box.center()));
-  if (!found.closed()) note += "; inside and outside cannot be told for certain";
   if (found.misoriented_edges > 0)
     note += fmt::format("; neighbours disagree about outside at {}",
                         counted(found.misoriented_edges, "edge", "edges"));
-  notes.push_back(note);
+  return note + "; inside and outside cannot be told for certain";
+}
 
-  std::string done;
+/// Empty when nothing had to be done.
+std::string description(const Cleaning& done) {
+  std::string text;
   const auto add = [&](long count, const char* one, const char* many) {
-    if (count > 0) done += (done.empty() ? "" : ", ") + counted(count, one, many);
+    if (count > 0) text += (text.empty() ? "" : ", ") + counted(count, one, many);
   };
-  add(welded, "vertex welded", "vertices welded");
-  add(flat, "triangle without area dropped", "triangles without area dropped");
-  add(twice, "repeated triangle dropped", "repeated triangles dropped");
-  add(turned.turned, "triangle turned to agree or to face outward",
-      "triangles turned to agree or to face outward");
-  add(unused, "unused vertex dropped", "unused vertices dropped");
-  if (!done.empty())
-    notes.push_back(fmt::format("{} ({}): {}", role_name(surface.source.role),
-                                surface.source.file.filename().string(), done));
+  add(done.welded, "vertex welded", "vertices welded");
+  add(done.flat, "triangle without area dropped", "triangles without area dropped");
+  add(done.twice, "repeated triangle dropped", "repeated triangles dropped");
+  add(done.turned, "triangle turned outward or to agree with its neighbours",
+      "triangles turned outward or to agree with their neighbours");
+  add(done.unused, "unused vertex dropped", "unused vertices dropped");
+  return text;
 }
 
 /// The FDI number in a file's name ("tooth_36.ply", "36.stl", "FDI36"); 0 when there is none.
@@ -164,14 +189,23 @@ std::vector<Part> make_parts(std::vector<Surface>& surfaces, std::vector<std::st
   std::set<std::string> names;
   for (auto& surface : surfaces) {
     const Role role = surface.source.role;
-    std::string name = role_name(role);
-    if (is_teeth(role)) {
-      if (names.insert(name).second) parts.push_back(join_teeth(role, surfaces, notes));
-      continue;
+    std::string name = role_name(role), files = surface.source.file.filename().string();
+    Cleaning done;
+    if (!is_teeth(role)) {
+      for (int n = 2; !names.insert(name).second; ++n)
+        name = fmt::format("{}-{}", role_name(role), n);
+      clean(surface, done);
+      parts.push_back({name, role, std::move(surface.mesh), {}});
+    } else {
+      if (!names.insert(name).second) continue;
+      int count = 0;
+      for (auto& other : surfaces)
+        if (other.source.role == role) clean(other, done), ++count;
+      if (count > 1) files = fmt::format("{} files", count);
+      parts.push_back(join_teeth(role, surfaces, notes));
     }
-    for (int n = 2; !names.insert(name).second; ++n)
-      name = fmt::format("{}-{}", role_name(role), n);
-    parts.push_back({name, role, std::move(surface.mesh), {}});
+    notes.push_back(description(parts.back(), files));
+    if (const auto text = description(done); !text.empty()) notes.push_back(name + ": " + text);
   }
   return parts;
 }
@@ -244,11 +278,11 @@ Case import_meshes(const ImportRequest& request) {
   std::transform(patient.source_frame.begin(), patient.source_frame.end(),
                  patient.source_frame.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  for (auto& surface : surfaces) clean(surface, patient.notes);
   patient.landmarks = import_landmarks(request, frame, box, patient.notes);
   patient.parts = make_parts(surfaces, patient.notes);
   check_frame(patient, request);
   estimate_landmarks(patient);
+  estimate_profile_landmarks(patient);
   return patient;
 }
 

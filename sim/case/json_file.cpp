@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
+#include "engine/mesh_io/json_depth.h"
 
 namespace condyle {
 namespace {
@@ -77,6 +78,8 @@ double JsonItem::number(double low, double high) const {
 }
 
 JsonFile::JsonFile(const std::filesystem::path& file, std::string_view text) : file_(file) {
+  if (json_depth(text) > max_json_depth)
+    throw InputError(file, "", "nests its lists deeper than a case or list of landmarks does");
   try {
     value_ = json::parse(text.begin(), text.end());
   } catch (const json::parse_error& error) {

@@ -61,14 +61,21 @@ void check(const Case& patient, const fs::path& folder) {
   }
   if (patient.parts.empty()) throw InputError(folder, "", "a case without parts cannot be saved");
   for (const auto& [name, point] : patient.landmarks.points)
-    if (!point.allFinite()) throw InputError(folder, "landmark " + name, "its place is not finite");
+    if (!is_part_name(name))
+      throw InputError(folder, "landmark \"" + name + "\"",
+                       "the name must be of letters, digits, - and _");
+    else if (!point.allFinite())
+      throw InputError(folder, "landmark " + name, "its place is not finite");
 }
 
 /// Whether everything in the folder was written by an earlier save: it may be replaced.
 void check_replaceable(const fs::path& folder) {
   std::set<std::string> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    files.insert(entry.path().filename().string());
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error))
+    files.insert(entry->path().filename().string());
+  if (error) throw MachineError(folder.string() + ": cannot be looked into: " + error.message());
   if (files.empty()) return;
   const auto refuse = [&](const std::string& problem) {
     throw InputError(folder, "", problem + "; choose a new or empty folder for the case");
