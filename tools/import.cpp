@@ -7,7 +7,9 @@
 namespace condyle {
 
 int run_import(const ImportOptions& options, const CommonOptions& common) {
-  const Case patient = import_meshes(options.request);
+  ImportRequest request = options.request;
+  if (request.name.empty()) request.name = (options.out / "").parent_path().filename().string();
+  const Case patient = import_meshes(request);
   save_case(patient, options.out);
   if (common.json) {
     nlohmann::ordered_json json = {{"case", options.out.string()}, {"name", patient.name}};

@@ -100,7 +100,7 @@ void LiveSimulation::work() {
       now = step(scene_, now, step_input, settings_);
       now.times[Stage::motion] = motion_time[Stage::motion];
       if (!runs_on) {  // steps on the way there are not shown
-        if (wanted.face) carry_face(scene_, now);
+        if (wanted.face) carry_face(scene_, now, settings_.threads);
         answered = wanted;
       }
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();

@@ -62,10 +62,10 @@ FrameState step(const Scene& scene, const FrameState& previous, const StepInput&
   return now;
 }
 
-void carry_face(const Scene& scene, FrameState& frame) {
+void carry_face(const Scene& scene, FrameState& frame, int threads) {
   if (!scene.tissue) return;
   const StageTimer timer(frame.times, Stage::face);
-  deform_face(*scene.tissue, frame.tissue, frame.face);
+  deform_face(*scene.tissue, frame.tissue, frame.face, threads);
 }
 
 Playback::Playback(const Scene& scene, Motion motion, const SimulatorSettings& settings,
@@ -98,7 +98,7 @@ FrameState Playback::at(double time_s) {
   const bool on_step = std::abs(time_s - now_.time_s) <= same_time_s;
   FrameState shown = on_step ? now_ : step_to(time_s, now_);
   shown.time_s = time_s;
-  if (settings_.face) carry_face(scene_, shown);
+  if (settings_.face) carry_face(scene_, shown, settings_.threads);
   return shown;
 }
 

@@ -38,7 +38,7 @@ FrameState step(const Scene& scene, const FrameState& previous, const StepInput&
                 const SimulatorSettings& settings);
 
 /// Fills the displayed face of a frame.
-void carry_face(const Scene& scene, FrameState& frame);
+void carry_face(const Scene& scene, FrameState& frame, int threads = 1);
 
 /// Plays a motion in fixed steps and tells the state at any later time.
 class Playback {

@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
+#include "render/gl_context.h"
+#include "render/recorder.h"
+#include "render/scene_renderer.h"
+#include "sim/report/plots.h"
+#include "sim/report/report.h"
+#include "sim/report/trace.h"
+#include "tools/common.h"
+
+namespace condyle {
+namespace {
+
+/// Times of the frames: the whole motion, first and last included.
+struct FrameTimes {
+  int count = 1;
+  double duration_s = 0;
+  double operator[](int i) const { return count == 1 ? 0 : duration_s * i / (count - 1); }
+  double fps() const { return count == 1 || duration_s <= 0 ? 30 : (count - 1) / duration_s; }
+};
+
+FrameTimes frame_times(const RecordOptions& options, double duration_s) {
+  constexpr double most_frames = 1e6;
+  const double wanted = std::floor(duration_s * options.fps + 0.5) + 1;
+  if (options.frames == 0 && wanted > most_frames)
+    throw InputError(fmt::format("--fps {}: makes {} frames of {} s; at most {} are recorded", options.fps,
+                                 wanted, duration_s, most_frames));
+  return {options.frames > 0 ? options.frames : static_cast<int>(wanted), duration_s};
+}
+
+std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+std::uint64_t case_hash(const Case& patient) {
+  std::uint64_t hash = hash_start;
+  for (const auto& part : patient.parts) {
+    hash = hash_bytes(part.name.data(), part.name.size(), hash);
+    for (const auto& v : part.mesh.vertices) hash = hash_bytes(v.data(), 3 * sizeof(double), hash);
+    for (const auto& t : part.mesh.triangles) hash = hash_bytes(t.data(), 3 * sizeof(int), hash);
+  }
+  for (const auto& [name, point] : patient.landmarks.points)
+    hash = hash_bytes(point.data(), 3 * sizeof(double), hash_bytes(name.data(), name.size(), hash));
+  return hash;
+}
+
+std::uint64_t motion_hash(const Motion& motion) {
+  std::uint64_t hash = hash_start;
+  constexpr int samples = 100;
+  for (int i = 0; i <= samples; ++i) {
+    const Pose pose = motion.wanted(motion.duration_s * i / samples);
+    hash = hash_bytes(pose.R.coeffs().data(), 4 * sizeof(double), hash);
+    hash = hash_bytes(pose.t.data(), 3 * sizeof(double), hash);
+  }
+  return hash;
+}
+
+using Corners = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
+
+/// The box grown by where the motion takes the mandible, so that the camera keeps it in view.
+Corners swept_box(Corners box, const Case& patient, const Motion& motion) {
+  constexpr int samples = 24;
+  constexpr std::size_t stride = 16;  // a few vertices tell the extent
+  for (const auto& part : patient.parts) {
+    if (body_of(part.role) != Body::mandible) continue;
+    for (int i = 0; i <= samples; ++i) {
+      const Pose X_CM = motion.wanted(motion.duration_s * i / samples);
+      for (std::size_t v = 0; v < part.mesh.vertices.size(); v += stride) {
+        const Eigen::Vector3d p = X_CM * part.mesh.vertices[v];
+        box.first = box.first.cwiseMin(p);
+        box.second = box.second.cwiseMax(p);
+      }
+    }
+  }
+  return box;
+}
+
+/// Draws the frames of one recording and keeps them.
+class PictureTaker {
+ public:
+  PictureTaker(const RecordOptions& options, const Scene& scene, const Motion& motion,
+               const FrameTimes& times)
+      : renderer_(scene.patient.parts), spin_(options.camera == "spin"), frames_(times.count) {
+    std::tie(picture_.width, picture_.height) = parse_size(options.size);
+    apply_show_list(options.show, scene.patient.parts, picture_);
+    const auto [low, high] = swept_box(renderer_.bounds(), scene.patient, motion);
+    const double aspect = static_cast<double>(picture_.width) / picture_.height;
+    camera_ = parse_camera(spin_ ? "front" : options.camera, low, high, aspect);
+    recorder_.emplace(RecorderSettings{
+        .folder = options.out,
+        .width = picture_.width,
+        .height = picture_.height,
+        .frames = times.count,
+        .frames_per_second = times.fps(),
+        .film = options.film,
+        .resume = options.resume,
+        .identity = {{"case", hash_text(case_hash(scene.patient))},
+                     {"motion", motion.name + " " + hash_text(motion_hash(motion))},
+                     {"camera", options.camera},
+                     {"show", options.show},
+                     {"contact", options.motion.respect_contact ? "respected" : "as the motion wants"},
+                     {"tissue", options.motion.tissue ? std::to_string(options.motion.surface_nodes)
+                                                      : std::string("none")}}});
+    kept_ = recorder_->kept_frames();
+  }
+
+  bool wanted(int frame) const { return !recorder_->has(frame); }
+  int kept() const { return kept_; }
+
+  void take(int frame, FrameState& state) {
+    const StageTimer timer(state.times, Stage::render);
+    renderer_.update(state);
+    const double turn = spin_ ? 2 * M_PI * frame / std::max(frames_ - 1, 1) : 0;
+    recorder_->add(frame, renderer_.picture(turned(camera_, turn), picture_));
+  }
+  void finish() { recorder_->finish(); }
+
+ private:
+  OffscreenContext context_;
+  SceneRenderer renderer_;
+  bool spin_;
+  int frames_;
+  int kept_ = 0;
+  PictureSettings picture_;
+  Camera camera_;
+  std::optional<Recorder> recorder_;
+};
+
+/// Fails before the long work when the command line is wrong in a way that needs no patient.
+void check_early(const RecordOptions& options) {
+  if (!options.pictures) return;
+  parse_size(options.size);
+  if (options.camera != "spin") parse_camera(options.camera, {-1, -1, -1}, {1, 1, 1}, 1);
+}
+
+}  // namespace
+
+int run_record(const RecordOptions& options, const CommonOptions& common) {
+  check_early(options);
+  make_folder(options.out);
+  ProgressBar bar(common);
+  auto settings = simulator_settings(options.motion, common);
+  settings.face = options.pictures;
+  const Scene scene =
+      make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
+  bar.show("preparing the motion", 0);
+  Playback playback(
+      scene, make_motion(options.motion.motion, scene.patient, scene.contacts, options.motion.opening),
+      settings, options.motion.respect_contact);
+  const Motion& motion = playback.motion();
+  const FrameTimes times = frame_times(options, motion.duration_s);
+
+  std::optional<PictureTaker> pictures;
+  if (options.pictures) pictures.emplace(options, scene, motion, times);
+  TraceWriter trace(options.out / "trace.csv");
+  MotionReport report(scene, motion, settings);
+  MotionCurves curves;
+  for (int i = 0; i < times.count; ++i) {
+    FrameState frame = playback.at(times[i]);
+    if (pictures && pictures->wanted(i)) pictures->take(i, frame);
+    trace.add(i, frame);
+    report.add(frame);
+    if (options.plots) curves.add(frame);
+    bar.show(fmt::format("frame {} of {}", i + 1, times.count), (i + 1.0) / times.count);
+  }
+  bar.clear();
+  if (pictures) pictures->finish();
+  trace.finish();
+  const std::string json = report.json();
+  write_file(options.out / "report.json", json);
+  if (options.plots) {
+    write_file(options.out / "opening.svg", curves.opening_svg());
+    write_file(options.out / "sagittal.svg", curves.sagittal_svg());
+    write_file(options.out / "frontal.svg", curves.frontal_svg());
+  }
+  if (common.json) fmt::print("{}", json);
+  if (!common.quiet) {
+    for (const auto& note : scene.contacts.notes()) fmt::print(stderr, "note: {}\n", note);
+    for (const auto& note : motion.notes) fmt::print(stderr, "note: {}\n", note);
+    fmt::print(stderr, "{}", report.text());
+    if (pictures && pictures->kept() > 0)
+      fmt::print(stderr, "{} frames were there already and were kept\n", pictures->kept());
+    fmt::print(stderr, "results are in {}\n", options.out.string());
+  }
+  return 0;
+}
+
+}  // namespace condyle

@@ -1,0 +1,63 @@
+#include <algorithm>
+
+#include "render/window/window.h"
+#include "sim/motion/measures.h"
+#include "sim/simulator/live.h"
+#include "tools/common.h"
+
+namespace condyle {
+namespace {
+
+double widest_opening(const Case& patient, const Motion& motion) {
+  double widest = 0;
+  constexpr int samples = 200;
+  for (int i = 0; i <= samples; ++i)
+    widest = std::max(widest, measure(patient, motion.wanted(motion.duration_s * i / samples)).opening_mm);
+  return widest;
+}
+
+}  // namespace
+
+int run_view(const ViewOptions& options, const CommonOptions& common) {
+  Window window({.title = "Condyle", .ui_scale = options.ui_scale});
+  ProgressBar bar(common);
+  const Progress progress = [&](std::string_view what, double fraction) {
+    bar.show(what, fraction);
+    window.show_progress(std::string(what), fraction);
+  };
+  const auto settings = simulator_settings(options.motion, common);
+  const Scene scene = make_scene(open_patient(options.motion.patient, common, bar), settings, progress);
+  progress("preparing the motion", 0.9);
+  const std::string spec = options.motion.motion.empty() ? "opening" : options.motion.motion;
+  const Motion motion = make_motion(spec, scene.patient, scene.contacts, options.motion.opening);
+  window.show_progress("", 1);
+  bar.clear();
+
+  WindowScene shown{.parts = scene.patient.parts,
+                    .case_name = scene.patient.name,
+                    .motion_name = motion.name,
+                    .duration_s = motion.duration_s,
+                    .max_opening_mm = widest_opening(scene.patient, motion),
+                    .notes = scene.patient.notes};
+  shown.notes.insert(shown.notes.end(), scene.contacts.notes().begin(), scene.contacts.notes().end());
+  shown.notes.insert(shown.notes.end(), motion.notes.begin(), motion.notes.end());
+  ViewState start;
+  start.obey_contact = options.motion.respect_contact || !motion.recorded;
+  window.set_scene(shown, start);
+
+  LiveSimulation simulation(scene, motion, settings);
+  while (window.open()) {
+    const ViewState& view = window.poll();
+    simulation.request({.time_s = view.time_s,
+                        .opening_mm = view.opening_mm,
+                        .obey_contact = view.obey_contact,
+                        .face = view.shows_face(shown)});
+    if (auto frame = simulation.take())
+      window.show(std::move(*frame), {.steps_per_second = simulation.steps_per_second(), .message = {}});
+    else
+      window.draw();
+  }
+  return 0;
+}
+
+}  // namespace condyle
