@@ -4,6 +4,8 @@
 #include <array>
 #include <map>
 
+#include "engine/mesh/topology.h"
+
 namespace condyle {
 namespace {
 
@@ -99,13 +101,14 @@ std::vector<std::vector<Loop>> make_loops() {
 class EdgeVertices {
  public:
   explicit EdgeVertices(const SampledField& field)
-      : row_(static_cast<std::size_t>(field.size.z())),
-        layer_(row_ * static_cast<std::size_t>(field.size.y()) * 3) {
+      : row_(field.axes[2].size()), layer_(row_ * field.axes[1].size() * 3) {
     for (auto& layer : ids_) layer.assign(layer_, -1);
   }
-  int& at(int i, int j, int k, int axis) {
-    return ids_[i & 1][(static_cast<std::size_t>(j) * row_ + static_cast<std::size_t>(k)) * 3 +
-                       static_cast<std::size_t>(axis)];
+  int& at(const Vector3i& sample, int axis) {
+    return ids_[sample.x() & 1][(static_cast<std::size_t>(sample.y()) * row_ +
+                                 static_cast<std::size_t>(sample.z())) *
+                                    3 +
+                                static_cast<std::size_t>(axis)];
   }
   void forget(int i) { std::fill(ids_[i & 1].begin(), ids_[i & 1].end(), -1); }
 
@@ -127,26 +130,29 @@ TriMesh isosurface(const SampledField& field) {
   const auto vertex = [&](int i, int j, int k, int edge) {
     const auto [c, d] = cell_edges[static_cast<std::size_t>(edge)];
     const int axis = edge / 4;
-    const int ci = i + (c & 1), cj = j + (c >> 1 & 1), ck = k + (c >> 2);
-    int& id = vertices.at(ci, cj, ck, axis);
+    const Vector3i at(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
+    int& id = vertices.at(at, axis);
     if (id < 0) {
-      const double a = field.values[field.index(ci, cj, ck)];
+      const double a = field.values[field.index(at.x(), at.y(), at.z())];
       const double b = field.values[field.index(i + (d & 1), j + (d >> 1 & 1), k + (d >> 2))];
       // Kept off the corners, where triangles would shrink to nothing.
       const double t = std::clamp(a / (a - b), 0.03, 0.97);
-      Vector3d p = field.position(ci, cj, ck);
-      p[axis] += t * field.spacing;
+      Vector3d p = field.position(at.x(), at.y(), at.z());
+      p[axis] +=
+          t * (field.axes[static_cast<std::size_t>(axis)][static_cast<std::size_t>(at[axis]) + 1] -
+               p[axis]);
       id = static_cast<int>(mesh.vertices.size());
       mesh.vertices.push_back(p);
     }
     return id;
   };
 
+  const Vector3i size = field.size();
   std::vector<int> corner;
-  for (int i = 0; i + 1 < field.size.x(); ++i) {
+  for (int i = 0; i + 1 < size.x(); ++i) {
     if (i > 0) vertices.forget(i + 1);
-    for (int j = 0; j + 1 < field.size.y(); ++j)
-      for (int k = 0; k + 1 < field.size.z(); ++k) {
+    for (int j = 0; j + 1 < size.y(); ++j)
+      for (int k = 0; k + 1 < size.z(); ++k) {
         const float* value = &field.values[field.index(i, j, k)];
         unsigned pattern = 0;
         for (unsigned c = 0; c < 8; ++c) pattern |= (value[offset[c]] < 0 ? 1u : 0u) << c;
@@ -195,6 +201,30 @@ TriMesh with_mirror_image(const TriMesh& half) {
   const auto at = [&](int v) { return twin[static_cast<std::size_t>(v)]; };
   for (const auto& t : half.triangles) whole.triangles.emplace_back(at(t[0]), at(t[2]), at(t[1]));
   return whole;
+}
+
+TriMesh largest_piece(const TriMesh& mesh) {
+  const Components components = find_components(mesh);
+  std::vector<int> count(static_cast<std::size_t>(components.count), 0);
+  for (const int c : components.of_triangle) ++count[static_cast<std::size_t>(c)];
+  const auto largest = std::max_element(count.begin(), count.end()) - count.begin();
+  TriMesh out;
+  std::vector<int> number(mesh.vertices.size(), -1);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (components.of_triangle[t] != largest) continue;
+    Vector3i corner;
+    for (int i = 0; i < 3; ++i) {
+      const auto v = static_cast<std::size_t>(mesh.triangles[t][i]);
+      if (number[v] < 0) {
+        number[v] = static_cast<int>(out.vertices.size());
+        out.vertices.push_back(mesh.vertices[v]);
+        if (!mesh.colors.empty()) out.colors.push_back(mesh.colors[v]);
+      }
+      corner[i] = number[v];
+    }
+    out.triangles.push_back(corner);
+  }
+  return out;
 }
 
 TriMesh clipped(const TriMesh& mesh, const std::vector<double>& values) {

@@ -16,6 +16,9 @@ TriMesh with_mirror_image(const TriMesh& half);
 /// The mirror image alone (x negated, triangles turned).
 TriMesh mirror_image(const TriMesh& mesh);
 
+/// The component with the most triangles; the others and loose vertices are dropped.
+TriMesh largest_piece(const TriMesh& mesh);
+
 /// The part of a surface where the value at the vertices is negative; triangles across the border
 /// are split along it. One value per vertex. Isolated vertices are dropped.
 TriMesh clipped(const TriMesh& mesh, const std::vector<double>& values);

@@ -17,8 +17,15 @@ void fill_block(const FieldRecipe& recipe, const SamplingOptions& options, Sampl
   const Eigen::AlignedBox3d box(field.position(low.x(), low.y(), low.z()),
                                 field.position(high.x() - 1, high.y() - 1, high.z() - 1));
   const auto steps = recipe.steps_near(box, among);
-  // One spacing more than the block: cells between two blocks belong to both.
-  const double reach = 0.5 * box.diagonal().norm() + field.spacing;
+  // One step more than the block: cells between two blocks belong to both.
+  double step = 0;
+  for (int a = 0; a < 3; ++a) {
+    const auto& axis = field.axes[static_cast<std::size_t>(a)];
+    const auto before = static_cast<std::size_t>(std::max(low[a] - 1, 0));
+    const auto after = std::min(static_cast<std::size_t>(high[a]), axis.size() - 1);
+    step = std::max({step, box.min()[a] - axis[before], axis[after] - box.max()[a]});
+  }
+  const double reach = 0.5 * box.diagonal().norm() + step;
   const double at_center = recipe.value(box.center(), steps);
   if (std::abs(at_center) > options.steepest * reach + options.band) {
     for (int i = low.x(); i < high.x(); ++i)
@@ -48,34 +55,56 @@ void fill_block(const FieldRecipe& recipe, const SamplingOptions& options, Sampl
 
 }  // namespace
 
+GridAxis even_axis(double low, double high, double spacing) {
+  const int steps = static_cast<int>(std::ceil((high - low) / spacing - 1e-9));
+  GridAxis axis;
+  for (int i = 0; i <= steps; ++i) axis.push_back(low + spacing * i);
+  return axis;
+}
+
+GridAxis graded_axis(double low, double high, double coarse, double fine_low, double fine_high,
+                     double fine) {
+  GridAxis axis{low};
+  while (axis.back() < high) {
+    const double outside = std::max({fine_low - axis.back(), axis.back() - fine_high, 0.0});
+    axis.push_back(axis.back() + std::min(coarse, fine + 0.06 * outside));
+  }
+  return axis;
+}
+
+std::array<GridAxis, 3> even_grid(const Eigen::AlignedBox3d& box, double spacing) {
+  return {even_axis(box.min().x(), box.max().x(), spacing),
+          even_axis(box.min().y(), box.max().y(), spacing),
+          even_axis(box.min().z(), box.max().z(), spacing)};
+}
+
 double SampledField::operator()(const Vector3d& p) const {
-  Vector3d g = (p - origin) / spacing;
   Vector3i cell;
+  Vector3d part;
   for (int a = 0; a < 3; ++a) {
-    g[a] = std::clamp(g[a], 0.0, size[a] - 1.0);
-    cell[a] = std::min(static_cast<int>(g[a]), std::max(size[a] - 2, 0));
-    g[a] -= cell[a];
+    const auto& axis = axes[static_cast<std::size_t>(a)];
+    const auto above = std::upper_bound(axis.begin() + 1, axis.end() - 1, p[a]);
+    cell[a] = static_cast<int>(above - axis.begin()) - 1;
+    part[a] = std::clamp((p[a] - *(above - 1)) / (*above - *(above - 1)), 0.0, 1.0);
   }
   double sum = 0;
   for (int c = 0; c < 8; ++c) {
     const int a = c & 1, b = (c >> 1) & 1, d = c >> 2;
-    const double w = (a ? g.x() : 1 - g.x()) * (b ? g.y() : 1 - g.y()) * (d ? g.z() : 1 - g.z());
-    if (w > 0) sum += w * values[index(cell.x() + a, cell.y() + b, cell.z() + d)];
+    const double w = (a ? part.x() : 1 - part.x()) * (b ? part.y() : 1 - part.y()) *
+                     (d ? part.z() : 1 - part.z());
+    sum += w * values[index(cell.x() + a, cell.y() + b, cell.z() + d)];
   }
   return sum;
 }
 
-SampledField sample_field(const FieldRecipe& recipe, const Eigen::AlignedBox3d& box,
+SampledField sample_field(const FieldRecipe& recipe, const std::array<GridAxis, 3>& axes,
                           const SamplingOptions& options) {
-  SampledField field;
-  field.origin = box.min();
-  field.spacing = options.spacing;
-  for (int a = 0; a < 3; ++a)
-    field.size[a] = static_cast<int>(std::ceil(box.sizes()[a] / options.spacing - 1e-9)) + 1;
-  field.values.assign(field.index(field.size.x() - 1, field.size.y() - 1, field.size.z() - 1) + 1,
+  SampledField field{axes, {}};
+  const Vector3i size = field.size();
+  field.values.assign(axes[0].size() * axes[1].size() * axes[2].size(),
                       static_cast<float>(FieldRecipe::nothing));
   const int block = 16;
-  const Vector3i blocks = (field.size.array() + block - 1) / block;
+  const Vector3i blocks = (size.array() + block - 1) / block;
   const auto all = recipe.steps_near(unbounded_box());
   parallel_for(static_cast<std::size_t>(blocks.x() * blocks.y()), options.threads,
                [&](std::size_t column) {
@@ -83,7 +112,7 @@ SampledField sample_field(const FieldRecipe& recipe, const Eigen::AlignedBox3d& 
                  const int j = static_cast<int>(column) % blocks.y();
                  for (int k = 0; k < blocks.z(); ++k) {
                    const Vector3i low = block * Vector3i(i, j, k);
-                   const Vector3i high = (low.array() + block).matrix().cwiseMin(field.size);
+                   const Vector3i high = (low.array() + block).matrix().cwiseMin(size);
                    fill_block(recipe, options, field, low, high, all);
                  }
                });

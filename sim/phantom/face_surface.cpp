@@ -2,7 +2,6 @@
 
 #include "engine/field/decimate.h"
 #include "engine/field/isosurface.h"
-#include "engine/field/mesh_facts.h"
 #include "engine/field/smooth.h"
 #include "sim/phantom/soft_shapes.h"
 #include "sim/phantom/surfaces.h"
@@ -48,7 +47,6 @@ Primitive slit() {
 
 FieldRecipe parted_face() {
   const FieldRecipe skin = skin_recipe(Lips::none);
-  const Eigen::AlignedBox3d mouth(Vector3d(0, -130, -68), Vector3d(mouth_corner_x, -60, -34));
   FieldRecipe face(Symmetry::mirror_x);
   face.add({[skin](const Vector3d& p) { return skin(closed_lips(p)); },
             {Vector3d(0, -130, -195), Vector3d(130, 120, 135)}},
@@ -82,8 +80,10 @@ double importance(const Vector3d& p) {
 }  // namespace
 
 TriMesh face_surface() {
-  const Eigen::AlignedBox3d box(Vector3d(0, -126, -191.5), Vector3d(112, 116, 126));
-  TriMesh half = isosurface(sample_field(parted_face(), box, {.spacing = 0.75}));
+  const std::array<GridAxis, 3> grid = {graded_axis(0, 115, 1.2, 0, 46, .55),
+                                        graded_axis(-126, 116, 1.2, -122, -74, .55),
+                                        graded_axis(-191.5, 126, 1.2, -62, 26, .55)};
+  TriMesh half = isosurface(sample_field(parted_face(), grid));
   for (auto& p : half.vertices) p = closed_lips(p);
   const Primitive space = oral_space(), lids = lid_opening();
   std::vector<double> values;

@@ -2,13 +2,12 @@
 
 #include "engine/field/decimate.h"
 #include "engine/field/isosurface.h"
-#include "engine/field/mesh_facts.h"
 
 namespace condyle {
 
 TriMesh symmetric_surface(const FieldRecipe& solid, const Eigen::AlignedBox3d& half_box,
                           const BodySurface& options) {
-  const TriMesh half = isosurface(sample_field(solid, half_box, {.spacing = options.spacing}));
+  const TriMesh half = isosurface(sample_field(solid, even_grid(half_box, options.spacing)));
   // The half must be one piece by itself or joined across the midline; bubbles are dropped after.
   const TriMesh coarse = decimated(
       half, {.target_triangles = options.triangles / 2, .importance = options.importance});
@@ -26,7 +25,7 @@ Part teeth_part(const PhantomSolid& solid, bool upper) {
     const double spacing = 0.3;
     const Eigen::Vector3d low = (tooth.box.min() / spacing).array().floor() * spacing;
     TriMesh mesh = largest_piece(
-        isosurface(sample_field(tooth.solid, {low, tooth.box.max()}, {.spacing = spacing})));
+        isosurface(sample_field(tooth.solid, even_grid({low, tooth.box.max()}, spacing))));
     mesh = decimated(mesh, {.target_triangles = 2600, .evenness = 1e-4});
     meshes.emplace_back(tooth.right_fdi, mirror_image(mesh));
     meshes.emplace_back(tooth.fdi, std::move(mesh));
