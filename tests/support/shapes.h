@@ -11,17 +11,18 @@
 
 namespace condyle::test {
 
-/// Closed sphere of 20 * 4^level triangles with all vertices on it; `bumps` presses it in and out by
-/// that share of the radius.
+/// Closed sphere of 20 * 4^level triangles with all vertices on it; `bumps` presses it in and out
+/// by that share of the radius.
 inline TriMesh sphere(int level, double radius, const Eigen::Vector3d& center = {0, 0, 0},
                       double bumps = 0) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   TriMesh mesh;
-  mesh.vertices = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  mesh.triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                    {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  mesh.vertices = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  mesh.triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                    {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                    {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                    {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
   for (int l = 0; l < level; ++l) {
     std::map<std::pair<int, int>, int> middles;
     const auto middle = [&](int i, int j) {
@@ -51,7 +52,8 @@ inline Pose any_pose(std::mt19937_64& random, double reach) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> along(-reach, reach);
   Pose pose;
-  pose.R = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
+  pose.R = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
+               .normalized();
   pose.t = {along(random), along(random), along(random)};
   return pose;
 }

@@ -87,8 +87,10 @@ TEST(Distance, WitnessPointsLieOnTheirTriangles) {
       const test::Point q = p.cast<test::Real>();
       return test::Corners{q, q, q};
     };
-    EXPECT_NEAR(static_cast<double>(test::triangle_distance_oracle(at(found.witness_a), ta)), 0, 1e-11);
-    EXPECT_NEAR(static_cast<double>(test::triangle_distance_oracle(at(found.witness_b), tb)), 0, 1e-11);
+    EXPECT_NEAR(static_cast<double>(test::triangle_distance_oracle(at(found.witness_a), ta)), 0,
+                1e-11);
+    EXPECT_NEAR(static_cast<double>(test::triangle_distance_oracle(at(found.witness_b), tb)), 0,
+                1e-11);
   }
 }
 
@@ -111,21 +113,25 @@ TEST(Distance, AMovedSceneGivesTheSameDistanceAndTheMovedPoints) {
   const auto meshes = specimens();
   const CollisionMesh a(meshes[0]), b(meshes[1]);
   for (int k = 0; k < 10; ++k) {
-    const Pose X_WB = {test::any_pose(random, 1).R, {50, 5, -3}}, move = test::any_pose(random, 100);
+    const Pose X_WB = {test::any_pose(random, 1).R, {50, 5, -3}},
+               move = test::any_pose(random, 100);
     const MeshDistance here = distance(a, {}, b, X_WB), there = distance(a, move, b, move * X_WB);
     EXPECT_NEAR(there.distance_mm, here.distance_mm, 1e-11);
-    EXPECT_NEAR((there.witness_a - move * here.witness_a).norm(), 0, 1e-6);  // unique for bumpy shapes
+    EXPECT_NEAR((there.witness_a - move * here.witness_a).norm(), 0,
+                1e-6);  // unique for bumpy shapes
   }
 }
 
 TEST(Distance, TwoThreadsOnOnePairGiveTheSameBits) {
-  const CollisionMesh a(test::sphere(4, 20, {0, 0, 0}, 0.05)), b(test::sphere(4, 20, {0, 0, 0}, 0.05));
+  const CollisionMesh a(test::sphere(4, 20, {0, 0, 0}, 0.05)),
+      b(test::sphere(4, 20, {0, 0, 0}, 0.05));
   std::mt19937_64 random(6);
   std::vector<Pose> poses;
   for (int k = 0; k < 40; ++k) poses.push_back(test::any_pose(random, 60));
   std::vector<double> first(poses.size()), second(poses.size());
   const auto work = [&](std::vector<double>& out) {
-    for (std::size_t k = 0; k < poses.size(); ++k) out[k] = distance(a, {}, b, poses[k]).distance_mm;
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      out[k] = distance(a, {}, b, poses[k]).distance_mm;
   };
   std::thread other([&] { work(second); });
   work(first);

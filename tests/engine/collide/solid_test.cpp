@@ -67,12 +67,14 @@ TEST(OverlapDepth, GrowsByNoMoreThanTheMotion) {
 
 TEST(Solid, OverlappingShellsAreTheirUnion) {
   // Two boxes that overlap by 2 mm: a ball in the common part is as deep as in the deeper of them.
-  const TriMesh pair = test::joined(test::box({0, 0, 0}, {10, 10, 10}), test::box({8, 0, 0}, {20, 10, 10}));
+  const TriMesh pair =
+      test::joined(test::box({0, 0, 0}, {10, 10, 10}), test::box({8, 0, 0}, {20, 10, 10}));
   const Solid solid(pair);
   EXPECT_EQ(solid.shell_count(), 2);
   EXPECT_EQ(solid.open_shell_count(), 0);
   EXPECT_NEAR(solid.signed_distance({9, 5, 5}), -1, 1e-12);
-  EXPECT_NEAR(solid.signed_distance({8.5, 5, 5}), -1.5, 1e-12);  // nearest shell alone would say -0.5
+  EXPECT_NEAR(solid.signed_distance({8.5, 5, 5}), -1.5,
+              1e-12);  // nearest shell alone would say -0.5
   EXPECT_NEAR(solid.signed_distance({23, 5, 5}), 3, 1e-12);
 }
 
@@ -110,7 +112,8 @@ TEST(Solid, BallHoldsAllVertices) {
   std::mt19937_64 random(22);
   const TriMesh mesh = test::moved(test::sphere(3, 15, {2, 1, 0}, 0.2), test::any_pose(random, 30));
   const Solid solid(mesh);
-  for (const auto& v : mesh.vertices) EXPECT_LE((v - solid.center()).norm(), solid.radius() + 1e-12);
+  for (const auto& v : mesh.vertices)
+    EXPECT_LE((v - solid.center()).norm(), solid.radius() + 1e-12);
 }
 
 }  // namespace

@@ -72,7 +72,8 @@ TEST(TriangleDistance, HoldsWhereEdgesAreParallelAndFacesCoplanar) {
   for (int i = 0; i < 20000; ++i) {
     Triangle a, b;
     for (auto* t : {&a, &b})
-      for (auto& p : *t) p = {1.0 * step(random), 1.0 * step(random), i % 3 ? 1.0 * step(random) : 0.0};
+      for (auto& p : *t)
+        p = {1.0 * step(random), 1.0 * step(random), i % 3 ? 1.0 * step(random) : 0.0};
     const double expected = static_cast<double>(test::triangle_distance_oracle(widen(a), widen(b)));
     const Pose pose = test::any_pose(random, 50);
     const double found =

@@ -14,13 +14,15 @@ using Real = long double;
 using Point = Eigen::Matrix<Real, 3, 1>;
 using Corners = std::array<Point, 3>;
 
-/// Distance of two segments by walking the sides of the unit square of parameters: the inner minimum
-/// if there is one, and the four sides, each a clamped quadratic.
+/// Distance of two segments by walking the sides of the unit square of parameters: the inner
+/// minimum if there is one, and the four sides, each a clamped quadratic.
 inline Real segment_distance2(const Point& p, const Point& p1, const Point& q, const Point& q1) {
   const Point u = p1 - p, v = q1 - q, w = p - q;
   const Real a = u.dot(u), b = u.dot(v), c = v.dot(v), d = u.dot(w), e = v.dot(w);
   Real best = std::numeric_limits<Real>::infinity();
-  const auto offer = [&](Real s, Real t) { best = std::min(best, (w + s * u - t * v).squaredNorm()); };
+  const auto offer = [&](Real s, Real t) {
+    best = std::min(best, (w + s * u - t * v).squaredNorm());
+  };
   const auto clamp = [](Real x) { return std::isfinite(x) ? std::clamp<Real>(x, 0, 1) : Real(0); };
   offer(0, clamp(e / c));
   offer(1, clamp((e + b) / c));
@@ -52,7 +54,8 @@ inline bool pierces(const Point& p, const Point& q, const Corners& t) {
   };
   const Real above = volume(t[0], t[1], t[2], p), below = volume(t[0], t[1], t[2], q);
   if ((above > 0) == (below > 0)) return false;
-  const Real x = volume(p, q, t[0], t[1]), y = volume(p, q, t[1], t[2]), z = volume(p, q, t[2], t[0]);
+  const Real x = volume(p, q, t[0], t[1]), y = volume(p, q, t[1], t[2]),
+             z = volume(p, q, t[2], t[0]);
   return (x >= 0 && y >= 0 && z >= 0) || (x <= 0 && y <= 0 && z <= 0);
 }
 
@@ -79,8 +82,10 @@ inline Corners corners_of(const TriMesh& mesh, std::size_t triangle, const Pose&
 inline double brute_force_distance(const TriMesh& a, const Pose& X_WA, const TriMesh& b,
                                    const Pose& X_WB) {
   std::vector<Corners> triangles_a, triangles_b;
-  for (std::size_t i = 0; i < a.triangles.size(); ++i) triangles_a.push_back(corners_of(a, i, X_WA));
-  for (std::size_t i = 0; i < b.triangles.size(); ++i) triangles_b.push_back(corners_of(b, i, X_WB));
+  for (std::size_t i = 0; i < a.triangles.size(); ++i)
+    triangles_a.push_back(corners_of(a, i, X_WA));
+  for (std::size_t i = 0; i < b.triangles.size(); ++i)
+    triangles_b.push_back(corners_of(b, i, X_WB));
   Real best = std::numeric_limits<Real>::infinity();
   for (const auto& ta : triangles_a)
     for (const auto& tb : triangles_b) {
@@ -89,7 +94,8 @@ inline double brute_force_distance(const TriMesh& a, const Pose& X_WA, const Tri
       Real ra = 0, rb = 0;
       for (int k = 0; k < 3; ++k)
         ra = std::max(ra, (ta[k] - ca).norm()), rb = std::max(rb, (tb[k] - cb).norm());
-      if ((ca - cb).norm() - ra - rb < best) best = std::min(best, triangle_distance_oracle(ta, tb));
+      if ((ca - cb).norm() - ra - rb < best)
+        best = std::min(best, triangle_distance_oracle(ta, tb));
     }
   return static_cast<double>(best);
 }

@@ -1,0 +1,272 @@
+#include "sim/contact/contact.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "tests/support/boxes.h"
+#include "tests/support/shapes.h"
+
+namespace condyle {
+namespace {
+
+Case two_bones(TriMesh maxilla, TriMesh mandible) {
+  Case patient;
+  patient.name = "two bones";
+  patient.parts.push_back({"maxilla", Role::maxilla, std::move(maxilla), {}});
+  patient.parts.push_back({"mandible", Role::mandible, std::move(mandible), {}});
+  return patient;
+}
+
+Pose shift(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
+
+/// A plate as thin as the walls of real maxillae.
+TriMesh thin_plate() { return test::box({-40, -40, 30}, {40, 40, 30.3}); }
+
+void expect_same_bits(const ContactSet& a, const ContactSet& b) {
+  ASSERT_EQ(a.pairs.size(), b.pairs.size());
+  for (std::size_t i = 0; i < a.pairs.size(); ++i) {
+    const PairContact &x = a.pairs[i], &y = b.pairs[i];
+    EXPECT_EQ(x.touching, y.touching);
+    EXPECT_EQ(x.distance_mm, y.distance_mm);
+    EXPECT_EQ(x.depth_mm, y.depth_mm);
+    EXPECT_EQ(x.witness_a, y.witness_a);
+    EXPECT_EQ(x.witness_b, y.witness_b);
+    EXPECT_EQ(x.triangle_a, y.triangle_a);
+    ASSERT_EQ(x.contacts.size(), y.contacts.size());
+    for (std::size_t k = 0; k < x.contacts.size(); ++k) {
+      EXPECT_EQ(x.contacts[k].point, y.contacts[k].point);
+      EXPECT_EQ(x.contacts[k].normal, y.contacts[k].normal);
+    }
+  }
+}
+
+TEST(ContactModel, PairsEveryCraniumPartWithEveryMandiblePart) {
+  Case patient = two_bones(test::box({-5, -5, 10}, {5, 5, 20}), test::box({-5, -5, 0}, {5, 5, 5}));
+  patient.parts.push_back({"skull", Role::skull, test::box({-5, -5, 30}, {5, 5, 40}), {}});
+  patient.parts.push_back({"lower", Role::lower_teeth, test::box({-1, -1, 5}, {1, 1, 6}), {}});
+  patient.parts.push_back({"face", Role::face, test::box({-50, -50, -50}, {50, 50, 50}), {}});
+  patient.parts.push_back({"tongue", Role::tongue, test::box({-1, -1, 4}, {1, 1, 16}), {}});
+  const ContactModel model(patient);
+  const ContactSet& rest = model.at_rest();
+  ASSERT_EQ(rest.pairs.size(), 4u);  // face and tongue take no part
+  EXPECT_NEAR(rest.min_clearance_mm(), 4, 1e-12);
+  EXPECT_NEAR(model.find(shift(0, 0, 3), &rest).min_clearance_mm(), 1, 1e-12);
+  EXPECT_TRUE(model.notes().empty());
+}
+
+TEST(ContactModel, WithoutPairsNothingStops) {
+  Case patient = two_bones(test::box({0, 0, 0}, {1, 1, 1}), test::box({0, 0, 0}, {1, 1, 1}));
+  patient.parts.pop_back();
+  const ContactModel model(patient);
+  EXPECT_EQ(model.at_rest().min_clearance_mm(), std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(model.stop_at_contact({}, shift(0, 0, 9), nullptr).stopped);
+}
+
+TEST(ContactModel, SpheresReportTheirAnalyticGapAndDepth) {
+  const ContactModel model(two_bones(test::sphere(4, 20), test::sphere(4, 10, {0, 0, -40})));
+  EXPECT_NEAR(model.at_rest().pairs[0].distance_mm, 10, 0.12);  // facets lie up to 0.06 mm inside
+  const PairContact deep = model.find(shift(0, 0, 12), nullptr).pairs[0];
+  EXPECT_TRUE(deep.touching);
+  EXPECT_EQ(deep.distance_mm, 0);
+  EXPECT_NEAR(deep.depth_mm, 2, 0.12);
+  EXPECT_EQ(deep.rest_depth_mm, 0);
+  EXPECT_FALSE(deep.contacts.empty());
+  EXPECT_LE(deep.contacts.size(), 64u);
+  for (const auto& contact : deep.contacts)
+    EXPECT_LT(contact.normal.z(), -0.5);  // from A down to B
+}
+
+TEST(ContactModel, ABoneWhollyInsideAnotherTouchesIt) {
+  const ContactModel model(two_bones(test::sphere(3, 20), test::sphere(2, 3, {0, 0, -40})));
+  const PairContact pair = model.find(shift(0, 0, 35), nullptr).pairs[0];
+  EXPECT_TRUE(pair.touching);
+  EXPECT_EQ(pair.distance_mm, 0);
+  EXPECT_GT(pair.depth_mm, 15);
+  EXPECT_EQ(pair.contacts.size(), 1u);
+}
+
+TEST(ContactModel, AFreeWayIsTakenWhole) {
+  const ContactModel model(two_bones(test::sphere(3, 20), test::sphere(3, 10, {0, 0, -40})));
+  std::mt19937_64 random(1);
+  int taken = 0;
+  Pose from;
+  ContactSet last = model.at_rest();
+  for (int k = 0; k < 30; ++k) {
+    Pose wanted = test::any_pose(random, 3);
+    wanted.R = Eigen::Quaterniond::Identity().slerp(0.05, wanted.R);
+    const auto stop = model.stop_at_contact(from, wanted, &last);
+    EXPECT_FALSE(stop.stopped);
+    EXPECT_EQ(stop.X_CM.t, wanted.t);
+    EXPECT_EQ(stop.X_CM.R.coeffs(), wanted.R.coeffs());
+    from = stop.X_CM;
+    last = stop.contacts;
+    ++taken;
+  }
+  EXPECT_EQ(taken, 30);
+}
+
+TEST(ContactModel, BodiesMovedTogetherStopAtTheSurface) {
+  const ContactModel model(
+      two_bones(test::sphere(4, 20, {0, 0, 0}, 0.02), test::sphere(4, 10, {0, 0, -40}, 0.02)));
+  std::mt19937_64 random(2);
+  int stopped = 0;
+  for (int k = 0; k < 12; ++k) {
+    Pose wanted = test::any_pose(random, 8);
+    wanted.R = Eigen::Quaterniond::Identity().slerp(0.2, wanted.R);
+    wanted.t.z() += 22;
+    const auto stop = model.stop_at_contact({}, wanted, nullptr);
+    if (!stop.stopped) continue;
+    ++stopped;
+    EXPECT_FALSE(stop.contacts.pairs[0].touching);
+    EXPECT_GT(stop.contacts.min_clearance_mm(), 0);
+    EXPECT_LE(stop.contacts.min_clearance_mm(), 0.01);
+    // The pose lies on the way, and a little farther the bones touch: it is the first contact.
+    EXPECT_LT(rotation_angle(stop.X_CM), rotation_angle(wanted));
+    EXPECT_EQ(model.find(stop.X_CM, nullptr).pairs[0].distance_mm,
+              stop.contacts.pairs[0].distance_mm);
+  }
+  EXPECT_GT(stopped, 6);
+}
+
+TEST(ContactModel, AJumpDoesNotPassThroughAThinWall) {
+  const ContactModel model(two_bones(thin_plate(), test::sphere(3, 10)));
+  for (const double jump : {22.0, 45.0, 300.0}) {
+    const auto stop = model.stop_at_contact({}, shift(0, 0, jump), nullptr);
+    EXPECT_TRUE(stop.stopped);
+    EXPECT_NEAR(stop.X_CM.t.z(), 20, 0.02);  // the ball's top is a vertex or within 0.01 of one
+    EXPECT_GT(stop.contacts.min_clearance_mm(), 0);
+    EXPECT_LE(stop.contacts.min_clearance_mm(), 0.01);
+  }
+}
+
+TEST(ContactModel, AnArmDoesNotSwingThroughAThinWall) {
+  // Half a turn about the far end, from one side of the plate to the other: both ends are free.
+  const ContactModel model(
+      two_bones(test::box({20, -40, -5}, {60, 40, -4.7}), test::box({-50, -2, -30}, {50, 2, -26})));
+  const Eigen::Vector3d hinge(-50, 0, -28);
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(-0.9, Eigen::Vector3d::UnitY()));
+  const Pose wanted{turn, hinge - turn * hinge};
+  ASSERT_FALSE(model.find(wanted, nullptr).pairs[0].touching);
+  const auto stop = model.stop_at_contact({}, wanted, nullptr);
+  EXPECT_TRUE(stop.stopped);
+  EXPECT_GT(stop.contacts.min_clearance_mm(), 0);
+  EXPECT_LE(stop.contacts.min_clearance_mm(), 0.01);
+}
+
+TEST(ContactModel, AStoppedJawMayLeaveAndSlideAlong) {
+  const ContactModel model(
+      two_bones(test::box({-30, -30, 30}, {30, 30, 40}), test::box({-5, -5, 0}, {5, 5, 10})));
+  const auto at_wall = model.stop_at_contact({}, shift(0, 0, 25), nullptr);
+  ASSERT_TRUE(at_wall.stopped);
+  Pose along = at_wall.X_CM, away = at_wall.X_CM;
+  along.t.x() += 3;
+  away.t.z() -= 5;
+  EXPECT_FALSE(model.stop_at_contact(at_wall.X_CM, along, &at_wall.contacts).stopped);
+  EXPECT_FALSE(model.stop_at_contact(at_wall.X_CM, away, &at_wall.contacts).stopped);
+  Pose into = at_wall.X_CM;
+  into.t.z() += 1;
+  const auto again = model.stop_at_contact(at_wall.X_CM, into, &at_wall.contacts);
+  EXPECT_TRUE(again.stopped);
+  EXPECT_LE((again.X_CM.t - at_wall.X_CM.t).norm(), 0.01);
+}
+
+TEST(ContactModel, OverlapAtRestIsTheBaseline) {
+  // The ball sits 1.2 mm deep in the block.
+  const ContactModel model(
+      two_bones(test::box({-30, -30, 10}, {30, 30, 40}), test::sphere(4, 10, {0, 0, 1.2})));
+  const double rest = model.at_rest().pairs[0].depth_mm;
+  EXPECT_NEAR(rest, 1.2, 0.05);
+  EXPECT_EQ(model.at_rest().max_penetration_mm(), 0);
+  ASSERT_EQ(model.notes().size(), 1u);
+  EXPECT_NE(model.notes()[0].find("overlap by 1.2"), std::string::npos);
+  // Out and along it goes freely.
+  EXPECT_FALSE(model.stop_at_contact({}, shift(0, 0, -20), &model.at_rest()).stopped);
+  EXPECT_FALSE(model.stop_at_contact({}, shift(4, 0, -0.5), &model.at_rest()).stopped);
+  // Deeper it does not, from rest or from elsewhere, slowly or in a jump.
+  for (const double up : {0.1, 3.0, 45.0}) {
+    const auto stop = model.stop_at_contact({}, shift(0, 0, up), &model.at_rest());
+    EXPECT_TRUE(stop.stopped);
+    EXPECT_LE(stop.contacts.max_penetration_mm(), 0.02);
+    const auto back = model.stop_at_contact(shift(5, 0, -20), shift(5, 0, up), nullptr);
+    EXPECT_TRUE(back.stopped);
+    EXPECT_LE(back.contacts.max_penetration_mm(), 0.02);
+    EXPECT_GT(back.contacts.max_penetration_mm(), 0.0);
+  }
+}
+
+TEST(ContactModel, AStartThatIsTooDeepMayLeaveButGoesNoDeeper) {
+  const ContactModel model(two_bones(test::box({-30, -30, 30}, {30, 30, 60}), test::sphere(3, 10)));
+  const Pose inside = shift(0, 0, 25);  // 5 mm deep
+  const auto out = model.stop_at_contact(inside, shift(0, 0, 10), nullptr);
+  EXPECT_FALSE(out.stopped);
+  const auto deeper = model.stop_at_contact(inside, shift(0, 0, 35), nullptr);
+  EXPECT_TRUE(deeper.stopped);
+  EXPECT_NEAR(deeper.X_CM.t.z(), 25, 0.01);
+}
+
+TEST(ContactModel, OpenShellsAreJudgedByTheirTrianglesAndSaidToBe) {
+  TriMesh sheet;  // one layer, no inside
+  sheet.vertices = {{-30, -30, 30}, {30, -30, 30}, {30, 30, 30}, {-30, 30, 30}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const ContactModel model(two_bones(sheet, test::sphere(3, 10)));
+  ASSERT_EQ(model.notes().size(), 1u);
+  EXPECT_NE(model.notes()[0].find("maxilla: 1 of 1"), std::string::npos);
+  EXPECT_GT(model.find(shift(0, 0, 21), nullptr).pairs[0].depth_mm, 0);
+  const auto stop = model.stop_at_contact({}, shift(0, 0, 45), nullptr);
+  EXPECT_TRUE(stop.stopped);
+  EXPECT_NEAR(stop.X_CM.t.z(), 20, 0.02);
+}
+
+TEST(ContactModel, ATurnedSceneGivesTheTurnedAnswer) {
+  std::mt19937_64 random(5);
+  const TriMesh upper = test::sphere(3, 20, {0, 0, 0}, 0.05),
+                lower = test::sphere(3, 10, {0, 0, -40}, 0.05);
+  const ContactModel here(two_bones(upper, lower));
+  for (int k = 0; k < 4; ++k) {
+    const Pose turn = test::any_pose(random, 30);
+    const ContactModel there(two_bones(test::moved(upper, turn), test::moved(lower, turn)));
+    const Pose wanted = shift(1, -2, 25);
+    const auto a = here.stop_at_contact({}, wanted, nullptr);
+    const auto b = there.stop_at_contact({}, turn * wanted * turn.inverse(), nullptr);
+    EXPECT_TRUE(a.stopped);
+    EXPECT_TRUE(b.stopped);
+    // The way turns with the scene, its halvings may round differently: equal within the stop's
+    // gap.
+    const Pose a_turned = turn * a.X_CM * turn.inverse();
+    EXPECT_LT((a_turned.t - b.X_CM.t).norm(), 0.01);
+    EXPECT_NEAR(there.find(turn * wanted * turn.inverse(), nullptr).pairs[0].depth_mm,
+                here.find(wanted, nullptr).pairs[0].depth_mm, 1e-9);
+  }
+}
+
+TEST(ContactModel, OneAndTwoThreadsGiveTheSameBits) {
+  Case patient =
+      two_bones(test::sphere(4, 20, {0, 0, 0}, 0.05), test::sphere(4, 10, {0, 0, -29}, 0.05));
+  patient.parts.push_back({"upper", Role::upper_teeth, test::sphere(3, 5, {8, 0, -21}), {}});
+  patient.parts.push_back({"lower", Role::lower_teeth, test::sphere(3, 5, {8, 0, -29}), {}});
+  const ContactModel model(patient);
+  std::mt19937_64 random(6);
+  Pose from;
+  ContactSet last = model.at_rest();
+  int stopped = 0;
+  for (int k = 0; k < 20; ++k) {
+    Pose wanted = test::any_pose(random, 4);
+    wanted.R = Eigen::Quaterniond::Identity().slerp(0.05, wanted.R);
+    expect_same_bits(model.find(wanted, &last, 1), model.find(wanted, &last, 2));
+    const auto one = model.stop_at_contact(from, wanted, &last, 1);
+    const auto two = model.stop_at_contact(from, wanted, &last, 2);
+    EXPECT_EQ(one.stopped, two.stopped);
+    EXPECT_EQ(one.X_CM.t, two.X_CM.t);
+    EXPECT_EQ(one.X_CM.R.coeffs(), two.X_CM.R.coeffs());
+    expect_same_bits(one.contacts, two.contacts);
+    stopped += one.stopped;
+    from = one.X_CM;
+    last = one.contacts;
+  }
+  EXPECT_GT(stopped, 0);
+}
+
+}  // namespace
+}  // namespace condyle

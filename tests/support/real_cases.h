@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "sim/case/case_io.h"
+
+namespace condyle::test {
+
+/// Folder of real anatomy beside the checkout; it may be absent.
+inline std::filesystem::path real_data() {
+  return std::filesystem::path(CONDYLE_SOURCE_DIR) / ".." / "shared" / "data";
+}
+
+inline std::optional<Case> case_ubc() {
+  const auto folder = real_data() / "case-ubc";
+  if (!std::filesystem::exists(folder)) return std::nullopt;
+  ImportRequest request;
+  request.files = {{Role::maxilla, folder / "maxilla_with_teeth_wrap_30k.ply"},
+                   {Role::mandible, folder / "mandible_8k.ply"},
+                   {Role::upper_teeth, folder / "upper_teeth.ply"},
+                   {Role::lower_teeth, folder / "lower_teeth.ply"}};
+  request.landmarks = folder / "markers.csv";
+  request.name = "case-ubc";
+  return import_meshes(request);
+}
+
+inline std::optional<Case> case_badin() {
+  const auto folder = real_data() / "case-badin";
+  if (!std::filesystem::exists(folder)) return std::nullopt;
+  ImportRequest request;
+  request.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
+                   {Role::mandible, folder / "mandible.ply"}};
+  request.landmarks = folder / "markers.csv";
+  request.name = "case-badin";
+  return import_meshes(request);
+}
+
+}  // namespace condyle::test
