@@ -7,6 +7,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/mesh/measure.h"
 #include "render/gl_context.h"
 #include "render/recorder.h"
 #include "render/scene_renderer.h"
@@ -60,24 +61,24 @@ std::uint64_t motion_hash(const Motion& motion) {
   return hash;
 }
 
-using Corners = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
-
-/// The box grown by where the motion takes the mandible, so that the camera keeps it in view.
-Corners swept_box(Corners box, const Case& patient, const Motion& motion) {
+/// The box of what is shown, grown by where the motion takes the mandible: what the camera keeps in view.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const Motion& motion,
+                                                     const PictureSettings& picture) {
   constexpr int samples = 24;
   constexpr std::size_t stride = 16;  // a few vertices tell the extent
+  Box box;
   for (const auto& part : patient.parts) {
-    if (body_of(part.role) != Body::mandible) continue;
-    for (int i = 0; i <= samples; ++i) {
-      const Pose X_CM = motion.wanted(motion.duration_s * i / samples);
-      for (std::size_t v = 0; v < part.mesh.vertices.size(); v += stride) {
-        const Eigen::Vector3d p = X_CM * part.mesh.vertices[v];
-        box.first = box.first.cwiseMin(p);
-        box.second = box.second.cwiseMax(p);
-      }
+    const auto opacity = picture.part_opacity.find(part.name);
+    if (opacity != picture.part_opacity.end() && opacity->second <= 0) continue;
+    const bool moves = body_of(part.role) == Body::mandible;
+    for (int i = 0; i <= (moves ? samples : 0); ++i) {
+      const Pose X_CM = moves ? motion.wanted(motion.duration_s * i / samples) : Pose{};
+      for (std::size_t v = 0; v < part.mesh.vertices.size(); v += stride)
+        box.add(X_CM * part.mesh.vertices[v]);
     }
   }
-  return box;
+  if (box.empty()) throw InputError("--show: nothing is left to draw");
+  return {box.low, box.high};
 }
 
 /// Draws the frames of one recording and keeps them.
@@ -88,7 +89,7 @@ class PictureTaker {
       : renderer_(scene.patient.parts), spin_(options.camera == "spin"), frames_(times.count) {
     std::tie(picture_.width, picture_.height) = parse_size(options.size);
     apply_show_list(options.show, scene.patient.parts, picture_);
-    const auto [low, high] = swept_box(renderer_.bounds(), scene.patient, motion);
+    const auto [low, high] = view_box(scene.patient, motion, picture_);
     const double aspect = static_cast<double>(picture_.width) / picture_.height;
     camera_ = parse_camera(spin_ ? "front" : options.camera, low, high, aspect);
     recorder_.emplace(RecorderSettings{

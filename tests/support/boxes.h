@@ -24,8 +24,8 @@ inline Case box_patient() {
   patient.parts.push_back({"mandible", Role::mandible, box({-50, -92, -80}, {50, 0, -41}), {}});
   patient.landmarks.points = {{"upper_incisal_point", {0, -90, -40}},
                               {"lower_incisal_point", {0, -92, -41}},
-                              {"left_condyle", {48, -5, -42}},
-                              {"right_condyle", {-48, -5, -42}}};
+                              {"left_condyle", {48, -5, -12}},
+                              {"right_condyle", {-48, -5, -12}}};
   return patient;
 }
 

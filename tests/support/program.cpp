@@ -99,7 +99,7 @@ void write_box_patient(const fs::path& folder) {
   write_text(folder / "mandible.stl", stl_box("mandible", {-50, -92, -80}, {50, 0, -41}));
   write_text(folder / "marks.csv",
              "name,x_mm,y_mm,z_mm\nlowerincisor,0,-92,-41\nupperincisor,0,-90,-40\n"
-             "ltmj,48,-5,-42\nrtmj,-48,-5,-42\n");
+             "ltmj,48,-5,-12\nrtmj,-48,-5,-12\n");
 }
 
 std::string box_case(const Folder& folder) {
