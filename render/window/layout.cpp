@@ -17,7 +17,7 @@ Layout lay_out(double width, double height, double scale, bool with_panels) {
   // Whole pixels, and a hair's breadth between neighbours.
   const auto px = [&](double units) { return std::round(units * scale); };
   const double gap = std::max(1.0, px(1));
-  const double top = px(46), bottom = px(92), left = px(244), right = px(286);
+  const double top = px(46), bottom = px(82), left = px(244), right = px(286);
   const double middle = std::max(1.0, height - top - bottom - 2 * gap);
   layout.top = {0, 0, width, top};
   layout.bottom = {0, height - bottom, width, bottom};

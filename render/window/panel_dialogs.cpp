@@ -14,11 +14,13 @@ bool begin_dialog(Pen& pen, const char* name, float dialog_width, double width, 
                           {0.5f, 0.5f});
   ImGui::SetNextWindowSize({std::min(dialog_width, static_cast<float>(width) - pen.px(20)), 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, pen.px(24, 20));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, pen.px(8));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.0f, pen.px(1)));
   const bool open =
       ImGui::BeginPopupModal(name, nullptr,
                              ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                  ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavInputs);
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(3);
   if (open) {
     pen.panel = name;
     const ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();

@@ -14,7 +14,7 @@ struct SkinChoice {
   double opacity;
 };
 constexpr SkinChoice skin_choices[] = {
-    {"skin:off", "Off", 0}, {"skin:veil", "Veil", 0.35}, {"skin:full", "Full", 1}};
+    {"skin:off", "Off", 0}, {"skin:glass", "Glass", 0.35}, {"skin:full", "Full", 1}};
 
 }  // namespace
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double step_budget_ms = 1000.0 / 60;
 constexpr double usual_low_mm = 42, usual_high_mm = 58;  // accepted band of the largest opening
+constexpr float bar_row = 16, curve_height = 26;         // at scale 1
 constexpr double deeper_mm = 0.01;  // overlap beyond the one at rest that is called penetration
 
 // A line with a dim name at the left and a value at the right.
@@ -40,18 +41,21 @@ std::string part_name(const WindowScene& scene, int index) {
 
 void Panels::Drawing::readings() {
   begin_panel(pen, "right", layout.right);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 4));
   opening();
   // Contacts get the height that tissue and times leave.
-  const float line = ImGui::GetTextLineHeight() + pen.px(7);
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const float head = pen.px(42);  // a heading with its line and air
   const bool has_tissue = input.frame && !input.frame->tissue.nodes.empty();
-  const float below = (has_tissue ? pen.px(42) + 3 * line : 0) + pen.px(42) +
-                      static_cast<float>(stage_names.size()) * pen.px(19) + pen.px(40) + 2 * line;
-  const float heading_height = pen.px(42);
+  const float bars =
+      static_cast<float>(stage_names.size()) * pen.px(bar_row) + pen.px(curve_height);
+  const float below = (has_tissue ? head + 3 * line : 0) + head + bars + line + pen.px(8);
   const float pairs = input.frame ? static_cast<float>(input.frame->contacts.pairs.size()) : 0;
-  const float room = std::max(2 * line, ImGui::GetContentRegionAvail().y - below - heading_height);
-  contacts(std::min(room, std::max(1.0f, pairs) * line));
+  const float room = ImGui::GetContentRegionAvail().y - below - head;
+  contacts(std::max(2 * line, std::min(room, std::max(1.0f, pairs) * line)));
   if (has_tissue) tissue();
   times();
+  ImGui::PopStyleVar();
   end_panel();
 }
 
@@ -208,7 +212,8 @@ void Panels::Drawing::times() {
   for (std::size_t i = 0; i < stage_names.size(); ++i) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool picture = static_cast<Stage>(i) == Stage::render;
-    const float text_y = at.y + (pen.px(19) - theme.small->FontSize) / 2, mid = at.y + pen.px(9.5f);
+    const float text_y = at.y + (pen.px(bar_row) - theme.small->FontSize) / 2,
+                mid = at.y + pen.px(bar_row / 2);
     const std::string name = picture ? "picture" : std::string(stage_names[i]);
     const std::string value = fmt::format("{:.1f} ms", times.ms[i]);
     list.AddText(theme.small, theme.small->FontSize, {at.x, text_y}, colour::text_dim,
@@ -223,13 +228,13 @@ void Panels::Drawing::times() {
     list.AddText(theme.small, theme.small->FontSize,
                  {at.x + width - text_width(theme.small, value), text_y}, colour::text,
                  value.c_str());
-    ImGui::Dummy({width, pen.px(19) - ImGui::GetStyle().ItemSpacing.y});
+    ImGui::Dummy({width, pen.px(bar_row) - ImGui::GetStyle().ItemSpacing.y});
   }
 
   // The last steps as a curve, with the time that 60 steps a second allow as a line.
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
   const ImVec2 low = ImGui::GetCursorScreenPos();
-  const float curve = pen.px(32);
+  const float curve = pen.px(curve_height);
   list.AddRectFilled(low, {low.x + width, low.y + curve}, colour::rgb(0x14181c), pen.px(3));
   const auto& history = panels.step_ms_;
   float highest = static_cast<float>(step_budget_ms) * 1.25f;
@@ -248,11 +253,12 @@ void Panels::Drawing::times() {
                      std::max(1.0f, pen.px(1.3f)));
   }
   ImGui::Dummy({width, curve});
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 3));
+  pen.mark("curve");
   const double pictures = input.pictures.pictures_per_second;
   text(theme.small, colour::text_dim,
        fmt::format("{:.0f} steps/s, ", input.loop.steps_per_second) +
            (pictures > 0 ? fmt::format("{:.0f} pictures/s", pictures) : "picture at rest"));
+  pen.mark("rates");
   if (input.pictures.render_scale < 1 || input.pictures.samples < 4) {
     ImGui::SameLine();
     text_right(theme.small, colour::text_faint,
@@ -262,7 +268,6 @@ void Panels::Drawing::times() {
     tooltip(pen,
             "While things move on a slow machine the picture is coarser. It is full again at rest");
   }
-  ImGui::PopStyleVar();
 }
 
 }  // namespace condyle

@@ -143,6 +143,7 @@ void Panels::Drawing::cube() {
     list.AddQuad(quad[0], quad[1], quad[2], quad[3], colour::rgb(0x8a96a3),
                  std::max(1.0f, pen.px(1)));
 
+    if (facing < 0.2) continue;  // too slanted to read
     // The letter lies in the face: drawn flat at the centre, then its corners are moved there.
     ImFont* font = theme.large;
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6f, 0, face.letter);

@@ -39,17 +39,17 @@ void load_fonts(Theme& theme) {
     if (!std::filesystem::is_regular_file(files.regular, ignored) ||
         !std::filesystem::is_regular_file(files.bold, ignored))
       continue;
-    const auto load = [&](const char* file, float relative) {
+    const auto load = [&](const char* file, float relative, const ImWchar* which) {
       ImFontConfig config;
       config.OversampleH = 2;
       config.OversampleV = 1;
       const float pixels = std::round(files.size * theme.scale * relative);
-      return atlas.AddFontFromFileTTF(file, pixels, &config, letters.data());
+      return atlas.AddFontFromFileTTF(file, pixels, &config, which);
     };
-    theme.regular = load(files.regular, 1);
-    theme.small = load(files.regular, 0.86f);
-    theme.bold = load(files.bold, 1);
-    theme.large = load(files.bold, 2.1f);
+    theme.regular = load(files.regular, 1, letters.data());
+    theme.small = load(files.regular, 0.86f, letters.data());
+    theme.bold = load(files.bold, 1, letters.data());
+    theme.large = load(files.bold, 2.1f, nullptr);  // numbers and single letters: Latin is enough
     if (theme.regular && theme.small && theme.bold && theme.large) {
       theme.font_file = files.regular;
       return;
@@ -104,7 +104,7 @@ Theme apply_theme(float scale) {
   set(ImGuiCol_TextDisabled, colour::text_dim);
   set(ImGuiCol_WindowBg, colour::panel);
   set(ImGuiCol_ChildBg, colour::rgb(0, 0));
-  set(ImGuiCol_PopupBg, colour::rgb(0x20262d, 250));
+  set(ImGuiCol_PopupBg, colour::rgb(0x20262d));
   set(ImGuiCol_Border, colour::panel_edge);
   set(ImGuiCol_FrameBg, colour::field);
   set(ImGuiCol_FrameBgHovered, colour::field_hovered);

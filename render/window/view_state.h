@@ -32,14 +32,15 @@ struct PartView {
 struct ViewState {
   bool playing = false;
   bool loop = true;
-  double speed = 1;                  // times real time, 0.1 to 2
-  double time_s = 0;                 // of the motion, 0 to duration
-  std::optional<double> opening_mm;  // while set, this opening is wanted instead of the motion's
-  bool obey_contact = true;          // false plays the motion through the contact
+  double speed = 1;   // times real time, 0.1 to 2
+  double time_s = 0;  // of the motion, 0 to duration
+  std::optional<double> opening_mm =
+      {};                    // while set, this opening is wanted instead of the motion's
+  bool obey_contact = true;  // false plays the motion through the contact
   bool mark_contacts = true;
   bool shadows = true;
-  double skin_opacity = 1;      // of parts with the role `face`, on top of their own
-  std::vector<PartView> parts;  // one per part of the scene, in its order
+  double skin_opacity = 1;           // of parts with the role `face`, on top of their own
+  std::vector<PartView> parts = {};  // one per part of the scene, in its order
 
   /// Whether any face is visible: without one the loop may leave out the face and its tissue.
   bool shows_face(const WindowScene& scene) const;

@@ -99,7 +99,6 @@ PanelStage::~PanelStage() {
 }
 
 void PanelStage::step(double x, double y, bool down) {
-  if (each_step) each_step();
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {static_cast<float>(width_), static_cast<float>(height_)};
   io.DeltaTime = 1.0f / 60;
@@ -117,10 +116,14 @@ void PanelStage::step(double x, double y, bool down) {
   const auto asked = panels->draw(input, view, width_, height_);
   commands.insert(commands.end(), asked.begin(), asked.end());
   ImGui::Render();
+}
+
+Image PanelStage::image() {
   picture_.bind();
   glClearColor(0.06f, 0.07f, 0.08f, 1);
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  return picture_.read();
 }
 
 void PanelStage::rest(int pictures) {

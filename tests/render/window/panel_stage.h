@@ -3,7 +3,6 @@
 #include <imgui.h>
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,7 +40,8 @@ class PanelStage {
   /// The item as last drawn; fails the test when it is not there.
   DrawnItem item(const std::string& name) const;
   bool has(const std::string& name) const;
-  Image image() const { return picture_.read(); }
+  /// The last panels as pixels.
+  Image image();
 
   std::vector<Part> parts = box_patient();
   WindowScene scene;
@@ -51,7 +51,6 @@ class PanelStage {
   std::vector<Command> commands;  // all so far
   std::string progress;
   std::unique_ptr<Panels> panels;
-  std::function<void()> each_step;  // before each picture
 
  private:
   OffscreenContext context_;

@@ -74,6 +74,23 @@ TEST_P(PanelsOn, ItemNamesAreUnique) {
   keep("rest");
 }
 
+TEST_P(PanelsOn, AreDrawnIntoTheFramebuffer) {
+  const auto pixel = [](const Image& image, double x, double y) {
+    const auto at = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                         static_cast<std::size_t>(x));
+    return Eigen::Vector3i(image.rgba[at], image.rgba[at + 1], image.rgba[at + 2]);
+  };
+  const Image paused = stage.image();
+  const ViewRect left = stage.item("left").rect, play = stage.item("play").rect;
+  EXPECT_EQ(pixel(paused, left.x + 2, left.y + 2), Eigen::Vector3i(0x19, 0x1d, 0x22));
+  // The sign for play has its middle filled, the one for pause has a gap there.
+  const double x = play.x + play.width / 2, y = play.y + play.height / 2;
+  EXPECT_GT(pixel(paused, x, y).minCoeff(), 200);
+  stage.view.playing = true;
+  stage.rest();
+  EXPECT_LT(pixel(stage.image(), x, y).minCoeff(), 100);
+}
+
 TEST_P(PanelsOn, PlayTogglesPlaying) {
   ASSERT_FALSE(stage.view.playing);
   stage.click("play");

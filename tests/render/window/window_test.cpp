@@ -1,0 +1,421 @@
+#include "render/window/window.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "engine/core/error.h"
+#include "panel_stage.h"
+#include "test_display.h"
+
+namespace condyle {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+/// A window on a virtual screen with a simulation of boxes behind it. The window runs on the test's
+/// thread; a script with real events runs beside it.
+class RealWindow : public testing::Test {
+ protected:
+  struct Seen {
+    ViewState view;
+    Camera camera;
+    std::vector<DrawnItem> items;
+    ViewRect rect;
+    double shown_opening_mm = 0;
+    int loops = 0;
+  };
+
+  void SetUp() override {
+    if (!has_program("Xvfb") || !has_program("xdotool"))
+      GTEST_SKIP() << "the programs Xvfb and xdotool are not installed";
+    display_ = std::make_unique<TestDisplay>();
+    ASSERT_TRUE(display_->running()) << "Xvfb did not start";
+    folder_ =
+        std::filesystem::temp_directory_path() / ("condyle-window-" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+    options_ = {.title = "Condyle test", .picture_folder = folder_};
+  }
+  void TearDown() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+
+  /// Runs the window until the script has ended or the person has closed it.
+  void run(const std::function<void()>& script) {
+    Window window(options_);
+    window.set_scene({.parts = parts_,
+                      .case_name = "Boxes",
+                      .motion_name = "opening",
+                      .duration_s = 4,
+                      .max_opening_mm = 50});
+    std::atomic<bool> done = false;
+    std::thread person([&] {
+      wait_until([](const Seen& seen) { return seen.loops > 5 && !seen.items.empty(); });
+      script();
+      done = true;
+      Window::wake();
+    });
+    const auto start = Clock::now();
+    while (window.open() && !done && Clock::now() - start < std::chrono::seconds(60)) {
+      const ViewState request = window.poll();
+      const double opening =
+          request.opening_mm.value_or(20 - 20 * std::cos(request.time_s * M_PI / 2));
+      window.show(box_frame(request.time_s, opening), {.steps_per_second = 60});
+      const std::lock_guard lock(mutex_);
+      seen_ = {window.view(),      window.camera(), window.items(),
+               window.view_rect(), opening,         seen_.loops + 1};
+    }
+    closed_ = !window.open();
+    if (const auto file = kept_picture("window-" + name() + ".png"); !file.empty())
+      write_png(file, window.picture());
+    person.join();
+  }
+
+  // For the script:
+  Seen seen() {
+    const std::lock_guard lock(mutex_);
+    return seen_;
+  }
+  bool wait_until(const std::function<bool(const Seen&)>& law, double longest_s = 10) {
+    const auto start = Clock::now();
+    while (Clock::now() - start < std::chrono::duration<double>(longest_s)) {
+      if (law(seen())) return true;
+      std::this_thread::sleep_for(milliseconds(10));
+    }
+    return false;
+  }
+  /// The camera once every event of a drag has arrived.
+  Camera settled_camera() {
+    Camera last = seen().camera;
+    for (int calm = 0; calm < 4;) {
+      std::this_thread::sleep_for(milliseconds(50));
+      const Camera now = seen().camera;
+      const bool same = now.target == last.target && now.direction == last.direction &&
+                        now.up == last.up && now.distance_mm == last.distance_mm;
+      calm = same ? calm + 1 : 0;
+      last = now;
+    }
+    return last;
+  }
+  ViewRect place(const std::string& item_name) {
+    for (const DrawnItem& item : seen().items)
+      if (item.name == item_name) return item.rect;
+    ADD_FAILURE() << "no item '" << item_name << "' is in the window";
+    return {};
+  }
+  static std::string px(double value) { return std::to_string(std::lround(value)); }
+  void click(const std::string& item) {
+    const ViewRect r = place(item);
+    EXPECT_TRUE(
+        xdotool({"mousemove", px(r.x + r.width / 2), px(r.y + r.height / 2), "click", "1"}));
+  }
+  /// Presses at one place, moves in steps, lets go at the other.
+  void drag(double x0, double y0, double x1, double y1, const std::string& button,
+            const std::string& key = {}) {
+    if (!key.empty()) {
+      EXPECT_TRUE(xdotool({"keydown", key}));
+    }
+    std::vector<std::string> moves = {"mousemove", px(x0), px(y0), "mousedown", button};
+    for (int i = 1; i <= 5; ++i) {
+      const double f = i / 5.0;
+      moves.insert(moves.end(),
+                   {"mousemove", px(x0 + f * (x1 - x0)), px(y0 + f * (y1 - y0)), "sleep", "0.03"});
+    }
+    moves.insert(moves.end(), {"mouseup", button});
+    EXPECT_TRUE(xdotool(moves));
+    if (!key.empty()) {
+      EXPECT_TRUE(xdotool({"keyup", key}));
+    }
+  }
+  void drag_in_view(double dx, double dy, const std::string& button, const std::string& key = {}) {
+    const ViewRect r = seen().rect;
+    const double x = r.x + r.width * 0.5, y = r.y + r.height * 0.4;
+    drag(x, y, x + dx, y + dy, button, key);
+  }
+  bool press(const std::string& key) { return xdotool({"key", key}); }
+  static std::string name() {
+    return testing::UnitTest::GetInstance()->current_test_info()->name();
+  }
+
+  std::unique_ptr<TestDisplay> display_;
+  std::filesystem::path folder_;
+  WindowOptions options_;
+  std::vector<Part> parts_ = box_patient();
+  bool closed_ = false;
+
+ private:
+  std::mutex mutex_;
+  Seen seen_;
+};
+
+double moved_mm(const Camera& a, const Camera& b) { return (a.target - b.target).norm(); }
+double turned_rad(const Camera& a, const Camera& b) {
+  return std::acos(std::clamp(a.direction.dot(b.direction), -1.0, 1.0));
+}
+
+TEST_F(RealWindow, SpacePlaysAndPauses) {
+  run([&] {
+    EXPECT_FALSE(seen().view.playing);
+    EXPECT_TRUE(press("space"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.playing && s.view.time_s > 0.2; }));
+    EXPECT_TRUE(press("space"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return !s.view.playing; }));
+    const double time = seen().view.time_s;
+    EXPECT_TRUE(press("Right"));
+    EXPECT_TRUE(wait_until([&](const Seen& s) { return s.view.time_s > time; }));
+    EXPECT_NEAR(seen().view.time_s, time + 1.0 / 30, 1e-9);
+    EXPECT_TRUE(press("shift+Left"));
+    EXPECT_TRUE(wait_until([&](const Seen& s) { return s.view.time_s < time; }));
+  });
+  EXPECT_FALSE(closed_);
+}
+
+TEST_F(RealWindow, PlayingKeepsTimeWithTheClock) {
+  run([&] {
+    click("play");
+    ASSERT_TRUE(wait_until([](const Seen& s) { return s.view.playing; }));
+    const double before = seen().view.time_s;
+    const auto start = Clock::now();
+    std::this_thread::sleep_for(milliseconds(1500));
+    const double passed = std::chrono::duration<double>(Clock::now() - start).count();
+    // As the machine is shared, a picture may come late; but time is neither lost nor made.
+    EXPECT_NEAR(seen().view.time_s - before, passed, 0.25);
+  });
+}
+
+TEST_F(RealWindow, MouseMovesTheCameraAsInTheHelp) {
+  run([&] {
+    Camera before = settled_camera();
+    drag_in_view(120, 30, "1");
+    Camera after = settled_camera();
+    EXPECT_GT(turned_rad(after, before), 0.2);
+    EXPECT_DOUBLE_EQ(after.distance_mm, before.distance_mm);
+    EXPECT_EQ(moved_mm(after, before), 0);
+
+    before = after;
+    drag_in_view(80, 0, "1", "shift");
+    after = settled_camera();
+    EXPECT_GT(moved_mm(after, before), 5);
+    EXPECT_LT(turned_rad(after, before), 1e-6);
+
+    before = after;
+    drag_in_view(0, 80, "2");
+    after = settled_camera();
+    EXPECT_GT(moved_mm(after, before), 5);
+
+    before = after;
+    drag_in_view(0, 60, "3");
+    after = settled_camera();
+    EXPECT_GT(after.distance_mm, 1.1 * before.distance_mm);
+
+    before = after;
+    EXPECT_TRUE(xdotool({"click", "4"}));
+    after = settled_camera();
+    EXPECT_LT(after.distance_mm, before.distance_mm);
+
+    before = after;
+    drag_in_view(120, 0, "1", "ctrl");
+    after = settled_camera();
+    EXPECT_GT(std::abs(camera_angles(after).roll - camera_angles(before).roll), 0.2);
+    EXPECT_LT(turned_rad(after, before), 1e-6);
+  });
+}
+
+TEST_F(RealWindow, KeysChooseTheStandardViews) {
+  const auto looks = [&](const std::string& key, const Eigen::Vector3d& from) {
+    EXPECT_TRUE(press(key)) << key;
+    EXPECT_TRUE(
+        wait_until([&](const Seen& s) { return (s.camera.direction - from).norm() < 1e-9; }, 5))
+        << key << " looks from " << seen().camera.direction.transpose();
+  };
+  run([&] {
+    looks("KP_1", {0, -1, 0});
+    looks("KP_3", {1, 0, 0});
+    looks("KP_7", {0, 0, 1});
+    looks("p", {0, 1, 0});
+    looks("r", {-1, 0, 0});
+    looks("i", {0, 0, -1});
+    looks("a", {0, -1, 0});
+    looks("shift+a", {0, 1, 0});
+    const ViewRect home = place("view:home");
+    EXPECT_GT(home.width, 0);
+    click("view:S");
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.camera.direction.z() > 0.999; }));
+    EXPECT_TRUE(press("Home"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.camera.direction.z() < 0.5; }));
+  });
+}
+
+TEST_F(RealWindow, OpeningSliderOpensTheMouth) {
+  run([&] {
+    const ViewRect r = place("opening");
+    drag(r.x + r.width * 0.1, r.y + r.height / 2, r.x + r.width * 0.6, r.y + r.height / 2, "1");
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.opening_mm.value_or(0) > 28; }));
+    EXPECT_NEAR(seen().shown_opening_mm, 30, 1);
+    // The drag on the panel must not turn the patient.
+    EXPECT_EQ(seen().view.playing, false);
+    click("release");
+    EXPECT_TRUE(wait_until([](const Seen& s) { return !s.view.opening_mm.has_value(); }));
+  });
+}
+
+TEST_F(RealWindow, ClicksAreNotLostWhenTheMouseHurriesOn) {
+  run([&] {
+    const ViewRect play = place("play"), mandible = place("show:mandible");
+    const Camera before = seen().camera;
+    // All in one go: far faster than pictures are drawn.
+    EXPECT_TRUE(
+        xdotool({"mousemove", px(mandible.x + 8), px(mandible.y + 8), "click", "1", "mousemove",
+                 px(play.x + 8), px(play.y + 8), "click", "1", "mousemove", "640", "300"}));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.playing && !s.view.parts[4].shown; }));
+    EXPECT_EQ(turned_rad(seen().camera, before), 0);
+  });
+}
+
+TEST_F(RealWindow, CtrlQCloses) {
+  run([&] {
+    EXPECT_TRUE(press("ctrl+q"));
+    std::this_thread::sleep_for(milliseconds(500));
+  });
+  EXPECT_TRUE(closed_);
+}
+
+TEST_F(RealWindow, HelpOpensAndEscapeCloses) {
+  const auto has_help = [](const Seen& s) {
+    for (const DrawnItem& item : s.items)
+      if (item.name == "help") return true;
+    return false;
+  };
+  run([&] {
+    EXPECT_TRUE(press("F1"));
+    EXPECT_TRUE(wait_until(has_help));
+    const Camera before = settled_camera();
+    drag_in_view(100, 0, "1");  // the dialog is in front of the patient
+    EXPECT_EQ(turned_rad(settled_camera(), before), 0);
+    EXPECT_TRUE(press("Escape"));
+    EXPECT_TRUE(wait_until([&](const Seen& s) { return !has_help(s); }));
+    drag_in_view(100, 0, "1");
+    EXPECT_TRUE(wait_until([&](const Seen& s) { return turned_rad(s.camera, before) > 0.1; }));
+  });
+}
+
+TEST_F(RealWindow, SavesThePictureAndTheWholeWindow) {
+  const auto saved = [&] {
+    std::vector<Image> images;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      if (entry.path().extension() == ".png") images.push_back(read_png(entry.path()));
+    return images;
+  };
+  run([&] {
+    const ViewRect view = seen().rect;
+    EXPECT_TRUE(press("F12"));
+    EXPECT_TRUE(wait_until([&](const Seen&) { return saved().size() == 1; }));
+    EXPECT_EQ(saved().at(0).width, std::lround(view.width));
+    EXPECT_EQ(saved().at(0).height, std::lround(view.height));
+    EXPECT_TRUE(press("shift+F12"));
+    EXPECT_TRUE(wait_until([&](const Seen&) { return saved().size() == 2; }));
+    bool whole = false;
+    for (const Image& image : saved()) whole |= image.width == 1280 && image.height == 720;
+    EXPECT_TRUE(whole);
+  });
+}
+
+TEST_F(RealWindow, APictureThatCannotBeSavedIsASentence) {
+  options_.picture_folder = folder_ / "missing" / "folder";
+  run([&] {
+    EXPECT_TRUE(press("F12"));
+    EXPECT_TRUE(wait_until([](const Seen& s) {
+      for (const DrawnItem& item : s.items)
+        if (item.name == "error") return true;
+      return false;
+    }));
+    EXPECT_TRUE(press("Escape"));
+    EXPECT_TRUE(press("space"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.playing; }));
+  });
+}
+
+TEST_F(RealWindow, AnIdleWindowRests) {
+  run([&] {
+    std::this_thread::sleep_for(milliseconds(1500));  // until the full picture is drawn
+    const auto cpu_s = [] {
+      rusage usage{};
+      getrusage(RUSAGE_SELF, &usage);
+      return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+             1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+    };
+    const double before = cpu_s();
+    const int loops = seen().loops;
+    std::this_thread::sleep_for(milliseconds(2000));
+    EXPECT_LT(cpu_s() - before, 0.1);
+    EXPECT_LT(seen().loops - loops, 12);
+    EXPECT_GT(seen().loops - loops, 3);
+  });
+}
+
+TEST_F(RealWindow, SurvivesAnySize) {
+  run([&] {
+    const auto resize = [&](const char* w, const char* h) {
+      EXPECT_TRUE(xdotool({"search", "--name", "Condyle test", "windowsize", w, h}));
+      std::this_thread::sleep_for(milliseconds(300));
+      const int loops = seen().loops;
+      EXPECT_TRUE(wait_until([&](const Seen& s) { return s.loops > loops + 2; }));
+    };
+    resize("1", "1");
+    resize("300", "900");
+    resize("1280", "720");
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.rect.width > 600; }));
+    EXPECT_TRUE(press("space"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.playing; }));
+  });
+}
+
+TEST_F(RealWindow, AScaledInterfaceStillFits) {
+  options_.ui_scale = 1.4;
+  options_.width = 1000;
+  options_.height = 600;
+  run([&] {
+    const ViewRect view = seen().rect;
+    EXPECT_GT(view.width, 300);
+    for (const DrawnItem& item : seen().items) {
+      EXPECT_LE(item.rect.x + item.rect.width, 1000.5) << item.name;
+      EXPECT_LE(item.rect.y + item.rect.height, 600.5) << item.name;
+    }
+  });
+}
+
+TEST_F(RealWindow, ASecondWindowOpensAfterTheFirst) {
+  for (int i = 0; i < 2; ++i) {
+    run([&] { EXPECT_TRUE(press("space")); });
+    EXPECT_FALSE(closed_);
+  }
+}
+
+TEST(NoDisplay, IsASentenceThatNamesTheWayWithout) {
+  unsetenv("WAYLAND_DISPLAY");
+  for (const char* display : {"", ":9321"}) {
+    setenv("DISPLAY", display, 1);
+    try {
+      Window window;
+      ADD_FAILURE() << "a window opened on DISPLAY='" << display << "'";
+    } catch (const MachineError& error) {
+      const std::string words = error.what();
+      EXPECT_NE(words.find("no display was found"), std::string::npos) << words;
+      EXPECT_NE(words.find("condyle record"), std::string::npos) << words;
+    }
+  }
+  unsetenv("DISPLAY");
+}
+
+}  // namespace
+}  // namespace condyle
