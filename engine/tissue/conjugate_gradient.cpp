@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/tissue/column_preconditioner.h"
-
 namespace condyle {
 namespace {
 
@@ -23,16 +21,15 @@ double largest_norm(const Nodes& a) {
 
 }  // namespace
 
-MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads,
+MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads, const HessianFactor& factor,
                         const MinimizeSettings& settings, Nodes& x) {
   SpringPrismEnergy energy(net, loads, settings.threads);
-  const ColumnPreconditioner preconditioner(net, loads, settings.nodes_per_column, x);
   MinimizeResult result;
   Nodes g, g_new, z, z_new, d, trial(x.size());
 
   double f = energy.value_and_gradient(x, g);
   result.evaluations = 1;
-  preconditioner.apply(g, z);
+  factor.solve(g, z);
   double gz = dot(g, z);
   d.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
@@ -78,7 +75,7 @@ MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads,
 
     x.swap(trial);
     f = f_new;
-    preconditioner.apply(g_new, z_new);
+    factor.solve(g_new, z_new);
     double change = 0;
     for (std::size_t i = 0; i < x.size(); ++i) change += z_new[i].dot(g_new[i] - g[i]);
     const double beta = std::max(0.0, change / gz);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "engine/tissue/hessian_factor.h"
 #include "engine/tissue/spring_prism.h"
 
 namespace condyle {
@@ -8,7 +9,6 @@ struct MinimizeSettings {
   double tolerance_mm = 1e-3;   // estimated distance left to the minimum, of the worst node
   int max_iterations = 2000;
   double max_step_mm = 4.0;     // of any node in one iteration
-  int nodes_per_column = 1;     // consecutive nodes that the preconditioner takes together
   int threads = 1;              // the result has the same bits for any number
 };
 
@@ -23,8 +23,8 @@ struct MinimizeResult {
 /// Moves `x` to the minimum of the net's energy: preconditioned Polak-Ribiere conjugate gradient
 /// with a parabolic line search. Along a direction each squared length is quadratic and each volume
 /// cubic, so the curvature is known exactly and one step is nearly always taken as it is.
-/// `x` must have no inverted prism; no step makes one.
-MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads,
+/// `x` must have no inverted prism; no step makes one. The factor may be of any state of the net.
+MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads, const HessianFactor& factor,
                         const MinimizeSettings& settings, Nodes& x);
 
 }  // namespace condyle

@@ -128,7 +128,7 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, Nodes& gradien
     const Vector3d d = x[b] - x[a];
     const double length = std::sqrt(d.squaredNorm());
     const double stretch = length - net_.rest_length[s];
-    const double k = net_.stiffness[s];
+    const double k = net_.stiffness[s] * (stretch < 0 ? net_.compression_share : 1.0);
     spring_energy += k * stretch * stretch;
     const Vector3d force = (2 * k * stretch / length) * d;
     gradient[a] -= force;
@@ -196,7 +196,7 @@ SpringPrismEnergy::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const
     const double along2 = along * along / length2;
     const double across2 = de.squaredNorm() - along2;
     const double tension = 1 - net_.rest_length[s] / std::sqrt(length2);
-    const double k2 = 2 * net_.stiffness[s];
+    const double k2 = 2 * net_.stiffness[s] * (tension < 0 ? net_.compression_share : 1.0);
     springs_sum.exact += k2 * (along2 + tension * across2);
     springs_sum.gauss_newton += k2 * (along2 + (tension > 0 ? tension * across2 : 0));
   }

@@ -32,6 +32,9 @@ struct SpringPrismNet {
   std::vector<double> rest_volume;    // mm^3
   std::vector<double> volume_weight;  // energy is weight * (v - rest)^2, N/mm^5
 
+  /// Stiffness of a shortened spring, over that of a stretched one. 1 is the plain energy; less says
+  /// that fibres buckle where they cannot push, and takes most of the folding out of thin sheets.
+  double compression_share = 0.25;
   double lambda = 0.5;  // weight of the springs; 1 - lambda that of the volumes
   /// Below this share of its rest volume a prism resists ever more, without bound at zero.
   double barrier_share = 0.5;

@@ -4,14 +4,12 @@
 
 namespace condyle {
 
-std::vector<Hold> hold_columns(const CoarseSkin& skin, const std::vector<Column>& columns,
-                               const Anatomy& anatomy) {
+void hold_columns(const CoarseSkin& skin, const Anatomy& anatomy, std::vector<Column>& columns) {
   constexpr double lip_margin_mm = 9;
   constexpr double deepest_mm = 22;
   constexpr double from_bite_mm = 11;  // crowns and the gums' edge
-  std::vector<Hold> hold(columns.size(), Hold::free);
   for (std::size_t v = 0; v < columns.size(); ++v) {
-    const Column& c = columns[v];
+    Column& c = columns[v];
     const Eigen::Vector3d& p = skin.mesh.vertices[v];
     const double above_bite = p.z() - anatomy.bite_height(p.y());
     const bool mouth_side = c.to_mouth < lip_margin_mm;
@@ -19,7 +17,7 @@ std::vector<Hold> hold_columns(const CoarseSkin& skin, const std::vector<Column>
       // Nothing below: the nose stands on cartilage, which goes with the cranium.
       const bool nose = p.y() < anatomy.incisors.y() + 15 && above_bite > 18 &&
                         std::abs(p.x() - anatomy.incisors.x()) < 24;
-      if (nose) hold[v] = Hold::cranium;
+      if (nose) c.hold = Hold::cranium;
       continue;
     }
     if (mouth_side || c.met_teeth || c.met_depth > deepest_mm) continue;
@@ -27,10 +25,9 @@ std::vector<Hold> hold_columns(const CoarseSkin& skin, const std::vector<Column>
     const double met_above = met.z() - anatomy.bite_height(met.y());
     // The march must meet the bone's outside, face on.
     if (c.met_normal.dot(c.inward) > -0.35) continue;
-    if (c.ground == Ground::cranium && met_above > from_bite_mm) hold[v] = Hold::cranium;
-    if (c.ground == Ground::mandible && met_above < -from_bite_mm) hold[v] = Hold::mandible;
+    if (c.ground == Ground::cranium && met_above > from_bite_mm) c.hold = Hold::cranium;
+    if (c.ground == Ground::mandible && met_above < -from_bite_mm) c.hold = Hold::mandible;
   }
-  return hold;
 }
 
 }  // namespace condyle

@@ -17,7 +17,9 @@ using Eigen::Vector3d;
 
 constexpr double bone_stiffness = 2.0;      // N/mm, some 50 times a skin spring
 constexpr double boundary_stiffness = 2.0;  // N/mm
-constexpr double slide_stiffness = 1.0;     // N/mm
+constexpr double neck_stiffness = 0.1;      // N/mm
+constexpr double loose_stiffness = 0.02;    // N/mm
+constexpr double slide_stiffness = 1e-9;     // N/mm
 
 /// Layers from the skin inward. source: skin and cheek 30 to 40 kPa in vivo, deeper layers softer.
 struct Layers {
@@ -44,6 +46,27 @@ double smoothstep(double t) {
 /// all from this far on.
 double rim_follows(double to_mandible_mm) { return 1 - smoothstep((to_mandible_mm - 15) / 65); }
 
+/// Factors at rest and along a plain opening: the tissue of the lower face turns with the jaw, and
+/// a factor made unturned asks for several times the iterations.
+void make_factors(TissueModel& model, const Anatomy& anatomy) {
+  constexpr double step_rad = 0.16;
+  constexpr int steps = 4;
+  model.factors.push_back({0, HessianFactor(model.net, model.sheets, model.rest)});
+  TissueState state = rest_tissue(model);
+  TissueBudget budget;
+  budget.tolerance_mm = 0.05;
+  budget.max_iterations = 100;
+  for (int i = 1; i <= steps; ++i) {
+    const double angle = i * step_rad;
+    Pose X_CM;
+    X_CM.R = Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitX()));
+    const Vector3d slid(0, -20 * angle, -8 * angle);  // condyles slide forward and down, mm
+    X_CM.t = anatomy.condyles - X_CM.R * anatomy.condyles + slid;
+    state = follow(model, state, X_CM, budget);
+    model.factors.push_back({angle - step_rad / 2, HessianFactor(model.net, model.sheets, state.nodes)});
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const TissueSettings& settings,
@@ -66,7 +89,9 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   report(progress, "soft tissue: layers", 0.5);
   ColumnSettings column_settings;
   column_settings.layer_share = layers.share;
-  const auto columns = march_columns(skin, bones, column_settings, summary.notes);
+  auto columns = march_columns(skin, bones, column_settings);
+  hold_columns(skin, anatomy, columns);
+  shape_columns(skin, column_settings, columns, summary.notes);
   const int sheets = settings.layers + 1;
   model->columns = static_cast<int>(columns.size());
   model->sheets = sheets;
@@ -78,7 +103,6 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
     if (v <= 0) throw InputError("face: the skin folds so that tissue below it turns inside out; smooth the face");
 
   // Bone springs, and slides for what rests on the teeth unattached.
-  const auto hold = hold_columns(skin, columns, anatomy);
   std::vector<int> given;
   std::vector<double> given_share;
   const auto anchor = [&](int node, double share, double stiffness) {
@@ -89,12 +113,12 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   for (int c = 0; c < model->columns; ++c) {
     const int inner = node_of(c, sheets - 1, sheets);
     if (skin.rim[c]) continue;
-    if (hold[c] != Hold::free) {
-      const double share = hold[c] == Hold::mandible ? 1 : 0;
+    if (columns[c].hold != Hold::free) {
+      const double share = columns[c].hold == Hold::mandible ? 1 : 0;
       anchor(inner, share, bone_stiffness);
       given.push_back(inner);
       given_share.push_back(share);
-      ++(hold[c] == Hold::mandible ? summary.attached_to_mandible : summary.attached_to_cranium);
+      ++(columns[c].hold == Hold::mandible ? summary.attached_to_mandible : summary.attached_to_cranium);
     } else if (columns[c].ground != Ground::none && columns[c].to_mouth < 25) {
       // The plane touches what the march met; tissue already behind it at rest may stay there.
       const Vector3d met = skin.mesh.vertices[c] + columns[c].met_depth * columns[c].inward;
@@ -124,7 +148,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
         const double distance =
             bones.mandible.empty() ? 1e9 : bones.mandible.nearest(model->rest[node]).distance;
         const double share = wish[node] * rim_follows(distance);
-        if (s + 1 == sheets && hold[c] != Hold::free) continue;
+        if (s + 1 == sheets && columns[c].hold != Hold::free) continue;
         given.push_back(node);
         given_share.push_back(share);
         anchor(node, share, boundary_stiffness);
@@ -132,16 +156,27 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
       }
   model->node_share = harmonic_shares(net, given, given_share);
 
+  // What is not grown on bone still hangs on both by loose tissue: one weak spring to each, with the
+  // node's share. Without it the inner sheet of a stretched cheek may fold either way.
+  std::vector<char> held(net.node_count, 0);
+  for (int node : net.anchor_node) held[node] = 1;
+  for (int c = 0; c < model->columns; ++c) {
+    const int inner = node_of(c, sheets - 1, sheets);
+    if (held[inner]) continue;
+    const bool neck = columns[c].ground == Ground::none;
+    anchor(inner, model->node_share[inner], neck ? neck_stiffness : loose_stiffness);
+  }
+
+  report(progress, "soft tissue: preconditioners", 0.6);
+  make_factors(*model, anatomy);
+
   report(progress, "soft tissue: displayed face", 0.8);
   model->region = region.shape;
-  model->slit = LipSlit(region.mesh, region.mouth);
+  model->slit = region.slit;
   model->handles = make_handles(skin.mesh.triangles, sheets, model->rest);
   model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, 30);
-  const auto region_side = sides_of(region.mesh, region.mouth, model->slit, 30);
   model->face_rest = face->mesh.vertices;
-  model->face_side.assign(face->mesh.vertices.size(), 0);
-  for (std::size_t v = 0; v < region.face_vertex.size(); ++v)
-    if (region.face_vertex[v] >= 0) model->face_side[region.face_vertex[v]] = region_side[v];
+  model->face_side = region.face_side;
   for (std::size_t v = 0; v < model->face_rest.size(); ++v) {
     const CarriedPoint point = carry_face_point(*model, model->face_rest[v], model->face_side[v]);
     if (point.fade <= 0) continue;

@@ -73,14 +73,17 @@ void march(const CoarseSkin& skin, const Bones& bones, const ColumnSettings& set
 void smooth_depths(const std::vector<std::vector<int>>& ring, const ColumnSettings& settings,
                    std::vector<Column>& columns) {
   const std::size_t count = columns.size();
-  std::vector<double> depth(count), limit(count, settings.greatest_depth_mm);
+  std::vector<double> depth(count), limit(count);
   for (std::size_t v = 0; v < count; ++v) {
+    const double greatest = columns[v].hold == Hold::free ? settings.greatest_free_depth_mm
+                                                          : settings.greatest_depth_mm;
     depth[v] = settings.default_depth_mm;
+    limit[v] = greatest;
     if (columns[v].ground == Ground::none) continue;
     // Room is left before teeth: the lips slide on them.
     const double met = columns[v].met_depth - (columns[v].met_teeth ? 1.0 : 0.0);
-    depth[v] = std::clamp(met, settings.least_depth_mm, settings.greatest_depth_mm);
-    limit[v] = std::max(settings.least_depth_mm, met);
+    depth[v] = std::clamp(met, settings.least_depth_mm, greatest);
+    limit[v] = std::clamp(met, settings.least_depth_mm, greatest);
   }
   for (int round = 0; round < 40; ++round)  // fill
     for (std::size_t v = 0; v < count; ++v) {
@@ -119,7 +122,7 @@ Nodes column_nodes(const CoarseSkin& skin, const std::vector<Column>& columns,
 }
 
 std::vector<Column> march_columns(const CoarseSkin& skin, const Bones& bones,
-                                  const ColumnSettings& settings, std::vector<std::string>& notes) {
+                                  const ColumnSettings& settings) {
   const auto ring = rings_of(skin.mesh);
   std::vector<Column> columns(skin.mesh.vertices.size());
   const auto inward = smooth_inward(skin, ring);
@@ -137,6 +140,12 @@ std::vector<Column> march_columns(const CoarseSkin& skin, const Bones& bones,
       near_lip(skin.mouth.right_corner);
     }
   }
+  return columns;
+}
+
+void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
+                   std::vector<Column>& columns, std::vector<std::string>& notes) {
+  const auto ring = rings_of(skin.mesh);
   smooth_depths(ring, settings, columns);
 
   // Thin the columns of weak prisms, and turn them towards their neighbours, until all are sound.
@@ -180,7 +189,6 @@ std::vector<Column> march_columns(const CoarseSkin& skin, const Bones& bones,
                     " tissue columns were made thinner, where straight ones would cross");
   if (weak_left > 0)
     notes.push_back(std::to_string(weak_left) + " prisms stay thin: the skin folds there");
-  return columns;
 }
 
 }  // namespace condyle

@@ -13,6 +13,9 @@ namespace condyle {
 /// What a column of tissue stands on.
 enum class Ground { none, cranium, mandible };
 
+/// What the innermost node of a column grows on.
+enum class Hold { free, cranium, mandible };
+
 /// One column per vertex of the coarse skin, from the skin inward.
 struct Column {
   Eigen::Vector3d inward = Eigen::Vector3d::Zero();  // unit
@@ -21,6 +24,7 @@ struct Column {
   bool met_teeth = false;
   double met_depth = 0;           // mm, of what was met
   Eigen::Vector3d met_normal = Eigen::Vector3d::Zero();  // outward, of what was met
+  Hold hold = Hold::free;
   double to_mouth = 1e9;          // mm from the opening between the lips
 };
 
@@ -35,14 +39,19 @@ struct CoarseSkin {
 struct ColumnSettings {
   std::vector<double> layer_share;  // of the depth, outermost first; sums to 1
   double least_depth_mm = 3, greatest_depth_mm = 22;
-  double default_depth_mm = 12;     // where there is no bone in reach
+  double greatest_free_depth_mm = 13;  // of what grows on no bone: cheeks, lips, throat
+  double default_depth_mm = 12;        // where there is no bone in reach
   double march_mm = 25;
 };
 
-/// Marches from the skin to the bone along smoothed normals and smooths the depths, then thins
-/// columns until every prism has a good volume.
+/// Marches from the skin to the bone along smoothed normals.
 std::vector<Column> march_columns(const CoarseSkin& skin, const Bones& bones,
-                                  const ColumnSettings& settings, std::vector<std::string>& notes);
+                                  const ColumnSettings& settings);
+
+/// Chooses depths, smooth and never beyond what was met, then thins columns until every prism has a
+/// good volume. Wants `hold`.
+void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
+                   std::vector<Column>& columns, std::vector<std::string>& notes);
 
 /// Nodes of the columns in `node_of` order.
 Nodes column_nodes(const CoarseSkin& skin, const std::vector<Column>& columns,

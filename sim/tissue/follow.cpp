@@ -54,12 +54,15 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
   }
   if (count_inverted(model.net, state.nodes) > 0) state.nodes = previous.nodes;
 
+  const double turned = rotation_angle(X_CM);
+  const HessianFactor* factor = &model.factors.front().factor;
+  for (const auto& other : model.factors)
+    if (turned >= other.from_rad) factor = &other.factor;
   MinimizeSettings settings;
   settings.tolerance_mm = budget.tolerance_mm;
   settings.max_iterations = budget.max_iterations;
-  settings.nodes_per_column = model.sheets;
   settings.threads = budget.threads;
-  const MinimizeResult result = minimize(model.net, loads, settings, state.nodes);
+  const MinimizeResult result = minimize(model.net, loads, *factor, settings, state.nodes);
   state.iterations = result.iterations;
   state.evaluations = result.evaluations;
   state.converged = result.converged;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/tissue/frame_embedding.h"
+#include "engine/tissue/hessian_factor.h"
 #include "engine/tissue/spring_prism.h"
 #include "sim/tissue/skin_region.h"
 #include "sim/tissue/slit.h"
@@ -25,6 +26,12 @@ struct TissueModel {
     bool on_mandible = false;
   };
   std::vector<Slide> slides;       // one per slide of the net
+  // Preconditioners, for states turned by `from_rad` and more; rising, the first from 0.
+  struct Factor {
+    double from_rad = 0;
+    HessianFactor factor;
+  };
+  std::vector<Factor> factors;
   std::vector<double> node_share;  // of every node, to foresee where a motion takes it
 
   // The displayed face.

@@ -142,13 +142,53 @@ void separate_fans(TriMesh& mesh, std::vector<int>& source) {
   }
 }
 
+/// Triangles of the lining behind the lips: from the opening's border inward over everything that
+/// does not face out of the mouth.
+std::vector<char> find_lining(const TriMesh& mesh, const MouthOutline& opening,
+                              const Anatomy& anatomy) {
+  constexpr double least_facing = 0.25;
+  constexpr double reach_mm = 40;
+  std::vector<char> lining(mesh.triangles.size(), 0);
+  if (!opening.found()) return lining;
+  std::vector<std::vector<int>> around(mesh.vertices.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) around[mesh.triangles[t][k]].push_back(static_cast<int>(t));
+  const auto normals = vertex_normals(mesh);
+  const auto faces_out = [&](int v) {
+    const Vector3d& p = mesh.vertices[v];
+    const Vector3d out(p.x() - anatomy.incisors.x(), p.y() - (anatomy.incisors.y() + 40), 0);
+    return normals[v].dot(out.normalized()) > least_facing;
+  };
+  std::vector<int> front = opening.upper;
+  front.insert(front.end(), opening.lower.begin(), opening.lower.end());
+  front.push_back(opening.right_corner);
+  front.push_back(opening.left_corner);
+  std::vector<char> seen(mesh.vertices.size(), 0);
+  for (int v : front) seen[v] = 1;
+  while (!front.empty()) {
+    const int v = front.back();
+    front.pop_back();
+    if (faces_out(v)) continue;
+    for (int t : around[v]) {
+      lining[t] = 1;
+      for (int k = 0; k < 3; ++k) {
+        const int n = mesh.triangles[t][k];
+        if (seen[n] || (mesh.vertices[n] - anatomy.incisors).norm() > reach_mm) continue;
+        seen[n] = 1;
+        front.push_back(n);
+      }
+    }
+  }
+  return lining;
+}
+
 }  // namespace
 
 double RegionShape::inside(const Vector3d& p) const {
   const double height = p.z() - anatomy.condyles.z();
   // Above: below the eyes. Behind: before the ear, and below the ear lobe around to the neck's side.
   const double top = 13 - height;
-  const double back_limit = anatomy.condyles.y() + 3 + 50 * smoothstep((-24 - height) / 30);
+  const double back_limit = anatomy.condyles.y() + 3 + 72 * smoothstep((-24 - height) / 40);
   const double back = back_limit - p.y();
   return std::min({top, back, p.z() - floor_z});
 }
@@ -166,28 +206,30 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
   keep_largest(mesh, source);
   separate_fans(mesh, source);
 
-  MouthOutline mouth = find_mouth(mesh, landmarks, anatomy.incisors);
-  if (!mouth.found()) {
-    mouth = cut_lip_line(mesh, landmarks, anatomy.incisors, notes);
+  MouthOutline opening = find_mouth(mesh, landmarks, anatomy.incisors);
+  if (!opening.found()) {
+    opening = cut_lip_line(mesh, landmarks, anatomy.incisors, notes);
     source.resize(mesh.vertices.size(), -1);
   }
-
-  region.shape.anatomy = anatomy;
-  // A closed bust has a flat underside, which is no skin; far below the jaw nothing moves.
-  const Box box = bounding_box(mesh);
-  region.shape.floor_z = std::max(box.low.z() + 4, anatomy.mandible_low - 85);
-  const bool open_below = box.low.z() > anatomy.mandible_low - 45;  // a mask: its rim may move
-  if (open_below) region.shape.floor_z = box.low.z() - 100;
-
   std::vector<char> on_own_border(mesh.vertices.size(), 0);
   for (const auto& loop : border_loops(mesh))
     for (int v : loop) on_own_border[v] = 1;
+
+  region.shape.anatomy = anatomy;
+  // A closed bust has a flat underside, which is no skin; far below the jaw nothing moves. A mask
+  // ends before that: its own rim may move.
+  const Box box = bounding_box(mesh);
+  const bool mask = box.low.z() > anatomy.mandible_low - 45;
+  region.shape.floor_z =
+      mask ? box.low.z() - 100 : std::max(box.low.z() + 4, anatomy.mandible_low - 85);
+
   std::vector<char> keep(mesh.triangles.size());
+  const auto lining = find_lining(mesh, opening, anatomy);
   for (std::size_t t = 0; t < keep.size(); ++t) {
     double least = 1e9;
     for (int k = 0; k < 3; ++k)
       least = std::min(least, region.shape.inside(mesh.vertices[mesh.triangles[t][k]]));
-    keep[t] = least > 0;
+    keep[t] = least > 0 && !lining[t];
   }
   std::vector<int> kept_vertex(mesh.vertices.size());
   for (std::size_t v = 0; v < kept_vertex.size(); ++v) kept_vertex[v] = static_cast<int>(v);
@@ -198,24 +240,14 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
     throw InputError("face: no skin found around the jaw; check that face and bones are in the same "
                      "place, unit and frame");
 
-  std::vector<int> new_index(mesh.vertices.size(), -1);
-  for (std::size_t v = 0; v < kept_vertex.size(); ++v)
-    if (new_index[kept_vertex[v]] < 0) new_index[kept_vertex[v]] = static_cast<int>(v);
   std::vector<char> is_mouth(part.vertices.size(), 0);
-  const auto moved = [&](int v) {
-    const int n = new_index[v];
-    if (n >= 0) is_mouth[n] = 1;
-    return n;
-  };
-  if (mouth.found()) {
-    region.mouth.right_corner = moved(mouth.right_corner);
-    region.mouth.left_corner = moved(mouth.left_corner);
-    for (int v : mouth.upper) region.mouth.upper.push_back(moved(v));
-    for (int v : mouth.lower) region.mouth.lower.push_back(moved(v));
-    bool whole = region.mouth.right_corner >= 0 && region.mouth.left_corner >= 0;
-    for (int v : region.mouth.upper) whole = whole && v >= 0;
-    for (int v : region.mouth.lower) whole = whole && v >= 0;
-    if (!whole) throw InputError("face: the mouth lies outside the region around the jaw; check the landmarks");
+  if (opening.found()) {
+    region.mouth = find_mouth(part, landmarks, anatomy.incisors);
+    if (!region.mouth.found())
+      throw InputError("face: the mouth lies outside the region around the jaw; check the landmarks");
+    is_mouth[region.mouth.right_corner] = is_mouth[region.mouth.left_corner] = 1;
+    for (int v : region.mouth.upper) is_mouth[v] = 1;
+    for (int v : region.mouth.lower) is_mouth[v] = 1;
   } else {
     notes.push_back("no opening between the lips was found and none could be cut: the mouth stays shut");
   }
@@ -224,9 +256,16 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
       if (is_mouth[v]) continue;
       (on_own_border[kept_vertex[v]] ? region.border : region.rim).push_back(v);
     }
-  region.face_vertex.resize(part.vertices.size());
-  for (std::size_t v = 0; v < part.vertices.size(); ++v)
-    region.face_vertex[v] = source[kept_vertex[v]];
+
+  region.slit = LipSlit(part, region.mouth);
+  // The lining takes its side from the lip's edge where it begins.
+  MouthOutline edge = region.mouth;
+  for (auto* run : {&edge.upper, &edge.lower})
+    for (int& v : *run) v = kept_vertex[v];
+  const auto side = sides_of(mesh, edge, region.slit, 30);
+  region.face_side.assign(face.vertices.size(), 0);
+  for (std::size_t v = 0; v < side.size(); ++v)
+    if (source[v] >= 0) region.face_side[source[v]] = side[v];
   region.mesh = std::move(part);
   return region;
 }

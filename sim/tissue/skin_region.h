@@ -6,6 +6,7 @@
 #include "engine/mesh/tri_mesh.h"
 #include "sim/tissue/anatomy.h"
 #include "sim/tissue/lips.h"
+#include "sim/tissue/slit.h"
 
 namespace condyle {
 
@@ -25,9 +26,11 @@ struct SkinRegion {
   std::vector<int> rim;     // vertices on the cut toward the rest of the face: these stay put
   std::vector<int> border;  // vertices on borders that the face itself has, the mouth's left out
   MouthOutline mouth;       // indices into mesh; may be empty
-  std::vector<int> face_vertex;  // of each vertex of mesh: index into the face part, -1 if none
+  LipSlit slit;
+  std::vector<signed char> face_side;  // of every vertex of the face part: +1 above the lip line, -1 below
 };
 
+/// The lining behind the lips, where the face has one, is not part of the region.
 /// throws: InputError when the face has nothing in the region.
 SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Anatomy& anatomy,
                       std::vector<std::string>& notes);
