@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/hash.h"
 #include "render/ambient_occlusion.h"
 #include "render/skin_table.h"
 #include "render/vertex_normals.h"
@@ -34,6 +35,35 @@ void set_layers(Role role, OcclusionSurface& surface) {
     surface.alone = 1u << surface.layer;
     surface.together = 1u << cranium | 1u << mandible;
   }
+}
+
+/// 0 to 1 by the place in a lattice of 1 mm cells, the same for the same place.
+float lattice(int x, int y, int z) {
+  const int cell[3] = {x, y, z};
+  return static_cast<float>(hash_bytes(cell, sizeof cell) >> 40) / static_cast<float>(1 << 24);
+}
+
+/// Smooth noise, -1 to 1.
+float noise(const Eigen::Vector3f& p) {
+  const Eigen::Vector3f base = p.array().floor();
+  const Eigen::Vector3f f = p - base;
+  const Eigen::Vector3f s = f.array().square() * (3 - 2 * f.array());
+  const Eigen::Vector3i c = base.cast<int>();
+  float sum = 0;
+  for (int k = 0; k < 8; ++k) {
+    const int dx = k & 1, dy = k >> 1 & 1, dz = k >> 2;
+    sum += (dx ? s.x() : 1 - s.x()) * (dy ? s.y() : 1 - s.y()) * (dz ? s.z() : 1 - s.z()) *
+           lattice(c.x() + dx, c.y() + dy, c.z() + dz);
+  }
+  return 2 * sum - 1;
+}
+
+/// Skin is not of one colour: patches with more blood, and fine unevenness.
+Eigen::Vector3f mottled(const Eigen::Vector3f& color, const Eigen::Vector3f& p) {
+  const float blood = 0.6f * noise(p / 13) + 0.4f * noise(p / 5), grain = noise(p / 1.7f);
+  return color.cwiseProduct(Eigen::Vector3f(1 + 0.008f * blood + 0.012f * grain,
+                                            1 - 0.022f * blood + 0.016f * grain,
+                                            1 - 0.026f * blood + 0.018f * grain));
 }
 
 struct Prepared {
@@ -70,25 +100,43 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
     Eigen::AlignedBox3f box;
     for (std::size_t i = 0; i < positions.size(); ++i) {
       box.extend(positions[i]);
-      const Eigen::Vector3f color = own_colors ? part.mesh.colors[i] : material.color;
-      colors[i] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()),
-                   to_byte(occlusion[p].together[i])};
+      Eigen::Vector3f color = own_colors ? part.mesh.colors[i] : material.color;
       // Lips are redder than skin, and moister.
       const float redness = (color.x() - color.y()) / std::max(color.x(), 0.05f);
       const float gloss = own_colors ? std::clamp((redness - 0.30f) / 0.18f, 0.f, 1.f) : 0.f;
+      if (part.role == Role::face) color = mottled(color, positions[i]);
+      colors[i] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()),
+                   to_byte(occlusion[p].together[i])};
       extras[i] = {to_byte(occlusion[p].alone[i]),
                    to_byte(curvature.empty() ? 0.f : curvature[i] / SkinTable::max_curvature),
                    to_byte(gloss), 0};
     }
-    GpuMesh mesh(part.mesh.triangles, moving);
+    GpuMesh mesh(positions, part.mesh.triangles, moving);
     mesh.send_shape(positions, normals);
-    mesh.send_look(colors, extras);
-    const Eigen::Vector3f centre =
-        box.isEmpty() ? Eigen::Vector3f::Zero() : Eigen::Vector3f(box.center());
-    drawables.push_back(
-        {&part, material, is_closed_surface(part.mesh.triangles), std::move(mesh), centre});
+    mesh.send_colors(colors);
+    mesh.send_extras(extras);
+    std::vector<Crease> creases;
+    if (part.role == Role::face)
+      creases = find_creases(positions, normals, occlusion[p].together);
+    else
+      colors.clear();
+    drawables.push_back({&part, material, is_closed_surface(part.mesh.triangles), box,
+                         std::move(mesh), std::move(creases), std::move(colors)});
   }
   return drawables;
+}
+
+void Drawable::move_face(std::span<const Eigen::Vector3f> positions,
+                         std::vector<Eigen::Vector3f>& normals_scratch) {
+  vertex_normals(positions, part->mesh.triangles, normals_scratch);
+  mesh.send_shape(positions, normals_scratch);
+  if (creases.empty()) return;
+  auto now = colors;
+  for (const auto& crease : creases) {
+    auto& sky = now[static_cast<std::size_t>(crease.vertex)][3];
+    sky = to_byte(opened_sky(crease, static_cast<float>(sky) / 255, positions));
+  }
+  mesh.send_colors(now);
 }
 
 }  // namespace condyle

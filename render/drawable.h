@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "render/creases.h"
 #include "render/gpu_mesh.h"
 #include "render/material.h"
 #include "sim/frame/part.h"
@@ -14,9 +15,16 @@ namespace condyle {
 struct Drawable {
   const Part* part;
   Material material;
-  bool closed;  // its back is never seen
+  bool closed;              // its back is never seen
+  Eigen::AlignedBox3f box;  // at rest, mm
   GpuMesh mesh;
-  Eigen::Vector3f centre;  // of its box at rest, mm
+  // Of a face only:
+  std::vector<Crease> creases;
+  std::vector<GpuMesh::Bytes> colors;  // at rest
+
+  /// Sends a moved face, its normals and the shade of its folds.
+  void move_face(std::span<const Eigen::Vector3f> positions,
+                 std::vector<Eigen::Vector3f>& normals_scratch);
 };
 
 /// Uploads the parts with their normals, colours, baked ambient occlusion and curvature.

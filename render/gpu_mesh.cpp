@@ -1,5 +1,8 @@
 #include "render/gpu_mesh.h"
 
+#include <algorithm>
+#include <cstdint>
+
 namespace condyle {
 namespace {
 
@@ -21,13 +24,51 @@ void bytes(GLuint place, GLuint buffer) {
   glVertexAttribPointer(place, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0, nullptr);
 }
 
+constexpr int piece_triangles = 2048;
+
+/// Every third bit from the ten low ones of x: for a curve through space that stays close.
+std::uint32_t spread_bits(std::uint32_t x) {
+  x = (x | x << 16) & 0x030000ffu;
+  x = (x | x << 8) & 0x0300f00fu;
+  x = (x | x << 4) & 0x030c30c3u;
+  return (x | x << 2) & 0x09249249u;
+}
+
+/// The triangles along a Morton curve through their centres.
+std::vector<Eigen::Vector3i> along_a_curve(std::span<const Eigen::Vector3f> positions,
+                                           std::span<const Eigen::Vector3i> triangles) {
+  Eigen::AlignedBox3f box;
+  for (const auto& p : positions) box.extend(p);
+  const float scale = box.isEmpty() ? 0 : 1023 / std::max(box.sizes().maxCoeff(), 1e-6f);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> order(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto& t = triangles[i];
+    const Eigen::Vector3f q =
+        scale * ((positions[t[0]] + positions[t[1]] + positions[t[2]]) / 3 - box.min());
+    std::uint32_t key = 0;
+    for (int k = 0; k < 3; ++k)
+      key |= spread_bits(static_cast<std::uint32_t>(std::clamp(q[k], 0.f, 1023.f))) << k;
+    order[i] = {key, static_cast<std::uint32_t>(i)};
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<Eigen::Vector3i> sorted;
+  sorted.reserve(triangles.size());
+  for (const auto& [key, i] : order) sorted.push_back(triangles[i]);
+  return sorted;
+}
+
 }  // namespace
 
-GpuMesh::GpuMesh(std::span<const Eigen::Vector3i> triangles, bool moving)
-    : index_count_(static_cast<GLsizei>(3 * triangles.size())),
+GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
+                 std::span<const Eigen::Vector3i> triangles, bool moving)
+    : triangles_(along_a_curve(positions, triangles)),
       usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
+  const int count = static_cast<int>(triangles.size());
+  for (int first = 0; first < count; first += piece_triangles)
+    pieces_.push_back({first, std::min(piece_triangles, count - first), {}});
   glBindVertexArray(array_);
-  send(GL_ELEMENT_ARRAY_BUFFER, indices_, triangles, GL_STATIC_DRAW);
+  send(GL_ELEMENT_ARRAY_BUFFER, indices_, std::span<const Eigen::Vector3i>(triangles_),
+       GL_STATIC_DRAW);
   floats(0, positions_);
   floats(1, normals_);
   bytes(2, colors_);
@@ -39,16 +80,33 @@ void GpuMesh::send_shape(std::span<const Eigen::Vector3f> positions,
                          std::span<const Eigen::Vector3f> normals) {
   send(GL_ARRAY_BUFFER, positions_, positions, usage_);
   send(GL_ARRAY_BUFFER, normals_, normals, usage_);
+  for (auto& piece : pieces_) {
+    piece.box.setEmpty();
+    for (int t = 0; t < piece.triangle_count; ++t)
+      for (const int v : triangles_[static_cast<std::size_t>(piece.first_triangle + t)])
+        piece.box.extend(positions[v]);
+  }
 }
 
-void GpuMesh::send_look(std::span<const Bytes> colors, std::span<const Bytes> extras) {
+void GpuMesh::send_colors(std::span<const Bytes> colors) {
   send(GL_ARRAY_BUFFER, colors_, colors, usage_);
-  send(GL_ARRAY_BUFFER, extras_, extras, usage_);
+}
+
+void GpuMesh::send_extras(std::span<const Bytes> extras) {
+  send(GL_ARRAY_BUFFER, extras_, extras, GL_STATIC_DRAW);
 }
 
 void GpuMesh::draw() const {
   glBindVertexArray(array_);
-  glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles_.size()), GL_UNSIGNED_INT,
+                 nullptr);
+}
+
+void GpuMesh::draw(const Piece& piece) const {
+  glBindVertexArray(array_);
+  glDrawElements(
+      GL_TRIANGLES, 3 * piece.triangle_count, GL_UNSIGNED_INT,
+      reinterpret_cast<const void*>(sizeof(Eigen::Vector3i) * std::size_t(piece.first_triangle)));
 }
 
 GpuPoints::GpuPoints() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -10,24 +11,38 @@
 
 namespace condyle {
 
-/// A triangle surface on the graphics card, drawn in one call.
-/// Attributes: 0 position, 1 normal, 2 colour with occlusion, 3 extra (see the surface shaders).
+/// A triangle surface on the graphics card, in pieces that lie close together, so that hidden ones
+/// can be left out. Attributes: 0 position, 1 normal, 2 colour with occlusion, 3 extra (see the
+/// surface shaders).
 class GpuMesh {
  public:
   using Bytes = std::array<std::uint8_t, 4>;
 
-  /// `moving`: positions and normals will be sent again each frame.
-  GpuMesh(std::span<const Eigen::Vector3i> triangles, bool moving);
+  /// A run of triangles and the box around it, mm.
+  struct Piece {
+    int first_triangle, triangle_count;
+    Eigen::AlignedBox3f box;
+  };
 
+  /// `moving`: positions and normals will be sent again each frame.
+  GpuMesh(std::span<const Eigen::Vector3f> positions, std::span<const Eigen::Vector3i> triangles,
+          bool moving);
+
+  /// Positions as many as at the start.
   void send_shape(std::span<const Eigen::Vector3f> positions,
                   std::span<const Eigen::Vector3f> normals);
-  void send_look(std::span<const Bytes> colors, std::span<const Bytes> extras);
+  void send_colors(std::span<const Bytes> colors);
+  void send_extras(std::span<const Bytes> extras);
+
   void draw() const;
+  void draw(const Piece& piece) const;
+  const std::vector<Piece>& pieces() const { return pieces_; }
 
  private:
   GlVertexArray array_;
   GlBuffer positions_, normals_, colors_, extras_, indices_;
-  GLsizei index_count_ = 0;
+  std::vector<Eigen::Vector3i> triangles_;  // in the order of the pieces
+  std::vector<Piece> pieces_;
   GLenum usage_;
 };
 

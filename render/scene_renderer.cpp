@@ -1,66 +1,48 @@
 #include "render/scene_renderer.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
 #include "render/drawable.h"
 #include "render/framebuffer.h"
-#include "render/lights.h"
-#include "render/shaders.h"
-#include "render/skin_table.h"
-#include "render/vertex_normals.h"
+#include "render/passes.h"
 
 namespace condyle {
 namespace {
 
-constexpr int shadow_side = 1024;
 constexpr double nearly_opaque = 0.999, nearly_hidden = 0.004;
-constexpr float marker_radius_mm = 0.9f;
+constexpr float opening_room_mm = 45;  // beyond the box at rest, for an open mouth
 
-struct Programs {
-  GlProgram surface, skin, interior, depth, background, marker;
+Eigen::Matrix4f matrix_of(const Pose& pose) {
+  Eigen::Matrix4f matrix = Eigen::Matrix4f::Identity();
+  matrix.topLeftCorner<3, 3>() = pose.R.toRotationMatrix().cast<float>();
+  matrix.topRightCorner<3, 1>() = pose.t.cast<float>();
+  return matrix;
+}
 
-  static GlProgram build(const char* what, const ShaderSource& source) {
-    return {what, source.vertex, source.fragment};
+/// Front of the teeth, else of the jaws: where the mouth begins, mm.
+float front_of_mouth(std::span<const Drawable> drawables) {
+  float teeth = std::numeric_limits<float>::infinity(), jaws = teeth;
+  for (const auto& drawable : drawables) {
+    const auto role = drawable.part->role;
+    if (drawable.box.isEmpty()) continue;
+    if (is_teeth(role)) teeth = std::min(teeth, drawable.box.min().y());
+    if (role == Role::mandible || role == Role::maxilla)
+      jaws = std::min(jaws, drawable.box.min().y());
   }
-  Programs()
-      : surface(build("surface", surface_shaders())),
-        skin(build("skin", skin_shaders())),
-        interior(build("interior", interior_shaders())),
-        depth(build("depth", depth_shaders())),
-        background(build("background", background_shaders())),
-        marker(build("marker", marker_shaders())) {}
-};
-
-/// A drawable as one picture wants it.
-struct Item {
-  Drawable* drawable;
-  double opacity;
-  Eigen::Matrix4f model;
-  bool is_face() const { return drawable->part->role == Role::face; }
-};
-
-void cull(const Drawable& drawable) {
-  if (drawable.closed) {
-    glEnable(GL_CULL_FACE);
-    glCullFace(GL_BACK);
-  } else {
-    glDisable(GL_CULL_FACE);
-  }
+  return std::isfinite(teeth) ? teeth : std::isfinite(jaws) ? jaws : 0;
 }
 
 }  // namespace
 
 struct SceneRenderer::State {
-  Programs programs;
+  Passes passes;
   std::vector<Drawable> drawables;
-  Eigen::AlignedBox3d box;
-  GlVertexArray no_attributes;
-  GlTexture skin_table;
-  DepthMap shadow_map{shadow_side};
+  Eigen::AlignedBox3f box;  // of all parts at rest
+  float mouth_y;
   GpuPoints contacts;
   // Of the last frame:
   Pose X_CM;
@@ -70,170 +52,64 @@ struct SceneRenderer::State {
   std::optional<Framebuffer> sampled, resolved;
   int samples_asked = 0;
 
-  explicit State(std::span<const Part> parts) : drawables(make_drawables(parts)) {
-    for (const auto& part : parts)
-      for (const auto& v : part.mesh.vertices) box.extend(v);
-    const auto table = make_skin_table();
-    glBindTexture(GL_TEXTURE_2D, skin_table);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, SkinTable::width, SkinTable::height, 0, GL_RGB,
-                 GL_UNSIGNED_BYTE, table.rgb.data());
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
-      glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  explicit State(std::span<const Part> parts)
+      : drawables(make_drawables(parts)), mouth_y(front_of_mouth(drawables)) {
+    for (const auto& drawable : drawables) box.extend(drawable.box);
+    if (box.isEmpty()) box = Eigen::AlignedBox3f(Eigen::Vector3f::Zero());
   }
 
-  Eigen::Vector3f centre() const {
-    return box.isEmpty() ? Eigen::Vector3f::Zero() : Eigen::Vector3f(box.center().cast<float>());
-  }
-  /// Of a sphere about the scene that an open mouth does not leave.
-  float radius_mm() const {
-    return box.isEmpty() ? 1.f : static_cast<float>(0.5 * box.diagonal().norm() + 45);
-  }
-
-  void send_face(Drawable& drawable, std::span<const Eigen::Vector3f> positions) {
-    vertex_normals(positions, drawable.part->mesh.triangles, normals);
-    drawable.mesh.send_shape(positions, normals);
-  }
-  std::vector<Item> items(const PictureSettings& settings);
-  void draw_shadow_map(const std::vector<Item>& items, const Eigen::Matrix4f& matrix);
-  void begin(GlProgram& program, const Item& item, const struct View& view);
-  void draw_item(const Item& item, const struct View& view);
-  void draw_depth(const Item& item, const struct View& view);
-  void draw_contacts(const struct View& view, bool through);
+  std::vector<DrawItem> items(const PictureSettings& settings);
+  PictureView view(const Camera& camera, const PictureSettings& settings) const;
+  float at_rest() const;
 };
 
-/// What all draws of one picture share.
-struct View {
-  Eigen::Matrix4f view, projection, view_projection, shadow;
-  Eigen::Vector3f eye;
-  Lights lights;
-  bool shadows;
-  bool face_closed_off;  // an opaque face keeps the sky out of the mouth
-  double skin_opacity;
-  float at_rest;  // 1 at rest, 0 when the jaw is away
-  float lip_y;    // front of the teeth
-  int height;
-  double field_of_view_deg;
-};
-
-std::vector<Item> SceneRenderer::State::items(const PictureSettings& settings) {
-  Eigen::Matrix4f jaw = Eigen::Matrix4f::Identity();
-  jaw.topLeftCorner<3, 3>() = X_CM.R.toRotationMatrix().cast<float>();
-  jaw.topRightCorner<3, 1>() = X_CM.t.cast<float>();
-  std::vector<Item> found;
+std::vector<DrawItem> SceneRenderer::State::items(const PictureSettings& settings) {
+  std::vector<DrawItem> found;
   for (auto& drawable : drawables) {
     const auto& part = *drawable.part;
-    double opacity = 1;
+    double opacity = part.role == Role::face ? settings.skin_opacity : 1;
     if (const auto own = settings.part_opacity.find(part.name); own != settings.part_opacity.end())
-      opacity = own->second;
-    if (part.role == Role::face) opacity *= settings.skin_opacity;
-    if (opacity < nearly_hidden || part.mesh.empty()) continue;
+      opacity *= own->second;
+    if (part.mesh.empty() || !(opacity >= nearly_hidden)) continue;
     found.push_back({&drawable, opacity > nearly_opaque ? 1.0 : opacity,
-                     body_of(part.role) == Body::mandible ? jaw : Eigen::Matrix4f::Identity()});
+                     body_of(part.role) == Body::mandible
+                         ? matrix_of(X_CM)
+                         : Eigen::Matrix4f(Eigen::Matrix4f::Identity())});
   }
   return found;
 }
 
-void SceneRenderer::State::draw_shadow_map(const std::vector<Item>& all,
-                                           const Eigen::Matrix4f& matrix) {
-  Eigen::Matrix4f to_clip = Eigen::Matrix4f::Identity();
-  to_clip.diagonal().head<3>().setConstant(2);
-  to_clip.topRightCorner<3, 1>().setConstant(-1);
-  shadow_map.bind();
-  glClear(GL_DEPTH_BUFFER_BIT);
-  glEnable(GL_POLYGON_OFFSET_FILL);
-  glPolygonOffset(2, 4);
-  programs.depth.use();
-  programs.depth.set("view_projection", Eigen::Matrix4f(to_clip * matrix));
-  for (const auto& item : all) {
-    if (item.opacity < 1) continue;  // what is seen through lets the light through
-    cull(*item.drawable);
-    programs.depth.set("model", item.model);
-    item.drawable->mesh.draw();
+/// How far the jaw is from the place where its shade was baked.
+float SceneRenderer::State::at_rest() const {
+  for (const auto& drawable : drawables) {
+    if (body_of(drawable.part->role) != Body::mandible || drawable.box.isEmpty()) continue;
+    const Eigen::Vector3d centre = drawable.box.center().cast<double>();
+    const double moved_mm = (X_CM * centre - centre).norm();
+    return static_cast<float>(std::exp(-moved_mm * moved_mm / 20));
   }
-  glDisable(GL_POLYGON_OFFSET_FILL);
+  return 1;
 }
 
-void SceneRenderer::State::begin(GlProgram& program, const Item& item, const View& view) {
-  const auto role = item.drawable->part->role;
-  const auto& material = item.drawable->material;
-  program.use();
-  view.lights.set_in(program);
-  program.set("model", item.model);
-  program.set("view_projection", view.view_projection);
-  program.set("shadow_matrix", view.shadow);
-  program.set("eye", view.eye);
-  program.set("shadow_map", 0);
-  program.set("skin_table", 1);
-  program.set("shadows", view.shadows ? 1.f : 0.f);
-  program.set("shadow_texel", 1.f / shadow_side);
-  program.set("opacity", static_cast<float>(item.opacity));
-  program.set("roughness", material.roughness);
-  program.set("reflectance", material.reflectance);
-  program.set("wrap", material.wrap);
-  program.set("scatter", material.scatter);
-  program.set("coat", material.coat);
-  program.set("together",
-              role == Role::eyes ? static_cast<float>(view.skin_opacity) : view.at_rest);
-  const bool in_mouth = view.face_closed_off && role != Role::face && role != Role::eyes;
-  program.set("cavity", Eigen::Vector2f(view.lip_y, in_mouth ? 1 / 26.f : 0.f));
-}
-
-void SceneRenderer::State::draw_item(const Item& item, const View& view) {
-  const auto& drawable = *item.drawable;
-  if (!item.is_face()) {
-    cull(drawable);
-    begin(programs.surface, item, view);
-    drawable.mesh.draw();
-    return;
-  }
-  glEnable(GL_CULL_FACE);
-  glCullFace(GL_BACK);
-  begin(programs.skin, item, view);
-  drawable.mesh.draw();
-  if (drawable.closed) return;
-  glCullFace(GL_FRONT);
-  begin(programs.interior, item, view);
-  drawable.mesh.draw();
-}
-
-void SceneRenderer::State::draw_depth(const Item& item, const View& view) {
-  cull(*item.drawable);
-  programs.depth.use();
-  programs.depth.set("view_projection", view.view_projection);
-  programs.depth.set("model", item.model);
-  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  item.drawable->mesh.draw();
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-}
-
-void SceneRenderer::State::draw_contacts(const View& view, bool through) {
-  if (contacts.empty()) return;
-  auto& program = programs.marker;
-  program.use();
-  program.set("view", view.view);
-  program.set("projection", view.projection);
-  program.set("radius", marker_radius_mm);
-  program.set("nearer", 1.2f * marker_radius_mm);
-  program.set("pixels_per_unit",
-              static_cast<float>(view.height / 2 /
-                                 std::tan(view.field_of_view_deg * std::numbers::pi / 360)));
-  glEnable(GL_PROGRAM_POINT_SIZE);
-  if (through) {
-    // Contacts lie between surfaces: seen faintly through whatever is in front.
-    glDisable(GL_DEPTH_TEST);
-    glEnable(GL_BLEND);
-    program.set("opacity", 0.4f);
-    contacts.draw();
-    glDisable(GL_BLEND);
-    glEnable(GL_DEPTH_TEST);
-  }
-  program.set("opacity", 1.f);
-  contacts.draw();
-  glDisable(GL_PROGRAM_POINT_SIZE);
+PictureView SceneRenderer::State::view(const Camera& camera,
+                                       const PictureSettings& settings) const {
+  const float radius = 0.5f * box.diagonal().norm() + opening_room_mm;
+  PictureView v;
+  v.view = view_matrix(camera);
+  v.eye = (camera.target + camera.distance_mm * camera.direction.normalized()).cast<float>();
+  const double away = (v.eye - box.center()).norm();
+  v.projection = projection_matrix(camera, static_cast<double>(settings.width) / settings.height,
+                                   std::max(2.0, away - radius), away + radius);
+  v.view_projection = v.projection * v.view;
+  v.lights = lights_for(camera);
+  v.shadow = shadow_matrix(v.lights, box.center(), radius);
+  v.pixels_per_unit = static_cast<float>(
+      settings.height / 2.0 / std::tan(camera.field_of_view_deg * std::numbers::pi / 360));
+  v.shadows = settings.shadows;
+  v.may_cull = away > radius + 5;
+  v.skin_opacity = static_cast<float>(std::clamp(settings.skin_opacity, 0.0, 1.0));
+  v.at_rest = at_rest();
+  v.lips_y = mouth_y;
+  return v;
 }
 
 SceneRenderer::SceneRenderer(std::span<const Part> parts)
@@ -242,8 +118,7 @@ SceneRenderer::SceneRenderer(std::span<const Part> parts)
 SceneRenderer::~SceneRenderer() = default;
 
 std::pair<Eigen::Vector3d, Eigen::Vector3d> SceneRenderer::bounds() const {
-  if (state_->box.isEmpty()) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  return {state_->box.min(), state_->box.max()};
+  return {state_->box.min().cast<double>(), state_->box.max().cast<double>()};
 }
 
 void SceneRenderer::update(const FrameState& frame) {
@@ -253,11 +128,11 @@ void SceneRenderer::update(const FrameState& frame) {
     if (drawable.part->role != Role::face) continue;
     const auto& rest = drawable.part->mesh.vertices;
     if (frame.face.size() == rest.size()) {
-      s.send_face(drawable, frame.face);
+      drawable.move_face(frame.face, s.normals);
     } else if (s.face_moved) {
       std::vector<Eigen::Vector3f> positions;
       for (const auto& v : rest) positions.push_back(v.cast<float>());
-      s.send_face(drawable, positions);
+      drawable.move_face(positions, s.normals);
     }
     s.face_moved = frame.face.size() == rest.size();
     break;
@@ -272,93 +147,33 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings) 
   auto& s = *state_;
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
-
-  auto items = s.items(settings);
-  const bool opaque_face = std::any_of(items.begin(), items.end(), [](const Item& item) {
-    return item.is_face() && item.opacity >= 1;
+  const auto items = s.items(settings);
+  auto view = s.view(camera, settings);
+  view.opaque_face = std::any_of(items.begin(), items.end(), [](const DrawItem& item) {
+    return item.role() == Role::face && item.opaque();
   });
-  View view;
-  const float radius = s.radius_mm();
-  view.view = view_matrix(camera);
-  view.eye = (camera.target + camera.distance_mm * camera.direction.normalized()).cast<float>();
-  const double away = (view.eye - s.centre()).norm();
-  view.projection = projection_matrix(camera, double(settings.width) / settings.height,
-                                      std::max(2.0, away - radius), away + radius);
-  view.view_projection = view.projection * view.view;
-  view.lights = lights_for(camera);
-  view.shadow = shadow_matrix(view.lights, s.centre(), radius);
-  view.shadows = settings.shadows;
-  view.face_closed_off = opaque_face;
-  view.skin_opacity = std::clamp(settings.skin_opacity, 0.0, 1.0);
-  view.height = settings.height;
-  view.field_of_view_deg = camera.field_of_view_deg;
-  view.lip_y = 0;
-  view.at_rest = 1;
-  bool has_teeth = false;
-  for (const auto& drawable : s.drawables) {
-    const auto role = drawable.part->role;
-    if (role == Role::mandible) {
-      const Eigen::Vector3d c = drawable.centre.cast<double>();
-      const double moved_mm = (s.X_CM * c - c).norm();
-      view.at_rest = static_cast<float>(std::exp(-0.5 * moved_mm * moved_mm / 9));
-    }
-    if (!is_teeth(role) && !(role == Role::mandible && !has_teeth)) continue;
-    if (is_teeth(role) && !has_teeth) view.lip_y = std::numeric_limits<float>::infinity();
-    has_teeth = has_teeth || is_teeth(role);
-    for (const auto& v : drawable.part->mesh.vertices)
-      view.lip_y = std::min(view.lip_y, static_cast<float>(v.y()));
-  }
 
-  glDisable(GL_BLEND);
-  glDisable(GL_SCISSOR_TEST);
-  glDisable(GL_STENCIL_TEST);
+  // Whoever drew before may have left anything.
+  for (const GLenum off : {GL_BLEND, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB})
+    glDisable(off);
   glEnable(GL_DEPTH_TEST);
+  glEnable(GL_MULTISAMPLE);
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glFrontFace(GL_CCW);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-  if (settings.shadows) s.draw_shadow_map(items, view.shadow);
+
+  if (settings.shadows) s.passes.shadow_map(items, view);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
   glViewport(0, 0, settings.width, settings.height);
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  if (!settings.transparent_background) {
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    s.programs.background.use();
-    glBindVertexArray(s.no_attributes);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glEnable(GL_DEPTH_TEST);
-  }
-  glActiveTexture(GL_TEXTURE1);
-  glBindTexture(GL_TEXTURE_2D, s.skin_table);
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, s.shadow_map.texture());
+  if (!settings.transparent_background) s.passes.background();
+  s.passes.opaque(items, view);
+  if (settings.contacts) s.passes.contacts(s.contacts, view, !view.opaque_face);
+  s.passes.translucent(items, view);
 
-  // The face hides most of the rest: drawn first, it spares the shading of what lies under it.
-  std::stable_sort(items.begin(), items.end(),
-                   [](const Item& a, const Item& b) { return a.is_face() > b.is_face(); });
-  for (const auto& item : items)
-    if (item.opacity >= 1) s.draw_item(item, view);
-  // Blending works on colours multiplied by alpha, so that an empty background stays exact.
-  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  if (settings.contacts) s.draw_contacts(view, !opaque_face);
-
-  // Far to near, the face last; of each only its front layer.
-  std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) {
-    if (a.is_face() != b.is_face()) return b.is_face();
-    return (a.drawable->centre - view.eye).norm() > (b.drawable->centre - view.eye).norm();
-  });
-  for (const auto& item : items) {
-    if (item.opacity >= 1) continue;
-    s.draw_depth(item, view);
-    glDepthFunc(GL_EQUAL);
-    glEnable(GL_BLEND);
-    s.draw_item(item, view);
-    glDisable(GL_BLEND);
-    glDepthFunc(GL_LESS);
-  }
   glBindVertexArray(0);
   glUseProgram(0);
   glDisable(GL_CULL_FACE);
@@ -371,9 +186,9 @@ Image SceneRenderer::picture(const Camera& camera, const PictureSettings& settin
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
   if (!s.resolved || s.resolved->width() != settings.width ||
       s.resolved->height() != settings.height) {
+    s.sampled.reset();
     s.resolved.reset();
     s.resolved.emplace(settings.width, settings.height, 1);
-    s.sampled.reset();
   }
   if (settings.samples <= 1) {
     s.resolved->bind();
@@ -390,15 +205,15 @@ Image SceneRenderer::picture(const Camera& camera, const PictureSettings& settin
   }
   Image image = s.resolved->read();
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
-  if (settings.transparent_background)
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-      const int a = image.rgba[i + 3];
-      if (a == 0 || a == 255) continue;
-      for (std::size_t k = i; k < i + 3; ++k)
-        image.rgba[k] = static_cast<std::uint8_t>(std::min(255, (image.rgba[k] * 255 + a / 2) / a));
-    }
-  else
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    auto& alpha = image.rgba[i + 3];
+    if (!settings.transparent_background) alpha = 255;
+    if (alpha == 0 || alpha == 255) continue;
+    // Drawn multiplied by alpha; an image has straight alpha.
+    for (std::size_t k = i; k < i + 3; ++k)
+      image.rgba[k] =
+          static_cast<std::uint8_t>(std::min(255, (image.rgba[k] * 255 + alpha / 2) / alpha));
+  }
   return image;
 }
 

@@ -9,7 +9,8 @@ namespace condyle {
 namespace {
 
 /// Light that spreads this far to one side, whatever it does along the other: the plane's Gaussians
-/// integrated over lines. (Taken round the ring as they are, the wide red ones would nearly vanish.)
+/// integrated over lines. (Taken round the ring as they are, the wide red ones would nearly
+/// vanish.)
 Eigen::Vector3d profile(double distance_mm) {
   struct Gaussian {
     double variance;

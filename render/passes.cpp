@@ -1,0 +1,206 @@
+#include "render/passes.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "render/shaders.h"
+#include "render/skin_table.h"
+
+namespace condyle {
+namespace {
+
+constexpr int shadow_side = 1024;
+constexpr float marker_radius_mm = 0.9f;
+constexpr float mouth_depth_mm = 24;  // over which the light inside the mouth falls to 1/e
+
+GlProgram build(const char* what, const ShaderSource& source) {
+  return {what, source.vertex, source.fragment};
+}
+
+void cull_by_closure(const Drawable& drawable) {
+  if (drawable.closed) {
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+  } else {
+    glDisable(GL_CULL_FACE);
+  }
+}
+
+}  // namespace
+
+Passes::Passes()
+    : surface_(build("surface", surface_shaders())),
+      skin_(build("skin", skin_shaders())),
+      interior_(build("interior", interior_shaders())),
+      depth_(build("depth", depth_shaders())),
+      background_(build("background", background_shaders())),
+      marker_(build("marker", marker_shaders())),
+      shadow_map_(shadow_side) {
+  const auto table = make_skin_table();
+  glBindTexture(GL_TEXTURE_2D, skin_table_);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, SkinTable::width, SkinTable::height, 0, GL_RGB,
+               GL_UNSIGNED_BYTE, table.rgb.data());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+}
+
+void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view) {
+  Eigen::Matrix4f to_clip = Eigen::Matrix4f::Identity();
+  to_clip.diagonal().head<3>().setConstant(2);
+  to_clip.topRightCorner<3, 1>().setConstant(-1);
+  shadow_map_.bind();
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(2, 4);
+  depth_.use();
+  depth_.set("view_projection", Eigen::Matrix4f(to_clip * view.shadow));
+  // What is seen through lets the light through; what an opaque face encloses casts no shadow that
+  // the face does not cast already.
+  Eigen::AlignedBox3f enclosed;
+  for (const auto& item : items)
+    if (item.opaque() && item.role() == Role::face) enclosed.extend(item.drawable->box);
+  for (const auto& item : items) {
+    if (!item.opaque()) continue;
+    const bool shows = item.role() == Role::face || is_teeth(item.role());
+    if (!shows && !enclosed.isEmpty() && enclosed.contains(item.drawable->box)) continue;
+    cull_by_closure(*item.drawable);
+    depth_.set("model", item.model);
+    item.drawable->mesh.draw();
+  }
+  glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void Passes::background() {
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  background_.use();
+  glBindVertexArray(no_attributes_);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glEnable(GL_DEPTH_TEST);
+}
+
+void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& view) {
+  const auto& material = item.drawable->material;
+  const auto role = item.role();
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_2D, skin_table_);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, shadow_map_.texture());
+  program.use();
+  view.lights.set_in(program);
+  program.set("model", item.model);
+  program.set("view_projection", view.view_projection);
+  program.set("shadow_matrix", view.shadow);
+  program.set("eye", view.eye);
+  program.set("shadow_map", 0);
+  program.set("skin_table", 1);
+  program.set("shadows", view.shadows ? 1.f : 0.f);
+  program.set("shadow_texel", 1.f / shadow_side);
+  program.set("opacity", static_cast<float>(item.opacity));
+  program.set("roughness", material.roughness);
+  program.set("reflectance", material.reflectance);
+  program.set("wrap", material.wrap);
+  program.set("scatter", material.scatter);
+  program.set("coat", material.coat);
+  program.set("together", role == Role::eyes ? view.skin_opacity : view.at_rest);
+  const bool in_mouth = view.opaque_face && role != Role::face && role != Role::eyes;
+  program.set("cavity", Eigen::Vector2f(view.lips_y, in_mouth ? 1 / mouth_depth_mm : 0.f));
+}
+
+void Passes::shade(const DrawItem& item, const PictureView& view, bool leave_out_hidden) {
+  const auto& drawable = *item.drawable;
+  const bool face = item.role() == Role::face;
+  if (face) {
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    begin(skin_, item, view);
+    drawable.mesh.draw();
+    if (drawable.closed) return;
+  }
+  // What is left lies under the face, if there is one: the other parts, and its own inside.
+  const int answers =
+      leave_out_hidden ? culling_.ask(drawable.mesh, view.view_projection * item.model) : 0;
+  if (face) {
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_FRONT);
+  } else {
+    cull_by_closure(drawable);
+  }
+  begin(face ? interior_ : surface_, item, view);
+  if (leave_out_hidden)
+    culling_.draw(drawable.mesh, answers);
+  else
+    drawable.mesh.draw();
+}
+
+void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
+  // The face hides most of the rest: drawn first, it spares the shading of what lies under it.
+  culling_.start();
+  for (const bool face : {true, false})
+    for (const auto& item : items)
+      if (item.opaque() && (item.role() == Role::face) == face)
+        shade(item, view, view.opaque_face && view.may_cull);
+}
+
+void Passes::depth_only(const DrawItem& item, const PictureView& view) {
+  cull_by_closure(*item.drawable);
+  depth_.use();
+  depth_.set("view_projection", view.view_projection);
+  depth_.set("model", item.model);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  item.drawable->mesh.draw();
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void Passes::translucent(std::span<const DrawItem> items, const PictureView& view) {
+  std::vector<DrawItem> order;
+  for (const auto& item : items)
+    if (!item.opaque()) order.push_back(item);
+  const auto away = [&](const DrawItem& item) {
+    return (item.drawable->box.center() - view.eye).norm();
+  };
+  std::stable_sort(order.begin(), order.end(), [&](const DrawItem& a, const DrawItem& b) {
+    const bool face_a = a.role() == Role::face, face_b = b.role() == Role::face;
+    return face_a != face_b ? face_b : away(a) > away(b);
+  });
+  // Colours are multiplied by alpha as they are blended, so that an empty background stays exact.
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  for (const auto& item : order) {
+    depth_only(item, view);
+    glDepthFunc(GL_EQUAL);
+    glEnable(GL_BLEND);
+    shade(item, view, false);
+    glDisable(GL_BLEND);
+    glDepthFunc(GL_LESS);
+  }
+}
+
+void Passes::contacts(const GpuPoints& points, const PictureView& view, bool through) {
+  if (points.empty()) return;
+  marker_.use();
+  marker_.set("view", view.view);
+  marker_.set("projection", view.projection);
+  marker_.set("radius", marker_radius_mm);
+  marker_.set("nearer", 1.2f * marker_radius_mm);
+  marker_.set("pixels_per_unit", view.pixels_per_unit);
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  if (through) {
+    // Contacts lie between surfaces.
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    marker_.set("opacity", 0.4f);
+    points.draw();
+    glDisable(GL_BLEND);
+    glEnable(GL_DEPTH_TEST);
+  }
+  marker_.set("opacity", 1.f);
+  points.draw();
+  glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+}  // namespace condyle

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "render/drawable.h"
+#include "render/framebuffer.h"
+#include "render/lights.h"
+#include "render/occlusion_culling.h"
+
+namespace condyle {
+
+/// A drawable as one picture wants it.
+struct DrawItem {
+  Drawable* drawable;
+  double opacity;         // above 0; 1 is drawn as opaque
+  Eigen::Matrix4f model;  // rigid, from rest to now
+
+  Role role() const { return drawable->part->role; }
+  bool opaque() const { return opacity >= 1; }
+};
+
+/// What all draws of one picture share.
+struct PictureView {
+  Eigen::Matrix4f view, projection, view_projection, shadow;
+  Eigen::Vector3f eye;
+  Lights lights;
+  float pixels_per_unit;  // of a length across the line of sight at distance 1
+  bool shadows = true;
+  bool opaque_face = false;  // keeps the sky out of the mouth, and hides most of the rest
+  bool may_cull = true;      // the eye is outside of everything
+  float skin_opacity = 1;
+  float at_rest = 1;  // 1 with the jaw at rest, 0 when it is well away
+  float lips_y = 0;   // front of the teeth, mm
+};
+
+/// The steps of a picture, in the order in which they run. They leave depth test on, blending off.
+class Passes {
+ public:
+  Passes();
+
+  void shadow_map(std::span<const DrawItem> items, const PictureView& view);
+  void background();
+  void opaque(std::span<const DrawItem> items, const PictureView& view);
+  /// `through`: also faintly through what lies in front.
+  void contacts(const GpuPoints& points, const PictureView& view, bool through);
+  /// Far to near, the face last; of each part only its front layer.
+  void translucent(std::span<const DrawItem> items, const PictureView& view);
+
+ private:
+  void begin(GlProgram& program, const DrawItem& item, const PictureView& view);
+  void shade(const DrawItem& item, const PictureView& view, bool leave_out_hidden);
+  void depth_only(const DrawItem& item, const PictureView& view);
+
+  GlProgram surface_, skin_, interior_, depth_, background_, marker_;
+  GlVertexArray no_attributes_;
+  GlTexture skin_table_;
+  DepthMap shadow_map_;
+  OcclusionCulling culling_;
+};
+
+}  // namespace condyle
