@@ -9,7 +9,6 @@
 namespace condyle {
 namespace {
 
-constexpr double longest_travel_mm = 20;  // condyles travel 10 to 20 mm
 constexpr double step_mm = 0.5;
 constexpr double deepest_drop_mm = 15;  // an eminence is 5 to 10 mm high
 
@@ -27,7 +26,9 @@ double Coupling::forward_mm(double theta) const {
   constexpr double full_travel_mm = 15;
   const double hinge_first = rounded_ramp(theta - hinge, corner) / rad_per_mm;
   const double from_start = theta * full_travel_mm / (hinge + full_travel_mm * rad_per_mm);
-  return (1 - early) * hinge_first + early * from_start;
+  const double forward = (1 - early) * hinge_first + early * from_start;
+  constexpr double ending = 2;
+  return forward - rounded_ramp(forward - longest_forward_mm, ending);
 }
 
 double Coupling::theta(double forward) const {
@@ -59,7 +60,7 @@ Pchip seated_path(JointSurfaces& joint, const Eigen::Vector3d& center, const Eig
   };
   std::vector<double> forward = {0}, needed = {0};
   double drop = 0;
-  for (int i = 1; i * step_mm <= longest_travel_mm; ++i) {
+  for (int i = 1; i * step_mm < longest_forward_mm; ++i) {
     const double s = i * step_mm, theta = coupling.theta(s);
     // Gaps change by at most a millimetre per millimetre: moves by the slack pass through no wall.
     for (int k = 0; k < 200 && drop < deepest_drop_mm; ++k) {

@@ -10,15 +10,19 @@ namespace condyle {
 
 constexpr double radian_per_degree = 3.14159265358979323846 / 180;
 
+/// Condyles travel 10 to 20 mm; past the crest of the eminence the ligaments let them go no farther.
+constexpr double longest_forward_mm = 16.5;
+
 /// How far the condyles have moved forward when the jaw has turned by theta: a hinge first, then
-/// both together; `early` mixes in translation from the start.
+/// both together, and at the end of their travel a hinge again; `early` mixes in translation from
+/// the start.
 struct Coupling {
   double hinge = 12 * radian_per_degree;        // rad turned before translation begins
   double rad_per_mm = 1.5 * radian_per_degree;  // of forward travel after that
   double early = 0;                             // 0 hinge first, 1 in proportion from the start
 
   double forward_mm(double theta) const;
-  /// Inverse; 0 for 0.
+  /// Inverse, from 0 to below the longest travel; 0 for 0.
   double theta(double forward_mm) const;
 };
 

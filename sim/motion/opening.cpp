@@ -180,8 +180,11 @@ Motion make_opening(const Case& patient, const ContactModel& contacts,
           : "condyles guided by the cranium, or by an average path without a fossa"));
   motion.name = "opening";
   motion.duration_s = settings.duration_s;
-  motion.wanted = [path, end = choice.end, duration = settings.duration_s](double time_s) {
-    return path.at(end * progress(time_s / duration));
+  // Least jerk of the incisal point's drop, which is what one sees and measures.
+  motion.wanted = [path, drop = path.opening_mm(choice.end),
+                   duration = settings.duration_s](double time_s) {
+    const double share = progress(time_s / duration);
+    return share > 0 ? path.at(path.theta_for(drop * share)) : Pose{};
   };
   return motion;
 }

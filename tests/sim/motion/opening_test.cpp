@@ -1,0 +1,294 @@
+#include <gtest/gtest.h>
+
+#include "engine/core/error.h"
+#include "sim/motion/condylar_path.h"
+#include "sim/motion/joint_surfaces.h"
+#include "sim/motion/measures.h"
+#include "sim/motion/motion.h"
+#include "tests/support/boxes.h"
+#include "tests/support/real_cases.h"
+#include "tests/support/shapes.h"
+
+namespace condyle {
+namespace {
+
+/// A jaw of the usual size with a known joint and nothing in its way.
+Case free_jaw() {
+  Case patient;
+  patient.name = "free jaw";
+  patient.parts.push_back(
+      {"mandible", Role::mandible, test::box({-50, -90, -60}, {50, -10, -50}), {}});
+  patient.parts.push_back(
+      {"maxilla", Role::maxilla, test::box({-20, -90, -40}, {20, -60, -30}), {}});
+  patient.landmarks.points = {{"lower_incisal_point", {0, -92.5, -50.9}},
+                              {"upper_incisal_point", {0, -95.2, -53.2}},
+                              {"left_condyle", {50.5, -13, -7.5}},
+                              {"right_condyle", {-50.5, -13, -7.5}}};
+  patient.condylar_path = CondylarPath{{0, 2, 4, 6, 8, 10, 12, 14, 16, 18},
+                                       {0, 0.55, 1.75, 3.4, 5.05, 6.3, 7.0, 7.3, 7.3, 7.1}};
+  return patient;
+}
+
+/// Two spherical condyles in hollow boxes of roof and slope: a joint with 2 mm of room.
+Case jaw_in_fossae() {
+  Case patient = free_jaw();
+  patient.condylar_path.reset();
+  TriMesh condyles, roofs;
+  for (const double side : {-1.0, 1.0}) {
+    const Eigen::Vector3d center(50.5 * side, -13, -7.5);
+    condyles = test::joined(condyles, test::sphere(3, 5, center));
+    // A slab 7 mm above the centre, leaning 35 degrees down toward the front.
+    const Eigen::Quaterniond lean(Eigen::AngleAxisd(35 * M_PI / 180, Eigen::Vector3d::UnitX()));
+    roofs =
+        test::joined(roofs, test::moved(test::box({-15, -40, 7}, {15, 10, 12}), {lean, center}));
+  }
+  patient.parts[0].mesh = test::joined(patient.parts[0].mesh, condyles);
+  patient.parts[1].mesh = test::joined(patient.parts[1].mesh, roofs);
+  return patient;
+}
+
+Motion opening_of(const Case& patient, const OpeningSettings& settings = {}) {
+  return make_motion("opening", patient, ContactModel(patient), settings);
+}
+
+double largest_opening(const Motion& motion, const Case& patient, int frames = 360) {
+  double largest = 0;
+  for (int i = 0; i <= frames; ++i)
+    largest = std::max(largest,
+                       measure(patient, motion.wanted(motion.duration_s * i / frames)).opening_mm);
+  return largest;
+}
+
+TEST(Opening, OpensAsFarAsAskedAndClosesAgain) {
+  const Case patient = free_jaw();
+  EXPECT_NEAR(largest_opening(opening_of(patient), patient), 50, 1e-3);
+  for (const double asked : {5.0, 20.0, 42.0})
+    EXPECT_NEAR(largest_opening(opening_of(patient, {.opening_mm = asked}), patient), asked, 1e-3);
+  const Motion motion = opening_of(patient);
+  EXPECT_EQ(motion.name, "opening");
+  EXPECT_FALSE(motion.recorded);
+  for (const double time : {0.0, motion.duration_s, -1.0, 99.0}) {
+    EXPECT_EQ(motion.wanted(time).t.norm(), 0);
+    EXPECT_EQ(rotation_angle(motion.wanted(time)), 0);
+  }
+}
+
+TEST(Opening, StaysInTheBandsOfAdults) {
+  const Case patient = free_jaw();
+  const Motion motion = opening_of(patient);
+  const Measures open = measure(patient, motion.wanted(0.5 * motion.duration_s));
+  EXPECT_GT(open.rotation_deg, 28);
+  EXPECT_LT(open.rotation_deg, 45);
+  const double travel = (open.left_condyle - *patient.landmarks.find("left_condyle")).norm();
+  EXPECT_GT(travel, 10);
+  EXPECT_LT(travel, 20);
+}
+
+TEST(Opening, StartsAndStopsSmoothly) {
+  const Case patient = free_jaw();
+  const Motion motion = opening_of(patient);
+  const int frames = 3000;
+  std::vector<double> drop;
+  for (int i = 0; i <= frames; ++i)
+    drop.push_back(measure(patient, motion.wanted(motion.duration_s * i / frames)).opening_mm);
+  const double dt = motion.duration_s / frames;
+  double fastest = 0, sharpest = 0;
+  for (int i = 1; i < frames; ++i) {
+    const double speed = (drop[i + 1] - drop[i - 1]) / (2 * dt);
+    const double acceleration = (drop[i + 1] - 2 * drop[i] + drop[i - 1]) / (dt * dt);
+    fastest = std::max(fastest, std::abs(speed));
+    sharpest = std::max(sharpest, std::abs(acceleration));
+  }
+  EXPECT_NEAR(fastest, 1.875 * 50 / (0.45 * motion.duration_s),
+              20);          // least jerk: 1.875 of the mean
+  EXPECT_LT(fastest, 373);  // slower than the fastest voluntary closing
+  EXPECT_LT(std::abs(drop[3]), 1e-4);
+  EXPECT_LT(std::abs(drop[frames - 3]), 1e-4);
+  EXPECT_NEAR(sharpest, 5.77 * 50 / std::pow(0.45 * motion.duration_s, 2), 1);
+  // It opens, waits, and closes: one rise and one fall.
+  for (int i = 1; i <= frames; ++i) {
+    if (i < 0.45 * frames) {
+      EXPECT_GE(drop[i], drop[i - 1] - 1e-12);
+    }
+    if (i > 0.56 * frames) {
+      EXPECT_LE(drop[i], drop[i - 1] + 1e-12);
+    }
+  }
+}
+
+TEST(Opening, IsAHingeFirstUnlessTranslationIsAskedForEarly) {
+  const Case patient = free_jaw();
+  const Eigen::Vector3d seat = *patient.landmarks.find("left_condyle");
+  double before = -1;
+  for (const double early : {0.0, 0.5, 1.0}) {
+    const Motion motion = opening_of(patient, {.early_translation = early});
+    double forward = -1;  // when the jaw has turned by 8 degrees
+    for (int i = 0; forward < 0; ++i) {
+      const Measures now = measure(patient, motion.wanted(motion.duration_s * i / 2000));
+      if (now.rotation_deg >= 8) forward = seat.y() - now.left_condyle.y();
+    }
+    EXPECT_GT(forward, before);
+    if (early == 0) {
+      EXPECT_LT(forward, 1e-9);
+    }
+    before = forward;
+  }
+  EXPECT_GT(before, 2);
+}
+
+TEST(Opening, CondylesFollowTheKnownPathAndKeepTheirDistance) {
+  const Case patient = free_jaw();
+  const Motion motion = opening_of(patient);
+  const Pchip path = known_path(*patient.condylar_path);
+  const Eigen::Vector3d seat = *patient.landmarks.find("left_condyle");
+  for (int i = 0; i <= 100; ++i) {
+    const Measures now = measure(patient, motion.wanted(motion.duration_s * i / 100));
+    EXPECT_NEAR(seat.z() - now.left_condyle.z(), path(seat.y() - now.left_condyle.y()), 1e-9);
+    EXPECT_NEAR(now.left_condyle.z(), now.right_condyle.z(), 1e-9);
+    EXPECT_NEAR((now.left_condyle - now.right_condyle).norm(), 101, 1e-9);
+  }
+}
+
+TEST(Opening, CouplingIsOneAndAHalfDegreesPerMillimetreAfterTheHinge) {
+  const Coupling coupling;
+  EXPECT_EQ(coupling.forward_mm(5 * radian_per_degree), 0);
+  EXPECT_NEAR(coupling.forward_mm(33 * radian_per_degree), 21 / 1.5, 1e-12);
+  EXPECT_NEAR(coupling.forward_mm(45 * radian_per_degree), longest_forward_mm, 1e-12);
+  for (const double early : {0.0, 0.3, 1.0}) {
+    const Coupling mixed{.early = early};
+    for (double forward = 0.5; forward < 16; forward += 0.7)
+      EXPECT_NEAR(mixed.forward_mm(mixed.theta(forward)), forward, 1e-9);
+  }
+}
+
+TEST(Opening, AverageJointHasItsInclinationAndAFlatEnd) {
+  const Pchip path = average_path();
+  EXPECT_NEAR(std::atan2(path(5), 5) / radian_per_degree, 40, 1e-6);
+  EXPECT_EQ(path(0), 0);
+  EXPECT_NEAR(path.derivative(18), 0, 1e-9);
+  for (double s = 0.25; s <= 20; s += 0.25) EXPECT_GE(path(s), path(s - 0.25));
+}
+
+TEST(Opening, CondylesInAFossaKeepTheirRestGap) {
+  const Case patient = jaw_in_fossae();
+  auto joint = JointSurfaces::find(patient);
+  ASSERT_TRUE(joint);
+  EXPECT_NEAR(joint->rest_gap_mm(), 2, 0.05);
+  const Motion motion = opening_of(patient);
+  EXPECT_NEAR(largest_opening(motion, patient), 45, 1e-3);
+  double widest = 0;
+  for (int i = 0; i <= 120; ++i) {
+    const Pose X_CM = motion.wanted(0.5 * motion.duration_s * i / 120);
+    EXPECT_GE(joint->slack_mm(X_CM), -0.1);
+    widest = std::max(widest, joint->slack_mm(X_CM));
+  }
+  EXPECT_LT(widest, 0.3);  // guided, not merely clear
+  // The path leans as the roof does: a slab at 35 degrees.
+  const Measures open = measure(patient, motion.wanted(0.5 * motion.duration_s));
+  const Eigen::Vector3d way = *patient.landmarks.find("left_condyle") - open.left_condyle;
+  EXPECT_NEAR(std::atan2(way.z(), way.y()) / radian_per_degree, 35, 1.5);
+}
+
+TEST(Opening, AJawThatMeetsBoneOpensOnlySoFarUnlessAsked) {
+  Case patient = free_jaw();
+  patient.condylar_path.reset();
+  // A bar behind the chin: the body meets it at some 20 mm of opening.
+  patient.parts[1].mesh =
+      test::joined(patient.parts[1].mesh, test::box({-50, -60, -90}, {50, -50, -80}));
+  const ContactModel contacts(patient);
+  const Motion motion = make_motion("opening", patient, contacts);
+  const double reached = largest_opening(motion, patient);
+  EXPECT_GT(reached, 5);
+  EXPECT_LT(reached, 40);
+  ContactSet last = contacts.at_rest();
+  for (int i = 0; i <= 120; ++i) {
+    last = contacts.find(motion.wanted(motion.duration_s * i / 120), &last);
+    EXPECT_FALSE(last.pairs[0].touching);
+  }
+  EXPECT_GT(motion.notes.size(), 1u);
+  // Asked for more, it tries; contact will stop it.
+  EXPECT_NEAR(
+      largest_opening(make_motion("opening", patient, contacts, {.opening_mm = 40}), patient), 40,
+      1e-3);
+}
+
+TEST(Opening, RefusesWhatCannotBe) {
+  Case patient = free_jaw();
+  const ContactModel contacts(patient);
+  const auto refused = [&](const OpeningSettings& settings, const std::string& word) {
+    try {
+      make_motion("opening", patient, contacts, settings);
+      ADD_FAILURE() << word;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+    }
+  };
+  const double nan = std::nan("");
+  refused({.opening_mm = 200}, "200");
+  refused({.opening_mm = -5}, "-5");
+  refused({.opening_mm = nan}, "nan");
+  refused({.duration_s = 0}, "duration");
+  refused({.duration_s = nan}, "duration");
+  refused({.early_translation = 3}, "3");
+  refused({.early_translation = nan}, "nan");
+  patient.landmarks.points.erase("left_condyle");
+  refused({}, "left_condyle");
+}
+
+TEST(MakeMotion, KnowsItsNamesAndListsThemWhenAskedForAnother) {
+  const Case patient = free_jaw();
+  const ContactModel contacts(patient);
+  for (const auto& name : builtin_motions())
+    EXPECT_EQ(make_motion(name, patient, contacts).name, name);
+  EXPECT_EQ(make_motion("rest", patient, contacts).wanted(1).t.norm(), 0);
+  for (const std::string spec : {"yawning", "", "Opening"}) {
+    try {
+      make_motion(spec, patient, contacts);
+      ADD_FAILURE() << spec;
+    } catch (const InputError& error) {
+      for (const auto& name : builtin_motions())
+        EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
+    }
+  }
+  EXPECT_THROW(make_motion("absent.csv", patient, contacts), InputError);
+  EXPECT_THROW(make_motion("no/such/file", patient, contacts), InputError);
+}
+
+/// Plays the opening without any correction: no pair may be deeper than at rest at any step.
+void expect_free_opening(const Case& patient, double at_least_mm) {
+  const ContactModel contacts(patient);
+  const Motion motion = make_motion("opening", patient, contacts);
+  auto joint = JointSurfaces::find(patient);
+  ContactSet last = contacts.at_rest();
+  double largest = 0;
+  for (int i = 0; i <= 360; ++i) {
+    const Pose X_CM = motion.wanted(motion.duration_s * i / 360);
+    last = contacts.find(X_CM, &last, 2);
+    for (std::size_t k = 0; k < last.pairs.size(); ++k) {
+      const PairContact &now = last.pairs[k], &rest = contacts.at_rest().pairs[k];
+      ASSERT_LE(now.depth_mm, rest.depth_mm + 0.005) << i;
+      ASSERT_LE(now.touching, rest.touching) << i;
+    }
+    if (joint) {
+      ASSERT_GT(joint->slack_mm(X_CM), -0.3 * joint->rest_gap_mm()) << i;
+    }
+    largest = std::max(largest, measure(patient, X_CM).opening_mm);
+  }
+  EXPECT_GE(largest, at_least_mm);
+}
+
+TEST(RealOpening, UbcOpensThirtyMillimetresFreely) {
+  const auto patient = test::case_ubc();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  ASSERT_TRUE(JointSurfaces::find(*patient));  // its fossa guides it
+  expect_free_opening(*patient, 30);
+}
+
+TEST(RealOpening, BadinOpensFortyMillimetresFreely) {
+  const auto patient = test::case_badin();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  expect_free_opening(*patient, 40);
+}
+
+}  // namespace
+}  // namespace condyle
