@@ -1,17 +1,31 @@
 #include "engine/field/recipe.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/field/smooth.h"
 
 namespace condyle {
 
+namespace {
+
+Eigen::AlignedBox3d grown(const Eigen::AlignedBox3d& box, double margin) {
+  return {box.min().array() - margin, box.max().array() + margin};
+}
+
+}  // namespace
+
 void FieldRecipe::push(Act act, Primitive primitive, double k) {
   const double margin = k + 3;
-  Eigen::AlignedBox3d reach(primitive.box.min().array() - margin,
-                            primitive.box.max().array() + margin);
-  if (act == Act::keep) reach = unbounded_box();
-  steps_.push_back({act, std::move(primitive), k, reach});
+  // A later wide rounding still feels an earlier primitive from that far away.
+  const Eigen::AlignedBox3d wide = grown(primitive.box, margin);
+  for (auto& step : steps_)
+    if (step.margin < margin && grown(step.primitive.box, margin).intersects(wide)) {
+      step.margin = margin;
+      step.reach = act_everywhere(step.act) ? unbounded_box() : grown(step.primitive.box, margin);
+    }
+  const Eigen::AlignedBox3d reach = act_everywhere(act) ? unbounded_box() : wide;
+  steps_.push_back({act, std::move(primitive), k, margin, reach});
 }
 
 void FieldRecipe::add(Primitive primitive, double k) { push(Act::add, std::move(primitive), k); }
@@ -34,8 +48,15 @@ double FieldRecipe::operator()(const Eigen::Vector3d& at) const {
   Eigen::Vector3d p = at;
   if (symmetry_ == Symmetry::mirror_x) p.x() = std::abs(p.x());
   double d = nothing;
-  for (const auto& step : steps_)
-    if (step.reach.contains(p)) d = apply(step, d, p);
+  for (const auto& step : steps_) {
+    if (step.reach.contains(p)) {
+      d = apply(step, d, p);
+      continue;
+    }
+    // Far away its box stands in for it, so that the distance has no jumps.
+    const double far = step.primitive.box.exteriorDistance(p);
+    d = step.act == Act::add ? std::min(d, far) : std::max(d, -far);
+  }
   return d;
 }
 

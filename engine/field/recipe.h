@@ -10,7 +10,8 @@ namespace condyle {
 enum class Symmetry { none, mirror_x };  // mirror_x: the field at x is the field at |x|
 
 /// A solid made by joining and cutting primitives in order, each with its own rounding k (mm).
-/// A primitive counts only within k + 3 mm of its box, which leaves the surface as it is.
+/// Farther from a primitive than the widest rounding it meets, only its box counts, which leaves
+/// the surface as it is.
 class FieldRecipe {
  public:
   explicit FieldRecipe(Symmetry symmetry = Symmetry::none) : symmetry_(symmetry) {}
@@ -39,9 +40,10 @@ class FieldRecipe {
   struct Step {
     Act act;
     Primitive primitive;
-    double k;
-    Eigen::AlignedBox3d reach;
+    double k, margin;
+    Eigen::AlignedBox3d reach;  // the primitive's box grown by the margin
   };
+  static bool act_everywhere(Act act) { return act == Act::keep; }
   void push(Act act, Primitive primitive, double k);
   static double apply(const Step& step, double d, const Eigen::Vector3d& p);
 

@@ -123,10 +123,15 @@ void add_orbit_margins_and_nose(FieldRecipe& bone) {
   bone.add(
       tube({{13, -80.8, 8}, {10.8, -82.5, 16}, {8, -84.5, 25}, {3, -84.5, 31}}, {3.4, 3.2, 4, 6}),
       4);  // frontal process
-  bone.add(flat_tube({{0, -84, 32}, {0, -87.5, 22}, {0, -92.5, 14}, {0, -97, 7}}, {5, 3.6, 3, 2.4},
-                     {6.5, 5.2, 6.2, 7}, {1, 0, 0}),
+  bone.add(flat_tube({{0, -84, 32}, {0, -87.5, 22}, {0, -92.5, 14}, {0, -96.6, 8}},
+                     {5, 3.6, 3, 2.2}, {6.5, 5.2, 6, 5.4}, {1, 0, 0}),
            4);  // nasal bones
   bone.add(tube({{6, -82.3, 24}, {8.3, -82.8, 14}, {10.8, -83.2, 5}}, {2.8, 2.8, 2.8}), 4);
+  // Side walls of the nose, down to the rim of the aperture.
+  bone.add(tube({{3.4, -91, 16}, {6, -88.5, 11.5}, {9.6, -85.5, 6}}, {2.8, 3.2, 3.2}), 5);
+  bone.add(tube({{4, -94, 9.5}, {6.6, -91, 6.5}, {9.6, -87.6, 2}, {12.4, -85, -4}},
+                {2.2, 2.4, 2.4, 2.6}),
+           4);
 }
 
 void add_zygoma(FieldRecipe& bone) {
@@ -178,7 +183,7 @@ void hollow_out(FieldRecipe& bone) {
   bone.cut(flat_tube({{0, 17, -20}, {0, 17, -50}}, {17.5, 17.5}, {14.5, 14.5}, {1, 0, 0}), 3);
   bone.cut(orbit(0, -.6, .97), 1.5);
   bone.cut(nasal_cavity(), 1.5);
-  bone.add(tube({{0, -84, -27.5}, {0, -91, -25.6}, {0, -94.5, -24.4}}, {3.6, 2.4, 1.1}), 3);  // ANS
+  bone.add(tube({{0, -84, -27.5}, {0, -90, -26}, {0, -93.6, -24.9}}, {4.2, 3.2, 1.8}), 4);  // ANS
   bone.cut(ellipsoid({24, -63, -13}, {10, 12.5, 13}), 1);    // maxillary sinus
   bone.cut(ellipsoid({28, -93, -22}, {8, 9, 8}), 10);        // canine fossa
   bone.add(rounded_box({0, -67, -6}, {1.2, 19, 20}, 1), 1);  // septum

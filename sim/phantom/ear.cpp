@@ -27,7 +27,7 @@ void add_ear(FieldRecipe& head) {
            {1.6, 2.1, 2.2, 2.1, 2}),
       2.5);                                                            // antihelix
   head.add(ellipsoid(at(-8, -2, 3.2), {3, 3.4, 6}, axes), 3);          // tragus
-  head.cut(tube({at(-3, -1, 4), at(-3.5, -1, -2)}, {3.2, 2.6}), 1.5);  // meatus
+  head.cut(tube({at(-3, -1, 4), at(-3.5, -1, .5)}, {3.2, 2.2}), 1.5);  // meatus
 }
 
 }  // namespace condyle

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 // The closed lips touch along a slit too fine for any grid. So the face is sampled with the lips
 // apart by a known map, and its vertices are mapped back.
-constexpr double rest_half_gap = 0.08;  // mm, half of what stays between the lips
+constexpr double rest_half_gap = 0.05;  // mm, half of what stays between the lips
 
 /// Half the height of the slit while it is sampled; negative beyond the mouth corner.
 double half_gap(double x) {
@@ -24,7 +24,7 @@ double half_gap(double x) {
 
 /// From the space with parted lips to the patient at rest.
 Vector3d closed_lips(const Vector3d& p) {
-  const double gap = std::max(half_gap(p.x()), 0.0), line = lip_line(p.x());
+  const double gap = std::max(half_gap(p.x()), 0.0), line = lip_line(p.x(), p.y());
   const double above = p.z() - line, far = std::abs(above) - gap;
   const double rest = std::min(rest_half_gap, gap);
   double z = p.z();
@@ -40,7 +40,7 @@ Vector3d closed_lips(const Vector3d& p) {
 /// The slit between the parted lips.
 Primitive slit() {
   return {[](const Vector3d& p) {
-            return std::max(std::abs(p.z() - lip_line(p.x())) - half_gap(p.x()), p.y() + 76);
+            return std::max(std::abs(p.z() - lip_line(p.x(), p.y())) - half_gap(p.x()), p.y() + 76);
           },
           {Vector3d(0, -125, -60), Vector3d(mouth_corner_x, -76, -42)}};
 }
@@ -53,15 +53,16 @@ FieldRecipe parted_face() {
            0);
   const Primitive space = oral_space();
   face.cut({[space](const Vector3d& p) { return space.distance(closed_lips(p)); }, space.box}, 1.5);
-  face.cut(slit(), 3);
+  face.cut(slit(), 2);
   face.cut(ellipsoid(eye_center, Vector3d::Constant(eye_radius + .1)), 0);
   return face;
 }
 
 /// Positive where the surface is not skin: deep behind the lips, and the eye sockets.
 double hidden(const Vector3d& p, const Primitive& space, const Primitive& lids) {
-  const double mouth = std::min(0.6 - space.distance(p),
-                                std::max(std::abs(p.z() - lip_line(p.x())) - 6.5, p.y() + 79));
+  const double mouth =
+      std::min(0.6 - space.distance(p),
+               std::max(std::abs(p.z() - lip_line(p.x(), p.y())) - 6.5, p.y() + 79));
   const double socket = std::min(eye_radius + .6 - (p - eye_center).norm(), lids.distance(p) - 1.5);
   return std::max(mouth, socket);
 }
@@ -74,14 +75,14 @@ double importance(const Vector3d& p) {
   const double front = smooth_step((-45 - p.y()) / 30) * smooth_step((p.z() + 115) / 15) *
                        smooth_step((65 - p.z()) / 20);
   return 1 + 60 * front + 250 * (bump(12, -98, -50, 15) + bump(32, -82, 15, 17)) +
-         120 * (bump(0, -112, -18, 17) + bump(28, -86, 35, 16)) + 40 * bump(78, 12, 0, 28);
+         120 * (bump(0, -112, -18, 17) + bump(28, -86, 35, 16)) + 60 * bump(78, 10, 0, 30);
 }
 
 }  // namespace
 
 TriMesh face_surface() {
-  const std::array<GridAxis, 3> grid = {graded_axis(0, 115, 1.2, 0, 46, .55),
-                                        graded_axis(-126, 116, 1.2, -122, -74, .55),
+  const std::array<GridAxis, 3> grid = {graded_axis(0, 115, .85, 0, 46, .55),
+                                        graded_axis(-126, 116, 1.1, -122, -74, .55),
                                         graded_axis(-191.5, 126, 1.2, -62, 26, .55)};
   TriMesh half = isosurface(sample_field(parted_face(), grid));
   for (auto& p : half.vertices) p = closed_lips(p);

@@ -19,11 +19,11 @@ Primitive half_space(const Vector3d& normal, double offset) {  // inside where n
 void add_neck(FieldRecipe& head) {
   head.add(flat_tube({{0, 14, -60}, {0, 22, -110}, {0, 28, -160}, {0, 31, -215}}, {46, 47, 50, 54},
                      {50, 50, 56, 74}, {1, 0, 0}, 12),
-           14);
+           24);
   head.add(tube({{57, 12, -24}, {46, -4, -70}, {30, -20, -112}, {18, -29, -150}, {9, -32, -195}},
-                {8, 8.5, 8.5, 8.5, 8.5}, 10),
-           14);  // sternomastoid
-  head.add(tube({{0, -38, -120}, {0, -34, -150}, {0, -31, -200}}, {11, 11, 11}), 12);  // larynx
+                {8, 8, 7.5, 7.5, 7.5}, 10),
+           24);  // sternomastoid
+  head.add(tube({{0, -38, -120}, {0, -34, -150}, {0, -31, -200}}, {13, 13, 13}), 20);  // larynx
   head.add(tube({{30, 34, -120}, {48, 34, -165}, {80, 34, -215}}, {22, 24, 30}, 6),
            20);  // trapezius
 }
@@ -52,11 +52,11 @@ void add_nose(FieldRecipe& head) {
   head.cut(flat_tube({{6.4, -109.5, -27}, {6.8, -106, -22}, {6.2, -100, -16}}, {2.3, 3.0, 2.5},
                      {1.9, 2.4, 2.2}, {1, 0, 0}),
            1.2);  // nostril
-  head.cut(tube({{17.3, -103, -14.5}, {17.8, -98, -19}, {17.5, -95.5, -25}}, {.6, .6, -1.2}), 3);
+  head.cut(tube({{17.3, -103, -14.5}, {17.8, -98, -19}, {17.5, -95.5, -25}}, {.2, .2, -1.6}), 4);
 }
 
 void add_lips(FieldRecipe& head, Lips lips) {
-  head.add(tube({{4, -101.8, -30}, {4.8, -102.8, -42}}, {1.4, 1.8}), 4);  // philtrum
+  head.add(tube({{3.8, -101.6, -30}, {4.6, -102.6, -42}}, {1.0, 1.3}), 5);  // philtrum
   head.add(tube({{0, -101.6, -46.8},
                  {4, -102.6, -45.3},
                  {10, -100.6, -46.5},
@@ -101,7 +101,7 @@ Primitive lid_opening() {
 FieldRecipe skin_recipe(Lips lips) {
   FieldRecipe head(Symmetry::mirror_x);
   head.add(vault_shape(5.2), 0);
-  head.cut(half_space({0, 0, 1}, -34), 6);
+  head.cut(half_space({0, 0, 1}, -34), 18);
   head.add(face_base(), 12);
   add_neck(head);
   head.add(tube({{0, -88, 39}, {14, -88, 38}, {28, -83.5, 39}, {40, -75, 36}, {46, -68, 30}},

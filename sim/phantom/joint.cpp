@@ -18,7 +18,7 @@ constexpr double lateral_pole_forward_deg = -14;  // about z
 CondylarPath phantom_condylar_path() {
   // Steepest 40 degrees on the way down the eminence, flat beyond its crest.
   return {{0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 19.5},
-          {0, 0.55, 1.75, 3.4, 5.05, 6.3, 7.0, 7.3, 7.3, 7.1, 6.9}};
+          {0, 0.55, 1.75, 3.4, 5.05, 6.3, 7.0, 7.3, 7.35, 7.3, 7.2}};
 }
 
 Primitive condyle_shape() {
@@ -36,7 +36,9 @@ Primitive fossa_cut() {
   std::vector<Primitive> parts;
   for (const double at :
        {-1.0, 0.0, 1.5, 3.0, 4.5, 6.0, 7.5, 9.0, 10.5, 12.0, 13.5, 15.0, 16.5, 18.5}) {
-    const double above = 2.15 - 0.7 * std::clamp(at / 4, 0.0, 1.0);
+    // Thinner disc on the slope; more room at the crest, where the wide open jaw turns its neck up.
+    const double above =
+        2.15 - 0.7 * std::clamp(at / 4, 0.0, 1.0) + 0.8 * smooth_step((at - 9) / 7);
     parts.push_back(ellipsoid(condyle_center + Vector3d(0, -at, rise(at)),
                               condyle_axes + Vector3d(2.2, 1.9, above),
                               axis_rotation('z', lateral_pole_forward_deg)));

@@ -51,9 +51,10 @@ FieldRecipe gums(bool upper, const FieldRecipe& bone, const Distance& region) {
 
 }  // namespace
 
-double lip_line(double x) {
+double lip_line(double x, double y) {
   static const Lookup height({0, 5, 12, 19, 24.5}, {-50.7, -50.3, -50.6, -50.7, -50.9});
-  return height(std::abs(x));
+  const double front = -102 + 9.5 * x * x / (mouth_corner_x * mouth_corner_x);
+  return height(std::abs(x)) + 2.2 * smooth_step((y - front) / 6);
 }
 
 Primitive oral_space() {
@@ -69,14 +70,16 @@ FieldRecipe upper_gums_recipe() {
   return gums(true, skull_recipe(), [plan](const Vector3d& p) {
     const double d = plan(p);
     const double ceiling = -36 + 9 * smooth_step((-9 - d) / 6);  // higher inside: the palate
-    return smooth_max(smooth_max(d + 0.3, p.z() - ceiling, 3), -58 - p.z(), 2);
+    const double behind = std::max(-58 - p.z(), p.y() + 44);     // and not on the pterygoids
+    return smooth_max(smooth_max(d + 0.3, p.z() - ceiling, 3), behind, 2);
   });
 }
 
 FieldRecipe lower_gums_recipe() {
   const Distance plan = arch_plan();
   return gums(false, mandible_recipe(), [plan](const Vector3d& p) {
-    return smooth_max(smooth_max(plan(p) + 0.3, -69 - p.z(), 3), p.z() + 46, 2);
+    const double d = plan(p), floor = -64.5 - 5 * smooth_step((-9 - d) / 6);
+    return smooth_max(smooth_max(d + 0.3, floor - p.z(), 3), p.z() + 46, 2);
   });
 }
 

@@ -48,19 +48,19 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
                            .18 * spot({0, -106, -36}, {20, 12, 9}));  // beard shadow
 
   if (y < -76) {  // lips
-    const double s = std::min(x / 25, 1.0);
+    const double s = std::min(x / 25.6, 1.0);
     const double top = -50.6 + (7.6 - 1.6 * std::exp(-std::pow(x / 2.5, 2))) *
                                    std::sqrt(std::max(1 - std::pow(s, 1.6), 0.0));
     const double bottom = -50.9 - 9.4 * std::sqrt(1 - s * s);
     const double inside = std::min(top - z, z - bottom);
-    const double lip = smooth_step(inside / 1.6 + .5) * smooth_step((26 - x) / 1.5);
+    const double lip = smooth_step(inside / 1.6 + .5) * smooth_step((27 - x) / 2.5);
     mix({.74, .43, .40}, .85 * lip);
-    mix({.55, .28, .26}, .45 * lip * std::exp(-std::pow((z - lip_line(x)) / 1.1, 2)));
+    mix({.55, .28, .26}, .45 * lip * std::exp(-std::pow((z - lip_line(x, y)) / 1.1, 2)));
     mix({.66, .33, .32}, .8 * smooth_step((y + 101 - 14 * s * s) / 4) * lip);  // moist inner side
   }
   if (y < -58) {  // brows
     const double across = (z - brow_height(x)) / (brow_width(x) + .6);
-    const double hairs = .8 + .2 * std::sin(2.3 * x + 1.4 * z) * std::sin(1.1 * x - 2.0 * z);
+    const double hairs = .88 + .12 * std::sin(3.1 * x - 1.7 * z + 2 * std::sin(.9 * x));
     const double ends = smooth_step((x - 8.5) / 4) * smooth_step((49 - x) / 8);
     mix({.27, .19, .14}, .78 * hairs * ends * std::exp(-std::pow(std::abs(across), 2.6)));
   }
