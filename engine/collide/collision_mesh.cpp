@@ -29,11 +29,30 @@ fcl::Transform3d transform(const Pose& X) {
   return T;
 }
 
-/// Ball around a node of the tree: a first, cheap bound.
-struct Ball {
-  Eigen::Vector3d center;
-  double radius;
+/// Box of a node, laid out for a quick bound. FCL's own (between its swept rectangles) is exact but
+/// five times slower, and most pairs of boxes need only be known to be far enough.
+struct Bound {
+  Eigen::Vector3d center, half;  // half: half lengths
+  Eigen::Matrix3d axes;          // columns
+  double radius = 0;             // of the ball around the box
+  int left = -1;                 // child, the right one follows; -1 in a leaf
 };
+
+/// No less than the gap between two boxes can be; `X` is the pose of b's body in a's. Each box is
+/// seen in the axes of the other, where the gaps along the three axes add up by Pythagoras.
+double gap_bound(const Bound& a, const Bound& b, const Eigen::Matrix3d& R, const Eigen::Vector3d& t,
+                 double enough) {
+  const Eigen::Vector3d between = R * b.center + t - a.center;
+  const double ball_gap = between.norm() - a.radius - b.radius;
+  if (ball_gap >= enough) return ball_gap;
+  const Eigen::Matrix3d axes_b = R * b.axes, C = a.axes.transpose() * axes_b, size = C.cwiseAbs();
+  const Eigen::Vector3d in_a = (a.axes.transpose() * between).cwiseAbs() - a.half - size * b.half;
+  const double gap_in_a = in_a.cwiseMax(0).norm();
+  if (gap_in_a >= enough) return gap_in_a;
+  const Eigen::Vector3d in_b =
+      (axes_b.transpose() * between).cwiseAbs() - b.half - size.transpose() * a.half;
+  return std::max(gap_in_a, in_b.cwiseMax(0).norm());
+}
 
 /// The tree is cut at this depth into regions of its surface.
 constexpr int region_depth = 6;
@@ -41,19 +60,21 @@ constexpr int region_count = 1 << region_depth;
 
 struct Surface {
   Model model;
-  std::vector<Ball> balls;  // one per node
-  std::vector<int> region;  // of each node; -1 above the cut
+  std::vector<Bound> bounds;  // one per node
+  std::vector<int> region;    // of each node; -1 above the cut
 };
 
 void describe_nodes(Surface& surface, int node, int depth, int region) {
-  const auto& bounds = surface.model.getBV(node);
-  surface.balls[node] = {bounds.bv.obb.To, bounds.bv.obb.extent.norm()};
+  const auto& bv = surface.model.getBV(node);
+  const auto& box = bv.bv.obb;
+  surface.bounds[node] = {box.To, box.extent, box.axis, box.extent.norm(),
+                          bv.isLeaf() ? -1 : bv.leftChild()};
   surface.region[node] = depth >= region_depth ? region % region_count : -1;
-  if (bounds.isLeaf()) return;
+  if (bv.isLeaf()) return;
   // The path from the root, written as bits, numbers the regions.
   const int next = depth < region_depth ? 2 * region : region;
-  describe_nodes(surface, bounds.leftChild(), depth + 1, next);
-  describe_nodes(surface, bounds.rightChild(), depth + 1, depth < region_depth ? next + 1 : next);
+  describe_nodes(surface, bv.leftChild(), depth + 1, next);
+  describe_nodes(surface, bv.rightChild(), depth + 1, depth < region_depth ? next + 1 : next);
 }
 
 Triangle corners(const Model& model, int triangle) {
@@ -73,7 +94,14 @@ class NearestPair final : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<do
  public:
   NearestPair(const Surface& a, const Surface& b, const fcl::Transform3d& X, TrianglePair start,
               double bound_mm2)
-      : a_(a.model), b_(b.model), balls_a_(a.balls), balls_b_(b.balls), X_(X), start_(start) {
+      : a_(a.model),
+        b_(b.model),
+        bounds_a_(a.bounds),
+        bounds_b_(b.bounds),
+        X_(X),
+        R_(X.linear()),
+        t_(X.translation()),
+        start_(start) {
     best.squared_mm2 = bound_mm2;
     best_mm = std::sqrt(bound_mm2);
     fcl::detail::initialize(*this, a_, fcl::Transform3d::Identity(), b_, X, request_, result_);
@@ -86,10 +114,18 @@ class NearestPair final : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<do
   void postprocess() override {}
 
   double BVTesting(int node_a, int node_b) const override {
-    const Ball &a = balls_a_[node_a], &b = balls_b_[node_b];
-    const double gap = (X_ * b.center - a.center).norm() - a.radius - b.radius;
-    return gap >= best_mm ? gap : MeshDistanceTraversalNodeOBBRSS::BVTesting(node_a, node_b);
+    return gap_bound(bounds_a_[node_a], bounds_b_[node_b], R_, t_, best_mm);
   }
+  bool firstOverSecond(int node_a, int node_b) const override {  // open the larger box
+    const Bound &a = bounds_a_[node_a], &b = bounds_b_[node_b];
+    return b.left < 0 || (a.left >= 0 && a.radius > b.radius);
+  }
+  bool isFirstNodeLeaf(int node) const override { return bounds_a_[node].left < 0; }
+  bool isSecondNodeLeaf(int node) const override { return bounds_b_[node].left < 0; }
+  int getFirstLeftChild(int node) const override { return bounds_a_[node].left; }
+  int getFirstRightChild(int node) const override { return bounds_a_[node].left + 1; }
+  int getSecondLeftChild(int node) const override { return bounds_b_[node].left; }
+  int getSecondRightChild(int node) const override { return bounds_b_[node].left + 1; }
   void leafTesting(int node_a, int node_b) const override {
     measure({a_.getBV(node_a).primitiveId(), b_.getBV(node_b).primitiveId()});
   }
@@ -111,8 +147,10 @@ class NearestPair final : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<do
 
   const Model& a_;
   const Model& b_;
-  const std::vector<Ball>&balls_a_, &balls_b_;
-  fcl::Transform3d X_;
+  const std::vector<Bound>&bounds_a_, &bounds_b_;
+  fcl::Transform3d X_;  // of B in A
+  Eigen::Matrix3d R_;
+  Eigen::Vector3d t_;
   TrianglePair start_;
   fcl::DistanceRequestd request_;
   fcl::DistanceResultd result_;
@@ -179,8 +217,8 @@ CollisionMesh::CollisionMesh(const TriMesh& mesh) : tree_(std::make_unique<Tree>
   model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices.size()));
   model.addSubModel(mesh.vertices, triangles);
   model.endModel();
-  tree_->balls.resize(static_cast<std::size_t>(model.getNumBVs()));
-  tree_->region.resize(tree_->balls.size());
+  tree_->bounds.resize(static_cast<std::size_t>(model.getNumBVs()));
+  tree_->region.resize(tree_->bounds.size());
   describe_nodes(*tree_, 0, 0, 0);
 }
 
