@@ -45,7 +45,7 @@ void Panels::Drawing::readings() {
   opening();
   // Contacts get the height that tissue and times leave.
   const float line = ImGui::GetTextLineHeightWithSpacing();
-  const float head = pen.px(42);  // a heading with its line and air
+  const float head = pen.px(38);  // a heading with its line and air
   const bool has_tissue = input.frame && !input.frame->tissue.nodes.empty();
   const float bars =
       static_cast<float>(stage_names.size()) * pen.px(bar_row) + pen.px(curve_height);

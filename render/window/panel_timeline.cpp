@@ -10,8 +10,6 @@
 namespace condyle {
 namespace {
 
-constexpr const char* purpose = "For research and education, not for clinical use";
-
 // Ticks below the scrub bar at a round step, so that no more than twelve stand there.
 void draw_ticks(const Pen& pen, ImVec2 low, float width, float y, double duration_s) {
   if (duration_s <= 0) return;

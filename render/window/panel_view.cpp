@@ -75,7 +75,14 @@ void Panels::Drawing::view_signs() {
     list.AddRectFilled({at.x, at.y - thick}, {at.x + wide * done, at.y + thick}, colour::accent,
                        thick);
   }
-  if (input.scene.parts.empty()) return;
+  if (input.scene.parts.empty()) {
+    const auto line = [&](ImFont* font, ImU32 tint, const char* words, float y) {
+      list.AddText(font, font->FontSize, {centre.x - text_width(font, words) / 2, y}, tint, words);
+    };
+    line(theme.large, colour::text, "Condyle", centre.y - pen.px(110));
+    line(theme.small, colour::text_dim, purpose, static_cast<float>(r.height) - pen.px(30));
+    return;
+  }
 
   // Where the patient's sides are, at the edges of the view.
   const Eigen::Matrix3d axes = picture_axes(input.camera);

@@ -119,9 +119,17 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
   }
 
   ImGui::PushFont(theme_.regular);
-  Drawing drawing{*this, input, view, layout(width, height), width, height, Pen{theme_, items_, ""},
+  // Until there is a patient there is nothing to set: only what is being prepared.
+  const bool preparing = input.scene.parts.empty();
+  Drawing drawing{*this,
+                  input,
+                  view,
+                  preparing ? lay_out(width, height, theme_.scale, false) : layout(width, height),
+                  width,
+                  height,
+                  Pen{theme_, items_, ""},
                   {}};
-  if (shown_) {
+  if (shown_ && !preparing) {
     drawing.top_bar();
     drawing.parts();
     drawing.readings();

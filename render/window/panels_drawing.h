@@ -33,6 +33,9 @@ struct Panels::Drawing {
   void cube();
 };
 
+/// Stands in the window at all times.
+constexpr const char* purpose = "For research and education, not for clinical use";
+
 /// "upper_teeth" as "Upper teeth".
 std::string display_name(const std::string& part_name);
 

@@ -5,12 +5,16 @@
 
 namespace condyle {
 
+double allowed_lead_s(double loop_s) { return std::clamp(1.0 / 30 + 2 * loop_s, 0.05, 0.2); }
+
 void advance_clock(ViewState& view, double elapsed_s, double duration_s, double shown_s) {
   if (!view.playing || duration_s <= 0) return;
   double lead = view.time_s - shown_s;
-  if (view.loop && lead < 0) lead += duration_s;  // the clock has wrapped, the frame has not yet
+  // The shorter way around the loop: the clock may have wrapped while the frame has not yet.
+  if (view.loop) lead = std::remainder(lead, duration_s);
   const double step = std::max(0.0, elapsed_s) * view.speed;
-  view.time_s += std::clamp(max_lead_s - lead, 0.0, step);
+  view.time_s +=
+      std::clamp(std::min(0.2, allowed_lead_s(elapsed_s) * view.speed) - lead, 0.0, step);
   if (view.time_s < duration_s) return;
   if (view.loop) {
     view.time_s = std::fmod(view.time_s, duration_s);

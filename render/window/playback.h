@@ -4,12 +4,14 @@
 
 namespace condyle {
 
-/// The clock may be this far ahead of the last simulated frame: a slow simulation slows the
-/// playback instead of losing its steps.
-constexpr double max_lead_s = 0.1;
+/// How far the clock may be ahead of the last simulated frame when the loop comes around every
+/// `loop_s`: what is on its way, and no more. So a slow simulation slows the playback instead of
+/// losing its steps, and slow pictures do not.
+double allowed_lead_s(double loop_s);
 
-/// Moves the playing clock on by `elapsed_s` of real time. At the end it starts over, or stops
-/// there when `loop` is off. `shown_s` is the time of the last simulated frame.
+/// Moves the playing clock on by `elapsed_s` of real time, since the last call. At the end it
+/// starts over, or stops there when `loop` is off. `shown_s` is the time of the last simulated
+/// frame.
 void advance_clock(ViewState& view, double elapsed_s, double duration_s, double shown_s);
 
 /// Starts or stops playing; starting at the end begins anew, and lets go of a held opening.

@@ -112,13 +112,13 @@ void Window::State::draw_scene(const PictureSettings& wanted) {
   pictures.picture_ms = ms;
   pictures.render_scale = quality.render_scale;
   pictures.samples = std::max(1, view_picture->samples());
-  ++counted_pictures;
+  // Pictures a second only mean something while things move.
   const double counted_s = seconds_since(counted_from);
-  if (counted_s > 0.5) {
-    pictures.pictures_per_second = in_motion && counted_s < 2 ? counted_pictures / counted_s : 0;
-    counted_pictures = 0;
-    counted_from = Clock::now();
-  }
+  ++counted_pictures;
+  if (in_motion && counted_s < 0.5) return;
+  pictures.pictures_per_second = in_motion && counted_s < 2 ? counted_pictures / counted_s : 0;
+  counted_pictures = 0;
+  counted_from = Clock::now();
 }
 
 void Window::State::draw(bool always, Image* copy) {
