@@ -58,16 +58,20 @@ TriMesh read_mesh(const fs::path& file) {
   if (std::error_code error; fs::is_directory(file, error))
     throw InputError(file, "", "is a folder; name one .stl, .ply, .obj or .glb file");
   if (std::error_code error; !fs::exists(file, error)) throw InputError(file, "", "no such file");
-  const Reader reader = reader_for(file);
+  reader_for(file);  // a wrong extension is told before a large file is read
   try {
-    const std::string content = read_file(file, max_bytes);
-    if (content.empty()) throw InputError(file, "", "is empty (0 bytes); export it again");
-    TriMesh mesh = reader(file, content);
-    check_result(file, mesh);
-    return mesh;
+    return parse_mesh(file, read_file(file, max_bytes));
   } catch (const std::bad_alloc&) {
     throw MachineError(file.string() + ": there is not enough memory to read it");
   }
+}
+
+TriMesh parse_mesh(const fs::path& file, std::string_view content) {
+  const Reader reader = reader_for(file);
+  if (content.empty()) throw InputError(file, "", "is empty (0 bytes); export it again");
+  TriMesh mesh = reader(file, content);
+  check_result(file, mesh);
+  return mesh;
 }
 
 std::string looks_like(std::string_view content) {

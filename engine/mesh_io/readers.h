@@ -14,6 +14,9 @@ TriMesh read_ply(const std::filesystem::path& file, std::string_view content);
 TriMesh read_obj(const std::filesystem::path& file, std::string_view content);
 TriMesh read_glb(const std::filesystem::path& file, std::string_view content);
 
+/// The reader that the file's extension asks for, and the checks that all formats share.
+TriMesh parse_mesh(const std::filesystem::path& file, std::string_view content);
+
 /// "an STL file", "text" ...: what the first bytes look like, for messages.
 std::string looks_like(std::string_view content);
 

@@ -41,13 +41,12 @@ std::optional<Vector3d> condyle_center(const std::vector<const Part*>& mandibles
   return box.center();
 }
 
-/// The place of the vertex near the midline farthest forward and, times `up`, upward; on the
-/// midline, which runs between the two middle teeth.
+/// The midline's point farthest forward and, times `up`, upward.
 std::optional<Vector3d> incisal_point(const Part& part, double middle, double up) {
   std::optional<Vector3d> best;
   double most = -std::numeric_limits<double>::infinity();
-  for (const auto& p : part.mesh.vertices) {
-    if (std::abs(p.x() - middle) > 5) continue;
+  // The middle teeth may leave the plane itself free: their nearest parts count as well.
+  for (const auto& p : midline_points(part.mesh, middle, 5)) {
     const double reach = up * p.z() - p.y();
     if (reach > most) most = reach, best = Vector3d(middle, p.y(), p.z());
   }
@@ -55,6 +54,19 @@ std::optional<Vector3d> incisal_point(const Part& part, double middle, double up
 }
 
 }  // namespace
+
+std::vector<Vector3d> midline_points(const TriMesh& mesh, double middle, double near_mm) {
+  std::vector<Vector3d> points;
+  for (const auto& v : mesh.vertices)
+    if (std::abs(v.x() - middle) <= near_mm) points.push_back(v);
+  for (const auto& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d &a = mesh.vertices[t[k]], &b = mesh.vertices[t[(k + 1) % 3]];
+      if ((a.x() < middle) != (b.x() < middle))
+        points.push_back(a + (middle - a.x()) / (b.x() - a.x()) * (b - a));
+    }
+  return points;
+}
 
 void estimate_landmarks(Case& patient) {
   std::vector<const Part*> mandibles;

@@ -23,19 +23,19 @@ std::string length_text(double mm) {
   return mm >= 10 ? fmt::format("{:.0f} mm", mm) : fmt::format("{:.2g} mm", mm);
 }
 
-/// How the mandible lies, from its shape alone: the chin's part is one piece at the midline, the
-/// rami are two pieces at the sides and reach highest.
-bool lies_as_lps(const std::vector<Vector3d>& points) {
-  Box box;
-  for (const auto& p : points) box.add(p);
+/// How the mandible lies, from its shape alone: the chin's part crosses the midline, the rami are
+/// apart at the sides and reach highest.
+bool lies_as_lps(const TriMesh& mandible) {
+  const Box box = bounding_box(mandible);
   const Vector3d size = box.size();
-  const double middle = box.center().x();
-  int front = 0, back = 0, tops = 0, bottoms = 0;
+  int front = 0, back = 0;
+  for (const auto& p : midline_points(mandible, box.center().x(), 0.1 * size.x())) {
+    front += p.y() < box.low.y() + 0.3 * size.y();
+    back += p.y() > box.high.y() - 0.3 * size.y();
+  }
+  int tops = 0, bottoms = 0;
   double top_y = 0, bottom_y = 0;
-  for (const auto& p : points) {
-    const bool median = std::abs(p.x() - middle) < 0.12 * size.x();
-    front += median && p.y() < box.low.y() + 0.3 * size.y();
-    back += median && p.y() > box.high.y() - 0.3 * size.y();
+  for (const auto& p : mandible.vertices) {
     if (p.z() > box.high.z() - 0.15 * size.z()) top_y += p.y(), ++tops;
     if (p.z() < box.low.z() + 0.15 * size.z()) bottom_y += p.y(), ++bottoms;
   }
@@ -72,19 +72,18 @@ std::string contradiction(const JawPoints& jaw) {
 }
 
 /// The first usual frame in which mandible and points would lie as they should.
-std::string fitting_frame(const std::vector<Vector3d>& mandible, const JawPoints& jaw,
+std::string fitting_frame(const TriMesh& mandible, const JawPoints& jaw,
                           const ImportRequest& request) {
   const Eigen::Matrix3d back = source_frame("mm", request.frame).to_lps_mm.inverse();
   for (const auto& frame : all_frames()) {
     const Eigen::Matrix3d turn = source_frame("mm", frame).to_lps_mm * back;
-    std::vector<Vector3d> points;
-    points.reserve(mandible.size());
-    for (const auto& p : mandible) points.push_back(turn * p);
+    TriMesh lying = mandible;
+    for (auto& v : lying.vertices) v = turn * v;
     JawPoints turned;
     if (jaw.left_condyle) turned.left_condyle = turn * *jaw.left_condyle;
     if (jaw.right_condyle) turned.right_condyle = turn * *jaw.right_condyle;
     if (jaw.incisal) turned.incisal = turn * *jaw.incisal;
-    if (lies_as_lps(points) && contradiction(turned).empty()) return frame;
+    if (lies_as_lps(lying) && contradiction(turned).empty()) return frame;
   }
   return "";
 }
@@ -95,13 +94,12 @@ void check_size(const Box& box, const ImportRequest& request) {
   const double size = box.size().maxCoeff();
   if (size >= least_head_mm && size <= largest_head_mm) return;
   std::string fits;
-  double best = std::log(largest_head_mm / 200.0);
-  for (const auto& units : all_units()) {
+  for (const auto& units :
+       all_units()) {  // the usual ones first; inches only where nothing else fits
     const double other = size / unit_mm(request.units) * unit_mm(units);
-    const double off = std::abs(std::log(other / 200.0));
-    if (other < least_head_mm || other > largest_head_mm || off >= best) continue;
-    best = off;
+    if (other < least_head_mm || other > largest_head_mm) continue;
     fits = units;
+    break;
   }
   throw InputError(
       request.files.front().file, "",
@@ -119,10 +117,10 @@ void check_frame(const Case& patient, const ImportRequest& request) {
   if (problem.empty()) {
     // A point apiece proves the frame; the shape is asked only when there is none.
     const bool proved = jaw.incisal && (jaw.left_condyle || jaw.right_condyle);
-    if (proved || lies_as_lps(mandible->mesh.vertices)) return;
+    if (proved || lies_as_lps(mandible->mesh)) return;
     problem = "the mandible's rami are not behind and above its chin";
   }
-  const std::string fits = fitting_frame(mandible->mesh.vertices, jaw, request);
+  const std::string fits = fitting_frame(mandible->mesh, jaw, request);
   // A piece of a mandible has no such shape in any frame.
   if (fits.empty() && contradiction(jaw).empty()) return;
   throw InputError(request.files.front().file, "",

@@ -13,6 +13,9 @@ namespace condyle {
 /// Refuses a patient whose box is not of a head's size, naming the unit that would fit.
 void check_size(const Box& box, const ImportRequest& request);
 
+/// Where the mesh's edges cross the sagittal plane x = `middle`, and its vertices within `near_mm`.
+std::vector<Eigen::Vector3d> midline_points(const TriMesh& mesh, double middle, double near_mm);
+
 /// Adds condyle centres and incisal points that are missing, estimated from the meshes, each with a
 /// note. Does nothing for a point that is there.
 void estimate_landmarks(Case& patient);

@@ -1,0 +1,241 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/mesh/measure.h"
+#include "engine/mesh_io/mesh_files.h"
+#include "sim/case/case_io.h"
+#include "tests/engine/mesh_io/samples.h"
+
+namespace condyle {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::TempFolder;
+
+Case sample() {
+  Case patient;
+  patient.name = "A \"patient\", é";
+  patient.parts.push_back(
+      {"mandible", Role::mandible, test::moved(test::sphere(50, 2), test::arbitrary_pose(1)), {}});
+  TriMesh teeth = test::sphere(4, 1);
+  const int one = static_cast<int>(teeth.triangles.size());
+  teeth = test::joined(teeth, test::sphere(4, 1, {10, 0, 0}));
+  patient.parts.push_back(
+      {"lower-teeth", Role::lower_teeth, teeth, {{36, 0, one}, {37, one, one}}});
+  patient.landmarks.points = {{"left_condyle", {1.0 / 3, 1e-300, -0.0}},
+                              {"my_point", {5e8, 2.5, 0.1}}};
+  patient.condylar_path = CondylarPath{{-1.0, 0.1, 12}, {0, 0.3, 1.0 / 7}};
+  patient.source_units = "m";
+  patient.source_frame = "LSA";
+  patient.notes = {"one", "two \"quoted\"\nlines"};
+  return patient;
+}
+
+std::string refusal(const fs::path& folder) {
+  try {
+    load_case(folder);
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return message;
+  }
+  ADD_FAILURE() << folder << " was loaded";
+  return "";
+}
+
+void expect_words(const std::string& message, const std::vector<const char*>& words) {
+  for (const char* word : words)
+    EXPECT_NE(message.find(word), std::string::npos) << message << "\n  lacks " << word;
+}
+
+TEST(CaseFiles, LoadingGivesTheBitsThatWereSaved) {
+  const TempFolder folder;
+  const Case saved = sample();
+  save_case(saved, folder.path() / "a" / "case");
+  const Case loaded = load_case(folder.path() / "a" / "case");
+  EXPECT_EQ(loaded.name, saved.name);
+  EXPECT_EQ(loaded.source_units, "m");
+  EXPECT_EQ(loaded.source_frame, "LSA");
+  EXPECT_EQ(loaded.notes, saved.notes);
+  ASSERT_EQ(loaded.parts.size(), saved.parts.size());
+  for (std::size_t i = 0; i < saved.parts.size(); ++i) {
+    EXPECT_EQ(loaded.parts[i].name, saved.parts[i].name);
+    EXPECT_EQ(loaded.parts[i].role, saved.parts[i].role);
+    EXPECT_EQ(mesh_hash(loaded.parts[i].mesh), mesh_hash(saved.parts[i].mesh));
+  }
+  ASSERT_EQ(loaded.parts[1].teeth.size(), 2u);
+  EXPECT_EQ(loaded.parts[1].teeth[1].fdi, 37);
+  EXPECT_EQ(loaded.parts[1].teeth[1].first_triangle, saved.parts[1].teeth[1].first_triangle);
+  ASSERT_EQ(loaded.landmarks.points.size(), 2u);
+  for (const auto& [name, p] : saved.landmarks.points)
+    EXPECT_EQ(std::memcmp(loaded.landmarks.find(name)->data(), p.data(), sizeof(p)), 0) << name;
+  ASSERT_TRUE(loaded.condylar_path);
+  EXPECT_EQ(loaded.condylar_path->forward_mm, saved.condylar_path->forward_mm);
+  EXPECT_EQ(loaded.condylar_path->drop_mm, saved.condylar_path->drop_mm);
+  EXPECT_EQ(load_case(folder.path() / "a" / "case" / "case.json").name, saved.name);
+}
+
+TEST(CaseFiles, EveryRoleHasANameOfItsOwn) {
+  for (const Role role :
+       {Role::skull, Role::maxilla, Role::mandible, Role::upper_teeth, Role::lower_teeth,
+        Role::face, Role::eyes, Role::upper_gums, Role::lower_gums, Role::tongue})
+    EXPECT_EQ(role_named(role_name(role)), role);
+  EXPECT_FALSE(role_named("hat"));
+  EXPECT_NE(known_roles().find("upper-teeth"), std::string::npos);
+}
+
+TEST(CaseFiles, SavingAgainReplacesTheWholeCaseAndLeavesNothingBeside) {
+  const TempFolder folder;
+  const fs::path home = folder.path() / "case";
+  Case patient = sample();
+  save_case(patient, home);
+  patient.parts.pop_back();
+  patient.landmarks.points.clear();
+  save_case(patient, home);
+  EXPECT_EQ(load_case(home).parts.size(), 1u);
+  EXPECT_FALSE(fs::exists(home / "lower-teeth.ply"));
+  EXPECT_FALSE(fs::exists(home / "landmarks.csv"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+  EXPECT_EQ(std::distance(fs::directory_iterator(home), {}), 2);
+}
+
+TEST(CaseFiles, AFailedSaveLeavesTheEarlierCaseWhole) {
+  const TempFolder folder;
+  const fs::path home = folder.path() / "case";
+  save_case(sample(), home);
+  Case broken = sample();
+  broken.name = "broken";
+  broken.parts[1].name = "../outside";
+  EXPECT_THROW(save_case(broken, home), InputError);
+  broken = sample();
+  broken.parts[1].name = broken.parts[0].name;
+  EXPECT_THROW(save_case(broken, home), InputError);
+  broken = sample();
+  broken.landmarks.points["stomion"] =
+      Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THROW(save_case(broken, home), InputError);
+  EXPECT_EQ(load_case(home).name, sample().name);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(CaseFiles, FoldersOfOtherThingsAreNeverReplaced) {
+  const TempFolder folder;
+  fs::create_directory(folder.path() / "photos");
+  folder.write("photos/cat.jpg", "cat");
+  EXPECT_THROW(save_case(sample(), folder.path() / "photos"), InputError);
+  EXPECT_TRUE(fs::exists(folder.path() / "photos" / "cat.jpg"));
+  save_case(sample(), folder.path() / "case");
+  folder.write("case/report.txt", "mine");
+  EXPECT_THROW(save_case(sample(), folder.path() / "case"), InputError);
+  EXPECT_EQ(read_file(folder.path() / "case" / "report.txt"), "mine");
+  folder.write("file", "x");
+  EXPECT_THROW(save_case(sample(), folder.path() / "file"), InputError);
+  fs::create_directory(folder.path() / "empty");
+  save_case(sample(), folder.path() / "empty");
+  EXPECT_EQ(load_case(folder.path() / "empty").parts.size(), 2u);
+}
+
+/// A saved case whose case.json is changed by `change`.
+class BadCase : public testing::Test {
+ protected:
+  BadCase() { save_case(sample(), home_); }
+  void expect(const std::function<void(json&)>& change, const std::vector<const char*>& words) {
+    json root = json::parse(good_.empty() ? good_ = read_file(home_ / "case.json") : good_);
+    change(root);
+    folder_.write("case/case.json", root.dump());
+    expect_words(refusal(home_), words);
+  }
+  TempFolder folder_;
+  fs::path home_ = folder_.path() / "case";
+  std::string good_;
+};
+
+TEST_F(BadCase, FilesOutsideTheFolderAreRefused) {
+  write_ply(test::sphere(1, 1), folder_.path() / "outside.ply");
+  fs::create_symlink(folder_.path() / "outside.ply", home_ / "link.ply");
+  fs::create_directory_symlink(folder_.path(), home_ / "up");
+  for (const char* file : {"../outside.ply", "/etc/passwd", "a/../../outside.ply", ""})
+    expect([&](json& root) { root["parts"][0]["file"] = file; },
+           {"case.json", "parts[0].file", "its own folder"});
+  for (const char* file : {"link.ply", "up/outside.ply"})
+    expect([&](json& root) { root["parts"][0]["file"] = file; },
+           {"parts[0].file", "leads out of the folder"});
+  expect([](json& root) { root["landmarks"] = "../landmarks.csv"; },
+         {"landmarks", "its own folder"});
+  expect([](json& root) { root["parts"][0]["file"] = "gone.ply"; },
+         {"parts[0].file", "gone.ply", "missing"});
+}
+
+TEST_F(BadCase, EveryWrongValueIsNamed) {
+  expect([](json& root) { root["version"] = 99; }, {"version", "99", "newer program"});
+  expect([](json& root) { root["version"] = "one"; }, {"version", "\"one\"", "whole number"});
+  expect([](json& root) { root.erase("name"); }, {"\"name\" is missing"});
+  expect([](json& root) { root["name"] = 7; }, {"name", "7", "text"});
+  expect([](json& root) { root["parts"] = 7; }, {"parts", "list"});
+  expect([](json& root) { root["parts"] = json::array(); }, {"parts", "empty"});
+  expect([](json& root) { root["parts"][1] = "x"; }, {"parts[1]", "object"});
+  expect([](json& root) { root["parts"][0]["role"] = "hat"; },
+         {"parts[0].role", "\"hat\"", "skull, maxilla, mandible"});
+  expect([](json& root) { root["parts"][1]["name"] = "mandible"; },
+         {"parts[1].name", "\"mandible\"", "twice"});
+  expect([](json& root) { root["parts"][0]["name"] = "a/b"; }, {"parts[0].name", "\"a/b\""});
+  expect([](json& root) { root["parts"][1]["teeth"][0]["fdi"] = 19; },
+         {"parts[1].teeth[0].fdi", "19"});
+  expect([](json& root) { root["parts"][1]["teeth"][1]["fdi"] = 36; },
+         {"parts[1].teeth[1].fdi", "twice"});
+  expect([](json& root) { root["parts"][1]["teeth"][1]["first_triangle"] = 3; },
+         {"teeth[1].first_triangle", "3"});
+  expect([](json& root) { root["parts"][1]["teeth"][1]["triangle_count"] = 4'000'000'000u; },
+         {"teeth[1].triangle_count", "4000000000"});
+  expect(
+      [](json& root) {
+        root["condylar_path"]["drop_mm"] = {1, 2};
+      },
+      {"condylar_path", "3", "2"});
+  expect([](json& root) { root["condylar_path"]["forward_mm"][1] = -5; },
+         {"forward_mm[1]", "increase"});
+  expect([](json& root) { root["condylar_path"]["forward_mm"][1] = nullptr; },
+         {"forward_mm[1]", "null"});
+  expect([](json& root) { root["notes"] = "x"; }, {"notes", "list"});
+}
+
+TEST_F(BadCase, WhatIsNoCaseSaysHowToMakeOne) {
+  folder_.write("case/case.json", R"({"id":"case-ubc","roles":{"mandible":"mandible.ply"}})");
+  expect_words(refusal(home_), {"case.json", "not a Condyle case", "condyle import meshes"});
+  folder_.write("case/case.json", "[1,2,3]");
+  expect_words(refusal(home_), {"not a Condyle case"});
+  folder_.write("case/case.json", "{\n \"format\": \"condyle case\",\n \"version\": }\n");
+  expect_words(refusal(home_), {"case.json: line 3", "not valid JSON"});
+  folder_.write("case/case.json", "");
+  expect_words(refusal(home_), {"not valid JSON"});
+  folder_.write("case/case.json", R"({"format":"condyle case","version":1,"name":1e999})");
+  expect_words(refusal(home_), {"not valid JSON"});
+  folder_.write("case/case.json", std::string(1'000'000, '['));
+  expect_words(refusal(home_), {"deeper"});
+  fs::remove(home_ / "case.json");
+  expect_words(refusal(home_), {"has no case.json", "condyle import meshes"});
+  expect_words(refusal(folder_.path() / "none"), {"no such folder"});
+  expect_words(refusal(folder_.write("file", "x")), {"is a file"});
+}
+
+TEST_F(BadCase, DamagedPartsAndLandmarksAreNamed) {
+  folder_.write("case/mandible.ply", "ply\n");
+  expect_words(refusal(home_), {"mandible.ply", "header"});
+  save_case(sample(), folder_.path() / "other");
+  folder_.write("other/landmarks.csv", "name,x_mm,y_mm,z_mm\na,1,2,3\nb,nan,2,3\n");
+  expect_words(refusal(folder_.path() / "other"), {"landmarks.csv", "line 3", "nan"});
+}
+
+TEST(CaseFiles, SharedDataOfAnotherKindIsNoCase) {
+  const auto folder = fs::path(CONDYLE_SOURCE_DIR) / "../shared/data/case-ubc";
+  if (!fs::exists(folder)) GTEST_SKIP() << "real anatomy absent";
+  expect_words(refusal(folder), {"not a Condyle case", "condyle import meshes"});
+}
+
+}  // namespace
+}  // namespace condyle
