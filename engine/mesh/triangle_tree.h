@@ -52,7 +52,7 @@ class TriangleTree {
 
   /// How often the surface goes round p: 1 inside, 0 outside a closed mesh, n inside n shells; in
   /// between where shells are open. Exact sum over the triangles, with far ones lumped by clusters
-  /// (error below about 0.01). source: Barill et al. 2018, first order.
+  /// (error below 0.02). source: Barill et al. 2018, first order.
   double winding_number(const Eigen::Vector3d& p) const;
 
  private:
