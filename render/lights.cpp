@@ -14,12 +14,12 @@ Lights lights_for(const Camera& camera) {
   lights.fill_direction = toward(0.80f, 0.12f, 0.52f);
   lights.rim_direction = toward(0.58f, 0.42f, -0.66f);
   lights.sky_direction = toward(0, 0.95f, 0.3f);
-  lights.key_color = {0.98f, 0.94f, 0.88f};
-  lights.fill_color = {0.17f, 0.19f, 0.22f};
+  lights.key_color = {0.96f, 0.91f, 0.84f};
+  lights.fill_color = {0.13f, 0.145f, 0.165f};
   lights.rim_color = {0.30f, 0.33f, 0.38f};
-  lights.sky_color = {0.30f, 0.315f, 0.335f};
-  lights.ground_color = {0.105f, 0.095f, 0.088f};
-  lights.front_color = {0.10f, 0.10f, 0.10f};
+  lights.sky_color = {0.235f, 0.245f, 0.262f};
+  lights.ground_color = {0.085f, 0.075f, 0.068f};
+  lights.front_color = {0.075f, 0.075f, 0.075f};
   return lights;
 }
 
@@ -36,15 +36,18 @@ void Lights::set_in(GlProgram& program) const {
   program.set("front_color", front_color);
 }
 
-Eigen::Matrix4f shadow_matrix(const Lights& lights, const Eigen::Vector3f& centre,
-                              float radius_mm) {
-  const Eigen::Vector3f w = lights.key_direction;
-  const Eigen::Vector3f u = w.unitOrthogonal(), v = w.cross(u);
+Eigen::Matrix4f shadow_matrix(const Lights& lights, const Eigen::AlignedBox3f& box) {
+  Eigen::Matrix3f rows;  // depth runs away from the light
+  rows.row(2) = -lights.key_direction.transpose();
+  rows.row(0) = lights.key_direction.unitOrthogonal().transpose();
+  rows.row(1) = lights.key_direction.cross(rows.row(0).transpose()).transpose();
+  Eigen::AlignedBox3f seen;
+  for (int corner = 0; corner < 8; ++corner)
+    seen.extend(rows * box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)));
+  const Eigen::Vector3f scale = seen.sizes().cwiseMax(1e-3f).cwiseInverse();
   Eigen::Matrix4f matrix = Eigen::Matrix4f::Identity();
-  const float scale = 0.5f / radius_mm;
-  matrix.row(0) << scale * u.transpose(), 0.5f - scale * u.dot(centre);
-  matrix.row(1) << scale * v.transpose(), 0.5f - scale * v.dot(centre);
-  matrix.row(2) << -scale * w.transpose(), 0.5f + scale * w.dot(centre);
+  matrix.topLeftCorner<3, 3>() = scale.asDiagonal() * rows;
+  matrix.topRightCorner<3, 1>() = -scale.cwiseProduct(seen.min());
   return matrix;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "render/camera.h"
 #include "render/gl_objects.h"
@@ -20,7 +21,7 @@ struct Lights {
 
 Lights lights_for(const Camera& camera);
 
-/// World to the unit cube of the key light's depth map, around a sphere.
-Eigen::Matrix4f shadow_matrix(const Lights& lights, const Eigen::Vector3f& centre, float radius_mm);
+/// World to the unit cube of the key light's depth map, just around a box.
+Eigen::Matrix4f shadow_matrix(const Lights& lights, const Eigen::AlignedBox3f& box);
 
 }  // namespace condyle

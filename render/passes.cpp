@@ -10,7 +10,7 @@ namespace condyle {
 namespace {
 
 constexpr int shadow_side = 1024;
-constexpr float marker_radius_mm = 0.9f;
+constexpr float marker_radius_mm = 1.2f;
 constexpr float mouth_depth_mm = 24;  // over which the light inside the mouth falls to 1/e
 
 GlProgram build(const char* what, const ShaderSource& source) {
@@ -100,6 +100,7 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
   program.set("skin_table", 1);
   program.set("shadows", view.shadows ? 1.f : 0.f);
   program.set("shadow_texel", 1.f / shadow_side);
+  program.set("two_sided", item.drawable->closed || role == Role::face ? 0.f : 1.f);
   program.set("opacity", static_cast<float>(item.opacity));
   program.set("roughness", material.roughness);
   program.set("reflectance", material.reflectance);

@@ -101,7 +101,11 @@ PictureView SceneRenderer::State::view(const Camera& camera,
                                    std::max(2.0, away - radius), away + radius);
   v.view_projection = v.projection * v.view;
   v.lights = lights_for(camera);
-  v.shadow = shadow_matrix(v.lights, box.center(), radius);
+  auto moving = box;
+  moving.min().z() -= opening_room_mm;
+  moving.min().array() -= 3;
+  moving.max().array() += 3;
+  v.shadow = shadow_matrix(v.lights, moving);
   v.pixels_per_unit = static_cast<float>(
       settings.height / 2.0 / std::tan(camera.field_of_view_deg * std::numbers::pi / 360));
   v.shadows = settings.shadows;

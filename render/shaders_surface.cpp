@@ -13,6 +13,7 @@ uniform mat4 model;            // rigid
 uniform mat4 view_projection;
 uniform mat4 shadow_matrix;
 uniform vec3 eye, key_direction;
+uniform float two_sided;       // 1 when the surface is open
 uniform float together;        // 1 with everything as at rest, 0 far from it
 uniform vec2 cavity;           // y where the mouth's darkness starts, 1/length; 0 length = none
 invariant gl_Position;
@@ -27,9 +28,12 @@ void main() {
   to_eye = eye - world.xyz;
   world_normal = mat3(model) * normal;
   albedo = pow(color.rgb, vec3(2.2));
-  // Moved toward the light's side along the normal, so that a surface does not shade itself.
-  float side = dot(world_normal, key_direction) < 0.0 ? -0.9 : 0.9;
-  vec4 s = shadow_matrix * vec4(world.xyz + side * world_normal, 1.0);
+  // Moved off along the normal, the farther the more the light grazes, so that a surface does not
+  // shade itself; an open one off the side that is seen.
+  float cosine = dot(world_normal, key_direction);
+  float offset = 0.6 + 2.0 * (1.0 - abs(cosine));
+  if (two_sided > 0.5 && dot(world_normal, to_eye) < 0.0) offset = -offset;
+  vec4 s = shadow_matrix * vec4(world.xyz + offset * world_normal, 1.0);
   shadow_place = s.xyz;
   traits = vec4(mix(extra.x, color.a, together), extra.y, extra.z,
                 exp(-max(world.y - cavity.x, 0.0) * cavity.y));
@@ -52,10 +56,10 @@ uniform float shadow_texel;
 uniform float opacity;
 out vec4 result;
 
-// Nine bilinear comparisons over about 2 mm.
+// Nine bilinear comparisons over about 3 mm.
 float key_visibility() {
   if (shadows < 0.5) return 1.0;
-  float r = 1.6 * shadow_texel;
+  float r = 2.0 * shadow_texel;
   float sum = 0.0;
   for (int j = -1; j <= 1; ++j)
     for (int i = -1; i <= 1; ++i)
@@ -119,11 +123,11 @@ void main() {
   if (!gl_FrontFacing) n = -n;
   float nv = clamp(dot(n, v), 0.0, 1.0);
   float ao = traits.x, depth = traits.w;
-  float lit = key_visibility() * depth;
   float kn = dot(n, key_direction);
+  float lit = key_visibility() * depth;
   vec3 soft = vec3(wrapped(kn, wrap)) + scatter * (wrapped(kn, wrap + 0.45) - wrapped(kn, wrap));
-  vec3 occlusion = colored_occlusion(ao, albedo);
-  vec3 light = key_color * soft * lit
+  vec3 occlusion = colored_occlusion(ao * sqrt(ao), albedo);
+  vec3 light = key_color * soft * lit * mix(0.55 + 0.45 * ao, 1.0, ao)
              + (fill_color * wrapped(dot(n, fill_direction), wrap + 0.2)
              + rim_color * wrapped(dot(n, rim_direction), 0.0)) * depth * occlusion
              + ambient_light(n, v) * occlusion * depth;

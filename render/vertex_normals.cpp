@@ -10,10 +10,21 @@ void vertex_normals(std::span<const Eigen::Vector3f> vertices,
                     std::span<const Eigen::Vector3i> triangles,
                     std::vector<Eigen::Vector3f>& normals) {
   normals.assign(vertices.size(), Eigen::Vector3f::Zero());
+  // Slivers point anywhere: triangles below the usual size count by their area alone.
+  float square = 0;
+  int sampled = 0;
+  for (std::size_t i = 0; i < triangles.size(); i += 16, ++sampled)
+    square += (vertices[triangles[i][1]] - vertices[triangles[i][0]]).squaredNorm();
+  const float usual = sampled ? square / static_cast<float>(sampled) : 0;
+  const float least = std::max(usual * usual, 1e-12f);
   for (const auto& t : triangles) {
     const Eigen::Vector3f& a = vertices[t[0]];
-    const Eigen::Vector3f n = (vertices[t[1]] - a).cross(vertices[t[2]] - a);
-    for (int k = 0; k < 3; ++k) normals[t[k]] += n;
+    const Eigen::Vector3f ab = vertices[t[1]] - a, ac = vertices[t[2]] - a;
+    const Eigen::Vector3f n = ab.cross(ac);
+    const float c2 = ab.squaredNorm(), b2 = ac.squaredNorm(), a2 = (ac - ab).squaredNorm();
+    normals[t[0]] += n / std::max(b2 * c2, least);
+    normals[t[1]] += n / std::max(c2 * a2, least);
+    normals[t[2]] += n / std::max(a2 * b2, least);
   }
   for (auto& n : normals) {
     const float length = n.norm();

@@ -6,8 +6,10 @@
 
 namespace condyle {
 
-/// Unit normals of a triangle surface, area-weighted over each vertex's triangles; (0,0,1) where a
-/// vertex has none. Writes into `normals`, whose memory is kept from frame to frame.
+/// Unit normals of a triangle surface; (0,0,1) where a vertex has no triangle. Weighted so that
+/// they are exact on a sphere and a few large triangles do not outweigh many small ones. Writes
+/// into `normals`, whose memory is kept from frame to frame. source: Max, Weights for computing
+/// vertex normals from facet normals, 1999
 void vertex_normals(std::span<const Eigen::Vector3f> vertices,
                     std::span<const Eigen::Vector3i> triangles,
                     std::vector<Eigen::Vector3f>& normals);

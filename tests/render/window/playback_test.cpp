@@ -88,6 +88,13 @@ TEST(Quality, FallsWhileMovingOnASlowDriverAndIsFullAtRest) {
   EXPECT_EQ(governor.choose(true), best);
 }
 
+TEST(Quality, GetsCoarseOnlyWhereThePictureWouldStandStill) {
+  QualityGovernor governor;
+  for (int i = 0; i < 100; ++i) governor.measured(true, 400);
+  EXPECT_LT(governor.choose(true).render_scale, 0.5);
+  EXPECT_EQ(governor.choose(false), Quality{});
+}
+
 TEST(Quality, OneSlowPictureIsForgiven) {
   QualityGovernor governor;
   const Quality before = governor.choose(true);
