@@ -214,6 +214,11 @@ std::string MotionReport::text() const {
     else
       text += fmt::format("at least {:.2f} mm apart\n", record.least_distance);
   }
+  const bool penetrates = std::any_of(pairs_.begin(), pairs_.end(), [](const PairRecord& record) {
+    return record.penetrating_frames > 0;
+  });
+  if (recorded_ && penetrates)
+    text += "a recorded motion is played as it is; --respect-contact stops it where bones meet\n";
   if (stopped_frames_ > 0)
     text += fmt::format("stopped at a contact in {} frames, first in frame {}\n", stopped_frames_,
                         first_stopped_);
