@@ -19,6 +19,9 @@ constexpr ContactLimits some_crossings{.total = 1024, .per_region = 8};
 // Ways shorter than this are judged by their ends alone. A tenth of a millimetre is a third of the
 // thinnest wall met in real anatomy (0.3 mm), so nothing is passed through unseen.
 constexpr double proof_step_mm = 0.1;
+// Overlap at rest is excused in its neighbourhood only: teeth that are modelled a millimetre into
+// each other must not excuse a condyle from its fossa.
+constexpr double excused_mm = 10;
 
 /// One surface that takes part, and the pose-independent queries on it.
 struct Collider {
@@ -87,6 +90,24 @@ PairContact judge(const ColliderPair& pair, const Pose& X_CM, TrianglePair start
       out.depth_mm =
           std::max(out.depth_mm, overlap(a.surface, X_CC, b.surface, X_CM, contact.triangles));
   return out;
+}
+
+/// The triangles of B that neither cross A at rest nor come within excused_mm of a place that does.
+TriMesh away_from_overlap(const TriMesh& mesh, const std::vector<MeshContact>& overlap_at_rest) {
+  std::vector<bool> excused(mesh.triangles.size(), false);
+  std::vector<bool> near(mesh.vertices.size(), false);
+  for (const auto& contact : overlap_at_rest)
+    excused[static_cast<std::size_t>(contact.triangles.b)] = true;
+  for (std::size_t v = 0; v < near.size(); ++v)
+    near[v] = std::any_of(overlap_at_rest.begin(), overlap_at_rest.end(), [&](const auto& contact) {
+      return (contact.point - mesh.vertices[v]).squaredNorm() < excused_mm * excused_mm;
+    });
+  TriMesh away{mesh.vertices, {}, {}};
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
+    if (!excused[i] && !near[t[0]] && !near[t[1]] && !near[t[2]]) away.triangles.push_back(t);
+  }
+  return away;
 }
 
 /// The way of one part of the mandible from a pose to another, as s goes from 0 to 1.
@@ -164,13 +185,51 @@ struct ContactModel::State {
   ContactSettings settings;
   std::vector<std::unique_ptr<Collider>> colliders;
   std::vector<ColliderPair> pairs;
+  std::vector<ColliderPair> guards;                 // see ContactSet::away_from_rest
+  std::vector<std::size_t> guarded;                 // the pair of each guard
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  // middle of the mandible, its coordinates
   ContactSet rest;
   std::vector<std::string> notes;
 
-  TrianglePair start(const ContactSet* previous, std::size_t pair) const {
-    if (!previous || previous->pairs.size() != pairs.size()) return {};
-    return {previous->pairs[pair].triangle_a, previous->pairs[pair].triangle_b};
+  /// Pairs, then guards, under one number.
+  std::size_t count() const { return pairs.size() + guards.size(); }
+  const ColliderPair& judged(std::size_t i) const {
+    return i < pairs.size() ? pairs[i] : guards[i - pairs.size()];
+  }
+  PairContact& slot(ContactSet& set, std::size_t i) const {
+    return i < pairs.size() ? set.pairs[i] : set.away_from_rest[i - pairs.size()];
+  }
+  const PairContact& slot(const ContactSet& set, std::size_t i) const {
+    return i < pairs.size() ? set.pairs[i] : set.away_from_rest[i - pairs.size()];
+  }
+  bool fits(const ContactSet* set) const {
+    return set && set->pairs.size() == pairs.size() && set->away_from_rest.size() == guards.size();
+  }
+  TrianglePair start(const ContactSet* previous, std::size_t i) const {
+    if (!fits(previous)) return {};
+    return {slot(*previous, i).triangle_a, slot(*previous, i).triangle_b};
+  }
+
+  ContactSet judge_all(const Pose& X_CM, const ContactSet* previous, int threads) const {
+    ContactSet set;
+    set.X_CM = X_CM;
+    set.pairs.resize(pairs.size());
+    set.away_from_rest.resize(guards.size());
+    parallel_for(count(), threads, [&](std::size_t i) {
+      slot(set, i) =
+          judge(judged(i), X_CM, start(previous, i), i < pairs.size() ? settings.max_contacts : 0);
+    });
+    return set;
+  }
+
+  /// Counts what the guards found into the depths of their pairs.
+  ContactSet with_guards(ContactSet set) const {
+    for (std::size_t g = 0; g < guards.size(); ++g) {
+      if (!set.away_from_rest[g].touching) continue;
+      PairContact& pair = set.pairs[guarded[g]];
+      pair.depth_mm = std::max(pair.depth_mm, pair.rest_depth_mm + set.away_from_rest[g].depth_mm);
+    }
+    return set;
   }
 };
 
@@ -205,69 +264,73 @@ ContactModel::ContactModel(const Case& patient, const ContactSettings& settings)
           body_of(patient.parts[b->part].role) == Body::mandible)
         state.pairs.push_back({a.get(), b.get(), true, 0});
 
-  state.rest = find(Pose{}, nullptr);
+  state.rest = state.judge_all(Pose{}, nullptr, 1);
   for (std::size_t i = 0; i < state.pairs.size(); ++i) {
+    ColliderPair& pair = state.pairs[i];
     PairContact& rest = state.rest.pairs[i];
-    state.pairs[i].apart_at_rest = !rest.touching;
-    state.pairs[i].rest_depth_mm = rest.rest_depth_mm = rest.depth_mm;
-    if (rest.touching)
-      state.notes.push_back(fmt::format(
-          "{} and {} overlap by {:.2f} mm at rest: taken as the baseline, only deeper contact "
-          "counts",
-          patient.parts[rest.part_a].name, patient.parts[rest.part_b].name, rest.depth_mm));
+    pair.apart_at_rest = !rest.touching;
+    pair.rest_depth_mm = rest.rest_depth_mm = rest.depth_mm;
+    if (!rest.touching) continue;
+    state.notes.push_back(fmt::format(
+        "{} and {} overlap by {:.2f} mm at rest: taken as the baseline, only deeper contact counts",
+        patient.parts[rest.part_a].name, patient.parts[rest.part_b].name, rest.depth_mm));
+    const TriMesh away =
+        away_from_overlap(patient.parts[rest.part_b].mesh,
+                          contacts(pair.a->surface, {}, pair.b->surface, {}, all_crossings));
+    if (away.empty()) continue;
+    state.colliders.push_back(
+        std::make_unique<Collider>(Collider{rest.part_b, CollisionMesh(away), Solid(away)}));
+    const ColliderPair guard{pair.a, state.colliders.back().get(), true, 0};
+    if (judge(guard, {}, {}, 0).touching) continue;  // wholly inside at rest: nothing to guard
+    state.guards.push_back(guard);
+    state.guarded.push_back(i);
   }
+  state.rest = state.judge_all(Pose{}, &state.rest, 1);
 }
 
 ContactModel::~ContactModel() = default;
 ContactModel::ContactModel(ContactModel&&) noexcept = default;
 
 ContactSet ContactModel::find(const Pose& X_CM, const ContactSet* previous, int threads) const {
-  ContactSet set;
-  set.X_CM = X_CM;
-  set.pairs.resize(state_->pairs.size());
-  parallel_for(set.pairs.size(), threads, [&](std::size_t i) {
-    set.pairs[i] =
-        judge(state_->pairs[i], X_CM, state_->start(previous, i), state_->settings.max_contacts);
-  });
-  return set;
+  return state_->with_guards(state_->judge_all(X_CM, previous, threads));
 }
 
 ContactModel::Stop ContactModel::stop_at_contact(const Pose& from, const Pose& wanted,
                                                  const ContactSet* previous, int threads) const {
   const State& state = *state_;
   const ContactSettings& settings = state.settings;
-  Stop stop{wanted, false, find(wanted, previous, threads)};
-  if (same_bits(from, wanted)) return stop;
+  ContactSet at_wanted = state.judge_all(wanted, previous, threads);
+  if (same_bits(from, wanted)) return {wanted, false, state.with_guards(std::move(at_wanted))};
 
-  const bool previous_is_from =
-      previous && previous->pairs.size() == state.pairs.size() && same_bits(previous->X_CM, from);
+  const bool previous_is_from = state.fits(previous) && same_bits(previous->X_CM, from);
   const double shift_mm = (wanted * state.pivot - from * state.pivot).norm();
   const double angle = rotation_angle(from.inverse() * wanted);
-  std::vector<double> reached(state.pairs.size(), 1.0);
-  parallel_for(state.pairs.size(), threads, [&](std::size_t i) {
-    const ColliderPair& pair = state.pairs[i];
+  std::vector<double> reached(state.count(), 1.0);
+  parallel_for(reached.size(), threads, [&](std::size_t i) {
+    const ColliderPair& pair = state.judged(i);
     const Solid& moving = pair.b->solid;
-    Way way{from, wanted, state.pivot,
-            shift_mm + angle * ((moving.center() - state.pivot).norm() + moving.radius())};
+    const Way way{from, wanted, state.pivot,
+                  shift_mm + angle * ((moving.center() - state.pivot).norm() + moving.radius())};
     Margin margin{pair, pair.apart_at_rest ? -1.0 : pair.rest_depth_mm + settings.slack_mm};
-    const double margin_wanted = margin.of(stop.contacts.pairs[i]);
-    if (margin_wanted > way.length_mm) return;  // nothing within reach of the whole way
+    const PairContact& end = state.slot(at_wanted, i);
+    if (margin.of(end) > way.length_mm) return;  // nothing within reach of the whole way
     if (way.length_mm < 1e-12) {
-      if (margin_wanted < 0) reached[i] = 0;
+      if (margin.of(end) < 0) reached[i] = 0;
       return;
     }
-    const PairContact start = previous_is_from
-                                  ? previous->pairs[i]
-                                  : judge(pair, from, state.start(&stop.contacts, i), 0);
+    // An earlier answer serves for the start, unless a guard has been counted into its depth.
+    const PairContact start = previous_is_from && previous->max_penetration_mm() <= 0
+                                  ? state.slot(*previous, i)
+                                  : judge(pair, from, {end.triangle_a, end.triangle_b}, 0);
     // A start that is already too deep may leave, but go no deeper.
     if (start.touching) margin.limit_mm = std::max(margin.limit_mm, start.depth_mm);
     FreeWay free(margin, way, 0.5 * settings.stop_gap_mm, {start.triangle_a, start.triangle_b});
-    reached[i] = free.advance(0, margin.of(start), 1, margin.of(stop.contacts.pairs[i]));
+    reached[i] = free.advance(0, margin.of(start), 1, margin.of(end));
   });
   const double s = reached.empty() ? 1.0 : *std::min_element(reached.begin(), reached.end());
-  if (s >= 1) return stop;
+  if (s >= 1) return {wanted, false, state.with_guards(std::move(at_wanted))};
   const Pose X_CM = interpolate(from, wanted, s, state.pivot);
-  return {X_CM, true, find(X_CM, &stop.contacts, threads)};
+  return {X_CM, true, find(X_CM, &at_wanted, threads)};
 }
 
 const ContactSet& ContactModel::at_rest() const { return state_->rest; }

@@ -23,7 +23,9 @@ struct PairContact {
   Eigen::Vector3d witness_a = Eigen::Vector3d::Zero();  // nearest points when apart
   Eigen::Vector3d witness_b = Eigen::Vector3d::Zero();
   int triangle_a = -1, triangle_b = -1;  // triangles of the witness points: the next query's start
-  double depth_mm = 0;       // deepest point of either surface inside the other, 0 when apart
+  // Deepest point of either surface inside the other, 0 when apart. Where the surfaces were apart
+  // at rest, depth counts from the rest depth on: depth_mm - rest_depth_mm is what is new.
+  double depth_mm = 0;
   double rest_depth_mm = 0;  // the same at rest: the pair's baseline
 };
 
@@ -41,6 +43,10 @@ struct ContactSet {
   double max_penetration_mm() const;
 
   Pose X_CM;  // where it was taken
+
+  // Of pairs that overlap at rest, in their order: the mandible's surface away from that overlap,
+  // which may not touch at all. What it does is counted into the pairs' depths.
+  std::vector<PairContact> away_from_rest;
 };
 
 }  // namespace condyle

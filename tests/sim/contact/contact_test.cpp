@@ -196,6 +196,23 @@ TEST(ContactModel, OverlapAtRestIsTheBaseline) {
   }
 }
 
+TEST(ContactModel, OverlapInOnePlaceDoesNotExcuseContactInAnother) {
+  // One ball sits 2 mm deep in the block; the other, 40 mm away, half a millimetre under it.
+  const ContactModel model(two_bones(
+      test::box({-60, -30, 10}, {60, 30, 40}),
+      test::joined(test::sphere(4, 10, {-20, 0, 2}), test::sphere(4, 10, {20, 0, -0.5}))));
+  ASSERT_NEAR(model.at_rest().pairs[0].depth_mm, 2, 0.06);
+  // Turning about the first ball leaves its depth as it is and drives the other up.
+  const Eigen::Vector3d center(-20, 0, 2);
+  const Eigen::Quaterniond R(Eigen::AngleAxisd(-0.04, Eigen::Vector3d::UnitY()));
+  const Pose wanted{R, center - R * center};
+  EXPECT_NEAR(model.find(wanted, nullptr).max_penetration_mm(), 1.1, 0.3);
+  const auto stop = model.stop_at_contact({}, wanted, &model.at_rest());
+  EXPECT_TRUE(stop.stopped);
+  EXPECT_NEAR(rotation_angle(stop.X_CM), 0.5 / 40, 0.002);
+  EXPECT_LE(stop.contacts.max_penetration_mm(), 0.02);
+}
+
 TEST(ContactModel, AStartThatIsTooDeepMayLeaveButGoesNoDeeper) {
   const ContactModel model(two_bones(test::box({-30, -30, 30}, {30, 30, 60}), test::sphere(3, 10)));
   const Pose inside = shift(0, 0, 25);  // 5 mm deep

@@ -34,24 +34,31 @@ TEST(RealAnatomy, UbcCrownsOverlapAtRestAndMaySlideOutButNoDeeper) {
   double deepest = 0;
   for (const auto& pair : model.at_rest().pairs) deepest = std::max(deepest, pair.depth_mm);
   EXPECT_NEAR(deepest, 1.3, 0.15);
-  // The hinge opening of the first degrees, then back up and beyond.
+  // The first degrees of an opening, then back up and beyond.
   const Eigen::Vector3d condyles(0, 31.4501, 79.6370);
-  const auto hinge = [&](double radians) {
+  const auto turn = [&](double radians, double forward, double drop) {
     const Eigen::Quaterniond R(Eigen::AngleAxisd(radians, Eigen::Vector3d::UnitX()));
-    return Pose{R, condyles - R * condyles};
+    return Pose{R, condyles - R * condyles + Eigen::Vector3d(0, -forward, -drop)};
   };
   Pose from;
   ContactSet last = model.at_rest();
   for (const double angle : {0.01, 0.03, 0.06}) {
-    const auto stop = model.stop_at_contact(from, hinge(angle), &last);
-    EXPECT_FALSE(stop.stopped);
+    const auto stop = model.stop_at_contact(from, turn(angle, 7 * angle, 3 * angle), &last);
+    EXPECT_FALSE(stop.stopped) << angle;
     from = stop.X_CM;
     last = stop.contacts;
   }
-  const auto closed = model.stop_at_contact(from, hinge(-0.1), &last);
+  const auto closed = model.stop_at_contact(from, turn(-0.1, 0, 0), &last);
   EXPECT_TRUE(closed.stopped);
   EXPECT_LE(closed.contacts.max_penetration_mm(), 0.02);
   EXPECT_LT(rotation_angle(closed.X_CM), 0.02);  // about where the bite was
+  // The crowns' overlap does not excuse the condyles: a pure hinge soon meets the fossa's rear
+  // wall.
+  const auto hinge = model.stop_at_contact({}, turn(0.3, 0, 0), &model.at_rest());
+  EXPECT_TRUE(hinge.stopped);
+  EXPECT_LT(rotation_angle(hinge.X_CM), 10 * 3.14159 / 180);
+  EXPECT_LE(hinge.contacts.max_penetration_mm(), 0.02);
+  EXPECT_GT(model.find(turn(0.3, 0, 0), nullptr).max_penetration_mm(), 0.1);
 }
 
 }  // namespace
