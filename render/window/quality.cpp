@@ -9,13 +9,18 @@ namespace {
 constexpr double wanted_ms = 33;  // 30 pictures a second
 
 // From the best down. Without a GPU multisampling costs most, then the shadow map, then pixels.
-constexpr std::array<Quality, 5> levels = {{
+constexpr std::array<Quality, 6> levels = {{
     {.render_scale = 1, .samples = 4, .shadows = true},
     {.render_scale = 1, .samples = 1, .shadows = true},
     {.render_scale = 1, .samples = 1, .shadows = false},
     {.render_scale = 0.8, .samples = 1, .shadows = false},
     {.render_scale = 0.66, .samples = 1, .shadows = false},
+    {.render_scale = 0.4, .samples = 1, .shadows = false},
 }};
+
+// The last is a way out for a large window without a GPU: only when less would stand still.
+constexpr int coarse = static_cast<int>(levels.size()) - 1;
+constexpr double standstill_ms = 150;
 
 }  // namespace
 
@@ -32,11 +37,11 @@ void QualityGovernor::measured(bool moving, double picture_ms) {
   }
   known_ = true;
   // Down at once when far too slow, up only after a long calm: the picture must not flicker.
-  slow_ = picture_ms > wanted_ms ? slow_ + 1 : 0;
+  const double limit_ms = level_ + 1 < coarse ? wanted_ms : standstill_ms;
+  slow_ = picture_ms > limit_ms ? slow_ + 1 : 0;
   fast_ = picture_ms < 0.3 * wanted_ms ? fast_ + 1 : 0;
-  const int last = static_cast<int>(levels.size()) - 1;
-  if (slow_ >= 3 || picture_ms > 3 * wanted_ms) {
-    level_ = std::min(level_ + 1, last);
+  if (slow_ >= 3 || picture_ms > 3 * limit_ms) {
+    level_ = std::min(level_ + 1, coarse);
     slow_ = 0;
   } else if (fast_ >= 60) {
     level_ = std::max(level_ - 1, 0);

@@ -4,7 +4,7 @@ namespace condyle {
 
 /// How good a picture may be.
 struct Quality {
-  double render_scale = 1;  // of each side
+  double render_scale = 1;  // of each side; 0.66 to 1, and 0.4 when that would stand still
   int samples = 4;
   bool shadows = true;
   bool operator==(const Quality&) const = default;
