@@ -1,6 +1,7 @@
+#include "sim/phantom/cache.h"
+
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <optional>
@@ -9,42 +10,15 @@
 #include "engine/core/hash.h"
 #include "engine/mesh/measure.h"
 #include "sim/case/case_io.h"
-#include "sim/phantom/phantom.h"
-#include "sim/phantom/solid.h"
 
 namespace condyle {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int surface_version = 1;  // raise when surfaces or landmarks change but no solid does
-
 template <class T>
 void mix(std::uint64_t& hash, const T& value) {
   hash = hash_values(std::span<const T>(&value, 1), hash);
-}
-
-/// What the recipes say at scattered points: another recipe, another key.
-std::uint64_t recipe_key() {
-  const PhantomSolid solid = make_phantom_solid();
-  std::uint64_t hash = hash_start, seed = 1;
-  mix(hash, surface_version);
-  const auto next = [&] {  // a plain linear congruence; any fixed scatter would do
-    seed = seed * 6364136223846793005ull + 1442695040888963407ull;
-    return static_cast<double>(seed >> 11) * 0x1p-53;
-  };
-  for (int i = 0; i < 3000; ++i) {
-    const Eigen::Vector3d p(90 * next(), -125 + 230 * next(), -190 + 315 * next());
-    for (const auto* field : {&solid.skull, &solid.skin}) mix(hash, (*field)(p));
-    const Eigen::Vector3d q(40 * next(), -100 + 70 * next(), -90 + 70 * next());
-    for (const auto* field : {&solid.mandible, &solid.upper_gums, &solid.lower_gums, &solid.tongue})
-      mix(hash, (*field)(q));
-    const auto& tooth = solid.teeth[static_cast<std::size_t>(i) % solid.teeth.size()];
-    const Eigen::Vector3d size = tooth.box.sizes();
-    mix(hash, tooth.solid(tooth.box.min() + Eigen::Vector3d(next() * size.x(), next() * size.y(),
-                                                            next() * size.z())));
-  }
-  return hash;
 }
 
 std::uint64_t content_hash(const Case& patient) {
@@ -66,20 +40,8 @@ std::uint64_t content_hash(const Case& patient) {
   return hash;
 }
 
-/// The user's cache folder of this program, when the environment names one.
-std::optional<fs::path> cache_folder() {
-  const auto absolute = [](const char* name) -> std::optional<fs::path> {
-    const char* value = std::getenv(name);
-    if (value == nullptr || !fs::path(value).is_absolute()) return std::nullopt;
-    return fs::path(value);
-  };
-  if (const auto cache = absolute("XDG_CACHE_HOME")) return *cache / "condyle";
-  if (const auto home = absolute("HOME")) return *home / ".cache" / "condyle";
-  return std::nullopt;
-}
-
-/// The stored patient when it is whole: its content must have the hash written beside it.
-std::optional<Case> stored_patient(const fs::path& folder, const fs::path& seal) {
+/// The stored case when it is whole: its content must have the hash written beside it.
+std::optional<Case> stored_case(const fs::path& folder, const fs::path& seal) {
   try {
     std::error_code absent;
     if (!fs::exists(seal, absent)) return std::nullopt;
@@ -91,7 +53,7 @@ std::optional<Case> stored_patient(const fs::path& folder, const fs::path& seal)
   return std::nullopt;
 }
 
-/// The seal goes first and comes last, so that it never vouches for half a patient.
+/// The seal goes first and comes last, so that it never vouches for half a case.
 void store(const Case& patient, const fs::path& folder, const fs::path& seal) {
   try {
     fs::remove(seal);
@@ -105,13 +67,10 @@ void store(const Case& patient, const fs::path& folder, const fs::path& seal) {
 
 }  // namespace
 
-Case builtin_patient(const Progress& progress) {
-  const auto cache = cache_folder();
-  if (!cache) return build_phantom(progress);
-  const std::string name = fmt::format("built-in-patient-{:016x}", recipe_key());
-  const fs::path folder = *cache / name, seal = *cache / (name + ".hash");
-  if (auto patient = stored_patient(folder, seal)) return *std::move(patient);
-  Case patient = build_phantom(progress);
+Case kept_case(const fs::path& cache, const std::string& name, const std::function<Case()>& make) {
+  const fs::path folder = cache / name, seal = cache / (name + ".hash");
+  if (auto patient = stored_case(folder, seal)) return *std::move(patient);
+  Case patient = make();
   store(patient, folder, seal);
   return patient;
 }

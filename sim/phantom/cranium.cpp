@@ -128,7 +128,7 @@ void add_orbit_margins_and_nose(FieldRecipe& bone) {
            4);  // nasal bones
   bone.add(tube({{6, -82.3, 24}, {8.3, -82.8, 14}, {10.8, -83.2, 5}}, {2.8, 2.8, 2.8}), 4);
   // Side walls of the nose, down to the rim of the aperture.
-  bone.add(tube({{3.4, -91, 16}, {6, -88.5, 11.5}, {9.6, -85.5, 6}}, {2.8, 3.2, 3.2}), 5);
+  bone.add(tube({{3.4, -91, 16}, {6, -88.5, 11.5}, {9.6, -85.5, 6}}, {2.4, 3.0, 3.2}), 5);
   bone.add(tube({{4, -94, 9.5}, {6.6, -91, 6.5}, {9.6, -87.6, 2}, {12.4, -85, -4}},
                 {2.2, 2.4, 2.4, 2.6}),
            4);

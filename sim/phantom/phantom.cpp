@@ -16,7 +16,7 @@ Part plain_part(const char* name, Role role, TriMesh mesh) {
   return {name, role, std::move(mesh), {}};
 }
 
-/// Teeth stay sharp, the smooth brain case needs few triangles.
+/// The smooth brain case needs few triangles, the joints need many.
 double skull_importance(const Vector3d& p) {
   const bool face = p.y() < -45 && p.z() < 45,
              joint = p.z() < 8 && std::abs(p.x()) > 35 && p.y() < 5;
@@ -25,47 +25,40 @@ double skull_importance(const Vector3d& p) {
 
 }  // namespace
 
-Case build_phantom(const Progress& progress) {
+Case build_phantom_on(int threads, const Progress& progress) {
   const PhantomSolid solid = make_phantom_solid();
   std::vector<Part> parts(9);
-  // Longest first, so that two threads end at about the same time.
+  const auto body = [&](std::size_t slot, const char* name, Role role, const FieldRecipe& shape,
+                        const std::array<GridAxis, 3>& grid, int triangles) {
+    std::function<double(const Vector3d&)> importance;
+    if (role == Role::skull) importance = skull_importance;
+    parts[slot] = plain_part(name, role, symmetric_surface(shape, grid, triangles, importance));
+  };
+  const auto box = [](double x, double y0, double y1, double z0, double z1, double spacing) {
+    return even_grid({Vector3d(0, y0, z0), Vector3d(x, y1, z1)}, spacing);
+  };
+  const std::array<GridAxis, 3> skull_grid = {even_axis(0, 76, .65),
+                                              graded_axis(-112, 102, 1.3, -112, 6, .65),
+                                              graded_axis(-62, 122, 1.3, -62, 42, .65)};
   const std::vector<std::function<void()>> jobs = {
       [&] { parts[4] = plain_part("face", Role::face, face_surface()); },
+      [&] { body(0, "skull", Role::skull, solid.skull, skull_grid, 50000); },
       [&] {
-        parts[0] = plain_part(
-            "skull", Role::skull,
-            symmetric_surface(solid.skull, {Vector3d(0, -112, -62), Vector3d(76, 102, 122)},
-                              {.triangles = 50000, .importance = skull_importance}));
-      },
-      [&] {
-        parts[1] = plain_part(
-            "mandible", Role::mandible,
-            symmetric_surface(solid.mandible, {Vector3d(0, -98, -100), Vector3d(66, 2, 2)},
-                              {.spacing = 0.6, .triangles = 50000}));
+        body(1, "mandible", Role::mandible, solid.mandible, box(66, -98, 2, -100, 2, .6), 50000);
       },
       [&] { parts[2] = teeth_part(solid, true); },
       [&] { parts[3] = teeth_part(solid, false); },
       [&] {
-        parts[6] = plain_part(
-            "upper_gums", Role::upper_gums,
-            symmetric_surface(solid.upper_gums, {Vector3d(0, -104, -62), Vector3d(40, -26, -20)},
-                              {.spacing = 0.6, .triangles = 16000}));
+        body(6, "upper_gums", Role::upper_gums, solid.upper_gums, box(40, -104, -26, -62, -20, .6),
+             16000);
       },
       [&] {
-        parts[7] = plain_part(
-            "lower_gums", Role::lower_gums,
-            symmetric_surface(solid.lower_gums, {Vector3d(0, -104, -80), Vector3d(42, -26, -40)},
-                              {.spacing = 0.6, .triangles = 16000}));
+        body(7, "lower_gums", Role::lower_gums, solid.lower_gums, box(42, -104, -26, -80, -40, .6),
+             16000);
       },
-      [&] {
-        parts[8] = plain_part(
-            "tongue", Role::tongue,
-            symmetric_surface(solid.tongue, {Vector3d(0, -92, -78), Vector3d(34, -24, -30)},
-                              {.spacing = 0.8, .triangles = 6000}));
-      },
+      [&] { body(8, "tongue", Role::tongue, solid.tongue, box(34, -92, -24, -78, -30, .8), 6000); },
       [&] { parts[5] = plain_part("eyes", Role::eyes, eyes_surface()); },
   };
-  const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   std::mutex reporting;
   std::size_t done = 0;
   report(progress, "building the built-in patient", 0);
@@ -81,6 +74,11 @@ Case build_phantom(const Progress& progress) {
   patient.landmarks = phantom_landmarks(solid);
   patient.condylar_path = phantom_condylar_path();
   return patient;
+}
+
+Case build_phantom(const Progress& progress) {
+  return build_phantom_on(std::max(1, static_cast<int>(std::thread::hardware_concurrency())),
+                          progress);
 }
 
 }  // namespace condyle

@@ -5,13 +5,13 @@
 
 namespace condyle {
 
-TriMesh symmetric_surface(const FieldRecipe& solid, const Eigen::AlignedBox3d& half_box,
-                          const BodySurface& options) {
-  const TriMesh half = isosurface(sample_field(solid, even_grid(half_box, options.spacing)));
-  // The half must be one piece by itself or joined across the midline; bubbles are dropped after.
-  const TriMesh coarse = decimated(
-      half, {.target_triangles = options.triangles / 2, .importance = options.importance});
-  return largest_piece(with_mirror_image(coarse));
+TriMesh symmetric_surface(const FieldRecipe& solid, const std::array<GridAxis, 3>& half_grid,
+                          int triangles,
+                          const std::function<double(const Eigen::Vector3d&)>& importance) {
+  const TriMesh half = isosurface(sample_field(solid, half_grid));
+  // Thinned before it is mirrored: half the work, and the halves stay exact mirror images.
+  return largest_piece(with_mirror_image(
+      decimated(half, {.target_triangles = triangles / 2, .importance = importance})));
 }
 
 Part teeth_part(const PhantomSolid& solid, bool upper) {

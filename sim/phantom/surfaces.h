@@ -1,19 +1,21 @@
 #pragma once
 
+#include <array>
+#include <functional>
+
+#include "engine/core/progress.h"
+#include "engine/field/sampled_field.h"
 #include "sim/phantom/solid.h"
 
 namespace condyle {
 
 // The parts of the built-in patient as triangles. mm, at rest.
 
-/// A solid that is symmetric in x, as a closed, exactly symmetric surface.
-struct BodySurface {
-  double spacing = 0.65;                                          // mm, of the samples
-  int triangles = 50000;                                          // about, after decimation
-  std::function<double(const Eigen::Vector3d&)> importance = {};  // see DecimationOptions
-};
-TriMesh symmetric_surface(const FieldRecipe& solid, const Eigen::AlignedBox3d& half_box,
-                          const BodySurface& options);
+/// A solid that is symmetric in x, sampled on a grid of the half x >= 0, as a closed, exactly
+/// symmetric surface of about so many triangles; `importance` as in DecimationOptions.
+TriMesh symmetric_surface(const FieldRecipe& solid, const std::array<GridAxis, 3>& half_grid,
+                          int triangles,
+                          const std::function<double(const Eigen::Vector3d&)>& importance = {});
 
 /// All teeth of one arch in FDI order; closed pieces, one run of triangles each.
 Part teeth_part(const PhantomSolid& solid, bool upper);
@@ -27,6 +29,9 @@ TriMesh eyes_surface();
 
 /// Named points of the head; those on a surface are moved onto it.
 Landmarks phantom_landmarks(const PhantomSolid& solid);
+
+/// build_phantom on so many threads; the same bits for any number.
+Case build_phantom_on(int threads, const Progress& progress = {});
 
 /// sRGB, 0 to 1, of the skin at a point of the face.
 Eigen::Vector3f skin_color(const Eigen::Vector3d& p);
