@@ -15,10 +15,10 @@ Lights lights_for(const Camera& camera) {
   lights.rim_direction = toward(0.58f, 0.42f, -0.66f);
   lights.sky_direction = toward(0, 0.95f, 0.3f);
   lights.key_color = {0.96f, 0.91f, 0.84f};
-  lights.fill_color = {0.13f, 0.145f, 0.165f};
+  lights.fill_color = {0.140f, 0.143f, 0.150f};
   lights.rim_color = {0.30f, 0.33f, 0.38f};
-  lights.sky_color = {0.235f, 0.245f, 0.262f};
-  lights.ground_color = {0.085f, 0.075f, 0.068f};
+  lights.sky_color = {0.250f, 0.244f, 0.244f};
+  lights.ground_color = {0.094f, 0.075f, 0.064f};
   lights.front_color = {0.075f, 0.075f, 0.075f};
   return lights;
 }

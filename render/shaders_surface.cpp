@@ -116,6 +116,7 @@ const char* const surface_source = R"(
 uniform float roughness, reflectance, wrap;
 uniform vec3 scatter;  // colour of the light that comes through at grazing angles
 uniform float coat;    // strength of the second, sharp reflection of wet or enamelled surfaces
+uniform vec2 cavity;   // as in the vertex shader
 void main() {
   vec3 v = normalize(to_eye);
   vec3 n = normalize(world_normal);
@@ -127,6 +128,8 @@ void main() {
   float lit = key_visibility() * depth;
   vec3 soft = vec3(wrapped(kn, wrap)) + scatter * (wrapped(kn, wrap + 0.45) - wrapped(kn, wrap));
   vec3 occlusion = colored_occlusion(ao * sqrt(ao), albedo);
+  // In the mouth most light comes from its red walls.
+  if (cavity.y > 0.0) occlusion *= mix(vec3(1.15, 0.80, 0.70), vec3(1.04, 0.95, 0.90), depth);
   vec3 light = key_color * soft * lit * mix(0.55 + 0.45 * ao, 1.0, ao)
              + (fill_color * wrapped(dot(n, fill_direction), wrap + 0.2)
              + rim_color * wrapped(dot(n, rim_direction), 0.0)) * depth * occlusion

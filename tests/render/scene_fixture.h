@@ -52,21 +52,19 @@ inline Pixel pixel(const Image& image, int x, int y) {
   return {p[0], p[1], p[2], p[3]};
 }
 
-/// A context for the whole test program; tests are skipped only where the machine has no EGL.
+/// A context of each test's own; tests are skipped only where the machine has no EGL.
 class WithContext : public testing::Test {
  protected:
   void SetUp() override {
-    static std::string refusal;
-    static const auto context = [] {
-      try {
-        return std::make_unique<OffscreenContext>();
-      } catch (const MachineError& error) {
-        refusal = error.what();
-        return std::unique_ptr<OffscreenContext>();
-      }
-    }();
-    if (!context) GTEST_SKIP() << refusal;
+    try {
+      context_.emplace();
+    } catch (const MachineError& error) {
+      GTEST_SKIP() << error.what();
+    }
   }
+
+ private:
+  std::optional<OffscreenContext> context_;
 };
 
 /// Looks along +y from 500 mm in front; the picture is `height_mm` high at the origin.
