@@ -22,6 +22,7 @@ constexpr double proof_step_mm = 0.1;
 // Overlap at rest is excused in its neighbourhood only: teeth that are modelled a millimetre into
 // each other must not excuse a condyle from its fossa.
 constexpr double excused_mm = 10;
+constexpr int build_threads = 2;
 
 /// One surface that takes part, and the pose-independent queries on it.
 struct Collider {
@@ -237,19 +238,23 @@ ContactModel::ContactModel(const Case& patient, const ContactSettings& settings)
     : state_(std::make_unique<State>()) {
   State& state = *state_;
   state.settings = settings;
-  for (std::size_t i = 0; i < patient.parts.size(); ++i) {
-    const Part& part = patient.parts[i];
-    if (!collides(part.role) || part.mesh.empty()) continue;
-    state.colliders.push_back(std::make_unique<Collider>(
-        Collider{static_cast<int>(i), CollisionMesh(part.mesh), Solid(part.mesh)}));
-    const Solid& solid = state.colliders.back()->solid;
-    if (solid.open_shell_count() > 0)
-      state.notes.push_back(
-          fmt::format("{}: {} of {} pieces are open surfaces without an inside; their depth of "
-                      "overlap is judged "
-                      "from the crossing triangles alone",
-                      part.name, solid.open_shell_count(), solid.shell_count()));
-  }
+  std::vector<int> parts;
+  for (std::size_t i = 0; i < patient.parts.size(); ++i)
+    if (collides(patient.parts[i].role) && !patient.parts[i].mesh.empty())
+      parts.push_back(static_cast<int>(i));
+  state.colliders.resize(parts.size());
+  parallel_for(parts.size(), build_threads, [&](std::size_t i) {
+    const TriMesh& mesh = patient.parts[parts[i]].mesh;
+    state.colliders[i] =
+        std::make_unique<Collider>(Collider{parts[i], CollisionMesh(mesh), Solid(mesh)});
+  });
+  for (const auto& collider : state.colliders)
+    if (const Solid& solid = collider->solid; solid.open_shell_count() > 0)
+      state.notes.push_back(fmt::format(
+          "{}: {} of {} pieces are open surfaces without an inside; their depth of overlap is "
+          "judged "
+          "from the crossing triangles alone",
+          patient.parts[collider->part].name, solid.open_shell_count(), solid.shell_count()));
   double largest = -1;
   for (const auto& b : state.colliders) {
     if (body_of(patient.parts[b->part].role) != Body::mandible) continue;

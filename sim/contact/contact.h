@@ -10,24 +10,26 @@
 namespace condyle {
 
 struct ContactSettings {
-  int max_contacts = 64;          // reported per pair
-  double slack_mm = 0.02;         // how much deeper than at rest counts as penetrating
-  double stop_gap_mm = 0.01;      // clearance left when a pose is stopped at a surface
+  int max_contacts = 64;      // reported per pair
+  double slack_mm = 0.02;     // how much deeper than at rest counts as penetrating
+  double stop_gap_mm = 0.01;  // clearance left when a pose is stopped at a surface
 };
 
-/// The colliders of a case (one BVH per bone or arch) and its pairs, each with its overlap at rest.
+/// The colliders of a case (one BVH per bone or arch) and its pairs, each with its overlap at rest:
+/// the baseline, in its neighbourhood (10 mm) only. Surfaces that were apart at rest may not touch.
 class ContactModel {
  public:
   explicit ContactModel(const Case& patient, const ContactSettings& settings = {});
   ~ContactModel();
   ContactModel(ContactModel&&) noexcept;
 
-  /// Contacts at the pose, warm-started from an earlier answer (may be null). Pairs run on `threads`
-  /// threads; the result has the same bits for any number.
+  /// Contacts at the pose, warm-started from an earlier answer (may be null). Pairs run on
+  /// `threads` threads; the result has the same bits for any number.
   ContactSet find(const Pose& X_CM, const ContactSet* previous, int threads = 1) const;
 
-  /// The pose farthest along the straight way from `from` (free) to `wanted` at which no pair is
-  /// deeper than at rest. Thin shells are not tunnelled through.
+  /// The pose farthest along the straight way from `from` to `wanted` up to which no pair is deeper
+  /// than at rest; nothing thicker than 0.1 mm is passed through. A `from` that is itself too deep
+  /// may leave, but goes no deeper. `previous` taken at `from` saves time.
   struct Stop {
     Pose X_CM;
     bool stopped = false;

@@ -28,7 +28,8 @@ struct OpeningPath {
   Eigen::Vector3d center, axis;  // of the line through the condyles; axis to the left
   Eigen::Vector3d incisor;
   Coupling coupling;
-  Pchip drop_mm;  // of the condyles, by forward travel
+  Pchip drop_mm;           // of the condyles, by forward travel
+  const char* guide = "";  // where that comes from, for people
 
   Pose at(double theta) const {
     const double forward = coupling.forward_mm(theta);
@@ -87,12 +88,16 @@ Choice choose(OpeningPath path, const Case& patient, const ContactModel& contact
   std::optional<Choice> best;
   for (const Coupling& coupling : couplings) {
     path.coupling = coupling;
-    if (patient.condylar_path)
+    if (patient.condylar_path) {
       path.drop_mm = known_path(*patient.condylar_path);
-    else if (joint)
+      path.guide = "along the patient's own condylar path";
+    } else if (joint) {
       path.drop_mm = seated_path(*joint, path.center, path.axis, coupling);
-    else
+      path.guide = "condyles keep their rest gap to the cranium";
+    } else {
       path.drop_mm = average_path();
+      path.guide = "along an average condylar path, for want of a fossa";
+    }
     Choice choice{path, path.theta_for(wanted_mm), 0};
     choice.free_end = free_rotation(path, choice.end, contacts, joint);
     if (!best || path.opening_mm(choice.free_end) > best->path.opening_mm(best->free_end) + 1e-9)
@@ -171,13 +176,9 @@ Motion make_opening(const Case& patient, const ContactModel& contacts,
   const double forward = path.coupling.forward_mm(choice.end);
   motion.notes.push_back(fmt::format(
       "opening {:.1f} mm: rotation {:.1f} deg, condyles {:.1f} mm forward and {:.1f} mm down, "
-      "early "
-      "translation {:.2f}, {:.2f} deg/mm; {}",
+      "early translation {:.2f}, {:.2f} deg/mm; {}",
       path.opening_mm(choice.end), choice.end / radian_per_degree, forward, path.drop_mm(forward),
-      path.coupling.early, path.coupling.rad_per_mm / radian_per_degree,
-      patient.condylar_path
-          ? "the joint's own path"
-          : "condyles guided by the cranium, or by an average path without a fossa"));
+      path.coupling.early, path.coupling.rad_per_mm / radian_per_degree, path.guide));
   motion.name = "opening";
   motion.duration_s = settings.duration_s;
   // Least jerk of the incisal point's drop, which is what one sees and measures.
