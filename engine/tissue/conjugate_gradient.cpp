@@ -34,7 +34,6 @@ MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads, const 
   d.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
 
-  double step_before = std::numeric_limits<double>::infinity();
   for (; result.iterations < settings.max_iterations; ++result.iterations) {
     if (gz == 0) {
       result.converged = true;
@@ -84,14 +83,11 @@ MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads, const 
     gz = dot(g, z);
     const double moved = step * reach;
     for (std::size_t i = 0; i < x.size(); ++i) d[i] = beta * d[i] - z[i];
-    // Two short steps in a row: one alone may be an unlucky direction.
-    if (std::max(moved, step_before) < settings.tolerance_mm &&
-        largest_norm(z) < settings.tolerance_mm) {
+    if (moved < settings.tolerance_mm && largest_norm(z) < settings.tolerance_mm) {
       ++result.iterations;
       result.converged = true;
       break;
     }
-    step_before = moved;
   }
   result.energy = f;
   result.residual = largest_norm(g);

@@ -34,7 +34,7 @@ struct SpringPrismNet {
 
   /// Stiffness of a shortened spring, over that of a stretched one. 1 is the plain energy; less says
   /// that fibres buckle where they cannot push, and takes most of the folding out of thin sheets.
-  double compression_share = 0.25;
+  double compression_share = 0.05;
   double lambda = 0.5;  // weight of the springs; 1 - lambda that of the volumes
   /// Below this share of its rest volume a prism resists ever more, without bound at zero.
   double barrier_share = 0.5;

@@ -13,13 +13,14 @@ void hold_columns(const CoarseSkin& skin, const Anatomy& anatomy, std::vector<Co
     const Eigen::Vector3d& p = skin.mesh.vertices[v];
     const double above_bite = p.z() - anatomy.bite_height(p.y());
     const bool mouth_side = c.to_mouth < lip_margin_mm;
-    if (c.ground == Ground::none) {
-      // Nothing below: the nose stands on cartilage, which goes with the cranium.
-      const bool nose = p.y() < anatomy.incisors.y() + 15 && above_bite > 18 &&
-                        std::abs(p.x() - anatomy.incisors.x()) < 24;
-      if (nose) c.hold = Hold::cranium;
+    // The nose stands on cartilage, which goes with the cranium.
+    if (p.y() < anatomy.incisors.y() + 12 && above_bite > 22 &&
+        std::abs(p.x() - anatomy.incisors.x()) < 24) {
+      c.hold = Hold::cranium;
+      c.cartilage = true;
       continue;
     }
+    if (c.ground == Ground::none) continue;
     if (mouth_side || c.met_teeth || c.met_depth > deepest_mm) continue;
     const Eigen::Vector3d met = p + c.met_depth * c.inward;
     const double met_above = met.z() - anatomy.bite_height(met.y());

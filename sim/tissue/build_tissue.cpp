@@ -17,8 +17,9 @@ using Eigen::Vector3d;
 
 constexpr double bone_stiffness = 2.0;      // N/mm, some 50 times a skin spring
 constexpr double boundary_stiffness = 2.0;  // N/mm
+constexpr double cartilage_stiffness = 0.5; // N/mm
 constexpr double neck_stiffness = 0.1;      // N/mm
-constexpr double loose_stiffness = 0.02;    // N/mm
+constexpr double loose_stiffness = 0.04;    // N/mm
 constexpr double slide_stiffness = 1e-9;     // N/mm
 
 /// Layers from the skin inward. source: skin and cheek 30 to 40 kPa in vivo, deeper layers softer.
@@ -46,25 +47,27 @@ double smoothstep(double t) {
 /// all from this far on.
 double rim_follows(double to_mandible_mm) { return 1 - smoothstep((to_mandible_mm - 15) / 65); }
 
-/// Factors at rest and along a plain opening: the tissue of the lower face turns with the jaw, and
-/// a factor made unturned asks for several times the iterations.
-void make_factors(TissueModel& model, const Anatomy& anatomy) {
-  constexpr double step_rad = 0.16;
-  constexpr int steps = 4;
+/// Solves a plain opening knot by knot, and keeps a factor at every other knot: the tissue of the
+/// lower face turns with the jaw, and a factor made unturned asks for several times the iterations.
+void make_path(TissueModel& model, const Anatomy& anatomy) {
+  constexpr int knots = 12;
+  model.path.condyles = anatomy.condyles;
   model.factors.push_back({0, HessianFactor(model.net, model.sheets, model.rest)});
   TissueState state = rest_tissue(model);
+  std::vector<Nodes> nodes{model.rest};
   TissueBudget budget;
-  budget.tolerance_mm = 0.05;
-  budget.max_iterations = 100;
-  for (int i = 1; i <= steps; ++i) {
-    const double angle = i * step_rad;
-    Pose X_CM;
-    X_CM.R = Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitX()));
-    const Vector3d slid(0, -20 * angle, -8 * angle);  // condyles slide forward and down, mm
-    X_CM.t = anatomy.condyles - X_CM.R * anatomy.condyles + slid;
-    state = follow(model, state, X_CM, budget);
-    model.factors.push_back({angle - step_rad / 2, HessianFactor(model.net, model.sheets, state.nodes)});
+  budget.tolerance_mm = 2e-3;
+  budget.max_iterations = 300;
+  for (int i = 1; i < knots; ++i) {
+    const double angle = i * model.path.step_rad;
+    state = follow(model, state, model.path.pose(angle), budget);
+    if (!state.converged || state.inverted_prisms > 0) break;  // as far as this tissue opens
+    nodes.push_back(state.nodes);
+    if (i % 2 == 0)
+      model.factors.push_back({angle - model.path.step_rad,
+                               HessianFactor(model.net, model.sheets, state.nodes)});
   }
+  model.path.nodes = std::move(nodes);
 }
 
 }  // namespace
@@ -99,8 +102,13 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   model->rest = column_nodes(skin, columns, column_settings);
   model->net = layered_net(skin.mesh.triangles, sheets, model->rest, layers.material);
   SpringPrismNet& net = model->net;
-  for (double v : net.rest_volume)
-    if (v <= 0) throw InputError("face: the skin folds so that tissue below it turns inside out; smooth the face");
+  for (std::size_t p = 0; p < net.prisms.size(); ++p)
+    if (net.rest_volume[p] <= 0) {
+      const Vector3d& at = model->rest[net.prisms[p][0]];
+      throw InputError("face: the skin folds near (" + std::to_string(at.x()) + ", " +
+                       std::to_string(at.y()) + ", " + std::to_string(at.z()) +
+                       ") mm so that tissue below it would turn inside out; smooth the face there");
+    }
 
   // Bone springs, and slides for what rests on the teeth unattached.
   std::vector<int> given;
@@ -118,6 +126,8 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
       anchor(inner, share, bone_stiffness);
       given.push_back(inner);
       given_share.push_back(share);
+      if (columns[c].cartilage)
+        for (int s = 0; s + 1 < sheets; ++s) anchor(node_of(c, s, sheets), share, cartilage_stiffness);
       ++(columns[c].hold == Hold::mandible ? summary.attached_to_mandible : summary.attached_to_cranium);
     } else if (columns[c].ground != Ground::none && columns[c].to_mouth < 25) {
       // The plane touches what the march met; tissue already behind it at rest may stay there.
@@ -167,8 +177,8 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
     anchor(inner, model->node_share[inner], neck ? neck_stiffness : loose_stiffness);
   }
 
-  report(progress, "soft tissue: preconditioners", 0.6);
-  make_factors(*model, anatomy);
+  report(progress, "soft tissue: path of opening", 0.6);
+  make_path(*model, anatomy);
 
   report(progress, "soft tissue: displayed face", 0.8);
   model->region = region.shape;

@@ -148,13 +148,15 @@ void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
   const auto ring = rings_of(skin.mesh);
   smooth_depths(ring, settings, columns);
 
-  // Thin the columns of weak prisms, and turn them towards their neighbours, until all are sound.
+  // Thin the columns of weak prisms, and turn them towards the prism's own normal and their
+  // neighbours, until all are sound.
   const int sheets = static_cast<int>(settings.layer_share.size()) + 1;
   std::vector<char> changed(columns.size(), 0);
   int weak_left = 0;
   for (int round = 0; round < 80; ++round) {
     const Nodes nodes = column_nodes(skin, columns, settings);
     std::vector<char> weak(columns.size(), 0);
+    std::vector<Vector3d> wanted(columns.size(), Vector3d::Zero());
     weak_left = 0;
     for (const auto& t : skin.mesh.triangles) {
       const Vector3d& p = skin.mesh.vertices[t[0]];
@@ -168,7 +170,12 @@ void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
         }
         if (prism_volume(nodes, prism) > 0.3 * area * depth * settings.layer_share[layer]) continue;
         ++weak_left;
-        for (int k = 0; k < 3; ++k) weak[t[k]] = 1;
+        const Vector3d below =
+            -(skin.mesh.vertices[t[1]] - p).cross(skin.mesh.vertices[t[2]] - p).normalized();
+        for (int k = 0; k < 3; ++k) {
+          weak[t[k]] = 1;
+          wanted[t[k]] += below;
+        }
         break;
       }
     }
@@ -177,8 +184,8 @@ void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
     for (std::size_t v = 0; v < columns.size(); ++v) {
       if (!weak[v]) continue;
       changed[v] = 1;
-      columns[v].depth *= 0.93;
-      Vector3d sum = before[v].inward;
+      columns[v].depth = std::max(0.93 * columns[v].depth, std::min(2.0, columns[v].depth));
+      Vector3d sum = before[v].inward + 0.5 * wanted[v].normalized();
       for (int n : ring[v]) sum += before[n].inward / static_cast<double>(ring[v].size());
       columns[v].inward = sum.normalized();
     }

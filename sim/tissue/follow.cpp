@@ -32,6 +32,26 @@ int count_inverted(const SpringPrismNet& net, const Nodes& x) {
   return count;
 }
 
+/// Where the step takes the nodes, to first order. As far as the step is plain opening or closing,
+/// along the stored path; the rest of it takes each node its share of the mandible's way.
+Nodes foreseen(const TissueModel& model, const TissueState& previous, const Pose& X_CM) {
+  const OpeningPath& path = model.path;
+  const double before = path.parameter(previous.X_CM), after = path.parameter(X_CM);
+  const Pose rest_before = previous.X_CM * path.pose(before).inverse();
+  const Pose rest_after = X_CM * path.pose(after).inverse();
+  const auto from = path.weights(before), to = path.weights(after);
+  Nodes nodes = previous.nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double share = model.node_share[i];
+    const Vector3d x = previous.nodes[i];
+    if (share != 0) nodes[i] += share * (rest_after * x - rest_before * x);
+    if (path.nodes.empty()) continue;
+    for (int k = 0; k < 4; ++k)
+      nodes[i] += to.weight[k] * path.nodes[to.knot[k]][i] - from.weight[k] * path.nodes[from.knot[k]][i];
+  }
+  return nodes;
+}
+
 }  // namespace
 
 TissueState rest_tissue(const TissueModel& model) {
@@ -45,13 +65,7 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
   const NetLoads loads = loads_at(model, X_CM);
   TissueState state;
   state.X_CM = X_CM;
-  // Foresee: each node goes its share of the way that the mandible would take it.
-  const Pose step = X_CM * previous.X_CM.inverse();
-  state.nodes = previous.nodes;
-  for (std::size_t i = 0; i < state.nodes.size(); ++i) {
-    const double share = model.node_share[i];
-    if (share != 0) state.nodes[i] += share * (step * previous.nodes[i] - previous.nodes[i]);
-  }
+  state.nodes = foreseen(model, previous, X_CM);
   if (count_inverted(model.net, state.nodes) > 0) state.nodes = previous.nodes;
 
   const double turned = rotation_angle(X_CM);

@@ -6,6 +6,7 @@
 #include "engine/tissue/frame_embedding.h"
 #include "engine/tissue/hessian_factor.h"
 #include "engine/tissue/spring_prism.h"
+#include "sim/tissue/opening_path.h"
 #include "sim/tissue/skin_region.h"
 #include "sim/tissue/slit.h"
 #include "sim/tissue/tissue.h"
@@ -32,6 +33,7 @@ struct TissueModel {
     HessianFactor factor;
   };
   std::vector<Factor> factors;
+  OpeningPath path;
   std::vector<double> node_share;  // of every node, to foresee where a motion takes it
 
   // The displayed face.

@@ -163,21 +163,24 @@ std::vector<char> find_lining(const TriMesh& mesh, const MouthOutline& opening,
   front.insert(front.end(), opening.lower.begin(), opening.lower.end());
   front.push_back(opening.right_corner);
   front.push_back(opening.left_corner);
-  std::vector<char> seen(mesh.vertices.size(), 0);
+  std::vector<char> seen(mesh.vertices.size(), 0), inner(mesh.vertices.size(), 0);
   for (int v : front) seen[v] = 1;
   while (!front.empty()) {
     const int v = front.back();
     front.pop_back();
     if (faces_out(v)) continue;
-    for (int t : around[v]) {
-      lining[t] = 1;
+    inner[v] = 1;
+    for (int t : around[v])
       for (int k = 0; k < 3; ++k) {
         const int n = mesh.triangles[t][k];
         if (seen[n] || (mesh.vertices[n] - anatomy.incisors).norm() > reach_mm) continue;
         seen[n] = 1;
         front.push_back(n);
       }
-    }
+  }
+  for (std::size_t t = 0; t < lining.size(); ++t) {
+    const auto& tri = mesh.triangles[t];
+    lining[t] = inner[tri[0]] + inner[tri[1]] + inner[tri[2]] >= 2;
   }
   return lining;
 }
