@@ -10,7 +10,7 @@ namespace condyle {
 
 constexpr double radian_per_degree = 3.14159265358979323846 / 180;
 
-/// Condyles travel 10 to 20 mm; past the crest of the eminence the ligaments let them go no farther.
+/// Condyles travel 10 to 20 mm; past the crest of the eminence ligaments let them go no farther.
 constexpr double longest_forward_mm = 16.5;
 
 /// How far the condyles have moved forward when the jaw has turned by theta: a hinge first, then
