@@ -12,7 +12,7 @@ namespace {
 
 constexpr double step_budget_ms = 1000.0 / 60;
 constexpr double usual_low_mm = 42, usual_high_mm = 58;  // accepted band of the largest opening
-constexpr float bar_row = 16, curve_height = 26;         // at scale 1
+constexpr float bar_row = 16, curve_height = 22;         // at scale 1
 constexpr double deeper_mm = 0.01;  // overlap beyond the one at rest that is called penetration
 
 // A line with a dim name at the left and a value at the right.
@@ -49,7 +49,7 @@ void Panels::Drawing::readings() {
   const bool has_tissue = input.frame && !input.frame->tissue.nodes.empty();
   const float bars =
       static_cast<float>(stage_names.size()) * pen.px(bar_row) + pen.px(curve_height);
-  const float below = (has_tissue ? head + 3 * line : 0) + head + bars + line + pen.px(8);
+  const float below = (has_tissue ? head + 3 * line : 0) + head + bars + line + pen.px(5);
   const float pairs = input.frame ? static_cast<float>(input.frame->contacts.pairs.size()) : 0;
   const float room = ImGui::GetContentRegionAvail().y - below - head;
   contacts(std::max(2 * line, std::min(room, std::max(1.0f, pairs) * line)));
