@@ -7,8 +7,9 @@ namespace condyle {
 OcclusionCulling::OcclusionCulling()
     : program_("depth", depth_shaders().vertex, depth_shaders().fragment) {
   const float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1, 1, 1, 1};
-  const GLubyte indices[] = {0, 1, 3, 0, 3, 2, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                             2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 3, 7, 1, 7, 5};
+  // Counter-clockwise from outside: only the near sides are asked about.
+  const GLubyte indices[] = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                             2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
   glBindVertexArray(array_);
   glBindBuffer(GL_ARRAY_BUFFER, corners_);
   glBufferData(GL_ARRAY_BUFFER, sizeof corners, corners, GL_STATIC_DRAW);
@@ -35,7 +36,8 @@ int OcclusionCulling::ask(const GpuMesh& mesh, const Eigen::Matrix4f& model_view
   program_.use();
   program_.set("view_projection", model_view_projection);
   glBindVertexArray(array_);
-  glDisable(GL_CULL_FACE);
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
   glDepthMask(GL_FALSE);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   int query = answers;
