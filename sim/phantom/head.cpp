@@ -25,7 +25,9 @@ void add_neck(FieldRecipe& head) {
            24);  // sternomastoid
   head.add(tube({{0, -38, -120}, {0, -34, -150}, {0, -31, -200}}, {13, 13, 13}), 20);  // larynx
   head.add(tube({{30, 34, -120}, {48, 34, -165}, {80, 34, -215}}, {22, 24, 30}, 6),
-           20);  // trapezius
+           20);                                                                         // trapezius
+  head.add(tube({{14, 66, -14}, {15, 51, -52}, {16, 42, -120}}, {11, 16, 16}, 6), 24);  // nape
+  head.add(ellipsoid({0, 8, -222}, {100, 50, 54}), 26);                                 // collar
 }
 
 void add_eyes(FieldRecipe& head) {
@@ -113,7 +115,7 @@ FieldRecipe skin_recipe(Lips lips) {
   add_lips(head, lips);
   head.add(ellipsoid({0, -88, -85}, {14, 9.5, 9}), 10);  // chin pad
   add_ear(head);
-  head.cut(half_space({0, 0, 1}, base_height), 0);
+  head.cut(half_space({0, 0, 1}, base_height), 8);
   return head;
 }
 
