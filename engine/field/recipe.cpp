@@ -6,7 +6,6 @@
 #include "engine/field/smooth.h"
 
 namespace condyle {
-
 namespace {
 
 Eigen::AlignedBox3d grown(const Eigen::AlignedBox3d& box, double margin) {
@@ -60,22 +59,34 @@ double FieldRecipe::operator()(const Eigen::Vector3d& at) const {
   return d;
 }
 
-std::vector<int> FieldRecipe::steps_near(const Eigen::AlignedBox3d& box) const {
+Eigen::AlignedBox3d FieldRecipe::folded(Eigen::AlignedBox3d box) const {
+  if (symmetry_ == Symmetry::none || box.min().x() >= 0) return box;
+  const double low = box.max().x() < 0 ? -box.max().x() : 0;
+  box.max().x() = std::max(-box.min().x(), box.max().x());
+  box.min().x() = low;
+  return box;
+}
+
+std::vector<int> FieldRecipe::steps_near(const Eigen::AlignedBox3d& given) const {
+  const Eigen::AlignedBox3d box = folded(given);
   std::vector<int> near;
   for (std::size_t i = 0; i < steps_.size(); ++i)
     if (steps_[i].reach.intersects(box)) near.push_back(static_cast<int>(i));
   return near;
 }
 
-std::vector<int> FieldRecipe::steps_near(const Eigen::AlignedBox3d& box,
+std::vector<int> FieldRecipe::steps_near(const Eigen::AlignedBox3d& given,
                                          const std::vector<int>& among) const {
+  const Eigen::AlignedBox3d box = folded(given);
   std::vector<int> near;
   for (const int i : among)
     if (steps_[static_cast<std::size_t>(i)].reach.intersects(box)) near.push_back(i);
   return near;
 }
 
-double FieldRecipe::value(const Eigen::Vector3d& p, const std::vector<int>& steps) const {
+double FieldRecipe::value(const Eigen::Vector3d& at, const std::vector<int>& steps) const {
+  Eigen::Vector3d p = at;
+  if (symmetry_ == Symmetry::mirror_x) p.x() = std::abs(p.x());
   double d = nothing;
   for (const int i : steps) d = apply(steps_[static_cast<std::size_t>(i)], d, p);
   return d;

@@ -23,7 +23,7 @@ class FieldRecipe {
   /// Signed distance, mm; `nothing` far from every primitive.
   double operator()(const Eigen::Vector3d& p) const;
 
-  /// Indices of the steps that can matter inside a box of the described half of space.
+  /// Indices of the steps that can matter inside a box.
   std::vector<int> steps_near(const Eigen::AlignedBox3d& box) const;
   std::vector<int> steps_near(const Eigen::AlignedBox3d& box, const std::vector<int>& among) const;
   /// Signed distance by these steps only.
@@ -45,6 +45,8 @@ class FieldRecipe {
   };
   static bool act_everywhere(Act act) { return act == Act::keep; }
   void push(Act act, Primitive primitive, double k);
+  /// The box that |x| runs through, where the recipe is mirrored.
+  Eigen::AlignedBox3d folded(Eigen::AlignedBox3d box) const;
   static double apply(const Step& step, double d, const Eigen::Vector3d& p);
 
   Symmetry symmetry_;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -58,6 +59,18 @@ TEST(SampledField, SamplesHaveTheSameBitsOnOneAndTwoThreads) {
   const auto grid = even_grid(cube(17), 0.7);
   EXPECT_EQ(sample_field(ring_and_ball(), grid, {.threads = 1}).values,
             sample_field(ring_and_ball(), grid, {.threads = 2}).values);
+}
+
+TEST(SampledField, MirroredRecipesFillBothHalves) {
+  FieldRecipe pair(Symmetry::mirror_x);
+  pair.add(ellipsoid({6, 1, 0}, {3, 2, 2}), 0);
+  pair.add(ellipsoid({11, 1, 2}, {2, 2, 2}), 2);
+  const auto mesh = isosurface(sample_field(pair, even_grid(cube(15), 0.5)));
+  EXPECT_EQ(inspect(mesh).components, 2);
+  for (const auto& p : mesh.vertices) ASSERT_LT(std::abs(pair(p)), 0.1);
+  const auto right = std::count_if(mesh.vertices.begin(), mesh.vertices.end(),
+                                   [](const Vector3d& p) { return p.x() < 0; });
+  EXPECT_EQ(2 * static_cast<std::size_t>(right), mesh.vertices.size());
 }
 
 TEST(SampledField, TrilinearValueIsExactForLinearFields) {
