@@ -28,7 +28,8 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
   SimulatorSettings settings;
   settings.face = true;
   settings.threads = common.threads;
-  const Scene scene = make_scene(open_patient(options.patient, common, bar), settings, bar.callback());
+  const Scene scene =
+      make_scene(open_patient(options.patient, common, bar), settings, bar.callback());
   const Motion motion = make_motion("opening", scene.patient, scene.contacts);
   const int steps = static_cast<int>(std::lround(motion.duration_s / settings.step_s));
 
@@ -36,9 +37,10 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
   SceneRenderer renderer(scene.patient.parts);
   PictureSettings picture;
   const auto [low, high] = renderer.bounds();
-  const Camera camera =
-      standard_camera("three-quarter", low, high, static_cast<double>(picture.width) / picture.height);
-  constexpr int picture_every = 12;  // pictures are slow without a GPU; simulation is what is measured
+  const Camera camera = standard_camera("three-quarter", low, high,
+                                        static_cast<double>(picture.width) / picture.height);
+  constexpr int picture_every =
+      12;  // pictures are slow without a GPU; simulation is what is measured
 
   std::map<std::string, std::vector<double>> samples;
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
@@ -72,8 +74,8 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
   json["machine"] = {{"processor", processor()},
                      {"cores", std::thread::hardware_concurrency()},
                      {"opengl", context.description()}};
-  for (const char* name :
-       {"frame.motion", "frame.contact", "frame.tissue", "frame.face", "frame.total", "frame.render"}) {
+  for (const char* name : {"frame.motion", "frame.contact", "frame.tissue", "frame.face",
+                           "frame.total", "frame.render"}) {
     const auto times = summarise(samples[name]);
     json["results"].push_back({{"name", name},
                                {"median", times.median},
@@ -86,11 +88,12 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
   }
   if (common.json) fmt::print("{}\n", json.dump(2));
   if (!common.quiet) {
-    fmt::print(stderr,
-               "{} ms; {} tissue nodes, largest bone {} triangles, {} threads; frame.total is motion + "
-               "contact + tissue; frame.render is 1280x720 with 4x multisampling and shadows on {}\n",
-               "median and 95th percentile in", nodes, bone_triangles, common.threads,
-               context.description());
+    fmt::print(
+        stderr,
+        "{} ms; {} tissue nodes, largest bone {} triangles, {} threads; frame.total is motion + "
+        "contact + tissue; frame.render is 1280x720 with 4x multisampling and shadows on {}\n",
+        "median and 95th percentile in", nodes, bone_triangles, common.threads,
+        context.description());
     for (const auto& result : json["results"])
       fmt::print(stderr, "  {:<14}{:>9.3f}{:>9.3f}\n", result["name"].get<std::string>(),
                  result["median"].get<double>(), result["p95"].get<double>());

@@ -10,7 +10,8 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   constexpr int violation = 3;
   ProgressBar bar(common);
   const auto settings = simulator_settings(options.motion, common);
-  const Scene scene = make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
+  const Scene scene =
+      make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
   const Motion motion =
       make_motion(options.motion.motion, scene.patient, scene.contacts, options.motion.opening);
   const auto check = check_clearance(scene, motion, options.margin_mm, settings, bar.callback());

@@ -23,7 +23,8 @@ void ProgressBar::show(std::string_view what, double fraction) {
   if (!terminal_) return;
   constexpr int width = 30;
   const int full = static_cast<int>(std::lround(std::clamp(fraction, 0.0, 1.0) * width));
-  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} %  {}", std::string(static_cast<std::size_t>(full), '#'),
+  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} %  {}",
+             std::string(static_cast<std::size_t>(full), '#'),
              std::string(static_cast<std::size_t>(width - full), '.'), fraction * 100, what);
   std::fflush(stderr);
   drawn_ = true;
@@ -38,14 +39,19 @@ Progress ProgressBar::callback() {
   return [this](std::string_view what, double fraction) { show(what, fraction); };
 }
 
-Case open_patient(const std::filesystem::path& folder, const CommonOptions& common, ProgressBar& bar) {
+Case open_patient(const std::filesystem::path& folder, const CommonOptions& common,
+                  ProgressBar& bar, const Progress& progress) {
   if (!folder.empty()) return load_case(folder);
   // Making the patient takes some seconds once; a reader of a log should know what is going on.
   bool told = false;
   return builtin_patient([&](std::string_view what, double fraction) {
-    if (!told && !common.quiet) fmt::print(stderr, "making the built-in patient (once; then it is cached)\n");
+    if (!told && !common.quiet)
+      fmt::print(stderr, "making the built-in patient (once; then it is cached)\n");
     told = true;
-    bar.show(what, fraction);
+    if (progress)
+      progress(what, fraction);
+    else
+      bar.show(what, fraction);
   });
 }
 
@@ -66,7 +72,8 @@ std::pair<int, int> parse_size(const std::string& text) {
   return {width, height};
 }
 
-void apply_show_list(const std::string& list, std::span<const Part> parts, PictureSettings& settings) {
+void apply_show_list(const std::string& list, std::span<const Part> parts,
+                     PictureSettings& settings) {
   const std::map<std::string, std::set<Role>> groups = {
       {"bones", {Role::skull, Role::maxilla, Role::mandible}},
       {"teeth", {Role::upper_teeth, Role::lower_teeth}},
@@ -112,8 +119,8 @@ void apply_show_list(const std::string& list, std::span<const Part> parts, Pictu
   settings.part_opacity = std::move(opacity);
 }
 
-Camera parse_camera(const std::string& text, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
-                    double aspect) {
+Camera parse_camera(const std::string& text, const Eigen::Vector3d& low,
+                    const Eigen::Vector3d& high, double aspect) {
   if (!text.ends_with(".json")) return standard_camera(text, low, high, aspect);
   const auto json = nlohmann::json::parse(read_file(text, 1 << 20), nullptr, false);
   if (!json.is_object()) throw InputError(text, "", "is not a JSON object");

@@ -28,7 +28,9 @@ class ProgressBar {
 };
 
 /// The case in the folder, or the built-in patient when it is empty.
-Case open_patient(const std::filesystem::path& folder, const CommonOptions& common, ProgressBar& bar);
+/// `progress` is told instead of the bar when it is given.
+Case open_patient(const std::filesystem::path& folder, const CommonOptions& common,
+                  ProgressBar& bar, const Progress& progress = {});
 
 SimulatorSettings simulator_settings(const MotionOptions& options, const CommonOptions& common);
 
@@ -37,10 +39,11 @@ std::pair<int, int> parse_size(const std::string& text);
 
 /// Fills opacities from a list such as "bones,teeth,skin:0.4"; "all" shows everything.
 /// throws: InputError for an unknown name, listing the known ones.
-void apply_show_list(const std::string& list, std::span<const Part> parts, PictureSettings& settings);
+void apply_show_list(const std::string& list, std::span<const Part> parts,
+                     PictureSettings& settings);
 
 /// A standard view by name, or a JSON file {target, direction, up, distance_mm, field_of_view_deg}.
-Camera parse_camera(const std::string& text, const Eigen::Vector3d& low, const Eigen::Vector3d& high,
-                    double aspect);
+Camera parse_camera(const std::string& text, const Eigen::Vector3d& low,
+                    const Eigen::Vector3d& high, double aspect);
 
 }  // namespace condyle

@@ -23,9 +23,11 @@ int run_import(const ImportOptions& options, const CommonOptions& common) {
   }
   if (!common.quiet) {
     for (const auto& note : patient.notes) fmt::print(stderr, "note: {}\n", note);
-    fmt::print(stderr, "{}: {} parts, {} landmarks. Next: condyle record {} --motion opening --out out --film\n",
-               options.out.string(), patient.parts.size(), patient.landmarks.points.size(),
-               options.out.string());
+    fmt::print(
+        stderr,
+        "{}: {} parts, {} landmarks. Next: condyle record {} --motion opening --out out --film\n",
+        options.out.string(), patient.parts.size(), patient.landmarks.points.size(),
+        options.out.string());
   }
   return 0;
 }

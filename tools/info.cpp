@@ -28,17 +28,15 @@ Json describe(const TriMesh& mesh) {
 std::string line(const Json& mesh) {
   const auto& low = mesh["low_mm"];
   const auto& high = mesh["high_mm"];
-  return fmt::format("{:>7} triangles, {}{}; {:.1f} x {:.1f} x {:.1f} mm",
-                     mesh["triangles"].get<int>(),
-                     mesh["closed"].get<bool>() ? "closed"
-                                                : fmt::format("open ({} boundary edges)",
-                                                              mesh["boundary_edges"].get<int>()),
-                     mesh["components"].get<int>() > 1
-                         ? fmt::format(", {} pieces", mesh["components"].get<int>())
-                         : "",
-                     high[0].get<double>() - low[0].get<double>(),
-                     high[1].get<double>() - low[1].get<double>(),
-                     high[2].get<double>() - low[2].get<double>());
+  return fmt::format(
+      "{:>7} triangles, {}{}; {:.1f} x {:.1f} x {:.1f} mm", mesh["triangles"].get<int>(),
+      mesh["closed"].get<bool>()
+          ? "closed"
+          : fmt::format("open ({} boundary edges)", mesh["boundary_edges"].get<int>()),
+      mesh["components"].get<int>() > 1 ? fmt::format(", {} pieces", mesh["components"].get<int>())
+                                        : "",
+      high[0].get<double>() - low[0].get<double>(), high[1].get<double>() - low[1].get<double>(),
+      high[2].get<double>() - low[2].get<double>());
 }
 
 }  // namespace

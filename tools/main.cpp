@@ -25,18 +25,23 @@ Exit codes: 0 done; 1 the machine or the program failed; 2 the input or the comm
 3 check found a violation. For research and education, not for clinical use.)";
 
 void add_motion(CLI::App* command, MotionOptions& motion, bool motion_required) {
-  command->add_option("CASE", motion.patient, "Folder with case.json (default: the built-in patient)");
-  auto* option = command->add_option("--motion", motion.motion,
-                                     "Built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
-                                         ") or a pose file (CSV: time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz)");
+  command->add_option("CASE", motion.patient,
+                      "Folder with case.json (default: the built-in patient)");
+  auto* option =
+      command->add_option("--motion", motion.motion,
+                          "Built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
+                              ") or a pose file (CSV: time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz)");
   if (motion_required) option->required();
-  command->add_option("--opening", motion.opening.opening_mm,
-                      "Opening wanted at the incisors, mm (default: what suits the patient)")
+  command
+      ->add_option("--opening", motion.opening.opening_mm,
+                   "Opening wanted at the incisors, mm (default: what suits the patient)")
       ->check(CLI::Range(1.0, 80.0));
   command->add_option("--duration", motion.opening.duration_s, "Time to open and close, s (3)")
       ->check(CLI::Range(0.2, 600.0));
-  command->add_option("--early-translation", motion.opening.early_translation,
-                      "0 hinge first ... 1 translation from the start (default: as early as the joint requires)")
+  command
+      ->add_option("--early-translation", motion.opening.early_translation,
+                   "0 hinge first ... 1 translation from the start (default: as early as the joint "
+                   "requires)")
       ->check(CLI::Range(0.0, 1.0));
   command->add_flag("--respect-contact", motion.respect_contact,
                     "Stop a recorded motion, too, where bones meet (built-in motions always stop)");
@@ -44,8 +49,9 @@ void add_motion(CLI::App* command, MotionOptions& motion, bool motion_required) 
 
 void add_tissue(CLI::App* command, MotionOptions& motion) {
   command->add_flag("!--no-tissue", motion.tissue, "Leave the soft tissue where it is");
-  command->add_option("--surface-nodes", motion.surface_nodes,
-                      "Soft-tissue nodes of one layer, about (520)")
+  command
+      ->add_option("--surface-nodes", motion.surface_nodes,
+                   "Soft-tissue nodes of one layer, about (520)")
       ->check(CLI::Range(100, 20000));
 }
 
@@ -53,7 +59,9 @@ void add_recording(CLI::App* command, RecordOptions& record) {
   add_motion(command, record.motion, true);
   add_tissue(command, record.motion);
   command->add_option("--out", record.out, "Folder for the results")->required();
-  command->add_option("--frames", record.frames, "The whole motion in this many frames, both ends included")
+  command
+      ->add_option("--frames", record.frames,
+                   "The whole motion in this many frames, both ends included")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--fps", record.fps, "Frames a second of the motion's own time (30)")
       ->check(CLI::Range(0.1, 1000.0));
@@ -66,7 +74,8 @@ CLI::App* add_command(CLI::App& app, const char* name, const char* what, const c
   return command;
 }
 
-/// CLI11 calls an unknown verb an unexpected argument; a person wants to hear which verbs there are.
+/// CLI11 calls an unknown verb an unexpected argument; a person wants to hear which verbs there
+/// are.
 std::string unknown_verb(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
   std::string known;
@@ -90,23 +99,27 @@ int run_program(int argc, char** argv) {
       ->check(CLI::Range(1, 64));
 
   ViewOptions view;
-  auto* view_command = add_command(app, "view", "Open the window", "condyle view mycase --motion opening");
+  auto* view_command =
+      add_command(app, "view", "Open the window", "condyle view mycase --motion opening");
   add_motion(view_command, view.motion, false);
   add_tissue(view_command, view.motion);
-  view_command->add_option("--ui-scale", view.ui_scale, "Size of the panels (1)")->check(CLI::Range(0.5, 4.0));
+  view_command->add_option("--ui-scale", view.ui_scale, "Size of the panels (1)")
+      ->check(CLI::Range(0.5, 4.0));
 
   RecordOptions record;
   record.pictures = true;
-  auto* record_command =
-      add_command(app, "record", "Record a motion as pictures, off-screen",
-                  "condyle record --motion opening --out out --camera spin --show bones,teeth,skin:0.4 --film");
+  auto* record_command = add_command(
+      app, "record", "Record a motion as pictures, off-screen",
+      "condyle record --motion opening --out out --camera spin --show bones,teeth,skin:0.4 --film");
   add_recording(record_command, record);
   record_command->add_option("--size", record.size, "Picture size, WIDTHxHEIGHT (1280x720)");
-  record_command->add_option("--camera", record.camera,
-                             "front back left right three-quarter above below spin, or a JSON file (three-quarter)");
-  record_command->add_option("--show", record.show,
-                             "What to draw: all bones teeth skin mouth contacts or part names, each with "
-                             "an opacity if wanted, e.g. bones,teeth,skin:0.4 (all)");
+  record_command->add_option(
+      "--camera", record.camera,
+      "front back left right three-quarter above below spin, or a JSON file (three-quarter)");
+  record_command->add_option(
+      "--show", record.show,
+      "What to draw: all bones teeth skin mouth contacts or part names, each with "
+      "an opacity if wanted, e.g. bones,teeth,skin:0.4 (all)");
   record_command->add_flag("--film", record.film, "Also make film.mp4 (needs the ffmpeg program)");
   record_command->add_flag("--resume", record.resume, "Complete an interrupted recording");
 
@@ -127,12 +140,14 @@ int run_program(int argc, char** argv) {
   check_command->add_option("--out", check.out, "Folder for report.json and pairs.csv");
 
   ImportOptions import;
-  auto* import_command = add_command(app, "import", "Make a case from your files",
-                                     "condyle import meshes --mandible jaw.stl --maxilla maxilla.stl --out mycase");
+  auto* import_command =
+      add_command(app, "import", "Make a case from your files",
+                  "condyle import meshes --mandible jaw.stl --maxilla maxilla.stl --out mycase");
   import_command->require_subcommand(1);
-  auto* meshes = add_command(*import_command, "meshes", "From surfaces: STL, PLY, OBJ or GLB",
-                             "condyle import meshes --mandible jaw.stl --maxilla maxilla.ply --face skin.obj\n"
-                             "      --landmarks marks.csv --units m --frame RAS --out mycase");
+  auto* meshes =
+      add_command(*import_command, "meshes", "From surfaces: STL, PLY, OBJ or GLB",
+                  "condyle import meshes --mandible jaw.stl --maxilla maxilla.ply --face skin.obj\n"
+                  "      --landmarks marks.csv --units m --frame RAS --out mycase");
   struct RoleOption {
     const char* name;
     Role role;
@@ -145,7 +160,8 @@ int run_program(int argc, char** argv) {
                                    {"--lower-teeth", Role::lower_teeth, {}},
                                    {"--face", Role::face, {}}};
   for (auto& role : roles)
-    meshes->add_option(role.name, role.files, "Surface file; may be given several times")->type_name("FILE");
+    meshes->add_option(role.name, role.files, "Surface file; may be given several times")
+        ->type_name("FILE");
   meshes->add_option("--landmarks", import.request.landmarks,
                      "CSV with name,x_mm,y_mm,z_mm, or 3D Slicer .mrk.json");
   meshes->add_option("--units", import.request.units, "Unit of the files: mm m cm in (mm)");
@@ -154,9 +170,10 @@ int run_program(int argc, char** argv) {
   meshes->add_option("--out", import.out, "Folder of the new case")->required();
 
   std::filesystem::path what;
-  auto* info_command =
-      add_command(app, "info", "Tell what a case or a surface file holds", "condyle info mycase --json");
-  info_command->add_option("CASE|FILE", what, "Case folder or surface file (default: the built-in patient)");
+  auto* info_command = add_command(app, "info", "Tell what a case or a surface file holds",
+                                   "condyle info mycase --json");
+  info_command->add_option("CASE|FILE", what,
+                           "Case folder or surface file (default: the built-in patient)");
 
   std::filesystem::path phantom_out;
   auto* phantom_command = add_command(app, "phantom", "Write the built-in patient as a case folder",
@@ -164,15 +181,17 @@ int run_program(int argc, char** argv) {
   phantom_command->add_option("--out", phantom_out, "Folder of the case")->required();
 
   BenchOptions bench;
-  auto* bench_command =
-      add_command(app, "bench", "Measure speed", "condyle bench frame --json");
+  auto* bench_command = add_command(app, "bench", "Measure speed", "condyle bench frame --json");
   bench_command->require_subcommand(1);
-  auto* bench_frame = add_command(*bench_command, "frame", "Each stage of a frame, median and 95th percentile",
-                                  "condyle bench frame --json");
+  auto* bench_frame =
+      add_command(*bench_command, "frame", "Each stage of a frame, median and 95th percentile",
+                  "condyle bench frame --json");
   bench_frame->add_option("CASE", bench.patient, "Case folder (default: the built-in patient)");
-  bench_frame->add_option("--repeats", bench.repeats, "Openings to measure (3)")->check(CLI::Range(1, 1000));
+  bench_frame->add_option("--repeats", bench.repeats, "Openings to measure (3)")
+      ->check(CLI::Range(1, 1000));
 
-  if (const auto problem = unknown_verb(app, argc, argv); !problem.empty()) throw InputError(problem);
+  if (const auto problem = unknown_verb(app, argc, argv); !problem.empty())
+    throw InputError(problem);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

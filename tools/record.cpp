@@ -31,8 +31,8 @@ FrameTimes frame_times(const RecordOptions& options, double duration_s) {
   constexpr double most_frames = 1e6;
   const double wanted = std::floor(duration_s * options.fps + 0.5) + 1;
   if (options.frames == 0 && wanted > most_frames)
-    throw InputError(fmt::format("--fps {}: makes {} frames of {} s; at most {} are recorded", options.fps,
-                                 wanted, duration_s, most_frames));
+    throw InputError(fmt::format("--fps {}: makes {} frames of {} s; at most {} are recorded",
+                                 options.fps, wanted, duration_s, most_frames));
   return {options.frames > 0 ? options.frames : static_cast<int>(wanted), duration_s};
 }
 
@@ -61,7 +61,8 @@ std::uint64_t motion_hash(const Motion& motion) {
   return hash;
 }
 
-/// The box of what is shown, grown by where the motion takes the mandible: what the camera keeps in view.
+/// The box of what is shown, grown by where the motion takes the mandible: what the camera keeps in
+/// view.
 std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const Motion& motion,
                                                      const PictureSettings& picture) {
   constexpr int samples = 24;
@@ -100,13 +101,14 @@ class PictureTaker {
         .frames_per_second = times.fps(),
         .film = options.film,
         .resume = options.resume,
-        .identity = {{"case", hash_text(case_hash(scene.patient))},
-                     {"motion", motion.name + " " + hash_text(motion_hash(motion))},
-                     {"camera", options.camera},
-                     {"show", options.show},
-                     {"contact", options.motion.respect_contact ? "respected" : "as the motion wants"},
-                     {"tissue", options.motion.tissue ? std::to_string(options.motion.surface_nodes)
-                                                      : std::string("none")}}});
+        .identity = {
+            {"case", hash_text(case_hash(scene.patient))},
+            {"motion", motion.name + " " + hash_text(motion_hash(motion))},
+            {"camera", options.camera},
+            {"show", options.show},
+            {"contact", options.motion.respect_contact ? "respected" : "as the motion wants"},
+            {"tissue", options.motion.tissue ? std::to_string(options.motion.surface_nodes)
+                                             : std::string("none")}}});
     kept_ = recorder_->kept_frames();
   }
 
@@ -151,7 +153,8 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
       make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
   bar.show("preparing the motion", 0);
   Playback playback(
-      scene, make_motion(options.motion.motion, scene.patient, scene.contacts, options.motion.opening),
+      scene,
+      make_motion(options.motion.motion, scene.patient, scene.contacts, options.motion.opening),
       settings, options.motion.respect_contact);
   const Motion& motion = playback.motion();
   const FrameTimes times = frame_times(options, motion.duration_s);
@@ -170,7 +173,6 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
     bar.show(fmt::format("frame {} of {}", i + 1, times.count), (i + 1.0) / times.count);
   }
   bar.clear();
-  if (pictures) pictures->finish();
   trace.finish();
   const std::string json = report.json();
   write_file(options.out / "report.json", json);
@@ -179,6 +181,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
     write_file(options.out / "sagittal.svg", curves.sagittal_svg());
     write_file(options.out / "frontal.svg", curves.frontal_svg());
   }
+  if (pictures) pictures->finish();
   if (common.json) fmt::print("{}", json);
   if (!common.quiet) {
     for (const auto& note : scene.contacts.notes()) fmt::print(stderr, "note: {}\n", note);

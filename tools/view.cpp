@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "engine/core/error.h"
 #include "render/window/window.h"
 #include "sim/motion/measures.h"
 #include "sim/simulator/live.h"
@@ -8,25 +9,46 @@
 namespace condyle {
 namespace {
 
+/// Ends the preparation when the window is closed meanwhile.
+struct Closed {};
+
+/// The scene, without soft tissue when the face does not allow any: the bones can still be moved.
+Scene prepare(const Case& patient, SimulatorSettings settings, const Progress& progress,
+              std::string& trouble) {
+  try {
+    return make_scene(patient, settings, progress);
+  } catch (const InputError& error) {
+    if (!settings.tissue) throw;
+    trouble = std::string("The soft tissue is left out. ") + error.what();
+    settings.tissue = false;
+    return make_scene(patient, settings, progress);
+  }
+}
+
 double widest_opening(const Case& patient, const Motion& motion) {
   double widest = 0;
   constexpr int samples = 200;
   for (int i = 0; i <= samples; ++i)
-    widest = std::max(widest, measure(patient, motion.wanted(motion.duration_s * i / samples)).opening_mm);
+    widest = std::max(widest,
+                      measure(patient, motion.wanted(motion.duration_s * i / samples)).opening_mm);
   return widest;
 }
 
 }  // namespace
 
-int run_view(const ViewOptions& options, const CommonOptions& common) {
-  Window window({.title = "Condyle", .ui_scale = options.ui_scale});
+namespace {
+
+void show_patient(Window& window, const ViewOptions& options, const CommonOptions& common) {
   ProgressBar bar(common);
   const Progress progress = [&](std::string_view what, double fraction) {
     bar.show(what, fraction);
     window.show_progress(std::string(what), fraction);
+    if (!window.open()) throw Closed{};
   };
   const auto settings = simulator_settings(options.motion, common);
-  const Scene scene = make_scene(open_patient(options.motion.patient, common, bar), settings, progress);
+  std::string trouble;
+  const Scene scene = prepare(open_patient(options.motion.patient, common, bar, progress), settings,
+                              progress, trouble);
   progress("preparing the motion", 0.9);
   const std::string spec = options.motion.motion.empty() ? "opening" : options.motion.motion;
   const Motion motion = make_motion(spec, scene.patient, scene.contacts, options.motion.opening);
@@ -39,11 +61,14 @@ int run_view(const ViewOptions& options, const CommonOptions& common) {
                     .duration_s = motion.duration_s,
                     .max_opening_mm = widest_opening(scene.patient, motion),
                     .notes = scene.patient.notes};
-  shown.notes.insert(shown.notes.end(), scene.contacts.notes().begin(), scene.contacts.notes().end());
+  shown.notes.insert(shown.notes.end(), scene.contacts.notes().begin(),
+                     scene.contacts.notes().end());
   shown.notes.insert(shown.notes.end(), motion.notes.begin(), motion.notes.end());
   ViewState start;
   start.obey_contact = options.motion.respect_contact || !motion.recorded;
   window.set_scene(shown, start);
+
+  if (!trouble.empty()) window.report_error(trouble);
 
   LiveSimulation simulation(scene, motion, settings);
   while (window.open()) {
@@ -53,9 +78,20 @@ int run_view(const ViewOptions& options, const CommonOptions& common) {
                         .obey_contact = view.obey_contact,
                         .face = view.shows_face(shown)});
     if (auto frame = simulation.take())
-      window.show(std::move(*frame), {.steps_per_second = simulation.steps_per_second(), .message = {}});
+      window.show(std::move(*frame),
+                  {.steps_per_second = simulation.steps_per_second(), .message = {}});
     else
       window.draw();
+  }
+}
+
+}  // namespace
+
+int run_view(const ViewOptions& options, const CommonOptions& common) {
+  Window window({.title = "Condyle", .ui_scale = options.ui_scale});
+  try {
+    show_patient(window, options, common);
+  } catch (const Closed&) {
   }
   return 0;
 }

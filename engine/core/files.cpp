@@ -22,8 +22,9 @@ std::string read_file(const fs::path& file, std::size_t max_bytes) {
   const auto size = fs::file_size(file, error);
   if (error) throw InputError(file, "", "cannot be read: " + error.message());
   if (size > max_bytes)
-    throw InputError(file, "", "is " + std::to_string(size) + " bytes; at most " +
-                                   std::to_string(max_bytes) + " are read");
+    throw InputError(file, "",
+                     "is " + std::to_string(size) + " bytes; at most " + std::to_string(max_bytes) +
+                         " are read");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(file, "", std::string("cannot be opened: ") + std::strerror(errno));
   std::string content(size, '\0');
@@ -34,8 +35,8 @@ std::string read_file(const fs::path& file, std::size_t max_bytes) {
 }
 
 void write_file(const fs::path& file, std::string_view content) {
-  const fs::path beside =
-      file.parent_path() / ("." + file.filename().string() + "." + std::to_string(::getpid()) + ".part");
+  const fs::path beside = file.parent_path() / ("." + file.filename().string() + "." +
+                                                std::to_string(::getpid()) + ".part");
   const auto fail = [&](const char* act) {
     const std::string reason = std::strerror(errno);
     ::unlink(beside.c_str());

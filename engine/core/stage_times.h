@@ -25,7 +25,8 @@ class StageTimer {
   StageTimer(StageTimes& times, Stage stage) : times_(times), stage_(stage) {}
   ~StageTimer() {
     times_[stage_] +=
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_)
+            .count();
   }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;

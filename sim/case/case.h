@@ -21,7 +21,7 @@ struct Case {
   std::vector<Part> parts;
   Landmarks landmarks;
   std::optional<CondylarPath> condylar_path;  // when the joint's own path is known
-  std::string source_units = "mm";  // as declared at import
+  std::string source_units = "mm";            // as declared at import
   std::string source_frame = "LPS";
   std::vector<std::string> notes;  // what import found and did, for people
 

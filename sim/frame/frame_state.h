@@ -15,7 +15,7 @@ namespace condyle {
 /// What drives one step.
 struct StepInput {
   double time_s = 0;
-  Pose X_CM_wanted;        // where the motion, or the hand, wants the mandible
+  Pose X_CM_wanted;          // where the motion, or the hand, wants the mandible
   bool obey_contact = true;  // false plays a recording as it is
 };
 
@@ -23,11 +23,12 @@ struct StepInput {
 struct FrameState {
   double time_s = 0;
   Pose X_CM_wanted;
-  Pose X_CM;  // maps the mandible from rest to now
+  Pose X_CM;             // maps the mandible from rest to now
   bool stopped = false;  // contact kept the mandible from the wanted pose
   ContactSet contacts;
   TissueState tissue;
-  std::vector<Eigen::Vector3f> face;  // vertices of the displayed face, mm; empty when not asked for
+  std::vector<Eigen::Vector3f>
+      face;  // vertices of the displayed face, mm; empty when not asked for
   Measures measures;
   StageTimes times;
   std::uint64_t state_hash = 0;  // of poses, contacts, tissue and measures

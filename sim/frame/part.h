@@ -10,7 +10,16 @@ namespace condyle {
 
 /// What a surface is. The last four are only drawn.
 enum class Role {
-  skull, maxilla, mandible, upper_teeth, lower_teeth, face, eyes, upper_gums, lower_gums, tongue
+  skull,
+  maxilla,
+  mandible,
+  upper_teeth,
+  lower_teeth,
+  face,
+  eyes,
+  upper_gums,
+  lower_gums,
+  tongue
 };
 
 /// What carries a surface: the fixed cranium C, the mandible M, or the deforming soft tissue.
@@ -21,13 +30,18 @@ constexpr Body body_of(Role role) {
     case Role::mandible:
     case Role::lower_teeth:
     case Role::lower_gums:
-    case Role::tongue: return Body::mandible;
-    case Role::face: return Body::tissue;
-    default: return Body::cranium;
+    case Role::tongue:
+      return Body::mandible;
+    case Role::face:
+      return Body::tissue;
+    default:
+      return Body::cranium;
   }
 }
 
-constexpr bool is_teeth(Role role) { return role == Role::upper_teeth || role == Role::lower_teeth; }
+constexpr bool is_teeth(Role role) {
+  return role == Role::upper_teeth || role == Role::lower_teeth;
+}
 
 /// Bone and teeth take part in collision.
 constexpr bool collides(Role role) {

@@ -12,8 +12,9 @@
 namespace condyle {
 
 bool ClearanceCheck::violated() const {
-  return std::any_of(pairs.begin(), pairs.end(),
-                     [](const PairVerdict& pair) { return pair.violates_margin || pair.penetrates; });
+  return std::any_of(pairs.begin(), pairs.end(), [](const PairVerdict& pair) {
+    return pair.violates_margin || pair.penetrates;
+  });
 }
 
 ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double margin_mm,
@@ -80,14 +81,15 @@ ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double 
 }
 
 std::string ClearanceCheck::json(const Scene& scene, const Motion& motion, double margin_mm) const {
-  nlohmann::ordered_json json = {{"about", "Condyle; for research and education, not for clinical use"},
-                                 {"case", scene.patient.name},
-                                 {"motion", {{"name", motion.name}, {"duration_s", motion.duration_s}}},
-                                 {"margin_mm", margin_mm},
-                                 {"frames", frames},
-                                 {"violation", violated()},
-                                 {"max_opening_mm", *std::max_element(opening_mm.begin(), opening_mm.end())},
-                                 {"pairs", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json = {
+      {"about", "Condyle; for research and education, not for clinical use"},
+      {"case", scene.patient.name},
+      {"motion", {{"name", motion.name}, {"duration_s", motion.duration_s}}},
+      {"margin_mm", margin_mm},
+      {"frames", frames},
+      {"violation", violated()},
+      {"max_opening_mm", *std::max_element(opening_mm.begin(), opening_mm.end())},
+      {"pairs", nlohmann::ordered_json::array()}};
   for (const auto& pair : pairs) {
     const auto at = [&](int frame) {
       const auto f = static_cast<std::size_t>(frame);
@@ -116,10 +118,13 @@ std::string ClearanceCheck::json(const Scene& scene, const Motion& motion, doubl
 std::string ClearanceCheck::text(double margin_mm) const {
   std::string text;
   for (const auto& pair : pairs) {
-    const auto f = static_cast<std::size_t>(pair.penetrates ? pair.deepest_frame : pair.least_frame);
-    text += fmt::format("{} {} and {}: ", pair.penetrates || pair.violates_margin ? "VIOLATION" : "ok",
-                        pair.a, pair.b);
-    if (pair.rest_depth_mm > 0) text += fmt::format("overlap {:.2f} mm at rest; ", pair.rest_depth_mm);
+    const auto f =
+        static_cast<std::size_t>(pair.penetrates ? pair.deepest_frame : pair.least_frame);
+    text +=
+        fmt::format("{} {} and {}: ", pair.penetrates || pair.violates_margin ? "VIOLATION" : "ok",
+                    pair.a, pair.b);
+    if (pair.rest_depth_mm > 0)
+      text += fmt::format("overlap {:.2f} mm at rest; ", pair.rest_depth_mm);
     if (pair.penetrates && pair.beyond_rest_mm > 0)
       text += fmt::format("{:.2f} mm deeper than at rest at {:.1f} mm opening", pair.beyond_rest_mm,
                           opening_mm[f]);
@@ -129,7 +134,8 @@ std::string ClearanceCheck::text(double margin_mm) const {
     else if (pair.touching_frames > 0)
       text += "touch, never deeper than at rest";
     else
-      text += fmt::format("nearest {:.2f} mm at {:.1f} mm opening", pair.least_distance_mm, opening_mm[f]);
+      text += fmt::format("nearest {:.2f} mm at {:.1f} mm opening", pair.least_distance_mm,
+                          opening_mm[f]);
     if (pair.violates_margin && !pair.penetrates)
       text += fmt::format(", less than the margin of {:.2f} mm", margin_mm);
     text += "\n";

@@ -25,7 +25,7 @@ struct ClearanceCheck {
   std::vector<PairVerdict> pairs;
   int frames = 0;
   std::vector<double> opening_mm, rotation_deg;  // one per frame
-  std::string pairs_csv;  // a row per pair and frame
+  std::string pairs_csv;                         // a row per pair and frame
 
   bool violated() const;
   std::string json(const Scene& scene, const Motion& motion, double margin_mm) const;

@@ -87,7 +87,8 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
       top + inner_height / 2, settings.y_label);
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const char* colour = colours[c % colours.size()];
-    svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"", colour);
+    svg +=
+        fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"", colour);
     for (std::size_t i = 0; i < curves[c].x.size(); ++i)
       svg += fmt::format("{:.2f},{:.2f} ", px(curves[c].x[i]), py(curves[c].y[i]));
     const double ly = top + 20 + 18 * static_cast<double>(c);

@@ -41,7 +41,8 @@ Json soft_response(const Scene& scene, const FrameState& frame) {
   if (upper && lower) {
     const double gap = (carried(*upper) - carried(*lower)).norm() - (*upper - *lower).norm();
     json["lip_gap_mm"] = gap;
-    if (frame.measures.opening_mm > 1) json["lip_gap_over_opening"] = gap / frame.measures.opening_mm;
+    if (frame.measures.opening_mm > 1)
+      json["lip_gap_over_opening"] = gap / frame.measures.opening_mm;
   }
   return json;
 }
@@ -57,7 +58,8 @@ StageSummary summarise(std::vector<double> ms) {
   return {at(0.5), at(0.95)};
 }
 
-MotionReport::MotionReport(const Scene& scene, const Motion& motion, const SimulatorSettings& settings)
+MotionReport::MotionReport(const Scene& scene, const Motion& motion,
+                           const SimulatorSettings& settings)
     : scene_(scene),
       motion_name_(motion.name),
       recorded_(motion.recorded),
@@ -102,8 +104,8 @@ void MotionReport::add(const FrameState& frame) {
     widest_.face.clear();
     widest_frame_ = frames_;
   }
-  const double next_sample =
-      duration_s_ * (static_cast<double>(samples_.size()) + 0.5) / static_cast<double>(cold_samples);
+  const double next_sample = duration_s_ * (static_cast<double>(samples_.size()) + 0.5) /
+                             static_cast<double>(cold_samples);
   if (samples_.size() < cold_samples && frame.time_s >= next_sample) {
     samples_.push_back(frame);
     samples_.back().face.clear();
@@ -122,14 +124,13 @@ std::string MotionReport::json() const {
   json["frames"] = frames_;
   json["step_s"] = settings_.step_s;
   const auto& w = widest_.measures;
-  json["opening"] = {
-      {"max_opening_mm", banded(w.opening_mm, 42, 58)},
-      {"frame", widest_frame_},
-      {"time_s", widest_.time_s},
-      {"interincisal_mm", w.interincisal_mm},
-      {"max_rotation_deg", banded(max_rotation_deg_, 28, 45)},
-      {"left_condylar_travel_mm", banded(left_travel_mm_, 10, 20)},
-      {"right_condylar_travel_mm", banded(right_travel_mm_, 10, 20)}};
+  json["opening"] = {{"max_opening_mm", banded(w.opening_mm, 42, 58)},
+                     {"frame", widest_frame_},
+                     {"time_s", widest_.time_s},
+                     {"interincisal_mm", w.interincisal_mm},
+                     {"max_rotation_deg", banded(max_rotation_deg_, 28, 45)},
+                     {"left_condylar_travel_mm", banded(left_travel_mm_, 10, 20)},
+                     {"right_condylar_travel_mm", banded(right_travel_mm_, 10, 20)}};
 
   Json pairs = Json::array();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -172,7 +173,8 @@ std::string MotionReport::json() const {
       TissueBudget budget = settings_.tissue_budget;
       budget.threads = settings_.threads;
       warm.push_back(frame.tissue.iterations);
-      cold.push_back(follow(*scene_.tissue, rest_tissue(*scene_.tissue), frame.X_CM, budget).iterations);
+      cold.push_back(
+          follow(*scene_.tissue, rest_tissue(*scene_.tissue), frame.X_CM, budget).iterations);
     }
     const double warm_median = summarise(warm).median, cold_median = summarise(cold).median;
     tissue["iterations"] = {{"warm_median", warm_median},
@@ -205,12 +207,14 @@ std::string MotionReport::text() const {
     const auto& b = scene_.patient.parts[static_cast<std::size_t>(rest.part_b)].name;
     const auto& record = pairs_[i];
     text += fmt::format("{} and {}: ", a, b);
-    if (record.rest_depth > 0) text += fmt::format("overlap {:.2f} mm at rest, ", record.rest_depth);
+    if (record.rest_depth > 0)
+      text += fmt::format("overlap {:.2f} mm at rest, ", record.rest_depth);
     if (record.penetrating_frames > 0)
       text += fmt::format("up to {:.2f} mm deeper than at rest in {} frames\n",
                           record.deepest - record.rest_depth, record.penetrating_frames);
     else if (record.touching_frames > 0)
-      text += fmt::format("touch in {} frames, never deeper than at rest\n", record.touching_frames);
+      text +=
+          fmt::format("touch in {} frames, never deeper than at rest\n", record.touching_frames);
     else
       text += fmt::format("at least {:.2f} mm apart\n", record.least_distance);
   }

@@ -22,8 +22,7 @@ const char* TraceWriter::header() {
 TraceWriter::TraceWriter(const std::filesystem::path& file)
     : file_(file), beside_(file.parent_path() / ("." + file.filename().string() + ".part")) {
   stream_ = std::fopen(beside_.c_str(), "wb");
-  if (!stream_)
-    throw MachineError(file_.string() + ": cannot be written: " + std::strerror(errno));
+  if (!stream_) throw MachineError(file_.string() + ": cannot be written: " + std::strerror(errno));
   put(std::string(header()) + "\n");
 }
 

@@ -12,6 +12,7 @@ namespace {
 
 /// A time farther ahead than this is a jump of the scrub bar, not time running on.
 constexpr double jump_s = 0.25;
+constexpr std::chrono::milliseconds picture_interval(33);
 
 /// Time of the way to full opening at which the motion opens by `opening_mm`. Bisection.
 double time_of_opening(const Case& patient, const Motion& motion, double opening_mm) {
@@ -69,7 +70,8 @@ double LiveSimulation::steps_per_second() const {
 }
 
 StepInput LiveSimulation::input(const LiveRequest& wanted, double time_s) const {
-  const double t = wanted.opening_mm ? time_of_opening(scene_.patient, motion_, *wanted.opening_mm) : time_s;
+  const double t =
+      wanted.opening_mm ? time_of_opening(scene_.patient, motion_, *wanted.opening_mm) : time_s;
   return {.time_s = time_s, .X_CM_wanted = motion_.wanted(t), .obey_contact = wanted.obey_contact};
 }
 
@@ -77,6 +79,7 @@ void LiveSimulation::work() {
   using Clock = std::chrono::steady_clock;
   FrameState now = rest_frame(scene_);
   std::optional<LiveRequest> answered;
+  auto last_shown = Clock::now();
   try {
     while (true) {
       LiveRequest wanted;
@@ -88,7 +91,8 @@ void LiveSimulation::work() {
       }
       const double target_s = std::round(wanted.time_s / settings_.step_s) * settings_.step_s;
       const double ahead_s = target_s - now.time_s;
-      const bool runs_on = !wanted.opening_mm && ahead_s > 1.5 * settings_.step_s && ahead_s < jump_s;
+      const bool runs_on =
+          !wanted.opening_mm && ahead_s > 1.5 * settings_.step_s && ahead_s < jump_s;
       const double time_s = runs_on ? now.time_s + settings_.step_s : target_s;
       const auto start = Clock::now();
       StageTimes motion_time;
@@ -99,13 +103,14 @@ void LiveSimulation::work() {
       }
       now = step(scene_, now, step_input, settings_);
       now.times[Stage::motion] = motion_time[Stage::motion];
-      if (!runs_on) {  // steps on the way there are not shown
-        if (wanted.face) carry_face(scene_, now, settings_.threads);
-        answered = wanted;
-      }
+      if (!runs_on) answered = wanted;
+      // Steps on the way are shown only as often as a screen wants pictures.
+      const bool shown = !runs_on || Clock::now() - last_shown > picture_interval;
+      if (shown && wanted.face) carry_face(scene_, now, settings_.threads);
+      if (shown) last_shown = Clock::now();
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       const std::lock_guard lock(mutex_);
-      if (!runs_on) newest_ = now;
+      if (shown) newest_ = now;
       steps_per_second_ = 0.9 * steps_per_second_ + 0.1 / std::max(seconds, 1e-6);
     }
   } catch (...) {

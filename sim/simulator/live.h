@@ -12,15 +12,15 @@ namespace condyle {
 
 /// What a person at the window wants simulated.
 struct LiveRequest {
-  double time_s = 0;                 // of the motion
+  double time_s = 0;                                // of the motion
   std::optional<double> opening_mm = std::nullopt;  // wanted instead of the motion's pose
   bool obey_contact = true;
   bool face = true;  // carry the displayed face
   bool operator==(const LiveRequest&) const = default;
 };
 
-/// Steps a scene on a thread of its own toward the newest request: in fixed steps while the time runs
-/// on, in one step when it jumps. Pictures may be slow; the steps stay what they are.
+/// Steps a scene on a thread of its own toward the newest request: in fixed steps while the time
+/// runs on, in one step when it jumps. Pictures may be slow; the steps stay what they are.
 class LiveSimulation {
  public:
   /// The scene must outlive the simulation.

@@ -28,7 +28,8 @@ struct Scene {
   std::shared_ptr<const TissueModel> tissue;  // null without a face, or when it was not wanted
 };
 
-Scene make_scene(Case patient, const SimulatorSettings& settings = {}, const Progress& progress = {});
+Scene make_scene(Case patient, const SimulatorSettings& settings = {},
+                 const Progress& progress = {});
 
 /// The patient at rest, before any step.
 FrameState rest_frame(const Scene& scene);

@@ -10,10 +10,8 @@ namespace {
 class Hasher {
  public:
   template <class T>
-    requires std::is_arithmetic_v<T>
-  void add(T value) {
-    hash_ = hash_bytes(&value, sizeof value, hash_);
-  }
+  requires std::is_arithmetic_v<T>
+  void add(T value) { hash_ = hash_bytes(&value, sizeof value, hash_); }
   void add(const Eigen::Vector3d& p) { hash_ = hash_bytes(p.data(), 3 * sizeof(double), hash_); }
   void add(const Pose& pose) {
     hash_ = hash_bytes(pose.R.coeffs().data(), 4 * sizeof(double), hash_);

@@ -10,8 +10,18 @@ inline TriMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   for (int i = 0; i < 8; ++i)
     mesh.vertices.emplace_back((i & 1) ? high.x() : low.x(), (i & 2) ? high.y() : low.y(),
                                (i & 4) ? high.z() : low.z());
-  for (const auto& t : {Eigen::Vector3i{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                        {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}})
+  for (const auto& t : {Eigen::Vector3i{0, 2, 1},
+                        {1, 2, 3},
+                        {4, 5, 6},
+                        {5, 7, 6},
+                        {0, 1, 4},
+                        {1, 5, 4},
+                        {2, 6, 3},
+                        {3, 6, 7},
+                        {0, 4, 2},
+                        {2, 4, 6},
+                        {1, 3, 5},
+                        {3, 7, 5}})
     mesh.triangles.push_back(t);
   return mesh;
 }

@@ -71,7 +71,8 @@ Outcome condyle(const std::vector<std::string>& arguments, const Limits& limits)
   }
   int status = 0;
   ::waitpid(child, &status, 0);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(out), read_text(err)};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(out),
+          read_text(err)};
 }
 
 namespace {
@@ -87,8 +88,8 @@ std::string stl_box(const char* name, std::array<double, 3> low, std::array<doub
                             {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   std::string text = std::string("solid ") + name + "\n";
   for (const auto& face : faces)
-    text += "facet normal 0 0 0\nouter loop\n" + corner(face[0]) + corner(face[1]) + corner(face[2]) +
-            "endloop\nendfacet\n";
+    text += "facet normal 0 0 0\nouter loop\n" + corner(face[0]) + corner(face[1]) +
+            corner(face[2]) + "endloop\nendfacet\n";
   return text + std::string("endsolid ") + name + "\n";
 }
 
@@ -105,8 +106,9 @@ void write_box_patient(const fs::path& folder) {
 std::string box_case(const Folder& folder) {
   write_box_patient(folder.path());
   const std::string made = folder / "boxes";
-  const auto outcome = condyle({"import", "meshes", "--maxilla", folder / "maxilla.stl", "--mandible",
-                                folder / "mandible.stl", "--landmarks", folder / "marks.csv", "--out", made});
+  const auto outcome =
+      condyle({"import", "meshes", "--maxilla", folder / "maxilla.stl", "--mandible",
+               folder / "mandible.stl", "--landmarks", folder / "marks.csv", "--out", made});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   return made;
 }

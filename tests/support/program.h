@@ -12,8 +12,8 @@ struct Outcome {
 };
 
 struct Limits {
-  long memory_mb = 0;  // of address space; 0 = none
-  long file_mb = -1;   // largest file that may be written; -1 = none
+  long memory_mb = 0;       // of address space; 0 = none
+  long file_mb = -1;        // largest file that may be written; -1 = none
   double kill_after_s = 0;  // SIGKILL after this time; 0 = never
 };
 

@@ -1,5 +1,5 @@
-// Bad input: one clear line that names the file, the item and the value; the right exit code; bounded
-// memory; earlier output whole.
+// Bad input: one clear line that names the file, the item and the value; the right exit code;
+// bounded memory; earlier output whole.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -12,7 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-int lines(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
+int lines(const std::string& text) {
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
 
 void expect_refused(const std::vector<std::string>& arguments, int code,
                     const std::vector<std::string>& told, const Limits& limits = {}) {
@@ -22,44 +24,46 @@ void expect_refused(const std::vector<std::string>& arguments, int code,
   EXPECT_EQ(outcome.code, code) << command << "\n" << outcome.err;
   EXPECT_EQ(lines(outcome.err), 1) << command << "\n" << outcome.err;
   for (const auto& word : told)
-    EXPECT_NE(outcome.err.find(word), std::string::npos) << command << "\nmisses " << word << " in\n"
-                                                         << outcome.err;
+    EXPECT_NE(outcome.err.find(word), std::string::npos)
+        << command << "\nmisses " << word << " in\n"
+        << outcome.err;
   EXPECT_TRUE(outcome.out.empty()) << outcome.out;
 }
 
 class BadMesh : public ::testing::Test {
  protected:
   BadMesh() { write_box_patient(folder.path()); }
-  void refused(const std::string& name, const std::string& content, const std::vector<std::string>& told) {
+  void refused(const std::string& name, const std::string& content,
+               const std::vector<std::string>& told) {
     write_text(folder.path() / name, content);
     auto words = told;
     words.push_back(name);
-    expect_refused({"import", "meshes", "--maxilla", folder / "maxilla.stl", "--mandible", folder / name,
-                    "--out", folder / "case"},
+    expect_refused({"import", "meshes", "--maxilla", folder / "maxilla.stl", "--mandible",
+                    folder / name, "--out", folder / "case"},
                    2, words, {.memory_mb = 2000});
     EXPECT_FALSE(fs::exists(folder / "case"));
   }
   Folder folder;
 };
 
-std::string ply(const std::string& vertices, const std::string& faces, long vertex_count, long face_count) {
+std::string ply(const std::string& vertices, const std::string& faces, long vertex_count,
+                long face_count) {
   return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertex_count) +
          "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-         std::to_string(face_count) + "\nproperty list uchar int vertex_indices\nend_header\n" + vertices +
-         faces;
+         std::to_string(face_count) + "\nproperty list uchar int vertex_indices\nend_header\n" +
+         vertices + faces;
 }
 
 }  // namespace
 
 TEST_F(BadMesh, MissingFile) {
-  expect_refused({"import", "meshes", "--mandible", folder / "nowhere.stl", "--out", folder / "case"}, 2,
-                 {"nowhere.stl", "no such file"});
+  expect_refused(
+      {"import", "meshes", "--mandible", folder / "nowhere.stl", "--out", folder / "case"}, 2,
+      {"nowhere.stl", "no such file"});
 }
 TEST_F(BadMesh, EmptyFile) { refused("empty.ply", "", {"empty"}); }
 TEST_F(BadMesh, Garbage) { refused("noise.stl", std::string(3000, '\x7f'), {}); }
-TEST_F(BadMesh, Truncated) {
-  refused("short.ply", ply("0 0 0\n1 0 0\n", "", 3, 1), {});
-}
+TEST_F(BadMesh, Truncated) { refused("short.ply", ply("0 0 0\n1 0 0\n", "", 3, 1), {}); }
 TEST_F(BadMesh, PromisesFourBillionVertices) {
   refused("huge.ply", ply("0 0 0\n", "", 4000000000, 1), {"4000000000"});
 }
@@ -75,7 +79,9 @@ TEST_F(BadMesh, NotANumber) {
 TEST_F(BadMesh, IndexOutOfRange) {
   refused("index.ply", ply("0 0 0\n1 0 0\n0 1 0\n", "3 0 1 7\n", 3, 1), {"7"});
 }
-TEST_F(BadMesh, NoTriangles) { refused("points.ply", ply("0 0 0\n1 0 0\n0 1 0\n", "", 3, 0), {"triangle"}); }
+TEST_F(BadMesh, NoTriangles) {
+  refused("points.ply", ply("0 0 0\n1 0 0\n0 1 0\n", "", 3, 0), {"triangle"});
+}
 TEST_F(BadMesh, UnknownKind) { refused("jaw.docx", "hello", {"docx"}); }
 
 TEST_F(BadMesh, WrongUnits) {
@@ -128,7 +134,8 @@ TEST(BadMotion, RefusedWithFileLineAndValue) {
     expect_refused({"run", patient, "--motion", folder / name, "--out", folder / "out"}, 2,
                    {name, motion.second});
   }
-  expect_refused({"run", patient, "--motion", "yawn", "--out", folder / "out"}, 2, {"yawn", "opening"});
+  expect_refused({"run", patient, "--motion", "yawn", "--out", folder / "out"}, 2,
+                 {"yawn", "opening"});
   expect_refused({"run", patient, "--motion", folder / "nowhere.csv", "--out", folder / "out"}, 2,
                  {"nowhere.csv"});
 }
@@ -138,14 +145,21 @@ TEST(BadCommand, RefusedWithTheValue) {
   const std::string patient = box_case(folder), out = folder / "out";
   expect_refused({"dance"}, 2, {"dance", "record"});
   expect_refused({"run", patient, "--motion", "opening"}, 2, {"--out"});
-  expect_refused({"run", patient, "--motion", "opening", "--out", out, "--frames", "0"}, 2, {"--frames", "0"});
-  expect_refused({"run", patient, "--motion", "opening", "--out", out, "--frames", "-3"}, 2, {"--frames"});
+  expect_refused({"run", patient, "--motion", "opening", "--out", out, "--frames", "0"}, 2,
+                 {"--frames", "0"});
+  expect_refused({"run", patient, "--motion", "opening", "--out", out, "--frames", "-3"}, 2,
+                 {"--frames"});
   expect_refused({"run", patient, "--motion", "opening", "--out", out, "--fps", "0"}, 2, {"--fps"});
-  expect_refused({"record", patient, "--motion", "opening", "--out", out, "--size", "0x720"}, 2, {"0x720"});
-  expect_refused({"record", patient, "--motion", "opening", "--out", out, "--size", "big"}, 2, {"big"});
-  expect_refused({"record", patient, "--motion", "opening", "--out", out, "--camera", "moon"}, 2, {"moon"});
-  expect_refused({"record", patient, "--motion", "opening", "--out", out, "--show", "soul"}, 2, {"soul"});
-  expect_refused({"run", patient, "--motion", "opening", "--out", out, "--threads", "0"}, 2, {"--threads"});
+  expect_refused({"record", patient, "--motion", "opening", "--out", out, "--size", "0x720"}, 2,
+                 {"0x720"});
+  expect_refused({"record", patient, "--motion", "opening", "--out", out, "--size", "big"}, 2,
+                 {"big"});
+  expect_refused({"record", patient, "--motion", "opening", "--out", out, "--camera", "moon"}, 2,
+                 {"moon"});
+  expect_refused({"record", patient, "--motion", "opening", "--out", out, "--show", "soul"}, 2,
+                 {"soul"});
+  expect_refused({"run", patient, "--motion", "opening", "--out", out, "--threads", "0"}, 2,
+                 {"--threads"});
   expect_refused({"import"}, 2, {});
   EXPECT_EQ(condyle({"--help"}).code, 0);
   EXPECT_EQ(condyle({"record", "--help"}).code, 0);
@@ -157,7 +171,8 @@ TEST(BadOutput, UnwritableOrFullFolderLeavesEarlierOutput) {
   const std::string patient = box_case(folder), out = folder / "out";
   write_text(folder / "file", "in the way");
   expect_refused({"run", patient, "--motion", "opening", "--out", folder / "file"}, 1, {"file"});
-  ASSERT_EQ(condyle({"run", patient, "--motion", "opening", "--out", out, "--frames", "5"}).code, 0);
+  ASSERT_EQ(condyle({"run", patient, "--motion", "opening", "--out", out, "--frames", "5"}).code,
+            0);
   const std::string trace = read_text(out + "/trace.csv"), report = read_text(out + "/report.json");
   ASSERT_EQ(lines(trace), 6);
   const auto full = condyle({"run", patient, "--motion", "opening", "--out", out, "--frames", "5"},
@@ -165,7 +180,8 @@ TEST(BadOutput, UnwritableOrFullFolderLeavesEarlierOutput) {
   EXPECT_EQ(full.code, 1) << full.err;
   EXPECT_EQ(read_text(out + "/trace.csv"), trace);
   EXPECT_EQ(read_text(out + "/report.json"), report);
-  expect_refused({"run", patient, "--motion", "opening", "--out", "/proc/nowhere"}, 1, {"/proc/nowhere"});
+  expect_refused({"run", patient, "--motion", "opening", "--out", "/proc/nowhere"}, 1,
+                 {"/proc/nowhere"});
 }
 
 }  // namespace condyle::test

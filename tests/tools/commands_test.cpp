@@ -68,8 +68,8 @@ TEST(Run, TraceRepeatsToTheBitForOneAndTwoThreads) {
   const std::string patient = box_case(folder);
   const auto trace = [&](const std::string& threads) {
     const std::string out = folder / ("out" + threads);
-    EXPECT_EQ(condyle({"run", patient, "--motion", "opening", "--out", out, "--frames", "31", "--threads",
-                       threads})
+    EXPECT_EQ(condyle({"run", patient, "--motion", "opening", "--out", out, "--frames", "31",
+                       "--threads", threads})
                   .code,
               0);
     return read_trace(out + "/trace.csv");
@@ -93,10 +93,12 @@ TEST(Run, RecordedPosesAreTheTracesPoses) {
   const double angle = 0.2;
   std::ostringstream csv;
   csv.precision(17);
-  csv << pose_header << "0,0,0,0,1,0,0,0\n0.5,1,-2,-3," << std::cos(angle / 2) << ',' << std::sin(angle / 2)
-      << ",0,0\n1,0,0,0,1,0,0,0\n";
+  csv << pose_header << "0,0,0,0,1,0,0,0\n0.5,1,-2,-3," << std::cos(angle / 2) << ','
+      << std::sin(angle / 2) << ",0,0\n1,0,0,0,1,0,0,0\n";
   write_text(motion, csv.str());
-  ASSERT_EQ(condyle({"run", patient, "--motion", motion, "--out", folder / "out", "--frames", "3"}).code, 0);
+  ASSERT_EQ(
+      condyle({"run", patient, "--motion", motion, "--out", folder / "out", "--frames", "3"}).code,
+      0);
   const auto row = read_trace(folder / "out/trace.csv").rows.at(1);
   EXPECT_EQ(row.at("ty_mm"), -2);
   // The incisal point (0, -92, -41) turned about x and moved, by hand.
@@ -110,7 +112,10 @@ TEST(Run, PushedIntoBoneStopsWhenContactIsRespected) {
   const std::string patient = box_case(folder), motion = folder / "bite.csv";
   write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n1,0,0,6,1,0,0,0\n");
   ASSERT_EQ(condyle({"run", patient, "--motion", motion, "--out", folder / "free"}).code, 0);
-  ASSERT_EQ(condyle({"run", patient, "--motion", motion, "--respect-contact", "--out", folder / "kept"}).code, 0);
+  ASSERT_EQ(
+      condyle({"run", patient, "--motion", motion, "--respect-contact", "--out", folder / "kept"})
+          .code,
+      0);
   EXPECT_NEAR(read_trace(folder / "free/trace.csv").rows.back().at("max_penetration_mm"), 5, 1e-6);
   const auto kept = read_trace(folder / "kept/trace.csv").rows.back();
   EXPECT_LE(kept.at("max_penetration_mm"), 0.02);
@@ -149,8 +154,9 @@ TEST(Record, KilledAtAnyMomentLeavesWholeFramesAndResumesToTheSameBits) {
   const Folder folder;
   const std::string patient = box_case(folder);
   const auto command = [&](const std::string& out) {
-    return std::vector<std::string>{"record", patient, "--motion", "opening", "--out", folder / out,
-                                    "--frames", "40", "--size", "320x240", "--film"};
+    return std::vector<std::string>{"record", patient,      "--motion", "opening",
+                                    "--out",  folder / out, "--frames", "40",
+                                    "--size", "320x240",    "--film"};
   };
   ASSERT_EQ(condyle(command("whole")).code, 0);
   const auto whole = pictures(folder / "whole/frames");

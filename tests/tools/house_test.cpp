@@ -22,7 +22,8 @@ struct Source {
 
 std::vector<Source> sources() {
   std::vector<Source> found;
-  const std::regex own("^\\s*#\\s*include\\s*\"([^\"]+)\""), library("^\\s*#\\s*include\\s*<([^>]+)>");
+  const std::regex own("^\\s*#\\s*include\\s*\"([^\"]+)\""),
+      library("^\\s*#\\s*include\\s*<([^>]+)>");
   for (const char* room : {"engine", "sim", "render", "tools"})
     for (const auto& entry : fs::recursive_directory_iterator(top / room)) {
       const auto extension = entry.path().extension();
@@ -39,14 +40,17 @@ std::vector<Source> sources() {
   return found;
 }
 
-bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
+bool starts_with(const std::string& text, const std::string& start) {
+  return text.rfind(start, 0) == 0;
+}
 
 /// Whether `from` may include `target`, both given from the top.
 bool allowed(const std::string& from, const std::string& target) {
   if (starts_with(from, "engine/")) return starts_with(target, "engine/");
   if (starts_with(from, "sim/frame/"))
     return starts_with(target, "engine/") || starts_with(target, "sim/frame/");
-  if (starts_with(from, "sim/")) return starts_with(target, "engine/") || starts_with(target, "sim/");
+  if (starts_with(from, "sim/"))
+    return starts_with(target, "engine/") || starts_with(target, "sim/");
   if (starts_with(from, "render/"))
     return starts_with(target, "engine/") || starts_with(target, "render/") ||
            starts_with(target, "sim/frame/");
@@ -62,7 +66,8 @@ TEST(House, IncludesRunDownwardOnly) {
   for (const auto& source : all)
     for (const auto& target : source.own_includes) {
       EXPECT_TRUE(allowed(source.path, target)) << source.path << " includes " << target;
-      EXPECT_TRUE(fs::exists(top / target)) << source.path << " includes " << target << " from elsewhere";
+      EXPECT_TRUE(fs::exists(top / target))
+          << source.path << " includes " << target << " from elsewhere";
       ++checked;
     }
   EXPECT_GT(checked, 100);
@@ -92,12 +97,13 @@ TEST(House, EachLibraryHasOneRoom) {
 }
 
 TEST(House, TopLevelIsFixed) {
-  const std::set<std::string> rooms = {"CMakeLists.txt", "engine", "sim", "render", "tools", "tests",
-                                       "README.md"};
+  const std::set<std::string> rooms = {"CMakeLists.txt", "engine", "sim",      "render",
+                                       "tools",          "tests",  "README.md"};
   std::set<std::string> found;
   for (const auto& entry : fs::directory_iterator(top)) {
     const auto name = entry.path().filename().string();
-    if (name.front() == '.' || name == "build" || name == "out") continue;  // the last two are ignored
+    if (name.front() == '.' || name == "build" || name == "out")
+      continue;  // the last two are ignored
     found.insert(name);
   }
   EXPECT_EQ(found, rooms);

@@ -12,8 +12,9 @@ namespace {
 Pose random_pose(std::mt19937& generator) {
   std::normal_distribution<double> normal;
   Pose pose;
-  pose.R = Eigen::Quaterniond(normal(generator), normal(generator), normal(generator), normal(generator))
-               .normalized();
+  pose.R =
+      Eigen::Quaterniond(normal(generator), normal(generator), normal(generator), normal(generator))
+          .normalized();
   pose.t = 30 * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
   return pose;
 }

@@ -1,3 +1,5 @@
+#include "sim/report/report.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 
 #include "sim/report/clearance.h"
 #include "sim/report/plots.h"
-#include "sim/report/report.h"
 #include "sim/report/trace.h"
 #include "tests/support/boxes.h"
 #include "tests/support/program.h"
@@ -15,11 +16,15 @@ namespace condyle::test {
 namespace {
 
 Motion lift(double height_mm) {
-  return {"lift", 0.5, true, [height_mm](double t) {
+  return {"lift",
+          0.5,
+          true,
+          [height_mm](double t) {
             Pose pose;
             pose.t = {0, 0, height_mm * std::clamp(t, 0.0, 0.5) / 0.5};
             return pose;
-          }, {}};
+          },
+          {}};
 }
 
 }  // namespace
@@ -85,7 +90,8 @@ TEST(Summary, MedianAndPercentile) {
 }
 
 TEST(Plot, CurvesLieWithinTheAxes) {
-  const auto svg = plot_svg({{"a", {0, 1, 2}, {-5, 50, 3}}}, {.title = "t", .x_label = "x", .y_label = "y"});
+  const auto svg =
+      plot_svg({{"a", {0, 1, 2}, {-5, 50, 3}}}, {.title = "t", .x_label = "x", .y_label = "y"});
   EXPECT_NE(svg.find("</svg>"), std::string::npos);
   std::istringstream points(svg.substr(svg.find("points=\"") + 8));
   double x = 0, y = 0;

@@ -11,11 +11,15 @@ namespace condyle::test {
 namespace {
 
 Motion dropping() {
-  return {"dropping", 2.0, false, [](double t) {
+  return {"dropping",
+          2.0,
+          false,
+          [](double t) {
             Pose pose;
             pose.t = {0, 0, -20 * std::clamp(t, 0.0, 2.0)};
             return pose;
-          }, {}};
+          },
+          {}};
 }
 
 /// The frame that answers the newest request; a minute at most.

@@ -12,25 +12,34 @@ namespace {
 
 /// Drops by 20 mm and comes back within two seconds, turning a little.
 Motion nodding(bool recorded = false) {
-  return {"nodding", 2.0, recorded, [](double t) {
+  return {"nodding",
+          2.0,
+          recorded,
+          [](double t) {
             const double s = std::sin(M_PI * std::clamp(t, 0.0, 2.0) / 2.0);
             Pose pose;
             pose.R = Eigen::AngleAxisd(0.1 * s, Eigen::Vector3d::UnitX());
             pose.t = {0, 0, -20 * s};
             return pose;
-          }, {}};
+          },
+          {}};
 }
 
 /// Pushes the mandible 5 mm up, into the maxilla.
 Motion biting(bool recorded) {
-  return {"biting", 0.5, recorded, [](double t) {
+  return {"biting",
+          0.5,
+          recorded,
+          [](double t) {
             Pose pose;
             pose.t = {0, 0, 10 * std::clamp(t, 0.0, 0.5)};
             return pose;
-          }, {}};
+          },
+          {}};
 }
 
-std::vector<std::uint64_t> hashes(const Scene& scene, int threads, const std::vector<double>& times) {
+std::vector<std::uint64_t> hashes(const Scene& scene, int threads,
+                                  const std::vector<double>& times) {
   SimulatorSettings settings;
   settings.threads = threads;
   Playback playback(scene, nodding(), settings);
