@@ -21,8 +21,8 @@ double largest_norm(const Nodes& a) {
 
 }  // namespace
 
-MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads, const HessianFactor& factor,
-                        const MinimizeSettings& settings, Nodes& x) {
+MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads,
+                        const HessianFactor& factor, const MinimizeSettings& settings, Nodes& x) {
   SpringPrismEnergy energy(net, loads, settings.threads);
   MinimizeResult result;
   Nodes g, g_new, z, z_new, d, trial(x.size());
@@ -34,11 +34,8 @@ MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads, const 
   d.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
 
-  for (; result.iterations < settings.max_iterations; ++result.iterations) {
-    if (gz == 0) {
-      result.converged = true;
-      break;
-    }
+  if (largest_norm(z) < 0.05 * settings.tolerance_mm) result.converged = true;
+  for (; !result.converged && result.iterations < settings.max_iterations; ++result.iterations) {
     double slope = dot(g, d);
     if (slope >= 0) {
       for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
@@ -46,8 +43,8 @@ MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads, const 
     }
     // Parabolic line search: the minimum of the parabola with the exact slope and curvature.
     const auto curvature = energy.curvature(x, d);
-    const double bend = curvature.exact > 0.1 * curvature.gauss_newton ? curvature.exact
-                                                                       : curvature.gauss_newton;
+    const double bend =
+        curvature.exact > 0.1 * curvature.gauss_newton ? curvature.exact : curvature.gauss_newton;
     if (!(bend > 0)) break;
     double step = -slope / bend;
     const double reach = largest_norm(d);
@@ -65,12 +62,15 @@ MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads, const 
                  (std::abs(f_new - f) <= rounding && std::abs(dot(g_new, d)) <= 0.9 * -slope);
       if (!accepted) {
         const double fit = f_new - f - step * slope;  // parabola through f, slope and f_new
-        const double parabolic = std::isfinite(f_new) && fit > 0 ? -slope * step * step / (2 * fit)
-                                                                 : 0.3 * step;
+        const double parabolic =
+            std::isfinite(f_new) && fit > 0 ? -slope * step * step / (2 * fit) : 0.3 * step;
         step = std::clamp(parabolic, 0.1 * step, 0.6 * step);
       }
     }
-    if (!accepted) break;
+    if (!accepted) {  // as low as the arithmetic goes
+      result.converged = largest_norm(z) < settings.tolerance_mm;
+      break;
+    }
 
     x.swap(trial);
     f = f_new;

@@ -6,10 +6,10 @@
 namespace condyle {
 
 struct MinimizeSettings {
-  double tolerance_mm = 1e-3;   // estimated distance left to the minimum, of the worst node
+  double tolerance_mm = 1e-3;  // estimated distance left to the minimum, of the worst node
   int max_iterations = 2000;
-  double max_step_mm = 4.0;     // of any node in one iteration
-  int threads = 1;              // the result has the same bits for any number
+  double max_step_mm = 4.0;  // of any node in one iteration
+  int threads = 1;           // the result has the same bits for any number
 };
 
 struct MinimizeResult {
@@ -24,7 +24,7 @@ struct MinimizeResult {
 /// with a parabolic line search. Along a direction each squared length is quadratic and each volume
 /// cubic, so the curvature is known exactly and one step is nearly always taken as it is.
 /// `x` must have no inverted prism; no step makes one. The factor may be of any state of the net.
-MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads, const HessianFactor& factor,
-                        const MinimizeSettings& settings, Nodes& x);
+MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads,
+                        const HessianFactor& factor, const MinimizeSettings& settings, Nodes& x);
 
 }  // namespace condyle

@@ -10,7 +10,8 @@ namespace condyle {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-HandleSet make_handles(const std::vector<Eigen::Vector3i>& triangles, int sheets, const Nodes& rest) {
+HandleSet make_handles(const std::vector<Eigen::Vector3i>& triangles, int sheets,
+                       const Nodes& rest) {
   HandleSet set;
   const int columns = static_cast<int>(rest.size()) / sheets;
   set.ring.resize(columns);
@@ -23,8 +24,10 @@ HandleSet make_handles(const std::vector<Eigen::Vector3i>& triangles, int sheets
     const int node = node_of(column, 0, sheets);
     set.node.push_back(node);
     for (int n : set.ring[column])
-      for (int sheet : {0, std::min(1, sheets - 1)}) set.neighbour.push_back(node_of(n, sheet, sheets));
-    for (int sheet = 1; sheet < sheets; ++sheet) set.neighbour.push_back(node_of(column, sheet, sheets));
+      for (int sheet : {0, std::min(1, sheets - 1)})
+        set.neighbour.push_back(node_of(n, sheet, sheets));
+    for (int sheet = 1; sheet < sheets; ++sheet)
+      set.neighbour.push_back(node_of(column, sheet, sheets));
     Matrix3d spread = Matrix3d::Zero();
     for (std::size_t k = set.first_neighbour.back(); k < set.neighbour.size(); ++k) {
       const Vector3d d = rest[set.neighbour[k]] - rest[node];
@@ -68,8 +71,10 @@ CarriedPoint carry(const std::vector<int>& candidates, const BodyDistance& dista
   for (int h : candidates) order.emplace_back(distance(h), h);
   const std::size_t kept = std::min<std::size_t>(CarriedPoint::capacity, order.size());
   const std::size_t reach = std::min(kept, order.size() - 1);  // the first one left out, if any
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(reach + 1), order.end());
-  const double radius = order.size() > kept ? order[reach].first : order[reach].first * 1.0001 + 1e-9;
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(reach + 1),
+                    order.end());
+  const double radius =
+      order.size() > kept ? order[reach].first : order[reach].first * 1.0001 + 1e-9;
   CarriedPoint point;
   double sum = 0;
   std::array<double, CarriedPoint::capacity> weight{};

@@ -20,15 +20,16 @@ struct CarriedPoint {
 
 /// Nodes that carry points, each with the neighbours that tell how the body turns and stretches.
 struct HandleSet {
-  std::vector<int> node;                     // of each handle
-  std::vector<int> first_neighbour;          // handle -> range in `neighbour`, one longer than node
-  std::vector<int> neighbour;                // nodes
+  std::vector<int> node;             // of each handle
+  std::vector<int> first_neighbour;  // handle -> range in `neighbour`, one longer than node
+  std::vector<int> neighbour;        // nodes
   std::vector<Eigen::Matrix3d> inverse_spread;  // of the rest offsets, per handle
-  std::vector<std::vector<int>> ring;        // handles next to a handle, to smooth the deformation
+  std::vector<std::vector<int>> ring;  // handles next to a handle, to smooth the deformation
 };
 
 /// Handles at the outermost nodes of a layered net of `sheets` sheets (see layered_net.h).
-HandleSet make_handles(const std::vector<Eigen::Vector3i>& triangles, int sheets, const Nodes& rest);
+HandleSet make_handles(const std::vector<Eigen::Vector3i>& triangles, int sheets,
+                       const Nodes& rest);
 
 /// Displacement and deformation (minus 1) of each handle between the two states.
 struct HandleMotion {

@@ -152,12 +152,23 @@ HessianFactor::HessianFactor(const SpringPrismNet& net, int nodes_per_column, co
         add(net.prisms[p][a], net.prisms[p][b], weight * slope[a] * slope[b].transpose());
   }
   switch (nodes_per_column_) {
-    case 1: factorize<3>(); break;
-    case 2: factorize<6>(); break;
-    case 3: factorize<9>(); break;
-    case 4: factorize<12>(); break;
-    case 6: factorize<18>(); break;
-    default: throw std::logic_error("HessianFactor: no kernel for this many nodes in a column");
+    case 1:
+      factorize<3>();
+      break;
+    case 2:
+      factorize<6>();
+      break;
+    case 3:
+      factorize<9>();
+      break;
+    case 4:
+      factorize<12>();
+      break;
+    case 6:
+      factorize<18>();
+      break;
+    default:
+      throw std::logic_error("HessianFactor: no kernel for this many nodes in a column");
   }
 }
 
@@ -165,7 +176,9 @@ template <int B>
 void HessianFactor::factorize() {
   using Block = Eigen::Matrix<float, B, B>;
   using Map = Eigen::Map<Block>;
-  const auto at = [&](int entry) { return Map(blocks_.data() + static_cast<std::size_t>(entry) * B * B); };
+  const auto at = [&](int entry) {
+    return Map(blocks_.data() + static_cast<std::size_t>(entry) * B * B);
+  };
   for (int j = 0; j < columns_; ++j) {
     const int begin = first_[j], end = first_[j + 1];
     Map diagonal = at(begin);
@@ -196,7 +209,9 @@ void HessianFactor::solve_blocks(const Nodes& g, Nodes& z) const {
     y[j] = Eigen::Map<const Eigen::Matrix<double, B, 1>>(
                g[static_cast<std::size_t>(column_at_[j]) * nodes_per_column_].data())
                .template cast<float>();
-  const auto at = [&](int entry) { return Map(blocks_.data() + static_cast<std::size_t>(entry) * B * B); };
+  const auto at = [&](int entry) {
+    return Map(blocks_.data() + static_cast<std::size_t>(entry) * B * B);
+  };
   for (int j = 0; j < columns_; ++j) {
     const Column solved = at(first_[j]) * y[j];
     y[j] = solved;
@@ -217,11 +232,16 @@ void HessianFactor::solve_blocks(const Nodes& g, Nodes& z) const {
 
 void HessianFactor::solve(const Nodes& g, Nodes& z) const {
   switch (nodes_per_column_) {
-    case 1: return solve_blocks<3>(g, z);
-    case 2: return solve_blocks<6>(g, z);
-    case 3: return solve_blocks<9>(g, z);
-    case 4: return solve_blocks<12>(g, z);
-    default: return solve_blocks<18>(g, z);
+    case 1:
+      return solve_blocks<3>(g, z);
+    case 2:
+      return solve_blocks<6>(g, z);
+    case 3:
+      return solve_blocks<9>(g, z);
+    case 4:
+      return solve_blocks<12>(g, z);
+    default:
+      return solve_blocks<18>(g, z);
   }
 }
 

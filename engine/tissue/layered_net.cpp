@@ -22,7 +22,8 @@ SpringPrismNet layered_net(const std::vector<Eigen::Vector3i>& triangles, int sh
   net.node_count = static_cast<int>(nodes.size());
   const int columns = net.node_count / sheets;
 
-  // Volume and stiffness that each node of each layer carries: a third of every prism at its column.
+  // Volume and stiffness that each node of each layer carries: a third of every prism at its
+  // column.
   std::vector<double> share(static_cast<std::size_t>(columns) * (sheets - 1), 0.0);
   for (int layer = 0; layer + 1 < sheets; ++layer)
     for (const auto& t : triangles) {

@@ -31,8 +31,10 @@ std::vector<double> harmonic_shares(const SpringPrismNet& net, const std::vector
                                std::pair{net.spring_b[s], net.spring_a[s]}}) {
       if (unknown[a] < 0) continue;
       entries.emplace_back(unknown[a], unknown[a], k);
-      if (unknown[b] < 0) right[unknown[a]] += k * share[b];
-      else entries.emplace_back(unknown[a], unknown[b], -k);
+      if (unknown[b] < 0)
+        right[unknown[a]] += k * share[b];
+      else
+        entries.emplace_back(unknown[a], unknown[b], -k);
     }
   }
   Eigen::SparseMatrix<double> matrix(count, count);

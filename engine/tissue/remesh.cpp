@@ -127,8 +127,8 @@ bool keeps_facing(const Net& net, int v, const Vector3d& p, int skip_a, int skip
     for (int k = 0; k < 3; ++k) c[k] = tri[k] == v ? p : net.position[tri[k]];
     const Vector3d before = net.area_normal(tri);
     const Vector3d after = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
-    const double longest2 = std::max({(c[1] - c[0]).squaredNorm(), (c[2] - c[1]).squaredNorm(),
-                                      (c[0] - c[2]).squaredNorm()});
+    const double longest2 = std::max(
+        {(c[1] - c[0]).squaredNorm(), (c[2] - c[1]).squaredNorm(), (c[0] - c[2]).squaredNorm()});
     if (after.norm() < 0.02 * longest2) return false;
     // Triangles of no area before may end as they like.
     if (before.norm() > 0 && after.dot(before) < 0.5 * after.norm() * before.norm()) return false;
@@ -137,7 +137,7 @@ bool keeps_facing(const Net& net, int v, const Vector3d& p, int skip_a, int skip
 }
 
 /// Draws `gone` into `kept`. False, and nothing is changed, where that would fold or pinch the net.
-bool collapse(Net& net, int gone, int kept) {
+bool collapse(Net& net, const RemeshSettings& settings, int gone, int kept) {
   if (net.pinned[gone]) return false;
   const auto wings = net.wings(gone, kept);
   if (wings.empty() || wings.size() > 2) return false;
@@ -150,6 +150,11 @@ bool collapse(Net& net, int gone, int kept) {
   if (net.border[gone] && net.border[kept] && a.size() <= 2) return false;
   for (int tip : shared)
     if (net.neighbours(tip).size() <= (net.border[tip] ? 2u : 3u)) return false;
+  for (int n : a) {  // nothing that would be split again
+    const double length = (net.position[n] - net.position[kept]).norm();
+    if (length > 1.4 * settings.edge_length(0.5 * (net.position[n] + net.position[kept])))
+      return false;
+  }
   const int w0 = wings[0], w1 = wings.size() > 1 ? wings[1] : -1;
   if (!keeps_facing(net, gone, net.position[kept], w0, w1)) return false;
   for (int t : wings) net.remove(t);
@@ -184,8 +189,7 @@ int collapse_short(Net& net, const RemeshSettings& settings) {
   std::vector<Short> list;
   for (const auto& [a, b] : net.edges()) {
     const Vector3d middle = 0.5 * (net.position[a] + net.position[b]);
-    const double share =
-        (net.position[a] - net.position[b]).norm() / settings.edge_length(middle);
+    const double share = (net.position[a] - net.position[b]).norm() / settings.edge_length(middle);
     if (share < 0.8) list.push_back({share, a, b});
   }
   std::sort(list.begin(), list.end(), [](const Short& l, const Short& r) {
@@ -198,8 +202,8 @@ int collapse_short(Net& net, const RemeshSettings& settings) {
     // The border's vertex is kept, an inner one is drawn into it.
     int gone = s.a, kept = s.b;
     if (net.border[gone] && !net.border[kept]) std::swap(gone, kept);
-    if (collapse(net, gone, kept) ||
-        (net.border[gone] == net.border[kept] && collapse(net, kept, gone))) {
+    if (collapse(net, settings, gone, kept) ||
+        (net.border[gone] == net.border[kept] && collapse(net, settings, kept, gone))) {
       touched[s.a] = touched[s.b] = 1;
       ++done;
     }
@@ -221,8 +225,10 @@ void flip_edges(Net& net) {
     const int c = net.third(wings[0], a, b), d = net.third(wings[1], a, b);
     if (c == d || !net.wings(c, d).empty()) continue;
     const auto& p = net.position;
-    const double before = std::min(smallest_angle(p[a], p[b], p[c]), smallest_angle(p[a], p[b], p[d]));
-    const double after = std::min(smallest_angle(p[c], p[d], p[a]), smallest_angle(p[c], p[d], p[b]));
+    const double before =
+        std::min(smallest_angle(p[a], p[b], p[c]), smallest_angle(p[a], p[b], p[d]));
+    const double after =
+        std::min(smallest_angle(p[c], p[d], p[a]), smallest_angle(p[c], p[d], p[b]));
     if (after <= before + 0.02) continue;
     // wings[0] has a, b, c in turn or b, a, c; the new pair keeps that sense.
     Vector3i first = net.triangles[wings[0]], second = net.triangles[wings[1]];
@@ -232,7 +238,8 @@ void flip_edges(Net& net) {
     }
     const Vector3d n0 = net.area_normal(net.triangles[wings[0]]).normalized();
     const Vector3d n1 = net.area_normal(net.triangles[wings[1]]).normalized();
-    const Vector3d m0 = net.area_normal(first).normalized(), m1 = net.area_normal(second).normalized();
+    const Vector3d m0 = net.area_normal(first).normalized(),
+                   m1 = net.area_normal(second).normalized();
     const Vector3d mean = (n0 + n1).normalized();
     if (n0.dot(n1) < 0.5 || m0.dot(mean) < 0.5 || m1.dot(mean) < 0.5) continue;
     net.remove(wings[0]);

@@ -16,8 +16,8 @@ struct RemeshSettings {
 };
 
 struct Remeshed {
-  TriMesh mesh;              // colours are not kept
-  std::vector<int> pinned;   // where the pinned vertices are now
+  TriMesh mesh;             // colours are not kept
+  std::vector<int> pinned;  // where the pinned vertices are now
 };
 
 /// A coarse, well-shaped, manifold surface over `fine` with about the wanted edge lengths, whose

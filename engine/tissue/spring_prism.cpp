@@ -11,73 +11,43 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The prism's volume is a sum of determinants of its corners taken from corner 0, which makes the
-/// numbers small. Each row: three corners and a weight in sixths of a half.
-struct Term {
-  int p, q, r;
-  double weight;
-};
-constexpr std::array<Term, 7> terms = {{
-    {3, 4, 5, -2},  // floor, seen from below
-    {1, 3, 4, 1},   // side 0-1
-    {2, 1, 4, 1},   // side 1-2, both splits
-    {2, 4, 5, 1},
-    {2, 1, 5, 1},
-    {1, 4, 5, 1},
-    {2, 5, 3, 1},  // side 2-0
-}};
-constexpr double sixth_of_half = 1.0 / 12.0;
-
 using Corners = std::array<Vector3d, 6>;
 
+/// Corners taken from corner 0, which makes the numbers small; [0] is zero.
 Corners relative_corners(const Nodes& x, const std::array<int, 6>& prism) {
   Corners c;
+  const Vector3d& origin = x[prism[0]];
   c[0].setZero();
-  for (int k = 1; k < 6; ++k) c[k] = x[prism[k]] - x[prism[0]];
+  for (int k = 1; k < 6; ++k) c[k] = x[prism[k]] - origin;
   return c;
 }
 
-double det(const Vector3d& a, const Vector3d& b, const Vector3d& c) { return a.dot(b.cross(c)); }
-
-double volume_of(const Corners& c) {
-  double sum = 0;
-  for (const Term& t : terms) sum += t.weight * det(c[t.p], c[t.q], c[t.r]);
-  return sum * sixth_of_half;
+/// Gradient of the volume. Twelve times the volume is, with (pqr) for a determinant,
+/// (134) + (214) + (245) + (215) + (145) + (253) - 2 (345): floor, then both splits of each side.
+void volume_gradient(const Corners& c, Corners& g) {
+  const Vector3d c45 = c[4].cross(c[5]), c12 = c[1].cross(c[2]);
+  const Vector3d sum = c[4] + c[5], lean = c[1] + c[2] - 2 * c[3];
+  constexpr double scale = 1.0 / 12.0;
+  g[1] = scale * (c[3].cross(c[4]) + sum.cross(c[2]) + c45);
+  g[2] = scale * (c[1].cross(sum) + c45 + c[5].cross(c[3]));
+  g[3] = scale * (c[4].cross(c[1]) + c[2].cross(c[5]) - 2 * c45);
+  g[4] = scale * (c[5].cross(lean) + c[1].cross(c[3]) - c12);
+  g[5] = scale * (lean.cross(c[4]) + c[3].cross(c[2]) - c12);
+  g[0] = -(g[1] + g[2] + g[3] + g[4] + g[5]);
 }
 
+double contract(const Corners& a, const Corners& b) {
+  return a[1].dot(b[1]) + a[2].dot(b[2]) + a[3].dot(b[3]) + a[4].dot(b[4]) + a[5].dot(b[5]);
+}
+
+/// The volume is a cubic form of the corners: its gradient times them is three times itself.
 double volume_and_gradient(const Corners& c, Corners& gradient) {
-  for (auto& g : gradient) g.setZero();
-  double sum = 0;
-  for (const Term& t : terms) {
-    const Vector3d qr = c[t.q].cross(c[t.r]);
-    sum += t.weight * c[t.p].dot(qr);
-    gradient[t.p] += t.weight * qr;
-    gradient[t.q] += t.weight * c[t.r].cross(c[t.p]);
-    gradient[t.r] += t.weight * c[t.p].cross(c[t.q]);
-  }
-  Vector3d total = Vector3d::Zero();
-  for (int k = 1; k < 6; ++k) {
-    gradient[k] *= sixth_of_half;
-    total += gradient[k];
-  }
-  gradient[0] = -total;
-  return sum * sixth_of_half;
+  volume_gradient(c, gradient);
+  return contract(gradient, c) / 3;
 }
 
-/// First and second derivative of the volume along d.
-void volume_derivatives(const Corners& c, const Corners& d, double& first, double& second) {
-  first = second = 0;
-  for (const Term& t : terms) {
-    const Vector3d qr = c[t.q].cross(c[t.r]);
-    const Vector3d dqr = d[t.q].cross(c[t.r]) + c[t.q].cross(d[t.r]);
-    first += t.weight * (d[t.p].dot(qr) + c[t.p].dot(dqr));
-    second += t.weight * 2 * (d[t.p].dot(dqr) + det(c[t.p], d[t.q], d[t.r]));
-  }
-  first *= sixth_of_half;
-  second *= sixth_of_half;
-}
-
-/// Energy of a prism of share j = v / rest, without the factor weight * rest^2, and derivatives in j.
+/// Energy of a prism of share j = v / rest, without the factor weight * rest^2, and derivatives in
+/// j.
 struct VolumeLaw {
   double e, de, dde;
 };
@@ -102,7 +72,8 @@ Range share(std::size_t count, int chunk, int chunks) {
 }  // namespace
 
 double prism_volume(const Nodes& nodes, const std::array<int, 6>& prism) {
-  return volume_of(relative_corners(nodes, prism));
+  Corners gradient;
+  return volume_and_gradient(relative_corners(nodes, prism), gradient);
 }
 
 double prism_volume_gradient(const Nodes& nodes, const std::array<int, 6>& prism,
@@ -117,20 +88,22 @@ double volume_stiffness(double share_of_rest, double barrier_share, double barri
 SpringPrismEnergy::SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads)
     : net_(net), loads_(loads), threads_(threads) {
   for (auto& nodes : partial_) nodes.resize(net.node_count);
+  inverse_length_.resize(net.spring_a.size());
 }
 
-double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, Nodes& gradient) const {
+double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, Nodes& gradient) {
   for (auto& g : gradient) g.setZero();
   double spring_energy = 0;
   const Range springs = share(net_.spring_a.size(), chunk, chunks_);
   for (std::size_t s = springs.first; s < springs.last; ++s) {
     const int a = net_.spring_a[s], b = net_.spring_b[s];
     const Vector3d d = x[b] - x[a];
-    const double length = std::sqrt(d.squaredNorm());
-    const double stretch = length - net_.rest_length[s];
-    const double k = net_.stiffness[s] * (stretch < 0 ? net_.compression_share : 1.0);
-    spring_energy += k * stretch * stretch;
-    const Vector3d force = (2 * k * stretch / length) * d;
+    const double inverse = 1 / std::sqrt(d.squaredNorm());
+    inverse_length_[s] = inverse;
+    const double tension = 1 - net_.rest_length[s] * inverse;  // (l - rest) / l
+    const double k = net_.stiffness[s] * (tension < 0 ? net_.compression_share : 1.0);
+    const Vector3d force = (2 * k * tension) * d;
+    spring_energy += 0.5 * tension * force.dot(d);
     gradient[a] -= force;
     gradient[b] += force;
   }
@@ -191,11 +164,10 @@ SpringPrismEnergy::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const
   for (std::size_t s = springs.first; s < springs.last; ++s) {
     const int a = net_.spring_a[s], b = net_.spring_b[s];
     const Vector3d e = x[b] - x[a], de = d[b] - d[a];
-    const double length2 = e.squaredNorm();
-    const double along = e.dot(de);
-    const double along2 = along * along / length2;
+    const double along = e.dot(de) * inverse_length_[s];
+    const double along2 = along * along;
     const double across2 = de.squaredNorm() - along2;
-    const double tension = 1 - net_.rest_length[s] / std::sqrt(length2);
+    const double tension = 1 - net_.rest_length[s] * inverse_length_[s];
     const double k2 = 2 * net_.stiffness[s] * (tension < 0 ? net_.compression_share : 1.0);
     springs_sum.exact += k2 * (along2 + tension * across2);
     springs_sum.gauss_newton += k2 * (along2 + (tension > 0 ? tension * across2 : 0));
@@ -212,12 +184,16 @@ SpringPrismEnergy::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const
     linear += 2 * net_.slide_stiffness[i] * speed * speed;
   }
   const Range prisms = share(net_.prisms.size(), chunk, chunks_);
+  Corners slope;
   for (std::size_t p = prisms.first; p < prisms.last; ++p) {
     const Corners c = relative_corners(x, net_.prisms[p]);
-    double first, second;
-    volume_derivatives(c, relative_corners(d, net_.prisms[p]), first, second);
+    const Corners e = relative_corners(d, net_.prisms[p]);
     const double rest = net_.rest_volume[p];
-    const VolumeLaw law = volume_law(volume_of(c) / rest, net_.barrier_share, net_.barrier_weight);
+    const double j = volume_and_gradient(c, slope) / rest;
+    const double first = contract(slope, e);
+    volume_gradient(e, slope);  // of a cubic form: the second derivative is twice grad(d) . c
+    const double second = 2 * contract(slope, c);
+    const VolumeLaw law = volume_law(j, net_.barrier_share, net_.barrier_weight);
     const double weight = net_.volume_weight[p];
     const double square = weight * law.dde * first * first;
     const double bend = weight * rest * law.de * second;
@@ -231,9 +207,8 @@ SpringPrismEnergy::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const
 
 SpringPrismEnergy::Curvature SpringPrismEnergy::curvature(const Nodes& x, const Nodes& d) {
   std::array<Curvature, chunks_> parts;
-  parallel_for(chunks_, threads_, [&](std::size_t c) {
-    parts[c] = chunk_curvature(static_cast<int>(c), x, d);
-  });
+  parallel_for(chunks_, threads_,
+               [&](std::size_t c) { parts[c] = chunk_curvature(static_cast<int>(c), x, d); });
   Curvature total;
   for (const auto& part : parts) {
     total.exact += part.exact;

@@ -32,8 +32,9 @@ struct SpringPrismNet {
   std::vector<double> rest_volume;    // mm^3
   std::vector<double> volume_weight;  // energy is weight * (v - rest)^2, N/mm^5
 
-  /// Stiffness of a shortened spring, over that of a stretched one. 1 is the plain energy; less says
-  /// that fibres buckle where they cannot push, and takes most of the folding out of thin sheets.
+  /// Stiffness of a shortened spring, over that of a stretched one. 1 is the plain energy; less
+  /// says that fibres buckle where they cannot push, and takes most of the folding out of thin
+  /// sheets.
   double compression_share = 0.05;
   double lambda = 0.5;  // weight of the springs; 1 - lambda that of the volumes
   /// Below this share of its rest volume a prism resists ever more, without bound at zero.
@@ -43,8 +44,8 @@ struct SpringPrismNet {
 
 /// What the outer world asks at one time.
 struct NetLoads {
-  Nodes anchor_target;               // one per anchor
-  Nodes slide_normal;                // unit, out of the body that must not be entered; one per slide
+  Nodes anchor_target;  // one per anchor
+  Nodes slide_normal;   // unit, out of the body that must not be entered; one per slide
   std::vector<double> slide_offset;  // normal . x >= offset is free
 };
 
@@ -71,17 +72,19 @@ class SpringPrismEnergy {
     double exact = 0;         // second derivative along d
     double gauss_newton = 0;  // without its negative parts, never below zero
   };
+  /// Wants the last call of value_and_gradient to have been at `x`: lengths are kept from there.
   Curvature curvature(const Nodes& x, const Nodes& d);
 
  private:
-  static constexpr int chunks_ = 4;  // fixed: the sums must not know the number of threads
-  double chunk_energy(int chunk, const Nodes& x, Nodes& gradient) const;
+  static constexpr int chunks_ = 2;  // fixed: the sums must not know the number of threads
+  double chunk_energy(int chunk, const Nodes& x, Nodes& gradient);
   Curvature chunk_curvature(int chunk, const Nodes& x, const Nodes& d) const;
 
   const SpringPrismNet& net_;
   const NetLoads& loads_;
   int threads_;
   std::array<Nodes, chunks_> partial_;
+  std::vector<double> inverse_length_;  // of each spring, 1/mm
 };
 
 }  // namespace condyle

@@ -40,7 +40,8 @@ Anatomy read_anatomy(const Case& patient, std::vector<std::string>& notes) {
 
   Box box;  // of the mandible, or of the face when there is none
   for (const auto& part : patient.parts)
-    if (body_of(part.role) == Body::mandible && collides(part.role)) box.add(bounding_box(part.mesh));
+    if (body_of(part.role) == Body::mandible && collides(part.role))
+      box.add(bounding_box(part.mesh));
   if (box.empty()) box = bounding_box(patient.find(Role::face)->mesh);
   anatomy.mandible_low = box.low.z();
   anatomy.mandible_back = box.high.y();

@@ -14,8 +14,8 @@ namespace condyle {
 struct Anatomy {
   Eigen::Vector3d condyles = Eigen::Vector3d::Zero();  // midpoint of both
   Eigen::Vector3d incisors = Eigen::Vector3d::Zero();  // midpoint of upper and lower incisal point
-  double mandible_low = 0;   // z of the lowest point of the mandible
-  double mandible_back = 0;  // y of its rearmost point
+  double mandible_low = 0;                             // z of the lowest point of the mandible
+  double mandible_back = 0;                            // y of its rearmost point
 
   /// Height of the bite above a point: the plane through the incisors that rises to the back by the
   /// usual angle between occlusal and Frankfort plane.

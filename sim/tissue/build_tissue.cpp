@@ -15,11 +15,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double bone_stiffness = 2.0;      // N/mm, some 50 times a skin spring
-constexpr double boundary_stiffness = 2.0;  // N/mm
-constexpr double cartilage_stiffness = 0.5; // N/mm
-constexpr double neck_stiffness = 0.1;      // N/mm
-constexpr double loose_stiffness = 0.04;    // N/mm
+constexpr double bone_stiffness = 2.0;       // N/mm, some 50 times a skin spring
+constexpr double boundary_stiffness = 2.0;   // N/mm
+constexpr double cartilage_stiffness = 0.5;  // N/mm
+constexpr double neck_stiffness = 0.1;       // N/mm
+constexpr double loose_stiffness = 0.04;     // N/mm
 constexpr double slide_stiffness = 1e-9;     // N/mm
 
 /// Layers from the skin inward. source: skin and cheek 30 to 40 kPa in vivo, deeper layers softer.
@@ -30,11 +30,16 @@ struct Layers {
 Layers layers_of(int count) {
   const LayerMaterial skin{0.040, 0.12}, fat{0.015, 0.12}, muscle{0.025, 0.12};
   switch (count) {
-    case 1: return {{1.0}, {{0.025, 0.12}}};
-    case 2: return {{0.35, 0.65}, {skin, muscle}};
-    case 3: return {{0.22, 0.38, 0.40}, {skin, fat, muscle}};
-    case 5: return {{0.12, 0.18, 0.22, 0.24, 0.24}, {skin, skin, fat, muscle, muscle}};
-    default: throw InputError("soft tissue: layers must be 1, 2, 3 or 5, not " + std::to_string(count));
+    case 1:
+      return {{1.0}, {{0.025, 0.12}}};
+    case 2:
+      return {{0.35, 0.65}, {skin, muscle}};
+    case 3:
+      return {{0.22, 0.38, 0.40}, {skin, fat, muscle}};
+    case 5:
+      return {{0.12, 0.18, 0.22, 0.24, 0.24}, {skin, skin, fat, muscle, muscle}};
+    default:
+      throw InputError("soft tissue: layers must be 1, 2, 3 or 5, not " + std::to_string(count));
   }
 }
 
@@ -47,7 +52,7 @@ double smoothstep(double t) {
 /// all from this far on.
 double rim_follows(double to_mandible_mm) { return 1 - smoothstep((to_mandible_mm - 15) / 65); }
 
-/// Solves a plain opening knot by knot, and keeps a factor at every other knot: the tissue of the
+/// Solves a plain opening knot by knot, and keeps a factor at each: the tissue of the
 /// lower face turns with the jaw, and a factor made unturned asks for several times the iterations.
 void make_path(TissueModel& model, const Anatomy& anatomy) {
   constexpr int knots = 12;
@@ -63,9 +68,8 @@ void make_path(TissueModel& model, const Anatomy& anatomy) {
     state = follow(model, state, model.path.pose(angle), budget);
     if (!state.converged || state.inverted_prisms > 0) break;  // as far as this tissue opens
     nodes.push_back(state.nodes);
-    if (i % 2 == 0)
-      model.factors.push_back({angle - model.path.step_rad,
-                               HessianFactor(model.net, model.sheets, state.nodes)});
+    model.factors.push_back(
+        {angle - model.path.step_rad / 2, HessianFactor(model.net, model.sheets, state.nodes)});
   }
   model.path.nodes = std::move(nodes);
 }
@@ -127,8 +131,10 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
       given.push_back(inner);
       given_share.push_back(share);
       if (columns[c].cartilage)
-        for (int s = 0; s + 1 < sheets; ++s) anchor(node_of(c, s, sheets), share, cartilage_stiffness);
-      ++(columns[c].hold == Hold::mandible ? summary.attached_to_mandible : summary.attached_to_cranium);
+        for (int s = 0; s + 1 < sheets; ++s)
+          anchor(node_of(c, s, sheets), share, cartilage_stiffness);
+      ++(columns[c].hold == Hold::mandible ? summary.attached_to_mandible
+                                           : summary.attached_to_cranium);
     } else if (columns[c].ground != Ground::none && columns[c].to_mouth < 25) {
       // The plane touches what the march met; tissue already behind it at rest may stay there.
       const Vector3d met = skin.mesh.vertices[c] + columns[c].met_depth * columns[c].inward;
@@ -166,8 +172,8 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
       }
   model->node_share = harmonic_shares(net, given, given_share);
 
-  // What is not grown on bone still hangs on both by loose tissue: one weak spring to each, with the
-  // node's share. Without it the inner sheet of a stretched cheek may fold either way.
+  // What is not grown on bone still hangs on both by loose tissue: one weak spring to each, with
+  // the node's share. Without it the inner sheet of a stretched cheek may fold either way.
   std::vector<char> held(net.node_count, 0);
   for (int node : net.anchor_node) held[node] = 1;
   for (int c = 0; c < model->columns; ++c) {

@@ -52,7 +52,8 @@ CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes) {
   skin.rim.assign(skin.mesh.vertices.size(), 0);
   skin.border.assign(skin.mesh.vertices.size(), 0);
 
-  // Border vertices slid along the fine borders: each asks the nearest fine border vertex what it is.
+  // Border vertices slid along the fine borders: each asks the nearest fine border vertex what it
+  // is.
   enum class Kind { rim, border };
   std::vector<std::pair<Vector3d, Kind>> marks;
   for (int v : region.rim) marks.emplace_back(fine.vertices[v], Kind::rim);
@@ -81,24 +82,15 @@ CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes) {
     skin.mouth.left_corner = coarse.pinned[1];
     const auto& loop = loops[mouth_loop];
     const int n = static_cast<int>(loop.size());
-    const int right = static_cast<int>(std::find(loop.begin(), loop.end(), coarse.pinned[0]) - loop.begin());
+    const int right =
+        static_cast<int>(std::find(loop.begin(), loop.end(), coarse.pinned[0]) - loop.begin());
     std::vector<int> one, other;
     int i = (right + 1) % n;
     for (; loop[i] != coarse.pinned[1] && i != right; i = (i + 1) % n) one.push_back(loop[i]);
-    for (i = (i + 1) % n; i != right && i != (right + n) % n; i = (i + 1) % n) other.push_back(loop[i]);
+    for (i = (i + 1) % n; i != right && i != (right + n) % n; i = (i + 1) % n)
+      other.push_back(loop[i]);
     std::reverse(other.begin(), other.end());
-    // The runs of the fine outline say which is the upper one.
-    const auto distance_to = [&](const std::vector<int>& run, const std::vector<int>& fine_run) {
-      double sum = 0;
-      for (int v : run) {
-        double best = 1e18;
-        for (int f : fine_run) best = std::min(best, (fine.vertices[f] - skin.mesh.vertices[v]).norm());
-        sum += best;
-      }
-      return sum;
-    };
-    const bool one_is_upper = distance_to(one, region.mouth.upper) + distance_to(other, region.mouth.lower) <=
-                              distance_to(one, region.mouth.lower) + distance_to(other, region.mouth.upper);
+    const bool one_is_upper = height_around(skin.mesh, one) > height_around(skin.mesh, other);
     skin.mouth.upper = one_is_upper ? one : other;
     skin.mouth.lower = one_is_upper ? other : one;
   }

@@ -24,7 +24,8 @@ std::vector<std::vector<int>> rings_of(const TriMesh& mesh) {
 
 /// Inward directions: mean normals, averaged over the rings several times. The mouth's border takes
 /// its direction from the skin around it, since the lip's own normal turns into the mouth.
-std::vector<Vector3d> smooth_inward(const CoarseSkin& skin, const std::vector<std::vector<int>>& ring) {
+std::vector<Vector3d> smooth_inward(const CoarseSkin& skin,
+                                    const std::vector<std::vector<int>>& ring) {
   const auto normals = vertex_normals(skin.mesh);
   std::vector<Vector3d> inward(normals.size());
   for (std::size_t v = 0; v < normals.size(); ++v) inward[v] = -normals[v];
@@ -97,7 +98,8 @@ void smooth_depths(const std::vector<std::vector<int>>& ring, const ColumnSettin
     for (std::size_t v = 0; v < count; ++v) {
       double sum = 0;
       for (int n : ring[v]) sum += depth[n];
-      next[v] = std::min(0.5 * depth[v] + 0.5 * sum / static_cast<double>(ring[v].size()), limit[v]);
+      next[v] =
+          std::min(0.5 * depth[v] + 0.5 * sum / static_cast<double>(ring[v].size()), limit[v]);
     }
     depth.swap(next);
   }
@@ -160,7 +162,8 @@ void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
     weak_left = 0;
     for (const auto& t : skin.mesh.triangles) {
       const Vector3d& p = skin.mesh.vertices[t[0]];
-      const double area = 0.5 * (skin.mesh.vertices[t[1]] - p).cross(skin.mesh.vertices[t[2]] - p).norm();
+      const double area =
+          0.5 * (skin.mesh.vertices[t[1]] - p).cross(skin.mesh.vertices[t[2]] - p).norm();
       const double depth = (columns[t[0]].depth + columns[t[1]].depth + columns[t[2]].depth) / 3;
       for (int layer = 0; layer + 1 < sheets; ++layer) {
         std::array<int, 6> prism;

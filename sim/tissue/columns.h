@@ -20,13 +20,13 @@ enum class Hold { free, cranium, mandible };
 struct Column {
   Eigen::Vector3d inward = Eigen::Vector3d::Zero();  // unit
   double depth = 0;                                  // mm, of the innermost node
-  Ground ground = Ground::none;   // bone met within reach
+  Ground ground = Ground::none;                      // bone met within reach
   bool met_teeth = false;
-  double met_depth = 0;           // mm, of what was met
+  double met_depth = 0;                                  // mm, of what was met
   Eigen::Vector3d met_normal = Eigen::Vector3d::Zero();  // outward, of what was met
   Hold hold = Hold::free;
-  bool cartilage = false;         // the nose: the whole column holds its shape
-  double to_mouth = 1e9;          // mm from the opening between the lips
+  bool cartilage = false;  // the nose: the whole column holds its shape
+  double to_mouth = 1e9;   // mm from the opening between the lips
 };
 
 /// Coarse skin: the simulated surface with what the builder knows about its vertices.

@@ -47,7 +47,8 @@ Nodes foreseen(const TissueModel& model, const TissueState& previous, const Pose
     if (share != 0) nodes[i] += share * (rest_after * x - rest_before * x);
     if (path.nodes.empty()) continue;
     for (int k = 0; k < 4; ++k)
-      nodes[i] += to.weight[k] * path.nodes[to.knot[k]][i] - from.weight[k] * path.nodes[from.knot[k]][i];
+      nodes[i] +=
+          to.weight[k] * path.nodes[to.knot[k]][i] - from.weight[k] * path.nodes[from.knot[k]][i];
   }
   return nodes;
 }

@@ -1,11 +1,13 @@
 #include "sim/tissue/lips.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
+#include <optional>
 
 #include "engine/mesh/topology.h"
+#include "sim/tissue/anatomy.h"
 
 namespace condyle {
 namespace {
@@ -23,12 +25,6 @@ int nearest_of(const std::vector<int>& loop, const TriMesh& mesh, const Vector3d
     if ((mesh.vertices[loop[i]] - p).squaredNorm() < (mesh.vertices[loop[best]] - p).squaredNorm())
       best = static_cast<int>(i);
   return best;
-}
-
-double mean_height(const std::vector<int>& run, const TriMesh& mesh) {
-  double sum = 0;
-  for (int v : run) sum += mesh.vertices[v].z();
-  return run.empty() ? 0 : sum / static_cast<double>(run.size());
 }
 
 MouthOutline outline_of(const std::vector<int>& loop, const TriMesh& face,
@@ -58,7 +54,7 @@ MouthOutline outline_of(const std::vector<int>& loop, const TriMesh& face,
   for (int i = (right + 1) % n; i != left; i = (i + 1) % n) forward.push_back(loop[i]);
   for (int i = (right + n - 1) % n; i != left; i = (i + n - 1) % n) backward.push_back(loop[i]);
   if (forward.empty() || backward.empty()) return {};
-  const bool forward_is_upper = mean_height(forward, face) > mean_height(backward, face);
+  const bool forward_is_upper = height_around(face, forward) > height_around(face, backward);
   mouth.upper = forward_is_upper ? forward : backward;
   mouth.lower = forward_is_upper ? backward : forward;
   return mouth;
@@ -66,13 +62,28 @@ MouthOutline outline_of(const std::vector<int>& loop, const TriMesh& face,
 
 }  // namespace
 
+double height_around(const TriMesh& mesh, const std::vector<int>& run) {
+  std::vector<char> in_run(mesh.vertices.size(), 0);
+  for (int v : run) in_run[v] = 1;
+  double sum = 0;
+  int count = 0;
+  for (const auto& t : mesh.triangles) {
+    if (!in_run[t[0]] && !in_run[t[1]] && !in_run[t[2]]) continue;
+    sum += mesh.vertices[t[0]].z() + mesh.vertices[t[1]].z() + mesh.vertices[t[2]].z();
+    count += 3;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
 std::vector<std::vector<int>> border_loops(const TriMesh& mesh) {
   std::map<int, int> next;  // a border vertex of a manifold surface has one way on
   const EdgeList list = find_edges(mesh);
   for (const auto& edge : list.edges) {
     if (edge.count != 1) continue;
-    if (list.sides[edge.first].forward) next[edge.low] = edge.high;
-    else next[edge.high] = edge.low;
+    if (list.sides[edge.first].forward)
+      next[edge.low] = edge.high;
+    else
+      next[edge.high] = edge.low;
   }
   std::vector<std::vector<int>> loops;
   while (!next.empty()) {
@@ -111,10 +122,175 @@ MouthOutline find_mouth(const TriMesh& face, const Landmarks& landmarks, const V
   return best ? outline_of(*best, face, landmarks) : MouthOutline{};
 }
 
-MouthOutline cut_lip_line(TriMesh&, const Landmarks&, const Vector3d&, std::vector<std::string>&) {
-  return {};
+namespace {
+
+/// Where the lips of a closed mouth meet, as seen from the front.
+struct LipLine {
+  Vector3d right, middle, left;
+
+  /// Height above the line.
+  double height(const Vector3d& p) const {
+    const Vector3d& a = p.x() < middle.x() ? right : middle;
+    const Vector3d& b = p.x() < middle.x() ? middle : left;
+    return p.z() - (a.z() + (p.x() - a.x()) / (b.x() - a.x()) * (b.z() - a.z()));
+  }
+  bool spans(double x) const { return x > right.x() && x < left.x(); }
+};
+
+std::optional<LipLine> find_lip_line(const Landmarks& landmarks, const Vector3d& incisors,
+                                     std::vector<std::string>& notes) {
+  LipLine line;
+  line.middle = expected_mouth(landmarks, incisors);
+  const auto right = landmarks.find("right_cheilion"), left = landmarks.find("left_cheilion");
+  constexpr double half_width = 24.5;
+  line.right = right ? *right : Vector3d(line.middle + Vector3d(-half_width, 8, 0));
+  line.left = left ? *left : Vector3d(line.middle + Vector3d(half_width, 8, 0));
+  if (!right || !left)
+    notes.push_back("mouth corners are not marked: taken 24.5 mm to the sides of the lips' middle");
+  if (!landmarks.find("stomion"))
+    notes.push_back("stomion is not marked: taken at the height of the incisal edges");
+  if (line.right.x() > line.middle.x() - 8 || line.left.x() < line.middle.x() + 8)
+    return std::nullopt;
+  return line;
 }
 
-void part_lips(Case&) {}
+}  // namespace
+
+MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vector3d& incisors,
+                          std::vector<std::string>& notes) {
+  const auto line = find_lip_line(landmarks, incisors, notes);
+  if (!line) return {};
+  // Only the front of the face near the line: not the nape behind it.
+  const auto near = [&](const Eigen::Vector3i& t) {
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d& p = face.vertices[t[k]];
+      if (p.x() < line->right.x() - 8 || p.x() > line->left.x() + 8 ||
+          std::abs(line->height(p)) > 15 || p.y() > line->middle.y() + 40)
+        return false;
+    }
+    const Vector3d &a = face.vertices[t[0]], &b = face.vertices[t[1]], &c = face.vertices[t[2]];
+    return (b - a).cross(c - a).y() < 0;
+  };
+  std::vector<char> in_zone(face.triangles.size());
+  std::vector<double> height(face.vertices.size(), 1e9);
+  for (std::size_t t = 0; t < face.triangles.size(); ++t) {
+    in_zone[t] = near(face.triangles[t]);
+    if (!in_zone[t]) continue;
+    for (int k = 0; k < 3; ++k)
+      height[face.triangles[t][k]] = line->height(face.vertices[face.triangles[t][k]]);
+  }
+  // A vertex close to where the line crosses one of its edges is taken as lying on it.
+  const auto crossing = [&](int a, int b) { return height[a] / (height[a] - height[b]); };
+  for (std::size_t t = 0; t < face.triangles.size(); ++t)
+    for (int k = 0; in_zone[t] && k < 3; ++k) {
+      const int a = face.triangles[t][k], b = face.triangles[t][(k + 1) % 3];
+      if (height[a] * height[b] < 0 && crossing(a, b) < 0.15) height[a] = 0;
+    }
+  for (std::size_t t = 0; t < face.triangles.size();
+       ++t)  // the other way round, after all of those
+    for (int k = 0; in_zone[t] && k < 3; ++k) {
+      const int a = face.triangles[t][k], b = face.triangles[t][(k + 1) % 3];
+      if (height[a] * height[b] < 0 && crossing(a, b) > 0.85) height[b] = 0;
+    }
+
+  // A vertex on every edge that the line crosses, and the triangles split at them.
+  const bool colored = !face.colors.empty();
+  std::map<std::pair<int, int>, int> on_edge;
+  const auto cut_vertex = [&](int a, int b) {
+    if (height[a] * height[b] >= 0) return -1;
+    const auto key = std::minmax(a, b);
+    const double s = crossing(key.first, key.second);
+    const Vector3d p =
+        face.vertices[key.first] + s * (face.vertices[key.second] - face.vertices[key.first]);
+    if (!line->spans(p.x())) return -1;
+    const auto [it, fresh] =
+        on_edge.try_emplace({key.first, key.second}, static_cast<int>(face.vertices.size()));
+    if (fresh) {
+      face.vertices.push_back(p);
+      height.push_back(0);
+      if (colored)
+        face.colors.push_back(face.colors[key.first] +
+                              static_cast<float>(s) *
+                                  (face.colors[key.second] - face.colors[key.first]));
+    }
+    return it->second;
+  };
+  const std::size_t before = face.triangles.size();
+  for (std::size_t t = 0; t < before; ++t) {
+    if (!in_zone[t]) continue;
+    // Each crossed edge cuts a corner off what is left of the triangle.
+    std::vector<int> outline;
+    const Eigen::Vector3i tri = face.triangles[t];
+    for (int k = 0; k < 3; ++k) {
+      outline.push_back(tri[k]);
+      const int cut = cut_vertex(tri[k], tri[(k + 1) % 3]);
+      if (cut >= 0) outline.push_back(cut);
+    }
+    if (outline.size() == 3) continue;
+    const int n = static_cast<int>(outline.size());
+    const auto at = [&](int i) { return outline[(i + n) % n]; };
+    const auto is_new = [&](int k) {
+      return at(k) != tri[0] && at(k) != tri[1] && at(k) != tri[2];
+    };
+    std::vector<Eigen::Vector3i> pieces;
+    if (n == 4) {  // one edge crossed: from the new vertex to the corner across
+      int i = 0;
+      while (!is_new(i)) ++i;
+      pieces = {{at(i), at(i + 1), at(i + 2)}, {at(i), at(i + 2), at(i + 3)}};
+    } else {      // two edges crossed: the lone corner, and a quad
+      int i = 0;  // the corner between both new vertices
+      while (!(is_new(i - 1) && is_new(i + 1))) ++i;
+      pieces = {{at(i - 1), at(i), at(i + 1)},
+                {at(i + 1), at(i + 2), at(i + 3)},
+                {at(i + 1), at(i + 3), at(i + 4)}};
+    }
+    face.triangles[t] = pieces[0];
+    for (std::size_t k = 1; k < pieces.size(); ++k) {
+      face.triangles.push_back(pieces[k]);
+      in_zone.push_back(1);
+    }
+  }
+
+  // Every vertex on the line but the two ends gets a twin, which the triangles below it use.
+  std::vector<int> on_line;
+  for (std::size_t v = 0; v < height.size(); ++v)
+    if (height[v] == 0 && line->spans(face.vertices[v].x())) on_line.push_back(static_cast<int>(v));
+  if (on_line.size() < 5) return {};
+  const auto by_x = [&](int a, int b) { return face.vertices[a].x() < face.vertices[b].x(); };
+  const int right_end = *std::min_element(on_line.begin(), on_line.end(), by_x);
+  const int left_end = *std::max_element(on_line.begin(), on_line.end(), by_x);
+  std::map<int, int> twin;
+  for (int v : on_line) {
+    if (v == right_end || v == left_end) continue;
+    twin[v] = static_cast<int>(face.vertices.size());
+    const Vector3d p = face.vertices[v];
+    face.vertices.push_back(p);
+    if (colored) {
+      const Eigen::Vector3f c = face.colors[v];
+      face.colors.push_back(c);
+    }
+  }
+  for (std::size_t t = 0; t < face.triangles.size(); ++t) {
+    auto& tri = face.triangles[t];
+    if (!in_zone[t]) continue;
+    double sum = 0;
+    for (int k = 0; k < 3; ++k)
+      if (tri[k] < static_cast<int>(height.size())) sum += height[tri[k]];
+    if (sum >= 0) continue;
+    for (int k = 0; k < 3; ++k)
+      if (const auto it = twin.find(tri[k]); it != twin.end()) tri[k] = it->second;
+  }
+  notes.push_back("the lips were one surface: parted along the lip line");
+  return find_mouth(face, landmarks, incisors);
+}
+
+void part_lips(Case& patient) {
+  for (auto& part : patient.parts) {
+    if (part.role != Role::face || part.mesh.empty()) continue;
+    const Vector3d incisors = read_anatomy(patient, patient.notes).incisors;
+    if (find_mouth(part.mesh, patient.landmarks, incisors).found()) continue;
+    cut_lip_line(part.mesh, patient.landmarks, incisors, patient.notes);
+  }
+}
 
 }  // namespace condyle

@@ -20,6 +20,10 @@ struct MouthOutline {
 /// Border loops of a welded mesh, each a run of vertices in the order of the surface's own edges.
 std::vector<std::vector<int>> border_loops(const TriMesh& mesh);
 
+/// Mean height of the triangles at a run of vertices: of two lips that touch, the upper one's is
+/// higher though their borders coincide.
+double height_around(const TriMesh& mesh, const std::vector<int>& run);
+
 /// The border loop at the mouth, if the face has one. `incisors`: midpoint of the incisal points.
 MouthOutline find_mouth(const TriMesh& face, const Landmarks& landmarks,
                         const Eigen::Vector3d& incisors);
@@ -27,8 +31,8 @@ MouthOutline find_mouth(const TriMesh& face, const Landmarks& landmarks,
 /// Cuts a face whose lips are one surface along the lip line, from corner to corner, by doubling
 /// vertices (at the end of the list; colours too), and returns the new opening; empty where no lip
 /// line can be found.
-MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Eigen::Vector3d& incisors,
-                          std::vector<std::string>& notes);
+MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks,
+                          const Eigen::Vector3d& incisors, std::vector<std::string>& notes);
 
 /// Gives the patient's face an opening between the lips when it has none, so that the displayed
 /// face can part; says so in the case's notes. Does nothing when there is an opening already.

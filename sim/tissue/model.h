@@ -20,13 +20,14 @@ struct TissueModel {
   Nodes rest;
   SpringPrismNet net;
 
-  // A share of 1 goes with the mandible, 0 with the cranium: a point X asks for X + share (X_CM X - X).
+  // A share of 1 goes with the mandible, 0 with the cranium: a point X asks for X + share (X_CM X -
+  // X).
   std::vector<double> anchor_share;
   struct Slide {
     Eigen::Vector3d point, normal;  // of the plane at rest
     bool on_mandible = false;
   };
-  std::vector<Slide> slides;       // one per slide of the net
+  std::vector<Slide> slides;  // one per slide of the net
   // Preconditioners, for states turned by `from_rad` and more; rising, the first from 0.
   struct Factor {
     double from_rad = 0;

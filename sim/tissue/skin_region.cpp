@@ -189,7 +189,8 @@ std::vector<char> find_lining(const TriMesh& mesh, const MouthOutline& opening,
 
 double RegionShape::inside(const Vector3d& p) const {
   const double height = p.z() - anatomy.condyles.z();
-  // Above: below the eyes. Behind: before the ear, and below the ear lobe around to the neck's side.
+  // Above: below the eyes. Behind: before the ear, and below the ear lobe around to the neck's
+  // side.
   const double top = 13 - height;
   const double back_limit = anatomy.condyles.y() + 3 + 72 * smoothstep((-24 - height) / 40);
   const double back = back_limit - p.y();
@@ -240,19 +241,22 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
   keep_largest(part, kept_vertex);
   separate_fans(part, kept_vertex);
   if (part.triangles.size() < 100)
-    throw InputError("face: no skin found around the jaw; check that face and bones are in the same "
-                     "place, unit and frame");
+    throw InputError(
+        "face: no skin found around the jaw; check that face and bones are in the same "
+        "place, unit and frame");
 
   std::vector<char> is_mouth(part.vertices.size(), 0);
   if (opening.found()) {
     region.mouth = find_mouth(part, landmarks, anatomy.incisors);
     if (!region.mouth.found())
-      throw InputError("face: the mouth lies outside the region around the jaw; check the landmarks");
+      throw InputError(
+          "face: the mouth lies outside the region around the jaw; check the landmarks");
     is_mouth[region.mouth.right_corner] = is_mouth[region.mouth.left_corner] = 1;
     for (int v : region.mouth.upper) is_mouth[v] = 1;
     for (int v : region.mouth.lower) is_mouth[v] = 1;
   } else {
-    notes.push_back("no opening between the lips was found and none could be cut: the mouth stays shut");
+    notes.push_back(
+        "no opening between the lips was found and none could be cut: the mouth stays shut");
   }
   for (const auto& loop : border_loops(part))
     for (int v : loop) {

@@ -27,7 +27,8 @@ struct SkinRegion {
   std::vector<int> border;  // vertices on borders that the face itself has, the mouth's left out
   MouthOutline mouth;       // indices into mesh; may be empty
   LipSlit slit;
-  std::vector<signed char> face_side;  // of every vertex of the face part: +1 above the lip line, -1 below
+  std::vector<signed char>
+      face_side;  // of every vertex of the face part: +1 above the lip line, -1 below
 };
 
 /// The lining behind the lips, where the face has one, is not part of the region.

@@ -48,7 +48,8 @@ LipSlit::LipSlit(const TriMesh& skin, const MouthOutline& mouth) {
 
 double LipSlit::height(const Vector3d& p) const {
   if (!found()) return 1;
-  const double at = (p.x() - x_.front()) / (x_.back() - x_.front()) * static_cast<double>(x_.size() - 1);
+  const double at =
+      (p.x() - x_.front()) / (x_.back() - x_.front()) * static_cast<double>(x_.size() - 1);
   const double clamped = std::clamp(at, 0.0, static_cast<double>(x_.size() - 1));
   const std::size_t i = std::min(static_cast<std::size_t>(clamped), x_.size() - 2);
   return p.z() - (z_[i] + (clamped - static_cast<double>(i)) * (z_[i + 1] - z_[i]));
@@ -62,11 +63,12 @@ double LipSlit::distance(const Vector3d& p, int side_p, const Vector3d& q, int s
   const double up = std::max(side_p * height(p), 0.01), down = std::max(side_q * height(q), 0.01);
   const double x = p.x() + up / (up + down) * (q.x() - p.x());
   if (x <= x_.front() || x >= x_.back()) return straight;
-  return std::min((p - right_).norm() + (right_ - q).norm(), (p - left_).norm() + (left_ - q).norm());
+  return std::min((p - right_).norm() + (right_ - q).norm(),
+                  (p - left_).norm() + (left_ - q).norm());
 }
 
-std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth, const LipSlit& slit,
-                                  double reach) {
+std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth,
+                                  const LipSlit& slit, double reach) {
   std::vector<signed char> side(skin.vertices.size());
   for (std::size_t v = 0; v < side.size(); ++v)
     side[v] = static_cast<signed char>(slit.side(skin.vertices[v]));

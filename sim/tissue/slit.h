@@ -19,7 +19,8 @@ class LipSlit {
   /// Height above the slit, mm; level beyond the corners.
   double height(const Eigen::Vector3d& p) const;
   int side(const Eigen::Vector3d& p) const { return height(p) >= 0 ? 1 : -1; }
-  /// Length of the way from p to q that does not cross the slit; sides as given, +1 above, -1 below.
+  /// Length of the way from p to q that does not cross the slit; sides as given, +1 above, -1
+  /// below.
   double distance(const Eigen::Vector3d& p, int side_p, const Eigen::Vector3d& q, int side_q) const;
 
  private:
@@ -27,9 +28,9 @@ class LipSlit {
   Eigen::Vector3d right_ = Eigen::Vector3d::Zero(), left_ = Eigen::Vector3d::Zero();
 };
 
-/// Side of each vertex: that of the lip which is nearer along the surface, up to `reach` mm from the
-/// mouth; by height beyond.
-std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth, const LipSlit& slit,
-                                  double reach);
+/// Side of each vertex: that of the lip which is nearer along the surface, up to `reach` mm from
+/// the mouth; by height beyond.
+std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth,
+                                  const LipSlit& slit, double reach);
 
 }  // namespace condyle

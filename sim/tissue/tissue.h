@@ -21,7 +21,7 @@ struct TissueSettings {
 
 /// How far one frame's minimisation goes.
 struct TissueBudget {
-  double tolerance_mm = 1e-3;  // stop when a step moves no node farther than this, estimated
+  double tolerance_mm = 4e-3;  // stop when a step moves no node farther than this, estimated
   int max_iterations = 2000;
   int threads = 1;  // the result has the same bits for any number
 };
@@ -35,7 +35,8 @@ struct TissueSummary {
 };
 
 /// Null when the case has no face. throws: InputError saying what is wrong with the face and where.
-std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const TissueSettings& settings = {},
+std::shared_ptr<const TissueModel> build_tissue(const Case& patient,
+                                                const TissueSettings& settings = {},
                                                 const Progress& progress = {});
 const TissueSummary& summary(const TissueModel& model);
 
@@ -52,6 +53,7 @@ void deform_face(const TissueModel& model, const TissueState& state,
                  std::vector<Eigen::Vector3f>& face, int threads = 1);
 
 /// A point of the face surface carried by the tissue (soft landmarks), mm.
-Eigen::Vector3d carried_point(const TissueModel& model, const TissueState& state, const Eigen::Vector3d& rest);
+Eigen::Vector3d carried_point(const TissueModel& model, const TissueState& state,
+                              const Eigen::Vector3d& rest);
 
 }  // namespace condyle

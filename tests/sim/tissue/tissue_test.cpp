@@ -1,0 +1,225 @@
+#include "sim/tissue/tissue.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+
+#include "sim/case/case_io.h"
+#include "sim/tissue/lips.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// Closed box standing for a bone.
+TriMesh box(const Vector3d& low, const Vector3d& high) {
+  TriMesh mesh;
+  for (int k = 0; k < 8; ++k)
+    mesh.vertices.emplace_back(k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(),
+                               k & 4 ? high.z() : low.z());
+  for (const auto& q : {std::array{0, 2, 3, 1},
+                        {4, 5, 7, 6},
+                        {0, 1, 5, 4},
+                        {2, 6, 7, 3},
+                        {0, 4, 6, 2},
+                        {1, 3, 7, 5}}) {
+    mesh.triangles.emplace_back(q[0], q[1], q[2]);
+    mesh.triangles.emplace_back(q[0], q[2], q[3]);
+  }
+  return mesh;
+}
+
+/// A plain patient: half a tube of skin with closed lips before two blocks of bone.
+Case plain_patient() {
+  Case patient;
+  TriMesh face;
+  constexpr int columns = 90, rows = 110;
+  for (int j = 0; j <= rows; ++j)
+    for (int i = 0; i <= columns; ++i) {
+      const double angle = (i - columns / 2) * 0.038;
+      face.vertices.emplace_back(58 * std::sin(angle), -40 - 62 * std::cos(angle), 10 - 1.7 * j);
+    }
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const int a = j * (columns + 1) + i, below = a + columns + 1;
+      face.triangles.emplace_back(a, below, below + 1);
+      face.triangles.emplace_back(a, below + 1, a + 1);
+    }
+  patient.parts.push_back({"skull", Role::skull, box({-40, -88, -44}, {40, 0, 20}), {}});
+  patient.parts.push_back({"mandible", Role::mandible, box({-40, -88, -92}, {40, -20, -57}), {}});
+  patient.parts.push_back({"face", Role::face, face, {}});
+  patient.landmarks.points = {
+      {"left_condyle", {50, -13, -7.5}},      {"right_condyle", {-50, -13, -7.5}},
+      {"upper_incisal_point", {0, -90, -50}}, {"lower_incisal_point", {0, -90, -51}},
+      {"stomion", {0, -102, -50.5}},          {"left_cheilion", {24, -96.5, -50.5}},
+      {"right_cheilion", {-24, -96.5, -50.5}}};
+  return patient;
+}
+
+/// Opening about the condyles, which slide forward and down.
+Pose opening(const Case& patient, double degrees) {
+  const Vector3d condyles =
+      0.5 * (*patient.landmarks.find("left_condyle") + *patient.landmarks.find("right_condyle"));
+  const double slide = std::max(0.0, degrees - 4) * 0.5;
+  Pose X_CM;
+  X_CM.R =
+      Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vector3d::UnitX()));
+  X_CM.t = condyles - X_CM.R * condyles + Vector3d(0, -slide, -7.3 * (1 - std::exp(-slide / 6)));
+  return X_CM;
+}
+
+double drop_of(const Case& patient, const Pose& X_CM) {
+  const Vector3d incisor = *patient.landmarks.find("lower_incisal_point");
+  return incisor.z() - (X_CM * incisor).z();
+}
+
+TEST(Tissue, NoFaceNoTissue) {
+  Case patient = plain_patient();
+  patient.parts.pop_back();
+  EXPECT_EQ(build_tissue(patient), nullptr);
+}
+
+TEST(Tissue, RestIsAnEquilibriumAndGivesTheFaceBack) {
+  Case patient = plain_patient();
+  part_lips(patient);
+  const auto model = build_tissue(patient);
+  ASSERT_TRUE(model);
+  const TissueState rest = rest_tissue(*model);
+  const TissueState still = follow(*model, rest, Pose{});
+  EXPECT_TRUE(still.converged);
+  EXPECT_EQ(still.inverted_prisms, 0);
+  EXPECT_LT(still.residual, 1e-9);
+  for (std::size_t i = 0; i < rest.nodes.size(); ++i)
+    EXPECT_LT((still.nodes[i] - rest.nodes[i]).norm(), 1e-4);
+  std::vector<Vector3f> face;
+  deform_face(*model, rest, face);
+  const auto& vertices = patient.find(Role::face)->mesh.vertices;
+  ASSERT_EQ(face.size(), vertices.size());
+  for (std::size_t v = 0; v < face.size(); ++v) EXPECT_EQ(face[v], vertices[v].cast<float>());
+}
+
+TEST(Tissue, ClosedLipsAreCutOnceAndPart) {
+  Case patient = plain_patient();
+  const std::size_t before = patient.find(Role::face)->mesh.vertices.size();
+  part_lips(patient);
+  const std::size_t cut = patient.find(Role::face)->mesh.vertices.size();
+  EXPECT_GT(cut, before + 10);
+  part_lips(patient);
+  EXPECT_EQ(patient.find(Role::face)->mesh.vertices.size(), cut);
+
+  const auto model = build_tissue(patient);
+  ASSERT_TRUE(summary(*model).lips_cut);
+  TissueState state = rest_tissue(*model);
+  for (int degrees = 1; degrees <= 20; ++degrees) {
+    state = follow(*model, state, opening(patient, degrees));
+    EXPECT_EQ(state.inverted_prisms, 0) << degrees;
+    EXPECT_TRUE(state.converged) << degrees;
+  }
+  const Vector3d upper(0, -102, -47), lower(0, -102, -54);
+  const double gap =
+      carried_point(*model, state, upper).z() - carried_point(*model, state, lower).z() - 7;
+  EXPECT_GT(gap, 0.7 * drop_of(patient, opening(patient, 20)));
+}
+
+TEST(Tissue, SameBitsForOneAndTwoThreads) {
+  Case patient = plain_patient();
+  part_lips(patient);
+  const auto model = build_tissue(patient, {.surface_nodes = 260});
+  const Pose X_CM = opening(patient, 6);
+  const TissueState one = follow(*model, rest_tissue(*model), X_CM);
+  TissueBudget budget;
+  budget.threads = 2;
+  const TissueState two = follow(*model, rest_tissue(*model), X_CM, budget);
+  EXPECT_GT(one.iterations, 0);
+  EXPECT_EQ(one.nodes, two.nodes);
+  std::vector<Vector3f> face_one, face_two;
+  deform_face(*model, one, face_one, 1);
+  deform_face(*model, one, face_two, 2);
+  EXPECT_EQ(face_one, face_two);
+}
+
+TEST(Tissue, TenSmallStepsEqualOneLarge) {
+  Case patient = plain_patient();
+  part_lips(patient);
+  const auto model = build_tissue(patient, {.surface_nodes = 260});
+  const auto moved = [](double mm) {
+    Pose X_CM;
+    X_CM.t = Vector3d(0, 0.6, -0.8) * mm;
+    return X_CM;
+  };
+  TissueState small = rest_tissue(*model);
+  for (int i = 1; i <= 10; ++i) small = follow(*model, small, moved(0.1 * i));
+  const TissueState large = follow(*model, rest_tissue(*model), moved(1.0));
+  double moved_most = 0;
+  for (std::size_t i = 0; i < small.nodes.size(); ++i) {
+    EXPECT_LT((small.nodes[i] - large.nodes[i]).norm(), 0.01);
+    moved_most = std::max(moved_most, (large.nodes[i] - rest_tissue(*model).nodes[i]).norm());
+  }
+  EXPECT_GT(moved_most, 0.9);
+}
+
+TEST(Tissue, LayersOtherThanThreeWorkToo) {
+  Case patient = plain_patient();
+  part_lips(patient);
+  for (int layers : {1, 2, 5}) {
+    const auto model = build_tissue(patient, {.layers = layers, .surface_nodes = 200});
+    EXPECT_EQ(summary(*model).nodes % (layers + 1), 0);
+    const TissueState state = follow(*model, rest_tissue(*model), opening(patient, 5));
+    EXPECT_EQ(state.inverted_prisms, 0);
+    EXPECT_TRUE(state.converged);
+  }
+}
+
+// What a surgeon expects of an opened mouth, on a real patient.
+TEST(Tissue, TheBadinFaceOpensItsMouth) {
+  const auto folder = std::filesystem::path(CONDYLE_SOURCE_DIR) / "../shared/data/case-badin";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "real anatomy absent";
+  ImportRequest request;
+  request.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
+                   {Role::mandible, folder / "mandible.ply"},
+                   {Role::face, folder / "face_skin.ply"}};
+  request.landmarks = folder / "markers.csv";
+  const Case patient = import_meshes(request);
+  const auto model = build_tissue(patient);
+  ASSERT_TRUE(model && summary(*model).lips_cut);
+  EXPECT_NEAR(summary(*model).nodes, 2080, 200);
+
+  TissueState state = rest_tissue(*model);
+  Pose X_CM;
+  int warm = 0;
+  constexpr int frames = 90;
+  for (int i = 1; i <= frames; ++i) {
+    X_CM = opening(patient, 19 * (1 - std::cos(std::numbers::pi * i / frames)));
+    state = follow(*model, state, X_CM);
+    warm += state.iterations;
+    EXPECT_EQ(state.inverted_prisms, 0) << i;
+    EXPECT_TRUE(state.converged) << i;
+  }
+  const double drop = drop_of(patient, X_CM);
+  EXPECT_GT(drop, 40);
+
+  const auto moved = [&](const char* name) {
+    const Vector3d p = *patient.landmarks.find(name);
+    return Vector3d(carried_point(*model, state, p) - p);
+  };
+  const Vector3d chin = *patient.landmarks.find("pogonion");
+  const Vector3d bone = X_CM * chin - chin;
+  EXPECT_GT(moved("soft_pogonion").dot(bone) / bone.squaredNorm(), 0.9);
+  EXPECT_LT(moved("pronasale").norm(), 0.5);
+  EXPECT_GT(moved("labrale_superius").z() - moved("labrale_inferius").z(), 0.7 * drop);
+
+  const TissueState cold = follow(*model, rest_tissue(*model), X_CM);
+  const double ratio = static_cast<double>(warm) / frames / cold.iterations;
+  std::printf("iterations: warm %.1f a frame, cold %d, ratio %.3f\n",
+              static_cast<double>(warm) / frames, cold.iterations, ratio);
+  EXPECT_LT(ratio, 1);
+}
+
+}  // namespace
+}  // namespace condyle
