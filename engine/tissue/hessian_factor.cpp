@@ -108,7 +108,8 @@ float* HessianFactor::block(int row, int column) {
   return blocks_.data() + static_cast<std::size_t>(it - row_.begin()) * size_ * size_;
 }
 
-HessianFactor::HessianFactor(const SpringPrismNet& net, int nodes_per_column, const Nodes& x)
+HessianFactor::HessianFactor(const SpringPrismNet& net, const NetLoads& loads, int nodes_per_column,
+                             const Nodes& x)
     : nodes_per_column_(nodes_per_column),
       size_(3 * nodes_per_column),
       columns_(net.node_count / nodes_per_column) {
@@ -142,6 +143,12 @@ HessianFactor::HessianFactor(const SpringPrismNet& net, int nodes_per_column, co
   for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
     add(net.anchor_node[i], net.anchor_node[i],
         Matrix3d::Identity() * (2 * lambda * net.anchor_stiffness[i]));
+  for (std::size_t i = 0; i < net.slide_node.size(); ++i) {
+    const Vector3d& n = loads.slide_normal[i];
+    const int node = net.slide_node[i];
+    if (n.dot(x[node]) < loads.slide_offset[i])
+      add(node, node, n * n.transpose() * (2 * lambda * net.slide_stiffness[i]));
+  }
   for (std::size_t p = 0; p < net.prisms.size(); ++p) {
     std::array<Vector3d, 6> slope;
     const double j = prism_volume_gradient(x, net.prisms[p], slope) / net.rest_volume[p];

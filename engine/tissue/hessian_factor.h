@@ -16,7 +16,8 @@ namespace condyle {
 class HessianFactor {
  public:
   /// nodes_per_column: 2 to 4, or 6, or 1.
-  HessianFactor(const SpringPrismNet& net, int nodes_per_column, const Nodes& x);
+  HessianFactor(const SpringPrismNet& net, const NetLoads& loads, int nodes_per_column,
+                const Nodes& x);
 
   /// z = H^-1 g
   void solve(const Nodes& g, Nodes& z) const;

@@ -20,7 +20,7 @@ constexpr double boundary_stiffness = 2.0;   // N/mm
 constexpr double cartilage_stiffness = 0.5;  // N/mm
 constexpr double neck_stiffness = 0.1;       // N/mm
 constexpr double loose_stiffness = 0.04;     // N/mm
-constexpr double slide_stiffness = 1e-9;     // N/mm
+constexpr double slide_stiffness = 0.05;     // N/mm
 
 /// Layers from the skin inward. source: skin and cheek 30 to 40 kPa in vivo, deeper layers softer.
 struct Layers {
@@ -57,7 +57,8 @@ double rim_follows(double to_mandible_mm) { return 1 - smoothstep((to_mandible_m
 void make_path(TissueModel& model, const Anatomy& anatomy) {
   constexpr int knots = 12;
   model.path.condyles = anatomy.condyles;
-  model.factors.push_back({0, HessianFactor(model.net, model.sheets, model.rest)});
+  model.factors.push_back(
+      {0, HessianFactor(model.net, loads_at(model, Pose{}), model.sheets, model.rest)});
   TissueState state = rest_tissue(model);
   std::vector<Nodes> nodes{model.rest};
   TissueBudget budget;
@@ -69,7 +70,8 @@ void make_path(TissueModel& model, const Anatomy& anatomy) {
     if (!state.converged || state.inverted_prisms > 0) break;  // as far as this tissue opens
     nodes.push_back(state.nodes);
     model.factors.push_back(
-        {angle - model.path.step_rad / 2, HessianFactor(model.net, model.sheets, state.nodes)});
+        {angle - model.path.step_rad / 2,
+         HessianFactor(model.net, loads_at(model, state.X_CM), model.sheets, state.nodes)});
   }
   model.path.nodes = std::move(nodes);
 }

@@ -4,7 +4,6 @@
 #include "sim/tissue/model.h"
 
 namespace condyle {
-namespace {
 
 using Eigen::Vector3d;
 
@@ -25,6 +24,8 @@ NetLoads loads_at(const TissueModel& model, const Pose& X_CM) {
   }
   return loads;
 }
+
+namespace {
 
 int count_inverted(const SpringPrismNet& net, const Nodes& x) {
   int count = 0;

@@ -50,6 +50,9 @@ struct TissueModel {
   TissueSummary summary;
 };
 
+/// What the bones ask of the tissue with the mandible at X_CM.
+NetLoads loads_at(const TissueModel& model, const Pose& X_CM);
+
 /// How the face's point p with its side (0 = unknown) is carried.
 CarriedPoint carry_face_point(const TissueModel& model, const Eigen::Vector3d& p, int side);
 

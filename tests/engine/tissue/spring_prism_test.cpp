@@ -189,7 +189,7 @@ TEST(LayeredNet, CountsOfThePublishedPatient) {
 
 TEST(Minimizer, FollowsARigidMotionOfItsAnchorsExactly) {
   const Slab slab = make_slab(6, 4);
-  const HessianFactor factor(slab.net, slab.sheets, slab.rest);
+  const HessianFactor factor(slab.net, loads_of(slab, Vector3d::Zero()), slab.sheets, slab.rest);
   Nodes x = slab.rest;
   MinimizeSettings settings;
   settings.tolerance_mm = 1e-8;
@@ -209,7 +209,7 @@ TEST(Minimizer, NeverInvertsAPrismHoweverHardItIsPressed) {
     slab.net.anchor_stiffness.push_back(0.02);
     loads.anchor_target.push_back(slab.rest[node_of(c, 0, 3)] - Vector3d(0, 0, 20));
   }
-  const HessianFactor factor(slab.net, 3, slab.rest);
+  const HessianFactor factor(slab.net, loads, 3, slab.rest);
   Nodes x = slab.rest;
   minimize(slab.net, loads, factor, {}, x);
   double least = 1e9;
@@ -221,7 +221,7 @@ TEST(Minimizer, NeverInvertsAPrismHoweverHardItIsPressed) {
 
 TEST(Minimizer, SameBitsForAnyNumberOfThreads) {
   const Slab slab = make_slab(8, 4);
-  const HessianFactor factor(slab.net, slab.sheets, slab.rest);
+  const HessianFactor factor(slab.net, loads_of(slab, Vector3d::Zero()), slab.sheets, slab.rest);
   const NetLoads loads = loads_of(slab, {0, 0, 0});
   Nodes one = shaken(slab.rest, 0.9, 21), two = one;
   MinimizeSettings settings;
