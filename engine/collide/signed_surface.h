@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/collide/solid.h"
+
+namespace condyle {
+
+/// Distance to a surface with the sign of its inside, as far as it has one: closed shells are
+/// negative inside; open shells have no inside and give a distance without sign. Body coordinates.
+class SignedSurface {
+ public:
+  /// Welded mesh with at least one triangle.
+  explicit SignedSurface(const TriMesh& mesh);
+
+  /// mm; exact outside, a lower bound of the depth inside where shells overlap.
+  double distance(const Eigen::Vector3d& p) const;
+
+  bool has_inside() const { return solid_.open_shell_count() < solid_.shell_count(); }
+  bool has_open_shells() const { return open_ != nullptr; }
+  const Box& box() const { return box_; }
+
+ private:
+  Solid solid_;
+  std::unique_ptr<TriangleTree> open_;  // of the open shells
+  Box box_;
+};
+
+/// Triangles of the shells (connected pieces) in which every edge is run along as often one way as
+/// the other. All vertices are kept.
+TriMesh closed_shells(const TriMesh& mesh);
+
+/// Distance of each point to the surface, mm, points given in world coordinates; not searched, and
+/// infinite, farther than `reach_mm` from the surface's box.
+std::vector<float> distances_to(const SignedSurface& surface, const Pose& X_WS,
+                                std::span<const Eigen::Vector3d> points, double reach_mm,
+                                int threads);
+
+}  // namespace condyle

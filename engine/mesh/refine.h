@@ -1,0 +1,13 @@
+#pragma once
+
+#include "engine/mesh/tri_mesh.h"
+
+namespace condyle {
+
+/// The same surface with smaller triangles in a ball: edges that come into it are halved until none
+/// is longer than `edge_mm`, or there would be more than `most_triangles`. Neighbours stay joined.
+/// Vertices keep their numbers and new ones follow; colours are carried along.
+TriMesh refine_near(TriMesh mesh, const Eigen::Vector3d& center, double radius_mm, double edge_mm,
+                    int most_triangles = 1000000);
+
+}  // namespace condyle
