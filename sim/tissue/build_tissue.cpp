@@ -20,7 +20,7 @@ constexpr double boundary_stiffness = 2.0;   // N/mm
 constexpr double cartilage_stiffness = 0.5;  // N/mm
 constexpr double neck_stiffness = 0.1;       // N/mm
 constexpr double loose_stiffness = 0.04;     // N/mm
-constexpr double slide_stiffness = 0.05;     // N/mm
+constexpr double slide_stiffness = 0.02;     // N/mm
 
 /// Layers from the skin inward. source: skin and cheek 30 to 40 kPa in vivo, deeper layers softer.
 struct Layers {
