@@ -6,6 +6,7 @@
 
 #include "sim/motion/measures.h"
 #include "sim/simulator/state_hash.h"
+#include "sim/tissue/lips.h"
 
 namespace condyle {
 
@@ -14,6 +15,7 @@ Scene make_scene(Case patient, const SimulatorSettings& settings, const Progress
   ContactModel contacts(patient, settings.contact);
   std::shared_ptr<const TissueModel> tissue;
   if (settings.tissue) {
+    part_lips(patient);
     report(progress, "building the soft tissue", 0.3);
     tissue = build_tissue(patient, settings.tissue_model, progress);
   }

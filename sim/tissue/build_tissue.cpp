@@ -76,6 +76,30 @@ void make_path(TissueModel& model, const Anatomy& anatomy) {
   model.path.nodes = std::move(nodes);
 }
 
+/// Columns under the whole sheet. Where the sheet itself folds too sharply for tissue of any depth
+/// it is smoothed; the displayed face keeps its shape.
+std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Anatomy& anatomy,
+                                 const ColumnSettings& settings, std::vector<std::string>& notes) {
+  constexpr int most_rounds = 20;
+  std::vector<Column> columns;
+  ShapedColumns shaped;
+  int rounds = 0;
+  for (;; ++rounds) {
+    columns = march_columns(skin, bones, settings);
+    hold_columns(skin, anatomy, columns);
+    shaped = shape_columns(skin, settings, columns);
+    if (shaped.sound() || rounds == most_rounds) break;
+    relax_folds(skin, shaped.folded);
+  }
+  if (shaped.thinned > 0)
+    notes.push_back(std::to_string(shaped.thinned) + " of " + std::to_string(columns.size()) +
+                    " tissue columns were made thinner, where straight ones would cross");
+  if (rounds > 0)
+    notes.push_back("folds of the simulated sheet were smoothed in " + std::to_string(rounds) +
+                    " rounds");
+  return columns;
+}
+
 }  // namespace
 
 std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const TissueSettings& settings,
@@ -93,14 +117,12 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   const Anatomy anatomy = read_anatomy(patient, summary.notes);
   const Bones bones = collect_bones(patient);
   const SkinRegion region = cut_region(face->mesh, patient.landmarks, anatomy, summary.notes);
-  const CoarseSkin skin = make_coarse_skin(region, settings.surface_nodes);
+  CoarseSkin skin = make_coarse_skin(region, settings.surface_nodes);
 
   report(progress, "soft tissue: layers", 0.5);
   ColumnSettings column_settings;
   column_settings.layer_share = layers.share;
-  auto columns = march_columns(skin, bones, column_settings);
-  hold_columns(skin, anatomy, columns);
-  shape_columns(skin, column_settings, columns, summary.notes);
+  const auto columns = make_columns(skin, bones, anatomy, column_settings, summary.notes);
   const int sheets = settings.layers + 1;
   model->columns = static_cast<int>(columns.size());
   model->sheets = sheets;

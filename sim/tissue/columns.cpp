@@ -145,8 +145,12 @@ std::vector<Column> march_columns(const CoarseSkin& skin, const Bones& bones,
   return columns;
 }
 
-void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
-                   std::vector<Column>& columns, std::vector<std::string>& notes) {
+bool ShapedColumns::sound() const {
+  return std::find(folded.begin(), folded.end(), 1) == folded.end();
+}
+
+ShapedColumns shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
+                            std::vector<Column>& columns) {
   const auto ring = rings_of(skin.mesh);
   smooth_depths(ring, settings, columns);
 
@@ -154,12 +158,11 @@ void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
   // neighbours, until all are sound.
   const int sheets = static_cast<int>(settings.layer_share.size()) + 1;
   std::vector<char> changed(columns.size(), 0);
-  int weak_left = 0;
+  ShapedColumns shaped;
   for (int round = 0; round < 80; ++round) {
     const Nodes nodes = column_nodes(skin, columns, settings);
     std::vector<char> weak(columns.size(), 0);
     std::vector<Vector3d> wanted(columns.size(), Vector3d::Zero());
-    weak_left = 0;
     for (const auto& t : skin.mesh.triangles) {
       const Vector3d& p = skin.mesh.vertices[t[0]];
       const double area =
@@ -172,7 +175,6 @@ void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
           prism[k + 3] = node_of(t[k], layer + 1, sheets);
         }
         if (prism_volume(nodes, prism) > 0.3 * area * depth * settings.layer_share[layer]) continue;
-        ++weak_left;
         const Vector3d below =
             -(skin.mesh.vertices[t[1]] - p).cross(skin.mesh.vertices[t[2]] - p).normalized();
         for (int k = 0; k < 3; ++k) {
@@ -182,7 +184,8 @@ void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
         break;
       }
     }
-    if (weak_left == 0) break;
+    shaped.folded = weak;
+    if (shaped.sound()) break;
     const auto before = columns;
     for (std::size_t v = 0; v < columns.size(); ++v) {
       if (!weak[v]) continue;
@@ -193,12 +196,29 @@ void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
       columns[v].inward = sum.normalized();
     }
   }
-  const auto thinned = std::count(changed.begin(), changed.end(), 1);
-  if (thinned > 0)
-    notes.push_back(std::to_string(thinned) + " of " + std::to_string(columns.size()) +
-                    " tissue columns were made thinner, where straight ones would cross");
-  if (weak_left > 0)
-    notes.push_back(std::to_string(weak_left) + " prisms stay thin: the skin folds there");
+  shaped.thinned = static_cast<int>(std::count(changed.begin(), changed.end(), 1));
+  return shaped;
+}
+
+void relax_folds(CoarseSkin& skin, const std::vector<char>& folded) {
+  const auto ring = rings_of(skin.mesh);
+  std::vector<char> moves(folded.size(), 0);
+  for (std::size_t v = 0; v < folded.size(); ++v) {
+    if (!folded[v]) continue;
+    moves[v] = 1;
+    for (int n : ring[v]) moves[n] = 1;
+  }
+  for (const auto& loop : border_loops(skin.mesh))
+    for (int v : loop) moves[v] = 0;
+  for (int round = 0; round < 3; ++round) {
+    const auto before = skin.mesh.vertices;
+    for (std::size_t v = 0; v < moves.size(); ++v) {
+      if (!moves[v]) continue;
+      Vector3d sum = Vector3d::Zero();
+      for (int n : ring[v]) sum += before[n];
+      skin.mesh.vertices[v] = 0.5 * before[v] + 0.5 * sum / static_cast<double>(ring[v].size());
+    }
+  }
 }
 
 }  // namespace condyle

@@ -49,10 +49,20 @@ struct ColumnSettings {
 std::vector<Column> march_columns(const CoarseSkin& skin, const Bones& bones,
                                   const ColumnSettings& settings);
 
+/// What shaping did.
+struct ShapedColumns {
+  int thinned = 0;           // columns made thinner, where straight ones would cross
+  std::vector<char> folded;  // per column: whether a prism on it is still weak
+  bool sound() const;
+};
+
 /// Chooses depths, smooth and never beyond what was met, then thins columns until every prism has a
 /// good volume. Wants `hold`.
-void shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
-                   std::vector<Column>& columns, std::vector<std::string>& notes);
+ShapedColumns shape_columns(const CoarseSkin& skin, const ColumnSettings& settings,
+                            std::vector<Column>& columns);
+
+/// Smooths the sheet around folded columns; its borders stay.
+void relax_folds(CoarseSkin& skin, const std::vector<char>& folded);
 
 /// Nodes of the columns in `node_of` order.
 Nodes column_nodes(const CoarseSkin& skin, const std::vector<Column>& columns,
