@@ -1,0 +1,123 @@
+#include "engine/collide/distance_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/hash.h"
+
+namespace condyle {
+
+using Eigen::Vector3d;
+
+FieldSample DistanceField::at(const Vector3d& p) const {
+  const Vector3d u = (p - origin_) * per_mm_;
+  const double limit[3] = {double(cells * size_[0]), double(cells * size_[1]),
+                           double(cells * size_[2])};
+  FieldSample sample;
+  sample.distance_mm = settings_.band_mm;
+  for (int k = 0; k < 3; ++k)
+    if (!(u[k] >= 0 && u[k] < limit[k])) return sample;
+  const int x = static_cast<int>(u[0]), y = static_cast<int>(u[1]), z = static_cast<int>(u[2]);
+  const std::size_t place = slot(x / cells, y / cells, z / cells);
+  const std::int32_t index = brick_[place];
+  if (index < 0) {
+    if (bound_[place] < 0) sample.distance_mm = -settings_.band_mm;
+    return sample;
+  }
+  const Brick& brick = bricks_[index];
+  const int i = x % cells, j = y % cells, k = z % cells;
+  const float* v = &brick.value[i + corners * (j + corners * k)];
+  constexpr int dy = corners, dz = corners * corners;
+  const double a = u[0] - x, b = u[1] - y, c = u[2] - z;
+  // Along x on the four edges, then y, then z; the slopes fall out on the way.
+  const double s00 = v[1] - v[0], s10 = v[dy + 1] - v[dy], s01 = v[dz + 1] - v[dz],
+               s11 = v[dz + dy + 1] - v[dz + dy];
+  const double v00 = v[0] + a * s00, v10 = v[dy] + a * s10, v01 = v[dz] + a * s01,
+               v11 = v[dz + dy] + a * s11;
+  const double v0 = v00 + b * (v10 - v00), v1 = v01 + b * (v11 - v01);
+  const double s0 = s00 + b * (s10 - s00), s1 = s01 + b * (s11 - s01);
+  sample.distance_mm = v0 + c * (v1 - v0);
+  sample.gradient = per_mm_ * Vector3d(s0 + c * (s1 - s0),
+                                       (v10 - v00) + c * ((v11 - v01) - (v10 - v00)), v1 - v0);
+  sample.known = !brick.unknown[static_cast<std::size_t>(i + cells * (j + cells * k))];
+  return sample;
+}
+
+double DistanceField::lower_bound(const Vector3d& p) const {
+  const double edge = cells * settings_.spacing_mm;
+  Vector3d center;
+  int place[3];
+  double outside2 = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double u = (p[k] - origin_[k]) / edge;
+    const double over = std::max({0.0, -u, u - size_[k]});
+    outside2 += over * over;
+    place[k] = static_cast<int>(std::clamp(u, 0.0, size_[k] - 1.0));
+    center[k] = origin_[k] + (place[k] + 0.5) * edge;
+  }
+  const double near = bound_[slot(place[0], place[1], place[2])] - (p - center).norm();
+  return outside2 > 0 ? std::max(near, std::sqrt(outside2) * edge) : near;
+}
+
+void DistanceField::lay_out(const TriMesh& mesh) {
+  per_mm_ = 1 / settings_.spacing_mm;
+  Box box = bounding_box(mesh);
+  const double margin = settings_.band_mm + settings_.spacing_mm;
+  box.low.array() -= margin;
+  box.high.array() += margin;
+  if (settings_.region) {
+    box.low = box.low.cwiseMax(settings_.region->low);
+    box.high = box.high.cwiseMin(settings_.region->high);
+    if (box.empty()) box.high = box.low;  // nothing of the surface lies in the region
+  }
+  origin_ = box.low;
+  for (int k = 0; k < 3; ++k)
+    size_[k] =
+        std::max(1, static_cast<int>(std::ceil((box.high[k] - box.low[k]) * per_mm_ / cells)));
+  const std::size_t places = slot(0, 0, size_[2]);
+  brick_.assign(places, -1);
+  bound_.assign(places, std::numeric_limits<float>::infinity());
+}
+
+/// A distance changes by no more than the way: where it does, its sign has jumped.
+void DistanceField::mark_unknown(Brick& brick, double spacing_mm) {
+  const float most = static_cast<float>(spacing_mm * 1.0001 + 1e-5);
+  const int step[3] = {1, corners, corners * corners};
+  for (int z = 0; z < corners; ++z)
+    for (int y = 0; y < corners; ++y)
+      for (int x = 0; x < corners; ++x) {
+        const int at[3] = {x, y, z};
+        const int here = x + corners * (y + corners * z);
+        for (int axis = 0; axis < 3; ++axis) {
+          if (at[axis] == cells) continue;
+          if (std::abs(brick.value[here + step[axis]] - brick.value[here]) <= most) continue;
+          // The four cells at this edge.
+          const int p = (axis + 1) % 3, q = (axis + 2) % 3;
+          for (int i = -1; i <= 0; ++i)
+            for (int j = -1; j <= 0; ++j) {
+              int cell[3] = {x, y, z};
+              cell[p] += i;
+              cell[q] += j;
+              if (cell[p] >= 0 && cell[p] < cells && cell[q] >= 0 && cell[q] < cells)
+                brick.unknown.set(
+                    static_cast<std::size_t>(cell[0] + cells * (cell[1] + cells * cell[2])));
+            }
+        }
+      }
+}
+
+std::size_t DistanceField::memory_bytes() const {
+  return bricks_.size() * sizeof(Brick) + brick_.size() * sizeof(brick_[0]) +
+         bound_.size() * sizeof(bound_[0]);
+}
+
+std::uint64_t DistanceField::hash() const {
+  std::uint64_t h = hash_values(std::span<const int>(size_));
+  h = hash_values(std::span<const std::int32_t>(brick_), h);
+  h = hash_values(std::span<const float>(bound_), h);
+  for (const Brick& brick : bricks_) h = hash_values(std::span<const float>(brick.value), h);
+  return h;
+}
+
+}  // namespace condyle

@@ -1,0 +1,141 @@
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+
+#include "engine/collide/distance_field.h"
+#include "engine/core/files.h"
+#include "engine/core/hash.h"
+
+namespace condyle {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t format_version = 1;
+
+/// Eight bytes at a time: the seal of some ten megabytes should not take longer than to read them.
+std::uint64_t seal_of(std::string_view bytes) {
+  std::uint64_t h = hash_start;
+  std::size_t i = 0;
+  for (; i + 8 <= bytes.size(); i += 8) {
+    std::uint64_t word;
+    std::memcpy(&word, bytes.data() + i, 8);
+    h = (h ^ word) * 1099511628211ull;
+    h ^= h >> 29;
+  }
+  return hash_bytes(bytes.data() + i, bytes.size() - i, h);
+}
+
+template <class T>
+void append(std::string& bytes, const T* values, std::size_t count) {
+  bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+}
+
+/// Takes values off the front; false when too few are left.
+template <class T>
+bool take(std::string_view& bytes, T* values, std::size_t count) {
+  if (bytes.size() / sizeof(T) < count) return false;
+  std::memcpy(values, bytes.data(), count * sizeof(T));
+  bytes.remove_prefix(count * sizeof(T));
+  return true;
+}
+
+std::uint64_t name_of(const TriMesh& mesh, const FieldSettings& settings) {
+  const Box box = settings.region.value_or(Box{});
+  const double numbers[] = {settings.spacing_mm, settings.band_mm, box.low.x(),  box.low.y(),
+                            box.low.z(),         box.high.x(),     box.high.y(), box.high.z()};
+  const std::uint64_t start[] = {format_version, mesh_hash({mesh.vertices, mesh.triangles, {}})};
+  return hash_values(std::span<const double>(numbers),
+                     hash_values(std::span<const std::uint64_t>(start)));
+}
+
+}  // namespace
+
+std::string DistanceField::to_bytes(std::uint64_t name) const {
+  std::string bytes;
+  bytes.reserve(memory_bytes() + 128);
+  const std::uint64_t head[] = {name, bricks_.size()};
+  append(bytes, head, 2);
+  append(bytes, origin_.data(), 3);
+  append(bytes, size_.data(), 3);
+  append(bytes, brick_.data(), brick_.size());
+  append(bytes, bound_.data(), bound_.size());
+  for (const Brick& brick : bricks_) append(bytes, brick.value.data(), brick.value.size());
+  const std::uint64_t seal = seal_of(bytes);
+  append(bytes, &seal, 1);
+  return bytes;
+}
+
+std::optional<DistanceField> DistanceField::from_bytes(std::string_view bytes, std::uint64_t name,
+                                                       const FieldSettings& settings) {
+  std::uint64_t seal = 0;
+  if (bytes.size() < sizeof seal) return std::nullopt;
+  std::memcpy(&seal, bytes.data() + bytes.size() - sizeof seal, sizeof seal);
+  bytes.remove_suffix(sizeof seal);
+  if (seal_of(bytes) != seal) return std::nullopt;
+
+  DistanceField field;
+  field.settings_ = settings;
+  field.per_mm_ = 1 / settings.spacing_mm;
+  std::uint64_t head[2];
+  if (!take(bytes, head, 2) || head[0] != name) return std::nullopt;
+  if (!take(bytes, field.origin_.data(), 3) || !take(bytes, field.size_.data(), 3))
+    return std::nullopt;
+  double places = 1;
+  for (const int size : field.size_) places *= size;
+  if (!(places >= 1 && places * 8 <= static_cast<double>(bytes.size()))) return std::nullopt;
+  if (head[1] > bytes.size() / sizeof(Brick::value)) return std::nullopt;
+  field.brick_.resize(static_cast<std::size_t>(places));
+  field.bound_.resize(static_cast<std::size_t>(places));
+  field.bricks_.resize(head[1]);
+  if (!take(bytes, field.brick_.data(), field.brick_.size()) ||
+      !take(bytes, field.bound_.data(), field.bound_.size()))
+    return std::nullopt;
+  for (Brick& brick : field.bricks_) {
+    if (!take(bytes, brick.value.data(), brick.value.size())) return std::nullopt;
+    mark_unknown(brick, settings.spacing_mm);
+  }
+  for (const std::int32_t index : field.brick_)
+    if (index < -1 || index >= static_cast<std::int64_t>(head[1])) return std::nullopt;
+  if (!bytes.empty()) return std::nullopt;
+  return field;
+}
+
+DistanceField kept_field(const fs::path& cache, const TriMesh& mesh, const FieldSettings& settings,
+                         int threads) {
+  const std::uint64_t name = name_of(mesh, settings);
+  char text[32];
+  std::snprintf(text, sizeof text, "field-%016llx.bin", static_cast<unsigned long long>(name));
+  const fs::path file = cache / text;
+  if (!cache.empty()) try {
+      std::error_code absent;
+      if (fs::exists(file, absent))
+        if (auto field = DistanceField::from_bytes(read_file(file), name, settings))
+          return *std::move(field);
+    } catch (const std::exception&) {
+      // Unreadable: as good as none.
+    }
+  DistanceField field(mesh, settings, threads);
+  if (!cache.empty()) try {
+      make_folder(cache);
+      write_file(file, field.to_bytes(name));
+    } catch (const std::exception&) {
+      // A cache that cannot be written only costs time.
+    }
+  return field;
+}
+
+fs::path field_cache_folder() {
+  const auto absolute = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    const fs::path path = value ? value : "";
+    return path.is_absolute() ? path : fs::path();
+  };
+  if (const auto cache = absolute("XDG_CACHE_HOME"); !cache.empty()) return cache / "condyle";
+  if (const auto home = absolute("HOME"); !home.empty()) return home / ".cache" / "condyle";
+  return {};
+}
+
+}  // namespace condyle

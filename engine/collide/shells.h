@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/mesh/tri_mesh.h"
+
+namespace condyle {
+
+/// A connected piece of a surface.
+struct Shell {
+  TriMesh mesh;  // its own vertices, without colours
+  bool closed = false;
+  // One per triangle: bit k for the edge from corner k to corner k + 1 on a rim, bit 3 + k for
+  // corner k on a rim. All zero for closed shells.
+  std::vector<std::uint8_t> rim;
+};
+
+/// The pieces that bound a solid. Closed shells face outward: those that face inward within another
+/// are cavities and are left out, others that face inward are turned. Open shells keep their sense.
+/// The mesh must be welded.
+std::vector<Shell> solid_shells(const TriMesh& mesh);
+
+}  // namespace condyle
