@@ -90,7 +90,7 @@ CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes) {
     for (i = (i + 1) % n; i != right && i != (right + n) % n; i = (i + 1) % n)
       other.push_back(loop[i]);
     std::reverse(other.begin(), other.end());
-    const bool one_is_upper = height_around(skin.mesh, one) > height_around(skin.mesh, other);
+    const bool one_is_upper = faces_outward(skin.mesh);
     skin.mouth.upper = one_is_upper ? one : other;
     skin.mouth.lower = one_is_upper ? other : one;
   }

@@ -54,7 +54,7 @@ MouthOutline outline_of(const std::vector<int>& loop, const TriMesh& face,
   for (int i = (right + 1) % n; i != left; i = (i + 1) % n) forward.push_back(loop[i]);
   for (int i = (right + n - 1) % n; i != left; i = (i + n - 1) % n) backward.push_back(loop[i]);
   if (forward.empty() || backward.empty()) return {};
-  const bool forward_is_upper = height_around(face, forward) > height_around(face, backward);
+  const bool forward_is_upper = faces_outward(face);
   mouth.upper = forward_is_upper ? forward : backward;
   mouth.lower = forward_is_upper ? backward : forward;
   return mouth;
@@ -62,17 +62,16 @@ MouthOutline outline_of(const std::vector<int>& loop, const TriMesh& face,
 
 }  // namespace
 
-double height_around(const TriMesh& mesh, const std::vector<int>& run) {
-  std::vector<char> in_run(mesh.vertices.size(), 0);
-  for (int v : run) in_run[v] = 1;
-  double sum = 0;
-  int count = 0;
+bool faces_outward(const TriMesh& mesh) {
+  Vector3d middle = Vector3d::Zero();
+  for (const auto& p : mesh.vertices) middle += p / static_cast<double>(mesh.vertices.size());
+  double outward = 0;
   for (const auto& t : mesh.triangles) {
-    if (!in_run[t[0]] && !in_run[t[1]] && !in_run[t[2]]) continue;
-    sum += mesh.vertices[t[0]].z() + mesh.vertices[t[1]].z() + mesh.vertices[t[2]].z();
-    count += 3;
+    const Vector3d a = mesh.vertices[t[0]] - middle, b = mesh.vertices[t[1]] - middle,
+                   c = mesh.vertices[t[2]] - middle;
+    outward += a.dot(b.cross(c));
   }
-  return count > 0 ? sum / count : 0;
+  return outward > 0;
 }
 
 std::vector<std::vector<int>> border_loops(const TriMesh& mesh) {

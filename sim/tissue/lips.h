@@ -20,9 +20,10 @@ struct MouthOutline {
 /// Border loops of a welded mesh, each a run of vertices in the order of the surface's own edges.
 std::vector<std::vector<int>> border_loops(const TriMesh& mesh);
 
-/// Mean height of the triangles at a run of vertices: of two lips that touch, the upper one's is
-/// higher though their borders coincide.
-double height_around(const TriMesh& mesh, const std::vector<int>& run);
+/// Whether the surface's triangles face away from its middle. Then a border loop runs along the
+/// upper lip from the right corner to the left, and back along the lower: the surface lies on its
+/// left. Heights cannot tell the lips apart, since closed lips overlap.
+bool faces_outward(const TriMesh& mesh);
 
 /// The border loop at the mouth, if the face has one. `incisors`: midpoint of the incisal points.
 MouthOutline find_mouth(const TriMesh& face, const Landmarks& landmarks,
