@@ -155,6 +155,8 @@ ContactRegion contact_region(const SignedSurface& a, const Pose& X_WA, const Tri
     region.area_mm2 += piece.area;
     region.centroid += piece.area * piece.centroid;
     region.normal -= piece.normal;
+    patch.normal -= piece.normal;
+    patch.box.add(X_WA * piece.centroid);
     if (piece.least < least[g]) {
       least[g] = piece.least;
       patch.depth_mm = std::max(0.0, -piece.least);
@@ -162,13 +164,17 @@ ContactRegion contact_region(const SignedSurface& a, const Pose& X_WA, const Tri
       patch.triangle = piece.triangle;
     }
   }
+  const auto unit = [&](const Eigen::Vector3d& n, double area) {
+    return Eigen::Vector3d(n.norm() > 1e-9 * area ? X_WA.R * n.normalized()
+                                                  : Eigen::Vector3d::Zero());
+  };
   for (auto& patch : region.patches) {
+    patch.normal = unit(patch.normal, patch.area_mm2);
     patch.centroid = X_WA * (patch.centroid / patch.area_mm2);
     patch.deepest = X_WA * patch.deepest;
   }
   if (region.area_mm2 > 0) region.centroid = X_WA * (region.centroid / region.area_mm2);
-  region.normal = X_WA.R * region.normal;
-  if (region.normal.norm() > 1e-9 * region.area_mm2) region.normal.normalize();
+  region.normal = unit(region.normal, region.area_mm2);
   std::stable_sort(
       region.patches.begin(), region.patches.end(),
       [](const ContactPatch& p, const ContactPatch& q) { return p.area_mm2 > q.area_mm2; });

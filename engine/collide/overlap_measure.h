@@ -14,6 +14,8 @@ struct ContactPatch {
   double depth_mm = 0;                                 // deepest point of B's surface in A
   Eigen::Vector3d deepest = Eigen::Vector3d::Zero();   // that point, world
   int triangle = -1;                                   // of B, under it
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    // mean, from A to B; zero if it cancels
+  Box box;                                             // around it, world
 };
 
 /// Where surface B lies inside A or near to it.
@@ -40,7 +42,7 @@ ContactRegion contact_region(const SignedSurface& a, const Pose& X_WA, const Tri
 /// Volume inside both surfaces.
 struct OverlapVolume {
   double mm3 = 0;
-  double error_mm3 = 0;  // difference to the answer of every other column
+  double error_mm3 = 0;  // largest difference to the answers of a grid twice as coarse
 };
 
 /// Both are cut into columns along the shortest side of their common box; along a column the common

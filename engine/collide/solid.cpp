@@ -118,8 +118,22 @@ double Solid::depth_in(const Shell& shell, const Eigen::Vector3d& p, double radi
 }
 
 double Solid::signed_distance(const Eigen::Vector3d& p) const {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Shell& shell : shells_) least = std::min(least, shell.tree.signed_distance(p));
+  // The shell whose box is nearest goes first: its answer spares most others.
+  std::size_t first = 0;
+  double nearest_box = infinity;
+  for (std::size_t i = 0; i < shells_.size(); ++i)
+    if (const double d = distance_to(shells_[i].box, p); d < nearest_box) {
+      nearest_box = d;
+      first = i;
+    }
+  double least = infinity;
+  for (std::size_t k = 0; k < shells_.size(); ++k) {
+    const Shell& shell = shells_[k == 0 ? first : k <= first ? k - 1 : k];
+    const double to_box = distance_to(shell.box, p);
+    if (to_box > 0 && to_box >= least) continue;
+    // Within its box the point may be deep inside, whatever the distance to the others.
+    least = std::min(least, shell.tree.signed_nearest(p, to_box > 0 ? least : infinity).distance);
+  }
   return least;
 }
 

@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "sim/motion/measures.h"
 
 namespace condyle {
 
 bool ClearanceCheck::violated() const {
-  return std::any_of(pairs.begin(), pairs.end(), [](const PairVerdict& pair) {
-    return pair.violates_margin || pair.penetrates;
-  });
+  return std::any_of(pairs.begin(), pairs.end(),
+                     [](const PairVerdict& pair) { return pair.violated(); });
 }
 
 ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double margin_mm,
@@ -35,6 +33,8 @@ ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double 
       "frame,time_s,opening_mm,a,b,touching,distance_mm,depth_mm,beyond_rest_mm,contacts,"
       "witness_a_x_mm,witness_a_y_mm,witness_a_z_mm,witness_b_x_mm,witness_b_y_mm,witness_b_z_mm\n";
   check.frames = static_cast<int>(std::lround(motion.duration_s / settings.step_s)) + 1;
+  CoronoidClearance coronoids(scene.patient);
+  std::vector<bool> touching(check.pairs.size(), false);
   ContactSet previous = scene.contacts.at_rest();
   for (int frame = 0; frame < check.frames; ++frame) {
     const double time = std::min(frame * settings.step_s, motion.duration_s);
@@ -43,23 +43,31 @@ ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double 
     const Measures measures = measure(scene.patient, X_CM);
     check.opening_mm.push_back(measures.opening_mm);
     check.rotation_deg.push_back(measures.rotation_deg);
+    check.time_s.push_back(time);
+    coronoids.add(X_CM);
     for (std::size_t i = 0; i < now.pairs.size(); ++i) {
       const auto& pair = now.pairs[i];
       auto& verdict = check.pairs[i];
       const double distance = pair.touching ? 0 : pair.distance_mm;
       const double beyond = pair.depth_mm - pair.rest_depth_mm;
-      if (distance < verdict.least_distance_mm) {
+      const bool nearest = distance < verdict.least_distance_mm;
+      const bool deepest = beyond > verdict.beyond_rest_mm;
+      if (nearest) {
         verdict.least_distance_mm = distance;
         verdict.least_frame = frame;
       }
-      if (beyond > verdict.beyond_rest_mm) {
+      if (deepest) {
         verdict.beyond_rest_mm = beyond;
         verdict.deepest_frame = frame;
       }
+      if (deepest || (nearest && verdict.beyond_rest_mm == 0)) verdict.worst = pair;
       if (pair.touching) {
         if (verdict.first_touch < 0) verdict.first_touch = frame;
+        if (verdict.clearance_mm.empty() || !touching[i]) ++verdict.touches;
         ++verdict.touching_frames;
       }
+      touching[i] = pair.touching;
+      verdict.clearance_mm.push_back(pair.touching ? -pair.depth_mm : distance);
       fmt::format_to(std::back_inserter(check.pairs_csv),
                      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame, time,
                      measures.opening_mm, verdict.a, verdict.b, pair.touching ? 1 : 0, distance,
@@ -77,70 +85,17 @@ ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double 
       verdict.penetrates = true;
     verdict.violates_margin = !verdict.teeth && verdict.least_distance_mm < margin_mm;
   }
+  check.coronoids = coronoids.sides();
+  check.coronoids_missing = coronoids.missing();
+  CloseLook close_look(scene.patient);
+  for (std::size_t i = 0; i < check.pairs.size(); ++i) {
+    auto& pair = check.pairs[i];
+    const auto worst = static_cast<std::size_t>(pair.worst_frame());
+    pair.X_CM_worst = motion.wanted(check.time_s[worst]);
+    pair.detail = close_look.look(pair.worst, pair.X_CM_worst);
+    report(progress, "measuring contacts", (i + 1.0) / static_cast<double>(check.pairs.size()));
+  }
   return check;
-}
-
-std::string ClearanceCheck::json(const Scene& scene, const Motion& motion, double margin_mm) const {
-  nlohmann::ordered_json json = {
-      {"about", "Condyle; for research and education, not for clinical use"},
-      {"case", scene.patient.name},
-      {"motion", {{"name", motion.name}, {"duration_s", motion.duration_s}}},
-      {"margin_mm", margin_mm},
-      {"frames", frames},
-      {"violation", violated()},
-      {"max_opening_mm", *std::max_element(opening_mm.begin(), opening_mm.end())},
-      {"pairs", nlohmann::ordered_json::array()}};
-  for (const auto& pair : pairs) {
-    const auto at = [&](int frame) {
-      const auto f = static_cast<std::size_t>(frame);
-      return nlohmann::ordered_json{
-          {"frame", frame}, {"opening_mm", opening_mm[f]}, {"rotation_deg", rotation_deg[f]}};
-    };
-    nlohmann::ordered_json entry = {{"a", pair.a},
-                                    {"b", pair.b},
-                                    {"policy", pair.teeth ? "allowed contact" : "forbidden"},
-                                    {"distance_at_rest_mm", pair.rest_distance_mm},
-                                    {"overlap_at_rest_mm", pair.rest_depth_mm},
-                                    {"min_distance_mm", pair.least_distance_mm},
-                                    {"min_distance_at", at(pair.least_frame)},
-                                    {"beyond_rest_mm", pair.beyond_rest_mm},
-                                    {"touching_frames", pair.touching_frames},
-                                    {"violates_margin", pair.violates_margin},
-                                    {"penetrates", pair.penetrates}};
-    if (pair.first_touch >= 0) entry["first_contact"] = at(pair.first_touch);
-    if (pair.beyond_rest_mm > 0) entry["deepest_at"] = at(pair.deepest_frame);
-    json["pairs"].push_back(entry);
-  }
-  json["notes"] = scene.contacts.notes();
-  return json.dump(2) + "\n";
-}
-
-std::string ClearanceCheck::text(double margin_mm) const {
-  std::string text;
-  for (const auto& pair : pairs) {
-    const auto f =
-        static_cast<std::size_t>(pair.penetrates ? pair.deepest_frame : pair.least_frame);
-    text +=
-        fmt::format("{} {} and {}: ", pair.penetrates || pair.violates_margin ? "VIOLATION" : "ok",
-                    pair.a, pair.b);
-    if (pair.rest_depth_mm > 0)
-      text += fmt::format("overlap {:.2f} mm at rest; ", pair.rest_depth_mm);
-    if (pair.penetrates && pair.beyond_rest_mm > 0)
-      text += fmt::format("{:.2f} mm deeper than at rest at {:.1f} mm opening", pair.beyond_rest_mm,
-                          opening_mm[f]);
-    else if (pair.penetrates)
-      text += fmt::format("they meet at {:.1f} mm opening",
-                          opening_mm[static_cast<std::size_t>(pair.first_touch)]);
-    else if (pair.touching_frames > 0)
-      text += "touch, never deeper than at rest";
-    else
-      text += fmt::format("nearest {:.2f} mm at {:.1f} mm opening", pair.least_distance_mm,
-                          opening_mm[f]);
-    if (pair.violates_margin && !pair.penetrates)
-      text += fmt::format(", less than the margin of {:.2f} mm", margin_mm);
-    text += "\n";
-  }
-  return text;
 }
 
 }  // namespace condyle

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::array<const char*, 6> colours = {"#0072B2", "#D55E00", "#009E73",
                                                 "#CC79A7", "#E69F00", "#56B4E9"};
-constexpr double width = 640, height = 480, left = 70, right = 20, top = 44, bottom = 56;
+constexpr double height = 480, left = 70, right = 20, top = 44, bottom = 56;
+constexpr double axes_width = 550, legend_width = 250;
 
 struct Range {
   double low = 1e300, high = -1e300;
@@ -42,15 +43,38 @@ std::string label(double value, double step) {
 
 }  // namespace
 
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) switch (c) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      default:
+        safe += c;
+    }
+  return safe;
+}
+
 std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& settings) {
   Range x, y;
   for (const auto& curve : curves)
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       x.include(curve.x[i]);
-      y.include(curve.y[i]);
+      y.include(std::min(curve.y[i], settings.y_most));
     }
   if (curves.empty() || x.low > x.high) x = y = {0, 1};
-  const double inner_width = width - left - right, inner_height = height - top - bottom;
+  for (const auto& level : settings.levels) y.include(level.y);
+  const double width = left + axes_width + right + (settings.legend_beside ? legend_width : 0);
+  const double inner_width = axes_width, inner_height = height - top - bottom;
   x.widen(std::max(x.size() * 1.06, 1e-3));
   y.widen(std::max(y.size() * 1.12, 1e-3));
   if (settings.equal_scale) {
@@ -77,7 +101,7 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
     svg += fmt::format(
         "<line x1=\"{1}\" x2=\"{2}\" y1=\"{0:.1f}\" y2=\"{0:.1f}\" stroke=\"#e2e2e2\"/>"
         "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\" fill=\"#444\">{5}</text>\n",
-        py(v), left, width - right, left - 8, py(v) + 4, label(v, step_y));
+        py(v), left, left + axes_width, left - 8, py(v) + 4, label(v, step_y));
   svg += fmt::format(
       "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888\"/>\n"
       "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\" fill=\"#222\">{}</text>\n"
@@ -85,17 +109,42 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
       "fill=\"#222\">{}</text>\n",
       left, top, inner_width, inner_height, left + inner_width / 2, height - 14, settings.x_label,
       top + inner_height / 2, settings.y_label);
-  for (std::size_t c = 0; c < curves.size(); ++c) {
-    const char* colour = colours[c % colours.size()];
-    svg +=
-        fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"", colour);
-    for (std::size_t i = 0; i < curves[c].x.size(); ++i)
-      svg += fmt::format("{:.2f},{:.2f} ", px(curves[c].x[i]), py(curves[c].y[i]));
-    const double ly = top + 20 + 18 * static_cast<double>(c);
+  const double legend_x = left + 12 + (settings.legend_beside ? axes_width : 0);
+  double legend_y = top + 20;
+  svg += fmt::format(
+      "<clipPath id=\"axes\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
+      left, top, inner_width, inner_height);
+  for (const auto& level : settings.levels) {
     svg += fmt::format(
-        "\"/>\n<line x1=\"{}\" x2=\"{}\" y1=\"{:.0f}\" y2=\"{:.0f}\" stroke=\"{}\" "
+        "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#222\" "
+        "stroke-dasharray=\"2 3\"/><text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\" "
+        "fill=\"#222\" font-size=\"12\">{5}</text>\n",
+        left, left + axes_width, py(level.y), left + axes_width - 6, py(level.y) - 4,
+        escaped(level.name));
+  }
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    const auto& curve = curves[c];
+    const std::size_t number = curve.colour < 0 ? c : static_cast<std::size_t>(curve.colour);
+    const char* colour = colours[number % colours.size()];
+    svg += fmt::format(
+        "<polyline clip-path=\"url(#axes)\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{} "
+        "points=\"",
+        colour, curve.dashed ? " stroke-dasharray=\"6 4\"" : "");
+    for (std::size_t i = 0; i < curve.x.size(); ++i)
+      svg += fmt::format("{:.2f},{:.2f} ", px(curve.x[i]), py(curve.y[i]));
+    svg += "\"/>\n";
+    if (curve.name.empty()) continue;
+    svg += fmt::format(
+        "<line x1=\"{}\" x2=\"{}\" y1=\"{:.0f}\" y2=\"{:.0f}\" stroke=\"{}\" "
         "stroke-width=\"2\"/><text x=\"{}\" y=\"{:.0f}\" fill=\"#222\">{}</text>\n",
-        left + 12, left + 34, ly - 4, ly - 4, colour, left + 40, ly, curves[c].name);
+        legend_x, legend_x + 22, legend_y - 4, legend_y - 4, colour, legend_x + 28, legend_y,
+        escaped(curve.name));
+    legend_y += 18;
+  }
+  for (const auto& remark : settings.remarks) {
+    svg += fmt::format("<text x=\"{}\" y=\"{:.0f}\" fill=\"#444\" font-size=\"12\">{}</text>\n",
+                       legend_x, legend_y + 8, escaped(remark));
+    legend_y += 16;
   }
   return svg + "</svg>\n";
 }

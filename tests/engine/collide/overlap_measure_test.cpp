@@ -124,6 +124,28 @@ TEST(SignedSurface, OpenShellsGiveADistanceWithoutSign) {
   EXPECT_TRUE(std::isinf(found[1]));
 }
 
+TEST(SignedSurface, OfManyShellsIsTheLeastOverThem) {
+  std::mt19937_64 random(16);
+  TriMesh all;
+  std::vector<TriangleTree> trees;
+  for (int i = 0; i < 9; ++i) {
+    const TriMesh shell = test::moved(sphere(2, 3 + i % 4, {0, 0, 0}, 0.1), any_pose(random, 12));
+    trees.emplace_back(shell);
+    all = test::joined(all, shell);
+  }
+  const SignedSurface surface(all);
+  std::uniform_real_distribution<double> along(-20, 20);
+  int inside = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Eigen::Vector3d p(along(random), along(random), along(random));
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& tree : trees) least = std::min(least, tree.signed_distance(p));
+    ASSERT_EQ(surface.distance(p), least);
+    inside += least < 0;
+  }
+  EXPECT_GT(inside, 100);
+}
+
 TEST(Refine, DividesInTheBallAndStaysClosed) {
   const Eigen::Vector3d center(5, 1, 2);
   const TriMesh fine = refine_near(box({-40, -30, -20}, {40, 30, 2}), center, 6, 0.5);
