@@ -1,0 +1,118 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/collide/distance_field.h"
+#include "engine/collide/surface_samples.h"
+#include "engine/math/pose.h"
+#include "engine/mesh/tri_mesh.h"
+
+namespace condyle {
+
+/// A surface made ready to slide: its distance field and its samples, in its own coordinates.
+struct SlideBody {
+  DistanceField field;
+  SurfaceSamples samples;
+};
+
+struct SlideBodySettings {
+  FieldSettings field;
+  SampleSettings samples;
+  std::filesystem::path cache;  // folder for the field; empty: none
+};
+
+/// The mesh must be welded. Where the field has a region the samples keep to it too: outside,
+/// nothing is ever touched.
+SlideBody make_slide_body(const TriMesh& mesh, const SlideBodySettings& settings = {},
+                          int threads = 1);
+
+struct SlideSettings {
+  double friction = 0;     // Coulomb coefficient; 0 slides freely
+  double slop_mm = 0.02;   // depth that is let be
+  int max_contacts = 64;   // that push at once
+  double thinning_mm = 1;  // between contacts that join together
+  // What a radian costs against a millimetre when the nearest pose is looked for; 0: the moving
+  // body's radius of gyration.
+  double rotation_length_mm = 0;
+  std::optional<Eigen::Vector3d> pivot;  // moving body's coordinates; else its samples' centroid
+};
+
+/// One place where the moving body is held.
+struct SlideContact {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // fixed body's coordinates
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, from the fixed to the moving body
+  double gap_mm = 0;                                  // negative: depth
+  double push_mm = 0;                                 // its share in what keeps off the wanted pose
+};
+
+struct SlideResult {
+  Pose X_FM;                           // moving in fixed
+  bool touching = false;               // held by at least one contact
+  bool settled = false;                // the nearest pose was found within the tolerance
+  double depth_mm = 0;                 // by the fields, beyond the baseline
+  std::vector<SlideContact> contacts;  // that hold it
+  int steps = 0;
+};
+
+/// What one slide found out for the next: it saves time where poses are near each other. And a
+/// slide that starts from its last answer towards the same pose gives that answer again, to the
+/// bit.
+struct SlideMemory {
+  struct Sample {
+    int pair = 0, sample = 0;
+    double distance_mm = 0;
+  };
+  std::vector<Sample> near;  // samples that were near the other body at X_FM
+  Pose X_FM;
+  Pose wanted;  // of the last slide
+  SlideResult last;
+  const void* owner = nullptr;  // the model it belongs to
+};
+
+/// Sliding contact of a moving body (of several surfaces) on a fixed one.
+class SlidingContact {
+ public:
+  SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fixed,
+                 std::vector<std::shared_ptr<const SlideBody>> moving,
+                 const SlideSettings& settings = {});
+
+  /// Overlap at this pose is allowed from now on: each sample may go as deep as it is there.
+  /// Samples deeper than the band no longer count.
+  void allow_overlap_at(const Pose& rest);
+
+  /// From a free pose towards the wanted one, sliding along what is in the way, to the pose nearest
+  /// to it (least squares of the pivot's way and the rotation times its length) that touches and
+  /// does not overlap. The motion is walked in steps below half the band: nothing is passed
+  /// through. A start that overlaps is moved out, one that is as near as it gets is the answer.
+  /// Same bits for any number of threads.
+  SlideResult slide(const Pose& from, const Pose& wanted, SlideMemory* memory = nullptr,
+                    int threads = 1) const;
+
+  /// Deepest overlap beyond the baseline, by the fields; 0 when free.
+  double depth(const Pose& X_FM, int threads = 1) const;
+
+  double rotation_length_mm() const { return rotation_length_mm_; }
+  const Eigen::Vector3d& pivot() const { return pivot_; }
+
+ private:
+  friend class SlideWalk;
+  struct Pair {  // samples of one body in the field of the other
+    const SlideBody* samples;
+    const SlideBody* field;
+    bool samples_move = false;
+    std::vector<float> allowed;  // of each sample, mm, at most 0; empty: 0
+  };
+
+  std::vector<std::shared_ptr<const SlideBody>> fixed_, moving_;
+  SlideSettings settings_;
+  std::vector<Pair> pairs_;
+  Eigen::Vector3d pivot_ = Eigen::Vector3d::Zero();
+  double rotation_length_mm_ = 1;
+  double radius_mm_ = 0;  // of the moving samples about the pivot
+  double band_mm_ = 1;    // the narrowest
+};
+
+}  // namespace condyle

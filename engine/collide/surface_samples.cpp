@@ -1,0 +1,117 @@
+#include "engine/collide/surface_samples.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/mesh/topology.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int leaf_size = 8;
+constexpr double hollow_slope =
+    0.05;  // tangent of half the angle of an edge that counts as concave
+
+int build_balls(SurfaceSamples& s, std::vector<int>& order, const std::vector<Vector3d>& points,
+                int first, int last) {
+  Box box;
+  for (int i = first; i < last; ++i) box.add(points[order[i]]);
+  const int index = static_cast<int>(s.balls.size());
+  const Vector3d center = box.center();
+  double radius2 = 0;
+  for (int i = first; i < last; ++i)
+    radius2 = std::max(radius2, (points[order[i]] - center).squaredNorm());
+  s.balls.push_back({center, std::sqrt(radius2), first, last - first, 0});
+  if (last - first <= leaf_size) return index;
+  Eigen::Index axis = 0;
+  box.size().maxCoeff(&axis);
+  const int middle = first + (last - first) / 2;
+  std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last,
+                   [&](int a, int b) {
+                     const double x = points[a][axis], y = points[b][axis];
+                     return x < y || (x == y && a < b);
+                   });
+  build_balls(s, order, points, first, middle);
+  s.balls[index].right = build_balls(s, order, points, middle, last);
+  return index;
+}
+
+}  // namespace
+
+SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& settings) {
+  std::vector<Vector3d> points, normals;
+  const auto add = [&](const Vector3d& p, const Vector3d& normal) {
+    if (settings.region && !settings.region->contains(p)) return;
+    points.push_back(p);
+    normals.push_back(normal);
+  };
+  std::vector<Vector3d> face(mesh.triangles.size());
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    const auto& t = mesh.triangles[i];
+    const Vector3d& a = mesh.vertices[t[0]];
+    face[i] = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).normalized();
+  }
+
+  const std::vector<Vector3d> corner = vertex_normals(mesh);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (corner[v] != Vector3d::Zero()) add(mesh.vertices[v], corner[v]);
+
+  const EdgeList list = find_edges(mesh);
+  for (const Edge& edge : list.edges) {
+    const Vector3d &p = mesh.vertices[edge.low], &q = mesh.vertices[edge.high];
+    Vector3d sum = Vector3d::Zero();
+    for (int i = 0; i < edge.count; ++i) sum += face[list.sides[edge.first + i].triangle];
+    double spacing = edge.count == 2 ? settings.spacing_mm : settings.edge_spacing_mm;
+    if (edge.count == 2) {
+      const Vector3d &m = face[list.sides[edge.first].triangle],
+                     &n = face[list.sides[edge.first + 1].triangle];
+      const auto& t = mesh.triangles[list.sides[edge.first + 1].triangle];
+      int apex = t[0];
+      for (int k = 0; k < 3; ++k)
+        if (t[k] != edge.low && t[k] != edge.high) apex = t[k];
+      const double slope = std::tan(0.5 * std::atan2(m.cross(n).norm(), m.dot(n)));
+      if (m.dot(mesh.vertices[apex] - p) >= 0) {
+        if (slope > hollow_slope) continue;
+      } else if (slope * spacing > 2 * settings.edge_rise_mm) {
+        spacing = std::max(2 * settings.edge_rise_mm / slope, settings.edge_spacing_mm);
+      }
+    }
+    const int pieces = std::max(1, static_cast<int>(std::ceil((q - p).norm() / spacing)));
+    for (int i = 1; i < pieces; ++i)
+      add(p + (q - p) * (static_cast<double>(i) / pieces), sum.normalized());
+  }
+
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    if (face[i] == Vector3d::Zero()) continue;
+    const auto& t = mesh.triangles[i];
+    const Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    const int n = std::max(1, static_cast<int>(std::ceil(longest / settings.spacing_mm)));
+    for (int u = 1; u < n; ++u)
+      for (int v = 1; u + v < n; ++v)
+        add(a + (b - a) * (static_cast<double>(u) / n) + (c - a) * (static_cast<double>(v) / n),
+            face[i]);
+  }
+
+  SurfaceSamples samples;
+  if (points.empty()) return samples;
+  for (const auto& p : points) samples.centroid += p;
+  samples.centroid /= static_cast<double>(points.size());
+  double square = 0;
+  for (const auto& p : points) square += (p - samples.centroid).squaredNorm();
+  samples.gyration_mm = std::sqrt(square / static_cast<double>(points.size()));
+  std::vector<int> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  build_balls(samples, order, points, 0, static_cast<int>(points.size()));
+  for (const int i : order) {
+    samples.points.push_back(points[i]);
+    samples.normals.push_back(normals[i]);
+  }
+  return samples;
+}
+
+}  // namespace condyle

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "engine/mesh/measure.h"
+#include "engine/mesh/tri_mesh.h"
+
+namespace condyle {
+
+struct SampleSettings {
+  double spacing_mm = 0.4;  // on faces and flat edges
+  // Two edges cross between samples: on a convex edge they lie so near each other that it cannot
+  // rise above them by more than this, down to the least spacing.
+  double edge_rise_mm = 0.03;
+  double edge_spacing_mm = 0.1;
+  std::optional<Box> region;  // only samples within (body coordinates)
+};
+
+/// Points spread over a surface, in a tree of balls.
+struct SurfaceSamples {
+  struct Ball {  // of a run of points
+    Eigen::Vector3d center;
+    double radius = 0;
+    int first = 0, count = 0;
+    int right = 0;  // second child (the first is next); 0 for a leaf
+  };
+  std::vector<Eigen::Vector3d> points;   // in the order of the balls
+  std::vector<Eigen::Vector3d> normals;  // unit, outward
+  std::vector<Ball> balls;               // depth first
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  double gyration_mm = 0;  // root mean square distance from the centroid
+};
+
+/// Vertices, edges and faces sampled about a spacing apart, convex edges closer; concave edges by
+/// their ends. The mesh must be welded.
+SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& settings = {});
+
+}  // namespace condyle
