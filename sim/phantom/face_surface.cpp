@@ -60,9 +60,11 @@ FieldRecipe parted_face() {
 
 /// Positive where the surface is not skin: deep behind the lips, and the eye sockets.
 double hidden(const Vector3d& p, const Primitive& space, const Primitive& lids) {
+  // No lining beside the corners: a pocket there would be torn when the lips part.
+  const double lining = 6.5 * smooth_step((mouth_corner_x - std::abs(p.x())) / 4);
   const double mouth =
       std::min(0.6 - space.distance(p),
-               std::max(std::abs(p.z() - lip_line(p.x(), p.y())) - 6.5, p.y() + 79));
+               std::max(std::abs(p.z() - lip_line(p.x(), p.y())) - lining, p.y() + 79));
   const double socket = std::min(eye_radius + .6 - (p - eye_center).norm(), lids.distance(p) - 1.5);
   return std::max(mouth, socket);
 }

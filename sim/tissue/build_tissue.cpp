@@ -55,7 +55,7 @@ double rim_follows(double to_mandible_mm) { return 1 - smoothstep((to_mandible_m
 /// Solves a plain opening knot by knot, and keeps a factor at each: the tissue of the
 /// lower face turns with the jaw, and a factor made unturned asks for several times the iterations.
 void make_path(TissueModel& model, const Anatomy& anatomy) {
-  constexpr int knots = 12;
+  constexpr int knots = 13;  // to 43 degrees
   model.path.condyles = anatomy.condyles;
   model.factors.push_back(
       {0, HessianFactor(model.net, loads_at(model, Pose{}), model.sheets, model.rest)});

@@ -2,14 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace condyle {
 
 using Eigen::Vector3d;
 
+namespace {
+
+/// 0 below zero, the identity above, rounded over some mm between.
+double rounded_ramp(double mm) { return 0.5 * (mm + std::sqrt(mm * mm + 4)); }
+
+}  // namespace
+
 Pose OpeningPath::pose(double angle_rad) const {
-  // About 1.5 degrees of turning for each mm of sliding, 40 degrees down the eminence at first.
-  const double slide = 26 * angle_rad;
+  // A hinge to 12 degrees, then 1.5 degrees of turning for each mm of sliding, to the end of the
+  // joint; 40 degrees down the eminence at first.
+  constexpr double degree = std::numbers::pi / 180;
+  const double wanted = rounded_ramp((angle_rad / degree - 12) / 1.5) - rounded_ramp(-12 / 1.5);
+  const double slide = wanted - rounded_ramp(wanted - 16.5);
   Pose X_CM;
   X_CM.R = Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, Vector3d::UnitX()));
   X_CM.t = condyles - X_CM.R * condyles + Vector3d(0, -slide, -7.5 * (1 - std::exp(-slide / 6)));

@@ -13,7 +13,7 @@ namespace condyle {
 /// minimisation starts from. Knots are evenly spaced in the angle of opening, the first at rest.
 struct OpeningPath {
   Eigen::Vector3d condyles = Eigen::Vector3d::Zero();  // midpoint, mm
-  double step_rad = 0.065;
+  double step_rad = 0.063;
   std::vector<Nodes> nodes;  // one state per knot; empty while the path is being made
 
   /// Plain opening by an angle: about the condyles, which slide forward and down with it.

@@ -21,7 +21,7 @@ struct TissueSettings {
 
 /// How far one frame's minimisation goes.
 struct TissueBudget {
-  double tolerance_mm = 4e-3;  // stop when a step moves no node farther than this, estimated
+  double tolerance_mm = 1e-2;  // stop when a step moves no node farther than this, estimated
   int max_iterations = 2000;
   int threads = 1;  // the result has the same bits for any number
 };
