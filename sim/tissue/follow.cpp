@@ -27,6 +27,9 @@ NetLoads loads_at(const TissueModel& model, const Pose& X_CM) {
 
 namespace {
 
+/// Iterations after which a factor of the tissue as it is now, worth some thirty of them, is made.
+constexpr int patience = 25;
+
 int count_inverted(const SpringPrismNet& net, const Nodes& x) {
   int count = 0;
   for (const auto& prism : net.prisms) count += prism_volume(x, prism) <= 0;
@@ -76,9 +79,17 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
     if (turned >= other.from_rad) factor = &other.factor;
   MinimizeSettings settings;
   settings.tolerance_mm = budget.tolerance_mm;
-  settings.max_iterations = budget.max_iterations;
+  settings.max_iterations = std::min(budget.max_iterations, patience);
   settings.threads = budget.threads;
-  const MinimizeResult result = minimize(model.net, loads, *factor, settings, state.nodes);
+  MinimizeResult result = minimize(model.net, loads, *factor, settings, state.nodes);
+  if (!result.converged && budget.max_iterations > patience) {
+    const MinimizeResult first = result;
+    const HessianFactor fresh(model.net, loads, model.sheets, state.nodes);
+    settings.max_iterations = budget.max_iterations - patience;
+    result = minimize(model.net, loads, fresh, settings, state.nodes);
+    result.iterations += first.iterations;
+    result.evaluations += first.evaluations;
+  }
   state.iterations = result.iterations;
   state.evaluations = result.evaluations;
   state.converged = result.converged;
