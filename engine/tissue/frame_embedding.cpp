@@ -1,5 +1,6 @@
 #include "engine/tissue/frame_embedding.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 
@@ -39,6 +40,24 @@ HandleSet make_handles(const std::vector<Eigen::Vector3i>& triangles, int sheets
   return set;
 }
 
+namespace {
+
+/// The deformation (minus 1) with its stretches held between limits: points off the net are carried
+/// by extrapolation, which a strongly stretched node would throw far away.
+Matrix3d limited(const Matrix3d& stretched) {
+  constexpr double least = 0.6, most = 1.4;
+  const Matrix3d A = stretched + Matrix3d::Identity();
+  Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
+  solver.computeDirect(A.transpose() * A);
+  const Vector3d stretch = solver.eigenvalues().cwiseMax(1e-12).cwiseSqrt();
+  if (stretch.minCoeff() >= least && stretch.maxCoeff() <= most) return stretched;
+  const Vector3d scale = stretch.cwiseMax(least).cwiseMin(most).cwiseQuotient(stretch);
+  const Matrix3d& V = solver.eigenvectors();
+  return A * V * scale.asDiagonal() * V.transpose() - Matrix3d::Identity();
+}
+
+}  // namespace
+
 HandleMotion handle_motion(const HandleSet& handles, const Nodes& rest, const Nodes& now) {
   const std::size_t count = handles.node.size();
   HandleMotion motion;
@@ -60,7 +79,7 @@ HandleMotion handle_motion(const HandleSet& handles, const Nodes& rest, const No
   for (std::size_t h = 0; h < count; ++h) {
     Matrix3d sum = 2 * own[h];
     for (int n : handles.ring[h]) sum += own[n];
-    motion.stretched[h] = sum / (2.0 + static_cast<double>(handles.ring[h].size()));
+    motion.stretched[h] = limited(sum / (2.0 + static_cast<double>(handles.ring[h].size())));
   }
   return motion;
 }
