@@ -13,6 +13,7 @@ struct Camera {
   Eigen::Vector3d up = {0, 0, 1};
   double distance_mm = 600;
   double field_of_view_deg = 24;  // vertical
+  double near_mm = 0;             // what is nearer to the eye is cut away
 };
 
 /// Names of the standard views: front back left right three-quarter above below. `spin` is a

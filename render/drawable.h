@@ -22,6 +22,8 @@ struct Drawable {
   std::vector<Crease> creases;
   std::vector<GpuMesh::Bytes> colors;  // at rest
 
+  bool mapped = false;  // coloured by its values
+
   /// Sends a moved face, its normals and the shade of its folds.
   void move_face(std::span<const Eigen::Vector3f> positions,
                  std::vector<Eigen::Vector3f>& normals_scratch);

@@ -96,6 +96,18 @@ void GpuMesh::send_extras(std::span<const Bytes> extras) {
   send(GL_ARRAY_BUFFER, extras_, extras, GL_STATIC_DRAW);
 }
 
+void GpuMesh::send_values(std::span<const float> values) {
+  glBindVertexArray(array_);
+  if (values.empty()) {
+    glDisableVertexAttribArray(4);
+  } else {
+    send(GL_ARRAY_BUFFER, values_, values, GL_STREAM_DRAW);
+    glEnableVertexAttribArray(4);
+    glVertexAttribPointer(4, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
+  }
+  glBindVertexArray(0);
+}
+
 void GpuMesh::draw() const {
   glBindVertexArray(array_);
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles_.size()), GL_UNSIGNED_INT,

@@ -33,6 +33,8 @@ class GpuMesh {
                   std::span<const Eigen::Vector3f> normals);
   void send_colors(std::span<const Bytes> colors);
   void send_extras(std::span<const Bytes> extras);
+  /// One number per vertex, attribute 4; none: taken as 0.
+  void send_values(std::span<const float> values);
 
   void draw() const;
   void draw(const Piece& piece) const;
@@ -40,7 +42,7 @@ class GpuMesh {
 
  private:
   GlVertexArray array_;
-  GlBuffer positions_, normals_, colors_, extras_, indices_;
+  GlBuffer positions_, normals_, colors_, extras_, values_, indices_;
   std::vector<Eigen::Vector3i> triangles_;  // in the order of the pieces
   std::vector<Piece> pieces_;
   GLenum usage_;

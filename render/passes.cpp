@@ -1,6 +1,8 @@
 #include "render/passes.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <vector>
 
 #include "render/shaders.h"
@@ -10,8 +12,13 @@ namespace condyle {
 namespace {
 
 constexpr int shadow_side = 1024;
+constexpr int colour_count = 1024;  // of the table of a colour map
 constexpr float marker_radius_mm = 1.2f;
 constexpr float mouth_depth_mm = 24;  // over which the light inside the mouth falls to 1/e
+
+constexpr std::size_t most_map_lines = 4;
+constexpr std::array<const char*, most_map_lines> map_line_names = {"map_lines[0]", "map_lines[1]",
+                                                                    "map_lines[2]", "map_lines[3]"};
 
 GlProgram build(const char* what, const ShaderSource& source) {
   return {what, source.vertex, source.fragment};
@@ -41,6 +48,27 @@ Passes::Passes()
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, SkinTable::width, SkinTable::height, 0, GL_RGB,
                GL_UNSIGNED_BYTE, table.rgb.data());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+}
+
+void Passes::set_colour_map(const ColourMap& map) {
+  colour_map_ = map;
+  std::vector<std::uint8_t> table;
+  for (int i = 0; i < colour_count; ++i) {
+    // The last is still of the range, not beyond.
+    const float s = (static_cast<float>(i) + 0.5f) / colour_count;
+    const Eigen::Vector3f color = color_of(map, map.low() + s * (map.high() - map.low()));
+    for (int k = 0; k < 3; ++k)
+      table.push_back(static_cast<std::uint8_t>(std::lround(255 * color[k])));
+  }
+  glBindTexture(GL_TEXTURE_2D, colour_table_);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, colour_count, 1, 0, GL_RGB, GL_UNSIGNED_BYTE,
+               table.data());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
@@ -86,6 +114,11 @@ void Passes::background() {
 void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& view) {
   const auto& material = item.drawable->material;
   const auto role = item.role();
+  const bool mapped = item.drawable->mapped;
+  if (mapped) {
+    glActiveTexture(GL_TEXTURE2);
+    glBindTexture(GL_TEXTURE_2D, colour_table_);
+  }
   glActiveTexture(GL_TEXTURE1);
   glBindTexture(GL_TEXTURE_2D, skin_table_);
   glActiveTexture(GL_TEXTURE0);
@@ -108,6 +141,15 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
   program.set("scatter", material.scatter);
   program.set("coat", material.coat);
   program.set("together", role == Role::eyes ? view.skin_opacity : view.at_rest);
+  program.set("mapped", mapped ? 1.f : 0.f);
+  program.set("colour_table", 2);
+  if (mapped) {
+    program.set("map_range", Eigen::Vector2f(colour_map_.low(), colour_map_.high()));
+    program.set("map_beyond", colour_map_.beyond);
+    for (std::size_t i = 0; i < most_map_lines; ++i)
+      program.set(map_line_names[i],
+                  i < colour_map_.lines.size() ? colour_map_.lines[i] : colour_map_.low() - 100);
+  }
   const bool in_mouth = view.opaque_face && role != Role::face && role != Role::eyes;
   program.set("cavity", Eigen::Vector2f(view.lips_y, in_mouth ? 1 / mouth_depth_mm : 0.f));
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "render/colour_map.h"
 #include "render/drawable.h"
 #include "render/framebuffer.h"
 #include "render/lights.h"
@@ -39,6 +40,9 @@ class Passes {
  public:
   Passes();
 
+  /// Of all parts drawn by their values.
+  void set_colour_map(const ColourMap& map);
+
   void shadow_map(std::span<const DrawItem> items, const PictureView& view);
   void background();
   void opaque(std::span<const DrawItem> items, const PictureView& view);
@@ -54,7 +58,8 @@ class Passes {
 
   GlProgram surface_, skin_, interior_, depth_, background_, marker_;
   GlVertexArray no_attributes_;
-  GlTexture skin_table_;
+  GlTexture skin_table_, colour_table_;
+  ColourMap colour_map_;
   DepthMap shadow_map_;
   OcclusionCulling culling_;
 };

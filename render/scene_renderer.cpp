@@ -1,6 +1,7 @@
 #include "render/scene_renderer.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -51,6 +52,7 @@ struct SceneRenderer::State {
   // Kept from picture to picture of one size:
   std::optional<Framebuffer> sampled, resolved;
   int samples_asked = 0;
+  float map_low = 0, map_high = 1;  // values are kept within
 
   explicit State(std::span<const Part> parts)
       : drawables(make_drawables(parts)), mouth_y(front_of_mouth(drawables)) {
@@ -98,7 +100,8 @@ PictureView SceneRenderer::State::view(const Camera& camera,
   v.eye = (camera.target + camera.distance_mm * camera.direction.normalized()).cast<float>();
   const double away = (v.eye - box.center()).norm();
   v.projection = projection_matrix(camera, static_cast<double>(settings.width) / settings.height,
-                                   std::max(2.0, away - radius), away + radius);
+                                   std::max({2.0, away - radius, camera.near_mm}),
+                                   std::max(away + radius, camera.near_mm + 1));
   v.view_projection = v.projection * v.view;
   v.lights = lights_for(camera);
   auto moving = box;
@@ -145,6 +148,26 @@ void SceneRenderer::update(const FrameState& frame) {
   for (const auto& pair : frame.contacts.pairs)
     for (const auto& contact : pair.contacts) points.push_back(contact.point.cast<float>());
   s.contacts.send(points);
+}
+
+void SceneRenderer::set_colour_map(const ColourMap& map) {
+  state_->map_low = map.low() - 1;
+  state_->map_high = map.high() + 1;
+  state_->passes.set_colour_map(map);
+}
+
+void SceneRenderer::color_part(const std::string& name, std::span<const float> values) {
+  auto& s = *state_;
+  for (auto& drawable : s.drawables) {
+    if (drawable.part->name != name) continue;
+    assert(values.empty() || values.size() == drawable.part->mesh.vertices.size());
+    // Kept near the range, so that the way from a far vertex to a near one passes through it.
+    std::vector<float> kept(values.begin(), values.end());
+    for (float& value : kept)
+      value = std::isnan(value) ? s.map_high : std::clamp(value, s.map_low, s.map_high);
+    drawable.mesh.send_values(kept);
+    drawable.mapped = !kept.empty();
+  }
 }
 
 void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings) {

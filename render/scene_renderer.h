@@ -7,6 +7,7 @@
 #include <string>
 
 #include "render/camera.h"
+#include "render/colour_map.h"
 #include "render/image.h"
 #include "sim/frame/frame_state.h"
 #include "sim/frame/part.h"
@@ -38,6 +39,14 @@ class SceneRenderer {
 
   /// Takes over poses, face and contacts of a frame (normals of the face are made here).
   void update(const FrameState& frame);
+
+  /// The map of all parts that are coloured by values.
+  void set_colour_map(const ColourMap& map);
+
+  /// Colours a bone or an arch by one value per vertex from now on; without values it is drawn as
+  /// itself again. Values beyond the map, infinite ones too, have its outer colours. The face keeps
+  /// its own colours.
+  void color_part(const std::string& name, std::span<const float> values);
 
   /// Draws into the framebuffer that is bound, over its whole viewport of width x height.
   void draw(const Camera& camera, const PictureSettings& settings);

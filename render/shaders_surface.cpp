@@ -9,6 +9,7 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 color;  // sRGB, occlusion with everything at rest
 layout(location = 3) in vec4 extra;  // occlusion by its own body, curvature, gloss
+layout(location = 4) in float value; // what a colour map shows
 uniform mat4 model;            // rigid
 uniform mat4 view_projection;
 uniform mat4 shadow_matrix;
@@ -22,7 +23,9 @@ out vec3 world_normal;
 out vec3 albedo;               // linear
 out vec3 shadow_place;
 out vec4 traits;               // occlusion, curvature, gloss, depth in the mouth
+out float mapped_value;
 void main() {
+  mapped_value = value;
   vec4 world = model * vec4(position, 1.0);
   gl_Position = view_projection * world;
   to_eye = eye - world.xyz;
@@ -117,12 +120,37 @@ uniform float roughness, reflectance, wrap;
 uniform vec3 scatter;  // colour of the light that comes through at grazing angles
 uniform float coat;    // strength of the second, sharp reflection of wet or enamelled surfaces
 uniform vec2 cavity;   // as in the vertex shader
+in float mapped_value;
+uniform float mapped;  // 1: coloured by its value
+uniform sampler2D colour_table;
+uniform vec2 map_range;
+uniform vec3 map_beyond;
+uniform float map_lines[4];
+
+// sRGB, to be shaded only a little: what is read off a legend must look as it does there.
+vec3 map_color() {
+  float across = fwidth(mapped_value);
+  vec3 c = mapped_value >= map_range.y ? map_beyond
+         : texture(colour_table, vec2((mapped_value - map_range.x) / (map_range.y - map_range.x), 0.5)).rgb;
+  // No line where the value hardly changes: it would be a stain.
+  if (across > 1e-3)
+    for (int i = 0; i < 4; ++i)
+      c *= mix(0.25, 1.0, smoothstep(0.6, 1.4, abs(mapped_value - map_lines[i]) / across));
+  return c;
+}
+
 void main() {
   vec3 v = normalize(to_eye);
   vec3 n = normalize(world_normal);
   // An open surface is lit from whichever side is seen.
   if (!gl_FrontFacing) n = -n;
   float nv = clamp(dot(n, v), 0.0, 1.0);
+  if (mapped > 0.5) {
+    float shade = 0.55 * nv + 0.45 * wrapped(dot(n, key_direction), 0.5);
+    float a = opacity >= 1.0 ? 1.0 : 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35));
+    result = vec4(map_color() * mix(0.68, 1.0, clamp(1.25 * shade, 0.0, 1.0)), a);
+    return;
+  }
   float ao = traits.x, depth = traits.w;
   float kn = dot(n, key_direction);
   float lit = key_visibility() * depth;

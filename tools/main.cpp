@@ -137,7 +137,7 @@ int run_program(int argc, char** argv) {
   add_motion(check_command, check.motion, false);
   check_command->add_option("--margin", check.margin_mm, "Clearance that bones must keep, mm (0)")
       ->check(CLI::Range(0.0, 50.0));
-  check_command->add_option("--out", check.out, "Folder for report.json and pairs.csv");
+  check_command->add_option("--out", check.out, "Folder for report.html with its pictures, report.json, pairs.csv");
 
   ImportOptions import;
   auto* import_command =

@@ -280,7 +280,7 @@ std::string clearance_svg(const ClearanceCheck& check, double margin_mm) {
                         .y_most = most_clearance_mm};
   if (margin_mm > 0)
     settings.levels.push_back({fmt::format("margin {:.2f} mm", margin_mm), margin_mm});
-  if (any_closing) settings.remarks = {"through: opening", "dashed: closing"};
+  if (any_closing) settings.remarks = {"through: opening", "dashed: closing, where it differs"};
   if (any_cut)
     settings.remarks.push_back(fmt::format("cut off above {:.0f} mm", most_clearance_mm));
   return plot_svg(curves, settings);

@@ -14,12 +14,13 @@ namespace {
 constexpr double middle_mm = 5;     // to either side of the midline
 constexpr double one_sided = 0.95;  // share of the area that makes a contact left or right
 constexpr double landmark_mm = 15;  // how near a landmark names a place
+constexpr double together_mm = 70;  // patches farther apart, as of both condyles, are not one place
 constexpr double tooth_mm = 3;      // how near a tooth does
 
 /// Landmarks that name a region of bone; others are points of muscles, models and measurement.
-constexpr std::array region_words = {"condyl", "coronoid", "gonion",    "notch",     "foramen",
-                                     "incis",  "pogonion", "menton",    "eminence",  "fossa",
-                                     "zyg","prosthion", "infradent", "mastoid"};
+constexpr std::array region_words = {"condyl", "coronoid",  "gonion",    "notch",    "foramen",
+                                     "incis",  "pogonion",  "menton",    "eminence", "fossa",
+                                     "zyg",    "prosthion", "infradent", "mastoid"};
 
 bool names_a_region(const std::string& landmark) {
   return std::any_of(region_words.begin(), region_words.end(),
@@ -106,8 +107,16 @@ PairDetail CloseLook::look(const PairContact& pair, const Pose& X_CM) {
         detail.normal = region.normal;
     }
   }
-  for (const auto& patch : region.patches)
-    detail.reach_mm = std::max(detail.reach_mm, (patch.centroid - detail.place).norm());
+  Box box, own;  // of all patches, of the one at the place
+  box.add(detail.place);
+  own.add(detail.place);
+  for (const auto& patch : region.patches) {
+    box.add(patch.box);
+    if (patch.deepest == detail.place) own.add(patch.box);
+  }
+  if (box.size().maxCoeff() > together_mm) box = own;
+  detail.middle = box.center();
+  detail.size_mm = box.size().maxCoeff();
   detail.side = side_of(region, detail.place);
   detail.region = region_of(pair, detail.place, X_CM);
   return detail;

@@ -18,9 +18,10 @@ struct PairDetail {
   double volume_mm3 = 0, volume_error_mm3 = 0;
   Eigen::Vector3d place = Eigen::Vector3d::Zero();    // deepest point, or middle of the gap
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // there, unit, from A to B
-  std::string side;     // "left", "right", "both", or "middle" (within 5 mm of the midline)
-  std::string region;   // "teeth 26 and 36", "near left condyle", or empty
-  double reach_mm = 0;  // how far the centres of the patches lie from the place
+  std::string side;    // "left", "right", "both", or "middle" (within 5 mm of the midline)
+  std::string region;  // "teeth 26 and 36", "near left condyle", or empty
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  // of the contact there
+  double size_mm = 0;                                // its longest side
   bool open_a = false, open_b = false;  // has open shells: no inside there, distance has no sign
 };
 

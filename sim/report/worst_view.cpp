@@ -8,7 +8,7 @@
 namespace condyle {
 namespace {
 
-constexpr double seen_mm = 30;   // about the place
+constexpr double seen_mm = 30;   // about the contact
 constexpr double edge_mm = 0.5;  // fine enough for bands of 0.1 mm where surfaces are even
 constexpr double reach_mm = 6;   // distances beyond are not drawn
 constexpr int most_triangles = 600000;
@@ -41,7 +41,7 @@ WorstView worst_view(const Scene& scene, const PairVerdict& pair, int threads) {
   const auto a = static_cast<std::size_t>(pair.worst.part_a),
              b = static_cast<std::size_t>(pair.worst.part_b);
   const auto& patient = scene.patient.parts;
-  const double radius = seen_mm + pair.detail.reach_mm;
+  const double radius = seen_mm + pair.detail.size_mm / 2;
   WorstView view;
   std::size_t drawn_a = 0, drawn_b = 0;
   for (std::size_t i = 0; i < patient.size(); ++i) {
@@ -52,8 +52,8 @@ WorstView worst_view(const Scene& scene, const PairVerdict& pair, int threads) {
   }
   Part &part_a = view.parts[drawn_a], &part_b = view.parts[drawn_b];
   part_a.mesh =
-      refine_near(std::move(part_a.mesh), pair.detail.place, radius, edge_mm, most_triangles);
-  part_b.mesh = refine_near(std::move(part_b.mesh), pair.X_CM_worst.inverse() * pair.detail.place,
+      refine_near(std::move(part_a.mesh), pair.detail.middle, radius, edge_mm, most_triangles);
+  part_b.mesh = refine_near(std::move(part_b.mesh), pair.X_CM_worst.inverse() * pair.detail.middle,
                             radius, edge_mm, most_triangles);
   view.distance_a = distances(part_a, Pose{}, patient[b].mesh, pair.X_CM_worst, threads);
   view.distance_b = distances(part_b, pair.X_CM_worst, patient[a].mesh, Pose{}, threads);

@@ -1,0 +1,197 @@
+#include "render/contact_picture.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/lettering.h"
+#include "render/scene_renderer.h"
+
+namespace condyle {
+namespace {
+
+constexpr int width = 1600, margin = 24, panel = 440, panel_height = 460, top = 108;
+constexpr int legend_left = margin + 3 * (panel + margin) + 4;
+constexpr int line_height = 26;
+const Eigen::Vector3f grey = Eigen::Vector3f::Constant(0.35f);
+
+void fill(Image& image, int x0, int y0, int x1, int y1, const Eigen::Vector3f& color) {
+  for (int y = std::max(0, y0); y < std::min(image.height, y1); ++y)
+    for (int x = std::max(0, x0); x < std::min(image.width, x1); ++x) {
+      auto* pixel = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + x)];
+      for (int k = 0; k < 3; ++k) pixel[k] = static_cast<std::uint8_t>(std::lround(255 * color[k]));
+      pixel[3] = 255;
+    }
+}
+
+void frame(Image& image, int x0, int y0, int x1, int y1, const Eigen::Vector3f& color) {
+  fill(image, x0 - 1, y0 - 1, x1 + 1, y0, color);
+  fill(image, x0 - 1, y1, x1 + 1, y1 + 1, color);
+  fill(image, x0 - 1, y0, x0, y1, color);
+  fill(image, x1, y0, x1 + 1, y1, color);
+}
+
+void paste(Image& image, const Image& part, int x, int y) {
+  for (int row = 0; row < part.height; ++row)
+    std::copy_n(&part.rgba[4 * static_cast<std::size_t>(row) * part.width],
+                4 * static_cast<std::size_t>(part.width),
+                &image.rgba[4 * (static_cast<std::size_t>(y + row) * image.width + x)]);
+}
+
+/// Looks at the place from where `direction` points; what hides it from there is cut away.
+Camera close_camera(const ContactPlace& place, const Eigen::Vector3d& direction) {
+  constexpr double eye_mm = 260, uncut_mm = 18;
+  Camera camera;
+  camera.target = place.middle;
+  camera.direction = direction;
+  // Upright as the patient is; seen from above or below, his front is up.
+  camera.up = std::abs(direction.z()) < 0.85 ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(0, -1, 0);
+  camera.distance_mm = eye_mm;
+  camera.field_of_view_deg = 2 * std::atan(place.seen_mm / 2 / eye_mm) * 180 / std::numbers::pi;
+  camera.near_mm = eye_mm - uncut_mm;
+  return camera;
+}
+
+/// L or R, A or P, S or I: where a direction of the picture points in the patient.
+char letter_of(const Eigen::Vector3d& direction) {
+  Eigen::Index axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return "LRPASI"[2 * axis + (direction[axis] < 0)];
+}
+
+class Sheet {
+ public:
+  Sheet(const ContactPlace& place, const ColourMap& map) : place_(place), map_(map) {
+    image_.width = width;
+    image_.height =
+        top + panel_height + margin + line_height * static_cast<int>(place.lines.size() + 1);
+    image_.rgba.assign(4 * static_cast<std::size_t>(image_.width) * image_.height, 255);
+  }
+
+  Image draw() {
+    words_.write(image_, margin, 42, 32, place_.title);
+    SceneRenderer renderer(place_.parts);
+    FrameState state;
+    state.X_CM = place_.X_CM;
+    renderer.update(state);
+    const auto [low, high] = renderer.bounds();
+    add_panel(
+        renderer, 0, "where it is",
+        standard_camera(place_.overview, low, high, static_cast<double>(panel) / panel_height), "");
+    renderer.set_colour_map(map_);
+    renderer.color_part(place_.fixed, place_.fixed_values);
+    renderer.color_part(place_.moved, place_.moved_values);
+    add_panel(renderer, 1, place_.fixed + ", seen from " + place_.moved,
+              close_camera(place_, place_.normal), place_.fixed);
+    add_panel(renderer, 2, place_.moved + ", seen from " + place_.fixed,
+              close_camera(place_, -place_.normal), place_.moved);
+    legend();
+    int y = top + panel_height + margin + 10;
+    for (const auto& line : place_.lines) {
+      words_.write(image_, margin, y, 20, line);
+      y += line_height;
+    }
+    words_.write(image_, margin, y, 16, "For research and education, not for clinical use.", grey);
+    return std::move(image_);
+  }
+
+ private:
+  /// `only`: the one part that is drawn; empty for all.
+  void add_panel(SceneRenderer& renderer, int number, const std::string& name, const Camera& camera,
+                 const std::string& only) {
+    PictureSettings settings;
+    settings.width = panel;
+    settings.height = panel_height;
+    settings.shadows = false;
+    settings.contacts = false;
+    if (!only.empty())
+      for (const auto& part : place_.parts) settings.part_opacity[part.name] = part.name == only;
+    const int x = margin + number * (panel + margin);
+    paste(image_, renderer.picture(camera, settings), x, top);
+    frame(image_, x, top, x + panel, top + panel_height, grey);
+    words_.write(image_, x, top - 14, 20, name);
+    const Eigen::Vector3d right = camera.up.cross(camera.direction).normalized();
+    const Eigen::Vector3d up = camera.direction.cross(right);
+    const Eigen::Vector3f pale = Eigen::Vector3f::Constant(0.93f);
+    const auto letter = [&](const Eigen::Vector3d& direction, int px, int py) {
+      words_.write(image_, px, py, 22, std::string(1, letter_of(direction)), pale);
+    };
+    letter(-right, x + 8, top + panel_height / 2);
+    letter(right, x + panel - 24, top + panel_height / 2);
+    letter(up, x + panel / 2 - 6, top + 24);
+    letter(-up, x + panel / 2 - 6, top + panel_height - 10);
+    ring(camera, x, only.empty() ? 20 : 9);
+    if (only.empty()) return;
+    // A ruler, right in the plane of the place.
+    const double pixels_per_mm = panel_height / place_.seen_mm;
+    const int length = static_cast<int>(std::lround(10 * pixels_per_mm));
+    fill(image_, x + 14, top + panel_height - 18, x + 14 + length, top + panel_height - 15, pale);
+    words_.write(image_, x + 14, top + panel_height - 24, 16, "10 mm", pale);
+  }
+
+  /// About the place, in a panel that starts at `left`.
+  void ring(const Camera& camera, int left, double radius) {
+    const Eigen::Vector4f p =
+        projection_matrix(camera, static_cast<double>(panel) / panel_height, 1, 2000) *
+        view_matrix(camera) * place_.place.cast<float>().homogeneous();
+    const double px = left + panel * (0.5 + 0.5 * p.x() / p.w()),
+                 py = top + panel_height * (0.5 - 0.5 * p.y() / p.w());
+    constexpr double half = 2.2;  // of the yellow line; its dark edge is wider
+    for (int y = static_cast<int>(py - radius) - 5; y <= py + radius + 5; ++y)
+      for (int x = static_cast<int>(px - radius) - 5; x <= px + radius + 5; ++x) {
+        const double off = std::abs(std::hypot(x + 0.5 - px, y + 0.5 - py) - radius);
+        if (off > half + 1.2 || x < left || x >= left + panel || y < top || y >= top + panel_height)
+          continue;
+        fill(image_, x, y, x + 1, y + 1,
+             off > half ? Eigen::Vector3f(0.1f, 0.1f, 0.1f) : Eigen::Vector3f(0.94f, 0.89f, 0.26f));
+      }
+  }
+
+  void legend() {
+    constexpr int bar_top = top + 24, bar_bottom = top + panel_height - 52, bar = 26;
+    const auto y_of = [&](float value) {
+      return bar_bottom -
+             (value - map_.low()) / (map_.high() - map_.low()) * (bar_bottom - bar_top);
+    };
+    words_.write(image_, legend_left, top - 14, 20, map_.title + ", " + map_.unit);
+    for (int y = bar_top; y < bar_bottom; ++y) {
+      const float s = (static_cast<float>(bar_bottom - y) - 0.5f) / (bar_bottom - bar_top);
+      fill(image_, legend_left, y, legend_left + bar, y + 1,
+           color_of(map_, map_.low() + s * (map_.high() - map_.low())));
+    }
+    for (const float line : map_.lines) {
+      const int y = static_cast<int>(std::lround(y_of(line)));
+      fill(image_, legend_left, y, legend_left + bar, y + 1, Eigen::Vector3f::Constant(0.1f));
+    }
+    frame(image_, legend_left, bar_top, legend_left + bar, bar_bottom, grey);
+    for (const float tick : map_.ticks) {
+      const int y = static_cast<int>(std::lround(y_of(tick)));
+      fill(image_, legend_left + bar, y, legend_left + bar + 6, y + 1, grey);
+      words_.write(image_, legend_left + bar + 10, y + 6, 18,
+                   tick < 0 ? fmt::format("\u2212{:g}", -tick) : fmt::format("{:g}", tick));
+    }
+    for (const auto& band : map_.bands) {
+      const double y = (y_of(band.from) + y_of(band.to)) / 2 + 6;
+      words_.write(image_, legend_left + bar + 44, y, 17, band.name, grey);
+    }
+    fill(image_, legend_left, bar_bottom + 16, legend_left + bar, bar_bottom + 34, map_.beyond);
+    words_.write(image_, legend_left + bar + 10, bar_bottom + 31, 17,
+                 fmt::format("more than {:g}", map_.high()));
+  }
+
+  const ContactPlace& place_;
+  const ColourMap& map_;
+  Lettering words_;
+  Image image_;
+};
+
+}  // namespace
+
+Image contact_picture(const ContactPlace& place, const ColourMap& map) {
+  return Sheet(place, map).draw();
+}
+
+}  // namespace condyle

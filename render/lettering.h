@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+
+#include "render/image.h"
+
+namespace condyle {
+
+/// Writes words into a picture with a font of the system.
+class Lettering {
+ public:
+  Lettering();
+  ~Lettering();
+  Lettering(const Lettering&) = delete;
+  Lettering& operator=(const Lettering&) = delete;
+
+  /// Without a font nothing is written and every width is 0.
+  bool has_font() const;
+
+  /// Pixels; text is UTF-8.
+  double width(const std::string& text, double height) const;
+
+  /// `x`, `y`: left end of the base line, pixels from the top left. Color: sRGB, 0 to 1.
+  void write(Image& image, double x, double y, double height, const std::string& text,
+             const Eigen::Vector3f& color = Eigen::Vector3f::Constant(0.13f)) const;
+
+ private:
+  struct Font;
+  std::unique_ptr<Font> font_;
+};
+
+}  // namespace condyle

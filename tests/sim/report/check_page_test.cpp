@@ -1,0 +1,184 @@
+#include "sim/report/check_page.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "sim/report/clearance.h"
+#include "tests/support/boxes.h"
+#include "tests/support/real_cases.h"
+#include "tests/support/shapes.h"
+
+namespace condyle::test {
+namespace {
+
+/// Up by `height_mm` and back again within a second.
+Motion bite(double height_mm) {
+  return {"bite",
+          1,
+          true,
+          [height_mm](double t) {
+            Pose pose;
+            pose.t = {0, 0, height_mm * (1 - std::abs(2 * std::clamp(t, 0.0, 1.0) - 1))};
+            return pose;
+          },
+          {}};
+}
+
+/// A ball on the left half of the mandible that meets a flat maxilla 1 mm above it.
+Case ball_patient() {
+  Case patient = box_patient();
+  patient.name = "ball <& box>";
+  patient.parts[0].mesh = box({-30, -90, -40}, {30, -40, 0});
+  patient.parts[1].mesh = sphere(5, 12, {15, -65, -53});
+  return patient;
+}
+
+TEST(CloseLook, BallInABoxHasTheCapsAreaAndVolume) {
+  const Scene scene = make_scene(ball_patient());
+  const Motion motion = bite(3);
+  const auto check = check_clearance(scene, motion, 0, {});
+  const auto& pair = check.pairs.at(0);
+  EXPECT_EQ(pair.worst_frame(), 60);
+  EXPECT_NEAR(pair.beyond_rest_mm, 2, 0.01);
+  const double area = 2 * std::numbers::pi * 12 * 2.1;
+  const double volume = std::numbers::pi * 4 * (3 * 12 - 2) / 3;
+  EXPECT_NEAR(pair.detail.area_mm2, area, 0.02 * area);
+  EXPECT_NEAR(pair.detail.volume_mm3, volume, 0.02 * volume);
+  EXPECT_EQ(pair.detail.patches, 1);
+  EXPECT_EQ(pair.detail.side, "left");
+  EXPECT_LT((pair.detail.place - Eigen::Vector3d(15, -65, -38)).norm(), 0.2);
+  EXPECT_LT((pair.detail.normal - Eigen::Vector3d(0, 0, -1)).norm(), 0.02);
+  // Up 6 mm/s: it touches for the two thirds of the time that it is higher than 1 mm.
+  EXPECT_EQ(pair.touches, 1);
+  EXPECT_NEAR(pair.touching_frames / 121.0, 2.0 / 3, 0.02);
+  EXPECT_NEAR(check.time_s[static_cast<std::size_t>(pair.first_touch)], 1.0 / 6, 0.01);
+
+  const auto json = nlohmann::json::parse(check.json(scene, motion, 0, {"worst.png"}, {"a note"}));
+  const auto& worst = json["pairs"][0]["worst"];
+  EXPECT_EQ(worst["frame"], 60);
+  EXPECT_EQ(worst["picture"], "worst.png");
+  EXPECT_EQ(worst["side"], "left");
+  EXPECT_NEAR(worst["penetration_volume_mm3"].get<double>(), volume, 0.02 * volume);
+  EXPECT_NEAR(json["pairs"][0]["contact_frequency"].get<double>(), 2.0 / 3, 0.02);
+  EXPECT_FALSE(json["coronoid_zygoma"]["available"].get<bool>());
+  EXPECT_EQ(json["notes"].back(), "a note");
+}
+
+TEST(CloseLook, OpenSurfaceHasNoVolume) {
+  Case patient = ball_patient();
+  patient.parts[0].mesh.triangles.resize(2);  // the lower face alone
+  const Scene scene = make_scene(std::move(patient));
+  const auto check = check_clearance(scene, bite(3), 0, {});
+  const auto& pair = check.pairs.at(0);
+  EXPECT_TRUE(pair.detail.open_a);
+  EXPECT_FALSE(pair.detail.volume_known);
+  EXPECT_GT(pair.detail.area_mm2, 0);
+  const auto json = nlohmann::json::parse(check.json(scene, bite(3), 0));
+  EXPECT_TRUE(json["pairs"][0]["worst"]["penetration_volume_mm3"].is_null());
+  EXPECT_NE(check_page(check, {"p", "m", 0, {"x.png"}, {}}).find("without sign"),
+            std::string::npos);
+}
+
+TEST(WorstView, DistancesOnTheBallAreItsHeights) {
+  const Scene scene = make_scene(ball_patient());
+  const auto check = check_clearance(scene, bite(3), 0, {});
+  const WorstView view = worst_view(scene, check.pairs.at(0), 2);
+  ASSERT_EQ(view.parts.size(), 2u);
+  ASSERT_EQ(view.distance_a.size(), view.parts[0].mesh.vertices.size());
+  ASSERT_EQ(view.distance_b.size(), view.parts[1].mesh.vertices.size());
+  int inside = 0, near_box = 0;
+  for (std::size_t i = 0; i < view.distance_b.size(); ++i) {
+    const double height = view.parts[1].mesh.vertices[i].z() + 3 + 40;
+    if (height < -5.9) continue;
+    EXPECT_NEAR(view.distance_b[i], -height, 1e-5);
+    inside += height > 0;
+  }
+  // The box has eight corners; the picture needs many more where the ball is.
+  const Eigen::Vector3d center(15, -65, -50);
+  for (std::size_t i = 0; i < view.distance_a.size(); ++i) {
+    if (!std::isfinite(view.distance_a[i])) continue;
+    EXPECT_NEAR(view.distance_a[i], (view.parts[0].mesh.vertices[i] - center).norm() - 12, 0.02);
+    ++near_box;
+  }
+  EXPECT_GT(inside, 100);
+  EXPECT_GT(near_box, 1000);
+}
+
+TEST(Coronoid, ClearanceFromABeamBesideTheTip) {
+  Case patient = box_patient();
+  patient.parts[1].mesh = box({40, -40, -60}, {44, -30, -20});
+  patient.parts.push_back({"skull", Role::skull, box({50, -60, -40}, {55, -25, -10}), {}});
+  patient.landmarks.points["left_coronoid_tip"] = {42, -35, -20};
+  CoronoidClearance clearance(patient);
+  ASSERT_EQ(clearance.sides().size(), 1u);
+  EXPECT_EQ(clearance.sides()[0].side, "left");
+  EXPECT_NE(clearance.missing().find("right_coronoid_tip"), std::string::npos);
+  for (const double left : {0.0, 2.5, 1.0}) {
+    Pose pose;
+    pose.t.x() = left;
+    clearance.add(pose);
+  }
+  EXPECT_NEAR(clearance.sides()[0].mm[0], 6, 1e-9);
+  EXPECT_NEAR(clearance.sides()[0].least_mm(), 3.5, 1e-9);
+  EXPECT_EQ(clearance.sides()[0].least_frame, 1);
+}
+
+TEST(CheckPage, TellsVerdictFirstAndEscapesNames) {
+  const Scene scene = make_scene(ball_patient());
+  const auto bad = check_clearance(scene, bite(3), 0.5, {});
+  const auto page = check_page(bad, {scene.patient.name, "bite", 0.5, {"worst.png"}, {"a < b"}});
+  const auto at = [&](const char* text) { return page.find(text); };
+  EXPECT_NE(at("Violation."), std::string::npos);
+  EXPECT_LT(at("Violation."), at("<table>"));
+  EXPECT_LT(at("<table>"), at("<svg"));
+  EXPECT_LT(at("<svg"), at("worst.png"));
+  EXPECT_NE(at("Not available: left"), std::string::npos);
+  EXPECT_NE(at("not for clinical use"), std::string::npos);
+  EXPECT_NE(at("ball &lt;&amp; box&gt;"), std::string::npos);
+  EXPECT_NE(at("a &lt; b"), std::string::npos);
+  EXPECT_EQ(at("<script"), std::string::npos);
+  const auto good = check_clearance(scene, bite(0.3), 0.5, {});
+  EXPECT_NE(check_page(good, {"p", "m", 0.5, {}, {}}).find("No violation."), std::string::npos);
+}
+
+TEST(ClearancePlot, OpeningIsDrawnThroughAndClosingDashed) {
+  const Scene scene = make_scene(ball_patient());
+  const auto count = [](const std::string& text, const std::string& what) {
+    int n = 0;
+    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+    return n;
+  };
+  // Down by 8 mm and back.
+  const auto opening = clearance_svg(check_clearance(scene, bite(-8), 1, {}), 1);
+  EXPECT_NE(opening.find("Clearance against opening"), std::string::npos);
+  EXPECT_NE(opening.find("margin 1.00 mm"), std::string::npos);
+  EXPECT_EQ(count(opening, "<polyline"), 2);
+  EXPECT_EQ(count(opening, "stroke-dasharray=\"6 4\""), 1);
+  const auto still = clearance_svg(check_clearance(scene, bite(0.5), 0, {}), 0);
+  EXPECT_NE(still.find("Clearance over time"), std::string::npos);
+  EXPECT_EQ(count(still, "stroke-dasharray=\"6 4\""), 0);
+}
+
+TEST(CloseLook, RealCrownsThatOverlapAtRest) {
+  auto patient = case_ubc();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  const Scene scene = make_scene(std::move(*patient));
+  CloseLook look(scene.patient);
+  int looked = 0;
+  for (const auto& pair : scene.contacts.at_rest().pairs) {
+    const auto detail = look.look(pair, Pose{});
+    EXPECT_TRUE(detail.volume_known);
+    EXPECT_GT(detail.area_mm2, 5);
+    EXPECT_GT(detail.volume_mm3, 1);
+    EXPECT_LT(detail.volume_error_mm3, 0.05 * detail.volume_mm3);
+    EXPECT_EQ(detail.side, "both");
+    ++looked;
+  }
+  EXPECT_EQ(looked, 4);
+}
+
+}  // namespace
+}  // namespace condyle::test
