@@ -21,7 +21,7 @@ struct FieldSettings {
   std::optional<Box> region;  // the field is made within this box only (body coordinates)
 };
 
-/// Distance at a point. `known` is false beyond the band, outside the region and where the side
+/// Distance at a point. `known` is false well beyond the band, outside the region and where the side
 /// cannot be told (behind the rim of an open surface, where a surface runs through itself).
 struct FieldSample {
   double distance_mm = 0;                              // negative inside

@@ -21,7 +21,12 @@ constexpr double step_share = 0.4, active_share = 0.45, collect_share = 0.9;
 // With friction a contact drags from where it meets, which shorter steps find better.
 constexpr double rubbing_step_mm = 0.1, rubs_below_mm = 0.03;
 constexpr double settled_mm = 0.002;  // motion that is still wanted of a settled pose
-constexpr double kept_slop = 0.7;     // share of the slop that is not undone
+// Interpolated distances change by more than the way, but by no more than this in all.
+constexpr double bent_mm = 0.05;
+// How far a contact's normal may lie off the normals of the faces at its sample: 30 degrees.
+constexpr double facing_cos = 0.866, facing_sin = 0.5;
+constexpr double faces_below_mm = 0.05;  // but what is deeper must out in any case
+constexpr double kept_slop = 0.7;        // share of the slop that is not undone
 constexpr int max_walks = 2;
 constexpr double first_radius_mm = 0.15;
 constexpr double least_radius_mm = 0.05;
@@ -98,6 +103,7 @@ class SlideWalk {
   struct Candidate {
     int pair = 0, sample = 0;
     bool known = false;
+    bool faces = false;                    // the other body, with a face at the sample
     double distance = 0;                   // at the last look
     Vector3d gradient = Vector3d::Zero();  // in fixed coordinates, for motion of the moving body
     Vector3d point = Vector3d::Zero();     // in fixed coordinates
@@ -105,7 +111,13 @@ class SlideWalk {
 
   void collect(const Pose& X);
   void remember(const Pose& X, double reserve_mm);
-  void collect_ball(int pair, const Pose& X_FS, int ball, std::vector<Candidate>& found) const;
+  struct Way {  // from the samples to the field
+    const SlidingContact::Pair* pair;
+    int index;
+    Eigen::Matrix3d R;
+    Vector3d t;
+  };
+  void collect_ball(int index, const Way& way, std::vector<Candidate>& found) const;
   double clearance(const Pose& X) const;
   void evaluate(const Pose& X, double active_mm);
   void look(Candidate& c, const Pose& X, const Pose& X_inverse) const;
@@ -165,8 +177,9 @@ void SlideWalk::collect(const Pose& X) {
   std::vector<std::vector<Candidate>> found(model_.pairs_.size());
   parallel_for(found.size(), threads_, [&](std::size_t i) {
     const auto& pair = model_.pairs_[i];
-    if (!pair.samples->samples.balls.empty())
-      collect_ball(static_cast<int>(i), pair.samples_move ? X : X_inverse, 0, found[i]);
+    const Pose& X_FS = pair.samples_move ? X : X_inverse;
+    const Way way{&pair, static_cast<int>(i), X_FS.R.toRotationMatrix(), X_FS.t};
+    if (!pair.samples->samples.balls.empty()) collect_ball(0, way, found[i]);
   });
   candidates_.clear();
   for (const auto& part : found) candidates_.insert(candidates_.end(), part.begin(), part.end());
@@ -198,27 +211,31 @@ void SlideWalk::remember(const Pose& X, double reserve_mm) {
   collect(X);
 }
 
-void SlideWalk::collect_ball(int pair, const Pose& X_FS, int index,
-                             std::vector<Candidate>& found) const {
-  const auto& [samples, field, moves, allowed] = model_.pairs_[pair];
-  const SurfaceSamples& s = samples->samples;
+void SlideWalk::collect_ball(int index, const Way& way, std::vector<Candidate>& found) const {
   const double reach = collect_share * model_.band_mm_;
+  const DistanceField& field = way.pair->field->field;
+  const SurfaceSamples& s = way.pair->samples->samples;
   const SurfaceSamples::Ball& ball = s.balls[index];
-  if (field->field.lower_bound(X_FS * ball.center) > ball.radius + reach) return;
+  const Vector3d center = way.R * ball.center + way.t;
+  // Within the band the field tells more than its bounds do.
+  const FieldSample at_center = field.at(center);
+  const double bound =
+      at_center.known ? at_center.distance_mm - bent_mm : field.lower_bound(center);
+  if (bound > ball.radius + reach) return;
   if (ball.right == 0) {
     for (int i = ball.first; i < ball.first + ball.count; ++i) {
-      const FieldSample here = field->field.at(X_FS * s.points[i]);
+      const FieldSample here = field.at(way.R * s.points[i] + way.t);
       if (here.distance_mm > reach) continue;
       Candidate c;
-      c.pair = pair;
+      c.pair = way.index;
       c.sample = i;
       c.distance = here.known ? here.distance_mm : -reach;
       found.push_back(c);
     }
     return;
   }
-  collect_ball(pair, X_FS, index + 1, found);
-  collect_ball(pair, X_FS, ball.right, found);
+  collect_ball(index + 1, way, found);
+  collect_ball(ball.right, way, found);
 }
 
 /// No larger than the distance of the bodies; asked where no sample is within reach.
@@ -250,30 +267,29 @@ double SlideWalk::clearance(const Pose& X) const {
 
 void SlideWalk::look(Candidate& c, const Pose& X, const Pose& X_inverse) const {
   const auto& pair = model_.pairs_[c.pair];
-  const Vector3d& p = pair.samples->samples.points[c.sample];
-  const Vector3d& normal = pair.samples->samples.normals[c.sample];
-  if (pair.samples_move) {
-    c.point = X * p;
-    const FieldSample here = pair.field->field.at(c.point);
-    c.known = here.known;
-    c.distance = here.distance_mm;
-    c.gradient = here.gradient;
-    // Where two faces are as near, the gradient says nothing: the sample's own face does.
-    if (here.gradient.squaredNorm() < 0.1 && c.distance < 0) c.gradient = -(X.R * normal);
-  } else {
-    c.point = p;
-    const FieldSample here = pair.field->field.at(X_inverse * p);
-    c.known = here.known;
-    c.distance = here.distance_mm;
-    c.gradient = -(X.R * here.gradient);
-    if (here.gradient.squaredNorm() < 0.1 && c.distance < 0) c.gradient = normal;
-  }
+  const SurfaceSamples& samples = pair.samples->samples;
+  const Vector3d& p = samples.points[c.sample];
+  const Vector3d& normal = samples.normals[c.sample];
+  c.point = pair.samples_move ? X * p : p;
+  const FieldSample here = pair.field->field.at(pair.samples_move ? c.point : X_inverse * p);
+  c.known = here.known;
+  c.distance = here.distance_mm;
+  c.gradient = pair.samples_move ? here.gradient : Vector3d(-(X.R * here.gradient));
+  const Vector3d facing = pair.samples_move ? Vector3d(-(X.R * normal)) : normal;
+  // Where two faces are as near, the gradient says nothing: the sample's own face does.
+  if (c.gradient.squaredNorm() < 0.1 && c.distance < 0) c.gradient = facing;
+  // Bodies touch face to face: past the end of the other body, the way to its edge is no contact,
+  // and would hold up what only slides along. That edge has samples of its own.
+  const double cosine = c.gradient.dot(facing) / c.gradient.norm();
+  const double spread = samples.spread[c.sample];
+  const double least =
+      spread * facing_cos - std::sqrt(std::max(0.0, 1 - spread * spread)) * facing_sin;
+  c.faces = c.distance < -faces_below_mm || spread < -facing_cos || cosine >= least;
 }
 
 /// Looks anew at the candidates that can be nearer than active_mm.
 void SlideWalk::evaluate(const Pose& X, double active_mm) {
   constexpr std::size_t run = 512;
-  constexpr double bent_mm = 0.02;  // more than interpolated distances exceed true ones by
   relevant_.clear();
   for (std::size_t i = 0; i < horizon_.size(); ++i)
     if (horizon_[i] <= walked_ + active_mm + bent_mm) relevant_.push_back(static_cast<int>(i));
@@ -304,7 +320,7 @@ void SlideWalk::make_rows(const Pose& X, double active_mm) {
     const Candidate& c = candidates_[i];
     if (!c.known) continue;
     const double gap = c.distance - allowed(c);
-    if (gap > active_mm || c.gradient.squaredNorm() < 0.1) continue;
+    if (!c.faces || gap > active_mm || c.gradient.squaredNorm() < 0.1) continue;
     // Depth within the slop is neither deepened nor undone: to stay is always allowed.
     const double open = gap > 0 ? gap : std::min(0.0, gap + kept_slop * model_.settings_.slop_mm);
     rows_.push_back(contact_row(c.point - pivot, c.gradient, open, model_.rotation_length_mm_));

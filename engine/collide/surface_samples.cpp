@@ -44,10 +44,12 @@ int build_balls(SurfaceSamples& s, std::vector<int>& order, const std::vector<Ve
 
 SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& settings) {
   std::vector<Vector3d> points, normals;
-  const auto add = [&](const Vector3d& p, const Vector3d& normal) {
+  std::vector<float> spread;
+  const auto add = [&](const Vector3d& p, const Vector3d& normal, double widest) {
     if (settings.region && !settings.region->contains(p)) return;
     points.push_back(p);
     normals.push_back(normal);
+    spread.push_back(static_cast<float>(widest));
   };
   std::vector<Vector3d> face(mesh.triangles.size());
   for (std::size_t i = 0; i < face.size(); ++i) {
@@ -57,8 +59,12 @@ SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& setting
   }
 
   const std::vector<Vector3d> corner = vertex_normals(mesh);
+  std::vector<double> corner_spread(mesh.vertices.size(), 1.0);
+  for (std::size_t i = 0; i < face.size(); ++i)
+    for (const int v : mesh.triangles[i])
+      corner_spread[v] = std::min(corner_spread[v], corner[v].dot(face[i]));
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (corner[v] != Vector3d::Zero()) add(mesh.vertices[v], corner[v]);
+    if (corner[v] != Vector3d::Zero()) add(mesh.vertices[v], corner[v], corner_spread[v]);
 
   const EdgeList list = find_edges(mesh);
   for (const Edge& edge : list.edges) {
@@ -80,9 +86,13 @@ SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& setting
         spacing = std::max(2 * settings.edge_rise_mm / slope, settings.edge_spacing_mm);
       }
     }
+    const Vector3d normal = sum.normalized();
+    double widest = 1;
+    for (int i = 0; i < edge.count; ++i)
+      widest = std::min(widest, normal.dot(face[list.sides[edge.first + i].triangle]));
     const int pieces = std::max(1, static_cast<int>(std::ceil((q - p).norm() / spacing)));
     for (int i = 1; i < pieces; ++i)
-      add(p + (q - p) * (static_cast<double>(i) / pieces), sum.normalized());
+      add(p + (q - p) * (static_cast<double>(i) / pieces), normal, widest);
   }
 
   for (std::size_t i = 0; i < face.size(); ++i) {
@@ -94,7 +104,7 @@ SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& setting
     for (int u = 1; u < n; ++u)
       for (int v = 1; u + v < n; ++v)
         add(a + (b - a) * (static_cast<double>(u) / n) + (c - a) * (static_cast<double>(v) / n),
-            face[i]);
+            face[i], 1);
   }
 
   SurfaceSamples samples;
@@ -110,6 +120,7 @@ SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& setting
   for (const int i : order) {
     samples.points.push_back(points[i]);
     samples.normals.push_back(normals[i]);
+    samples.spread.push_back(spread[i]);
   }
   return samples;
 }

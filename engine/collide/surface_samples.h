@@ -28,6 +28,7 @@ struct SurfaceSamples {
   };
   std::vector<Eigen::Vector3d> points;   // in the order of the balls
   std::vector<Eigen::Vector3d> normals;  // unit, outward
+  std::vector<float> spread;             // cosine of the widest angle to a face's normal there
   std::vector<Ball> balls;               // depth first
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
   double gyration_mm = 0;  // root mean square distance from the centroid

@@ -1,0 +1,252 @@
+#include "engine/collide/slide.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <numbers>
+#include <random>
+
+#include "tests/support/boxes.h"
+#include "tests/support/overlap_oracle.h"
+#include "tests/support/shapes.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+std::shared_ptr<const SlideBody> body(const TriMesh& mesh) {
+  return std::make_shared<const SlideBody>(make_slide_body(mesh, {}, 2));
+}
+
+Pose at(double x, double y, double z) { return {Quaterniond::Identity(), {x, y, z}}; }
+
+Pose turned(const Vector3d& axis, double degrees, const Vector3d& t) {
+  return {Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized())), t};
+}
+
+/// A flat plate whose top is the plane z = 0.
+TriMesh plate(double thickness = 4) { return test::box({-20, -12, -thickness}, {20, 12, 0}); }
+
+/// How far any point of a 10 mm body moves between two poses.
+double apart(const Pose& a, const Pose& b) {
+  return (a.t - b.t).norm() + 10 * rotation_angle(a.inverse() * b);
+}
+
+TEST(Slide, WhatIsFreeArrivesToTheBit) {
+  const SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
+  const Pose wanted = turned({1, 2, 3}, 20, {3, 1, 5.5});
+  const SlideResult result = model.slide(at(-8, 0, 12), wanted);
+  EXPECT_EQ(result.X_FM.t, wanted.t);
+  EXPECT_EQ(result.X_FM.R.coeffs(), wanted.R.coeffs());
+  EXPECT_FALSE(result.touching);
+  EXPECT_TRUE(result.settled);
+}
+
+TEST(Slide, SphereSlidesAlongThePlane) {
+  const SlidingContact model({body(plate())}, {body(test::sphere(5, 5))});
+  for (const double deep : {0.1, 1.0, 3.0}) {
+    const SlideResult result = model.slide(at(-6, 2, 7), at(5, -3, 5 - deep));
+    EXPECT_TRUE(result.settled);
+    EXPECT_TRUE(result.touching);
+    EXPECT_NEAR(result.X_FM.t.z(), 5, 0.04);  // slop and facets
+    EXPECT_NEAR(result.X_FM.t.x(), 5, 0.02);
+    EXPECT_NEAR(result.X_FM.t.y(), -3, 0.02);
+    ASSERT_FALSE(result.contacts.empty());
+    EXPECT_GT(result.contacts.front().normal.z(), 0.999);
+    EXPECT_NEAR(result.contacts.front().point.z(), 0, 0.03);
+  }
+}
+
+TEST(Slide, BoxSettlesInAGrooveAndRunsAlongIt) {
+  // Two plates leaning at 45 degrees; the groove's bottom is the y axis.
+  const TriMesh left =
+      test::moved(test::box({0, -15, -3}, {14, 15, 0}), turned({0, 1, 0}, -45, {0, 0, 0}));
+  const TriMesh right =
+      test::moved(test::box({-14, -15, -3}, {0, 15, 0}), turned({0, 1, 0}, 45, {0, 0, 0}));
+  const SlidingContact model({body(left), body(right)}, {body(test::box({-3, -4, -3}, {3, 4, 3}))});
+  // Standing on an edge it fits the groove exactly: its middle lies a diagonal above the bottom.
+  const Pose from = turned({0, 1, 0}, 40, {1, -5, 9});
+  const SlideResult result = model.slide(from, turned({0, 1, 0}, 45, {0.5, 6, 2}));
+  EXPECT_TRUE(result.settled);
+  EXPECT_NEAR(result.X_FM.t.x(), 0, 0.05);
+  EXPECT_NEAR(result.X_FM.t.y(), 6, 0.05);
+  EXPECT_NEAR(result.X_FM.t.z(), 3 * std::sqrt(2.0), 0.05);
+  const Pose fit = turned({0, 1, 0}, 45, {0, 0, 0});
+  EXPECT_LT(rotation_angle(fit.inverse() * result.X_FM), 0.02);
+}
+
+TEST(Slide, ALongJumpDoesNotPassThroughAThinWall) {
+  const SlidingContact model({body(plate(0.6))}, {body(test::sphere(4, 4))});
+  for (const double x : {0.0, 3.3}) {
+    const SlideResult result = model.slide(at(x, 0, 25), at(x, 0, -20));
+    EXPECT_NEAR(result.X_FM.t.z(), 4, 0.05);
+    EXPECT_NEAR(result.X_FM.t.x(), x, 0.1);
+    EXPECT_LE(result.depth_mm, 0.02);
+  }
+}
+
+TEST(Slide, EdgeStopsAtEdge) {
+  // Two ridges across each other, whose corners are nowhere near.
+  const TriMesh ridge =
+      test::moved(test::box({-3, -20, -3}, {3, 20, 3}), turned({0, 1, 0}, 45, {0, 0, 0}));
+  const TriMesh across = test::moved(ridge, turned({0, 0, 1}, 90, {0, 0, 0}));
+  SlideSettings stiff;
+  stiff.rotation_length_mm = 1000;  // hardly turns
+  const SlidingContact model({body(ridge)}, {body(across)}, stiff);
+  const test::OverlapOracle fixed(ridge), moving(across);
+  std::mt19937_64 random(31);
+  std::uniform_real_distribution<double> offset(-1.5, 1.5);
+  for (int k = 0; k < 20; ++k) {
+    const double x = offset(random), y = offset(random);
+    const SlideResult result =
+        model.slide(at(x, y, 12), turned({0, 0, 1}, 10 * offset(random), {x, y, 7}));
+    EXPECT_TRUE(result.settled);
+    EXPECT_LE(deepest(fixed, moving, result.X_FM), 0.06);
+    EXPECT_LT(result.X_FM.t.z(), 6 * std::sqrt(2.0) + 0.01);  // nor does it hover
+  }
+}
+
+TEST(Slide, FrictionHoldsBelowItsCoefficientAndLetsSlideAbove) {
+  SlideSettings rough;
+  rough.friction = 0.3;
+  const SlidingContact model({body(plate())}, {body(test::box({-3, -3, 0}, {3, 3, 4}))}, rough);
+  const double press = 0.5;
+  const Pose start = model.slide(at(0, 0, 0.5), at(0, 0, -0.01)).X_FM;
+  for (const double share : {0.5, 0.8, 1.3, 2.0}) {  // of what friction holds
+    const double sideways = share * rough.friction * press;
+    const SlideResult result = model.slide(start, at(sideways, 0, -press));
+    const double slip = result.X_FM.t.x() - start.t.x();
+    if (share < 1) {
+      EXPECT_NEAR(slip, 0, 0.02) << share;
+    } else {
+      EXPECT_NEAR(slip, sideways - rough.friction * press, 0.03) << share;
+    }
+    EXPECT_NEAR(result.X_FM.t.z(), 0, 0.03);
+  }
+}
+
+TEST(Slide, TurnedSceneGivesTheTurnedAnswer) {
+  std::mt19937_64 random(32);
+  const TriMesh floor = test::box({-15, -15, -4}, {15, 15, 0});
+  const TriMesh wall =
+      test::moved(test::box({-4, -15, -5}, {0, 15, 15}), turned({0, 1, 0}, 10, {0, 0, 0}));
+  const TriMesh bumpy = test::sphere(4, 9, {0, 0, 0}, 0.05);
+  const auto ball = body(test::sphere(4, 4, {0, 0, 0}, 0.04));
+  const SlidingContact corner({body(floor), body(wall)}, {ball}), hill({body(bumpy)}, {ball});
+  const Pose in_corner = turned({1, 0, 0}, 5, {3, 1, 2}),
+             on_hill = turned({1, 0, 0}, 5, {1, 0.5, 11});
+  for (int k = 0; k < 3; ++k) {
+    const Pose X = test::any_pose(random, 15);
+    const SlidingContact turned_corner({body(test::moved(floor, X)), body(test::moved(wall, X))},
+                                       {ball});
+    const Pose from = at(8, -3, 8);
+    const SlideResult here = corner.slide(from, in_corner);
+    EXPECT_TRUE(here.touching);
+    EXPECT_LT(apart(X * here.X_FM, turned_corner.slide(X * from, X * in_corner).X_FM), 0.06);
+    // On a hilltop directions are flat, and the place less certain than the nearness.
+    const SlidingContact turned_hill({body(test::moved(bumpy, X))}, {ball});
+    const Pose above = at(0, 1, 16);
+    const Pose first = hill.slide(above, on_hill).X_FM,
+               second = X.inverse() * turned_hill.slide(X * above, X * on_hill).X_FM;
+    EXPECT_NEAR((first.t - on_hill.t).norm(), (second.t - on_hill.t).norm(), 0.04);
+    EXPECT_LT(apart(first, second), 0.4);
+  }
+}
+
+TEST(Slide, EndsAtTheSamePlaceByDifferentWays) {
+  // A ball between a floor and a leaning wall.
+  const TriMesh floor = test::box({-15, -15, -4}, {15, 15, 0});
+  const TriMesh wall =
+      test::moved(test::box({-4, -15, -5}, {0, 15, 15}), turned({0, 1, 0}, 10, {0, 0, 0}));
+  const SlidingContact model({body(floor), body(wall)}, {body(test::sphere(4, 4))});
+  const Pose wanted = at(3, 1, 2);
+  const Pose first = model.slide(at(8, -3, 8), wanted).X_FM;
+  for (const Pose& from : {at(12, 8, 5), at(6, 0, 12), at(9, 9, 9), at(5.5, -8, 4.5)}) {
+    const SlideResult result = model.slide(from, wanted);
+    EXPECT_TRUE(result.settled);
+    EXPECT_LT(apart(result.X_FM, first), 0.05);
+  }
+}
+
+TEST(Slide, AnAnswerIsItsOwnAnswer) {
+  const SlidingContact model({body(test::sphere(4, 9, {0, 0, 0}, 0.05))},
+                             {body(test::sphere(4, 5, {0, 0, 0}, 0.05))});
+  std::mt19937_64 random(33);
+  int touching = 0;
+  for (int k = 0; k < 20; ++k) {
+    const Vector3d way = test::any_pose(random, 1).R * Vector3d::UnitX();
+    SlideMemory memory;
+    const Pose wanted = turned(way, 10, 12.5 * way);
+    SlideResult result = model.slide({Quaterniond::Identity(), 20 * way}, wanted, &memory);
+    touching += result.touching;
+    for (int again = 0; again < 3; ++again) {
+      const SlideResult next = model.slide(result.X_FM, wanted, &memory);
+      EXPECT_EQ(next.X_FM.t, result.X_FM.t);
+      EXPECT_LT(apart(model.slide(result.X_FM, wanted).X_FM, result.X_FM), 0.05);
+      result = next;
+    }
+  }
+  EXPECT_EQ(touching, 20);
+}
+
+TEST(Slide, OverlapAtRestIsTheBaseline) {
+  SlidingContact model({body(plate())}, {body(test::box({-3, -3, -0.4}, {3, 3, 4}))});
+  EXPECT_NEAR(model.depth({}), 0.4, 0.01);
+  model.allow_overlap_at({});
+  EXPECT_NEAR(model.depth({}), 0, 1e-6);
+  const SlideResult pressed = model.slide({}, at(0, 0, -1));
+  EXPECT_NEAR(pressed.X_FM.t.z(), 0, 0.03);
+  const SlideResult away = model.slide({}, at(1, 0, 3));
+  EXPECT_EQ(away.X_FM.t, Vector3d(1, 0, 3));
+}
+
+TEST(Slide, AStartThatOverlapsIsMovedOut) {
+  const SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
+  const SlideResult result = model.slide(at(0, 0, 4.5), at(0, 0, 4.4));
+  EXPECT_NEAR(result.X_FM.t.z(), 5, 0.05);
+  EXPECT_LE(result.depth_mm, 0.02);
+}
+
+/// Poses of a bumpy ball that grinds on another; depths of those that touch.
+std::vector<Pose> grind(int frames, int threads, const TriMesh& a, const TriMesh& b,
+                        std::vector<double>* depths) {
+  const SlidingContact model({body(a)}, {body(b)});
+  const test::OverlapOracle fixed(a), moving(b);
+  SlideMemory memory;
+  Pose X = at(0, 0, 20);
+  std::vector<Pose> poses;
+  for (int f = 0; f < frames; ++f) {
+    const double s = 0.06 * f;
+    const Pose wanted = turned({0.2, 1, 0.4}, 12 * std::sin(1.7 * s),
+                               {2 * std::sin(s), 2 * std::sin(1.3 * s), 13.2 + 6 * std::exp(-s)});
+    const SlideResult result = model.slide(X, wanted, &memory, threads);
+    X = result.X_FM;
+    poses.push_back(X);
+    if (depths && result.touching) depths->push_back(deepest(fixed, moving, X));
+  }
+  return poses;
+}
+
+TEST(Slide, BumpyBallsGrindWithoutOverlap) {
+  const TriMesh a = test::sphere(4, 9, {0, 0, 0}, 0.06), b = test::sphere(4, 6, {0, 0, 0}, 0.06);
+  std::vector<double> depths;
+  grind(300, 1, a, b, &depths);
+  ASSERT_GT(depths.size(), 200u);
+  std::sort(depths.begin(), depths.end());
+  EXPECT_LE(depths.back(), 0.1);
+  EXPECT_LE(depths[depths.size() / 2], 0.05);
+}
+
+TEST(Slide, SameBitsOnOneAndTwoThreads) {
+  const TriMesh a = test::sphere(4, 9, {0, 0, 0}, 0.06), b = test::sphere(4, 6, {0, 0, 0}, 0.06);
+  const auto one = grind(60, 1, a, b, nullptr), two = grind(60, 2, a, b, nullptr);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].t, two[i].t);
+    EXPECT_EQ(one[i].R.coeffs(), two[i].R.coeffs());
+  }
+}
+
+}  // namespace
+}  // namespace condyle
