@@ -37,9 +37,7 @@ Image picture_of(const Scene& scene, const ClearanceCheck& check, const PairVerd
                      .overview = overview_of(pair.detail),
                      .title = pair.a + " and " + pair.b,
                      .lines = {worst_caption(check, pair)}};
-  if (pair.detail.open_a || pair.detail.open_b)
-    place.lines.push_back(
-        "Open surfaces have no inside: near them distance is shown without sign.");
+  if (const auto words = open_surface_words(pair); !words.empty()) place.lines.push_back(words);
   return contact_picture(place, distance_colours());
 }
 
@@ -47,6 +45,14 @@ Image picture_of(const Scene& scene, const ClearanceCheck& check, const PairVerd
 std::vector<std::string> write_pictures(const std::filesystem::path& folder, const Scene& scene,
                                         const ClearanceCheck& check, int threads,
                                         std::vector<std::string>& notes, const Progress& progress) {
+  const auto file_of = [](const PairVerdict& pair) {
+    return fmt::format("worst-{}-{}.png", pair.a, pair.b);
+  };
+  // Those of an earlier check must not be taken for this one's.
+  for (const auto& pair : check.pairs) {
+    std::error_code none;
+    std::filesystem::remove(folder / file_of(pair), none);
+  }
   std::vector<std::string> files(check.pairs.size());
   std::optional<OffscreenContext> context;
   try {
@@ -59,7 +65,7 @@ std::vector<std::string> write_pictures(const std::filesystem::path& folder, con
   for (std::size_t k = 0; k < shown.size(); ++k) {
     const auto& pair = check.pairs[shown[k]];
     report(progress, "drawing", static_cast<double>(k) / static_cast<double>(shown.size()));
-    files[shown[k]] = fmt::format("worst-{}-{}.png", pair.a, pair.b);
+    files[shown[k]] = file_of(pair);
     write_png(folder / files[shown[k]], picture_of(scene, check, pair, threads));
   }
   return files;

@@ -113,7 +113,11 @@ class PageWriter {
     const auto shown = pairs_to_show(check_, 1);
     if (!shown.empty()) worst = &check_.pairs[shown.front()];
     add("<div class=\"verdict {}\">", check_.violated() ? "bad" : "good");
-    if (!check_.violated()) {
+    if (check_.pairs.empty()) {
+      html_ +=
+          "<strong>Nothing to check:</strong> the case has no two bones of which one moves "
+          "against the other.";
+    } else if (!check_.violated()) {
       html_ +=
           "<strong>&#10003; No violation.</strong> Nothing comes nearer than the margin or "
           "overlaps more than at rest.";
@@ -196,12 +200,7 @@ class PageWriter {
           "{}</strong>: {}.",
           escaped(page_.pictures[i]), escaped(pair.a), escaped(pair.b), escaped(pair.a),
           escaped(pair.b), escaped(worst_caption(check_, pair)));
-      if (pair.detail.open_a || pair.detail.open_b)
-        add(" {} partly an open surface: there, inside and outside cannot be told, and distance is "
-            "shown without sign.",
-            pair.detail.open_a && pair.detail.open_b
-                ? "Both are"
-                : escaped(pair.detail.open_a ? pair.a : pair.b) + " is");
+      if (const auto words = open_surface_words(pair); !words.empty()) add(" {}", escaped(words));
       html_ += "</figcaption></figure>\n";
     }
     if (any)

@@ -14,6 +14,9 @@ std::string clearance_svg(const ClearanceCheck& check, double margin_mm);
 /// What a pair did at its worst frame, in one sentence.
 std::string worst_caption(const ClearanceCheck& check, const PairVerdict& pair);
 
+/// Where distance has no sign, in one sentence; empty when both are closed.
+std::string open_surface_words(const PairVerdict& pair);
+
 /// A pair at its worst frame, ready to be drawn. Bones and teeth at rest in the cranium's frame;
 /// the two of the pair have small triangles about the place of contact.
 struct WorstView {

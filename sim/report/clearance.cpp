@@ -15,6 +15,25 @@ bool ClearanceCheck::violated() const {
                      [](const PairVerdict& pair) { return pair.violated(); });
 }
 
+namespace {
+
+/// Depth at the place that made the pair's depth. A set counts contact where the pair was apart at
+/// rest on from the depth at rest; a picture shows the place itself.
+struct PlaceDepth {
+  double mm = 0;
+  bool was_apart = false;
+};
+
+PlaceDepth depth_at_place(const ContactSet& set, const PairContact& pair) {
+  for (const auto& away : set.away_from_rest)
+    if (away.part_a == pair.part_a && away.part_b == pair.part_b && away.touching &&
+        pair.rest_depth_mm + away.depth_mm >= pair.depth_mm)
+      return {away.depth_mm, true};
+  return {pair.depth_mm, false};
+}
+
+}  // namespace
+
 ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double margin_mm,
                                const SimulatorSettings& settings, const Progress& progress) {
   ClearanceCheck check;
@@ -50,6 +69,7 @@ ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double 
       auto& verdict = check.pairs[i];
       const double distance = pair.touching ? 0 : pair.distance_mm;
       const double beyond = pair.depth_mm - pair.rest_depth_mm;
+      const PlaceDepth place = depth_at_place(now, pair);
       const bool nearest = distance < verdict.least_distance_mm;
       const bool deepest = beyond > verdict.beyond_rest_mm;
       if (nearest) {
@@ -60,14 +80,18 @@ ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double 
         verdict.beyond_rest_mm = beyond;
         verdict.deepest_frame = frame;
       }
-      if (deepest || (nearest && verdict.beyond_rest_mm == 0)) verdict.worst = pair;
+      if (deepest || (nearest && verdict.beyond_rest_mm == 0)) {
+        verdict.worst = pair;
+        verdict.worst_depth_mm = place.mm;
+        verdict.worst_was_apart = place.was_apart;
+      }
       if (pair.touching) {
         if (verdict.first_touch < 0) verdict.first_touch = frame;
         if (verdict.clearance_mm.empty() || !touching[i]) ++verdict.touches;
         ++verdict.touching_frames;
       }
       touching[i] = pair.touching;
-      verdict.clearance_mm.push_back(pair.touching ? -pair.depth_mm : distance);
+      verdict.clearance_mm.push_back(pair.touching ? -place.mm : distance);
       fmt::format_to(std::back_inserter(check.pairs_csv),
                      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame, time,
                      measures.opening_mm, verdict.a, verdict.b, pair.touching ? 1 : 0, distance,

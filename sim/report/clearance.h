@@ -24,6 +24,10 @@ struct PairVerdict {
 
   int touches = 0;                        // times that they came together; at rest counts as one
   std::vector<double> clearance_mm = {};  // one per frame; negative: depth of the overlap
+  // Depth at the worst frame; where the pair was apart at rest (away from its overlap there), the
+  // depth of that place alone.
+  double worst_depth_mm = 0;
+  bool worst_was_apart = false;
   Pose X_CM_worst = {};
   PairContact worst = {};  // at worst_frame
   PairDetail detail = {};  // the same, measured closely

@@ -50,7 +50,8 @@ std::string ClearanceCheck::json(const Scene& scene, const Motion& motion, doubl
       return nlohmann::ordered_json{p.x(), p.y(), p.z()};
     };
     worst["distance_mm"] = pair.worst.touching ? 0 : pair.worst.distance_mm;
-    worst["depth_mm"] = pair.worst.depth_mm;
+    worst["depth_mm"] = pair.worst_depth_mm;
+    worst["apart_there_at_rest"] = pair.worst_was_apart || pair.rest_depth_mm == 0;
     worst["contact_area_mm2"] = detail.area_mm2;
     worst["patches"] = detail.patches;
     if (detail.volume_known) {

@@ -75,20 +75,24 @@ PairDetail CloseLook::look(const PairContact& pair, const Pose& X_CM) {
   detail.open_b = b.has_open_shells();
   detail.volume_known = a.has_inside() && b.has_inside();
   detail.place = 0.5 * (pair.witness_a + pair.witness_b);
-  ContactRegion region;
+  ContactRegion region, placed;  // what is measured, and where it is looked at
   if (!pair.touching) {
     const Eigen::Vector3d gap = pair.witness_b - pair.witness_a;
     if (gap.norm() > 0) detail.normal = gap.normalized();
   } else {
     const auto& mesh_b = patient_.parts[static_cast<std::size_t>(pair.part_b)].mesh;
     region = contact_region(a, Pose{}, mesh_b, X_CM);
-    if (region.patches.empty()) {
-      // None of B's surface lies in A: A lies in B.
+    const auto a_in_b = [&] {
       const auto& mesh_a = patient_.parts[static_cast<std::size_t>(pair.part_a)].mesh;
-      region = contact_region(b, X_CM, mesh_a, Pose{});
-      region.normal = -region.normal;
-      for (auto& patch : region.patches) patch.normal = -patch.normal;
-    }
+      ContactRegion turned = contact_region(b, X_CM, mesh_a, Pose{});
+      turned.normal = -turned.normal;
+      for (auto& patch : turned.patches) patch.normal = -patch.normal;
+      return turned;
+    };
+    if (region.patches.empty()) region = a_in_b();  // A lies wholly in B
+    // An open surface has no depths to find the deepest place by; it may lie in the other one.
+    if (!a.has_inside() && b.has_inside()) placed = a_in_b();
+    if (placed.patches.empty()) placed = region;
     detail.area_mm2 = region.area_mm2;
     detail.patches = static_cast<int>(region.patches.size());
     if (detail.volume_known) {
@@ -97,20 +101,20 @@ PairDetail CloseLook::look(const PairContact& pair, const Pose& X_CM) {
       detail.volume_error_mm3 = volume.error_mm3;
     }
     const ContactPatch* deepest = nullptr;
-    for (const auto& patch : region.patches)
+    for (const auto& patch : placed.patches)
       if (!deepest || patch.depth_mm > deepest->depth_mm) deepest = &patch;
     if (deepest) {
       detail.place = deepest->deepest;
       if (deepest->normal.norm() > 0.5)
         detail.normal = deepest->normal;
-      else if (region.normal.norm() > 0.5)
-        detail.normal = region.normal;
+      else if (placed.normal.norm() > 0.5)
+        detail.normal = placed.normal;
     }
   }
   Box box, own;  // of all patches, of the one at the place
   box.add(detail.place);
   own.add(detail.place);
-  for (const auto& patch : region.patches) {
+  for (const auto& patch : placed.patches) {
     box.add(patch.box);
     if (patch.deepest == detail.place) own.add(patch.box);
   }

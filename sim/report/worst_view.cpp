@@ -60,17 +60,31 @@ WorstView worst_view(const Scene& scene, const PairVerdict& pair, int threads) {
   return view;
 }
 
+std::string open_surface_words(const PairVerdict& pair) {
+  const bool open_a = pair.detail.open_a, open_b = pair.detail.open_b;
+  if (open_a && open_b)
+    return "Both have open surfaces, which have no inside: near them distance is shown without "
+           "sign, as if apart.";
+  if (!open_a && !open_b) return "";
+  return fmt::format(
+      "{0} has open surfaces, which have no inside: near them, distance on {1} is shown without "
+      "sign, as if apart.",
+      open_a ? pair.a : pair.b, open_a ? pair.b : pair.a);
+}
+
 std::string worst_caption(const ClearanceCheck& check, const PairVerdict& pair) {
   const int frame = pair.worst_frame();
   const auto f = static_cast<std::size_t>(frame);
   std::string text;
   if (!pair.worst.touching)
     text = fmt::format("nearest {:.2f} mm", pair.worst.distance_mm);
+  else if (pair.worst_was_apart)
+    text = fmt::format("{:.2f} mm deep where they are apart at rest", pair.worst_depth_mm);
   else if (pair.beyond_rest_mm > 0 && pair.rest_depth_mm > 0)
-    text = fmt::format("{:.2f} mm deep, {:.2f} mm deeper than at rest", pair.worst.depth_mm,
+    text = fmt::format("{:.2f} mm deep, {:.2f} mm deeper than at rest", pair.worst_depth_mm,
                        pair.beyond_rest_mm);
   else if (pair.beyond_rest_mm > 0)
-    text = fmt::format("{:.2f} mm deep", pair.worst.depth_mm);
+    text = fmt::format("{:.2f} mm deep", pair.worst_depth_mm);
   else
     text = pair.rest_depth_mm > 0 ? "touching, not deeper than at rest" : "touching";
   const auto& detail = pair.detail;

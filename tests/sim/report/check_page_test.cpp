@@ -76,6 +76,8 @@ TEST(CloseLook, OpenSurfaceHasNoVolume) {
   EXPECT_TRUE(pair.detail.open_a);
   EXPECT_FALSE(pair.detail.volume_known);
   EXPECT_GT(pair.detail.area_mm2, 0);
+  // The ball still has an inside, and the deepest place of the sheet in it is known.
+  EXPECT_LT((pair.detail.place - Eigen::Vector3d(15, -65, -40)).norm(), 0.3);
   const auto json = nlohmann::json::parse(check.json(scene, bite(3), 0));
   EXPECT_TRUE(json["pairs"][0]["worst"]["penetration_volume_mm3"].is_null());
   EXPECT_NE(check_page(check, {"p", "m", 0, {"x.png"}, {}}).find("without sign"),
@@ -140,6 +142,12 @@ TEST(CheckPage, TellsVerdictFirstAndEscapesNames) {
   EXPECT_NE(at("ball &lt;&amp; box&gt;"), std::string::npos);
   EXPECT_NE(at("a &lt; b"), std::string::npos);
   EXPECT_EQ(at("<script"), std::string::npos);
+  Case alone = ball_patient();
+  alone.parts.erase(alone.parts.begin());
+  const Scene no_pair = make_scene(std::move(alone));
+  const auto nothing = check_clearance(no_pair, bite(3), 0.5, {});
+  EXPECT_NE(check_page(nothing, {"p", "m", 0.5, {}, {}}).find("Nothing to check"),
+            std::string::npos);
   const auto good = check_clearance(scene, bite(0.3), 0.5, {});
   EXPECT_NE(check_page(good, {"p", "m", 0.5, {}, {}}).find("No violation."), std::string::npos);
 }
@@ -160,6 +168,35 @@ TEST(ClearancePlot, OpeningIsDrawnThroughAndClosingDashed) {
   const auto still = clearance_svg(check_clearance(scene, bite(0.5), 0, {}), 0);
   EXPECT_NE(still.find("Clearance over time"), std::string::npos);
   EXPECT_EQ(count(still, "stroke-dasharray=\"6 4\""), 0);
+}
+
+TEST(Clearance, ContactAwayFromTheOverlapAtRestHasItsOwnDepth) {
+  // A tooth that overlaps the maxilla by 1 mm at rest, and a ball 40 mm away that does not.
+  Case patient = ball_patient();
+  patient.parts[0].mesh = box({-30, -90, -40}, {30, -20, 0});
+  patient.parts[1].mesh = joined(sphere(5, 5, {15, -30, -47}), box({-5, -88, -60}, {5, -80, -39}));
+  const Scene scene = make_scene(std::move(patient));
+  // Turned about the tooth, so that only the ball rises.
+  const Motion motion{"turn",
+                      1,
+                      true,
+                      [](double t) {
+                        Pose pose;
+                        pose.R = Eigen::AngleAxisd(0.07 * std::clamp(t, 0.0, 1.0),
+                                                   Eigen::Vector3d::UnitX());
+                        const Eigen::Vector3d pivot(0, -80, -39);
+                        pose.t = pivot - pose.R * pivot;
+                        return pose;
+                      },
+                      {}};
+  const auto check = check_clearance(scene, motion, 0, {});
+  const auto& pair = check.pairs.at(0);
+  EXPECT_NEAR(pair.rest_depth_mm, 1, 1e-6);
+  EXPECT_TRUE(pair.worst_was_apart);
+  EXPECT_GT(pair.worst_depth_mm, 0.5);
+  EXPECT_NEAR(pair.worst_depth_mm, pair.beyond_rest_mm, 1e-9);
+  EXPECT_NEAR(check.pairs[0].clearance_mm.back(), -pair.worst_depth_mm, 1e-9);
+  EXPECT_NE(worst_caption(check, pair).find("apart at rest"), std::string::npos);
 }
 
 TEST(CloseLook, RealCrownsThatOverlapAtRest) {
