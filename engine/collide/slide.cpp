@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // Shares of the band: way of one step, distance up to which a sample can matter in it, and distance
 // up to which samples are collected for several steps.
-constexpr double step_share = 0.4, active_share = 0.45, collect_share = 0.9;
+constexpr double step_share = 0.25, active_share = 0.3, collect_share = 0.65;
 // With friction a contact drags from where it meets, which shorter steps find better.
 constexpr double rubbing_step_mm = 0.1, rubs_below_mm = 0.03;
 constexpr double settled_mm = 0.002;  // motion that is still wanted of a settled pose
