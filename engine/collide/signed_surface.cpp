@@ -4,27 +4,25 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/collide/shells.h"
 #include "engine/core/parallel.h"
-#include "engine/mesh/topology.h"
 
 namespace condyle {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Triangles of the closed (or of the open) shells.
+/// The closed shells, or the open ones, as one mesh.
 TriMesh shells(const TriMesh& mesh, bool closed) {
-  const Components components = find_components(mesh);
-  std::vector<bool> balanced(static_cast<std::size_t>(components.count), true);
-  const EdgeList list = find_edges(mesh);
-  for (const Edge& edge : list.edges) {
-    int balance = 0;
-    for (int i = 0; i < edge.count; ++i) balance += list.sides[edge.first + i].forward ? 1 : -1;
-    if (balance != 0) balanced[components.of_triangle[list.sides[edge.first].triangle]] = false;
+  TriMesh kept;
+  for (const Shell& shell : solid_shells(mesh)) {
+    if (shell.closed != closed) continue;
+    const int first = static_cast<int>(kept.vertices.size());
+    kept.vertices.insert(kept.vertices.end(), shell.mesh.vertices.begin(),
+                         shell.mesh.vertices.end());
+    for (const auto& t : shell.mesh.triangles)
+      kept.triangles.push_back(t + Eigen::Vector3i::Constant(first));
   }
-  TriMesh kept{mesh.vertices, {}, {}};
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    if (balanced[components.of_triangle[i]] == closed) kept.triangles.push_back(mesh.triangles[i]);
   return kept;
 }
 

@@ -29,8 +29,7 @@ class SignedSurface {
   Box box_;
 };
 
-/// Triangles of the shells (connected pieces) in which every edge is run along as often one way as
-/// the other. All vertices are kept.
+/// The shells that bound a solid, facing outward, without cavities: see solid_shells.
 TriMesh closed_shells(const TriMesh& mesh);
 
 /// Distance of each point to the surface, mm, points given in world coordinates; not searched, and

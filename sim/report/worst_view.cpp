@@ -8,9 +8,9 @@
 namespace condyle {
 namespace {
 
-constexpr double seen_mm = 30;   // about the contact
-constexpr double edge_mm = 0.5;  // fine enough for bands of 0.1 mm where surfaces are even
-constexpr double reach_mm = 6;   // distances beyond are not drawn
+constexpr double seen_mm = 30;           // about the contact
+constexpr double edge_share = 1.0 / 60;  // of that radius: fine enough for the picture's bands
+constexpr double reach_mm = 6;           // distances beyond are not drawn
 constexpr int most_triangles = 600000;
 
 std::vector<float> distances(const Part& part, const Pose& X_part, const TriMesh& other,
@@ -42,6 +42,7 @@ WorstView worst_view(const Scene& scene, const PairVerdict& pair, int threads) {
              b = static_cast<std::size_t>(pair.worst.part_b);
   const auto& patient = scene.patient.parts;
   const double radius = seen_mm + pair.detail.size_mm / 2;
+  const double edge_mm = radius * edge_share;
   WorstView view;
   std::size_t drawn_a = 0, drawn_b = 0;
   for (std::size_t i = 0; i < patient.size(); ++i) {
