@@ -43,7 +43,8 @@ void paste(Image& image, const Image& part, int x, int y) {
 
 /// Looks at the place from where `direction` points; what hides it from there is cut away.
 Camera close_camera(const ContactPlace& place, const Eigen::Vector3d& direction) {
-  constexpr double eye_mm = 260, uncut_mm = 18;
+  constexpr double eye_mm = 260;
+  const double uncut_mm = 0.4 * place.seen_mm;
   Camera camera;
   camera.target = place.middle;
   camera.direction = direction;
