@@ -35,6 +35,8 @@ constexpr double cut_reach_mm = 0.1;
 constexpr std::size_t max_cuts = 24;
 constexpr double still_mm = 1e-4;  // steps shorter than this lead nowhere
 
+bool is_finite(const Pose& X) { return X.R.coeffs().allFinite() && X.t.allFinite(); }
+
 bool same_bits(const Pose& x, const Pose& y) { return x.R.coeffs() == y.R.coeffs() && x.t == y.t; }
 
 }  // namespace
@@ -82,6 +84,9 @@ class SlideWalk {
 
   SlideResult run(const Pose& from, const Pose& wanted);
   SlideResult walk(const Pose& from, const Pose& wanted);
+  bool remembers() const {
+    return memory_->owner == &model_ && memory_->baseline == model_.baseline_;
+  }
   double depth_at(const Pose& X) {
     collect(X);
     evaluate(X, infinity);
@@ -191,11 +196,12 @@ void SlideWalk::collect(const Pose& X) {
   for (const Candidate& c : candidates_) memory_->near.push_back({c.pair, c.sample, c.distance});
   memory_->X_FM = X;
   memory_->owner = &model_;
+  memory_->baseline = model_.baseline_;
 }
 
 /// What an earlier walk collected, if that was near enough.
 void SlideWalk::remember(const Pose& X, double reserve_mm) {
-  if (memory_ && memory_->owner == &model_) {
+  if (memory_ && remembers()) {
     walked_ = way_of(between(memory_->X_FM, X));
     if (walked_ <= reserve_mm) {
       candidates_.assign(memory_->near.size(), {});
@@ -340,7 +346,11 @@ void SlideWalk::make_rows(const Pose& X, double active_mm) {
 /// until nothing is gained. So the answer, taken as a start, is its own answer.
 SlideResult SlideWalk::run(const Pose& from, const Pose& wanted) {
   SlideResult out;
-  if (memory_ && memory_->owner == &model_ && same_bits(memory_->last.X_FM, from) &&
+  if (!is_finite(from) || !is_finite(wanted)) {
+    out.X_FM = from;
+    return out;
+  }
+  if (memory_ && remembers() && same_bits(memory_->last.X_FM, from) &&
       same_bits(memory_->wanted, wanted))
     return memory_->last;
   Pose start = from;
@@ -356,6 +366,7 @@ SlideResult SlideWalk::run(const Pose& from, const Pose& wanted) {
     memory_->wanted = wanted;
     memory_->last = out;
     memory_->owner = &model_;
+    memory_->baseline = model_.baseline_;
   }
   return out;
 }
@@ -466,6 +477,7 @@ void SlideWalk::keep_cuts(const Pose& X, const TwistSolution& solution) {
 }
 
 void SlidingContact::allow_overlap_at(const Pose& rest) {
+  ++baseline_;
   for (auto& pair : pairs_) pair.allowed.clear();
   SlideWalk(*this, 1).allow(rest, pairs_);
 }

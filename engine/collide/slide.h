@@ -70,6 +70,7 @@ struct SlideMemory {
   Pose wanted;  // of the last slide
   SlideResult last;
   const void* owner = nullptr;  // the model it belongs to
+  int baseline = 0;             // which of that model's baselines held
 };
 
 /// Sliding contact of a moving body (of several surfaces) on a fixed one.
@@ -87,7 +88,8 @@ class SlidingContact {
   /// to it (least squares of the pivot's way and the rotation times its length) that touches and
   /// does not overlap. The motion is walked in steps below half the band: nothing is passed
   /// through. A start that overlaps is moved out, one that is as near as it gets is the answer.
-  /// Same bits for any number of threads.
+  /// Poses that are not finite move nothing and are not settled. Same bits for any number of
+  /// threads.
   SlideResult slide(const Pose& from, const Pose& wanted, SlideMemory* memory = nullptr,
                     int threads = 1) const;
 
@@ -113,6 +115,7 @@ class SlidingContact {
   double rotation_length_mm_ = 1;
   double radius_mm_ = 0;  // of the moving samples about the pivot
   double band_mm_ = 1;    // the narrowest
+  int baseline_ = 0;      // how often it was set
 };
 
 }  // namespace condyle

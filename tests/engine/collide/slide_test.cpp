@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -207,6 +208,15 @@ TEST(Slide, AStartThatOverlapsIsMovedOut) {
   const SlideResult result = model.slide(at(0, 0, 4.5), at(0, 0, 4.4));
   EXPECT_NEAR(result.X_FM.t.z(), 5, 0.05);
   EXPECT_LE(result.depth_mm, 0.02);
+}
+
+TEST(Slide, PosesThatAreNotFiniteMoveNothing) {
+  const SlidingContact model({body(plate())}, {body(test::sphere(2, 5))});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const SlideResult result = model.slide(at(1, 2, 9), at(nan, 0, 0));
+  EXPECT_FALSE(result.settled);
+  EXPECT_EQ(result.X_FM.t, Vector3d(1, 2, 9));
+  EXPECT_FALSE(model.slide(at(0, nan, 9), at(0, 0, 8)).settled);
 }
 
 /// Poses of a bumpy ball that grinds on another; depths of those that touch.
