@@ -58,7 +58,8 @@ Camera standard_camera(const std::string& name, const Eigen::Vector3d& low,
   if (view == views().end()) {
     std::string known;
     for (const auto& other : camera_names()) known += (known.empty() ? "" : ", ") + other;
-    throw InputError("camera '" + name + "' is not known; use one of: " + known);
+    throw InputError("camera '" + name + "' is not known; use one of: " + known +
+                     ", or spin, or a .json file");
   }
   constexpr double air = 1.08;
   Camera camera;

@@ -46,6 +46,16 @@ void remove_files(const fs::path& folder, const Wanted& wanted) {
       throw MachineError(file.string() + ": cannot be removed: " + error.message());
 }
 
+/// Only frames: what else a person keeps in the folder stays where it is.
+void move_frames(const fs::path& from, const fs::path& to) {
+  if (!fs::is_directory(from)) return;
+  make_folder(to);
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(from))
+    if (is_frame_name(entry.path().filename().string())) found.push_back(entry.path());
+  for (const auto& frame : found) fs::rename(frame, to / frame.filename());
+}
+
 }  // namespace
 
 struct Recorder::State {
@@ -73,15 +83,47 @@ struct Recorder::State {
 
   /// Puts this recording in the place of an earlier one. In this order, so that a kill at any
   /// moment leaves no frame under a sheet that is not its own.
-  void begin() {
-    if (begun) return;
+  fs::path earlier() const { return settings.folder / ".earlier"; }
+
+  void remove_results() {
     std::error_code error;
     fs::remove(sheet_file(), error);
     fs::remove(film_file(), error);
+    if (fs::is_directory(frames())) remove_files(frames(), is_frame_name);
+  }
+
+  /// Sets the recording that is there aside until this one is whole. What lies there unfinished on
+  /// top of one set aside before is dropped.
+  void begin() {
+    if (begun) return;
+    if (fs::exists(earlier())) {
+      remove_results();
+    } else if (fs::exists(sheet_file())) {
+      make_folder(earlier());
+      for (const auto& result : {sheet_file(), film_file()})
+        if (fs::exists(result)) fs::rename(result, earlier() / result.filename());
+      move_frames(frames(), earlier() / "frames");
+    } else {
+      remove_results();
+    }
     make_folder(frames());
-    remove_files(frames(), is_frame_name);
     write_recording_sheet(sheet_file(), sheet);
     begun = true;
+  }
+
+  /// After trouble: the earlier recording comes back in place of this one.
+  void bring_back_earlier() noexcept {
+    try {
+      if (!fs::exists(earlier())) return;
+      remove_results();
+      move_frames(earlier() / "frames", frames());
+      for (const auto& result : {film_file(), sheet_file()})
+        if (fs::exists(earlier() / result.filename()))
+          fs::rename(earlier() / result.filename(), result);
+      fs::remove_all(earlier());
+    } catch (const std::exception&) {
+      // What cannot be moved back stays whole in the folder set aside.
+    }
   }
 
   void write_all() {
@@ -159,6 +201,7 @@ Recorder::~Recorder() {
   }
   state_->changed.notify_all();
   state_->writer.join();
+  if (state_->trouble) state_->bring_back_earlier();
 }
 
 bool Recorder::has(int frame) const {
@@ -199,6 +242,8 @@ void Recorder::finish() {
                        ": this frame was never drawn; go on with --resume");
   if (s.settings.film)
     make_film(s.settings.folder, s.film_file(), s.settings.frames, s.settings.frames_per_second);
+  std::error_code error;
+  fs::remove_all(s.earlier(), error);
 }
 
 std::filesystem::path Recorder::frame_file(int frame) const { return state_->frame_file(frame); }

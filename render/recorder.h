@@ -24,10 +24,10 @@ struct RecorderSettings {
 /// Pictures are packed and written on a thread of their own, a few behind the drawing.
 class Recorder {
  public:
-  /// Touches nothing but leftovers of a killed run: the results of an earlier recording go only
-  /// when the first new frame is ready.
-  /// throws: MachineError when the folder cannot be made or written;
-  /// InputError when `resume` meets another recording, saying what differs.
+  /// Touches nothing but leftovers of a killed run. An earlier recording is set aside when the
+  /// first new frame is ready; it goes when the new one is whole, and comes back when a frame
+  /// cannot be written. throws: MachineError when the folder cannot be made or written; InputError
+  /// when `resume` meets another recording, saying what differs.
   explicit Recorder(const RecorderSettings& settings);
   /// Waits for the frames in hand; makes no film.
   ~Recorder();

@@ -86,7 +86,8 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
                                {"nodes", nodes},
                                {"triangles", bone_triangles}});
   }
-  if (common.json) fmt::print("{}\n", json.dump(2));
+  if (common.json)
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   if (!common.quiet) {
     fmt::print(
         stderr,

@@ -19,7 +19,7 @@ int run_import(const ImportOptions& options, const CommonOptions& common) {
                                {"triangles", part.mesh.triangles.size()}});
     json["landmarks"] = patient.landmarks.points.size();
     json["notes"] = patient.notes;
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   }
   if (!common.quiet) {
     for (const auto& note : patient.notes) fmt::print(stderr, "note: {}\n", note);

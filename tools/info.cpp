@@ -44,7 +44,8 @@ std::string line(const Json& mesh) {
 int run_info(const std::filesystem::path& what, const CommonOptions& common) {
   if (!what.empty() && !std::filesystem::is_directory(what)) {
     const Json mesh = describe(read_mesh(what));
-    fmt::print("{}\n", common.json ? mesh.dump(2) : what.string() + ": " + line(mesh));
+    fmt::print("{}\n", common.json ? mesh.dump(2, ' ', false, Json::error_handler_t::replace)
+                                   : what.string() + ": " + line(mesh));
     return 0;
   }
   ProgressBar bar(common);
@@ -63,7 +64,7 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
     json["landmarks"][name] = {point.x(), point.y(), point.z()};
   json["notes"] = patient.notes;
   if (common.json) {
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     return 0;
   }
   fmt::print("{} (LPS, mm; imported from {} in {})\n", patient.name, patient.source_frame,

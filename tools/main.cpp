@@ -24,6 +24,20 @@ Examples
 Exit codes: 0 done; 1 the machine or the program failed; 2 the input or the command line is wrong;
 3 check found a violation. For research and education, not for clinical use.)";
 
+/// A number from least to most; "nan" is none.
+CLI::Validator within(double least, double most) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        if (end != text.c_str() && *end == '\0' && value >= least && value <= most)
+          return std::string();
+        return "\"" + text + "\" is not a number from " + CLI::detail::to_string(least) + " to " +
+               CLI::detail::to_string(most);
+      },
+      "NUMBER");
+}
+
 void add_motion(CLI::App* command, MotionOptions& motion, bool motion_required) {
   command->add_option("CASE", motion.patient,
                       "Folder with case.json (default: the built-in patient)");
@@ -35,14 +49,17 @@ void add_motion(CLI::App* command, MotionOptions& motion, bool motion_required) 
   command
       ->add_option("--opening", motion.opening.opening_mm,
                    "Opening wanted at the incisors, mm (default: what suits the patient)")
-      ->check(CLI::Range(1.0, 80.0));
+      ->check(within(1.0, 80.0));
   command->add_option("--duration", motion.opening.duration_s, "Time to open and close, s (3)")
-      ->check(CLI::Range(0.2, 600.0));
+      ->check(within(0.2, 600.0));
   command
       ->add_option("--early-translation", motion.opening.early_translation,
                    "0 hinge first ... 1 translation from the start (default: as early as the joint "
                    "requires)")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(within(0.0, 1.0));
+}
+
+void add_respect_contact(CLI::App* command, MotionOptions& motion) {
   command->add_flag("--respect-contact", motion.respect_contact,
                     "Stop a recorded motion, too, where bones meet (built-in motions always stop)");
 }
@@ -57,6 +74,7 @@ void add_tissue(CLI::App* command, MotionOptions& motion) {
 
 void add_recording(CLI::App* command, RecordOptions& record) {
   add_motion(command, record.motion, true);
+  add_respect_contact(command, record.motion);
   add_tissue(command, record.motion);
   command->add_option("--out", record.out, "Folder for the results")->required();
   command
@@ -64,7 +82,7 @@ void add_recording(CLI::App* command, RecordOptions& record) {
                    "The whole motion in this many frames, both ends included")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--fps", record.fps, "Frames a second of the motion's own time (30)")
-      ->check(CLI::Range(0.1, 1000.0));
+      ->check(within(0.1, 1000.0));
   command->add_flag("--plots", record.plots, "Also draw plots (SVG)");
 }
 
@@ -102,9 +120,10 @@ int run_program(int argc, char** argv) {
   auto* view_command =
       add_command(app, "view", "Open the window", "condyle view mycase --motion opening");
   add_motion(view_command, view.motion, false);
+  add_respect_contact(view_command, view.motion);
   add_tissue(view_command, view.motion);
   view_command->add_option("--ui-scale", view.ui_scale, "Size of the panels (1)")
-      ->check(CLI::Range(0.5, 4.0));
+      ->check(within(0.5, 4.0));
 
   RecordOptions record;
   record.pictures = true;
@@ -136,8 +155,9 @@ int run_program(int argc, char** argv) {
                   "condyle check mycase --motion opening --margin 1 --out out; echo $?");
   add_motion(check_command, check.motion, false);
   check_command->add_option("--margin", check.margin_mm, "Clearance that bones must keep, mm (0)")
-      ->check(CLI::Range(0.0, 50.0));
-  check_command->add_option("--out", check.out, "Folder for report.html with its pictures, report.json, pairs.csv");
+      ->check(within(0.0, 50.0));
+  check_command->add_option("--out", check.out,
+                            "Folder for report.html with its pictures, report.json, pairs.csv");
 
   ImportOptions import;
   auto* import_command =
@@ -216,7 +236,9 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is an error of the write, told below
+  // A closed pipe and a file that may not grow are errors of the write, told below.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     const int code = run_program(argc, argv);
     if (std::fflush(stdout) != 0 || !std::cout.flush())

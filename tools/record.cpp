@@ -30,7 +30,7 @@ struct FrameTimes {
 FrameTimes frame_times(const RecordOptions& options, double duration_s) {
   constexpr double most_frames = 1e6;
   const double wanted = std::floor(duration_s * options.fps + 0.5) + 1;
-  if (options.frames == 0 && wanted > most_frames)
+  if (options.frames == 0 && !(wanted <= most_frames))
     throw InputError(fmt::format("--fps {}: makes {} frames of {} s; at most {} are recorded",
                                  options.fps, wanted, duration_s, most_frames));
   return {options.frames > 0 ? options.frames : static_cast<int>(wanted), duration_s};
@@ -42,6 +42,8 @@ std::uint64_t case_hash(const Case& patient) {
   std::uint64_t hash = hash_start;
   for (const auto& part : patient.parts) {
     hash = hash_bytes(part.name.data(), part.name.size(), hash);
+    hash = hash_bytes(&part.role, sizeof part.role, hash);
+    for (const auto& c : part.mesh.colors) hash = hash_bytes(c.data(), 3 * sizeof(float), hash);
     for (const auto& v : part.mesh.vertices) hash = hash_bytes(v.data(), 3 * sizeof(double), hash);
     for (const auto& t : part.mesh.triangles) hash = hash_bytes(t.data(), 3 * sizeof(int), hash);
   }
@@ -50,15 +52,26 @@ std::uint64_t case_hash(const Case& patient) {
   return hash;
 }
 
-std::uint64_t motion_hash(const Motion& motion) {
+/// Of every pose that the recording asks for: at the fixed steps and at the frames.
+std::uint64_t motion_hash(const Motion& motion, const FrameTimes& times, double step_s) {
   std::uint64_t hash = hash_start;
-  constexpr int samples = 100;
-  for (int i = 0; i <= samples; ++i) {
-    const Pose pose = motion.wanted(motion.duration_s * i / samples);
+  const auto add = [&](double time_s) {
+    const Pose pose = motion.wanted(time_s);
     hash = hash_bytes(pose.R.coeffs().data(), 4 * sizeof(double), hash);
     hash = hash_bytes(pose.t.data(), 3 * sizeof(double), hash);
-  }
+  };
+  for (int i = 0; i * step_s <= motion.duration_s; ++i) add(i * step_s);
+  for (int i = 0; i < times.count; ++i) add(times[i]);
   return hash;
+}
+
+std::string camera_text(const Camera& camera, bool spin) {
+  const auto& t = camera.target;
+  const auto& d = camera.direction;
+  const auto& u = camera.up;
+  return fmt::format("{}{} {} {} / {} {} {} / {} {} {} / {} {}", spin ? "spin " : "", t.x(), t.y(),
+                     t.z(), d.x(), d.y(), d.z(), u.x(), u.y(), u.z(), camera.distance_mm,
+                     camera.field_of_view_deg);
 }
 
 /// The box of what is shown, grown by where the motion takes the mandible: what the camera keeps in
@@ -102,9 +115,11 @@ class PictureTaker {
         .film = options.film,
         .resume = options.resume,
         .identity = {
+            {"condyle", CONDYLE_VERSION},
             {"case", hash_text(case_hash(scene.patient))},
-            {"motion", motion.name + " " + hash_text(motion_hash(motion))},
-            {"camera", options.camera},
+            {"motion",
+             motion.name + " " + hash_text(motion_hash(motion, times, SimulatorSettings{}.step_s))},
+            {"camera", camera_text(camera_, spin_)},
             {"show", options.show},
             {"contact", options.motion.respect_contact ? "respected" : "as the motion wants"},
             {"tissue", options.motion.tissue ? std::to_string(options.motion.surface_nodes)

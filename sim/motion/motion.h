@@ -17,6 +17,7 @@ struct Motion {
   bool recorded = false;  // a recording is played back as it is unless contact is asked for
   std::function<Pose(double time_s)> wanted;  // X_CM; clamps the time to [0, duration_s]
   std::vector<std::string> notes;             // how it was made, for people
+  std::vector<double> sample_times = {};      // of a recording, increasing from 0 to duration_s
 };
 
 struct OpeningSettings {

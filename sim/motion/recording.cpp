@@ -180,7 +180,8 @@ Motion read_recording(const std::filesystem::path& file) {
           recording->time_s.back(),
           true,
           [recording](double time_s) { return sample(*recording, time_s); },
-          {}};
+          {},
+          recording->time_s};
 }
 
 }  // namespace condyle

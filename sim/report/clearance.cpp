@@ -34,6 +34,23 @@ PlaceDepth depth_at_place(const ContactSet& set, const PairContact& pair) {
 
 }  // namespace
 
+namespace {
+
+/// The fixed steps, every row of a recording, and the end.
+std::vector<double> check_times(const Motion& motion, double step_s) {
+  constexpr double same_s = 1e-9;
+  std::vector<double> times = motion.sample_times;
+  for (int i = 0; i * step_s < motion.duration_s; ++i) times.push_back(i * step_s);
+  times.push_back(motion.duration_s);
+  std::sort(times.begin(), times.end());
+  times.erase(
+      std::unique(times.begin(), times.end(), [](double a, double b) { return b - a < same_s; }),
+      times.end());
+  return times;
+}
+
+}  // namespace
+
 ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double margin_mm,
                                const SimulatorSettings& settings, const Progress& progress) {
   ClearanceCheck check;
@@ -51,12 +68,13 @@ ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double 
   check.pairs_csv =
       "frame,time_s,opening_mm,a,b,touching,distance_mm,depth_mm,beyond_rest_mm,contacts,"
       "witness_a_x_mm,witness_a_y_mm,witness_a_z_mm,witness_b_x_mm,witness_b_y_mm,witness_b_z_mm\n";
-  check.frames = static_cast<int>(std::lround(motion.duration_s / settings.step_s)) + 1;
+  const auto times = check_times(motion, settings.step_s);
+  check.frames = static_cast<int>(times.size());
   CoronoidClearance coronoids(scene.patient);
   std::vector<bool> touching(check.pairs.size(), false);
   ContactSet previous = scene.contacts.at_rest();
   for (int frame = 0; frame < check.frames; ++frame) {
-    const double time = std::min(frame * settings.step_s, motion.duration_s);
+    const double time = times[static_cast<std::size_t>(frame)];
     const Pose X_CM = motion.wanted(time);
     ContactSet now = scene.contacts.find(X_CM, &previous, settings.threads);
     const Measures measures = measure(scene.patient, X_CM);

@@ -93,7 +93,7 @@ std::string ClearanceCheck::json(const Scene& scene, const Motion& motion, doubl
        "tip and in front of half way to the condyle"}};
   json["notes"] = scene.contacts.notes();
   for (const auto& note : notes) json["notes"].push_back(note);
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string ClearanceCheck::text(double margin_mm) const {

@@ -12,6 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int cold_samples = 8;
+constexpr double rounding_mm = 1e-6;  // a stop lies at the slack, give or take its rounding
 
 /// An emergent quantity beside the band that is accepted for healthy adults.
 Json banded(double value, double low, double high) {
@@ -81,7 +82,7 @@ void MotionReport::add(const FrameState& frame) {
       ++record.touching_frames;
       if (record.first_touch < 0) record.first_touch = frames_;
     }
-    if (beyond > settings_.contact.slack_mm) ++record.penetrating_frames;
+    if (beyond > settings_.contact.slack_mm + rounding_mm) ++record.penetrating_frames;
     if (record.worst_frame < 0 || distance < record.least_distance ||
         (distance == record.least_distance && pair.depth_mm > record.deepest))
       record.worst_frame = frames_;
@@ -177,9 +178,10 @@ std::string MotionReport::json() const {
           follow(*scene_.tissue, rest_tissue(*scene_.tissue), frame.X_CM, budget).iterations);
     }
     const double warm_median = summarise(warm).median, cold_median = summarise(cold).median;
-    tissue["iterations"] = {{"warm_median", warm_median},
-                            {"cold_median", cold_median},
-                            {"warm_over_cold", cold_median > 0 ? warm_median / cold_median : 0}};
+    if (cold_median > 0)
+      tissue["iterations"] = {{"warm_median", warm_median},
+                              {"cold_median", cold_median},
+                              {"warm_over_cold", warm_median / cold_median}};
     json["tissue"] = tissue;
   }
   Json stages;
@@ -191,7 +193,7 @@ std::string MotionReport::json() const {
   json["stage_ms"] = stages;
   json["patient_notes"] = scene_.patient.notes;
   json["contact_notes"] = scene_.contacts.notes();
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string MotionReport::text() const {
@@ -221,7 +223,7 @@ std::string MotionReport::text() const {
   const bool penetrates = std::any_of(pairs_.begin(), pairs_.end(), [](const PairRecord& record) {
     return record.penetrating_frames > 0;
   });
-  if (recorded_ && penetrates)
+  if (recorded_ && penetrates && stopped_frames_ == 0)
     text += "a recorded motion is played as it is; --respect-contact stops it where bones meet\n";
   if (stopped_frames_ > 0)
     text += fmt::format("stopped at a contact in {} frames, first in frame {}\n", stopped_frames_,

@@ -65,12 +65,17 @@ Outcome condyle(const std::vector<std::string>& arguments, const Limits& limits)
     ::execv(CONDYLE_PROGRAM, argv.data());
     ::_exit(127);
   }
-  if (limits.kill_after_s > 0) {
-    std::this_thread::sleep_for(std::chrono::duration<double>(limits.kill_after_s));
-    ::kill(child, SIGKILL);
-  }
   int status = 0;
-  ::waitpid(child, &status, 0);
+  bool ended = false;
+  while (limits.kill_when && !ended) {
+    if (limits.kill_when()) {
+      ::kill(child, SIGKILL);
+      break;
+    }
+    ended = ::waitpid(child, &status, WNOHANG) == child;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  if (!ended) ::waitpid(child, &status, 0);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(out),
           read_text(err)};
 }

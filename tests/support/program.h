@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,9 @@ struct Outcome {
 };
 
 struct Limits {
-  long memory_mb = 0;       // of address space; 0 = none
-  long file_mb = -1;        // largest file that may be written; -1 = none
-  double kill_after_s = 0;  // SIGKILL after this time; 0 = never
+  long memory_mb = 0;                    // of address space; 0 = none
+  long file_mb = -1;                     // largest file that may be written; -1 = none
+  std::function<bool()> kill_when = {};  // asked all the time; SIGKILL as soon as it says so
 };
 
 /// Runs the built program with the arguments and waits for it.

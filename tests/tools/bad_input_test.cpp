@@ -160,6 +160,10 @@ TEST(BadCommand, RefusedWithTheValue) {
                  {"soul"});
   expect_refused({"run", patient, "--motion", "opening", "--out", out, "--threads", "0"}, 2,
                  {"--threads"});
+  for (const char* option : {"--fps", "--opening", "--duration"})
+    expect_refused({"run", patient, "--motion", "opening", "--out", out, option, "nan"}, 2,
+                   {option, "nan"});
+  expect_refused({"check", patient, "--margin", "nan"}, 2, {"--margin", "nan"});
   expect_refused({"import"}, 2, {});
   EXPECT_EQ(condyle({"--help"}).code, 0);
   EXPECT_EQ(condyle({"record", "--help"}).code, 0);

@@ -166,6 +166,56 @@ TEST(Check, DrawsTheWorstFrameAndWithoutEglSaysThatItCannot) {
             std::string::npos);
 }
 
+TEST(Check, SeesTheEndOfAMotionShorterThanAStep) {
+  const Folder folder;
+  const std::string patient = box_case(folder), motion = folder / "quick.csv";
+  write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n0.004,0,0,6,1,0,0,0\n");
+  EXPECT_EQ(condyle({"check", patient, "--motion", motion}).code, 3);
+}
+
+TEST(Record, AFullDiskLeavesTheEarlierRecordingWhole) {
+  const Folder folder;
+  const std::string patient = box_case(folder);
+  const auto record = [&](const std::string& frames, const Limits& limits) {
+    return condyle({"record", patient, "--motion", "opening", "--out", folder / "out", "--frames",
+                    frames, "--size", "160x120"},
+                   limits);
+  };
+  ASSERT_EQ(record("3", {}).code, 0);
+  const auto before = pictures(folder / "out/frames");
+  const std::string sheet = read_text(folder / "out/recording.json"),
+                    trace = read_text(folder / "out/trace.csv");
+  EXPECT_EQ(record("5", {.file_mb = 0}).code, 1);
+  EXPECT_EQ(pictures(folder / "out/frames"), before);
+  EXPECT_EQ(read_text(folder / "out/recording.json"), sheet);
+  EXPECT_EQ(read_text(folder / "out/trace.csv"), trace);
+  ASSERT_EQ(record("5", {}).code, 0);
+  EXPECT_EQ(pictures(folder / "out/frames").size(), 5u);
+  EXPECT_FALSE(fs::exists(folder / "out/.earlier"));
+}
+
+TEST(Record, ResumeRefusesAChangedMotionAndAChangedCamera) {
+  const Folder folder;
+  const std::string patient = box_case(folder), motion = folder / "nod.csv",
+                    camera = folder / "camera.json";
+  const auto record = [&](bool resume) {
+    std::vector<std::string> command = {"record",   patient,        "--motion", motion,
+                                        "--out",    folder / "out", "--frames", "4",
+                                        "--camera", camera,         "--size",   "160x120"};
+    if (resume) command.push_back("--resume");
+    return condyle(command).code;
+  };
+  write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n1,0,0,-6,1,0,0,0\n");
+  write_text(camera, "{\"distance_mm\": 500}");
+  ASSERT_EQ(record(false), 0);
+  EXPECT_EQ(record(true), 0);
+  write_text(camera, "{\"distance_mm\": 501}");
+  EXPECT_EQ(record(true), 2);
+  write_text(camera, "{\"distance_mm\": 500}");
+  write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n1,0,0,-6.001,1,0,0,0\n");
+  EXPECT_EQ(record(true), 2);
+}
+
 TEST(Json, GoesAloneToStandardOutput) {
   const Folder folder;
   const std::string patient = box_case(folder);
@@ -194,10 +244,19 @@ TEST(Record, KilledAtAnyMomentLeavesWholeFramesAndResumesToTheSameBits) {
   const std::string film = read_text(folder / "whole/film.mp4");
   ASSERT_GT(film.size(), 1000u);
 
+  const auto frames_of = [&](const std::string& out) {
+    std::size_t count = 0;
+    std::error_code none_yet;
+    for (fs::directory_iterator it(folder / (out + "/frames"), none_yet), end;
+         !none_yet && it != end; it.increment(none_yet))
+      ++count;
+    return count;
+  };
   int interrupted = 0;
-  for (const double after_s : {0.5, 0.9, 1.4, 2.2}) {
-    const std::string out = "killed" + std::to_string(after_s);
-    const auto killed = condyle(command(out), {.kill_after_s = after_s});
+  for (const std::size_t after : {1u, 7u, 20u, 33u}) {
+    const std::string out = "killed" + std::to_string(after);
+    const auto killed =
+        condyle(command(out), {.kill_when = [&] { return frames_of(out) >= after; }});
     if (fs::exists(folder / (out + "/frames"))) {
       for (const auto& [name, png] : pictures(folder / (out + "/frames"))) {
         if (name.ends_with(".png") && name.front() != '.') {
