@@ -94,7 +94,13 @@ TriMesh face_surface() {
   half = largest_piece(clipped(half, values));
   half = decimated(half, {.target_triangles = 50000, .importance = importance, .evenness = 0.01});
   TriMesh face = with_mirror_image(half);
-  for (const auto& p : face.vertices) face.colors.push_back(skin_color(p));
+  for (const auto& p : face.vertices) {
+    const Vector3d left(std::abs(p.x()), p.y(), p.z());
+    // What lines the mouth is moist and red, in the corners too, where it shows when the lips part.
+    const bool lining = std::abs(space.distance(left)) < 0.8 && p.y() < -76 &&
+                        std::abs(p.z() - lip_line(left.x(), p.y())) < 12;
+    face.colors.push_back(lining ? Eigen::Vector3f(.48f, .20f, .20f) : skin_color(p));
+  }
   return face;
 }
 
