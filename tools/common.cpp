@@ -124,6 +124,12 @@ Camera parse_camera(const std::string& text, const Eigen::Vector3d& low,
   if (!text.ends_with(".json")) return standard_camera(text, low, high, aspect);
   const auto json = nlohmann::json::parse(read_file(text, 1 << 20), nullptr, false);
   if (!json.is_object()) throw InputError(text, "", "is not a JSON object");
+  for (const auto& [key, value] : json.items())
+    if (key != "target" && key != "direction" && key != "up" && key != "distance_mm" &&
+        key != "field_of_view_deg")
+      throw InputError(text, key,
+                       "is not known; known are target, direction, up, distance_mm and "
+                       "field_of_view_deg");
   Camera camera = standard_camera("front", low, high, aspect);
   const auto vector = [&](const char* name, Eigen::Vector3d& value) {
     if (!json.contains(name)) return;

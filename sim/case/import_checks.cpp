@@ -5,9 +5,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "engine/core/error.h"
+#include "engine/mesh/triangle_tree.h"
 #include "sim/case/source_frame.h"
 
 namespace condyle {
@@ -129,6 +131,26 @@ void check_frame(const Case& patient, const ImportRequest& request) {
                                fits.empty() || fits == request.frame
                                    ? "check which way x, y and z of the files point"
                                    : "did you mean --frame " + fits + "?"));
+}
+
+void check_landmarks(const Case& patient, const ImportRequest& request) {
+  constexpr double far_mm = 40;
+  const Part* mandible = patient.find(Role::mandible);
+  if (!mandible) return;
+  const TriangleTree tree(mandible->mesh);
+  double nearest = std::numeric_limits<double>::infinity();
+  std::string named;
+  for (const char* name : {"left_condyle", "right_condyle", "lower_incisal_point"}) {
+    const auto point = patient.landmarks.find(name);
+    if (!point) continue;
+    nearest = std::min(nearest, tree.nearest(*point).distance);
+    named += (named.empty() ? "" : ", ") + std::string(name);
+  }
+  if (named.empty() || nearest <= far_mm) return;
+  throw InputError(request.landmarks, named,
+                   "at least " + std::to_string(static_cast<int>(nearest)) +
+                       " mm from the mandible: the landmarks of another patient, or of another "
+                       "unit or frame? Give the ones that belong to these surfaces");
 }
 
 }  // namespace condyle

@@ -20,6 +20,10 @@ std::vector<Eigen::Vector3d> midline_points(const TriMesh& mesh, double middle, 
 /// note. Does nothing for a point that is there.
 void estimate_landmarks(Case& patient);
 
+/// Refuses landmarks of a jaw that is nowhere near this mandible. One far point alone may be right:
+/// a resected condyle has its landmark still.
+void check_landmarks(const Case& patient, const ImportRequest& request);
+
 /// Refuses a mandible that is upside down, back to front or side to side in LPS, naming a frame
 /// that would fit. `patient` is as converted by the request.
 void check_frame(const Case& patient, const ImportRequest& request);

@@ -285,6 +285,7 @@ Case import_meshes(const ImportRequest& request) {
   patient.landmarks = import_landmarks(request, frame, box, patient.notes);
   patient.parts = make_parts(surfaces, patient.notes);
   check_frame(patient, request);
+  check_landmarks(patient, request);
   estimate_landmarks(patient);
   estimate_profile_landmarks(patient);
   return patient;

@@ -331,6 +331,16 @@ TEST_F(RealImport, CaseBadinAndEstimatesNearItsMarkers) {
   EXPECT_TRUE(guessed.landmarks.find("stomion"));
 }
 
+TEST_F(RealImport, AnotherPatientsLandmarksAreRefused) {
+  const auto import_with = [&](const char* marks) {
+    return import_meshes({.files = {{Role::mandible, data_ / "case-ubc/mandible_8k.ply"}},
+                          .landmarks = data_ / marks / "markers.csv",
+                          .name = "mixed"});
+  };
+  EXPECT_NO_THROW(import_with("case-ubc"));
+  EXPECT_THROW(import_with("case-badin"), InputError);
+}
+
 TEST_F(RealImport, OpenAndForeignSurfacesComeWithTruthfulNotes) {
   // One of its 119,831 triangles has no area; without it the rim has 502 edges, not 501.
   const Case skull =
