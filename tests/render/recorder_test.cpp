@@ -136,7 +136,7 @@ TEST_F(Recording, ResumingNothingStartsAndFramesOfUnknownOriginAreNotTrusted) {
 }
 
 TEST_F(Recording, TheFilmHasEveryFrameAndEvenSides) {
-  if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
+  ASSERT_TRUE(have_ffmpeg()) << "install ffmpeg";
   record(settings("a"));
   const std::string command =
       "ffprobe -v error -count_frames -select_streams v -show_entries "

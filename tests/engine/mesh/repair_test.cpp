@@ -28,7 +28,7 @@ TEST(Measure, VolumeAndAreaOfABoxInAnyPoseAreItsFormulas) {
 }
 
 TEST(Measure, VertexNormalsOfASpherePointOutwardAndOfABoxAlongItsDiagonals) {
-  const TriMesh ball = sphere(10, 3);
+  const TriMesh ball = sphere(3, 10);
   const auto normals = vertex_normals(ball);
   for (std::size_t i = 0; i < normals.size(); ++i)
     EXPECT_GT(normals[i].dot(ball.vertices[i].normalized()), 0.9996);  // 1.6 degrees
@@ -41,15 +41,15 @@ TEST(Measure, VertexNormalsOfASpherePointOutwardAndOfABoxAlongItsDiagonals) {
 }
 
 TEST(Measure, HashTellsAnyChangedBit) {
-  TriMesh mesh = sphere(10, 2);
+  TriMesh mesh = sphere(2, 10);
   const auto before = mesh_hash(mesh);
-  EXPECT_EQ(before, mesh_hash(sphere(10, 2)));
+  EXPECT_EQ(before, mesh_hash(sphere(2, 10)));
   mesh.vertices[7].y() = std::nextafter(mesh.vertices[7].y(), 1e9);
   EXPECT_NE(before, mesh_hash(mesh));
 }
 
 TEST(Weld, GivesBackTheMeshThatWasTakenApart) {
-  const TriMesh mesh = moved(sphere(10, 3), arbitrary_pose(2));
+  const TriMesh mesh = moved(sphere(3, 10), arbitrary_pose(2));
   TriMesh soup = test::unwelded(mesh);
   EXPECT_EQ(weld(soup), static_cast<int>(3 * mesh.triangles.size() - mesh.vertices.size()));
   EXPECT_EQ(soup.vertices.size(), mesh.vertices.size());
@@ -84,7 +84,7 @@ TEST(Weld, NegativeZeroIsZeroAndColoursStayWithTheFirst) {
 }
 
 TEST(Topology, CountsPiecesRimsAndBadEdges) {
-  TriMesh mesh = joined(sphere(10, 2), cuboid({20, 0, 0}, {30, 10, 10}));
+  TriMesh mesh = joined(sphere(2, 10), cuboid({20, 0, 0}, {30, 10, 10}));
   EXPECT_TRUE(inspect(mesh).closed());
   EXPECT_EQ(inspect(mesh).components, 2);
   mesh.triangles.pop_back();  // of the box, at x = 30
@@ -149,7 +149,7 @@ TEST(Repair, UnusedVerticesGoWithTheirColours) {
 }
 
 TEST(Orient, EveryMixOfWindingsOfAClosedMeshFacesOutward) {
-  const TriMesh mesh = moved(sphere(10, 2), arbitrary_pose(4));
+  const TriMesh mesh = moved(sphere(2, 10), arbitrary_pose(4));
   std::mt19937 random(5);
   for (int trial = 0; trial < 20; ++trial) {
     TriMesh mixed = mesh;
@@ -162,9 +162,9 @@ TEST(Orient, EveryMixOfWindingsOfAClosedMeshFacesOutward) {
 }
 
 TEST(Orient, ACavityStaysACavityAndAnInwardSolidIsTurnedWithIt) {
-  TriMesh hole = sphere(5, 2);
+  TriMesh hole = sphere(2, 5);
   flip(hole);
-  const TriMesh hollow = joined(sphere(10, 2), hole);
+  const TriMesh hollow = joined(sphere(2, 10), hole);
   const double volume = signed_volume(hollow);
   TriMesh good = hollow, inward = hollow;
   flip(inward);
@@ -174,12 +174,12 @@ TEST(Orient, ACavityStaysACavityAndAnInwardSolidIsTurnedWithIt) {
   EXPECT_EQ(done.inward_closed, 1);
   EXPECT_NEAR(signed_volume(inward), volume, 1e-9);
   // A second solid inside the first, as a root in its jaw, stays solid.
-  TriMesh rooted = joined(sphere(10, 2), sphere(5, 2));
+  TriMesh rooted = joined(sphere(2, 10), sphere(2, 5));
   EXPECT_EQ(orient_outward(rooted).turned, 0);
 }
 
 TEST(Orient, OpenSurfacesKeepTheSenseOfMostOfTheirArea) {
-  TriMesh cup = sphere(10, 2);
+  TriMesh cup = sphere(2, 10);
   std::erase_if(cup.triangles, [&](const auto& t) { return cup.vertices[t[0]].z() > 3; });
   TriMesh mixed = cup;
   for (std::size_t i = 0; i < mixed.triangles.size(); i += 4)
@@ -209,7 +209,7 @@ TEST(Orient, AMoebiusStripIsReported) {
 }
 
 TEST(Simplify, AClosedMeshStaysClosedAndNear) {
-  const TriMesh mesh = moved(sphere(50, 6), arbitrary_pose(6));  // 81,920 triangles
+  const TriMesh mesh = moved(sphere(6, 50), arbitrary_pose(6));  // 81,920 triangles
   for (const int target : {20000, 2000, 200}) {
     const TriMesh coarse = simplify(mesh, target);
     EXPECT_TRUE(inspect(coarse).closed());

@@ -41,7 +41,7 @@ std::vector<Vector3d> points_around(unsigned seed, int count, double spread) {
 
 TEST(TriangleTree, NearestEqualsBruteForce) {
   const auto pose = arbitrary_pose(1);
-  const TriMesh mesh = moved(test::joined(sphere(10, 3), cuboid({8, -3, -4}, {15, 20, 3})), pose);
+  const TriMesh mesh = moved(test::joined(sphere(3, 10), cuboid({8, -3, -4}, {15, 20, 3})), pose);
   const TriangleTree tree(mesh);
   for (const auto& local : points_around(2, 500, 15)) {
     const Vector3d p = pose * local;
@@ -62,7 +62,7 @@ TEST(TriangleTree, NearestEqualsBruteForce) {
 }
 
 TEST(TriangleTree, ReachLimitsTheSearchAndChangesNoAnswerWithinIt) {
-  const TriMesh mesh = sphere(10, 3);
+  const TriMesh mesh = sphere(3, 10);
   const TriangleTree tree(mesh);
   int within = 0, beyond = 0;
   for (const auto& p : points_around(3, 300, 10)) {
@@ -122,9 +122,9 @@ TEST(TriangleTree, SignNeedsNoWeldedCorners) {
 
 TEST(TriangleTree, WindingNumberCountsShellsAndAgreesWithTheSign) {
   const auto pose = arbitrary_pose(8);
-  const TriMesh two = moved(test::joined(sphere(10, 3), sphere(10, 3, {8, 0, 0})), pose);
-  const TriangleTree tree(two), one(moved(sphere(10, 3), pose)),
-      other(moved(sphere(10, 3, {8, 0, 0}), pose));
+  const TriMesh two = moved(test::joined(sphere(3, 10), sphere(3, 10, {8, 0, 0})), pose);
+  const TriangleTree tree(two), one(moved(sphere(3, 10), pose)),
+      other(moved(sphere(3, 10, {8, 0, 0}), pose));
   int inside_both = 0;
   for (const auto& local : points_around(9, 1000, 10)) {
     const Vector3d p = pose * local;
@@ -138,7 +138,7 @@ TEST(TriangleTree, WindingNumberCountsShellsAndAgreesWithTheSign) {
 }
 
 TEST(TriangleTree, RayHitsASphereWhereItsFormulaSays) {
-  const TriangleTree tree(sphere(10, 5));
+  const TriangleTree tree(sphere(5, 10));
   int hits = 0;
   const auto points = points_around(10, 1000, 12);
   for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
@@ -180,7 +180,7 @@ TEST(TriangleTree, NoRaySlipsBetweenTriangles) {
 TEST(TriangleTree, FlatTrianglesAndEmptyMeshesAreNoAnswer) {
   EXPECT_EQ(TriangleTree(TriMesh{}).nearest({0, 0, 0}).triangle, -1);
   EXPECT_FALSE(TriangleTree(TriMesh{}).ray_cast({0, 0, 0}, {1, 0, 0}));
-  TriMesh mesh = sphere(10, 1);
+  TriMesh mesh = sphere(1, 10);
   const int flat = static_cast<int>(mesh.triangles.size());
   mesh.triangles.emplace_back(0, 0, 1);
   const TriangleTree tree(mesh);
@@ -188,7 +188,7 @@ TEST(TriangleTree, FlatTrianglesAndEmptyMeshesAreNoAnswer) {
 }
 
 TEST(TriangleTree, ThreadsGetTheSameBits) {
-  const TriangleTree tree(sphere(10, 4));
+  const TriangleTree tree(sphere(4, 10));
   const auto points = points_around(12, 2000, 10);
   std::vector<double> one(points.size()), two(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) one[i] = tree.signed_distance(points[i]);

@@ -62,7 +62,7 @@ class Fuzz : public testing::TestWithParam<const char*> {};
 TEST_P(Fuzz, IsReadSoundlyOrRefused) {
   const std::string kind = GetParam();
   const TriMesh mesh =
-      test::single_precision(test::moved(test::sphere(40, 1), test::arbitrary_pose(1)));
+      test::single_precision(test::moved(test::sphere(1, 40), test::arbitrary_pose(1)));
   const std::string good = kind == "ascii.ply"    ? test::ascii_ply(mesh)
                            : kind == "little.ply" ? test::binary_ply(mesh, false)
                            : kind == "big.ply"    ? test::binary_ply(mesh, true)

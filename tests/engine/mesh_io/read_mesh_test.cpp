@@ -14,7 +14,7 @@ using test::single_precision;
 using test::TempFolder;
 
 const TriMesh& ball() {
-  static const TriMesh mesh = single_precision(test::moved(test::sphere(40, 3), arbitrary_pose(1)));
+  static const TriMesh mesh = single_precision(test::moved(test::sphere(3, 40), arbitrary_pose(1)));
   return mesh;
 }
 
@@ -51,7 +51,7 @@ TEST(ReadMesh, StlComesWeldedInBothForms) {
 
 TEST(ReadMesh, OwnFilesKeepEveryBitAndColour) {
   const TempFolder folder;
-  TriMesh mesh = test::moved(test::sphere(40, 2), arbitrary_pose(2));
+  TriMesh mesh = test::moved(test::sphere(2, 40), arbitrary_pose(2));
   write_ply(mesh, folder.path() / "plain.ply");
   EXPECT_EQ(mesh_hash(read_mesh(folder.path() / "plain.ply")), mesh_hash(mesh));
   std::mt19937 random(3);

@@ -21,10 +21,10 @@ Case sample() {
   Case patient;
   patient.name = "A \"patient\", é";
   patient.parts.push_back(
-      {"mandible", Role::mandible, test::moved(test::sphere(50, 2), test::arbitrary_pose(1)), {}});
-  TriMesh teeth = test::sphere(4, 1);
+      {"mandible", Role::mandible, test::moved(test::sphere(2, 50), test::arbitrary_pose(1)), {}});
+  TriMesh teeth = test::sphere(1, 4);
   const int one = static_cast<int>(teeth.triangles.size());
-  teeth = test::joined(teeth, test::sphere(4, 1, {10, 0, 0}));
+  teeth = test::joined(teeth, test::sphere(1, 4, {10, 0, 0}));
   patient.parts.push_back(
       {"lower-teeth", Role::lower_teeth, teeth, {{36, 0, one}, {37, one, one}}});
   patient.landmarks.points = {{"left_condyle", {1.0 / 3, 1e-300, -0.0}},

@@ -118,12 +118,12 @@ TEST_F(Import, AWrongUnitIsToldWithTheRightOne) {
     expect_words(message, {"jaw.ply", "a head is 100 to 300 mm", "did you mean --units"});
     EXPECT_NE(message.find(fmt::format("--units {}?", real)), std::string::npos) << message;
   }
-  TriMesh small = test::sphere(0.1, 1), huge = test::sphere(100'000, 1);
+  TriMesh small = test::sphere(1, 0.1), huge = test::sphere(1, 100'000);
   expect_words(refusal({{{Role::skull, mesh("s.ply", small)}}, {}, "mm", "LPS", "x"}),
                {"0.2 mm wide", "--units m?"});
   expect_words(refusal({{{Role::skull, mesh("h.ply", huge)}}, {}, "m", "LPS", "x"}),
                {"200000 m wide"});
-  huge = test::sphere(100, 1);
+  huge = test::sphere(1, 100);
   expect_words(refusal({{{Role::skull, mesh("h.ply", huge)}}, {}, "m", "LPS", "x"}),
                {"200 m wide", "--units mm?"});
 }
@@ -195,14 +195,14 @@ TEST_F(Import, LandmarksOffThePatientAreRefusedAndMillimetresRecognised) {
 }
 
 TEST_F(Import, TeethFilesBecomeOnePartAndBonesPartsOfTheirOwn) {
-  const auto bone = mesh("b.ply", test::sphere(60, 2));
+  const auto bone = mesh("b.ply", test::sphere(2, 60));
   ImportRequest request;
   request.files = {{Role::skull, bone}, {Role::skull, bone}, {Role::skull, bone}};
-  const std::size_t count = test::sphere(4, 1).triangles.size();
+  const std::size_t count = test::sphere(1, 4).triangles.size();
   for (const char* name : {"tooth_36.ply", "37.ply", "Crown-FDI46.ply"})
     request.files.push_back(
         {Role::lower_teeth,
-         mesh(name, test::sphere(4, 1, {static_cast<double>(request.files.size()) * 10, 0, 0}))});
+         mesh(name, test::sphere(1, 4, {static_cast<double>(request.files.size()) * 10, 0, 0}))});
   const Case patient = import_meshes(request);
   ASSERT_EQ(patient.parts.size(), 4u);
   EXPECT_EQ(patient.parts[1].name, "skull-2");
@@ -217,9 +217,9 @@ TEST_F(Import, TeethFilesBecomeOnePartAndBonesPartsOfTheirOwn) {
   EXPECT_TRUE(has_note(patient, "lower-teeth (3 files): 240 triangles in 3 pieces, closed"));
 
   ImportRequest bad = request;
-  bad.files.push_back({Role::lower_teeth, mesh("t_11.ply", test::sphere(4, 1))});
+  bad.files.push_back({Role::lower_teeth, mesh("t_11.ply", test::sphere(1, 4))});
   expect_words(refusal(bad), {"t_11.ply", "tooth 11", "--upper-teeth"});
-  bad.files.back() = {Role::lower_teeth, mesh("x36.ply", test::sphere(4, 1))};
+  bad.files.back() = {Role::lower_teeth, mesh("x36.ply", test::sphere(1, 4))};
   expect_words(refusal(bad), {"x36.ply", "tooth 36", "already"});
   bad.files.back() = {Role::face, bone};
   bad.files.push_back({Role::face, bone});
@@ -231,7 +231,7 @@ TEST_F(Import, TeethFilesBecomeOnePartAndBonesPartsOfTheirOwn) {
 }
 
 TEST_F(Import, FlawsAreRepairedWhereTheyCanBeAndTold) {
-  TriMesh flawed = test::unwelded(test::sphere(60, 2));
+  TriMesh flawed = test::unwelded(test::sphere(2, 60));
   flip(flawed);
   flawed.triangles.push_back(flawed.triangles[7]);
   flawed.triangles.emplace_back(3, 3, 4);
@@ -240,13 +240,13 @@ TEST_F(Import, FlawsAreRepairedWhereTheyCanBeAndTold) {
       import_meshes({{{Role::skull, mesh("flawed.ply", flawed)}}, {}, "mm", "LPS", "x"});
   const TriMesh& found = patient.parts[0].mesh;
   EXPECT_TRUE(inspect(found).closed());
-  EXPECT_NEAR(signed_volume(found), signed_volume(test::sphere(60, 2)), 1e-6);
-  EXPECT_EQ(found.vertices.size(), test::sphere(60, 2).vertices.size());
+  EXPECT_NEAR(signed_volume(found), signed_volume(test::sphere(2, 60)), 1e-6);
+  EXPECT_EQ(found.vertices.size(), test::sphere(2, 60).vertices.size());
   for (const char* words : {"vertices welded", "1 triangle without area dropped",
                             "1 repeated triangle dropped", "320 triangles turned"})
     EXPECT_TRUE(has_note(patient, words)) << words;
 
-  TriMesh open = test::sphere(60, 2);
+  TriMesh open = test::sphere(2, 60);
   std::erase_if(open.triangles, [&](const auto& t) { return open.vertices[t[0]].z() > 50; });
   const Case holed = import_meshes({{{Role::skull, mesh("open.ply", open)}}, {}, "mm", "LPS", "x"});
   const Topology topology = inspect(holed.parts[0].mesh);

@@ -34,14 +34,20 @@ Pose wanted_at(double s) {
   return X;
 }
 
+/// The lower crowns against the upper ones.
+SlidingContact arches(const Case& patient) {
+  const auto body = [&](Role role) {
+    return std::make_shared<const SlideBody>(make_slide_body(surface(patient, role), {}, 2));
+  };
+  return SlidingContact({body(Role::upper_teeth)}, {body(Role::lower_teeth)});
+}
+
 TEST(Grinding, CrownsSlideOnCrownsWithoutOverlap) {
   const auto patient = test::case_ubc();
   if (!patient) GTEST_SKIP() << "real anatomy absent";
   const TriMesh &upper = surface(*patient, Role::upper_teeth),
                 &lower = surface(*patient, Role::lower_teeth);
-  const auto upper_body = std::make_shared<const SlideBody>(make_slide_body(upper, {}, 2)),
-             lower_body = std::make_shared<const SlideBody>(make_slide_body(lower, {}, 2));
-  const SlidingContact model({upper_body}, {lower_body});
+  const SlidingContact model = arches(*patient);
   const CollisionMesh upper_mesh(upper), lower_mesh(lower);
   const test::OverlapOracle upper_oracle(upper), lower_oracle(lower);
 
@@ -70,9 +76,7 @@ TEST(Grinding, ArchesDoNotPassThroughEachOtherInOneJump) {
   if (!patient) GTEST_SKIP() << "real anatomy absent";
   const TriMesh &upper = surface(*patient, Role::upper_teeth),
                 &lower = surface(*patient, Role::lower_teeth);
-  const auto upper_body = std::make_shared<const SlideBody>(make_slide_body(upper, {}, 2)),
-             lower_body = std::make_shared<const SlideBody>(make_slide_body(lower, {}, 2));
-  const SlidingContact model({upper_body}, {lower_body});
+  const SlidingContact model = arches(*patient);
   const Pose open{Eigen::Quaterniond::Identity(), {0, 0, -25}};
   const SlideResult result = model.slide(open, {Eigen::Quaterniond::Identity(), {1, 1, 20}});
   EXPECT_TRUE(result.touching);
