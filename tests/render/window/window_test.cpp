@@ -37,7 +37,7 @@ class RealWindow : public testing::Test {
 
   void SetUp() override {
     if (!has_program("Xvfb") || !has_program("xdotool"))
-      GTEST_SKIP() << "the programs Xvfb and xdotool are not installed";
+      FAIL() << "install xvfb and xdotool";
     display_ = std::make_unique<TestDisplay>();
     ASSERT_TRUE(display_->running()) << "Xvfb did not start";
     folder_ =
