@@ -9,6 +9,10 @@ Material material_of(Role role) {
       return {{.90f, .85f, .75f}, .55f, .022f, .18f, {.14f, .08f, .04f}, 0};
     case Role::mandible:
       return {{.85f, .79f, .68f}, .55f, .022f, .18f, {.14f, .08f, .04f}, 0};
+    case Role::segment:
+      return {{.86f, .74f, .52f}, .55f, .022f, .18f, {.14f, .08f, .04f}, 0};
+    case Role::transplant:
+      return {{.62f, .78f, .74f}, .50f, .025f, .18f, {.10f, .10f, .06f}, 0};
     case Role::upper_teeth:
     case Role::lower_teeth:
       return {{.95f, .92f, .85f}, .30f, .040f, .28f, {.30f, .22f, .13f}, .30f};

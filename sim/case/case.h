@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/case/landmarks.h"
+#include "sim/frame/pair_rule.h"
 #include "sim/frame/part.h"
 
 namespace condyle {
@@ -24,6 +25,9 @@ struct Case {
   std::string source_units = "mm";            // as declared at import
   std::string source_frame = "LPS";
   std::vector<std::string> notes;  // what import found and did, for people
+
+  std::vector<PairRule> pair_rules;  // where they differ from the usual ones; the last that fits
+                                     // counts
 
   const Part* find(Role role) const {
     for (const auto& part : parts)

@@ -6,7 +6,7 @@
 namespace condyle {
 namespace {
 
-constexpr std::array<std::pair<Role, const char*>, 10> roles = {{
+constexpr std::array<std::pair<Role, const char*>, 12> roles = {{
     {Role::skull, "skull"},
     {Role::maxilla, "maxilla"},
     {Role::mandible, "mandible"},
@@ -17,6 +17,8 @@ constexpr std::array<std::pair<Role, const char*>, 10> roles = {{
     {Role::upper_gums, "upper-gums"},
     {Role::lower_gums, "lower-gums"},
     {Role::tongue, "tongue"},
+    {Role::segment, "segment"},
+    {Role::transplant, "transplant"},
 }};
 
 }  // namespace

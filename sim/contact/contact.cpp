@@ -296,8 +296,8 @@ ContactModel::ContactModel(const Case& patient, const ContactSettings& settings)
 ContactModel::~ContactModel() = default;
 ContactModel::ContactModel(ContactModel&&) noexcept = default;
 
-ContactSet ContactModel::find(const Pose& X_CM, const ContactSet* previous, int threads) const {
-  return state_->with_guards(state_->judge_all(X_CM, previous, threads));
+ContactSet ContactModel::find(const BodyPoses& at, const ContactSet* previous, int threads) const {
+  return state_->with_guards(state_->judge_all(at.X_CM, previous, threads));
 }
 
 ContactModel::Stop ContactModel::stop_at_contact(const Pose& from, const Pose& wanted,

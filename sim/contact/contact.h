@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/case/case.h"
+#include "sim/frame/body_poses.h"
 #include "sim/frame/contact_set.h"
 
 namespace condyle {
@@ -13,6 +14,9 @@ struct ContactSettings {
   int max_contacts = 64;      // reported per pair
   double slack_mm = 0.02;     // how much deeper than at rest counts as penetrating
   double stop_gap_mm = 0.01;  // clearance left when a pose is stopped at a surface
+  double friction = 0;        // Coulomb coefficient of sliding
+  // On top of the case's own; the last that fits counts. Unknown part names: InputError.
+  std::vector<PairRule> pair_rules = {};
 };
 
 /// The colliders of a case (one BVH per bone or arch) and its pairs, each with its overlap at rest:
@@ -25,7 +29,7 @@ class ContactModel {
 
   /// Contacts at the pose, warm-started from an earlier answer (may be null). Pairs run on
   /// `threads` threads; the result has the same bits for any number.
-  ContactSet find(const Pose& X_CM, const ContactSet* previous, int threads = 1) const;
+  ContactSet find(const BodyPoses& at, const ContactSet* previous, int threads = 1) const;
 
   /// The pose farthest along the straight way from `from` to `wanted` up to which no pair is deeper
   /// than at rest; nothing thicker than 0.1 mm is passed through. A `from` that is itself too deep

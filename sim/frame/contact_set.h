@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/math/pose.h"
+#include "sim/frame/pair_rule.h"
 
 namespace condyle {
 
@@ -15,8 +16,9 @@ struct ContactPoint {
 
 /// What one pair of parts does at one pose.
 struct PairContact {
-  int part_a = 0;  // index into the case's parts; A belongs to the cranium
-  int part_b = 0;  // B belongs to the mandible
+  // Indices into the case's parts. Cranium before mandible before free parts; two free ones in
+  // their order.
+  int part_a = 0, part_b = 0;
   bool touching = false;
   std::vector<ContactPoint> contacts;                   // capped
   double distance_mm = 0;                               // exact minimum distance, 0 when touching
@@ -27,6 +29,9 @@ struct PairContact {
   // at rest, depth counts from the rest depth on: depth_mm - rest_depth_mm is what is new.
   double depth_mm = 0;
   double rest_depth_mm = 0;  // the same at rest: the pair's baseline
+  PairPolicy policy = PairPolicy::forbidden;
+
+  double signed_distance_mm() const { return touching ? -depth_mm : distance_mm; }
 };
 
 struct ContactSet {

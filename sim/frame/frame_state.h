@@ -6,6 +6,7 @@
 
 #include "engine/core/stage_times.h"
 #include "engine/math/pose.h"
+#include "sim/frame/body_poses.h"
 #include "sim/frame/contact_set.h"
 #include "sim/frame/measures.h"
 #include "sim/frame/tissue_state.h"
@@ -17,6 +18,8 @@ struct StepInput {
   double time_s = 0;
   Pose X_CM_wanted;          // where the motion, or the hand, wants the mandible
   bool obey_contact = true;  // false plays a recording as it is
+  // Where the hand or a plan wants each free part, in its carrier's frame (none: as at rest).
+  std::vector<Pose> X_BF_wanted = {};
 };
 
 /// Everything that is true at one time: a plain value to copy to a thread, a file or a test.
@@ -32,6 +35,9 @@ struct FrameState {
   Measures measures;
   StageTimes times;
   std::uint64_t state_hash = 0;  // of poses, contacts, tissue and measures
+  std::vector<Pose> X_CF = {};   // of each free part, in the case's order; none: with its carrier
+
+  BodyPoses poses() const { return {X_CM, X_CF}; }
 };
 
 }  // namespace condyle

@@ -8,7 +8,7 @@
 
 namespace condyle {
 
-/// What a surface is. The last four are only drawn.
+/// What a surface is. Eyes, gums and tongue are only drawn.
 enum class Role {
   skull,
   maxilla,
@@ -19,11 +19,14 @@ enum class Role {
   eyes,
   upper_gums,
   lower_gums,
-  tongue
+  tongue,
+  segment,    // a piece of bone that was cut free
+  transplant  // bone from elsewhere, or an implant
 };
 
-/// What carries a surface: the fixed cranium C, the mandible M, or the deforming soft tissue.
-enum class Body { cranium, mandible, tissue };
+/// What a surface is part of: the fixed cranium C, the mandible M, the deforming soft tissue, or a
+/// free body F of its own.
+enum class Body { cranium, mandible, tissue, free };
 
 constexpr Body body_of(Role role) {
   switch (role) {
@@ -34,6 +37,9 @@ constexpr Body body_of(Role role) {
       return Body::mandible;
     case Role::face:
       return Body::tissue;
+    case Role::segment:
+    case Role::transplant:
+      return Body::free;
     default:
       return Body::cranium;
   }
@@ -45,7 +51,8 @@ constexpr bool is_teeth(Role role) {
 
 /// Bone and teeth take part in collision.
 constexpr bool collides(Role role) {
-  return role == Role::skull || role == Role::maxilla || role == Role::mandible || is_teeth(role);
+  return role == Role::skull || role == Role::maxilla || role == Role::mandible || is_teeth(role) ||
+         body_of(role) == Body::free;
 }
 
 /// One separate tooth of an arch: its FDI number and its run of triangles in the part's mesh.
@@ -60,7 +67,9 @@ struct Part {
   std::string name;  // unique in the case, e.g. "mandible"
   Role role = Role::skull;
   TriMesh mesh;
-  std::vector<Tooth> teeth;  // only of teeth whose crowns are separate
+  std::vector<Tooth> teeth;      // only of teeth whose crowns are separate
+  Body carrier = Body::cranium;  // of a free part: the cranium or the mandible, whichever it goes
+                                 // along with where it is not moved itself
 };
 
 }  // namespace condyle
