@@ -210,9 +210,11 @@ CollisionMesh::CollisionMesh(const TriMesh& mesh) : tree_(std::make_unique<Tree>
   assert(!mesh.empty());
   std::vector<fcl::Triangle> triangles;
   triangles.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles)
+  for (const auto& t : mesh.triangles) {
+    for (const int v : t) box_.add(mesh.vertices[static_cast<std::size_t>(v)]);
     triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
                            static_cast<std::size_t>(t[2]));
+  }
   Model& model = tree_->model;
   model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices.size()));
   model.addSubModel(mesh.vertices, triangles);
@@ -233,6 +235,17 @@ MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionM
                       std::numeric_limits<double>::infinity());
   fcl::detail::distance(&nearest);
   return {nearest.best_mm, X_WA * nearest.best.p, X_WA * nearest.best.q, nearest.triangles};
+}
+
+std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh& a,
+                                            const Pose& X_WA, const CollisionMesh& b,
+                                            const Pose& X_WB, TrianglePair start) {
+  NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
+                      reach_mm * reach_mm);
+  fcl::detail::distance(&nearest);
+  if (nearest.triangles.a < 0) return std::nullopt;
+  return MeshDistance{nearest.best_mm, X_WA * nearest.best.p, X_WA * nearest.best.q,
+                      nearest.triangles};
 }
 
 bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,

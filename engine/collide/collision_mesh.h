@@ -2,9 +2,11 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/math/pose.h"
+#include "engine/mesh/measure.h"
 #include "engine/mesh/tri_mesh.h"
 
 namespace condyle {
@@ -40,17 +42,27 @@ class CollisionMesh {
   CollisionMesh(CollisionMesh&&) noexcept;
   CollisionMesh& operator=(CollisionMesh&&) noexcept;
 
+  /// Around all triangles, along the axes of the body's coordinates.
+  const Box& box() const { return box_; }
+
   struct Tree;
   const Tree& tree() const { return *tree_; }
 
  private:
   std::unique_ptr<Tree> tree_;
+  Box box_;
 };
 
 /// Minimum distance, to rounding (about 1e-13 mm). `start`: where an earlier answer was; any valid
 /// pair gives the same distance, a near one sooner.
 MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
                       const Pose& X_WB, TrianglePair start = {});
+
+/// The same as far as it matters: nothing when the surfaces are `reach_mm` or more apart, which is
+/// told much sooner.
+std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh& a,
+                                            const Pose& X_WA, const CollisionMesh& b,
+                                            const Pose& X_WB, TrianglePair start = {});
 
 /// distance(...) == 0, without the distance.
 bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,

@@ -50,6 +50,24 @@ TEST(Distance, EqualsBruteForceColdAndWarmAtAnyPose) {
   EXPECT_GT(crossing, 10);
 }
 
+TEST(Distance, WithinAReachIsTheDistanceOrNothing) {
+  std::mt19937_64 random(14);
+  const CollisionMesh a(test::sphere(3, 15, {3, 0, 1}, 0.1)), b(test::sphere(3, 12));
+  int found = 0, beyond = 0;
+  for (int k = 0; k < 60; ++k) {
+    const Pose X_WA = test::any_pose(random, 20), X_WB = test::any_pose(random, 30);
+    const MeshDistance all = distance(a, X_WA, b, X_WB);
+    for (const double reach : {0.5 * all.distance_mm, 1.001 * all.distance_mm + 1e-9, 30.0}) {
+      const auto within = distance_within(reach, a, X_WA, b, X_WB, all.triangles);
+      ASSERT_EQ(within.has_value(), all.distance_mm < reach);
+      if (within) EXPECT_NEAR(within->distance_mm, all.distance_mm, 1e-12);
+      ++(within ? found : beyond);
+    }
+  }
+  EXPECT_GT(found, 50);
+  EXPECT_GT(beyond, 30);
+}
+
 TEST(Distance, EqualsBruteForceWhereEdgesAreParallel) {
   // The wall slides along itself, both turned alike: parallel edges and faces to rounding.
   std::mt19937_64 random(2);
