@@ -1,0 +1,84 @@
+#include "engine/collide/near_samples.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+// How far a contact's normal may lie off the normals of the faces at its sample: 30 degrees.
+constexpr double facing_cos = 0.866, facing_sin = 0.5;
+constexpr double faces_below_mm = 0.05;  // but what is deeper must out in any case
+
+struct Search {
+  const SurfaceSamples& samples;
+  const DistanceField& field;
+  Eigen::Matrix3d R;
+  Vector3d t;
+  double reach_mm;
+  std::vector<NearSample>& found;
+
+  void ball(int index) {
+    const SurfaceSamples::Ball& ball_here = samples.balls[index];
+    const Vector3d center = R * ball_here.center + t;
+    // Within the band the field tells more than its bounds do.
+    const FieldSample at_center = field.at(center);
+    const double bound =
+        at_center.known ? at_center.distance_mm - field_bend_mm : field.lower_bound(center);
+    if (bound > ball_here.radius + reach_mm) return;
+    if (ball_here.right != 0) {
+      ball(index + 1);
+      ball(ball_here.right);
+      return;
+    }
+    for (int i = ball_here.first; i < ball_here.first + ball_here.count; ++i) {
+      const FieldSample here = field.at(R * samples.points[i] + t);
+      if (here.distance_mm <= reach_mm)
+        found.push_back({i, here.known ? here.distance_mm : -reach_mm});
+    }
+  }
+};
+
+void lower(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS, int index,
+           double& least) {
+  const SurfaceSamples::Ball& ball = samples.balls[index];
+  const double bound = field.lower_bound(X_FS * ball.center) - ball.radius;
+  if (bound >= least) return;
+  if (ball.right == 0) {
+    least = bound;
+    return;
+  }
+  lower(samples, field, X_FS, index + 1, least);
+  lower(samples, field, X_FS, ball.right, least);
+}
+
+}  // namespace
+
+void collect_near(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS,
+                  double reach_mm, std::vector<NearSample>& found) {
+  if (samples.balls.empty()) return;
+  Search{samples, field, X_FS.R.toRotationMatrix(), X_FS.t, reach_mm, found}.ball(0);
+}
+
+double clearance_bound(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS,
+                       double most_mm) {
+  if (!samples.balls.empty()) lower(samples, field, X_FS, 0, most_mm);
+  return most_mm;
+}
+
+SampleLook look_at_sample(const DistanceField& field, const Vector3d& p_F, const Vector3d& normal_F,
+                          double spread) {
+  const FieldSample here = field.at(p_F);
+  SampleLook look{here.distance_mm, here.gradient, here.known, false};
+  // Where two faces are as near, the gradient says nothing: the sample's own face does.
+  if (look.gradient.squaredNorm() < 0.1 && look.distance_mm < 0) look.gradient = -normal_F;
+  const double cosine = -look.gradient.dot(normal_F) / look.gradient.norm();
+  const double least =
+      spread * facing_cos - std::sqrt(std::max(0.0, 1 - spread * spread)) * facing_sin;
+  look.faces = look.distance_mm < -faces_below_mm || spread < -facing_cos || cosine >= least;
+  return look;
+}
+
+}  // namespace condyle

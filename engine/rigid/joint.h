@@ -1,0 +1,29 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "engine/math/pose.h"
+
+namespace condyle {
+
+/// What a joint holds together. Points and directions in the coordinates of their body.
+struct RigidJoint {
+  enum class Kind {
+    ball,   // p_B stays on p_A
+    hinge,  // so does axis_B on axis_A
+    fixed,  // the bodies keep the pose X_AB
+    guide   // p_B stays on a curve of A, within its ends
+  } kind = Kind::ball;
+  int a = 0, b = 0;  // bodies
+  Eigen::Vector3d p_A = Eigen::Vector3d::Zero(), p_B = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis_A = Eigen::Vector3d::UnitX(), axis_B = Eigen::Vector3d::UnitX();
+  Pose X_AB;                             // of a fixed joint
+  std::vector<Eigen::Vector3d> curve_A;  // of a guide: at least two points, smoothed between
+  // A direction along which the point may leave the curve: it stays on a surface then.
+  std::optional<Eigen::Vector3d> sideways_A;
+  double max_force_N = 1e4;  // what holds it at most (torques: times a mm)
+};
+
+}  // namespace condyle
