@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "engine/collide/contact_twist.h"
 #include "engine/core/parallel.h"
@@ -37,6 +38,14 @@ constexpr double still_mm = 1e-4;  // steps shorter than this lead nowhere
 
 bool is_finite(const Pose& X) { return X.R.coeffs().allFinite() && X.t.allFinite(); }
 
+std::vector<SlidePair> all_pairs(std::size_t fixed, std::size_t moving) {
+  std::vector<SlidePair> pairs;
+  for (std::size_t f = 0; f < fixed; ++f)
+    for (std::size_t m = 0; m < moving; ++m)
+      pairs.push_back({static_cast<int>(f), static_cast<int>(m), 0});
+  return pairs;
+}
+
 bool same_bits(const Pose& x, const Pose& y) { return x.R.coeffs() == y.R.coeffs() && x.t == y.t; }
 
 }  // namespace
@@ -50,14 +59,27 @@ SlideBody make_slide_body(const TriMesh& mesh, const SlideBodySettings& settings
 SlidingContact::SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fixed,
                                std::vector<std::shared_ptr<const SlideBody>> moving,
                                const SlideSettings& settings)
+    : SlidingContact(fixed, moving, all_pairs(fixed.size(), moving.size()), settings) {}
+
+SlidingContact::SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fixed,
+                               std::vector<std::shared_ptr<const SlideBody>> moving,
+                               const std::vector<SlidePair>& pairs, const SlideSettings& settings)
     : fixed_(std::move(fixed)), moving_(std::move(moving)), settings_(settings) {
   band_mm_ = infinity;
-  for (const auto& f : fixed_)
-    for (const auto& m : moving_) {
-      pairs_.push_back({m.get(), &*f, true, {}});
-      pairs_.push_back({f.get(), &*m, false, {}});
-      band_mm_ = std::min({band_mm_, f->field.settings().band_mm, m->field.settings().band_mm});
-    }
+  for (const SlidePair& pair : pairs) {
+    const auto in = [](int index, std::size_t size) {
+      return index >= 0 && static_cast<std::size_t>(index) < size;
+    };
+    if (!in(pair.fixed, fixed_.size()) || !in(pair.moving, moving_.size()))
+      throw std::invalid_argument("sliding contact: a pair names a surface that is not there");
+    const SlideBody &f = *fixed_[pair.fixed], &m = *moving_[pair.moving];
+    const double band = std::min(f.field.settings().band_mm, m.field.settings().band_mm);
+    if (!(pair.gap_mm >= 0 && pair.gap_mm <= 0.5 * band))
+      throw std::invalid_argument("sliding contact: a gap is below 0 or above half the band");
+    pairs_.push_back({&m, &f, true, pair.gap_mm, {}});
+    pairs_.push_back({&f, &m, false, pair.gap_mm, {}});
+    band_mm_ = std::min(band_mm_, band - pair.gap_mm);
+  }
   double count = 0, square = 0;
   Vector3d sum = Vector3d::Zero();
   for (const auto& m : moving_) {
@@ -225,17 +247,18 @@ void SlideWalk::collect_ball(int index, const Way& way, std::vector<Candidate>& 
   const Vector3d center = way.R * ball.center + way.t;
   // Within the band the field tells more than its bounds do.
   const FieldSample at_center = field.at(center);
+  const double gap = way.pair->gap_mm;
   const double bound =
-      at_center.known ? at_center.distance_mm - bent_mm : field.lower_bound(center);
+      (at_center.known ? at_center.distance_mm - bent_mm : field.lower_bound(center)) - gap;
   if (bound > ball.radius + reach) return;
   if (ball.right == 0) {
     for (int i = ball.first; i < ball.first + ball.count; ++i) {
       const FieldSample here = field.at(way.R * s.points[i] + way.t);
-      if (here.distance_mm > reach) continue;
+      if (here.distance_mm - gap > reach) continue;
       Candidate c;
       c.pair = way.index;
       c.sample = i;
-      c.distance = here.known ? here.distance_mm : -reach;
+      c.distance = here.known ? here.distance_mm - gap : -reach;
       found.push_back(c);
     }
     return;
@@ -258,7 +281,8 @@ double SlideWalk::clearance(const Pose& X) const {
       const int index = stack.back();
       stack.pop_back();
       const SurfaceSamples::Ball& ball = s.balls[index];
-      const double bound = pair.field->field.lower_bound(X_FS * ball.center) - ball.radius;
+      const double bound =
+          pair.field->field.lower_bound(X_FS * ball.center) - ball.radius - pair.gap_mm;
       if (bound >= least) continue;
       if (ball.right == 0) {
         least = bound;
@@ -279,7 +303,7 @@ void SlideWalk::look(Candidate& c, const Pose& X, const Pose& X_inverse) const {
   c.point = pair.samples_move ? X * p : p;
   const FieldSample here = pair.field->field.at(pair.samples_move ? c.point : X_inverse * p);
   c.known = here.known;
-  c.distance = here.distance_mm;
+  c.distance = here.distance_mm - pair.gap_mm;
   c.gradient = pair.samples_move ? here.gradient : Vector3d(-(X.R * here.gradient));
   const Vector3d facing = pair.samples_move ? Vector3d(-(X.R * normal)) : normal;
   // Where two faces are as near, the gradient says nothing: the sample's own face does.

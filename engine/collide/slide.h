@@ -44,7 +44,7 @@ struct SlideSettings {
 struct SlideContact {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    // fixed body's coordinates
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, from the fixed to the moving body
-  double gap_mm = 0;                                  // negative: depth
+  double gap_mm = 0;                                  // beyond the one kept; negative: too deep
   double push_mm = 0;                                 // its share in what keeps off the wanted pose
 };
 
@@ -73,15 +73,28 @@ struct SlideMemory {
   int baseline = 0;             // which of that model's baselines held
 };
 
+/// Two surfaces that stop each other, and the gap that they keep.
+struct SlidePair {
+  int fixed = 0, moving = 0;  // indices of the surfaces
+  double gap_mm = 0;          // 0: they touch; at most half the narrower band of the two
+};
+
 /// Sliding contact of a moving body (of several surfaces) on a fixed one.
 class SlidingContact {
  public:
+  /// Every fixed surface stops every moving one.
   SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fixed,
                  std::vector<std::shared_ptr<const SlideBody>> moving,
                  const SlideSettings& settings = {});
 
-  /// Overlap at this pose is allowed from now on: each sample may go as deep as it is there.
-  /// Samples deeper than the band no longer count.
+  /// Only these pairs stop each other. throws: std::invalid_argument for an index or a gap out of
+  /// range.
+  SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fixed,
+                 std::vector<std::shared_ptr<const SlideBody>> moving,
+                 const std::vector<SlidePair>& pairs, const SlideSettings& settings = {});
+
+  /// Overlap at this pose is allowed from now on: each sample may go as deep as it is there, or as
+  /// near where its pair keeps a gap. Samples deeper than the band no longer count.
   void allow_overlap_at(const Pose& rest);
 
   /// From a free pose towards the wanted one, sliding along what is in the way, to the pose nearest
@@ -105,6 +118,7 @@ class SlidingContact {
     const SlideBody* samples;
     const SlideBody* field;
     bool samples_move = false;
+    double gap_mm = 0;
     std::vector<float> allowed;  // of each sample, mm, at most 0; empty: 0
   };
 
@@ -114,7 +128,7 @@ class SlidingContact {
   Eigen::Vector3d pivot_ = Eigen::Vector3d::Zero();
   double rotation_length_mm_ = 1;
   double radius_mm_ = 0;  // of the moving samples about the pivot
-  double band_mm_ = 1;    // the narrowest
+  double band_mm_ = 1;    // the narrowest that is left beyond a gap
   int baseline_ = 0;      // how often it was set
 };
 

@@ -203,6 +203,31 @@ TEST(Slide, OverlapAtRestIsTheBaseline) {
   EXPECT_EQ(away.X_FM.t, Vector3d(1, 0, 3));
 }
 
+TEST(Slide, PairsKeepTheirGap) {
+  const auto floor = body(plate());
+  const auto ball = body(test::sphere(4, 5));
+  for (const double gap : {0.0, 0.2, 0.5}) {
+    const SlidingContact model({floor}, {ball}, {{0, 0, gap}});
+    const SlideResult result = model.slide(at(-6, 2, 7), at(5, -3, 4));
+    EXPECT_TRUE(result.settled);
+    EXPECT_NEAR(result.X_FM.t.z(), 5 + gap, 0.04);
+    EXPECT_NEAR(result.X_FM.t.x(), 5, 0.02);
+    EXPECT_NEAR(model.depth(at(0, 0, 4.8 + gap)), 0.2, 0.02);
+  }
+  // A gap that is narrower at rest may stay so.
+  SlidingContact rest({floor}, {ball}, {{0, 0, 0.4}});
+  rest.allow_overlap_at(at(0, 0, 5.1));
+  EXPECT_NEAR(rest.depth(at(0, 0, 5.1)), 0, 1e-6);
+  EXPECT_NEAR(rest.slide(at(0, 0, 5.1), at(0, 0, 4)).X_FM.t.z(), 5.1, 0.03);
+  // Pairs that are not named pass through each other.
+  const SlidingContact none({floor, body(test::box({-3, -3, 20}, {3, 3, 22}))}, {ball},
+                            {{1, 0, 0}});
+  EXPECT_EQ(none.slide(at(0, 0, 8), at(0, 0, 1)).X_FM.t, Vector3d(0, 0, 1));
+  EXPECT_THROW(SlidingContact({floor}, {ball}, {{0, 1, 0}}), std::invalid_argument);
+  EXPECT_THROW(SlidingContact({floor}, {ball}, {{0, 0, 0.6}}), std::invalid_argument);
+  EXPECT_THROW(SlidingContact({floor}, {ball}, {{0, 0, -0.1}}), std::invalid_argument);
+}
+
 TEST(Slide, AStartThatOverlapsIsMovedOut) {
   const SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
   const SlideResult result = model.slide(at(0, 0, 4.5), at(0, 0, 4.4));
