@@ -60,7 +60,9 @@ TEST(Distance, WithinAReachIsTheDistanceOrNothing) {
     for (const double reach : {0.5 * all.distance_mm, 1.001 * all.distance_mm + 1e-9, 30.0}) {
       const auto within = distance_within(reach, a, X_WA, b, X_WB, all.triangles);
       ASSERT_EQ(within.has_value(), all.distance_mm < reach);
-      if (within) EXPECT_NEAR(within->distance_mm, all.distance_mm, 1e-12);
+      if (within) {
+        EXPECT_NEAR(within->distance_mm, all.distance_mm, 1e-12);
+      }
       ++(within ? found : beyond);
     }
   }
