@@ -17,23 +17,30 @@ struct ContactSettings {
   double friction = 0;        // Coulomb coefficient of sliding
   // On top of the case's own; the last that fits counts. Unknown part names: InputError.
   std::vector<PairRule> pair_rules = {};
+  // Of pairs with a free part that are farther apart than this only a lower bound of the distance
+  // is found (PairContact::distance_is_bound); infinite: every distance is exact.
+  double far_mm = 30;
 };
 
-/// The colliders of a case (one BVH per bone or arch) and its pairs, each with its overlap at rest:
-/// the baseline, in its neighbourhood (10 mm) only. Surfaces that were apart at rest may not touch.
+/// The colliders of a case (one BVH per bone, arch or free part) and the pairs of those that belong
+/// to different bodies, each with its rule and its overlap at rest: the baseline, in its
+/// neighbourhood (10 mm) only. Surfaces that were apart at rest may not touch.
 class ContactModel {
  public:
+  /// throws: InputError for rules that do not fit the case.
   explicit ContactModel(const Case& patient, const ContactSettings& settings = {});
   ~ContactModel();
   ContactModel(ContactModel&&) noexcept;
 
-  /// Contacts at the pose, warm-started from an earlier answer (may be null). Pairs run on
+  /// Contacts at the poses, warm-started from an earlier answer (may be null). Pairs run on
   /// `threads` threads; the result has the same bits for any number.
+  /// throws: InputError for poses with values that are no numbers, here and below.
   ContactSet find(const BodyPoses& at, const ContactSet* previous, int threads = 1) const;
 
   /// The pose farthest along the straight way from `from` to `wanted` up to which no pair is deeper
   /// than at rest; nothing thicker than 0.1 mm is passed through. A `from` that is itself too deep
-  /// may leave, but goes no deeper. `previous` taken at `from` saves time.
+  /// may leave, but goes no deeper. `previous` taken at `from` saves time. Free parts stay with
+  /// their carriers.
   struct Stop {
     Pose X_CM;
     bool stopped = false;
@@ -43,11 +50,14 @@ class ContactModel {
                        int threads = 1) const;
 
   const ContactSet& at_rest() const;
+  /// The rule of each pair, in the order of ContactSet::pairs.
+  const std::vector<PairRule>& rules() const;
   /// What could not be judged (open shells) and what overlaps at rest, for people.
   const std::vector<std::string>& notes() const;
 
- private:
   struct State;
+
+ private:
   std::unique_ptr<State> state_;
 };
 

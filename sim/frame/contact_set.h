@@ -30,6 +30,7 @@ struct PairContact {
   double depth_mm = 0;
   double rest_depth_mm = 0;  // the same at rest: the pair's baseline
   PairPolicy policy = PairPolicy::forbidden;
+  bool distance_is_bound = false;  // far apart: at least distance_mm, without witness points
 
   double signed_distance_mm() const { return touching ? -depth_mm : distance_mm; }
 };
@@ -47,7 +48,8 @@ struct ContactSet {
   /// Deepest overlap beyond what was there at rest, over the pairs.
   double max_penetration_mm() const;
 
-  Pose X_CM;  // where it was taken
+  Pose X_CM;               // where it was taken
+  std::vector<Pose> X_CF;  // the same of the free parts
 
   // Of pairs that overlap at rest, in their order: the mandible's surface away from that overlap,
   // which may not touch at all. What it does is counted into the pairs' depths.

@@ -1,0 +1,106 @@
+#include "sim/contact/collider.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace condyle {
+namespace {
+
+// Crossing triangles looked at: all (arches in full bite have some thousands) where the depth is
+// judged from them, else a few from each part of the surface.
+constexpr ContactLimits all_crossings{.total = 8192, .per_region = 8192};
+constexpr ContactLimits some_crossings{.total = 1024, .per_region = 8};
+// Teeth that are modelled a millimetre into each other must not excuse a condyle from its fossa.
+constexpr double excused_mm = 10;
+
+/// `count` of the contacts, spread evenly over their order.
+std::vector<ContactPoint> thin(const std::vector<MeshContact>& all, int count) {
+  std::vector<ContactPoint> kept;
+  const std::size_t wanted = std::min(all.size(), static_cast<std::size_t>(std::max(count, 0)));
+  kept.reserve(wanted);
+  for (std::size_t i = 0; i < wanted; ++i) {
+    const MeshContact& contact = all[i * all.size() / wanted];
+    kept.push_back({contact.point, contact.normal});
+  }
+  return kept;
+}
+
+}  // namespace
+
+PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, TrianglePair start,
+                  const Looking& looking, OverlapDepth* deepest_out) {
+  const Collider &a = *pair.a, &b = *pair.b;
+  PairContact out;
+  out.part_a = a.part;
+  out.part_b = b.part;
+  out.policy = pair.policy;
+  out.rest_depth_mm = pair.rest_depth_mm;
+  const double balls_apart = (X_CB * b.solid.center() - X_CA * a.solid.center()).norm() -
+                             a.solid.radius() - b.solid.radius();
+  if (balls_apart > looking.far_mm) {
+    out.distance_mm = balls_apart;
+    out.distance_is_bound = true;
+    return out;
+  }
+  const MeshDistance nearest = distance(a.surface, X_CA, b.surface, X_CB, start);
+  out.distance_mm = nearest.distance_mm;
+  out.witness_a = nearest.witness_a;
+  out.witness_b = nearest.witness_b;
+  out.triangle_a = nearest.triangles.a;
+  out.triangle_b = nearest.triangles.b;
+  const bool crossing = nearest.distance_mm == 0;
+  if (!crossing && (balls_apart > 0 || !one_encloses_other(a.solid, X_CA, b.solid, X_CB)))
+    return out;
+
+  out.touching = true;
+  out.distance_mm = 0;
+  if (!looking.need_depth) return out;
+  OverlapDepth deepest = overlap_depth(a.solid, X_CA, b.solid, X_CB);
+  out.depth_mm = deepest.depth_mm;
+  if (!crossing) {
+    out.contacts.push_back({deepest.point, deepest.normal});
+    if (deepest_out) *deepest_out = deepest;
+    return out;
+  }
+  // Open shells have no inside, and edges may cross without a corner inside: then the depth is the
+  // largest move that parts one pair of crossing triangles (bounded by their size).
+  const bool by_triangles =
+      out.depth_mm == 0 || a.solid.open_shell_count() > 0 || b.solid.open_shell_count() > 0;
+  if (by_triangles || looking.max_contacts > 0) {
+    const auto all =
+        contacts(a.surface, X_CA, b.surface, X_CB, by_triangles ? all_crossings : some_crossings);
+    out.contacts = thin(all, looking.max_contacts);
+    if (all.empty() && looking.max_contacts > 0)  // they touch in a point
+      out.contacts.push_back({nearest.witness_a, deepest.normal});
+    if (by_triangles)
+      for (const auto& contact : all)
+        if (const double depth = overlap(a.surface, X_CA, b.surface, X_CB, contact.triangles);
+            depth > deepest.depth_mm)
+          deepest = {depth, contact.point, contact.normal};
+    out.depth_mm = std::max(out.depth_mm, deepest.depth_mm);
+  }
+  if (deepest_out) *deepest_out = deepest;
+  return out;
+}
+
+std::vector<MeshContact> overlap_at_rest(const ColliderPair& pair) {
+  return contacts(pair.a->surface, {}, pair.b->surface, {}, all_crossings);
+}
+
+TriMesh away_from_overlap(const TriMesh& mesh, const std::vector<MeshContact>& overlap) {
+  std::vector<bool> excused(mesh.triangles.size(), false);
+  std::vector<bool> near(mesh.vertices.size(), false);
+  for (const auto& contact : overlap) excused[static_cast<std::size_t>(contact.triangles.b)] = true;
+  for (std::size_t v = 0; v < near.size(); ++v)
+    near[v] = std::any_of(overlap.begin(), overlap.end(), [&](const auto& contact) {
+      return (contact.point - mesh.vertices[v]).squaredNorm() < excused_mm * excused_mm;
+    });
+  TriMesh away{mesh.vertices, {}, {}};
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
+    if (!excused[i] && !near[t[0]] && !near[t[1]] && !near[t[2]]) away.triangles.push_back(t);
+  }
+  return away;
+}
+
+}  // namespace condyle

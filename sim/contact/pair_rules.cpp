@@ -1,0 +1,57 @@
+#include "sim/contact/pair_rules.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/error.h"
+
+namespace condyle {
+namespace {
+
+bool names(const std::string& pattern, const Part& part) {
+  return pattern == "*" || pattern == part.name;
+}
+
+bool fits(const PairRule& rule, const Part& a, const Part& b) {
+  return (names(rule.a, a) && names(rule.b, b)) || (names(rule.a, b) && names(rule.b, a));
+}
+
+}  // namespace
+
+PairRule rule_for(const Case& patient, std::span<const PairRule> more, const Part& a,
+                  const Part& b) {
+  PairRule rule = usual_rule(a, b);
+  const auto take = [&](const PairRule& other) {
+    if (!fits(other, a, b)) return;
+    rule = other;
+    rule.a = a.name;
+    rule.b = b.name;
+  };
+  for (const auto& other : patient.pair_rules) take(other);
+  for (const auto& other : more) take(other);
+  return rule;
+}
+
+void check_rules(const Case& patient, std::span<const PairRule> rules, const std::string& where) {
+  for (const auto& rule : rules) {
+    const std::string pair = fmt::format("{} {} and {}: ", where, rule.a, rule.b);
+    for (const auto& name : {rule.a, rule.b}) {
+      const auto named = [&](const Part& part) { return collides(part.role) && names(name, part); };
+      if (std::any_of(patient.parts.begin(), patient.parts.end(), named)) continue;
+      std::string known;
+      for (const auto& part : patient.parts)
+        if (collides(part.role)) known += (known.empty() ? "" : ", ") + part.name;
+      throw InputError(pair + "no bone or teeth are called \"" + name + "\"; there are " + known +
+                       ", and * for any");
+    }
+    if (rule.margin_mm && !(*rule.margin_mm >= 0 && std::isfinite(*rule.margin_mm)))
+      throw InputError(pair +
+                       fmt::format("a margin of {} mm; it must be 0 or more", *rule.margin_mm));
+    if (!(rule.gap_mm >= 0 && std::isfinite(rule.gap_mm)))
+      throw InputError(pair + fmt::format("a gap of {} mm; it must be 0 or more", rule.gap_mm));
+  }
+}
+
+}  // namespace condyle
