@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "engine/core/error.h"
@@ -76,7 +77,8 @@ std::vector<std::string> write_pictures(const std::filesystem::path& folder, con
 int run_check(const CheckOptions& options, const CommonOptions& common) {
   constexpr int violation = 3;
   ProgressBar bar(common);
-  const auto settings = simulator_settings(options.motion, common);
+  auto settings = simulator_settings(options.motion, common);
+  settings.contact.far_mm = std::numeric_limits<double>::infinity();  // every distance is plotted
   const Scene scene =
       make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
   const Motion motion =

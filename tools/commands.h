@@ -21,7 +21,9 @@ struct MotionOptions {
   std::filesystem::path patient;  // case folder; empty = the built-in patient
   std::string motion;
   OpeningSettings opening;
-  bool respect_contact = false;  // stop recorded motion at contact, too
+  bool respect_contact = false;  // recorded motion, too, slides where bones meet
+  double friction = 0;
+  std::vector<std::string> pairs = {};  // rules as the user wrote them
   bool tissue = true;
   int surface_nodes = 520;
 };

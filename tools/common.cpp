@@ -11,6 +11,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "sim/phantom/phantom.h"
+#include "tools/pair_options.h"
 
 namespace condyle {
 
@@ -60,6 +61,8 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
   settings.threads = common.threads;
   settings.tissue = options.tissue;
   settings.tissue_model.surface_nodes = options.surface_nodes;
+  settings.contact.friction = options.friction;
+  for (const auto& pair : options.pairs) settings.contact.pair_rules.push_back(parse_pair(pair));
   return settings;
 }
 

@@ -7,7 +7,9 @@
 #include <thread>
 
 #include "engine/core/error.h"
+#include "sim/case/pair_rules.h"
 #include "tools/commands.h"
+#include "tools/pair_options.h"
 
 namespace {
 
@@ -59,9 +61,23 @@ void add_motion(CLI::App* command, MotionOptions& motion, bool motion_required) 
       ->check(within(0.0, 1.0));
 }
 
+void add_contact(CLI::App* command, MotionOptions& motion) {
+  command
+      ->add_option("--pair", motion.pairs,
+                   "What two parts may do to each other (" + known_policies() +
+                       "; * is any part), e.g. skull,mandible,guided,gap=1.5 or "
+                       "segment,*,forbidden,margin=2; may be given several times")
+      ->type_name("A,B,POLICY[,gap=MM][,margin=MM]");
+}
+
 void add_respect_contact(CLI::App* command, MotionOptions& motion) {
   command->add_flag("--respect-contact", motion.respect_contact,
-                    "Stop a recorded motion, too, where bones meet (built-in motions always stop)");
+                    "Keep a recorded motion, too, from passing bone through bone: it slides along "
+                    "(built-in motions always do)");
+  command
+      ->add_option("--friction", motion.friction,
+                   "Coulomb coefficient of sliding bone and teeth (0)")
+      ->check(within(0.0, 2.0));
 }
 
 void add_tissue(CLI::App* command, MotionOptions& motion) {
@@ -74,6 +90,7 @@ void add_tissue(CLI::App* command, MotionOptions& motion) {
 
 void add_recording(CLI::App* command, RecordOptions& record) {
   add_motion(command, record.motion, true);
+  add_contact(command, record.motion);
   add_respect_contact(command, record.motion);
   add_tissue(command, record.motion);
   command->add_option("--out", record.out, "Folder for the results")->required();
@@ -120,6 +137,7 @@ int run_program(int argc, char** argv) {
   auto* view_command =
       add_command(app, "view", "Open the window", "condyle view mycase --motion opening");
   add_motion(view_command, view.motion, false);
+  add_contact(view_command, view.motion);
   add_respect_contact(view_command, view.motion);
   add_tissue(view_command, view.motion);
   view_command->add_option("--ui-scale", view.ui_scale, "Size of the panels (1)")
@@ -154,6 +172,7 @@ int run_program(int argc, char** argv) {
       add_command(app, "check", "Check the bones for collisions and clearances along a motion",
                   "condyle check mycase --motion opening --margin 1 --out out; echo $?");
   add_motion(check_command, check.motion, false);
+  add_contact(check_command, check.motion);
   check_command->add_option("--margin", check.margin_mm, "Clearance that bones must keep, mm (0)")
       ->check(within(0.0, 50.0));
   check_command->add_option("--out", check.out,
@@ -178,10 +197,18 @@ int run_program(int argc, char** argv) {
                                    {"--mandible", Role::mandible, {}},
                                    {"--upper-teeth", Role::upper_teeth, {}},
                                    {"--lower-teeth", Role::lower_teeth, {}},
-                                   {"--face", Role::face, {}}};
+                                   {"--face", Role::face, {}},
+                                   {"--segment", Role::segment, {}},
+                                   {"--transplant", Role::transplant, {}}};
   for (auto& role : roles)
     meshes->add_option(role.name, role.files, "Surface file; may be given several times")
         ->type_name("FILE");
+  std::vector<std::string> carriers;
+  meshes
+      ->add_option("--carrier-of", carriers,
+                   "What a segment or transplant goes along with (default: the nearer one), e.g. "
+                   "segment-2=mandible")
+      ->type_name("NAME=mandible|cranium");
   meshes->add_option("--landmarks", import.request.landmarks,
                      "CSV with name,x_mm,y_mm,z_mm, or 3D Slicer .mrk.json");
   meshes->add_option("--units", import.request.units, "Unit of the files: mm m cm in (mm)");
@@ -225,6 +252,7 @@ int run_program(int argc, char** argv) {
   if (meshes->parsed()) {
     for (const auto& role : roles)
       for (const auto& file : role.files) import.request.files.push_back({role.role, file});
+    import.request.carriers = parse_carriers(carriers);
     return run_import(import, common);
   }
   if (info_command->parsed()) return run_info(what, common);

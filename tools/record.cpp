@@ -43,12 +43,18 @@ std::uint64_t case_hash(const Case& patient) {
   for (const auto& part : patient.parts) {
     hash = hash_bytes(part.name.data(), part.name.size(), hash);
     hash = hash_bytes(&part.role, sizeof part.role, hash);
+    hash = hash_bytes(&part.carrier, sizeof part.carrier, hash);
     for (const auto& c : part.mesh.colors) hash = hash_bytes(c.data(), 3 * sizeof(float), hash);
     for (const auto& v : part.mesh.vertices) hash = hash_bytes(v.data(), 3 * sizeof(double), hash);
     for (const auto& t : part.mesh.triangles) hash = hash_bytes(t.data(), 3 * sizeof(int), hash);
   }
   for (const auto& [name, point] : patient.landmarks.points)
     hash = hash_bytes(point.data(), 3 * sizeof(double), hash_bytes(name.data(), name.size(), hash));
+  for (const auto& rule : patient.pair_rules) {
+    const std::string text = fmt::format("{},{},{},{},{}", rule.a, rule.b, policy_name(rule.policy),
+                                         rule.gap_mm, rule.margin_mm.value_or(-1));
+    hash = hash_bytes(text.data(), text.size(), hash);
+  }
   return hash;
 }
 
@@ -63,6 +69,13 @@ std::uint64_t motion_hash(const Motion& motion, const FrameTimes& times, double 
   for (int i = 0; i * step_s <= motion.duration_s; ++i) add(i * step_s);
   for (int i = 0; i < times.count; ++i) add(times[i]);
   return hash;
+}
+
+std::string contact_text(const MotionOptions& options) {
+  std::string text = options.respect_contact ? "respected" : "as the motion wants";
+  if (options.friction > 0) text += fmt::format(", friction {}", options.friction);
+  for (const auto& pair : options.pairs) text += "; " + pair;
+  return text;
 }
 
 std::string camera_text(const Camera& camera, bool spin) {
@@ -121,7 +134,7 @@ class PictureTaker {
              motion.name + " " + hash_text(motion_hash(motion, times, SimulatorSettings{}.step_s))},
             {"camera", camera_text(camera_, spin_)},
             {"show", options.show},
-            {"contact", options.motion.respect_contact ? "respected" : "as the motion wants"},
+            {"contact", contact_text(options.motion)},
             {"tissue", options.motion.tissue ? std::to_string(options.motion.surface_nodes)
                                              : std::string("none")}}});
     kept_ = recorder_->kept_frames();

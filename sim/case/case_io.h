@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,9 @@ struct ImportRequest {
   std::string units = "mm";         // mm m cm in
   std::string frame = "LPS";        // any of the 48 signed axis orders: LPS, RAS, ...
   std::string name;
+  // Carriers of free parts by name (segment, segment-2, transplant, ...); of others the body that
+  // is nearer.
+  std::map<std::string, Body> carriers = {};
 };
 
 /// Reads, converts to LPS mm, checks and repairs what can be; `notes` of the result say what was
@@ -41,6 +45,9 @@ void save_case(const Case& patient, const std::filesystem::path& folder);
 
 std::string role_name(Role role);  // "upper-teeth"
 std::optional<Role> role_named(const std::string& name);
+/// "cranium", "mandible": what a free part goes along with.
+std::string carrier_name(Body carrier);
+std::optional<Body> carrier_named(const std::string& name);
 std::string known_roles();  // "skull, maxilla, ...", for messages
 
 }  // namespace condyle

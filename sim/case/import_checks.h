@@ -28,4 +28,9 @@ void check_landmarks(const Case& patient, const ImportRequest& request);
 /// that would fit. `patient` is as converted by the request.
 void check_frame(const Case& patient, const ImportRequest& request);
 
+/// Gives each segment and transplant its carrier: the one asked for by name, else the body (cranium
+/// or mandible) that it lies nearest to, with a note.
+/// throws: InputError for a name that no free part has.
+void choose_carriers(Case& patient, const std::map<std::string, Body>& asked);
+
 }  // namespace condyle

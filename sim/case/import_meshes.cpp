@@ -284,6 +284,7 @@ Case import_meshes(const ImportRequest& request) {
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   patient.landmarks = import_landmarks(request, frame, box, patient.notes);
   patient.parts = make_parts(surfaces, patient.notes);
+  choose_carriers(patient, request.carriers);
   check_frame(patient, request);
   check_landmarks(patient, request);
   estimate_landmarks(patient);

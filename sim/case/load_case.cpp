@@ -10,6 +10,7 @@
 #include "sim/case/case_io.h"
 #include "sim/case/json_file.h"
 #include "sim/case/landmark_files.h"
+#include "sim/case/pair_rules.h"
 
 namespace condyle {
 namespace {
@@ -68,7 +69,34 @@ Part load_part(const fs::path& folder, const JsonItem& item) {
   part.mesh = read_mesh(inside(folder, item.at("file")));
   if (const auto teeth = item.find("teeth"))
     part.teeth = load_teeth(*teeth, static_cast<int>(part.mesh.triangles.size()));
+  if (const auto carrier = item.find("carrier")) {
+    const auto body = carrier_named(carrier->text());
+    if (!body) carrier->refuse("is \"" + carrier->text() + "\"; it must be cranium or mandible");
+    if (body_of(part.role) != Body::free)
+      carrier->refuse("only a segment or transplant has a carrier; this part is " + role);
+    part.carrier = *body;
+  }
   return part;
+}
+
+PairRule load_rule(const Case& patient, const JsonItem& item) {
+  constexpr double most_mm = 1000;
+  PairRule rule;
+  rule.a = item.at("a").text();
+  rule.b = item.at("b").text();
+  for (const char* side : {"a", "b"})
+    if (const std::string name = item.at(side).text(); !is_rule_part(patient, name))
+      item.at(side).refuse("no bone or teeth are called \"" + name + "\"; there are " +
+                           rule_part_names(patient) + ", and * for any");
+  const std::string policy = item.at("policy").text();
+  if (const auto known = policy_named(policy))
+    rule.policy = *known;
+  else
+    item.at("policy").refuse("the policy \"" + policy + "\" is unknown; known are " +
+                             known_policies());
+  if (const auto margin = item.find("margin_mm")) rule.margin_mm = margin->number(0, most_mm);
+  if (const auto gap = item.find("gap_mm")) rule.gap_mm = gap->number(0, most_mm);
+  return rule;
 }
 
 CondylarPath load_path(const JsonItem& item) {
@@ -142,6 +170,9 @@ Case load_case(const fs::path& given) {
         throw InputError(points, row.where, "the landmark \"" + row.name + "\" comes twice");
   }
   if (const auto path = root.find("condylar_path")) patient.condylar_path = load_path(*path);
+  if (const auto rules = root.find("contact_pairs"))
+    for (std::size_t i = 0; i < rules->size(); ++i)
+      patient.pair_rules.push_back(load_rule(patient, rules->at(i)));
   if (const auto notes = root.find("notes"))
     for (std::size_t i = 0; i < notes->size(); ++i) patient.notes.push_back(notes->at(i).text());
   return patient;

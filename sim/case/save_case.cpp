@@ -17,6 +17,7 @@
 #include "sim/case/case_format.h"
 #include "sim/case/case_io.h"
 #include "sim/case/landmark_files.h"
+#include "sim/case/pair_rules.h"
 
 namespace condyle {
 namespace {
@@ -30,6 +31,14 @@ json to_json(const Part& part) {
     item["teeth"].push_back({{"fdi", tooth.fdi},
                              {"first_triangle", tooth.first_triangle},
                              {"triangle_count", tooth.triangle_count}});
+  if (body_of(part.role) == Body::free) item["carrier"] = carrier_name(part.carrier);
+  return item;
+}
+
+json to_json(const PairRule& rule) {
+  json item = {{"a", rule.a}, {"b", rule.b}, {"policy", policy_name(rule.policy)}};
+  if (rule.margin_mm) item["margin_mm"] = *rule.margin_mm;
+  if (rule.gap_mm > 0) item["gap_mm"] = rule.gap_mm;
   return item;
 }
 
@@ -45,6 +54,7 @@ json to_json(const Case& patient) {
   if (patient.condylar_path)
     root["condylar_path"] = {{"forward_mm", patient.condylar_path->forward_mm},
                              {"drop_mm", patient.condylar_path->drop_mm}};
+  for (const auto& rule : patient.pair_rules) root["contact_pairs"].push_back(to_json(rule));
   root["notes"] = patient.notes;
   return root;
 }
@@ -60,6 +70,7 @@ void check(const Case& patient, const fs::path& folder) {
       throw InputError(folder, "part \"" + part.name + "\"", "has no triangles");
   }
   if (patient.parts.empty()) throw InputError(folder, "", "a case without parts cannot be saved");
+  check_rules(patient, patient.pair_rules, folder.string() + ": the rule for");
   for (const auto& [name, point] : patient.landmarks.points)
     if (!is_part_name(name))
       throw InputError(folder, "landmark \"" + name + "\"",

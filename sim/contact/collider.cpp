@@ -25,24 +25,35 @@ std::vector<ContactPoint> thin(const std::vector<MeshContact>& all, int count) {
   return kept;
 }
 
+PairContact about(const ColliderPair& pair) {
+  PairContact out;
+  out.part_a = pair.a->part;
+  out.part_b = pair.b->part;
+  out.policy = pair.policy;
+  out.rest_depth_mm = pair.rest_depth_mm;
+  return out;
+}
+
 }  // namespace
+
+PairContact far_apart(const ColliderPair& pair, double at_least_mm) {
+  PairContact out = about(pair);
+  out.distance_mm = at_least_mm;
+  out.distance_is_bound = true;
+  return out;
+}
 
 PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, TrianglePair start,
                   const Looking& looking, OverlapDepth* deepest_out) {
   const Collider &a = *pair.a, &b = *pair.b;
-  PairContact out;
-  out.part_a = a.part;
-  out.part_b = b.part;
-  out.policy = pair.policy;
-  out.rest_depth_mm = pair.rest_depth_mm;
+  PairContact out = about(pair);
   const double balls_apart = (X_CB * b.solid.center() - X_CA * a.solid.center()).norm() -
                              a.solid.radius() - b.solid.radius();
-  if (balls_apart > looking.far_mm) {
-    out.distance_mm = balls_apart;
-    out.distance_is_bound = true;
-    return out;
-  }
-  const MeshDistance nearest = distance(a.surface, X_CA, b.surface, X_CB, start);
+  const auto found = looking.far_mm < nowhere_mm
+                         ? distance_within(looking.far_mm, a.surface, X_CA, b.surface, X_CB, start)
+                         : distance(a.surface, X_CA, b.surface, X_CB, start);
+  if (!found) return far_apart(pair, std::max(looking.far_mm, balls_apart));
+  const MeshDistance& nearest = *found;
   out.distance_mm = nearest.distance_mm;
   out.witness_a = nearest.witness_a;
   out.witness_b = nearest.witness_b;

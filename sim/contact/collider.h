@@ -15,7 +15,8 @@ constexpr int cranium_body = 0, mandible_body = 1, first_free_body = 2;
 
 /// One surface that takes part, and the pose-independent queries on it.
 struct Collider {
-  int part = 0;  // index in the case
+  int number = 0;  // among the model's colliders
+  int part = 0;    // index in the case
   int body = cranium_body;
   CollisionMesh surface;
   Solid solid;
@@ -44,6 +45,9 @@ struct Looking {
 /// Everything about one pair at one pose. `deepest` is where the depth was measured, if at all.
 PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, TrianglePair start,
                   const Looking& looking, OverlapDepth* deepest = nullptr);
+
+/// A pair of which no more is known than that it is apart.
+PairContact far_apart(const ColliderPair& pair, double at_least_mm);
 
 /// Contacts of a pair at rest, all of them.
 std::vector<MeshContact> overlap_at_rest(const ColliderPair& pair);

@@ -9,7 +9,7 @@
 #include "engine/core/parallel.h"
 #include "sim/contact/contact_state.h"
 #include "sim/contact/drive.h"
-#include "sim/contact/pair_rules.h"
+#include "sim/case/pair_rules.h"
 
 namespace condyle {
 namespace {
@@ -43,7 +43,7 @@ void build_colliders(ContactModel::State& state, const Case& patient) {
     const auto part = static_cast<std::size_t>(parts[i]);
     const TriMesh& mesh = patient.parts[part].mesh;
     state.colliders[i] = std::make_unique<Collider>(
-        Collider{parts[i], bodies[part], CollisionMesh(mesh), Solid(mesh)});
+        Collider{static_cast<int>(i), parts[i], bodies[part], CollisionMesh(mesh), Solid(mesh)});
   });
   state.pivot.assign(static_cast<std::size_t>(state.body_count()), Eigen::Vector3d::Zero());
   std::vector<double> largest(state.pivot.size(), -1);
@@ -86,13 +86,19 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
         patient.parts[static_cast<std::size_t>(rest.part_b)].name, rest.depth_mm));
     const TriMesh away = away_from_overlap(mesh, overlap_at_rest(pair));
     if (away.empty()) continue;
-    state.colliders.push_back(std::make_unique<Collider>(
-        Collider{rest.part_b, pair.b->body, CollisionMesh(away), Solid(away)}));
+    state.colliders.push_back(
+        std::make_unique<Collider>(Collider{static_cast<int>(state.colliders.size()), rest.part_b,
+                                            pair.b->body, CollisionMesh(away), Solid(away)}));
     const ColliderPair guard{pair.a, state.colliders.back().get(), pair.policy, true, 0, 0};
     if (judge(guard, {}, {}, {}, {.need_depth = false}).touching)
       continue;  // wholly inside at rest: nothing to guard
     state.guards.push_back(guard);
     state.guarded.push_back(i);
+  }
+  if (!state.carrier.empty() && state.settings.far_mm < nowhere_mm) {
+    std::vector<const CollisionMesh*> surfaces;
+    for (const auto& collider : state.colliders) surfaces.push_back(&collider->surface);
+    state.broadphase.emplace(surfaces);
   }
   state.rest = state.judge_all(at_rest, &state.rest, 1);
 }
@@ -119,6 +125,23 @@ BodyPoses ContactModel::State::as_poses(const std::vector<Pose>& X_CB) const {
   return {X_CB[mandible_body], {X_CB.begin() + first_free_body, X_CB.end()}};
 }
 
+std::vector<bool> ContactModel::State::far_pairs(const std::vector<Pose>& X_CB) const {
+  std::vector<bool> far(count(), false);
+  if (!broadphase) return far;
+  std::vector<Pose> poses;
+  for (const auto& collider : colliders)
+    poses.push_back(X_CB[static_cast<std::size_t>(collider->body)]);
+  const std::vector<BodyPair> near = broadphase->near(poses, settings.far_mm);
+  for (std::size_t i = 0; i < far.size(); ++i) {
+    const ColliderPair& pair = judged(i);
+    const BodyPair sought{std::min(pair.a->number, pair.b->number),
+                          std::max(pair.a->number, pair.b->number)};
+    far[i] =
+        pair.b->body >= first_free_body && !std::binary_search(near.begin(), near.end(), sought);
+  }
+  return far;
+}
+
 ContactSet ContactModel::State::judge_all(const std::vector<Pose>& X_CB, const ContactSet* previous,
                                           int threads) const {
   ContactSet set;
@@ -126,11 +149,15 @@ ContactSet ContactModel::State::judge_all(const std::vector<Pose>& X_CB, const C
   set.X_CF.assign(X_CB.begin() + first_free_body, X_CB.end());
   set.pairs.resize(pairs.size());
   set.away_from_rest.resize(guards.size());
+  const std::vector<bool> far = far_pairs(X_CB);
   parallel_for(count(), threads, [&](std::size_t i) {
     const ColliderPair& pair = judged(i);
-    slot(set, i) =
-        judge(pair, X_CB[static_cast<std::size_t>(pair.a->body)],
-              X_CB[static_cast<std::size_t>(pair.b->body)], start(previous, i), full_look(i));
+    if (far[i])
+      slot(set, i) = far_apart(pair, settings.far_mm);
+    else
+      slot(set, i) =
+          judge(pair, X_CB[static_cast<std::size_t>(pair.a->body)],
+                X_CB[static_cast<std::size_t>(pair.b->body)], start(previous, i), full_look(i));
   });
   return set;
 }

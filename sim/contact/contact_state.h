@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "engine/collide/broadphase.h"
 #include "sim/contact/collider.h"
 #include "sim/contact/contact.h"
 
@@ -14,10 +15,11 @@ struct ContactModel::State {
   std::vector<Body> carrier;  // of each free part
   std::vector<std::unique_ptr<Collider>> colliders;
   std::vector<ColliderPair> pairs;
-  std::vector<ColliderPair> guards;    // see ContactSet::away_from_rest
-  std::vector<std::size_t> guarded;    // the pair of each guard
-  std::vector<Eigen::Vector3d> pivot;  // of each body, about its middle
-  std::vector<PairRule> rules;         // of each pair
+  std::vector<ColliderPair> guards;      // see ContactSet::away_from_rest
+  std::vector<std::size_t> guarded;      // the pair of each guard
+  std::vector<Eigen::Vector3d> pivot;    // of each body, about its middle
+  std::vector<PairRule> rules;           // of each pair
+  std::optional<Broadphase> broadphase;  // of the colliders, where there are free parts
   ContactSet rest;
   std::vector<std::string> notes;
 
@@ -51,6 +53,8 @@ struct ContactModel::State {
   std::vector<Pose> body_poses(const BodyPoses& at) const;
   BodyPoses as_poses(const std::vector<Pose>& X_CB) const;
 
+  /// Pairs with a free part that the broadphase knows to be farther apart than asked for.
+  std::vector<bool> far_pairs(const std::vector<Pose>& X_CB) const;
   ContactSet judge_all(const std::vector<Pose>& X_CB, const ContactSet* previous,
                        int threads) const;
   /// Counts what the guards found into the depths of their pairs.

@@ -164,6 +164,20 @@ TEST(BadCommand, RefusedWithTheValue) {
     expect_refused({"run", patient, "--motion", "opening", "--out", out, option, "nan"}, 2,
                    {option, "nan"});
   expect_refused({"check", patient, "--margin", "nan"}, 2, {"--margin", "nan"});
+  for (const auto& [rule, told] : std::map<std::string, std::string>{
+           {"maxilla,mandible", "A,B,POLICY"},
+           {"maxilla,mandible,maybe", "forbidden, allowed, guided, cut-face"},
+           {"maxilla,mandible,guided,gap=nan", "nan"},
+           {"maxilla,mandible,forbidden,margin=-1", "-1"},
+           {"maxilla,mandible,forbidden,width=1", "width=1"},
+           {"maxilla,mandibel,forbidden", "maxilla, mandible"}}) {
+    expect_refused({"check", patient, "--pair", rule}, 2, {"mandib", told});
+    expect_refused({"run", patient, "--motion", "opening", "--out", out, "--pair", rule}, 2,
+                   {told});
+  }
+  expect_refused({"import", "meshes", "--mandible", folder / "mandible.stl", "--carrier-of",
+                  "segment=head", "--out", out},
+                 2, {"segment=head", "NAME=mandible"});
   expect_refused({"import"}, 2, {});
   EXPECT_EQ(condyle({"--help"}).code, 0);
   EXPECT_EQ(condyle({"record", "--help"}).code, 0);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
@@ -8,6 +9,7 @@
 #include "engine/mesh/measure.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "sim/case/case_io.h"
+#include "sim/case/pair_rules.h"
 #include "tests/engine/mesh_io/samples.h"
 
 namespace condyle {
@@ -80,10 +82,61 @@ TEST(CaseFiles, LoadingGivesTheBitsThatWereSaved) {
   EXPECT_EQ(load_case(folder.path() / "a" / "case" / "case.json").name, saved.name);
 }
 
+/// The sample with two free parts and rules.
+Case sample_with_free_parts() {
+  Case patient = sample();
+  patient.parts.push_back({"segment", Role::segment, test::sphere(1, 5), {}, Body::cranium});
+  patient.parts.push_back(
+      {"transplant", Role::transplant, test::sphere(1, 5, {20, 0, 0}), {}, Body::mandible});
+  patient.pair_rules = {{"mandible", "segment", PairPolicy::guided, 1.0 / 3, 0.1},
+                        {"*", "transplant", PairPolicy::cut_face, {}, 0}};
+  return patient;
+}
+
+TEST(CaseFiles, FreePartsAndRulesComeBackAsTheyWere) {
+  const TempFolder folder;
+  const Case saved = sample_with_free_parts();
+  save_case(saved, folder.path() / "case");
+  const Case loaded = load_case(folder.path() / "case");
+  ASSERT_EQ(loaded.parts.size(), 4u);
+  EXPECT_EQ(loaded.parts[2].role, Role::segment);
+  EXPECT_EQ(loaded.parts[2].carrier, Body::cranium);
+  EXPECT_EQ(loaded.parts[3].role, Role::transplant);
+  EXPECT_EQ(loaded.parts[3].carrier, Body::mandible);
+  ASSERT_EQ(loaded.pair_rules.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(loaded.pair_rules[i].a, saved.pair_rules[i].a);
+    EXPECT_EQ(loaded.pair_rules[i].b, saved.pair_rules[i].b);
+    EXPECT_EQ(loaded.pair_rules[i].policy, saved.pair_rules[i].policy);
+    EXPECT_EQ(loaded.pair_rules[i].margin_mm, saved.pair_rules[i].margin_mm);
+    EXPECT_EQ(loaded.pair_rules[i].gap_mm, saved.pair_rules[i].gap_mm);
+  }
+  Case broken = saved;
+  broken.pair_rules[0].a = "mandibel";
+  EXPECT_THROW(save_case(broken, folder.path() / "broken"), InputError);
+  broken = saved;
+  broken.pair_rules[0].margin_mm = std::nan("");
+  EXPECT_THROW(save_case(broken, folder.path() / "broken"), InputError);
+}
+
+TEST(CaseFiles, TheLastRuleThatFitsCounts) {
+  Case patient = sample_with_free_parts();
+  const auto policy = [&](int a, int b, const std::vector<PairRule>& more = {}) {
+    return rule_for(patient, more, patient.parts[a], patient.parts[b]).policy;
+  };
+  EXPECT_EQ(policy(0, 2), PairPolicy::guided);
+  EXPECT_EQ(policy(2, 0), PairPolicy::guided);  // in either order
+  EXPECT_EQ(policy(0, 3), PairPolicy::cut_face);
+  EXPECT_EQ(policy(1, 2), PairPolicy::forbidden);  // the usual one
+  EXPECT_EQ(policy(0, 2, {{"segment", "*", PairPolicy::allowed, {}, 0}}), PairPolicy::allowed);
+  patient.pair_rules.clear();
+  EXPECT_EQ(policy(1, 3), PairPolicy::cut_face);  // the mandible's teeth carry the transplant
+}
+
 TEST(CaseFiles, EveryRoleHasANameOfItsOwn) {
-  for (const Role role :
-       {Role::skull, Role::maxilla, Role::mandible, Role::upper_teeth, Role::lower_teeth,
-        Role::face, Role::eyes, Role::upper_gums, Role::lower_gums, Role::tongue})
+  for (const Role role : {Role::skull, Role::maxilla, Role::mandible, Role::upper_teeth,
+                          Role::lower_teeth, Role::face, Role::eyes, Role::upper_gums,
+                          Role::lower_gums, Role::tongue, Role::segment, Role::transplant})
     EXPECT_EQ(role_named(role_name(role)), role);
   EXPECT_FALSE(role_named("hat"));
   EXPECT_NE(known_roles().find("upper-teeth"), std::string::npos);
@@ -202,6 +255,24 @@ TEST_F(BadCase, EveryWrongValueIsNamed) {
   expect([](json& root) { root["condylar_path"]["forward_mm"][1] = nullptr; },
          {"forward_mm[1]", "null"});
   expect([](json& root) { root["notes"] = "x"; }, {"notes", "list"});
+}
+
+TEST_F(BadCase, WrongCarriersAndRulesAreNamed) {
+  save_case(sample_with_free_parts(), home_);
+  expect([](json& root) { root["parts"][2]["carrier"] = "tibia"; },
+         {"parts[2].carrier", "\"tibia\"", "cranium or mandible"});
+  expect([](json& root) { root["parts"][0]["carrier"] = "cranium"; },
+         {"parts[0].carrier", "only a segment or transplant"});
+  expect([](json& root) { root["contact_pairs"] = 3; }, {"contact_pairs", "list"});
+  expect([](json& root) { root["contact_pairs"][0]["a"] = "mandibel"; },
+         {"contact_pairs[0].a", "\"mandibel\"", "mandible, lower-teeth, segment, transplant"});
+  expect([](json& root) { root["contact_pairs"][1].erase("b"); }, {"\"b\" is missing"});
+  expect([](json& root) { root["contact_pairs"][1]["policy"] = "maybe"; },
+         {"contact_pairs[1].policy", "\"maybe\"", "forbidden, allowed, guided, cut-face"});
+  expect([](json& root) { root["contact_pairs"][0]["margin_mm"] = -0.5; },
+         {"contact_pairs[0].margin_mm", "-0.5", "from 0"});
+  expect([](json& root) { root["contact_pairs"][0]["gap_mm"] = "wide"; },
+         {"contact_pairs[0].gap_mm", "\"wide\"", "number"});
 }
 
 TEST_F(BadCase, WhatIsNoCaseSaysHowToMakeOne) {

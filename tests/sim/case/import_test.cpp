@@ -75,6 +75,34 @@ class Import : public testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(Import, FreePartsGoAlongWithTheNearerBoneUnlessToldOtherwise) {
+  ImportRequest request;
+  const auto at = [&](const std::string& name, const Vector3d& center) {
+    return mesh(name, test::cuboid(center - Vector3d(4, 4, 4), center + Vector3d(4, 4, 4)));
+  };
+  request.files = {{Role::mandible, mesh("jaw.ply", blocks_jaw())},
+                   {Role::maxilla, at("maxilla.ply", {0, -45, 60})},
+                   {Role::segment, at("chin.ply", {0, -45, 0})},
+                   {Role::segment, at("upper.ply", {0, -45, 70})},
+                   {Role::transplant, at("fibula.ply", {30, -40, 33})}};
+  request.name = "free";
+  const Case patient = import_meshes(request);
+  ASSERT_EQ(patient.parts.size(), 5u);
+  const auto carrier = [](const Case& of, const std::string& name) {
+    for (const auto& part : of.parts)
+      if (part.name == name) return carrier_name(part.carrier);
+    return std::string("absent");
+  };
+  EXPECT_EQ(carrier(patient, "segment"), "mandible");
+  EXPECT_EQ(carrier(patient, "segment-2"), "cranium");
+  EXPECT_EQ(carrier(patient, "transplant"), "mandible");
+  EXPECT_TRUE(has_note(patient, "segment-2: lies 2.0 mm from the cranium"));
+  request.carriers = {{"segment-2", Body::mandible}};
+  EXPECT_EQ(carrier(import_meshes(request), "segment-2"), "mandible");
+  request.carriers = {{"segment-9", Body::mandible}};
+  expect_words(refusal(request), {"segment-9=mandible", "segment, segment-2, transplant"});
+}
+
 TEST_F(Import, EveryUnitAndFrameGivesTheSamePatient) {
   const TriMesh jaw = blocks_jaw();
   int count = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "sim/case/case.h"
 
@@ -14,5 +15,11 @@ PairRule rule_for(const Case& patient, std::span<const PairRule> more, const Par
 /// throws: InputError for a name that no part has (listing those there are), a margin or a gap that
 /// is no number from 0 on. `where` tells where the rules were given.
 void check_rules(const Case& patient, std::span<const PairRule> rules, const std::string& where);
+
+/// Names of the parts that a rule can speak of, for messages: "skull, mandible, ...".
+std::string rule_part_names(const Case& patient);
+bool is_rule_part(const Case& patient, const std::string& name);
+
+std::string known_policies();  // "forbidden, allowed, guided, cut-face"
 
 }  // namespace condyle

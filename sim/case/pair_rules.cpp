@@ -1,4 +1,4 @@
-#include "sim/contact/pair_rules.h"
+#include "sim/case/pair_rules.h"
 
 #include <fmt/format.h>
 
@@ -34,18 +34,33 @@ PairRule rule_for(const Case& patient, std::span<const PairRule> more, const Par
   return rule;
 }
 
+std::string rule_part_names(const Case& patient) {
+  std::string list;
+  for (const auto& part : patient.parts)
+    if (collides(part.role)) list += (list.empty() ? "" : ", ") + part.name;
+  return list;
+}
+
+bool is_rule_part(const Case& patient, const std::string& name) {
+  return std::any_of(patient.parts.begin(), patient.parts.end(),
+                     [&](const Part& part) { return collides(part.role) && names(name, part); });
+}
+
+std::string known_policies() {
+  std::string list;
+  for (const auto policy :
+       {PairPolicy::forbidden, PairPolicy::allowed, PairPolicy::guided, PairPolicy::cut_face})
+    list += (list.empty() ? "" : ", ") + policy_name(policy);
+  return list;
+}
+
 void check_rules(const Case& patient, std::span<const PairRule> rules, const std::string& where) {
   for (const auto& rule : rules) {
     const std::string pair = fmt::format("{} {} and {}: ", where, rule.a, rule.b);
-    for (const auto& name : {rule.a, rule.b}) {
-      const auto named = [&](const Part& part) { return collides(part.role) && names(name, part); };
-      if (std::any_of(patient.parts.begin(), patient.parts.end(), named)) continue;
-      std::string known;
-      for (const auto& part : patient.parts)
-        if (collides(part.role)) known += (known.empty() ? "" : ", ") + part.name;
-      throw InputError(pair + "no bone or teeth are called \"" + name + "\"; there are " + known +
-                       ", and * for any");
-    }
+    for (const auto& name : {rule.a, rule.b})
+      if (!is_rule_part(patient, name))
+        throw InputError(pair + "no bone or teeth are called \"" + name + "\"; there are " +
+                         rule_part_names(patient) + ", and * for any");
     if (rule.margin_mm && !(*rule.margin_mm >= 0 && std::isfinite(*rule.margin_mm)))
       throw InputError(pair +
                        fmt::format("a margin of {} mm; it must be 0 or more", *rule.margin_mm));

@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/core/error.h"
+#include "engine/mesh/triangle_tree.h"
+#include "sim/case/import_checks.h"
+
+namespace condyle {
+namespace {
+
+/// Distance from the part's vertices to the nearest bone or teeth of a body; infinite without any.
+double distance_to_body(const Case& patient, const Part& part, Body body) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& other : patient.parts) {
+    if (body_of(other.role) != body || !collides(other.role)) continue;
+    const TriangleTree tree(other.mesh);
+    for (const auto& v : part.mesh.vertices)
+      nearest = std::min(nearest, tree.nearest(v, nearest).distance);
+  }
+  return nearest;
+}
+
+}  // namespace
+
+void choose_carriers(Case& patient, const std::map<std::string, Body>& asked) {
+  std::string free;
+  for (auto& part : patient.parts) {
+    if (body_of(part.role) != Body::free) continue;
+    free += (free.empty() ? "" : ", ") + part.name;
+    if (const auto found = asked.find(part.name); found != asked.end()) {
+      part.carrier = found->second;
+      continue;
+    }
+    const double to_cranium = distance_to_body(patient, part, Body::cranium),
+                 to_mandible = distance_to_body(patient, part, Body::mandible);
+    part.carrier = to_mandible < to_cranium ? Body::mandible : Body::cranium;
+    patient.notes.push_back(fmt::format(
+        "{}: lies {:.1f} mm from the {} and goes along with it; --carrier-of {}={} would change "
+        "that",
+        part.name, std::min(to_cranium, to_mandible), carrier_name(part.carrier), part.name,
+        carrier_name(part.carrier == Body::mandible ? Body::cranium : Body::mandible)));
+  }
+  for (const auto& [name, body] : asked) {
+    const auto named = [&](const Part& part) {
+      return part.name == name && body_of(part.role) == Body::free;
+    };
+    if (std::none_of(patient.parts.begin(), patient.parts.end(), named))
+      throw InputError("--carrier-of " + name + "=" + carrier_name(body) +
+                       ": no segment or transplant has that name; there are " +
+                       (free.empty() ? "none" : free));
+  }
+}
+
+}  // namespace condyle
