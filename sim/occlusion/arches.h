@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/mesh/measure.h"
+#include "sim/case/case.h"
+
+namespace condyle {
+
+/// One dental arch at rest: a part of separate or joined teeth, or the bone that carries its
+/// crowns.
+struct Arch {
+  const Part* part = nullptr;
+  Box crowns;                             // about the crowns, with some room
+  Eigen::Vector3d edge;                   // middle of the incisal edge
+  std::array<Eigen::Vector3d, 2> molars;  // tops of the first molars: left, right
+};
+
+/// Both arches of a case, and the directions in which a bite is told.
+struct Arches {
+  Arch upper, lower;
+  // Unit vectors, cranium: normal of the upper arch's occlusal plane (incisal edge and first
+  // molars), upward; to the front in that plane; to the patient's left.
+  Eigen::Vector3d up, front, left;
+  double midline_mm = 0;                                   // x
+  std::optional<std::array<Eigen::Vector3d, 2>> condyles;  // centres at rest: left, right
+  std::vector<std::string> notes;                          // how they were found, for people
+};
+
+/// The teeth of the case; where an arch has none, the bone on whose surface its incisal landmark
+/// lies. The case must outlive the answer. throws: InputError naming what is missing.
+Arches find_arches(const Case& patient);
+
+}  // namespace condyle

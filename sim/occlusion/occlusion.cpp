@@ -1,0 +1,121 @@
+#include "sim/occlusion/occlusion.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/collide/collision_mesh.h"
+#include "engine/collide/solid.h"
+#include "engine/core/error.h"
+#include "sim/contact/contact.h"
+#include "sim/occlusion/bite_contacts.h"
+
+namespace condyle {
+namespace {
+
+constexpr double farthest_start_mm = 25;
+constexpr double residual_share = 0.01;  // of the closing force, that may be left at rest
+constexpr double least_side_share = 0.05;
+constexpr double most_joint_share = 0.5;
+
+IncisorOverlap incisors(const Arches& arches, const Pose& X_CM) {
+  const Eigen::Vector3d lower = X_CM * arches.lower.edge - arches.upper.edge;
+  return {-lower.dot(arches.front), lower.dot(arches.up)};
+}
+
+bool is_front(int fdi) { return fdi % 10 >= 1 && fdi % 10 <= 3; }
+
+/// Exact distance of the arches, and their overlap where they cross.
+void measure_gap(const Arches& arches, Bite& bite) {
+  const TriMesh &upper = arches.upper.part->mesh, &lower = arches.lower.part->mesh;
+  const Pose& X_CM = bite.rest.X_CM;
+  bite.gap_mm = distance(CollisionMesh(upper), {}, CollisionMesh(lower), X_CM).distance_mm;
+  if (bite.gap_mm == 0)
+    bite.overlap_mm = overlap_depth(Solid(upper), {}, Solid(lower), X_CM).depth_mm;
+}
+
+/// Bones that the bite brings deeper into each other than they are at rest.
+void look_at_bones(const Case& patient, const Arches& arches, const OcclusionSettings& settings,
+                   Bite& bite) {
+  const ContactModel model(patient);
+  const auto set = model.find(bite.rest.X_CM, nullptr, settings.threads);
+  for (const auto& pair : set.pairs) {
+    const Part &a = patient.parts[pair.part_a], &b = patient.parts[pair.part_b];
+    if ((&a == arches.upper.part && &b == arches.lower.part) ||
+        pair.depth_mm <= std::max(settings.most_overlap_mm, pair.rest_depth_mm))
+      continue;
+    bite.notes.push_back(
+        fmt::format("{} and {} overlap by {:.2f} mm in this bite{}", a.name, b.name, pair.depth_mm,
+                    pair.rest_depth_mm > 0 ? fmt::format(" ({:.2f} mm at rest)", pair.rest_depth_mm)
+                                           : "; at rest they are apart"));
+  }
+}
+
+std::string why_unstable(const Bite& bite, const OcclusionSettings& settings) {
+  if (!bite.rest.converged) return "the arches did not come to rest";
+  if (bite.contacts.empty()) return "no tooth touches another";
+  if (bite.overlap_mm > settings.most_overlap_mm)
+    return fmt::format("the arches still overlap by {:.2f} mm", bite.overlap_mm);
+  if (std::min(bite.left_share, 1 - bite.left_share) < least_side_share)
+    return fmt::format("only the {} side bears the load", bite.left_share > 0.5 ? "left" : "right");
+  if (bite.joint_share > most_joint_share)
+    return fmt::format(
+        "the joints, not the teeth, hold the mandible: they bear {:.0f} % of the "
+        "closing force",
+        100 * bite.joint_share);
+  return "";
+}
+
+}  // namespace
+
+Bite settle_bite(const Case& patient, const Pose& start, const OcclusionSettings& settings,
+                 const Progress& progress) {
+  if (!start.R.coeffs().allFinite() || !start.t.allFinite())
+    throw InputError("the start is not a finite pose; give numbers");
+  const Arches arches = find_arches(patient);
+  for (const auto& p : {arches.lower.edge, arches.lower.molars[0], arches.lower.molars[1]})
+    if (const double way = (start * p - p).norm(); !(way <= farthest_start_mm))
+      throw InputError(fmt::format(
+          "the start holds the lower teeth {:.3g} mm from where they are in the case; a bite is "
+          "looked for from at most {:.0f} mm away",
+          way, farthest_start_mm));
+  const BiteModel model(arches, settings, progress);
+
+  Bite bite;
+  bite.notes = arches.notes;
+  auto found = find_bites(model, start, settings, bite.starts, progress);
+  bite.rest = found.front();
+  bite.rest.converged = bite.rest.residual_N < residual_share * settings.closing_force_N;
+  bite.others.assign(found.begin() + 1, found.end());
+  report(progress, "contacts", 0.9);
+  const Pose& X_CM = bite.rest.X_CM;
+  bite.contacts = find_contacts(arches, model, X_CM);
+  bite.teeth = tooth_loads(arches, bite.contacts);
+  bite.front_known = !arches.upper.part->teeth.empty() && !arches.lower.part->teeth.empty();
+  for (const auto& contact : bite.contacts) {
+    if (contact.left) bite.left_share += contact.load_share;
+    if (is_front(contact.lower_fdi)) bite.front_share += contact.load_share;
+    bite.load_center += contact.load_share * contact.place;
+  }
+  bite.joint_share = model.joint_force_N(X_CM) / settings.closing_force_N;
+  measure_gap(arches, bite);
+  bite.before = incisors(arches, {});
+  bite.after = incisors(arches, X_CM);
+  bite.moved_from_start_mm = model.way_mm(start, X_CM);
+  bite.moved_from_rest_mm = model.way_mm({}, X_CM);
+  bite.rotation_deg = rotation_angle(X_CM) * 180 / std::numbers::pi;
+  if (arches.condyles) {
+    bite.condyle_moved.emplace();
+    for (int side = 0; side < 2; ++side) {
+      const auto& condyle = (*arches.condyles)[side];
+      (*bite.condyle_moved)[side] = X_CM * condyle - condyle;
+    }
+  }
+  look_at_bones(patient, arches, settings, bite);
+  bite.unstable_because = why_unstable(bite, settings);
+  bite.stable = bite.unstable_because.empty();
+  return bite;
+}
+
+}  // namespace condyle
