@@ -237,6 +237,13 @@ void HessianFactor::solve_blocks(const Nodes& g, Nodes& z) const {
         y[j].template cast<double>();
 }
 
+std::size_t HessianFactor::bytes() const {
+  const std::size_t work = static_cast<std::size_t>(columns_) * size_;
+  return (blocks_.capacity() + work) * sizeof(float) +
+         (place_.capacity() + column_at_.capacity() + first_.capacity() + row_.capacity()) *
+             sizeof(int);
+}
+
 void HessianFactor::solve(const Nodes& g, Nodes& z) const {
   switch (nodes_per_column_) {
     case 1:

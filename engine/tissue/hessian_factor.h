@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "engine/minimize/objective.h"
 #include "engine/tissue/spring_prism.h"
 
 namespace condyle {
@@ -13,16 +14,17 @@ namespace condyle {
 /// (anchor targets), so a factor serves at many states; what ages it is the turning of the tissue.
 /// Nodes are taken together in columns of consecutive nodes, as blocks; columns in nested
 /// dissection order. Single precision: it only has to point the way.
-class HessianFactor {
+class HessianFactor final : public Preconditioner {
  public:
   /// nodes_per_column: 2 to 4, or 6, or 1.
   HessianFactor(const SpringPrismNet& net, const NetLoads& loads, int nodes_per_column,
                 const Nodes& x);
 
   /// z = H^-1 g
-  void solve(const Nodes& g, Nodes& z) const;
+  void solve(const Nodes& g, Nodes& z) const override;
 
-  std::size_t bytes() const { return blocks_.size() * sizeof(float); }
+  /// Of the factor and of the work space of a solve.
+  std::size_t bytes() const override;
 
  private:
   void order_columns(const SpringPrismNet& net, const Nodes& x);

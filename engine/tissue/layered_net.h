@@ -12,6 +12,7 @@ namespace condyle {
 struct LayerMaterial {
   double modulus_MPa = 0.02;  // Young's modulus of the springs' net
   double bulk_MPa = 0.1;      // resistance to a change of volume
+  double mass_kg = 0;         // of the whole layer; spread over its nodes by volume
 };
 
 /// Node `sheet` (0 outermost) of column `column`.
@@ -24,7 +25,23 @@ std::vector<std::array<int, 2>> edges_of(const std::vector<Eigen::Vector3i>& tri
 /// and both diagonals of each side quad; per column: one spring across each layer.
 /// `nodes` has columns * sheets entries in `node_of` order and is the rest state; triangles run
 /// counter-clockwise seen from the outermost sheet; one material per layer (sheets - 1).
+/// A sheet between two layers stands for half of each; in spring_layer it goes with the one below.
+/// throws: InputError for a modulus, bulk or mass out of range.
 SpringPrismNet layered_net(const std::vector<Eigen::Vector3i>& triangles, int sheets,
                            const Nodes& nodes, const std::vector<LayerMaterial>& layers);
+
+/// Turns a layered net into equation (1) as it is printed: one spring constant for each layer's
+/// class, volumes in mm^3 against lengths in mm, springs that push as they pull and no barrier
+/// (steps that would invert a prism are still refused). source: the raw form means something else
+/// at each resolution, and is kept to compare with published figures.
+struct PaperForm {
+  std::vector<double> layer_stiffness;  // N/mm; one per layer
+  double lambda = 0.9999;               // in (0, 1)
+};
+void use_paper_form(SpringPrismNet& net, const PaperForm& form);
+
+/// Skin turgor: rest lengths of the outermost sheet's springs become c_turgor times what they are.
+/// throws: InputError unless 0 < c_turgor <= 1.
+void set_turgor(SpringPrismNet& net, double c_turgor);
 
 }  // namespace condyle

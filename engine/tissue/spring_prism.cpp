@@ -85,34 +85,45 @@ double volume_stiffness(double share_of_rest, double barrier_share, double barri
   return volume_law(share_of_rest, barrier_share, barrier_weight).dde;
 }
 
+Nodes weight_of_nodes(const SpringPrismNet& net, const Vector3d& down) {
+  constexpr double newton_per_kg = 9.81;
+  Nodes weight;
+  for (double mass : net.node_mass_kg) weight.push_back(newton_per_kg * mass * down);
+  return weight;
+}
+
 SpringPrismEnergy::SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads)
     : net_(net), loads_(loads), threads_(threads) {
   for (auto& nodes : partial_) nodes.resize(net.node_count);
   inverse_length_.resize(net.spring_a.size());
 }
 
+template <bool with_gradient>
 double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, Nodes& gradient) {
-  for (auto& g : gradient) g.setZero();
+  if constexpr (with_gradient)
+    for (auto& g : gradient) g.setZero();
   double spring_energy = 0;
   const Range springs = share(net_.spring_a.size(), chunk, chunks_);
   for (std::size_t s = springs.first; s < springs.last; ++s) {
     const int a = net_.spring_a[s], b = net_.spring_b[s];
     const Vector3d d = x[b] - x[a];
     const double inverse = 1 / std::sqrt(d.squaredNorm());
-    inverse_length_[s] = inverse;
+    if constexpr (with_gradient) inverse_length_[s] = inverse;
     const double tension = 1 - net_.rest_length[s] * inverse;  // (l - rest) / l
     const double k = net_.stiffness[s] * (tension < 0 ? net_.compression_share : 1.0);
     const Vector3d force = (2 * k * tension) * d;
     spring_energy += 0.5 * tension * force.dot(d);
-    gradient[a] -= force;
-    gradient[b] += force;
+    if constexpr (with_gradient) {
+      gradient[a] -= force;
+      gradient[b] += force;
+    }
   }
   const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);
   for (std::size_t i = anchors.first; i < anchors.last; ++i) {
     const int node = net_.anchor_node[i];
     const Vector3d d = x[node] - loads_.anchor_target[i];
     spring_energy += net_.anchor_stiffness[i] * d.squaredNorm();
-    gradient[node] += (2 * net_.anchor_stiffness[i]) * d;
+    if constexpr (with_gradient) gradient[node] += (2 * net_.anchor_stiffness[i]) * d;
   }
   const Range slides = share(net_.slide_node.size(), chunk, chunks_);
   for (std::size_t i = slides.first; i < slides.last; ++i) {
@@ -120,7 +131,13 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, Nodes& gradien
     const double gap = loads_.slide_normal[i].dot(x[node]) - loads_.slide_offset[i];
     if (gap >= 0) continue;
     spring_energy += net_.slide_stiffness[i] * gap * gap;
-    gradient[node] += (2 * net_.slide_stiffness[i] * gap) * loads_.slide_normal[i];
+    if constexpr (with_gradient)
+      gradient[node] += (2 * net_.slide_stiffness[i] * gap) * loads_.slide_normal[i];
+  }
+  const Range forced = share(loads_.node_force.size(), chunk, chunks_);
+  for (std::size_t i = forced.first; i < forced.last; ++i) {
+    spring_energy -= loads_.node_force[i].dot(x[i]);
+    if constexpr (with_gradient) gradient[i] -= loads_.node_force[i];
   }
   // Springs and volumes share the gradient: the volumes' part is scaled to the springs' weight.
   const double lambda = net_.lambda, volume_scale = (1 - lambda) / lambda;
@@ -135,16 +152,28 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, Nodes& gradien
     const VolumeLaw law = volume_law(j, net_.barrier_share, net_.barrier_weight);
     const double scale = volume_scale * net_.volume_weight[p] * rest;
     volume_energy += scale * rest * law.e;
-    const double pressure = scale * law.de;
-    for (int k = 0; k < 6; ++k) gradient[prism[k]] += pressure * slope[k];
+    if constexpr (with_gradient) {
+      const double pressure = scale * law.de;
+      for (int k = 0; k < 6; ++k) gradient[prism[k]] += pressure * slope[k];
+    }
   }
   return lambda * (spring_energy + volume_energy);
+}
+
+double SpringPrismEnergy::value(const Nodes& x) {
+  std::array<double, chunks_> energy{};
+  parallel_for(chunks_, threads_, [&](std::size_t c) {
+    energy[c] = chunk_energy<false>(static_cast<int>(c), x, partial_[c]);
+  });
+  double total = 0;
+  for (double e : energy) total += e;
+  return total;
 }
 
 double SpringPrismEnergy::value_and_gradient(const Nodes& x, Nodes& gradient) {
   std::array<double, chunks_> energy{};
   parallel_for(chunks_, threads_, [&](std::size_t c) {
-    energy[c] = chunk_energy(static_cast<int>(c), x, partial_[c]);
+    energy[c] = chunk_energy<true>(static_cast<int>(c), x, partial_[c]);
   });
   double total = 0;
   for (double e : energy) total += e;
@@ -157,8 +186,8 @@ double SpringPrismEnergy::value_and_gradient(const Nodes& x, Nodes& gradient) {
   return total;
 }
 
-SpringPrismEnergy::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& x,
-                                                                const Nodes& d) const {
+Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& x,
+                                                        const Nodes& d) const {
   Curvature springs_sum, volumes_sum;
   const Range springs = share(net_.spring_a.size(), chunk, chunks_);
   for (std::size_t s = springs.first; s < springs.last; ++s) {
@@ -205,7 +234,7 @@ SpringPrismEnergy::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const
           lambda * (springs_sum.gauss_newton + linear) + (1 - lambda) * volumes_sum.gauss_newton};
 }
 
-SpringPrismEnergy::Curvature SpringPrismEnergy::curvature(const Nodes& x, const Nodes& d) {
+Objective::Curvature SpringPrismEnergy::curvature(const Nodes& x, const Nodes& d) {
   std::array<Curvature, chunks_> parts;
   parallel_for(chunks_, threads_,
                [&](std::size_t c) { parts[c] = chunk_curvature(static_cast<int>(c), x, d); });

@@ -4,9 +4,11 @@
 #include <array>
 #include <vector>
 
+#include "engine/minimize/objective.h"
+
 namespace condyle {
 
-using Nodes = std::vector<Eigen::Vector3d>;  // mm
+using Nodes = Points;  // mm
 
 /// A body of springs and volume elements (prisms) over nodes. Structure of arrays; the order of the
 /// springs and prisms fixes the order of every sum.
@@ -40,6 +42,10 @@ struct SpringPrismNet {
   /// Below this share of its rest volume a prism resists ever more, without bound at zero.
   double barrier_share = 0.5;
   double barrier_weight = 4.0;
+
+  // What each spring is: its layer, and the sheet that it is an edge of, or -1 across a layer.
+  std::vector<int> spring_layer, spring_sheet;
+  std::vector<double> node_mass_kg;  // one per node, or none
 };
 
 /// What the outer world asks at one time.
@@ -47,7 +53,13 @@ struct NetLoads {
   Nodes anchor_target;  // one per anchor
   Nodes slide_normal;   // unit, out of the body that must not be entered; one per slide
   std::vector<double> slide_offset;  // normal . x >= offset is free
+  /// Pulls the nodes, N; one per node, or empty. Like the springs it counts with weight lambda, so
+  /// that a spring under it stretches by force / (2 stiffness) whatever lambda is.
+  Nodes node_force;
 };
+
+/// Weight of each node's mass: along `down` (unit), 9.81 N/kg.
+Nodes weight_of_nodes(const SpringPrismNet& net, const Eigen::Vector3d& down);
 
 /// Signed volume, the mean over both splits of each side quad; positive for the corner order above.
 double prism_volume(const Nodes& nodes, const std::array<int, 6>& prism);
@@ -61,22 +73,21 @@ double volume_stiffness(double share, double barrier_share, double barrier_weigh
 
 /// Energy, gradient and curvature of a net; keeps its work space. The sums are taken in an order
 /// that does not depend on the number of threads.
-class SpringPrismEnergy {
+class SpringPrismEnergy final : public Objective {
  public:
   SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads);
 
-  /// Energy (mJ) and its gradient (N). Infinite where a prism has no positive volume.
-  double value_and_gradient(const Nodes& x, Nodes& gradient);
-
-  struct Curvature {
-    double exact = 0;         // second derivative along d
-    double gauss_newton = 0;  // without its negative parts, never below zero
-  };
+  /// Energy, mJ: lambda sum k (l - l0)^2 + (1 - lambda) sum w (v - v0)^2, anchors, slides and node
+  /// forces with the springs. Infinite where a prism has no positive volume.
+  double value(const Nodes& x) override;
+  /// The same, and its gradient (N).
+  double value_and_gradient(const Nodes& x, Nodes& gradient) override;
   /// Wants the last call of value_and_gradient to have been at `x`: lengths are kept from there.
-  Curvature curvature(const Nodes& x, const Nodes& d);
+  Curvature curvature(const Nodes& x, const Nodes& d) override;
 
  private:
   static constexpr int chunks_ = 2;  // fixed: the sums must not know the number of threads
+  template <bool with_gradient>
   double chunk_energy(int chunk, const Nodes& x, Nodes& gradient);
   Curvature chunk_curvature(int chunk, const Nodes& x, const Nodes& d) const;
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "engine/tissue/conjugate_gradient.h"
+#include "engine/minimize/minimize.h"
 #include "sim/tissue/model.h"
 
 namespace condyle {
@@ -80,19 +80,19 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
   MinimizeSettings settings;
   settings.tolerance_mm = budget.tolerance_mm;
   settings.max_iterations = std::min(budget.max_iterations, patience);
-  settings.threads = budget.threads;
-  MinimizeResult result = minimize(model.net, loads, *factor, settings, state.nodes);
-  if (!result.converged && budget.max_iterations > patience) {
+  SpringPrismEnergy energy(model.net, loads, budget.threads);
+  MinimizeResult result = minimize(Method::preconditioned, energy, settings, state.nodes, factor);
+  if (!result.converged() && budget.max_iterations > patience) {
     const MinimizeResult first = result;
     const HessianFactor fresh(model.net, loads, model.sheets, state.nodes);
     settings.max_iterations = budget.max_iterations - patience;
-    result = minimize(model.net, loads, fresh, settings, state.nodes);
+    result = minimize(Method::preconditioned, energy, settings, state.nodes, &fresh);
     result.iterations += first.iterations;
     result.evaluations += first.evaluations;
   }
   state.iterations = result.iterations;
   state.evaluations = result.evaluations;
-  state.converged = result.converged;
+  state.converged = result.converged();
   state.energy = result.energy;
   state.residual = result.residual;
   state.inverted_prisms = count_inverted(model.net, state.nodes);

@@ -6,7 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "engine/tissue/conjugate_gradient.h"
+#include "engine/minimize/minimize.h"
+#include "engine/tissue/hessian_factor.h"
 #include "engine/tissue/layered_net.h"
 
 namespace condyle {
@@ -193,8 +194,10 @@ TEST(Minimizer, FollowsARigidMotionOfItsAnchorsExactly) {
   Nodes x = slab.rest;
   MinimizeSettings settings;
   settings.tolerance_mm = 1e-8;
-  const auto result = minimize(slab.net, loads_of(slab, {0, 1.5, 0.5}), factor, settings, x);
-  EXPECT_TRUE(result.converged);
+  const NetLoads loads = loads_of(slab, {0, 1.5, 0.5});
+  SpringPrismEnergy energy(slab.net, loads, 1);
+  const auto result = minimize(Method::preconditioned, energy, settings, x, &factor);
+  EXPECT_TRUE(result.converged());
   EXPECT_GT(result.iterations, 0);
   EXPECT_LT(result.energy, 1e-12);
   for (std::size_t i = 0; i < x.size(); ++i)
@@ -211,7 +214,8 @@ TEST(Minimizer, NeverInvertsAPrismHoweverHardItIsPressed) {
   }
   const HessianFactor factor(slab.net, loads, 3, slab.rest);
   Nodes x = slab.rest;
-  minimize(slab.net, loads, factor, {}, x);
+  SpringPrismEnergy energy(slab.net, loads, 1);
+  minimize(Method::preconditioned, energy, {}, x, &factor);
   double least = 1e9;
   for (std::size_t p = 0; p < slab.net.prisms.size(); ++p)
     least = std::min(least, prism_volume(x, slab.net.prisms[p]) / slab.net.rest_volume[p]);
@@ -225,9 +229,9 @@ TEST(Minimizer, SameBitsForAnyNumberOfThreads) {
   const NetLoads loads = loads_of(slab, {0, 0, 0});
   Nodes one = shaken(slab.rest, 0.9, 21), two = one;
   MinimizeSettings settings;
-  const auto a = minimize(slab.net, loads, factor, settings, one);
-  settings.threads = 2;
-  const auto b = minimize(slab.net, loads, factor, settings, two);
+  SpringPrismEnergy energy(slab.net, loads, 1), energy_on_two(slab.net, loads, 2);
+  const auto a = minimize(Method::preconditioned, energy, settings, one, &factor);
+  const auto b = minimize(Method::preconditioned, energy_on_two, settings, two, &factor);
   EXPECT_GT(a.iterations, 1);
   EXPECT_EQ(a.iterations, b.iterations);
   EXPECT_EQ(a.energy, b.energy);

@@ -1,61 +1,54 @@
-#include "engine/tissue/conjugate_gradient.h"
+#include "engine/minimize/methods.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+namespace condyle::minimizers {
 
-namespace condyle {
-namespace {
-
-double dot(const Nodes& a, const Nodes& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-  return sum;
-}
-
-double largest_norm(const Nodes& a) {
-  double largest = 0;
-  for (const auto& v : a) largest = std::max(largest, v.squaredNorm());
-  return std::sqrt(largest);
-}
-
-}  // namespace
-
-MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads,
-                        const HessianFactor& factor, const MinimizeSettings& settings, Nodes& x) {
-  SpringPrismEnergy energy(net, loads, settings.threads);
+// Preconditioned Polak-Ribiere with a parabolic line search: where every squared length is
+// quadratic along a direction and every volume cubic, one step with the exact slope and curvature
+// is nearly always taken as it is.
+MinimizeResult preconditioned(Objective& objective, const Preconditioner& preconditioner,
+                              const MinimizeSettings& settings, Points& x) {
+  using Status = MinimizeResult::Status;
   MinimizeResult result;
-  Nodes g, g_new, z, z_new, d, trial(x.size());
+  Counted counted(objective, settings, result);
+  Points g, g_new, z, z_new, d, trial(x.size());
 
-  double f = energy.value_and_gradient(x, g);
-  result.evaluations = 1;
-  factor.solve(g, z);
+  double f = counted.value_and_gradient(x, g);
+  preconditioner.solve(g, z);
   double gz = dot(g, z);
+  if (!std::isfinite(f) || !std::isfinite(gz)) {
+    result.status = Status::bad_start;
+    result.energy = f;
+    result.residual = largest_norm(g);
+    return result;
+  }
   d.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
 
-  if (largest_norm(z) < 0.05 * settings.tolerance_mm) result.converged = true;
-  for (; !result.converged && result.iterations < settings.max_iterations; ++result.iterations) {
+  if (largest_norm(z) < 0.05 * settings.tolerance_mm) result.status = Status::converged;
+  for (; !result.converged() && result.iterations < settings.max_iterations && !counted.spent();
+       ++result.iterations) {
     double slope = dot(g, d);
     if (slope >= 0) {
       for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
       slope = -gz;
     }
     // Parabolic line search: the minimum of the parabola with the exact slope and curvature.
-    const auto curvature = energy.curvature(x, d);
+    const auto curvature = objective.curvature(x, d);
     const double bend =
         curvature.exact > 0.1 * curvature.gauss_newton ? curvature.exact : curvature.gauss_newton;
-    if (!(bend > 0)) break;
+    if (!(bend > 0)) {
+      result.status = Status::stalled;
+      break;
+    }
     double step = -slope / bend;
     const double reach = largest_norm(d);
     step = std::min(step, settings.max_step_mm / reach);
 
     double f_new = 0;
     bool accepted = false;
-    for (int attempt = 0; attempt < 30 && !accepted; ++attempt) {
-      for (std::size_t i = 0; i < x.size(); ++i) trial[i] = x[i] + step * d[i];
-      f_new = energy.value_and_gradient(trial, g_new);
-      ++result.evaluations;
+    for (int attempt = 0; attempt < 30 && !accepted && !counted.spent(); ++attempt) {
+      step_along(x, step, d, trial);
+      f_new = counted.value_and_gradient(trial, g_new);
       // Near the minimum the energies differ by less than their rounding; then the slope decides.
       const double rounding = 1e-13 * std::abs(f);
       accepted = f_new <= f + 1e-4 * step * slope ||
@@ -68,13 +61,16 @@ MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads,
       }
     }
     if (!accepted) {  // as low as the arithmetic goes
-      result.converged = largest_norm(z) < settings.tolerance_mm;
+      if (largest_norm(z) < settings.tolerance_mm)
+        result.status = Status::converged;
+      else if (!counted.spent())
+        result.status = Status::stalled;
       break;
     }
 
     x.swap(trial);
     f = f_new;
-    factor.solve(g_new, z_new);
+    preconditioner.solve(g_new, z_new);
     double change = 0;
     for (std::size_t i = 0; i < x.size(); ++i) change += z_new[i].dot(g_new[i] - g[i]);
     const double beta = std::max(0.0, change / gz);
@@ -85,13 +81,14 @@ MinimizeResult minimize(const SpringPrismNet& net, const NetLoads& loads,
     for (std::size_t i = 0; i < x.size(); ++i) d[i] = beta * d[i] - z[i];
     if (moved < settings.tolerance_mm && largest_norm(z) < settings.tolerance_mm) {
       ++result.iterations;
-      result.converged = true;
+      result.status = Status::converged;
       break;
     }
   }
   result.energy = f;
   result.residual = largest_norm(g);
+  result.bytes = bytes_of(g, g_new, z, z_new, d, trial) + preconditioner.bytes();
   return result;
 }
 
-}  // namespace condyle
+}  // namespace condyle::minimizers

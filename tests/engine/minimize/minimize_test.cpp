@@ -1,0 +1,208 @@
+#include "engine/minimize/minimize.h"
+
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+#include "engine/minimize/line_search.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A chain of points: stiff springs of length one from each to the next, the ends pulled apart and
+/// up; infinite below the floor z = -1. Samples the memory in use at each evaluation.
+class Chain final : public Objective {
+ public:
+  double value(const Points& x) override {
+    Points unused;
+    return value_and_gradient(x, unused);
+  }
+  double value_and_gradient(const Points& x, Points& gradient) override {
+    const auto info = mallinfo2();
+    most_memory = std::max(most_memory, info.uordblks + info.hblkhd);
+    gradient.assign(x.size(), Vector3d::Zero());
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+      const Vector3d d = x[i + 1] - x[i];
+      const double l = d.norm(), k = 1 + static_cast<double>(i);
+      sum += k * (l - 1) * (l - 1);
+      gradient[i] -= 2 * k * (l - 1) / l * d;
+      gradient[i + 1] += 2 * k * (l - 1) / l * d;
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (x[i].z() < floor) return std::numeric_limits<double>::infinity();
+      const Vector3d d = x[i] - target(i);
+      sum += 0.05 * d.squaredNorm();
+      gradient[i] += 0.1 * d;
+    }
+    return sum;
+  }
+  Curvature curvature(const Points& x, const Points& d) override {
+    Points up = x, down = x, g_up, g_down;
+    double sum = 0, size = 0;
+    for (const auto& v : d) size = std::max(size, v.norm());
+    const double h = 1e-6 / size;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      up[i] += h * d[i];
+      down[i] -= h * d[i];
+    }
+    value_and_gradient(up, g_up);
+    value_and_gradient(down, g_down);
+    for (std::size_t i = 0; i < x.size(); ++i) sum += d[i].dot(g_up[i] - g_down[i]) / (2 * h);
+    return {sum, std::abs(sum)};
+  }
+  static Vector3d target(std::size_t i) {
+    const double s = static_cast<double>(i);
+    return {1.3 * s, std::sin(s), 0.2 * s};
+  }
+
+  double floor = -1;
+  std::size_t most_memory = 0;
+};
+
+class Unit final : public Preconditioner {
+ public:
+  void solve(const Points& g, Points& z) const override { z = g; }
+  std::size_t bytes() const override { return 0; }
+};
+
+Points straight_chain(std::size_t n) {
+  Points x;
+  for (std::size_t i = 0; i < n; ++i) x.emplace_back(0.9 * static_cast<double>(i), 0.1, 0);
+  return x;
+}
+
+MinimizeSettings tight() {
+  MinimizeSettings settings;
+  settings.tolerance_mm = 1e-8;
+  settings.line_tolerance = 1e-3;
+  settings.max_iterations = 20000;
+  return settings;
+}
+
+class EachMethod : public testing::TestWithParam<MethodFacts> {};
+
+TEST_P(EachMethod, FindsTheSameMinimum) {
+  Chain chain;
+  const Unit unit;
+  Points expected = straight_chain(12), x = expected;
+  ASSERT_TRUE(minimize(Method::quasi_newton, chain, tight(), expected).converged());
+  const double start = chain.value(x);
+  const auto result = minimize(GetParam().method, chain, tight(), x, &unit);
+  EXPECT_TRUE(result.converged());
+  EXPECT_LT(result.energy, 0.9 * start);
+  EXPECT_EQ(result.energy, chain.value(x));
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - expected[i]).norm(), 1e-4);
+}
+
+TEST_P(EachMethod, ABudgetLeavesTheBestSoFarAndTellsTheResidual) {
+  Chain chain;
+  const Unit unit;
+  for (int evaluations : {1, 7, 40}) {
+    MinimizeSettings settings = tight();
+    settings.max_evaluations = evaluations;
+    Points x = straight_chain(12), gradient;
+    const double start = chain.value(x);
+    const auto result = minimize(GetParam().method, chain, settings, x, &unit);
+    EXPECT_EQ(result.status, MinimizeResult::Status::budget_spent);
+    EXPECT_LE(result.evaluations, evaluations + 3);  // that in hand is completed
+    EXPECT_LE(chain.value_and_gradient(x, gradient), start);
+    double largest = 0;
+    for (const auto& g : gradient) largest = std::max(largest, g.norm());
+    EXPECT_DOUBLE_EQ(result.residual, largest);
+    EXPECT_GT(largest, 0);
+  }
+}
+
+TEST_P(EachMethod, NeverGoesWhereTheValueIsInfinite) {
+  Chain chain;
+  const Unit unit;
+  chain.floor = -0.01;  // the way down to y < 0 passes close to it
+  Points x = straight_chain(8);
+  for (auto& p : x) p.z() = 0.5;
+  const auto result = minimize(GetParam().method, chain, tight(), x, &unit);
+  EXPECT_TRUE(std::isfinite(result.energy));
+  for (const auto& p : x) EXPECT_GE(p.z(), chain.floor);
+}
+
+TEST_P(EachMethod, ABadStartMovesNothing) {
+  Chain chain;
+  const Unit unit;
+  Points x = straight_chain(5);
+  x[2].z() = -5;
+  const Points before = x;
+  const auto result = minimize(GetParam().method, chain, {}, x, &unit);
+  EXPECT_EQ(result.status, MinimizeResult::Status::bad_start);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(x[i], before[i]);
+}
+
+TEST_P(EachMethod, TheMemoryToldIsThatAllocated) {
+  Chain chain;
+  const Unit unit;
+  MinimizeSettings settings;
+  settings.max_evaluations = 60;
+  Points x = straight_chain(200), warm_up = x;
+  minimize(GetParam().method, chain, settings, warm_up, &unit);
+  chain.most_memory = 0;
+  const auto before = mallinfo2();
+  const auto result = minimize(GetParam().method, chain, settings, x, &unit);
+  const auto grown =
+      static_cast<double>(chain.most_memory) - static_cast<double>(before.uordblks + before.hblkhd);
+  ASSERT_GT(grown, 0);
+  // The chain's own curvature and value use up to four vectors of points besides.
+  EXPECT_GE(grown, 0.95 * static_cast<double>(result.bytes) - 4800);
+  EXPECT_LE(grown, 1.05 * static_cast<double>(result.bytes) + 4.5 * 4800);
+}
+
+TEST_P(EachMethod, RepeatsToTheBit) {
+  Chain chain;
+  const Unit unit;
+  Points a = straight_chain(9), b = a;
+  minimize(GetParam().method, chain, {}, a, &unit);
+  minimize(GetParam().method, chain, {}, b, &unit);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i], b[i]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Minimize, EachMethod,
+                         testing::ValuesIn(all_methods().begin(), all_methods().end()),
+                         [](const auto& method) { return std::string(method.param.name); });
+
+TEST(LineSearch, BothFindTheMinimumOfACurveFromAnyFirstStep) {
+  const auto value = [](double t) { return std::pow(t - 2, 4) + 0.5 * (t - 2) * (t - 2) + 3; };
+  const auto slope = [](double t) { return 4 * std::pow(t - 2, 3) + (t - 2); };
+  for (double first : {1e-4, 0.3, 2.0, 50.0, 1e4}) {
+    LineSettings settings;
+    settings.first_step = first;
+    settings.tolerance = 1e-5;
+    const LinePoint start{0, value(0), slope(0)};
+    const LinePoint a = search_by_parabolas(value, start, settings);
+    const LinePoint b = search_by_slopes(
+        [&](double t) {
+          return LinePoint{t, value(t), slope(t)};
+        },
+        start, settings);
+    EXPECT_NEAR(a.t, 2, 1e-3) << first;
+    EXPECT_NEAR(b.t, 2, 1e-3) << first;
+  }
+}
+
+TEST(LineSearch, ParabolasLookToBothSidesAndTurnBackBeforeAWall) {
+  LineSettings settings;
+  settings.both_sides = true;
+  settings.tolerance = 1e-4;
+  const auto left = [](double t) { return (t + 3) * (t + 3); };
+  EXPECT_NEAR(search_by_parabolas(left, {0, left(0), 0}, settings).t, -3, 1e-3);
+  const auto wall = [](double t) {
+    return t > 0.5 ? std::numeric_limits<double>::infinity() : (t - 0.4) * (t - 0.4);
+  };
+  settings.both_sides = false;
+  EXPECT_NEAR(search_by_parabolas(wall, {0, wall(0), -0.8}, settings).t, 0.4, 1e-3);
+}
+
+}  // namespace
+}  // namespace condyle
