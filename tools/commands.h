@@ -47,6 +47,8 @@ struct CheckOptions {
   MotionOptions motion;
   std::filesystem::path out;
   double margin_mm = 0;
+  int frames = 0;  // 0 = duration x fps
+  double fps = 30;
 };
 
 struct ViewOptions {

@@ -175,6 +175,15 @@ int run_program(int argc, char** argv) {
   add_contact(check_command, check.motion);
   check_command->add_option("--margin", check.margin_mm, "Clearance that bones must keep, mm (0)")
       ->check(within(0.0, 50.0));
+  check_command
+      ->add_option("--frames", check.frames,
+                   "Tell the whole motion in this many frames, both ends included")
+      ->check(CLI::Range(1, 100000));
+  check_command
+      ->add_option("--fps", check.fps,
+                   "Frames a second of the motion's own time (30); in between nothing thicker than "
+                   "0.1 mm is passed through unseen")
+      ->check(within(0.1, 1000.0));
   check_command->add_option("--out", check.out,
                             "Folder for report.html with its pictures, report.json, pairs.csv");
 

@@ -48,7 +48,8 @@ class Gatherer {
       if (distance - radius > settings_.within_mm) return;
       known_inside = distance + radius < settings_.within_mm;
     }
-    if (edge <= settings_.resolution_mm) {
+    // Without a rim to find, pieces need only be small enough to hang together.
+    if (edge <= (known_inside ? 2 : 1) * settings_.resolution_mm) {
       cut(t);
       return;
     }

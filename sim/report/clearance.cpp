@@ -5,138 +5,219 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
+#include "engine/core/parallel.h"
 #include "sim/motion/measures.h"
 
 namespace condyle {
+namespace {
+
+constexpr std::size_t run_frames = 8;  // one after the other, each started from the one before
+
+/// All that is told of one frame.
+struct Frame {
+  Moment moment;
+  std::vector<PairMeasure> measures;
+  std::vector<bool> teeth;
+  std::vector<double> coronoids_mm;
+};
+
+/// The frames, found and measured in parallel.
+std::vector<Frame> look_at_frames(const std::vector<double>& times, const Scene& scene,
+                                  const MotionWalk& walk, const PairMeasures& measures,
+                                  const ToothContacts& teeth, const CoronoidClearance& coronoids,
+                                  int threads, const Progress& progress) {
+  std::vector<Frame> frames(times.size());
+  const auto look_at_run = [&](std::size_t first) {
+    ContactSet set = scene.contacts.at_rest();
+    std::vector<TrianglePair> starts(coronoids.sides().size());
+    for (std::size_t f = first; f < std::min(first + run_frames, times.size()); ++f) {
+      const BodyPoses at = walk.poses(times[f]);
+      set = scene.contacts.find(at, &set, 1);
+      Frame& frame = frames[f];
+      frame.moment = {times[f], samples_of(set)};
+      for (const auto& pair : set.pairs) frame.measures.push_back(measures.measure(pair, at));
+      frame.teeth = teeth.touching_at(set, at);
+      for (std::size_t side = 0; side < starts.size(); ++side)
+        frame.coronoids_mm.push_back(coronoids.distance_mm(side, at.X_CM, starts[side]));
+    }
+  };
+  const std::size_t runs = (times.size() + run_frames - 1) / run_frames;
+  const auto together = static_cast<std::size_t>(std::max(threads, 1)) * 2;
+  for (std::size_t done = 0; done < runs; done += together) {
+    parallel_for(std::min(together, runs - done), threads,
+                 [&](std::size_t i) { look_at_run((done + i) * run_frames); });
+    report(progress, "checking", static_cast<double>(done) / static_cast<double>(runs));
+  }
+  return frames;
+}
+
+/// A cell of a table, quoted where it must be.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string table_of(const ClearanceCheck& check, const std::vector<Frame>& frames) {
+  std::string csv =
+      "frame,time_s,opening_mm,a,b,touching,distance_mm,depth_mm,beyond_rest_mm,contacts,"
+      "witness_a_x_mm,witness_a_y_mm,witness_a_z_mm,witness_b_x_mm,witness_b_y_mm,witness_b_z_mm,"
+      "signed_distance_mm,policy,contact_area_mm2,patches,penetration_volume_mm3,"
+      "penetration_volume_error_mm3,side,region_a,region_b\n";
+  for (std::size_t f = 0; f < frames.size(); ++f)
+    for (std::size_t p = 0; p < check.pairs.size(); ++p) {
+      const auto& pair = check.pairs[p];
+      const PairSample& sample = frames[f].moment.pairs[p];
+      const auto& contact = sample.contact;
+      const PairMeasure& measure = frames[f].measures[p];
+      const auto &wa = contact.witness_a, &wb = contact.witness_b;
+      fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},",
+                     f, check.time_s[f], check.opening_mm[f], cell(pair.a), cell(pair.b),
+                     contact.touching ? 1 : 0, contact.touching ? 0 : contact.distance_mm,
+                     sample.depth_mm, sample.beyond_rest_mm(), sample.contacts, wa.x(), wa.y(),
+                     wa.z(), wb.x(), wb.y(), wb.z(), sample.signed_distance_mm(),
+                     policy_name(pair.rule.policy));
+      const bool unknown = contact.touching && !measure.volume_known;
+      fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{}\n", measure.area_mm2,
+                     measure.patches,
+                     unknown ? std::string("unknown") : fmt::format("{}", measure.volume_mm3),
+                     unknown ? std::string("unknown") : fmt::format("{}", measure.volume_error_mm3),
+                     measure.side, cell(measure.region_a), cell(measure.region_b));
+    }
+  return csv;
+}
+
+/// Takes one moment of a pair into its verdict; moments come in the order of time.
+void take(PairVerdict& pair, const PairSample& sample, const MotionTime& when, bool& touching) {
+  const double distance = sample.contact.touching ? 0 : sample.contact.distance_mm;
+  const double beyond = sample.beyond_rest_mm();
+  const bool nearest = distance < pair.least_distance_mm;
+  const bool deepest = beyond > pair.beyond_rest_mm;
+  if (nearest) {
+    pair.least_distance_mm = distance;
+    pair.least_at = when;
+  }
+  if (distance > pair.most_distance_mm) {
+    pair.most_distance_mm = distance;
+    pair.most_at = when;
+  }
+  if (deepest) {
+    pair.beyond_rest_mm = beyond;
+    pair.deepest_at = when;
+  }
+  if (deepest || (nearest && pair.beyond_rest_mm == 0)) {
+    pair.worst.when = when;
+    pair.worst.sample = sample;
+  }
+  if (sample.contact.touching && !touching) ++pair.touches;
+  touching = sample.contact.touching;
+}
+
+}  // namespace
 
 bool ClearanceCheck::violated() const {
   return std::any_of(pairs.begin(), pairs.end(),
                      [](const PairVerdict& pair) { return pair.violated(); });
 }
 
-namespace {
-
-/// Depth at the place that made the pair's depth. A set counts contact where the pair was apart at
-/// rest on from the depth at rest; a picture shows the place itself.
-struct PlaceDepth {
-  double mm = 0;
-  bool was_apart = false;
-};
-
-PlaceDepth depth_at_place(const ContactSet& set, const PairContact& pair) {
-  for (const auto& away : set.away_from_rest)
-    if (away.part_a == pair.part_a && away.part_b == pair.part_b && away.touching &&
-        pair.rest_depth_mm + away.depth_mm >= pair.depth_mm)
-      return {away.depth_mm, true};
-  return {pair.depth_mm, false};
+std::size_t ClearanceCheck::widest_frame() const {
+  return static_cast<std::size_t>(std::max_element(opening_mm.begin(), opening_mm.end()) -
+                                  opening_mm.begin());
 }
 
-}  // namespace
-
-namespace {
-
-/// The fixed steps, every row of a recording, and the end.
-std::vector<double> check_times(const Motion& motion, double step_s) {
-  constexpr double same_s = 1e-9;
-  std::vector<double> times = motion.sample_times;
-  for (int i = 0; i * step_s < motion.duration_s; ++i) times.push_back(i * step_s);
-  times.push_back(motion.duration_s);
-  std::sort(times.begin(), times.end());
-  times.erase(
-      std::unique(times.begin(), times.end(), [](double a, double b) { return b - a < same_s; }),
-      times.end());
-  return times;
-}
-
-}  // namespace
-
-ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double margin_mm,
-                               const SimulatorSettings& settings, const Progress& progress) {
+ClearanceCheck check_clearance(const Scene& scene, const Motion& motion,
+                               const CheckSettings& settings, const SimulatorSettings& simulator,
+                               const Progress& progress) {
   ClearanceCheck check;
+  check.margin_mm = settings.margin_mm;
   const auto& parts = scene.patient.parts;
-  for (const auto& rest : scene.contacts.at_rest().pairs) {
-    const auto& a = parts[static_cast<std::size_t>(rest.part_a)];
-    const auto& b = parts[static_cast<std::size_t>(rest.part_b)];
-    check.pairs.push_back({.a = a.name,
-                           .b = b.name,
-                           .teeth = is_teeth(a.role) && is_teeth(b.role),
-                           .rest_distance_mm = rest.touching ? 0 : rest.distance_mm,
-                           .rest_depth_mm = rest.rest_depth_mm,
-                           .least_distance_mm = 1e300});
+  const auto& rest_pairs = scene.contacts.at_rest().pairs;
+  std::vector<double> reach_mm;
+  for (std::size_t p = 0; p < rest_pairs.size(); ++p) {
+    const auto& rest = rest_pairs[p];
+    PairVerdict pair;
+    pair.a = parts[static_cast<std::size_t>(rest.part_a)].name;
+    pair.b = parts[static_cast<std::size_t>(rest.part_b)].name;
+    pair.rule = scene.contacts.rules()[p];
+    if (pair.rule.policy == PairPolicy::forbidden)
+      pair.keep_mm = pair.rule.margin_mm.value_or(settings.margin_mm);
+    if (pair.rule.policy == PairPolicy::guided) pair.keep_mm = pair.rule.gap_mm;
+    pair.rest_distance_mm = rest.touching ? 0 : rest.distance_mm;
+    pair.rest_depth_mm = rest.rest_depth_mm;
+    pair.least_distance_mm = std::numeric_limits<double>::infinity();
+    pair.most_distance_mm = -1;
+    reach_mm.push_back(rest.touching ? 0 : pair.keep_mm);
+    check.pairs.push_back(std::move(pair));
   }
-  check.pairs_csv =
-      "frame,time_s,opening_mm,a,b,touching,distance_mm,depth_mm,beyond_rest_mm,contacts,"
-      "witness_a_x_mm,witness_a_y_mm,witness_a_z_mm,witness_b_x_mm,witness_b_y_mm,witness_b_z_mm\n";
-  const auto times = check_times(motion, settings.step_s);
-  check.frames = static_cast<int>(times.size());
-  CoronoidClearance coronoids(scene.patient);
-  std::vector<bool> touching(check.pairs.size(), false);
-  ContactSet previous = scene.contacts.at_rest();
-  for (int frame = 0; frame < check.frames; ++frame) {
-    const double time = times[static_cast<std::size_t>(frame)];
-    const Pose X_CM = motion.wanted(time);
-    ContactSet now = scene.contacts.find(X_CM, &previous, settings.threads);
-    const Measures measures = measure(scene.patient, X_CM);
-    check.opening_mm.push_back(measures.opening_mm);
-    check.rotation_deg.push_back(measures.rotation_deg);
-    check.time_s.push_back(time);
-    coronoids.add(X_CM);
-    for (std::size_t i = 0; i < now.pairs.size(); ++i) {
-      const auto& pair = now.pairs[i];
-      auto& verdict = check.pairs[i];
-      const double distance = pair.touching ? 0 : pair.distance_mm;
-      const double beyond = pair.depth_mm - pair.rest_depth_mm;
-      const PlaceDepth place = depth_at_place(now, pair);
-      const bool nearest = distance < verdict.least_distance_mm;
-      const bool deepest = beyond > verdict.beyond_rest_mm;
-      if (nearest) {
-        verdict.least_distance_mm = distance;
-        verdict.least_frame = frame;
+
+  const MotionWalk walk(scene, motion, simulator.step_s);
+  const PairMeasures measures(scene.patient);
+  const ToothContacts teeth(scene.patient);
+  const CoronoidClearance coronoids(scene.patient);
+  check.time_s = frame_times(motion, settings.sampling);
+  auto frames = look_at_frames(check.time_s, scene, walk, measures, teeth, coronoids,
+                               simulator.threads, progress);
+  for (const double time : check.time_s) {
+    const Measures read = measure(scene.patient, motion.wanted(time));
+    check.opening_mm.push_back(read.opening_mm);
+    check.rotation_deg.push_back(read.rotation_deg);
+  }
+  report(progress, "looking between frames", 0);
+  std::vector<Moment> moments;
+  for (const auto& frame : frames) moments.push_back(frame.moment);
+  auto between = walk.between(moments, reach_mm, simulator.threads);
+  check.looks_between = static_cast<int>(between.size());
+  std::vector<Moment> all;
+  std::merge(moments.begin(), moments.end(), between.begin(), between.end(),
+             std::back_inserter(all),
+             [](const Moment& x, const Moment& y) { return x.time_s < y.time_s; });
+  const auto when = [&](double time_s) {
+    const auto next = std::lower_bound(check.time_s.begin(), check.time_s.end(), time_s);
+    const Measures read = measure(scene.patient, motion.wanted(time_s));
+    return MotionTime{static_cast<int>(next - check.time_s.begin()),
+                      next == check.time_s.end() || *next != time_s, time_s, read.opening_mm,
+                      read.rotation_deg};
+  };
+  std::vector<MotionTime> whens;
+  for (const auto& moment : all) whens.push_back(when(moment.time_s));
+
+  parallel_for(check.pairs.size(), simulator.threads, [&](std::size_t p) {
+    PairVerdict& pair = check.pairs[p];
+    bool touching = false;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const PairSample& sample = all[i].pairs[p];
+      if (sample.contact.touching && !pair.first_touch) {
+        const bool at_start = i == 0;
+        pair.first_touch =
+            at_start ? whens[0]
+                     : when(walk.first_touch(p, all[i - 1].time_s, all[i]).time_s);
       }
-      if (deepest) {
-        verdict.beyond_rest_mm = beyond;
-        verdict.deepest_frame = frame;
+      take(pair, sample, whens[i], touching);
+      if (!whens[i].between) {
+        pair.touching_frames += sample.contact.touching;
+        pair.clearance_mm.push_back(sample.signed_distance_mm());
       }
-      if (deepest || (nearest && verdict.beyond_rest_mm == 0)) {
-        verdict.worst = pair;
-        verdict.worst_depth_mm = place.mm;
-        verdict.worst_was_apart = place.was_apart;
-      }
-      if (pair.touching) {
-        if (verdict.first_touch < 0) verdict.first_touch = frame;
-        if (verdict.clearance_mm.empty() || !touching[i]) ++verdict.touches;
-        ++verdict.touching_frames;
-      }
-      touching[i] = pair.touching;
-      verdict.clearance_mm.push_back(pair.touching ? -place.mm : distance);
-      fmt::format_to(std::back_inserter(check.pairs_csv),
-                     "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame, time,
-                     measures.opening_mm, verdict.a, verdict.b, pair.touching ? 1 : 0, distance,
-                     pair.depth_mm, std::max(0.0, beyond), pair.contacts.size(), pair.witness_a.x(),
-                     pair.witness_a.y(), pair.witness_a.z(), pair.witness_b.x(), pair.witness_b.y(),
-                     pair.witness_b.z());
     }
-    previous = std::move(now);
-    report(progress, "checking", (frame + 1.0) / check.frames);
-  }
-  for (auto& verdict : check.pairs) {
-    verdict.penetrates = verdict.beyond_rest_mm > settings.contact.slack_mm;
-    // Bones apart at rest must not touch at all: a thin shell gives no depth to measure.
-    if (verdict.rest_depth_mm == 0 && verdict.rest_distance_mm > 0 && verdict.touching_frames > 0)
-      verdict.penetrates = true;
-    verdict.violates_margin = !verdict.teeth && verdict.least_distance_mm < margin_mm;
-  }
+    auto& worst = pair.worst;
+    worst.poses = walk.poses(worst.when.time_s);
+    worst.measure = worst.when.between
+                        ? measures.measure(worst.sample.contact, worst.poses)
+                        : frames[static_cast<std::size_t>(worst.when.frame)].measures[p];
+    judge(pair, simulator.contact.slack_mm);
+  });
+
   check.coronoids = coronoids.sides();
   check.coronoids_missing = coronoids.missing();
-  CloseLook close_look(scene.patient);
-  for (std::size_t i = 0; i < check.pairs.size(); ++i) {
-    auto& pair = check.pairs[i];
-    const auto worst = static_cast<std::size_t>(pair.worst_frame());
-    pair.X_CM_worst = motion.wanted(check.time_s[worst]);
-    pair.detail = close_look.look(pair.worst, pair.X_CM_worst);
-    report(progress, "measuring contacts", (i + 1.0) / static_cast<double>(check.pairs.size()));
-  }
+  for (std::size_t side = 0; side < check.coronoids.size(); ++side)
+    for (const auto& frame : frames) check.coronoids[side].mm.push_back(frame.coronoids_mm[side]);
+  std::vector<std::vector<bool>> touching_teeth;
+  for (const auto& frame : frames) touching_teeth.push_back(frame.teeth);
+  check.teeth = tooth_use(teeth.teeth(), touching_teeth);
+  check.pairs_csv = table_of(check, frames);
+  report(progress, "checking", 1);
   return check;
 }
 

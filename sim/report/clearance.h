@@ -1,62 +1,98 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "sim/report/close_look.h"
+#include "sim/contact/pair_measure.h"
 #include "sim/report/coronoid.h"
+#include "sim/report/motion_walk.h"
+#include "sim/report/tooth_use.h"
 #include "sim/simulator/simulator.h"
 
 namespace condyle {
 
-/// What one pair of bones did along a motion.
+/// When something happens in a motion.
+struct MotionTime {
+  int frame = 0;         // the first not before it
+  bool between = false;  // it lies between that frame and the one before
+  double time_s = 0, opening_mm = 0, rotation_deg = 0;
+};
+
+/// What one pair of parts did along a motion.
 struct PairVerdict {
   std::string a, b;
-  bool teeth = false;  // both are teeth: they are meant to meet, so no margin applies
+  PairRule rule;
+  double keep_mm = 0;  // clearance that the rule asks for: margin, or gap of a guided pair; else 0
+
   double rest_distance_mm = 0, rest_depth_mm = 0;
-  double least_distance_mm = 0;
-  int least_frame = 0;
-  double beyond_rest_mm = 0;  // deepest penetration more than at rest
-  int deepest_frame = 0;
-  int first_touch = -1;  // frame, or -1
+  double least_distance_mm = 0, most_distance_mm = 0;
+  MotionTime least_at, most_at;
+  double beyond_rest_mm = 0;  // deepest overlap more than at rest
+  MotionTime deepest_at;
+  std::optional<MotionTime> first_touch;
   int touching_frames = 0;
-  bool violates_margin = false, penetrates = false;
+  int touches = 0;  // times that they came together; at rest counts as one
 
-  int touches = 0;                        // times that they came together; at rest counts as one
-  std::vector<double> clearance_mm = {};  // one per frame; negative: depth of the overlap
-  // Depth at the worst frame; where the pair was apart at rest (away from its overlap there), the
-  // depth of that place alone.
-  double worst_depth_mm = 0;
-  bool worst_was_apart = false;
-  Pose X_CM_worst = {};
-  PairContact worst = {};  // at worst_frame
-  PairDetail detail = {};  // the same, measured closely
+  // Each breaks the rule:
+  bool collides = false;  // the motion makes them touch, or sink deeper than at rest
+  bool too_near = false;  // the motion brings them nearer than keep_mm
+  bool at_rest = false;   // already at rest they are nearer than keep_mm, or too deep
 
-  bool violated() const { return violates_margin || penetrates; }
   /// Deepest beyond rest, else nearest, the first if several.
-  int worst_frame() const { return beyond_rest_mm > 0 ? deepest_frame : least_frame; }
+  struct Worst {
+    MotionTime when;
+    PairSample sample;
+    PairMeasure measure;
+    BodyPoses poses;
+  } worst;
+  std::optional<Eigen::Vector3d> push_out_mm;  // moves B out of A where they overlap at rest
+
+  std::vector<double> clearance_mm;  // one per frame; negative: depth of the overlap
+
+  bool violated() const { return collides || too_near || at_rest; }
 };
 
 struct ClearanceCheck {
   std::vector<PairVerdict> pairs;
-  int frames = 0;
-  std::vector<double> opening_mm, rotation_deg;  // one per frame
-  std::string pairs_csv;                         // a row per pair and frame
+  double margin_mm = 0;
+  std::vector<double> time_s, opening_mm, rotation_deg;  // one per frame
+  int looks_between = 0;                                 // moments looked at between frames
+  std::string pairs_csv;                                 // a row per pair and frame
 
-  std::vector<double> time_s;  // one per frame
   std::vector<CoronoidSide> coronoids;
   std::string coronoids_missing;  // why not, when a side or both cannot be told
+  std::vector<ToothUse> teeth;    // of parts with separate crowns
 
+  int frames() const { return static_cast<int>(time_s.size()); }
+  /// The first if several.
+  std::size_t widest_frame() const;
   bool violated() const;
   /// `pictures`: file of each pair's picture beside the report, or empty; may be shorter.
-  std::string json(const Scene& scene, const Motion& motion, double margin_mm,
+  std::string json(const Scene& scene, const Motion& motion,
                    const std::vector<std::string>& pictures = {},
                    const std::vector<std::string>& notes = {}) const;
-  std::string text(double margin_mm) const;
+  std::string text() const;
 };
 
-/// Walks the motion as it is wanted, without stopping at contacts, and tells where bones meet.
-ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, double margin_mm,
-                               const SimulatorSettings& settings, const Progress& progress = {});
+struct CheckSettings {
+  double margin_mm = 0;  // clearance that forbidden pairs keep, unless their rule has its own
+  CheckSampling sampling = {};
+};
+
+/// Walks the motion as it is wanted, without stopping at contacts, and tells where bones meet and
+/// which rules are broken. Same bits for any number of threads.
+ClearanceCheck check_clearance(const Scene& scene, const Motion& motion,
+                               const CheckSettings& check, const SimulatorSettings& settings,
+                               const Progress& progress = {});
+
+/// Judges the measures of a pair by its rule. `slack_mm`: depth beyond rest that does not count.
+void judge(PairVerdict& pair, double slack_mm);
+
+/// "forbidden", "may touch", ... for people.
+std::string rule_words(const PairVerdict& pair);
+
+/// Which rule was broken and how far, in one sentence; what was kept, where none was.
+std::string verdict_words(const PairVerdict& pair);
 
 }  // namespace condyle

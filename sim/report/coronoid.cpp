@@ -1,6 +1,9 @@
 #include "sim/report/coronoid.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "sim/contact/places.h"
 
 namespace condyle {
 namespace {
@@ -24,28 +27,36 @@ void append(TriMesh& mesh, const TriMesh& other) {
 
 }  // namespace
 
+int CoronoidSide::least_frame() const {
+  return static_cast<int>(std::min_element(mm.begin(), mm.end()) - mm.begin());
+}
+
 CoronoidClearance::CoronoidClearance(const Case& patient) {
   for (const std::string side : {"left", "right"}) {
-    const auto tip = patient.landmarks.find(side + "_coronoid_tip");
+    const auto found = coronoid_tip(patient, side);
     const auto condyle = patient.landmarks.find(side + "_condyle");
     const auto miss = [&](const std::string& what) {
       missing_ += (missing_.empty() ? "" : "; ") + side + ": " + what;
     };
-    if (!tip || !condyle) {
-      miss("the landmark " + side + (tip ? "_condyle" : "_coronoid_tip") + " is not given");
+    if (!found || !condyle) {
+      miss(found || !condyle ? "the landmark " + side + "_condyle is not given"
+                             : "the landmark " + side +
+                                   "_coronoid_tip is not given and the mandible shows no such "
+                                   "process");
       continue;
     }
+    const Eigen::Vector3d& tip = found->point;
     const double outward = side == "left" ? 1 : -1;  // x runs to the left
-    const double back = 0.5 * (tip->y() + condyle->y());
+    const double back = 0.5 * (tip.y() + condyle->y());
     TriMesh coronoid, zygoma;
     for (const auto& part : patient.parts) {
       if (part.role == Role::mandible)
         append(coronoid, triangles_where(part.mesh, [&](const Eigen::Vector3d& p) {
-                 return (p - *tip).norm() < process_mm;
+                 return (p - tip).norm() < process_mm;
                }));
       if (part.role == Role::skull || part.role == Role::maxilla)
         append(zygoma, triangles_where(part.mesh, [&](const Eigen::Vector3d& p) {
-                 return outward * (p.x() - tip->x()) > 0 && p.y() < back;
+                 return outward * (p.x() - tip.x()) > 0 && p.y() < back;
                }));
     }
     if (coronoid.empty() || zygoma.empty()) {
@@ -53,21 +64,17 @@ CoronoidClearance::CoronoidClearance(const Case& patient) {
                             : "the case has no zygomatic bone beside the coronoid process");
       continue;
     }
-    sides_.push_back({side, {}, 0});
-    surfaces_.push_back({CollisionMesh(coronoid), CollisionMesh(zygoma), {}});
+    sides_.push_back({side, found->estimated, tip, {}});
+    surfaces_.push_back({CollisionMesh(coronoid), CollisionMesh(zygoma)});
   }
 }
 
-void CoronoidClearance::add(const Pose& X_CM) {
-  for (std::size_t i = 0; i < sides_.size(); ++i) {
-    auto& [coronoid, zygoma, start] = surfaces_[i];
-    const auto found = distance(zygoma, Pose{}, coronoid, X_CM, start);
-    start = found.triangles;
-    auto& side = sides_[i];
-    side.mm.push_back(found.distance_mm);
-    if (found.distance_mm < side.least_mm())
-      side.least_frame = static_cast<int>(side.mm.size()) - 1;
-  }
+double CoronoidClearance::distance_mm(std::size_t side, const Pose& X_CM,
+                                      TrianglePair& start) const {
+  const auto& [coronoid, zygoma] = surfaces_[side];
+  const auto found = distance(zygoma, Pose{}, coronoid, X_CM, start);
+  start = found.triangles;
+  return found.distance_mm;
 }
 
 }  // namespace condyle

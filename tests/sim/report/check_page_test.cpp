@@ -36,27 +36,32 @@ Case ball_patient() {
   return patient;
 }
 
-TEST(CloseLook, BallInABoxHasTheCapsAreaAndVolume) {
+/// The bite lasts a second: its turning point is a frame.
+CheckSettings at_120_hz(double margin_mm) { return {.margin_mm = margin_mm, .sampling = {121, 0}}; }
+
+TEST(CheckedPair, BallInABoxHasTheCapsAreaAndVolume) {
   const Scene scene = make_scene(ball_patient());
   const Motion motion = bite(3);
-  const auto check = check_clearance(scene, motion, 0, {});
+  const auto check = check_clearance(scene, motion, at_120_hz(0), {});
   const auto& pair = check.pairs.at(0);
-  EXPECT_EQ(pair.worst_frame(), 60);
+  EXPECT_EQ(pair.worst.when.frame, 60);
   EXPECT_NEAR(pair.beyond_rest_mm, 2, 0.01);
   const double area = 2 * std::numbers::pi * 12 * 2.1;
   const double volume = std::numbers::pi * 4 * (3 * 12 - 2) / 3;
-  EXPECT_NEAR(pair.detail.area_mm2, area, 0.02 * area);
-  EXPECT_NEAR(pair.detail.volume_mm3, volume, 0.02 * volume);
-  EXPECT_EQ(pair.detail.patches, 1);
-  EXPECT_EQ(pair.detail.side, "left");
-  EXPECT_LT((pair.detail.place - Eigen::Vector3d(15, -65, -38)).norm(), 0.2);
-  EXPECT_LT((pair.detail.normal - Eigen::Vector3d(0, 0, -1)).norm(), 0.02);
+  EXPECT_NEAR(pair.worst.measure.area_mm2, area, 0.02 * area);
+  EXPECT_NEAR(pair.worst.measure.volume_mm3, volume, 0.02 * volume);
+  EXPECT_EQ(pair.worst.measure.patches, 1);
+  EXPECT_EQ(pair.worst.measure.side, "left");
+  EXPECT_LT((pair.worst.measure.place - Eigen::Vector3d(15, -65, -38)).norm(), 0.2);
+  EXPECT_LT((pair.worst.measure.normal - Eigen::Vector3d(0, 0, -1)).norm(), 0.02);
   // Up 6 mm/s: it touches for the two thirds of the time that it is higher than 1 mm.
   EXPECT_EQ(pair.touches, 1);
   EXPECT_NEAR(pair.touching_frames / 121.0, 2.0 / 3, 0.02);
-  EXPECT_NEAR(check.time_s[static_cast<std::size_t>(pair.first_touch)], 1.0 / 6, 0.01);
+  // When it first touches is found between the frames.
+  EXPECT_NEAR(pair.first_touch->time_s, 1.0 / 6, 0.02 / 6);
+  EXPECT_NEAR(pair.first_touch->frame, 20.5, 0.6);
 
-  const auto json = nlohmann::json::parse(check.json(scene, motion, 0, {"worst.png"}, {"a note"}));
+  const auto json = nlohmann::json::parse(check.json(scene, motion, {"worst.png"}, {"a note"}));
   const auto& worst = json["pairs"][0]["worst"];
   EXPECT_EQ(worst["frame"], 60);
   EXPECT_EQ(worst["picture"], "worst.png");
@@ -67,26 +72,26 @@ TEST(CloseLook, BallInABoxHasTheCapsAreaAndVolume) {
   EXPECT_EQ(json["notes"].back(), "a note");
 }
 
-TEST(CloseLook, OpenSurfaceHasNoVolume) {
+TEST(CheckedPair, OpenSurfaceHasNoVolume) {
   Case patient = ball_patient();
   patient.parts[0].mesh.triangles.resize(2);  // the lower face alone
   const Scene scene = make_scene(std::move(patient));
-  const auto check = check_clearance(scene, bite(3), 0, {});
+  const auto check = check_clearance(scene, bite(3), at_120_hz(0), {});
   const auto& pair = check.pairs.at(0);
-  EXPECT_TRUE(pair.detail.open_a);
-  EXPECT_FALSE(pair.detail.volume_known);
-  EXPECT_GT(pair.detail.area_mm2, 0);
+  EXPECT_TRUE(pair.worst.measure.open_a);
+  EXPECT_FALSE(pair.worst.measure.volume_known);
+  EXPECT_GT(pair.worst.measure.area_mm2, 0);
   // The ball still has an inside, and the deepest place of the sheet in it is known.
-  EXPECT_LT((pair.detail.place - Eigen::Vector3d(15, -65, -40)).norm(), 0.3);
-  const auto json = nlohmann::json::parse(check.json(scene, bite(3), 0));
+  EXPECT_LT((pair.worst.measure.place - Eigen::Vector3d(15, -65, -40)).norm(), 0.3);
+  const auto json = nlohmann::json::parse(check.json(scene, bite(3)));
   EXPECT_TRUE(json["pairs"][0]["worst"]["penetration_volume_mm3"].is_null());
-  EXPECT_NE(check_page(check, {"p", "m", 0, {"x.png"}, {}}).find("without sign"),
+  EXPECT_NE(check_page(check, {"p", "m", {"x.png"}, {}}).find("without sign"),
             std::string::npos);
 }
 
 TEST(WorstView, DistancesOnTheBallAreItsHeights) {
   const Scene scene = make_scene(ball_patient());
-  const auto check = check_clearance(scene, bite(3), 0, {});
+  const auto check = check_clearance(scene, bite(3), at_120_hz(0), {});
   const WorstView view = worst_view(scene, check.pairs.at(0), 2);
   ASSERT_EQ(view.parts.size(), 2u);
   ASSERT_EQ(view.distance_a.size(), view.parts[0].mesh.vertices.size());
@@ -114,29 +119,33 @@ TEST(Coronoid, ClearanceFromABeamBesideTheTip) {
   patient.parts[1].mesh = box({40, -40, -60}, {44, -30, -20});
   patient.parts.push_back({"skull", Role::skull, box({50, -60, -40}, {55, -25, -10}), {}});
   patient.landmarks.points["left_coronoid_tip"] = {42, -35, -20};
-  CoronoidClearance clearance(patient);
+  const CoronoidClearance clearance(patient);
   ASSERT_EQ(clearance.sides().size(), 1u);
   EXPECT_EQ(clearance.sides()[0].side, "left");
+  EXPECT_FALSE(clearance.sides()[0].estimated);
   EXPECT_NE(clearance.missing().find("right_coronoid_tip"), std::string::npos);
+  CoronoidSide side = clearance.sides()[0];
+  TrianglePair start;
   for (const double left : {0.0, 2.5, 1.0}) {
     Pose pose;
     pose.t.x() = left;
-    clearance.add(pose);
+    side.mm.push_back(clearance.distance_mm(0, pose, start));
   }
-  EXPECT_NEAR(clearance.sides()[0].mm[0], 6, 1e-9);
-  EXPECT_NEAR(clearance.sides()[0].least_mm(), 3.5, 1e-9);
-  EXPECT_EQ(clearance.sides()[0].least_frame, 1);
+  EXPECT_NEAR(side.mm[0], 6, 1e-9);
+  EXPECT_NEAR(side.least_mm(), 3.5, 1e-9);
+  EXPECT_EQ(side.least_frame(), 1);
 }
 
 TEST(CheckPage, TellsVerdictFirstAndEscapesNames) {
   const Scene scene = make_scene(ball_patient());
-  const auto bad = check_clearance(scene, bite(3), 0.5, {});
-  const auto page = check_page(bad, {scene.patient.name, "bite", 0.5, {"worst.png"}, {"a < b"}});
+  const auto bad = check_clearance(scene, bite(3), at_120_hz(0.5), {});
+  const auto page = check_page(bad, {scene.patient.name, "bite", {"worst.png"}, {"a < b"}});
   const auto at = [&](const char* text) { return page.find(text); };
   EXPECT_NE(at("Violation."), std::string::npos);
-  EXPECT_LT(at("Violation."), at("<table>"));
-  EXPECT_LT(at("<table>"), at("<svg"));
-  EXPECT_LT(at("<svg"), at("worst.png"));
+  EXPECT_LT(at("Violation."), at("<h1>"));
+  EXPECT_LT(at("<h1>"), at("worst.png"));
+  EXPECT_LT(at("worst.png"), at("<svg"));
+  EXPECT_LT(at("<svg"), at("<table>"));
   EXPECT_NE(at("Not available: left"), std::string::npos);
   EXPECT_NE(at("not for clinical use"), std::string::npos);
   EXPECT_NE(at("ball &lt;&amp; box&gt;"), std::string::npos);
@@ -145,11 +154,11 @@ TEST(CheckPage, TellsVerdictFirstAndEscapesNames) {
   Case alone = ball_patient();
   alone.parts.erase(alone.parts.begin());
   const Scene no_pair = make_scene(std::move(alone));
-  const auto nothing = check_clearance(no_pair, bite(3), 0.5, {});
-  EXPECT_NE(check_page(nothing, {"p", "m", 0.5, {}, {}}).find("Nothing to check"),
+  const auto nothing = check_clearance(no_pair, bite(3), at_120_hz(0.5), {});
+  EXPECT_NE(check_page(nothing, {"p", "m", {}, {}}).find("Nothing to check"),
             std::string::npos);
-  const auto good = check_clearance(scene, bite(0.3), 0.5, {});
-  EXPECT_NE(check_page(good, {"p", "m", 0.5, {}, {}}).find("No violation."), std::string::npos);
+  const auto good = check_clearance(scene, bite(0.3), at_120_hz(0.5), {});
+  EXPECT_NE(check_page(good, {"p", "m", {}, {}}).find("No violation."), std::string::npos);
 }
 
 TEST(ClearancePlot, OpeningIsDrawnThroughAndClosingDashed) {
@@ -160,12 +169,12 @@ TEST(ClearancePlot, OpeningIsDrawnThroughAndClosingDashed) {
     return n;
   };
   // Down by 8 mm and back.
-  const auto opening = clearance_svg(check_clearance(scene, bite(-8), 1, {}), 1);
+  const auto opening = clearance_svg(check_clearance(scene, bite(-8), at_120_hz(1), {}));
   EXPECT_NE(opening.find("Clearance against opening"), std::string::npos);
   EXPECT_NE(opening.find("margin 1.00 mm"), std::string::npos);
   EXPECT_EQ(count(opening, "<polyline"), 2);
   EXPECT_EQ(count(opening, "stroke-dasharray=\"6 4\""), 1);
-  const auto still = clearance_svg(check_clearance(scene, bite(0.5), 0, {}), 0);
+  const auto still = clearance_svg(check_clearance(scene, bite(0.5), at_120_hz(0), {}));
   EXPECT_NE(still.find("Clearance over time"), std::string::npos);
   EXPECT_EQ(count(still, "stroke-dasharray=\"6 4\""), 0);
 }
@@ -189,32 +198,14 @@ TEST(Clearance, ContactAwayFromTheOverlapAtRestHasItsOwnDepth) {
                         return pose;
                       },
                       {}};
-  const auto check = check_clearance(scene, motion, 0, {});
+  const auto check = check_clearance(scene, motion, at_120_hz(0), {});
   const auto& pair = check.pairs.at(0);
   EXPECT_NEAR(pair.rest_depth_mm, 1, 1e-6);
-  EXPECT_TRUE(pair.worst_was_apart);
-  EXPECT_GT(pair.worst_depth_mm, 0.5);
-  EXPECT_NEAR(pair.worst_depth_mm, pair.beyond_rest_mm, 1e-9);
-  EXPECT_NEAR(check.pairs[0].clearance_mm.back(), -pair.worst_depth_mm, 1e-9);
-  EXPECT_NE(worst_caption(check, pair).find("apart at rest"), std::string::npos);
-}
-
-TEST(CloseLook, RealCrownsThatOverlapAtRest) {
-  auto patient = case_ubc();
-  if (!patient) GTEST_SKIP() << "real anatomy absent";
-  const Scene scene = make_scene(std::move(*patient));
-  CloseLook look(scene.patient);
-  int looked = 0;
-  for (const auto& pair : scene.contacts.at_rest().pairs) {
-    const auto detail = look.look(pair, Pose{});
-    EXPECT_TRUE(detail.volume_known);
-    EXPECT_GT(detail.area_mm2, 5);
-    EXPECT_GT(detail.volume_mm3, 1);
-    EXPECT_LT(detail.volume_error_mm3, 0.05 * detail.volume_mm3);
-    EXPECT_EQ(detail.side, "both");
-    ++looked;
-  }
-  EXPECT_EQ(looked, 4);
+  EXPECT_TRUE(pair.worst.sample.was_apart);
+  EXPECT_GT(pair.worst.sample.depth_mm, 0.5);
+  EXPECT_NEAR(pair.worst.sample.depth_mm, pair.beyond_rest_mm, 1e-9);
+  EXPECT_NEAR(check.pairs[0].clearance_mm.back(), -pair.worst.sample.depth_mm, 1e-9);
+  EXPECT_NE(worst_caption(pair).find("apart at rest"), std::string::npos);
 }
 
 }  // namespace

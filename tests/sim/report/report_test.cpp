@@ -56,16 +56,16 @@ TEST(Trace, HasTheColumnsOfTheContractAndAnEarlierTraceStaysUntilFinish) {
 TEST(Clearance, MarginAndPenetrationAreToldApart) {
   const Scene scene = make_scene(box_patient());
   const auto verdict = [&](double height, double margin) {
-    return check_clearance(scene, lift(height), margin, {}).pairs.at(0);
+    return check_clearance(scene, lift(height), {.margin_mm = margin, .sampling = {7, 0}}, {}).pairs.at(0);
   };
   EXPECT_NEAR(verdict(0.4, 0).least_distance_mm, 0.6, 1e-9);
-  EXPECT_FALSE(verdict(0.4, 0.5).violates_margin);
-  EXPECT_TRUE(verdict(0.6, 0.5).violates_margin);
-  EXPECT_FALSE(verdict(0.6, 0.5).penetrates);
+  EXPECT_FALSE(verdict(0.4, 0.5).violated());
+  EXPECT_TRUE(verdict(0.6, 0.5).too_near);
+  EXPECT_FALSE(verdict(0.6, 0.5).collides);
   const auto deep = verdict(3, 0);
-  EXPECT_TRUE(deep.penetrates);
+  EXPECT_TRUE(deep.collides);
   EXPECT_NEAR(deep.beyond_rest_mm, 2.0, 1e-6);
-  EXPECT_NEAR(deep.first_touch / 120.0, 1.0 / 6, 1.01 / 120);  // 1 mm of the 6 mm/s
+  EXPECT_NEAR(deep.first_touch->time_s, 1.0 / 6, 0.02 / 6);  // 1 mm of the 6 mm/s
 }
 
 TEST(Report, CountsWhatTheFramesDid) {

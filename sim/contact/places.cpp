@@ -1,0 +1,187 @@
+#include "sim/contact/places.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "engine/mesh/measure.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double tooth_mm = 3;    // how near a tooth names a place
+constexpr double middle_mm = 12;  // to either side of the midline: neither left nor right
+
+double half_width(const Case& patient) {
+  const auto left = patient.landmarks.find("left_condyle"),
+             right = patient.landmarks.find("right_condyle");
+  return left && right ? 0.5 * std::abs(left->x() - right->x()) : 0;
+}
+
+double midline_of(const Case& patient) {
+  const auto left = patient.landmarks.find("left_condyle"),
+             right = patient.landmarks.find("right_condyle");
+  if (left && right) return 0.5 * (left->x() + right->x());
+  const Part* mandible = patient.find(Role::mandible);
+  return mandible && !mandible->mesh.empty() ? bounding_box(mandible->mesh).center().x() : 0;
+}
+
+}  // namespace
+
+std::optional<CoronoidTip> coronoid_tip(const Case& patient, const std::string& side) {
+  if (const auto tip = patient.landmarks.find(side + "_coronoid_tip"))
+    return CoronoidTip{*tip, false};
+  const auto condyle = patient.landmarks.find(side + "_condyle");
+  const double half = half_width(patient);
+  if (!condyle || half <= 0) return std::nullopt;
+  // Height of the ramus' upper border, forward from the condyle.
+  constexpr double bin_mm = 2;
+  constexpr std::size_t bins = 30;
+  constexpr double least_rise_mm = 2;  // of the tip above the notch
+  const double middle = midline_of(patient), outward = side == "left" ? 1 : -1;
+  std::array<std::optional<Vector3d>, bins> top;
+  for (const auto& part : patient.parts) {
+    if (part.role != Role::mandible) continue;
+    for (const auto& p : part.mesh.vertices) {
+      const double forward = condyle->y() - p.y();
+      if (forward < 0 || outward * (p.x() - middle) < 0.6 * half) continue;
+      const auto bin = static_cast<std::size_t>(forward / bin_mm);
+      if (bin < bins && (!top[bin] || p.z() > top[bin]->z())) top[bin] = p;
+    }
+  }
+  // The notch: lower than the way before it, and the tip after it is higher.
+  std::optional<Vector3d> notch, tip;
+  for (const auto& p : top) {
+    if (!p) continue;
+    if (!notch || p->z() < notch->z()) {
+      if (tip && tip->z() > notch->z() + least_rise_mm) break;
+      notch = p;
+      tip.reset();
+    } else if (!tip || p->z() > tip->z()) {
+      tip = p;
+    }
+  }
+  if (!tip || tip->z() < notch->z() + least_rise_mm) return std::nullopt;
+  return CoronoidTip{*tip, true};
+}
+
+Places::Places(const Case& patient) : patient_(patient), midline_mm_(midline_of(patient)) {
+  add_anchors();
+  for (std::size_t i = 0; i < patient.parts.size(); ++i) {
+    const auto& part = patient.parts[i];
+    if (!part.teeth.empty() && !part.mesh.empty())
+      arches_.try_emplace(static_cast<int>(i), Arch{TriangleTree(part.mesh), part.teeth});
+  }
+}
+
+void Places::add_anchors() {
+  struct Known {
+    const char* landmark;  // of a pair: without the side
+    const char* name;
+    Body body;
+    double reach_mm;
+  };
+  constexpr auto mandible = Body::mandible, cranium = Body::cranium;
+  constexpr std::array paired = {Known{"condyle", "condyle", mandible, 13},
+                                 Known{"condylion", "condyle", mandible, 8},
+                                 Known{"sigmoid_notch", "notch of the ramus", mandible, 8},
+                                 Known{"gonion", "angle of the mandible", mandible, 14},
+                                 Known{"mental_foramen", "mental foramen", mandible, 6},
+                                 // The condyle lies in its fossa at rest.
+                                 Known{"condyle", "joint fossa", cranium, 14},
+                                 Known{"eminence_crest", "articular eminence", cranium, 9},
+                                 Known{"zygion", "zygomatic arch", cranium, 20},
+                                 Known{"malar", "zygomatic bone", cranium, 18},
+                                 Known{"zygomaxillare", "zygomatic bone", cranium, 12},
+                                 Known{"mastoidale", "mastoid process", cranium, 14}};
+  constexpr std::array single = {Known{"pogonion", "chin", mandible, 14},
+                                 Known{"menton", "chin", mandible, 12}};
+  const auto add = [&](const Known& known, const std::string& side) {
+    if (const auto p = patient_.landmarks.find((side.empty() ? "" : side + "_") + known.landmark))
+      anchors_.push_back(
+          {(side.empty() ? "" : side + " ") + known.name, known.body, *p, known.reach_mm});
+  };
+  for (const std::string side : {"left", "right"}) {
+    for (const auto& known : paired) add(known, side);
+    if (const auto tip = coronoid_tip(patient_, side))
+      anchors_.push_back({side + " coronoid process", Body::mandible, tip->point, 13});
+  }
+  for (const auto& known : single) add(known, "");
+}
+
+int Places::tooth_at(int part, const Vector3d& p) const {
+  const auto arch = arches_.find(part);
+  if (arch == arches_.end()) return 0;
+  const int triangle = arch->second.tree.nearest(p, tooth_mm).triangle;
+  for (const auto& tooth : arch->second.teeth)
+    if (triangle >= tooth.first_triangle && triangle < tooth.first_triangle + tooth.triangle_count)
+      return tooth.fdi;
+  return 0;
+}
+
+std::string Places::side_of(const Vector3d& p) const {
+  return p.x() > midline_mm_ ? "left" : "right";
+}
+
+/// Where no landmark is near: by how far forward and outward a place lies between the condyles and
+/// the incisors.
+std::string Places::by_shape(Role role, const Vector3d& p) const {
+  const auto left = patient_.landmarks.find("left_condyle"),
+             right = patient_.landmarks.find("right_condyle");
+  const bool lower = body_of(role) == Body::mandible;
+  const auto incisor =
+      patient_.landmarks.find(lower ? "lower_incisal_point" : "upper_incisal_point");
+  if (!left || !right || !incisor) return "";
+  const double back = 0.5 * (left->y() + right->y());
+  if (back - incisor->y() < 20) return "";
+  const double forward = (back - p.y()) / (back - incisor->y());  // 0 condyles, 1 incisors
+  const double outward = std::abs(p.x() - midline_mm_);
+  const std::string side = side_of(p);
+  if (is_teeth(role)) {
+    const std::string jaw = lower ? "lower" : "upper";
+    return forward > 0.85 ? jaw + " front teeth" : side + " " + jaw + " back teeth";
+  }
+  if (lower) {
+    if (forward < 0.45) return side + " ramus";
+    return outward < middle_mm ? "chin" : side + " body of the mandible";
+  }
+  if (forward > 0.1 && outward > 0.75 * half_width(patient_))
+    return side + " zygomatic bone or arch";
+  if (forward > 0.45)
+    return outward < middle_mm ? "front of the upper jaw" : side + " half of the upper jaw";
+  return outward < middle_mm ? "skull base" : side + " half of the skull base";
+}
+
+std::string Places::name(int part, const Vector3d& p_rest) const {
+  const Part& of = patient_.parts[static_cast<std::size_t>(part)];
+  if (const int fdi = tooth_at(part, p_rest)) return fmt::format("tooth {}", fdi);
+  const Body body = body_of(of.role);
+  if (body == Body::free) return of.name;
+  if (!is_teeth(of.role)) {
+    const Anchor* nearest = nullptr;
+    double least = 1;  // share of the reach
+    for (const auto& anchor : anchors_) {
+      const double share = (anchor.point - p_rest).norm() / anchor.reach_mm;
+      if (anchor.body != body || share >= least) continue;
+      least = share;
+      nearest = &anchor;
+    }
+    if (nearest) return nearest->name;
+  }
+  const std::string name = by_shape(of.role, p_rest);
+  return name.empty() ? of.name : name;
+}
+
+std::string both_places(const std::string& a, const std::string& b) {
+  const std::string tooth = "tooth ";
+  if (a.starts_with(tooth) && b.starts_with(tooth))
+    return "teeth " + a.substr(tooth.size()) + " and " + b.substr(tooth.size());
+  return a + " and " + b;
+}
+
+}  // namespace condyle

@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "sim/report/check_page.h"
+
+namespace condyle {
+
+std::vector<std::size_t> worst_first(const ClearanceCheck& check) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < check.pairs.size(); ++i) order.push_back(i);
+  const auto rank = [&](std::size_t i) {
+    const auto& pair = check.pairs[i];
+    const int kind = pair.collides ? 0 : pair.too_near ? 1 : pair.at_rest ? 2 : 3;
+    // Teeth and cut faces are meant to be near: after bones that are not.
+    const bool may_touch = pair.rule.policy == PairPolicy::allowed ||
+                           pair.rule.policy == PairPolicy::cut_face;
+    return std::tuple(kind, kind == 3 && may_touch, -pair.beyond_rest_mm, pair.least_distance_mm,
+                      -pair.rest_depth_mm);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return rank(i) < rank(j); });
+  return order;
+}
+
+std::vector<std::size_t> pairs_to_show(const ClearanceCheck& check, std::size_t most) {
+  const bool any = check.violated();
+  std::vector<std::size_t> shown;
+  for (const std::size_t i : worst_first(check))
+    if (shown.size() < most && (!any || check.pairs[i].violated())) shown.push_back(i);
+  return shown;
+}
+
+std::string summary_words(const ClearanceCheck& check) {
+  if (check.pairs.empty())
+    return "Nothing to check: the case has no two bones of which one moves against the other.";
+  int collide = 0, near = 0, rest = 0;
+  for (const auto& pair : check.pairs) {
+    collide += pair.collides;
+    near += !pair.collides && pair.too_near;
+    rest += !pair.collides && !pair.too_near && pair.at_rest;
+  }
+  if (!check.violated())
+    return "No violation. Every pair keeps its rule during the whole motion.";
+  std::string words;
+  const auto add = [&](int count, const char* one, const char* several) {
+    if (count > 0)
+      words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, count == 1 ? one : several);
+  };
+  add(collide, "collides", "collide");
+  add(near, "comes too near", "come too near");
+  add(rest, "breaks its rule already at rest", "break their rule already at rest");
+  return fmt::format("Violation. Of {} {}, {}.", check.pairs.size(),
+                     check.pairs.size() == 1 ? "pair" : "pairs", words);
+}
+
+std::string open_surface_words(const PairVerdict& pair) {
+  const bool open_a = pair.worst.measure.open_a, open_b = pair.worst.measure.open_b;
+  if (open_a && open_b)
+    return "Both have open surfaces, which have no inside: near them distance is shown without "
+           "sign, as if apart.";
+  if (!open_a && !open_b) return "";
+  return fmt::format(
+      "{0} has open surfaces, which have no inside: near them, distance on {1} is shown without "
+      "sign, as if apart.",
+      open_a ? pair.a : pair.b, open_a ? pair.b : pair.a);
+}
+
+std::string push_out_words(const PairVerdict& pair) {
+  const Eigen::Vector3d& out = *pair.push_out_mm;
+  const auto along = [](double mm, const char* plus, const char* minus) {
+    return fmt::format("{:.2f} mm {}", std::abs(mm), mm >= 0 ? plus : minus);
+  };
+  return fmt::format("At rest, moving {} by {}, {} and {} ({:.2f} mm) parts them.", pair.b,
+                     along(out.x(), "left", "right"), along(out.y(), "back", "forward"),
+                     along(out.z(), "up", "down"), out.norm());
+}
+
+std::string worst_caption(const PairVerdict& pair) {
+  const auto& [when, sample, measure, poses] = pair.worst;
+  std::string text;
+  if (!sample.contact.touching)
+    text = fmt::format("nearest {:.2f} mm", sample.contact.distance_mm);
+  else if (sample.was_apart)
+    text = fmt::format("{:.2f} mm deep where they are apart at rest", sample.depth_mm);
+  else if (sample.beyond_rest_mm() > 0 && pair.rest_depth_mm > 0)
+    text = fmt::format("{:.2f} mm deep, {:.2f} mm deeper than at rest", sample.depth_mm,
+                       sample.beyond_rest_mm());
+  else if (sample.beyond_rest_mm() > 0)
+    text = fmt::format("{:.2f} mm deep", sample.depth_mm);
+  else
+    text = pair.rest_depth_mm > 0
+               ? fmt::format("{:.2f} mm deep, not deeper than at rest", sample.depth_mm)
+               : "touching";
+  text += fmt::format(" at {:.1f} mm opening, {:.1f}° rotation ({:.2f} s{})", when.opening_mm,
+                      when.rotation_deg, when.time_s, when.between ? ", between two frames" : "");
+  if (sample.contact.touching) {
+    text += fmt::format("; contact {:.1f} mm² in {} {}", measure.area_mm2, measure.patches,
+                        measure.patches == 1 ? "patch" : "patches");
+    text += measure.volume_known ? fmt::format(", overlap {:.1f} mm³", measure.volume_mm3)
+                                 : ", overlap volume unknown: open surface";
+  }
+  text += "; " + measure.side +
+          (measure.side == "both"     ? " sides"
+           : measure.side == "middle" ? ""
+                                      : " side");
+  return text + ", " + measure.region();
+}
+
+}  // namespace condyle

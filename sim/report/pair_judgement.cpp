@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include "sim/report/clearance.h"
+
+namespace condyle {
+namespace {
+
+// Faces of one cut may overlap by this: meshes of the two sides need not be the same.
+constexpr double cut_overlap_mm = 0.1;
+
+std::string number(double mm) { return fmt::format("{:.2f} mm", mm); }
+
+}  // namespace
+
+void judge(PairVerdict& pair, double slack_mm) {
+  const bool apart_at_rest = pair.rest_distance_mm > 0;
+  // Bones apart at rest must not touch at all: a thin shell gives no depth to measure.
+  const bool meets = (apart_at_rest && pair.first_touch) || pair.beyond_rest_mm > slack_mm;
+  const bool nears = pair.least_distance_mm < pair.keep_mm;
+  switch (pair.rule.policy) {
+    case PairPolicy::forbidden:
+    case PairPolicy::guided:
+      pair.collides = meets;
+      pair.at_rest = pair.rest_distance_mm < pair.keep_mm;
+      pair.too_near = nears && !pair.at_rest;
+      break;
+    case PairPolicy::allowed:
+      pair.collides = pair.beyond_rest_mm > slack_mm;
+      break;
+    case PairPolicy::cut_face:
+      pair.at_rest = pair.rest_depth_mm > cut_overlap_mm;
+      pair.collides = pair.beyond_rest_mm > (pair.at_rest ? slack_mm : cut_overlap_mm);
+      break;
+  }
+}
+
+std::string rule_words(const PairVerdict& pair) {
+  switch (pair.rule.policy) {
+    case PairPolicy::allowed:
+      return "may touch, not overlap more than at rest";
+    case PairPolicy::guided:
+      return "guided: must keep a gap of " + number(pair.keep_mm);
+    case PairPolicy::cut_face:
+      return "cut faces: may touch, not overlap by more than " + number(cut_overlap_mm);
+    case PairPolicy::forbidden:
+      break;
+  }
+  return pair.keep_mm > 0 ? "must stay " + number(pair.keep_mm) + " apart" : "must not touch";
+}
+
+std::string verdict_words(const PairVerdict& pair) {
+  const bool guided = pair.rule.policy == PairPolicy::guided;
+  const std::string asked = guided ? "gap" : "margin";
+  std::string words;
+  const auto add = [&words](const std::string& more) { words += (words.empty() ? "" : "; ") + more; };
+  if (pair.collides) {
+    const std::string at = fmt::format(
+        " at {:.1f} mm opening",
+        pair.beyond_rest_mm > 0 ? pair.deepest_at.opening_mm : pair.first_touch->opening_mm);
+    if (pair.beyond_rest_mm > 0 && pair.rest_depth_mm > 0)
+      add("the motion makes them overlap " + number(pair.beyond_rest_mm) + " more than at rest" +
+          at);
+    else if (pair.beyond_rest_mm > 0)
+      add("the motion makes them overlap by " + number(pair.beyond_rest_mm) + at);
+    else
+      add("the motion makes them meet" + at);
+  } else if (pair.too_near) {
+    add(fmt::format("the motion brings them to {} at {:.1f} mm opening, nearer than the {} of {}",
+                    number(pair.least_distance_mm), pair.least_at.opening_mm, asked,
+                    number(pair.keep_mm)));
+  }
+  if (pair.at_rest) {
+    if (pair.rest_depth_mm > 0)
+      add("overlap already at rest (" + number(pair.rest_depth_mm) + ")");
+    else
+      add(fmt::format("nearer than the {} of {} already at rest ({})", asked,
+                      number(pair.keep_mm), number(pair.rest_distance_mm)));
+    if (!pair.collides && pair.rest_distance_mm > 0 &&
+        pair.least_distance_mm < pair.rest_distance_mm)
+      add(fmt::format("the motion brings them to {} at {:.1f} mm opening",
+                      number(pair.least_distance_mm), pair.least_at.opening_mm));
+    else if (!pair.collides)
+      add("the motion makes it no worse");
+  }
+  if (!words.empty()) return words;
+  if (pair.rest_depth_mm > 0)
+    return "overlap by " + number(pair.rest_depth_mm) + " at rest, never more in the motion";
+  if (pair.beyond_rest_mm > 0)
+    return "touch, overlap at most " + number(pair.beyond_rest_mm);
+  if (pair.first_touch) return "touch without overlap";
+  return fmt::format("keep at least {}, nearest at {:.1f} mm opening",
+                     number(pair.least_distance_mm), pair.least_at.opening_mm);
+}
+
+}  // namespace condyle
