@@ -73,8 +73,7 @@ std::vector<std::string> write_pictures(StagedFiles& files, const Scene& scene,
     write_png(files.path(names[shown[k]]), picture_of(scene, pair, threads));
   }
   if (const auto worth = pairs_to_show(check, check.pairs.size()).size(); worth > shown.size())
-    notes.push_back(
-        fmt::format("the {} worst of {} pairs are drawn", shown.size(), worth));
+    notes.push_back(fmt::format("the {} worst of {} pairs are drawn", shown.size(), worth));
   return names;
 }
 
@@ -104,9 +103,8 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   const Motion motion =
       make_motion(options.motion.motion, scene.patient, scene.contacts, options.motion.opening);
   const auto check = check_clearance(
-      scene, motion,
-      {.margin_mm = options.margin_mm, .sampling = {options.frames, options.fps}}, settings,
-      bar.callback());
+      scene, motion, {.margin_mm = options.margin_mm, .sampling = {options.frames, options.fps}},
+      settings, bar.callback());
   std::vector<std::string> pictures, notes;
   if (files) pictures = write_pictures(*files, scene, check, common.threads, notes, bar.callback());
   bar.clear();

@@ -32,8 +32,8 @@ void StagedFiles::finish() {
     std::error_code error;
     fs::rename(stage_ / name, folder_ / name, error);
     if (error)
-      throw MachineError((folder_ / name).string() + ": cannot be put in place: " +
-                         error.message());
+      throw MachineError((folder_ / name).string() +
+                         ": cannot be put in place: " + error.message());
   }
 }
 

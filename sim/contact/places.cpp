@@ -87,18 +87,17 @@ void Places::add_anchors() {
     double reach_mm;
   };
   constexpr auto mandible = Body::mandible, cranium = Body::cranium;
-  constexpr std::array paired = {Known{"condyle", "condyle", mandible, 13},
-                                 Known{"condylion", "condyle", mandible, 8},
-                                 Known{"sigmoid_notch", "notch of the ramus", mandible, 8},
-                                 Known{"gonion", "angle of the mandible", mandible, 14},
-                                 Known{"mental_foramen", "mental foramen", mandible, 6},
-                                 // The condyle lies in its fossa at rest.
-                                 Known{"condyle", "joint fossa", cranium, 14},
-                                 Known{"eminence_crest", "articular eminence", cranium, 9},
-                                 Known{"zygion", "zygomatic arch", cranium, 20},
-                                 Known{"malar", "zygomatic bone", cranium, 18},
-                                 Known{"zygomaxillare", "zygomatic bone", cranium, 12},
-                                 Known{"mastoidale", "mastoid process", cranium, 14}};
+  constexpr std::array paired = {
+      Known{"condyle", "condyle", mandible, 13}, Known{"condylion", "condyle", mandible, 8},
+      Known{"sigmoid_notch", "notch of the ramus", mandible, 8},
+      Known{"gonion", "angle of the mandible", mandible, 14},
+      Known{"mental_foramen", "mental foramen", mandible, 6},
+      // The condyle lies in its fossa at rest.
+      Known{"condyle", "joint fossa", cranium, 14},
+      Known{"eminence_crest", "articular eminence", cranium, 9},
+      Known{"zygion", "zygomatic arch", cranium, 20}, Known{"malar", "zygomatic bone", cranium, 18},
+      Known{"zygomaxillare", "zygomatic bone", cranium, 12},
+      Known{"mastoidale", "mastoid process", cranium, 14}};
   constexpr std::array single = {Known{"pogonion", "chin", mandible, 14},
                                  Known{"menton", "chin", mandible, 12}};
   const auto add = [&](const Known& known, const std::string& side) {

@@ -47,7 +47,8 @@ class PageWriter {
       html_ += "<h2>Clearance during the motion</h2>\n<figure>\n" + clearance_svg(check_) +
                "</figure>\n";
     coronoids();
-    if (!check_.teeth.empty()) html_ += "<h2>Teeth</h2>\n<figure>\n" + teeth_svg(check_) + "</figure>\n";
+    if (!check_.teeth.empty())
+      html_ += "<h2>Teeth</h2>\n<figure>\n" + teeth_svg(check_) + "</figure>\n";
     table();
     words();
     html_ +=
@@ -75,8 +76,9 @@ class PageWriter {
       add(" {}: {} and {}, {}.", check_.violated() ? "Worst" : "Closest", escaped(worst.a),
           escaped(worst.b), escaped(worst_caption(worst)));
     }
-    html_ += "<br><span class=\"small\">For research and education, not for clinical use.</span>"
-             "</div>\n";
+    html_ +=
+        "<br><span class=\"small\">For research and education, not for clinical use.</span>"
+        "</div>\n";
   }
 
   void sentences() {
@@ -86,11 +88,10 @@ class PageWriter {
     const auto order = worst_first(check_);
     for (std::size_t k = 0; k < std::min(most, order.size()); ++k) {
       const auto& pair = check_.pairs[order[k]];
-      add("<li>{} <strong>{} and {}</strong> ({}): {}. ",
-          pair.violated() ? "&#10007;" : "&#10003;", escaped(pair.a), escaped(pair.b),
-          escaped(rule_words(pair)), escaped(verdict_words(pair)));
-      add("{}: {}.", pair.beyond_rest_mm > 0 ? "Deepest" : "Closest",
-          escaped(worst_caption(pair)));
+      add("<li>{} <strong>{} and {}</strong> ({}): {}. ", pair.violated() ? "&#10007;" : "&#10003;",
+          escaped(pair.a), escaped(pair.b), escaped(rule_words(pair)),
+          escaped(verdict_words(pair)));
+      add("{}: {}.", pair.beyond_rest_mm > 0 ? "Deepest" : "Closest", escaped(worst_caption(pair)));
       if (pair.push_out_mm) add(" {}", escaped(push_out_words(pair)));
       html_ += "</li>\n";
     }
@@ -147,11 +148,10 @@ class PageWriter {
       add("<td>none; nearest {}, {}</td>", measure.side, escaped(measure.region()));
     }
     if (pair.violated())
-      add("<td class=\"bad\">&#10007; {}</td>",
-          pair.collides   ? "collides"
-          : pair.too_near ? "too near"
-          : pair.rest_depth_mm > 0 ? "overlaps at rest"
-                                   : "too near at rest");
+      add("<td class=\"bad\">&#10007; {}</td>", pair.collides            ? "collides"
+                                                : pair.too_near          ? "too near"
+                                                : pair.rest_depth_mm > 0 ? "overlaps at rest"
+                                                                         : "too near at rest");
     else
       html_ += "<td>&#10003; clear</td>";
     html_ += "</tr>\n";

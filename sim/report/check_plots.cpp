@@ -114,8 +114,9 @@ std::string clearance_svg(const ClearanceCheck& check) {
          pair.keep_mm});
   }
   const std::size_t left_out = check.pairs.size() - shown.size();
-  return clearance_plot(check, "Clearance", shown, std::move(levels),
-                        left_out > 0 ? fmt::format("{} more pairs are in pairs.csv", left_out) : "");
+  return clearance_plot(
+      check, "Clearance", shown, std::move(levels),
+      left_out > 0 ? fmt::format("{} more pairs are in pairs.csv", left_out) : "");
 }
 
 std::string coronoid_svg(const ClearanceCheck& check) {

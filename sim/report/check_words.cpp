@@ -15,8 +15,8 @@ std::vector<std::size_t> worst_first(const ClearanceCheck& check) {
     const auto& pair = check.pairs[i];
     const int kind = pair.collides ? 0 : pair.too_near ? 1 : pair.at_rest ? 2 : 3;
     // Teeth and cut faces are meant to be near: after bones that are not.
-    const bool may_touch = pair.rule.policy == PairPolicy::allowed ||
-                           pair.rule.policy == PairPolicy::cut_face;
+    const bool may_touch =
+        pair.rule.policy == PairPolicy::allowed || pair.rule.policy == PairPolicy::cut_face;
     return std::tuple(kind, kind == 3 && may_touch, -pair.beyond_rest_mm, pair.least_distance_mm,
                       -pair.rest_depth_mm);
   };
@@ -42,8 +42,7 @@ std::string summary_words(const ClearanceCheck& check) {
     near += !pair.collides && pair.too_near;
     rest += !pair.collides && !pair.too_near && pair.at_rest;
   }
-  if (!check.violated())
-    return "No violation. Every pair keeps its rule during the whole motion.";
+  if (!check.violated()) return "No violation. Every pair keeps its rule during the whole motion.";
   std::string words;
   const auto add = [&](int count, const char* one, const char* several) {
     if (count > 0)

@@ -74,12 +74,12 @@ std::string table_of(const ClearanceCheck& check, const std::vector<Frame>& fram
       const auto& contact = sample.contact;
       const PairMeasure& measure = frames[f].measures[p];
       const auto &wa = contact.witness_a, &wb = contact.witness_b;
-      fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},",
-                     f, check.time_s[f], check.opening_mm[f], cell(pair.a), cell(pair.b),
-                     contact.touching ? 1 : 0, contact.touching ? 0 : contact.distance_mm,
-                     sample.depth_mm, sample.beyond_rest_mm(), sample.contacts, wa.x(), wa.y(),
-                     wa.z(), wb.x(), wb.y(), wb.z(), sample.signed_distance_mm(),
-                     policy_name(pair.rule.policy));
+      fmt::format_to(std::back_inserter(csv),
+                     "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},", f, check.time_s[f],
+                     check.opening_mm[f], cell(pair.a), cell(pair.b), contact.touching ? 1 : 0,
+                     contact.touching ? 0 : contact.distance_mm, sample.depth_mm,
+                     sample.beyond_rest_mm(), sample.contacts, wa.x(), wa.y(), wa.z(), wb.x(),
+                     wb.y(), wb.z(), sample.signed_distance_mm(), policy_name(pair.rule.policy));
       const bool unknown = contact.touching && !measure.volume_known;
       fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{}\n", measure.area_mm2,
                      measure.patches,
@@ -192,8 +192,7 @@ ClearanceCheck check_clearance(const Scene& scene, const Motion& motion,
       if (sample.contact.touching && !pair.first_touch) {
         const bool at_start = i == 0;
         pair.first_touch =
-            at_start ? whens[0]
-                     : when(walk.first_touch(p, all[i - 1].time_s, all[i]).time_s);
+            at_start ? whens[0] : when(walk.first_touch(p, all[i - 1].time_s, all[i]).time_s);
       }
       take(pair, sample, whens[i], touching);
       if (!whens[i].between) {

@@ -82,9 +82,8 @@ struct CheckSettings {
 
 /// Walks the motion as it is wanted, without stopping at contacts, and tells where bones meet and
 /// which rules are broken. Same bits for any number of threads.
-ClearanceCheck check_clearance(const Scene& scene, const Motion& motion,
-                               const CheckSettings& check, const SimulatorSettings& settings,
-                               const Progress& progress = {});
+ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, const CheckSettings& check,
+                               const SimulatorSettings& settings, const Progress& progress = {});
 
 /// Judges the measures of a pair by its rule. `slack_mm`: depth beyond rest that does not count.
 void judge(PairVerdict& pair, double slack_mm);

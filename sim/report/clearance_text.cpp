@@ -126,8 +126,7 @@ std::string ClearanceCheck::json(const Scene& scene, const Motion& motion,
     coronoid[side.side] = {
         {"at_rest_mm", side.mm.front()},
         {"min_mm", side.least_mm()},
-        {"min_at",
-         json_of({side.least_frame(), false, time_s[f], opening_mm[f], rotation_deg[f]})},
+        {"min_at", json_of({side.least_frame(), false, time_s[f], opening_mm[f], rotation_deg[f]})},
         {"at_widest_opening_mm", side.mm[widest_frame()]},
         {"tip_mm", list(side.tip)},
         {"tip_estimated", side.estimated}};

@@ -10,8 +10,8 @@ namespace condyle {
 
 /// Clearance of one coronoid process along a motion.
 struct CoronoidSide {
-  std::string side;        // "left", "right"
-  bool estimated = false;  // the tip was found from the mandible's shape
+  std::string side;                               // "left", "right"
+  bool estimated = false;                         // the tip was found from the mandible's shape
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();  // at rest, mm
   std::vector<double> mm;                         // one per frame
   int least_frame() const;                        // the first if several

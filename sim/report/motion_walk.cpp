@@ -27,9 +27,10 @@ std::vector<double> without_repeats(std::vector<double> times) {
 std::vector<double> frame_times(const Motion& motion, const CheckSampling& sampling) {
   constexpr double most_frames = 3000;
   const double by_rate = std::floor(motion.duration_s * sampling.fps + 0.5) + 1;
-  const int count = sampling.frames > 0     ? sampling.frames
-                    : motion.duration_s > 0 ? static_cast<int>(std::clamp(by_rate, 2.0, most_frames))
-                                            : 1;
+  const int count = sampling.frames > 0 ? sampling.frames
+                    : motion.duration_s > 0
+                        ? static_cast<int>(std::clamp(by_rate, 2.0, most_frames))
+                        : 1;
   std::vector<double> times;
   for (int i = 0; i < count; ++i)
     times.push_back(count == 1 ? 0 : motion.duration_s * i / (count - 1));
@@ -44,8 +45,7 @@ std::vector<PairSample> samples_of(const ContactSet& set) {
     sample.contact.contacts.clear();
     sample.contacts = static_cast<int>(pair.contacts.size());
     sample.depth_mm = pair.depth_mm;
-    sample.to_go_mm =
-        pair.rest_depth_mm + (pair.touching ? -pair.depth_mm : pair.distance_mm);
+    sample.to_go_mm = pair.rest_depth_mm + (pair.touching ? -pair.depth_mm : pair.distance_mm);
     // A set counts contact where the pair was apart at rest on from the depth at rest; what people
     // see is the depth of the place itself.
     for (const auto& away : set.away_from_rest) {

@@ -26,9 +26,7 @@ struct PairSample {
   // apart at rest, their signed distance. Changes by at most a millimetre per millimetre of motion.
   double to_go_mm = 0;
 
-  double beyond_rest_mm() const {
-    return std::max(0.0, contact.depth_mm - contact.rest_depth_mm);
-  }
+  double beyond_rest_mm() const { return std::max(0.0, contact.depth_mm - contact.rest_depth_mm); }
   /// mm; negative: depth at the deepest place.
   double signed_distance_mm() const { return contact.touching ? -depth_mm : contact.distance_mm; }
 };

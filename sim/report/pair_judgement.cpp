@@ -52,11 +52,13 @@ std::string verdict_words(const PairVerdict& pair) {
   const bool guided = pair.rule.policy == PairPolicy::guided;
   const std::string asked = guided ? "gap" : "margin";
   std::string words;
-  const auto add = [&words](const std::string& more) { words += (words.empty() ? "" : "; ") + more; };
+  const auto add = [&words](const std::string& more) {
+    words += (words.empty() ? "" : "; ") + more;
+  };
   if (pair.collides) {
-    const std::string at = fmt::format(
-        " at {:.1f} mm opening",
-        pair.beyond_rest_mm > 0 ? pair.deepest_at.opening_mm : pair.first_touch->opening_mm);
+    const std::string at = fmt::format(" at {:.1f} mm opening", pair.beyond_rest_mm > 0
+                                                                    ? pair.deepest_at.opening_mm
+                                                                    : pair.first_touch->opening_mm);
     if (pair.beyond_rest_mm > 0 && pair.rest_depth_mm > 0)
       add("the motion makes them overlap " + number(pair.beyond_rest_mm) + " more than at rest" +
           at);
@@ -73,8 +75,8 @@ std::string verdict_words(const PairVerdict& pair) {
     if (pair.rest_depth_mm > 0)
       add("overlap already at rest (" + number(pair.rest_depth_mm) + ")");
     else
-      add(fmt::format("nearer than the {} of {} already at rest ({})", asked,
-                      number(pair.keep_mm), number(pair.rest_distance_mm)));
+      add(fmt::format("nearer than the {} of {} already at rest ({})", asked, number(pair.keep_mm),
+                      number(pair.rest_distance_mm)));
     if (!pair.collides && pair.rest_distance_mm > 0 &&
         pair.least_distance_mm < pair.rest_distance_mm)
       add(fmt::format("the motion brings them to {} at {:.1f} mm opening",
@@ -85,8 +87,7 @@ std::string verdict_words(const PairVerdict& pair) {
   if (!words.empty()) return words;
   if (pair.rest_depth_mm > 0)
     return "overlap by " + number(pair.rest_depth_mm) + " at rest, never more in the motion";
-  if (pair.beyond_rest_mm > 0)
-    return "touch, overlap at most " + number(pair.beyond_rest_mm);
+  if (pair.beyond_rest_mm > 0) return "touch, overlap at most " + number(pair.beyond_rest_mm);
   if (pair.first_touch) return "touch without overlap";
   return fmt::format("keep at least {}, nearest at {:.1f} mm opening",
                      number(pair.least_distance_mm), pair.least_at.opening_mm);

@@ -11,9 +11,9 @@ ToothContacts::ToothContacts(const Case& patient)
     for (const auto& tooth : part.teeth) {
       const auto first = part.mesh.triangles.begin() + tooth.first_triangle;
       numbers_.push_back(tooth.fdi);
-      crowns_.push_back({static_cast<int>(i), CollisionMesh({part.mesh.vertices,
-                                                             {first, first + tooth.triangle_count},
-                                                             {}})});
+      crowns_.push_back(
+          {static_cast<int>(i),
+           CollisionMesh({part.mesh.vertices, {first, first + tooth.triangle_count}, {}})});
     }
   }
 }

@@ -37,7 +37,7 @@ class ToothContacts {
   };
   const Case& patient_;
   std::vector<int> numbers_;
-  std::vector<Crown> crowns_;                            // of each tooth
+  std::vector<Crown> crowns_;                           // of each tooth
   std::vector<std::unique_ptr<CollisionMesh>> arches_;  // of each part that is teeth, else null
 };
 

@@ -85,8 +85,7 @@ TEST(CheckedPair, OpenSurfaceHasNoVolume) {
   EXPECT_LT((pair.worst.measure.place - Eigen::Vector3d(15, -65, -40)).norm(), 0.3);
   const auto json = nlohmann::json::parse(check.json(scene, bite(3)));
   EXPECT_TRUE(json["pairs"][0]["worst"]["penetration_volume_mm3"].is_null());
-  EXPECT_NE(check_page(check, {"p", "m", {"x.png"}, {}}).find("without sign"),
-            std::string::npos);
+  EXPECT_NE(check_page(check, {"p", "m", {"x.png"}, {}}).find("without sign"), std::string::npos);
 }
 
 TEST(WorstView, DistancesOnTheBallAreItsHeights) {
@@ -155,8 +154,7 @@ TEST(CheckPage, TellsVerdictFirstAndEscapesNames) {
   alone.parts.erase(alone.parts.begin());
   const Scene no_pair = make_scene(std::move(alone));
   const auto nothing = check_clearance(no_pair, bite(3), at_120_hz(0.5), {});
-  EXPECT_NE(check_page(nothing, {"p", "m", {}, {}}).find("Nothing to check"),
-            std::string::npos);
+  EXPECT_NE(check_page(nothing, {"p", "m", {}, {}}).find("Nothing to check"), std::string::npos);
   const auto good = check_clearance(scene, bite(0.3), at_120_hz(0.5), {});
   EXPECT_NE(check_page(good, {"p", "m", {}, {}}).find("No violation."), std::string::npos);
 }

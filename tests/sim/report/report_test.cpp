@@ -56,7 +56,8 @@ TEST(Trace, HasTheColumnsOfTheContractAndAnEarlierTraceStaysUntilFinish) {
 TEST(Clearance, MarginAndPenetrationAreToldApart) {
   const Scene scene = make_scene(box_patient());
   const auto verdict = [&](double height, double margin) {
-    return check_clearance(scene, lift(height), {.margin_mm = margin, .sampling = {7, 0}}, {}).pairs.at(0);
+    return check_clearance(scene, lift(height), {.margin_mm = margin, .sampling = {7, 0}}, {})
+        .pairs.at(0);
   };
   EXPECT_NEAR(verdict(0.4, 0).least_distance_mm, 0.6, 1e-9);
   EXPECT_FALSE(verdict(0.4, 0.5).violated());
