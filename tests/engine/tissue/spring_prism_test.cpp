@@ -159,35 +159,6 @@ TEST(SpringPrism, EnergyDoesNotChangeUnderRigidMotion) {
   EXPECT_NEAR(after, before, 1e-10 * before);
 }
 
-TEST(LayeredNet, CountsOfThePublishedPatient) {
-  // A sheet of 523 nodes, 940 triangles and a rim of 104 edges: 12 x 40 squares less a staircase of
-  // ten at one corner. Four such sheets make 16,189 springs and 2,820 prisms.
-  std::vector<Eigen::Vector3i> triangles;
-  std::vector<int> index(13 * 41, -1);
-  Nodes nodes;
-  const auto vertex = [&](int i, int j) {
-    int& v = index[j * 13 + i];
-    if (v < 0) {
-      v = static_cast<int>(nodes.size()) / 4;
-      for (int s = 0; s < 4; ++s) nodes.emplace_back(8 * i, 8 * j, -4 * s);
-    }
-    return v;
-  };
-  for (int j = 0; j < 40; ++j)
-    for (int i = 0; i < 12; ++i) {
-      if (i + j < 4) continue;
-      const int a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1),
-                d = vertex(i, j + 1);
-      triangles.emplace_back(a, b, c);
-      triangles.emplace_back(a, c, d);
-    }
-  const SpringPrismNet net = layered_net(triangles, 4, nodes, std::vector<LayerMaterial>(3));
-  EXPECT_EQ(nodes.size() / 4, 523u);
-  EXPECT_EQ(edges_of(triangles).size(), 1462u);
-  EXPECT_EQ(net.spring_a.size(), 16189u);
-  EXPECT_EQ(net.prisms.size(), 2820u);
-}
-
 TEST(Minimizer, FollowsARigidMotionOfItsAnchorsExactly) {
   const Slab slab = make_slab(6, 4);
   const HessianFactor factor(slab.net, loads_of(slab, Vector3d::Zero()), slab.sheets, slab.rest);
