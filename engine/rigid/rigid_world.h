@@ -82,14 +82,14 @@ struct RigidState {
     Pose X_WB;
     RigidMotion motion;
   };
-  struct Touch {  // a contact that pushed, the solver's start
+  struct Touch {  // a contact that pushed: where the solver starts from
     int look = 0, sample = 0;
-    Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  // on B, world, kg mm/s
+    Eigen::Vector3d force_N = Eigen::Vector3d::Zero();  // on B, world
   };
   double time_s = 0;
   std::vector<Body> bodies;
   std::vector<Touch> touches;
-  std::vector<double> joint_impulses;  // of each joint's rows
+  std::vector<double> joint_forces_N;  // of each joint's rows
   std::vector<Pose> looked_at;         // where near samples were last searched
 };
 

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/collide/near_samples.h"
+#include "engine/collide/slide.h"
+#include "engine/rigid/row_solver.h"
+
+namespace condyle {
+
+/// A sample of one body that is near the surface of another.
+struct Touch {
+  int pair = 0, look = 0, sample = 0;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // world
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, from the pair's A to its B
+  double gap_mm = 0;                                  // beyond what is kept or allowed
+};
+
+/// Finds the touches of pairs of bodies. What a call finds depends on its arguments and on where
+/// near samples were last searched (looked_at) alone.
+class TouchFinder {
+ public:
+  using Surface = std::shared_ptr<const SlideBody>;
+
+  /// Both bodies' surfaces, each in its body's coordinates; `gap_mm` is kept between them.
+  /// throws: InputError when the fields' band does not reach beyond the gap.
+  void add_pair(int a, int b, std::span<const Surface> of_a, std::span<const Surface> of_b,
+                double gap_mm);
+
+  /// From now on each sample of the pair may go as deep as it is at these poses of the bodies.
+  void allow_overlap(int pair, std::span<const Pose> X_WB);
+
+  /// Searches near samples anew where bodies have moved too far since. Before find and way.
+  void locate(std::span<const Pose> X_WB);
+
+  /// Touches with a gap of at most active_mm, by look and sample. Same bits for any number of
+  /// threads.
+  void find(std::span<const Pose> X_WB, double active_mm, int threads, std::vector<Touch>& found);
+
+  /// How far ahead touches can be asked for, and so how far bodies near each other may move in a
+  /// step.
+  double most_active_mm() const { return most_active_mm_; }
+
+  /// No sample of a pair that could meet moves farther against the other body's field in the given
+  /// time. Pairs that stay apart do not count.
+  double way(std::span<const Pose> X_WB, std::span<const Eigen::Vector3d> centers,
+             std::span<const SolverMotion> motions, double step_s, double counts_mm) const;
+
+  const std::vector<Pose>& looked_at() const { return looked_at_; }
+  void set_looked_at(std::vector<Pose> poses);
+
+ private:
+  struct Look {  // at the samples of one surface in the field of another
+    int pair = 0;
+    int samples_of = 0, field_of = 0;  // bodies
+    bool samples_on_b = false;
+    Surface samples, field;
+    double radius_mm = 0;  // of the samples about their centroid
+    double gap_mm = 0;     // kept
+    double reach_mm = 0, reserve_mm = 0;
+    std::vector<float> allowed;  // of each sample, mm, at most 0; empty: 0
+    std::vector<NearSample> near;
+    bool stale = true;  // `near` is not yet searched where looked_at says
+    Pose X_FS;          // located at
+    double walked_mm = 0;
+  };
+  struct Place {  // a near sample that is to be looked at
+    int look = 0, near = 0;
+  };
+  static Pose relative(const Look& look, std::span<const Pose> X_WB);
+  double moved(const Look& look, const Pose& from, const Pose& to) const;
+  void search(Look& look, const Pose& X_FS) const;
+
+  std::vector<Look> looks_;
+  std::vector<Pose> looked_at_;  // of each look: X_FS
+  double most_active_mm_ = 1e9;
+
+  // Of the call that runs.
+  std::vector<Eigen::Matrix3d> R_FS_, R_WF_;
+  std::vector<Place> places_;
+  std::vector<Touch> seen_;
+  std::vector<char> counts_;
+};
+
+}  // namespace condyle
