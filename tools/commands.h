@@ -51,6 +51,13 @@ struct CheckOptions {
   double fps = 30;
 };
 
+struct OccludeOptions {
+  std::filesystem::path patient;  // case folder; empty = the built-in patient
+  std::filesystem::path out;
+  std::string start;      // pose file or offsets; empty = as the case is
+  double paper_mm = 0.1;  // what is marked when bitten on
+};
+
 struct ViewOptions {
   MotionOptions motion;
   double ui_scale = 1;
@@ -68,6 +75,7 @@ struct BenchOptions {
 
 int run_record(const RecordOptions& options, const CommonOptions& common);
 int run_check(const CheckOptions& options, const CommonOptions& common);
+int run_occlude(const OccludeOptions& options, const CommonOptions& common);
 int run_view(const ViewOptions& options, const CommonOptions& common);
 int run_import(const ImportOptions& options, const CommonOptions& common);
 int run_info(const std::filesystem::path& what, const CommonOptions& common);

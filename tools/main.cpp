@@ -21,6 +21,7 @@ Examples
   condyle record --motion opening --out out --film           a film of the opening mouth, no display needed
   condyle import meshes --mandible jaw.stl --maxilla maxilla.stl --landmarks marks.csv --out mycase
   condyle check mycase --motion opening --margin 1 --out out collisions and clearances
+  condyle occlude mycase --out out                           the settled bite, its contacts
   condyle run mycase --motion chew.csv --out out             a recorded motion, without pictures
 
 Exit codes: 0 done; 1 the machine or the program failed; 2 the input or the command line is wrong;
@@ -187,6 +188,25 @@ int run_program(int argc, char** argv) {
   check_command->add_option("--out", check.out,
                             "Folder for report.html with its pictures, report.json, pairs.csv");
 
+  OccludeOptions occlude;
+  auto* occlude_command = add_command(
+      app, "occlude", "Settle the bite: close the teeth until they rest, and tell every contact",
+      "condyle occlude mycase --start 1,-2,0 --out out");
+  occlude_command->add_option("CASE", occlude.patient,
+                              "Folder with case.json (default: the built-in patient)");
+  occlude_command
+      ->add_option("--start", occlude.start,
+                   "Where the mandible starts: a pose file, or mm left,back,up of the "
+                   "case's pose, and degrees about these axes if wanted (the case's pose)")
+      ->type_name("FILE|X,Y,Z[,RX,RY,RZ]");
+  occlude_command
+      ->add_option("--paper", occlude.paper_mm,
+                   "Thickness of the articulating paper that is bitten on, mm (0.1)")
+      ->check(within(0.02, 0.3));
+  occlude_command->add_option("--out", occlude.out,
+                              "Folder for report.html with its picture, report.json, pose.csv, "
+                              "motion.csv");
+
   ImportOptions import;
   auto* import_command =
       add_command(app, "import", "Make a case from your files",
@@ -258,6 +278,7 @@ int run_program(int argc, char** argv) {
   if (record_command->parsed()) return run_record(record, common);
   if (run_command->parsed()) return run_record(run, common);
   if (check_command->parsed()) return run_check(check, common);
+  if (occlude_command->parsed()) return run_occlude(occlude, common);
   if (meshes->parsed()) {
     for (const auto& role : roles)
       for (const auto& file : role.files) import.request.files.push_back({role.role, file});

@@ -18,6 +18,7 @@ struct Arch {
   Box crowns;                             // about the crowns, with some room
   Eigen::Vector3d edge;                   // middle of the incisal edge
   std::array<Eigen::Vector3d, 2> molars;  // tops of the first molars: left, right
+  Eigen::Vector3d middle() const { return (edge + molars[0] + molars[1]) / 3; }
 };
 
 /// Both arches of a case, and the directions in which a bite is told.

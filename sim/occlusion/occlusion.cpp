@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
@@ -69,6 +70,16 @@ std::string why_unstable(const Bite& bite, const OcclusionSettings& settings) {
 
 }  // namespace
 
+Pose pose_beside_rest(const Case& patient, const Eigen::Vector3d& moved_mm,
+                      const Eigen::Vector3d& turned_deg) {
+  const Eigen::Vector3d pivot = find_arches(patient).lower.middle();
+  const double angle = turned_deg.norm() * std::numbers::pi / 180;
+  Pose pose;
+  if (angle > 0) pose.R = Eigen::AngleAxisd(angle, turned_deg.normalized());
+  pose.t = pivot + moved_mm - pose.R * pivot;
+  return pose;
+}
+
 Bite settle_bite(const Case& patient, const Pose& start, const OcclusionSettings& settings,
                  const Progress& progress) {
   if (!start.R.coeffs().allFinite() || !start.t.allFinite())
@@ -84,6 +95,11 @@ Bite settle_bite(const Case& patient, const Pose& start, const OcclusionSettings
 
   Bite bite;
   bite.notes = arches.notes;
+  bite.upper = arches.upper.part->name;
+  bite.lower = arches.lower.part->name;
+  bite.up = arches.up;
+  bite.midline_mm = arches.midline_mm;
+  bite.upper_edge = arches.upper.edge;
   auto found = find_bites(model, start, settings, bite.starts, progress);
   bite.rest = found.front();
   bite.rest.converged = bite.rest.residual_N < residual_share * settings.closing_force_N;

@@ -57,6 +57,10 @@ struct RestingPose {
 };
 
 struct Bite {
+  std::string upper, lower;                       // parts that are the arches
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  // normal of the upper teeth's occlusal plane
+  double midline_mm = 0;                          // x
+  Eigen::Vector3d upper_edge = Eigen::Vector3d::Zero();  // middle of the upper incisal edge
   RestingPose rest;
   bool stable = false;
   std::string unstable_because;            // when it is not
@@ -76,6 +80,11 @@ struct Bite {
   int starts = 0;                   // closings that were tried
   std::vector<std::string> notes;
 };
+
+/// The rest pose of the case moved by millimetres along its axes and turned by a rotation vector
+/// about the middle of the lower crowns. throws: InputError when the case has no arches.
+Pose pose_beside_rest(const Case& patient, const Eigen::Vector3d& moved_mm,
+                      const Eigen::Vector3d& turned_deg);
 
 /// The bite found from a pose of the mandible: opened until the arches are apart, closed on a foil
 /// by a force upward at the first molars, while springs hold the condyles' centres; then closed

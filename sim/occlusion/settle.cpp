@@ -53,7 +53,7 @@ BiteModel::BiteModel(const Arches& arches, const OcclusionSettings& settings,
             {settings.paper_mm, settings.foil_MPa}),
       coarse_({&coarse_upper_, &upper_field_}, {&coarse_lower_, &lower_field_},
               {std::max(coarse_foil_mm, settings.paper_mm), settings.foil_MPa}) {
-  pivot_ = (arches.lower.edge + arches.lower.molars[0] + arches.lower.molars[1]) / 3;
+  pivot_ = arches.lower.middle();
   Box crowns;
   for (const auto& piece : coarse_lower_.pieces) crowns.add(piece.point);
   for (int i = 0; i < 8; ++i)

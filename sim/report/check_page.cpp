@@ -5,37 +5,19 @@
 #include <algorithm>
 #include <iterator>
 
+#include "sim/report/page_parts.h"
 #include "sim/report/plots.h"
 
 namespace condyle {
 namespace {
 
-const char* const style = R"(<style>
-body { font: 15px/1.45 sans-serif; color: #222; background: #fff; max-width: 1080px; margin: 24px auto; padding: 0 16px; }
-h1 { font-size: 24px; margin: 0 0 4px; } h2 { font-size: 18px; margin: 28px 0 8px; }
-.verdict { border: 2px solid #222; border-radius: 6px; padding: 12px 16px; margin: 16px 0; font-size: 18px; }
-.bad { border-color: #b2182b; } .good { border-color: #2166ac; }
-.bad strong, td.bad { color: #b2182b; } .good strong { color: #2166ac; }
-table { border-collapse: collapse; width: 100%; font-size: 14px; }
-th, td { border-bottom: 1px solid #ccc; padding: 6px 8px; text-align: left; vertical-align: top; }
-th { border-bottom: 2px solid #888; } td.bad { font-weight: bold; }
-ol.worst > li { margin: 8px 0; }
-figure { margin: 16px 0; } img, svg { max-width: 100%; height: auto; } figcaption { color: #444; font-size: 14px; }
-.small { color: #555; font-size: 13px; } li { margin: 2px 0; }
-</style>
-)";
 
 class PageWriter {
  public:
   PageWriter(const ClearanceCheck& check, const CheckPage& page) : check_(check), page_(page) {}
 
   std::string write() {
-    add("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width\">\n<title>Clearance check: "
-        "{}</title>\n",
-        escaped(page_.patient));
-    html_ += style;
-    html_ += "</head>\n<body>\n";
+    html_ = page_head("Clearance check: " + page_.patient);
     verdict();
     add("<h1>Clearance check</h1>\n<p>Patient <strong>{}</strong>, motion <strong>{}</strong>: "
         "{:.1f} s in {} frames, opening up to {:.1f} mm. Margin asked for: {:.2f} mm.</p>\n",
@@ -51,9 +33,7 @@ class PageWriter {
       html_ += "<h2>Teeth</h2>\n<figure>\n" + teeth_svg(check_) + "</figure>\n";
     table();
     words();
-    html_ +=
-        "<p class=\"small\">For research and education, not for clinical "
-        "use.</p>\n</body>\n</html>\n";
+    html_ += page_foot();
     return std::move(html_);
   }
 

@@ -1,0 +1,36 @@
+#include "sim/report/page_parts.h"
+
+#include "sim/report/plots.h"
+
+namespace condyle {
+namespace {
+
+const char* const style = R"(<style>
+body { font: 15px/1.45 sans-serif; color: #222; background: #fff; max-width: 1080px; margin: 24px auto; padding: 0 16px; }
+h1 { font-size: 24px; margin: 0 0 4px; } h2 { font-size: 18px; margin: 28px 0 8px; }
+.verdict { border: 2px solid #222; border-radius: 6px; padding: 12px 16px; margin: 16px 0; font-size: 18px; }
+.bad { border-color: #b2182b; } .good { border-color: #2166ac; }
+.bad strong, td.bad { color: #b2182b; } .good strong { color: #2166ac; }
+table { border-collapse: collapse; width: 100%; font-size: 14px; }
+th, td { border-bottom: 1px solid #ccc; padding: 6px 8px; text-align: left; vertical-align: top; }
+th { border-bottom: 2px solid #888; } td.bad { font-weight: bold; }
+ol.worst > li { margin: 8px 0; }
+figure { margin: 16px 0; } img, svg { max-width: 100%; height: auto; } figcaption { color: #444; font-size: 14px; }
+.small { color: #555; font-size: 13px; } li { margin: 2px 0; }
+</style>
+)";
+
+}  // namespace
+
+std::string page_head(const std::string& title) {
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
+         escaped(title) + "</title>\n" + style + "</head>\n<body>\n";
+}
+
+std::string page_foot() {
+  return "<p class=\"small\">For research and education, not for clinical "
+         "use.</p>\n</body>\n</html>\n";
+}
+
+}  // namespace condyle

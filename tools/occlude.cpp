@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <system_error>
+
+#include "engine/collide/distance_field.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "render/contact_picture.h"
+#include "render/gap_colours.h"
+#include "render/gl_context.h"
+#include "sim/motion/recording.h"
+#include "sim/report/occlusion_report.h"
+#include "tools/common.h"
+
+namespace condyle {
+namespace {
+
+constexpr const char* picture_name = "arches.png";
+
+struct Start {
+  Pose X_CM;
+  std::string words;
+};
+
+/// The start as numbers, where the text is nothing but numbers and commas.
+std::vector<double> numbers_in(const std::string& text) {
+  std::vector<double> numbers;
+  for (const char* at = text.c_str();; ++at) {
+    char* end = nullptr;
+    numbers.push_back(std::strtod(at, &end));
+    if (end == at || (*end != ',' && *end != '\0')) return {};
+    at = end;
+    if (*at == '\0') return numbers;
+  }
+}
+
+Start parse_start(const std::string& text, const Case& patient) {
+  if (text.empty()) return {{}, "the pose of the case"};
+  const auto numbers = numbers_in(text);
+  if (numbers.empty()) {
+    std::error_code none;
+    if (!std::filesystem::exists(text, none))
+      throw InputError("--start " + text +
+                       ": is neither a pose file nor offsets left,back,up[,turns about them] in mm "
+                       "and degrees, e.g. 1,-2,0 or 0,0,0,2,0,0");
+    return {read_recording(text).wanted(0), "the first pose of " + text};
+  }
+  if (numbers.size() != 3 && numbers.size() != 6)
+    throw InputError(
+        fmt::format("--start {}: has {} numbers; it takes 3 (mm left, back, up) or 6 (and degrees "
+                    "about these axes)",
+                    text, numbers.size()));
+  for (const double number : numbers)
+    if (!std::isfinite(number))
+      throw InputError("--start " + text + ": every number must be finite");
+  const Eigen::Vector3d moved(numbers[0], numbers[1], numbers[2]);
+  const Eigen::Vector3d turned = numbers.size() == 6
+                                     ? Eigen::Vector3d(numbers[3], numbers[4], numbers[5])
+                                     : Eigen::Vector3d::Zero();
+  return {pose_beside_rest(patient, moved, turned),
+          fmt::format("{} mm left, {} mm back, {} mm up of the case's pose, turned by {}, {} and "
+                      "{}° about these axes",
+                      moved.x(), moved.y(), moved.z(), turned.x(), turned.y(), turned.z())};
+}
+
+Image picture_of(const Case& patient, const Bite& bite, double paper_mm, int threads) {
+  const BiteView view = bite_view(patient, bite, threads);
+  const Eigen::Vector3d heaviest =
+      bite.contacts.empty() ? bite.upper_edge : bite.contacts.front().place;
+  constexpr double half_arch_mm = 23;
+  Eigen::Vector3d middle = bite.upper_edge + half_arch_mm * bite.up.cross(Eigen::Vector3d::UnitX());
+  middle.x() = bite.midline_mm;
+  ContactPlace place{
+      .parts = view.parts,
+      .fixed = bite.upper,
+      .moved = bite.lower,
+      .fixed_values = view.upper_gap,
+      .moved_values = view.lower_gap,
+      .X_CM = bite.rest.X_CM,
+      .place = heaviest,
+      .middle = middle,
+      .normal = -bite.up,
+      .seen_mm = 76,
+      .overview = "front",
+      .title = "Settled bite: " + patient.name,
+      .lines = {fmt::format("{} contacts at {:g} mm paper; load {:.0f} % left, {:.0f} % right; "
+                            "overjet {:.1f} mm, overbite {:.1f} mm",
+                            bite.contacts.size(), paper_mm, 100 * bite.left_share,
+                            bite.contacts.empty() ? 0.0 : 100 * (1 - bite.left_share),
+                            bite.after.overjet_mm, bite.after.overbite_mm)}};
+  return contact_picture(place, gap_colours(paper_mm));
+}
+
+/// Name of the picture's file, or empty with a note where there can be none.
+std::string write_picture(const std::filesystem::path& folder, const Case& patient,
+                          const Bite& bite, double paper_mm, int threads,
+                          std::vector<std::string>& notes) {
+  std::error_code none;
+  std::filesystem::remove(folder / picture_name, none);  // one of an earlier bite
+  try {
+    const OffscreenContext context;
+    write_png(folder / picture_name, picture_of(patient, bite, paper_mm, threads));
+  } catch (const MachineError& error) {
+    notes.push_back(fmt::format("the picture is left out: {}", error.what()));
+    return "";
+  }
+  return picture_name;
+}
+
+}  // namespace
+
+int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
+  constexpr int no_stable_bite = 1;
+  ProgressBar bar(common);
+  const Case patient = open_patient(options.patient, common, bar);
+  const Start start = parse_start(options.start, patient);
+  OcclusionSettings settings;
+  settings.paper_mm = options.paper_mm;
+  settings.cache = field_cache_folder();
+  settings.threads = common.threads;
+  OcclusionReport report{patient.name, start.words, settings,
+                         settle_bite(patient, start.X_CM, settings, bar.callback())};
+  const Bite& bite = report.bite;
+  if (!options.out.empty()) {
+    make_folder(options.out);
+    bar.show("drawing", 0.95);
+    report.picture =
+        write_picture(options.out, patient, bite, options.paper_mm, common.threads, report.notes);
+    write_file(options.out / "pose.csv", bite_pose_csv(bite));
+    write_file(options.out / "motion.csv", bite_motion_csv(bite, start.X_CM));
+    write_file(options.out / "report.html", report.page());
+    write_file(options.out / "report.json", report.json());
+  }
+  bar.clear();
+  if (common.json) fmt::print("{}", report.json());
+  if (!common.quiet) {
+    for (const auto& note : bite.notes) fmt::print(stderr, "note: {}\n", note);
+    for (const auto& note : report.notes) fmt::print(stderr, "note: {}\n", note);
+    fmt::print(stderr, "{}", report.text());
+  }
+  return bite.stable ? 0 : no_stable_bite;
+}
+
+}  // namespace condyle
