@@ -13,7 +13,6 @@ ColourMap gap_colours(double paper_mm) {
   map.unit = "mm";
   map.stops = {{-0.1f, overlap}, {0, overlap},           {0.001f, marked},
                {paper, marked},  {paper + 0.001f, near}, {1.0f, far}};
-  map.lines = {0, paper};
   map.ticks = {0, paper, 0.5f, 1};
   map.bands = {{0, paper, "marked"}, {paper, 1, "close"}};
   return map;

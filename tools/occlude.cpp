@@ -82,7 +82,7 @@ Image picture_of(const Case& patient, const Bite& bite, double paper_mm, int thr
       .place = heaviest,
       .middle = middle,
       .normal = -bite.up,
-      .seen_mm = 76,
+      .seen_mm = 68,
       .overview = "front",
       .title = "Settled bite: " + patient.name,
       .lines = {fmt::format("{} contacts at {:g} mm paper; load {:.0f} % left, {:.0f} % right; "
