@@ -11,7 +11,6 @@
 namespace condyle {
 namespace {
 
-
 class PageWriter {
  public:
   PageWriter(const ClearanceCheck& check, const CheckPage& page) : check_(check), page_(page) {}
