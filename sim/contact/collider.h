@@ -18,6 +18,7 @@ struct Collider {
   int number = 0;  // among the model's colliders
   int part = 0;    // index in the case
   int body = cranium_body;
+  bool guard = false;  // only of what is away from an overlap at rest
   CollisionMesh surface;
   Solid solid;
 };

@@ -7,9 +7,10 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "sim/case/pair_rules.h"
 #include "sim/contact/contact_state.h"
 #include "sim/contact/drive.h"
-#include "sim/case/pair_rules.h"
+#include "sim/contact/slider.h"
 
 namespace condyle {
 namespace {
@@ -42,8 +43,8 @@ void build_colliders(ContactModel::State& state, const Case& patient) {
   parallel_for(parts.size(), build_threads, [&](std::size_t i) {
     const auto part = static_cast<std::size_t>(parts[i]);
     const TriMesh& mesh = patient.parts[part].mesh;
-    state.colliders[i] = std::make_unique<Collider>(
-        Collider{static_cast<int>(i), parts[i], bodies[part], CollisionMesh(mesh), Solid(mesh)});
+    state.colliders[i] = std::make_unique<Collider>(Collider{
+        static_cast<int>(i), parts[i], bodies[part], false, CollisionMesh(mesh), Solid(mesh)});
   });
   state.pivot.assign(static_cast<std::size_t>(state.body_count()), Eigen::Vector3d::Zero());
   std::vector<double> largest(state.pivot.size(), -1);
@@ -88,7 +89,7 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
     if (away.empty()) continue;
     state.colliders.push_back(
         std::make_unique<Collider>(Collider{static_cast<int>(state.colliders.size()), rest.part_b,
-                                            pair.b->body, CollisionMesh(away), Solid(away)}));
+                                            pair.b->body, true, CollisionMesh(away), Solid(away)}));
     const ColliderPair guard{pair.a, state.colliders.back().get(), pair.policy, true, 0, 0};
     if (judge(guard, {}, {}, {}, {.need_depth = false}).touching)
       continue;  // wholly inside at rest: nothing to guard
@@ -189,6 +190,7 @@ ContactModel::ContactModel(const Case& patient, const ContactSettings& settings)
           solid.shell_count()));
   build_pairs(state, patient);
   find_baseline(state, patient);
+  state.slider = std::make_unique<Slider>(patient, state);
 }
 
 ContactModel::~ContactModel() = default;
@@ -204,8 +206,10 @@ namespace {
 bool taken_at(const ContactModel::State& state, const ContactSet* set,
               const std::vector<Pose>& X_CB) {
   if (!state.fits(set) || set->X_CF.size() != state.carrier.size() ||
-      !same_bits(set->X_CM, X_CB[mandible_body]) || set->max_penetration_mm() > 0)
+      !same_bits(set->X_CM, X_CB[mandible_body]))
     return false;
+  for (const auto& guard : set->away_from_rest)
+    if (guard.touching) return false;
   for (std::size_t f = 0; f < set->X_CF.size(); ++f)
     if (!same_bits(set->X_CF[f], X_CB[first_free_body + f])) return false;
   return true;
@@ -229,6 +233,51 @@ ContactModel::Stop ContactModel::stop_at_contact(const Pose& from, const Pose& w
   set.X_CM = there.X_CM;
   set.X_CF = there.X_CF;
   return {arrival.X_CD, arrival.stopped, state.with_guards(std::move(set))};
+}
+
+BodyPoses ContactModel::placed(const Wanted& wanted) const {
+  BodyPoses at(wanted.X_CM);
+  for (std::size_t f = 0; f < state_->carrier.size(); ++f) {
+    const Pose X_CB = state_->carrier[f] == Body::mandible ? wanted.X_CM : Pose{};
+    const bool asked = f < wanted.X_BF.size() && !same_bits(wanted.X_BF[f], {});
+    at.X_CF.push_back(asked ? X_CB * wanted.X_BF[f] : X_CB);
+  }
+  return at;
+}
+
+void ContactModel::prepare_sliding(const Progress& progress, int threads) const {
+  state_->slider->prepare(progress, threads);
+}
+
+ContactModel::Slide ContactModel::slide(const BodyPoses& from, const Wanted& wanted,
+                                        const ContactSet* previous, int threads) const {
+  const State& state = *state_;
+  std::vector<Pose> X_CB = state.body_poses(from);
+  state.body_poses({wanted.X_CM, wanted.X_BF});  // refuses what is no pose
+  bool exact = taken_at(state, previous, X_CB);
+  const bool near = state.carrier.empty() && state.fits(previous);
+  ContactSet set = exact || near ? *previous : state.judge_all(X_CB, previous, threads);
+  exact = exact || !near;
+  Slide result;
+  const auto go = [&](int body, const Pose& to) {
+    const Drive drive = make_drive(state, X_CB, body, to);
+    const Arrival arrival = slide_drive(state, drive, set, exact, threads);
+    X_CB = drive.poses_at(arrival.X_CD);
+    exact = true;
+    result.stopped |= arrival.stopped;
+  };
+  go(mandible_body, wanted.X_CM);
+  const BodyPoses target = placed({X_CB[mandible_body], wanted.X_BF});
+  for (std::size_t f = 0; f < state.carrier.size(); ++f) {
+    const Pose& to = target.X_CF[f];
+    const int body = first_free_body + static_cast<int>(f);
+    if (!same_bits(X_CB[static_cast<std::size_t>(body)], to)) go(body, to);
+  }
+  result.at = state.as_poses(X_CB);
+  set.X_CM = result.at.X_CM;
+  set.X_CF = result.at.X_CF;
+  result.contacts = state.with_guards(std::move(set));
+  return result;
 }
 
 const ContactSet& ContactModel::at_rest() const { return state_->rest; }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/progress.h"
 #include "sim/case/case.h"
 #include "sim/frame/body_poses.h"
 #include "sim/frame/contact_set.h"
@@ -48,6 +49,32 @@ class ContactModel {
   };
   Stop stop_at_contact(const Pose& from, const Pose& wanted, const ContactSet* previous,
                        int threads = 1) const;
+
+  /// Where the hand, a motion or a plan wants the bodies.
+  struct Wanted {
+    Pose X_CM;
+    std::vector<Pose> X_BF = {};  // of each free part in its carrier's frame; missing: as at rest
+  };
+  /// All bodies where they are wanted, whatever is in the way.
+  BodyPoses placed(const Wanted& wanted) const;
+
+  struct Slide {
+    BodyPoses at;
+    bool stopped = false;  // something kept a body from where it was wanted
+    ContactSet contacts;   // there
+  };
+  /// From `from` towards the wanted poses, each body to the nearest pose that it can slide to: the
+  /// mandible with what it carries, then the free parts in order, each against all others as they
+  /// are. Distance fields find the way; the exact surfaces judge it: no pair ends deeper than at
+  /// rest (or at `from`) by more than the slack. Where fields cannot tell inside from outside (open
+  /// shells) the exact surfaces judge each millimetre of the way. Same bits for any number of
+  /// threads; nothing is remembered from call to call.
+  Slide slide(const BodyPoses& from, const Wanted& wanted, const ContactSet* previous,
+              int threads = 1) const;
+
+  /// Makes the distance fields that sliding needs, or reads them from the cache: slide() does so
+  /// where it first meets something. Threads may share a model.
+  void prepare_sliding(const Progress& progress = {}, int threads = 2) const;
 
   const ContactSet& at_rest() const;
   /// The rule of each pair, in the order of ContactSet::pairs.

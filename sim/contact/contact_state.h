@@ -9,6 +9,8 @@
 
 namespace condyle {
 
+class Slider;
+
 /// What a contact model keeps: colliders, pairs, and how they are at rest.
 struct ContactModel::State {
   ContactSettings settings;
@@ -20,6 +22,7 @@ struct ContactModel::State {
   std::vector<Eigen::Vector3d> pivot;    // of each body, about its middle
   std::vector<PairRule> rules;           // of each pair
   std::optional<Broadphase> broadphase;  // of the colliders, where there are free parts
+  std::unique_ptr<Slider> slider;
   ContactSet rest;
   std::vector<std::string> notes;
 

@@ -5,10 +5,8 @@
 #include "engine/core/parallel.h"
 
 namespace condyle {
-namespace {
 
-/// Pairs and guards of which one side moves.
-std::vector<std::size_t> concerned(const ContactModel::State& state, const Drive& drive) {
+std::vector<std::size_t> concerned_pairs(const ContactModel::State& state, const Drive& drive) {
   std::vector<std::size_t> list;
   for (std::size_t i = 0; i < state.count(); ++i)
     if (drive.concerns(state.judged(i))) list.push_back(i);
@@ -32,8 +30,6 @@ Passage passage_of(const ContactModel::State& state, const Drive& drive, const C
   passage.measure();
   return passage;
 }
-
-}  // namespace
 
 std::vector<Pose> Drive::poses_at(const Pose& X_CD) const {
   std::vector<Pose> poses = X_CB;
@@ -64,7 +60,7 @@ Drive make_drive(const ContactModel::State& state, std::vector<Pose> X_CB, int b
 
 Arrival stop(const ContactModel::State& state, const Drive& drive, ContactSet& set, bool exact,
              int threads) {
-  const auto pairs = concerned(state, drive);
+  const auto pairs = concerned_pairs(state, drive);
   const auto poses_look = [&](const Pose& X_CD, const ContactSet& warm) {
     std::vector<PairContact> found(pairs.size());
     parallel_for(pairs.size(), threads, [&](std::size_t k) {

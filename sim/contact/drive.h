@@ -39,4 +39,15 @@ struct Arrival {
 Arrival stop(const ContactModel::State& state, const Drive& drive, ContactSet& set, bool exact,
              int threads);
 
+/// The same, sliding along what is in the way to the nearest pose allowed.
+Arrival slide_drive(const ContactModel::State& state, const Drive& drive, ContactSet& set,
+                    bool exact, int threads);
+
+/// Pairs and guards of which one side moves.
+std::vector<std::size_t> concerned_pairs(const ContactModel::State& state, const Drive& drive);
+
+/// One of them on its way from the drive's start to a pose.
+Passage passage_of(const ContactModel::State& state, const Drive& drive, const ColliderPair& pair,
+                   const Pose& to);
+
 }  // namespace condyle

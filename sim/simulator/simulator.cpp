@@ -39,16 +39,20 @@ FrameState step(const Scene& scene, const FrameState& previous, const StepInput&
   now.X_CM_wanted = input.X_CM_wanted;
   {
     const StageTimer timer(now.times, Stage::contact);
+    const ContactModel::Wanted wanted{input.X_CM_wanted, input.X_BF_wanted};
+    BodyPoses at;
     if (input.obey_contact) {
-      auto stop = scene.contacts.stop_at_contact(previous.X_CM, input.X_CM_wanted,
-                                                 &previous.contacts, settings.threads);
-      now.X_CM = stop.X_CM;
-      now.stopped = stop.stopped;
-      now.contacts = std::move(stop.contacts);
+      auto slide =
+          scene.contacts.slide(previous.poses(), wanted, &previous.contacts, settings.threads);
+      at = std::move(slide.at);
+      now.stopped = slide.stopped;
+      now.contacts = std::move(slide.contacts);
     } else {
-      now.X_CM = input.X_CM_wanted;
-      now.contacts = scene.contacts.find(now.X_CM, &previous.contacts, settings.threads);
+      at = scene.contacts.placed(wanted);
+      now.contacts = scene.contacts.find(at, &previous.contacts, settings.threads);
     }
+    now.X_CM = at.X_CM;
+    now.X_CF = std::move(at.X_CF);
   }
   if (scene.tissue) {
     const StageTimer timer(now.times, Stage::tissue);

@@ -29,6 +29,7 @@ std::uint64_t state_hash(const FrameState& frame) {
   Hasher h;
   h.add(frame.X_CM_wanted);
   h.add(frame.X_CM);
+  for (const auto& X : frame.X_CF) h.add(X);
   h.add(frame.stopped ? 1 : 0);
   for (const auto& pair : frame.contacts.pairs) {
     h.add(pair.touching ? 1 : 0);

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "engine/collide/slide.h"
+#include "engine/core/progress.h"
+#include "sim/contact/contact_state.h"
+#include "sim/contact/drive.h"
+
+namespace condyle {
+
+/// Sliding of a contact model's bodies on distance fields. The fields are made when they are first
+/// needed, near where bones can meet: each surface's within 20 mm of the boxes of the bodies that
+/// it can touch, so that they take some 10 MB a bone.
+class Slider {
+ public:
+  /// Keeps copies of the surfaces until the fields are there.
+  Slider(const Case& patient, const ContactModel::State& state);
+
+  /// Makes the fields, or reads them from the cache, unless they are there. Throwing from the
+  /// progress gives up; the next call starts anew.
+  void prepare(const Progress& progress, int threads);
+
+  /// By the fields alone. prepare() must have been called.
+  Pose slide(const Drive& drive, const Pose& from, const Pose& wanted, int threads) const;
+
+  /// What a radian of a drive costs against a millimetre, and the point it turns about.
+  double rotation_length_mm(int body) const { return contact(body).rotation_length_mm(); }
+  const Eigen::Vector3d& pivot(int body) const { return contact(body).pivot(); }
+
+ private:
+  struct Surface {
+    int collider = 0;
+    TriMesh mesh;
+    SlideBodySettings settings;
+    std::shared_ptr<const SlideBody> body;
+  };
+  const SlidingContact& contact(int body) const {
+    return *contacts_[static_cast<std::size_t>(body)];
+  }
+  std::unique_ptr<SlidingContact> make_contact(int body) const;
+
+  const ContactModel::State& state_;
+  std::vector<Surface> surfaces_;                          // in the order of the first colliders
+  std::vector<std::unique_ptr<SlidingContact>> contacts_;  // of each driven body
+  std::mutex mutex_;
+  bool ready_ = false;
+};
+
+}  // namespace condyle
