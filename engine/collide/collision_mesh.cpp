@@ -7,10 +7,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
+#include "engine/collide/shells.h"
 #include "engine/collide/triangle_distance.h"
 
 namespace condyle {
@@ -207,7 +207,7 @@ class CrossingPairs final : public fcl::detail::MeshCollisionTraversalNodeOBBRSS
 struct CollisionMesh::Tree : Surface {};
 
 CollisionMesh::CollisionMesh(const TriMesh& mesh) : tree_(std::make_unique<Tree>()) {
-  assert(!mesh.empty());
+  require_sound(mesh);
   std::vector<fcl::Triangle> triangles;
   triangles.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {

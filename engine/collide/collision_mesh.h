@@ -36,7 +36,7 @@ struct MeshContact {
 /// once, moved by its pose alone. Queries are const and may run on several threads at once.
 class CollisionMesh {
  public:
-  /// At least one triangle, valid indices, finite coordinates.
+  /// throws: InputError, see require_sound.
   explicit CollisionMesh(const TriMesh& mesh);
   ~CollisionMesh();
   CollisionMesh(CollisionMesh&&) noexcept;

@@ -1,14 +1,22 @@
 #include "engine/collide/shells.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
 
+#include "engine/core/error.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/topology.h"
 #include "engine/mesh/triangle_tree.h"
 
 namespace condyle {
 namespace {
+
+/// A sheet that is covered on both sides is closed by its edges alone.
+bool encloses_volume(const TriMesh& mesh) {
+  return std::abs(signed_volume(mesh)) > 1e-9 * std::pow(surface_area(mesh), 1.5);
+}
 
 /// The pieces as they are, in order of first appearance.
 std::vector<Shell> split(const TriMesh& mesh) {
@@ -51,6 +59,7 @@ std::vector<Shell> split(const TriMesh& mesh) {
           shell.rim[place[triangle]] |= static_cast<std::uint8_t>(1 << k);
     }
   }
+  for (Shell& shell : shells) shell.closed = shell.closed && encloses_volume(shell.mesh);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (int k = 0; k < 3; ++k)
       if (on_rim[mesh.triangles[i][k]])
@@ -59,6 +68,22 @@ std::vector<Shell> split(const TriMesh& mesh) {
 }
 
 }  // namespace
+
+void require_sound(const TriMesh& mesh) {
+  if (mesh.triangles.empty())
+    throw InputError("a surface without triangles cannot take part in collision; leave it out");
+  const int count = static_cast<int>(mesh.vertices.size());
+  for (int v = 0; v < count; ++v)
+    if (!mesh.vertices[v].allFinite())
+      throw InputError("vertex " + std::to_string(v) +
+                       " of a surface has a coordinate that is not a finite number; correct or "
+                       "remove it");
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    if (const auto& t = mesh.triangles[i]; t.minCoeff() < 0 || t.maxCoeff() >= count)
+      throw InputError("triangle " + std::to_string(i) + " of a surface names vertex " +
+                       std::to_string(t.minCoeff() < 0 ? t.minCoeff() : t.maxCoeff()) +
+                       ", but there are " + std::to_string(count) + " vertices");
+}
 
 std::vector<Shell> solid_shells(const TriMesh& mesh) {
   std::vector<Shell> shells = split(mesh);

@@ -9,12 +9,16 @@ namespace condyle {
 
 /// A connected piece of a surface.
 struct Shell {
-  TriMesh mesh;  // its own vertices, without colours
-  bool closed = false;
+  TriMesh mesh;         // its own vertices, without colours
+  bool closed = false;  // every edge is run along both ways as often, and there is a volume inside
   // One per triangle: bit k for the edge from corner k to corner k + 1 on a rim, bit 3 + k for
   // corner k on a rim. All zero for closed shells.
   std::vector<std::uint8_t> rim;
 };
+
+/// throws: InputError unless the mesh has a triangle, all coordinates are finite and all indices
+/// are of its vertices.
+void require_sound(const TriMesh& mesh);
 
 /// The pieces that bound a solid. Closed shells face outward: those that face inward within another
 /// are cavities and are left out, others that face inward are turned. Open shells keep their sense.

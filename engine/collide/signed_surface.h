@@ -13,7 +13,7 @@ namespace condyle {
 /// negative inside; open shells have no inside and give a distance without sign. Body coordinates.
 class SignedSurface {
  public:
-  /// Welded mesh with at least one triangle.
+  /// Welded mesh. throws: InputError, see require_sound.
   explicit SignedSurface(const TriMesh& mesh);
 
   /// mm; exact outside, a lower bound of the depth inside where shells overlap.

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "engine/collide/triangle_distance.h"
 #include "engine/math/pose.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/tri_mesh.h"
@@ -10,16 +11,15 @@
 
 namespace condyle {
 
-struct OverlapDepth;
-
 /// The inside of a surface: the union of its closed shells (connected pieces). Open shells have no
 /// inside; closed shells that face inward within another one are cavities and are passed over;
 /// other closed shells that face inward are turned. Body coordinates, moved by the pose alone.
 class Solid {
  public:
-  /// Welded mesh with at least one triangle.
+  /// Welded mesh. throws: InputError, see require_sound.
   explicit Solid(const TriMesh& mesh);
 
+  /// Cavities do not count.
   int shell_count() const { return shell_count_; }
   int open_shell_count() const { return open_shell_count_; }
 
@@ -32,51 +32,55 @@ class Solid {
   double signed_distance(const Eigen::Vector3d& p) const;
 
  private:
-  struct Shell {
+  friend class DepthSearch;
+  friend bool one_encloses_other(const Solid& a, const Pose& X_WA, const Solid& b,
+                                 const Pose& X_WB);
+
+  struct ClosedShell {
     TriangleTree tree;
     Box box;
+
+    /// Depth of p inside, negative outside; -infinity when a ball of `radius` about p cannot reach
+    /// it. `reach`: no less than the distance of p from the surface, if known.
+    double depth(const Eigen::Vector3d& p, double radius, double reach) const;
   };
-  struct Ball {  // of a run of vertices
+  struct Ball {  // of a run of faces
     Eigen::Vector3d center;
     double radius = 0;
     int first = 0, count = 0;
     int right = 0;  // second child (the first is next); 0 for a leaf
   };
-  struct Deepest {
-    double depth_mm = 0;
-    Eigen::Vector3d vertex = Eigen::Vector3d::Zero();    // coordinates of the shell
-    Eigen::Vector3d outward = Eigen::Vector3d::UnitZ();  // of the shell's surface next to it
-  };
 
-  int build_balls(std::vector<Eigen::Vector3d>& points, int first, int last);
-  void search(const Shell& shell, const Pose& X, int ball, double center_depth,
-              Deepest& best) const;
-  static double depth_in(const Shell& shell, const Eigen::Vector3d& p, double radius, double reach);
-
-  void deepest_inside(const Solid& other, const Pose& X_OS, Deepest& best) const;
+  void order_faces(const TriMesh& mesh);
+  int build_balls(const TriMesh& mesh, std::vector<int>& order, int first, int last);
   bool has_shell_inside(const Solid& other, const Pose& X_OS) const;
 
-  friend OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b,
-                                    const Pose& X_WB);
-  friend bool one_encloses_other(const Solid& a, const Pose& X_WA, const Solid& b,
-                                 const Pose& X_WB);
-
-  std::vector<Shell> shells_;             // closed, facing outward
+  std::vector<ClosedShell> shells_;       // facing outward
   std::vector<Eigen::Vector3d> samples_;  // a vertex of each shell, open ones included
-  std::vector<Eigen::Vector3d> points_;   // vertices in the order of the balls
+  std::vector<Triangle> faces_;           // in the order of the balls
   std::vector<Ball> balls_;               // depth first
   int shell_count_ = 0, open_shell_count_ = 0;
 };
 
-/// The deepest vertex of either solid inside the other.
-struct OverlapDepth {
-  double depth_mm = 0;  // distance to the other's surface; 0 when no vertex is inside
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // that vertex, world
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, from A to B
+struct DepthSettings {
+  // The answer may be this much too small, or a thousandth of itself if that is more.
+  double tolerance_mm = 2e-4;
+  // Points looked at; beyond, the search ends and `error_mm` tells what may be missing.
+  int max_looks = 20000;
 };
 
-/// Depth of overlap, looked for by branch and bound over balls of vertices.
-OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB);
+/// The deepest point of either surface inside the other solid.
+struct OverlapDepth {
+  double depth_mm = 0;  // its distance to that solid's surface; 0 when nothing is inside
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // that point, world
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, from A to B
+  double error_mm = 0;  // no point of the surfaces is deeper than depth_mm + error_mm
+};
+
+/// Depth of overlap over the whole surfaces, not the vertices alone, by branch and bound. Open
+/// shells have points that may be inside, but no inside themselves.
+OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
+                           const DepthSettings& settings = {});
 
 /// For solids whose surfaces do not cross: a shell of one lies wholly inside the other.
 bool one_encloses_other(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB);

@@ -132,6 +132,8 @@ TriangleGap triangle_distance(const Triangle& ta, const Triangle& tb, double bou
   return gap;
 }
 
+Vector nearest_point(const Vector& p, const Triangle& t) { return Prepared(t).nearest(p); }
+
 TriangleCrossing triangle_crossing(const Triangle& ta, const Triangle& tb) {
   const Prepared a(ta), b(tb);
   TriangleCrossing crossing;

@@ -19,6 +19,9 @@ struct TriangleGap {
 /// not below `bound_mm2` may come back as `bound_mm2` without points.
 TriangleGap triangle_distance(const Triangle& a, const Triangle& b, double bound_mm2);
 
+/// Point of the triangle nearest to p.
+Eigen::Vector3d nearest_point(const Eigen::Vector3d& p, const Triangle& t);
+
 /// Where the surfaces of two triangles cross: the two ends of the common segment.
 struct TriangleCrossing {
   bool crosses = false;

@@ -242,6 +242,8 @@ SurfacePoint TriangleTree::nearest(const Vector3d& p, double reach) const {
     const Node& node = nodes_[index];
     if (node.count > 0) {
       for (int s = node.first; s < node.first + node.count; ++s) {
+        const double height = face_normals_[s].dot(p - corners_[s][0]);
+        if (height * height > limit * (1 + 1e-9) + 1e-24) continue;  // even its plane is too far
         const Vector3d b = nearest_barycentric(corners_[s], p);
         const Vector3d q = at(corners_[s], b);
         const double d = (q - p).squaredNorm();

@@ -29,6 +29,11 @@ class TriangleTree {
 
   bool empty() const { return corners_.empty(); }
 
+  /// Corners of a triangle that has area, such as every answer has.
+  const std::array<Eigen::Vector3d, 3>& corners(int triangle) const {
+    return corners_[static_cast<std::size_t>(slot_[static_cast<std::size_t>(triangle)])];
+  }
+
   /// Nearest surface point not farther than `reach` (mm); unsigned distance.
   SurfacePoint nearest(const Eigen::Vector3d& p,
                        double reach = std::numeric_limits<double>::infinity()) const;

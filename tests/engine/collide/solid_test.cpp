@@ -11,60 +11,6 @@
 namespace condyle {
 namespace {
 
-/// The definition, over every vertex.
-double deepest_by_force(const TriMesh& points, const TriMesh& solid, const Pose& X) {
-  const TriangleTree tree(solid);
-  double deepest = 0;
-  for (const auto& p : points.vertices) deepest = std::max(deepest, -tree.signed_distance(X * p));
-  return deepest;
-}
-
-TEST(OverlapDepth, EqualsTheDefinitionOverAllVertices) {
-  std::mt19937_64 random(20);
-  const TriMesh mesh_a = test::sphere(3, 15, {2, 1, 0}, 0.1), mesh_b = test::sphere(2, 11);
-  const Solid a(mesh_a), b(mesh_b);
-  int overlapping = 0;
-  for (int k = 0; k < 200; ++k) {
-    const Pose X_WA = test::any_pose(random, 5), X_WB = test::any_pose(random, 25);
-    const Pose X_AB = X_WA.inverse() * X_WB;
-    const double expected = std::max(deepest_by_force(mesh_a, mesh_b, X_AB.inverse()),
-                                     deepest_by_force(mesh_b, mesh_a, X_AB));
-    const OverlapDepth found = overlap_depth(a, X_WA, b, X_WB);
-    ASSERT_NEAR(found.depth_mm, expected, 1e-10);
-    if (expected == 0) continue;
-    ++overlapping;
-    // The deepest point lies inside both, or on one, and the normal is unit.
-    EXPECT_LE(a.signed_distance(X_WA.inverse() * found.point), 1e-9);
-    EXPECT_LE(b.signed_distance(X_WB.inverse() * found.point), 1e-9);
-    EXPECT_NEAR(found.normal.norm(), 1, 1e-9);
-  }
-  EXPECT_GT(overlapping, 60);
-}
-
-TEST(OverlapDepth, OfSpheresIsTheAnalyticOneWithinTheirFacets) {
-  const Solid a(test::sphere(4, 20)), b(test::sphere(4, 10));
-  const Pose X_WB{Eigen::Quaterniond::Identity(), {28, 0, 0}};
-  const OverlapDepth found = overlap_depth(a, {}, b, X_WB);
-  EXPECT_LE(found.depth_mm, 2.0);
-  EXPECT_GE(found.depth_mm, 2.0 - 0.12);
-  EXPECT_GT(found.normal.x(), 0.95);
-  const OverlapDepth swapped = overlap_depth(b, X_WB, a, {});
-  EXPECT_EQ(swapped.depth_mm, found.depth_mm);
-  EXPECT_LT(swapped.normal.x(), -0.95);
-}
-
-TEST(OverlapDepth, GrowsByNoMoreThanTheMotion) {
-  std::mt19937_64 random(21);
-  const Solid a(test::sphere(3, 15, {0, 0, 0}, 0.1)), b(test::sphere(3, 10, {0, 0, 0}, 0.1));
-  for (int k = 0; k < 100; ++k) {
-    Pose X_WB = test::any_pose(random, 14);
-    const double before = overlap_depth(a, {}, b, X_WB).depth_mm;
-    const Eigen::Vector3d step = 0.3 * test::any_pose(random, 1).t;
-    X_WB.t += step;
-    EXPECT_LE(std::abs(overlap_depth(a, {}, b, X_WB).depth_mm - before), step.norm() + 1e-9);
-  }
-}
-
 TEST(Solid, OverlappingShellsAreTheirUnion) {
   // Two boxes that overlap by 2 mm: a ball in the common part is as deep as in the deeper of them.
   const TriMesh pair =

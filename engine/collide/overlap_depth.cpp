@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <vector>
+
+#include "engine/collide/solid.h"
+#include "engine/collide/triangle_distance.h"
+
+namespace condyle {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double rounding_mm = 1e-9;
+
+}  // namespace
+
+/// Looks for the deepest point of either surface inside the shells of the other. Depth changes by
+/// at most a millimetre per millimetre, so that what has been looked at bounds what is around it.
+/// Runs of faces, faces and parts of faces wait in a heap; what may be deepest is divided first,
+/// until nothing may be deeper than what was found.
+class DepthSearch {
+ public:
+  DepthSearch(const Solid& a, const Solid& b, const Pose& X_AB, const DepthSettings& settings)
+      : settings_(settings), sides_{{{b, a, X_AB}, {a, b, X_AB.inverse()}}} {
+    for (int i = 0; i < 2; ++i)
+      for (std::size_t k = 0; k < sides_[i].solid.shells_.size(); ++k) offer_ball({i, k}, 0, {});
+    while (!waiting_.empty() && waiting_.top().bound > enough() && looks_ < settings_.max_looks) {
+      const Waiting next = waiting_.top();
+      waiting_.pop();
+      const Item item = items_[next.item];
+      free_.push_back(next.item);
+      if (item.ball >= 0)
+        divide_ball(item);
+      else
+        divide_face(item);
+    }
+  }
+
+  double depth_mm = 0;
+  int side = 0;                                        // 0: the point is on B, in A
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();     // coordinates of the solid it is in
+  Eigen::Vector3d outward = Eigen::Vector3d::UnitZ();  // of that solid, next to it
+
+  double error_mm() const {
+    return std::max(tolerance(), waiting_.empty() ? 0 : waiting_.top().bound - depth_mm);
+  }
+
+ private:
+  struct Side {
+    const Solid &surface, &solid;
+    Pose X;  // of the surface in the solid's coordinates
+  };
+  struct Into {  // a shell of one side's solid
+    int side = 0;
+    std::size_t shell = 0;
+  };
+  /// What is known about a place: its depth (negative outside) and the triangle next to it.
+  struct Place {
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();
+    double depth = -infinity;
+    int triangle = -1;
+  };
+  struct Item {
+    Into into;
+    int ball = -1;  // a run of faces, or
+    Triangle face;  // a face or a part of one, whose corners have been looked at
+    Place middle;
+  };
+  struct Waiting {
+    double bound;
+    std::size_t item;
+    int number;  // the earlier of two alike goes first
+    bool operator<(const Waiting& other) const {
+      return bound != other.bound ? bound < other.bound : number > other.number;
+    }
+  };
+
+  double tolerance() const { return std::max(settings_.tolerance_mm, 1e-3 * depth_mm); }
+  double enough() const { return depth_mm + tolerance(); }
+  const Solid::ClosedShell& shell(Into into) const {
+    return sides_[into.side].solid.shells_[into.shell];
+  }
+
+  Place look_at(Into into, const Eigen::Vector3d& p, const Place& near) {
+    const TriangleTree& tree = shell(into).tree;
+    double reach = infinity;  // a surface known to be near makes the query quick
+    if (near.triangle >= 0)
+      reach = (nearest_point(p, tree.corners(near.triangle)) - p).norm() + rounding_mm;
+    const SurfacePoint found = tree.signed_nearest(p, reach);
+    ++looks_;
+    return {p, -found.distance, found.triangle};
+  }
+
+  /// The same for a point of the surface: keeps the deepest.
+  Place look_at_point(Into into, const Eigen::Vector3d& p, const Place& near) {
+    const Place place = look_at(into, p, near);
+    if (place.depth > depth_mm) {
+      depth_mm = place.depth;
+      side = into.side;
+      point = p;
+      outward = shell(into).tree.pseudonormal(shell(into).tree.signed_nearest(p, place.depth));
+    }
+    return place;
+  }
+
+  /// No point of t is deeper. None is deeper than near.depth and its way from there; nor deeper
+  /// than it is far from any one triangle of the shell: that is greatest at a corner of t, and its
+  /// excess goes with the square of t's size.
+  double bound(Into into, const Triangle& t, const Place& near) const {
+    double way2 = 0;
+    for (const auto& corner : t) way2 = std::max(way2, (corner - near.at).squaredNorm());
+    const double by_way = near.depth + std::sqrt(way2);
+    if (by_way <= enough() || near.triangle < 0) return by_way;
+    const Triangle& opposite = shell(into).tree.corners(near.triangle);
+    double farthest2 = 0;
+    for (const auto& corner : t)
+      farthest2 = std::max(farthest2, (nearest_point(corner, opposite) - corner).squaredNorm());
+    return std::min(by_way, std::sqrt(farthest2));
+  }
+
+  void wait(double bound, const Item& item) {
+    if (bound <= enough()) return;
+    std::size_t place = items_.size();
+    if (free_.empty()) {
+      items_.push_back(item);
+    } else {
+      place = free_.back();
+      free_.pop_back();
+      items_[place] = item;
+    }
+    waiting_.push({bound, place, number_++});
+  }
+
+  void offer_ball(Into into, int index, const Place& near) {
+    const Side& from = sides_[into.side];
+    const Solid::Ball& ball = from.surface.balls_[index];
+    const Eigen::Vector3d middle = from.X * ball.center;
+    if (near.triangle >= 0 && near.depth + (middle - near.at).norm() + ball.radius <= enough())
+      return;
+    if (!shell(into).box.contains(middle, ball.radius)) return;
+    const Place place = look_at(into, middle, near);
+    wait(place.depth + ball.radius, {into, index, {}, place});
+  }
+
+  void divide_ball(const Item& item) {
+    const Side& from = sides_[item.into.side];
+    const Solid::Ball& ball = from.surface.balls_[item.ball];
+    if (ball.right != 0) {
+      offer_ball(item.into, item.ball + 1, item.middle);
+      offer_ball(item.into, ball.right, item.middle);
+      return;
+    }
+    for (int i = ball.first; i < ball.first + ball.count; ++i) {
+      Triangle face = from.surface.faces_[i];
+      for (auto& corner : face) corner = from.X * corner;
+      if (bound(item.into, face, item.middle) <= enough()) continue;
+      const Place middle = look_at_middle(item.into, face, item.middle);
+      if (bound(item.into, face, middle) <= enough()) continue;
+      for (const auto& corner : face) look_at_point(item.into, corner, middle);
+      wait(bound(item.into, face, middle), {item.into, -1, face, middle});
+    }
+  }
+
+  Place look_at_middle(Into into, const Triangle& t, const Place& near) {
+    return look_at_point(into, (t[0] + t[1] + t[2]) / 3, near);
+  }
+
+  void divide_face(const Item& item) {
+    const Triangle& t = item.face;
+    std::size_t longest = 0;
+    double length2 = -1;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const double l2 = (t[(k + 1) % 3] - t[k]).squaredNorm(); l2 > length2)
+        length2 = l2, longest = k;
+    const auto &a = t[longest], &b = t[(longest + 1) % 3], &c = t[(longest + 2) % 3];
+    const Eigen::Vector3d half = (a + b) / 2;
+    look_at_point(item.into, half, item.middle);
+    for (const Triangle& part : {Triangle{a, half, c}, Triangle{half, b, c}}) {
+      if (bound(item.into, part, item.middle) <= enough()) continue;
+      const Place middle = look_at_middle(item.into, part, item.middle);
+      wait(bound(item.into, part, middle), {item.into, -1, part, middle});
+    }
+  }
+
+  DepthSettings settings_;
+  std::array<Side, 2> sides_;
+  std::vector<Item> items_;
+  std::vector<std::size_t> free_;  // places in items_ to use again
+  std::priority_queue<Waiting> waiting_;
+  int looks_ = 0, number_ = 0;
+};
+
+OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
+                           const DepthSettings& settings) {
+  const DepthSearch found(a, b, X_WA.inverse() * X_WB, settings);
+  OverlapDepth overlap;
+  overlap.error_mm = found.error_mm();
+  if (found.depth_mm == 0) return overlap;
+  const Pose& X = found.side == 0 ? X_WA : X_WB;
+  overlap.depth_mm = found.depth_mm;
+  overlap.point = X * found.point;
+  overlap.normal = found.side == 0 ? X.R * found.outward : X.R * -found.outward;
+  return overlap;
+}
+
+}  // namespace condyle
