@@ -80,6 +80,13 @@ double Solid::ClosedShell::depth(const Eigen::Vector3d& p, double ball_radius, d
   return -tree.signed_nearest(p, reach).distance;
 }
 
+double Solid::extent(const Eigen::Vector3d& direction) const {
+  double most = -infinity;
+  for (const Triangle& face : faces_)
+    for (const auto& corner : face) most = std::max(most, direction.dot(corner));
+  return most;
+}
+
 double Solid::signed_distance(const Eigen::Vector3d& p) const {
   // The shell whose box is nearest goes first: its answer spares most others.
   std::size_t first = 0;

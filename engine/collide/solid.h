@@ -27,6 +27,9 @@ class Solid {
   const Eigen::Vector3d& center() const { return balls_.front().center; }
   double radius() const { return balls_.front().radius; }
 
+  /// Largest p . direction over all vertices.
+  double extent(const Eigen::Vector3d& direction) const;
+
   /// Signed distance to the union, negative inside: exact outside, a lower bound of the depth
   /// inside where shells overlap. Infinite when no shell is closed.
   double signed_distance(const Eigen::Vector3d& p) const;
