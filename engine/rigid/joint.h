@@ -19,10 +19,10 @@ struct RigidJoint {
   int a = 0, b = 0;  // bodies
   Eigen::Vector3d p_A = Eigen::Vector3d::Zero(), p_B = Eigen::Vector3d::Zero();
   Eigen::Vector3d axis_A = Eigen::Vector3d::UnitX(), axis_B = Eigen::Vector3d::UnitX();
-  Pose X_AB;                             // of a fixed joint
-  std::vector<Eigen::Vector3d> curve_A;  // of a guide: at least two points, smoothed between
+  Pose X_AB = {};                             // of a fixed joint
+  std::vector<Eigen::Vector3d> curve_A = {};  // of a guide: at least two points, smoothed between
   // A direction along which the point may leave the curve: it stays on a surface then.
-  std::optional<Eigen::Vector3d> sideways_A;
+  std::optional<Eigen::Vector3d> sideways_A = {};
   double max_force_N = 1e4;  // what holds it at most (torques: times a mm)
 };
 

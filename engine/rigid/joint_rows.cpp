@@ -78,9 +78,15 @@ double JointRows::append(const JointBody& a, const JointBody& b, double step_s,
     row.impulse = impulses.empty() ? 0.0 : impulses[rows.size() - first];
     rows.push_back(row);
   };
-  // The point of B, also as carried by A, moves along a direction.
+  // The point of B, also as carried by A, moves along a direction. Half a step of what turns its
+  // way makes it end up in place, not beside it, and keeps the energy.
+  const auto bend = [&](const JointBody& body) {
+    return Vector3d(body.motion.spin.cross(body.motion.spin.cross(p_WB - body.center)));
+  };
+  const Vector3d bending = 0.5 * step_s * (bend(b) - bend(a));
   const auto hold = [&](const Vector3d& along, double error) {
     add(along, (p_WB - a.center).cross(along), (p_WB - b.center).cross(along), error);
+    rows.back().wanted -= along.dot(bending);
   };
   const auto turn = [&](const Vector3d& axis, double error) {
     add(Vector3d::Zero(), axis, axis, error);

@@ -100,6 +100,20 @@ struct RigidWorld::State : MoreContacts {
     require(body >= 0 && body < static_cast<int>(count()),
             "there is no body " + std::to_string(body));
   }
+  static void check_pose(const Pose& X_WB) {
+    require(X_WB.t.allFinite() && std::abs(X_WB.R.norm() - 1) < 1e-6,
+            "a pose is not finite or its rotation not of unit length");
+  }
+  void check_motion(const RigidMotion& motion, double radius_mm) const {
+    const double speed = motion.velocity.norm() + motion.spin.norm() * radius_mm;
+    require(speed <= settings.max_speed_mm_s, "a motion of " + text(speed) +
+                                                  " mm/s is not finite or above " +
+                                                  text(settings.max_speed_mm_s));
+  }
+  static void check_force(const Vector3d& force_N) {
+    require(force_N.norm() <= most_force_N, "a force of " + text(force_N.norm()) +
+                                                " N is not finite or above " + text(most_force_N));
+  }
   /// Velocity that a unit impulse at a point gives it, at most.
   double give(int body, const Vector3d& p_B) const {
     const Member& m = members[static_cast<std::size_t>(body)];
@@ -326,9 +340,12 @@ void RigidWorld::State::remember() {
   for (std::size_t k = 0; k < pushes.size(); ++k) {
     const Touch& touch = touches[static_cast<std::size_t>(touch_of_push[k])];
     const double push = pushes[k].impulse.dot(touch.normal);
-    if (!(push > 0)) continue;
     const Vector3d force = to_N * pushes[k].impulse;
-    memory.push_back({touch.look, touch.sample, force});
+    // Those that do not push, but would join again at the least motion, stay too.
+    const double gap = touch.gap_mm + rest_share * settings.slop_mm;
+    if (push > 0 || gap < -unseen_share * settings.slop_mm)
+      memory.push_back({touch.look, touch.sample, force});
+    if (!(push > 0)) continue;
     contacts.push_back({touch.pair, touch.point, touch.normal, touch.gap_mm, to_N * push,
                         force - to_N * push * touch.normal});
   }
@@ -432,6 +449,8 @@ int RigidWorld::add_body(const RigidBody& body) {
   for (const auto& surface : body.surfaces)
     for (const Vector3d& p : surface->samples.points)
       m.radius_mm = std::max(m.radius_mm, (p - mass.center).norm());
+  s.check_pose(body.X_WB);
+  s.check_motion(body.motion, m.radius_mm);
   if (mass.mass_kg > 0) {
     const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(mass.inertia);
     require(mass.inertia.isApprox(mass.inertia.transpose(), 1e-9) && axes.eigenvalues()[0] > 0,
@@ -450,14 +469,11 @@ int RigidWorld::add_body(const RigidBody& body) {
     s.solver_bodies.emplace_back();
   }
   s.members.push_back(m);
-  s.poses.emplace_back();
-  s.motions.emplace_back();
+  s.poses.push_back({body.X_WB.R.normalized(), body.X_WB.t});
+  s.motions.push_back(body.motion);
   s.centers.emplace_back();
   s.body_motions.emplace_back();
-  const int id = static_cast<int>(s.count()) - 1;
-  set_pose(id, body.X_WB);
-  set_motion(id, body.motion);
-  return id;
+  return static_cast<int>(s.count()) - 1;
 }
 
 int RigidWorld::add_force(const RigidForce& force) {
@@ -466,8 +482,8 @@ int RigidWorld::add_force(const RigidForce& force) {
   require(force.point.allFinite() && force.torque_N_mm.allFinite() &&
               force.torque_N_mm.norm() <= most_force_N * 1000,
           "a force's point or torque is not finite or too large");
+  s.check_force(force.force_N);
   s.forces.push_back(force);
-  set_force(static_cast<int>(s.forces.size()) - 1, force.force_N);
   return static_cast<int>(s.forces.size()) - 1;
 }
 
@@ -541,8 +557,7 @@ void RigidWorld::set_force(int force, const Vector3d& force_N) {
 
 void RigidWorld::set_pose(int body, const Pose& X_WB) {
   state_->check_body(body);
-  require(X_WB.t.allFinite() && std::abs(X_WB.R.norm() - 1) < 1e-6,
-          "a pose is not finite or its rotation not of unit length");
+  state_->check_pose(X_WB);
   state_->poses[static_cast<std::size_t>(body)] = {X_WB.R.normalized(), X_WB.t};
 }
 
@@ -550,10 +565,7 @@ void RigidWorld::set_motion(int body, const RigidMotion& motion) {
   State& s = *state_;
   s.check_body(body);
   const auto i = static_cast<std::size_t>(body);
-  const double speed = motion.velocity.norm() + motion.spin.norm() * s.members[i].radius_mm;
-  require(speed <= s.settings.max_speed_mm_s, "a motion of " + text(speed) +
-                                                  " mm/s is not finite or above " +
-                                                  text(s.settings.max_speed_mm_s));
+  s.check_motion(motion, s.members[i].radius_mm);
   s.motions[i] = motion;
 }
 

@@ -20,12 +20,12 @@ struct RigidMotion {
 };
 
 struct RigidBody {
-  MassProperties mass;  // mass 0: fixed, or carried along by its motion whatever pushes it
-  Pose X_WB;
-  RigidMotion motion;
-  std::vector<std::shared_ptr<const SlideBody>> surfaces;  // body coordinates; may be none
-  double drag_N_s_mm = 0;                                  // force against its velocity
-  double turning_drag_N_mm_s = 0;                          // torque against its spin
+  MassProperties mass = {};  // mass 0: fixed, or carried along by its motion whatever pushes it
+  Pose X_WB = {};
+  RigidMotion motion = {};
+  std::vector<std::shared_ptr<const SlideBody>> surfaces = {};  // body coordinates; may be none
+  double drag_N_s_mm = 0;                                       // force against its velocity
+  double turning_drag_N_mm_s = 0;                               // torque against its spin
 };
 
 /// A constant force until it is set anew.
@@ -62,7 +62,7 @@ struct RigidSettings {
   double thinning_mm = 1;        // between contacts that join together
   double push_out_mm_s = 20;     // how fast overlap is parted at most; adds no energy
   int max_sweeps = 60;           // of the constraint solver in a step
-  double tolerance_mm_s = 1e-4;  // of the velocities it leaves at joints and contacts
+  double tolerance_mm_s = 1e-6;  // of the velocities it leaves at joints and contacts
   double max_speed_mm_s = 2e4;   // of any point; a step that would exceed it is not taken
 };
 

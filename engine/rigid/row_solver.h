@@ -57,7 +57,7 @@ class MoreContacts {
 struct SolverSettings {
   double step_s = 1e-3;
   int max_sweeps = 60;
-  double tolerance = 1e-4;   // mm/s
+  double tolerance = 1e-6;   // mm/s
   double max_impulse = 1e5;  // of a contact
   double undone = 0.3;       // share of the joints' errors that a step undoes
 };

@@ -15,14 +15,12 @@ inline std::shared_ptr<const SlideBody> surface(const TriMesh& mesh) {
   return std::make_shared<const SlideBody>(make_slide_body(mesh, {}, 2));
 }
 
-inline Pose at(double x, double y, double z) {
-  return {Eigen::Quaterniond::Identity(), {x, y, z}};
-}
+inline Pose at(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
 
 inline Pose turned(const Eigen::Vector3d& axis, double degrees, const Eigen::Vector3d& t) {
-  return {Eigen::Quaterniond(
-              Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized())),
-          t};
+  return {
+      Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized())),
+      t};
 }
 
 /// A free body of bone.
