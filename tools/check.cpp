@@ -93,11 +93,11 @@ void remove_other_pictures(const std::filesystem::path& folder,
 
 int run_check(const CheckOptions& options, const CommonOptions& common) {
   constexpr int violation = 3;
-  std::optional<StagedFiles> files;
-  if (!options.out.empty()) files.emplace(options.out);  // fails before the long work
   ProgressBar bar(common);
   auto settings = simulator_settings(options.motion, common);
   settings.contact.far_mm = std::numeric_limits<double>::infinity();  // every distance is plotted
+  std::optional<StagedFiles> files;
+  if (!options.out.empty()) files.emplace(options.out);  // fails before the long work
   const Scene scene =
       make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
   const Motion motion =

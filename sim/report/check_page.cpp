@@ -43,7 +43,7 @@ class PageWriter {
   }
 
   static std::string at(const MotionTime& when) {
-    return fmt::format("{:.1f} mm, {:.1f}°, frame {}", when.opening_mm, when.rotation_deg,
+    return fmt::format("{} mm, {}°, frame {}", tenths(when.opening_mm), tenths(when.rotation_deg),
                        when.frame);
   }
 

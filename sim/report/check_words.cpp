@@ -93,8 +93,9 @@ std::string worst_caption(const PairVerdict& pair) {
     text = pair.rest_depth_mm > 0
                ? fmt::format("{:.2f} mm deep, not deeper than at rest", sample.depth_mm)
                : "touching";
-  text += fmt::format(" at {:.1f} mm opening, {:.1f}° rotation ({:.2f} s{})", when.opening_mm,
-                      when.rotation_deg, when.time_s, when.between ? ", between two frames" : "");
+  text += fmt::format(" at {} mm opening, {}° rotation ({:.2f} s{})", tenths(when.opening_mm),
+                      tenths(when.rotation_deg), when.time_s,
+                      when.between ? ", between two frames" : "");
   if (sample.contact.touching) {
     text += fmt::format("; contact {:.1f} mm² in {} {}", measure.area_mm2, measure.patches,
                         measure.patches == 1 ? "patch" : "patches");

@@ -88,7 +88,10 @@ ClearanceCheck check_clearance(const Scene& scene, const Motion& motion, const C
 /// Judges the measures of a pair by its rule. `slack_mm`: depth beyond rest that does not count.
 void judge(PairVerdict& pair, double slack_mm);
 
-/// "forbidden", "may touch", ... for people.
+/// "12.3"; what rounds to zero has no sign.
+std::string tenths(double value);
+
+/// "must not touch", "may touch, ...", ... for people.
 std::string rule_words(const PairVerdict& pair);
 
 /// Which rule was broken and how far, in one sentence; what was kept, where none was.

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "sim/report/clearance.h"
 
 namespace condyle {
@@ -34,6 +36,10 @@ void judge(PairVerdict& pair, double slack_mm) {
   }
 }
 
+std::string tenths(double value) {
+  return fmt::format("{:.1f}", std::abs(value) < 0.05 ? 0.0 : value);
+}
+
 std::string rule_words(const PairVerdict& pair) {
   switch (pair.rule.policy) {
     case PairPolicy::allowed:
@@ -56,9 +62,8 @@ std::string verdict_words(const PairVerdict& pair) {
     words += (words.empty() ? "" : "; ") + more;
   };
   if (pair.collides) {
-    const std::string at = fmt::format(" at {:.1f} mm opening", pair.beyond_rest_mm > 0
-                                                                    ? pair.deepest_at.opening_mm
-                                                                    : pair.first_touch->opening_mm);
+    const MotionTime& when = pair.beyond_rest_mm > 0 ? pair.deepest_at : *pair.first_touch;
+    const std::string at = " at " + tenths(when.opening_mm) + " mm opening";
     if (pair.beyond_rest_mm > 0 && pair.rest_depth_mm > 0)
       add("the motion makes them overlap " + number(pair.beyond_rest_mm) + " more than at rest" +
           at);
@@ -67,8 +72,8 @@ std::string verdict_words(const PairVerdict& pair) {
     else
       add("the motion makes them meet" + at);
   } else if (pair.too_near) {
-    add(fmt::format("the motion brings them to {} at {:.1f} mm opening, nearer than the {} of {}",
-                    number(pair.least_distance_mm), pair.least_at.opening_mm, asked,
+    add(fmt::format("the motion brings them to {} at {} mm opening, nearer than the {} of {}",
+                    number(pair.least_distance_mm), tenths(pair.least_at.opening_mm), asked,
                     number(pair.keep_mm)));
   }
   if (pair.at_rest) {
@@ -79,18 +84,25 @@ std::string verdict_words(const PairVerdict& pair) {
                       number(pair.rest_distance_mm)));
     if (!pair.collides && pair.rest_distance_mm > 0 &&
         pair.least_distance_mm < pair.rest_distance_mm)
-      add(fmt::format("the motion brings them to {} at {:.1f} mm opening",
-                      number(pair.least_distance_mm), pair.least_at.opening_mm));
+      add(fmt::format("the motion brings them to {} at {} mm opening",
+                      number(pair.least_distance_mm), tenths(pair.least_at.opening_mm)));
     else if (!pair.collides)
       add("the motion makes it no worse");
   }
   if (!words.empty()) return words;
   if (pair.rest_depth_mm > 0)
-    return "overlap by " + number(pair.rest_depth_mm) + " at rest, never more in the motion";
+    return "overlap by " + number(pair.rest_depth_mm) + " at rest, " +
+           (pair.beyond_rest_mm >= 0.005 ? "at most " + number(pair.beyond_rest_mm) + " more"
+                                         : "never more") +
+           " in the motion";
   if (pair.beyond_rest_mm > 0) return "touch, overlap at most " + number(pair.beyond_rest_mm);
   if (pair.first_touch) return "touch without overlap";
-  return fmt::format("keep at least {}, nearest at {:.1f} mm opening",
-                     number(pair.least_distance_mm), pair.least_at.opening_mm);
+  if (guided)
+    return fmt::format("keep a gap of {} (at {} mm opening) to {} (at {} mm opening)",
+                       number(pair.least_distance_mm), tenths(pair.least_at.opening_mm),
+                       number(pair.most_distance_mm), tenths(pair.most_at.opening_mm));
+  return fmt::format("keep at least {}, nearest at {} mm opening", number(pair.least_distance_mm),
+                     tenths(pair.least_at.opening_mm));
 }
 
 }  // namespace condyle

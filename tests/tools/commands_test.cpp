@@ -123,56 +123,6 @@ TEST(Run, PushedIntoBoneStopsWhenContactIsRespected) {
   EXPECT_EQ(kept.at("stopped"), 1);
 }
 
-TEST(Check, ExitCodeTellsAViolation) {
-  const Folder folder;
-  const std::string patient = box_case(folder), motion = folder / "bite.csv";
-  write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n1,0,0,6,1,0,0,0\n");
-  EXPECT_EQ(condyle({"check", patient, "--motion", motion, "--out", folder / "out"}).code, 3);
-  const auto report = nlohmann::json::parse(read_text(folder / "out/report.json"));
-  EXPECT_TRUE(report["violation"].get<bool>());
-  EXPECT_TRUE(fs::exists(folder / "out/pairs.csv"));
-  const std::string page = read_text(folder / "out/report.html");
-  EXPECT_NE(page.find("Violation."), std::string::npos);
-  EXPECT_NE(page.find(read_text(folder / "out/clearance.svg")), std::string::npos);
-  const auto worst = report["pairs"][0]["worst"];
-  EXPECT_NEAR(worst["penetration_volume_mm3"].get<double>(), 60 * 50 * 5, 150);
-  EXPECT_EQ(worst["patches"], 1);
-  write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n1,0,0,-6,1,0,0,0\n");
-  EXPECT_EQ(condyle({"check", patient, "--motion", motion}).code, 0);
-  EXPECT_EQ(condyle({"check", patient, "--motion", motion, "--margin", "1.5"}).code, 3);
-}
-
-TEST(Check, DrawsTheWorstFrameAndWithoutEglSaysThatItCannot) {
-  const Folder folder;
-  const std::string patient = box_case(folder), motion = folder / "bite.csv";
-  write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n0.1,0,0,3,1,0,0,0\n");
-  const auto picture = [&](const std::string& out) {
-    return fs::exists(folder / (out + "/worst-maxilla-mandible.png"));
-  };
-  ASSERT_EQ(condyle({"check", patient, "--motion", motion, "--out", folder / "drawn"}).code, 3);
-  const std::string page = read_text(folder / "drawn/report.html");
-  if (picture("drawn"))
-    EXPECT_NE(page.find("src=\"worst-maxilla-mandible.png\""), std::string::npos);
-  else
-    EXPECT_NE(page.find("pictures are left out"), std::string::npos);
-  // Vendors that are not there leave EGL without a driver.
-  ::setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere.json", 1);
-  const auto blind = condyle({"check", patient, "--motion", motion, "--out", folder / "blind"});
-  ::unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
-  EXPECT_EQ(blind.code, 3);
-  EXPECT_FALSE(picture("blind"));
-  EXPECT_NE(blind.err.find("pictures are left out"), std::string::npos) << blind.err;
-  EXPECT_NE(read_text(folder / "blind/report.html").find("pictures are left out"),
-            std::string::npos);
-}
-
-TEST(Check, SeesTheEndOfAMotionShorterThanAStep) {
-  const Folder folder;
-  const std::string patient = box_case(folder), motion = folder / "quick.csv";
-  write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n0.004,0,0,6,1,0,0,0\n");
-  EXPECT_EQ(condyle({"check", patient, "--motion", motion}).code, 3);
-}
-
 TEST(Record, AFullDiskLeavesTheEarlierRecordingWhole) {
   const Folder folder;
   const std::string patient = box_case(folder);
