@@ -120,8 +120,9 @@ int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
   settings.paper_mm = options.paper_mm;
   settings.cache = field_cache_folder();
   settings.threads = common.threads;
-  OcclusionReport report{patient.name, start.words, settings,
-                         settle_bite(patient, start.X_CM, settings, bar.callback())};
+  OcclusionReport report{
+      patient.name, start.words, settings,
+      BiteFinder(patient, settings, bar.callback()).find(start.X_CM, bar.callback())};
   const Bite& bite = report.bite;
   if (!options.out.empty()) {
     make_folder(options.out);

@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "engine/mesh/triangle_tree.h"
+#include "sim/occlusion/foil.h"
 
 namespace condyle {
 namespace {
@@ -19,7 +20,7 @@ constexpr double room_mm = 2;         // about it
 constexpr double on_bone_mm = 3;      // an incisal landmark this near lies on the bone
 constexpr double molar_share = 0.58;  // of an arch's length lies before the first molars
 constexpr double molar_behind_mm = 28;
-constexpr double slice_mm = 4, top_mm = 1.5;
+constexpr double slice_mm = 4, top_mm = 1.5, piece_mm = 1;
 constexpr double steepest_cos = 0.8;  // of the occlusal plane to the horizontal: 37 degrees
 
 /// Reads one arch; "height" is how far a point is toward the other arch.
@@ -34,7 +35,6 @@ class ArchReader {
         patient_.landmarks.find(upper_ ? "upper_incisal_point" : "lower_incisal_point");
     const bool teeth = arch_.part && !arch_.part->mesh.empty();
     if (!teeth) take_bone(landmark);
-    const auto& vertices = arch_.part->mesh.vertices;
     if (teeth) {
       Box box = bounding_box(arch_.part->mesh);
       front_mm_ = box.low.y();
@@ -55,16 +55,16 @@ class ArchReader {
     arch_.crowns.high.array() += room_mm;
     const double molar_y =
         teeth ? front_mm_ + molar_share * (back_mm_ - front_mm_) : arch_.edge.y() + molar_behind_mm;
+    const auto pieces = make_foil_surface(arch_.part->mesh, arch_.crowns, piece_mm).pieces;
     std::array<std::optional<Vector3d>, 2> found;
     for (int side = 0; side < 2; ++side) {
       const int fdi = upper_ ? (side == 0 ? 26 : 16) : (side == 0 ? 36 : 46);
       found[side] = top_of(tooth_vertices(fdi));
       if (!found[side]) {
         std::vector<Vector3d> slice;
-        for (const auto& p : vertices) {
-          const double x = (p.x() - midline_mm_) * (side == 0 ? 1 : -1);
-          if (x > 8 && std::abs(p.y() - molar_y) < slice_mm && arch_.crowns.contains(p))
-            slice.push_back(p);
+        for (const auto& piece : pieces) {
+          const double x = (piece.point.x() - midline_mm_) * (side == 0 ? 1 : -1);
+          if (x > 8 && std::abs(piece.point.y() - molar_y) < slice_mm) slice.push_back(piece.point);
         }
         found[side] = top_of(slice);
       }
@@ -103,14 +103,14 @@ class ArchReader {
                              [&](const auto& a, const auto& b) { return height(a) < height(b); });
   }
 
-  /// Middle of what is highest.
+  /// Over the middle of what is highest, at the height of the tip.
   std::optional<Vector3d> top_of(const std::vector<Vector3d>& points) const {
     const auto tip = highest(points);
     if (!tip) return tip;
     Box top;
     for (const auto& p : points)
       if (height(p) > height(*tip) - top_mm) top.add(p);
-    return top.center();
+    return Vector3d(top.center().x(), top.center().y(), tip->z());
   }
 
   Vector3d incisal_edge(const std::optional<Vector3d>& landmark) {

@@ -17,7 +17,9 @@ constexpr double cell_mm = 0.35;  // pressed pieces in the same or neighbouring 
 constexpr double least_mark_mm2 = 0.02;
 
 struct Cell {
-  int upper = 0, lower = 0, x = 0, y = 0, z = 0;
+  int upper = 0, lower = 0;
+  bool left = false;  // what reaches over the midline counts for both sides
+  int x = 0, y = 0, z = 0;
   auto operator<=>(const Cell&) const = default;
 };
 
@@ -47,7 +49,7 @@ std::vector<ToothContact> find_contacts(const Arches& arches, const BiteModel& m
     const auto number = [](double v) { return static_cast<int>(std::floor(v / cell_mm)); };
     const int triangle = model.lower_surface().pieces[pressed[i].piece].triangle;
     cells[{tooth_of(upper, upper_tree.nearest(p).triangle), tooth_of(lower, triangle),
-           number(p.x()), number(p.y()), number(p.z())}]
+           p.x() > arches.midline_mm, number(p.x()), number(p.y()), number(p.z())}]
         .push_back(static_cast<int>(i));
   }
   std::vector<Mark> marks;
@@ -55,6 +57,7 @@ std::vector<ToothContact> find_contacts(const Arches& arches, const BiteModel& m
     Mark mark;
     mark.contact.upper_fdi = cells.begin()->first.upper;
     mark.contact.lower_fdi = cells.begin()->first.lower;
+    mark.contact.left = cells.begin()->first.left;
     mark.contact.gap_mm = 1e300;
     std::vector<Cell> front = {cells.begin()->first};
     while (!front.empty()) {
@@ -75,12 +78,12 @@ std::vector<ToothContact> find_contacts(const Arches& arches, const BiteModel& m
       for (int dx = -1; dx <= 1; ++dx)
         for (int dy = -1; dy <= 1; ++dy)
           for (int dz = -1; dz <= 1; ++dz)
-            front.push_back({cell.upper, cell.lower, cell.x + dx, cell.y + dy, cell.z + dz});
+            front.push_back(
+                {cell.upper, cell.lower, cell.left, cell.x + dx, cell.y + dy, cell.z + dz});
     }
     if (mark.contact.area_mm2 < least_mark_mm2) continue;
     mark.contact.place = mark.place / mark.contact.area_mm2;
     mark.contact.normal = mark.normal.normalized();
-    mark.contact.left = mark.contact.place.x() > arches.midline_mm;
     marks.push_back(mark);
   }
   double all = 0;

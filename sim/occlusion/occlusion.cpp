@@ -6,8 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/collide/collision_mesh.h"
-#include "engine/collide/solid.h"
 #include "engine/core/error.h"
 #include "sim/contact/contact.h"
 #include "sim/occlusion/bite_contacts.h"
@@ -27,29 +25,20 @@ IncisorOverlap incisors(const Arches& arches, const Pose& X_CM) {
 
 bool is_front(int fdi) { return fdi % 10 >= 1 && fdi % 10 <= 3; }
 
-/// Exact distance of the arches, and their overlap where they cross.
-void measure_gap(const Arches& arches, Bite& bite) {
-  const TriMesh &upper = arches.upper.part->mesh, &lower = arches.lower.part->mesh;
-  const Pose& X_CM = bite.rest.X_CM;
-  bite.gap_mm = distance(CollisionMesh(upper), {}, CollisionMesh(lower), X_CM).distance_mm;
-  if (bite.gap_mm == 0)
-    bite.overlap_mm = overlap_depth(Solid(upper), {}, Solid(lower), X_CM).depth_mm;
-}
-
-/// Bones that the bite brings deeper into each other than they are at rest.
-void look_at_bones(const Case& patient, const Arches& arches, const OcclusionSettings& settings,
-                   Bite& bite) {
-  const ContactModel model(patient);
-  const auto set = model.find(bite.rest.X_CM, nullptr, settings.threads);
+/// Exact distance of the arches, overlap where they cross, and bones that the bite brings deeper
+/// into each other than they are at rest.
+void look_at_pairs(const Case& patient, const ContactSet& set, double most_overlap_mm, Bite& bite) {
   for (const auto& pair : set.pairs) {
     const Part &a = patient.parts[pair.part_a], &b = patient.parts[pair.part_b];
-    if ((&a == arches.upper.part && &b == arches.lower.part) ||
-        pair.depth_mm <= std::max(settings.most_overlap_mm, pair.rest_depth_mm))
-      continue;
-    bite.notes.push_back(
-        fmt::format("{} and {} overlap by {:.2f} mm in this bite{}", a.name, b.name, pair.depth_mm,
-                    pair.rest_depth_mm > 0 ? fmt::format(" ({:.2f} mm at rest)", pair.rest_depth_mm)
-                                           : "; at rest they are apart"));
+    if (a.name == bite.upper && b.name == bite.lower) {
+      bite.gap_mm = pair.distance_mm;
+      bite.overlap_mm = pair.depth_mm;
+    } else if (pair.touching && pair.depth_mm > std::max(most_overlap_mm, pair.rest_depth_mm)) {
+      bite.notes.push_back(fmt::format(
+          "{} and {} overlap by {:.2f} mm in this bite; at rest {}", a.name, b.name, pair.depth_mm,
+          pair.rest_depth_mm > 0 ? fmt::format("by {:.2f} mm", pair.rest_depth_mm)
+                                 : "they are apart"));
+    }
   }
 }
 
@@ -80,18 +69,37 @@ Pose pose_beside_rest(const Case& patient, const Eigen::Vector3d& moved_mm,
   return pose;
 }
 
-Bite settle_bite(const Case& patient, const Pose& start, const OcclusionSettings& settings,
-                 const Progress& progress) {
+struct BiteFinder::State {
+  State(const Case& the_patient, const OcclusionSettings& the_settings, const Progress& progress)
+      : patient(the_patient),
+        settings(the_settings),
+        arches(find_arches(patient)),
+        model(arches, settings, progress),
+        contacts(patient) {}
+
+  const Case& patient;
+  OcclusionSettings settings;
+  Arches arches;
+  BiteModel model;
+  ContactModel contacts;
+};
+
+BiteFinder::BiteFinder(const Case& patient, const OcclusionSettings& settings,
+                       const Progress& progress)
+    : state_(std::make_unique<State>(patient, settings, progress)) {}
+BiteFinder::~BiteFinder() = default;
+BiteFinder::BiteFinder(BiteFinder&&) noexcept = default;
+
+Bite BiteFinder::find(const Pose& start, const Progress& progress) const {
+  const auto& [patient, settings, arches, model, all_contacts] = *state_;
   if (!start.R.coeffs().allFinite() || !start.t.allFinite())
     throw InputError("the start is not a finite pose; give numbers");
-  const Arches arches = find_arches(patient);
   for (const auto& p : {arches.lower.edge, arches.lower.molars[0], arches.lower.molars[1]})
     if (const double way = (start * p - p).norm(); !(way <= farthest_start_mm))
       throw InputError(fmt::format(
           "the start holds the lower teeth {:.3g} mm from where they are in the case; a bite is "
           "looked for from at most {:.0f} mm away",
           way, farthest_start_mm));
-  const BiteModel model(arches, settings, progress);
 
   Bite bite;
   bite.notes = arches.notes;
@@ -115,7 +123,8 @@ Bite settle_bite(const Case& patient, const Pose& start, const OcclusionSettings
     bite.load_center += contact.load_share * contact.place;
   }
   bite.joint_share = model.joint_force_N(X_CM) / settings.closing_force_N;
-  measure_gap(arches, bite);
+  look_at_pairs(patient, all_contacts.find(X_CM, nullptr, settings.threads),
+                settings.most_overlap_mm, bite);
   bite.before = incisors(arches, {});
   bite.after = incisors(arches, X_CM);
   bite.moved_from_start_mm = model.way_mm(start, X_CM);
@@ -128,7 +137,6 @@ Bite settle_bite(const Case& patient, const Pose& start, const OcclusionSettings
       (*bite.condyle_moved)[side] = X_CM * condyle - condyle;
     }
   }
-  look_at_bones(patient, arches, settings, bite);
   bite.unstable_because = why_unstable(bite, settings);
   bite.stable = bite.unstable_because.empty();
   return bite;

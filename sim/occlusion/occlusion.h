@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -86,11 +87,25 @@ struct Bite {
 Pose pose_beside_rest(const Case& patient, const Eigen::Vector3d& moved_mm,
                       const Eigen::Vector3d& turned_deg);
 
-/// The bite found from a pose of the mandible: opened until the arches are apart, closed on a foil
-/// by a force upward at the first molars, while springs hold the condyles' centres; then closed
-/// anew from beside each bite found, until none does more work.
-/// throws: InputError when an arch is missing or the start is not finite or out of reach (25 mm).
-Bite settle_bite(const Case& patient, const Pose& start, const OcclusionSettings& settings = {},
-                 const Progress& progress = {});
+/// A patient made ready to have his bite settled, from one start or several.
+class BiteFinder {
+ public:
+  /// The patient must outlive this. throws: InputError when an arch is missing.
+  explicit BiteFinder(const Case& patient, const OcclusionSettings& settings = {},
+                      const Progress& progress = {});
+  ~BiteFinder();
+  BiteFinder(BiteFinder&&) noexcept;
+
+  /// The bite found from a pose of the mandible: opened until the arches are apart, closed on a
+  /// foil by a force upward at the first molars, while springs hold the condyles' centres; then
+  /// closed anew from beside each bite found, until none does more work. May be asked on several
+  /// threads at once.
+  /// throws: InputError when the start is not finite or out of reach (25 mm).
+  Bite find(const Pose& start, const Progress& progress = {}) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace condyle

@@ -87,14 +87,12 @@ Pose BiteModel::beside(const Pose& X_CM, const Vector3d& left_front_up, double y
   return moved(X_CM, x);
 }
 
-Pose BiteModel::opened(const Pose& X_CM) const {
+std::optional<Pose> BiteModel::opened(const Pose& X_CM) const {
   for (double mm = 0; mm <= most_open_mm; mm += open_step_mm) {
     const Pose open = beside(X_CM, {0, 0, -mm}, 0);
     if (coarse_.free(open)) return open;
   }
-  throw InputError(fmt::format(
-      "the start holds the arches so deep in each other that {:.0f} mm of opening do not part them",
-      most_open_mm));
+  return std::nullopt;
 }
 
 FoilForce BiteModel::total(const FoilContact& foil, const Pose& X_CM, int threads) const {
@@ -129,7 +127,7 @@ double BiteModel::joint_force_N(const Pose& X_CM) const {
 
 /// Levenberg-Marquardt steps downhill.
 RestingPose BiteModel::settle(const FoilContact& foil, const Pose& from, int threads) const {
-  const double least_damping = 1e-6 * settings_.closing_force_N;
+  const double least_damping = 1e-4 * settings_.closing_force_N;
   double damping = 1e-3 * settings_.closing_force_N;
   RestingPose rest{from, 0, false, 0};
   FoilForce now = total(foil, from, threads);
@@ -172,19 +170,28 @@ std::vector<RestingPose> find_bites(const BiteModel& model, const Pose& start,
     found = std::move(distinct);
   };
   report(progress, "closing", 0.5);
-  add({model.coarse(model.opened(start), settings.threads)});
+  const auto open = model.opened(start);
+  if (!open)
+    throw InputError(fmt::format(
+        "the start holds the arches so deep in each other that {:.0f} mm of opening do not part "
+        "them",
+        most_open_mm));
+  add({model.coarse(*open, settings.threads)});
   starts = 1;
   // From beside the best, until it stays the best.
   const double s = settings.search_mm, turn = settings.search_deg * std::numbers::pi / 180;
   for (int round = 0; round < most_rounds; ++round) {
     const Pose best = found.front().X_CM;
+    if (!found.front().converged) break;  // it slides away, for nothing holds it
     std::vector<Pose> froms;
+    const auto add_from = [&](const Vector3d& left_front_up, double yaw_rad) {
+      if (const auto from = model.opened(model.beside(best, left_front_up, yaw_rad)))
+        froms.push_back(*from);
+    };
     for (const double left : {-s, 0.0, s})
       for (const double front : {-s, 0.0, s})
-        if (left != 0 || front != 0)
-          froms.push_back(model.opened(model.beside(best, {left, front, 0}, 0)));
-    for (const double yaw : {-turn, turn})
-      froms.push_back(model.opened(model.beside(best, Vector3d::Zero(), yaw)));
+        if (left != 0 || front != 0) add_from({left, front, 0}, 0);
+    for (const double yaw : {-turn, turn}) add_from(Vector3d::Zero(), yaw);
     std::vector<RestingPose> more(froms.size());
     parallel_for(froms.size(), settings.threads,
                  [&](std::size_t i) { more[i] = model.coarse(froms[i], 1); });
@@ -196,7 +203,8 @@ std::vector<RestingPose> find_bites(const BiteModel& model, const Pose& start,
   std::vector<RestingPose> coarse = std::move(found);
   if (coarse.size() > refined) coarse.resize(refined);
   found.clear();
-  for (const auto& bite : coarse) add({model.fine(model.opened(bite.X_CM), settings.threads)});
+  for (const auto& bite : coarse)
+    add({model.fine(model.opened(bite.X_CM).value_or(bite.X_CM), settings.threads)});
   return found;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "sim/occlusion/arches.h"
@@ -15,9 +15,9 @@ class BiteModel {
   /// The arches' parts must outlive the model.
   BiteModel(const Arches& arches, const OcclusionSettings& settings, const Progress& progress = {});
 
-  /// Down along the occlusal plane's normal until the foil is free.
-  /// throws: InputError when that takes more than 30 mm.
-  Pose opened(const Pose& X_CM) const;
+  /// Down along the occlusal plane's normal until the foil is free; nothing when that takes more
+  /// than 30 mm.
+  std::optional<Pose> opened(const Pose& X_CM) const;
 
   /// Where it comes to rest from a pose.
   RestingPose coarse(const Pose& from, int threads) const { return settle(coarse_, from, threads); }
@@ -50,7 +50,7 @@ class BiteModel {
 };
 
 /// Closes from the start and from beside what is found. The best first; poses less than 0.1 mm
-/// apart count as one.
+/// apart count as one. throws: InputError when the start cannot be opened.
 std::vector<RestingPose> find_bites(const BiteModel& model, const Pose& start,
                                     const OcclusionSettings& settings, int& starts,
                                     const Progress& progress = {});

@@ -1,0 +1,234 @@
+#include "sim/occlusion/occlusion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "sim/phantom/phantom.h"
+#include "tests/support/boxes.h"
+#include "tests/support/overlap_oracle.h"
+#include "tests/support/program.h"
+#include "tests/support/real_cases.h"
+
+namespace condyle::test {
+namespace {
+
+using Eigen::Vector3d;
+
+const Case& builtin() {
+  static const Case patient = builtin_patient();
+  return patient;
+}
+
+OcclusionSettings kept() {
+  static const Folder folder;  // fields are made once
+  OcclusionSettings settings;
+  settings.cache = folder.path();
+  return settings;
+}
+
+const BiteFinder& finder() {
+  static const BiteFinder made(builtin(), kept());
+  return made;
+}
+
+Bite settled(const Case& patient, const Pose& start, const OcclusionSettings& settings = {}) {
+  return BiteFinder(patient, settings).find(start);
+}
+
+double farthest(const TriMesh& mesh, const Pose& a, const Pose& b) {
+  double way = 0;
+  for (const auto& p : mesh.vertices) way = std::max(way, (a * p - b * p).norm());
+  return way;
+}
+
+/// Deepest overlap of both arches by an independent exact measure.
+double exact_overlap(const Case& patient, const Bite& bite, const Pose& X_CM) {
+  const auto mesh_of = [&](const std::string& name) -> const TriMesh& {
+    return std::find_if(patient.parts.begin(), patient.parts.end(),
+                        [&](const Part& part) { return part.name == name; })
+        ->mesh;
+  };
+  return deepest(OverlapOracle(mesh_of(bite.upper)), OverlapOracle(mesh_of(bite.lower)), X_CM);
+}
+
+std::string complaint(const Case& patient, const Pose& start = {}) {
+  try {
+    settled(patient, start);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+bool mentions(const std::string& text, const std::string& word) {
+  return text.find(word) != std::string::npos;
+}
+
+}  // namespace
+
+TEST(SettleBite, BuiltBiteIsFoundFromTwentyStartsUpToThreeMillimetresAndDegreesAway) {
+  constexpr std::size_t seeds = 20;
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> share(0, 1);
+  const auto direction = [&] {
+    return Vector3d(normal(random), normal(random), normal(random)).normalized();
+  };
+  std::vector<Pose> starts;
+  for (std::size_t i = 0; i < seeds; ++i) {
+    // Half of them as far as it goes.
+    const double mm = i % 2 ? 3 : 3 * share(random), deg = i % 2 ? 3 : 3 * share(random);
+    const Vector3d way = direction(), axis = direction();
+    starts.push_back(pose_beside_rest(builtin(), mm * way, deg * axis));
+  }
+  std::vector<Bite> bites(seeds);
+  parallel_for(seeds, 2, [&](std::size_t i) { bites[i] = finder().find(starts[i]); });
+  const TriMesh& lower = builtin().find(Role::lower_teeth)->mesh;
+  int far = 0;
+  double worst = 0;
+  for (std::size_t i = 0; i < seeds; ++i) {
+    const auto& bite = bites[i];
+    far += farthest(lower, starts[i], {}) > 2;
+    worst = std::max(worst, farthest(lower, bite.rest.X_CM, {}));
+    EXPECT_LT(farthest(lower, bite.rest.X_CM, {}), 0.1) << i;
+    EXPECT_TRUE(bite.stable) << bite.unstable_because;
+    EXPECT_EQ(bite.overlap_mm, 0);
+    EXPECT_NEAR(bite.moved_from_start_mm, farthest(lower, starts[i], bite.rest.X_CM), 3);
+  }
+  RecordProperty("worst_um", static_cast<int>(1000 * worst));
+  EXPECT_GE(far, 10);
+}
+
+TEST(SettleBite, BuiltBiteHasManyBalancedContacts) {
+  const Bite bite = finder().find({});
+  ASSERT_TRUE(bite.stable) << bite.unstable_because;
+  EXPECT_LE(exact_overlap(builtin(), bite, bite.rest.X_CM), 0.05);
+  EXPECT_GE(bite.contacts.size(), 12u);
+  EXPECT_NEAR(bite.left_share, 0.5, 0.03);
+  double all = 0;
+  for (const auto& contact : bite.contacts) {
+    all += contact.load_share;
+    // The opponents of the built-in patient are as in a textbook: same side, neighbours.
+    EXPECT_EQ(contact.left, contact.lower_fdi / 10 == 3);
+    EXPECT_EQ(contact.upper_fdi / 10, contact.left ? 2 : 1);
+    EXPECT_LE(std::abs(contact.upper_fdi % 10 - contact.lower_fdi % 10), 1);
+    EXPECT_GT(contact.gap_mm, 0);
+    EXPECT_LT(contact.gap_mm, 0.1);
+    EXPECT_LT(contact.normal.z(), 0);  // upper teeth press down
+  }
+  EXPECT_NEAR(all, 1, 1e-9);
+  double upper = 0, lower = 0;
+  for (const auto& tooth : bite.teeth) (tooth.fdi < 30 ? upper : lower) += tooth.load_share;
+  EXPECT_EQ(bite.teeth.size(), 28u);
+  EXPECT_NEAR(upper, 1, 1e-9);
+  EXPECT_NEAR(lower, 1, 1e-9);
+  EXPECT_NEAR(bite.after.overjet_mm, 2.7, 0.3);
+  EXPECT_NEAR(bite.after.overbite_mm, 2.3, 0.3);
+  ASSERT_TRUE(bite.condyle_moved);
+  EXPECT_LT((*bite.condyle_moved)[0].norm(), 0.1);
+}
+
+TEST(SettleBite, StartInDeepOverlapIsOpenedFirst) {
+  const Pose deep = pose_beside_rest(builtin(), {0, 0, 3}, {0, 0, 0});
+  const Bite bite = finder().find(deep);
+  ASSERT_GT(exact_overlap(builtin(), bite, deep), 1);
+  EXPECT_TRUE(bite.stable);
+  EXPECT_LT(farthest(builtin().find(Role::lower_teeth)->mesh, bite.rest.X_CM, {}), 0.1);
+}
+
+TEST(SettleBite, SameBitsForOneAndTwoThreads) {
+  auto settings = kept();
+  const Pose start = pose_beside_rest(builtin(), {1, -2, 0.5}, {1, 1, -2});
+  const Bite one = finder().find(start);
+  settings.threads = 2;
+  const Bite two = settled(builtin(), start, settings);
+  EXPECT_EQ(one.rest.X_CM.t, two.rest.X_CM.t);
+  EXPECT_EQ(one.rest.X_CM.R.coeffs(), two.rest.X_CM.R.coeffs());
+  EXPECT_EQ(one.rest.work, two.rest.work);
+  EXPECT_EQ(one.left_share, two.left_share);
+  EXPECT_EQ(one.load_center, two.load_center);
+}
+
+TEST(SettleBite, FlatArchesPressTheFoilByTheForceOverTheirArea) {
+  const Case patient = box_patient();
+  OcclusionSettings settings;
+  settings.joint_N_per_mm = 1;
+  settings.foil_MPa = 0.5;
+  const Bite bite = settled(patient, {}, settings);
+  EXPECT_TRUE(bite.stable) << bite.unstable_because;
+  // Under the load, half of the force on each side.
+  double area = 0;
+  for (const auto& contact : bite.contacts) area += contact.area_mm2;
+  ASSERT_GT(area, 2000);
+  EXPECT_NEAR(bite.gap_mm,
+              settings.paper_mm / (1 + settings.closing_force_N / (area * settings.foil_MPa)),
+              0.01);
+  EXPECT_NEAR(bite.left_share, 0.5, 1e-3);
+  EXPECT_NEAR(bite.load_center.x(), 0, 0.05);
+  const double molar_y = -92 + 28;
+  EXPECT_NEAR(bite.load_center.y(), molar_y, 2.5);
+  EXPECT_NEAR(bite.before.overjet_mm, -2, 1e-6);
+  EXPECT_NEAR(bite.before.overbite_mm, -1, 1e-6);
+}
+
+TEST(SettleBite, TeethOfOneSideAloneAreNoStableBite) {
+  Case patient = box_patient();
+  patient.parts[0].mesh = box({2, -90, -40}, {30, -40, 0});
+  patient.landmarks.points["upper_incisal_point"] = {2, -90, -40};
+  const Bite bite = settled(patient, {});
+  EXPECT_FALSE(bite.stable);
+  EXPECT_TRUE(mentions(bite.unstable_because, "left") || mentions(bite.unstable_because, "joints"))
+      << bite.unstable_because;
+}
+
+TEST(SettleBite, MissingArchesAndImpossibleStartsAreRefused) {
+  Case patient = box_patient();
+  patient.landmarks.points.erase("lower_incisal_point");
+  EXPECT_TRUE(mentions(complaint(patient), "no lower teeth")) << complaint(patient);
+  patient = box_patient();
+  patient.parts.erase(patient.parts.begin());
+  EXPECT_TRUE(mentions(complaint(patient), "no upper teeth")) << complaint(patient);
+  patient = box_patient();
+  Pose start;
+  start.t.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(mentions(complaint(patient, start), "finite"));
+  start.t = {0, 0, -60};
+  EXPECT_TRUE(mentions(complaint(patient, start), "at most 25 mm")) << complaint(patient, start);
+  start.t = {1e300, 0, 0};
+  EXPECT_TRUE(mentions(complaint(patient, start), "at most 25 mm"));
+}
+
+TEST(SettleBite, RealCrownsThatOverlapEndInABiteWithoutOverlap) {
+  const auto patient = case_ubc();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  const BiteFinder ubc(*patient, kept());
+  const Bite bite = ubc.find({});
+  EXPECT_TRUE(bite.stable) << bite.unstable_because;
+  EXPECT_GT(exact_overlap(*patient, bite, {}), 1);
+  EXPECT_LE(exact_overlap(*patient, bite, bite.rest.X_CM), 0.05);
+  EXPECT_LE(bite.overlap_mm, 0.05);
+  EXPECT_GE(bite.contacts.size(), 4u);
+  EXPECT_NEAR(bite.left_share, 0.5, 0.1);
+  EXPECT_LT(bite.moved_from_rest_mm, 3);
+  const Bite again = ubc.find(pose_beside_rest(*patient, {1, 2, 1}, {-1, 2, 1}));
+  EXPECT_LT(farthest(patient->find(Role::lower_teeth)->mesh, bite.rest.X_CM, again.rest.X_CM), 0.1);
+}
+
+TEST(SettleBite, RealBonesWithCrownsThatDoNotTouchAreClosed) {
+  const auto patient = case_badin();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  const Bite bite = settled(*patient, {}, kept());
+  EXPECT_TRUE(bite.stable) << bite.unstable_because;
+  EXPECT_LE(exact_overlap(*patient, bite, bite.rest.X_CM), 0.05);
+  EXPECT_GE(bite.contacts.size(), 3u);
+  EXPECT_GT(bite.moved_from_rest_mm, 3.5);
+  EXPECT_FALSE(bite.notes.empty());  // that the bones stand for the arches
+}
+
+}  // namespace condyle::test
