@@ -10,40 +10,6 @@ namespace condyle {
 
 using Eigen::Vector3d;
 
-FieldSample DistanceField::at(const Vector3d& p) const {
-  const Vector3d u = (p - origin_) * per_mm_;
-  const double limit[3] = {double(cells * size_[0]), double(cells * size_[1]),
-                           double(cells * size_[2])};
-  FieldSample sample;
-  sample.distance_mm = settings_.band_mm;
-  for (int k = 0; k < 3; ++k)
-    if (!(u[k] >= 0 && u[k] < limit[k])) return sample;
-  const int x = static_cast<int>(u[0]), y = static_cast<int>(u[1]), z = static_cast<int>(u[2]);
-  const std::size_t place = slot(x / cells, y / cells, z / cells);
-  const std::int32_t index = brick_[place];
-  if (index < 0) {
-    if (bound_[place] < 0) sample.distance_mm = -settings_.band_mm;
-    return sample;
-  }
-  const Brick& brick = bricks_[index];
-  const int i = x % cells, j = y % cells, k = z % cells;
-  const float* v = &brick.value[i + corners * (j + corners * k)];
-  constexpr int dy = corners, dz = corners * corners;
-  const double a = u[0] - x, b = u[1] - y, c = u[2] - z;
-  // Along x on the four edges, then y, then z; the slopes fall out on the way.
-  const double s00 = v[1] - v[0], s10 = v[dy + 1] - v[dy], s01 = v[dz + 1] - v[dz],
-               s11 = v[dz + dy + 1] - v[dz + dy];
-  const double v00 = v[0] + a * s00, v10 = v[dy] + a * s10, v01 = v[dz] + a * s01,
-               v11 = v[dz + dy] + a * s11;
-  const double v0 = v00 + b * (v10 - v00), v1 = v01 + b * (v11 - v01);
-  const double s0 = s00 + b * (s10 - s00), s1 = s01 + b * (s11 - s01);
-  sample.distance_mm = v0 + c * (v1 - v0);
-  sample.gradient = per_mm_ * Vector3d(s0 + c * (s1 - s0),
-                                       (v10 - v00) + c * ((v11 - v01) - (v10 - v00)), v1 - v0);
-  sample.known = !brick.unknown[static_cast<std::size_t>(i + cells * (j + cells * k))];
-  return sample;
-}
-
 double DistanceField::lower_bound(const Vector3d& p) const {
   const double edge = cells * settings_.spacing_mm;
   Vector3d center;

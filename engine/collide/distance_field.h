@@ -84,6 +84,45 @@ class DistanceField {
   std::vector<Brick> bricks_;
 };
 
+/// In the header because sliding asks it some hundred thousand times a frame.
+inline FieldSample DistanceField::at(const Eigen::Vector3d& p) const {
+  FieldSample sample;
+  sample.distance_mm = settings_.band_mm;
+  const double ux = (p.x() - origin_.x()) * per_mm_, uy = (p.y() - origin_.y()) * per_mm_,
+               uz = (p.z() - origin_.z()) * per_mm_;
+  if (!(ux >= 0 && uy >= 0 && uz >= 0 && ux < cells * size_[0] && uy < cells * size_[1] &&
+        uz < cells * size_[2]))
+    return sample;
+  const auto x = static_cast<std::uint32_t>(static_cast<std::int32_t>(ux)),
+             y = static_cast<std::uint32_t>(static_cast<std::int32_t>(uy)),
+             z = static_cast<std::uint32_t>(static_cast<std::int32_t>(uz));
+  const std::size_t place = slot(static_cast<int>(x / cells), static_cast<int>(y / cells),
+                                 static_cast<int>(z / cells));
+  const std::int32_t index = brick_[place];
+  if (index < 0) {
+    if (bound_[place] < 0) sample.distance_mm = -settings_.band_mm;
+    return sample;
+  }
+  const Brick& brick = bricks_[static_cast<std::size_t>(index)];
+  const std::uint32_t i = x % cells, j = y % cells, k = z % cells;
+  const float* v = &brick.value[i + corners * (j + corners * k)];
+  constexpr int dy = corners, dz = corners * corners;
+  const double a = ux - x, b = uy - y, c = uz - z;
+  // Along x on the four edges, then y, then z; the slopes fall out on the way.
+  const double s00 = v[1] - v[0], s10 = v[dy + 1] - v[dy], s01 = v[dz + 1] - v[dz],
+               s11 = v[dz + dy + 1] - v[dz + dy];
+  const double v00 = v[0] + a * s00, v10 = v[dy] + a * s10, v01 = v[dz] + a * s01,
+               v11 = v[dz + dy] + a * s11;
+  const double v0 = v00 + b * (v10 - v00), v1 = v01 + b * (v11 - v01);
+  const double s0 = s00 + b * (s10 - s00), s1 = s01 + b * (s11 - s01);
+  sample.distance_mm = v0 + c * (v1 - v0);
+  sample.gradient = {per_mm_ * (s0 + c * (s1 - s0)),
+                     per_mm_ * ((v10 - v00) + c * ((v11 - v01) - (v10 - v00))),
+                     per_mm_ * (v1 - v0)};
+  sample.known = !brick.unknown[i + cells * (j + cells * k)];
+  return sample;
+}
+
 /// The field kept in a cache folder under the hash of mesh and settings; made and put there when it
 /// is absent or damaged. A cache that cannot be written is no error.
 DistanceField kept_field(const std::filesystem::path& cache, const TriMesh& mesh,

@@ -70,7 +70,10 @@ double clearance_bound(const SurfaceSamples& samples, const DistanceField& field
 
 SampleLook look_at_sample(const DistanceField& field, const Vector3d& p_F, const Vector3d& normal_F,
                           double spread) {
-  const FieldSample here = field.at(p_F);
+  return judged(field.at(p_F), normal_F, spread);
+}
+
+SampleLook judged(const FieldSample& here, const Vector3d& normal_F, double spread) {
   SampleLook look{here.distance_mm, here.gradient, here.known, false};
   // Where two faces are as near, the gradient says nothing: the sample's own face does.
   if (look.gradient.squaredNorm() < 0.1 && look.distance_mm < 0) look.gradient = -normal_F;

@@ -40,6 +40,9 @@ struct SampleLook {
   bool faces = false;
 };
 
+/// The same where the field was asked already.
+SampleLook judged(const FieldSample& here, const Eigen::Vector3d& normal_F, double spread);
+
 /// p_F, normal_F: the sample and its outward normal in the field's coordinates.
 SampleLook look_at_sample(const DistanceField& field, const Eigen::Vector3d& p_F,
                           const Eigen::Vector3d& normal_F, double spread);

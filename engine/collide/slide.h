@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -40,6 +41,8 @@ struct SlideSettings {
   std::optional<Eigen::Vector3d> pivot;  // moving body's coordinates; else its samples' centroid
 };
 
+class SlideProbe;
+
 /// One place where the moving body is held.
 struct SlideContact {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    // fixed body's coordinates
@@ -57,20 +60,20 @@ struct SlideResult {
   int steps = 0;
 };
 
-/// What one slide found out for the next: it saves time where poses are near each other. And a
-/// slide that starts from its last answer towards the same pose gives that answer again, to the
-/// bit.
-struct SlideMemory {
-  struct Sample {
-    int pair = 0, sample = 0;
-    double distance_mm = 0;
-  };
-  std::vector<Sample> near;  // samples that were near the other body at X_FM
-  Pose X_FM;
-  Pose wanted;  // of the last slide
-  SlideResult last;
-  const void* owner = nullptr;  // the model it belongs to
-  int baseline = 0;             // which of that model's baselines held
+/// What one slide collected for the next. It saves time where poses are near each other and changes
+/// no bit of any answer. A copy starts empty.
+class SlideMemory {
+ public:
+  SlideMemory();
+  ~SlideMemory();
+  SlideMemory(const SlideMemory&) : SlideMemory() {}
+  SlideMemory& operator=(const SlideMemory&) { return *this; }
+
+  struct State;
+
+ private:
+  friend class SlidingContact;
+  std::unique_ptr<State> state_;
 };
 
 /// Two surfaces that stop each other, and the gap that they keep.
@@ -97,12 +100,14 @@ class SlidingContact {
   /// near where its pair keeps a gap. Samples deeper than the band no longer count.
   void allow_overlap_at(const Pose& rest);
 
-  /// From a free pose towards the wanted one, sliding along what is in the way, to the pose nearest
-  /// to it (least squares of the pivot's way and the rotation times its length) that touches and
-  /// does not overlap. The motion is walked in steps below half the band: nothing is passed
-  /// through. A start that overlaps is moved out, one that is as near as it gets is the answer.
-  /// Poses that are not finite move nothing and are not settled. Same bits for any number of
-  /// threads.
+  /// The pose near the wanted one (least squares of the pivot's way and the rotation times its
+  /// length) that touches and does not overlap. Without friction it depends on the wanted pose
+  /// alone: what overlaps there is drawn out along its ways out and slides back towards the wanted
+  /// pose. That answer counts where the body reaches it from `from` without passing through
+  /// anything; where it does not, or with friction, the answer is where the body gets to as it
+  /// slides from `from`. All motion goes in steps of a quarter of the band. A start that overlaps
+  /// is moved out, an answer is its own answer. Poses that are not finite move nothing and are not
+  /// settled. Same bits for any number of threads.
   SlideResult slide(const Pose& from, const Pose& wanted, SlideMemory* memory = nullptr,
                     int threads = 1) const;
 
@@ -113,6 +118,7 @@ class SlidingContact {
   const Eigen::Vector3d& pivot() const { return pivot_; }
 
  private:
+  friend class SlideProbe;
   friend class SlideWalk;
   struct Pair {  // samples of one body in the field of the other
     const SlideBody* samples;
@@ -122,6 +128,12 @@ class SlidingContact {
     std::vector<float> allowed;  // of each sample, mm, at most 0; empty: 0
   };
 
+  std::optional<Pose> start_for(const Pose& wanted, SlideProbe& probe) const;
+  double allowed(int pair, int sample) const {
+    const auto& list = pairs_[pair].allowed;
+    return list.empty() ? 0.0 : static_cast<double>(list[sample]);
+  }
+
   std::vector<std::shared_ptr<const SlideBody>> fixed_, moving_;
   SlideSettings settings_;
   std::vector<Pair> pairs_;
@@ -129,7 +141,7 @@ class SlidingContact {
   double rotation_length_mm_ = 1;
   double radius_mm_ = 0;  // of the moving samples about the pivot
   double band_mm_ = 1;    // the narrowest that is left beyond a gap
-  int baseline_ = 0;      // how often it was set
+  std::uint64_t id_ = 0;  // another one for each model and baseline
 };
 
 }  // namespace condyle

@@ -10,7 +10,7 @@
 namespace condyle {
 
 struct SampleSettings {
-  double spacing_mm = 0.4;  // on faces and flat edges
+  double spacing_mm = 0.6;  // on faces and flat edges
   // Two edges cross between samples: on a convex edge they lie so near each other that it cannot
   // rise above them by more than this, down to the least spacing.
   double edge_rise_mm = 0.03;

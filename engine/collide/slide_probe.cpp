@@ -1,0 +1,204 @@
+#include "engine/collide/slide_probe.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/collide/near_samples.h"
+#include "engine/core/parallel.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double near_share = 0.5;  // of the band: gaps up to here are measured, not bounded
+constexpr double coarse_mm = 0.8;
+constexpr double rounding_mm = 1e-4;  // of what is kept of a look
+}  // namespace
+
+/// One look at a pair.
+struct SlideProbe::Search {
+  const SlidingContact::Pair& pair;
+  std::vector<Seen>& seen;
+  const Pose& X;
+  int index;
+  double within, turned;
+  std::vector<SlideCandidate>& found;
+  Eigen::Matrix3d R_FS, R_X;  // samples in the field; moving in fixed
+  Vector3d t_FS;
+
+  /// Written out: this is asked more often than anything else.
+  Vector3d in_field(const Vector3d& p) const {
+    const auto& R = R_FS;
+    return {R(0, 0) * p.x() + R(0, 1) * p.y() + R(0, 2) * p.z() + t_FS.x(),
+            R(1, 0) * p.x() + R(1, 1) * p.y() + R(1, 2) * p.z() + t_FS.y(),
+            R(2, 0) * p.x() + R(2, 1) * p.y() + R(2, 2) * p.z() + t_FS.z()};
+  }
+
+  /// No sample of the ball has a smaller gap than this.
+  double ball(int b) {
+    const SurfaceSamples::Ball& here = pair.samples->samples.balls[b];
+    const Vector3d center = in_field(here.center);
+    Seen& last = seen[b];
+    const double way = (center - Vector3d(last.x, last.y, last.z)).norm() +
+                       (turned - last.turned) * here.radius + rounding_mm;
+    if (last.gap - way > within) return last.gap - way;
+    double gap = -infinity;
+    const bool leaf = here.right == 0;
+    // A ball that moved by less than its size is as near as before: its parts know more.
+    if (leaf || way > here.radius) {
+      const DistanceField& field = pair.field->field;
+      const FieldSample at = field.at(center);
+      // Within the band the field tells more than its bounds do.
+      gap = (at.known ? at.distance_mm - field_bend_mm : field.lower_bound(center)) - here.radius -
+            pair.gap_mm;
+    }
+    if (gap <= within)
+      gap = std::max(gap, leaf ? samples(here) : std::min(ball(b + 1), ball(here.right)));
+    last = {static_cast<float>(center.x()), static_cast<float>(center.y()),
+            static_cast<float>(center.z()), static_cast<float>(gap), static_cast<float>(turned)};
+    return gap;
+  }
+
+  /// No sample of a leaf is nearer than this.
+  double samples(const SurfaceSamples::Ball& leaf) {
+    const SurfaceSamples& s = pair.samples->samples;
+    double least = infinity;
+    for (int i = leaf.first; i < leaf.first + leaf.count; ++i) {
+      const double allowed = pair.allowed.empty() ? 0.0 : static_cast<double>(pair.allowed[i]);
+      if (allowed == -infinity) continue;
+      const Vector3d p = in_field(s.points[i]);
+      const FieldSample at = pair.field->field.at(p);
+      const double gap = at.distance_mm - pair.gap_mm;
+      least = std::min(least, at.known ? gap - field_bend_mm
+                              : at.distance_mm < pair.field->field.settings().band_mm ? -infinity
+                                                                                      : gap);
+      if (gap - allowed > within) continue;
+      const SampleLook look = judged(at, R_FS * s.normals[i], s.spread[i]);
+      SlideCandidate c;
+      c.pair = index;
+      c.sample = i;
+      c.known = look.known;
+      c.faces = look.faces;
+      c.gap = gap - allowed;
+      c.point = pair.samples_move ? p : s.points[i];
+      c.gradient = pair.samples_move ? look.gradient : Vector3d(-(R_X * look.gradient));
+      found.push_back(c);
+    }
+    return least;
+  }
+};
+
+SlideProbe::SlideProbe(const SlidingContact& model, int threads)
+    : model_(model), threads_(threads), found_(model.pairs_.size()) {
+  for (const auto& pair : model.pairs_) seen_.emplace_back(pair.samples->samples.balls.size());
+}
+
+void SlideProbe::look_at(const Pose& X, double within_mm) {
+  turned_ += rotation_angle(at_.inverse() * X);
+  at_ = X;
+  const Pose X_inverse = X.inverse();
+  parallel_for(seen_.size(), threads_, [&](std::size_t i) {
+    const auto& pair = model_.pairs_[i];
+    found_[i].clear();
+    if (seen_[i].empty()) return;
+    const Pose& X_FS = pair.samples_move ? X : X_inverse;
+    Search{pair,
+           seen_[i],
+           X,
+           static_cast<int>(i),
+           within_mm,
+           turned_,
+           found_[i],
+           X_FS.R.toRotationMatrix(),
+           X.R.toRotationMatrix(),
+           X_FS.t}
+        .ball(0);
+  });
+  candidates_.clear();
+  worst_gap_ = deepest_gap_ = infinity;
+  for (const auto& part : found_)
+    for (const SlideCandidate& c : part) {
+      if (c.known) worst_gap_ = std::min(worst_gap_, c.gap);
+      deepest_gap_ = std::min(deepest_gap_, c.gap);
+      candidates_.push_back(c);
+    }
+}
+
+SlideProbe::Overlap SlideProbe::overlap_at(const Pose& X) const {
+  Overlap sum;
+  const Pose X_inverse = X.inverse();
+  std::vector<int> stack;
+  for (const auto& pair : model_.pairs_) {
+    const SurfaceSamples& s = pair.samples->samples;
+    const DistanceField& field = pair.field->field;
+    const Pose& X_FS = pair.samples_move ? X : X_inverse;
+    stack.assign(s.balls.empty() ? 0 : 1, 0);
+    while (!stack.empty()) {
+      const int index = stack.back();
+      stack.pop_back();
+      const SurfaceSamples::Ball& ball = s.balls[index];
+      const bool stands = ball.right == 0 || ball.radius < coarse_mm;
+      const Vector3d p = X_FS * (stands ? s.points[ball.first] : ball.center);
+      const FieldSample at = field.at(p);
+      if (!stands) {
+        const double least = at.known ? at.distance_mm - field_bend_mm : field.lower_bound(p);
+        if (least - pair.gap_mm > ball.radius) continue;
+        stack.push_back(ball.right);
+        stack.push_back(index + 1);
+        continue;
+      }
+      const double allowed =
+          pair.allowed.empty() ? 0.0 : static_cast<double>(pair.allowed[ball.first]);
+      const double depth = allowed + pair.gap_mm - at.distance_mm;
+      if (!(depth > 0)) continue;
+      const Vector3d& normal = s.normals[ball.first];
+      sum.depth_mm = std::max(sum.depth_mm, depth);
+      sum.sum_mm += depth;
+      sum.outward += depth * (pair.samples_move ? Vector3d(-(X.R * normal)) : normal);
+    }
+  }
+  return sum;
+}
+
+double SlideProbe::clearance(const Pose& X) {
+  const double near = near_share * model_.band_mm_;
+  look_at(X, near);
+  if (deepest_gap_ <= near) return deepest_gap_;
+  const Pose X_inverse = X.inverse();
+  double least = infinity;
+  for (const auto& pair : model_.pairs_)
+    least = clearance_bound(pair.samples->samples, pair.field->field,
+                            pair.samples_move ? X : X_inverse, least + pair.gap_mm) -
+            pair.gap_mm;
+  return std::max(least, near);
+}
+
+Twist SlideProbe::between(const Pose& X, const Pose& to) const {
+  Twist x;
+  const Eigen::AngleAxisd turn((to.R * X.R.conjugate()).normalized());
+  double angle = turn.angle();
+  if (angle > M_PI) angle -= 2 * M_PI;
+  x << to * model_.pivot_ - X * model_.pivot_,
+      angle * model_.rotation_length_mm_ * Vector3d(turn.axis());
+  return x;
+}
+
+Pose SlideProbe::moved(const Pose& X, const Twist& x) const {
+  const Vector3d turn = x.tail<3>() / model_.rotation_length_mm_;
+  const double angle = turn.norm();
+  Pose out;
+  out.R = angle > 0
+              ? (Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * X.R).normalized()
+              : X.R;
+  out.t = X * model_.pivot_ + x.head<3>() - out.R * model_.pivot_;
+  return out;
+}
+
+double SlideProbe::way_of(const Twist& x) const {
+  return x.head<3>().norm() + x.tail<3>().norm() / model_.rotation_length_mm_ * model_.radius_mm_;
+}
+
+}  // namespace condyle
