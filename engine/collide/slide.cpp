@@ -18,6 +18,7 @@ using Eigen::Vector3d;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double free_mm = 0.05;    // clearance of a start
 constexpr double farthest_mm = 40;  // from the wanted pose to a start
+constexpr double rest_reach_mm = 5;
 constexpr int max_walks = 8;
 // Of the band: poses so near each other have nothing between them.
 constexpr double near_share = 0.5;
@@ -101,6 +102,7 @@ SlideMemory::~SlideMemory() = default;
 
 void SlidingContact::allow_overlap_at(const Pose& rest) {
   id_ = next_id();
+  rest_ = rest;
   for (auto& pair : pairs_) pair.allowed.clear();
   SlideProbe probe(*this, 1);
   probe.look_at(rest, 0);
@@ -159,8 +161,19 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
   SlideWalk walk(*this, here);
   if (settings_.friction > 0) return walk.towards(from, wanted);
 
-  if (const auto start = start_for(wanted, there)) {
-    const SlideResult answer = SlideWalk(*this, there).towards(*start, wanted);
+  if (auto start = start_for(wanted, there)) {
+    SlideResult answer = SlideWalk(*this, there).towards(*start, wanted);
+    // What overlaps at rest may be reached from there alone.
+    if (rest_ && there.way_of(there.between(*rest_, wanted)) < rest_reach_mm) {
+      const SlideResult other = SlideWalk(*this, there).towards(*rest_, wanted);
+      const auto left = [&](const SlideResult& a) {
+        return a.settled ? there.between(a.X_FM, wanted).norm() : infinity;
+      };
+      if (left(other) < left(answer)) {
+        answer = other;
+        start = rest_;
+      }
+    }
     const auto reaches = [&](const Pose& to) {
       const double near = near_share * band_mm_;
       return here.way_of(here.between(from, to)) <= near ||

@@ -139,9 +139,10 @@ class SlidingContact {
   std::vector<Pair> pairs_;
   Eigen::Vector3d pivot_ = Eigen::Vector3d::Zero();
   double rotation_length_mm_ = 1;
-  double radius_mm_ = 0;  // of the moving samples about the pivot
-  double band_mm_ = 1;    // the narrowest that is left beyond a gap
-  std::uint64_t id_ = 0;  // another one for each model and baseline
+  double radius_mm_ = 0;      // of the moving samples about the pivot
+  double band_mm_ = 1;        // the narrowest that is left beyond a gap
+  std::optional<Pose> rest_;  // where overlap is allowed
+  std::uint64_t id_ = 0;      // another one for each model and baseline
 };
 
 }  // namespace condyle
