@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 
+#include "engine/collide/push_out.h"
 #include "engine/core/parallel.h"
 #include "sim/motion/measures.h"
 
@@ -88,6 +89,18 @@ std::string table_of(const ClearanceCheck& check, const std::vector<Frame>& fram
                      measure.side, cell(measure.region_a), cell(measure.region_b));
     }
   return csv;
+}
+
+/// A short way out for a free part that is too deep in another at rest.
+std::optional<Eigen::Vector3d> way_out(const Scene& scene, const PairContact& rest) {
+  const auto mesh = [&](int part) -> const TriMesh& {
+    return scene.patient.parts[static_cast<std::size_t>(part)].mesh;
+  };
+  const CollisionMesh surface_a(mesh(rest.part_a)), surface_b(mesh(rest.part_b));
+  const Solid solid_a(mesh(rest.part_a)), solid_b(mesh(rest.part_b));
+  const PushOut out = push_out({surface_a, solid_a}, {}, {surface_b, solid_b}, {});
+  if (out.status != PushOut::Status::found) return std::nullopt;
+  return out.length_mm * out.direction;
 }
 
 /// Takes one moment of a pair into its verdict; moments come in the order of time.
@@ -206,6 +219,9 @@ ClearanceCheck check_clearance(const Scene& scene, const Motion& motion,
                         ? measures.measure(worst.sample.contact, worst.poses)
                         : frames[static_cast<std::size_t>(worst.when.frame)].measures[p];
     judge(pair, simulator.contact.slack_mm);
+    const auto& rest = rest_pairs[p];
+    const bool is_free = body_of(parts[static_cast<std::size_t>(rest.part_b)].role) == Body::free;
+    if (is_free && pair.at_rest && pair.rest_depth_mm > 0) pair.push_out_mm = way_out(scene, rest);
   });
 
   check.coronoids = coronoids.sides();

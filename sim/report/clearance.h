@@ -46,7 +46,9 @@ struct PairVerdict {
     PairMeasure measure;
     BodyPoses poses;
   } worst;
-  std::optional<Eigen::Vector3d> push_out_mm;  // moves B out of A where they overlap at rest
+  // Of a segment or transplant, B, that is too deep in A at rest: moves it out. Not told where open
+  // surfaces have no inside.
+  std::optional<Eigen::Vector3d> push_out_mm;
 
   std::vector<double> clearance_mm;  // one per frame; negative: depth of the overlap
 
