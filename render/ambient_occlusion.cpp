@@ -12,7 +12,7 @@
 namespace condyle {
 namespace {
 
-constexpr int layers = 3;
+constexpr int layers = 4;
 constexpr int side = 256;  // cells of a depth map: about 1 mm on a head
 constexpr float nothing = -std::numeric_limits<float>::infinity();
 

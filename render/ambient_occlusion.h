@@ -11,7 +11,7 @@ struct OcclusionSurface {
   std::span<const Eigen::Vector3f> vertices;  // mm
   std::span<const Eigen::Vector3f> normals;   // unit, outward
   std::span<const Eigen::Vector3i> triangles;
-  int layer = 0;          // 0 to 2: the group it casts shade with
+  int layer = 0;          // 0 to 3: the group it casts shade with
   unsigned alone = 1;     // layers that shade it when parts are far from rest, a bit each
   unsigned together = 1;  // layers that shade it at rest
 };

@@ -59,7 +59,7 @@ Camera standard_camera(const std::string& name, const Eigen::Vector3d& low,
     std::string known;
     for (const auto& other : camera_names()) known += (known.empty() ? "" : ", ") + other;
     throw InputError("camera '" + name + "' is not known; use one of: " + known +
-                     ", or spin, or a .json file");
+                     ", spin, upper-arch, lower-arch, or a .json file");
   }
   constexpr double air = 1.08;
   Camera camera;

@@ -1,6 +1,9 @@
 #include "render/colour_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 namespace condyle {
 namespace {
@@ -24,28 +27,29 @@ Eigen::Vector3f color_of(const ColourMap& map, float value) {
   return before->color + s * (after->color - before->color);
 }
 
-ColourMap distance_colours() {
-  constexpr float contact = 0.1f, step = 0.02f;  // half the white band, and the width of its edge
+ColourMap distance_colours(const DistanceBands& bands) {
+  constexpr float edge = 0.05f;  // over which white turns to a colour
+  const auto near = static_cast<float>(bands.near_mm),
+             deepest = static_cast<float>(bands.deepest_mm),
+             contact = static_cast<float>(bands.contact_mm);
+  const auto close =
+      std::clamp(static_cast<float>(bands.close_mm), contact + 2 * edge, near - 2 * edge);
   ColourMap map;
   map.title = "distance";
   map.unit = "mm";
-  map.stops = {{-2, rgb(0x67001f)},
-               {-1, rgb(0xb2182b)},
-               {-0.5f, rgb(0xd6604d)},
-               {-contact - step, rgb(0xf4a582)},
-               {-contact, rgb(0xffffff)},
-               {contact, rgb(0xffffff)},
-               {contact + step, rgb(0xc6e0f0)},
-               {1, rgb(0x92c5de)},
-               {2, rgb(0x4393c3)},
-               {3.5f, rgb(0x2166ac)},
-               {5, rgb(0x1d4b85)}};
+  map.stops = {
+      {-deepest, rgb(0x67001f)}, {-0.5f * deepest, rgb(0xb2182b)}, {-contact - edge, rgb(0xe8604a)},
+      {-contact, rgb(0xffffff)}, {contact, rgb(0xffffff)},         {contact + edge, rgb(0x1f5fa8)},
+      {close, rgb(0x3576b6)},    {close + edge, rgb(0x83b7de)},    {near, rgb(0xc6dae6)}};
+  map.beyond = rgb(0xb4b0a8);
   map.lines = {0};
-  map.ticks = {-2, -1, 0, 1, 2, 3, 4, 5};
-  map.bands = {{-2, -contact, "overlap"},
-               {-contact, contact, "contact"},
-               {contact, 2, "near"},
-               {2, 5, "far"}};
+  const float step = near + deepest > 4 ? 1 : 0.5f;
+  for (float tick = -std::floor(deepest / step) * step; tick <= near + 1e-4f; tick += step)
+    map.ticks.push_back(tick);
+  map.bands = {{-deepest, -contact, "overlap"},
+               {-contact, contact, fmt::format("contact \u00b1{:g}", bands.contact_mm)},
+               {contact, close, "close"},
+               {close, near, "near"}};
   return map;
 }
 

@@ -30,9 +30,17 @@ struct ColourMap {
 
 Eigen::Vector3f color_of(const ColourMap& map, float value);
 
-/// Signed distance to the other bone, mm, from -2 to 5: red inside, white where they touch (within
-/// 0.1 mm), blue apart, grey beyond. Red and blue are told apart with every kind of colour vision.
-/// source: ColorBrewer RdBu.
-ColourMap distance_colours();
+/// Bands of a map of signed distance, mm.
+struct DistanceBands {
+  double near_mm = 2;       // end of the map: farther off is drawn grey
+  double close_mm = 0.5;    // where "near" begins to be "close"; below near_mm
+  double contact_mm = 0.1;  // to either side: touching
+  double deepest_mm = 1;    // overlaps beyond have one colour
+};
+
+/// Signed distance to what a surface may meet, mm: red inside, the darker the deeper; white where
+/// they touch; blue apart, paler the farther; grey beyond. The bands are told apart by lightness as
+/// well as by hue, with every kind of colour vision. source: after ColorBrewer RdBu.
+ColourMap distance_colours(const DistanceBands& bands = {});
 
 }  // namespace condyle

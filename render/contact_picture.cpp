@@ -1,13 +1,13 @@
 #include "render/contact_picture.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "render/legend.h"
 #include "render/lettering.h"
+#include "render/paint.h"
 #include "render/scene_renderer.h"
 
 namespace condyle {
@@ -17,22 +17,6 @@ constexpr int width = 1600, margin = 24, panel = 440, panel_height = 460, top = 
 constexpr int legend_left = margin + 3 * (panel + margin) + 4;
 constexpr int line_height = 26;
 const Eigen::Vector3f grey = Eigen::Vector3f::Constant(0.35f);
-
-void fill(Image& image, int x0, int y0, int x1, int y1, const Eigen::Vector3f& color) {
-  for (int y = std::max(0, y0); y < std::min(image.height, y1); ++y)
-    for (int x = std::max(0, x0); x < std::min(image.width, x1); ++x) {
-      auto* pixel = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + x)];
-      for (int k = 0; k < 3; ++k) pixel[k] = static_cast<std::uint8_t>(std::lround(255 * color[k]));
-      pixel[3] = 255;
-    }
-}
-
-void frame(Image& image, int x0, int y0, int x1, int y1, const Eigen::Vector3f& color) {
-  fill(image, x0 - 1, y0 - 1, x1 + 1, y0, color);
-  fill(image, x0 - 1, y1, x1 + 1, y1 + 1, color);
-  fill(image, x0 - 1, y0, x0, y1, color);
-  fill(image, x1, y0, x1 + 1, y1, color);
-}
 
 void paste(Image& image, const Image& part, int x, int y) {
   for (int row = 0; row < part.height; ++row)
@@ -77,6 +61,7 @@ class Sheet {
     SceneRenderer renderer(place_.parts);
     FrameState state;
     state.X_CM = place_.X_CM;
+    state.X_CF = place_.X_CF;
     renderer.update(state);
     const auto [low, high] = renderer.bounds();
     add_panel(
@@ -89,7 +74,8 @@ class Sheet {
               close_camera(place_, place_.normal), place_.fixed);
     add_panel(renderer, 2, place_.moved + ", seen from " + place_.fixed,
               close_camera(place_, -place_.normal), place_.moved);
-    legend();
+    draw_legend(image_, words_, map_,
+                {.left = legend_left, .top = top - 32, .bar_height = panel_height - 54});
     int y = top + panel_height + margin + 10;
     for (const auto& line : place_.lines) {
       words_.write(image_, margin, y, 20, line);
@@ -112,7 +98,7 @@ class Sheet {
       for (const auto& part : place_.parts) settings.part_opacity[part.name] = part.name == only;
     const int x = margin + number * (panel + margin);
     paste(image_, renderer.picture(camera, settings), x, top);
-    frame(image_, x, top, x + panel, top + panel_height, grey);
+    paint_frame(image_, {x, top, x + panel, top + panel_height}, grey);
     words_.write(image_, x, top - 14, 20, name);
     const Eigen::Vector3d right = camera.up.cross(camera.direction).normalized();
     const Eigen::Vector3d up = camera.direction.cross(right);
@@ -129,7 +115,8 @@ class Sheet {
     // A ruler, right in the plane of the place.
     const double pixels_per_mm = panel_height / place_.seen_mm;
     const int length = static_cast<int>(std::lround(10 * pixels_per_mm));
-    fill(image_, x + 14, top + panel_height - 18, x + 14 + length, top + panel_height - 15, pale);
+    paint_box(image_, {x + 14, top + panel_height - 18, x + 14 + length, top + panel_height - 15},
+              pale);
     words_.write(image_, x + 14, top + panel_height - 24, 16, "10 mm", pale);
   }
 
@@ -146,41 +133,10 @@ class Sheet {
         const double off = std::abs(std::hypot(x + 0.5 - px, y + 0.5 - py) - radius);
         if (off > half + 1.2 || x < left || x >= left + panel || y < top || y >= top + panel_height)
           continue;
-        fill(image_, x, y, x + 1, y + 1,
-             off > half ? Eigen::Vector3f(0.1f, 0.1f, 0.1f) : Eigen::Vector3f(0.94f, 0.89f, 0.26f));
+        paint_box(
+            image_, {x, y, x + 1, y + 1},
+            off > half ? Eigen::Vector3f(0.1f, 0.1f, 0.1f) : Eigen::Vector3f(0.94f, 0.89f, 0.26f));
       }
-  }
-
-  void legend() {
-    constexpr int bar_top = top + 24, bar_bottom = top + panel_height - 52, bar = 26;
-    const auto y_of = [&](float value) {
-      return bar_bottom -
-             (value - map_.low()) / (map_.high() - map_.low()) * (bar_bottom - bar_top);
-    };
-    words_.write(image_, legend_left, top - 14, 20, map_.title + ", " + map_.unit);
-    for (int y = bar_top; y < bar_bottom; ++y) {
-      const float s = (static_cast<float>(bar_bottom - y) - 0.5f) / (bar_bottom - bar_top);
-      fill(image_, legend_left, y, legend_left + bar, y + 1,
-           color_of(map_, map_.low() + s * (map_.high() - map_.low())));
-    }
-    for (const float line : map_.lines) {
-      const int y = static_cast<int>(std::lround(y_of(line)));
-      fill(image_, legend_left, y, legend_left + bar, y + 1, Eigen::Vector3f::Constant(0.1f));
-    }
-    frame(image_, legend_left, bar_top, legend_left + bar, bar_bottom, grey);
-    for (const float tick : map_.ticks) {
-      const int y = static_cast<int>(std::lround(y_of(tick)));
-      fill(image_, legend_left + bar, y, legend_left + bar + 6, y + 1, grey);
-      words_.write(image_, legend_left + bar + 10, y + 6, 18,
-                   tick < 0 ? fmt::format("\u2212{:g}", -tick) : fmt::format("{:g}", tick));
-    }
-    for (const auto& band : map_.bands) {
-      const double y = (y_of(band.from) + y_of(band.to)) / 2 + 6;
-      words_.write(image_, legend_left + bar + 44, y, 17, band.name, grey);
-    }
-    fill(image_, legend_left, bar_bottom + 16, legend_left + bar, bar_bottom + 34, map_.beyond);
-    words_.write(image_, legend_left + bar + 10, bar_bottom + 31, 17,
-                 fmt::format("more than {:g}", map_.high()));
   }
 
   const ContactPlace& place_;

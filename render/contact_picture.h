@@ -25,6 +25,7 @@ struct ContactPlace {
   std::string overview = "front";                     // standard camera
   std::string title;
   std::vector<std::string> lines;  // under the pictures
+  std::vector<Pose> X_CF = {};     // of each free part, in the parts' order
 };
 
 /// One picture, 1600 pixels wide: where it is, the fixed part seen from the moved one, the moved

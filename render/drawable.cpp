@@ -21,8 +21,9 @@ std::uint8_t to_byte(float value) {
 
 /// What shades what: bones of each body among themselves, at rest the other body too; the eyes lie
 /// under the lids; the face is shaded by itself alone, for bones under it are not seen beside it.
+/// Free parts are wherever a plan puts them: they leave no shade on others, nor others on them.
 void set_layers(Role role, OcclusionSurface& surface) {
-  enum { cranium, mandible, face };
+  enum { cranium, mandible, face, free_parts };
   if (role == Role::face) {
     surface.layer = face;
     surface.alone = surface.together = 1u << face;
@@ -30,6 +31,9 @@ void set_layers(Role role, OcclusionSurface& surface) {
     surface.layer = cranium;
     surface.alone = 1u << cranium;
     surface.together = 1u << cranium | 1u << face;
+  } else if (body_of(role) == Body::free) {
+    surface.layer = free_parts;
+    surface.alone = surface.together = 1u << free_parts;
   } else {
     surface.layer = body_of(role) == Body::mandible ? mandible : cranium;
     surface.alone = 1u << surface.layer;
@@ -124,6 +128,19 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
                          std::move(mesh), std::move(creases), std::move(colors)});
   }
   return drawables;
+}
+
+void Drawable::set_finer(const TriMesh& surface, std::span<const Eigen::Vector3f> normals) {
+  std::vector<Eigen::Vector3f> positions;
+  positions.reserve(surface.vertices.size());
+  for (const auto& v : surface.vertices) positions.push_back(v.cast<float>());
+  finer_vertices = positions.size();
+  finer.emplace(positions, surface.triangles, false);
+  finer->send_shape(positions, normals);
+  // A map is not shaded by these, but the card reads them.
+  const std::vector<GpuMesh::Bytes> none(positions.size());
+  finer->send_colors(none);
+  finer->send_extras(none);
 }
 
 void Drawable::move_face(std::span<const Eigen::Vector3f> positions,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,7 +23,13 @@ struct Drawable {
   std::vector<Crease> creases;
   std::vector<GpuMesh::Bytes> colors;  // at rest
 
-  bool mapped = false;  // coloured by its values
+  bool mapped = false;                // coloured by its values
+  std::optional<GpuMesh> finer = {};  // drawn instead while it is
+  std::size_t finer_vertices = 0;
+
+  const GpuMesh& shown() const { return mapped && finer ? *finer : mesh; }
+  /// The same surface in smaller triangles, for maps.
+  void set_finer(const TriMesh& surface, std::span<const Eigen::Vector3f> normals);
 
   /// Sends a moved face, its normals and the shade of its folds.
   void move_face(std::span<const Eigen::Vector3f> positions,

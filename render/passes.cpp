@@ -35,6 +35,15 @@ void cull_by_closure(const Drawable& drawable) {
 
 }  // namespace
 
+Eigen::AlignedBox3f DrawItem::box() const {
+  Eigen::AlignedBox3f moved;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto at = static_cast<Eigen::AlignedBox3f::CornerType>(corner);
+    moved.extend((model * drawable->box.corner(at).homogeneous()).head<3>());
+  }
+  return moved;
+}
+
 Passes::Passes()
     : surface_(build("surface", surface_shaders())),
       skin_(build("skin", skin_shaders())),
@@ -90,14 +99,14 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
   // the face does not cast already.
   Eigen::AlignedBox3f enclosed;
   for (const auto& item : items)
-    if (item.opaque() && item.role() == Role::face) enclosed.extend(item.drawable->box);
+    if (item.opaque() && item.role() == Role::face) enclosed.extend(item.box());
   for (const auto& item : items) {
     if (!item.opaque()) continue;
     const bool shows = item.role() == Role::face || is_teeth(item.role());
-    if (!shows && !enclosed.isEmpty() && enclosed.contains(item.drawable->box)) continue;
+    if (!shows && !enclosed.isEmpty() && enclosed.contains(item.box())) continue;
     cull_by_closure(*item.drawable);
     depth_.set("model", item.model);
-    item.drawable->mesh.draw();
+    item.mesh().draw();
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
@@ -150,7 +159,8 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
       program.set(map_line_names[i],
                   i < colour_map_.lines.size() ? colour_map_.lines[i] : colour_map_.low() - 100);
   }
-  const bool in_mouth = view.opaque_face && role != Role::face && role != Role::eyes;
+  const bool in_mouth =
+      view.opaque_face && role != Role::face && role != Role::eyes && body_of(role) != Body::free;
   program.set("cavity", Eigen::Vector2f(view.lips_y, in_mouth ? 1 / mouth_depth_mm : 0.f));
 }
 
@@ -161,12 +171,12 @@ void Passes::shade(const DrawItem& item, const PictureView& view, bool leave_out
     glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
     begin(skin_, item, view);
-    drawable.mesh.draw();
+    item.mesh().draw();
     if (drawable.closed) return;
   }
   // What is left lies under the face, if there is one: the other parts, and its own inside.
   const int answers =
-      leave_out_hidden ? culling_.ask(drawable.mesh, view.view_projection * item.model) : 0;
+      leave_out_hidden ? culling_.ask(item.mesh(), view.view_projection * item.model) : 0;
   if (face) {
     glEnable(GL_CULL_FACE);
     glCullFace(GL_FRONT);
@@ -175,9 +185,9 @@ void Passes::shade(const DrawItem& item, const PictureView& view, bool leave_out
   }
   begin(face ? interior_ : surface_, item, view);
   if (leave_out_hidden)
-    culling_.draw(drawable.mesh, answers);
+    culling_.draw(item.mesh(), answers);
   else
-    drawable.mesh.draw();
+    item.mesh().draw();
 }
 
 void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
@@ -195,7 +205,7 @@ void Passes::depth_only(const DrawItem& item, const PictureView& view) {
   depth_.set("view_projection", view.view_projection);
   depth_.set("model", item.model);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  item.drawable->mesh.draw();
+  item.mesh().draw();
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
@@ -203,9 +213,7 @@ void Passes::translucent(std::span<const DrawItem> items, const PictureView& vie
   std::vector<DrawItem> order;
   for (const auto& item : items)
     if (!item.opaque()) order.push_back(item);
-  const auto away = [&](const DrawItem& item) {
-    return (item.drawable->box.center() - view.eye).norm();
-  };
+  const auto away = [&](const DrawItem& item) { return (item.box().center() - view.eye).norm(); };
   std::stable_sort(order.begin(), order.end(), [&](const DrawItem& a, const DrawItem& b) {
     const bool face_a = a.role() == Role::face, face_b = b.role() == Role::face;
     return face_a != face_b ? face_b : away(a) > away(b);

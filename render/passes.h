@@ -19,6 +19,9 @@ struct DrawItem {
 
   Role role() const { return drawable->part->role; }
   bool opaque() const { return opacity >= 1; }
+  const GpuMesh& mesh() const { return drawable->shown(); }
+  /// Box of where it is now, mm.
+  Eigen::AlignedBox3f box() const;
 };
 
 /// What all draws of one picture share.

@@ -10,6 +10,7 @@
 #include "render/drawable.h"
 #include "render/framebuffer.h"
 #include "render/passes.h"
+#include "sim/frame/body_poses.h"
 
 namespace condyle {
 namespace {
@@ -40,13 +41,16 @@ float front_of_mouth(std::span<const Drawable> drawables) {
 }  // namespace
 
 struct SceneRenderer::State {
+  std::span<const Part> parts;
   Passes passes;
   std::vector<Drawable> drawables;
   Eigen::AlignedBox3f box;  // of all parts at rest
   float mouth_y;
   GpuPoints contacts;
   // Of the last frame:
+  std::vector<Pose> poses;  // of each drawable
   Pose X_CM;
+  Eigen::AlignedBox3f reached;  // `box` and the free parts where they are
   bool face_moved = false;
   std::vector<Eigen::Vector3f> normals;  // kept for its memory
   // Kept from picture to picture of one size:
@@ -54,35 +58,61 @@ struct SceneRenderer::State {
   int samples_asked = 0;
   float map_low = 0, map_high = 1;  // values are kept within
 
-  explicit State(std::span<const Part> parts)
-      : drawables(make_drawables(parts)), mouth_y(front_of_mouth(drawables)) {
+  explicit State(std::span<const Part> all)
+      : parts(all), drawables(make_drawables(all)), mouth_y(front_of_mouth(drawables)) {
     for (const auto& drawable : drawables) box.extend(drawable.box);
     if (box.isEmpty()) box = Eigen::AlignedBox3f(Eigen::Vector3f::Zero());
+    place({});
   }
 
+  void place(const BodyPoses& at);
+
   std::vector<DrawItem> items(const PictureSettings& settings);
-  PictureView view(const Camera& camera, const PictureSettings& settings) const;
-  float at_rest() const;
+  PictureView view(const Camera& camera, const PictureSettings& settings,
+                   std::span<const DrawItem> items) const;
+  float at_rest(std::span<const DrawItem> items) const;
 };
 
 std::vector<DrawItem> SceneRenderer::State::items(const PictureSettings& settings) {
   std::vector<DrawItem> found;
-  for (auto& drawable : drawables) {
+  for (std::size_t i = 0; i < drawables.size(); ++i) {
+    auto& drawable = drawables[i];
     const auto& part = *drawable.part;
     double opacity = part.role == Role::face ? settings.skin_opacity : 1;
     if (const auto own = settings.part_opacity.find(part.name); own != settings.part_opacity.end())
       opacity *= own->second;
     if (part.mesh.empty() || !(opacity >= nearly_hidden)) continue;
-    found.push_back({&drawable, opacity > nearly_opaque ? 1.0 : opacity,
-                     body_of(part.role) == Body::mandible
-                         ? matrix_of(X_CM)
-                         : Eigen::Matrix4f(Eigen::Matrix4f::Identity())});
+    found.push_back({&drawable, opacity > nearly_opaque ? 1.0 : opacity, matrix_of(poses[i])});
   }
   return found;
 }
 
-/// How far the jaw is from the place where its shade was baked.
-float SceneRenderer::State::at_rest() const {
+void SceneRenderer::State::place(const BodyPoses& at) {
+  X_CM = at.X_CM;
+  poses.clear();
+  reached = box;
+  for (std::size_t i = 0; i < drawables.size(); ++i) {
+    poses.push_back(pose_of(parts, i, at));
+    if (body_of(parts[i].role) != Body::free || drawables[i].box.isEmpty()) continue;
+    reached.extend(DrawItem{&drawables[i], 1, matrix_of(poses[i])}.box());
+  }
+}
+
+/// How far the jaw is from the place where its shade was baked: 1 there, 0 far off, and where
+/// either jaw is not drawn.
+float SceneRenderer::State::at_rest(std::span<const DrawItem> items) const {
+  const auto drawn = [&](Body body) {
+    return std::any_of(items.begin(), items.end(), [&](const DrawItem& item) {
+      return body_of(item.role()) == body && collides(item.role());
+    });
+  };
+  const auto exists = [&](Body body) {
+    return std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
+      return body_of(part.role) == body && collides(part.role) && !part.mesh.empty();
+    });
+  };
+  for (const Body body : {Body::cranium, Body::mandible})
+    if (exists(body) && !drawn(body)) return 0;
   for (const auto& drawable : drawables) {
     if (body_of(drawable.part->role) != Body::mandible || drawable.box.isEmpty()) continue;
     const Eigen::Vector3d centre = drawable.box.center().cast<double>();
@@ -92,19 +122,19 @@ float SceneRenderer::State::at_rest() const {
   return 1;
 }
 
-PictureView SceneRenderer::State::view(const Camera& camera,
-                                       const PictureSettings& settings) const {
-  const float radius = 0.5f * box.diagonal().norm() + opening_room_mm;
+PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettings& settings,
+                                       std::span<const DrawItem> items) const {
+  const float radius = 0.5f * reached.diagonal().norm() + opening_room_mm;
   PictureView v;
   v.view = view_matrix(camera);
   v.eye = (camera.target + camera.distance_mm * camera.direction.normalized()).cast<float>();
-  const double away = (v.eye - box.center()).norm();
+  const double away = (v.eye - reached.center()).norm();
   v.projection = projection_matrix(camera, static_cast<double>(settings.width) / settings.height,
                                    std::max({2.0, away - radius, camera.near_mm}),
                                    std::max(away + radius, camera.near_mm + 1));
   v.view_projection = v.projection * v.view;
   v.lights = lights_for(camera);
-  auto moving = box;
+  auto moving = reached;
   moving.min().z() -= opening_room_mm;
   moving.min().array() -= 3;
   moving.max().array() += 3;
@@ -114,7 +144,7 @@ PictureView SceneRenderer::State::view(const Camera& camera,
   v.shadows = settings.shadows;
   v.may_cull = away > radius + 5;
   v.skin_opacity = static_cast<float>(std::clamp(settings.skin_opacity, 0.0, 1.0));
-  v.at_rest = at_rest();
+  v.at_rest = at_rest(items);
   v.lips_y = mouth_y;
   return v;
 }
@@ -130,7 +160,7 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> SceneRenderer::bounds() const {
 
 void SceneRenderer::update(const FrameState& frame) {
   auto& s = *state_;
-  s.X_CM = frame.X_CM;
+  s.place(frame.poses());
   for (auto& drawable : s.drawables) {
     if (drawable.part->role != Role::face) continue;
     const auto& rest = drawable.part->mesh.vertices;
@@ -156,17 +186,25 @@ void SceneRenderer::set_colour_map(const ColourMap& map) {
   state_->passes.set_colour_map(map);
 }
 
+void SceneRenderer::set_finer(const std::string& name, const TriMesh& surface,
+                              std::span<const Eigen::Vector3f> normals) {
+  for (auto& drawable : state_->drawables)
+    if (drawable.part->name == name) drawable.set_finer(surface, normals);
+}
+
 void SceneRenderer::color_part(const std::string& name, std::span<const float> values) {
   auto& s = *state_;
   for (auto& drawable : s.drawables) {
     if (drawable.part->name != name) continue;
-    assert(values.empty() || values.size() == drawable.part->mesh.vertices.size());
+    assert(values.empty() ||
+           values.size() ==
+               (drawable.finer ? drawable.finer_vertices : drawable.part->mesh.vertices.size()));
     // Kept near the range, so that the way from a far vertex to a near one passes through it.
     std::vector<float> kept(values.begin(), values.end());
     for (float& value : kept)
       value = std::isnan(value) ? s.map_high : std::clamp(value, s.map_low, s.map_high);
-    drawable.mesh.send_values(kept);
     drawable.mapped = !kept.empty();
+    (drawable.finer ? *drawable.finer : drawable.mesh).send_values(kept);
   }
 }
 
@@ -175,7 +213,7 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings) 
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
   const auto items = s.items(settings);
-  auto view = s.view(camera, settings);
+  auto view = s.view(camera, settings, items);
   view.opaque_face = std::any_of(items.begin(), items.end(), [](const DrawItem& item) {
     return item.role() == Role::face && item.opaque();
   });

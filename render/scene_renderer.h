@@ -43,9 +43,14 @@ class SceneRenderer {
   /// The map of all parts that are coloured by values.
   void set_colour_map(const ColourMap& map);
 
-  /// Colours a bone or an arch by one value per vertex from now on; without values it is drawn as
-  /// itself again. Values beyond the map, infinite ones too, have its outer colours. The face keeps
-  /// its own colours.
+  /// Gives a bone or an arch another mesh of the same surface, finer where values vary, to be drawn
+  /// while it is coloured by values. normals: unit, one per vertex. Unknown names are passed over.
+  void set_finer(const std::string& name, const TriMesh& surface,
+                 std::span<const Eigen::Vector3f> normals);
+
+  /// Colours a bone or an arch by one value per vertex (of its finer mesh, if it has one) from now
+  /// on; without values it is drawn as itself again. Values beyond the map, infinite ones too, have
+  /// its outer colours. The face keeps its own colours.
   void color_part(const std::string& name, std::span<const float> values);
 
   /// Draws into the framebuffer that is bound, over its whole viewport of width x height.

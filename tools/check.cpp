@@ -42,7 +42,7 @@ Image picture_of(const Scene& scene, const PairVerdict& pair, int threads) {
                      .title = pair.a + " and " + pair.b,
                      .lines = {worst_caption(pair)}};
   if (const auto words = open_surface_words(pair); !words.empty()) place.lines.push_back(words);
-  return contact_picture(place, distance_colours());
+  return contact_picture(place, distance_colours({.near_mm = 5, .deepest_mm = 2}));
 }
 
 /// A name that every file system takes.

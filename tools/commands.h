@@ -39,6 +39,7 @@ struct RecordOptions {
   std::string size = "1280x720";
   std::string camera = "three-quarter";
   std::string show = "all";
+  double distance_near_mm = 2;  // end of the map of distances
   bool film = false;
   bool resume = false;
 };

@@ -75,16 +75,18 @@ std::pair<int, int> parse_size(const std::string& text) {
   return {width, height};
 }
 
-void apply_show_list(const std::string& list, std::span<const Part> parts,
+bool apply_show_list(const std::string& list, std::span<const Part> parts,
                      PictureSettings& settings) {
   const std::map<std::string, std::set<Role>> groups = {
-      {"bones", {Role::skull, Role::maxilla, Role::mandible}},
+      {"bones", {Role::skull, Role::maxilla, Role::mandible, Role::segment, Role::transplant}},
       {"teeth", {Role::upper_teeth, Role::lower_teeth}},
+      {"segments", {Role::segment}},
+      {"transplants", {Role::transplant}},
       {"skin", {Role::face, Role::eyes}},
       {"mouth", {Role::upper_gums, Role::lower_gums, Role::tongue}},
   };
   const auto known = [&] {
-    std::string names = "all, contacts";
+    std::string names = "all, contacts, distance";
     for (const auto& [name, roles] : groups) names += ", " + name;
     for (const auto& part : parts) names += ", " + part.name;
     return names;
@@ -92,6 +94,7 @@ void apply_show_list(const std::string& list, std::span<const Part> parts,
   std::map<std::string, double> opacity;
   for (const auto& part : parts) opacity[part.name] = 0;
   settings.contacts = false;
+  bool distance = false;
   std::size_t start = 0;
   while (start <= list.size()) {
     const auto end = std::min(list.find(',', start), list.size());
@@ -108,6 +111,7 @@ void apply_show_list(const std::string& list, std::span<const Part> parts,
     }
     bool found = item == "all" || item == "contacts";
     if (found) settings.contacts = true;
+    if (item == "distance") found = distance = true;
     for (const auto& part : parts) {
       const auto group = groups.find(item);
       const bool chosen = item == "all" || item == part.name ||
@@ -120,6 +124,7 @@ void apply_show_list(const std::string& list, std::span<const Part> parts,
   for (const auto& part : parts)
     if (part.role == Role::face) settings.skin_opacity = opacity[part.name];
   settings.part_opacity = std::move(opacity);
+  return distance;
 }
 
 Camera parse_camera(const std::string& text, const Eigen::Vector3d& low,

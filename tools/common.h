@@ -37,9 +37,10 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
 /// "1280x720". throws: InputError unless both are between 16 and 8192.
 std::pair<int, int> parse_size(const std::string& text);
 
-/// Fills opacities from a list such as "bones,teeth,skin:0.4"; "all" shows everything.
-/// throws: InputError for an unknown name, listing the known ones.
-void apply_show_list(const std::string& list, std::span<const Part> parts,
+/// Fills opacities from a list such as "bones,teeth,skin:0.4"; "all" shows every part.
+/// gives: whether "distance" is in the list. throws: InputError for an unknown name, listing the
+/// known ones.
+bool apply_show_list(const std::string& list, std::span<const Part> parts,
                      PictureSettings& settings);
 
 /// A standard view by name, or a JSON file {target, direction, up, distance_mm, field_of_view_deg}.

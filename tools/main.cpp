@@ -154,11 +154,18 @@ int run_program(int argc, char** argv) {
   record_command->add_option("--size", record.size, "Picture size, WIDTHxHEIGHT (1280x720)");
   record_command->add_option(
       "--camera", record.camera,
-      "front back left right three-quarter above below spin, or a JSON file (three-quarter)");
+      "front back left right three-quarter above below spin upper-arch lower-arch, or a JSON file "
+      "(three-quarter)");
   record_command->add_option(
       "--show", record.show,
-      "What to draw: all bones teeth skin mouth contacts or part names, each with "
-      "an opacity if wanted, e.g. bones,teeth,skin:0.4 (all)");
+      "What to draw: all bones teeth segments transplants skin mouth contacts or part names, each "
+      "with an opacity if wanted, e.g. bones,teeth,skin:0.4 (all); distance: colour bones and "
+      "teeth "
+      "by their distance from what they may meet");
+  record_command
+      ->add_option("--distance-near", record.distance_near_mm,
+                   "Distances up to here are coloured, mm (2)")
+      ->check(within(0.5, 10.0));
   record_command->add_flag("--film", record.film, "Also make film.mp4 (needs the ffmpeg program)");
   record_command->add_flag("--resume", record.resume, "Complete an interrupted recording");
 

@@ -8,6 +8,7 @@
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
 #include "engine/mesh/measure.h"
+#include "render/arch_view.h"
 #include "render/gl_context.h"
 #include "render/recorder.h"
 #include "render/scene_renderer.h"
@@ -15,6 +16,7 @@
 #include "sim/report/report.h"
 #include "sim/report/trace.h"
 #include "tools/common.h"
+#include "tools/distance_drawing.h"
 
 namespace condyle {
 namespace {
@@ -97,7 +99,8 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const 
   for (const auto& part : patient.parts) {
     const auto opacity = picture.part_opacity.find(part.name);
     if (opacity != picture.part_opacity.end() && opacity->second <= 0) continue;
-    const bool moves = body_of(part.role) == Body::mandible;
+    const Body body = body_of(part.role);
+    const bool moves = (body == Body::free ? part.carrier : body) == Body::mandible;
     for (int i = 0; i <= (moves ? samples : 0); ++i) {
       const Pose X_CM = moves ? motion.wanted(motion.duration_s * i / samples) : Pose{};
       for (std::size_t v = 0; v < part.mesh.vertices.size(); v += stride)
@@ -112,13 +115,27 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const 
 class PictureTaker {
  public:
   PictureTaker(const RecordOptions& options, const Scene& scene, const Motion& motion,
-               const FrameTimes& times)
+               const SimulatorSettings& settings, const FrameTimes& times)
       : renderer_(scene.patient.parts), spin_(options.camera == "spin"), frames_(times.count) {
     std::tie(picture_.width, picture_.height) = parse_size(options.size);
-    apply_show_list(options.show, scene.patient.parts, picture_);
-    const auto [low, high] = view_box(scene.patient, motion, picture_);
     const double aspect = static_cast<double>(picture_.width) / picture_.height;
-    camera_ = parse_camera(spin_ ? "front" : options.camera, low, high, aspect);
+    const bool distance = apply_show_list(options.show, scene.patient.parts, picture_);
+    if (ArchView::names(options.camera)) {
+      arch_.emplace(options.camera, scene.patient.parts, aspect);
+      for (const auto& [part, opacity] : arch_->hidden()) picture_.part_opacity[part] = opacity;
+    }
+    const auto [low, high] = view_box(scene.patient, motion, picture_);
+    camera_ = arch_ ? arch_->at_rest()
+                    : parse_camera(spin_ ? "front" : options.camera, low, high, aspect);
+    if (distance)
+      // Finer than a window has time for.
+      distances_.emplace(scene.patient,
+                         DistanceMapSettings{.reach_mm = options.distance_near_mm,
+                                             .teeth_edge_mm = 0.4,
+                                             .bone_edge_mm = 1,
+                                             .most_triangles = 400000,
+                                             .pair_rules = settings.contact.pair_rules},
+                         settings.threads, renderer_);
     recorder_.emplace(RecorderSettings{
         .folder = options.out,
         .width = picture_.width,
@@ -132,8 +149,10 @@ class PictureTaker {
             {"case", hash_text(case_hash(scene.patient))},
             {"motion",
              motion.name + " " + hash_text(motion_hash(motion, times, SimulatorSettings{}.step_s))},
-            {"camera", camera_text(camera_, spin_)},
+            {"camera", (arch_ ? options.camera + " " : "") + camera_text(camera_, spin_)},
             {"show", options.show},
+            {"distances",
+             distance ? fmt::format("up to {} mm", options.distance_near_mm) : std::string("none")},
             {"contact", contact_text(options.motion)},
             {"tissue", options.motion.tissue ? std::to_string(options.motion.surface_nodes)
                                              : std::string("none")}}});
@@ -146,8 +165,12 @@ class PictureTaker {
   void take(int frame, FrameState& state) {
     const StageTimer timer(state.times, Stage::render);
     renderer_.update(state);
+    if (distances_) distances_->color(renderer_, state);
     const double turn = spin_ ? 2 * M_PI * frame / std::max(frames_ - 1, 1) : 0;
-    recorder_->add(frame, renderer_.picture(turned(camera_, turn), picture_));
+    const Camera camera = arch_ ? arch_->at(state) : turned(camera_, turn);
+    Image image = renderer_.picture(camera, picture_);
+    if (distances_) distances_->add_legend_to(image);
+    recorder_->add(frame, std::move(image));
   }
   void finish() { recorder_->finish(); }
 
@@ -159,6 +182,8 @@ class PictureTaker {
   int kept_ = 0;
   PictureSettings picture_;
   Camera camera_;
+  std::optional<ArchView> arch_;
+  std::optional<DistanceDrawing> distances_;
   std::optional<Recorder> recorder_;
 };
 
@@ -166,7 +191,8 @@ class PictureTaker {
 void check_early(const RecordOptions& options) {
   if (!options.pictures) return;
   parse_size(options.size);
-  if (options.camera != "spin") parse_camera(options.camera, {-1, -1, -1}, {1, 1, 1}, 1);
+  if (options.camera != "spin" && !ArchView::names(options.camera))
+    parse_camera(options.camera, {-1, -1, -1}, {1, 1, 1}, 1);
 }
 
 }  // namespace
@@ -188,7 +214,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   const FrameTimes times = frame_times(options, motion.duration_s);
 
   std::optional<PictureTaker> pictures;
-  if (options.pictures) pictures.emplace(options, scene, motion, times);
+  if (options.pictures) pictures.emplace(options, scene, motion, settings, times);
   TraceWriter trace(options.out / "trace.csv");
   MotionReport report(scene, motion, settings);
   MotionCurves curves;

@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <optional>
 
 #include "engine/core/error.h"
 #include "render/window/window.h"
+#include "sim/contact/live_distances.h"
 #include "sim/motion/measures.h"
 #include "sim/simulator/live.h"
 #include "tools/common.h"
+#include "tools/distance_drawing.h"
 
 namespace condyle {
 namespace {
@@ -23,6 +26,13 @@ Scene prepare(const Case& patient, SimulatorSettings settings, const Progress& p
     settings.tissue = false;
     return make_scene(patient, settings, progress);
   }
+}
+
+std::vector<MapSurface> map_surfaces(const DistanceMap& map) {
+  std::vector<MapSurface> surfaces;
+  for (const auto& surface : map.surfaces())
+    surfaces.push_back({static_cast<std::size_t>(surface.part), &surface.mesh, surface.normals});
+  return surfaces;
 }
 
 double widest_opening(const Case& patient, const Motion& motion) {
@@ -55,12 +65,15 @@ void show_patient(Window& window, const ViewOptions& options, const CommonOption
   window.show_progress("", 1);
   bar.clear();
 
+  const DistanceMapSettings map_settings{.pair_rules = settings.contact.pair_rules};
   WindowScene shown{.parts = scene.patient.parts,
                     .case_name = scene.patient.name,
                     .motion_name = motion.name,
                     .duration_s = motion.duration_s,
                     .max_opening_mm = widest_opening(scene.patient, motion),
-                    .notes = scene.patient.notes};
+                    .notes = scene.patient.notes,
+                    .distance_colours = distance_colours({.near_mm = map_settings.reach_mm}),
+                    .distance_remarks = distance_remarks(scene.patient)};
   shown.notes.insert(shown.notes.end(), scene.contacts.notes().begin(),
                      scene.contacts.notes().end());
   shown.notes.insert(shown.notes.end(), motion.notes.begin(), motion.notes.end());
@@ -71,15 +84,34 @@ void show_patient(Window& window, const ViewOptions& options, const CommonOption
   if (!trouble.empty()) window.report_error(trouble);
 
   LiveSimulation simulation(scene, motion, settings);
+  std::optional<LiveDistances> distances;  // made when first wanted
+  bool map_sent = false, coloured = false;
+  FrameState newest;
   while (window.open()) {
     const ViewState& view = window.poll();
     simulation.request({.time_s = view.time_s,
                         .opening_mm = view.opening_mm,
                         .obey_contact = view.obey_contact,
                         .face = view.shows_face(shown)});
-    if (auto frame = simulation.take())
-      window.show(std::move(*frame),
-                  {.steps_per_second = simulation.steps_per_second(), .message = {}});
+    const LoopStatistics loop{.steps_per_second = simulation.steps_per_second(),
+                              .message = view.distances && !map_sent ? "Measuring distances" : ""};
+    auto frame = simulation.take();
+    const bool news = frame.has_value();
+    if (news) newest = std::move(*frame);
+    if (view.distances && !distances) distances.emplace(scene.patient, map_settings);
+    const bool switched = coloured != view.distances;
+    if (view.distances && (news || switched)) distances->request(newest);
+    coloured = view.distances;
+    auto answer = distances ? distances->take() : std::nullopt;
+    if (answer && !map_sent) {
+      window.set_map_surfaces(map_surfaces(*distances->map()));
+      map_sent = true;
+    }
+    // A frame waits for its colours, so that both are of one time.
+    if (answer && view.distances)
+      window.show(std::move(answer->frame), loop, std::move(answer->values));
+    else if ((news || switched) && !(view.distances && map_sent))
+      window.show(newest, loop);
     else
       window.draw();
   }

@@ -20,64 +20,35 @@ std::uint64_t key_of(int a, int b) {
          static_cast<std::uint32_t>(std::max(a, b));
 }
 
-}  // namespace
+/// The edges to halve in one pass, each with its new vertex.
+class Middles {
+ public:
+  explicit Middles(TriMesh& mesh) : mesh_(mesh) {}
 
-TriMesh refine_near(TriMesh mesh, const Eigen::Vector3d& center, double radius_mm, double edge_mm,
-                    int most_triangles) {
-  for (bool divided = true; divided;) {
-    divided = false;
-    std::unordered_map<std::uint64_t, int> middles;  // looked up only, never walked
+  /// Whether the edge had no middle yet.
+  bool halve(int a, int b) {
+    const auto [it, made] =
+        vertex_.try_emplace(key_of(a, b), static_cast<int>(mesh_.vertices.size()));
+    if (!made) return false;
+    mesh_.vertices.push_back(0.5 * (mesh_.vertices[a] + mesh_.vertices[b]));
+    if (!mesh_.colors.empty()) mesh_.colors.push_back(0.5f * (mesh_.colors[a] + mesh_.colors[b]));
+    return true;
+  }
+  bool empty() const { return vertex_.empty(); }
+  void undo() {
+    mesh_.vertices.resize(mesh_.vertices.size() - vertex_.size());
+    if (!mesh_.colors.empty()) mesh_.colors.resize(mesh_.vertices.size());
+  }
+
+  /// The triangles with their halved edges joined up.
+  std::vector<Eigen::Vector3i> divided() const {
     std::vector<Eigen::Vector3i> finer;
-    finer.reserve(mesh.triangles.size());
-    const auto wanted = [&](int a, int b) {
-      const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b];
-      return (p - q).norm() > edge_mm && distance_to_edge(p, q, center) <= radius_mm;
-    };
-    const auto halve = [&](int a, int b) {
-      const auto [it, made] =
-          middles.try_emplace(key_of(a, b), static_cast<int>(mesh.vertices.size()));
-      if (!made) return;
-      mesh.vertices.push_back(0.5 * (mesh.vertices[a] + mesh.vertices[b]));
-      if (!mesh.colors.empty()) mesh.colors.push_back(0.5f * (mesh.colors[a] + mesh.colors[b]));
-    };
-    for (const auto& t : mesh.triangles) {
-      int longest = 0;
-      double length = 0;
-      bool any = false;
-      for (int k = 0; k < 3; ++k) {
-        const int a = t[k], b = t[(k + 1) % 3];
-        if (const double l = (mesh.vertices[a] - mesh.vertices[b]).norm(); l > length) {
-          length = l;
-          longest = k;
-        }
-        if (wanted(a, b)) {
-          halve(a, b);
-          any = true;
-        }
-      }
-      if (any || length <= edge_mm) continue;
-      // Its edges all pass by the ball, but the face may go through it.
-      const Eigen::Vector3d middle =
-          (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
-      if ((middle - center).norm() <= radius_mm + length) {
-        const Eigen::Vector3d n = (mesh.vertices[t[1]] - mesh.vertices[t[0]])
-                                      .cross(mesh.vertices[t[2]] - mesh.vertices[t[0]])
-                                      .normalized();
-        const double height = n.dot(center - mesh.vertices[t[0]]);
-        const Eigen::Vector3d foot = center - height * n;
-        bool within = std::abs(height) < radius_mm;
-        for (int k = 0; k < 3 && within; ++k)
-          within = n.dot((mesh.vertices[t[(k + 1) % 3]] - mesh.vertices[t[k]])
-                             .cross(foot - mesh.vertices[t[k]])) >= 0;
-        if (within) halve(t[longest], t[(longest + 1) % 3]);
-      }
-    }
-    if (middles.empty()) break;
-    for (const auto& t : mesh.triangles) {
+    finer.reserve(mesh_.triangles.size());
+    for (const auto& t : mesh_.triangles) {
       int m[3], count = 0;
       for (int k = 0; k < 3; ++k) {
-        const auto found = middles.find(key_of(t[k], t[(k + 1) % 3]));
-        m[k] = found == middles.end() ? -1 : found->second;
+        const auto found = vertex_.find(key_of(t[k], t[(k + 1) % 3]));
+        m[k] = found == vertex_.end() ? -1 : found->second;
         count += m[k] >= 0;
       }
       if (count == 0) {
@@ -96,11 +67,84 @@ TriMesh refine_near(TriMesh mesh, const Eigen::Vector3d& center, double radius_m
         finer.push_back({a, ab, c});
       }
     }
-    if (static_cast<int>(finer.size()) > most_triangles) break;
-    mesh.triangles = std::move(finer);
-    divided = true;
+    return finer;
   }
-  return mesh;
+
+ private:
+  TriMesh& mesh_;
+  std::unordered_map<std::uint64_t, int> vertex_;  // looked up only, never walked
+};
+
+}  // namespace
+
+TriMesh refine_near(TriMesh mesh, const Eigen::Vector3d& center, double radius_mm, double edge_mm,
+                    int most_triangles) {
+  while (true) {
+    Middles middles(mesh);
+    const auto wanted = [&](int a, int b) {
+      const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b];
+      return (p - q).norm() > edge_mm && distance_to_edge(p, q, center) <= radius_mm;
+    };
+    for (const auto& t : mesh.triangles) {
+      int longest = 0;
+      double length = 0;
+      bool any = false;
+      for (int k = 0; k < 3; ++k) {
+        const int a = t[k], b = t[(k + 1) % 3];
+        if (const double l = (mesh.vertices[a] - mesh.vertices[b]).norm(); l > length) {
+          length = l;
+          longest = k;
+        }
+        if (wanted(a, b)) {
+          middles.halve(a, b);
+          any = true;
+        }
+      }
+      if (any || length <= edge_mm) continue;
+      // Its edges all pass by the ball, but the face may go through it.
+      const Eigen::Vector3d middle =
+          (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
+      if ((middle - center).norm() <= radius_mm + length) {
+        const Eigen::Vector3d n = (mesh.vertices[t[1]] - mesh.vertices[t[0]])
+                                      .cross(mesh.vertices[t[2]] - mesh.vertices[t[0]])
+                                      .normalized();
+        const double height = n.dot(center - mesh.vertices[t[0]]);
+        const Eigen::Vector3d foot = center - height * n;
+        bool within = std::abs(height) < radius_mm;
+        for (int k = 0; k < 3 && within; ++k)
+          within = n.dot((mesh.vertices[t[(k + 1) % 3]] - mesh.vertices[t[k]])
+                             .cross(foot - mesh.vertices[t[k]])) >= 0;
+        if (within) middles.halve(t[longest], t[(longest + 1) % 3]);
+      }
+    }
+    if (middles.empty()) return mesh;
+    auto finer = middles.divided();
+    if (static_cast<int>(finer.size()) > most_triangles) {
+      middles.undo();
+      return mesh;
+    }
+    mesh.triangles = std::move(finer);
+  }
+}
+
+TriMesh refine(TriMesh mesh, std::vector<double> edge_mm, int most_triangles) {
+  while (true) {
+    Middles middles(mesh);
+    for (const auto& t : mesh.triangles)
+      for (int k = 0; k < 3; ++k) {
+        const int a = t[k], b = t[(k + 1) % 3];
+        const double length = (mesh.vertices[a] - mesh.vertices[b]).norm();
+        if (length > std::min(edge_mm[a], edge_mm[b]) && middles.halve(a, b))
+          edge_mm.push_back(std::max(edge_mm[a], edge_mm[b]));
+      }
+    if (middles.empty()) return mesh;
+    auto finer = middles.divided();
+    if (static_cast<int>(finer.size()) > most_triangles) {
+      middles.undo();
+      return mesh;
+    }
+    mesh.triangles = std::move(finer);
+  }
 }
 
 }  // namespace condyle

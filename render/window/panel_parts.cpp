@@ -42,7 +42,8 @@ void Panels::Drawing::parts() {
   heading(pen, "Parts", input.scene.parts.empty() ? "" : "opacity");
   const float row = ImGui::GetFrameHeight() + pen.px(3);
   const float notes_room = input.scene.notes.empty() ? 0 : pen.px(96);
-  const float settings_room = pen.px(34) + 3 * row;
+  const float settings_room =
+      pen.px(34) + static_cast<float>(input.scene.distance_colours ? 4 : 3) * row;
   const float most =
       std::max(2 * row, ImGui::GetContentRegionAvail().y - settings_room - notes_room);
   const float wanted = row * static_cast<float>(input.scene.parts.size());
@@ -72,6 +73,14 @@ void Panels::Drawing::parts() {
   tooltip(pen, "On: bones cannot pass through each other. Off: the motion is played as it is");
   tick_box(pen, "mark-contacts", "Mark contacts", view.mark_contacts);
   tooltip(pen, "Points where bones or teeth touch");
+  if (input.scene.distance_colours) {
+    bool on = view.distances;
+    if (tick_box(pen, "distances", "Distances", on))
+      panels.run(Command::toggle_distances, input.scene, view);
+    tooltip(pen,
+            "Bones and teeth coloured by how far they are from what they may meet. Takes the skin "
+            "away: it would hide them. Key D");
+  }
   tick_box(pen, "shadows", "Shadows", view.shadows);
   ImGui::PopStyleVar();
 

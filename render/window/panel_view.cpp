@@ -107,6 +107,8 @@ void Panels::Drawing::view_signs() {
   letter(up, 0, -1);
   letter(-up, 0, 1);
   cube();
+  legend();
+  pointed();
 }
 
 void Panels::Drawing::cube() {

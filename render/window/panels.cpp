@@ -81,6 +81,15 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
         view.skin_opacity = skin_before_;
       }
       return true;
+    case Command::toggle_distances:
+      if (!scene.distance_colours) return true;
+      view.distances = !view.distances;
+      // They are seen on bones and teeth alone. Key K brings the skin back.
+      if (view.distances && view.skin_opacity > 0.5) {
+        skin_before_ = view.skin_opacity;
+        view.skin_opacity = 0;
+      }
+      return true;
     case Command::toggle_panels:
       shown_ = !shown_;
       return true;

@@ -23,10 +23,12 @@ struct PanelInput {
   Camera camera = {};
   std::string progress = {};     // what is being prepared; empty when nothing is
   double progress_fraction = 0;  // 0 to 1
+  std::string pointed = {};      // what is said beside the mouse; empty for nothing
 };
 
 /// A panel, or a thing in it that can be used, as last drawn. Names: panels "top", "left", "right",
-/// "bottom", "help", "error"; items "play", "scrub", "opening", "speed", "show:mandible", ...
+/// "bottom", "cube", "legend", "help", "error"; items "play", "scrub", "opening", "speed",
+/// "show:mandible", ...
 struct DrawnItem {
   std::string name;
   std::string panel;  // the panel that holds it; empty for a panel itself

@@ -31,6 +31,8 @@ struct Panels::Drawing {
   void tissue();
   void times();
   void cube();
+  void legend();   // panel_legend.cpp
+  void pointed();  // what the mouse is on
 };
 
 /// Stands in the window at all times.

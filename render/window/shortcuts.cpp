@@ -32,6 +32,7 @@ constexpr std::array bindings = {
     Binding{GLFW_KEY_S, Command::view_above, Command::view_below},
     Binding{GLFW_KEY_I, Command::view_below, Command::view_above},
     Binding{GLFW_KEY_K, Command::toggle_skin, Command::toggle_skin},
+    Binding{GLFW_KEY_D, Command::toggle_distances, Command::toggle_distances},
     Binding{GLFW_KEY_TAB, Command::toggle_panels, Command::toggle_panels},
     Binding{GLFW_KEY_F12, Command::picture, Command::window_picture},
     Binding{GLFW_KEY_F1, Command::help, Command::help},
@@ -57,6 +58,7 @@ constexpr std::array play_lines = {
 };
 constexpr std::array window_lines = {
     HelpLine{"K", "skin on, off"},
+    HelpLine{"D", "distances on, off"},
     HelpLine{"Tab", "panels on, off"},
     HelpLine{"F12", "save the picture as PNG"},
     HelpLine{"Shift+F12", "save the whole window"},

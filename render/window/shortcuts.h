@@ -23,6 +23,7 @@ enum class Command {
   picture,
   window_picture,
   toggle_skin,
+  toggle_distances,
   toggle_panels,
   help,
   close_dialog,

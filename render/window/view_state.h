@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/colour_map.h"
 #include "sim/frame/part.h"
 
 namespace condyle {
@@ -19,6 +20,10 @@ struct WindowScene {
   double step_s = 1.0 / 30;             // what one press of an arrow key moves
   double max_opening_mm = 50;           // end of the opening slider
   std::vector<std::string> notes = {};  // sentences about this case, e.g. overlap at rest
+  // Colours for distances, where the loop behind the window can tell them; beside them in the
+  // legend stand the remarks.
+  std::optional<ColourMap> distance_colours = {};
+  std::vector<std::string> distance_remarks = {};
 };
 
 /// How one part is wanted.
@@ -39,6 +44,7 @@ struct ViewState {
   bool obey_contact = true;  // false plays the motion through the contact
   bool mark_contacts = true;
   bool shadows = true;
+  bool distances = false;            // colour parts by their distance from what they may meet
   double skin_opacity = 1;           // of parts with the role `face`, on top of their own
   std::vector<PartView> parts = {};  // one per part of the scene, in its order
 

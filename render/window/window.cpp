@@ -65,7 +65,10 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start) {
   s.view.parts.resize(scene.parts.size());
   s.has_frame = s.frame_new = false;
   s.frame = {};
+  s.map_surfaces.clear();
+  s.values.clear();
   if (!scene.parts.empty()) s.renderer.emplace(scene.parts);
+  if (s.renderer && scene.distance_colours) s.renderer->set_colour_map(*scene.distance_colours);
   s.fit_scale();
   s.set_standard_view(camera_of(Command::reset_view));
   s.noticed();
@@ -85,13 +88,26 @@ const ViewState& Window::poll() {
   return s.view;
 }
 
-void Window::show(FrameState frame, const LoopStatistics& loop) {
+void Window::set_map_surfaces(std::vector<MapSurface> surfaces) {
+  State& s = *state_;
+  s.map_surfaces = std::move(surfaces);
+  for (const auto& surface : s.map_surfaces)
+    s.renderer->set_finer(s.scene.parts[surface.part].name, *surface.mesh, surface.normals);
+}
+
+void Window::show(FrameState frame, const LoopStatistics& loop,
+                  std::vector<std::vector<float>> values) {
   State& s = *state_;
   const bool same = s.has_frame && s.frame.time_s == frame.time_s &&
                     s.frame.state_hash == frame.state_hash &&
                     s.frame.face.size() == frame.face.size();
   if (s.loop.message != loop.message) s.frames_due = std::max(s.frames_due, 1);
   s.loop = loop;
+  if (values != s.values) {
+    s.values = std::move(values);
+    s.values_new = true;
+    s.frames_due = std::max(s.frames_due, 1);
+  }
   if (!same) {
     s.frame = std::move(frame);
     s.has_frame = s.frame_new = true;

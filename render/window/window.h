@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,13 @@ struct WindowOptions {
   int width = 1280, height = 720;              // screen coordinates, before the screen's own scale
   double ui_scale = 1;                         // of panels and text, times the screen's own scale
   std::filesystem::path picture_folder = ".";  // where F12 saves
+};
+
+/// A part's surface in smaller triangles, for colours by values. normals: unit, one per vertex.
+struct MapSurface {
+  std::size_t part = 0;  // in the scene
+  const TriMesh* mesh = nullptr;
+  std::span<const Eigen::Vector3f> normals = {};
 };
 
 /// The window on a case. It asks by a ViewState and shows what it is given; the simulation runs
@@ -51,8 +59,15 @@ class Window {
   /// picture's time while something moves (at most 1/60 s) and up to 1/4 s when nothing does.
   const ViewState& poll();
 
+  /// Surfaces that frames may come with values for, in the order of these. Uploads them; they must
+  /// outlive the window or the next scene.
+  void set_map_surfaces(std::vector<MapSurface> surfaces);
+
   /// Takes over a frame and draws if anything has changed. The same frame again costs nothing.
-  void show(FrameState frame, const LoopStatistics& loop = {});
+  /// `values`: one per vertex of each map surface, drawn in the scene's colours for distances;
+  /// none: parts look like themselves.
+  void show(FrameState frame, const LoopStatistics& loop = {},
+            std::vector<std::vector<float>> values = {});
   /// Draws if anything has changed: when there is no new frame.
   void draw();
 

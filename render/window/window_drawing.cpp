@@ -1,13 +1,17 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
+#include "render/window/panels_drawing.h"
 #include "render/window/picture_files.h"
+#include "render/window/pointing.h"
 #include "render/window/window_state.h"
+#include "sim/frame/body_poses.h"
 
 namespace condyle {
 namespace {
@@ -88,10 +92,39 @@ void Window::State::interface_frame() {
                          .pictures = pictures,
                          .camera = camera,
                          .progress = progress,
-                         .progress_fraction = progress_fraction};
+                         .progress_fraction = progress_fraction,
+                         .pointed = pointed()};
   const std::vector<Command> commands = panels->draw(input, view, w, h);
   ImGui::Render();
   for (const Command command : commands) run(command);
+}
+
+/// The part under the mouse and its distance, while distances are shown.
+std::string Window::State::pointed() const {
+  constexpr double seen_through = 0.5;  // what is paler does not hide what is pointed at
+  const MouseMoment& now = mouse.now();
+  if (!view.distances || values.empty() || drag != CameraDrag::none || !over_view(now.x, now.y))
+    return {};
+  if (view.shows_face(scene) && view.skin_opacity > seen_through) return {};
+  std::vector<PointedSurface> surfaces;
+  std::vector<std::size_t> parts;
+  for (std::size_t i = 0; i < map_surfaces.size(); ++i) {
+    const std::size_t part = map_surfaces[i].part;
+    if (part >= view.parts.size() || !view.parts[part].shown ||
+        view.parts[part].opacity <= seen_through)
+      continue;
+    surfaces.push_back(
+        {map_surfaces[i].mesh, pose_of(scene.parts, part, frame.poses()), values[i]});
+    parts.push_back(part);
+  }
+  const auto found = pointed_value(camera, view_rect(), {now.x, now.y}, surfaces);
+  if (!found) return {};
+  const std::string name = display_name(scene.parts[parts[found->surface]].name);
+  const ColourMap& map = *scene.distance_colours;
+  if (!(found->value < map.high())) return fmt::format("{}: more than {:g} mm", name, map.high());
+  if (std::isinf(found->value)) return fmt::format("{}: deep inside", name);
+  if (found->value < 0) return fmt::format("{}: {:.2f} mm inside", name, -found->value);
+  return fmt::format("{}: {:.2f} mm", name, found->value);
 }
 
 void Window::State::draw_scene(const PictureSettings& wanted) {
@@ -99,6 +132,13 @@ void Window::State::draw_scene(const PictureSettings& wanted) {
   if (frame_new) {
     renderer->update(frame);
     frame_new = false;
+    scene_changed = true;
+  }
+  if (values_new) {
+    for (std::size_t i = 0; i < map_surfaces.size(); ++i)
+      renderer->color_part(scene.parts[map_surfaces[i].part].name,
+                           i < values.size() ? values[i] : std::vector<float>{});
+    values_new = false;
     scene_changed = true;
   }
   const bool in_motion = moving();
@@ -128,8 +168,8 @@ void Window::State::draw(bool always, Image* copy) {
     last_change = Clock::now();
   }
   const bool better_due = renderer && !(governor.choose(moving()) == drawn_quality);
-  const bool due = frames_due > 0 || scene_changed || frame_new || better_due || save_window ||
-                   panels->talking();
+  const bool due = frames_due > 0 || scene_changed || frame_new || values_new || better_due ||
+                   save_window || panels->talking();
   // A hair early is in time: the wait before was for this picture.
   if (!always && (!due || seconds_since(last_draw) < 0.9 * picture_interval_s)) return;
   last_draw = Clock::now();

@@ -42,6 +42,9 @@ struct Window::State {
   FrameState frame;
   bool has_frame = false;
   bool frame_new = false;  // the renderer has not seen it
+  std::vector<MapSurface> map_surfaces;
+  std::vector<std::vector<float>> values;  // of the frame, one list per map surface; or none
+  bool values_new = false;                 // the renderer has not seen them
   LoopStatistics loop;
   Camera camera;
   ZoomLimits zoom;
@@ -97,6 +100,7 @@ struct Window::State {
   bool moving() const;
   void fit_scale();
   void interface_frame();
+  std::string pointed() const;
   void draw_scene(const PictureSettings& wanted);
   void draw(bool always, Image* copy = nullptr);
   Image read_back() const;

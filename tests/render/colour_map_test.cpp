@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/mesh/refine.h"
 #include "render/contact_picture.h"
+#include "render/legend.h"
 #include "render/lettering.h"
 #include "tests/render/scene_fixture.h"
 
@@ -15,21 +17,112 @@ namespace {
 float lightness(const Eigen::Vector3f& c) { return 0.3f * c.x() + 0.59f * c.y() + 0.11f * c.z(); }
 
 TEST(ColourMap, WhiteWhereSurfacesTouchRedInsideBlueApartGreyBeyond) {
-  const auto map = distance_colours();
-  EXPECT_EQ(color_of(map, 0), Eigen::Vector3f::Ones());
-  EXPECT_EQ(color_of(map, 0.09f), Eigen::Vector3f::Ones());
-  EXPECT_EQ(color_of(map, -7), color_of(map, -2));
-  EXPECT_EQ(color_of(map, std::numeric_limits<float>::infinity()), map.beyond);
-  EXPECT_EQ(color_of(map, std::numeric_limits<float>::quiet_NaN()), map.beyond);
-  EXPECT_EQ(color_of(map, map.high()), map.beyond);
-  for (float d = 0.2f; d < 5; d += 0.1f) {
-    EXPECT_GT(color_of(map, d).z(), color_of(map, d).x() + 0.1f) << d;
-    EXPECT_LE(lightness(color_of(map, d + 0.1f >= 5 ? d : d + 0.1f)),
-              lightness(color_of(map, d)) + 1e-6f)
-        << d;
+  for (const DistanceBands bands :
+       {DistanceBands{}, DistanceBands{.near_mm = 5, .deepest_mm = 2}}) {
+    const auto map = distance_colours(bands);
+    const auto near = static_cast<float>(bands.near_mm),
+               deepest = static_cast<float>(bands.deepest_mm);
+    EXPECT_EQ(map.low(), -deepest);
+    EXPECT_EQ(map.high(), near);
+    EXPECT_EQ(color_of(map, 0), Eigen::Vector3f::Ones());
+    EXPECT_EQ(color_of(map, 0.09f), Eigen::Vector3f::Ones());
+    EXPECT_EQ(color_of(map, -7), color_of(map, -deepest));
+    EXPECT_EQ(color_of(map, std::numeric_limits<float>::infinity()), map.beyond);
+    EXPECT_EQ(color_of(map, std::numeric_limits<float>::quiet_NaN()), map.beyond);
+    EXPECT_EQ(color_of(map, near), map.beyond);
+    // The darkest blue is beside the contact, the darkest red the deepest.
+    for (float d = 0.2f; d + 0.1f < near; d += 0.1f) {
+      EXPECT_GT(color_of(map, d).z(), color_of(map, d).x() + 0.1f) << d;
+      EXPECT_GE(lightness(color_of(map, d + 0.1f)), lightness(color_of(map, d)) - 1e-6f) << d;
+    }
+    for (float d = -0.2f; d - 0.1f > -deepest; d -= 0.1f) {
+      EXPECT_GT(color_of(map, d).x(), color_of(map, d).z() + 0.1f) << d;
+      EXPECT_LE(lightness(color_of(map, d - 0.1f)), lightness(color_of(map, d)) + 1e-6f) << d;
+    }
+    for (const float tick : map.ticks) EXPECT_TRUE(tick >= map.low() && tick <= map.high() + 1e-4f);
+    ASSERT_GE(map.ticks.size(), 7u);
+    for (std::size_t i = 1; i < map.bands.size(); ++i)
+      EXPECT_EQ(map.bands[i].from, map.bands[i - 1].to);
+    EXPECT_EQ(map.bands.size(), 4u);
   }
-  for (float d = -0.2f; d > -2; d -= 0.1f)
-    EXPECT_GT(color_of(map, d).x(), color_of(map, d).z() + 0.1f) << d;
+}
+
+/// CIE L*a*b* of linear RGB.
+Eigen::Vector3f lab_of(const Eigen::Vector3f& linear) {
+  const Eigen::Matrix3f to_xyz{
+      {0.4124f, 0.3576f, 0.1805f}, {0.2126f, 0.7152f, 0.0722f}, {0.0193f, 0.1192f, 0.9505f}};
+  const Eigen::Vector3f xyz =
+      (to_xyz * linear).cwiseQuotient(Eigen::Vector3f(0.9505f, 1, 1.089f)).cwiseMax(0.f);
+  const auto f = [](float t) { return t > 0.008856f ? std::cbrt(t) : 7.787f * t + 16.f / 116; };
+  return {116 * f(xyz.y()) - 16, 500 * (f(xyz.x()) - f(xyz.y())), 200 * (f(xyz.y()) - f(xyz.z()))};
+}
+
+TEST(ColourMap, BandsStayApartWithEveryKindOfColourVision) {
+  // source: Machado, Oliveira and Fernandes 2009, severity 1: linear RGB as it is seen.
+  const Eigen::Matrix3f protanopia{{0.152286f, 1.052583f, -0.204868f},
+                                   {0.114503f, 0.786281f, 0.099216f},
+                                   {-0.003882f, -0.048116f, 1.051998f}},
+      deuteranopia{{0.367322f, 0.860646f, -0.227968f},
+                   {0.280085f, 0.672501f, 0.047413f},
+                   {-0.011820f, 0.042940f, 0.968881f}},
+      tritanopia{{1.255528f, -0.076749f, -0.178779f},
+                 {-0.078411f, 0.930809f, 0.147602f},
+                 {0.004733f, 0.691367f, 0.303900f}};
+  const std::pair<const char*, Eigen::Matrix3f> sights[] = {{"usual", Eigen::Matrix3f::Identity()},
+                                                            {"protanopia", protanopia},
+                                                            {"deuteranopia", deuteranopia},
+                                                            {"tritanopia", tritanopia}};
+  constexpr float apart = 14;  // a difference of 2 to 3 is just seen, 10 at a glance
+  const auto map = distance_colours();
+  const std::vector<std::vector<float>> bands = {
+      {-1, -0.7f, -0.4f, -0.2f}, {0}, {0.2f, 0.35f, 0.5f}, {0.6f, 1.2f, 1.9f}, {3}};
+  float least = 1000;
+  for (const auto& [name, matrix] : sights) {
+    const auto seen = [&, &sight = matrix](float value) {
+      const Eigen::Vector3f c = color_of(map, value).unaryExpr([](float v) {
+        return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+      });
+      return lab_of((sight * c).cwiseMax(0.f).cwiseMin(1.f));
+    };
+    for (std::size_t i = 0; i < bands.size(); ++i)
+      for (std::size_t k = 0; k < i; ++k)
+        for (const float p : bands[i])
+          for (const float q : bands[k]) {
+            const float difference = (seen(p) - seen(q)).norm();
+            least = std::min(least, difference);
+            EXPECT_GT(difference, apart) << name << ": " << p << " mm and " << q << " mm";
+          }
+  }
+  EXPECT_LT(least, 60);  // they were compared
+}
+
+TEST(Legend, StandsInTheCornerReadableAtEverySize) {
+  const Lettering words;
+  ASSERT_TRUE(words.has_font()) << "install fonts-dejavu-core";
+  const auto map = distance_colours();
+  for (const auto& [width, height] :
+       {std::pair{640, 360}, {1280, 720}, {720, 1280}, {3840, 2160}}) {
+    Image image{width, height,
+                std::vector<std::uint8_t>(static_cast<std::size_t>(width) * height * 4, 128)};
+    add_legend(image, words, map, {"a remark"});
+    int right = 0, top = height, red = 0, white = 0, blue = 0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const auto p = pixel(image, x, y);
+        if (p.r == 128 && p.g == 128 && p.b == 128) continue;
+        right = std::max(right, x);
+        top = std::min(top, y);
+        red += p.r > p.b + 60;
+        blue += p.b > p.r + 40;
+        white += p.r > 250 && p.g > 250 && p.b > 250;
+      }
+    EXPECT_LT(right, width / 2);
+    EXPECT_GT(right, width / 12);
+    EXPECT_GT(top, height / 4);
+    EXPECT_GT(height - top, std::min(height, width * 9 / 16) / 3);
+    EXPECT_NEAR(static_cast<double>(blue) / red, 1.85 / 0.87, 0.35) << width;
+    EXPECT_GT(white, red / 30);
+  }
 }
 
 class Mapped : public WithContext {};
@@ -38,7 +131,7 @@ TEST_F(Mapped, PartShowsItsValuesAndBecomesItselfAgain) {
   const std::vector<Part> parts = {make_part("ball", Role::skull, ball({0, 0, 0}, 30))};
   SceneRenderer renderer(parts);
   renderer.update({});
-  const auto map = distance_colours();
+  const auto map = distance_colours({.near_mm = 5, .deepest_mm = 2});
   renderer.set_colour_map(map);
   const auto settings = mask_settings();
   const Image plain = renderer.picture(front_camera(), settings);
@@ -62,7 +155,31 @@ TEST_F(Mapped, PartShowsItsValuesAndBecomesItselfAgain) {
   }
   EXPECT_GT(looked, 12);
   const auto top = pixel(image, 100, 43);  // value above 5
-  EXPECT_NEAR(top.r, top.b, 3);
+  EXPECT_NEAR(top.r, top.b, 14);
+  renderer.color_part("ball", {});
+  EXPECT_EQ(renderer.picture(front_camera(), settings).rgba, plain.rgba);
+}
+
+TEST_F(Mapped, FinerSurfaceIsTheSamePlaceAndOnlyWhileMapped) {
+  const std::vector<Part> parts = {make_part("ball", Role::skull, ball({0, 0, 0}, 30, 12))};
+  SceneRenderer renderer(parts);
+  renderer.update({});
+  const auto settings = mask_settings();
+  const Image plain = renderer.picture(front_camera(), settings);
+  const TriMesh& mesh = parts[0].mesh;
+  const TriMesh finer = refine(mesh, std::vector<double>(mesh.vertices.size(), 2.0));
+  ASSERT_GT(finer.vertices.size(), 4 * mesh.vertices.size());
+  std::vector<Eigen::Vector3f> normals;
+  for (const auto& v : finer.vertices) normals.push_back(v.normalized().cast<float>());
+  renderer.set_finer("ball", finer, normals);
+  EXPECT_EQ(renderer.picture(front_camera(), settings).rgba, plain.rgba);
+  renderer.set_colour_map(distance_colours());
+  renderer.color_part("ball", std::vector<float>(finer.vertices.size(), 0.f));
+  const Image mapped = renderer.picture(front_camera(), settings);
+  EXPECT_NEAR(blob_of(mapped).area, blob_of(plain).area, 1e-3 * blob_of(plain).area);
+  const auto middle = pixel(mapped, 100, 100);
+  EXPECT_GT(middle.r, 230);
+  EXPECT_GT(middle.b, 230);
   renderer.color_part("ball", {});
   EXPECT_EQ(renderer.picture(front_camera(), settings).rgba, plain.rgba);
 }
@@ -85,7 +202,7 @@ TEST_F(Mapped, ContactPictureShowsBothSidesAndItsLegend) {
                                    make_part("moved", Role::mandible, ball({0, 0, -21}, 20))};
   std::vector<float> inside(parts[0].mesh.vertices.size(), -1.5f),
       apart(parts[1].mesh.vertices.size(), 1.5f);
-  const auto map = distance_colours();
+  const auto map = distance_colours({.near_mm = 5, .deepest_mm = 2});
   const ContactPlace place{.parts = parts,
                            .fixed = "fixed",
                            .moved = "moved",

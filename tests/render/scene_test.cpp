@@ -119,6 +119,60 @@ TEST_F(Scene, TheMandibleMovesByItsPoseAndTheSkullStays) {
   EXPECT_NEAR(skull.centre.x(), 100, 0.2);
 }
 
+TEST_F(Scene, FreePartsAreDrawnWhereTheFrameHasThemElseWithTheirCarrier) {
+  std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 30}, 5)),
+                             make_part("mandible", Role::mandible, ball({0, 0, -30}, 5)),
+                             make_part("graft", Role::transplant, ball({-10, 0, 0}, 8)),
+                             make_part("piece", Role::segment, ball({10, 0, 0}, 8))};
+  parts[3].carrier = Body::mandible;
+  SceneRenderer renderer(parts);
+  FrameState frame;
+  frame.X_CM.t = {0, 0, -6};
+  const auto place = [&](const std::string& part) {
+    auto settings = mask_settings();
+    for (const auto& other : parts) settings.part_opacity[other.name] = other.name == part;
+    return blob_of(renderer.picture(front_camera(), settings)).centre;
+  };
+  renderer.update(frame);
+  const Eigen::Vector2d graft = place("graft"), piece = place("piece");
+  EXPECT_NEAR(graft.y(), 100, 0.2);
+  EXPECT_NEAR(piece.y(), 112, 0.2);  // 2 pixels a millimetre
+  frame.X_CF.resize(2);
+  frame.X_CF[0].t = {0, 0, 20};
+  frame.X_CF[1].t = {5, 0, 0};
+  renderer.update(frame);
+  EXPECT_NEAR(place("graft").y(), 60, 0.2);
+  EXPECT_NEAR(place("graft").x(), graft.x(), 0.2);
+  EXPECT_NEAR(place("piece").x(), piece.x() + 10, 0.2);
+  EXPECT_NEAR(place("piece").y(), 100, 0.2);
+  // Far outside of what was at rest it is still within the picture's depth, and lit.
+  frame.X_CF[0].t = {0, -200, 0};
+  renderer.update(frame);
+  auto settings = mask_settings();
+  for (const auto& other : parts) settings.part_opacity[other.name] = other.name == "graft";
+  const Image image = renderer.picture(front_camera(), settings);
+  const Blob near = blob_of(image);
+  EXPECT_GT(near.area, 2.2 * M_PI * 16 * 16);
+  EXPECT_GT(pixel(image, static_cast<int>(near.centre.x()), static_cast<int>(near.centre.y())).g,
+            90);
+}
+
+TEST_F(Scene, FreePartsLeaveNoBakedShadeBehind) {
+  const std::vector<Part> with = {make_part("skull", Role::skull, ball({0, 0, 0}, 20)),
+                                  make_part("frame", Role::skull, ball({0, -60, 30}, 4)),
+                                  make_part("graft", Role::transplant, ball({0, -24, 0}, 6))};
+  const std::vector<Part> without = {with[0], with[1]};
+  SceneRenderer both(with), bare(without);
+  FrameState frame;
+  frame.X_CF.resize(1);
+  frame.X_CF[0].t = {300, 0, 0};  // out of the picture
+  both.update(frame);
+  auto settings = mask_settings();
+  settings.shadows = false;  // their map is laid around everything
+  EXPECT_EQ(both.picture(front_camera(), settings).rgba,
+            bare.picture(front_camera(), settings).rgba);
+}
+
 TEST_F(Scene, TheFaceFollowsTheFrame) {
   const std::vector<Part> parts = {make_part("face", Role::face, ball({0, 0, 0}, 15))};
   SceneRenderer renderer(parts);

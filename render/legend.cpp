@@ -1,0 +1,88 @@
+#include "render/legend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/paint.h"
+
+namespace condyle {
+
+int legend_height(const LegendPlace& place) {
+  return place.bar_height + static_cast<int>(std::lround(4.4 * place.letters));
+}
+
+void draw_legend(Image& image, const Lettering& words, const ColourMap& map,
+                 const LegendPlace& place) {
+  const double letters = place.letters;
+  const int left = place.left, right = left + place.bar_width;
+  const int top = place.top + static_cast<int>(std::lround(1.9 * letters));
+  const int bottom = top + place.bar_height;
+  const int line = std::max(1, static_cast<int>(std::lround(letters / 18)));
+  const auto y_of = [&](float value) {
+    return static_cast<float>(bottom) -
+           (value - map.low()) / (map.high() - map.low()) * static_cast<float>(place.bar_height);
+  };
+  words.write(image, left, place.top + letters, 1.1 * letters, map.title + ", " + map.unit,
+              place.ink);
+  for (int y = top; y < bottom; ++y) {
+    const float s = (static_cast<float>(bottom - y) - 0.5f) / static_cast<float>(place.bar_height);
+    paint_box(image, {left, y, right, y + 1},
+              color_of(map, map.low() + s * (map.high() - map.low())));
+  }
+  for (const float value : map.lines) {
+    const int y = static_cast<int>(std::lround(y_of(value)));
+    paint_box(image, {left, y, right, y + line}, Eigen::Vector3f::Constant(0.1f));
+  }
+  paint_frame(image, {left, top, right, bottom}, place.faint, line);
+  double widest = 0;
+  for (const float tick : map.ticks) {
+    const int y = static_cast<int>(std::lround(y_of(tick)));
+    paint_box(image, {right, y, right + 6 * line, y + line}, place.faint);
+    const std::string number =
+        tick < -1e-4f ? fmt::format("\u2212{:g}", -tick) : fmt::format("{:g}", std::abs(tick));
+    words.write(image, right + 10 * line, y + letters / 3, letters, number, place.ink);
+    widest = std::max(widest, words.width(number, letters));
+  }
+  for (const auto& band : map.bands) {
+    const double y = (y_of(band.from) + y_of(band.to)) / 2 + letters / 3;
+    words.write(image, right + 18 * line + widest, y, 0.95 * letters, band.name, place.faint);
+  }
+  const int patch = static_cast<int>(std::lround(letters));
+  paint_box(image, {left, bottom + patch, right, bottom + 2 * patch}, map.beyond);
+  words.write(image, right + 10 * line, bottom + 1.85 * patch, 0.95 * letters,
+              fmt::format("more than {:g}", map.high()), place.ink);
+}
+
+void add_legend(Image& image, const Lettering& words, const ColourMap& map,
+                const std::vector<std::string>& remarks) {
+  const double scale = std::clamp(std::min(image.width / 1280.0, image.height / 720.0), 0.4, 8.0);
+  const auto px = [&](double units) { return static_cast<int>(std::lround(units * scale)); };
+  LegendPlace place;
+  place.letters = 18 * scale;
+  place.bar_width = px(26);
+  place.bar_height = px(230);
+  place.ink = Eigen::Vector3f::Constant(0.95f);
+  place.faint = Eigen::Vector3f::Constant(0.80f);
+  double wide = px(176);
+  for (const auto& remark : remarks)
+    wide = std::max(wide, words.width(remark, 0.85 * place.letters));
+  const int line = px(22), margin = px(14), pad = px(14);
+  const int high = legend_height(place) + line * static_cast<int>(remarks.size());
+  place.left = margin + pad;
+  place.top = image.height - margin - pad - high;
+  // Dark, so that the white of contact shows.
+  shade_box(
+      image,
+      {margin, place.top - pad, margin + 2 * pad + static_cast<int>(wide), image.height - margin},
+      Eigen::Vector3f(0.09f, 0.10f, 0.12f), 0.82f);
+  draw_legend(image, words, map, place);
+  double y = place.top + legend_height(place) + 0.9 * line;
+  for (const auto& remark : remarks) {
+    words.write(image, place.left, y, 0.85 * place.letters, remark, place.ink);
+    y += line;
+  }
+}
+
+}  // namespace condyle

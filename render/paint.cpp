@@ -1,0 +1,30 @@
+#include "render/paint.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace condyle {
+
+void shade_box(Image& image, const PixelBox& box, const Eigen::Vector3f& color, float cover) {
+  for (int y = std::max(0, box.y0); y < std::min(image.height, box.y1); ++y)
+    for (int x = std::max(0, box.x0); x < std::min(image.width, box.x1); ++x) {
+      auto* pixel = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + x)];
+      for (int k = 0; k < 3; ++k)
+        pixel[k] = static_cast<std::uint8_t>(
+            std::lround(cover * 255 * color[k] + (1 - cover) * static_cast<float>(pixel[k])));
+      pixel[3] = 255;
+    }
+}
+
+void paint_box(Image& image, const PixelBox& box, const Eigen::Vector3f& color) {
+  shade_box(image, box, color, 1);
+}
+
+void paint_frame(Image& image, const PixelBox& b, const Eigen::Vector3f& color, int width) {
+  paint_box(image, {b.x0 - width, b.y0 - width, b.x1 + width, b.y0}, color);
+  paint_box(image, {b.x0 - width, b.y1, b.x1 + width, b.y1 + width}, color);
+  paint_box(image, {b.x0 - width, b.y0, b.x0, b.y1}, color);
+  paint_box(image, {b.x1, b.y0, b.x1 + width, b.y1}, color);
+}
+
+}  // namespace condyle

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "render/image.h"
+
+namespace condyle {
+
+/// Pixels from (x0, y0) up to but without (x1, y1); what lies outside of the image is left out.
+struct PixelBox {
+  int x0, y0, x1, y1;
+};
+
+// Colours are sRGB, 0 to 1.
+void paint_box(Image& image, const PixelBox& box, const Eigen::Vector3f& color);
+/// The color laid over what is there; `cover` 0 changes nothing, 1 hides it.
+void shade_box(Image& image, const PixelBox& box, const Eigen::Vector3f& color, float cover);
+/// A line of that width just outside of the box.
+void paint_frame(Image& image, const PixelBox& box, const Eigen::Vector3f& color, int width = 1);
+
+}  // namespace condyle

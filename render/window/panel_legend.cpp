@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/window/panels_drawing.h"
+
+namespace condyle {
+namespace {
+
+ImU32 ink_of(const Eigen::Vector3f& c) {
+  return ImGui::ColorConvertFloat4ToU32({c.x(), c.y(), c.z(), 1});
+}
+
+}  // namespace
+
+/// In the lower left corner of the view while distances are shown.
+void Panels::Drawing::legend() {
+  if (!view.distances || !input.scene.distance_colours) return;
+  const Theme& theme = panels.theme_;
+  const ColourMap& map = *input.scene.distance_colours;
+  const ViewRect& r = layout.view;
+  const float letters = theme.small->FontSize, pad = pen.px(10), bar_width = pen.px(18);
+  const float bar_height = pen.px(150), title = theme.regular->FontSize + pen.px(8);
+  const float line = letters + pen.px(3);
+  float wide = pen.px(136);
+  for (const auto& remark : input.scene.distance_remarks)
+    wide = std::max(wide, text_width(theme.small, remark));
+  const float high = title + bar_height + pen.px(8) + line +
+                     line * static_cast<float>(input.scene.distance_remarks.size());
+  const double pane_width = wide + 2 * pad, pane_height = high + 2 * pad;
+  if (r.width < 2.5 * pane_width || r.height < 1.4 * pane_height) return;  // no room
+  const ViewRect pane = {r.x + pad, r.y + r.height - pad - pane_height, pane_width, pane_height};
+  panels.items_.push_back({"legend", "", pane});
+
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ImVec2 low = {static_cast<float>(pane.x), static_cast<float>(pane.y)};
+  list.AddRectFilled(
+      low, {low.x + static_cast<float>(pane.width), low.y + static_cast<float>(pane.height)},
+      colour::rgb(0x191d22, 225), pen.px(4));
+  const auto words = [&](ImFont* font, ImU32 tint, float x, float y, const std::string& text) {
+    list.AddText(font, font->FontSize, {std::round(x), std::round(y)}, tint, text.c_str());
+  };
+  const float left = low.x + pad, right = left + bar_width;
+  const float top = low.y + pad + title, bottom = top + bar_height;
+  words(theme.regular, colour::text, left, low.y + pad, map.title + ", " + map.unit);
+  const auto y_of = [&](float value) {
+    return bottom - (value - map.low()) / (map.high() - map.low()) * bar_height;
+  };
+  const int rows = static_cast<int>(bar_height);
+  for (int i = 0; i < rows; ++i) {
+    const float s = (static_cast<float>(i) + 0.5f) / static_cast<float>(rows);
+    const float y = bottom - s * bar_height;
+    list.AddRectFilled({left, y - 0.5f}, {right, y + 1.5f},
+                       ink_of(color_of(map, map.low() + s * (map.high() - map.low()))));
+  }
+  for (const float value : map.lines)
+    list.AddLine({left, y_of(value)}, {right, y_of(value)}, colour::rgb(0x1a1a1a), pen.px(1));
+  float numbers = 0;
+  for (const float tick : map.ticks) {
+    const float y = y_of(tick);
+    list.AddLine({right, y}, {right + pen.px(4), y}, colour::text_dim, pen.px(1));
+    const std::string number =
+        tick < -1e-4f ? fmt::format("-{:g}", -tick) : fmt::format("{:g}", std::abs(tick));
+    words(theme.small, colour::text, right + pen.px(7), y - letters / 2, number);
+    numbers = std::max(numbers, text_width(theme.small, number));
+  }
+  for (const auto& band : map.bands)
+    words(theme.small, colour::text_dim, right + pen.px(15) + numbers,
+          (y_of(band.from) + y_of(band.to) - letters) / 2, band.name);
+  float y = bottom + pen.px(8);
+  list.AddRectFilled({left, y + pen.px(1)}, {right, y + letters}, ink_of(map.beyond));
+  words(theme.small, colour::text, right + pen.px(7), y, fmt::format("more than {:g}", map.high()));
+  for (const auto& remark : input.scene.distance_remarks)
+    words(theme.small, colour::text_dim, left, y += line, remark);
+}
+
+void Panels::Drawing::pointed() {
+  if (input.pointed.empty()) return;
+  const Theme& theme = panels.theme_;
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const float pad = pen.px(6), high = theme.regular->FontSize + 2 * pad;
+  const float wide = text_width(theme.regular, input.pointed) + 2 * pad;
+  const ViewRect& r = layout.view;
+  const float x = std::min(mouse.x + pen.px(14), static_cast<float>(r.x + r.width) - wide);
+  const float y = std::max(mouse.y - pen.px(10) - high, static_cast<float>(r.y));
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddRectFilled({x, y}, {x + wide, y + high}, colour::rgb(0x191d22, 235), pen.px(4));
+  list.AddText(theme.regular, theme.regular->FontSize, {std::round(x + pad), std::round(y + pad)},
+               colour::text, input.pointed.c_str());
+}
+
+}  // namespace condyle
