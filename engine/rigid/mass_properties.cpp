@@ -1,5 +1,6 @@
 #include "engine/rigid/mass_properties.h"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <string>
 
@@ -52,6 +53,11 @@ MassProperties joined(const MassProperties& a, const MassProperties& b) {
                    part->mass_kg * (d.squaredNorm() * Matrix3d::Identity() - d * d.transpose());
   }
   return out;
+}
+
+double least_moment(const MassProperties& mass) {
+  return Eigen::SelfAdjointEigenSolver<Matrix3d>(mass.inertia, Eigen::EigenvaluesOnly)
+      .eigenvalues()[0];
 }
 
 }  // namespace condyle

@@ -22,4 +22,7 @@ MassProperties mass_properties(const TriMesh& mesh, double density_kg_mm3);
 /// Of several bodies fixed to each other, all in the same coordinates.
 MassProperties joined(const MassProperties& a, const MassProperties& b);
 
+/// Smallest principal moment of inertia, kg mm^2.
+double least_moment(const MassProperties& mass);
+
 }  // namespace condyle

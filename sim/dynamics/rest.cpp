@@ -1,0 +1,25 @@
+#include "sim/dynamics/rest.h"
+
+#include <algorithm>
+
+namespace condyle {
+
+Rest run_to_rest(RigidWorld& world, int body, const RestSettings& settings, int threads) {
+  constexpr double radius_mm = 50;  // of a jaw; smaller pieces are stiller than asked for
+  Rest rest;
+  double still_s = 0;
+  while (rest.seconds < settings.longest_s && still_s < settings.still_for_s) {
+    const auto step = world.step(threads);
+    if (!step.taken) return rest;
+    rest.seconds += world.settings().step_s;
+    rest.depth_mm = step.depth_mm;
+    const RigidMotion& motion = world.motion(body);
+    const bool still =
+        motion.velocity.norm() + radius_mm * motion.spin.norm() < settings.still_mm_s;
+    still_s = still && !world.contacts().empty() ? still_s + world.settings().step_s : 0;
+  }
+  rest.reached = still_s >= settings.still_for_s;
+  return rest;
+}
+
+}  // namespace condyle

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "engine/rigid/rigid_world.h"
+
+namespace condyle {
+
+struct RestSettings {
+  double longest_s = 5;
+  double still_mm_s = 0.01;  // no point of the body is faster
+  double still_for_s = 0.1;
+};
+
+struct Rest {
+  bool reached = false;  // it touches something and stayed still
+  double seconds = 0;
+  double depth_mm = 0;  // of the contacts at rest
+};
+
+/// Steps until a body lies still on what it touches.
+Rest run_to_rest(RigidWorld& world, int body, const RestSettings& settings = {}, int threads = 1);
+
+}  // namespace condyle

@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <numbers>
+
+#include "engine/core/error.h"
+#include "sim/dynamics/jaw_world.h"
+#include "sim/dynamics/let_go.h"
+#include "sim/phantom/phantom.h"
+#include "tests/support/boxes.h"
+#include "tests/support/overlap_oracle.h"
+#include "tests/support/real_cases.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+const Case& patient() {
+  static const Case made = builtin_patient();
+  return made;
+}
+
+/// How far points of a jaw move between two poses.
+double apart(const Pose& a, const Pose& b) {
+  return (a.t - b.t).norm() + 80 * rotation_angle(a.inverse() * b);
+}
+
+/// The mandible turned open about its condyles.
+Pose opened(const Case& of, double degrees) {
+  const Vector3d c =
+      0.5 * (*of.landmarks.find("left_condyle") + *of.landmarks.find("right_condyle"));
+  Pose X;
+  X.R = Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vector3d::UnitX());
+  X.t = c - X.R * c;
+  return X;
+}
+
+struct Closed {
+  Pose X_CM;
+  double deepest_mm = 0;
+};
+/// Closes from an opening, and watches it at rest for ten seconds.
+Closed close(const Case& of) {
+  JawWorld jaw = make_jaw_world(of, {.X_CM = opened(of, 8)}, 2);
+  double error = 0;
+  const Rest rest = run_to_rest(jaw.world, jaw.mandible);
+  EXPECT_TRUE(rest.reached);
+  EXPECT_LT(rest.depth_mm, 0.05);
+  const Pose X = jaw.world.pose(jaw.mandible);
+  double drift = 0, jitter = 0;
+  Pose last = X;
+  for (int k = 0; k < 10000; ++k) {
+    error = std::max(error, jaw.world.step().joint_error_mm);
+    drift = std::max(drift, apart(X, jaw.world.pose(jaw.mandible)));
+    jitter = std::max(jitter, apart(last, jaw.world.pose(jaw.mandible)));
+    last = jaw.world.pose(jaw.mandible);
+  }
+  EXPECT_LT(drift, 0.01);
+  EXPECT_LT(jitter, 1e-5);
+  EXPECT_LT(error, 0.02);
+  double push = 0;
+  for (const auto& contact : jaw.world.contacts()) push += contact.push_N;
+  EXPECT_GT(push, 20);
+  EXPECT_GE(jaw.world.contacts().size(), 2u);  // and both condyles
+  const test::OverlapOracle upper(of.find(Role::upper_teeth)->mesh),
+      lower(of.find(Role::lower_teeth)->mesh);
+  return {X, deepest(upper, lower, X)};
+}
+
+TEST(Jaw, ClosesUnderAForceIntoTheBuiltInBite) {
+  const Closed closed = close(patient());
+  const Vector3d incisor = *patient().landmarks.find("lower_incisal_point");
+  EXPECT_LT((closed.X_CM * incisor - incisor).norm(), 1);
+  EXPECT_LT(closed.deepest_mm, 0.06);
+}
+
+TEST(Jaw, ClosesOnRealCrownsThatOverlapAtRest) {
+  const auto real = test::case_ubc();
+  if (!real) GTEST_SKIP() << "real anatomy absent";
+  const Closed closed = close(*real);
+  EXPECT_GT(closed.X_CM.t.norm() + rotation_angle(closed.X_CM), 0.01);  // held open by the crowns
+  EXPECT_LT(closed.deepest_mm, 0.06);
+}
+
+/// The built-in patient with a curved block above the rear of the body of its mandible, pressed
+/// against its outer side.
+Case with_graft(Pose& start) {
+  Case out = patient();
+  Part graft{"graft", Role::transplant, test::box({-9, -1.5, -4}, {9, 1.5, 4}), {}, Body::mandible};
+  // Bent about the vertical, finer along its length.
+  TriMesh bent;
+  const int n = 24;
+  for (int i = 0; i <= n; ++i) {
+    const double angle = 0.5 * (2.0 * i / n - 1), radius = 20;
+    for (const auto& [r, z] : {std::pair{-1.5, -4.0}, {1.5, -4.0}, {1.5, 4.0}, {-1.5, 4.0}})
+      bent.vertices.emplace_back((radius + r) * std::sin(angle),
+                                 (radius + r) * std::cos(angle) - radius, z);
+  }
+  const auto quad = [&](int a, int b, int c, int d) {
+    bent.triangles.emplace_back(a, b, c);
+    bent.triangles.emplace_back(a, c, d);
+  };
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < 4; ++k) {
+      const int l = (k + 1) % 4;
+      quad(4 * i + k, 4 * i + l, 4 * (i + 1) + l, 4 * (i + 1) + k);
+    }
+  quad(0, 3, 2, 1);
+  quad(4 * n, 4 * n + 1, 4 * n + 2, 4 * n + 3);
+  if (signed_volume(bent) < 0)
+    for (auto& t : bent.triangles) std::swap(t[0], t[1]);
+  graft.mesh = bent;
+  out.parts.push_back(graft);
+  // In front of the chin, facing it.
+  const Vector3d chin = *out.landmarks.find("pogonion");
+  start.R = Eigen::AngleAxisd(0.15, Vector3d(1, 0.4, 0.2).normalized()) *
+            Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitZ());
+  start.t = chin + Vector3d(1, -7, 1);
+  return out;
+}
+
+TEST(LetGo, AGraftSettlesOnTheMandibleAndStays) {
+  Pose start;
+  const Case with = with_graft(start);
+  const std::size_t part = with.parts.size() - 1;
+  const BodyPoses from({}, {start});
+  const LetGoSettings settings{.push_N = {0, 5, 0}};
+  const LetGo settled = let_go(with, part, from, settings, 2);
+  EXPECT_TRUE(settled.rest.reached);
+  EXPECT_LT(settled.rest.depth_mm, 0.05);
+  EXPECT_GE(settled.contacts.size(), 3u);
+  Vector3d push = Vector3d::Zero();
+  for (const auto& contact : settled.contacts) {
+    EXPECT_EQ(with.parts[static_cast<std::size_t>(contact.part)].role, Role::mandible);
+    push += contact.push_N * contact.normal;
+  }
+  EXPECT_NEAR(push.y(), -5, 1.5);  // the rest is friction's
+  const Pose& X = settled.poses.X_CF[0];
+  EXPECT_GT((X.t - start.t).norm(), 1);
+  const test::OverlapOracle bone(with.find(Role::mandible)->mesh), graft(with.parts[part].mesh);
+  EXPECT_LT(deepest(bone, graft, X), 0.06);
+  // Let go again where it lies, it stays.
+  const LetGo again = let_go(with, part, settled.poses, settings, 1);
+  EXPECT_LT(apart(again.poses.X_CF[0], X), 0.1);
+  // The same bits on one thread.
+  const LetGo alone = let_go(with, part, from, settings, 1);
+  EXPECT_EQ(alone.poses.X_CF[0].t, X.t);
+  EXPECT_EQ(alone.poses.X_CF[0].R.coeffs(), X.R.coeffs());
+}
+
+TEST(LetGo, WhatCannotSettleIsRefused) {
+  Pose start;
+  const Case with = with_graft(start);
+  const std::size_t part = with.parts.size() - 1;
+  const BodyPoses from({}, {start});
+  EXPECT_THROW(let_go(with, 0, from, {.push_N = {0, 5, 0}}), InputError);
+  EXPECT_THROW(let_go(with, part, from, {}), InputError);
+  const BodyPoses far({}, {{start.R, start.t - Vector3d(0, 200, 0)}});
+  EXPECT_THROW(let_go(with, part, far, {.push_N = {0, 5, 0}}), InputError);
+}
+
+}  // namespace
+}  // namespace condyle
