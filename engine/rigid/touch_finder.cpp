@@ -39,6 +39,8 @@ void TouchFinder::search(Look& look, const Pose& X_FS) const {
   look.near.clear();
   look.stale = false;
   collect_near(look.samples->samples, look.field->field, X_FS, look.reach_mm, look.near);
+  look.horizon_mm.clear();
+  for (const NearSample& n : look.near) look.horizon_mm.push_back(n.distance_mm);
 }
 
 void TouchFinder::add_pair(int a, int b, std::span<const Surface> of_a,
@@ -99,14 +101,18 @@ void TouchFinder::set_looked_at(std::vector<Pose> poses) {
 void TouchFinder::locate(std::span<const Pose> X_WB) {
   for (std::size_t l = 0; l < looks_.size(); ++l) {
     Look& look = looks_[l];
+    const Pose last = look.X_FS;
     look.X_FS = relative(look, X_WB);
     look.walked_mm = moved(look, looked_at_[l], look.X_FS);
+    look.path_mm += moved(look, last, look.X_FS);
     if (!(look.walked_mm <= look.reserve_mm)) {
       looked_at_[l] = look.X_FS;
       look.walked_mm = 0;
       look.stale = true;
     }
-    if (look.stale) search(look, looked_at_[l]);
+    if (!look.stale) continue;
+    search(look, looked_at_[l]);
+    look.path_mm = look.walked_mm;
   }
 }
 
@@ -119,21 +125,23 @@ void TouchFinder::find(std::span<const Pose> X_WB, double active_mm, int threads
     const Look& look = looks_[l];
     R_FS_[l] = look.X_FS.R.toRotationMatrix();
     R_WF_[l] = X_WB[static_cast<std::size_t>(look.field_of)].R.toRotationMatrix();
-    const double within = look.gap_mm + active_mm + look.walked_mm + field_bend_mm;
+    const double within = look.gap_mm + active_mm + look.path_mm + field_bend_mm;
     for (std::size_t n = 0; n < look.near.size(); ++n)
-      if (look.near[n].distance_mm <= within)
+      if (look.horizon_mm[n] <= within)
         places_.push_back({static_cast<int>(l), static_cast<int>(n)});
   }
   seen_.resize(places_.size());
   counts_.resize(places_.size());
   const auto see = [&](std::size_t p) {
     const auto l = static_cast<std::size_t>(places_[p].look);
-    const Look& look = looks_[l];
-    const int sample = look.near[static_cast<std::size_t>(places_[p].near)].sample;
+    Look& look = looks_[l];
+    const auto near = static_cast<std::size_t>(places_[p].near);
+    const int sample = look.near[near].sample;
     const SurfaceSamples& s = look.samples->samples;
     const Vector3d p_F = R_FS_[l] * s.points[sample] + look.X_FS.t;
     const SampleLook here =
         look_at_sample(look.field->field, p_F, R_FS_[l] * s.normals[sample], s.spread[sample]);
+    look.horizon_mm[near] = look.path_mm + (here.known ? here.distance_mm : -look.reach_mm);
     Touch& touch = seen_[p];
     touch.gap_mm = here.distance_mm - look.gap_mm;
     if (!look.allowed.empty()) touch.gap_mm -= static_cast<double>(look.allowed[sample]);

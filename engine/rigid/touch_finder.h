@@ -19,8 +19,8 @@ struct Touch {
   double gap_mm = 0;                                  // beyond what is kept or allowed
 };
 
-/// Finds the touches of pairs of bodies. What a call finds depends on its arguments and on where
-/// near samples were last searched (looked_at) alone.
+/// Finds the touches of pairs of bodies. Where near samples were last searched (looked_at) saves
+/// time; a sample is looked at again when it may have come near since its last look.
 class TouchFinder {
  public:
   using Surface = std::shared_ptr<const SlideBody>;
@@ -63,9 +63,11 @@ class TouchFinder {
     double reach_mm = 0, reserve_mm = 0;
     std::vector<float> allowed;  // of each sample, mm, at most 0; empty: 0
     std::vector<NearSample> near;
-    bool stale = true;  // `near` is not yet searched where looked_at says
-    Pose X_FS;          // located at
-    double walked_mm = 0;
+    std::vector<double> horizon_mm;  // of each near sample: distance at its last look plus the path
+    bool stale = true;               // `near` is not yet searched where looked_at says
+    Pose X_FS;                       // located at
+    double walked_mm = 0;            // since the search, straight
+    double path_mm = 0;              // and along the way
   };
   struct Place {  // a near sample that is to be looked at
     int look = 0, near = 0;
