@@ -123,6 +123,45 @@ TEST_P(PanelsOn, TickBoxHidesAPart) {
   EXPECT_NEAR(stage.view.parts[0].opacity, 0.5, 0.02);
 }
 
+TEST_P(PanelsOn, DistancesBringTheirLegendAndTakeTheSkinAway) {
+  EXPECT_FALSE(stage.has("distances"));  // this loop cannot tell them
+  stage.scene.distance_colours = distance_colours();
+  stage.scene.distance_remarks = {"to the opposing jaw",
+                                  "open surfaces have no inside:", "no sign near them"};
+  stage.rest();
+  EXPECT_FALSE(stage.has("legend"));
+  stage.click("distances");
+  EXPECT_TRUE(stage.view.distances);
+  EXPECT_EQ(stage.view.skin_opacity, 0);
+  stage.rest();
+  const ViewRect legend = stage.item("legend").rect;
+  EXPECT_TRUE(within(legend, stage.panels->layout(GetParam().width, GetParam().height).view));
+  for (const DrawnItem& item : stage.panels->items())
+    if (item.panel.empty() && item.name != "legend") {
+      EXPECT_FALSE(overlap(legend, item.rect)) << item.name;
+    }
+  // The bar runs from red over white to blue.
+  const Image image = stage.image();
+  int red = 0, white = 0, blue = 0;
+  for (int y = static_cast<int>(legend.y); y < legend.y + legend.height; ++y)
+    for (int x = static_cast<int>(legend.x); x < legend.x + legend.width; ++x) {
+      const auto* p = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + x)];
+      red += p[0] > p[2] + 60;
+      blue += p[2] > p[0] + 60;
+      white += p[0] > 250 && p[1] > 250 && p[2] > 250;
+    }
+  EXPECT_GT(red, 200);
+  EXPECT_GT(blue, 200);
+  EXPECT_GT(white, 40);
+  keep("distances");
+  stage.panels->run(Command::toggle_skin, stage.scene, stage.view);
+  EXPECT_EQ(stage.view.skin_opacity, 1);  // comes back where it was
+  stage.click("distances");
+  EXPECT_FALSE(stage.view.distances);
+  stage.rest();
+  EXPECT_FALSE(stage.has("legend"));
+}
+
 TEST_P(PanelsOn, SkinIsSetBySliderAndButtons) {
   ASSERT_TRUE(stage.view.shows_face(stage.scene));
   stage.slide("skin", 0.9, 0.25);

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -36,8 +37,7 @@ class RealWindow : public testing::Test {
   };
 
   void SetUp() override {
-    if (!has_program("Xvfb") || !has_program("xdotool"))
-      FAIL() << "install xvfb and xdotool";
+    if (!has_program("Xvfb") || !has_program("xdotool")) FAIL() << "install xvfb and xdotool";
     display_ = std::make_unique<TestDisplay>();
     ASSERT_TRUE(display_->running()) << "Xvfb did not start";
     folder_ =
@@ -57,7 +57,14 @@ class RealWindow : public testing::Test {
                       .case_name = "Boxes",
                       .motion_name = "opening",
                       .duration_s = 4,
-                      .max_opening_mm = 50});
+                      .max_opening_mm = 50,
+                      .distance_colours = distance_colours()});
+    // The lower teeth are told their height as a distance.
+    const TriMesh& teeth = parts_[3].mesh;
+    const std::vector<Eigen::Vector3f> normals(teeth.vertices.size(), {0, -1, 0});
+    window.set_map_surfaces({{.part = 3, .mesh = &teeth, .normals = normals}});
+    std::vector<std::vector<float>> values(1);
+    for (const auto& v : teeth.vertices) values[0].push_back(static_cast<float>(v.z() + 43) / 8);
     std::atomic<bool> done = false;
     std::thread person([&] {
       wait_until([](const Seen& seen) { return seen.loops > 5 && !seen.items.empty(); });
@@ -70,14 +77,16 @@ class RealWindow : public testing::Test {
       const ViewState request = window.poll();
       const double opening =
           request.opening_mm.value_or(20 - 20 * std::cos(request.time_s * M_PI / 2));
-      window.show(box_frame(request.time_s, opening), {.steps_per_second = 60});
+      window.show(box_frame(request.time_s, opening), {.steps_per_second = 60},
+                  request.distances ? values : std::vector<std::vector<float>>{});
       const std::lock_guard lock(mutex_);
       seen_ = {window.view(),      window.camera(), window.items(),
                window.view_rect(), opening,         seen_.loops + 1};
     }
     closed_ = !window.open();
+    picture_ = window.picture();
     if (const auto file = kept_picture("window-" + name() + ".png"); !file.empty())
-      write_png(file, window.picture());
+      write_png(file, picture_);
     person.join();
   }
 
@@ -152,6 +161,7 @@ class RealWindow : public testing::Test {
   WindowOptions options_;
   std::vector<Part> parts_ = box_patient();
   bool closed_ = false;
+  Image picture_;  // the last
 
  private:
   std::mutex mutex_;
@@ -268,6 +278,47 @@ TEST_F(RealWindow, OpeningSliderOpensTheMouth) {
     click("release");
     EXPECT_TRUE(wait_until([](const Seen& s) { return !s.view.opening_mm.has_value(); }));
   });
+}
+
+TEST_F(RealWindow, KeyDShowsDistancesAndTheLegendIsNoPartOfTheView) {
+  run([&] {
+    EXPECT_TRUE(press("d"));
+    ASSERT_TRUE(wait_until([](const Seen& s) {
+      return s.view.distances && s.view.skin_opacity == 0 &&
+             std::any_of(s.items.begin(), s.items.end(),
+                         [](const DrawnItem& item) { return item.name == "legend"; });
+    }));
+    const ViewRect legend = place("legend");
+    const Camera before = settled_camera();
+    drag(legend.x + 20, legend.y + 20, legend.x + 120, legend.y + 20, "1");
+    EXPECT_EQ(turned_rad(settled_camera(), before), 0);
+    EXPECT_TRUE(press("a"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.camera.direction.y() < -0.999; }));
+    click("distances");
+    EXPECT_TRUE(wait_until([](const Seen& s) { return !s.view.distances; }));
+    click("distances");
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.distances; }));
+    EXPECT_TRUE(press("space"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.time_s > 0.3; }));
+    EXPECT_TRUE(press("space"));
+    const ViewRect view = seen().rect;
+    EXPECT_TRUE(xdotool({"mousemove", px(view.x + view.width / 2), px(view.y + view.height / 2)}));
+    std::this_thread::sleep_for(milliseconds(300));
+  });
+  EXPECT_FALSE(closed_);
+  // Red, white and blue stand in the picture's view, from the teeth.
+  const ViewRect view = seen().rect;
+  const ViewRect legend = place("legend");
+  int red = 0, blue = 0;
+  for (int y = static_cast<int>(view.y); y < view.y + view.height; ++y)
+    for (int x = static_cast<int>(view.x); x < view.x + view.width; ++x) {
+      if (legend.contains(x, y)) continue;
+      const auto* p = &picture_.rgba[4 * (static_cast<std::size_t>(y) * picture_.width + x)];
+      red += p[0] > p[2] + 60;
+      blue += p[2] > p[0] + 40;
+    }
+  EXPECT_GT(red, 200);
+  EXPECT_GT(blue, 200);
 }
 
 TEST_F(RealWindow, ClicksAreNotLostWhenTheMouseHurriesOn) {
