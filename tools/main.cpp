@@ -24,9 +24,8 @@ Examples
   condyle occlude mycase --out out                           the settled bite, its contacts
   condyle run mycase --motion chew.csv --out out             a recorded motion, without pictures
 
-Exit codes: 0 done; 1 the machine or the program failed, or no bite is stable; 2 the input or the command
-line is wrong;
-3 check found a violation. For research and education, not for clinical use.)";
+Exit codes: 0 done; 1 the machine or the program failed, or no bite is stable; 2 the input or the
+command line is wrong; 3 check found a violation. For research and education, not for clinical use.)";
 
 /// A number from least to most; "nan" is none.
 CLI::Validator within(double least, double most) {

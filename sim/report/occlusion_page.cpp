@@ -117,7 +117,7 @@ class OcclusionPage {
       teeth[tooth.fdi] = &tooth;
       most = std::max(most, tooth.load_share);
     }
-    constexpr double step = 60, bar = 36, left = 24, top = 34, high = 120, names = 52;
+    constexpr double step = 60, bar = 36, left = 24, top = 48, high = 120, names = 52;
     add("<h2>Load by tooth</h2>\n<figure><svg viewBox=\"0 0 {:.0f} {:.0f}\" "
         "font-family=\"sans-serif\" font-size=\"13\" text-anchor=\"middle\" role=\"img\" "
         "aria-label=\"load by tooth\">\n",
