@@ -71,7 +71,8 @@ struct ImportOptions {
 
 struct BenchOptions {
   std::filesystem::path patient;
-  int repeats = 3;  // whole openings
+  int repeats = 3;                                  // whole openings
+  std::vector<int> sizes = {10000, 50000, 100000};  // nodes of larger tissues
 };
 
 int run_record(const RecordOptions& options, const CommonOptions& common);
@@ -82,5 +83,8 @@ int run_import(const ImportOptions& options, const CommonOptions& common);
 int run_info(const std::filesystem::path& what, const CommonOptions& common);
 int run_phantom(const std::filesystem::path& out, const CommonOptions& common);
 int run_bench_frame(const BenchOptions& options, const CommonOptions& common);
+int run_bench_table1(const CommonOptions& common);
+int run_bench_table2(const CommonOptions& common);
+int run_bench_tissue(const BenchOptions& options, const CommonOptions& common);
 
 }  // namespace condyle

@@ -272,6 +272,19 @@ int run_program(int argc, char** argv) {
   bench_frame->add_option("CASE", bench.patient, "Case folder (default: the built-in patient)");
   bench_frame->add_option("--repeats", bench.repeats, "Openings to measure (3)")
       ->check(CLI::Range(1, 1000));
+  auto* bench_table1 =
+      add_command(*bench_command, "table1", "Minimisers compared, beside the published table",
+                  "condyle bench table1 --json");
+  auto* bench_table2 =
+      add_command(*bench_command, "table2", "Time of a prediction, beside the published one",
+                  "condyle bench table2 --json");
+  auto* bench_tissue =
+      add_command(*bench_command, "tissue", "Soft tissue: cold solves, warm frames, large sets",
+                  "condyle bench tissue --sizes 10000 --json");
+  bench_tissue->add_option("--repeats", bench.repeats, "Runs to measure of the slow methods (3)")
+      ->check(CLI::Range(1, 1000));
+  bench_tissue->add_option("--sizes", bench.sizes, "Nodes of larger tissues (10000 50000 100000)")
+      ->check(CLI::Range(200, 1000000));
 
   if (const auto problem = unknown_verb(app, argc, argv); !problem.empty())
     throw InputError(problem);
@@ -295,6 +308,9 @@ int run_program(int argc, char** argv) {
   if (info_command->parsed()) return run_info(what, common);
   if (phantom_command->parsed()) return run_phantom(phantom_out, common);
   if (bench_frame->parsed()) return run_bench_frame(bench, common);
+  if (bench_table1->parsed()) return run_bench_table1(common);
+  if (bench_table2->parsed()) return run_bench_table2(common);
+  if (bench_tissue->parsed()) return run_bench_tissue(bench, common);
   return run_view(view, common);
 }
 

@@ -115,7 +115,11 @@ HessianFactor::HessianFactor(const SpringPrismNet& net, const NetLoads& loads, i
       columns_(net.node_count / nodes_per_column) {
   order_columns(net, x);
   find_fill(net);
+  refactor(net, loads, x);
+}
 
+void HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x) {
+  std::fill(blocks_.begin(), blocks_.end(), 0.0f);
   const auto add = [&](int a, int b, const Matrix3d& m) {  // of the symmetric matrix's lower half
     const int pa = place_[a / nodes_per_column_], pb = place_[b / nodes_per_column_];
     if (pa < pb) return;

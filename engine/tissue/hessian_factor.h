@@ -20,6 +20,9 @@ class HessianFactor final : public Preconditioner {
   HessianFactor(const SpringPrismNet& net, const NetLoads& loads, int nodes_per_column,
                 const Nodes& x);
 
+  /// The factor of another state of the same net, in the order chosen for the first.
+  void refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x);
+
   /// z = H^-1 g
   void solve(const Nodes& g, Nodes& z) const override;
 

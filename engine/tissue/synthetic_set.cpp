@@ -15,11 +15,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double width_mm = 110, height_mm = 100, radius_mm = 70;
+constexpr double area_mm2 = 11000, radius_mm = 70;  // a lower face's, and its curvature
 const Vector3d hinge(0, 25, 45);
 
 struct Sheet {
-  std::vector<Vector2d> vertices;  // in [0, 1] x [0, 1]
+  std::vector<Vector2d> vertices;  // mm along the slab: to the left, and down; centred
   std::vector<Eigen::Vector3i> triangles;
   std::vector<char> rim;
 };
@@ -31,10 +31,11 @@ Sheet make_sheet(int columns, int rim) {
   int across = std::max(1, half / 2);
   while (across > 1 && (across + 1) * (half - across + 1) > columns) --across;
   const int down = half - across;
+  const double cell = std::sqrt(area_mm2 / (across * down));
   Sheet sheet;
   for (int j = 0; j <= down; ++j)
     for (int i = 0; i <= across; ++i) {
-      sheet.vertices.emplace_back(static_cast<double>(i) / across, static_cast<double>(j) / down);
+      sheet.vertices.emplace_back(cell * (i - 0.5 * across), cell * (j - 0.5 * down));
       sheet.rim.push_back(i == 0 || j == 0 || i == across || j == down);
     }
   for (int j = 0; j < down; ++j)
@@ -61,11 +62,9 @@ Sheet make_sheet(int columns, int rim) {
     double most = 0;
     for (const auto& [edge, count] : uses) {
       if ((count == 1) != on_rim) continue;
-      Vector2d d = sheet.vertices[edge[1]] - sheet.vertices[edge[0]];
-      d.x() *= width_mm;
-      d.y() *= height_mm;
-      if (d.norm() > most * (1 + 1e-9)) {
-        most = d.norm();
+      const double length = (sheet.vertices[edge[1]] - sheet.vertices[edge[0]]).norm();
+      if (length > most * (1 + 1e-9)) {
+        most = length;
         longest = edge;
       }
     }
@@ -127,11 +126,13 @@ SyntheticSet make_synthetic_set(const SyntheticSize& size) {
   set.columns = size.columns;
   set.sheets = size.layers + 1;
   set.triangles = sheet.triangles;
-  const auto height_of = [&](int column) { return (0.5 - sheet.vertices[column].y()) * height_mm; };
+  const auto height_of = [&](int column) { return -sheet.vertices[column].y(); };
+  double half_height = 0;
+  for (const auto& v : sheet.vertices) half_height = std::max(half_height, v.y());
   for (int c = 0; c < set.columns; ++c) {
-    const double angle = (sheet.vertices[c].x() - 0.5) * width_mm / radius_mm;
+    const double angle = sheet.vertices[c].x() / radius_mm;
     // Thicker in the middle, as a cheek is.
-    const double depth = 9 + 5 * std::sin(3.14159265 * sheet.vertices[c].y());
+    const double depth = 9 + 5 * std::cos(1.57 * height_of(c) / half_height);
     double below = 0;
     for (int s = 0; s < set.sheets; ++s) {
       const double radius = radius_mm - below * depth;
