@@ -5,6 +5,8 @@
 #include <mutex>
 #include <optional>
 
+#include "engine/mesh/measure.h"
+
 namespace condyle {
 namespace {
 
@@ -12,12 +14,17 @@ constexpr double middle_mm = 5;     // to either side of the midline
 constexpr double one_sided = 0.95;  // share of the area that makes a contact left or right
 constexpr double together_mm = 70;  // patches farther apart, as of both condyles, are not one place
 constexpr int volume_columns = 128;
+// Contacts wider than 1250 mm^2 (bones that lie in each other) are measured with coarser pieces.
+constexpr double most_pieces = 20000;
 
 /// Where B lies inside A or near to it.
 ContactRegion region_of(const SignedSurface& a, const Pose& X_A, const NearTriangles& b,
                         const Pose& X_B) {
-  const RegionSettings settings;
-  return contact_region(a, X_A, b.near(X_B, a, X_A, settings.within_mm), X_B, settings);
+  RegionSettings settings;
+  const TriMesh near = b.near(X_B, a, X_A, settings.within_mm);
+  settings.resolution_mm =
+      std::max(settings.resolution_mm, std::sqrt(surface_area(near) / most_pieces));
+  return contact_region(a, X_A, near, X_B, settings);
 }
 
 void turn(ContactRegion& region) {

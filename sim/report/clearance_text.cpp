@@ -56,7 +56,7 @@ Json methods() {
        "deeper than at any frame, moments between frames are looked at, down to 0.1 mm of motion"},
       {"contact_area",
        "surface of b inside a or within 0.1 mm of it; triangles at the rim divided "
-       "to 0.25 mm and cut"},
+       "to 0.25 mm (coarser where more than 1250 mm2 lie near each other) and cut"},
       {"patches", "connected pieces of that surface; nearer than 0.5 mm counts as one"},
       {"penetration_volume",
        "columns along the shortest side of the common box, 128 across; the "
