@@ -16,8 +16,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double free_mm = 0.05;    // clearance of a start
-constexpr double farthest_mm = 40;  // from the wanted pose to a start
+constexpr double free_mm = 0.05;     // clearance of a start
+constexpr double drawn_share = 0.7;  // of the depth, at a time
+constexpr int max_draws = 60;
 constexpr double rest_reach_mm = 5;
 constexpr int max_walks = 8;
 // Of the band: poses so near each other have nothing between them.
@@ -119,31 +120,30 @@ double SlidingContact::depth(const Pose& X_FM, int threads) const {
   return std::max(0.0, -probe.worst_gap());
 }
 
-/// A free pose near the wanted one, from which that is drawn out along the ways out of what
-/// overlaps; none where it is free itself or these ways lead nowhere.
+/// A free pose near the wanted one: what overlaps there is drawn out, a part of its depth at a
+/// time, along the sum of its ways out. None where the wanted pose is free itself or these ways
+/// lead nowhere.
 std::optional<Pose> SlidingContact::start_for(const Pose& wanted, SlideProbe& probe) const {
-  SlideProbe::Overlap overlap = probe.overlap_at(wanted);
-  double depth = overlap.depth_mm;
-  if (depth <= settings_.slop_mm) {  // roughly; now in full
-    probe.look_at(wanted, 0);
-    if (!(probe.deepest_gap() < -settings_.slop_mm)) return std::nullopt;
-    for (const SlideCandidate& c : probe.candidates()) {
-      overlap.outward -= c.gap * c.gradient;
-      overlap.sum_mm -= c.gap;
-    }
-    depth = -probe.deepest_gap();
-  }
-  if (!(overlap.outward.norm() > 0.05 * overlap.sum_mm)) return std::nullopt;
-  const Vector3d out = overlap.outward.normalized();
   Pose X = wanted;
-  for (double way = 0; way < farthest_mm;) {
-    way += depth + free_mm;
-    X.t = wanted.t + way * out;
-    depth = probe.overlap_at(X).depth_mm;
-    if (depth > 0) continue;
-    probe.look_at(X, 0);
-    if (probe.deepest_gap() >= 0) return X;
-    depth = -probe.deepest_gap();
+  Vector3d last = Vector3d::Zero();
+  for (int k = 0; k < max_draws; ++k) {
+    SlideProbe::Overlap overlap = probe.overlap_at(X);
+    if (overlap.depth_mm <= settings_.slop_mm) {  // roughly; now in full
+      probe.look_at(X, 0);
+      const double least = k == 0 ? -settings_.slop_mm : 0;
+      if (!(probe.deepest_gap() < least)) return k == 0 ? std::nullopt : std::optional(X);
+      overlap = {-probe.deepest_gap(), Vector3d::Zero(), 0};
+      for (const SlideCandidate& c : probe.candidates()) {
+        overlap.outward -= c.gap * c.gradient;
+        overlap.sum_mm -= c.gap;
+      }
+    }
+    if (!(overlap.outward.norm() > 0.02 * overlap.sum_mm)) return std::nullopt;
+    Vector3d out = overlap.outward.normalized();
+    // Between two walls it would go to and fro: what both ways have in common leads out.
+    if (out.dot(last) < 0) out = (out + last).normalized();
+    X.t += (drawn_share * overlap.depth_mm + free_mm) * out;
+    last = out;
   }
   return std::nullopt;
 }
