@@ -15,14 +15,20 @@
 
 namespace condyle {
 
+/// A brick is eight spacings wide and takes 3 kB; a surface of A mm^2 takes about
+/// A * (2 band + 8 spacing) / (8 spacing)^3 of them. At 0.25 mm and a band of 1 mm an arch of
+/// crowns takes 10 MB, and so it should be with joints; smooth bone is served as well by 0.4 mm (a
+/// third of the memory; the error, an eighth of the spacing's square times the curvature, stays
+/// below 0.005 mm where the radius is above 4 mm). Whole bones should be given a region: what
+/// others can come near, with the band around it.
 struct FieldSettings {
   double spacing_mm = 0.25;   // smallest detail of a tooth's cusps; error grows with its square
   double band_mm = 1.0;       // distances are kept up to here on both sides of the surface
   std::optional<Box> region;  // the field is made within this box only (body coordinates)
 };
 
-/// Distance at a point. `known` is false well beyond the band, outside the region and where the side
-/// cannot be told (behind the rim of an open surface, where a surface runs through itself).
+/// Distance at a point. `known` is false well beyond the band, outside the region and where the
+/// side cannot be told (behind the rim of an open surface, where a surface runs through itself).
 struct FieldSample {
   double distance_mm = 0;                              // negative inside
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // of the interpolated distance, about unit
@@ -96,8 +102,8 @@ inline FieldSample DistanceField::at(const Eigen::Vector3d& p) const {
   const auto x = static_cast<std::uint32_t>(static_cast<std::int32_t>(ux)),
              y = static_cast<std::uint32_t>(static_cast<std::int32_t>(uy)),
              z = static_cast<std::uint32_t>(static_cast<std::int32_t>(uz));
-  const std::size_t place = slot(static_cast<int>(x / cells), static_cast<int>(y / cells),
-                                 static_cast<int>(z / cells));
+  const std::size_t place =
+      slot(static_cast<int>(x / cells), static_cast<int>(y / cells), static_cast<int>(z / cells));
   const std::int32_t index = brick_[place];
   if (index < 0) {
     if (bound_[place] < 0) sample.distance_mm = -settings_.band_mm;

@@ -5,6 +5,7 @@
 
 #include "engine/collide/collision_mesh.h"
 #include "engine/collide/slide.h"
+#include "sim/phantom/phantom.h"
 #include "tests/support/overlap_oracle.h"
 #include "tests/support/real_cases.h"
 
@@ -69,6 +70,71 @@ TEST(Grinding, CrownsSlideOnCrownsWithoutOverlap) {
   std::sort(depths.begin(), depths.end());
   EXPECT_LE(depths.back(), 0.1);
   EXPECT_LE(depths[depths.size() / 2], 0.05);
+}
+
+/// Farthest that any point of the lower crowns lies apart at two poses.
+double apart(const TriMesh& lower, const Pose& a, const Pose& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < lower.vertices.size(); i += 37)
+    most = std::max(most, (a * lower.vertices[i] - b * lower.vertices[i]).norm());
+  return most;
+}
+
+/// A wanted pose of the grinding is reached in one jump, in steps from the side, and backwards.
+void expect_one_answer(const Case& patient) {
+  const SlidingContact model = arches(patient);
+  const TriMesh& lower = surface(patient, Role::lower_teeth);
+  SlideMemory memory;
+  Pose X{Eigen::Quaterniond::Identity(), {0, 0, -6}};
+  int compared = 0;
+  constexpr int frames = 330;
+  for (int f = 0; f < frames; f += 2) {
+    const Pose wanted = wanted_at(static_cast<double>(f) / frames);
+    const SlideResult result = model.slide(X, wanted, &memory);
+    X = result.X_FM;
+    EXPECT_EQ(model.slide(X, wanted).X_FM.t, X.t) << f;  // at rest, with nothing remembered
+    if (!result.touching || f % 30 != 0) continue;
+    ++compared;
+    const Pose open{Eigen::Quaterniond::Identity(), {0, 0, -8}};
+    EXPECT_LE(apart(lower, model.slide(open, wanted, nullptr, 2).X_FM, X), 0.05) << f;
+    for (const int steps : {10, 100}) {
+      Pose side = wanted;
+      side.t += Vector3d(1.5, 1, -5);
+      Pose Y = side;
+      for (int k = 1; k <= steps; ++k)
+        Y = model.slide(Y, interpolate(side, wanted, static_cast<double>(k) / steps), &memory).X_FM;
+      EXPECT_LE(apart(lower, Y, X), 0.05) << f << " in " << steps;
+    }
+    Pose back = X;
+    for (int k = 6; k >= 0; k -= 2)
+      back = model.slide(back, wanted_at(static_cast<double>(f + k) / frames)).X_FM;
+    EXPECT_LE(apart(lower, back, X), 0.05) << f << " backwards";
+  }
+  EXPECT_GE(compared, 8);
+}
+
+TEST(Grinding, RealCrownsEndAtTheSamePlaceByAnyWay) {
+  const auto patient = test::case_ubc();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  expect_one_answer(*patient);
+}
+
+TEST(Grinding, BuiltInCrownsEndAtTheSamePlaceByAnyWay) { expect_one_answer(builtin_patient()); }
+
+TEST(Grinding, CrownsSlideToTheSameBitsOnOneAndTwoThreads) {
+  const SlidingContact model = arches(builtin_patient());
+  Pose one{Eigen::Quaterniond::Identity(), {0, 0, -6}}, two = one;
+  int touching = 0;
+  for (int f = 0; f < 330; f += 10) {
+    const Pose wanted = wanted_at(f / 330.0);
+    const SlideResult result = model.slide(one, wanted, nullptr, 1);
+    touching += result.touching;
+    one = result.X_FM;
+    two = model.slide(two, wanted, nullptr, 2).X_FM;
+    EXPECT_EQ(one.t, two.t) << f;
+    EXPECT_EQ(one.R.coeffs(), two.R.coeffs()) << f;
+  }
+  EXPECT_GT(touching, 20);
 }
 
 TEST(Grinding, ArchesDoNotPassThroughEachOtherInOneJump) {
