@@ -19,7 +19,7 @@ namespace condyle {
 /// A * (2 band + 8 spacing) / (8 spacing)^3 of them. At 0.25 mm and a band of 1 mm an arch of
 /// crowns takes 10 MB, and so it should be with joints; smooth bone is served as well by 0.4 mm (a
 /// third of the memory; the error, an eighth of the spacing's square times the curvature, stays
-/// below 0.005 mm where the radius is above 4 mm). Whole bones should be given a region: what
+/// below 0.01 mm where the radius is above 4 mm). Whole bones should be given a region: what
 /// others can come near, with the band around it.
 struct FieldSettings {
   double spacing_mm = 0.25;   // smallest detail of a tooth's cusps; error grows with its square
