@@ -93,8 +93,8 @@ void show_patient(Window& window, const ViewOptions& options, const CommonOption
                         .opening_mm = view.opening_mm,
                         .obey_contact = view.obey_contact,
                         .face = view.shows_face(shown)});
-    const LoopStatistics loop{.steps_per_second = simulation.steps_per_second(),
-                              .message = view.distances && !map_sent ? "Measuring distances" : ""};
+    LoopStatistics loop{.steps_per_second = simulation.steps_per_second(),
+                        .message = view.distances && !map_sent ? "Measuring distances" : ""};
     auto frame = simulation.take();
     const bool news = frame.has_value();
     if (news) newest = std::move(*frame);
@@ -106,6 +106,7 @@ void show_patient(Window& window, const ViewOptions& options, const CommonOption
     if (answer && !map_sent) {
       window.set_map_surfaces(map_surfaces(*distances->map()));
       map_sent = true;
+      loop.message.clear();
     }
     // A frame waits for its colours, so that both are of one time.
     if (answer && view.distances)
