@@ -14,6 +14,8 @@ class BiteModel {
  public:
   /// The arches' parts must outlive the model.
   BiteModel(const Arches& arches, const OcclusionSettings& settings, const Progress& progress = {});
+  BiteModel(const BiteModel&) = delete;  // its contacts point to its own surfaces
+  BiteModel& operator=(const BiteModel&) = delete;
 
   /// Down along the occlusal plane's normal until the foil is free; nothing when that takes more
   /// than 30 mm.
