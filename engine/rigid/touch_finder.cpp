@@ -20,6 +20,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double collect_share = 0.65, active_share = 0.3;
 constexpr double least_band_mm = 0.2;  // that must be left beyond the gap
 constexpr double flat_cos = 0.985;     // of the faces at a sample: within 10 degrees
+// A sample may have come nearer than its way by this much more; if it was more still, it is found
+// so much later.
+constexpr double late_mm = 0.03;
 constexpr std::size_t run = 512;
 
 }  // namespace
@@ -125,7 +128,7 @@ void TouchFinder::find(std::span<const Pose> X_WB, double active_mm, int threads
     const Look& look = looks_[l];
     R_FS_[l] = look.X_FS.R.toRotationMatrix();
     R_WF_[l] = X_WB[static_cast<std::size_t>(look.field_of)].R.toRotationMatrix();
-    const double within = look.gap_mm + active_mm + look.path_mm + field_bend_mm;
+    const double within = look.gap_mm + active_mm + look.path_mm + late_mm;
     for (std::size_t n = 0; n < look.near.size(); ++n)
       if (look.horizon_mm[n] <= within)
         places_.push_back({static_cast<int>(l), static_cast<int>(n)});

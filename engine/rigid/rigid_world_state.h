@@ -1,0 +1,118 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/core/error.h"
+#include "engine/rigid/joint_rows.h"
+#include "engine/rigid/rigid_world.h"
+#include "engine/rigid/row_solver.h"
+#include "engine/rigid/touch_finder.h"
+
+namespace condyle {
+
+constexpr double mm_per_m = 1000;  // 1 N = 1000 kg mm/s^2
+constexpr double most_force_N = 1e5;
+
+inline void require(bool good, const std::string& problem) {
+  if (!good) throw InputError("dynamics: " + problem);
+}
+
+/// A world's parts, and the step that is taken in rigid_step.cpp.
+struct RigidWorld::State : MoreContacts {
+  /// A body with what follows from its mass.
+  struct Member {
+    RigidBody body;  // pose and motion at the start; `now` has the present ones
+    int solver = -1;
+    Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero();  // body coordinates
+    Eigen::Matrix3d principal = Eigen::Matrix3d::Identity();    // axes, body coordinates
+    double give_per_mm2 = 0;                                    // largest 1 / principal moment
+    double radius_mm = 0;  // of the surfaces about the centre of mass
+  };
+
+  RigidSettings settings;
+  std::vector<Member> members;
+  std::vector<RigidForce> forces;
+  std::vector<RigidSpring> springs;
+  std::vector<JointRows> joints;
+  std::vector<int> rows_of;
+  std::vector<RigidPair> pairs;
+  TouchFinder finder;
+  RowSolver solver;
+
+  double time_s = 0;
+  std::vector<RigidMotion> motions;
+  std::vector<Pose> poses;
+  std::vector<RigidState::Touch> memory;
+  std::vector<double> joint_forces;
+  std::vector<RigidContact> contacts;
+
+  // Of the step that runs.
+  double part_s = 0;
+  std::vector<Eigen::Vector3d> centers;
+  std::vector<SolverMotion> body_motions;  // of all bodies
+  std::vector<SolverBody> solver_bodies;
+  std::vector<SolverMotion> solved, shifts;
+  std::vector<JointRow> joint_rows;
+  std::vector<double> start_impulses;
+  std::vector<PushRow> pushes;
+  std::vector<int> touch_of_push;
+  std::vector<Touch> touches;
+  std::vector<char> joined;
+  std::vector<int> pushes_of_pair;
+  struct Violator {
+    double depth = 0;
+    int touch = 0;
+    double apart2 = 0;  // to those that join with it
+  };
+  std::vector<Violator> violators;
+  RigidState before;
+  std::vector<RigidContact> contacts_before;
+
+  std::size_t count() const { return members.size(); }
+  Eigen::Vector3d center(std::size_t i) const { return poses[i] * members[i].body.mass.center; }
+  bool is_free(std::size_t i) const { return members[i].solver >= 0; }
+
+  void check_body(int body) const {
+    require(body >= 0 && body < static_cast<int>(count()),
+            "there is no body " + std::to_string(body));
+  }
+  static void check_pose(const Pose& X_WB) {
+    require(X_WB.t.allFinite() && std::abs(X_WB.R.norm() - 1) < 1e-6,
+            "a pose is not finite or its rotation not of unit length");
+  }
+  void check_motion(const RigidMotion& motion, double radius_mm) const {
+    const double speed = motion.velocity.norm() + motion.spin.norm() * radius_mm;
+    require(speed <= settings.max_speed_mm_s, "a motion of " + std::to_string(speed) +
+                                                  " mm/s is not finite or above " +
+                                                  std::to_string(settings.max_speed_mm_s));
+  }
+  static void check_force(const Eigen::Vector3d& force_N) {
+    require(force_N.norm() <= most_force_N, "a force of " + std::to_string(force_N.norm()) +
+                                                " N is not finite or above " +
+                                                std::to_string(most_force_N));
+  }
+  /// Velocity that a unit impulse at a point gives it, at most.
+  double give(int body, const Eigen::Vector3d& p_B) const {
+    const Member& m = members[static_cast<std::size_t>(body)];
+    if (m.solver < 0) return 0;
+    return 1 / m.body.mass.mass_kg + (p_B - m.body.mass.center).squaredNorm() * m.give_per_mm2;
+  }
+
+  void collect_forces();
+  void add_spring_forces(const RigidSpring& spring);
+  void prepare_joints(RigidWorld::Step& result);
+  void start_pushes();
+  void add_push(int touch, const Eigen::Vector3d& impulse, std::vector<PushRow>& rows);
+  bool join(std::span<const SolverMotion> free, std::vector<PushRow>& rows) override;
+  void pick(std::size_t first, std::size_t last, std::vector<PushRow>& rows);
+  bool advance(double step_s, int halvings, int threads, RigidWorld::Step& result);
+  void integrate();
+  void remember();
+  RigidState save() const;
+  void load(const RigidState& state);
+};
+
+}  // namespace condyle
