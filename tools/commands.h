@@ -66,6 +66,7 @@ struct ViewOptions {
 
 struct ImportOptions {
   ImportRequest request;
+  bool push_out = false;  // free parts that start deep inside others
   std::filesystem::path out;
 };
 

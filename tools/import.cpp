@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sim/contact/push_out_parts.h"
 #include "tools/commands.h"
 
 namespace condyle {
@@ -9,7 +10,8 @@ namespace condyle {
 int run_import(const ImportOptions& options, const CommonOptions& common) {
   ImportRequest request = options.request;
   if (request.name.empty()) request.name = (options.out / "").parent_path().filename().string();
-  const Case patient = import_meshes(request);
+  Case patient = import_meshes(request);
+  if (options.push_out) push_out_free_parts(patient);
   save_case(patient, options.out);
   if (common.json) {
     nlohmann::ordered_json json = {{"case", options.out.string()}, {"name", patient.name}};

@@ -245,6 +245,8 @@ int run_program(int argc, char** argv) {
                    "What a segment or transplant goes along with (default: the nearer one), e.g. "
                    "segment-2=mandible")
       ->type_name("NAME=mandible|cranium");
+  meshes->add_flag("--push-out", import.push_out,
+                   "Move segments and transplants that start deep inside a bone out of it");
   meshes->add_option("--landmarks", import.request.landmarks,
                      "CSV with name,x_mm,y_mm,z_mm, or 3D Slicer .mrk.json");
   meshes->add_option("--units", import.request.units, "Unit of the files: mm m cm in (mm)");

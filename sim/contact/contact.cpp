@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/collide/push_out.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "sim/case/pair_rules.h"
@@ -16,6 +17,7 @@ namespace condyle {
 namespace {
 
 constexpr int build_threads = 2;
+constexpr double deep_start_mm = 0.5;
 
 bool is_finite(const Pose& X) {
   return X.R.coeffs().allFinite() && X.t.allFinite() && std::abs(X.R.norm() - 1) < 1e-6;
@@ -68,6 +70,24 @@ void build_pairs(ContactModel::State& state, const Case& patient) {
     }
 }
 
+/// What a free part that starts deep inside another can do about it.
+std::string deep_start_note(const ColliderPair& pair, const Case& patient, double depth_mm) {
+  const auto& name = [&](const Collider& of) {
+    return patient.parts[static_cast<std::size_t>(of.part)].name;
+  };
+  const PushOut out =
+      push_out({pair.a->surface, pair.a->solid}, {}, {pair.b->surface, pair.b->solid}, {});
+  const std::string start =
+      fmt::format("{} starts {:.1f} mm deep inside {}", name(*pair.b), depth_mm, name(*pair.a));
+  if (out.status != PushOut::Status::found)
+    return start + "; a way out cannot be told, for one of them is an open surface";
+  const Eigen::Vector3d way = out.length_mm * out.direction;
+  return start + fmt::format(
+                     "; moved by ({:.1f}, {:.1f}, {:.1f}) mm it would be clear of it (import "
+                     "it again with --push-out)",
+                     way.x(), way.y(), way.z());
+}
+
 /// Overlap at rest becomes the pairs' baseline; where there is some, a guard watches the rest.
 void find_baseline(ContactModel::State& state, const Case& patient) {
   const std::vector<Pose> at_rest(static_cast<std::size_t>(state.body_count()));
@@ -85,6 +105,8 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
         "{} and {} overlap by {:.2f} mm at rest: taken as the baseline, only deeper contact counts",
         patient.parts[static_cast<std::size_t>(rest.part_a)].name,
         patient.parts[static_cast<std::size_t>(rest.part_b)].name, rest.depth_mm));
+    if (pair.b->body >= first_free_body && rest.depth_mm > deep_start_mm)
+      state.notes.push_back(deep_start_note(pair, patient, rest.depth_mm));
     const TriMesh away = away_from_overlap(mesh, overlap_at_rest(pair));
     if (away.empty()) continue;
     state.colliders.push_back(

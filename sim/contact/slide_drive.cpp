@@ -12,10 +12,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int most_corrections = 6;    // of what fields have wrong
-constexpr double gained_mm = 0.002;    // less than this does not make a body leave where it is
-constexpr double checked_step_mm = 1;  // of ways past open shells
-constexpr int most_checked_steps = 400;
+constexpr int most_corrections = 6;  // of what fields have wrong
+constexpr double gained_mm = 0.002;  // less than this does not make a body leave where it is
+constexpr double most_corrected_mm = 0.15;
+constexpr double longest_step_mm = 1;
+constexpr double unseen_mm = 3;  // no part of a jaw that could meet bone is thinner
+constexpr double deep_mm = 0.1;
+constexpr int most_steps = 400;
 
 /// A drive on its way by sliding.
 class SlidingDrive {
@@ -50,11 +53,12 @@ class SlidingDrive {
       if (!allowed(found[k], k)) return false;
     return true;
   }
-  bool near_open_shell(const Found& at_wanted) const;
   Pose advance(const Pose& from, const Pose& to, Found& found) const;
-  Pose checked_walk(Found& found) const;
-  double free_part(const Pose& from, const Found& at_from, const Pose& to, const Found& at_to,
-                   bool open_only) const;
+  Pose stretch(const Pose& X, const Pose& to, Found& found, bool proved) const;
+  double way(const Pose& X, const Pose& to) const;
+  Pose walk(Found& found) const;
+  double free_part(const Pose& from, const Found& at_from, const Pose& to,
+                   const Found& at_to) const;
   Twist correction(const Pose& X, const Found& found, const std::vector<OverlapDepth>& deepest,
                    const Twist& so_far, std::vector<ContactRow>& rows) const;
   Pose moved(const Pose& X, const Twist& x) const;
@@ -70,6 +74,7 @@ class SlidingDrive {
   int threads_;
   std::vector<std::size_t> pairs_;
   ContactSet& set_;
+  bool overlaps_at_rest_ = false;
   std::vector<double> limit_, kept_;  // depth and distance that are allowed of each pair
 };
 
@@ -106,21 +111,12 @@ void SlidingDrive::start_limits(const Found& at_start) {
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const ColliderPair& pair = state_.judged(pairs_[k]);
     const PairContact& start = at_start[k];
+    overlaps_at_rest_ |= pair.rest_depth_mm > deep_mm;
     limit_[k] = (pair.apart_at_rest ? 0 : pair.rest_depth_mm) + state_.settings.slack_mm;
     kept_[k] = pair.kept_mm;
     if (start.touching) limit_[k] = std::max(limit_[k], start.depth_mm);
     kept_[k] = std::min(kept_[k], start.distance_mm);
   }
-}
-
-bool SlidingDrive::near_open_shell(const Found& at_wanted) const {
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const ColliderPair& pair = state_.judged(pairs_[k]);
-    if (pair.a->solid.open_shell_count() == 0 && pair.b->solid.open_shell_count() == 0) continue;
-    const Passage p = passage(k, drive_.from(), drive_.wanted);
-    if (at_wanted[k].touching || at_wanted[k].distance_mm <= p.length_mm) return true;
-  }
-  return false;
 }
 
 Pose SlidingDrive::moved(const Pose& X, const Twist& x) const {
@@ -174,12 +170,9 @@ Twist SlidingDrive::correction(const Pose& X, const Found& found,
 
 /// Of the straight way, how much is free of contact deeper than allowed.
 double SlidingDrive::free_part(const Pose& from, const Found& at_from, const Pose& to,
-                               const Found& at_to, bool open_only) const {
+                               const Found& at_to) const {
   std::vector<double> share(pairs_.size(), 1.0);
   parallel_for(pairs_.size(), threads_, [&](std::size_t k) {
-    const ColliderPair& pair = state_.judged(pairs_[k]);
-    if (open_only && pair.a->solid.open_shell_count() == 0 && pair.b->solid.open_shell_count() == 0)
-      return;
     Passage p = passage(k, from, to);
     p.limit_mm = limit_[k];
     p.kept_mm = kept_[k];
@@ -193,7 +186,8 @@ double SlidingDrive::free_part(const Pose& from, const Found& at_from, const Pos
 /// Slides by the fields; what they have wrong is put right by the exact surfaces, and where that
 /// fails the way ends before it. `found` is taken at `from`, and then at the pose returned.
 Pose SlidingDrive::advance(const Pose& from, const Pose& to, Found& found) const {
-  const Pose slid = state_.slider->slide(drive_, from, to, threads_);
+  const bool known = state_.slider->knows(drive_);
+  const Pose slid = known ? state_.slider->slide(drive_, from, to, threads_) : to;
   const Found at_from = std::move(found);
   std::vector<OverlapDepth> deepest;
   Pose X = slid;
@@ -202,41 +196,72 @@ Pose SlidingDrive::advance(const Pose& from, const Pose& to, Found& found) const
   for (int k = 0;; ++k) {
     found = look(X, false, &deepest);
     if (allowed(found)) return X;
-    if (k == most_corrections) break;
+    if (k == most_corrections || !known) break;
     corrected = correction(X, found, deepest, corrected, rows);
+    if (corrected.norm() > most_corrected_mm) break;
     X = moved(slid, corrected);
   }
-  const double share = free_part(from, at_from, X, found, false);
+  const double share = free_part(from, at_from, X, found);
   X = interpolate(from, X, share, state_.pivot[static_cast<std::size_t>(drive_.body)]);
   found = look(X, false);
   return X;
 }
 
-/// In short steps, each of which is proved to pass through nothing.
-Pose SlidingDrive::checked_walk(Found& found) const {
+/// One stretch of the way; `found` is taken at X, and then at the pose returned. `proved`: that it
+/// passes through nothing.
+Pose SlidingDrive::stretch(const Pose& X, const Pose& to, Found& found, bool proved) const {
   const Vector3d& pivot = state_.pivot[static_cast<std::size_t>(drive_.body)];
-  Pose X = drive_.from();
-  double before = left(X);
-  for (int step = 0; step < most_checked_steps; ++step) {
-    double way = 0;
-    for (std::size_t k = 0; k < pairs_.size(); ++k)
-      way = std::max(way, passage(k, X, drive_.wanted).length_mm);
-    const Pose to = way <= checked_step_mm
-                        ? drive_.wanted
-                        : interpolate(X, drive_.wanted, checked_step_mm / way, pivot);
-    Found next = found;
-    Pose there = advance(X, to, next);
-    const double share = free_part(X, found, there, next, true);
+  if (overlaps_at_rest_) {
+    // Fields know little of surfaces deep in each other, as crowns may be at rest.
+    Found straight = look(to, false);
+    if (allowed(straight) && free_part(X, found, to, straight) >= 1) {
+      found = std::move(straight);
+      return to;
+    }
+  }
+  Found next = found;
+  Pose there = advance(X, to, next);
+  if (proved) {
+    const double share = free_part(X, found, there, next);
     if (share < 1) {
       there = interpolate(X, there, share, pivot);
       next = look(there, false);
     }
-    const double now = left(there);
-    if (now > before - gained_mm && !same_bits(there, drive_.wanted)) break;
-    X = there;
-    found = std::move(next);
-    before = now;
-    if (same_bits(X, drive_.wanted)) break;
+  }
+  // To stay is better than to tremble.
+  if (left(there) > left(X) - gained_mm && !same_bits(there, drive_.wanted)) return X;
+  found = std::move(next);
+  return there;
+}
+
+double SlidingDrive::way(const Pose& X, const Pose& to) const {
+  double longest = 0;
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    longest = std::max(longest, passage(k, X, to).length_mm);
+  return longest;
+}
+
+/// All at once; where that goes far, in short stretches, each of them proved: fields do not know
+/// walls thinner than their spacing.
+Pose SlidingDrive::walk(Found& found) const {
+  Pose X = drive_.from();
+  Found at_once = found;
+  const Pose there = stretch(X, drive_.wanted, at_once, false);
+  if (way(X, there) <= unseen_mm) {
+    found = std::move(at_once);
+    return there;
+  }
+  for (int step = 0; step < most_steps && !same_bits(X, drive_.wanted); ++step) {
+    double clearance = nowhere_mm;
+    for (std::size_t k = 0; k < pairs_.size(); ++k)
+      clearance = std::min(clearance, found[k].touching ? 0.0 : found[k].distance_mm - kept_[k]);
+    const double share = std::max(longest_step_mm, clearance) / way(X, drive_.wanted);
+    const Pose to = share >= 1
+                        ? drive_.wanted
+                        : interpolate(X, drive_.wanted, share, state_.slider->pivot(drive_.body));
+    const Pose next = stretch(X, to, found, true);
+    if (same_bits(next, X)) break;
+    X = next;
   }
   return X;
 }
@@ -255,12 +280,8 @@ Arrival SlidingDrive::run(bool exact) {
   if (same_bits(from, drive_.wanted)) return arrive(from, std::move(at_start));
 
   state_.slider->prepare({}, threads_);
-  Found found = at_start;
-  const Pose X =
-      near_open_shell(at_wanted) ? checked_walk(found) : advance(from, drive_.wanted, found);
-  // To stay is better than to tremble.
-  if (!same_bits(X, drive_.wanted) && left(X) > left(from) - gained_mm)
-    return arrive(from, std::move(at_start));
+  Found found = std::move(at_start);
+  const Pose X = walk(found);
   return arrive(X, std::move(found));
 }
 

@@ -100,6 +100,12 @@ std::unique_ptr<SlidingContact> Slider::make_contact(int body) const {
   return contact;
 }
 
+bool Slider::knows(const Drive& drive) const {
+  for (std::size_t b = 0; b < drive.X_CB.size(); ++b)
+    if (drive.moves[b] ? drive.X_DM[b].has_value() : !same_bits(drive.X_CB[b], {})) return false;
+  return true;
+}
+
 Pose Slider::slide(const Drive& drive, const Pose& from, const Pose& wanted, int threads) const {
   return contact(drive.body).slide(from, wanted, nullptr, threads).X_FM;
 }

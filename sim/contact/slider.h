@@ -23,6 +23,10 @@ class Slider {
   /// progress gives up; the next call starts anew.
   void prepare(const Progress& progress, int threads);
 
+  /// Whether all bodies lie to each other as they were when the fields were set up, but for the
+  /// drive's own motion.
+  bool knows(const Drive& drive) const;
+
   /// By the fields alone. prepare() must have been called.
   Pose slide(const Drive& drive, const Pose& from, const Pose& wanted, int threads) const;
 

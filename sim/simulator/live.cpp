@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/core/error.h"
 #include "sim/motion/measures.h"
 
 namespace condyle {
@@ -38,7 +39,11 @@ double time_of_opening(const Case& patient, const Motion& motion, double opening
 }  // namespace
 
 LiveSimulation::LiveSimulation(const Scene& scene, Motion motion, const SimulatorSettings& settings)
-    : scene_(scene), motion_(std::move(motion)), settings_(settings), thread_([this] { work(); }) {}
+    : scene_(scene),
+      motion_(std::move(motion)),
+      settings_(settings),
+      held_(1 + free_parts(scene.patient.parts).size()),
+      thread_([this] { work(); }) {}
 
 LiveSimulation::~LiveSimulation() {
   {
@@ -54,6 +59,40 @@ void LiveSimulation::request(const LiveRequest& wanted) {
     const std::lock_guard lock(mutex_);
     if (wanted == wanted_) return;
     wanted_ = wanted;
+  }
+  changed_.notify_all();
+}
+
+std::size_t LiveSimulation::body_of_part(std::size_t part) const {
+  const auto& parts = scene_.patient.parts;
+  const Body body = part < parts.size() ? body_of(parts[part].role) : Body::cranium;
+  if (body == Body::mandible) return 0;
+  if (body != Body::free)
+    throw InputError((part < parts.size() ? parts[part].name : std::string("this part")) +
+                     ": only the mandible, segments and transplants can be moved");
+  const auto free = free_parts(parts);
+  return 1 + static_cast<std::size_t>(std::find(free.begin(), free.end(), part) - free.begin());
+}
+
+void LiveSimulation::drag(std::size_t part, const Pose& wanted) {
+  const std::size_t body = body_of_part(part);
+  if (!wanted.R.coeffs().allFinite() || !wanted.t.allFinite() || !(wanted.R.norm() > 0.5))
+    throw InputError(scene_.patient.parts[part].name +
+                     ": cannot be moved to a pose with values that are no numbers");
+  {
+    const std::lock_guard lock(mutex_);
+    held_[body] = Pose{wanted.R.normalized(), wanted.t};
+    ++grips_;
+  }
+  changed_.notify_all();
+}
+
+void LiveSimulation::release(std::size_t part) {
+  const std::size_t body = body_of_part(part);
+  {
+    const std::lock_guard lock(mutex_);
+    held_[body].reset();
+    ++grips_;
   }
   changed_.notify_all();
 }
@@ -79,15 +118,26 @@ void LiveSimulation::work() {
   using Clock = std::chrono::steady_clock;
   FrameState now = rest_frame(scene_);
   std::optional<LiveRequest> answered;
+  long answered_grips = 0;
+  const auto free = free_parts(scene_.patient.parts);
+  std::vector<Pose> X_BF(free.size());  // where free parts are to be in their carriers' frames
+  const auto carrier = [&](std::size_t f) {
+    return scene_.patient.parts[free[f]].carrier == Body::mandible ? now.X_CM : Pose{};
+  };
   auto last_shown = Clock::now();
   try {
     while (true) {
       LiveRequest wanted;
+      std::vector<std::optional<Pose>> held;
+      long grips = 0;
       {
         std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] { return stop_ || answered != wanted_; });
+        changed_.wait(lock,
+                      [&] { return stop_ || answered != wanted_ || answered_grips != grips_; });
         if (stop_) return;
         wanted = wanted_;
+        held = held_;
+        grips = grips_;
       }
       const double target_s = std::round(wanted.time_s / settings_.step_s) * settings_.step_s;
       const double ahead_s = target_s - now.time_s;
@@ -100,10 +150,19 @@ void LiveSimulation::work() {
       {
         const StageTimer timer(motion_time, Stage::motion);
         step_input = input(wanted, time_s);
+        if (held[0]) step_input.X_CM_wanted = *held[0];
+        for (std::size_t f = 0; f < free.size(); ++f)
+          if (held[1 + f]) X_BF[f] = carrier(f).inverse() * *held[1 + f];
+        step_input.X_BF_wanted = X_BF;
       }
       now = step(scene_, now, step_input, settings_);
+      for (std::size_t f = 0; f < free.size(); ++f)
+        if (held[1 + f]) X_BF[f] = carrier(f).inverse() * now.X_CF[f];
       now.times[Stage::motion] = motion_time[Stage::motion];
-      if (!runs_on) answered = wanted;
+      if (!runs_on) {
+        answered = wanted;
+        answered_grips = grips;
+      }
       // Steps on the way are shown only as often as a screen wants pictures.
       const bool shown = !runs_on || Clock::now() - last_shown > picture_interval;
       if (shown && wanted.face) carry_face(scene_, now, settings_.threads);

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "sim/simulator/simulator.h"
 
@@ -31,6 +32,14 @@ class LiveSimulation {
 
   void request(const LiveRequest& wanted);
 
+  /// A hand holds the body of a part (an index of the case) and wants it at a pose, rest to now, in
+  /// the cranium's frame, until the next call or until it lets go. It slides along what is in the
+  /// way if contact is obeyed. Let go, the mandible follows the motion again; a segment or
+  /// transplant stays where it came to, in its carrier's frame. From any thread.
+  /// throws: InputError for a part that does not move, and for values that are no numbers.
+  void drag(std::size_t part, const Pose& wanted);
+  void release(std::size_t part);
+
   /// The newest frame when there is one that was not taken yet. Rethrows what stopped the thread.
   std::optional<FrameState> take();
 
@@ -39,6 +48,7 @@ class LiveSimulation {
  private:
   void work();
   StepInput input(const LiveRequest& wanted, double time_s) const;
+  std::size_t body_of_part(std::size_t part) const;
 
   const Scene& scene_;
   Motion motion_;
@@ -47,6 +57,8 @@ class LiveSimulation {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   LiveRequest wanted_;
+  std::vector<std::optional<Pose>> held_;  // X_CM, then X_CF of each free part, where held
+  long grips_ = 0;                         // how often a hand moved
   std::optional<FrameState> newest_;
   std::exception_ptr failure_;
   double steps_per_second_ = 0;

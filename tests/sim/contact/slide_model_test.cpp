@@ -1,0 +1,245 @@
+// Bodies that are wanted where others are slide to the nearest pose; judged by the exact surfaces.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/core/error.h"
+#include "engine/mesh/measure.h"
+#include "sim/contact/contact.h"
+#include "sim/contact/push_out_parts.h"
+#include "tests/support/boxes.h"
+#include "tests/support/overlap_oracle.h"
+#include "tests/support/real_cases.h"
+#include "tests/support/shapes.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+Case two_bones(TriMesh maxilla, TriMesh mandible) {
+  Case patient;
+  patient.name = "two bones";
+  patient.parts.push_back({"maxilla", Role::maxilla, std::move(maxilla), {}});
+  patient.parts.push_back({"mandible", Role::mandible, std::move(mandible), {}});
+  return patient;
+}
+
+Pose shift(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
+
+/// A ball under a block whose underside is at z = 12.
+Case ball_under_block() {
+  return two_bones(test::box({-30, -30, 12}, {30, 30, 20}), test::sphere(4, 10));
+}
+
+TEST(Slide, AWantedPoseInTheWaySlidesAlong) {
+  const ContactModel model(ball_under_block());
+  Pose X;
+  ContactSet last = model.at_rest();
+  int held = 0;
+  for (int k = 1; k <= 40; ++k) {
+    const auto slide = model.slide(X, {shift(0.3 * k, 0, 0.1 * k)}, &last);
+    X = slide.at.X_CM;
+    last = slide.contacts;
+    EXPECT_LE(last.max_penetration_mm(), 0.02);
+    // A ball on a plane: the way along goes whole, the way in ends at the surface.
+    EXPECT_NEAR(X.t.x(), 0.3 * k, 0.15);  // it may roll on its facets
+    EXPECT_NEAR(X.t.z(), std::min(0.1 * k, 2.0), 0.05);
+    held += slide.stopped;
+  }
+  EXPECT_GT(held, 15);
+  EXPECT_LT(held, 25);
+}
+
+TEST(Slide, WithoutContactThePoseIsTheWantedOneToTheBit) {
+  const ContactModel model(ball_under_block());
+  std::mt19937_64 random(3);
+  for (int k = 0; k < 20; ++k) {
+    Pose wanted = test::any_pose(random, 0.6);
+    wanted.R = Eigen::Quaterniond::Identity().slerp(0.1, wanted.R);
+    const auto slide = model.slide(Pose{}, {wanted}, nullptr);
+    EXPECT_FALSE(slide.stopped);
+    EXPECT_EQ(slide.at.X_CM.t, wanted.t);
+    EXPECT_EQ(slide.at.X_CM.R.coeffs(), wanted.R.coeffs());
+  }
+}
+
+TEST(Slide, AJumpDoesNotPassThroughAThinWall) {
+  const ContactModel model(
+      two_bones(test::box({-40, -40, 30}, {40, 40, 30.3}), test::sphere(3, 10)));
+  for (const double jump : {22.0, 45.0}) {
+    const auto slide = model.slide(Pose{}, {shift(0, 0, jump)}, nullptr);
+    EXPECT_TRUE(slide.stopped);
+    EXPECT_NEAR(slide.at.X_CM.t.z(), 20, 0.05);
+    EXPECT_LE(slide.contacts.max_penetration_mm(), 0.02);
+  }
+}
+
+TEST(Slide, OpenShellsAreSlidOnAndNotPassedThrough) {
+  TriMesh sheet;  // one layer, no inside
+  sheet.vertices = {{-30, -30, 30}, {30, -30, 30}, {30, 30, 30}, {-30, 30, 30}};
+  sheet.triangles = {{0, 2, 1}, {0, 3, 2}};  // faces down
+  for (const bool turned : {false, true}) {
+    if (turned)
+      for (auto& t : sheet.triangles) std::swap(t[1], t[2]);
+    const ContactModel model(two_bones(sheet, test::sphere(3, 10)));
+    const auto jump = model.slide(Pose{}, {shift(0, 0, 45)}, nullptr);
+    EXPECT_TRUE(jump.stopped);
+    EXPECT_NEAR(jump.at.X_CM.t.z(), 20, 0.05);
+    Pose X = jump.at.X_CM;
+    ContactSet last = jump.contacts;
+    for (int k = 1; k <= 10; ++k) {
+      const auto slide = model.slide(X, {shift(0.5 * k, 0, 21)}, &last);
+      X = slide.at.X_CM;
+      last = slide.contacts;
+      EXPECT_LE(X.t.z(), 20.05);
+    }
+    if (!turned) {
+      EXPECT_NEAR(X.t.x(), 5, 0.1);
+    }
+  }
+}
+
+TEST(Slide, AWantedPoseThatRestsGivesAPoseThatRests) {
+  const ContactModel model(ball_under_block());
+  Pose X;
+  ContactSet last = model.at_rest();
+  const Pose wanted{Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Vector3d(1, 2, 0).normalized())),
+                    {3, 1, 6}};
+  for (int k = 0; k < 30; ++k) {
+    const auto slide = model.slide(X, {wanted}, &last);
+    if (k > 1) {
+      EXPECT_LE((slide.at.X_CM.t - X.t).norm(), 0.02);
+    }
+    X = slide.at.X_CM;
+    last = slide.contacts;
+  }
+}
+
+TEST(Slide, AGuidedPairKeepsItsGap) {
+  Case patient = ball_under_block();
+  patient.pair_rules = {{"maxilla", "mandible", PairPolicy::guided, {}, 1.5}};
+  const ContactModel model(patient);
+  EXPECT_EQ(model.at_rest().pairs[0].policy, PairPolicy::guided);
+  const auto slide = model.slide(Pose{}, {shift(4, 0, 5)}, nullptr);
+  EXPECT_TRUE(slide.stopped);
+  EXPECT_NEAR(slide.contacts.pairs[0].distance_mm, 1.5, 0.03);
+  EXPECT_NEAR(slide.at.X_CM.t.x(), 4, 0.3);
+  // Nearer at rest than its gap: that is what it keeps.
+  patient.pair_rules[0].gap_mm = 3;
+  const auto closer = ContactModel(patient).slide(Pose{}, {shift(4, 0, 5)}, nullptr);
+  EXPECT_GE(closer.contacts.pairs[0].distance_mm, model.at_rest().pairs[0].distance_mm - 0.03);
+}
+
+TEST(Slide, OverlapAtRestIsNotDeepened) {
+  // The ball sits 1.2 mm deep in the block.
+  const ContactModel model(
+      two_bones(test::box({-30, -30, 10}, {30, 30, 40}), test::sphere(4, 10, {0, 0, 1.2})));
+  for (const double up : {0.1, 3.0, 45.0}) {
+    const auto slide = model.slide(Pose{}, {shift(0, 0, up)}, &model.at_rest());
+    EXPECT_TRUE(slide.stopped);
+    EXPECT_LE(slide.contacts.max_penetration_mm(), 0.02);
+  }
+  EXPECT_FALSE(model.slide(Pose{}, {shift(0, 0, -20)}, &model.at_rest()).stopped);
+}
+
+TEST(Slide, PosesThatAreNoNumbersAreRefused) {
+  const ContactModel model(ball_under_block());
+  const double nan = std::nan("");
+  EXPECT_THROW(model.slide(Pose{}, {shift(nan, 0, 0)}, nullptr), InputError);
+  EXPECT_THROW(model.slide(shift(0, nan, 0), {Pose{}}, nullptr), InputError);
+  EXPECT_THROW(model.find(shift(0, 0, nan), nullptr), InputError);
+  Pose flat;
+  flat.R.coeffs().setZero();
+  EXPECT_THROW(model.find(flat, nullptr), InputError);
+}
+
+TEST(Slide, OneAndTwoThreadsGiveTheSameBits) {
+  const ContactModel model(
+      two_bones(test::sphere(4, 20, {0, 0, 0}, 0.05), test::sphere(4, 10, {0, 0, -31}, 0.05)));
+  std::mt19937_64 random(6);
+  Pose X;
+  ContactSet last = model.at_rest();
+  int held = 0;
+  for (int k = 0; k < 15; ++k) {
+    Pose wanted = test::any_pose(random, 5);
+    wanted.R = Eigen::Quaterniond::Identity().slerp(0.05, wanted.R);
+    const auto one = model.slide(X, {wanted}, &last, 1), two = model.slide(X, {wanted}, &last, 2);
+    EXPECT_EQ(one.at.X_CM.t, two.at.X_CM.t);
+    EXPECT_EQ(one.at.X_CM.R.coeffs(), two.at.X_CM.R.coeffs());
+    EXPECT_EQ(one.contacts.pairs[0].depth_mm, two.contacts.pairs[0].depth_mm);
+    held += one.stopped;
+    X = one.at.X_CM;
+    last = one.contacts;
+  }
+  EXPECT_GT(held, 0);
+}
+
+TEST(PushOut, AFreePartThatStartsDeepIsNotedAndCanBeMovedOut) {
+  Case patient = ball_under_block();
+  patient.parts.push_back({"segment", Role::segment, test::box({8, -3, -3}, {14, 3, 3}), {}});
+  const ContactModel deep(patient);
+  const auto told = [](const ContactModel& model, const char* words) {
+    int count = 0;
+    for (const auto& note : model.notes()) count += note.find(words) != std::string::npos;
+    return count;
+  };
+  EXPECT_EQ(told(deep, "segment starts"), 1);
+  EXPECT_EQ(told(deep, "--push-out"), 1);
+  push_out_free_parts(patient);
+  ASSERT_EQ(patient.notes.size(), 1u);
+  const ContactModel out(patient);
+  EXPECT_EQ(told(out, "segment starts"), 0);
+  EXPECT_EQ(out.at_rest().max_penetration_mm(), 0);
+  for (const auto& pair : out.at_rest().pairs) EXPECT_LE(pair.depth_mm, 0.02);
+  EXPECT_NEAR(bounding_box(patient.parts[2].mesh).center().norm(), 13, 0.6);  // some 2 mm outward
+}
+
+TEST(SlideRealAnatomy, BadinDrivenUpSlidesOn) {
+  const auto patient = test::case_badin();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  const ContactModel model(*patient);
+  const test::OverlapOracle maxilla(patient->parts[0].mesh), mandible(patient->parts[1].mesh);
+  Pose X;
+  ContactSet last = model.at_rest();
+  int held = 0;
+  double moved_mm = 0;
+  for (int k = 1; k <= 60; ++k) {
+    const auto slide = model.slide(X, {shift(0, 0, 10.0 * k / 60)}, &last, 2);
+    if (slide.stopped) {
+      ++held;
+      moved_mm += (slide.at.X_CM.t - X.t).norm();
+      EXPECT_LE(deepest(maxilla, mandible, slide.at.X_CM), 0.1) << k;
+    }
+    X = slide.at.X_CM;
+    last = slide.contacts;
+    EXPECT_LE(last.max_penetration_mm(), 0.02) << k;
+  }
+  EXPECT_GT(held, 30);
+  EXPECT_GT(moved_mm, 2);  // it goes on from where it first met bone
+}
+
+TEST(SlideRealAnatomy, UbcCrownsSlideOutOfTheirBiteAndComeBackNoDeeper) {
+  const auto patient = test::case_ubc();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  const ContactModel model(*patient);
+  Pose X;
+  ContactSet last = model.at_rest();
+  double lowest = 0;
+  int held = 0;
+  for (int k = 1; k <= 60; ++k) {
+    const double s = std::sin(M_PI * k / 60);
+    const auto slide = model.slide(X, {shift(0, 0, -4 * s + 0.4)}, &last, 2);
+    X = slide.at.X_CM;
+    last = slide.contacts;
+    lowest = std::min(lowest, X.t.z());
+    held += slide.stopped;
+    EXPECT_LE(last.max_penetration_mm(), 0.02) << k;
+  }
+  EXPECT_NEAR(lowest, -3.6, 0.1);
+  EXPECT_GT(held, 0);
+}
+
+}  // namespace
+}  // namespace condyle

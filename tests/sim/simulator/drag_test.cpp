@@ -1,0 +1,159 @@
+// A hand that drags bodies about: they slide, and never lie deeper in each other than allowed.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "engine/core/error.h"
+#include "sim/phantom/phantom.h"
+#include "sim/simulator/live.h"
+#include "tests/support/boxes.h"
+#include "tests/support/overlap_oracle.h"
+
+namespace condyle::test {
+namespace {
+
+Motion resting() {
+  return {"rest", 1.0, false, [](double) { return Pose{}; }, {}};
+}
+
+Pose shift(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
+
+std::size_t part_named(const Case& patient, const std::string& name) {
+  for (std::size_t i = 0; i < patient.parts.size(); ++i)
+    if (patient.parts[i].name == name) return i;
+  throw std::runtime_error("no part " + name);
+}
+
+/// The next frame; a minute at most.
+FrameState next_frame(LiveSimulation& live) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (std::chrono::steady_clock::now() < end)
+    if (auto frame = live.take()) return *frame;
+  throw std::runtime_error("no frame came");
+}
+
+SimulatorSettings without_tissue() {
+  SimulatorSettings settings;
+  settings.tissue = false;
+  return settings;
+}
+
+/// Past the frames of the start: what comes after answers the hand, a frame for each move.
+void await_start(LiveSimulation& live) {
+  live.request({.time_s = 0.5, .face = false});
+  while (next_frame(live).time_s != 0.5) {
+  }
+}
+
+/// The boxes with a block that lies on top of the mandible's front and goes along with it, and a
+/// segment in the air.
+Case box_patient_with_free_parts() {
+  Case patient = box_patient();
+  patient.parts.push_back(
+      {"transplant", Role::transplant, box({-5, -35, -40.8}, {5, -25, -30.8}), {}, Body::mandible});
+  patient.parts.push_back(
+      {"segment", Role::segment, box({35, -70, -30}, {43, -62, -22}), {}, Body::cranium});
+  return patient;
+}
+
+}  // namespace
+
+TEST(Drag, TheJawOfTheBuiltInPatientSlidesInItsBite) {
+  const Scene scene = make_scene(builtin_patient(), without_tissue());
+  const auto& parts = scene.patient.parts;
+  const std::size_t jaw = part_named(scene.patient, "mandible"),
+                    upper = part_named(scene.patient, "upper_teeth"),
+                    lower = part_named(scene.patient, "lower_teeth");
+  const OverlapOracle upper_oracle(parts[upper].mesh), lower_oracle(parts[lower].mesh);
+  LiveSimulation live(scene, resting(), without_tissue());
+  await_start(live);
+  int touching = 0;
+  double sideways = 0;
+  for (int k = 0; k <= 24; ++k) {
+    const double s = 2 * M_PI * k / 24;
+    live.drag(jaw, shift(2.5 * std::sin(s), 0.5 * std::sin(2 * s), 1.5));
+    const FrameState frame = next_frame(live);
+    EXPECT_TRUE(frame.stopped);
+    EXPECT_LE(frame.contacts.max_penetration_mm(), 0.02) << k;
+    if (k % 4 == 0) {
+      EXPECT_LE(deepest(upper_oracle, lower_oracle, frame.X_CM), 0.1) << k;
+    }
+    touching += frame.contacts.contact_count() > 0;
+    sideways = std::max(sideways, std::abs(frame.X_CM.t.x()));
+  }
+  EXPECT_GT(touching, 18);
+  EXPECT_GT(sideways, 1);
+  live.release(jaw);
+  EXPECT_NEAR(next_frame(live).X_CM.t.norm(), 0, 1e-9);  // back where the motion wants it
+}
+
+TEST(Drag, ATransplantSlidesAlongTheMandible) {
+  const Scene scene = make_scene(box_patient_with_free_parts(), without_tissue());
+  const std::size_t graft = part_named(scene.patient, "transplant");
+  LiveSimulation live(scene, resting(), without_tissue());
+  await_start(live);
+  FrameState frame;
+  for (int k = 1; k <= 20; ++k) {
+    live.drag(graft, shift(k, 0.5 * k, -0.2 * k));  // along, and down into the bone
+    frame = next_frame(live);
+    EXPECT_LE(frame.contacts.max_penetration_mm(), 0.02) << k;
+    ASSERT_EQ(frame.X_CF.size(), 2u);
+    EXPECT_EQ(frame.X_CM.t, Eigen::Vector3d(0, 0, 0));
+  }
+  EXPECT_TRUE(frame.stopped);
+  EXPECT_NEAR(frame.X_CF[0].t.x(), 20, 1);
+  EXPECT_NEAR(frame.X_CF[0].t.y(), 10, 1);
+  EXPECT_NEAR(frame.X_CF[0].t.z(), -0.2, 0.1);
+  const double x = frame.X_CF[0].t.x();
+  // Let go it stays on the mandible, and goes along with it.
+  live.release(graft);
+  live.drag(part_named(scene.patient, "mandible"), shift(0, 0, -10));
+  while (frame.X_CM.t.z() > -9.9) frame = next_frame(live);
+  EXPECT_NEAR(frame.X_CF[0].t.z(), -10.2, 0.1);
+  EXPECT_NEAR(frame.X_CF[0].t.x(), x, 0.1);
+  EXPECT_LE(frame.contacts.max_penetration_mm(), 0.02);
+}
+
+TEST(Drag, ASegmentIsPushedIntoAGapAndHeldAtItsWalls) {
+  const Scene scene = make_scene(box_patient_with_free_parts(), without_tissue());
+  const std::size_t segment = part_named(scene.patient, "segment");
+  LiveSimulation live(scene, resting(), without_tissue());
+  await_start(live);
+  FrameState frame;
+  // Down to the mandible's top (z = -41) and against the maxilla's side (x = 30).
+  for (int k = 1; k <= 15; ++k) {
+    live.drag(segment, shift(-0.7 * k, 0.3 * k, -1.2 * k));
+    frame = next_frame(live);
+    EXPECT_LE(frame.contacts.max_penetration_mm(), 0.02) << k;
+  }
+  EXPECT_TRUE(frame.stopped);
+  EXPECT_NEAR(frame.X_CF[1].t.z(), -11, 0.05);
+  EXPECT_NEAR(frame.X_CF[1].t.x(), -5, 0.05);
+  EXPECT_GT(frame.X_CF[1].t.y(), 2);  // along the walls it goes on
+}
+
+TEST(Drag, TheJawIsHeldByASegmentThatTheCraniumCarries) {
+  const Scene scene = make_scene(box_patient_with_free_parts(), without_tissue());
+  LiveSimulation live(scene, resting(), without_tissue());
+  await_start(live);
+  live.drag(part_named(scene.patient, "segment"), shift(0, 0, -11));  // onto the mandible's top
+  FrameState frame = next_frame(live);
+  EXPECT_NEAR(frame.X_CF[1].t.z(), -11, 0.02);
+  live.drag(part_named(scene.patient, "mandible"), shift(0, 0, 0.8));
+  frame = next_frame(live);
+  EXPECT_TRUE(frame.stopped);
+  EXPECT_LE(frame.contacts.max_penetration_mm(), 0.02);
+}
+
+TEST(Drag, WhatCannotBeMovedIsRefused) {
+  const Scene scene = make_scene(box_patient_with_free_parts(), without_tissue());
+  LiveSimulation live(scene, resting(), without_tissue());
+  await_start(live);
+  EXPECT_THROW(live.drag(part_named(scene.patient, "maxilla"), {}), InputError);
+  EXPECT_THROW(live.drag(99, {}), InputError);
+  EXPECT_THROW(live.drag(part_named(scene.patient, "mandible"), shift(std::nan(""), 0, 0)),
+               InputError);
+}
+
+}  // namespace condyle::test
