@@ -1,8 +1,6 @@
 #include <fmt/format.h>
-#include <sys/utsname.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -12,17 +10,6 @@
 #include "tools/common.h"
 
 namespace condyle {
-namespace {
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown";
-}
-
-}  // namespace
-
 int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
   ProgressBar bar(common);
   SimulatorSettings settings;

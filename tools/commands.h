@@ -87,5 +87,6 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common);
 int run_bench_table1(const CommonOptions& common);
 int run_bench_table2(const CommonOptions& common);
 int run_bench_tissue(const BenchOptions& options, const CommonOptions& common);
+int run_bench_collide(const BenchOptions& options, const CommonOptions& common);
 
 }  // namespace condyle

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -64,6 +65,13 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
   settings.contact.friction = options.friction;
   for (const auto& pair : options.pairs) settings.contact.pair_rules.push_back(parse_pair(pair));
   return settings;
+}
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown";
 }
 
 std::pair<int, int> parse_size(const std::string& text) {

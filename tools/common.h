@@ -34,6 +34,9 @@ Case open_patient(const std::filesystem::path& folder, const CommonOptions& comm
 
 SimulatorSettings simulator_settings(const MotionOptions& options, const CommonOptions& common);
 
+/// The machine's processor, by its own name.
+std::string processor();
+
 /// "1280x720". throws: InputError unless both are between 16 and 8192.
 std::pair<int, int> parse_size(const std::string& text);
 

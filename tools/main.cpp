@@ -287,6 +287,11 @@ int run_program(int argc, char** argv) {
       ->check(CLI::Range(1, 1000));
   bench_tissue->add_option("--sizes", bench.sizes, "Nodes of larger tissues (10000 50000 100000)")
       ->check(CLI::Range(200, 1000000));
+  auto* bench_collide =
+      add_command(*bench_command, "collide",
+                  "Contact, sliding, dynamics and distance fields, beside FCL's and Bullet's own",
+                  "condyle bench collide --json");
+  bench_collide->add_option("CASE", bench.patient, "Case folder (default: the built-in patient)");
 
   if (const auto problem = unknown_verb(app, argc, argv); !problem.empty())
     throw InputError(problem);
@@ -313,6 +318,7 @@ int run_program(int argc, char** argv) {
   if (bench_table1->parsed()) return run_bench_table1(common);
   if (bench_table2->parsed()) return run_bench_table2(common);
   if (bench_tissue->parsed()) return run_bench_tissue(bench, common);
+  if (bench_collide->parsed()) return run_bench_collide(bench, common);
   return run_view(view, common);
 }
 

@@ -1,9 +1,11 @@
 #include "engine/collide/collision_mesh.h"
 
 #include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
 #include <fcl/narrowphase/detail/traversal/distance/mesh_distance_traversal_node.h>
+#include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
 #include <array>
@@ -273,6 +275,22 @@ double overlap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
                TrianglePair triangles) {
   return triangle_overlap(corners(a.tree().model, triangles.a),
                           corners(b.tree().model, triangles.b, transform(X_WA.inverse() * X_WB)));
+}
+
+PlainQuery plain_query(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
+                       const Pose& X_WB, int most_contacts) {
+  const Model &model_a = a.tree().model, &model_b = b.tree().model;
+  const fcl::Transform3d X_A = transform(X_WA), X_B = transform(X_WB);
+  const fcl::CollisionRequestd collision(static_cast<std::size_t>(most_contacts), true);
+  fcl::CollisionResultd crossing;
+  fcl::collide(&model_a, X_A, &model_b, X_B, collision, crossing);
+  PlainQuery query;
+  query.contacts = static_cast<int>(crossing.numContacts());
+  if (query.contacts > 0) return query;
+  fcl::DistanceResultd nearest;
+  query.distance_mm =
+      fcl::distance(&model_a, X_A, &model_b, X_B, fcl::DistanceRequestd(true), nearest);
+  return query;
 }
 
 }  // namespace condyle

@@ -82,4 +82,13 @@ std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, cons
 double overlap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
                TrianglePair triangles);
 
+/// FCL's own queries as they come, cold, on the same trees: what ours are measured against. Its
+/// contacts and distances are not to be relied on (see distance).
+struct PlainQuery {
+  int contacts = 0;  // crossing triangles found, up to `most_contacts`
+  double distance_mm = 0;
+};
+PlainQuery plain_query(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
+                       const Pose& X_WB, int most_contacts);
+
 }  // namespace condyle
