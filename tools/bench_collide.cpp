@@ -55,13 +55,13 @@ TriMesh joined(TriMesh a, const TriMesh& b) {
   return a;
 }
 
-/// The same surface in about that many triangles, made smaller or larger near `center`.
+/// The same surface in about that many triangles: simplified, or divided near `center`.
 TriMesh sized(const TriMesh& mesh, int triangles, const Vector3d& center) {
-  TriMesh result = mesh;
-  for (double edge = 1; static_cast<int>(result.triangles.size()) < triangles && edge > 0.02;
-       edge *= 0.7)
+  TriMesh result = simplify(mesh, triangles);
+  for (double edge = 1;
+       static_cast<double>(result.triangles.size()) < 0.98 * triangles && edge > 0.02; edge *= 0.9)
     result = refine_near(std::move(result), center, 60, edge, 2 * triangles);
-  return simplify(result, triangles);
+  return result;
 }
 
 /// Skull with upper teeth and mandible with lower teeth, each as one surface.
