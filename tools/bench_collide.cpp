@@ -99,6 +99,11 @@ Jaws find_jaws(const Case& patient) {
   return jaws;
 }
 
+/// One thread, and as many as may be used.
+std::vector<int> thread_counts(int threads) {
+  return threads > 1 ? std::vector<int>{1, threads} : std::vector<int>{1};
+}
+
 /// Around the crowns, with room for the ways of the bench.
 SlideBodySettings near_bite(const Jaws& jaws) {
   SlideBodySettings settings;
@@ -132,9 +137,7 @@ void measure_pair(const Jaws& jaws, int triangles, int threads, bool baselines, 
   const int most = static_cast<int>(std::max(upper.triangles.size(), lower.triangles.size()));
 
   constexpr int frames = 300, warm_up = 10, look_every = 6;
-  std::vector<int> thread_counts = {1};
-  if (threads > 1) thread_counts.push_back(threads);
-  for (const int count : thread_counts) {
+  for (const int count : thread_counts(threads)) {
     std::vector<double> ms, fcl, depths;
     int touching = 0, fewest = 1 << 30;
     SlideMemory memory;
@@ -253,7 +256,6 @@ void measure_dynamics(const Jaws& jaws, int threads, Results& results) {
   constexpr double bone_kg_mm3 = 1.9e-6;
   const TriMesh upper = sized(jaws.upper, triangles, jaws.center),
                 lower = sized(jaws.lower, triangles, jaws.center);
-  RigidWorld world;
   RigidBody skull, mandible;
   skull.surfaces = {
       std::make_shared<const SlideBody>(make_slide_body(upper, near_bite(jaws), threads))};
@@ -263,32 +265,35 @@ void measure_dynamics(const Jaws& jaws, int threads, Results& results) {
   mandible.X_WB.t.z() = -1;
   mandible.drag_N_s_mm = 2e-3;
   mandible.turning_drag_N_mm_s = 5;
-  const int c = world.add_body(skull), m = world.add_body(mandible);
-  world.add_pair({.a = c, .b = m});
-  for (const Vector3d& condyle : jaws.condyles)
-    world.add_spring({.a = c,
-                      .b = m,
-                      .p_A = condyle,
-                      .p_B = condyle,
-                      .stiffness_N_mm = 10,
-                      .damping_N_s_mm = 0.01});
-  const int force = world.add_force({.body = m, .point = jaws.center});
-  std::vector<double> ms;
-  int touching = 0, step = 0;
-  for (int second = 0; second < seconds; ++second)
-    ms.push_back(timed([&] {
-      for (int i = 0; i < 1000; ++i, ++step) {
-        world.set_force(force, {10 * std::sin(0.006 * step), 5 * std::sin(0.004 * step), 40});
-        world.step(threads);
-        touching += !world.contacts().empty();
-      }
-    }));
-  results.add("collide.dynamics", ms,
-              {{"simulated_s", 1},
-               {"step_ms", 1},
-               {"triangles", upper.triangles.size()},
-               {"threads", threads},
-               {"touching_steps_of_1000", touching / seconds}});
+  for (const int count : thread_counts(threads)) {
+    RigidWorld world;
+    const int c = world.add_body(skull), m = world.add_body(mandible);
+    world.add_pair({.a = c, .b = m});
+    for (const Vector3d& condyle : jaws.condyles)
+      world.add_spring({.a = c,
+                        .b = m,
+                        .p_A = condyle,
+                        .p_B = condyle,
+                        .stiffness_N_mm = 10,
+                        .damping_N_s_mm = 0.01});
+    const int force = world.add_force({.body = m, .point = jaws.center});
+    std::vector<double> ms;
+    int touching = 0, step = 0;
+    for (int second = 0; second < seconds; ++second)
+      ms.push_back(timed([&] {
+        for (int i = 0; i < 1000; ++i, ++step) {
+          world.set_force(force, {10 * std::sin(0.006 * step), 5 * std::sin(0.004 * step), 40});
+          world.step(count);
+          touching += !world.contacts().empty();
+        }
+      }));
+    results.add("collide.dynamics", ms,
+                {{"simulated_s", 1},
+                 {"step_ms", 1},
+                 {"triangles", upper.triangles.size()},
+                 {"threads", count},
+                 {"touching_steps_of_1000", touching / seconds}});
+  }
 }
 
 void measure_field(const Jaws& jaws, int threads, Results& results) {
@@ -326,7 +331,7 @@ int run_bench_collide(const BenchOptions& options, const CommonOptions& common) 
   bar.show("two bones of 300,000", 0.25);
   measure_pair(jaws, 300000, common.threads, false, results);
   bar.show("ten segments", 0.6);
-  measure_segments(common.threads, results);
+  for (const int threads : thread_counts(common.threads)) measure_segments(threads, results);
   bar.show("distance field", 0.7);
   measure_field(jaws, common.threads, results);
   bar.show("dynamics", 0.8);
