@@ -1,9 +1,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "engine/collide/distance_field.h"
+#include "engine/collide/field_face.h"
 #include "engine/collide/shells.h"
 #include "engine/core/parallel.h"
 #include "engine/mesh/triangle_tree.h"
@@ -13,63 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
+using Points = std::array<Vector3d, 4>;
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// A triangle made ready for many queries.
-struct Face {
-  Vector3d a, ab, ac, normal;
-  double bb = 0, bc = 0, cc = 0;  // products of ab and ac
-  Vector3d center;                // of its ball
-  double radius = 0;
-  int shell = 0, triangle = 0;  // in that shell
-  std::uint8_t rim = 0;
-};
-
-/// Square distance, and the barycentric coordinates of the nearest point: exactly 0 on edges and
-/// corners. source: Ericson, Real-Time Collision Detection, 5.1.5.
-double nearest(const Face& f, const Vector3d& p, Vector3d& at) {
-  const Vector3d ap = p - f.a;
-  const double d1 = f.ab.dot(ap), d2 = f.ac.dot(ap);
-  const double d3 = d1 - f.bb, d4 = d2 - f.bc, d5 = d1 - f.bc, d6 = d2 - f.cc;
-  double v = 0, w = 0;
-  at.setZero();
-  if (d1 <= 0 && d2 <= 0) {
-    at[0] = 1;
-  } else if (d3 >= 0 && d4 <= d3) {
-    at[1] = v = 1;
-  } else if (d6 >= 0 && d5 <= d6) {
-    at[2] = w = 1;
-  } else {
-    const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-      v = d1 / (d1 - d3);
-      at = {1 - v, v, 0};
-    } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-      w = d2 / (d2 - d6);
-      at = {1 - w, 0, w};
-    } else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-      w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-      v = 1 - w;
-      at = {0, v, w};
-    } else {
-      const double sum = va + vb + vc;
-      v = vb / sum;
-      w = vc / sum;
-      at = {1 - v - w, v, w};
-    }
-  }
-  return (ap - v * f.ab - w * f.ac).squaredNorm();
-}
-
-bool on_rim(const Face& f, const Vector3d& at) {
-  if (f.rim == 0) return false;
-  const int zeros = (at[0] == 0) + (at[1] == 0) + (at[2] == 0);
-  for (int k = 0; k < 3; ++k) {
-    if (zeros == 2 && at[k] != 0) return f.rim & (8 << k);
-    if (zeros == 1 && at[k] == 0) return f.rim & (1 << (k + 1) % 3);
-  }
-  return false;
-}
 
 /// A cube of bricks with the faces that can be nearest to some point of it, grouped by shell.
 struct Cube {
@@ -93,9 +41,24 @@ class FieldBuilder {
   FieldBuilder(DistanceField& field, const TriMesh& mesh) : field_(field) {
     shells_ = solid_shells(mesh);
     for (const Shell& shell : shells_) {
+      const int index = static_cast<int>(trees_.size());
       trees_.emplace_back(shell.mesh);
-      for (std::size_t i = 0; i < shell.mesh.triangles.size(); ++i) add_face(shell, i);
+      for (std::size_t i = 0; i < shell.mesh.triangles.size(); ++i) {
+        const FieldFace face = field_face(shell, index, static_cast<int>(i));
+        if (face.normal.squaredNorm() > 0) faces_.push_back(face);
+      }
     }
+    Box box = bounding_box(mesh);
+    const double grid_mm = DistanceField::cells * field.settings_.spacing_mm;
+    for (int k = 0; k < 8; ++k) {
+      const Vector3d corner(k & 1 ? field.size_[0] : 0, k & 2 ? field.size_[1] : 0,
+                            k & 4 ? field.size_[2] : 0);
+      box.add(field.origin_ + grid_mm * corner);
+    }
+    center_ = box.center();
+    rounding_mm_ = static_cast<float>(1e-6 * box.size().norm());
+    planes_.reserve(faces_.size());
+    for (const FieldFace& face : faces_) planes_.emplace_back(face, center_);
   }
 
   void run(int threads) {
@@ -104,24 +67,13 @@ class FieldBuilder {
     std::vector<Cube> cubes(1);
     cubes[0].faces.resize(faces_.size());
     for (std::size_t i = 0; i < faces_.size(); ++i) cubes[0].faces[i] = static_cast<int>(i);
-    for (; edge > 1; edge /= 2) {
-      std::vector<std::vector<Cube>> parts(8 * cubes.size());
-      parallel_for(parts.size(), threads, [&](std::size_t i) {
-        const Cube& parent = cubes[i / 8];
-        Cube child{parent.x + (i & 1 ? edge / 2 : 0),
-                   parent.y + (i & 2 ? edge / 2 : 0),
-                   parent.z + (i & 4 ? edge / 2 : 0),
-                   {}};
-        if (narrow(parent, edge / 2, child)) parts[i].push_back(std::move(child));
-      });
+    for (edge = std::max(edge, 2); edge > 1; edge /= 2) {
+      std::vector<std::vector<Cube>> parts(2 * cubes.size());
+      parallel_for(parts.size(), threads,
+                   [&](std::size_t i) { narrow(cubes[i / 2], edge / 2, i % 2 != 0, parts[i]); });
       cubes.clear();
       for (auto& part : parts)
         for (auto& cube : part) cubes.push_back(std::move(cube));
-    }
-    if (field_.brick_.size() == 1) {  // no halving came by
-      Cube only;
-      const bool kept = narrow(cubes[0], 1, only);
-      cubes.assign(kept ? 1 : 0, only);
     }
     field_.bricks_.resize(cubes.size());
     for (std::size_t i = 0; i < cubes.size(); ++i)
@@ -130,28 +82,8 @@ class FieldBuilder {
   }
 
  private:
-  void add_face(const Shell& shell, std::size_t i) {
-    const auto& t = shell.mesh.triangles[i];
-    Face f;
-    f.a = shell.mesh.vertices[t[0]];
-    f.ab = shell.mesh.vertices[t[1]] - f.a;
-    f.ac = shell.mesh.vertices[t[2]] - f.a;
-    f.normal = f.ab.cross(f.ac);
-    if (!(f.normal.squaredNorm() > 0)) return;
-    f.bb = f.ab.squaredNorm();
-    f.bc = f.ab.dot(f.ac);
-    f.cc = f.ac.squaredNorm();
-    f.center = f.a + (f.ab + f.ac) / 3;
-    for (const Vector3d& corner : {f.a, Vector3d(f.a + f.ab), Vector3d(f.a + f.ac)})
-      f.radius = std::max(f.radius, (corner - f.center).norm() * (1 + 1e-12));
-    f.shell = static_cast<int>(trees_.size()) - 1;
-    f.triangle = static_cast<int>(i);
-    f.rim = shell.rim[i];
-    faces_.push_back(f);
-  }
-
   /// Negative where p lies behind the face, edge or corner nearest to it.
-  double signed_distance(const Face& f, const Vector3d& p, const Vector3d& at,
+  double signed_distance(const FieldFace& f, const Vector3d& p, const Vector3d& at,
                          double distance) const {
     const Vector3d away = p - (f.a + at[1] * f.ab + at[2] * f.ac);
     if (at[0] > 0 && at[1] > 0 && at[2] > 0) return away.dot(f.normal) < 0 ? -distance : distance;
@@ -161,82 +93,132 @@ class FieldBuilder {
     return away.dot(trees_[f.shell].pseudonormal(found)) < 0 ? -distance : distance;
   }
 
-  /// `kept`, if given: faces that can be nearest to a point within `radius` of p.
-  Survey survey(const std::vector<int>& faces, const Vector3d& p, double radius,
-                std::vector<int>* kept) const {
+  /// What a square bound may be where the distance is no more than this.
+  float square_limit(double distance) const {
+    const float most = static_cast<float>(distance) + rounding_mm_;
+    return most * most * (1 + 1e-6f);
+  }
+
+  /// The nearest face of one shell, as far as it is known.
+  struct Nearest {
+    double square = infinity;
+    int face = -1;
+    Vector3d at;
+
+    /// The first of equally near faces stays.
+    void consider(const std::vector<FieldFace>& faces, int other, const Vector3d& p) {
+      Vector3d there;
+      const double square_there = nearest(faces[other], p, there);
+      if (square_there >= square) return;
+      square = square_there;
+      face = other;
+      at = there;
+    }
+  };
+
+  /// Adds what is known of one more shell. Returns its distance: with a sign where it is closed.
+  double add_shell(const Nearest& found, const Vector3d& p, Survey& result) const {
+    const FieldFace& face = faces_[found.face];
+    const double plain = std::sqrt(found.square);
+    double distance = signed_distance(face, p, found.at, plain);
+    const bool closed = shells_[face.shell].closed;
+    if (closed) {
+      result.closed = std::min(result.closed, distance);
+    } else {
+      result.open = std::min(result.open, plain);
+      if (on_rim(face, found.at) || plain > field_.settings_.band_mm) distance = plain;
+    }
+    result.value = std::min(result.value, distance);
+    return closed ? distance : plain;
+  }
+
+  /// What is nearest to each of four points. `kept`, if given: of each point, the faces that can be
+  /// nearest to others within its radius.
+  std::array<Survey, 4> survey(const std::vector<int>& faces, const Points& points,
+                               const std::array<double, 4>& radius,
+                               std::array<std::vector<int>, 4>* kept) const {
+    using Four = FacePlanes::Four;
     struct Run {
-      std::size_t first, last;  // faces of one shell
-      double distance;
+      std::size_t first, last;
+      std::array<double, 4> distance;
       bool closed;
     };
-    thread_local std::vector<double> least;
+    thread_local std::vector<Four> squares;
     thread_local std::vector<Run> runs;
-    least.resize(faces.size());
+    squares.resize(faces.size());
     runs.clear();
-    Survey result;
-    for (std::size_t first = 0; first < faces.size();) {
-      const int shell = faces_[faces[first]].shell;
-      double best = infinity, best2 = infinity;
-      const Face* nearest_face = nullptr;
-      Vector3d nearest_at;
-      std::size_t last = first;
-      for (; last < faces.size() && faces_[faces[last]].shell == shell; ++last) {
-        const Face& f = faces_[faces[last]];
-        const double reach = best + f.radius;
-        const double to_center2 = (p - f.center).squaredNorm();
-        // Not nearer than the best: its ball tells how far at least. In small cubes an exact
-        // distance spares more further down than it costs.
-        if (to_center2 >= reach * reach) {
-          const double bound = std::sqrt(to_center2) - f.radius;
-          if (!kept || radius > 2.5 || bound > best + 2 * radius) {
-            least[last] = bound;
-            continue;
-          }
-        }
-        Vector3d at;
-        const double d2 = nearest(f, p, at);
-        least[last] = kept ? std::sqrt(d2) : 0;
-        if (d2 < best2) {
-          best2 = d2;
-          best = std::sqrt(d2);
-          nearest_face = &f;
-          nearest_at = at;
-        }
-      }
-      const bool closed = shells_[shell].closed;
-      double distance = signed_distance(*nearest_face, p, nearest_at, best);
-      if (closed) {
-        result.closed = std::min(result.closed, distance);
-      } else {
-        result.open = std::min(result.open, best);
-        if (on_rim(*nearest_face, nearest_at) || best > field_.settings_.band_mm) distance = best;
-      }
-      result.value = std::min(result.value, distance);
-      runs.push_back({first, last, closed ? distance : best, closed});
-      first = last;
+    Four x, y, z;
+    for (int k = 0; k < 4; ++k) {
+      const Eigen::Vector3f from_center = (points[k] - center_).cast<float>();
+      x[k] = from_center.x();
+      y[k] = from_center.y();
+      z[k] = from_center.z();
     }
-    if (!kept) return result;
+    std::array<Survey, 4> result;
+    for (std::size_t first = 0; first < faces.size();) {
+      Run run{first, first, {}, false};
+      const int shell = faces_[faces[first]].shell;
+      run.closed = shells_[shell].closed;
+      Four least = Four::Constant(std::numeric_limits<float>::infinity());
+      for (; run.last < faces.size() && faces_[faces[run.last]].shell == shell; ++run.last) {
+        squares[run.last] = planes_[faces[run.last]].square_distances(x, y, z);
+        least = least.min(squares[run.last]);
+      }
+      Four limit;
+      for (int k = 0; k < 4; ++k) limit[k] = square_limit(std::sqrt(least[k]) + rounding_mm_);
+      std::array<Nearest, 4> found;
+      for (std::size_t i = run.first; i < run.last; ++i) {
+        if (!(squares[i] <= limit).any()) continue;
+        for (int k = 0; k < 4; ++k)
+          if (squares[i][k] <= limit[k]) found[k].consider(faces_, faces[i], points[k]);
+      }
+      for (int k = 0; k < 4; ++k) run.distance[k] = add_shell(found[k], points[k], result[k]);
+      first = run.last;
+      if (kept) runs.push_back(run);
+    }
     for (const Run& run : runs) {
-      if (run.closed && run.distance > result.closed + 2 * radius) continue;
-      if (!run.closed && run.distance > field_.settings_.band_mm + radius &&
-          run.distance > std::abs(result.closed) + 2 * radius && result.closed < infinity)
-        continue;
-      const double limit = (std::abs(run.distance) + 2 * radius) * (1 + 1e-12);
+      Four limit;
+      for (int k = 0; k < 4; ++k) {
+        const double reach = 2 * radius[k], distance = run.distance[k], closed = result[k].closed;
+        const bool far = run.closed ? distance > closed + reach
+                                    : distance > field_.settings_.band_mm + radius[k] &&
+                                          distance > std::abs(closed) + reach && closed < infinity;
+        limit[k] = far ? -1 : square_limit(std::abs(distance) + reach);
+      }
       for (std::size_t i = run.first; i < run.last; ++i)
-        if (least[i] <= limit) kept->push_back(faces[i]);
+        for (int k = 0; k < 4; ++k)
+          if (squares[i][k] <= limit[k]) (*kept)[k].push_back(faces[i]);
     }
     return result;
   }
 
-  /// False when the band does not reach the child: then its places are told how far it is.
-  bool narrow(const Cube& parent, int edge, Cube& child) {
-    if (child.x >= field_.size_[0] || child.y >= field_.size_[1] || child.z >= field_.size_[2])
-      return false;
+  /// The children of a cube, four of them, that the band reaches.
+  void narrow(const Cube& parent, int edge, bool upper, std::vector<Cube>& reached) {
     const double mm = DistanceField::cells * field_.settings_.spacing_mm;
     const double radius = 0.5 * edge * mm * std::sqrt(3.0) * (1 + 1e-12);
-    const Vector3d center =
-        place_center(child.x, child.y, child.z) + Vector3d::Constant(0.5 * (edge - 1) * mm);
-    const Survey found = survey(parent.faces, center, radius, &child.faces);
+    std::array<Cube, 4> child;
+    Points center;
+    for (int k = 0; k < 4; ++k) {
+      child[k].x = parent.x + (k & 1 ? edge : 0);
+      child[k].y = parent.y + (k & 2 ? edge : 0);
+      child[k].z = parent.z + (upper ? edge : 0);
+      center[k] = place_center(child[k].x, child[k].y, child[k].z) +
+                  Vector3d::Constant(0.5 * (edge - 1) * mm);
+    }
+    std::array<std::vector<int>, 4> kept;
+    const auto found = survey(parent.faces, center, {radius, radius, radius, radius}, &kept);
+    for (int k = 0; k < 4; ++k)
+      if (keep(child[k], edge, center[k], radius, found[k])) {
+        child[k].faces = std::move(kept[k]);
+        reached.push_back(std::move(child[k]));
+      }
+  }
+
+  /// False when the band does not reach the child: then its places are told how far it is.
+  bool keep(const Cube& child, int edge, const Vector3d& center, double radius,
+            const Survey& found) {
+    if (child.x >= field_.size_[0] || child.y >= field_.size_[1] || child.z >= field_.size_[2])
+      return false;
     const double outside = std::min(found.closed, found.open);
     const double band = field_.settings_.band_mm;
     const bool inside = found.closed < -(band + radius);
@@ -276,52 +258,77 @@ class FieldBuilder {
     DistanceField::mark_unknown(brick, field_.settings_.spacing_mm);
   }
 
+  Vector3d place_of(const Cube& cube, double x, double y, double z) const {
+    return field_.origin_ +
+           field_.settings_.spacing_mm * Vector3d(cube.x * DistanceField::cells + x,
+                                                  cube.y * DistanceField::cells + y,
+                                                  cube.z * DistanceField::cells + z);
+  }
+
   void fill_block(const Block& block, const Cube& cube, const std::vector<int>& faces,
                   DistanceField::Brick& brick) const {
-    const double h = field_.settings_.spacing_mm;
-    const auto at = [&](double x, double y, double z) {
-      return Vector3d(field_.origin_ +
-                      h * Vector3d(cube.x * 8 + x, cube.y * 8 + y, cube.z * 8 + z));
-    };
     const int widest = std::max(
         {block.high[0] - block.low[0], block.high[1] - block.low[1], block.high[2] - block.low[2]});
-    if (widest <= 1) {
-      for (int z = block.low[2]; z <= block.high[2]; ++z)
-        for (int y = block.low[1]; y <= block.high[1]; ++y)
-          for (int x = block.low[0]; x <= block.high[0]; ++x)
-            brick.value[static_cast<std::size_t>(x + DistanceField::corners *
-                                                         (y + DistanceField::corners * z))] =
-                static_cast<float>(survey(faces, at(x, y, z), 0, nullptr).value);
+    if (widest <= 2) {
+      sample(block, cube, faces, brick);
       return;
     }
-    for (int part = 0; part < 8; ++part) {
-      Block child = block;
-      bool empty = false;
-      for (int k = 0; k < 3; ++k) {
-        const int middle = (block.low[k] + block.high[k]) / 2;
-        if (part & (1 << k))
-          child.low[k] = middle + 1;
-        else
-          child.high[k] = middle;
-        empty = empty || child.low[k] > child.high[k];
+    for (int upper = 0; upper < 2; ++upper) {
+      std::array<Block, 4> child;
+      Points middle;
+      std::array<double, 4> radius;
+      for (int part = 0; part < 4; ++part) {
+        double center[3], radius2 = 0;
+        child[part] = block;
+        Block& c = child[part];
+        for (int k = 0; k < 3; ++k) {
+          const int half = (block.low[k] + block.high[k]) / 2;
+          if ((part + 4 * upper) & (1 << k))
+            c.low[k] = half + 1;
+          else
+            c.high[k] = half;
+          center[k] = 0.5 * (c.low[k] + c.high[k]);
+          const double wide = 0.5 * field_.settings_.spacing_mm * (c.high[k] - c.low[k]);
+          radius2 += wide * wide;
+        }
+        middle[part] = place_of(cube, center[0], center[1], center[2]);
+        radius[part] = std::sqrt(radius2) * (1 + 1e-9);
       }
-      if (empty) continue;
-      double middle[3], radius2 = 0;
-      for (int k = 0; k < 3; ++k) {
-        middle[k] = 0.5 * (child.low[k] + child.high[k]);
-        const double half = 0.5 * h * (child.high[k] - child.low[k]);
-        radius2 += half * half;
-      }
-      std::vector<int> kept;
-      survey(faces, at(middle[0], middle[1], middle[2]), std::sqrt(radius2) * (1 + 1e-9), &kept);
-      fill_block(child, cube, kept, brick);
+      std::array<std::vector<int>, 4> kept;
+      survey(faces, middle, radius, &kept);
+      for (int part = 0; part < 4; ++part) fill_block(child[part], cube, kept[part], brick);
     }
+  }
+
+  void sample(const Block& block, const Cube& cube, const std::vector<int>& faces,
+              DistanceField::Brick& brick) const {
+    Points points;
+    std::array<std::size_t, 4> places;
+    int waiting = 0;
+    const auto ask = [&] {
+      for (int k = waiting; k < 4; ++k) points[k] = points[0];
+      const auto found = survey(faces, points, {}, nullptr);
+      for (int k = 0; k < waiting; ++k) brick.value[places[k]] = static_cast<float>(found[k].value);
+      waiting = 0;
+    };
+    for (int z = block.low[2]; z <= block.high[2]; ++z)
+      for (int y = block.low[1]; y <= block.high[1]; ++y)
+        for (int x = block.low[0]; x <= block.high[0]; ++x) {
+          points[waiting] = place_of(cube, x, y, z);
+          places[waiting] = static_cast<std::size_t>(x + DistanceField::corners *
+                                                             (y + DistanceField::corners * z));
+          if (++waiting == 4) ask();
+        }
+    if (waiting > 0) ask();
   }
 
   DistanceField& field_;
   std::vector<Shell> shells_;
   std::vector<TriangleTree> trees_;  // one per shell
-  std::vector<Face> faces_;          // by shell
+  std::vector<FieldFace> faces_;     // by shell
+  std::vector<FacePlanes> planes_;   // of the faces
+  Vector3d center_ = Vector3d::Zero();
+  float rounding_mm_ = 0;  // of the planes' bounds
 };
 
 DistanceField::DistanceField(const TriMesh& mesh, const FieldSettings& settings, int threads)
