@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <numbers>
+
+#include "engine/collide/slide.h"
+#include "tests/support/boxes.h"
+#include "tests/support/shapes.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+std::shared_ptr<const SlideBody> body(const TriMesh& mesh) {
+  return std::make_shared<const SlideBody>(make_slide_body(mesh, {}, 2));
+}
+
+Pose at(const Vector3d& t) { return {Quaterniond::Identity(), t}; }
+
+Pose turned(const Vector3d& axis, double degrees) {
+  return {Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis)), Vector3d::Zero()};
+}
+
+TriMesh plate() { return test::box({-20, -12, -4}, {20, 12, 0}); }
+
+/// Hardly turns, so that a pull at the middle is a pull at the contacts.
+SlideSettings rough(double friction) {
+  SlideSettings settings;
+  settings.friction = friction;
+  settings.rotation_length_mm = 1000;
+  return settings;
+}
+
+TEST(SlideFriction, AnInclineHoldsBelowTheFrictionAngleAndLetsSlideAboveIt) {
+  for (const double friction : {0.2, 0.5}) {
+    const double holds = std::atan(friction) * 180 / std::numbers::pi;
+    for (const double degrees : {0.5 * holds, 0.9 * holds, 1.1 * holds, 1.5 * holds}) {
+      const Pose lean = turned(Vector3d::UnitY(), degrees);
+      const SlidingContact model({body(test::moved(plate(), lean))},
+                                 {body(test::box({-3, -3, 0}, {3, 3, 4}))}, rough(friction));
+      const Vector3d up = lean.R * Vector3d::UnitZ(), downhill = lean.R * Vector3d::UnitX();
+      const Pose start{lean.R, 0.01 * up};
+      const double pull = 1;  // straight down
+      Pose wanted = start;
+      wanted.t.z() -= pull;
+      const SlideResult result = model.slide(start, wanted);
+      const double angle = degrees * std::numbers::pi / 180;
+      const double coulomb = std::max(0.0, pull * (std::sin(angle) - friction * std::cos(angle)));
+      EXPECT_NEAR((result.X_FM.t - start.t).dot(downhill), coulomb, 0.03)
+          << friction << " at " << degrees;
+      EXPECT_NEAR((result.X_FM.t - start.t).y(), 0, 0.03);
+      EXPECT_NEAR(result.X_FM.t.dot(up), 0, 0.03);
+    }
+  }
+}
+
+TEST(SlideFriction, AGrooveHoldsByFrictionOverTheSineOfItsHalfAngle) {
+  const double friction = 0.25, press = 0.6;
+  for (const double half : {45.0, 60.0}) {
+    // Two plates that lean by 90 degrees less the half angle; the groove's bottom is the y axis.
+    const double lean = 90 - half;
+    const TriMesh left =
+        test::moved(test::box({-1, -15, -3}, {14, 15, 0}), turned(Vector3d::UnitY(), -lean));
+    const TriMesh right =
+        test::moved(test::box({-14, -15, -3}, {1, 15, 0}), turned(Vector3d::UnitY(), lean));
+    const SlidingContact model({body(left), body(right)}, {body(test::sphere(5, 5))},
+                               rough(friction));
+    const double sine = std::sin(half * std::numbers::pi / 180);
+    const Vector3d rest(0, 0, 5 / sine);
+    const Pose start = model.slide(at(rest + 0.3 * Vector3d::UnitZ()), at(rest)).X_FM;
+    const double holds = friction * press / sine;
+    for (const double share : {0.5, 0.85, 1.2, 2.0}) {
+      const double along = share * holds;
+      const SlideResult result = model.slide(start, at(start.t + Vector3d(0, along, -press)));
+      EXPECT_NEAR(result.X_FM.t.y() - start.t.y(), std::max(0.0, along - holds), 0.04)
+          << half << " at " << share;
+      EXPECT_NEAR(result.X_FM.t.x(), 0, 0.04);
+      EXPECT_NEAR(result.X_FM.t.z(), rest.z(), 0.06);
+    }
+  }
+}
+
+/// Two bumpy balls, pressed together and drawn sideways.
+TEST(SlideFriction, OnBumpsItNeitherTremblesNorCreepsWhileTheWantedPoseRests) {
+  const auto crown = body(test::sphere(4, 9, {0, 0, 0}, 0.05));
+  const auto other = body(test::sphere(4, 5, {0, 0, 0}, 0.05));
+  for (const double friction : {0.1, 0.3}) {
+    SlideSettings settings;
+    settings.friction = friction;
+    const SlidingContact model({crown}, {other}, settings);
+    for (const double sideways : {0.0, 0.1, 0.6}) {
+      const Pose wanted = at({0.5 + sideways, 0.3, 13.2});
+      SlideMemory memory;
+      Pose X = model.slide(at({0.5, 0.3, 16}), at({0.5, 0.3, 13.2}), &memory).X_FM;
+      X = model.slide(X, wanted, &memory).X_FM;
+      const auto way = [](const Pose& a, const Pose& b) {
+        return (a.t - b.t).norm() + 5 * rotation_angle(a.inverse() * b);
+      };
+      const Pose first = X;
+      for (int frame = 0; frame < 100; ++frame) {
+        const SlideResult result = model.slide(X, wanted, &memory);
+        EXPECT_TRUE(result.touching);
+        ASSERT_LE(way(result.X_FM, X), 0.02) << friction << ' ' << sideways << ' ' << frame;
+        X = result.X_FM;
+      }
+      EXPECT_LE(way(X, first), 0.05) << friction << ' ' << sideways;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace condyle
