@@ -286,6 +286,7 @@ bool RigidWorld::State::advance(double step_s, int halvings, int threads,
     joint_rows.clear();
     prepare_joints(result);
   }
+  finder.narrow(active);
   integrate();
   remember();
   ++result.parts;

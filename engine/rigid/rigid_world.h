@@ -7,6 +7,7 @@
 #include "engine/collide/slide.h"
 #include "engine/math/pose.h"
 #include "engine/rigid/joint.h"
+#include "engine/rigid/looked_at.h"
 #include "engine/rigid/mass_properties.h"
 
 namespace condyle {
@@ -90,7 +91,7 @@ struct RigidState {
   std::vector<Body> bodies;
   std::vector<Touch> touches;
   std::vector<double> joint_forces_N;  // of each joint's rows
-  std::vector<Pose> looked_at;         // where near samples were last searched
+  std::vector<LookedAt> looked_at;     // of each pair of surfaces, both ways
 };
 
 /// Rigid bodies with mass, forces, joints and contact, in steps of a fixed length. Contacts are

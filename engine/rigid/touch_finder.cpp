@@ -14,15 +14,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+const Pose nowhere = {Eigen::Quaterniond::Identity(),
+                      Vector3d::Constant(std::numeric_limits<double>::infinity())};
 // Shares of the band beyond the gap: distance up to which samples are collected for several steps,
 // and up to which they can be touches.
 constexpr double collect_share = 0.65, active_share = 0.3;
 constexpr double least_band_mm = 0.2;  // that must be left beyond the gap
 constexpr double flat_cos = 0.985;     // of the faces at a sample: within 10 degrees
-// A sample may have come nearer than its way by this much more; if it was more still, it is found
-// so much later.
-constexpr double late_mm = 0.03;
+constexpr double sift_mm = 0.02;       // way after which samples are sifted anew
+constexpr double slope = 1.25;         // of interpolated distances at most, on short ways
+constexpr double within_share = 1.5, widest_share = 8;  // of the gap that is asked for
+constexpr int most_wide_parts = 32;
+constexpr double late_mm = 0.03;  // on the way since a search
+constexpr int group_size = 256;   // neighbours at most
 constexpr std::size_t run = 512;
 
 }  // namespace
@@ -38,12 +42,59 @@ double TouchFinder::moved(const Look& look, const Pose& from, const Pose& to) co
   return (to * c - from * c).norm() + rotation_angle(from.inverse() * to) * look.radius_mm;
 }
 
-void TouchFinder::search(Look& look, const Pose& X_FS) const {
-  look.near.clear();
-  look.stale = false;
-  collect_near(look.samples->samples, look.field->field, X_FS, look.reach_mm, look.near);
-  look.horizon_mm.clear();
-  for (const NearSample& n : look.near) look.horizon_mm.push_back(n.distance_mm);
+/// Of the near samples those that can be touches until the bodies have moved on, less those that
+/// stay behind a neighbour.
+void TouchFinder::sift(Look& look, const LookedAt& place) {
+  look.is_sifted = true;
+  look.sifted.clear();
+  group_.clear();
+  const SurfaceSamples& s = look.samples->samples;
+  const Eigen::Matrix3d R = place.sifted_at.R.toRotationMatrix();
+  const double reach = place.within_mm + slope * sift_mm;
+  const double was_within =
+      look.gap_mm + reach + moved(look, place.near_at, place.sifted_at) + late_mm;
+  int group = -1;
+  for (const NearSample& n : look.near) {
+    if (n.distance_mm > was_within) continue;
+    const auto i = static_cast<std::size_t>(n.sample);
+    if (look.group[i] != group) {
+      thin(look, place.within_mm + sift_mm);
+      group = look.group[i];
+    }
+    const FieldSample here = look.field->field.at(R * s.points[i] + place.sifted_at.t);
+    double gap = here.distance_mm - look.gap_mm;
+    if (!look.allowed.empty()) gap -= static_cast<double>(look.allowed[i]);
+    if (here.known && gap > reach) continue;
+    const SampleLook seen = judged(here, R * s.normals[i], s.spread[i]);
+    if (seen.known && seen.faces)
+      group_.push_back({n.sample, gap, here.gradient});
+    else
+      look.sifted.push_back(n.sample);
+  }
+  thin(look, place.within_mm + sift_mm);
+  std::sort(look.sifted.begin(), look.sifted.end());
+}
+
+/// Keeps the deepest of a group and whatever may get deeper than those kept on a way of any of its
+/// samples: gaps change by their gradients times the way, ways differ by the turn.
+void TouchFinder::thin(Look& look, double way_mm) {
+  std::sort(group_.begin(), group_.end(), [](const Candidate& x, const Candidate& y) {
+    return std::pair(x.gap_mm, x.sample) < std::pair(y.gap_mm, y.sample);
+  });
+  const std::vector<Vector3d>& points = look.samples->samples.points;
+  const double turn = way_mm / look.radius_mm;
+  std::size_t kept = 0;
+  for (const Candidate& c : group_) {
+    bool behind = false;
+    for (std::size_t k = 0; k < kept && !behind; ++k)
+      behind = c.gap_mm - group_[k].gap_mm >=
+               way_mm * (c.gradient - group_[k].gradient).norm() +
+                   turn * (points[c.sample] - points[group_[k].sample]).norm();
+    if (behind) continue;
+    look.sifted.push_back(c.sample);
+    group_[kept++] = c;
+  }
+  group_.clear();
 }
 
 void TouchFinder::add_pair(int a, int b, std::span<const Surface> of_a,
@@ -59,6 +110,13 @@ void TouchFinder::add_pair(int a, int b, std::span<const Surface> of_a,
     look.field = field;
     for (const Vector3d& p : samples->samples.points)
       look.radius_mm = std::max(look.radius_mm, (p - samples->samples.centroid).norm());
+    look.group.resize(samples->samples.points.size());
+    int groups = 0, grouped = 0;
+    for (const auto& ball : samples->samples.balls) {
+      if (ball.count > group_size || ball.first < grouped) continue;
+      grouped = ball.first + ball.count;
+      std::fill_n(look.group.begin() + ball.first, ball.count, groups++);
+    }
     const double room = field->field.settings().band_mm - gap_mm;
     if (!(room >= least_band_mm))
       throw InputError(
@@ -69,7 +127,7 @@ void TouchFinder::add_pair(int a, int b, std::span<const Surface> of_a,
     look.reserve_mm = (collect_share - active_share) * room - field_bend_mm;
     most_active_mm_ = std::min(most_active_mm_, active_share * room);
     looks_.push_back(std::move(look));
-    looked_at_.push_back({Eigen::Quaterniond::Identity(), Vector3d::Constant(infinity)});
+    looked_at_.push_back({nowhere, nowhere});
   };
   for (const Surface& s : of_a)
     for (const Surface& t : of_b) {
@@ -79,8 +137,10 @@ void TouchFinder::add_pair(int a, int b, std::span<const Surface> of_a,
 }
 
 void TouchFinder::allow_overlap(int pair, std::span<const Pose> X_WB) {
-  for (Look& look : looks_) {
+  for (std::size_t l = 0; l < looks_.size(); ++l) {
+    Look& look = looks_[l];
     if (look.pair != pair) continue;
+    looked_at_[l].sifted_at = nowhere;
     const Pose X_FS = relative(look, X_WB);
     const SurfaceSamples& samples = look.samples->samples;
     std::vector<NearSample> near;
@@ -96,26 +156,27 @@ void TouchFinder::allow_overlap(int pair, std::span<const Pose> X_WB) {
   }
 }
 
-void TouchFinder::set_looked_at(std::vector<Pose> poses) {
-  looked_at_ = std::move(poses);
-  for (Look& look : looks_) look.stale = true;
+void TouchFinder::set_looked_at(std::vector<LookedAt> places) {
+  looked_at_ = std::move(places);
+  for (Look& look : looks_) look.is_searched = look.is_sifted = false;
 }
 
 void TouchFinder::locate(std::span<const Pose> X_WB) {
   for (std::size_t l = 0; l < looks_.size(); ++l) {
     Look& look = looks_[l];
-    const Pose last = look.X_FS;
+    LookedAt& place = looked_at_[l];
     look.X_FS = relative(look, X_WB);
-    look.walked_mm = moved(look, looked_at_[l], look.X_FS);
-    look.path_mm += moved(look, last, look.X_FS);
+    look.walked_mm = moved(look, place.near_at, look.X_FS);
     if (!(look.walked_mm <= look.reserve_mm)) {
-      looked_at_[l] = look.X_FS;
+      place.near_at = look.X_FS;
+      place.sifted_at = nowhere;
       look.walked_mm = 0;
-      look.stale = true;
+      look.is_searched = false;
     }
-    if (!look.stale) continue;
-    search(look, looked_at_[l]);
-    look.path_mm = look.walked_mm;
+    if (look.is_searched) continue;
+    look.is_searched = true;
+    look.near.clear();
+    collect_near(look.samples->samples, look.field->field, place.near_at, look.reach_mm, look.near);
   }
 }
 
@@ -125,31 +186,35 @@ void TouchFinder::find(std::span<const Pose> X_WB, double active_mm, int threads
   R_WF_.resize(looks_.size());
   places_.clear();
   for (std::size_t l = 0; l < looks_.size(); ++l) {
-    const Look& look = looks_[l];
+    Look& look = looks_[l];
+    LookedAt& place = looked_at_[l];
     R_FS_[l] = look.X_FS.R.toRotationMatrix();
     R_WF_[l] = X_WB[static_cast<std::size_t>(look.field_of)].R.toRotationMatrix();
-    const double within = look.gap_mm + active_mm + look.path_mm + late_mm;
-    for (std::size_t n = 0; n < look.near.size(); ++n)
-      if (look.horizon_mm[n] <= within)
-        places_.push_back({static_cast<int>(l), static_cast<int>(n)});
+    if (!(moved(look, place.sifted_at, look.X_FS) <= sift_mm && active_mm <= place.within_mm)) {
+      place.sifted_at = look.X_FS;
+      place.within_mm = within_share * active_mm;
+      place.wide_parts = 0;
+      look.is_sifted = false;
+    }
+    if (!look.is_sifted) sift(look, place);
+    for (const int sample : look.sifted) places_.push_back({static_cast<int>(l), sample});
   }
   seen_.resize(places_.size());
   counts_.resize(places_.size());
   const auto see = [&](std::size_t p) {
     const auto l = static_cast<std::size_t>(places_[p].look);
-    Look& look = looks_[l];
-    const auto near = static_cast<std::size_t>(places_[p].near);
-    const int sample = look.near[near].sample;
+    const Look& look = looks_[l];
+    const int sample = places_[p].sample;
     const SurfaceSamples& s = look.samples->samples;
     const Vector3d p_F = R_FS_[l] * s.points[sample] + look.X_FS.t;
-    const SampleLook here =
-        look_at_sample(look.field->field, p_F, R_FS_[l] * s.normals[sample], s.spread[sample]);
-    look.horizon_mm[near] = look.path_mm + (here.known ? here.distance_mm : -look.reach_mm);
+    const FieldSample in_field = look.field->field.at(p_F);
     Touch& touch = seen_[p];
-    touch.gap_mm = here.distance_mm - look.gap_mm;
+    touch.gap_mm = in_field.distance_mm - look.gap_mm;
     if (!look.allowed.empty()) touch.gap_mm -= static_cast<double>(look.allowed[sample]);
-    counts_[p] =
-        here.known && here.faces && touch.gap_mm <= active_mm && here.gradient.squaredNorm() > 0.1;
+    counts_[p] = in_field.known && touch.gap_mm <= active_mm;
+    if (!counts_[p]) return;
+    const SampleLook here = judged(in_field, R_FS_[l] * s.normals[sample], s.spread[sample]);
+    counts_[p] = here.faces && here.gradient.squaredNorm() > 0.1;
     if (!counts_[p]) return;
     touch.pair = look.pair;
     touch.look = static_cast<int>(l);
@@ -175,6 +240,13 @@ void TouchFinder::find(std::span<const Pose> X_WB, double active_mm, int threads
     if (counts_[p]) found.push_back(seen_[p]);
 }
 
+void TouchFinder::narrow(double active_mm) {
+  for (LookedAt& place : looked_at_) {
+    place.wide_parts = place.within_mm > widest_share * active_mm ? place.wide_parts + 1 : 0;
+    if (place.wide_parts >= most_wide_parts) place.sifted_at = nowhere;
+  }
+}
+
 double TouchFinder::way(std::span<const Pose> X_WB, std::span<const Vector3d> centers,
                         std::span<const SolverMotion> motions, double step_s,
                         double counts_mm) const {
@@ -190,12 +262,14 @@ double TouchFinder::way(std::span<const Pose> X_WB, std::span<const Vector3d> ce
     const double way = step_s * ((velocity(s) - velocity(f)).norm() +
                                  (motions[s].spin - motions[f].spin).norm() * look.radius_mm);
     if (way <= std::max(longest, counts_mm)) continue;
-    // Samples that are not among the near ones are at least this far from the surface.
-    if (look.near.empty() && look.reach_mm - look.walked_mm - field_bend_mm > look.gap_mm + way)
-      continue;
-    if (clearance_bound(look.samples->samples, look.field->field, look.X_FS, look.gap_mm + way) >=
-        look.gap_mm + way)
-      continue;
+    if (look.near.empty() || way > most_active_mm_) {
+      // Samples that are not among the near ones are at least this far from the surface.
+      const double away = look.reach_mm - look.walked_mm - field_bend_mm;
+      if (look.near.empty() && away > look.gap_mm + way) continue;
+      if (clearance_bound(look.samples->samples, look.field->field, look.X_FS, look.gap_mm + way) >=
+          look.gap_mm + way)
+        continue;
+    }
     longest = way;
   }
   return longest;

@@ -239,7 +239,7 @@ TEST(Touch, AFastBodyDoesNotPassThroughAThinWall) {
   int parts = 0;
   for (int k = 0; k < 20; ++k) parts = std::max(parts, world.step().parts);
   EXPECT_GT(parts, 4);
-  EXPECT_NEAR(world.pose(ball).t.z(), 3, 0.2);
+  EXPECT_NEAR(world.pose(ball).t.z(), 3, 0.05);
 }
 
 TEST(Touch, AMovedBodyPushesAndDrags) {
