@@ -142,7 +142,7 @@ TEST(LetGo, AGraftSettlesOnTheMandibleAndStays) {
   EXPECT_LT(deepest(bone, graft, X), 0.06);
   // Let go again where it lies, it stays.
   const LetGo again = let_go(with, part, settled.poses, settings, 1);
-  EXPECT_LT(apart(again.poses.X_CF[0], X, 10), 0.1);
+  EXPECT_LT(apart(again.poses.X_CF[0], X, 10), 0.02);
   // The same bits on one thread.
   const LetGo alone = let_go(with, part, from, settings, 1);
   EXPECT_EQ(alone.poses.X_CF[0].t, X.t);
