@@ -13,6 +13,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding_mm = 1e-9;
+constexpr double touching_mm2 = 1e-20;
 
 }  // namespace
 
@@ -22,8 +23,15 @@ constexpr double rounding_mm = 1e-9;
 /// until nothing may be deeper than what was found.
 class DepthSearch {
  public:
-  DepthSearch(const Solid& a, const Solid& b, const Pose& X_AB, const DepthSettings& settings)
-      : settings_(settings), sides_{{{b, a, X_AB}, {a, b, X_AB.inverse()}}} {
+  DepthSearch(const Solid& a, const Solid& b, const Pose& X_AB, const DepthSettings& settings,
+              const CrossingFaces* crossing)
+      : settings_(settings),
+        sides_{{{b, a, X_AB, {}}, {a, b, X_AB.inverse(), {}}}},
+        crossing_known_(crossing != nullptr) {
+    if (crossing_known_) {
+      sides_[0].put_crossing(crossing->b);
+      sides_[1].put_crossing(crossing->a);
+    }
     for (int i = 0; i < 2; ++i)
       for (std::size_t k = 0; k < sides_[i].solid.shells_.size(); ++k) offer_ball({i, k}, 0, {});
     while (!waiting_.empty() && waiting_.top().bound > enough() && looks_ < settings_.max_looks) {
@@ -50,7 +58,17 @@ class DepthSearch {
  private:
   struct Side {
     const Solid &surface, &solid;
-    Pose X;  // of the surface in the solid's coordinates
+    Pose X;                     // of the surface in the solid's coordinates
+    std::vector<int> crossing;  // faces that cross the solid, ascending
+
+    void put_crossing(const std::vector<int>& triangles) {
+      for (const int t : triangles) crossing.push_back(surface.slot_[t]);
+      std::sort(crossing.begin(), crossing.end());
+    }
+    bool crosses(int first, int count) const {
+      const auto at = std::lower_bound(crossing.begin(), crossing.end(), first);
+      return at != crossing.end() && *at < first + count;
+    }
   };
   struct Into {  // a shell of one side's solid
     int side = 0;
@@ -120,6 +138,20 @@ class DepthSearch {
     return std::min(by_way, std::sqrt(farthest2));
   }
 
+  /// A face with a point outside lies outside as a whole unless the shell crosses it.
+  bool is_outside(Into into, const Triangle& t, const Place& middle) const {
+    if (middle.depth >= -rounding_mm) return false;
+    const Eigen::Vector3d low = t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() - rounding_mm,
+                          high = t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() + rounding_mm;
+    return !shell(into).tree.any_near(low, high, [&](const Triangle& other) {
+      const Eigen::Vector3d low_other = other[0].cwiseMin(other[1]).cwiseMin(other[2]),
+                            high_other = other[0].cwiseMax(other[1]).cwiseMax(other[2]);
+      return (low_other.array() <= high.array()).all() &&
+             (high_other.array() >= low.array()).all() &&
+             triangle_distance(t, other, touching_mm2).squared_mm2 < touching_mm2;
+    });
+  }
+
   void wait(double bound, const Item& item) {
     if (bound <= enough()) return;
     std::size_t place = items_.size();
@@ -140,6 +172,9 @@ class DepthSearch {
     if (near.triangle >= 0 && near.depth + (middle - near.at).norm() + ball.radius <= enough())
       return;
     if (!shell(into).box.contains(middle, ball.radius)) return;
+    if (crossing_known_ && ball.connected && !from.crosses(ball.first, ball.count) &&
+        look_at_point(into, from.X * from.surface.faces_[ball.first][0], near).depth < -rounding_mm)
+      return;
     const Place place = look_at(into, middle, near);
     wait(place.depth + ball.radius, {into, index, {}, place});
   }
@@ -158,6 +193,9 @@ class DepthSearch {
       if (bound(item.into, face, item.middle) <= enough()) continue;
       const Place middle = look_at_middle(item.into, face, item.middle);
       if (bound(item.into, face, middle) <= enough()) continue;
+      if (crossing_known_ && !from.crosses(i, 1) ? middle.depth < -rounding_mm
+                                                 : is_outside(item.into, face, middle))
+        continue;
       for (const auto& corner : face) look_at_point(item.into, corner, middle);
       wait(bound(item.into, face, middle), {item.into, -1, face, middle});
     }
@@ -180,12 +218,15 @@ class DepthSearch {
     for (const Triangle& part : {Triangle{a, half, c}, Triangle{half, b, c}}) {
       if (bound(item.into, part, item.middle) <= enough()) continue;
       const Place middle = look_at_middle(item.into, part, item.middle);
-      wait(bound(item.into, part, middle), {item.into, -1, part, middle});
+      const double most = bound(item.into, part, middle);
+      if (most > enough() && !is_outside(item.into, part, middle))
+        wait(most, {item.into, -1, part, middle});
     }
   }
 
   DepthSettings settings_;
   std::array<Side, 2> sides_;
+  bool crossing_known_;
   std::vector<Item> items_;
   std::vector<std::size_t> free_;  // places in items_ to use again
   std::priority_queue<Waiting> waiting_;
@@ -193,8 +234,8 @@ class DepthSearch {
 };
 
 OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
-                           const DepthSettings& settings) {
-  const DepthSearch found(a, b, X_WA.inverse() * X_WB, settings);
+                           const DepthSettings& settings, const CrossingFaces* crossing) {
+  const DepthSearch found(a, b, X_WA.inverse() * X_WB, settings, crossing);
   OverlapDepth overlap;
   overlap.error_mm = found.error_mm();
   if (found.depth_mm == 0) return overlap;

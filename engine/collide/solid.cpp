@@ -38,9 +38,12 @@ void Solid::order_faces(const TriMesh& mesh) {
   std::iota(order.begin(), order.end(), 0);
   balls_.reserve(order.size());
   build_balls(mesh, order, 0, static_cast<int>(order.size()));
+  find_connected(mesh, order);
   faces_.reserve(order.size());
+  slot_.resize(order.size());
   for (const int i : order) {
     const auto& t = mesh.triangles[i];
+    slot_[i] = static_cast<int>(faces_.size());
     faces_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
   }
 }
@@ -54,7 +57,7 @@ int Solid::build_balls(const TriMesh& mesh, std::vector<int>& order, int first, 
   for (int i = first; i < last; ++i)
     for (const int v : mesh.triangles[order[i]]) box.add(mesh.vertices[v]);
   const int index = static_cast<int>(balls_.size());
-  balls_.push_back({box.center(), 0, first, last - first, 0});
+  balls_.push_back({box.center(), 0, first, last - first, 0, false});
   double radius2 = 0;
   for (int i = first; i < last; ++i)
     for (const int v : mesh.triangles[order[i]])
@@ -73,6 +76,42 @@ int Solid::build_balls(const TriMesh& mesh, std::vector<int>& order, int first, 
   const int right = build_balls(mesh, order, middle, last);
   balls_[index].right = right;
   return index;
+}
+
+void Solid::find_connected(const TriMesh& mesh, const std::vector<int>& order) {
+  std::vector<int> last_run(mesh.vertices.size(), -1);
+  // Children come after their parents.
+  for (int index = static_cast<int>(balls_.size()) - 1; index >= 0; --index) {
+    Ball& ball = balls_[index];
+    const auto mark = [&](int i) {
+      for (const int v : mesh.triangles[order[i]]) last_run[v] = index;
+    };
+    const auto meets = [&](int i) {
+      const auto& t = mesh.triangles[order[i]];
+      return last_run[t[0]] == index || last_run[t[1]] == index || last_run[t[2]] == index;
+    };
+    const int end = ball.first + ball.count;
+    if (ball.right == 0) {
+      mark(ball.first);
+      int joined = 1;
+      for (bool grows = true; grows;) {
+        const int before = joined;
+        joined = 1;
+        for (int i = ball.first + 1; i < end; ++i)
+          if (meets(i)) {
+            mark(i);
+            ++joined;
+          }
+        grows = joined > before;
+      }
+      ball.connected = joined == ball.count;
+      continue;
+    }
+    const Ball &left = balls_[index + 1], &right = balls_[ball.right];
+    if (!left.connected || !right.connected) continue;
+    for (int i = left.first; i < left.first + left.count; ++i) mark(i);
+    for (int i = right.first; i < end && !ball.connected; ++i) ball.connected = meets(i);
+  }
 }
 
 double Solid::ClosedShell::depth(const Eigen::Vector3d& p, double ball_radius, double reach) const {

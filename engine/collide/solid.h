@@ -23,6 +23,8 @@ class Solid {
   int shell_count() const { return shell_count_; }
   int open_shell_count() const { return open_shell_count_; }
 
+  std::size_t face_count() const { return faces_.size(); }
+
   /// Ball around all vertices.
   const Eigen::Vector3d& center() const { return balls_.front().center; }
   double radius() const { return balls_.front().radius; }
@@ -51,16 +53,19 @@ class Solid {
     Eigen::Vector3d center;
     double radius = 0;
     int first = 0, count = 0;
-    int right = 0;  // second child (the first is next); 0 for a leaf
+    int right = 0;           // second child (the first is next); 0 for a leaf
+    bool connected = false;  // its faces hang together at their corners
   };
 
   void order_faces(const TriMesh& mesh);
   int build_balls(const TriMesh& mesh, std::vector<int>& order, int first, int last);
+  void find_connected(const TriMesh& mesh, const std::vector<int>& order);
   bool has_shell_inside(const Solid& other, const Pose& X_OS) const;
 
   std::vector<ClosedShell> shells_;       // facing outward
   std::vector<Eigen::Vector3d> samples_;  // a vertex of each shell, open ones included
   std::vector<Triangle> faces_;           // in the order of the balls
+  std::vector<int> slot_;                 // of each of the mesh's triangles, among the faces
   std::vector<Ball> balls_;               // depth first
   int shell_count_ = 0, open_shell_count_ = 0;
 };
@@ -70,6 +75,12 @@ struct DepthSettings {
   double tolerance_mm = 2e-4;
   // Points looked at; beyond, the search ends and `error_mm` tells what may be missing.
   int max_looks = 20000;
+};
+
+/// The triangles of each mesh that cross the other mesh: all of them, in any order. What hangs
+/// together without crossing anything lies inside or outside as a whole, which spares most looks.
+struct CrossingFaces {
+  std::vector<int> a, b;
 };
 
 /// The deepest point of either surface inside the other solid.
@@ -83,7 +94,8 @@ struct OverlapDepth {
 /// Depth of overlap over the whole surfaces, not the vertices alone, by branch and bound. Open
 /// shells have points that may be inside, but no inside themselves.
 OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
-                           const DepthSettings& settings = {});
+                           const DepthSettings& settings = {},
+                           const CrossingFaces* crossing = nullptr);
 
 /// For solids whose surfaces do not cross: a shell of one lies wholly inside the other.
 bool one_encloses_other(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB);

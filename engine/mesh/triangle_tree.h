@@ -49,6 +49,29 @@ class TriangleTree {
   /// Outward normal (unit) of the face, edge or corner on which a found point lies.
   Eigen::Vector3d pseudonormal(const SurfacePoint& found) const;
 
+  /// Whether `holds(corners)` of any triangle that may meet the box.
+  template <class Test>
+  bool any_near(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Test& holds) const {
+    if (empty()) return false;
+    std::array<int, 128> stack;  // median splits: the depth is log2 of the count
+    std::size_t size = 0;
+    stack[size++] = 0;
+    while (size > 0) {
+      const int index = stack[--size];
+      const Node& node = nodes_[static_cast<std::size_t>(index)];
+      if ((node.low.array() > high.array()).any() || (node.high.array() < low.array()).any())
+        continue;
+      if (node.count == 0) {
+        stack[size++] = node.first;
+        stack[size++] = index + 1;
+        continue;
+      }
+      for (int i = node.first; i < node.first + node.count; ++i)
+        if (holds(corners_[static_cast<std::size_t>(i)])) return true;
+    }
+    return false;
+  }
+
   /// First hit of the ray origin + t * direction, 0 <= t <= max_t; `distance` is t (in lengths of
   /// `direction`). Both sides of a triangle count.
   std::optional<SurfacePoint> ray_cast(

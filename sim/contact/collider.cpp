@@ -10,6 +10,10 @@ namespace {
 // judged from them, else a few from each part of the surface.
 constexpr ContactLimits all_crossings{.total = 8192, .per_region = 8192};
 constexpr ContactLimits some_crossings{.total = 1024, .per_region = 8};
+// So few are worth to be found all before the depth is looked for.
+constexpr ContactLimits light_contact{.total = 1024, .per_region = 1024};
+// Below this the search is quick without.
+constexpr std::size_t many_faces = 2000;
 // Teeth that are modelled a millimetre into each other must not excuse a condyle from its fossa.
 constexpr double excused_mm = 10;
 
@@ -66,7 +70,19 @@ PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, 
   out.touching = true;
   out.distance_mm = 0;
   if (!looking.need_depth) return out;
-  OverlapDepth deepest = overlap_depth(a.solid, X_CA, b.solid, X_CB);
+  std::vector<MeshContact> light;
+  CrossingFaces crossing_faces;
+  bool is_light = crossing && a.solid.face_count() + b.solid.face_count() > many_faces;
+  if (is_light) {
+    light = contacts(a.surface, X_CA, b.surface, X_CB, light_contact);
+    is_light = light.size() < static_cast<std::size_t>(light_contact.total);
+    for (const auto& contact : light) {
+      crossing_faces.a.push_back(contact.triangles.a);
+      crossing_faces.b.push_back(contact.triangles.b);
+    }
+  }
+  OverlapDepth deepest =
+      overlap_depth(a.solid, X_CA, b.solid, X_CB, {}, is_light ? &crossing_faces : nullptr);
   out.depth_mm = deepest.depth_mm;
   if (!crossing) {
     out.contacts.push_back({deepest.point, deepest.normal});
@@ -78,8 +94,9 @@ PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, 
   const bool by_triangles =
       out.depth_mm == 0 || a.solid.open_shell_count() > 0 || b.solid.open_shell_count() > 0;
   if (by_triangles || looking.max_contacts > 0) {
-    const auto all =
-        contacts(a.surface, X_CA, b.surface, X_CB, by_triangles ? all_crossings : some_crossings);
+    const auto all = is_light ? std::move(light)
+                              : contacts(a.surface, X_CA, b.surface, X_CB,
+                                         by_triangles ? all_crossings : some_crossings);
     out.contacts = thin(all, looking.max_contacts);
     if (all.empty() && looking.max_contacts > 0)  // they touch in a point
       out.contacts.push_back({nearest.witness_a, deepest.normal});

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <random>
 
+#include "engine/collide/collision_mesh.h"
 #include "engine/collide/overlap_measure.h"
 #include "tests/engine/collide/prisms.h"
 #include "tests/support/boxes.h"
@@ -55,6 +56,30 @@ TEST(OverlapDepth, IsNoLessThanAtAnyPointAndIsReachedAtItsOwn) {
     EXPECT_NEAR(found.normal.norm(), 1, 1e-9);
   }
   EXPECT_GT(overlapping, 20);
+}
+
+TEST(OverlapDepth, IsTheSameWhereTheCrossingFacesAreKnown) {
+  std::mt19937_64 random(24);
+  const TriMesh mesh_a = test::sphere(3, 15, {2, 1, 0}, 0.1),
+                mesh_b = test::joined(test::sphere(3, 10, {0, 0, 0}, 0.1),
+                                      test::sphere(2, 6, {0, 18, 0}, 0.1));
+  const Solid a(mesh_a), b(mesh_b);
+  const CollisionMesh surface_a(mesh_a), surface_b(mesh_b);
+  int crossed = 0;
+  for (int k = 0; k < 60; ++k) {
+    const Pose X_WB = test::any_pose(random, 14);
+    CrossingFaces crossing;
+    for (const auto& contact : contacts(surface_a, {}, surface_b, X_WB)) {
+      crossing.a.push_back(contact.triangles.a);
+      crossing.b.push_back(contact.triangles.b);
+    }
+    const OverlapDepth found = overlap_depth(a, {}, b, X_WB),
+                       spared = overlap_depth(a, {}, b, X_WB, {}, &crossing);
+    EXPECT_NEAR(spared.depth_mm, found.depth_mm, std::max(found.error_mm, spared.error_mm));
+    EXPECT_LE(spared.error_mm, std::max(2e-4, 1e-3 * spared.depth_mm));
+    crossed += !crossing.a.empty();
+  }
+  EXPECT_GT(crossed, 20);
 }
 
 TEST(OverlapDepth, GrowsByNoMoreThanTheMotion) {
