@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -35,8 +36,10 @@ std::string read_file(const fs::path& file, std::size_t max_bytes) {
 }
 
 void write_file(const fs::path& file, std::string_view content) {
-  const fs::path beside = file.parent_path() / ("." + file.filename().string() + "." +
-                                                std::to_string(::getpid()) + ".part");
+  static std::atomic<unsigned> written_files{0};  // threads may write the same file at once
+  const fs::path beside =
+      file.parent_path() / ("." + file.filename().string() + "." + std::to_string(::getpid()) +
+                            "-" + std::to_string(written_files++) + ".part");
   const auto fail = [&](const char* act) {
     const std::string reason = std::strerror(errno);
     ::unlink(beside.c_str());

@@ -13,8 +13,8 @@ namespace condyle {
 std::string read_file(const std::filesystem::path& file,
                       std::size_t max_bytes = std::size_t{4} << 30);
 
-/// Writes beside the target, flushes to disk, then renames: the old content stays whole on any
-/// failure. throws: MachineError naming the file and the system's reason (disk full, not writable).
+/// Writes beside the target, then renames: the old content stays whole on any failure. throws:
+/// MachineError naming the file and the system's reason (disk full, not writable).
 void write_file(const std::filesystem::path& file, std::string_view content);
 
 /// Makes the folder and its parents. throws: MachineError naming the folder and the reason.
