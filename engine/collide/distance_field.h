@@ -47,12 +47,6 @@ class DistanceField {
   DistanceField(const TriMesh& mesh, const FieldSettings& settings, int threads = 1);
 
   FieldSample at(const Eigen::Vector3d& p) const;
-  /// p lies in the field's box: what is not within the band of the surface is farther from it.
-  bool covers(const Eigen::Vector3d& p) const {
-    const Eigen::Array3d u = (p - origin_).array() * per_mm_;
-    return (u >= 0).all() && u.x() < cells * size_[0] && u.y() < cells * size_[1] &&
-           u.z() < cells * size_[2];
-  }
 
   /// No smaller than this is the signed distance at p, near or far; infinite outside the region.
   double lower_bound(const Eigen::Vector3d& p) const;
@@ -97,7 +91,7 @@ class DistanceField {
 };
 
 /// In the header because sliding asks it some hundred thousand times a frame.
-[[gnu::always_inline]] inline FieldSample DistanceField::at(const Eigen::Vector3d& p) const {
+inline FieldSample DistanceField::at(const Eigen::Vector3d& p) const {
   FieldSample sample;
   sample.distance_mm = settings_.band_mm;
   const double ux = (p.x() - origin_.x()) * per_mm_, uy = (p.y() - origin_.y()) * per_mm_,

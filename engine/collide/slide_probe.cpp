@@ -13,98 +13,152 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double near_share = 0.5;       // of the band: gaps up to here are measured, not bounded
-constexpr double rounding_mm = 1e-4;     // of what is kept of a look
-constexpr double listed_ways_mm = 4;     // how far the body may go before lists are made anew
-constexpr std::size_t most_looks = 128;  // that are told apart
+constexpr double near_share = 0.5;  // of the band: gaps up to here are measured, not bounded
+constexpr double coarse_mm = 0.8;
+constexpr double rounding_mm = 1e-4;  // of what is kept of a look
 }  // namespace
+
+/// One look at a pair.
+struct SlideProbe::Search {
+  const SlidingContact::Pair& pair;
+  std::vector<Seen>& seen;
+  const Pose& X;
+  int index;
+  double within, turned;
+  std::vector<SlideCandidate>& found;
+  Eigen::Matrix3d R_FS, R_X;  // samples in the field; moving in fixed
+  Vector3d t_FS;
+
+  /// Written out: this is asked more often than anything else.
+  Vector3d in_field(const Vector3d& p) const {
+    const auto& R = R_FS;
+    return {R(0, 0) * p.x() + R(0, 1) * p.y() + R(0, 2) * p.z() + t_FS.x(),
+            R(1, 0) * p.x() + R(1, 1) * p.y() + R(1, 2) * p.z() + t_FS.y(),
+            R(2, 0) * p.x() + R(2, 1) * p.y() + R(2, 2) * p.z() + t_FS.z()};
+  }
+
+  /// No sample of the ball has a smaller gap than this.
+  double ball(int b) {
+    const SurfaceSamples::Ball& here = pair.samples->samples.balls[b];
+    const Vector3d center = in_field(here.center);
+    Seen& last = seen[b];
+    const double way = (center - Vector3d(last.x, last.y, last.z)).norm() +
+                       (turned - last.turned) * here.radius + rounding_mm;
+    if (last.gap - way > within) return last.gap - way;
+    double gap = -infinity;
+    const bool leaf = here.right == 0;
+    // A ball that moved by less than its size is as near as before: its parts know more.
+    if (leaf || way > here.radius) {
+      const DistanceField& field = pair.field->field;
+      const FieldSample at = field.at(center);
+      // Within the band the field tells more than its bounds do.
+      gap = (at.known ? at.distance_mm - field_bend_mm : field.lower_bound(center)) - here.radius -
+            pair.gap_mm;
+    }
+    if (gap <= within)
+      gap = std::max(gap, leaf ? samples(here) : std::min(ball(b + 1), ball(here.right)));
+    last = {static_cast<float>(center.x()), static_cast<float>(center.y()),
+            static_cast<float>(center.z()), static_cast<float>(gap), static_cast<float>(turned)};
+    return gap;
+  }
+
+  /// No sample of a leaf is nearer than this.
+  double samples(const SurfaceSamples::Ball& leaf) {
+    const SurfaceSamples& s = pair.samples->samples;
+    double least = infinity;
+    for (int i = leaf.first; i < leaf.first + leaf.count; ++i) {
+      const double allowed = pair.allowed.empty() ? 0.0 : static_cast<double>(pair.allowed[i]);
+      if (allowed == -infinity) continue;
+      const Vector3d p = in_field(s.points[i]);
+      const FieldSample at = pair.field->field.at(p);
+      const double gap = at.distance_mm - pair.gap_mm;
+      least = std::min(least, at.known ? gap - field_bend_mm
+                              : at.distance_mm < pair.field->field.settings().band_mm ? -infinity
+                                                                                      : gap);
+      if (gap - allowed > within) continue;
+      const SampleLook look = judged(at, R_FS * s.normals[i], s.spread[i]);
+      SlideCandidate c;
+      c.pair = index;
+      c.sample = i;
+      c.known = look.known;
+      c.faces = look.faces;
+      c.gap = gap - allowed;
+      c.point = pair.samples_move ? p : s.points[i];
+      c.gradient = pair.samples_move ? look.gradient : Vector3d(-(R_X * look.gradient));
+      found.push_back(c);
+    }
+    return least;
+  }
+};
 
 SlideProbe::SlideProbe(const SlidingContact& model, int threads)
     : model_(model), threads_(threads), found_(model.pairs_.size()) {
-  for (const auto& pair : model.pairs_) {
-    watches_.emplace_back(pair.samples->samples, pair.field->field, pair.gap_mm, pair.allowed);
-    widest_mm_ = std::max(widest_mm_, pair.field->field.settings().band_mm);
-  }
-}
-
-/// Written for speed: the chord of a turn instead of its angle. Samples of the fixed body count as
-/// far as they are near the moving one.
-double SlideProbe::way_since(const Pose& last, const Pose& X) const {
-  const double chord = 2 * (X.R * last.R.conjugate()).vec().norm();
-  return (X * model_.pivot_ - last * model_.pivot_).norm() +
-         chord * (model_.radius_mm_ + 2 * widest_mm_) + rounding_mm;
-}
-
-/// Makes the lists good for gaps of `within_mm` at X, and X the last look.
-void SlideProbe::come_to(const Pose& X, double within_mm) {
-  if (looks_.empty() || within_mm + way_since(listed_at_, X) > listed_mm_) {
-    listed_at_ = X;
-    listed_mm_ = within_mm + listed_ways_mm;
-    looks_.assign(1, X);
-    ways_.assign(1, rounding_mm);
-    parallel_for(watches_.size(), threads_,
-                 [&](std::size_t i) { watches_[i].collect(placing(i, X), listed_mm_); });
-    return;
-  }
-  looks_.push_back(X);
-  ways_.clear();
-  for (const Pose& look : looks_) ways_.push_back(way_since(look, X));
-  if (looks_.size() < most_looks) return;
-  for (SampleWatch& watch : watches_) watch.fold(ways_);
-  looks_.assign(1, X);
-  ways_.assign(1, rounding_mm);
-}
-
-Placing SlideProbe::placing(std::size_t pair, const Pose& X) const {
-  return Placing(model_.pairs_[pair].samples_move ? X : X.inverse());
+  for (const auto& pair : model.pairs_) seen_.emplace_back(pair.samples->samples.balls.size());
 }
 
 void SlideProbe::look_at(const Pose& X, double within_mm) {
-  come_to(X, within_mm);
-  const Eigen::Matrix3d R_X = X.R.toRotationMatrix();
-  parallel_for(watches_.size(), threads_, [&](std::size_t i) {
+  turned_ += rotation_angle(at_.inverse() * X);
+  at_ = X;
+  const Pose X_inverse = X.inverse();
+  parallel_for(seen_.size(), threads_, [&](std::size_t i) {
+    const auto& pair = model_.pairs_[i];
     found_[i].clear();
-    watches_[i].look(placing(i, X), within_mm, ways_, found_[i]);
+    if (seen_[i].empty()) return;
+    const Pose& X_FS = pair.samples_move ? X : X_inverse;
+    Search{pair,
+           seen_[i],
+           X,
+           static_cast<int>(i),
+           within_mm,
+           turned_,
+           found_[i],
+           X_FS.R.toRotationMatrix(),
+           X.R.toRotationMatrix(),
+           X_FS.t}
+        .ball(0);
   });
   candidates_.clear();
   worst_gap_ = deepest_gap_ = infinity;
-  for (std::size_t i = 0; i < found_.size(); ++i) {
-    const auto& pair = model_.pairs_[i];
-    const SurfaceSamples& s = pair.samples->samples;
-    const Eigen::Matrix3d R_FS = placing(i, X).R;
-    for (const SampleWatch::Near& near : found_[i]) {
-      const SampleLook look = judged(near.at, R_FS * s.normals[near.sample], s.spread[near.sample]);
-      SlideCandidate& c = candidates_.emplace_back();
-      c.pair = static_cast<int>(i);
-      c.sample = near.sample;
-      c.known = look.known;
-      c.faces = look.faces;
-      c.gap = near.gap_mm;
-      c.point = pair.samples_move ? near.p : s.points[near.sample];
-      c.gradient = pair.samples_move ? look.gradient : Vector3d(-(R_X * look.gradient));
+  for (const auto& part : found_)
+    for (const SlideCandidate& c : part) {
       if (c.known) worst_gap_ = std::min(worst_gap_, c.gap);
       deepest_gap_ = std::min(deepest_gap_, c.gap);
+      candidates_.push_back(c);
     }
-  }
 }
 
-SlideProbe::Overlap SlideProbe::overlap_at(const Pose& X) {
-  come_to(X, 0);
-  parallel_for(watches_.size(), threads_, [&](std::size_t i) {
-    found_[i].clear();
-    watches_[i].look_coarsely(placing(i, X), ways_, found_[i]);
-  });
+SlideProbe::Overlap SlideProbe::overlap_at(const Pose& X) const {
   Overlap sum;
-  const Eigen::Matrix3d R_X = X.R.toRotationMatrix();
-  for (std::size_t i = 0; i < found_.size(); ++i) {
-    const auto& pair = model_.pairs_[i];
-    Vector3d inward = Vector3d::Zero();  // by the samples' normals
-    for (const SampleWatch::Near& near : found_[i]) {
-      sum.depth_mm = std::max(sum.depth_mm, -near.gap_mm);
-      sum.sum_mm -= near.gap_mm;
-      inward -= near.gap_mm * pair.samples->samples.normals[near.sample];
+  const Pose X_inverse = X.inverse();
+  std::vector<int> stack;
+  for (const auto& pair : model_.pairs_) {
+    const SurfaceSamples& s = pair.samples->samples;
+    const DistanceField& field = pair.field->field;
+    const Pose& X_FS = pair.samples_move ? X : X_inverse;
+    stack.assign(s.balls.empty() ? 0 : 1, 0);
+    while (!stack.empty()) {
+      const int index = stack.back();
+      stack.pop_back();
+      const SurfaceSamples::Ball& ball = s.balls[index];
+      const bool stands = ball.right == 0 || ball.radius < coarse_mm;
+      const Vector3d p = X_FS * (stands ? s.points[ball.first] : ball.center);
+      const FieldSample at = field.at(p);
+      if (!stands) {
+        const double least = at.known ? at.distance_mm - field_bend_mm : field.lower_bound(p);
+        if (least - pair.gap_mm > ball.radius) continue;
+        stack.push_back(ball.right);
+        stack.push_back(index + 1);
+        continue;
+      }
+      const double allowed =
+          pair.allowed.empty() ? 0.0 : static_cast<double>(pair.allowed[ball.first]);
+      const double depth = allowed + pair.gap_mm - at.distance_mm;
+      if (!(depth > 0)) continue;
+      const Vector3d& normal = s.normals[ball.first];
+      sum.depth_mm = std::max(sum.depth_mm, depth);
+      sum.sum_mm += depth;
+      sum.outward += depth * (pair.samples_move ? Vector3d(-(X.R * normal)) : normal);
     }
-    sum.outward += pair.samples_move ? Vector3d(-(R_X * inward)) : inward;
   }
   return sum;
 }

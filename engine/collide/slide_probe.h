@@ -1,9 +1,9 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "engine/collide/contact_twist.h"
-#include "engine/collide/sample_watch.h"
 #include "engine/collide/slide.h"
 
 namespace condyle {
@@ -18,8 +18,9 @@ struct SlideCandidate {
   Eigen::Vector3d point = {0, 0, 0};     // in fixed coordinates
 };
 
-/// What lies near a pose. Looks at poses near each other share lists of what may be near; the
-/// answers do not depend on earlier looks.
+/// What lies near a pose. Each look leaves, for each ball of samples, where it was and how far from
+/// the other surface: what cannot have come near since is passed over. The answers do not depend on
+/// earlier looks.
 class SlideProbe {
  public:
   SlideProbe(const SlidingContact& model, int threads);
@@ -34,13 +35,13 @@ class SlideProbe {
   /// The same, but samples too deep to be known count as deep as the band.
   double deepest_gap() const { return deepest_gap_; }
 
-  /// What overlaps at X, roughly: a sample of each small ball stands for all.
+  /// What overlaps at X, roughly: a sample of each ball below `coarse_mm` stands for all.
   struct Overlap {
     double depth_mm = 0;
     Eigen::Vector3d outward = {0, 0, 0};  // sum of the ways out, each as long as it is deep
     double sum_mm = 0;                    // of those lengths
   };
-  Overlap overlap_at(const Pose& X);
+  Overlap overlap_at(const Pose& X) const;
 
   /// No larger than the gap at X, however far the bodies are.
   double clearance(const Pose& X);
@@ -51,20 +52,20 @@ class SlideProbe {
   double way_of(const Twist& x) const;
 
  private:
-  double way_since(const Pose& last, const Pose& X) const;
-  void come_to(const Pose& X, double within_mm);
-  Placing placing(std::size_t pair, const Pose& X) const;
+  struct Seen {                                           // of a ball of samples at its last look
+    float x = 0, y = 0, z = 0;                            // its centre, in the field's coordinates
+    float gap = -std::numeric_limits<float>::infinity();  // no sample was nearer
+    float turned = 0;  // way of the body's turning until then, rad
+  };
+  struct Search;
 
   const SlidingContact& model_;
   int threads_;
-  std::vector<SampleWatch> watches_;  // of each pair
-  std::vector<std::vector<SampleWatch::Near>> found_;
+  std::vector<std::vector<Seen>> seen_;  // of each pair's balls
   std::vector<SlideCandidate> candidates_;
-  Pose listed_at_;            // where the lists were made
-  double listed_mm_ = 0;      // how far they reach there
-  std::vector<Pose> looks_;   // since then
-  std::vector<double> ways_;  // from each to the last
-  double widest_mm_ = 0;      // band of the fields
+  std::vector<std::vector<SlideCandidate>> found_;  // of each pair
+  Pose at_;                                         // of the last look
+  double turned_ = 0;
   double worst_gap_ = 0, deepest_gap_ = 0;
 };
 
