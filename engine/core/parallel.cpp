@@ -5,8 +5,21 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <map>
+#include <mutex>
 
 namespace condyle {
+namespace {
+
+/// Kept for good: to make one costs more than most loops.
+tbb::task_arena& arena_of(int threads) {
+  static std::mutex mutex;
+  static std::map<int, tbb::task_arena> arenas;
+  const std::lock_guard lock(mutex);
+  return arenas.try_emplace(threads, threads).first->second;
+}
+
+}  // namespace
 
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
   threads = std::min(threads, tbb::info::default_concurrency());
@@ -14,8 +27,8 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
   }
-  tbb::task_arena arena(threads);
-  arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, body, tbb::simple_partitioner()); });
+  arena_of(threads).execute(
+      [&] { tbb::parallel_for(std::size_t{0}, count, body, tbb::simple_partitioner()); });
 }
 
 }  // namespace condyle
