@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <stdexcept>
 
 #include "engine/tissue/net_weights.h"
 
@@ -87,26 +86,6 @@ Sheet make_sheet(int columns, int rim) {
   return sheet;
 }
 
-struct Layers {
-  std::vector<double> share;
-  std::vector<LayerMaterial> material;
-};
-Layers layers_of(int count) {
-  const LayerMaterial skin{0.040, 0.12}, fat{0.015, 0.12}, muscle{0.025, 0.12};
-  switch (count) {
-    case 1:
-      return {{1.0}, {muscle}};
-    case 2:
-      return {{0.35, 0.65}, {skin, muscle}};
-    case 3:
-      return {{0.22, 0.38, 0.40}, {skin, fat, muscle}};
-    case 5:
-      return {{0.12, 0.18, 0.22, 0.24, 0.24}, {skin, skin, fat, muscle, muscle}};
-    default:
-      throw std::logic_error("synthetic set: layers must be 1, 2, 3 or 5");
-  }
-}
-
 }  // namespace
 
 SyntheticSize table1_size() { return {}; }
@@ -121,7 +100,7 @@ SyntheticSize size_of_nodes(int nodes) {
 
 SyntheticSet make_synthetic_set(const SyntheticSize& size) {
   const Sheet sheet = make_sheet(size.columns, size.rim);
-  const Layers layers = layers_of(size.layers);
+  const LayerStack layers = usual_layers(size.layers);
   SyntheticSet set;
   set.columns = size.columns;
   set.sheets = size.layers + 1;

@@ -22,27 +22,6 @@ constexpr double neck_stiffness = 0.1;       // N/mm
 constexpr double loose_stiffness = 0.04;     // N/mm
 constexpr double slide_stiffness = 0.02;     // N/mm
 
-/// Layers from the skin inward. source: skin and cheek 30 to 40 kPa in vivo, deeper layers softer.
-struct Layers {
-  std::vector<double> share;
-  std::vector<LayerMaterial> material;
-};
-Layers layers_of(int count) {
-  const LayerMaterial skin{0.040, 0.12}, fat{0.015, 0.12}, muscle{0.025, 0.12};
-  switch (count) {
-    case 1:
-      return {{1.0}, {{0.025, 0.12}}};
-    case 2:
-      return {{0.35, 0.65}, {skin, muscle}};
-    case 3:
-      return {{0.22, 0.38, 0.40}, {skin, fat, muscle}};
-    case 5:
-      return {{0.12, 0.18, 0.22, 0.24, 0.24}, {skin, skin, fat, muscle, muscle}};
-    default:
-      throw InputError("soft tissue: layers must be 1, 2, 3 or 5, not " + std::to_string(count));
-  }
-}
-
 double smoothstep(double t) {
   t = std::clamp(t, 0.0, 1.0);
   return t * t * (3 - 2 * t);
@@ -109,7 +88,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   if (settings.surface_nodes < 60 || settings.surface_nodes > 50000)
     throw InputError("soft tissue: surface nodes must be 60 to 50000, not " +
                      std::to_string(settings.surface_nodes));
-  const Layers layers = layers_of(settings.layers);
+  const LayerStack layers = usual_layers(settings.layers);
   auto model = std::make_shared<TissueModel>();
   TissueSummary& summary = model->summary;
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Geometry>
+
+#include "engine/math/pose.h"
 #include "sim/case/case.h"
 
 namespace condyle::test {
@@ -24,6 +27,19 @@ inline TriMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
                         {3, 7, 5}})
     mesh.triangles.push_back(t);
   return mesh;
+}
+
+/// A patient of nothing but these.
+inline Case two_bones(TriMesh maxilla, TriMesh mandible) {
+  Case patient;
+  patient.name = "two bones";
+  patient.parts.push_back({"maxilla", Role::maxilla, std::move(maxilla), {}});
+  patient.parts.push_back({"mandible", Role::mandible, std::move(mandible), {}});
+  return patient;
+}
+
+inline Pose shift(double x, double y, double z) {
+  return {Eigen::Quaterniond::Identity(), {x, y, z}};
 }
 
 /// A maxilla and a mandible made of boxes, 1 mm apart, with the landmarks that motion needs.

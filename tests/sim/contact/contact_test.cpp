@@ -11,15 +11,8 @@
 namespace condyle {
 namespace {
 
-Case two_bones(TriMesh maxilla, TriMesh mandible) {
-  Case patient;
-  patient.name = "two bones";
-  patient.parts.push_back({"maxilla", Role::maxilla, std::move(maxilla), {}});
-  patient.parts.push_back({"mandible", Role::mandible, std::move(mandible), {}});
-  return patient;
-}
-
-Pose shift(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
+using test::shift;
+using test::two_bones;
 
 /// A plate as thin as the walls of real maxillae.
 TriMesh thin_plate() { return test::box({-40, -40, 30}, {40, 40, 30.3}); }

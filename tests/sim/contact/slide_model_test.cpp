@@ -18,15 +18,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-Case two_bones(TriMesh maxilla, TriMesh mandible) {
-  Case patient;
-  patient.name = "two bones";
-  patient.parts.push_back({"maxilla", Role::maxilla, std::move(maxilla), {}});
-  patient.parts.push_back({"mandible", Role::mandible, std::move(mandible), {}});
-  return patient;
-}
-
-Pose shift(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
+using test::shift;
+using test::two_bones;
 
 /// A ball under a block whose underside is at z = 12.
 Case ball_under_block() {

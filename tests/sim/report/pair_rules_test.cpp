@@ -6,24 +6,12 @@
 
 #include "sim/report/check_page.h"
 #include "sim/report/clearance.h"
+#include "tests/sim/report/lift.h"
 #include "tests/support/boxes.h"
 #include "tests/support/shapes.h"
 
 namespace condyle::test {
 namespace {
-
-/// Up by a height in half a second.
-Motion lift(double height_mm) {
-  return {"lift",
-          0.5,
-          true,
-          [height_mm](double t) {
-            Pose pose;
-            pose.t = {0, 0, height_mm * std::clamp(t, 0.0, 0.5) / 0.5};
-            return pose;
-          },
-          {}};
-}
 
 /// A ball that stands 1 mm below a plate, or as far in it when `gap_mm` is negative.
 Case ball_below(double gap_mm = 1) {

@@ -9,25 +9,12 @@
 #include "sim/report/clearance.h"
 #include "sim/report/plots.h"
 #include "sim/report/trace.h"
+#include "tests/sim/report/lift.h"
 #include "tests/support/boxes.h"
 #include "tests/support/program.h"
 
 namespace condyle::test {
-namespace {
-
-Motion lift(double height_mm) {
-  return {"lift",
-          0.5,
-          true,
-          [height_mm](double t) {
-            Pose pose;
-            pose.t = {0, 0, height_mm * std::clamp(t, 0.0, 0.5) / 0.5};
-            return pose;
-          },
-          {}};
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST(Trace, HasTheColumnsOfTheContractAndAnEarlierTraceStaysUntilFinish) {
   const Folder folder;

@@ -17,8 +17,6 @@ Motion resting() {
   return {"rest", 1.0, false, [](double) { return Pose{}; }, {}};
 }
 
-Pose shift(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
-
 std::size_t part_named(const Case& patient, const std::string& name) {
   for (std::size_t i = 0; i < patient.parts.size(); ++i)
     if (patient.parts[i].name == name) return i;

@@ -1,0 +1,24 @@
+#include <string>
+
+#include "engine/core/error.h"
+#include "engine/tissue/layered_net.h"
+
+namespace condyle {
+
+LayerStack usual_layers(int count) {
+  const LayerMaterial outer{0.040, 0.12}, middle{0.015, 0.12}, inner{0.025, 0.12};
+  switch (count) {
+    case 1:
+      return {{1.0}, {inner}};
+    case 2:
+      return {{0.35, 0.65}, {outer, inner}};
+    case 3:
+      return {{0.22, 0.38, 0.40}, {outer, middle, inner}};
+    case 5:
+      return {{0.12, 0.18, 0.22, 0.24, 0.24}, {outer, outer, middle, inner, inner}};
+    default:
+      throw InputError("soft tissue: layers must be 1, 2, 3 or 5, not " + std::to_string(count));
+  }
+}
+
+}  // namespace condyle
