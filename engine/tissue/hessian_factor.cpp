@@ -128,6 +128,10 @@ void HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, c
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) to[(column + j) * size_ + row + i] += static_cast<float>(m(i, j));
   };
+  const auto coupled = [&](int a, int b) {
+    const int pa = place_[a / nodes_per_column_], pb = place_[b / nodes_per_column_];
+    return block(std::max(pa, pb), std::min(pa, pb)) != nullptr;
+  };
   const double lambda = net.lambda;
   for (std::size_t s = 0; s < net.spring_a.size(); ++s) {
     const int a = net.spring_a[s], b = net.spring_b[s];
@@ -147,11 +151,19 @@ void HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, c
   for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
     add(net.anchor_node[i], net.anchor_node[i],
         Matrix3d::Identity() * (2 * lambda * net.anchor_stiffness[i]));
-  for (std::size_t i = 0; i < net.slide_node.size(); ++i) {
-    const Vector3d& n = loads.slide_normal[i];
-    const int node = net.slide_node[i];
-    if (n.dot(x[node]) < loads.slide_offset[i])
-      add(node, node, n * n.transpose() * (2 * lambda * net.slide_stiffness[i]));
+  // Two surfaces that touch may couple columns that no spring does. Then each surface alone is
+  // taken (weights of one sign), which leaves the matrix positive definite.
+  for (const auto& row : loads.contacts) {
+    if (row.gap(x) >= 0) continue;
+    bool whole = true;
+    for (int a = 0; a < row.count; ++a)
+      for (int b = 0; b < a; ++b) whole = whole && coupled(row.node[a], row.node[b]);
+    const Matrix3d m = row.normal * row.normal.transpose() * (2 * lambda * row.stiffness);
+    for (int a = 0; a < row.count; ++a)
+      for (int b = 0; b < row.count; ++b) {
+        const double weight = row.weight[a] * row.weight[b];
+        if (whole || weight > 0) add(row.node[a], row.node[b], weight * m);
+      }
   }
   for (std::size_t p = 0; p < net.prisms.size(); ++p) {
     std::array<Vector3d, 6> slope;

@@ -125,14 +125,15 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, Nodes& gradien
     spring_energy += net_.anchor_stiffness[i] * d.squaredNorm();
     if constexpr (with_gradient) gradient[node] += (2 * net_.anchor_stiffness[i]) * d;
   }
-  const Range slides = share(net_.slide_node.size(), chunk, chunks_);
-  for (std::size_t i = slides.first; i < slides.last; ++i) {
-    const int node = net_.slide_node[i];
-    const double gap = loads_.slide_normal[i].dot(x[node]) - loads_.slide_offset[i];
+  const Range contacts = share(loads_.contacts.size(), chunk, chunks_);
+  for (std::size_t i = contacts.first; i < contacts.last; ++i) {
+    const ContactRow& row = loads_.contacts[i];
+    const double gap = row.gap(x);
     if (gap >= 0) continue;
-    spring_energy += net_.slide_stiffness[i] * gap * gap;
+    spring_energy += row.stiffness * gap * gap;
     if constexpr (with_gradient)
-      gradient[node] += (2 * net_.slide_stiffness[i] * gap) * loads_.slide_normal[i];
+      for (int k = 0; k < row.count; ++k)
+        gradient[row.node[k]] += (2 * row.stiffness * gap * row.weight[k]) * row.normal;
   }
   const Range forced = share(loads_.node_force.size(), chunk, chunks_);
   for (std::size_t i = forced.first; i < forced.last; ++i) {
@@ -205,12 +206,12 @@ Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& 
   const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);
   for (std::size_t i = anchors.first; i < anchors.last; ++i)
     linear += 2 * net_.anchor_stiffness[i] * d[net_.anchor_node[i]].squaredNorm();
-  const Range slides = share(net_.slide_node.size(), chunk, chunks_);
-  for (std::size_t i = slides.first; i < slides.last; ++i) {
-    const int node = net_.slide_node[i];
-    if (loads_.slide_normal[i].dot(x[node]) >= loads_.slide_offset[i]) continue;
-    const double speed = loads_.slide_normal[i].dot(d[node]);
-    linear += 2 * net_.slide_stiffness[i] * speed * speed;
+  const Range contacts = share(loads_.contacts.size(), chunk, chunks_);
+  for (std::size_t i = contacts.first; i < contacts.last; ++i) {
+    const ContactRow& row = loads_.contacts[i];
+    if (row.gap(x) >= 0) continue;
+    const double speed = row.along(d);
+    linear += 2 * row.stiffness * speed * speed;
   }
   const Range prisms = share(net_.prisms.size(), chunk, chunks_);
   Corners slope;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/minimize/objective.h"
+#include "engine/tissue/contact_row.h"
 
 namespace condyle {
 
@@ -24,10 +25,6 @@ struct SpringPrismNet {
   // stiffness * |d|^2, so nothing is divided by a length.
   std::vector<int> anchor_node;
   std::vector<double> anchor_stiffness;
-
-  // Nodes that may slide on, and leave, but not pass a plane that is given at each evaluation.
-  std::vector<int> slide_node;
-  std::vector<double> slide_stiffness;
 
   // Prisms: corners 0 1 2 counter-clockwise seen from outside, 3 4 5 below them.
   std::vector<std::array<int, 6>> prisms;
@@ -50,9 +47,8 @@ struct SpringPrismNet {
 
 /// What the outer world asks at one time.
 struct NetLoads {
-  Nodes anchor_target;  // one per anchor
-  Nodes slide_normal;   // unit, out of the body that must not be entered; one per slide
-  std::vector<double> slide_offset;  // normal . x >= offset is free
+  Nodes anchor_target;               // one per anchor
+  std::vector<ContactRow> contacts;  // what may not be entered
   /// Pulls the nodes, N; one per node, or empty. Like the springs it counts with weight lambda, so
   /// that a spring under it stretches by force / (2 stiffness) whatever lambda is.
   Nodes node_force;
@@ -77,8 +73,8 @@ class SpringPrismEnergy final : public Objective {
  public:
   SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads);
 
-  /// Energy, mJ: lambda sum k (l - l0)^2 + (1 - lambda) sum w (v - v0)^2, anchors, slides and node
-  /// forces with the springs. Infinite where a prism has no positive volume.
+  /// Energy, mJ: lambda sum k (l - l0)^2 + (1 - lambda) sum w (v - v0)^2, anchors, contacts and
+  /// node forces with the springs. Infinite where a prism has no positive volume.
   double value(const Nodes& x) override;
   /// The same, and its gradient (N).
   double value_and_gradient(const Nodes& x, Nodes& gradient) override;

@@ -143,9 +143,8 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
       const Vector3d met = skin.mesh.vertices[c] + columns[c].met_depth * columns[c].inward;
       const Vector3d normal = -columns[c].inward;
       const Vector3d point = normal.dot(model->rest[inner] - met) < 0 ? model->rest[inner] : met;
-      net.slide_node.push_back(inner);
-      net.slide_stiffness.push_back(slide_stiffness);
-      model->slides.push_back({point, normal, columns[c].ground == Ground::mandible});
+      model->slides.push_back(
+          {inner, slide_stiffness, point, normal, columns[c].ground == Ground::mandible});
     }
   }
 

@@ -19,8 +19,8 @@ NetLoads loads_at(const TissueModel& model, const Pose& X_CM) {
   for (const auto& slide : model.slides) {
     const Vector3d normal = slide.on_mandible ? Vector3d(X_CM.R * slide.normal) : slide.normal;
     const Vector3d point = slide.on_mandible ? X_CM * slide.point : slide.point;
-    loads.slide_normal.push_back(normal);
-    loads.slide_offset.push_back(normal.dot(point));
+    loads.contacts.push_back(
+        ContactRow::of_node(slide.node, normal, normal.dot(point), slide.stiffness));
   }
   return loads;
 }

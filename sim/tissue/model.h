@@ -24,10 +24,12 @@ struct TissueModel {
   // X).
   std::vector<double> anchor_share;
   struct Slide {
+    int node = 0;
+    double stiffness = 0;           // N/mm
     Eigen::Vector3d point, normal;  // of the plane at rest
     bool on_mandible = false;
   };
-  std::vector<Slide> slides;  // one per slide of the net
+  std::vector<Slide> slides;
   // Preconditioners, for states turned by `from_rad` and more; rising, the first from 0.
   struct Factor {
     double from_rad = 0;

@@ -40,8 +40,6 @@ class EachForm : public testing::TestWithParam<Form> {};
 /// magnitude, roughened as far as prisms allow.
 TEST_P(EachForm, DerivativesEqualCentralDifferencesFromAMillionthToAThousandMillimetres) {
   SyntheticSet set = small_set(GetParam());
-  set.net.slide_node = {3, 7, 30};
-  set.net.slide_stiffness = {0.5, 0.5, 0.5};
   Random random{std::mt19937(5)};
   for (double magnitude = 1e-6; magnitude < 2e3; magnitude *= 10) {
     const Pose pose = random.pose();
@@ -55,12 +53,17 @@ TEST_P(EachForm, DerivativesEqualCentralDifferencesFromAMillionthToAThousandMill
     }
     for (auto& p : loads.anchor_target) p = pose * p;
     loads.node_force.assign(x.size(), Vector3d(0.01, -0.02, 0.03));
-    // Two pressed and one free, by about the magnitude.
+    // Two pressed and one free, by about the magnitude: a node, and points of triangles.
     const double depth[] = {1, -1, 2};
+    const std::array<ContactRow, 3> shapes = {{{{3}, {1}, 1},
+                                               {{7, 11, 15}, {0.2, 0.3, 0.5}, 3},
+                                               {{30, 34, 2, 6}, {0.4, 0.6, -0.5, -0.5}, 4}}};
     for (int i = 0; i < 3; ++i) {
-      loads.slide_normal.push_back(random.vector().normalized());
-      loads.slide_offset.push_back(loads.slide_normal[i].dot(x[set.net.slide_node[i]]) +
-                                   depth[i] * magnitude);
+      ContactRow row = shapes[i];
+      row.normal = random.vector().normalized();
+      row.offset = row.along(x) + depth[i] * magnitude;
+      row.stiffness = 0.5;
+      loads.contacts.push_back(row);
     }
     SpringPrismEnergy energy(set.net, loads, 1);
     Nodes g, up = x, down = x, g_up, g_down, d(x.size());

@@ -99,11 +99,10 @@ TEST(SpringPrism, VolumesOfNeighboursSumToTheWhole) {
 TEST(SpringPrism, GradientEqualsCentralDifferenceOverMagnitudes) {
   Slab slab = make_slab(4, 4);
   for (double shake : {0.01, 0.3, 1.2}) {
-    slab.net.slide_node = {0, 5, 9};
-    slab.net.slide_stiffness = {1, 1, 1};
     NetLoads loads = loads_of(slab, {0.5, -1, 0.3});
-    loads.slide_normal = {Vector3d::UnitZ(), Vector3d::UnitX(), Vector3d(0, 0.6, 0.8)};
-    loads.slide_offset = {5, -50, 90};  // one free, two pressed
+    loads.contacts = {ContactRow::of_node(0, Vector3d::UnitZ(), 5, 1),  // two pressed, one free
+                      ContactRow::of_node(5, Vector3d::UnitX(), -50, 1),
+                      ContactRow::of_node(9, Vector3d(0, 0.6, 0.8), 90, 1)};
     const Nodes x = shaken(slab.rest, shake, 3);
     SpringPrismEnergy energy(slab.net, loads, 1);
     Nodes gradient, unused;
