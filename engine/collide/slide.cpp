@@ -28,6 +28,10 @@ bool is_finite(const Pose& X) { return X.R.coeffs().allFinite() && X.t.allFinite
 
 bool same_bits(const Pose& x, const Pose& y) { return x.R.coeffs() == y.R.coeffs() && x.t == y.t; }
 
+bool same_place(const Pose& x, const Pose& y) {
+  return (x.t - y.t).norm() < 1e-9 && rotation_angle(x.inverse() * y) < 1e-9;
+}
+
 std::uint64_t next_id() {
   static std::atomic<std::uint64_t> last = 0;
   return ++last;
@@ -69,8 +73,8 @@ SlidingContact::SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fix
     const double band = std::min(f.field.settings().band_mm, m.field.settings().band_mm);
     if (!(pair.gap_mm >= 0 && pair.gap_mm <= 0.5 * band))
       throw std::invalid_argument("sliding contact: a gap is below 0 or above half the band");
-    pairs_.push_back({&m, &f, true, pair.gap_mm, {}});
-    pairs_.push_back({&f, &m, false, pair.gap_mm, {}});
+    pairs_.push_back({&m, &f, true, pair.gap_mm, pair.fixed, pair.moving});
+    pairs_.push_back({&f, &m, false, pair.gap_mm, pair.fixed, pair.moving});
     band_mm_ = std::min(band_mm_, band - pair.gap_mm);
   }
   double count = 0, square = 0;
@@ -83,10 +87,8 @@ SlidingContact::SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fix
   if (count > 0) pivot_ = sum / count;
   if (settings_.pivot) pivot_ = *settings_.pivot;
   for (const auto& m : moving_)
-    for (const auto& p : m->samples.points) {
-      square += (p - pivot_).squaredNorm();
-      radius_mm_ = std::max(radius_mm_, (p - pivot_).norm());
-    }
+    for (const auto& p : m->samples.points) square += (p - pivot_).squaredNorm();
+  place(std::vector<Pose>(fixed_.size()), std::vector<Pose>(moving_.size()));
   if (count > 0) rotation_length_mm_ = std::max(std::sqrt(square / count), 1e-3);
   if (settings_.rotation_length_mm > 0) rotation_length_mm_ = settings_.rotation_length_mm;
 }
@@ -101,10 +103,48 @@ struct SlideMemory::State {
 SlideMemory::SlideMemory() = default;
 SlideMemory::~SlideMemory() = default;
 
-void SlidingContact::allow_overlap_at(const Pose& rest) {
+void SlidingContact::place(const std::vector<Pose>& X_FS, const std::vector<Pose>& X_MS) {
+  if (X_FS.size() != fixed_.size() || X_MS.size() != moving_.size())
+    throw std::invalid_argument("sliding contact: not as many poses as surfaces");
+  id_ = next_id();
+  rest_.reset();
+  bool one_rest = true;
+  for (Pair& pair : pairs_) {
+    pair.X_FS = X_FS[static_cast<std::size_t>(pair.fixed)];
+    pair.X_MS = X_MS[static_cast<std::size_t>(pair.moving)];
+    if (!pair.overlaps) continue;
+    const Pose rest = pair.X_FS * pair.rest * pair.X_MS.inverse();
+    one_rest &= !rest_ || same_place(rest, *rest_);
+    rest_ = rest;
+  }
+  if (!one_rest) rest_.reset();
+  radius_mm_ = 0;
+  for (std::size_t m = 0; m < moving_.size(); ++m)
+    for (const auto& p : moving_[m]->samples.points)
+      radius_mm_ = std::max(radius_mm_, (X_MS[m] * p - pivot_).norm());
+}
+
+double SlidingContact::allowed_share(const Pair& pair, const Pose& X_FM) const {
+  if (pair.allowed.empty()) return 0;
+  if (fade_mm_ == infinity) return 1;
+  // No point of the moving surface has gone farther.
+  const auto& balls = pair.mover().samples.balls;
+  if (balls.empty()) return 1;
+  const Pose now = pair.between(X_FM);
+  const double way = (now * balls[0].center - pair.rest * balls[0].center).norm() +
+                     rotation_angle(pair.rest.inverse() * now) * balls[0].radius;
+  const double share = way / fade_mm_;
+  return std::max(0.0, 1 - share * share);
+}
+
+void SlidingContact::allow_overlap_at(const Pose& rest, double fade_mm) {
   id_ = next_id();
   rest_ = rest;
-  for (auto& pair : pairs_) pair.allowed.clear();
+  fade_mm_ = infinity;
+  for (auto& pair : pairs_) {
+    pair.allowed.clear();
+    pair.rest = pair.between(rest);
+  }
   SlideProbe probe(*this, 1);
   probe.look_at(rest, 0);
   for (auto& pair : pairs_) pair.allowed.assign(pair.samples->samples.points.size(), 0.0f);
@@ -112,6 +152,10 @@ void SlidingContact::allow_overlap_at(const Pose& rest) {
     if (c.gap < 0)
       pairs_[c.pair].allowed[c.sample] =
           c.known ? static_cast<float>(c.gap) : -std::numeric_limits<float>::infinity();
+  for (auto& pair : pairs_)
+    pair.overlaps = std::any_of(pair.allowed.begin(), pair.allowed.end(),
+                                [](float allowed) { return allowed < 0; });
+  fade_mm_ = fade_mm;
 }
 
 double SlidingContact::depth(const Pose& X_FM, int threads) const {

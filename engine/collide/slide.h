@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -97,8 +98,14 @@ class SlidingContact {
                  const std::vector<SlidePair>& pairs, const SlideSettings& settings = {});
 
   /// Overlap at this pose is allowed from now on: each sample may go as deep as it is there, or as
-  /// near where its pair keeps a gap. Samples deeper than the band no longer count.
-  void allow_overlap_at(const Pose& rest);
+  /// near where its pair keeps a gap. Samples deeper than the band no longer count. What is allowed
+  /// fades as the surfaces of a pair leave that place, and ends `fade_mm` from it.
+  void allow_overlap_at(const Pose& rest, double fade_mm = std::numeric_limits<double>::infinity());
+
+  /// Where the surfaces lie in the fixed and in the moving frame from now on; at first they lie in
+  /// their own coordinates. Pivot and rotation length stay, and what pairs may overlap goes with
+  /// them. throws: std::invalid_argument for another number of surfaces.
+  void place(const std::vector<Pose>& X_FS, const std::vector<Pose>& X_MS);
 
   /// The pose near the wanted one (least squares of the pivot's way and the rotation times its
   /// length) that touches and does not overlap. Without friction it depends on the wanted pose
@@ -125,14 +132,23 @@ class SlidingContact {
     const SlideBody* field;
     bool samples_move = false;
     double gap_mm = 0;
-    std::vector<float> allowed;  // of each sample, mm, at most 0; empty: 0
+    int fixed = 0, moving = 0;        // surfaces
+    Pose X_FS = {}, X_MS = {};        // where they lie
+    Pose rest = {};                   // moving surface in the fixed one where overlap is allowed
+    bool overlaps = false;            // there
+    std::vector<float> allowed = {};  // of each sample there, mm, at most 0; empty: 0
+
+    Pose between(const Pose& X_FM) const { return X_FS.inverse() * X_FM * X_MS; }
+    /// Samples in the field's coordinates.
+    Pose to_field(const Pose& X_FM) const {
+      return samples_move ? between(X_FM) : between(X_FM).inverse();
+    }
+    const SlideBody& mover() const { return samples_move ? *samples : *field; }
   };
 
   std::optional<Pose> start_for(const Pose& wanted, SlideProbe& probe) const;
-  double allowed(int pair, int sample) const {
-    const auto& list = pairs_[pair].allowed;
-    return list.empty() ? 0.0 : static_cast<double>(list[sample]);
-  }
+  /// Of what a pair allows, at a pose.
+  double allowed_share(const Pair& pair, const Pose& X_FM) const;
 
   std::vector<std::shared_ptr<const SlideBody>> fixed_, moving_;
   SlideSettings settings_;
@@ -142,7 +158,8 @@ class SlidingContact {
   double radius_mm_ = 0;      // of the moving samples about the pivot
   double band_mm_ = 1;        // the narrowest that is left beyond a gap
   std::optional<Pose> rest_;  // where overlap is allowed
-  std::uint64_t id_ = 0;      // another one for each model and baseline
+  double fade_mm_ = std::numeric_limits<double>::infinity();
+  std::uint64_t id_ = 0;  // another one for each model and baseline
 };
 
 }  // namespace condyle

@@ -22,11 +22,12 @@ constexpr double rounding_mm = 1e-4;  // of what is kept of a look
 struct SlideProbe::Search {
   const SlidingContact::Pair& pair;
   std::vector<Seen>& seen;
-  const Pose& X;
   int index;
   double within, turned;
+  double share;  // of what is allowed
   std::vector<SlideCandidate>& found;
-  Eigen::Matrix3d R_FS, R_X;  // samples in the field; moving in fixed
+  Pose X_fixed;                // of the samples in the fixed frame
+  Eigen::Matrix3d R_FS, R_FD;  // samples in the field; field in the fixed frame
   Vector3d t_FS;
 
   /// Written out: this is asked more often than anything else.
@@ -67,7 +68,7 @@ struct SlideProbe::Search {
     const SurfaceSamples& s = pair.samples->samples;
     double least = infinity;
     for (int i = leaf.first; i < leaf.first + leaf.count; ++i) {
-      const double allowed = pair.allowed.empty() ? 0.0 : static_cast<double>(pair.allowed[i]);
+      const double allowed = share > 0 ? share * static_cast<double>(pair.allowed[i]) : 0.0;
       if (allowed == -infinity) continue;
       const Vector3d p = in_field(s.points[i]);
       const FieldSample at = pair.field->field.at(p);
@@ -83,8 +84,9 @@ struct SlideProbe::Search {
       c.known = look.known;
       c.faces = look.faces;
       c.gap = gap - allowed;
-      c.point = pair.samples_move ? p : s.points[i];
-      c.gradient = pair.samples_move ? look.gradient : Vector3d(-(R_X * look.gradient));
+      c.point = X_fixed * s.points[i];
+      c.gradient = R_FD * look.gradient;
+      if (!pair.samples_move) c.gradient = -c.gradient;
       found.push_back(c);
     }
     return least;
@@ -99,21 +101,21 @@ SlideProbe::SlideProbe(const SlidingContact& model, int threads)
 void SlideProbe::look_at(const Pose& X, double within_mm) {
   turned_ += rotation_angle(at_.inverse() * X);
   at_ = X;
-  const Pose X_inverse = X.inverse();
   parallel_for(seen_.size(), threads_, [&](std::size_t i) {
     const auto& pair = model_.pairs_[i];
     found_[i].clear();
     if (seen_[i].empty()) return;
-    const Pose& X_FS = pair.samples_move ? X : X_inverse;
+    const Pose X_FS = pair.to_field(X), X_moving = X * pair.X_MS;
     Search{pair,
            seen_[i],
-           X,
            static_cast<int>(i),
            within_mm,
            turned_,
+           model_.allowed_share(pair, X),
            found_[i],
+           pair.samples_move ? X_moving : pair.X_FS,
            X_FS.R.toRotationMatrix(),
-           X.R.toRotationMatrix(),
+           (pair.samples_move ? pair.X_FS : X_moving).R.toRotationMatrix(),
            X_FS.t}
         .ball(0);
   });
@@ -129,12 +131,13 @@ void SlideProbe::look_at(const Pose& X, double within_mm) {
 
 SlideProbe::Overlap SlideProbe::overlap_at(const Pose& X) const {
   Overlap sum;
-  const Pose X_inverse = X.inverse();
   std::vector<int> stack;
   for (const auto& pair : model_.pairs_) {
     const SurfaceSamples& s = pair.samples->samples;
     const DistanceField& field = pair.field->field;
-    const Pose& X_FS = pair.samples_move ? X : X_inverse;
+    const Pose X_FS = pair.to_field(X);
+    const Eigen::Quaterniond R_samples = pair.samples_move ? X.R * pair.X_MS.R : pair.X_FS.R;
+    const double share = model_.allowed_share(pair, X);
     stack.assign(s.balls.empty() ? 0 : 1, 0);
     while (!stack.empty()) {
       const int index = stack.back();
@@ -151,13 +154,13 @@ SlideProbe::Overlap SlideProbe::overlap_at(const Pose& X) const {
         continue;
       }
       const double allowed =
-          pair.allowed.empty() ? 0.0 : static_cast<double>(pair.allowed[ball.first]);
+          share > 0 ? share * static_cast<double>(pair.allowed[ball.first]) : 0.0;
       const double depth = allowed + pair.gap_mm - at.distance_mm;
       if (!(depth > 0)) continue;
-      const Vector3d& normal = s.normals[ball.first];
+      const Vector3d normal = R_samples * s.normals[ball.first];
       sum.depth_mm = std::max(sum.depth_mm, depth);
       sum.sum_mm += depth;
-      sum.outward += depth * (pair.samples_move ? Vector3d(-(X.R * normal)) : normal);
+      sum.outward += depth * (pair.samples_move ? Vector3d(-normal) : normal);
     }
   }
   return sum;
@@ -167,11 +170,10 @@ double SlideProbe::clearance(const Pose& X) {
   const double near = near_share * model_.band_mm_;
   look_at(X, near);
   if (deepest_gap_ <= near) return deepest_gap_;
-  const Pose X_inverse = X.inverse();
   double least = infinity;
   for (const auto& pair : model_.pairs_)
-    least = clearance_bound(pair.samples->samples, pair.field->field,
-                            pair.samples_move ? X : X_inverse, least + pair.gap_mm) -
+    least = clearance_bound(pair.samples->samples, pair.field->field, pair.to_field(X),
+                            least + pair.gap_mm) -
             pair.gap_mm;
   return std::max(least, near);
 }

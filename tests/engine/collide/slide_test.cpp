@@ -228,6 +228,51 @@ TEST(Slide, PairsKeepTheirGap) {
   EXPECT_THROW(SlidingContact({floor}, {ball}, {{0, 0, -0.1}}), std::invalid_argument);
 }
 
+TEST(Slide, SurfacesThatArePlacedElsewhereSlideThere) {
+  const TriMesh floor = plate(), wall = test::box({-4, -15, -5}, {0, 15, 15});
+  const auto ball = body(test::sphere(4, 4, {0, 0, 0}, 0.04));
+  const Pose X_wall = turned({0, 1, 0}, 10, {-3, 0, 0}), X_ball = turned({1, 1, 0}, 30, {2, 1, 6});
+  SlidingContact placed({body(floor), body(wall)}, {ball},
+                        {.rotation_length_mm = 3, .pivot = Vector3d(2, 1, 6)});
+  placed.place({{}, X_wall}, {X_ball});
+  const SlidingContact made({body(floor), body(test::moved(wall, X_wall))}, {ball},
+                            {.rotation_length_mm = 3, .pivot = Vector3d(0, 0, 0)});
+  for (const Vector3d& wanted : {Vector3d(1, 1, 2), Vector3d(0, -2, 3.5), Vector3d(6, 3, 9)}) {
+    const Pose there = turned({0, 0, 1}, 4, wanted), from = at(4, 0, 9);
+    const SlideResult a = placed.slide(from * X_ball.inverse(), there * X_ball.inverse()),
+                      b = made.slide(from, there);
+    EXPECT_EQ(a.touching, b.touching);
+    EXPECT_LT(apart(a.X_FM * X_ball, b.X_FM), 0.06);  // fields on other grids
+  }
+  EXPECT_THROW(placed.place({{}}, {X_ball}), std::invalid_argument);
+  // What is allowed to overlap goes along.
+  SlidingContact sunk({body(plate())}, {body(test::box({-3, -3, -0.4}, {3, 3, 4}))});
+  sunk.allow_overlap_at({});
+  const Pose X = turned({1, 2, 3}, 50, {30, 5, 9});
+  sunk.place({X}, {{}});
+  EXPECT_NEAR(sunk.depth(X), 0, 1e-6);
+  EXPECT_LT(apart(sunk.slide(X, X * at(0, 0, -1)).X_FM, X), 0.05);
+}
+
+TEST(Slide, OverlapThatIsAllowedFadesAwayFromItsPlace) {
+  SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
+  const double deep = 0.4;
+  model.allow_overlap_at(at(0, 0, 5 - deep), 2.0);
+  EXPECT_NEAR(model.depth(at(0, 0, 5 - deep)), 0, 1e-6);
+  EXPECT_NEAR(model.depth(at(0, 4, 5 - deep)), deep, 0.03);
+  // Pressed down it stays; dragged along it comes out, and stays out.
+  EXPECT_NEAR(model.slide(at(0, 0, 5 - deep), at(0, 0, 4)).X_FM.t.z(), 5 - deep, 0.05);
+  double last = 5 - deep - 0.02;
+  Pose X = at(0, 0, 5 - deep);
+  for (int k = 1; k <= 12; ++k) {
+    X = model.slide(X, at(0.25 * k, 0, 5 - deep)).X_FM;
+    EXPECT_NEAR(X.t.x(), 0.25 * k, 0.1);
+    EXPECT_GE(X.t.z(), last - 0.02);
+    last = X.t.z();
+  }
+  EXPECT_NEAR(last, 5, 0.04);
+}
+
 TEST(Slide, AStartThatOverlapsIsMovedOut) {
   const SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
   const SlideResult result = model.slide(at(0, 0, 4.5), at(0, 0, 4.4));
