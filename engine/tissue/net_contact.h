@@ -1,0 +1,104 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+#include "engine/collide/distance_field.h"
+#include "engine/math/pose.h"
+#include "engine/mesh/triangle_tree.h"
+#include "engine/tissue/spring_prism.h"
+
+namespace condyle {
+
+/// A point of a net's surface: a node, or within a triangle of three that are neighbours.
+struct NetPoint {
+  std::array<int, 3> node{};
+  std::array<double, 3> weight{};  // sums to 1
+  int count = 0;
+
+  Eigen::Vector3d at(const Nodes& x) const;
+  static NetPoint of_node(int node) { return {{node}, {1.0}, 1}; }
+  static NetPoint centre(int a, int b, int c) {
+    return {{a, b, c}, {1.0 / 3, 1.0 / 3, 1.0 / 3}, 3};
+  }
+};
+
+/// A body that a net slides on and does not enter, in its own coordinates: a field near its surface
+/// within a region, exact triangles where the field says nothing.
+class NetObstacle {
+ public:
+  /// The mesh must be welded, with valid indices. The field is kept in the cache folder, when one
+  /// is given.
+  NetObstacle(const TriMesh& mesh, const Box& region, const std::filesystem::path& cache,
+              int threads = 1);
+
+  struct Near {
+    double distance = 0;     // mm, negative inside
+    Eigen::Vector3d normal;  // unit, away from the body
+  };
+  /// Whether p is nearer than `reach` (mm, below 2), and how near. Nothing beyond the region.
+  bool near(const Eigen::Vector3d& p, double reach, Near& near) const;
+
+ private:
+  DistanceField field_;
+  TriangleTree surface_;
+};
+
+/// A point of the net near something it must not enter.
+struct Touch {
+  int point = 0;  // of the points given
+  /// Distance (mm, negative inside) plus what the point was allowed: the gap of `row` at the nodes'
+  /// places. Elsewhere the row's plane stands for the surface, whose nearest point it touches.
+  double gap = 0;
+  ContactRow row;
+};
+
+struct TouchSettings {
+  double reach_mm = 1.5;   // points farther than this have no row; below 2
+  double stiffness = 1.0;  // N/mm: lips press with some 0.1 N a point
+};
+
+/// Appends the points that are near the obstacle at pose X_WO. `allowance` (mm, one per point) is
+/// how deep each may be: that of overlap at rest.
+void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
+                    const NetObstacle& obstacle, const Pose& X_WO, const Nodes& x,
+                    const TouchSettings& settings, std::vector<Touch>& touches);
+
+/// The same against another part of the net's own surface: triangles of nodes, counter-clockwise
+/// seen from outside. It may have a rim; what is nearest to a rim from behind counts as inside, so
+/// the surface must reach beyond the points. Both sides feel the contact.
+void touch_surface(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
+                   const std::vector<std::array<int, 3>>& triangles, const Nodes& x,
+                   const TouchSettings& settings, std::vector<Touch>& touches);
+
+/// Adds each touch's depth to its point's allowance: what overlaps at rest may stay so.
+void allow(const std::vector<Touch>& touches, std::vector<double>& allowance);
+
+/// How much the surfaces differ from the planes that stood for them, where anything presses: mm of
+/// push. Both are one call's answers for the same points, `before` with planes laid elsewhere,
+/// `now` at x.
+double plane_error(const std::vector<Touch>& before, const std::vector<Touch>& now, const Nodes& x);
+
+/// All touches at x: one list for each thing that may be touched.
+using Looks = std::vector<std::vector<Touch>>;
+
+/// A solve in which the planes are laid anew at each answer, until they stand for the surfaces
+/// there: then it is a minimum of the energy with the surfaces themselves.
+struct TouchingSettings {
+  int most_looks = 5;
+  double tolerance_mm = 0.02;  // of push, see plane_error
+};
+struct TouchingResult {
+  int solves = 0;
+  double error_mm = 0;  // what the planes are still wrong by
+  Looks looks;          // at the answer
+};
+/// `solve` moves x downhill under `loads`, whose contacts are set before each call.
+TouchingResult solve_touching(const std::function<Looks(const Nodes&)>& look,
+                              const std::function<void()>& solve, NetLoads& loads, Nodes& x,
+                              const TouchingSettings& settings = {});
+
+}  // namespace condyle

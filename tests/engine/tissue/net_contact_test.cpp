@@ -1,0 +1,252 @@
+// A net slides on bodies and on itself, and enters neither.
+#include "engine/tissue/net_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "engine/mesh/measure.h"
+#include "engine/minimize/minimize.h"
+#include "engine/tissue/hessian_factor.h"
+#include "engine/tissue/layered_net.h"
+#include "tests/support/shapes.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A flat slab of n x n columns, 3 mm apart; sheet 0 looks up.
+struct Slab {
+  static constexpr int sheets = 3;
+  std::vector<Eigen::Vector3i> triangles;
+  Nodes rest;
+  SpringPrismNet net;
+  std::vector<NetPoint> below;  // points of the lowest sheet
+
+  explicit Slab(int n, const Vector3d& corner) {
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i)
+        for (int s = 0; s < sheets; ++s) rest.push_back(corner + Vector3d(3 * i, 3 * j, -3 * s));
+    for (int j = 0; j + 1 < n; ++j)
+      for (int i = 0; i + 1 < n; ++i) {
+        const int a = j * n + i;
+        triangles.emplace_back(a, a + 1, a + n + 1);
+        triangles.emplace_back(a, a + n + 1, a + n);
+      }
+    net = layered_net(triangles, sheets, rest, std::vector<LayerMaterial>(sheets - 1));
+    for (int c = 0; c < n * n; ++c) below.push_back(NetPoint::of_node(lowest(c)));
+    for (const auto& t : triangles)
+      below.push_back(NetPoint::centre(lowest(t[0]), lowest(t[1]), lowest(t[2])));
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i)
+        if (i == 0 || j == 0 || i + 1 == n || j + 1 == n)
+          for (int s = 0; s < sheets; ++s) {
+            net.anchor_node.push_back(node_of(j * n + i, s, sheets));
+            net.anchor_stiffness.push_back(1.0);
+          }
+  }
+  static int lowest(int column) { return node_of(column, sheets - 1, sheets); }
+  NetLoads held_at(const Vector3d& moved) const {
+    NetLoads loads;
+    for (int node : net.anchor_node) loads.anchor_target.push_back(rest[node] + moved);
+    return loads;
+  }
+};
+
+Box wide_box() {
+  Box box;
+  box.add(Vector3d::Constant(-60));
+  box.add(Vector3d::Constant(60));
+  return box;
+}
+
+/// Deepest point inside a closed mesh, mm: by winding number and nearest triangle, which the
+/// contact itself does not use.
+double deepest(const TriMesh& body, const std::vector<NetPoint>& points, const Nodes& x) {
+  const TriangleTree tree(body);
+  double depth = 0;
+  for (const auto& point : points)
+    if (tree.winding_number(point.at(x)) > 0.5)
+      depth = std::max(depth, tree.nearest(point.at(x)).distance);
+  return depth;
+}
+
+TouchingResult settle(const SpringPrismNet& net, int sheets, NetLoads& loads,
+                      const std::function<Looks(const Nodes&)>& look, Nodes& x,
+                      double tolerance_mm = 1e-4) {
+  return solve_touching(look,
+                        [&] {
+                          const HessianFactor factor(net, loads, sheets, x);
+                          SpringPrismEnergy energy(net, loads, 1);
+                          const auto result = minimize(Method::preconditioned, energy,
+                                                       {.tolerance_mm = tolerance_mm}, x, &factor);
+                          EXPECT_TRUE(result.converged());
+                        },
+                        loads, x, {.most_looks = 12, .tolerance_mm = 1e-3});
+}
+
+TEST(NetContact, ObstacleTellsTheDistanceOfABallAtAnyPose) {
+  std::mt19937_64 random(4);
+  const double radius = 15;
+  const NetObstacle ball(test::sphere(5, radius), wide_box(), {});
+  const Pose pose = test::any_pose(random, 30);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  int near = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d direction = Vector3d(uniform(random), uniform(random), uniform(random));
+    const double distance = 6 * uniform(random);
+    const NetPoint point = NetPoint::of_node(0);
+    const Nodes x = {pose * Vector3d(direction.normalized() * (radius + distance))};
+    std::vector<Touch> touches;
+    touch_obstacle({point}, {0.0}, ball, pose, x, {}, touches);
+    if (distance > 1.55) {
+      EXPECT_TRUE(touches.empty()) << distance;
+      continue;
+    }
+    if (distance > 1.45) continue;
+    ++near;
+    ASSERT_EQ(touches.size(), 1u) << distance;
+    EXPECT_NEAR(touches[0].gap, distance, 0.02);
+    EXPECT_NEAR(touches[0].row.gap(x), touches[0].gap, 1e-12);
+    EXPECT_GT(touches[0].row.normal.dot(pose.R * direction.normalized()), 0.995);
+  }
+  EXPECT_GT(near, 800);
+}
+
+// The rim of a slab is pulled past a ball: its lower side rests on the ball, and slides there.
+TEST(NetContact, ASlabDrapesOverABallItDoesNotEnter) {
+  const TriMesh mesh = test::sphere(5, 15);
+  const NetObstacle ball(mesh, wide_box(), {});
+  const Slab slab(15, Vector3d(-21, -21, 22));  // lowest sheet at 16 mm
+  const std::vector<double> none(slab.below.size(), 0.0);
+  const auto look = [&](const Nodes& x) {
+    Looks looks(1);
+    touch_obstacle(slab.below, none, ball, Pose{}, x, {.stiffness = 0.1}, looks[0]);
+    return looks;
+  };
+  NetLoads loads = slab.held_at({2, 0, -8});
+  Nodes x = slab.rest, through = slab.rest;
+  settle(
+      slab.net, Slab::sheets, loads, [](const Nodes&) { return Looks(1); }, through);
+  EXPECT_GT(deepest(mesh, slab.below, through), 3);  // it would go deep
+  const auto result = settle(slab.net, Slab::sheets, loads, look, x);
+  EXPECT_LE(result.error_mm, 1e-3);
+  EXPECT_LT(deepest(mesh, slab.below, x), 0.2);
+
+  // The answer is at rest under the ball itself, not only under the planes that stood for it.
+  const auto energy = [&](const Nodes& at) {
+    NetLoads bare = loads;
+    bare.contacts.clear();
+    double sum = SpringPrismEnergy(slab.net, bare, 1).value(at);
+    const Looks looks = look(at);
+    for (const auto& touch : looks[0])
+      if (touch.gap < 0) sum += slab.net.lambda * touch.row.stiffness * touch.gap * touch.gap;
+    return sum;
+  };
+  int pressed = 0;
+  for (const auto& touch : result.looks[0]) {
+    if (touch.gap > -0.002) continue;
+    ++pressed;
+    const double force = 2 * slab.net.lambda * touch.row.stiffness * -touch.gap;
+    for (int i = 0; i < touch.row.count; ++i)
+      for (int k = 0; k < 3; ++k) {
+        Nodes up = x, down = x;
+        up[touch.row.node[i]][k] += 1e-4;
+        down[touch.row.node[i]][k] -= 1e-4;
+        EXPECT_NEAR((energy(up) - energy(down)) / 2e-4, 0, 0.05 * force + 1e-5);
+      }
+  }
+  EXPECT_GT(pressed, 10);
+}
+
+TEST(NetContact, WhatOverlapsAtRestMayStayAndGoNoDeeper) {
+  const TriMesh mesh = test::sphere(5, 15);
+  const NetObstacle ball(mesh, wide_box(), {});
+  const Slab slab(15, Vector3d(-21, -21, 19.5));  // lowest sheet at 13.5 mm: 1.5 mm deep
+  std::vector<double> allowance(slab.below.size(), 0.0);
+  std::vector<Touch> at_rest;
+  touch_obstacle(slab.below, allowance, ball, Pose{}, slab.rest, {}, at_rest);
+  allow(at_rest, allowance);
+  EXPECT_NEAR(*std::max_element(allowance.begin(), allowance.end()), 1.5, 0.05);
+  const auto look = [&](const Nodes& x) {
+    Looks looks(1);
+    touch_obstacle(slab.below, allowance, ball, Pose{}, x, {}, looks[0]);
+    return looks;
+  };
+  Nodes x = slab.rest;
+  NetLoads loads = slab.held_at(Vector3d::Zero());
+  settle(slab.net, Slab::sheets, loads, look, x);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - slab.rest[i]).norm(), 1e-6);
+  loads = slab.held_at({0, 0, -6});
+  settle(slab.net, Slab::sheets, loads, look, x);
+  EXPECT_LT(deepest(mesh, slab.below, x), 1.5 + 0.2);
+  EXPECT_GT(deepest(mesh, slab.below, x), 1.0);
+}
+
+// Two slabs of one net, one above the other, are pushed together.
+TEST(NetContact, TwoSurfacesOfOneNetPushEachOtherAlike) {
+  const Slab upper(9, Vector3d(0, 0, 8)), lower(9, Vector3d(0.7, 0.4, 0));
+  // One net of both: the upper's lowest sheet lies 2 mm above the lower's topmost.
+  SpringPrismNet net = upper.net;
+  Nodes rest = upper.rest;
+  const int shift = upper.net.node_count;
+  for (const auto& p : lower.rest) rest.push_back(p);
+  net.node_count += lower.net.node_count;
+  for (std::size_t s = 0; s < lower.net.spring_a.size(); ++s) {
+    net.spring_a.push_back(lower.net.spring_a[s] + shift);
+    net.spring_b.push_back(lower.net.spring_b[s] + shift);
+    net.rest_length.push_back(lower.net.rest_length[s]);
+    net.stiffness.push_back(lower.net.stiffness[s]);
+    net.spring_layer.push_back(lower.net.spring_layer[s]);
+    net.spring_sheet.push_back(lower.net.spring_sheet[s]);
+  }
+  for (std::size_t p = 0; p < lower.net.prisms.size(); ++p) {
+    auto prism = lower.net.prisms[p];
+    for (int& node : prism) node += shift;
+    net.prisms.push_back(prism);
+    net.rest_volume.push_back(lower.net.rest_volume[p]);
+    net.volume_weight.push_back(lower.net.volume_weight[p]);
+  }
+  NetLoads loads = upper.held_at({0, 0, -3});
+  for (std::size_t i = 0; i < lower.net.anchor_node.size(); ++i) {
+    net.anchor_node.push_back(lower.net.anchor_node[i] + shift);
+    net.anchor_stiffness.push_back(lower.net.anchor_stiffness[i]);
+    loads.anchor_target.push_back(lower.rest[lower.net.anchor_node[i]] + Vector3d(0, 0, 2));
+  }
+  std::vector<std::array<int, 3>> top;
+  for (const auto& t : lower.triangles)
+    top.push_back(
+        {node_of(t[0], 0, 3) + shift, node_of(t[1], 0, 3) + shift, node_of(t[2], 0, 3) + shift});
+  // Inner points only: those on the rim hang over the other's rim.
+  std::vector<NetPoint> points;
+  for (int j = 1; j < 8; ++j)
+    for (int i = 1; i < 8; ++i) points.push_back(NetPoint::of_node(Slab::lowest(j * 9 + i)));
+  const std::vector<double> none(points.size(), 0.0);
+  const auto look = [&](const Nodes& x) {
+    Looks looks(1);
+    touch_surface(points, none, top, x, {.reach_mm = 6}, looks[0]);
+    return looks;
+  };
+  Nodes x = rest;
+  const auto result = settle(net, Slab::sheets, loads, look, x);
+  int pressed = 0;
+  for (const auto& touch : result.looks[0]) {
+    EXPECT_GT(touch.gap, -0.2);
+    pressed += touch.gap < 0;
+    double sum = 0;
+    for (int k = 0; k < touch.row.count; ++k) sum += touch.row.weight[k];
+    EXPECT_NEAR(sum, 0, 1e-12);  // what one side feels the other feels too
+  }
+  EXPECT_GT(pressed, 20);
+  // Both give way, alike, since they are alike.
+  const double sunk = rest[Slab::lowest(40)].z() - x[Slab::lowest(40)].z();
+  const double raised = x[shift + node_of(40, 0, 3)].z() - rest[shift + node_of(40, 0, 3)].z();
+  EXPECT_NEAR(3 - sunk, 2 - raised, 0.3);
+  EXPECT_GT(3 - sunk, 1);
+}
+
+}  // namespace
+}  // namespace condyle
