@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
+#include <utility>
 
 #include "engine/collide/slide_probe.h"
 #include "engine/collide/slide_walk.h"
@@ -218,22 +220,35 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
         start = rest_;
       }
     }
-    const auto reaches = [&](const Pose& to) {
-      const double near = near_share * band_mm_;
-      return here.way_of(here.between(from, to)) <= near ||
-             here.way_of(here.between(walk.towards(from, to).X_FM, to)) <= near;
+    const double near = near_share * band_mm_;
+    const auto reach = [&](const Pose& to) {  // whether it does, and passes through nothing
+      if (here.way_of(here.between(from, to)) <= near) return std::pair(true, true);
+      const SlideResult there_by_walk = walk.towards(from, to);
+      return std::pair(here.way_of(here.between(there_by_walk.X_FM, to)) <= near,
+                       there_by_walk.reached);
     };
-    if (answer.settled && (reaches(answer.X_FM) || reaches(*start))) return answer;
+    if (answer.settled) {
+      auto [reaches, surely] = reach(answer.X_FM);
+      if (!reaches) {
+        std::tie(reaches, surely) = reach(*start);
+        surely &= answer.reached;
+      }
+      answer.reached = surely;
+      if (reaches) return answer;
+    }
   }
   Pose X = from;
   int steps = 0;
+  bool reached = true;
   for (int k = 0; k < max_walks; ++k) {
     out = walk.towards(X, wanted);
     steps += out.steps;
+    reached &= out.reached;
     if (same_bits(out.X_FM, X)) break;
     X = out.X_FM;
   }
   out.steps = steps;
+  out.reached = reached;
   return out;
 }
 

@@ -59,6 +59,9 @@ struct SlideResult {
   double depth_mm = 0;                 // by the fields, beyond the baseline
   std::vector<SlideContact> contacts;  // that hold it
   int steps = 0;
+  // The body got there from `from` in steps so short that nothing can lie between: on the way no
+  // sample was deeper than one step, a quarter of the band, or where its depth is not known.
+  bool reached = false;
 };
 
 /// What one slide collected for the next. It saves time where poses are near each other and changes

@@ -66,6 +66,7 @@ SlideResult SlideWalk::towards(const Pose& from, const Pose& wanted) {
   cuts_.clear();
   std::array<double, 8> lately;  // how far from the wanted pose it was
   lately.fill(infinity);
+  out.reached = true;
   for (out.steps = 0; out.steps < max_steps; ++out.steps) {
     const Twist left = probe_.between(X, wanted);
     const double way = probe_.way_of(left);
@@ -74,13 +75,14 @@ SlideResult SlideWalk::towards(const Pose& from, const Pose& wanted) {
     if (probe_.deepest_gap() > active) {
       const double clear = probe_.clearance(X);
       if (clear >= way) {
-        out = {wanted, false, true, 0, {}, out.steps};
+        out = {wanted, false, true, 0, {}, out.steps, out.reached};
         return out;
       }
       X = probe_.moved(X, left * (std::max(clear, radius) / way));
       radius = longest;
       continue;
     }
+    out.reached &= probe_.deepest_gap() >= -(longest + settings.slop_mm);
     make_rows(X);
     const TwistSolution solution = nearest_allowed(share * left, rows_, solver);
     Twist x = solution.x;
@@ -113,7 +115,7 @@ SlideResult SlideWalk::towards(const Pose& from, const Pose& wanted) {
   if (out.steps > 0 && start_is_free && settings.friction == 0 &&
       probe_.between(from, wanted).norm() <= probe_.between(out.X_FM, wanted).norm() + gained_mm) {
     start.steps = out.steps;
-    start.settled = true;
+    start.settled = start.reached = true;
     return start;
   }
   return out;

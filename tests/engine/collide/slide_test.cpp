@@ -280,6 +280,15 @@ TEST(Slide, AStartThatOverlapsIsMovedOut) {
   EXPECT_LE(result.depth_mm, 0.02);
 }
 
+TEST(Slide, TellsWhetherItsWayPassesThroughNothing) {
+  const SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
+  EXPECT_TRUE(model.slide(at(-6, 2, 7), at(5, -3, 4)).reached);      // along the plane
+  EXPECT_TRUE(model.slide(at(0, 0, 40), at(0, 0, -30)).reached);     // a long jump stopped
+  EXPECT_TRUE(model.slide(at(-8, 0, 12), at(3, 1, 5.5)).reached);    // all free
+  const SlideResult inside = model.slide(at(0, 0, 3), at(0, 0, 4));  // starts too deep
+  EXPECT_FALSE(inside.reached);
+}
+
 TEST(Slide, PosesThatAreNotFiniteMoveNothing) {
   const SlidingContact model({body(plate())}, {body(test::sphere(2, 5))});
   const double nan = std::numeric_limits<double>::quiet_NaN();
