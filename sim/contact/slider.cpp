@@ -13,6 +13,12 @@ constexpr double tooth_sample_mm = 0.4, bone_sample_mm = 0.6;
 // Of a guided pair: fields reach little farther than twice the gap. Wider gaps are kept by exact
 // distances alone.
 constexpr double widest_gap_mm = 4;
+// A surface counts as thin where the field half a spacing below it says that it is hardly inside,
+// and it does so in more than this share of places; sharp edges are fewer.
+constexpr double thin_share = 0.1;
+constexpr std::size_t thin_stride = 7;
+constexpr double fade_mm = 2;  // from rest, where overlap that is there at rest must be gone
+constexpr std::size_t most_settings = 24;
 
 double spacing_of(const Part& part) {
   if (is_teeth(part.role)) return tooth_spacing_mm;
@@ -26,6 +32,15 @@ double spacing_of(const Part& part) {
   }
 }
 
+bool is_thin(const SlideBody& body) {
+  const double below_mm = 0.5 * body.field.settings().spacing_mm;
+  std::size_t thin = 0, all = 0;
+  for (std::size_t i = 0; i < body.samples.points.size(); i += thin_stride, ++all)
+    thin += body.field.at(body.samples.points[i] - below_mm * body.samples.normals[i]).distance_mm >
+            -0.25 * below_mm;
+  return static_cast<double>(thin) > thin_share * static_cast<double>(all);
+}
+
 }  // namespace
 
 Slider::Slider(const Case& patient, const ContactModel::State& state) : state_(state) {
@@ -35,7 +50,8 @@ Slider::Slider(const Case& patient, const ContactModel::State& state) : state_(s
   for (const auto& collider : state.colliders) {
     if (collider->guard) continue;
     const Part& part = patient.parts[static_cast<std::size_t>(collider->part)];
-    Surface surface{collider->number, part.mesh, {}, nullptr};
+    Surface surface{collider->number, part.mesh, {},
+                    nullptr,          false,     collider->solid.open_shell_count() > 0};
     FieldSettings& field = surface.settings.field;
     field.spacing_mm = spacing_of(part);
     field.band_mm = band_mm;
@@ -66,6 +82,7 @@ void Slider::prepare(const Progress& progress, int threads) {
     surface.body =
         std::make_shared<const SlideBody>(make_slide_body(surface.mesh, surface.settings, threads));
     surface.mesh = {};
+    surface.thin = is_thin(*surface.body);
   }
   contacts_.resize(static_cast<std::size_t>(state_.body_count()));
   for (int body = mandible_body; body < state_.body_count(); ++body)
@@ -96,18 +113,71 @@ std::unique_ptr<SlidingContact> Slider::make_contact(int body) const {
   auto contact = std::make_unique<SlidingContact>(
       std::move(fixed), std::move(moving), pairs,
       SlideSettings{.friction = state_.settings.friction, .pivot = {}});
-  contact->allow_overlap_at({});
+  contact->allow_overlap_at({}, fade_mm);
   return contact;
 }
 
-bool Slider::knows(const Drive& drive) const {
-  for (std::size_t b = 0; b < drive.X_CB.size(); ++b)
-    if (drive.moves[b] ? drive.X_DM[b].has_value() : !same_bits(drive.X_CB[b], {})) return false;
-  return true;
+bool Slider::sees(const Drive& drive) const {
+  std::vector<const Surface*> of(state_.colliders.size(), nullptr);
+  for (const Surface& surface : surfaces_)
+    of[static_cast<std::size_t>(surface.collider)] = &surface;
+  return std::none_of(state_.pairs.begin(), state_.pairs.end(), [&](const ColliderPair& pair) {
+    const Surface &a = *of[static_cast<std::size_t>(pair.a->number)],
+                  &b = *of[static_cast<std::size_t>(pair.b->number)];
+    return drive.concerns(pair) &&
+           (a.open || b.open || (a.thin && b.thin) || pair.kept_mm > widest_gap_mm);
+  });
 }
 
-Pose Slider::slide(const Drive& drive, const Pose& from, const Pose& wanted, int threads) const {
-  return contact(drive.body).slide(from, wanted, nullptr, threads).X_FM;
+std::unique_ptr<Slider::Setting> Slider::take_setting(const Drive& drive) const {
+  std::vector<Pose> X_FS, X_MS;
+  for (const Surface& surface : surfaces_) {
+    const auto body = static_cast<std::size_t>(
+        state_.colliders[static_cast<std::size_t>(surface.collider)]->body);
+    if (!drive.moves[body])
+      X_FS.push_back(drive.X_CB[body]);
+    else
+      X_MS.push_back(drive.X_DM[body].value_or(Pose{}));
+  }
+  const auto alike = [](const std::vector<Pose>& x, const std::vector<Pose>& y) {
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), same_bits);
+  };
+  std::unique_ptr<Setting> setting;
+  {
+    const std::lock_guard lock(settings_mutex_);
+    auto best = settings_.end();
+    for (auto it = settings_.begin(); it != settings_.end(); ++it)
+      if ((*it)->body == drive.body) {
+        best = it;
+        if (alike((*it)->X_FS, X_FS) && alike((*it)->X_MS, X_MS)) break;
+      }
+    if (best != settings_.end()) {
+      setting = std::move(*best);
+      settings_.erase(best);
+    }
+  }
+  if (!setting)
+    setting = std::make_unique<Setting>(Setting{drive.body, {}, {}, contact(drive.body), {}});
+  if (!alike(setting->X_FS, X_FS) || !alike(setting->X_MS, X_MS)) {
+    setting->contact.place(X_FS, X_MS);
+    setting->X_FS = std::move(X_FS);
+    setting->X_MS = std::move(X_MS);
+  }
+  return setting;
+}
+
+void Slider::keep_setting(std::unique_ptr<Setting> setting) const {
+  const std::lock_guard lock(settings_mutex_);
+  settings_.push_back(std::move(setting));
+  if (settings_.size() > most_settings) settings_.erase(settings_.begin());
+}
+
+SlideResult Slider::slide(const Drive& drive, const Pose& from, const Pose& wanted,
+                          int threads) const {
+  auto setting = take_setting(drive);
+  SlideResult result = setting->contact.slide(from, wanted, &setting->memory, threads);
+  keep_setting(std::move(setting));
+  return result;
 }
 
 }  // namespace condyle

@@ -23,12 +23,13 @@ class Slider {
   /// progress gives up; the next call starts anew.
   void prepare(const Progress& progress, int threads);
 
-  /// Whether all bodies lie to each other as they were when the fields were set up, but for the
-  /// drive's own motion.
-  bool knows(const Drive& drive) const;
+  /// Whether nothing is passed through unseen on a slide by the fields: they do not see open
+  /// surfaces from behind, nor one wall thinner than their spacing from another.
+  bool sees(const Drive& drive) const;
 
-  /// By the fields alone. prepare() must have been called.
-  Pose slide(const Drive& drive, const Pose& from, const Pose& wanted, int threads) const;
+  /// By the fields alone, all other bodies where the drive has them. prepare() must have been
+  /// called. Same bits whatever was asked before.
+  SlideResult slide(const Drive& drive, const Pose& from, const Pose& wanted, int threads) const;
 
   /// What a radian of a drive costs against a millimetre, and the point it turns about.
   double rotation_length_mm(int body) const { return contact(body).rotation_length_mm(); }
@@ -40,7 +41,17 @@ class Slider {
     TriMesh mesh;
     SlideBodySettings settings;
     std::shared_ptr<const SlideBody> body;
+    bool thin = false, open = false;
   };
+  /// A driven body among others that lie somewhere, and what it remembers of its last slide there.
+  struct Setting {
+    int body = 0;
+    std::vector<Pose> X_FS, X_MS;
+    SlidingContact contact;
+    SlideMemory memory;
+  };
+  std::unique_ptr<Setting> take_setting(const Drive& drive) const;
+  void keep_setting(std::unique_ptr<Setting> setting) const;
   const SlidingContact& contact(int body) const {
     return *contacts_[static_cast<std::size_t>(body)];
   }
@@ -51,6 +62,8 @@ class Slider {
   std::vector<std::unique_ptr<SlidingContact>> contacts_;  // of each driven body
   std::mutex mutex_;
   bool ready_ = false;
+  mutable std::mutex settings_mutex_;
+  mutable std::vector<std::unique_ptr<Setting>> settings_;  // that no thread has, the latest last
 };
 
 }  // namespace condyle
