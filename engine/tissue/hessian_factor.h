@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "engine/minimize/objective.h"
+#include "engine/tissue/block_cholesky.h"
 #include "engine/tissue/spring_prism.h"
 
 namespace condyle {
@@ -12,37 +14,32 @@ namespace condyle {
 /// minimiser. Compressed springs keep only their stiffness along the spring and volumes the square
 /// of their gradient, so that it is positive definite. What moves is only in the right-hand side
 /// (anchor targets), so a factor serves at many states; what ages it is the turning of the tissue.
-/// Nodes are taken together in columns of consecutive nodes, as blocks; columns in nested
-/// dissection order. Single precision: it only has to point the way.
+/// Nodes are taken together in columns of consecutive nodes, as blocks. Single precision: it only
+/// has to point the way. Same bits for any number of threads. Copies share what depends on the net
+/// alone.
 class HessianFactor final : public Preconditioner {
  public:
-  /// nodes_per_column: 2 to 4, or 6, or 1.
+  /// nodes_per_column: 1 to 6.
   HessianFactor(const SpringPrismNet& net, const NetLoads& loads, int nodes_per_column,
-                const Nodes& x);
+                const Nodes& x, int threads = 1);
 
   /// The factor of another state of the same net, in the order chosen for the first.
-  void refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x);
+  void refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x, int threads = 1);
 
   /// z = H^-1 g
   void solve(const Nodes& g, Nodes& z) const override;
+  void set_threads(int threads) { threads_ = threads; }  // of solve
 
   /// Of the factor and of the work space of a solve.
   std::size_t bytes() const override;
 
  private:
-  void order_columns(const SpringPrismNet& net, const Nodes& x);
-  void find_fill(const SpringPrismNet& net);
-  template <int B>
-  void factorize();
-  template <int B>
-  void solve_blocks(const Nodes& g, Nodes& z) const;
-  float* block(int row, int column);  // of columns' places in the order; null when not there
+  /// Where the net's springs and prisms go; made once.
+  struct Pattern;
 
-  int nodes_per_column_, size_, columns_;
-  std::vector<int> place_, column_at_;  // column <-> place in the elimination order
-  std::vector<int> first_;              // place -> range in row_ and blocks_; diagonal block first
-  std::vector<int> row_;                // rising within a range
-  std::vector<float> blocks_;           // size_ x size_ each, column by column
+  int threads_ = 1;
+  std::shared_ptr<const Pattern> pattern_;
+  BlockCholesky factor_;
 };
 
 }  // namespace condyle

@@ -1,0 +1,244 @@
+#include "engine/tissue/block_cholesky.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "engine/core/parallel.h"
+#include "engine/tissue/float_kernels.h"
+
+namespace condyle {
+namespace {
+
+constexpr int largest_block = 18;
+using BlockBuffer = std::array<float, largest_block * largest_block>;
+
+/// Replaces the lower half of a diagonal block by the inverse of its Cholesky factor, with zeros
+/// above: solving is then only products. Gives the number of raised pivots.
+int invert_diagonal(float* block, int stride, int size, float least) {
+  BlockBuffer L{}, inverse{};
+  float largest = 0;
+  for (int j = 0; j < size; ++j) {
+    largest = std::max(largest, std::abs(block[j * stride + j]));
+    for (int i = j; i < size; ++i) L[j * size + i] = block[j * stride + i];
+  }
+  if (!(largest > 0)) largest = 1;
+  std::array<float, largest_block> reciprocal;
+  int raised = 0;
+  for (int j = 0; j < size; ++j) {
+    float* column = &L[j * size];
+    for (int k = 0; k < j; ++k) {
+      const float factor = L[k * size + j];
+      for (int i = j; i < size; ++i) column[i] -= factor * L[k * size + i];
+    }
+    if (!(column[j] > least * largest)) {
+      column[j] = largest;
+      ++raised;
+    }
+    reciprocal[j] = 1 / std::sqrt(column[j]);
+    for (int i = j + 1; i < size; ++i) column[i] *= reciprocal[j];
+  }
+  for (int j = 0; j < size; ++j) {
+    float* column = &inverse[j * size];
+    column[j] = reciprocal[j];
+    for (int k = j; k < size; ++k) {  // what row k's entry takes from the rows below
+      if (k > j) column[k] *= -reciprocal[k];
+      for (int i = k + 1; i < size; ++i) column[i] += L[k * size + i] * column[k];
+    }
+  }
+  for (int j = 0; j < size; ++j)
+    for (int i = 0; i < size; ++i) block[j * stride + i] = inverse[j * size + i];
+  return raised;
+}
+
+/// subtract_product, its columns shared among threads where that is worth it.
+void subtract_product(const FloatKernels::Product& p, int threads) {
+  constexpr int width = 48;
+  constexpr double worth = 2e6;  // products
+  const double size = static_cast<double>(p.rows) * p.columns * p.depth;
+  if (threads < 2 || size < worth) return float_kernels().subtract_product(p);
+  parallel_for((p.columns + width - 1) / width, threads, [&](std::size_t chunk) {
+    FloatKernels::Product part = p;
+    const int first = static_cast<int>(chunk) * width;
+    part.columns = std::min(width, p.columns - first);
+    const int above = p.lower ? first : 0;
+    part.rows -= above;
+    part.A += above;
+    part.B += first;
+    part.C += static_cast<std::ptrdiff_t>(first) * p.ldc + above;
+    float_kernels().subtract_product(part);
+  });
+}
+
+}  // namespace
+
+BlockCholesky::BlockCholesky(std::shared_ptr<const FrontTree> tree)
+    : tree_(std::move(tree)), values_(tree_->panel_floats) {}
+
+int BlockCholesky::factorize_front(int index, float* work, float least, int threads) {
+  const FrontTree& tree = *tree_;
+  const FrontTree::Front& front = tree.fronts[index];
+  const int size = tree.block, height = tree.height(front), width = front.pivots * size;
+  const int left = tree.update_height(front);
+  float* panel = values_.data() + front.panel;
+  float* update = work + front.update;
+  const FloatKernels& kernels = float_kernels();
+  std::fill_n(update, static_cast<std::size_t>(left) * left, 0.0f);
+
+  for (int c : front.children) {  // their updates
+    const FrontTree::Front& child = tree.fronts[c];
+    const int count = child.rows_end - child.rows_begin, from_height = tree.update_height(child);
+    const int* seat = &tree.seat[child.rows_begin];
+    for (int k = 0; k < count; ++k) {
+      const bool is_pivot = seat[k] < front.pivots;
+      for (int column = 0; column < size; ++column) {
+        const float* from =
+            work + child.update + static_cast<std::size_t>(k * size + column) * from_height;
+        float* to =
+            is_pivot
+                ? panel + static_cast<std::size_t>(seat[k] * size + column) * height
+                : update +
+                      static_cast<std::size_t>((seat[k] - front.pivots) * size + column) * left -
+                      width;
+        for (int r = k; r < count;) {  // blocks that stand together in both
+          int end = r + 1;
+          while (end < count && seat[end] == seat[end - 1] + 1) ++end;
+          kernels.add(to + seat[r] * size, from + r * size, (end - r) * size);
+          r = end;
+        }
+      }
+    }
+  }
+
+  int raised = 0;
+  std::vector<float> copy(static_cast<std::size_t>(height) * size + FrontTree::beyond);
+  for (int c = 0; c < width; c += size) {
+    float* diagonal = panel + static_cast<std::size_t>(c) * height + c;
+    raised += invert_diagonal(diagonal, height, size, least);
+    const int below = height - c - size;
+    if (below == 0) continue;
+    // The rows below, times the transposed inverse.
+    BlockBuffer negative;
+    for (int j = 0; j < size; ++j) {
+      for (int i = 0; i < size; ++i) negative[j * size + i] = -diagonal[j * height + i];
+      float* column = diagonal + j * height + size;
+      std::memcpy(&copy[static_cast<std::size_t>(j) * below], column, below * sizeof(float));
+      std::fill_n(column, below, 0.0f);
+    }
+    subtract_product({diagonal + size, copy.data(), negative.data(), below, size, size, height,
+                      below, size, false},
+                     threads);
+    // The columns that are yet to be factored here.
+    if (const int columns = width - c - size; columns > 0)
+      subtract_product({diagonal + static_cast<std::size_t>(size) * height + size, diagonal + size,
+                        diagonal + size, below, columns, size, height, height, height, true},
+                       threads);
+  }
+  if (left > 0)
+    subtract_product(
+        {update, panel + width, panel + width, left, left, width, left, height, height, true},
+        threads);
+  return raised;
+}
+
+int BlockCholesky::factorize(const std::function<void(int part, float* values)>& assemble,
+                             float least, int threads) {
+  const FrontTree& tree = *tree_;
+  std::vector<float> work(tree.work_floats);
+  std::array<int, 3> raised{};
+  const auto do_part = [&](int part, int inner_threads) {
+    const auto& part_of_fronts = tree.part;
+    const auto from = [&](int f) {
+      return values_.begin() + (f < static_cast<int>(tree.fronts.size())
+                                    ? static_cast<std::ptrdiff_t>(tree.fronts[f].panel)
+                                    : static_cast<std::ptrdiff_t>(values_.size()));
+    };
+    std::fill(from(part_of_fronts[part]), from(part_of_fronts[part + 1]), 0.0f);
+    assemble(part, values_.data());
+    for (int f = part_of_fronts[part]; f < part_of_fronts[part + 1]; ++f)
+      raised[part] += factorize_front(f, work.data(), least, inner_threads);
+  };
+  parallel_for(2, threads, [&](std::size_t half) { do_part(static_cast<int>(half), 1); });
+  do_part(2, threads);
+  return raised[0] + raised[1] + raised[2];
+}
+
+void BlockCholesky::forward(int index, float* b, float* rest, std::vector<float>& rows) const {
+  const FrontTree& tree = *tree_;
+  const FrontTree::Front& front = tree.fronts[index];
+  const FloatKernels& kernels = float_kernels();
+  const int size = tree.block, height = tree.height(front), width = front.pivots * size;
+  const float* panel = values_.data() + front.panel;
+  float* pivot = b + static_cast<std::size_t>(front.first) * size;
+  std::copy_n(pivot, width, rows.begin());
+  std::fill_n(rows.begin() + width, height - width, 0.0f);
+  for (int c = 0; c < width; c += size) {
+    const float* diagonal = panel + static_cast<std::size_t>(c) * height + c;
+    std::array<float, largest_block> solved{};
+    for (int j = 0; j < size; ++j)
+      for (int i = j; i < size; ++i) solved[i] += diagonal[j * height + i] * rows[c + j];
+    std::copy_n(solved.begin(), size, pivot + c);
+    kernels.subtract_times(&rows[c + size], diagonal + size, height, height - c - size, size,
+                           solved.data());
+  }
+  const int shared = tree.order.part[2];
+  for (int r = front.rows_begin, i = width; r < front.rows_end; ++r) {
+    const int row = tree.rows[r];
+    float* to = row < shared ? b + static_cast<std::size_t>(row) * size
+                             : rest + static_cast<std::size_t>(row - shared) * size;
+    for (int k = 0; k < size; ++k) to[k] += rows[i++];
+  }
+}
+
+void BlockCholesky::backward(int index, float* b, std::vector<float>& rows) const {
+  const FrontTree& tree = *tree_;
+  const FrontTree::Front& front = tree.fronts[index];
+  const FloatKernels& kernels = float_kernels();
+  const int size = tree.block, height = tree.height(front), width = front.pivots * size;
+  const float* panel = values_.data() + front.panel;
+  float* pivot = b + static_cast<std::size_t>(front.first) * size;
+  for (int r = front.rows_begin, i = width; r < front.rows_end; ++r, i += size)
+    std::copy_n(b + static_cast<std::size_t>(tree.rows[r]) * size, size, &rows[i]);
+  std::fill_n(rows.begin() + height, FrontTree::beyond, 0.0f);
+  for (int c = width - size; c >= 0; c -= size) {
+    const float* diagonal = panel + static_cast<std::size_t>(c) * height + c;
+    kernels.subtract_transposed(pivot + c, diagonal + size, height, height - c - size, size,
+                                &rows[c + size]);
+    std::array<float, largest_block> solved{};
+    for (int j = 0; j < size; ++j)
+      for (int i = j; i < size; ++i) solved[j] += diagonal[j * height + i] * pivot[c + i];
+    std::copy_n(solved.begin(), size, pivot + c);
+    std::copy_n(solved.begin(), size, &rows[c]);
+  }
+}
+
+void BlockCholesky::solve(std::vector<float>& b, int threads) const {
+  const FrontTree& tree = *tree_;
+  const std::size_t shared = static_cast<std::size_t>(tree.order.part[2]) * tree.block;
+  const std::size_t longest = tree.most_height + FrontTree::beyond;
+  std::array<std::vector<float>, 2> rest;  // what each half takes from the last part
+  parallel_for(2, threads, [&](std::size_t half) {
+    rest[half].assign(b.size() - shared, 0.0f);
+    std::vector<float> rows(longest);
+    for (int f = tree.part[half]; f < tree.part[half + 1]; ++f)
+      forward(f, b.data(), rest[half].data(), rows);
+  });
+  for (std::size_t i = shared; i < b.size(); ++i) b[i] += rest[0][i - shared] + rest[1][i - shared];
+  std::vector<float> rows(longest);
+  for (int f = tree.part[2]; f < tree.part[3]; ++f) forward(f, b.data(), b.data() + shared, rows);
+  for (int f = tree.part[3] - 1; f >= tree.part[2]; --f) backward(f, b.data(), rows);
+  parallel_for(2, threads, [&](std::size_t half) {
+    std::vector<float> own_rows(longest);
+    for (int f = tree.part[half + 1] - 1; f >= tree.part[half]; --f)
+      backward(f, b.data(), own_rows);
+  });
+}
+
+std::size_t BlockCholesky::bytes() const {
+  const std::size_t order = tree_->order.at.size() * tree_->block;
+  return (values_.capacity() + 2 * order) * sizeof(float) +
+         (tree_->rows.capacity() + tree_->seat.capacity()) * sizeof(int);
+}
+
+}  // namespace condyle

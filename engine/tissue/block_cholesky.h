@@ -1,0 +1,41 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "engine/tissue/front_tree.h"
+
+namespace condyle {
+
+/// Cholesky factor of a sparse symmetric matrix of dense blocks, in single precision (multifrontal:
+/// see FrontTree). Copies share the pattern. Same bits for any number of threads and on any
+/// processor.
+class BlockCholesky {
+ public:
+  explicit BlockCholesky(std::shared_ptr<const FrontTree> tree);
+
+  const FrontTree& tree() const { return *tree_; }
+
+  /// Factors the matrix that assemble(part, values) adds up: the entries whose column is in one of
+  /// the order's parts, in zeros, at FrontTree::find. Only the lower half is read. It is called
+  /// once for each part, on some thread. Pivots that are not above `least` times the largest
+  /// diagonal entry of their block are raised to it; gives how many were.
+  int factorize(const std::function<void(int part, float* values)>& assemble, float least,
+                int threads);
+
+  /// b = A^-1 b, in the order of elimination, block by block.
+  void solve(std::vector<float>& b, int threads) const;
+
+  std::size_t bytes() const;
+
+ private:
+  int factorize_front(int front, float* work, float least, int threads);
+  void forward(int front, float* b, float* rest, std::vector<float>& rows) const;
+  void backward(int front, float* b, std::vector<float>& rows) const;
+
+  std::shared_ptr<const FrontTree> tree_;
+  std::vector<float> values_;
+};
+
+}  // namespace condyle

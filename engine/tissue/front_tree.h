@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "engine/tissue/elimination_order.h"
+
+namespace condyle {
+
+/// Where a block matrix and its Cholesky factor lie in memory: columns with nearly the same rows
+/// stand together in a front, a dense panel. Made once for each pattern.
+struct FrontTree {
+  /// `ring` as for the order; `block`: rows of a block.
+  FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder order, int block);
+
+  struct Front {
+    int first = 0, pivots = 0;         // places eliminated here, in blocks
+    int rows_begin = 0, rows_end = 0;  // the places below, in `rows`, rising
+    int parent = -1;                   // front, or -1
+    std::size_t panel = 0;             // first float; (pivots + rows) * block of each column
+    std::size_t update = 0;            // first float of what is left for the parent, in work space
+    std::vector<int> children;
+  };
+  /// Floats from one column of a front's panel to the next, and of its update.
+  int height(const Front& f) const { return (f.pivots + f.rows_end - f.rows_begin) * block; }
+  int update_height(const Front& f) const { return (f.rows_end - f.rows_begin) * block; }
+  /// Panel's first float of the block (row, column); places, row >= column. -1 if not stored.
+  std::ptrdiff_t find(int row, int column) const;
+
+  static constexpr int beyond = 16;  // floats that kernels may read past the end
+
+  int block = 0;
+  EliminationOrder order;
+  std::vector<int> place;  // vertex -> place
+  std::vector<Front> fronts;
+  std::array<int, 4> part{};  // fronts of the order's three parts
+  std::vector<int> front_of;  // place -> front
+  std::vector<int> rows;      // of all fronts
+  std::vector<int> seat;      // of each entry of `rows`: its block in the parent's rows
+  std::size_t panel_floats = 0, work_floats = 0;
+  int most_height = 0;  // of any front
+};
+
+}  // namespace condyle
