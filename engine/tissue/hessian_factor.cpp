@@ -26,6 +26,7 @@ std::shared_ptr<const FrontTree> make_tree(const SpringPrismNet& net, int nodes_
   for (const auto& prism : net.prisms)
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b < a; ++b) couple(prism[a], prism[b]);
+  for (const auto& [a, b] : net.may_touch) couple(a, b);
   for (auto& r : ring) {
     std::sort(r.begin(), r.end());
     r.erase(std::unique(r.begin(), r.end()), r.end());

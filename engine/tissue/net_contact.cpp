@@ -129,48 +129,65 @@ void allow(const std::vector<Touch>& touches, std::vector<double>& allowance) {
     if (touch.gap < 0) allowance[touch.point] -= touch.gap;
 }
 
-double plane_error(const std::vector<Touch>& before, const std::vector<Touch>& now,
-                   const Nodes& x) {
-  double worst = 0;
+double plane_error(const std::vector<Touch>& used, const std::vector<Touch>& now, const Nodes& x) {
   const auto push = [](double gap) { return std::max(0.0, -gap); };
-  std::size_t i = 0, j = 0;
-  while (i < before.size() || j < now.size()) {
-    const bool only_before =
-        j == now.size() || (i < before.size() && before[i].point < now[j].point);
-    const bool only_now = i == before.size() || (!only_before && now[j].point < before[i].point);
-    if (only_before) {
-      worst = std::max(worst, push(before[i++].row.gap(x)));
-    } else if (only_now) {
-      worst = std::max(worst, push(now[j++].gap));
-    } else {
-      const Vector3d was = push(before[i].row.gap(x)) * before[i].row.normal;
-      worst = std::max(worst, (push(now[j].gap) * now[j].row.normal - was).norm());
-      ++i;
-      ++j;
+  double worst = 0;
+  std::size_t i = 0;
+  for (const auto& touch : now) {
+    for (; i < used.size() && used[i].point < touch.point; ++i)
+      worst = std::max(worst, push(used[i].row.gap(x)));
+    double least = push(touch.gap);  // where no plane stood
+    for (bool first = true; i < used.size() && used[i].point == touch.point; ++i, first = false) {
+      const Vector3d was = push(used[i].row.gap(x)) * used[i].row.normal;
+      const double error = (push(touch.gap) * touch.row.normal - was).norm();
+      least = first ? error : std::min(least, error);
     }
+    worst = std::max(worst, least);
   }
+  for (; i < used.size(); ++i) worst = std::max(worst, push(used[i].row.gap(x)));
   return worst;
+}
+
+std::vector<Touch> with_other_faces(const std::vector<Touch>& used, std::vector<Touch> now,
+                                    const Nodes& x) {
+  constexpr double same_face = 0.9;  // cosine between the planes
+  std::vector<Touch> both;
+  std::size_t i = 0;
+  for (auto& touch : now) {
+    while (i < used.size() && used[i].point < touch.point) ++i;
+    both.push_back(std::move(touch));
+    const Vector3d normal = both.back().row.normal;
+    for (; i < used.size() && used[i].point == both.back().point; ++i)
+      if (used[i].row.normal.dot(normal) < same_face && used[i].row.gap(x) < 0.5)
+        both.push_back(used[i]);
+  }
+  return both;
+}
+
+void set_contacts(const Looks& looks, NetLoads& loads) {
+  loads.contacts.clear();
+  for (const auto& touches : looks)
+    for (const auto& touch : touches) loads.contacts.push_back(touch.row);
 }
 
 TouchingResult solve_touching(const std::function<Looks(const Nodes&)>& look,
                               const std::function<void()>& solve, NetLoads& loads, Nodes& x,
                               const TouchingSettings& settings) {
   TouchingResult result;
-  Looks now = look(x);
-  do {
-    loads.contacts.clear();
-    for (const auto& touches : now)
-      for (const auto& touch : touches) loads.contacts.push_back(touch.row);
+  Looks used = look(x);
+  while (true) {
+    set_contacts(used, loads);
     solve();
     ++result.solves;
-    result.looks = std::move(now);
-    now = look(x);
+    result.looks = look(x);
     result.error_mm = 0;
-    for (std::size_t i = 0; i < now.size(); ++i)
-      result.error_mm = std::max(result.error_mm, plane_error(result.looks[i], now[i], x));
-  } while (result.error_mm > settings.tolerance_mm && result.solves < settings.most_looks);
-  result.looks = std::move(now);
-  return result;
+    for (std::size_t i = 0; i < used.size(); ++i)
+      result.error_mm = std::max(result.error_mm, plane_error(used[i], result.looks[i], x));
+    if (result.error_mm <= settings.tolerance_mm || result.solves >= settings.most_looks)
+      return result;
+    for (std::size_t i = 0; i < used.size(); ++i)
+      used[i] = with_other_faces(used[i], result.looks[i], x);
+  }
 }
 
 }  // namespace condyle

@@ -57,8 +57,8 @@ struct Touch {
 };
 
 struct TouchSettings {
-  double reach_mm = 1.5;   // points farther than this have no row; below 2
-  double stiffness = 1.0;  // N/mm: lips press with some 0.1 N a point
+  double reach_mm = 1.5;    // points farther than this have no row; below 2
+  double stiffness = 12.0;  // N/mm: tissue presses with up to 4 N a point
 };
 
 /// Appends the points that are near the obstacle at pose X_WO. `allowance` (mm, one per point) is
@@ -78,18 +78,24 @@ void touch_surface(const std::vector<NetPoint>& points, const std::vector<double
 void allow(const std::vector<Touch>& touches, std::vector<double>& allowance);
 
 /// How much the surfaces differ from the planes that stood for them, where anything presses: mm of
-/// push. Both are one call's answers for the same points, `before` with planes laid elsewhere,
-/// `now` at x.
-double plane_error(const std::vector<Touch>& before, const std::vector<Touch>& now, const Nodes& x);
+/// push. Both are one call's answers for the same points, `used` with planes laid elsewhere, `now`
+/// at x. Of several planes of a point the nearest counts.
+double plane_error(const std::vector<Touch>& used, const std::vector<Touch>& now, const Nodes& x);
+
+/// `now` with those planes of `used` that stood for another face nearby: in a groove a point that
+/// saw one side and then the other must obey both, or it goes to and fro for ever.
+std::vector<Touch> with_other_faces(const std::vector<Touch>& used, std::vector<Touch> now,
+                                    const Nodes& x);
 
 /// All touches at x: one list for each thing that may be touched.
 using Looks = std::vector<std::vector<Touch>>;
+void set_contacts(const Looks& looks, NetLoads& loads);
 
 /// A solve in which the planes are laid anew at each answer, until they stand for the surfaces
 /// there: then it is a minimum of the energy with the surfaces themselves.
 struct TouchingSettings {
   int most_looks = 5;
-  double tolerance_mm = 0.02;  // of push, see plane_error
+  double tolerance_mm = 0.01;  // of push, see plane_error
 };
 struct TouchingResult {
   int solves = 0;

@@ -31,6 +31,9 @@ struct SpringPrismNet {
   std::vector<double> rest_volume;    // mm^3
   std::vector<double> volume_weight;  // energy is weight * (v - rest)^2, N/mm^5
 
+  /// Nodes that no spring joins but contact may couple: a preconditioner has room for them.
+  std::vector<std::array<int, 2>> may_touch;
+
   /// Stiffness of a shortened spring, over that of a stretched one. 1 is the plain energy; less
   /// says that fibres buckle where they cannot push, and takes most of the folding out of thin
   /// sheets.

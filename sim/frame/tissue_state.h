@@ -1,11 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "engine/math/pose.h"
 
 namespace condyle {
+
+class HessianFactor;
 
 /// Where the soft tissue is, and how its minimiser ended. The next frame starts from it.
 struct TissueState {
@@ -17,6 +20,10 @@ struct TissueState {
   double energy = 0;    // relative to rest
   double residual = 0;  // largest nodal gradient
   int inverted_prisms = 0;
+  double penetration_mm = 0;  // deepest point in bone, teeth or the other lip, beyond rest
+  double slip_mm = 0;         // farthest way of a point along the jaw that it lay on at rest
+  /// What the next frame is solved with: a factor of this or an earlier frame's tissue, or none.
+  std::shared_ptr<const HessianFactor> factor;
 };
 
 }  // namespace condyle

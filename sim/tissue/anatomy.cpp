@@ -22,12 +22,13 @@ TriMesh merged(const Case& patient, const auto& wanted) {
 
 }  // namespace
 
+TriMesh jaw_mesh(const Case& patient, Body body) {
+  return merged(patient, [body](Role role) { return collides(role) && body_of(role) == body; });
+}
+
 Bones collect_bones(const Case& patient) {
-  const auto bone_of = [](Body body) {
-    return [body](Role role) { return collides(role) && body_of(role) == body; };
-  };
-  return {TriangleTree(merged(patient, bone_of(Body::cranium))),
-          TriangleTree(merged(patient, bone_of(Body::mandible))),
+  return {TriangleTree(jaw_mesh(patient, Body::cranium)),
+          TriangleTree(jaw_mesh(patient, Body::mandible)),
           TriangleTree(merged(patient, [](Role role) { return is_teeth(role); }))};
 }
 

@@ -31,4 +31,7 @@ struct Bones {
 Anatomy read_anatomy(const Case& patient, std::vector<std::string>& notes);
 Bones collect_bones(const Case& patient);
 
+/// Bone and teeth of one jaw as one mesh; empty when there are none.
+TriMesh jaw_mesh(const Case& patient, Body body);
+
 }  // namespace condyle

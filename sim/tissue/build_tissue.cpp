@@ -20,7 +20,6 @@ constexpr double boundary_stiffness = 2.0;   // N/mm
 constexpr double cartilage_stiffness = 0.5;  // N/mm
 constexpr double neck_stiffness = 0.1;       // N/mm
 constexpr double loose_stiffness = 0.04;     // N/mm
-constexpr double slide_stiffness = 0.02;     // N/mm
 
 double smoothstep(double t) {
   t = std::clamp(t, 0.0, 1.0);
@@ -37,7 +36,8 @@ void make_path(TissueModel& model, const Anatomy& anatomy) {
   constexpr int knots = 13;  // to 43 degrees
   model.path.condyles = anatomy.condyles;
   model.factors.push_back(
-      {0, HessianFactor(model.net, loads_at(model, Pose{}), model.sheets, model.rest)});
+      {0, std::make_shared<HessianFactor>(model.net, touching_loads(model, Pose{}, model.rest),
+                                          model.sheets, model.rest)});
   TissueState state = rest_tissue(model);
   std::vector<Nodes> nodes{model.rest};
   TissueBudget budget;
@@ -50,7 +50,8 @@ void make_path(TissueModel& model, const Anatomy& anatomy) {
     nodes.push_back(state.nodes);
     model.factors.push_back(
         {angle - model.path.step_rad / 2,
-         HessianFactor(model.net, loads_at(model, state.X_CM), model.sheets, state.nodes)});
+         std::make_shared<HessianFactor>(model.net, touching_loads(model, state.X_CM, state.nodes),
+                                         model.sheets, state.nodes)});
   }
   model.path.nodes = std::move(nodes);
 }
@@ -117,7 +118,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
                        ") mm so that tissue below it would turn inside out; smooth the face there");
     }
 
-  // Bone springs, and slides for what rests on the teeth unattached.
+  // Bone springs.
   std::vector<int> given;
   std::vector<double> given_share;
   const auto anchor = [&](int node, double share, double stiffness) {
@@ -138,13 +139,6 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
           anchor(node_of(c, s, sheets), share, cartilage_stiffness);
       ++(columns[c].hold == Hold::mandible ? summary.attached_to_mandible
                                            : summary.attached_to_cranium);
-    } else if (columns[c].ground != Ground::none && columns[c].to_mouth < 25) {
-      // The plane touches what the march met; tissue already behind it at rest may stay there.
-      const Vector3d met = skin.mesh.vertices[c] + columns[c].met_depth * columns[c].inward;
-      const Vector3d normal = -columns[c].inward;
-      const Vector3d point = normal.dot(model->rest[inner] - met) < 0 ? model->rest[inner] : met;
-      model->slides.push_back(
-          {inner, slide_stiffness, point, normal, columns[c].ground == Ground::mandible});
     }
   }
 
@@ -185,14 +179,20 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
     anchor(inner, model->node_share[inner], neck ? neck_stiffness : loose_stiffness);
   }
 
+  report(progress, "soft tissue: contact", 0.55);
+  model->slit = region.slit;
+  model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, 30);
+  model->contact =
+      make_contact({skin, columns, model->handle_side, sheets, model->rest, held},
+                   jaw_mesh(patient, Body::cranium), jaw_mesh(patient, Body::mandible));
+  net.may_touch = lips_that_may_touch(model->contact, model->rest);
+
   report(progress, "soft tissue: path of opening", 0.6);
   make_path(*model, anatomy);
 
   report(progress, "soft tissue: displayed face", 0.8);
   model->region = region.shape;
-  model->slit = region.slit;
   model->handles = make_handles(skin.mesh.triangles, sheets, model->rest);
-  model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, 30);
   model->face_rest = face->mesh.vertices;
   model->face_side = region.face_side;
   for (std::size_t v = 0; v < model->face_rest.size(); ++v) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <memory>
 
 #include "engine/minimize/minimize.h"
 #include "sim/tissue/model.h"
@@ -16,19 +17,28 @@ NetLoads loads_at(const TissueModel& model, const Pose& X_CM) {
     const double share = model.anchor_share[i];
     loads.anchor_target[i] = share == 0 ? X : Vector3d(X + share * (X_CM * X - X));
   }
-  for (const auto& slide : model.slides) {
-    const Vector3d normal = slide.on_mandible ? Vector3d(X_CM.R * slide.normal) : slide.normal;
-    const Vector3d point = slide.on_mandible ? X_CM * slide.point : slide.point;
-    loads.contacts.push_back(
-        ContactRow::of_node(slide.node, normal, normal.dot(point), slide.stiffness));
-  }
+  return loads;
+}
+
+NetLoads touching_loads(const TissueModel& model, const Pose& X_CM, const Nodes& x) {
+  NetLoads loads = loads_at(model, X_CM);
+  set_contacts(look_at(model.contact, X_CM, x), loads);
   return loads;
 }
 
 namespace {
 
-/// Iterations after which a factor of the tissue as it is now, worth some thirty of them, is made.
-constexpr int patience = 25;
+/// Iterations after which a factor of the tissue as it is now is made; later frames go on with it.
+constexpr int patience = 15;
+
+/// The stored factor of the state on the path of opening that is nearest.
+std::shared_ptr<const HessianFactor> path_factor(const TissueModel& model, const Pose& X_CM) {
+  const double turned = rotation_angle(X_CM);
+  const auto* nearest = &model.factors.front();
+  for (const auto& other : model.factors)
+    if (turned >= other.from_rad) nearest = &other;
+  return nearest->factor;
+}
 
 int count_inverted(const SpringPrismNet& net, const Nodes& x) {
   int count = 0;
@@ -67,34 +77,41 @@ TissueState rest_tissue(const TissueModel& model) {
 
 TissueState follow(const TissueModel& model, const TissueState& previous, const Pose& X_CM,
                    const TissueBudget& budget) {
-  const NetLoads loads = loads_at(model, X_CM);
+  NetLoads loads = loads_at(model, X_CM);
   TissueState state;
   state.X_CM = X_CM;
   state.nodes = foreseen(model, previous, X_CM);
   if (count_inverted(model.net, state.nodes) > 0) state.nodes = previous.nodes;
 
-  const double turned = rotation_angle(X_CM);
-  const HessianFactor* factor = &model.factors.front().factor;
-  for (const auto& other : model.factors)
-    if (turned >= other.from_rad) factor = &other.factor;
-  MinimizeSettings settings;
-  settings.tolerance_mm = budget.tolerance_mm;
-  settings.max_iterations = std::min(budget.max_iterations, patience);
+  state.factor = previous.factor ? previous.factor : path_factor(model, X_CM);
   SpringPrismEnergy energy(model.net, loads, budget.threads);
-  MinimizeResult result = minimize(Method::preconditioned, energy, settings, state.nodes, factor);
-  if (!result.converged() && budget.max_iterations > patience) {
-    const MinimizeResult first = result;
-    const HessianFactor fresh(model.net, loads, model.sheets, state.nodes);
-    settings.max_iterations = budget.max_iterations - patience;
-    result = minimize(Method::preconditioned, energy, settings, state.nodes, &fresh);
-    result.iterations += first.iterations;
-    result.evaluations += first.evaluations;
-  }
-  state.iterations = result.iterations;
-  state.evaluations = result.evaluations;
-  state.converged = result.converged();
-  state.energy = result.energy;
-  state.residual = result.residual;
+  int since_factor = 0;  // iterations
+  const auto solve = [&] {
+    while (true) {
+      MinimizeSettings settings;
+      settings.tolerance_mm = budget.tolerance_mm;
+      const int left = budget.max_iterations - state.iterations;
+      settings.max_iterations = std::clamp(patience - since_factor, 1, std::max(left, 1));
+      const MinimizeResult result =
+          minimize(Method::preconditioned, energy, settings, state.nodes, state.factor.get());
+      state.iterations += result.iterations;
+      state.evaluations += result.evaluations;
+      since_factor += result.iterations;
+      state.converged = result.converged();
+      state.energy = result.energy;
+      state.residual = result.residual;
+      if (result.status != MinimizeResult::Status::budget_spent) return;
+      if (state.iterations >= budget.max_iterations) return;
+      state.factor = std::make_shared<HessianFactor>(model.net, loads, model.sheets, state.nodes);
+      since_factor = 0;
+    }
+  };
+  const TouchingResult touching = solve_touching(
+      [&](const Nodes& x) { return look_at(model.contact, X_CM, x); }, solve, loads, state.nodes);
+  const ContactMeasure contact =
+      measure_contact(model.contact, touching.looks, X_CM, model.rest, state.nodes);
+  state.penetration_mm = contact.penetration_mm;
+  state.slip_mm = contact.slip_mm;
   state.inverted_prisms = count_inverted(model.net, state.nodes);
   return state;
 }

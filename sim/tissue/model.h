@@ -10,6 +10,7 @@
 #include "sim/tissue/skin_region.h"
 #include "sim/tissue/slit.h"
 #include "sim/tissue/tissue.h"
+#include "sim/tissue/tissue_contact.h"
 
 namespace condyle {
 
@@ -23,17 +24,11 @@ struct TissueModel {
   // A share of 1 goes with the mandible, 0 with the cranium: a point X asks for X + share (X_CM X -
   // X).
   std::vector<double> anchor_share;
-  struct Slide {
-    int node = 0;
-    double stiffness = 0;           // N/mm
-    Eigen::Vector3d point, normal;  // of the plane at rest
-    bool on_mandible = false;
-  };
-  std::vector<Slide> slides;
+  TissueContact contact;
   // Preconditioners, for states turned by `from_rad` and more; rising, the first from 0.
   struct Factor {
     double from_rad = 0;
-    HessianFactor factor;
+    std::shared_ptr<const HessianFactor> factor;
   };
   std::vector<Factor> factors;
   OpeningPath path;
@@ -54,6 +49,9 @@ struct TissueModel {
 
 /// What the bones ask of the tissue with the mandible at X_CM.
 NetLoads loads_at(const TissueModel& model, const Pose& X_CM);
+
+/// The same, with what the tissue touches when its nodes are at x.
+NetLoads touching_loads(const TissueModel& model, const Pose& X_CM, const Nodes& x);
 
 /// How the face's point p with its side (0 = unknown) is carried.
 CarriedPoint carry_face_point(const TissueModel& model, const Eigen::Vector3d& p, int side);

@@ -227,7 +227,7 @@ TEST(NetContact, TwoSurfacesOfOneNetPushEachOtherAlike) {
   const std::vector<double> none(points.size(), 0.0);
   const auto look = [&](const Nodes& x) {
     Looks looks(1);
-    touch_surface(points, none, top, x, {.reach_mm = 6}, looks[0]);
+    touch_surface(points, none, top, x, {.reach_mm = 6, .stiffness = 1}, looks[0]);
     return looks;
   };
   Nodes x = rest;

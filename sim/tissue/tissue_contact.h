@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/tissue/net_contact.h"
+#include "sim/tissue/columns.h"
+
+namespace condyle {
+
+struct TissueModel;
+
+/// What the tissue slides on where it is not attached: bone and teeth of both jaws, and lip on lip.
+struct TissueContact {
+  /// Points that must not enter a jaw, and one jaw.
+  struct Jaw {
+    std::shared_ptr<const NetObstacle> obstacle;  // null when there is no such bone
+    std::vector<double> allowance;                // mm, one per point: overlap at rest
+    std::vector<char> near_at_rest;               // of each point
+  };
+  std::vector<NetPoint> points;
+  Jaw cranium, mandible;
+
+  /// Points of one lip, which must not enter the surface of the other.
+  struct Lip {
+    std::vector<NetPoint> points;
+    std::vector<std::array<int, 3>> surface;  // of nodes; skin, edge and inner side
+    std::vector<double> allowance;            // of its points in the other lip
+  };
+  Lip upper, lower;
+  int lip_points_left_out = 0;  // too deep in the other lip at rest
+};
+
+/// What is known of the sheet when contact is set up.
+struct ContactSource {
+  const CoarseSkin& skin;
+  const std::vector<Column>& columns;
+  const std::vector<signed char>& side;  // of each column: +1 above the lip line
+  int sheets = 0;
+  const Nodes& rest;
+  const std::vector<char>& held;  // of each node: anchored firmly
+};
+/// Cranium and mandible with teeth, merged. Fields are kept in the cache of the user.
+TissueContact make_contact(const ContactSource& source, const TriMesh& cranium,
+                           const TriMesh& mandible, int threads = 1);
+
+/// Nodes of both lips that lie side by side at rest: see SpringPrismNet::may_touch.
+std::vector<std::array<int, 2>> lips_that_may_touch(const TissueContact& contact,
+                                                    const Nodes& rest);
+
+/// Order of the lists in what `look_at` returns.
+enum ContactList : std::size_t { on_cranium, on_mandible, upper_on_lower, lower_on_upper };
+
+/// Everything the tissue touches at x, with the mandible at X_CM.
+Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x);
+
+/// How tissue lies on the jaws and on itself.
+struct ContactMeasure {
+  double penetration_mm = 0;   // deepest point in bone, teeth or the other lip, beyond rest
+  double slip_mm = 0;          // farthest way of a point along the jaw that it lay on at rest
+  double rest_overlap_mm = 0;  // deepest that a point was allowed from the start
+};
+ContactMeasure measure_contact(const TissueContact& contact, const Looks& looks, const Pose& X_CM,
+                               const Nodes& rest, const Nodes& x);
+
+}  // namespace condyle
