@@ -102,7 +102,9 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
       state.residual = result.residual;
       if (result.status != MinimizeResult::Status::budget_spent) return;
       if (state.iterations >= budget.max_iterations) return;
-      state.factor = std::make_shared<HessianFactor>(model.net, loads, model.sheets, state.nodes);
+      auto fresh = std::make_shared<HessianFactor>(*state.factor);  // in the same order
+      fresh->refactor(model.net, loads, state.nodes, budget.threads);
+      state.factor = std::move(fresh);
       since_factor = 0;
     }
   };
