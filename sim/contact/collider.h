@@ -34,6 +34,10 @@ struct ColliderPair {
                        // rest
 };
 
+/// Surfaces deeper in each other than this at rest are held there as much by their depth as by
+/// their shape.
+constexpr double deep_mm = 0.1;
+
 constexpr double nowhere_mm = std::numeric_limits<double>::infinity();
 
 /// How much is to be found out.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "sim/contact/drive.h"
 #include "sim/contact/slide_judge.h"
@@ -28,6 +29,7 @@ class SlidingDrive {
   Arrival run(bool exact);
 
  private:
+  std::vector<SlideResult> proposals() const;
   Pose advance(const Pose& X, const Pose& to, Found& found) const;
   Pose stretch(const Pose& X, const Pose& to, Found& found) const;
   Pose creep(Found& found) const;
@@ -89,6 +91,27 @@ Pose SlidingDrive::creep(Found& found) const {
   return X;
 }
 
+/// What fields find, the nearest first, if it is sure to be reached. A body that lies deep in
+/// others at rest may be held there, though it could go elsewhere from outside: whichever is
+/// nearer.
+std::vector<SlideResult> SlidingDrive::proposals() const {
+  std::vector<SlideResult> found;
+  const auto propose = [&](const Pose& from) {
+    SlideResult slid = state_.slider->slide(drive_, from, drive_.wanted, threads_);
+    if (slid.reached) found.push_back(std::move(slid));
+  };
+  if (const auto outside = state_.slider->outside(drive_)) {
+    propose({});
+    propose(*outside);
+    std::stable_sort(found.begin(), found.end(), [&](const SlideResult& a, const SlideResult& b) {
+      return left(a.X_FM) < left(b.X_FM);
+    });
+  } else {
+    propose(drive_.from());
+  }
+  return found;
+}
+
 Arrival SlidingDrive::run(bool exact) {
   const Pose &from = drive_.from(), &wanted = drive_.wanted;
   if (judge_.pairs().empty()) return {wanted, false};
@@ -98,15 +121,16 @@ Arrival SlidingDrive::run(bool exact) {
   state_.slider->prepare({}, threads_);
   if (state_.slider->sees(drive_)) {
     // The fields' answer depends on the wanted pose alone, and so does what is put right of it.
-    const SlideResult slid = state_.slider->slide(drive_, from, wanted, threads_);
-    // They know little of surfaces that lie deep in each other at rest, as crowns may.
-    if (judge_.deep_at_rest() && judge_.way(slid.X_FM, wanted) <= unseen_mm) {
-      at_wanted = judge_.look(wanted);
-      if (judge_.allowed(at_wanted)) return arrive(wanted, std::move(at_wanted));
+    for (const SlideResult& slid : proposals()) {
+      // They know little of surfaces that lie deep in each other at rest, as crowns may.
+      if (judge_.deep_at_rest() && judge_.way(slid.X_FM, wanted) <= unseen_mm) {
+        at_wanted = judge_.look(wanted);
+        if (judge_.allowed(at_wanted)) return arrive(wanted, std::move(at_wanted));
+      }
+      Found found;
+      const Pose X = judge_.put_right(slid, found);
+      if (judge_.allowed(found)) return arrive(X, std::move(found));
     }
-    Found found;
-    const Pose X = judge_.put_right(slid, found);
-    if (judge_.allowed(found)) return arrive(X, std::move(found));
   }
   Found found(judge_.pairs().size());
   if (exact)

@@ -14,7 +14,6 @@ using Eigen::Vector3d;
 
 constexpr int most_corrections = 6;  // of what fields have wrong
 constexpr double most_corrected_mm = 0.15;
-constexpr double deep_mm = 0.1;
 
 }  // namespace
 

@@ -18,6 +18,7 @@ constexpr double widest_gap_mm = 4;
 constexpr double thin_share = 0.1;
 constexpr std::size_t thin_stride = 7;
 constexpr double fade_mm = 2;  // from rest, where overlap that is there at rest must be gone
+constexpr double ways_out_mm[] = {4, 8, 16};
 constexpr std::size_t most_settings = 24;
 
 double spacing_of(const Part& part) {
@@ -85,8 +86,11 @@ void Slider::prepare(const Progress& progress, int threads) {
     surface.thin = is_thin(*surface.body);
   }
   contacts_.resize(static_cast<std::size_t>(state_.body_count()));
-  for (int body = mandible_body; body < state_.body_count(); ++body)
+  outside_.resize(contacts_.size());
+  for (int body = mandible_body; body < state_.body_count(); ++body) {
     contacts_[static_cast<std::size_t>(body)] = make_contact(body);
+    outside_[static_cast<std::size_t>(body)] = find_outside(body);
+  }
   report(progress, "making the bones ready to slide", 1);
   ready_ = true;
 }
@@ -117,6 +121,30 @@ std::unique_ptr<SlidingContact> Slider::make_contact(int body) const {
   return contact;
 }
 
+std::optional<Pose> Slider::find_outside(int body) const {
+  const Drive drive = make_drive(state_, std::vector<Pose>(contacts_.size()), body, {});
+  Eigen::Vector3d out = Eigen::Vector3d::Zero();  // of what it lies in, on the whole
+  for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
+    const ColliderPair& pair = state_.pairs[i];
+    if (!drive.concerns(pair) || pair.rest_depth_mm <= deep_mm) continue;
+    const double sign = drive.moves[static_cast<std::size_t>(pair.a->body)] ? -1 : 1;
+    for (const ContactPoint& contact : state_.rest.pairs[i].contacts) out += sign * contact.normal;
+  }
+  if (!(out.norm() > 0)) return std::nullopt;
+  for (const double way_mm : ways_out_mm) {
+    const Pose X{Eigen::Quaterniond::Identity(), way_mm * out.normalized()};
+    if (contact(body).depth(X) == 0) return X;
+  }
+  return std::nullopt;
+}
+
+std::optional<Pose> Slider::outside(const Drive& drive) const {
+  for (std::size_t b = 0; b < drive.X_CB.size(); ++b)
+    if (drive.moves[b] ? drive.X_DM[b].has_value() : !same_bits(drive.X_CB[b], {}))
+      return std::nullopt;
+  return outside_[static_cast<std::size_t>(drive.body)];
+}
+
 bool Slider::sees(const Drive& drive) const {
   std::vector<const Surface*> of(state_.colliders.size(), nullptr);
   for (const Surface& surface : surfaces_)
@@ -124,8 +152,7 @@ bool Slider::sees(const Drive& drive) const {
   return std::none_of(state_.pairs.begin(), state_.pairs.end(), [&](const ColliderPair& pair) {
     const Surface &a = *of[static_cast<std::size_t>(pair.a->number)],
                   &b = *of[static_cast<std::size_t>(pair.b->number)];
-    return drive.concerns(pair) &&
-           (a.open || b.open || (a.thin && b.thin) || pair.kept_mm > widest_gap_mm);
+    return drive.concerns(pair) && ((a.thin && b.thin) || pair.kept_mm > widest_gap_mm);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "engine/collide/slide.h"
@@ -31,6 +32,10 @@ class Slider {
   /// called. Same bits whatever was asked before.
   SlideResult slide(const Drive& drive, const Pose& from, const Pose& wanted, int threads) const;
 
+  /// A free pose beside rest of a body that lies deep in others at rest, and may be held there.
+  /// None where it does not, or where others have been moved.
+  std::optional<Pose> outside(const Drive& drive) const;
+
   /// What a radian of a drive costs against a millimetre, and the point it turns about.
   double rotation_length_mm(int body) const { return contact(body).rotation_length_mm(); }
   const Eigen::Vector3d& pivot(int body) const { return contact(body).pivot(); }
@@ -56,10 +61,12 @@ class Slider {
     return *contacts_[static_cast<std::size_t>(body)];
   }
   std::unique_ptr<SlidingContact> make_contact(int body) const;
+  std::optional<Pose> find_outside(int body) const;
 
   const ContactModel::State& state_;
   std::vector<Surface> surfaces_;                          // in the order of the first colliders
   std::vector<std::unique_ptr<SlidingContact>> contacts_;  // of each driven body
+  std::vector<std::optional<Pose>> outside_;               // of each driven body
   std::mutex mutex_;
   bool ready_ = false;
   mutable std::mutex settings_mutex_;
