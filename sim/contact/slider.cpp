@@ -13,9 +13,10 @@ constexpr double tooth_sample_mm = 0.4, bone_sample_mm = 0.6;
 // Of a guided pair: fields reach little farther than twice the gap. Wider gaps are kept by exact
 // distances alone.
 constexpr double widest_gap_mm = 4;
-// A surface counts as thin where the field half a spacing below it says that it is hardly inside,
-// and it does so in more than this share of places; sharp edges are fewer.
+// A surface is thin where the field a spacing below it does not tell that it is inside, and counts
+// as thin where that is so in more than this share of its flat places.
 constexpr double thin_share = 0.1;
+constexpr double flat = 0.9;  // cosine
 constexpr std::size_t thin_stride = 7;
 constexpr double fade_mm = 2;  // from rest, where overlap that is there at rest must be gone
 constexpr double ways_out_mm[] = {4, 8, 16};
@@ -34,11 +35,15 @@ double spacing_of(const Part& part) {
 }
 
 bool is_thin(const SlideBody& body) {
-  const double below_mm = 0.5 * body.field.settings().spacing_mm;
+  const SurfaceSamples& samples = body.samples;
+  const double below_mm = body.field.settings().spacing_mm;
   std::size_t thin = 0, all = 0;
-  for (std::size_t i = 0; i < body.samples.points.size(); i += thin_stride, ++all)
-    thin += body.field.at(body.samples.points[i] - below_mm * body.samples.normals[i]).distance_mm >
+  for (std::size_t i = 0; i < samples.points.size(); i += thin_stride) {
+    if (samples.spread[i] < flat) continue;
+    ++all;
+    thin += body.field.at(samples.points[i] - below_mm * samples.normals[i]).distance_mm >
             -0.25 * below_mm;
+  }
   return static_cast<double>(thin) > thin_share * static_cast<double>(all);
 }
 

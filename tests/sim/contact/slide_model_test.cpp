@@ -37,7 +37,7 @@ TEST(Slide, AWantedPoseInTheWaySlidesAlong) {
     last = slide.contacts;
     EXPECT_LE(last.max_penetration_mm(), 0.02);
     // A ball on a plane: the way along goes whole, the way in ends at the surface.
-    EXPECT_NEAR(X.t.x(), 0.3 * k, 0.15);  // it may roll on its facets
+    EXPECT_NEAR(X.t.x(), 0.3 * k, 0.05);
     EXPECT_NEAR(X.t.z(), std::min(0.1 * k, 2.0), 0.05);
     held += slide.stopped;
   }
@@ -118,7 +118,7 @@ TEST(Slide, AGuidedPairKeepsItsGap) {
   const auto slide = model.slide(Pose{}, {shift(4, 0, 5)}, nullptr);
   EXPECT_TRUE(slide.stopped);
   EXPECT_NEAR(slide.contacts.pairs[0].distance_mm, 1.5, 0.03);
-  EXPECT_NEAR(slide.at.X_CM.t.x(), 4, 0.3);
+  EXPECT_NEAR(slide.at.X_CM.t.x(), 4, 0.05);
   // Nearer at rest than its gap: that is what it keeps.
   patient.pair_rules[0].gap_mm = 3;
   const auto closer = ContactModel(patient).slide(Pose{}, {shift(4, 0, 5)}, nullptr);
@@ -211,27 +211,6 @@ TEST(SlideRealAnatomy, BadinDrivenUpSlidesOn) {
   }
   EXPECT_GT(held, 30);
   EXPECT_GT(moved_mm, 2);  // it goes on from where it first met bone
-}
-
-TEST(SlideRealAnatomy, UbcCrownsSlideOutOfTheirBiteAndComeBackNoDeeper) {
-  const auto patient = test::case_ubc();
-  if (!patient) GTEST_SKIP() << "real anatomy absent";
-  const ContactModel model(*patient);
-  Pose X;
-  ContactSet last = model.at_rest();
-  double lowest = 0;
-  int held = 0;
-  for (int k = 1; k <= 60; ++k) {
-    const double s = std::sin(M_PI * k / 60);
-    const auto slide = model.slide(X, {shift(0, 0, -4 * s + 0.4)}, &last, 2);
-    X = slide.at.X_CM;
-    last = slide.contacts;
-    lowest = std::min(lowest, X.t.z());
-    held += slide.stopped;
-    EXPECT_LE(last.max_penetration_mm(), 0.02) << k;
-  }
-  EXPECT_NEAR(lowest, -3.6, 0.1);
-  EXPECT_GT(held, 0);
 }
 
 }  // namespace
