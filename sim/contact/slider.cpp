@@ -13,12 +13,9 @@ constexpr double tooth_sample_mm = 0.4, bone_sample_mm = 0.6;
 // Of a guided pair: fields reach little farther than twice the gap. Wider gaps are kept by exact
 // distances alone.
 constexpr double widest_gap_mm = 4;
-// A surface is thin where the field a spacing below it does not tell that it is inside, and counts
-// as thin where that is so in more than this share of its flat places.
-constexpr double thin_share = 0.1;
-constexpr double flat = 0.9;  // cosine
-constexpr std::size_t thin_stride = 7;
 constexpr double fade_mm = 2;  // from rest, where overlap that is there at rest must be gone
+// Between looks along a way, of points as far from the middle as those of a jaw.
+constexpr double sight_step_mm = 5, turning_mm = 80;
 constexpr double ways_out_mm[] = {4, 8, 16};
 constexpr std::size_t most_settings = 24;
 
@@ -34,19 +31,6 @@ double spacing_of(const Part& part) {
   }
 }
 
-bool is_thin(const SlideBody& body) {
-  const SurfaceSamples& samples = body.samples;
-  const double below_mm = body.field.settings().spacing_mm;
-  std::size_t thin = 0, all = 0;
-  for (std::size_t i = 0; i < samples.points.size(); i += thin_stride) {
-    if (samples.spread[i] < flat) continue;
-    ++all;
-    thin += body.field.at(samples.points[i] - below_mm * samples.normals[i]).distance_mm >
-            -0.25 * below_mm;
-  }
-  return static_cast<double>(thin) > thin_share * static_cast<double>(all);
-}
-
 }  // namespace
 
 Slider::Slider(const Case& patient, const ContactModel::State& state) : state_(state) {
@@ -56,8 +40,7 @@ Slider::Slider(const Case& patient, const ContactModel::State& state) : state_(s
   for (const auto& collider : state.colliders) {
     if (collider->guard) continue;
     const Part& part = patient.parts[static_cast<std::size_t>(collider->part)];
-    Surface surface{collider->number, part.mesh, {},
-                    nullptr,          false,     collider->solid.open_shell_count() > 0};
+    Surface surface{collider->number, part.mesh, {}, nullptr, {}};
     FieldSettings& field = surface.settings.field;
     field.spacing_mm = spacing_of(part);
     field.band_mm = band_mm;
@@ -73,6 +56,7 @@ Slider::Slider(const Case& patient, const ContactModel::State& state) : state_(s
     }
     surface.settings.samples.spacing_mm = is_teeth(part.role) ? tooth_sample_mm : bone_sample_mm;
     surface.settings.cache = field_cache_folder();
+    surface.sight = field_sight(collider->surface.box(), field.region);
     surfaces_.push_back(std::move(surface));
   }
 }
@@ -88,7 +72,7 @@ void Slider::prepare(const Progress& progress, int threads) {
     surface.body =
         std::make_shared<const SlideBody>(make_slide_body(surface.mesh, surface.settings, threads));
     surface.mesh = {};
-    surface.thin = is_thin(*surface.body);
+    surface.sight.thin = is_thin(*surface.body);
   }
   contacts_.resize(static_cast<std::size_t>(state_.body_count()));
   outside_.resize(contacts_.size());
@@ -151,13 +135,34 @@ std::optional<Pose> Slider::outside(const Drive& drive) const {
 }
 
 bool Slider::sees(const Drive& drive) const {
-  std::vector<const Surface*> of(state_.colliders.size(), nullptr);
+  std::vector<const FieldSight*> of(state_.colliders.size(), nullptr);
   for (const Surface& surface : surfaces_)
-    of[static_cast<std::size_t>(surface.collider)] = &surface;
+    of[static_cast<std::size_t>(surface.collider)] = &surface.sight;
+  const double way_mm = (drive.wanted.t - drive.from().t).norm() +
+                        rotation_angle(drive.from().inverse() * drive.wanted) * turning_mm;
+  const int looks = 1 + static_cast<int>(way_mm / sight_step_mm);
+  std::vector<std::vector<Pose>> X_CB;
+  for (int i = 0; i <= looks; ++i)
+    X_CB.push_back(drive.poses_at(interpolate(drive.from(), drive.wanted,
+                                              static_cast<double>(i) / looks, pivot(drive.body))));
   return std::none_of(state_.pairs.begin(), state_.pairs.end(), [&](const ColliderPair& pair) {
-    const Surface &a = *of[static_cast<std::size_t>(pair.a->number)],
-                  &b = *of[static_cast<std::size_t>(pair.b->number)];
-    return drive.concerns(pair) && ((a.thin && b.thin) || pair.kept_mm > widest_gap_mm);
+    if (!drive.concerns(pair)) return false;
+    const FieldSight &a = *of[static_cast<std::size_t>(pair.a->number)],
+                     &b = *of[static_cast<std::size_t>(pair.b->number)];
+    if ((a.thin && b.thin) || pair.kept_mm > widest_gap_mm) return true;
+    // A jaw does not leave its joints far enough to bring anything else to what is outside.
+    if (pair.b->body < first_free_body) return a.blind || b.blind;
+    return std::any_of(X_CB.begin(), X_CB.end(), [&](const std::vector<Pose>& X) {
+      const Pose X_AB = X[static_cast<std::size_t>(pair.a->body)].inverse() *
+                        X[static_cast<std::size_t>(pair.b->body)];
+      const auto meets = [&](const Box& box_a, const Box& box_b) {
+        return boxes_meet(box_a, box_b, X_AB, 0.5 * sight_step_mm + pair.kept_mm);
+      };
+      return std::any_of(a.outside.begin(), a.outside.end(),
+                         [&](const Box& box) { return meets(box, b.box); }) ||
+             std::any_of(b.outside.begin(), b.outside.end(),
+                         [&](const Box& box) { return meets(a.box, box); });
+    });
   });
 }
 

@@ -9,6 +9,7 @@
 #include "engine/core/progress.h"
 #include "sim/contact/contact_state.h"
 #include "sim/contact/drive.h"
+#include "sim/contact/field_sight.h"
 
 namespace condyle {
 
@@ -24,8 +25,8 @@ class Slider {
   /// progress gives up; the next call starts anew.
   void prepare(const Progress& progress, int threads);
 
-  /// Whether nothing is passed through unseen on a slide by the fields: they do not see open
-  /// surfaces from behind, nor one wall thinner than their spacing from another.
+  /// Whether fields see all that the drive may meet: they do not see one wall thinner than their
+  /// spacing from another, nor what lay more than 20 mm from the other body's box at rest.
   bool sees(const Drive& drive) const;
 
   /// By the fields alone, all other bodies where the drive has them. prepare() must have been
@@ -46,7 +47,7 @@ class Slider {
     TriMesh mesh;
     SlideBodySettings settings;
     std::shared_ptr<const SlideBody> body;
-    bool thin = false, open = false;
+    FieldSight sight;
   };
   /// A driven body among others that lie somewhere, and what it remembers of its last slide there.
   struct Setting {
