@@ -101,7 +101,7 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   const Scene scene =
       make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
   const Motion motion =
-      make_motion(options.motion.motion, scene.patient, scene.contacts, options.motion.opening);
+      make_motion(options.motion.motion, scene.patient, scene.contacts, options.motion.settings);
   const auto check = check_clearance(
       scene, motion, {.margin_mm = options.margin_mm, .sampling = {options.frames, options.fps}},
       settings, bar.callback());

@@ -20,7 +20,7 @@ struct CommonOptions {
 struct MotionOptions {
   std::filesystem::path patient;  // case folder; empty = the built-in patient
   std::string motion;
-  OpeningSettings opening;
+  MotionSettings settings;
   bool respect_contact = false;  // recorded motion, too, slides where bones meet
   double friction = 0;
   std::vector<std::string> pairs = {};  // rules as the user wrote them

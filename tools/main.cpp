@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -44,22 +45,30 @@ CLI::Validator within(double least, double most) {
 void add_motion(CLI::App* command, MotionOptions& motion, bool motion_required) {
   command->add_option("CASE", motion.patient,
                       "Folder with case.json (default: the built-in patient)");
-  auto* option =
-      command->add_option("--motion", motion.motion,
-                          "Built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
-                              ") or a pose file (CSV: time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz)");
+  auto* option = command->add_option(
+      "--motion", motion.motion,
+      "Built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
+          "), movements in words (\"open 40; close; protrude 6\"), a file of them (*.motion), or a "
+          "pose file (CSV: time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz)");
   if (motion_required) option->required();
   command
-      ->add_option("--opening", motion.opening.opening_mm,
-                   "Opening wanted at the incisors, mm (default: what suits the patient)")
-      ->check(within(1.0, 80.0));
-  command->add_option("--duration", motion.opening.duration_s, "Time to open and close, s (3)")
-      ->check(within(0.2, 600.0));
-  command
-      ->add_option("--early-translation", motion.opening.early_translation,
-                   "0 hinge first ... 1 translation from the start (default: as early as the joint "
-                   "requires)")
-      ->check(within(0.0, 1.0));
+      ->add_option("--duration", motion.settings.duration_s,
+                   "Time of the whole motion, s (its own; opening and closing 3)")
+      ->check(within(0.2, 3600.0));
+  for (const auto& entry : motion_parameter_names()) {
+    std::string name = "--" + entry.name;
+    std::replace(name.begin(), name.end(), '_', '-');
+    const std::string unit = entry.unit.empty() || entry.unit == "mm_s" ? "" : ", " + entry.unit;
+    command
+        ->add_option_function<double>(
+            name,
+            [&motion, &entry](const double& value) {
+              for (const auto member : entry.values) motion.settings.parameters.*member = value;
+            },
+            entry.help + unit)
+        ->check(within(entry.low, entry.high))
+        ->group("How the jaw moves");
+  }
 }
 
 void add_contact(CLI::App* command, MotionOptions& motion) {

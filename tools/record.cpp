@@ -12,7 +12,7 @@
 #include "render/gl_context.h"
 #include "render/recorder.h"
 #include "render/scene_renderer.h"
-#include "sim/report/plots.h"
+#include "sim/report/motion_plots.h"
 #include "sim/report/report.h"
 #include "sim/report/trace.h"
 #include "tools/common.h"
@@ -208,7 +208,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   bar.show("preparing the motion", 0);
   Playback playback(
       scene,
-      make_motion(options.motion.motion, scene.patient, scene.contacts, options.motion.opening),
+      make_motion(options.motion.motion, scene.patient, scene.contacts, options.motion.settings),
       settings, options.motion.respect_contact);
   const Motion& motion = playback.motion();
   const FrameTimes times = frame_times(options, motion.duration_s);
@@ -217,13 +217,11 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   if (options.pictures) pictures.emplace(options, scene, motion, settings, times);
   TraceWriter trace(options.out / "trace.csv");
   MotionReport report(scene, motion, settings);
-  MotionCurves curves;
   for (int i = 0; i < times.count; ++i) {
     FrameState frame = playback.at(times[i]);
     if (pictures && pictures->wanted(i)) pictures->take(i, frame);
     trace.add(i, frame);
     report.add(frame);
-    if (options.plots) curves.add(frame);
     bar.show(fmt::format("frame {} of {}", i + 1, times.count), (i + 1.0) / times.count);
   }
   bar.clear();
@@ -231,9 +229,8 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   const std::string json = report.json();
   write_file(options.out / "report.json", json);
   if (options.plots) {
-    write_file(options.out / "opening.svg", curves.opening_svg());
-    write_file(options.out / "sagittal.svg", curves.sagittal_svg());
-    write_file(options.out / "frontal.svg", curves.frontal_svg());
+    for (const auto& plot : motion_plots(report.series()))
+      write_file(options.out / (plot.name + ".svg"), panels_svg(plot.panels));
   }
   if (pictures) pictures->finish();
   if (common.json) fmt::print("{}", json);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/case/landmarks.h"
+#include "sim/case/motion_parameters.h"
 #include "sim/frame/pair_rule.h"
 #include "sim/frame/part.h"
 
@@ -28,6 +29,7 @@ struct Case {
 
   std::vector<PairRule> pair_rules;  // where they differ from the usual ones; the last that fits
                                      // counts
+  MotionParameters motion;           // where the jaw moves otherwise than usual
 
   const Part* find(Role role) const {
     for (const auto& part : parts)

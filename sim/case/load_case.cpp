@@ -117,6 +117,23 @@ CondylarPath load_path(const JsonItem& item) {
   return path;
 }
 
+MotionParameters load_motion(const JsonItem& item) {
+  MotionParameters parameters;
+  if (!item.value().is_object()) item.refuse("must be an object of motion parameters");
+  for (const auto& [key, value] : item.value().items()) {
+    const auto* entry = motion_parameter(key);
+    if (!entry || entry->key() != key) {
+      std::string known;
+      for (const auto& name : motion_parameter_names())
+        known += (known.empty() ? "" : ", ") + name.key();
+      item.at(key).refuse("is not known; known are " + known);
+    }
+    const double number = item.at(key).number(entry->low, entry->high);
+    for (const auto member : entry->values) parameters.*member = number;
+  }
+  return parameters;
+}
+
 void check_format(const fs::path& file, const JsonItem& root) {
   const std::string how =
       "; make a case from surfaces with: condyle import meshes --mandible FILE --maxilla FILE ... "
@@ -173,6 +190,7 @@ Case load_case(const fs::path& given) {
   if (const auto rules = root.find("contact_pairs"))
     for (std::size_t i = 0; i < rules->size(); ++i)
       patient.pair_rules.push_back(load_rule(patient, rules->at(i)));
+  if (const auto motion = root.find("motion")) patient.motion = load_motion(*motion);
   if (const auto notes = root.find("notes"))
     for (std::size_t i = 0; i < notes->size(); ++i) patient.notes.push_back(notes->at(i).text());
   return patient;

@@ -55,6 +55,9 @@ json to_json(const Case& patient) {
     root["condylar_path"] = {{"forward_mm", patient.condylar_path->forward_mm},
                              {"drop_mm", patient.condylar_path->drop_mm}};
   for (const auto& rule : patient.pair_rules) root["contact_pairs"].push_back(to_json(rule));
+  for (const auto& entry : motion_parameter_names())
+    if (const auto value = entry.values.front(); entry.values.size() == 1 && patient.motion.*value)
+      root["motion"][entry.key()] = *(patient.motion.*value);
   root["notes"] = patient.notes;
   return root;
 }

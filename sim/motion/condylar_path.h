@@ -1,10 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include "engine/math/pchip.h"
 #include "sim/case/case.h"
-#include "sim/motion/joint_surfaces.h"
 
 namespace condyle {
 
@@ -31,9 +28,8 @@ struct Coupling {
 Pchip known_path(const CondylarPath& path);
 /// An average joint: 40 deg secant over the first 5 mm, flat past the crest of the eminence.
 Pchip average_path();
-/// At each forward step the drop at which the condyles, turned as the coupling tells, keep the gap
-/// they have at rest; never rising again, rounded off, and not nearer than at rest.
-Pchip seated_path(JointSurfaces& joint, const Eigen::Vector3d& center, const Eigen::Vector3d& axis,
-                  const Coupling& coupling);
+/// A path whose secant over the first 5 mm is inclined by so much, flat past the crest; `shape`
+/// from 0 (straight to the crest) to 1 (an eminence's curve).
+Pchip inclined_path(double inclination_deg, double shape);
 
 }  // namespace condyle

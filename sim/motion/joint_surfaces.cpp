@@ -70,4 +70,11 @@ double JointSurfaces::slack_mm(const Pose& X_CM) {
   return least;
 }
 
+double JointSurfaces::gap_mm(JawSide side, const Pose& X_CM, TrianglePair& start) const {
+  const Side& joint = at(side);
+  const MeshDistance now = distance(joint.fossa, {}, joint.condyle, X_CM, start);
+  start = now.triangles;
+  return now.distance_mm;
+}
+
 }  // namespace condyle

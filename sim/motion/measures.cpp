@@ -1,20 +1,55 @@
 #include "sim/motion/measures.h"
 
+#include <cmath>
+
 namespace condyle {
+namespace {
+
+constexpr double degrees = 180 / 3.14159265358979323846;
+
+/// The axis of X, through the place nearest to `near`.
+HelicalAxis helical_axis(const Pose& X, const Eigen::Vector3d& near) {
+  constexpr double least_deg = 1;
+  HelicalAxis axis;
+  const double angle = rotation_angle(X);
+  if (angle * degrees < least_deg) return axis;
+  axis.known = true;
+  axis.direction = X.R.vec().normalized() * (X.R.w() < 0 ? -1 : 1);
+  axis.slide_mm = axis.direction.dot(X.t);
+  const Eigen::Vector3d across = X.t - axis.slide_mm * axis.direction;
+  const Eigen::Vector3d foot =
+      0.5 * (across + axis.direction.cross(across) / std::tan(0.5 * angle));
+  axis.point = foot + axis.direction.dot(near - foot) * axis.direction;
+  return axis;
+}
+
+}  // namespace
 
 Measures measure(const Case& patient, const Pose& X_CM) {
-  constexpr double degrees = 180 / 3.14159265358979323846;
   const Landmarks& landmarks = patient.landmarks;
   Measures out;
   if (const auto p = landmarks.find("lower_incisal_point")) {
     out.incisor = X_CM * *p;
     out.opening_mm = p->z() - out.incisor.z();
-    if (const auto upper = landmarks.find("upper_incisal_point"))
+    out.protrusion_mm = p->y() - out.incisor.y();
+    out.laterotrusion_mm = out.incisor.x() - p->x();
+    if (const auto upper = landmarks.find("upper_incisal_point")) {
       out.interincisal_mm = (out.incisor - *upper).norm();
+      out.midline_deviation_mm = out.incisor.x() - upper->x();
+    }
   }
-  if (const auto p = landmarks.find("left_condyle")) out.left_condyle = X_CM * *p;
-  if (const auto p = landmarks.find("right_condyle")) out.right_condyle = X_CM * *p;
+  const auto left = landmarks.find("left_condyle"), right = landmarks.find("right_condyle");
+  if (left) {
+    out.left_condyle = X_CM * *left;
+    out.left_condyle_travel_mm = (out.left_condyle - *left).norm();
+  }
+  if (right) {
+    out.right_condyle = X_CM * *right;
+    out.right_condyle_travel_mm = (out.right_condyle - *right).norm();
+  }
   out.rotation_deg = rotation_angle(X_CM) * degrees;
+  out.helical_axis = helical_axis(
+      X_CM, left && right ? Eigen::Vector3d(0.5 * (*left + *right)) : Eigen::Vector3d(X_CM.t));
   return out;
 }
 

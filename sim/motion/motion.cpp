@@ -7,52 +7,167 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "sim/motion/movements.h"
 #include "sim/motion/opening.h"
 #include "sim/motion/recording.h"
 
 namespace condyle {
 namespace {
 
-bool looks_like_a_file(const std::string& spec) {
+constexpr double usual_opening_s = 3;
+constexpr std::size_t largest_script = std::size_t{1} << 20;
+constexpr int threads = 2;
+
+/// The built-in motions in the words of a motion file.
+const std::vector<std::pair<std::string, std::string>>& builtin_scripts() {
+  static const std::vector<std::pair<std::string, std::string>> scripts = {
+      {"opening", ""},
+      {"protrusion", "protrude; hold 0.2; close"},
+      {"retrusion", "retrude over 0.4; hold 0.2; close over 0.4"},
+      {"laterotrusion-left", "left; hold 0.2; close"},
+      {"laterotrusion-right", "right; hold 0.2; close"},
+      {"posselt", "posselt"},
+      {"chewing-left", "chew left; hold 0.3"},
+      {"chewing-right", "chew right; hold 0.3"},
+      {"rest", "rest over 0.5; hold 2.5"}};
+  return scripts;
+}
+
+std::string ending_of(const std::string& spec) {
   std::string ending = std::filesystem::path(spec).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+bool looks_like_a_file(const std::string& spec) {
+  const std::string ending = ending_of(spec);
   std::error_code ignored;
-  return ending == ".csv" || spec.find('/') != std::string::npos ||
+  return ending == ".csv" || ending == ".motion" ||
+         (spec.find('/') != std::string::npos && spec.find(' ') == std::string::npos) ||
          std::filesystem::exists(spec, ignored);
 }
 
-void check(const OpeningSettings& settings) {
-  if (!(settings.duration_s > 0 && settings.duration_s <= 3600))
-    throw InputError(fmt::format("motion duration {} s: give more than 0 and at most 3600 s",
-                                 settings.duration_s));
-  if (!(settings.opening_mm >= 0 && settings.opening_mm <= 1000))
-    throw InputError(fmt::format("opening {} mm: give 0 (the patient's own) or a positive length",
-                                 settings.opening_mm));
-  if (!(settings.early_translation <= 1))
+void check(const MotionSettings& settings) {
+  constexpr double longest_s = 3600;
+  if (!(settings.duration_s >= 0 && settings.duration_s <= longest_s))
     throw InputError(
-        fmt::format("early translation {}: give 0 to 1, or a negative value for as early "
-                    "as the joint requires",
-                    settings.early_translation));
+        fmt::format("motion duration {} s: give 0 (the motion's own time) or up to {} s",
+                    settings.duration_s, longest_s));
+  for (const auto& entry : motion_parameter_names())
+    for (const auto member : entry.values)
+      if (const auto& value = settings.parameters.*member;
+          value && !(*value >= entry.low && *value <= entry.high))
+        throw InputError(fmt::format("{} {}: give {} to {} {}", entry.name, *value, entry.low,
+                                     entry.high, entry.unit));
+}
+
+/// The motion in another time.
+Motion stretched(Motion motion, double duration_s) {
+  if (duration_s <= 0 || motion.duration_s <= 0) return motion;
+  const double share = motion.duration_s / duration_s;
+  motion.wanted = [wanted = motion.wanted, share](double time_s) { return wanted(time_s * share); };
+  for (auto& phase : motion.phases) {
+    phase.start_s /= share;
+    phase.end_s /= share;
+  }
+  motion.duration_s = duration_s;
+  return motion;
+}
+
+bool goes_aside(const std::vector<Statement>& statements) {
+  return std::any_of(statements.begin(), statements.end(), [](const Statement& s) {
+    return s.verb == Verb::left || s.verb == Verb::right || s.verb == Verb::posselt ||
+           s.verb == Verb::chew_left || s.verb == Verb::chew_right;
+  });
+}
+
+void add_inputs(Motion& motion, const JawJoints& joints, const MotionParameters& parameters) {
+  for (const auto& entry : motion_parameter_names())
+    if (entry.values.size() == 1 && parameters.*entry.values.front())
+      motion.inputs.push_back({entry.name, entry.unit, *(parameters.*entry.values.front())});
+  motion.inputs.push_back({"bonwill_distance", "mm", joints.bonwill_mm()});
+  motion.inputs.push_back({"balkwill_angle", "deg", joints.balkwill_deg()});
+}
+
+Motion move(const std::string& name, const MotionScript* script, const Case& patient,
+            const ContactModel& contacts, const MotionSettings& settings) {
+  MotionParameters parameters = settings.parameters.over(patient.motion);
+  if (script) parameters = script->parameters.over(parameters);
+  const bool aside = script && goes_aside(script->statements);
+  const auto joints = std::make_shared<const JawJoints>(
+      patient, parameters, aside ? JointReach::aside : JointReach::straight, threads);
+  std::vector<std::string> notes;
+  const OpeningLimits limits = opening_limits(*joints, contacts, parameters, notes);
+  const auto guide = std::make_shared<BiteGuide>(patient, *joints, parameters);
+  Movements movements(joints, guide, limits, parameters,
+                      [&](const Pose& X_CM) { return bones_free(patient, contacts, X_CM); });
+  if (script) {
+    for (const auto& statement : script->statements) movements.add(statement);
+  } else {
+    // The same share of time to open and to close, a pause between them.
+    constexpr double stroke_share = 0.45;
+    const double whole = settings.duration_s > 0 ? settings.duration_s : usual_opening_s;
+    Statement open{.verb = Verb::open, .duration_s = stroke_share * whole, .where = "opening"};
+    if (parameters.speed_mm_s && settings.duration_s == 0) open.duration_s.reset();
+    movements.add(open);
+    movements.add({.verb = Verb::hold, .amount = (1 - 2 * stroke_share) * whole, .where = "hold"});
+    movements.back(open.duration_s);
+  }
+  if (!guide->notes().empty()) notes.push_back(guide->notes());
+  Motion motion = movements.finish(name);
+  motion.notes.insert(motion.notes.begin(), notes.begin(), notes.end());
+  add_inputs(motion, *joints, parameters);
+  return stretched(std::move(motion), settings.duration_s);
+}
+
+bool has_landmarks(const Case& patient) {
+  return patient.landmarks.find("left_condyle") && patient.landmarks.find("right_condyle") &&
+         patient.landmarks.find("lower_incisal_point");
 }
 
 }  // namespace
 
 const std::vector<std::string>& builtin_motions() {
-  static const std::vector<std::string> names = {"opening", "rest"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const auto& [name, script] : builtin_scripts()) all.push_back(name);
+    return all;
+  }();
   return names;
 }
 
 Motion make_motion(const std::string& spec, const Case& patient, const ContactModel& contacts,
-                   const OpeningSettings& settings) {
+                   const MotionSettings& settings) {
   check(settings);
-  if (spec == "opening") return make_opening(patient, contacts, settings);
-  if (spec == "rest") return {spec, settings.duration_s, false, [](double) { return Pose{}; }, {}};
-  if (looks_like_a_file(spec)) return read_recording(spec);
-  throw InputError(fmt::format("motion \"{}\" is not known: give one of {}, or a pose file (CSV)",
-                               spec, fmt::join(builtin_motions(), ", ")));
+  if (spec == "opening") return move(spec, nullptr, patient, contacts, settings);
+  // A jaw without landmarks has no rest position but its own.
+  if (spec == "rest" && !has_landmarks(patient)) {
+    const double duration_s = settings.duration_s > 0 ? settings.duration_s : usual_opening_s;
+    return {spec, duration_s, false, [](double) { return Pose{}; }, {}};
+  }
+  for (const auto& [name, text] : builtin_scripts())
+    if (spec == name) {
+      const MotionScript script = parse_motion_script(text, name);
+      return move(name, &script, patient, contacts, settings);
+    }
+  if (looks_like_a_file(spec)) {
+    if (ending_of(spec) != ".motion") return read_recording(spec);
+    const MotionScript script = parse_motion_script(read_file(spec, largest_script), spec);
+    return move(std::filesystem::path(spec).stem().string(), &script, patient, contacts, settings);
+  }
+  if (looks_like_a_script(spec)) {
+    const MotionScript script = parse_motion_script(spec, "motion");
+    return move("sequence", &script, patient, contacts, settings);
+  }
+  throw InputError(fmt::format(
+      "motion \"{}\" is not known: give one of {}, movements in words such as \"open 40; "
+      "close; protrude 6\", a file of them (*.motion), or a pose file (CSV)",
+      spec, fmt::join(builtin_motions(), ", ")));
 }
 
 }  // namespace condyle

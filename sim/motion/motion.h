@@ -10,6 +10,23 @@
 
 namespace condyle {
 
+/// A named stretch of a motion.
+struct MotionPhase {
+  std::string name;  // as in "opening", "chewing right"
+  double start_s = 0, end_s = 0;
+};
+
+/// What a motion was made from: it proves nothing when it is found again.
+struct MotionInput {
+  std::string name, unit;
+  double value = 0;
+};
+
+/// Border movements of the lower incisal point, mm, in the cranium's frame.
+struct MotionBorders {
+  std::vector<Eigen::Vector3d> sagittal, frontal;  // closed rounds
+};
+
 /// Asks for a pose of the mandible at each time.
 struct Motion {
   std::string name;
@@ -18,23 +35,25 @@ struct Motion {
   std::function<Pose(double time_s)> wanted;  // X_CM; clamps the time to [0, duration_s]
   std::vector<std::string> notes;             // how it was made, for people
   std::vector<double> sample_times = {};      // of a recording, increasing from 0 to duration_s
+
+  std::vector<MotionPhase> phases = {};  // of a built-in motion, in order
+  std::vector<MotionInput> inputs = {};
+  MotionBorders borders = {};  // of motions that are measured by them (chewing, posselt)
 };
 
-struct OpeningSettings {
-  double opening_mm =
-      0;  // drop of the incisal point wanted at full opening; 0 = the patient's default
-  double duration_s = 3.0;        // opening and closing
-  double early_translation = -1;  // 0 pure hinge first, 1 translation from the start; < 0 = as
-                                  // early as the joint requires
+struct MotionSettings {
+  MotionParameters parameters = {};  // before those of the case
+  double duration_s = 0;             // of the whole motion; 0 = its own time
 };
 
 /// Names of the built-in motions.
 const std::vector<std::string>& builtin_motions();
 
-/// The motion called `spec`: a built-in name or a pose file (CSV). `contacts`, of the same patient,
-/// tells how far the bones let the jaw go.
+/// The motion called `spec`: a built-in name, movements in words ("open 40; close; protrude 6"), a
+/// file of such words (*.motion), or a pose file (CSV). `contacts`, of the same patient, tells how
+/// far the bones let the jaw go.
 /// throws: InputError for an unknown name (listing the known ones), bad settings or a bad file.
 Motion make_motion(const std::string& spec, const Case& patient, const ContactModel& contacts,
-                   const OpeningSettings& settings = {});
+                   const MotionSettings& settings = {});
 
 }  // namespace condyle

@@ -1,15 +1,22 @@
 #pragma once
 
-#include "sim/motion/motion.h"
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/contact/contact.h"
+#include "sim/motion/movements.h"
 
 namespace condyle {
 
-/// Opens the jaw and closes it again: the mandible turns about the line through its condyles while
-/// both move forward and down along the condylar path. Needs the landmarks left_condyle,
-/// right_condyle and lower_incisal_point.
-/// source: the coupling of rotation and translation after Leader 2003 (1.5 deg/mm) and Travers
-/// 2000.
-Motion make_opening(const Case& patient, const ContactModel& contacts,
-                    const OpeningSettings& settings);
+/// How this jaw opens: the coupling of rotation and translation that its bones leave free, as near
+/// to a hinge first as they do, and how far. Notes tell people.
+/// source: the coupling after Leader 2003 (1.5 deg/mm) and Travers 2000.
+/// throws: InputError when the opening that is asked for needs too large a rotation.
+OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contacts,
+                             const MotionParameters& parameters, std::vector<std::string>& notes);
+
+/// Whether bones that are apart at rest, teeth aside, are apart at the pose.
+bool bones_free(const Case& patient, const ContactModel& contacts, const Pose& X_CM);
 
 }  // namespace condyle

@@ -41,6 +41,28 @@ std::string label(double value, double step) {
   return fmt::format("{:.{}f}", std::abs(value) < step * 1e-6 ? 0.0 : value, decimals);
 }
 
+/// A band's area, its name at its upper left corner.
+template <class X, class Y>
+std::string band_svg(const PlotBand& band, const X& px, const Y& py, double low, double high) {
+  std::vector<double> x = band.x, y = band.y;
+  if (x.empty()) {
+    const auto [least, most] = std::minmax_element(band.y.begin(), band.y.end());
+    x = {low, high, high, low};
+    y = {*least, *least, *most, *most};
+  }
+  std::string svg =
+      "<polygon clip-path=\"url(#axes)\" fill=\"#cfe3d4\" fill-opacity=\"0.75\" "
+      "stroke=\"#8fb79b\" points=\"";
+  for (std::size_t i = 0; i < x.size(); ++i)
+    svg += fmt::format("{:.2f},{:.2f} ", px(x[i]), py(y[i]));
+  const double at_x = px(*std::min_element(x.begin(), x.end()));
+  const double at_y = py(*std::max_element(y.begin(), y.end()));
+  return svg +
+         fmt::format(
+             "\"/><text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"11\" fill=\"#3c6b4a\">{}</text>\n",
+             at_x + 4, at_y + 12, escaped(band.name));
+}
+
 }  // namespace
 
 std::string escaped(const std::string& text) {
@@ -73,6 +95,10 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
     }
   if (curves.empty() || x.low > x.high) x = y = {0, 1};
   for (const auto& level : settings.levels) y.include(level.y);
+  for (const auto& band : settings.bands) {
+    for (const double v : band.x) x.include(v);
+    for (const double v : band.y) y.include(v);
+  }
   const double width = left + axes_width + right + (settings.legend_beside ? legend_width : 0);
   const double inner_width = axes_width, inner_height = height - top - bottom;
   x.widen(std::max(x.size() * 1.06, 1e-3));
@@ -91,6 +117,10 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
       "<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n"
       "<text x=\"{2}\" y=\"26\" font-size=\"16\" fill=\"#222\">{3}</text>\n",
       width, height, left, settings.title);
+  svg += fmt::format(
+      "<clipPath id=\"axes\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
+      left, top, inner_width, inner_height);
+  for (const auto& band : settings.bands) svg += band_svg(band, px, py, x.low, x.high);
   const double step_x = tick_step(x.size()), step_y = tick_step(y.size());
   for (double v = std::ceil(x.low / step_x) * step_x; v <= x.high; v += step_x)
     svg += fmt::format(
@@ -111,9 +141,6 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
       top + inner_height / 2, settings.y_label);
   const double legend_x = left + 12 + (settings.legend_beside ? axes_width : 0);
   double legend_y = top + 20;
-  svg += fmt::format(
-      "<clipPath id=\"axes\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
-      left, top, inner_width, inner_height);
   for (const auto& level : settings.levels) {
     svg += fmt::format(
         "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#222\" "
@@ -133,7 +160,7 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
     for (std::size_t i = 0; i < curve.x.size(); ++i)
       svg += fmt::format("{:.2f},{:.2f} ", px(curve.x[i]), py(curve.y[i]));
     svg += "\"/>\n";
-    if (curve.name.empty()) continue;
+    if (curve.name.empty() || !settings.legend) continue;
     svg += fmt::format(
         "<line x1=\"{}\" x2=\"{}\" y1=\"{:.0f}\" y2=\"{:.0f}\" stroke=\"{}\" "
         "stroke-width=\"2\"/><text x=\"{}\" y=\"{:.0f}\" fill=\"#222\">{}</text>\n",
@@ -149,51 +176,20 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
   return svg + "</svg>\n";
 }
 
-void MotionCurves::add(const FrameState& frame) {
-  time_.push_back(frame.time_s);
-  opening_.push_back(frame.measures.opening_mm);
-  rotation_.push_back(frame.measures.rotation_deg);
-  interincisal_.push_back(frame.measures.interincisal_mm);
-  incisor_.push_back(frame.measures.incisor);
-  left_.push_back(frame.measures.left_condyle);
-  right_.push_back(frame.measures.right_condyle);
-}
-
-std::string MotionCurves::opening_svg() const {
-  return plot_svg({{"opening, mm", time_, opening_},
-                   {"between incisors, mm", time_, interincisal_},
-                   {"rotation, degrees", time_, rotation_}},
-                  {.title = "Opening over time", .x_label = "time, s", .y_label = "mm or degrees"});
-}
-
-namespace {
-
-Curve path(const char* name, const std::vector<Eigen::Vector3d>& points, int across) {
-  Curve curve{name, {}, {}};
-  for (const auto& p : points) {
-    curve.x.push_back(p[across]);
-    curve.y.push_back(p.z());
+std::string panels_svg(const std::vector<PlotPanel>& panels) {
+  constexpr double panel_width = left + axes_width + right;
+  double across = 0;
+  std::string inner;
+  for (const auto& panel : panels) {
+    std::string one = plot_svg(panel.curves, panel.settings);
+    one.insert(5, fmt::format("x=\"{}\" y=\"0\" ", across));  // after "<svg "
+    inner += one;
+    across += panel_width + (panel.settings.legend_beside ? legend_width : 0);
   }
-  return curve;
-}
-
-}  // namespace
-
-std::string MotionCurves::sagittal_svg() const {
-  return plot_svg({path("lower incisal point", incisor_, 1), path("left condyle", left_, 1),
-                   path("right condyle", right_, 1)},
-                  {.title = "Paths seen from the patient's left side",
-                   .x_label = "anterior  -  y, mm  -  posterior",
-                   .y_label = "inferior  -  z, mm  -  superior",
-                   .equal_scale = true});
-}
-
-std::string MotionCurves::frontal_svg() const {
-  return plot_svg({path("lower incisal point", incisor_, 0)},
-                  {.title = "Incisal path seen from the front",
-                   .x_label = "patient's right  -  x, mm  -  left",
-                   .y_label = "inferior  -  z, mm  -  superior",
-                   .equal_scale = true});
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+      "height=\"{1}\">\n{2}</svg>\n",
+      across, height, inner);
 }
 
 }  // namespace condyle

@@ -3,8 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "sim/frame/frame_state.h"
-
 namespace condyle {
 
 /// One curve of a plot.
@@ -21,6 +19,12 @@ struct Level {
   double y = 0;
 };
 
+/// An area with a name behind the curves: what was published.
+struct PlotBand {
+  std::string name;
+  std::vector<double> x, y;  // corners; without x a strip between the lowest and highest y
+};
+
 /// A line plot as SVG text: axes with ticks and units, a legend, Okabe-Ito colours.
 struct PlotSettings {
   std::string title, x_label, y_label;
@@ -29,6 +33,8 @@ struct PlotSettings {
   std::vector<std::string> remarks = {};  // under the legend
   bool legend_beside = false;             // right of the axes, where many curves leave no room
   double y_most = 1e300;                  // curves are cut off above
+  std::vector<PlotBand> bands = {};
+  bool legend = true;
 };
 
 /// Text for SVG and HTML.
@@ -36,17 +42,13 @@ std::string escaped(const std::string& text);
 
 std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& settings);
 
-/// What the plots of a recording need of each frame.
-class MotionCurves {
- public:
-  void add(const FrameState& frame);
-  std::string opening_svg() const;   // opening and rotation over time
-  std::string sagittal_svg() const;  // incisal and condylar paths seen from the left
-  std::string frontal_svg() const;   // incisal path seen from the front
-
- private:
-  std::vector<double> time_, opening_, rotation_, interincisal_;
-  std::vector<Eigen::Vector3d> incisor_, left_, right_;
+/// Curves and how to draw them: a plain value, for whoever draws.
+struct PlotPanel {
+  std::vector<Curve> curves;
+  PlotSettings settings;
 };
+
+/// Panels beside each other as one SVG.
+std::string panels_svg(const std::vector<PlotPanel>& panels);
 
 }  // namespace condyle

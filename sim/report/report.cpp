@@ -19,6 +19,25 @@ Json banded(double value, double low, double high) {
   return {{"value", value}, {"band", {low, high}}, {"within", value >= low && value <= high}};
 }
 
+Json to_json(const Finding& finding) {
+  Json json = {{"quantity", finding.name}, {"value", finding.value}, {"unit", finding.unit}};
+  if (finding.banded()) {
+    json["band"] = {finding.low, finding.high};
+    json["within"] = finding.within();
+  }
+  if (!finding.published.empty()) json["published"] = finding.published;
+  json["emergent"] = !finding.input;
+  if (!finding.within()) json["why"] = finding.why;
+  return json;
+}
+
+/// Of emergent quantities.
+std::string outside_text(const Finding& finding) {
+  return fmt::format("{}: {:.2f}{}{}, accepted {:g} to {:g}; {}", finding.name, finding.value,
+                     finding.unit.empty() ? "" : " ", finding.unit, finding.low, finding.high,
+                     finding.why);
+}
+
 double round_to(double value, double unit) { return std::round(value / unit) * unit; }
 
 /// How the soft tissue answered at one frame. Empty without tissue or landmarks.
@@ -62,16 +81,16 @@ StageSummary summarise(std::vector<double> ms) {
 MotionReport::MotionReport(const Scene& scene, const Motion& motion,
                            const SimulatorSettings& settings)
     : scene_(scene),
-      motion_name_(motion.name),
-      recorded_(motion.recorded),
-      duration_s_(motion.duration_s),
+      motion_(motion),
       settings_(settings),
+      series_(scene, motion),
       pairs_(scene.contacts.at_rest().pairs.size()) {
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     pairs_[i].rest_depth = scene.contacts.at_rest().pairs[i].rest_depth_mm;
 }
 
 void MotionReport::add(const FrameState& frame) {
+  series_.add(frame);
   const auto& rest = scene_.patient.landmarks;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const auto& pair = frame.contacts.pairs[i];
@@ -105,7 +124,7 @@ void MotionReport::add(const FrameState& frame) {
     widest_.face.clear();
     widest_frame_ = frames_;
   }
-  const double next_sample = duration_s_ * (static_cast<double>(samples_.size()) + 0.5) /
+  const double next_sample = motion_.duration_s * (static_cast<double>(samples_.size()) + 0.5) /
                              static_cast<double>(cold_samples);
   if (samples_.size() < cold_samples && frame.time_s >= next_sample) {
     samples_.push_back(frame);
@@ -121,7 +140,15 @@ std::string MotionReport::json() const {
   Json json;
   json["about"] = "Condyle; for research and education, not for clinical use";
   json["case"] = scene_.patient.name;
-  json["motion"] = {{"name", motion_name_}, {"recorded", recorded_}, {"duration_s", duration_s_}};
+  json["motion"] = {
+      {"name", motion_.name}, {"recorded", motion_.recorded}, {"duration_s", motion_.duration_s}};
+  for (const auto& phase : motion_.phases)
+    json["motion"]["phases"].push_back(
+        {{"name", phase.name}, {"start_s", phase.start_s}, {"end_s", phase.end_s}});
+  for (const auto& input : motion_.inputs)
+    json["motion"]["inputs"].push_back(
+        {{"name", input.name}, {"value", input.value}, {"unit", input.unit}});
+  json["motion"]["notes"] = motion_.notes;
   json["frames"] = frames_;
   json["step_s"] = settings_.step_s;
   const auto& w = widest_.measures;
@@ -132,6 +159,15 @@ std::string MotionReport::json() const {
                      {"max_rotation_deg", banded(max_rotation_deg_, 28, 45)},
                      {"left_condylar_travel_mm", banded(left_travel_mm_, 10, 20)},
                      {"right_condylar_travel_mm", banded(right_travel_mm_, 10, 20)}};
+
+  Json list = Json::array(), outside = Json::array();
+  for (const auto& finding : findings(scene_, motion_, series_)) {
+    list.push_back(to_json(finding));
+    if (!finding.within() && !finding.input) outside.push_back(outside_text(finding));
+  }
+  json["findings"] = list;
+  json["outside_bands"] = outside;
+  json["warnings"] = physiology_warnings(series_);
 
   Json pairs = Json::array();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -203,6 +239,18 @@ std::string MotionReport::text() const {
       "{:.1f} deg, condyles travel {:.1f} mm left, {:.1f} mm right\n",
       frames_, m.opening_mm, m.interincisal_mm, widest_.time_s, max_rotation_deg_, left_travel_mm_,
       right_travel_mm_);
+  int emergent = 0, within = 0;
+  std::string outside;
+  for (const auto& finding : findings(scene_, motion_, series_)) {
+    if (finding.input || !finding.banded()) continue;
+    ++emergent;
+    within += finding.within();
+    if (!finding.within()) outside += "  " + outside_text(finding) + "\n";
+  }
+  if (emergent > 0)
+    text += fmt::format("{} of {} emergent quantities lie within their bands\n{}", within, emergent,
+                        outside);
+  for (const auto& warning : physiology_warnings(series_)) text += "warning: " + warning + "\n";
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const auto& rest = scene_.contacts.at_rest().pairs[i];
     const auto& a = scene_.patient.parts[static_cast<std::size_t>(rest.part_a)].name;
@@ -223,7 +271,7 @@ std::string MotionReport::text() const {
   const bool penetrates = std::any_of(pairs_.begin(), pairs_.end(), [](const PairRecord& record) {
     return record.penetrating_frames > 0;
   });
-  if (recorded_ && penetrates && stopped_frames_ == 0)
+  if (motion_.recorded && penetrates && stopped_frames_ == 0)
     text += "a recorded motion is played as it is; --respect-contact stops it where bones meet\n";
   if (stopped_frames_ > 0)
     text += fmt::format("stopped at a contact in {} frames, first in frame {}\n", stopped_frames_,

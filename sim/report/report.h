@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/report/motion_truth.h"
 #include "sim/simulator/simulator.h"
 
 namespace condyle {
@@ -26,6 +27,9 @@ class MotionReport {
   /// A few sentences for people.
   std::string text() const;
 
+  /// The frames' measures so far: what plots and findings are made from.
+  const MotionSeries& series() const { return series_; }
+
  private:
   struct PairRecord {
     double least_distance = 1e300, deepest = 0, rest_depth = 0;
@@ -33,10 +37,9 @@ class MotionReport {
   };
 
   const Scene& scene_;
-  std::string motion_name_;
-  bool recorded_;
-  double duration_s_;
+  Motion motion_;
   SimulatorSettings settings_;
+  MotionSeries series_;
   int frames_ = 0, stopped_frames_ = 0, first_stopped_ = -1;
   int inverted_frames_ = 0, unconverged_frames_ = 0;
   double max_rotation_deg_ = 0, left_travel_mm_ = 0, right_travel_mm_ = 0;

@@ -16,7 +16,11 @@ const char* TraceWriter::header() {
          "opening_mm,interincisal_mm,rotation_deg,left_condyle_x_mm,left_condyle_y_mm,"
          "left_condyle_z_mm,right_condyle_x_mm,right_condyle_y_mm,right_condyle_z_mm,contacts,"
          "min_clearance_mm,max_penetration_mm,tissue_iterations,tissue_energy,tissue_residual,"
-         "inverted_prisms,motion_ms,contact_ms,tissue_ms,render_ms,state_hash,stopped";
+         "inverted_prisms,motion_ms,contact_ms,tissue_ms,render_ms,state_hash,stopped,protrusion_"
+         "mm,"
+         "laterotrusion_mm,midline_deviation_mm,left_condyle_travel_mm,right_condyle_travel_mm,"
+         "condyle_asymmetry_mm,helical_axis_x,helical_axis_y,helical_axis_z,helical_point_x_mm,"
+         "helical_point_y_mm,helical_point_z_mm,helical_slide_mm,incisor_speed_mm_s";
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& file)
@@ -66,6 +70,20 @@ void TraceWriter::add(int frame, const FrameState& s) {
   ms(s.times[Stage::render]);
   row += fmt::format(",{:016x}", s.state_hash);
   count(s.stopped ? 1 : 0);
+  numbers({m.protrusion_mm, m.laterotrusion_mm, m.midline_deviation_mm, m.left_condyle_travel_mm,
+           m.right_condyle_travel_mm, m.left_condyle_travel_mm - m.right_condyle_travel_mm});
+  if (m.helical_axis.known) {
+    point(m.helical_axis.direction);
+    point(m.helical_axis.point);
+    numbers({m.helical_axis.slide_mm});
+  } else {
+    row += ",,,,,,,";
+  }
+  const double since = s.time_s - before_s_;
+  numbers({rows_ > 0 && since > 0 ? (m.incisor - incisor_before_).norm() / since : 0.0});
+  before_s_ = s.time_s;
+  incisor_before_ = m.incisor;
+  ++rows_;
   put(row + "\n");
 }
 

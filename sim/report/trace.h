@@ -28,6 +28,9 @@ class TraceWriter {
 
   std::filesystem::path file_, beside_;
   std::FILE* stream_ = nullptr;
+  long rows_ = 0;
+  double before_s_ = 0;  // of the row before: speeds are over the time between rows
+  Eigen::Vector3d incisor_before_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace condyle

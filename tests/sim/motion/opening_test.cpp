@@ -5,49 +5,16 @@
 #include "sim/motion/joint_surfaces.h"
 #include "sim/motion/measures.h"
 #include "sim/motion/motion.h"
-#include "tests/support/boxes.h"
+#include "tests/sim/motion/jaws.h"
 #include "tests/support/real_cases.h"
-#include "tests/support/shapes.h"
 
-namespace condyle {
+namespace condyle::test {
 namespace {
 
-/// A jaw of the usual size with a known joint and nothing in its way.
-Case free_jaw() {
-  Case patient;
-  patient.name = "free jaw";
-  patient.parts.push_back(
-      {"mandible", Role::mandible, test::box({-50, -90, -60}, {50, -10, -50}), {}});
-  patient.parts.push_back(
-      {"maxilla", Role::maxilla, test::box({-20, -90, -40}, {20, -60, -30}), {}});
-  patient.landmarks.points = {{"lower_incisal_point", {0, -92.5, -50.9}},
-                              {"upper_incisal_point", {0, -95.2, -53.2}},
-                              {"left_condyle", {50.5, -13, -7.5}},
-                              {"right_condyle", {-50.5, -13, -7.5}}};
-  patient.condylar_path = CondylarPath{{0, 2, 4, 6, 8, 10, 12, 14, 16, 18},
-                                       {0, 0.55, 1.75, 3.4, 5.05, 6.3, 7.0, 7.3, 7.3, 7.1}};
-  return patient;
-}
+MotionSettings opening_by(double mm) { return {.parameters = {.opening_mm = mm}}; }
+MotionSettings early(double share) { return {.parameters = {.early_translation = share}}; }
 
-/// Two spherical condyles in hollow boxes of roof and slope: a joint with 2 mm of room.
-Case jaw_in_fossae() {
-  Case patient = free_jaw();
-  patient.condylar_path.reset();
-  TriMesh condyles, roofs;
-  for (const double side : {-1.0, 1.0}) {
-    const Eigen::Vector3d center(50.5 * side, -13, -7.5);
-    condyles = test::joined(condyles, test::sphere(3, 5, center));
-    // A slab 7 mm above the centre, leaning 35 degrees down toward the front.
-    const Eigen::Quaterniond lean(Eigen::AngleAxisd(35 * M_PI / 180, Eigen::Vector3d::UnitX()));
-    roofs =
-        test::joined(roofs, test::moved(test::box({-15, -40, 7}, {15, 10, 12}), {lean, center}));
-  }
-  patient.parts[0].mesh = test::joined(patient.parts[0].mesh, condyles);
-  patient.parts[1].mesh = test::joined(patient.parts[1].mesh, roofs);
-  return patient;
-}
-
-Motion opening_of(const Case& patient, const OpeningSettings& settings = {}) {
+Motion opening_of(const Case& patient, const MotionSettings& settings = {}) {
   return make_motion("opening", patient, ContactModel(patient), settings);
 }
 
@@ -63,7 +30,7 @@ TEST(Opening, OpensAsFarAsAskedAndClosesAgain) {
   const Case patient = free_jaw();
   EXPECT_NEAR(largest_opening(opening_of(patient), patient), 50, 1e-3);
   for (const double asked : {5.0, 20.0, 42.0})
-    EXPECT_NEAR(largest_opening(opening_of(patient, {.opening_mm = asked}), patient), asked, 1e-3);
+    EXPECT_NEAR(largest_opening(opening_of(patient, opening_by(asked)), patient), asked, 1e-3);
   const Motion motion = opening_of(patient);
   EXPECT_EQ(motion.name, "opening");
   EXPECT_FALSE(motion.recorded);
@@ -120,15 +87,15 @@ TEST(Opening, IsAHingeFirstUnlessTranslationIsAskedForEarly) {
   const Case patient = free_jaw();
   const Eigen::Vector3d seat = *patient.landmarks.find("left_condyle");
   double before = -1;
-  for (const double early : {0.0, 0.5, 1.0}) {
-    const Motion motion = opening_of(patient, {.early_translation = early});
+  for (const double share : {0.0, 0.5, 1.0}) {
+    const Motion motion = opening_of(patient, early(share));
     double forward = -1;  // when the jaw has turned by 8 degrees
     for (int i = 0; forward < 0; ++i) {
       const Measures now = measure(patient, motion.wanted(motion.duration_s * i / 2000));
       if (now.rotation_deg >= 8) forward = seat.y() - now.left_condyle.y();
     }
     EXPECT_GT(forward, before);
-    if (early == 0) {
+    if (share == 0) {
       EXPECT_LT(forward, 1e-9);
     }
     before = forward;
@@ -166,7 +133,7 @@ TEST(Opening, AverageJointHasItsInclinationAndAFlatEnd) {
   EXPECT_NEAR(std::atan2(path(5), 5) / radian_per_degree, 40, 1e-6);
   EXPECT_EQ(path(0), 0);
   EXPECT_NEAR(path.derivative(18), 0, 1e-9);
-  for (double s = 0.25; s <= 20; s += 0.25) EXPECT_GE(path(s), path(s - 0.25));
+  for (double s = 0.25; s <= 20; s += 0.25) EXPECT_GE(path(s), path(s - 0.25) - 1e-12);
 }
 
 TEST(Opening, CondylesInAFossaKeepTheirRestGap) {
@@ -207,15 +174,14 @@ TEST(Opening, AJawThatMeetsBoneOpensOnlySoFarUnlessAsked) {
   }
   EXPECT_GT(motion.notes.size(), 1u);
   // Asked for more, it tries; contact will stop it.
-  EXPECT_NEAR(
-      largest_opening(make_motion("opening", patient, contacts, {.opening_mm = 40}), patient), 40,
-      1e-3);
+  EXPECT_NEAR(largest_opening(make_motion("opening", patient, contacts, opening_by(40)), patient),
+              40, 1e-3);
 }
 
 TEST(Opening, RefusesWhatCannotBe) {
   Case patient = free_jaw();
   const ContactModel contacts(patient);
-  const auto refused = [&](const OpeningSettings& settings, const std::string& word) {
+  const auto refused = [&](const MotionSettings& settings, const std::string& word) {
     try {
       make_motion("opening", patient, contacts, settings);
       ADD_FAILURE() << word;
@@ -224,13 +190,13 @@ TEST(Opening, RefusesWhatCannotBe) {
     }
   };
   const double nan = std::nan("");
-  refused({.opening_mm = 200}, "200");
-  refused({.opening_mm = -5}, "-5");
-  refused({.opening_mm = nan}, "nan");
-  refused({.duration_s = 0}, "duration");
+  refused(opening_by(200), "200");
+  refused(opening_by(-5), "-5");
+  refused(opening_by(nan), "nan");
+  refused({.duration_s = -1}, "duration");
   refused({.duration_s = nan}, "duration");
-  refused({.early_translation = 3}, "3");
-  refused({.early_translation = nan}, "nan");
+  refused(early(3), "3");
+  refused(early(nan), "nan");
   patient.landmarks.points.erase("left_condyle");
   refused({}, "left_condyle");
 }
@@ -240,7 +206,6 @@ TEST(MakeMotion, KnowsItsNamesAndListsThemWhenAskedForAnother) {
   const ContactModel contacts(patient);
   for (const auto& name : builtin_motions())
     EXPECT_EQ(make_motion(name, patient, contacts).name, name);
-  EXPECT_EQ(make_motion("rest", patient, contacts).wanted(1).t.norm(), 0);
   for (const std::string spec : {"yawning", "", "Opening"}) {
     try {
       make_motion(spec, patient, contacts);
@@ -291,4 +256,4 @@ TEST(RealOpening, BadinOpensFortyMillimetresFreely) {
 }
 
 }  // namespace
-}  // namespace condyle
+}  // namespace condyle::test

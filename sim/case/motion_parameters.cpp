@@ -1,0 +1,95 @@
+#include "sim/case/motion_parameters.h"
+
+namespace condyle {
+
+std::span<const MotionParameterName> motion_parameter_names() {
+  using P = MotionParameters;
+  static const std::vector<MotionParameterName> names = {
+      {"opening", "mm", 1, 80, "Maximum opening at the incisors", {&P::opening_mm}},
+      {"protrusion", "mm", 0.5, 20, "Farthest protrusion at the incisors (8)", {&P::protrusion_mm}},
+      {"retrusion", "mm", 0, 3, "Farthest retrusion of the condyles (0.7)", {&P::retrusion_mm}},
+      {"laterotrusion",
+       "mm",
+       0.5,
+       20,
+       "Farthest laterotrusion at the incisors (9)",
+       {&P::laterotrusion_mm}},
+      {"freeway", "mm", 0.2, 15, "Incisors apart at the rest position (2.5)", {&P::freeway_mm}},
+      {"hinge", "deg", 0, 30, "Turned before the condyles go forward (12)", {&P::hinge_deg}},
+      {"early_translation",
+       "",
+       0,
+       1,
+       "0 hinge first ... 1 translation from the start (as early as the joint requires)",
+       {&P::early_translation}},
+      {"inclination",
+       "deg",
+       0,
+       80,
+       "Condylar inclination, secant over 5 mm, in place of the patient's fossa",
+       {&P::inclination_left_deg, &P::inclination_right_deg}},
+      {"inclination_left", "deg", 0, 80, "The same, left side only", {&P::inclination_left_deg}},
+      {"inclination_right", "deg", 0, 80, "The same, right side only", {&P::inclination_right_deg}},
+      {"path_shape",
+       "",
+       0,
+       1,
+       "Of a path of given inclination: 0 straight ... 1 curved as an eminence is (1)",
+       {&P::path_shape}},
+      {"bennett", "deg", 0, 40, "Bennett angle (7.5)", {&P::bennett_deg}},
+      {"side_shift", "mm", 0, 4, "Immediate side shift (0.3)", {&P::side_shift_mm}},
+      {"disc_gap",
+       "mm",
+       0.05,
+       8,
+       "Condyle to fossa when seated (as in the patient)",
+       {&P::disc_gap_mm}},
+      {"disc_gap_front",
+       "mm",
+       0.05,
+       8,
+       "The same on the slope of the eminence (1.3 where the patient's joint is known, else as "
+       "seated)",
+       {&P::disc_gap_front_mm}},
+      {"bonwill",
+       "mm",
+       60,
+       150,
+       "Bonwill distance, condyle to incisors: places the condyles as in an articulator",
+       {&P::bonwill_mm}},
+      {"balkwill",
+       "deg",
+       0,
+       60,
+       "Balkwill angle, Bonwill's triangle to the horizontal, likewise",
+       {&P::balkwill_deg}},
+      {"incisal_guidance",
+       "deg",
+       0,
+       80,
+       "An incisal table of this angle guides besides the teeth (20 where there are none)",
+       {&P::incisal_guidance_deg}},
+      {"speed", "mm_s", 1, 600, "Mean speed of the incisors, mm/s (40)", {&P::speed_mm_s}},
+      {"chew_rate", "hz", 0.2, 4, "Chewing cycles a second (1.4)", {&P::chew_rate_hz}},
+      {"chew_size", "mm", 2, 40, "Height of a chewing cycle (15)", {&P::chew_size_mm}},
+      {"chew_width", "mm", 0, 15, "Width of a chewing cycle (5)", {&P::chew_width_mm}},
+      {"chew_cycles", "", 1, 1000, "Chewing cycles (5)", {&P::chew_cycles}},
+  };
+  return names;
+}
+
+const MotionParameterName* motion_parameter(const std::string& name) {
+  for (const auto& entry : motion_parameter_names())
+    if (entry.name == name || entry.key() == name) return &entry;
+  return nullptr;
+}
+
+MotionParameters MotionParameters::over(const MotionParameters& others) const {
+  MotionParameters both = *this;
+  for (const auto& entry : motion_parameter_names())
+    for (const auto value : entry.values)
+      if (!(both.*value)) both.*value = others.*value;
+  return both;
+}
+
+}  // namespace condyle

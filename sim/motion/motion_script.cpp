@@ -1,0 +1,254 @@
+#include "sim/motion/motion_script.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "engine/core/error.h"
+
+namespace condyle {
+namespace {
+
+constexpr std::size_t most_statements = 10000;
+
+/// What a verb's number means.
+struct VerbRule {
+  Verb verb;
+  const char* unit;
+  double low, high;
+};
+
+const std::map<std::string, VerbRule>& verbs() {
+  static const std::map<std::string, VerbRule> rules = {
+      {"open", {Verb::open, "mm", 0.5, 80}},          {"close", {Verb::close, "", 0, 0}},
+      {"hinge", {Verb::hinge, "deg", 0.5, 30}},       {"protrude", {Verb::protrude, "mm", 0.2, 20}},
+      {"retrude", {Verb::retrude, "mm", 0.05, 3}},    {"left", {Verb::left, "mm", 0.2, 20}},
+      {"right", {Verb::right, "mm", 0.2, 20}},        {"rest", {Verb::rest, "mm", 0.2, 15}},
+      {"hold", {Verb::hold, "s", 0, 3600}},           {"posselt", {Verb::posselt, "", 0, 0}},
+      {"chew", {Verb::chew_left, "cycles", 1, 1000}},
+  };
+  return rules;
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::optional<double> number_of(const std::string& word) {
+  std::string digits = word.starts_with('+') ? word.substr(1) : word;
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+std::string known_verbs() {
+  std::string names;
+  for (const auto& [name, rule] : verbs()) names += name + ", ";
+  return names + "set";
+}
+
+/// One statement's words, read from the left.
+class Reader {
+ public:
+  Reader(std::vector<std::string> words, int line, const std::string& source)
+      : words_(std::move(words)), line_(line), source_(source) {}
+
+  bool done() const { return next_ == words_.size(); }
+  const std::string& peek() const { return words_[next_]; }
+  std::string take() { return words_[next_++]; }
+  std::string where() const { return fmt::format("line {}, {}", line_, words_.front()); }
+
+  /// Complains of the word taken last.
+  [[noreturn]] void refuse(const std::string& problem) const {
+    const std::string word = next_ > 0 ? words_[next_ - 1] : "";
+    throw InputError(
+        source_, fmt::format("line {}, word {} \"{}\"", line_, next_, word.substr(0, 40)), problem);
+  }
+
+  /// The number that must come next, and its unit if it is there.
+  double number(const std::string& what, const char* unit, double low, double high) {
+    if (done()) refuse(fmt::format("must be followed by {}", what));
+    const std::string word = take();
+    // A unit may stand at the number: 40mm.
+    std::size_t split = word.size();
+    while (split > 0 && !std::isdigit(static_cast<unsigned char>(word[split - 1])) &&
+           word[split - 1] != '.')
+      --split;
+    const auto value = number_of(split > 0 ? word.substr(0, split) : word);
+    if (!value) refuse(fmt::format("is not a number; {} is wanted here", what));
+    if (split < word.size()) check_unit(word.substr(split), unit);
+    if (!(*value >= low && *value <= high))
+      refuse(fmt::format("is out of range: {} must be {} to {}{}{}", what, low, high,
+                         *unit ? " " : "", unit));
+    if (!done() && split == word.size() && is_unit(peek())) check_unit(take(), unit);
+    return *value;
+  }
+
+ private:
+  static bool is_unit(const std::string& word) {
+    static const std::vector<std::string> units = {
+        "mm", "cm",     "m",     "s",   "ms",      "deg",    "degrees", "mm/s",
+        "hz", "cycles", "cycle", "sec", "seconds", "degree", "inch"};
+    return std::find(units.begin(), units.end(), word) != units.end();
+  }
+  void check_unit(const std::string& word, const std::string& unit) const {
+    const std::map<std::string, std::string> same = {
+        {"degrees", "deg"}, {"degree", "deg"}, {"sec", "s"}, {"seconds", "s"}, {"cycle", "cycles"}};
+    const auto other = same.find(word);
+    if ((other == same.end() ? word : other->second) != unit)
+      refuse(unit.empty() ? "is a unit where a plain number is wanted"
+                          : fmt::format("is a unit where {} is meant", unit));
+  }
+
+  std::vector<std::string> words_;
+  std::size_t next_ = 0;
+  int line_;
+  const std::string& source_;
+};
+
+Statement read_movement(Reader& reader, const std::string& word, const VerbRule& rule) {
+  Statement statement;
+  statement.verb = rule.verb;
+  statement.where = reader.where();
+  const bool chews = word == "chew";
+  if (chews) {
+    if (reader.done()) reader.refuse("must be followed by left or right");
+    const std::string side = reader.take();
+    if (side != "left" && side != "right") reader.refuse("must be left or right");
+    statement.verb = side == "left" ? Verb::chew_left : Verb::chew_right;
+  }
+  const auto is_number = [](const std::string& text) {
+    return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-' ||
+                             text[0] == '+' || text[0] == '.');
+  };
+  if (!reader.done() && is_number(reader.peek())) {
+    if (!*rule.unit) {
+      reader.take();
+      reader.refuse(word + " takes no number");
+    }
+    statement.amount = reader.number(word, rule.unit, rule.low, rule.high);
+  }
+  if (rule.verb == Verb::hold && !statement.amount) reader.refuse("must be followed by seconds");
+  if (rule.verb == Verb::hinge && !statement.amount) reader.refuse("must be followed by degrees");
+  while (!reader.done()) {
+    const std::string option = reader.take();
+    if (option == "over" && rule.verb != Verb::hold)
+      statement.duration_s = reader.number("over", "s", 0.05, 3600);
+    else if (option == "at" && rule.verb != Verb::hold && !chews)
+      statement.speed_mm_s = reader.number("at", "mm/s", 1, 600);
+    else if (option == "rate" && chews)
+      statement.rate_hz = reader.number("rate", "hz", 0.2, 4);
+    else if (option == "size" && chews)
+      statement.size_mm = reader.number("size", "mm", 2, 40);
+    else if (option == "width" && chews)
+      statement.width_mm = reader.number("width", "mm", 0, 15);
+    else if (*rule.unit && !statement.amount && !statement.duration_s && !statement.speed_mm_s)
+      reader.refuse(fmt::format("is neither a number of {} to {} nor one of its options ({})",
+                                rule.unit, word, chews ? "rate, size, width, over" : "over, at"));
+    else
+      reader.refuse(chews ? "is not understood; after the cycles come rate, size, width or over"
+                    : rule.verb == Verb::hold
+                        ? std::string("is not understood; hold takes seconds only")
+                        : std::string("is not understood; after the amount come over (s) or at "
+                                      "(mm/s)"));
+  }
+  return statement;
+}
+
+void read_setting(Reader& reader, MotionParameters& parameters) {
+  if (reader.done()) reader.refuse("must be followed by a parameter and its value");
+  std::string name = reader.take();
+  std::replace(name.begin(), name.end(), '-', '_');
+  const auto* entry = motion_parameter(name);
+  if (!entry) {
+    std::string known;
+    for (const auto& parameter : motion_parameter_names())
+      known += (known.empty() ? "" : ", ") + parameter.name;
+    reader.refuse("is no motion parameter; known are " + known);
+  }
+  const std::string unit = entry->unit == "mm_s" ? "mm/s" : entry->unit;
+  const double value = reader.number(entry->name, unit.c_str(), entry->low, entry->high);
+  if (!reader.done()) {
+    reader.take();
+    reader.refuse("is one word too many");
+  }
+  for (const auto member : entry->values) parameters.*member = value;
+}
+
+/// The first word, in small letters.
+std::string first_word(const std::string& text) {
+  const auto start = text.find_first_not_of(" \t\r\n;");
+  if (start == std::string::npos) return {};
+  const auto end = text.find_first_of(" \t\r\n;#", start);
+  return lower(text.substr(start, end == std::string::npos ? end : end - start));
+}
+
+}  // namespace
+
+bool looks_like_a_script(const std::string& text) {
+  const std::string word = first_word(text);
+  const bool verb = verbs().contains(word) || word == "set";
+  return verb || text.find(';') != std::string::npos || text.find('\n') != std::string::npos;
+}
+
+MotionScript parse_motion_script(const std::string& text, const std::string& source) {
+  MotionScript script;
+  int line = 1;
+  std::vector<std::string> words;
+  std::string word;
+  bool comment = false;
+  const auto end_word = [&] {
+    if (!word.empty()) words.push_back(lower(word));
+    word.clear();
+  };
+  const auto end_statement = [&] {
+    end_word();
+    if (words.empty()) return;
+    Reader reader(std::move(words), line, source);
+    words.clear();
+    const std::string verb = reader.take();
+    if (verb == "set") {
+      if (!script.statements.empty())
+        reader.refuse("must come before the first movement: a jaw does not change on its way");
+      read_setting(reader, script.parameters);
+      return;
+    }
+    const auto rule = verbs().find(verb);
+    if (rule == verbs().end()) reader.refuse("is no movement; known are " + known_verbs());
+    if (script.statements.size() == most_statements)
+      reader.refuse(fmt::format("is one movement too many; at most {} are taken", most_statements));
+    script.statements.push_back(read_movement(reader, verb, rule->second));
+  };
+  for (std::size_t i = 0; i <= text.size(); ++i) {
+    const char c = i < text.size() ? text[i] : '\n';
+    if (c == '\n' || (c == ';' && !comment)) {
+      end_statement();
+      if (c == '\n') {
+        ++line;
+        comment = false;
+      }
+    } else if (comment) {
+      continue;
+    } else if (c == '#') {
+      end_word();
+      comment = true;
+    } else if (std::isspace(static_cast<unsigned char>(c)) || c == ',') {
+      end_word();
+    } else {
+      word += c;
+    }
+  }
+  if (script.statements.empty())
+    throw InputError(source, "", "has no movement; write e.g. open 40; close; protrude 6");
+  return script;
+}
+
+}  // namespace condyle

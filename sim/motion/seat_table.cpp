@@ -1,0 +1,124 @@
+#include "sim/motion/seat_table.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/core/parallel.h"
+
+namespace condyle {
+namespace {
+
+constexpr double step_mm = 1;
+constexpr double close_mm = 0.01;
+constexpr double steepest = 2.5;  // of the way down: a steeper wall does not guide, it stops
+constexpr int theta_rows = 4, shift_rows = 3;
+
+/// Four-point interpolation through the inner two (Catmull-Rom), u from 0 to 1 between them.
+double between(const std::array<double, 4>& y, double u) {
+  const double m1 = 0.5 * (y[2] - y[0]), m2 = 0.5 * (y[3] - y[1]);
+  const double u2 = u * u, u3 = u2 * u;
+  return (2 * u3 - 3 * u2 + 1) * y[1] + (u3 - 2 * u2 + u) * m1 + (3 * u2 - 2 * u3) * y[2] +
+         (u3 - u2) * m2;
+}
+
+/// Where x lies among evenly spaced values: the four round it (clamped) and the place between.
+struct Place {
+  std::array<std::size_t, 4> index{};
+  double u = 0;
+};
+Place place_of(const std::vector<double>& values, double x) {
+  Place place;
+  const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
+  if (last == 0) return place;
+  const double at =
+      std::clamp((x - values.front()) / (values[1] - values[0]), 0.0, static_cast<double>(last));
+  const auto base = std::min(static_cast<std::ptrdiff_t>(at), last - 1);
+  place.u = at - static_cast<double>(base);
+  for (std::ptrdiff_t k = 0; k < 4; ++k)
+    place.index[static_cast<std::size_t>(k)] =
+        static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(base + k - 1, 0, last));
+  return place;
+}
+
+std::vector<double> even(double low, double high, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) values.push_back(low + (high - low) * i / (count - 1));
+  return values;
+}
+
+/// The drop at one place that gives the gap, searched from a guess: secants between bounds.
+double seat(const JointSurfaces& joint, JawSide side, const SeatTable::Settings& settings,
+            double forward, double theta, double shift, double guess, TrianglePair& start) {
+  const Eigen::Quaterniond R(Eigen::AngleAxisd(theta, settings.axis));
+  const Eigen::Vector3d& c = settings.center;
+  const double wanted = settings.gap.at(forward), deepest = steepest * forward;
+  const auto room = [&](double drop) {
+    const Eigen::Vector3d moved(shift, -forward, -drop);
+    return joint.gap_mm(side, {R, c - R * c + moved}, start) - wanted;
+  };
+  double low = 0, high = deepest, before = 0, room_before = room(0);
+  if (room_before >= 0) return 0;
+  double drop = std::clamp(guess, 0.05 * deepest, deepest);
+  for (int i = 0; i < 12; ++i) {
+    const double now = room(drop);
+    if (std::abs(now) <= close_mm) break;
+    (now > 0 ? high : low) = drop;
+    const double slope = std::clamp((now - room_before) / (drop - before), 0.2, 1.0);
+    before = drop;
+    room_before = now;
+    drop -= now / slope;
+    if (drop <= low || drop >= high) drop = 0.5 * (low + high);
+    if (high - low < close_mm) break;
+  }
+  return drop;
+}
+
+}  // namespace
+
+double DiscGap::at(double forward_mm) const {
+  constexpr double thinned_by_mm = 7;  // on the slope of the eminence
+  const double u = std::clamp(forward_mm / thinned_by_mm, 0.0, 1.0);
+  return seated_mm + (front_mm - seated_mm) * u * u * (3 - 2 * u);
+}
+
+SeatTable::SeatTable(const JointSurfaces& joint, JawSide side, const Settings& settings,
+                     int threads)
+    : theta_(even(0, settings.largest_theta, theta_rows)), shift_{0.0} {
+  const double widest = settings.widest_shift_mm;
+  if (widest > 0) shift_ = even(-widest, widest, shift_rows);
+  drop_.resize(theta_.size() * shift_.size());
+  parallel_for(drop_.size(), threads, [&](std::size_t row) {
+    const double theta = theta_[row / shift_.size()], shift = shift_[row % shift_.size()];
+    std::vector<double> forward{0}, needed{0};
+    TrianglePair start;
+    for (double s = step_mm; s <= settings.longest_mm + 1e-9; s += step_mm) {
+      const std::size_t n = needed.size();
+      const double trend = n > 1 ? needed[n - 1] - needed[n - 2] : 0.5 * step_mm;
+      needed.push_back(seat(joint, side, settings, s, theta, shift, needed.back() + trend, start));
+      forward.push_back(s);
+    }
+    // The joint does not climb again, and the facets of the surface are rounded off.
+    for (std::size_t i = 1; i < needed.size(); ++i) needed[i] = std::max(needed[i], needed[i - 1]);
+    std::vector<double> smooth = needed;
+    for (std::size_t i = 1; i + 1 < needed.size(); ++i)
+      smooth[i] = std::max(needed[i], (needed[i - 1] + 2 * needed[i] + needed[i + 1]) / 4);
+    drop_[row] = Pchip(forward, smooth);
+  });
+}
+
+double SeatTable::drop_mm(double forward_mm, double theta, double shift_mm) const {
+  if (forward_mm <= 0) return 0;
+  const Place t = place_of(theta_, theta), x = place_of(shift_, shift_mm);
+  std::array<double, 4> rows{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::array<double, 4> row{};
+    for (std::size_t k = 0; k < 4; ++k)
+      row[k] = drop_[t.index[i] * shift_.size() + x.index[k]](forward_mm);
+    rows[i] = between(row, x.u);
+  }
+  return std::max(0.0, between(rows, t.u));
+}
+
+}  // namespace condyle

@@ -1,0 +1,189 @@
+#include "sim/report/motion_plots.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Directions as people look at a patient. Sagittal: anterior to the right; frontal and from above:
+/// the patient's left to the right, as the axis says.
+double anterior(const Vector3d& way) { return -way.y(); }
+double superior(const Vector3d& way) { return way.z(); }
+double to_left(const Vector3d& way) { return way.x(); }
+
+using Part = double (*)(const Vector3d&);
+
+Curve path(const char* name, const std::vector<Vector3d>& points, const Vector3d& rest, Part across,
+           Part up) {
+  Curve curve{name, {}, {}};
+  for (const auto& p : points) {
+    curve.x.push_back(across(p - rest));
+    curve.y.push_back(up(p - rest));
+  }
+  return curve;
+}
+
+std::vector<Vector3d> points_of(const MotionSeries& series, Vector3d Measures::*point) {
+  std::vector<Vector3d> points;
+  for (const auto& m : series.measures) points.push_back(m.*point);
+  return points;
+}
+
+PlotBand box(const char* name, double x0, double x1, double y0, double y1) {
+  return {name, {x0, x1, x1, x0}, {y0, y0, y1, y1}};
+}
+
+/// The border movements, where the motion has them, closed and dashed.
+void add_border(std::vector<Curve>& curves, std::vector<Vector3d> round, const Vector3d& rest,
+                Part across, Part up) {
+  if (round.empty()) return;
+  round.push_back(round.front());
+  Curve border = path("border movements", round, rest, across, up);
+  border.dashed = true;
+  border.colour = 1;
+  curves.push_back(std::move(border));
+}
+
+MotionPlot posselt(const MotionSeries& series) {
+  const auto incisor = points_of(series, &Measures::incisor);
+  const Vector3d& rest = series.rest.incisor;
+  const auto panel = [&](const char* title, const char* x, const char* y, Part across, Part up,
+                         const std::vector<Vector3d>& border, std::vector<PlotBand> bands) {
+    PlotPanel made{{path("lower incisal point", incisor, rest, across, up)},
+                   {.title = title,
+                    .x_label = x,
+                    .y_label = y,
+                    .equal_scale = true,
+                    .bands = std::move(bands)}};
+    add_border(made.curves, border, rest, across, up);
+    return made;
+  };
+  std::vector<Vector3d> all = series.borders.sagittal;
+  all.insert(all.end(), series.borders.frontal.begin(), series.borders.frontal.end());
+  return {"posselt",
+          {panel("Posselt, sagittal", "posterior  -  mm from the bite  -  anterior",
+                 "inferior  -  mm  -  superior", anterior, superior, series.borders.sagittal,
+                 {box("end of hinge", -15, -9, -21, -16),
+                  box("maximum opening", -27, -19, -48, -44), box("protrusion", 6, 11, -3, 3)}),
+           panel("Posselt, frontal", "patient's right  -  mm from the bite  -  left",
+                 "inferior  -  mm  -  superior", to_left, superior, series.borders.frontal,
+                 {box("right", -12, -7, -12, 0), box("left", 7, 12, -12, 0),
+                  box("maximum opening", -2, 2, -48, -44)}),
+           panel("Posselt, horizontal", "patient's right  -  mm from the bite  -  left",
+                 "posterior  -  mm  -  anterior", to_left, anterior, all,
+                 {box("right", -12, -7, -6, 2), box("left", 7, 12, -6, 2),
+                  box("protrusion", -1, 1, 6, 11)})}};
+}
+
+/// Accepted inclination over the first 5 mm, 26 to 62 degrees, as a wedge.
+PlotBand inclination_wedge() {
+  constexpr double secant_mm = 5, slope_low = 0.48773, slope_high = 1.88073;  // tan 26, 62 deg
+  return {"26 to 62 deg over 5 mm",
+          {0, secant_mm, secant_mm},
+          {0, -secant_mm * slope_low, -secant_mm * slope_high}};
+}
+
+/// Medial way of an orbiting condyle by a Bennett angle of 5 to 15 degrees.
+PlotBand bennett_wedge(double side) {
+  constexpr double way_mm = 10, low = 0.08749, high = 0.26795;
+  return {side > 0 ? "Bennett 5 to 15 deg" : "",
+          {0, -side * way_mm * low, -side * way_mm * high},
+          {0, way_mm, way_mm}};
+}
+
+MotionPlot axiography(const MotionSeries& series) {
+  const auto left = points_of(series, &Measures::left_condyle);
+  const auto right = points_of(series, &Measures::right_condyle);
+  const auto panel = [&](const char* title, const char* x, const char* y, Part across, Part up,
+                         std::vector<PlotBand> bands) {
+    return PlotPanel{{path("left condyle", left, series.rest.left_condyle, across, up),
+                      path("right condyle", right, series.rest.right_condyle, across, up)},
+                     {.title = title,
+                      .x_label = x,
+                      .y_label = y,
+                      .equal_scale = true,
+                      .bands = std::move(bands)}};
+  };
+  return {"axiography",
+          {panel("Axiography, sagittal", "posterior  -  mm from the seat  -  anterior",
+                 "inferior  -  mm  -  superior", anterior, superior, {inclination_wedge()}),
+           panel("Axiography, horizontal", "patient's right  -  mm from the seat  -  left",
+                 "posterior  -  mm  -  anterior", to_left, anterior,
+                 {bennett_wedge(1), bennett_wedge(-1)}),
+           panel("Axiography, frontal", "patient's right  -  mm from the seat  -  left",
+                 "inferior  -  mm  -  superior", to_left, superior, {})}};
+}
+
+Curve over_time(const char* name, const MotionSeries& series,
+                const std::function<double(std::size_t)>& value) {
+  Curve curve{name, series.time_s, {}};
+  for (std::size_t i = 0; i < series.size(); ++i) curve.y.push_back(value(i));
+  return curve;
+}
+
+double largest(const Curve& curve) {
+  double most = 0;
+  for (const double y : curve.y) most = std::max(most, std::abs(y));
+  return most;
+}
+
+/// A band is drawn where the motion comes near it: a chewing jaw is not held against full opening.
+void add_if_reached(PlotPanel& panel, double reached, double from, PlotBand band) {
+  if (reached >= from) panel.settings.bands.push_back(std::move(band));
+}
+
+MotionPlot opening(const MotionSeries& series) {
+  const auto of = [&](double Measures::*value) {
+    return [&series, value](std::size_t i) { return series.measures[i].*value; };
+  };
+  PlotPanel down{{over_time("opening", series, of(&Measures::opening_mm)),
+                  over_time("between incisors", series, of(&Measures::interincisal_mm))},
+                 {.title = "Opening over time", .x_label = "time, s", .y_label = "mm"}};
+  add_if_reached(down, largest(down.curves[0]), 30, {"maximum opening 42 to 58", {}, {42, 58}});
+  PlotPanel aside{
+      {over_time("protrusion (anterior)", series, of(&Measures::protrusion_mm)),
+       over_time("laterotrusion (to the left)", series, of(&Measures::laterotrusion_mm)),
+       over_time("midline deviation", series, of(&Measures::midline_deviation_mm))},
+      {.title = "Excursions of the incisal point over time",
+       .x_label = "time, s",
+       .y_label = "mm"}};
+  const double reached = largest(aside.curves[1]);
+  add_if_reached(aside, reached, 5, {"laterotrusion left 7 to 12", {}, {7, 12}});
+  add_if_reached(aside, reached, 5, {"laterotrusion right 7 to 12", {}, {-12, -7}});
+  return {"opening", {std::move(down), std::move(aside)}};
+}
+
+MotionPlot rotation(const MotionSeries& series) {
+  PlotPanel turn{{over_time("rotation", series,
+                            [&](std::size_t i) { return series.measures[i].rotation_deg; })},
+                 {.title = "Rotation over time", .x_label = "time, s", .y_label = "degrees"}};
+  add_if_reached(turn, largest(turn.curves[0]), 22, {"at maximum opening 28 to 45", {}, {28, 45}});
+  PlotPanel travel{
+      {over_time("left condyle", series,
+                 [&](std::size_t i) { return series.measures[i].left_condyle_travel_mm; }),
+       over_time("right condyle", series,
+                 [&](std::size_t i) { return series.measures[i].right_condyle_travel_mm; })},
+      {.title = "Condylar displacement over time", .x_label = "time, s", .y_label = "mm"}};
+  add_if_reached(travel, largest(travel.curves[0]), 9,
+                 {"at maximum opening 10 to 20", {}, {10, 20}});
+  PlotPanel speed{{over_time("incisal point", series,
+                             [&](std::size_t i) { return series.incisor_speed_mm_s(i); })},
+                  {.title = "Speed over time", .x_label = "time, s", .y_label = "mm/s"}};
+  const bool chews = std::any_of(series.phases.begin(), series.phases.end(), [](const auto& phase) {
+    return phase.name.starts_with("chewing");
+  });
+  if (chews) speed.settings.bands.push_back({"middle third of chewing 40 to 80", {}, {40, 80}});
+  return {"rotation", {std::move(turn), std::move(travel), std::move(speed)}};
+}
+
+}  // namespace
+
+std::vector<MotionPlot> motion_plots(const MotionSeries& series) {
+  return {posselt(series), axiography(series), opening(series), rotation(series)};
+}
+
+}  // namespace condyle

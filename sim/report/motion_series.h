@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/frame/frame_state.h"
+#include "sim/simulator/simulator.h"
+
+namespace condyle {
+
+/// What is measured and drawn of a motion: its frames' measures over time. Plain curves.
+struct MotionSeries {
+  std::vector<double> time_s;
+  std::vector<Measures> measures;
+  std::vector<Pose> X_CM;
+  std::vector<double> tooth_gap_mm;  // between pairs that may touch; 0 when they do; else 1e300
+  Measures rest;
+  std::vector<MotionPhase> phases;
+  MotionBorders borders;         // of the incisal point, where the motion has them
+  bool known_landmarks = false;  // incisal points and condyles: else there is little to measure
+
+  MotionSeries() = default;
+  MotionSeries(const Scene& scene, const Motion& motion);
+  void add(const FrameState& frame);
+
+  std::size_t size() const { return time_s.size(); }
+  /// Speed of the incisal point between the frames round this one, mm/s.
+  double incisor_speed_mm_s(std::size_t frame) const;
+  /// Downward part of it.
+  double opening_speed_mm_s(std::size_t frame) const;
+  /// First and last frame within a phase.
+  std::pair<std::size_t, std::size_t> frames_of(const MotionPhase& phase) const;
+};
+
+}  // namespace condyle

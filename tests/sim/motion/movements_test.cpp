@@ -1,0 +1,207 @@
+// Movements end where they were told to, on the teeth where teeth are.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+#include "sim/motion/measures.h"
+#include "sim/motion/motion.h"
+#include "tests/sim/motion/jaws.h"
+#include "tests/support/real_cases.h"
+
+namespace condyle::test {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Moved {
+  Case patient;
+  ContactModel contacts;
+  Motion motion;
+  Vector3d start;
+
+  Moved(const Case& jaw, const std::string& spec, const MotionSettings& settings = {})
+      : patient(jaw),
+        contacts(patient),
+        motion(make_motion(spec, patient, contacts, settings)),
+        start(*patient.landmarks.find("lower_incisal_point")) {}
+  Vector3d incisor(double time_s) const { return motion.wanted(time_s) * start - start; }
+  double end_of(const std::string& phase) const {
+    for (const auto& p : motion.phases)
+      if (p.name == phase) return p.end_s;
+    ADD_FAILURE() << phase;
+    return 0;
+  }
+  /// Deepest overlap of the teeth beyond rest, and the widest gap between them, from t0 to t1.
+  std::pair<double, double> teeth(double t0, double t1) const {
+    double deepest = 0, widest = 0;
+    ContactSet last = contacts.at_rest();
+    for (int i = 0; i <= 80; ++i) {
+      last = contacts.find(motion.wanted(t0 + (t1 - t0) * i / 80), &last);
+      deepest = std::max(deepest, last.max_penetration_mm());
+      for (const auto& pair : last.pairs)
+        if (pair.policy == PairPolicy::allowed) widest = std::max(widest, pair.distance_mm);
+    }
+    return {deepest, widest};
+  }
+};
+
+void expect_refused(const Case& jaw, const std::string& spec, const std::string& word) {
+  try {
+    Moved moved(jaw, spec);
+    ADD_FAILURE() << spec;
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+
+TEST(Movements, GoAsFarAsTold) {
+  const Moved moved(jaw_with_teeth(),
+                    "open 30; close; protrude 6; close; left 7; close; right 5; close; rest 3");
+  EXPECT_NEAR(-moved.incisor(moved.end_of("opening")).z(), 30, 1e-3);
+  EXPECT_LT(moved.incisor(moved.end_of("closing")).norm(), 1e-9);
+  EXPECT_NEAR(-moved.incisor(moved.end_of("protrusion")).y(), 6, 0.02);
+  EXPECT_NEAR(moved.incisor(moved.end_of("laterotrusion left")).x(), 7, 0.02);
+  EXPECT_NEAR(moved.incisor(moved.end_of("laterotrusion right")).x(), -5, 0.02);
+  EXPECT_NEAR(-moved.incisor(moved.motion.duration_s).z(), 3, 1e-3);
+}
+
+TEST(Movements, ContactMovementsGlideOnTheTeethAndOpenOverTheIncisors) {
+  const Moved moved(jaw_with_teeth(), "protrude 6; close; left 6; close");
+  const auto [deepest, widest] = moved.teeth(0, moved.motion.duration_s);
+  EXPECT_LT(deepest, 0.05);
+  EXPECT_LT(widest, 0.25);
+  // Past the upper incisors, whose edge is 2 mm below the lower one's.
+  EXPECT_LT(moved.incisor(moved.end_of("protrusion")).z(), -1.9);
+}
+
+TEST(Movements, AnIncisalTableGuidesWhereItIsSteeperThanTheTeeth) {
+  const Moved moved(jaw_with_teeth(), "protrude 5", {.parameters = {.incisal_guidance_deg = 40}});
+  const Vector3d end = moved.incisor(moved.motion.duration_s);
+  EXPECT_NEAR(-end.z(), 5 * std::tan(40 * M_PI / 180), 0.05);
+}
+
+TEST(Movements, FollowEachOtherWithoutJumps) {
+  const Moved moved(
+      jaw_with_teeth(),
+      "open 25; left 6; protrude 3; close; chew right 2; rest; hinge 6; open 12 at 80; retrude; "
+      "posselt; hold 0.1; chew left 1; right 3");
+  const int steps = static_cast<int>(moved.motion.duration_s * 500);
+  Pose before = moved.motion.wanted(0);
+  EXPECT_LT(before.t.norm(), 1e-9);
+  for (int i = 1; i <= steps; ++i) {
+    const Pose now = moved.motion.wanted(moved.motion.duration_s * i / steps);
+    EXPECT_LT((now * moved.start - before * moved.start).norm(), 0.6) << i;
+    before = now;
+  }
+  double last = 0;
+  for (const auto& phase : moved.motion.phases) {
+    EXPECT_NEAR(phase.start_s, last, 1e-9);
+    EXPECT_GT(phase.end_s, phase.start_s);
+    last = phase.end_s;
+  }
+  EXPECT_NEAR(last, moved.motion.duration_s, 1e-9);
+}
+
+TEST(Movements, TakeTheTimeTheyAreGiven) {
+  const Moved moved(jaw_with_teeth(), "open 20 over 2; close at 50; hold 0.7");
+  EXPECT_NEAR(moved.end_of("opening"), 2, 1e-9);
+  EXPECT_NEAR(moved.end_of("hold") - moved.end_of("closing"), 0.7, 1e-9);
+  const double way = moved.incisor(2).norm();
+  EXPECT_NEAR(moved.end_of("closing") - 2, way / 50, 0.05 * way / 50);
+  const Moved whole(jaw_with_teeth(), "open 20 over 2; close", {.duration_s = 6});
+  EXPECT_NEAR(whole.motion.duration_s, 6, 1e-9);
+  EXPECT_NEAR(whole.motion.phases.back().end_s, 6, 1e-9);
+}
+
+TEST(Movements, RefuseWhatThisJawCannotReachAndSayWhatItCan) {
+  expect_refused(jaw_with_teeth(), "left 19", "reaches");
+  expect_refused(jaw_with_teeth(), "open 70", "opens to");
+  expect_refused(jaw_with_teeth(), "set opening 20; chew left 2 size 30", "higher");
+}
+
+TEST(Chewing, CyclesAreRoundsOfTheRightSizeAndSideWithAPause) {
+  for (const bool left : {true, false}) {
+    const Moved moved(jaw_with_teeth(), left ? "chew left 3 rate 1.25 size 14 width 5"
+                                             : "chew right 3 rate 1.25 size 14 width 5");
+    EXPECT_NEAR(moved.motion.duration_s, 3 / 1.25, 1e-9);
+    double lowest = 0, farthest = 0, other = 0, still = 0, area = 0;
+    const int steps = 2000;
+    Vector3d before = Vector3d::Zero();
+    for (int i = 1; i <= steps; ++i) {
+      const Vector3d now = moved.incisor(0.8 * i / steps);
+      const double aside = left ? now.x() : -now.x();
+      lowest = std::min(lowest, now.z());
+      farthest = std::max(farthest, aside);
+      other = std::min(other, aside);
+      still += now.norm() < 1e-3 ? 0.8 / steps : 0;
+      area += 0.5 * (before.x() * now.z() - now.x() * before.z());
+      before = now;
+    }
+    EXPECT_NEAR(-lowest, 14, 0.1);
+    EXPECT_NEAR(farthest, 4.5, 0.3);
+    EXPECT_GT(other, -1);
+    EXPECT_NEAR(still, 0.128, 0.04);
+    // It closes from the side that chews.
+    EXPECT_GT(left ? area : -area, 15);
+    EXPECT_LT((moved.incisor(0.8) - moved.incisor(1.6)).norm(), 1e-6);
+  }
+}
+
+TEST(Posselt, BordersEncloseWhatTheJawDoesOtherwise) {
+  const Moved moved(jaw_with_teeth(), "posselt");
+  const auto& round = moved.motion.borders;
+  ASSERT_GT(round.sagittal.size(), 50u);
+  ASSERT_GT(round.frontal.size(), 50u);
+  double left = 0, right = 0, low = 0, front = 0;
+  for (const auto& p : round.frontal) {
+    left = std::max(left, p.x() - moved.start.x());
+    right = std::max(right, moved.start.x() - p.x());
+  }
+  for (const auto& p : round.sagittal) {
+    low = std::max(low, moved.start.z() - p.z());
+    front = std::max(front, moved.start.y() - p.y());
+  }
+  EXPECT_GT(left, 8.9);
+  EXPECT_NEAR(left, right, 0.05);  // the jaw is symmetric
+  EXPECT_NEAR(front, 8, 0.1);
+  EXPECT_GT(low, 40);
+  // An ordinary opening stays in front of the posterior border.
+  const Moved opening(jaw_with_teeth(), "open 30", {.parameters = {.early_translation = 0.5}});
+  for (int i = 1; i < 20; ++i) {
+    const Vector3d p = opening.incisor(opening.motion.duration_s * i / 20) + opening.start;
+    double border = 1e9, nearest = 1e9;
+    for (std::size_t k = 0; k < round.sagittal.size() / 2; ++k)
+      if (std::abs(round.sagittal[k].z() - p.z()) < nearest) {
+        nearest = std::abs(round.sagittal[k].z() - p.z());
+        border = round.sagittal[k].y();
+      }
+    EXPECT_LT(p.y(), border + 0.5) << i;
+  }
+}
+
+TEST(RealMovements, UbcGlidesOnItsTeethNoDeeperThanAtRest) {
+  const auto patient = case_ubc();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  const Moved moved(*patient, "protrude 5; close; left 5; close");
+  EXPECT_NEAR(-moved.incisor(moved.end_of("protrusion")).y(), 5, 0.02);
+  EXPECT_NEAR(moved.incisor(moved.end_of("laterotrusion left")).x(), 5, 0.02);
+  const auto [deepest, widest] = moved.teeth(0, moved.motion.duration_s);
+  EXPECT_LT(deepest, 0.3);  // fused crowns of the maxilla are a hair larger than the teeth
+  EXPECT_LT(widest, 0.5);
+}
+
+TEST(RealMovements, BadinClosesUntilItMeets) {
+  const auto patient = case_badin();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  const Moved moved(*patient, "close; protrude 6; close");
+  const ContactSet shut =
+      moved.contacts.find(moved.motion.wanted(moved.end_of("closing")), nullptr);
+  EXPECT_LT(shut.min_clearance_mm(), 0.05);
+  EXPECT_LT(shut.max_penetration_mm(), 0.05);
+  EXPECT_GT(moved.incisor(moved.end_of("closing")).z(), 3);  // its rest pose is open
+}
+
+}  // namespace condyle::test

@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+
+#include "engine/core/error.h"
+#include "sim/motion/motion_script.h"
+
+namespace condyle::test {
+namespace {
+
+/// The complaint about a text.
+std::string refusal(const std::string& text) {
+  try {
+    parse_motion_script(text, "a.motion");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "\"" << text << "\" was taken";
+  return {};
+}
+
+}  // namespace
+
+TEST(MotionScript, ReadsMovementsOnLinesAndBetweenSemicolons) {
+  const auto script = parse_motion_script(
+      "\n# a comment; with a semicolon\nset bennett 10 deg\nOPEN 40mm over 1.5 s # wide\r\n"
+      "close; protrude 6 mm at 30 mm/s ;; chew left 3 cycles rate 1.2 size 12 width 4\nhold .5\n"
+      "left; right 7\nposselt over 8",
+      "a.motion");
+  EXPECT_EQ(script.parameters.bennett_deg, 10);
+  ASSERT_EQ(script.statements.size(), 8u);
+  EXPECT_EQ(script.statements[0].verb, Verb::open);
+  EXPECT_EQ(script.statements[0].amount, 40);
+  EXPECT_EQ(script.statements[0].duration_s, 1.5);
+  EXPECT_EQ(script.statements[1].verb, Verb::close);
+  EXPECT_FALSE(script.statements[1].amount);
+  EXPECT_EQ(script.statements[2].speed_mm_s, 30);
+  EXPECT_EQ(script.statements[3].verb, Verb::chew_left);
+  EXPECT_EQ(script.statements[3].amount, 3);
+  EXPECT_EQ(script.statements[3].rate_hz, 1.2);
+  EXPECT_EQ(script.statements[3].size_mm, 12);
+  EXPECT_EQ(script.statements[3].width_mm, 4);
+  EXPECT_EQ(script.statements[4].amount, 0.5);
+  EXPECT_FALSE(script.statements[5].amount);
+  EXPECT_EQ(script.statements[6].verb, Verb::right);
+  EXPECT_EQ(script.statements[7].duration_s, 8);
+}
+
+TEST(MotionScript, NamesLineAndWordOfWhatItDoesNotUnderstand) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> wrong = {
+      {"open forty", {"line 1", "word 2", "\"forty\"", "open"}},
+      {"close\n\nopne 40", {"line 3", "\"opne\"", "no movement", "protrude"}},
+      {"open 400", {"\"400\"", "range", "80 mm"}},
+      {"open -3", {"\"-3\"", "range"}},
+      {"open nan", {"\"nan\""}},
+      {"open 4 cm", {"\"cm\"", "mm is meant"}},
+      {"open 40 quickly", {"word 3", "\"quickly\"", "over"}},
+      {"open 40 over", {"\"over\"", "followed by"}},
+      {"open 40 over 0", {"\"0\"", "0.05"}},
+      {"close 3", {"\"3\"", "takes no number"}},
+      {"hold", {"seconds"}},
+      {"hold 1 over 2", {"\"over\"", "seconds only"}},
+      {"hinge", {"degrees"}},
+      {"chew", {"left or right"}},
+      {"chew both 3", {"\"both\"", "left or right"}},
+      {"chew left 3 at 5", {"\"at\"", "rate"}},
+      {"chew left many", {"\"many\"", "cycles"}},
+      {"set", {"parameter"}},
+      {"set bennet 10", {"\"bennet\"", "bennett"}},
+      {"set bennett 99", {"\"99\"", "40 deg"}},
+      {"set bennett 9 9", {"too many"}},
+      {"open; set bennett 10", {"before the first movement"}},
+      {"", {"a.motion", "no movement"}},
+      {"# only words about it", {"no movement"}},
+      {"\x01\xff", {"line 1"}}};
+  for (const auto& [text, words] : wrong) {
+    const std::string said = refusal(text);
+    EXPECT_NE(said.find("a.motion"), std::string::npos) << said;
+    for (const auto& word : words) EXPECT_NE(said.find(word), std::string::npos) << said;
+  }
+}
+
+TEST(MotionScript, TextsOfNoiseAreTakenOrRefusedButNeverMore) {
+  const std::vector<std::string> words = {"open", "40",   "close", ";",  "\n", "over", "1e9",  "-",
+                                          "set",  "chew", "left",  "mm", "#",  "at",   "1e-9", ""};
+  unsigned state = 7;
+  for (int round = 0; round < 3000; ++round) {
+    std::string text;
+    for (int i = 0; i < 8; ++i) {
+      state = state * 1664525u + 1013904223u;
+      text += words[(state >> 16) % words.size()] + ((state & 1024) ? " " : "");
+    }
+    try {
+      EXPECT_FALSE(parse_motion_script(text, "noise").statements.empty());
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("noise"), std::string::npos);
+    }
+  }
+}
+
+TEST(MotionScript, EveryParameterCanBeSetByNameAndByKey) {
+  for (const auto& entry : motion_parameter_names()) {
+    const double value = 0.5 * (entry.low + entry.high);
+    for (const auto& name : {entry.name, entry.key()}) {
+      const auto script =
+          parse_motion_script("set " + name + " " + std::to_string(value) + "\nclose", "a");
+      for (const auto member : entry.values)
+        EXPECT_NEAR((script.parameters.*member).value(), value, 1e-5) << name;
+    }
+  }
+}
+
+}  // namespace condyle::test

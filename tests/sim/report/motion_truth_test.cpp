@@ -1,0 +1,156 @@
+#include "sim/report/motion_truth.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "sim/motion/measures.h"
+#include "sim/report/motion_plots.h"
+#include "sim/report/report.h"
+#include "tests/support/boxes.h"
+
+namespace condyle::test {
+namespace {
+
+/// A jaw that goes to a pose and back in a second.
+Motion there_and_back(const std::function<Pose(double share)>& pose, std::string phase = "") {
+  Motion motion{"told",
+                1.0,
+                false,
+                [pose](double t) { return pose(0.5 - 0.5 * std::cos(2 * M_PI * t)); },
+                {}};
+  if (!phase.empty()) motion.phases = {{phase, 0, 1}};
+  return motion;
+}
+
+MotionSeries series_of(const Scene& scene, const Motion& motion, int frames = 201) {
+  MotionSeries series(scene, motion);
+  FrameState frame = rest_frame(scene);
+  for (int i = 0; i < frames; ++i) {
+    frame.time_s = motion.duration_s * i / (frames - 1);
+    frame.X_CM = motion.wanted(frame.time_s);
+    frame.measures = measure(scene.patient, frame.X_CM);
+    series.add(frame);
+  }
+  return series;
+}
+
+}  // namespace
+
+TEST(FrontalArea, IsThatOfThePolygonSeenFromTheFront) {
+  EXPECT_NEAR(frontal_area({{0, 5, 0}, {4, -9, 0}, {4, 0, 3}, {0, 2, 3}}), 12, 1e-12);
+  EXPECT_NEAR(frontal_area({{0, 0, 3}, {4, 0, 3}, {4, 0, 0}, {0, 0, 0}}), 12, 1e-12);
+  EXPECT_EQ(frontal_area({}), 0);
+}
+
+TEST(Findings, TellWhatWasPutInFromWhatEmerged) {
+  const Scene scene = make_scene(box_patient());
+  const auto down = [](double share) {
+    return Pose{Eigen::Quaterniond::Identity(), {0, 0, -45 * share}};
+  };
+  Motion motion = there_and_back(down, "opening");
+  const auto told = findings(scene, motion, series_of(scene, motion));
+  motion.recorded = true;
+  const auto recorded = findings(scene, motion, series_of(scene, motion));
+  const auto named = [](const std::vector<Finding>& all, const std::string& name) {
+    for (const auto& finding : all)
+      if (finding.name == name) return finding;
+    ADD_FAILURE() << name;
+    return Finding{};
+  };
+  EXPECT_TRUE(named(told, "maximum opening").input);
+  EXPECT_FALSE(named(recorded, "maximum opening").input);
+  EXPECT_NEAR(named(told, "maximum opening").value, 45, 1e-9);
+  // A jaw that sinks without turning is no living jaw's.
+  const Finding turned = named(told, "rotation at maximum opening");
+  EXPECT_FALSE(turned.input);
+  EXPECT_FALSE(turned.within());
+  EXPECT_FALSE(turned.why.empty());
+  EXPECT_FALSE(named(told, "left condylar travel at maximum opening").within());
+}
+
+TEST(Warnings, NameWhatNoJawDoesAndAreSilentOtherwise) {
+  const Scene scene = make_scene(box_patient());
+  const auto by = [&](const Eigen::Vector3d& way) {
+    const Motion motion = there_and_back([way](double share) {
+      return Pose{Eigen::Quaterniond::Identity(), way * share};
+    });
+    return physiology_warnings(series_of(scene, motion));
+  };
+  EXPECT_TRUE(by({0, -5, -5}).empty());
+  const auto expect_warning = [](const std::vector<std::string>& warnings,
+                                 const std::string& word) {
+    for (const auto& warning : warnings)
+      if (warning.find(word) != std::string::npos) return;
+    ADD_FAILURE() << word;
+  };
+  expect_warning(by({0, 0, -40000}), "opening of 40000.0 mm");  // metres read as millimetres
+  expect_warning(by({0, 0, 30}), "above");
+  expect_warning(by({20, 0, 0}), "to the left");
+  expect_warning(by({-20, 0, 0}), "to the right");
+  expect_warning(by({0, 8, 0}), "behind its seat");
+  expect_warning(by({0, -18, 0}), "protrusion");
+}
+
+TEST(Report, PrintsFindingsWithTheirBands) {
+  const Scene scene = make_scene(box_patient());
+  const Motion motion = there_and_back(
+      [](double share) {
+        return Pose{Eigen::Quaterniond::Identity(), {0, 0, -45 * share}};
+      },
+      "opening");
+  MotionReport report(scene, motion, {});
+  FrameState frame = rest_frame(scene);
+  for (int i = 0; i <= 60; ++i) {
+    frame.time_s = i / 60.0;
+    frame.X_CM = motion.wanted(frame.time_s);
+    frame.measures = measure(scene.patient, frame.X_CM);
+    report.add(frame);
+  }
+  const auto json = nlohmann::json::parse(report.json());
+  EXPECT_EQ(json["motion"]["phases"][0]["name"], "opening");
+  ASSERT_FALSE(json["findings"].empty());
+  for (const auto& finding : json["findings"]) {
+    EXPECT_TRUE(finding["value"].is_number());
+    EXPECT_TRUE(finding["emergent"].is_boolean());
+    if (finding.contains("within") && !finding["within"].get<bool>()) {
+      EXPECT_FALSE(finding["why"].get<std::string>().empty());
+    }
+  }
+  EXPECT_FALSE(json["outside_bands"].empty());
+  EXPECT_NE(report.text().find("emergent"), std::string::npos);
+}
+
+TEST(MotionPlots, HaveAxesUnitsAndBandsAndKeepAllPointsInside) {
+  const Scene scene = make_scene(box_patient());
+  Motion motion = there_and_back(
+      [](double share) {
+        return Pose{Eigen::Quaterniond::Identity(), {9 * share, -8 * share, -45 * share}};
+      },
+      "chewing left");
+  motion.borders.frontal = {{0, -90, -50}, {9, -90, -55}, {0, -80, -95}, {-9, -90, -55}};
+  const auto plots = motion_plots(series_of(scene, motion));
+  ASSERT_EQ(plots.size(), 4u);
+  for (const auto& plot : plots) {
+    EXPECT_GE(plot.panels.size(), 2u);
+    bool banded = false;
+    for (const auto& panel : plot.panels) {
+      EXPECT_FALSE(panel.settings.x_label.empty());
+      const auto& unit = panel.settings.y_label;
+      EXPECT_TRUE(unit.find("mm") != std::string::npos || unit.find("deg") != std::string::npos);
+      banded |= !panel.settings.bands.empty();
+    }
+    EXPECT_TRUE(banded) << plot.name;
+    const std::string svg = panels_svg(plot.panels);
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    std::size_t opened = 0, closed = 0;
+    for (std::size_t at = 0; (at = svg.find("<svg ", at)) != std::string::npos; ++at) ++opened;
+    for (std::size_t at = 0; (at = svg.find("</svg>", at)) != std::string::npos; ++at) ++closed;
+    EXPECT_EQ(opened, plot.panels.size() + 1);
+    EXPECT_EQ(opened, closed);
+  }
+}
+
+}  // namespace condyle::test
