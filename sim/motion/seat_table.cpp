@@ -50,10 +50,11 @@ std::vector<double> even(double low, double high, int count) {
 
 /// The drop at one place that gives the gap, searched from a guess: secants between bounds.
 double seat(const JointSurfaces& joint, JawSide side, const SeatTable::Settings& settings,
-            double forward, double theta, double shift, double guess, TrianglePair& start) {
+            double forward, double theta, double shift, double wanted, double guess,
+            TrianglePair& start) {
   const Eigen::Quaterniond R(Eigen::AngleAxisd(theta, settings.axis));
   const Eigen::Vector3d& c = settings.center;
-  const double wanted = settings.gap.at(forward), deepest = steepest * forward;
+  const double deepest = steepest * forward;
   const auto room = [&](double drop) {
     const Eigen::Vector3d moved(shift, -forward, -drop);
     return joint.gap_mm(side, {R, c - R * c + moved}, start) - wanted;
@@ -93,10 +94,21 @@ SeatTable::SeatTable(const JointSurfaces& joint, JawSide side, const Settings& s
     const double theta = theta_[row / shift_.size()], shift = shift_[row % shift_.size()];
     std::vector<double> forward{0}, needed{0};
     TrianglePair start;
+    const auto seated_gap = [&](double aside) {
+      const Eigen::Quaterniond R(Eigen::AngleAxisd(theta, settings.axis));
+      const Eigen::Vector3d& c = settings.center;
+      return joint.gap_mm(side, {R, c - R * c + Eigen::Vector3d(aside, 0, 0)}, start);
+    };
+    // What a seated condyle loses of its gap by going aside it wins back on its way forward.
+    constexpr double won_back_mm = 6;
+    const double lost = shift != 0 ? std::max(0.0, seated_gap(0) - seated_gap(shift)) : 0;
     for (double s = step_mm; s <= settings.longest_mm + 1e-9; s += step_mm) {
       const std::size_t n = needed.size();
       const double trend = n > 1 ? needed[n - 1] - needed[n - 2] : 0.5 * step_mm;
-      needed.push_back(seat(joint, side, settings, s, theta, shift, needed.back() + trend, start));
+      const double u = std::min(s / won_back_mm, 1.0);
+      const double wanted = settings.gap.at(s) - lost * (1 - u * u * (3 - 2 * u));
+      needed.push_back(
+          seat(joint, side, settings, s, theta, shift, wanted, needed.back() + trend, start));
       forward.push_back(s);
     }
     // The joint does not climb again, and the facets of the surface are rounded off.

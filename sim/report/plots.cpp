@@ -103,6 +103,12 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
   const double inner_width = axes_width, inner_height = height - top - bottom;
   x.widen(std::max(x.size() * 1.06, 1e-3));
   y.widen(std::max(y.size() * 1.12, 1e-3));
+  if (settings.legend && !settings.legend_beside) {
+    // Room for the names above the curves.
+    const auto named = std::count_if(curves.begin(), curves.end(),
+                                     [](const Curve& curve) { return !curve.name.empty(); });
+    y.high += y.size() * 18.0 * static_cast<double>(named) / inner_height;
+  }
   if (settings.equal_scale) {
     const double scale = std::max(x.size() / inner_width, y.size() / inner_height);
     x.widen(scale * inner_width);
