@@ -24,6 +24,7 @@ class Judge {
   std::vector<Finding> all() {
     if (!series_.known_landmarks || series_.size() < 2) return {};
     opening();
+    if (too_coarse(series_)) return std::move(found_);
     for (const auto& phase : series_.phases) {
       if (phase.name == "protrusion") protrusion(phase);
       if (phase.name.starts_with("laterotrusion")) laterotrusion(phase);
@@ -348,6 +349,12 @@ double frontal_area(const std::vector<Vector3d>& points) {
     twice += a.x() * b.z() - b.x() * a.z();
   }
   return 0.5 * std::abs(twice);
+}
+
+bool too_coarse(const MotionSeries& series) {
+  constexpr double longest_s = 0.05 + 1e-9;
+  return series.size() < 2 || series.time_s.back() - series.time_s.front() >
+                                  longest_s * static_cast<double>(series.size() - 1);
 }
 
 std::vector<Finding> findings(const Scene& scene, const Motion& motion,

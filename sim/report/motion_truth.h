@@ -20,8 +20,12 @@ struct Finding {
   bool within() const { return !banded() || (value >= low && value <= high); }
 };
 
+/// Fewer than 20 frames a second do not show what happens within a phase.
+bool too_coarse(const MotionSeries& series);
+
 /// What the motion did, phase by phase, as it was simulated: inputs marked, all else emerged from
-/// joints and teeth. Nothing without landmarks.
+/// joints and teeth. Nothing without landmarks; only what the widest frame shows where frames are
+/// too coarse.
 std::vector<Finding> findings(const Scene& scene, const Motion& motion, const MotionSeries& series);
 
 /// What no healthy jaw does, or what counts as impaired, in sentences.

@@ -166,6 +166,9 @@ std::string MotionReport::json() const {
     if (!finding.within() && !finding.input) outside.push_back(outside_text(finding));
   }
   json["findings"] = list;
+  if (too_coarse(series_) && !motion_.phases.empty())
+    json["findings_note"] =
+        "what happens within a phase is told from 20 frames a second on (--fps, --frames)";
   json["outside_bands"] = outside;
   json["warnings"] = physiology_warnings(series_);
 
