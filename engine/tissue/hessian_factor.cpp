@@ -37,6 +37,13 @@ std::shared_ptr<const FrontTree> make_tree(const SpringPrismNet& net, int nodes_
                                            3 * nodes_per_column);
 }
 
+/// Its product with v is u x v.
+Matrix3d cross_matrix(const Vector3d& u) {
+  Matrix3d m;
+  m << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
+  return m;
+}
+
 }  // namespace
 
 /// A 3 x 3 part of the matrix: its first float, that of its row node and column node, which is the
@@ -109,8 +116,9 @@ HessianFactor::HessianFactor(const SpringPrismNet& net, const NetLoads& loads, i
   refactor(net, loads, x, threads);
 }
 
-void HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
-                             int threads) {
+int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
+                            int threads, Curvatures curvatures) {
+  const bool exact = curvatures == Curvatures::exact;
   using Spot = Pattern::Spot;
   const Pattern& pattern = *pattern_;
   const double lambda = net.lambda;
@@ -126,7 +134,7 @@ void HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, c
       const Vector3d d = x[b] - x[a];
       const double length2 = d.squaredNorm();
       const double strain = 1 - net.rest_length[s] / std::sqrt(length2);
-      const double tension = std::max(0.0, strain);
+      const double tension = exact ? strain : std::max(0.0, strain);
       // At rest a spring may yet go either way; the stretched ones are those that matter.
       const double k =
           2 * lambda * net.stiffness[s] * (strain < -1e-9 ? net.compression_share : 1.0);
@@ -165,6 +173,13 @@ void HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, c
       const double j = prism_volume_gradient(x, prism, slope) / net.rest_volume[p];
       const double weight = (1 - lambda) * net.volume_weight[p] *
                             volume_stiffness(j, net.barrier_share, net.barrier_weight);
+      std::array<Vector3d, corner_pairs> bend;
+      if (exact) {
+        bend = prism_volume_bend(x, prism);
+        const double pressure = (1 - lambda) * net.volume_weight[p] * net.rest_volume[p] *
+                                volume_pressure(j, net.barrier_share, net.barrier_weight);
+        for (auto& b : bend) b *= pressure;
+      }
       const Spot* pair = &pattern.prism[static_cast<std::size_t>(p) * corner_pairs];
       for (int a = 0; a < 6; ++a) {
         add(pattern.diagonal[prism[a]], weight * slope[a] * slope[a].transpose());
@@ -172,7 +187,9 @@ void HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, c
           if (pair->part != part) continue;
           const bool as_is = pattern.is_below(prism[a], prism[b]);
           const Vector3d &row = slope[as_is ? a : b], &column = slope[as_is ? b : a];
-          add(*pair, weight * row * column.transpose());
+          Matrix3d m = weight * row * column.transpose();
+          if (exact) m += (as_is ? 1 : -1) * cross_matrix(bend[a * (a - 1) / 2 + b]);
+          add(*pair, m);
         }
       }
     }
@@ -186,7 +203,7 @@ void HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, c
     }
   };
   constexpr float least = 1e-6f;
-  factor_.factorize(assemble, least, threads);
+  return factor_.factorize(assemble, least, threads);
 }
 
 void HessianFactor::solve(const Nodes& g, Nodes& z) const {

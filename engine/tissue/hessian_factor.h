@@ -10,7 +10,11 @@
 
 namespace condyle {
 
-/// Cholesky factor of a net's Gauss-Newton Hessian at one state: the preconditioner of the
+/// Which second derivatives: all; or without the parts that may be negative (of shortened springs,
+/// and of volumes under pressure), which is always positive definite.
+enum class Curvatures { gauss_newton, exact };
+
+/// Cholesky factor of a net's Hessian at one state: the preconditioner of the
 /// minimiser. Compressed springs keep only their stiffness along the spring and volumes the square
 /// of their gradient, so that it is positive definite. What moves is only in the right-hand side
 /// (anchor targets), so a factor serves at many states; what ages it is the turning of the tissue.
@@ -24,7 +28,10 @@ class HessianFactor final : public Preconditioner {
                 const Nodes& x, int threads = 1);
 
   /// The factor of another state of the same net, in the order chosen for the first.
-  void refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x, int threads = 1);
+  /// Gives the number of pivots that had to be raised: above 0 where the matrix is not positive
+  /// definite.
+  int refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x, int threads = 1,
+               Curvatures curvatures = Curvatures::gauss_newton);
 
   /// z = H^-1 g
   void solve(const Nodes& g, Nodes& z) const override;

@@ -11,12 +11,22 @@ MinimizeResult minimize_refreshing(const SpringPrismNet& net, const NetLoads& lo
   MinimizeSettings part = settings;
   part.max_iterations = std::min(schedule.first, settings.max_iterations);
   MinimizeResult result = minimize(Method::preconditioned, energy, part, x, &factor);
+  const auto goes_on = [&] {
+    return result.status == MinimizeResult::Status::budget_spent &&
+           result.iterations < settings.max_iterations &&
+           result.evaluations < settings.max_evaluations;
+  };
+  if (!goes_on()) return result;
   HessianFactor fresh = factor;
-  while (result.status == MinimizeResult::Status::budget_spent &&
-         result.iterations < settings.max_iterations &&
-         result.evaluations < settings.max_evaluations) {
-    fresh.refactor(net, loads, x);
-    part.max_iterations = std::min(schedule.later, settings.max_iterations - result.iterations);
+  fresh.set_threads(energy.threads());
+  for (int refresh = 0; goes_on(); ++refresh) {
+    const bool near = refresh >= schedule.far;
+    if (!near || fresh.refactor(net, loads, x, energy.threads(), Curvatures::exact) > 0)
+      fresh.refactor(net, loads, x, energy.threads());
+    const int wanted =
+        near ? std::min(schedule.later + (refresh - schedule.far) / 2 * 3, schedule.most)
+             : schedule.first;
+    part.max_iterations = std::min(wanted, settings.max_iterations - result.iterations);
     part.max_evaluations = settings.max_evaluations - result.evaluations;
     const MinimizeResult before = result;
     result = minimize(Method::preconditioned, energy, part, x, &fresh);

@@ -6,10 +6,13 @@
 namespace condyle {
 
 /// When the preconditioner is made anew, in iterations: fixed, so that the bits do not depend on
-/// timing.
+/// timing. Far from the minimum a factor serves for two iterations: the springs that push change
+/// with each. Near it the exact one, where it is positive definite, brings two to three digits.
 struct RefreshSchedule {
-  int first = 3;   // with the factor that is given
-  int later = 12;  // with each one made on the way
+  int first = 2;  // with the factor that is given, and with each made far from the minimum
+  int far = 2;    // factors made far from the minimum
+  int later = 3;  // with each of the next two; then three more for each further two
+  int most = 12;
 };
 
 /// The preconditioned method for a long way from where its factor was made: springs that have begun

@@ -81,6 +81,37 @@ double prism_volume_gradient(const Nodes& nodes, const std::array<int, 6>& prism
   return volume_and_gradient(relative_corners(nodes, prism), gradient);
 }
 
+std::array<Vector3d, 15> prism_volume_bend(const Nodes& nodes, const std::array<int, 6>& prism) {
+  // From volume_gradient: the derivative of u x v is -(v x) by u and (u x) by v.
+  const Corners c = relative_corners(nodes, prism);
+  constexpr double scale = 1.0 / 12.0;
+  std::array<Vector3d, 15> cross;
+  const auto of = [&](int a, int b) -> Vector3d& { return cross[a * (a - 1) / 2 + b]; };
+  of(2, 1) = -scale * (c[4] + c[5]);
+  of(3, 1) = scale * c[4];
+  of(4, 1) = scale * (c[2] + c[5] - c[3]);
+  of(5, 1) = scale * (c[2] - c[4]);
+  of(3, 2) = -scale * c[5];
+  of(4, 2) = scale * (c[5] - c[1]);
+  of(5, 2) = scale * (c[3] - c[1] - c[4]);
+  of(4, 3) = scale * (c[1] - 2 * c[5]);
+  of(5, 3) = scale * (2 * c[4] - c[2]);
+  of(5, 4) = scale * (c[1] + c[2] - 2 * c[3]);
+  for (int a = 1; a < 6; ++a) {  // the rows sum to zero
+    of(a, 0).setZero();
+    for (int b = 1; b < 6; ++b)
+      if (b < a)
+        of(a, 0) -= of(a, b);
+      else if (b > a)
+        of(a, 0) += of(b, a);
+  }
+  return cross;
+}
+
+double volume_pressure(double share_of_rest, double barrier_share, double barrier_weight) {
+  return volume_law(share_of_rest, barrier_share, barrier_weight).de;
+}
+
 double volume_stiffness(double share_of_rest, double barrier_share, double barrier_weight) {
   return volume_law(share_of_rest, barrier_share, barrier_weight).dde;
 }

@@ -67,6 +67,13 @@ double prism_volume(const Nodes& nodes, const std::array<int, 6>& prism);
 double prism_volume_gradient(const Nodes& nodes, const std::array<int, 6>& prism,
                              std::array<Eigen::Vector3d, 6>& gradient);
 
+/// Second derivative of the volume by the corners a and b, for b < a in the order 10 20 21 30 ...:
+/// the matrices whose product with v is cross[.] x v. (Its transpose by b and a; zero by a and a.)
+std::array<Eigen::Vector3d, 15> prism_volume_bend(const Nodes& nodes,
+                                                  const std::array<int, 6>& prism);
+
+/// First derivative of a prism's energy, over its weight times its rest volume, by its volume.
+double volume_pressure(double share, double barrier_share, double barrier_weight);
 /// Second derivative of a prism's energy, over its weight, by its volume, at v = share * rest.
 double volume_stiffness(double share, double barrier_share, double barrier_weight);
 
@@ -83,6 +90,7 @@ class SpringPrismEnergy final : public Objective {
   double value_and_gradient(const Nodes& x, Nodes& gradient) override;
   /// Wants the last call of value_and_gradient to have been at `x`: lengths are kept from there.
   Curvature curvature(const Nodes& x, const Nodes& d) override;
+  int threads() const { return threads_; }
 
  private:
   static constexpr int chunks_ = 2;  // fixed: the sums must not know the number of threads
