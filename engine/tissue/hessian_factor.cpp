@@ -108,6 +108,9 @@ struct HessianFactor::Pattern {
   }
 };
 
+HessianFactor::HessianFactor(std::shared_ptr<const Pattern> pattern)
+    : pattern_(std::move(pattern)), factor_(pattern_->tree) {}
+
 HessianFactor::HessianFactor(const SpringPrismNet& net, const NetLoads& loads, int nodes_per_column,
                              const Nodes& x, int threads)
     : threads_(threads),
@@ -204,6 +207,15 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
   };
   constexpr float least = 1e-6f;
   return factor_.factorize(assemble, least, threads);
+}
+
+HessianFactor HessianFactor::anew(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
+                                  int threads) const {
+  HessianFactor made(pattern_);
+  made.set_threads(threads_);
+  if (made.refactor(net, loads, x, threads, Curvatures::exact) > 0)
+    made.refactor(net, loads, x, threads);
+  return made;
 }
 
 void HessianFactor::solve(const Nodes& g, Nodes& z) const {

@@ -27,11 +27,13 @@ class HessianFactor final : public Preconditioner {
   HessianFactor(const SpringPrismNet& net, const NetLoads& loads, int nodes_per_column,
                 const Nodes& x, int threads = 1);
 
-  /// The factor of another state of the same net, in the order chosen for the first.
-  /// Gives the number of pivots that had to be raised: above 0 where the matrix is not positive
-  /// definite.
+  /// The factor of another state of the same net, in the order chosen for the first. Gives the
+  /// number of pivots that had to be raised: above 0 where the matrix is not positive definite.
   int refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x, int threads = 1,
                Curvatures curvatures = Curvatures::gauss_newton);
+  /// Another factor, of another state: of the exact curvatures where they are positive definite.
+  HessianFactor anew(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
+                     int threads = 1) const;
 
   /// z = H^-1 g
   void solve(const Nodes& g, Nodes& z) const override;
@@ -43,6 +45,7 @@ class HessianFactor final : public Preconditioner {
  private:
   /// Where the net's springs and prisms go; made once.
   struct Pattern;
+  explicit HessianFactor(std::shared_ptr<const Pattern> pattern);
 
   int threads_ = 1;
   std::shared_ptr<const Pattern> pattern_;

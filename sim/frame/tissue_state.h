@@ -8,7 +8,7 @@
 
 namespace condyle {
 
-class HessianFactor;
+class RollingFactor;
 
 /// Where the soft tissue is, and how its minimiser ended. The next frame starts from it.
 struct TissueState {
@@ -22,8 +22,8 @@ struct TissueState {
   int inverted_prisms = 0;
   double penetration_mm = 0;  // deepest point in bone, teeth or the other lip, beyond rest
   double slip_mm = 0;         // farthest way of a point along the jaw that it lay on at rest
-  /// What the next frame is solved with: a factor of this or an earlier frame's tissue, or none.
-  std::shared_ptr<const HessianFactor> factor;
+  /// What the next frame is solved with: a factor of an earlier frame's tissue, or none.
+  std::shared_ptr<const RollingFactor> factor;
 };
 
 }  // namespace condyle

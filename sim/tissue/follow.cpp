@@ -28,8 +28,11 @@ NetLoads touching_loads(const TissueModel& model, const Pose& X_CM, const Nodes&
 
 namespace {
 
-/// Iterations after which a factor of the tissue as it is now is made; later frames go on with it.
+/// Iterations after which a factor of the tissue as it is now is made at once; later frames go on
+/// with it.
 constexpr int patience = 15;
+/// Iterations of a frame above which one is made beside the loop.
+constexpr int worth_making = 3;
 
 /// The stored factor of the state on the path of opening that is nearest.
 std::shared_ptr<const HessianFactor> path_factor(const TissueModel& model, const Pose& X_CM) {
@@ -83,7 +86,9 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
   state.nodes = foreseen(model, previous, X_CM);
   if (count_inverted(model.net, state.nodes) > 0) state.nodes = previous.nodes;
 
-  state.factor = previous.factor ? previous.factor : path_factor(model, X_CM);
+  RollingFactor factor =
+      previous.factor ? *previous.factor : RollingFactor(path_factor(model, X_CM));
+  factor.advance();
   SpringPrismEnergy energy(model.net, loads, budget.threads);
   int since_factor = 0;  // iterations
   const auto solve = [&] {
@@ -93,7 +98,7 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
       const int left = budget.max_iterations - state.iterations;
       settings.max_iterations = std::clamp(patience - since_factor, 1, std::max(left, 1));
       const MinimizeResult result =
-          minimize(Method::preconditioned, energy, settings, state.nodes, state.factor.get());
+          minimize(Method::preconditioned, energy, settings, state.nodes, &factor.now());
       state.iterations += result.iterations;
       state.evaluations += result.evaluations;
       since_factor += result.iterations;
@@ -102,14 +107,16 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
       state.residual = result.residual;
       if (result.status != MinimizeResult::Status::budget_spent) return;
       if (state.iterations >= budget.max_iterations) return;
-      auto fresh = std::make_shared<HessianFactor>(*state.factor);  // in the same order
-      fresh->refactor(model.net, loads, state.nodes, budget.threads);
-      state.factor = std::move(fresh);
+      factor.replace(std::make_shared<HessianFactor>(
+          factor.now().anew(model.net, loads, state.nodes, budget.threads)));
       since_factor = 0;
     }
   };
   const TouchingResult touching = solve_touching(
       [&](const Nodes& x) { return look_at(model.contact, X_CM, x); }, solve, loads, state.nodes);
+  if (state.iterations > worth_making)
+    factor.begin(model.net, loads, state.nodes, budget.threads, model.weak_from_this().lock());
+  state.factor = std::make_shared<const RollingFactor>(std::move(factor));
   const ContactMeasure contact =
       measure_contact(model.contact, touching.looks, X_CM, model.rest, state.nodes);
   state.penetration_mm = contact.penetration_mm;

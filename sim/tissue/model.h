@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/tissue/frame_embedding.h"
-#include "engine/tissue/hessian_factor.h"
+#include "engine/tissue/rolling_factor.h"
 #include "engine/tissue/spring_prism.h"
 #include "sim/tissue/opening_path.h"
 #include "sim/tissue/skin_region.h"
@@ -15,7 +15,7 @@
 namespace condyle {
 
 /// See tissue.h. Nodes in `node_of` order (layered_net.h), mm, at rest in the cranium's frame.
-struct TissueModel {
+struct TissueModel : std::enable_shared_from_this<TissueModel> {
   int columns = 0, sheets = 0;
   std::vector<Eigen::Vector3i> triangles;  // of the columns, seen from outside
   Nodes rest;

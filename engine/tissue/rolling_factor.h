@@ -1,0 +1,36 @@
+#pragma once
+
+#include <future>
+#include <memory>
+
+#include "engine/tissue/hessian_factor.h"
+
+namespace condyle {
+
+/// The preconditioner of a sequence of frames, made anew beside the loop: begun at the end of one
+/// frame, it serves from a fixed later frame on, which waits for it if need be. So the bits do not
+/// depend on timing. A value that goes with a frame's state: from a copy, frames go on the same way
+/// again.
+class RollingFactor {
+ public:
+  explicit RollingFactor(std::shared_ptr<const HessianFactor> first) : now_(std::move(first)) {}
+
+  const HessianFactor& now() const { return *now_; }
+  /// The next frame has begun.
+  void advance();
+  /// One made within the frame serves at once.
+  void replace(std::shared_ptr<const HessianFactor> by) { now_ = std::move(by); }
+
+  static constexpr int lag = 2;  // frames
+  /// Begins one of state x, to serve `lag` frames later; not while one is being made. With one
+  /// thread it is made when it is due. `owner` keeps the net.
+  void begin(const SpringPrismNet& net, NetLoads loads, Nodes x, int threads,
+             std::shared_ptr<const void> owner);
+
+ private:
+  std::shared_ptr<const HessianFactor> now_;
+  std::shared_future<std::shared_ptr<const HessianFactor>> next_;
+  int frames_left_ = 0;
+};
+
+}  // namespace condyle
