@@ -2,12 +2,15 @@
 // warm frames of a steady opening, and sizes beyond those of the frame loop.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <thread>
 
 #include "engine/core/error.h"
 #include "engine/tissue/refreshing.h"
+#include "engine/tissue/rolling_factor.h"
 #include "tools/commands.h"
 #include "tools/tissue_target.h"
 
@@ -40,63 +43,81 @@ Json race_json(const Line& line, const Race& result) {
   return json;
 }
 
-/// Frames of half a degree from 10 to 10 + frames/2 degrees. The factor is made anew every sixth
-/// frame, apart, as beside a loop; each frame starts from the last one, taken on by the bones'
-/// motion and the tissue's last own motion.
+/// Frames of half a degree from 10 to 10 + frames/2 degrees, at the pace of the frame loop while
+/// they keep to it; factors are made beside it. Each frame starts from the last one, taken on by
+/// the bones' motion and what the tissue's last two own motions foretell. A frame's time has in it
+/// what it waited for a factor.
 Json warm_frames(const SyntheticSet& set, int frames, int threads) {
-  constexpr int factor_every = 6;
+  constexpr std::chrono::microseconds pace(8333);
   MinimizeSettings settings;
-  settings.tolerance_mm = 3e-3;
-  std::vector<double> wall, cpu, factor_ms;
-  double worst_error = 0;
-  int iterations = 0;
+  settings.tolerance_mm = 4e-3;
   const auto pose_at = [](int frame) {
     return synthetic_pose((10 + 0.5 * frame) * degree, Eigen::Vector3d::Zero());
   };
-  Nodes x = set.rest;
   const NetLoads rest_loads = synthetic_loads(set, Pose{});
-  HessianFactor factor(set.net, rest_loads, set.sheets, set.rest);
-  const auto settle = [&](int frame, Nodes& nodes, double tolerance_mm) {
+  const auto at_rest =
+      std::make_shared<const HessianFactor>(set.net, rest_loads, set.sheets, set.rest, threads);
+  const auto settle = [&](int frame, const HessianFactor& factor, Nodes& nodes, double tolerance) {
     MinimizeSettings tight;
-    tight.tolerance_mm = tolerance_mm;
+    tight.tolerance_mm = tolerance;
     tight.max_iterations = 20000;
     const NetLoads loads = synthetic_loads(set, pose_at(frame));
     SpringPrismEnergy energy(set.net, loads, threads);
     if (!minimize_refreshing(set.net, loads, energy, factor, tight, nodes).converged())
       throw MachineError("bench: the reference did not converge");
   };
-  settle(-1, x, 1e-4);
-  Nodes own(x.size(), Eigen::Vector3d::Zero());  // what the last frame added to the bones' motion
+  Nodes x = set.rest;
+  settle(-1, *at_rest, x, 1e-4);
+  RollingFactor factor(at_rest);
+  factor.replace(std::make_shared<const HessianFactor>(
+      at_rest->anew(set.net, synthetic_loads(set, pose_at(-1)), x, threads)));
+
+  // What the last frames added to the bones' motion.
+  Nodes own(x.size(), Eigen::Vector3d::Zero()), own_before = own;
+  std::vector<double> wall, cpu, waited;
+  std::vector<std::pair<int, Nodes>> samples;
+  int iterations = 0;
+  auto next_frame = std::chrono::steady_clock::now();
   for (int frame = 0; frame < frames; ++frame) {
+    std::this_thread::sleep_until(next_frame);
+    next_frame = std::max(next_frame + pace, std::chrono::steady_clock::now());
     const NetLoads loads = synthetic_loads(set, pose_at(frame));
-    if (frame % factor_every == 0) {
-      const Stopwatch watch;
-      factor.refactor(set.net, synthetic_loads(set, pose_at(frame - 1)), x);
-      factor_ms.push_back(watch.wall_ms());
-    }
     SpringPrismEnergy energy(set.net, loads, threads);
     const Stopwatch watch;
+    factor.advance();
+    waited.push_back(watch.wall_ms());
     const Nodes taken = carried(set, x, pose_at(frame - 1), pose_at(frame));
     Nodes next = taken;
-    for (std::size_t i = 0; i < next.size(); ++i) next[i] += own[i];
-    if (!std::isfinite(energy.value(next))) next = x;
-    const MinimizeResult result = minimize(Method::preconditioned, energy, settings, next, &factor);
+    for (std::size_t i = 0; i < next.size(); ++i) next[i] += 2 * own[i] - own_before[i];
+    const auto solve = [&] {
+      return minimize_refreshing(set.net, loads, energy, factor.now(), settings, next,
+                                 {.first = 12, .far = 0});
+    };
+    MinimizeResult result = solve();
+    if (result.status == MinimizeResult::Status::bad_start) {
+      next = x;
+      result = solve();
+    }
     wall.push_back(watch.wall_ms());
     cpu.push_back(watch.cpu_ms());
     iterations += result.iterations;
+    if (result.iterations > 0) factor.begin(set.net, loads, next, threads, nullptr);
+    own.swap(own_before);
     for (std::size_t i = 0; i < next.size(); ++i) own[i] = next[i] - taken[i];
     x = next;
-    if (frame % 5 == 4) {
-      Nodes reference = x;
-      settle(frame, reference, 1e-7);
-      worst_error = std::max(worst_error, largest_distance(x, reference));
-    }
+    if (frame % 5 == 4) samples.emplace_back(frame, x);
+  }
+  double worst_error = 0;
+  for (const auto& [frame, nodes] : samples) {
+    Nodes reference = nodes;
+    settle(frame, *at_rest, reference, 1e-7);
+    worst_error = std::max(worst_error, largest_distance(nodes, reference));
   }
   Json json = result_json({"tissue.warm", set.net.node_count, threads, "condyle"}, quantiles(wall),
                           quantiles(cpu).median, worst_error);
   json["frames"] = frames;
   json["iterations"] = static_cast<double>(iterations) / frames;
-  json["factor_ms"] = quantiles(factor_ms).median;
+  json["waited_p95_ms"] = quantiles(waited).p95;
   return json;
 }
 
@@ -151,8 +172,8 @@ int run_bench_tissue(const BenchOptions& options, const CommonOptions& common) {
   }
   say(result_json({"tissue.setup", set.net.node_count, 1, "condyle"}, quantiles(setup),
                   quantiles(setup_cpu).median, 0));
-  const HessianFactor factor(set.net, target.rest_loads, set.sheets, set.rest);
   for (int threads : {1, 2}) {
+    const HessianFactor factor(set.net, target.rest_loads, set.sheets, set.rest, threads);
     const auto condyle_solve = [&](double tolerance, Nodes& x, const HessianFactor& from) {
       SpringPrismEnergy energy(set.net, target.loads, threads);
       MinimizeSettings settings;
@@ -166,7 +187,8 @@ int run_bench_tissue(const BenchOptions& options, const CommonOptions& common) {
                   })));
     say(race_json({"tissue.cold", set.net.node_count, threads, "condyle with setup"},
                   race(target, repeats, [&](double tolerance, Nodes& x) {
-                    const HessianFactor own(set.net, target.rest_loads, set.sheets, set.rest);
+                    const HessianFactor own(set.net, target.rest_loads, set.sheets, set.rest,
+                                            threads);
                     return condyle_solve(tolerance, x, own);
                   })));
     say(race_json({"tissue.cold", set.net.node_count, threads, "cg_parabolic"},

@@ -19,9 +19,11 @@ MinimizeResult minimize_refreshing(const SpringPrismNet& net, const NetLoads& lo
   if (!goes_on()) return result;
   HessianFactor fresh = factor;
   fresh.set_threads(energy.threads());
+  bool exact_serves = true;
   for (int refresh = 0; goes_on(); ++refresh) {
     const bool near = refresh >= schedule.far;
-    if (!near || fresh.refactor(net, loads, x, energy.threads(), Curvatures::exact) > 0)
+    if (!near || !exact_serves ||
+        fresh.refactor(net, loads, x, energy.threads(), Curvatures::exact) > 0)
       fresh.refactor(net, loads, x, energy.threads());
     const int wanted =
         near ? std::min(schedule.later + (refresh - schedule.far) / 2 * 3, schedule.most)
@@ -30,6 +32,9 @@ MinimizeResult minimize_refreshing(const SpringPrismNet& net, const NetLoads& lo
     part.max_evaluations = settings.max_evaluations - result.evaluations;
     const MinimizeResult before = result;
     result = minimize(Method::preconditioned, energy, part, x, &fresh);
+    // Where a spring is about to push, the exact matrix may be nearly singular, and its steps are
+    // cut short: then the other one is next.
+    exact_serves = !exact_serves || result.evaluations <= 2 * result.iterations + 2;
     result.iterations += before.iterations;
     result.evaluations += before.evaluations;
     result.gradients += before.gradients;

@@ -107,8 +107,9 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
       state.residual = result.residual;
       if (result.status != MinimizeResult::Status::budget_spent) return;
       if (state.iterations >= budget.max_iterations) return;
-      factor.replace(std::make_shared<HessianFactor>(
-          factor.now().anew(model.net, loads, state.nodes, budget.threads)));
+      auto fresh = std::make_shared<HessianFactor>(factor.now());  // in the same order
+      fresh->refactor(model.net, loads, state.nodes, budget.threads);
+      factor.replace(std::move(fresh));
       since_factor = 0;
     }
   };
