@@ -11,6 +11,7 @@
 #include "engine/minimize/minimize.h"
 #include "engine/tissue/hessian_factor.h"
 #include "engine/tissue/layered_net.h"
+#include "engine/tissue/refreshing.h"
 #include "tests/support/shapes.h"
 
 namespace condyle {
@@ -81,8 +82,8 @@ TouchingResult settle(const SpringPrismNet& net, int sheets, NetLoads& loads,
                         [&] {
                           const HessianFactor factor(net, loads, sheets, x);
                           SpringPrismEnergy energy(net, loads, 1);
-                          const auto result = minimize(Method::preconditioned, energy,
-                                                       {.tolerance_mm = tolerance_mm}, x, &factor);
+                          const auto result = minimize_refreshing(
+                              net, loads, energy, factor, {.tolerance_mm = tolerance_mm}, x);
                           EXPECT_TRUE(result.converged());
                         },
                         loads, x, {.most_looks = 12, .tolerance_mm = 1e-3});
