@@ -63,12 +63,15 @@ class ContactModel {
     bool stopped = false;  // something kept a body from where it was wanted
     ContactSet contacts;   // there
   };
-  /// From `from` towards the wanted poses, each body to the nearest pose that it can slide to: the
-  /// mandible with what it carries, then the free parts in order, each against all others as they
-  /// are. Distance fields find the way; the exact surfaces judge it: no pair ends deeper than at
-  /// rest (or at `from`) by more than the slack. Where fields cannot tell inside from outside (open
-  /// shells) the exact surfaces judge each millimetre of the way. Same bits for any number of
-  /// threads; nothing is remembered from call to call.
+  /// Each body to the nearest pose that it can slide to: the mandible with what it carries, then
+  /// the free parts in order, each against all others as they are. Distance fields find it, and
+  /// without friction it depends on the wanted pose alone; the exact surfaces judge it: no pair is
+  /// deeper than at rest by more than the slack. What overlaps deeply at rest is held there or
+  /// slides beside it, whichever is nearer. Where fields do not see all (open shells from behind,
+  /// walls as thin as each other, far from where bodies were at rest) the body creeps from `from`
+  /// in stretches of a millimetre, each proved by the exact surfaces, and goes no deeper than it
+  /// was. Same bits for any number of threads; nothing that is remembered from call to call changes
+  /// an answer.
   Slide slide(const BodyPoses& from, const Wanted& wanted, const ContactSet* previous,
               int threads = 1) const;
 
