@@ -66,16 +66,9 @@ double rest_depth(const SlideBody& a, const SlideBody& b) {
 }
 
 /// Drop of the condyles by their forward travel.
-Pchip guide_path(const Case& patient, bool seated) {
+Pchip guide_path(const Case& patient) {
   if (patient.mechanics && patient.mechanics->guide) return known_path(*patient.mechanics->guide);
-  if (patient.condylar_path) return known_path(*patient.condylar_path);
-  if (seated)
-    if (auto joint = JointSurfaces::find(patient)) {
-      const Vector3d left = landmark(patient, "left_condyle"),
-                     right = landmark(patient, "right_condyle");
-      return seated_path(*joint, 0.5 * (left + right), (left - right).normalized(), Coupling{});
-    }
-  return average_path();
+  return patient.condylar_path ? known_path(*patient.condylar_path) : average_path();
 }
 
 }  // namespace
@@ -88,7 +81,7 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
   RigidSettings world_settings;
   JawWorld jaw{.world = RigidWorld(world_settings),
                .condyles = condyles,
-               .drop_mm = guide_path(patient, settings.seated)};
+               .drop_mm = guide_path(patient)};
   RigidBody cranium, mandible;
   if (settings.teeth) {
     const TriMesh &upper = part(patient, Role::upper_teeth, "upper teeth").mesh,

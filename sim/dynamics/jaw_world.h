@@ -24,8 +24,6 @@ struct JawWorldSettings {
   // Crowns that overlap at rest are taken as worn by as much: they may overlap so far everywhere.
   bool worn_crowns = false;
   bool stops = false;  // condyles go neither behind their seats nor apart sideways
-  // The guide follows the fossa where its surface is known, else an average path.
-  bool seated = false;
 };
 
 /// The mandible as a free body: lower on upper teeth, its condyles led on their paths.
