@@ -100,8 +100,7 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   if (!options.out.empty()) files.emplace(options.out);  // fails before the long work
   const Scene scene =
       make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
-  const Motion motion =
-      make_motion(options.motion.motion, scene.patient, scene.contacts, options.motion.settings);
+  const Motion motion = motion_of(options.motion, scene, common.threads);
   const auto check = check_clearance(
       scene, motion, {.margin_mm = options.margin_mm, .sampling = {options.frames, options.fps}},
       settings, bar.callback());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/case/case_io.h"
+#include "sim/dynamics/muscle_motion.h"
 #include "sim/motion/motion.h"
 
 /// One function per subcommand; each returns the program's exit code.
@@ -21,6 +22,7 @@ struct MotionOptions {
   std::filesystem::path patient;  // case folder; empty = the built-in patient
   std::string motion;
   MotionSettings settings;
+  MuscleMotionSettings muscles;
   bool respect_contact = false;  // recorded motion, too, slides where bones meet
   double friction = 0;
   std::vector<std::string> pairs = {};  // rules as the user wrote them

@@ -67,6 +67,11 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
   return settings;
 }
 
+Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
+  return motion_of(options.motion, scene.patient, scene.contacts, options.settings, options.muscles,
+                   threads);
+}
+
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);)

@@ -34,6 +34,9 @@ Case open_patient(const std::filesystem::path& folder, const CommonOptions& comm
 
 SimulatorSettings simulator_settings(const MotionOptions& options, const CommonOptions& common);
 
+/// The motion that the command line asks for.
+Motion motion_of(const MotionOptions& options, const Scene& scene, int threads);
+
 /// The machine's processor, by its own name.
 std::string processor();
 

@@ -42,6 +42,33 @@ CLI::Validator within(double least, double most) {
       "NUMBER");
 }
 
+void add_muscles(CLI::App* command, MuscleMotionSettings& muscles) {
+  command
+      ->add_option("--muscle-law", muscles.law.law,
+                   "Of muscle-driven motion: hill (force falls with speed, activation lags; the "
+                   "default) or peck (neither)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, MuscleLaw>{{"peck", MuscleLaw::peck}, {"hill", MuscleLaw::hill}}));
+  command
+      ->add_option("--hyoid", muscles.hyoid,
+                   "Of muscle-driven motion: fixed (the default), free, or a CSV of its way from "
+                   "rest (time_s,x_mm,y_mm,z_mm)")
+      ->type_name("fixed|free|FILE");
+  command
+      ->add_option("--bolus", muscles.bolus.side,
+                   "Food between the back teeth of muscle-driven motion: left, right or none")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, BolusSettings::Side>{{"none", BolusSettings::Side::none},
+                                                     {"left", BolusSettings::Side::left},
+                                                     {"right", BolusSettings::Side::right}}));
+  command->add_option("--bolus-size", muscles.bolus.size_mm, "Its thickness, mm (10)")
+      ->check(within(1.0, 40.0));
+  command
+      ->add_option("--bolus-resistance", muscles.bolus.resistance_N,
+                   "Its force when bitten through, N (35)")
+      ->check(within(0.0, 300.0));
+}
+
 void add_motion(CLI::App* command, MotionOptions& motion, bool motion_required) {
   command->add_option("CASE", motion.patient,
                       "Folder with case.json (default: the built-in patient)");
@@ -49,7 +76,9 @@ void add_motion(CLI::App* command, MotionOptions& motion, bool motion_required) 
       "--motion", motion.motion,
       "Built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
           "), movements in words (\"open 40; close; protrude 6\"), a file of them (*.motion), or a "
-          "pose file (CSV: time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz)");
+          "recording (CSV: time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz; others as README.md tells), "
+          "muscles:FILE (excitations: time_s,MUSCLE,...), or inverse:MOTION (muscles that follow a "
+          "motion)");
   if (motion_required) option->required();
   command
       ->add_option("--duration", motion.settings.duration_s,
@@ -69,6 +98,7 @@ void add_motion(CLI::App* command, MotionOptions& motion, bool motion_required) 
         ->check(within(entry.low, entry.high))
         ->group("How the jaw moves");
   }
+  add_muscles(command, motion.muscles);
 }
 
 void add_contact(CLI::App* command, MotionOptions& motion) {
@@ -258,6 +288,12 @@ int run_program(int argc, char** argv) {
                    "Move segments and transplants that start deep inside a bone out of it");
   meshes->add_option("--landmarks", import.request.landmarks,
                      "CSV with name,x_mm,y_mm,z_mm, or 3D Slicer .mrk.json");
+  meshes->add_option(
+      "--muscles", import.request.muscles,
+      "CSV of muscles: name,origin_body,insertion_body,ox_mm,oy_mm,oz_mm,ix_mm,iy_mm,"
+      "iz_mm,max_force_N and more");
+  meshes->add_option("--mechanics", import.request.mechanics,
+                     "JSON of the jaw as a body: mass, inertia, damping, guide of the condyles");
   meshes->add_option("--units", import.request.units, "Unit of the files: mm m cm in (mm)");
   meshes->add_option("--frame", import.request.frame, "Axes of the files: LPS, RAS, ... (LPS)");
   meshes->add_option("--name", import.request.name, "Name of the case");

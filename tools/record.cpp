@@ -206,16 +206,14 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   const Scene scene =
       make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
   bar.show("preparing the motion", 0);
-  Playback playback(
-      scene,
-      make_motion(options.motion.motion, scene.patient, scene.contacts, options.motion.settings),
-      settings, options.motion.respect_contact);
+  Playback playback(scene, motion_of(options.motion, scene, common.threads), settings,
+                    options.motion.respect_contact);
   const Motion& motion = playback.motion();
   const FrameTimes times = frame_times(options, motion.duration_s);
 
   std::optional<PictureTaker> pictures;
   if (options.pictures) pictures.emplace(options, scene, motion, settings, times);
-  TraceWriter trace(options.out / "trace.csv");
+  TraceWriter trace(options.out / "trace.csv", motion.muscle_names);
   MotionReport report(scene, motion, settings);
   for (int i = 0; i < times.count; ++i) {
     FrameState frame = playback.at(times[i]);
@@ -228,6 +226,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   trace.finish();
   const std::string json = report.json();
   write_file(options.out / "report.json", json);
+  if (motion.muscles) write_file(options.out / "excitations.csv", excitations_csv(motion));
   if (options.plots) {
     for (const auto& plot : motion_plots(report.series()))
       write_file(options.out / (plot.name + ".svg"), panels_svg(plot.panels));

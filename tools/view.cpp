@@ -61,7 +61,8 @@ void show_patient(Window& window, const ViewOptions& options, const CommonOption
                               progress, trouble);
   progress("preparing the motion", 0.9);
   const std::string spec = options.motion.motion.empty() ? "opening" : options.motion.motion;
-  const Motion motion = make_motion(spec, scene.patient, scene.contacts, options.motion.settings);
+  const Motion motion = motion_of(spec, scene.patient, scene.contacts, options.motion.settings,
+                                  options.motion.muscles, common.threads);
   // Sliding is felt at once when a hand moves the jaw: its fields are made before.
   if (options.motion.respect_contact || !motion.recorded)
     scene.contacts.prepare_sliding(progress, common.threads);

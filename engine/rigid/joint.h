@@ -14,7 +14,8 @@ struct RigidJoint {
     ball,   // p_B stays on p_A
     hinge,  // so does axis_B on axis_A
     fixed,  // the bodies keep the pose X_AB
-    guide   // p_B stays on a curve of A, within its ends
+    guide,  // p_B stays on a curve of A, within its ends
+    plane   // p_B stays on the side of the plane through p_A to which axis_A points
   } kind = Kind::ball;
   int a = 0, b = 0;  // bodies
   Eigen::Vector3d p_A = Eigen::Vector3d::Zero(), p_B = Eigen::Vector3d::Zero();

@@ -37,6 +37,7 @@ JointRows::JointRows(const RigidJoint& joint) : joint_(joint) {
     make_unit(joint_.axis_A);
     make_unit(joint_.axis_B);
   }
+  if (joint.kind == RigidJoint::Kind::plane) make_unit(joint_.axis_A);
   if (joint.kind == RigidJoint::Kind::guide) {
     if (joint_.sideways_A) make_unit(*joint_.sideways_A);
     curve_.emplace(joint.curve_A);
@@ -51,6 +52,8 @@ int JointRows::count() const {
       return 5;
     case RigidJoint::Kind::fixed:
       return 6;
+    case RigidJoint::Kind::plane:
+      return 1;
     default:
       return joint_.sideways_A ? 3 : 4;
   }
@@ -110,6 +113,9 @@ double JointRows::append(const JointBody& a, const JointBody& b, double step_s,
     if (!joint_.sideways_A) hold(along.cross(across), off.dot(along.cross(across)));
     stop(along, place.from_start_mm);
     stop(-along, place.from_end_mm);
+  } else if (joint_.kind == RigidJoint::Kind::plane) {
+    const Vector3d axis = R * joint_.axis_A;
+    stop(axis, (p_WB - a.X_WB * joint_.p_A).dot(axis));
   } else {
     const Vector3d off = p_WB - a.X_WB * (is_fixed ? joint_.X_AB.t : joint_.p_A);
     for (int k = 0; k < 3; ++k) hold(Vector3d::Unit(k), off[k]);

@@ -149,7 +149,7 @@ int RigidWorld::add_pair(const RigidPair& pair) {
   require(pair.a != pair.b, "a pair needs two bodies");
   require(pair.friction >= 0 && pair.friction <= 10,
           "a friction of " + text(pair.friction) + " is not between 0 and 10");
-  require(pair.gap_mm >= 0, "a gap of " + text(pair.gap_mm) + " mm is below 0");
+  require(std::isfinite(pair.gap_mm), "a gap is not finite");
   const auto& a = s.members[static_cast<std::size_t>(pair.a)].body.surfaces;
   const auto& b = s.members[static_cast<std::size_t>(pair.b)].body.surfaces;
   require(!a.empty() && !b.empty(), "a pair of bodies of which one has no surface");

@@ -52,7 +52,7 @@ struct RigidSpring {
 struct RigidPair {
   int a = 0, b = 0;
   double friction = 0.2;  // Coulomb coefficient
-  double gap_mm = 0;      // kept between the surfaces: a disc
+  double gap_mm = 0;      // kept between the surfaces: a disc; negative: they may overlap so far
 };
 
 struct RigidSettings {

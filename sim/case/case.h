@@ -4,18 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "sim/case/condylar_path.h"
+#include "sim/case/jaw_mechanics.h"
 #include "sim/case/landmarks.h"
 #include "sim/case/motion_parameters.h"
+#include "sim/case/muscle.h"
 #include "sim/frame/pair_rule.h"
 #include "sim/frame/part.h"
 
 namespace condyle {
-
-/// Path of both condyle centres in the sagittal plane, from the seated position.
-struct CondylarPath {
-  std::vector<double> forward_mm;  // toward -y, increasing, starts at or below 0
-  std::vector<double> drop_mm;     // toward -z, one per entry
-};
 
 /// A patient at rest, ready to simulate: DICOM LPS, mm.
 struct Case {
@@ -30,6 +27,9 @@ struct Case {
   std::vector<PairRule> pair_rules;  // where they differ from the usual ones; the last that fits
                                      // counts
   MotionParameters motion;           // where the jaw moves otherwise than usual
+
+  std::vector<Muscle> muscles = {};  // none: usual ones are put to its landmarks
+  std::optional<JawMechanics> mechanics = std::nullopt;  // where measured
 
   const Part* find(Role role) const {
     for (const auto& part : parts)

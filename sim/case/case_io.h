@@ -24,6 +24,9 @@ struct ImportRequest {
   // Carriers of free parts by name (segment, segment-2, transplant, ...); of others the body that
   // is nearer.
   std::map<std::string, Body> carriers = {};
+  // In millimetres whatever the units of the surfaces, axes as these; empty = none.
+  std::filesystem::path muscles = {};    // CSV, as sim/case/muscle_table.h tells
+  std::filesystem::path mechanics = {};  // JSON, as sim/case/jaw_mechanics.h tells
 };
 
 /// Reads, converts to LPS mm, checks and repairs what can be; `notes` of the result say what was

@@ -13,6 +13,7 @@
 #include "sim/case/case_format.h"
 #include "sim/case/case_io.h"
 #include "sim/case/import_checks.h"
+#include "sim/case/import_muscles.h"
 #include "sim/case/landmark_files.h"
 #include "sim/case/soft_landmarks.h"
 #include "sim/case/source_frame.h"
@@ -289,6 +290,7 @@ Case import_meshes(const ImportRequest& request) {
   check_landmarks(patient, request);
   estimate_landmarks(patient);
   estimate_profile_landmarks(patient);
+  import_muscles(request, frame, box, patient);
   return patient;
 }
 

@@ -10,6 +10,7 @@
 #include "sim/case/case_io.h"
 #include "sim/case/json_file.h"
 #include "sim/case/landmark_files.h"
+#include "sim/case/muscle_table.h"
 #include "sim/case/pair_rules.h"
 
 namespace condyle {
@@ -187,6 +188,10 @@ Case load_case(const fs::path& given) {
         throw InputError(points, row.where, "the landmark \"" + row.name + "\" comes twice");
   }
   if (const auto path = root.find("condylar_path")) patient.condylar_path = load_path(*path);
+  if (const auto muscles = root.find("muscles"))
+    patient.muscles = read_muscles(inside(folder, *muscles), patient.notes);
+  if (const auto mechanics = root.find("mechanics"))
+    patient.mechanics = read_mechanics(inside(folder, *mechanics));
   if (const auto rules = root.find("contact_pairs"))
     for (std::size_t i = 0; i < rules->size(); ++i)
       patient.pair_rules.push_back(load_rule(patient, rules->at(i)));

@@ -17,6 +17,7 @@
 #include "sim/case/case_format.h"
 #include "sim/case/case_io.h"
 #include "sim/case/landmark_files.h"
+#include "sim/case/muscle_table.h"
 #include "sim/case/pair_rules.h"
 
 namespace condyle {
@@ -54,6 +55,8 @@ json to_json(const Case& patient) {
   if (patient.condylar_path)
     root["condylar_path"] = {{"forward_mm", patient.condylar_path->forward_mm},
                              {"drop_mm", patient.condylar_path->drop_mm}};
+  if (!patient.muscles.empty()) root["muscles"] = muscles_file;
+  if (patient.mechanics) root["mechanics"] = mechanics_file;
   for (const auto& rule : patient.pair_rules) root["contact_pairs"].push_back(to_json(rule));
   for (const auto& entry : motion_parameter_names())
     if (const auto value = entry.values.front(); entry.values.size() == 1 && patient.motion.*value)
@@ -105,6 +108,8 @@ void check_replaceable(const fs::path& folder) {
     refuse("holds " + *files.begin() + " and is not a case");
   files.erase("case.json");
   files.erase("landmarks.csv");
+  files.erase(muscles_file);
+  files.erase(mechanics_file);
   if (saved.contains("parts") && saved["parts"].is_array())
     for (const auto& part : saved["parts"])
       if (part.is_object() && part.contains("file") && part["file"].is_string())
@@ -172,6 +177,8 @@ void save_case(const Case& patient, const fs::path& given) {
     for (const auto& part : patient.parts) write_ply(part.mesh, made / (part.name + ".ply"));
     if (!patient.landmarks.points.empty())
       write_file(made / "landmarks.csv", landmarks_csv(patient.landmarks));
+    if (!patient.muscles.empty()) write_file(made / muscles_file, muscles_csv(patient.muscles));
+    if (patient.mechanics) write_file(made / mechanics_file, mechanics_json(*patient.mechanics));
     write_file(made / "case.json",
                to_json(patient).dump(1, ' ', false, json::error_handler_t::replace) + "\n");
     put_in_place(made, folder);

@@ -12,6 +12,8 @@ using Eigen::Vector3d;
 
 constexpr double bone_kg_mm3 = 1.9e-6;
 constexpr double box_share = 0.12;  // of its box that a mandible fills
+constexpr double mm_per_m = 1000;   // 1 N = 1000 kg mm/s^2
+constexpr double worn_band_mm = 2;
 constexpr double least_forward_mm = -0.5, guide_step_mm = 0.5;
 
 Vector3d landmark(const Case& patient, const char* name) {
@@ -45,39 +47,80 @@ MassProperties mandible_mass(const TriMesh& mesh) {
   return out;
 }
 
+MassProperties jaw_mass(const Case& patient) {
+  if (patient.mechanics)
+    return {patient.mechanics->mandible.mass_kg, patient.mechanics->mandible.center,
+            patient.mechanics->mandible.inertia};
+  return mandible_mass(part(patient, Role::mandible, "mandibles").mesh);
+}
+
+/// How deep crowns overlap where they lie, by the samples of each in the field of the other.
+double rest_depth(const SlideBody& a, const SlideBody& b) {
+  double depth = 0;
+  for (const auto& [samples, field] : {std::pair{&a, &b}, std::pair{&b, &a}})
+    for (const Vector3d& p : samples->samples.points) {
+      const FieldSample here = field->field.at(p);
+      if (here.known) depth = std::max(depth, -here.distance_mm);
+    }
+  return depth;
+}
+
+/// Drop of the condyles by their forward travel.
+Pchip guide_path(const Case& patient) {
+  if (patient.mechanics && patient.mechanics->guide) return known_path(*patient.mechanics->guide);
+  return patient.condylar_path ? known_path(*patient.condylar_path) : average_path();
+}
+
 }  // namespace
 
 JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, int threads) {
-  const Vector3d condyles[2] = {landmark(patient, "left_condyle"),
-                                landmark(patient, "right_condyle")};
+  const std::array<Vector3d, 2> condyles = {landmark(patient, "left_condyle"),
+                                            landmark(patient, "right_condyle")};
   const Vector3d incisor = landmark(patient, "lower_incisal_point");
-  const TriMesh &upper = part(patient, Role::upper_teeth, "upper teeth").mesh,
-                &lower = part(patient, Role::lower_teeth, "lower teeth").mesh;
 
   RigidSettings world_settings;
-  JawWorld jaw{RigidWorld(world_settings)};
-  RigidBody cranium;
-  cranium.surfaces = {std::make_shared<const SlideBody>(make_slide_body(upper, {}, threads))};
+  JawWorld jaw{.world = RigidWorld(world_settings),
+               .condyles = condyles,
+               .drop_mm = guide_path(patient)};
+  RigidBody cranium, mandible;
+  if (settings.teeth) {
+    const TriMesh &upper = part(patient, Role::upper_teeth, "upper teeth").mesh,
+                  &lower = part(patient, Role::lower_teeth, "lower teeth").mesh;
+    SlideBodySettings how;
+    if (settings.worn_crowns) how.field.band_mm = worn_band_mm;
+    const auto surface = [&](const TriMesh& mesh) {
+      return std::make_shared<const SlideBody>(make_slide_body(mesh, how, threads));
+    };
+    cranium.surfaces = {surface(upper)};
+    mandible.surfaces = {surface(lower)};
+    if (settings.worn_crowns) jaw.worn_mm = rest_depth(*cranium.surfaces[0], *mandible.surfaces[0]);
+  }
   const int fixed = jaw.world.add_body(cranium);
 
-  RigidBody mandible;
-  mandible.mass = mandible_mass(part(patient, Role::mandible, "mandibles").mesh);
   mandible.X_WB = settings.X_CM;
-  mandible.surfaces = {std::make_shared<const SlideBody>(make_slide_body(lower, {}, threads))};
-  const double per_step = settings.lost_in_step / world_settings.step_s / 1000;
-  mandible.drag_N_s_mm = per_step * mandible.mass.mass_kg;
-  mandible.turning_drag_N_mm_s = per_step * least_moment(mandible.mass);
+  mandible.mass = jaw_mass(patient);
+  const double per_step = settings.lost_in_step / world_settings.step_s;
+  mandible.drag_N_s_mm = settings.drag_kg_s.value_or(per_step * mandible.mass.mass_kg) / mm_per_m;
+  mandible.turning_drag_N_mm_s =
+      settings.turning_drag_kg_mm2_s.value_or(per_step * least_moment(mandible.mass)) / mm_per_m;
   jaw.mandible = jaw.world.add_body(mandible);
-  jaw.world.add_pair({.a = fixed, .b = jaw.mandible, .friction = settings.friction});
+  if (settings.teeth)
+    jaw.world.add_pair(
+        {.a = fixed, .b = jaw.mandible, .friction = settings.friction, .gap_mm = -jaw.worn_mm});
 
-  const Pchip path = patient.condylar_path ? known_path(*patient.condylar_path) : average_path();
+  const double first_mm = settings.stops ? 0 : least_forward_mm;
   for (const Vector3d& condyle : condyles) {
     RigidJoint guide{.kind = RigidJoint::Kind::guide, .a = fixed, .b = jaw.mandible};
     guide.p_B = condyle;
-    for (double forward = least_forward_mm; forward <= longest_forward_mm; forward += guide_step_mm)
-      guide.curve_A.push_back(condyle - Vector3d(0, forward, path(std::max(forward, 0.0))));
+    for (double forward = first_mm; forward <= longest_forward_mm; forward += guide_step_mm)
+      guide.curve_A.push_back(condyle - Vector3d(0, forward, jaw.drop_mm(std::max(forward, 0.0))));
     guide.sideways_A = Vector3d::UnitX();
     jaw.world.add_joint(guide);
+    if (!settings.stops) continue;
+    RigidJoint stop{.kind = RigidJoint::Kind::plane, .a = fixed, .b = jaw.mandible};
+    stop.p_A = stop.p_B = condyle;
+    stop.axis_A = (condyle == condyles[0] ? -1 : 1) * Vector3d::UnitX();
+    jaw.world.add_joint(stop);
   }
   const Vector3d middle = 0.5 * (condyles[0] + condyles[1]);
   jaw.bite_force = jaw.world.add_force({.body = jaw.mandible,

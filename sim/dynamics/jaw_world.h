@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <optional>
 
+#include "engine/math/pchip.h"
 #include "engine/rigid/rigid_world.h"
 #include "sim/case/case.h"
 #include "sim/dynamics/rest.h"
@@ -15,6 +18,12 @@ struct JawWorldSettings {
   double bite_place = 0.5;
   double friction = 0.1;      // of wet teeth
   double lost_in_step = 0.3;  // share of its speed that soft tissue takes in a step, below 2
+  // In place of that share, where it is known: force and torque against velocity and spin.
+  std::optional<double> drag_kg_s = {}, turning_drag_kg_mm2_s = {};
+  bool teeth = true;  // false: nothing keeps upper and lower teeth apart
+  // Crowns that overlap at rest are taken as worn by as much: they may overlap so far everywhere.
+  bool worn_crowns = false;
+  bool stops = false;  // condyles go neither behind their seats nor apart sideways
 };
 
 /// The mandible as a free body: lower on upper teeth, its condyles led on their paths.
@@ -22,10 +31,14 @@ struct JawWorld {
   RigidWorld world;
   int mandible = 0;
   int bite_force = 0;
+  double worn_mm = 0;                       // off the crowns
+  std::array<Eigen::Vector3d, 2> condyles;  // left, right, seated
+  Pchip drop_mm;                            // of the condyles by forward travel
 };
 
 /// Condyles follow the case's own path, else an average one; they may move sideways together, as
-/// far as the teeth let them. throws: InputError when teeth, condyles or the mandible are missing.
+/// far as the teeth let them. The mass is the case's own, else that of its surface.
+/// throws: InputError when teeth, condyles or the mandible are missing.
 JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings = {},
                         int threads = 1);
 

@@ -9,6 +9,7 @@
 #include "sim/frame/body_poses.h"
 #include "sim/frame/contact_set.h"
 #include "sim/frame/measures.h"
+#include "sim/frame/muscle_state.h"
 #include "sim/frame/tissue_state.h"
 
 namespace condyle {
@@ -36,6 +37,8 @@ struct FrameState {
   StageTimes times;
   std::uint64_t state_hash = 0;  // of poses, contacts, tissue and measures
   std::vector<Pose> X_CF = {};   // of each free part, in the case's order; none: with its carrier
+
+  MuscleStates muscles = {};  // of a motion driven by muscles, in its order
 
   BodyPoses poses() const { return {X_CM, X_CF}; }
 };

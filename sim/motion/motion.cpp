@@ -11,6 +11,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "sim/motion/joint_fit.h"
 #include "sim/motion/movements.h"
 #include "sim/motion/opening.h"
 #include "sim/motion/recording.h"
@@ -156,7 +157,13 @@ Motion make_motion(const std::string& spec, const Case& patient, const ContactMo
       return move(name, &script, patient, contacts, settings);
     }
   if (looks_like_a_file(spec)) {
-    if (ending_of(spec) != ".motion") return read_recording(spec);
+    if (ending_of(spec) != ".motion") {
+      Motion motion = read_recording(spec);
+      note_what_looks_wrong(patient, motion);
+      if (const auto fit = fit_joint(patient, motion))
+        for (auto& note : describe(*fit)) motion.notes.push_back(std::move(note));
+      return motion;
+    }
     const MotionScript script = parse_motion_script(read_file(spec, largest_script), spec);
     return move(std::filesystem::path(spec).stem().string(), &script, patient, contacts, settings);
   }
@@ -166,7 +173,7 @@ Motion make_motion(const std::string& spec, const Case& patient, const ContactMo
   }
   throw InputError(fmt::format(
       "motion \"{}\" is not known: give one of {}, movements in words such as \"open 40; "
-      "close; protrude 6\", a file of them (*.motion), or a pose file (CSV)",
+      "close; protrude 6\", a file of them (*.motion), a recording, muscles:FILE or inverse:MOTION",
       spec, fmt::join(builtin_motions(), ", ")));
 }
 

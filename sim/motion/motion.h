@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/math/pose.h"
 #include "sim/case/case.h"
 #include "sim/contact/contact.h"
+#include "sim/frame/muscle_state.h"
 
 namespace condyle {
 
@@ -27,6 +29,20 @@ struct MotionBorders {
   std::vector<Eigen::Vector3d> sagittal, frontal;  // closed rounds
 };
 
+/// What is known of a recorded motion's file.
+struct RecordingFacts {
+  std::string format;
+  int rows = 0, rows_without_pose = 0;
+  double usual_step_s = 0;
+  struct Gap {
+    double after_s = 0, length_s = 0;
+  };
+  std::vector<Gap> gaps = {};  // longer than two and a half usual steps
+  bool has_markers = false;
+  double residual_rms_mm = 0, residual_max_mm = 0;  // of markers from the fitted rigid pose
+  double smooth_hz = 0;                             // jitter above was taken out; 0: nothing was
+};
+
 /// Asks for a pose of the mandible at each time.
 struct Motion {
   std::string name;
@@ -39,6 +55,10 @@ struct Motion {
   std::vector<MotionPhase> phases = {};  // of a built-in motion, in order
   std::vector<MotionInput> inputs = {};
   MotionBorders borders = {};  // of motions that are measured by them (chewing, posselt)
+  // Of a motion driven by muscles: their names, and what each does at a time.
+  std::vector<std::string> muscle_names = {};
+  std::function<MuscleStates(double time_s)> muscles = {};
+  std::optional<RecordingFacts> recording = {};  // of a file
 };
 
 struct MotionSettings {

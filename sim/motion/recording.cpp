@@ -1,165 +1,99 @@
 #include "sim/motion/recording.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <memory>
-#include <string_view>
 
 #include "engine/core/error.h"
-#include "engine/core/files.h"
+#include "sim/case/source_frame.h"
+#include "sim/motion/condylar_path.h"
+#include "sim/motion/recording_files.h"
 
 namespace condyle {
 namespace {
 
-constexpr std::size_t largest_file = std::size_t{256} << 20;
-constexpr double farthest_mm = 1000;
-constexpr double longest_s = 86400;
-constexpr double unit_tolerance = 1e-3;  // of a quaternion's length: files have few digits
+using Eigen::Vector3d;
 
-constexpr std::array<std::string_view, 8> column_names = {"time_s", "tx_mm", "ty_mm", "tz_mm",
-                                                          "qw",     "qx",    "qy",    "qz"};
+constexpr double farthest_mm = 1000;
+constexpr double gap_of_steps = 2.5;  // longer than so many usual steps is a gap
 
 struct Recording {
   std::vector<double> time_s;  // from 0, increasing
   std::vector<Pose> X_CM;      // neighbours on the same side of the double cover
 };
 
-std::string_view trim(std::string_view text) {
-  const auto blank = [](char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '"';
-  };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-/// Takes the next line off `rest`.
-std::string_view next_line(std::string_view& rest) {
-  const std::size_t end = std::min(rest.find('\n'), rest.size());
-  const std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(std::min(end + 1, rest.size()));
-  return line;
-}
-
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(trim(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
+/// The mandible's poses against the cranium, in rows where both have one.
+PoseSeries against_cranium(const PoseSeries& mandible, const PoseSeries& cranium) {
+  PoseSeries out;
+  out.missing = mandible.missing;
+  std::size_t c = 0;
+  for (std::size_t r = 0; r < mandible.X.size(); ++r) {
+    while (c < cranium.time_s.size() && cranium.time_s[c] < mandible.time_s[r]) ++c;
+    if (c == cranium.time_s.size() || cranium.time_s[c] > mandible.time_s[r]) {
+      ++out.missing;
+      continue;
+    }
+    out.time_s.push_back(mandible.time_s[r]);
+    out.X.push_back(cranium.X[c].inverse() * mandible.X[r]);
+    if (!mandible.residual_mm.empty())
+      out.residual_mm.push_back(std::max(
+          mandible.residual_mm[r], cranium.residual_mm.empty() ? 0.0 : cranium.residual_mm[c]));
   }
+  return out;
 }
 
-std::string shortened(std::string_view text) {
-  return text.size() <= 40 ? std::string(text) : std::string(text.substr(0, 40)) + "...";
-}
-
-/// Where each of our columns stands in the file.
-std::array<std::size_t, 8> find_columns(const std::filesystem::path& file,
-                                        std::string_view header) {
-  std::array<std::size_t, 8> columns{};
-  const auto fields = split(header);
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    const auto same = [&](std::string_view field) {
-      return std::equal(field.begin(), field.end(), column_names[c].begin(), column_names[c].end(),
-                        [](unsigned char x, unsigned char y) { return std::tolower(x) == y; });
-    };
-    const auto found = std::find_if(fields.begin(), fields.end(), same);
-    if (found == fields.end())
-      throw InputError(file, "line 1",
-                       fmt::format("column {} is missing; a pose file starts with the header "
-                                   "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz (found \"{}\")",
-                                   column_names[c], shortened(trim(header))));
-    if (std::find_if(found + 1, fields.end(), same) != fields.end())
-      throw InputError(file, "line 1", fmt::format("column {} stands twice", column_names[c]));
-    columns[c] = static_cast<std::size_t>(found - fields.begin());
+/// From the file's axes into the case's, counted from rest.
+std::vector<Pose> in_case(const std::filesystem::path& file, const PoseSeries& series,
+                          const RecordingMap& map) {
+  const Eigen::Matrix3d axes = source_frame("mm", map.axes).to_lps_mm;
+  std::vector<Pose> out;
+  for (const Pose& pose : series.X) {
+    const Pose X = map.first_is_rest ? pose * series.X.front().inverse() : pose;
+    Pose X_CM = X;
+    if (!axes.isIdentity(0) || !map.origin_mm.isZero(0)) {
+      X_CM.R = Eigen::Quaterniond(Eigen::Matrix3d(axes * X.R.toRotationMatrix() * axes.transpose()))
+                   .normalized();
+      X_CM.t = axes * X.t + map.origin_mm - X_CM.R * map.origin_mm;
+    }
+    if (!(X_CM.t.norm() <= 2 * farthest_mm))
+      throw InputError(file, fmt::format("{:.6g} s", series.time_s[out.size()]),
+                       fmt::format("the mandible is carried {:.0f} mm off; check length_unit and "
+                                   "origin_mm in {}.json",
+                                   X_CM.t.norm(), file.filename().string()));
+    if (!out.empty() && out.back().R.dot(X_CM.R) < 0) X_CM.R.coeffs() = -X_CM.R.coeffs();
+    out.push_back(X_CM);
   }
-  return columns;
+  return out;
 }
 
-double parse(const std::filesystem::path& file, std::size_t line, std::string_view column,
-             std::string_view text) {
-  const auto item = [&] { return fmt::format("line {}, {}", line, column); };
-  std::string_view digits = text;
-  if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc{} || end != digits.data() + digits.size())
-    throw InputError(file, item(), fmt::format("\"{}\" is not a number", shortened(text)));
-  if (!std::isfinite(value))
-    throw InputError(file, item(), fmt::format("{} is not a finite number", text));
-  return value;
-}
-
-/// One row's pose; `before` fixes the sign of the quaternion.
-Pose read_pose(const std::filesystem::path& file, std::size_t line,
-               const std::array<double, 8>& row, const Pose* before) {
-  for (std::size_t c = 1; c <= 3; ++c)
-    if (std::abs(row[c]) > farthest_mm)
-      throw InputError(file, fmt::format("line {}, {}", line, column_names[c]),
-                       fmt::format("{} mm is farther than {} mm; translations are in millimetres",
-                                   row[c], farthest_mm));
-  Pose pose;
-  pose.t = {row[1], row[2], row[3]};
-  pose.R = Eigen::Quaterniond(row[4], row[5], row[6], row[7]);
-  const double length = pose.R.norm();
-  if (!(std::abs(length - 1) <= unit_tolerance))
-    throw InputError(file, fmt::format("line {}, qw qx qy qz", line),
-                     fmt::format("the quaternion ({}, {}, {}, {}) has length {:.6g}; it must be 1",
-                                 row[4], row[5], row[6], row[7], length));
-  pose.R.normalize();
-  if (before && before->R.dot(pose.R) < 0) pose.R.coeffs() = -pose.R.coeffs();
-  return pose;
-}
-
-Recording parse_recording(const std::filesystem::path& file) {
-  const std::string content = read_file(file, largest_file);
-  std::string_view rest = content;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);  // byte order mark
-  if (trim(rest).empty()) throw InputError(file, "", "the file is empty");
-  const auto columns = find_columns(file, next_line(rest));
-  const std::size_t needed = *std::max_element(columns.begin(), columns.end()) + 1;
-
-  Recording recording;
-  double first_s = 0, before_s = 0;
-  for (std::size_t line = 2; !rest.empty(); ++line) {
-    const std::string_view text = next_line(rest);
-    if (trim(text).empty()) continue;
-    const auto fields = split(text);
-    if (fields.size() < needed)
-      throw InputError(
-          file, fmt::format("line {}", line),
-          fmt::format("{} values where at least {} are needed (\"{}\"); the file may be "
-                      "cut off",
-                      fields.size(), needed, shortened(trim(text))));
-    std::array<double, 8> row{};
-    for (std::size_t c = 0; c < row.size(); ++c)
-      row[c] = parse(file, line, column_names[c], fields[columns[c]]);
-    if (recording.time_s.empty())
-      first_s = row[0];
-    else if (row[0] <= before_s)
-      throw InputError(
-          file, fmt::format("line {}, time_s", line),
-          fmt::format("{} does not come after {} of the row before; sort the rows by time", row[0],
-                      before_s));
-    if (row[0] - first_s > longest_s)
-      throw InputError(file, fmt::format("line {}, time_s", line),
-                       fmt::format("{} is more than {} s after the first row; times are in seconds",
-                                   row[0], longest_s));
-    before_s = row[0];
-    const Pose pose =
-        read_pose(file, line, row, recording.X_CM.empty() ? nullptr : &recording.X_CM.back());
-    recording.time_s.push_back(row[0] - first_s);
-    recording.X_CM.push_back(pose);
+/// Weighted with a bell over the neighbours in time that passes half the power at `cutoff_hz`.
+std::vector<Pose> smoothed(const Recording& in, double cutoff_hz) {
+  const double sigma = std::sqrt(std::log(2.0)) / (2 * 3.14159265358979323846 * cutoff_hz);
+  constexpr double reach = 4;
+  std::vector<Pose> out;
+  std::size_t first = 0;
+  for (std::size_t r = 0; r < in.X_CM.size(); ++r) {
+    while (in.time_s[first] < in.time_s[r] - reach * sigma) ++first;
+    // As many on both sides: at the ends less is taken out, and nothing is drawn inward.
+    const double far = std::min(
+        {reach * sigma, in.time_s[r] - in.time_s.front(), in.time_s.back() - in.time_s[r]});
+    Vector3d t = Vector3d::Zero();
+    Eigen::Vector4d q = Eigen::Vector4d::Zero();
+    double sum = 0;
+    for (std::size_t k = first; k < in.X_CM.size() && in.time_s[k] <= in.time_s[r] + far + 1e-12;
+         ++k) {
+      const double away = in.time_s[k] - in.time_s[r];
+      if (away < -far - 1e-12) continue;
+      const double weight = std::exp(-0.5 * away * away / (sigma * sigma));
+      t += weight * in.X_CM[k].t;
+      q += weight * in.X_CM[k].R.coeffs();
+      sum += weight;
+    }
+    out.push_back({Eigen::Quaterniond(Eigen::Vector4d(q.normalized())), t / sum});
   }
-  if (recording.time_s.empty()) throw InputError(file, "", "there is a header but no pose");
-  return recording;
+  return out;
 }
 
 Pose sample(const Recording& recording, double time_s) {
@@ -172,16 +106,127 @@ Pose sample(const Recording& recording, double time_s) {
   return interpolate(recording.X_CM[next - 1], recording.X_CM[next], s);
 }
 
+RecordingFacts facts_of(const RecordingFile& file, const PoseSeries& series) {
+  RecordingFacts facts;
+  facts.format = file.format;
+  facts.rows = static_cast<int>(series.X.size());
+  facts.rows_without_pose = series.missing;
+  std::vector<double> steps;
+  for (std::size_t r = 1; r < series.time_s.size(); ++r)
+    steps.push_back(series.time_s[r] - series.time_s[r - 1]);
+  if (!steps.empty()) {
+    auto sorted = steps;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(sorted.size() / 2),
+                     sorted.end());
+    facts.usual_step_s = sorted[sorted.size() / 2];
+    for (std::size_t k = 0; k < steps.size(); ++k)
+      if (steps[k] > gap_of_steps * facts.usual_step_s)
+        facts.gaps.push_back({series.time_s[k] - series.time_s[0], steps[k]});
+  }
+  double squares = 0;
+  for (const double residual : series.residual_mm) {
+    squares += residual * residual;
+    facts.residual_max_mm = std::max(facts.residual_max_mm, residual);
+  }
+  if (!series.residual_mm.empty())
+    facts.residual_rms_mm = std::sqrt(squares / static_cast<double>(series.residual_mm.size()));
+  facts.has_markers = !series.residual_mm.empty();
+  facts.smooth_hz = file.map.smooth_hz;
+  return facts;
+}
+
+std::vector<std::string> notes_of(const RecordingFacts& facts) {
+  std::vector<std::string> notes;
+  if (facts.format != "table of poses" || facts.has_markers)
+    notes.push_back(fmt::format("recording: {}, {} rows", facts.format, facts.rows));
+  if (facts.has_markers)
+    notes.push_back(fmt::format(
+        "markers leave the fitted rigid pose by {:.3f} mm (root mean square), {:.3f} at "
+        "most",
+        facts.residual_rms_mm, facts.residual_max_mm));
+  if (facts.rows_without_pose > 0)
+    notes.push_back(
+        fmt::format("{} rows without enough markers were left out", facts.rows_without_pose));
+  if (!facts.gaps.empty()) {
+    const auto longest =
+        std::max_element(facts.gaps.begin(), facts.gaps.end(),
+                         [](const auto& a, const auto& b) { return a.length_s < b.length_s; });
+    notes.push_back(fmt::format(
+        "{} in the recording, the longest of {:.3f} s after {:.3f} s; bridged in a straight way",
+        facts.gaps.size() == 1 ? "a gap" : fmt::format("{} gaps", facts.gaps.size()),
+        longest->length_s, longest->after_s));
+  }
+  if (facts.smooth_hz > 0)
+    notes.push_back(
+        fmt::format("jitter above {} Hz was taken out, as its sidecar asks", facts.smooth_hz));
+  return notes;
+}
+
 }  // namespace
 
 Motion read_recording(const std::filesystem::path& file) {
-  const auto recording = std::make_shared<const Recording>(parse_recording(file));
-  return {file.stem().string(),
-          recording->time_s.back(),
-          true,
-          [recording](double time_s) { return sample(*recording, time_s); },
-          {},
-          recording->time_s};
+  const RecordingFile content = read_recording_file(file);
+  const PoseSeries series =
+      content.cranium ? against_cranium(content.mandible, *content.cranium) : content.mandible;
+  if (series.X.empty()) throw InputError(file, "", "in no row are both mandible and cranium seen");
+  auto recording = std::make_shared<Recording>();
+  for (const double time : series.time_s) recording->time_s.push_back(time - series.time_s.front());
+  recording->X_CM = in_case(file, series, content.map);
+  if (content.map.smooth_hz > 0) recording->X_CM = smoothed(*recording, content.map.smooth_hz);
+  Motion motion{.name = file.stem().string(),
+                .duration_s = recording->time_s.back(),
+                .recorded = true,
+                .wanted = [recording](double time_s) { return sample(*recording, time_s); },
+                .notes = {},
+                .sample_times = recording->time_s};
+  motion.recording = facts_of(content, series);
+  motion.notes = notes_of(*motion.recording);
+  return motion;
+}
+
+void note_what_looks_wrong(const Case& patient, Motion& motion) {
+  constexpr double hardly_mm = 1, far_mm = 90, rise_mm = 3, from_rest_mm = 5;
+  constexpr double fastest_mm_s = 1000, widest_rad = 60 * radian_per_degree;
+  const auto incisor = patient.landmarks.find("lower_incisal_point");
+  if (!incisor || motion.sample_times.size() < 2) return;
+  double drop = 0, rise = 0, far = 0, speed = 0, turn = 0, before_s = 0;
+  Vector3d before = motion.wanted(0) * *incisor;
+  for (const double time : motion.sample_times) {
+    const Pose X = motion.wanted(time);
+    const Vector3d now = X * *incisor;
+    drop = std::max(drop, incisor->z() - now.z());
+    rise = std::max(rise, now.z() - incisor->z());
+    far = std::max(far, (now - *incisor).norm());
+    turn = std::max(turn, rotation_angle(X));
+    if (time > before_s) speed = std::max(speed, (now - before).norm() / (time - before_s));
+    before = now;
+    before_s = time;
+  }
+  auto& notes = motion.notes;
+  const double start = (motion.wanted(0) * *incisor - *incisor).norm();
+  if (far < hardly_mm)
+    notes.push_back(fmt::format(
+        "suspicious: the incisal point moves {:.3g} mm at most; are the file's lengths metres?",
+        far));
+  if (far > far_mm)
+    notes.push_back(fmt::format(
+        "suspicious: the incisal point goes {:.0f} mm away; no jaw does. Check units and origin",
+        far));
+  if (rise > rise_mm && rise > drop)
+    notes.push_back(fmt::format(
+        "suspicious: the incisal point goes up {:.1f} mm and down {:.1f} mm; check the axes", rise,
+        drop));
+  if (start > from_rest_mm)
+    notes.push_back(fmt::format(
+        "suspicious: the recording starts {:.1f} mm from rest; \"rest\": \"first\" in a sidecar "
+        "counts from its first row",
+        start));
+  if (speed > fastest_mm_s)
+    notes.push_back(fmt::format(
+        "suspicious: the incisal point is as fast as {:.0f} mm/s; jaws reach about 460", speed));
+  if (turn > widest_rad)
+    notes.push_back(
+        fmt::format("suspicious: the mandible turns by {:.0f} degrees", turn / radian_per_degree));
 }
 
 }  // namespace condyle

@@ -67,6 +67,38 @@ Json soft_response(const Scene& scene, const FrameState& frame) {
   return json;
 }
 
+Json told(const RecordingFacts& facts) {
+  Json json = {{"format", facts.format},
+               {"rows", facts.rows},
+               {"rows_without_pose", facts.rows_without_pose},
+               {"usual_step_s", facts.usual_step_s},
+               {"gaps", Json::array()}};
+  for (const auto& gap : facts.gaps)
+    json["gaps"].push_back({{"after_s", gap.after_s}, {"length_s", gap.length_s}});
+  if (facts.has_markers)
+    json["marker_residual_mm"] = {{"rms", facts.residual_rms_mm}, {"max", facts.residual_max_mm}};
+  if (facts.smooth_hz > 0) json["smooth_hz"] = facts.smooth_hz;
+  return json;
+}
+
+/// What the motion does not show is left out.
+Json told(const JointFit& fit) {
+  Json json;
+  const auto put = [](Json& where, const char* name, const std::optional<double>& value) {
+    if (value) where[name] = *value;
+  };
+  for (const auto& [name, side] : {std::pair{"left", &fit.left}, std::pair{"right", &fit.right}}) {
+    Json& where = json[name] = {{"forward_travel_mm", side->travel_mm}};
+    put(where, "inclination_deg", side->inclination_deg);
+    put(where, "bennett_deg", side->bennett_deg);
+    put(where, "immediate_side_shift_mm", side->side_shift_mm);
+  }
+  put(json, "hinge_deg", fit.hinge_deg);
+  put(json, "deg_per_mm", fit.deg_per_mm);
+  json["reference_plane"] = fit.to_frankfort ? "Frankfort" : "horizontal";
+  return json;
+}
+
 }  // namespace
 
 StageSummary summarise(std::vector<double> ms) {
@@ -149,6 +181,9 @@ std::string MotionReport::json() const {
     json["motion"]["inputs"].push_back(
         {{"name", input.name}, {"value", input.value}, {"unit", input.unit}});
   json["motion"]["notes"] = motion_.notes;
+  if (motion_.recording) json["motion"]["recording"] = told(*motion_.recording);
+  if (motion_.recorded)
+    if (const auto joint = fit_joint(scene_.patient, motion_)) json["motion"]["joint"] = told(*joint);
   json["frames"] = frames_;
   json["step_s"] = settings_.step_s;
   const auto& w = widest_.measures;

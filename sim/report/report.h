@@ -1,9 +1,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/motion/joint_fit.h"
 #include "sim/report/motion_truth.h"
 #include "sim/simulator/simulator.h"
 

@@ -23,11 +23,14 @@ const char* TraceWriter::header() {
          "helical_point_y_mm,helical_point_z_mm,helical_slide_mm,incisor_speed_mm_s";
 }
 
-TraceWriter::TraceWriter(const std::filesystem::path& file)
+TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& muscles)
     : file_(file), beside_(file.parent_path() / ("." + file.filename().string() + ".part")) {
   stream_ = std::fopen(beside_.c_str(), "wb");
   if (!stream_) throw MachineError(file_.string() + ": cannot be written: " + std::strerror(errno));
-  put(std::string(header()) + "\n");
+  std::string columns = header();
+  for (const auto& name : muscles)
+    columns += fmt::format(",{0}_excitation,{0}_length_mm,{0}_force_N", name);
+  put(columns + "\n");
 }
 
 TraceWriter::~TraceWriter() {
@@ -84,6 +87,8 @@ void TraceWriter::add(int frame, const FrameState& s) {
   before_s_ = s.time_s;
   incisor_before_ = m.incisor;
   ++rows_;
+  for (const MuscleState& muscle : s.muscles)
+    numbers({muscle.excitation, muscle.length_mm, muscle.force_N});
   put(row + "\n");
 }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "sim/frame/frame_state.h"
 
@@ -12,8 +13,10 @@ namespace condyle {
 /// `finish`; until then an earlier trace stays whole.
 class TraceWriter {
  public:
+  /// `muscles`: names, of a motion that they drive; three columns each stand at the end.
   /// throws: MachineError when the file cannot be made.
-  explicit TraceWriter(const std::filesystem::path& file);
+  explicit TraceWriter(const std::filesystem::path& file,
+                       const std::vector<std::string>& muscles = {});
   ~TraceWriter();
   TraceWriter(const TraceWriter&) = delete;
   TraceWriter& operator=(const TraceWriter&) = delete;

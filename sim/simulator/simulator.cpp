@@ -90,6 +90,7 @@ FrameState Playback::step_to(double time_s, const FrameState& from) const {
     input.X_CM_wanted = motion_.wanted(time_s);
   }
   FrameState next = step(scene_, from, input, settings_);
+  if (motion_.muscles) next.muscles = motion_.muscles(time_s);
   next.times[Stage::motion] = motion_time[Stage::motion];
   return next;
 }

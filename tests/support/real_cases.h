@@ -12,7 +12,9 @@ inline std::filesystem::path real_data() {
   return std::filesystem::path(CONDYLE_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
-inline std::optional<Case> case_ubc() {
+/// Its muscles and mechanics only where they are asked for: they change how its joints are guided.
+enum class Driven { no, by_muscles };
+inline std::optional<Case> case_ubc(Driven driven = Driven::no) {
   const auto folder = real_data() / "case-ubc";
   if (!std::filesystem::exists(folder)) return std::nullopt;
   ImportRequest request;
@@ -22,6 +24,10 @@ inline std::optional<Case> case_ubc() {
                    {Role::lower_teeth, folder / "lower_teeth.ply"}};
   request.landmarks = folder / "markers.csv";
   request.name = "case-ubc";
+  if (driven == Driven::by_muscles) {
+    request.muscles = folder / "muscles.csv";
+    request.mechanics = folder / "model_parameters.json";
+  }
   return import_meshes(request);
 }
 

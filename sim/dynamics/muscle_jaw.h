@@ -1,0 +1,90 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim/case/case.h"
+#include "sim/dynamics/bite_plane.h"
+#include "sim/dynamics/bolus.h"
+#include "sim/dynamics/hyoid.h"
+#include "sim/dynamics/jaw_world.h"
+#include "sim/frame/muscle_state.h"
+#include "sim/muscles/muscle_law.h"
+
+namespace condyle {
+
+/// A force or velocity and, about the centre of mass, a torque or spin.
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+struct MuscleJawSettings {
+  MuscleLawSettings law = {};
+  BolusSettings bolus = {};
+  enum class HyoidMode { free, fixed, prescribed } hyoid = HyoidMode::free;
+  std::function<Eigen::Vector3d(double time_s)> hyoid_way = {};  // from rest, when prescribed
+  bool teeth = true;      // false: the bite is flat, at the back teeth as they meet at rest
+  double friction = 0.1;  // of wet teeth
+};
+
+/// The mandible as a rigid body that muscles pull, on the guides of its condyles with stops behind
+/// and at the sides, with gravity, the teeth and perhaps a bolus.
+class MuscleJaw {
+ public:
+  /// throws: InputError when landmarks, teeth or muscles of the patient do not do.
+  MuscleJaw(const Case& patient, const MuscleJawSettings& settings, int threads = 1);
+
+  /// One step with an excitation of 0 to 1 for each muscle. False, and nothing changed, when
+  /// something would go faster than a jaw can.
+  bool step(std::span<const double> excitations, int threads = 1);
+
+  const std::vector<Muscle>& muscles() const { return muscles_; }
+  double step_s() const { return jaw_.world.settings().step_s; }
+  double time_s() const { return time_s_; }
+  const Pose& pose() const { return jaw_.world.pose(jaw_.mandible); }
+  const RigidMotion& motion() const { return jaw_.world.motion(jaw_.mandible); }
+  const Pose& hyoid_pose() const { return hyoid_.pose(); }
+  const MuscleStates& states() const { return states_; }
+  /// Taken off crowns that overlap at rest.
+  double worn_mm() const { return jaw_.worn_mm; }
+  double bolus_push_N() const { return bolus_push_N_; }
+  const RigidWorld& world() const { return jaw_.world; }
+
+  /// What a muscle would do at full activation, and does without any, as things stand now: on the
+  /// mandible, about its centre of mass (zero where it does not pull there).
+  struct Pull {
+    Vector6d direction;  // unit force and its torque, N and N mm
+    MuscleTension tension;
+  };
+  std::vector<Pull> pulls() const;
+  /// Force and torque of gravity, drag and bolus on the mandible, N and N mm.
+  Vector6d other_forces() const;
+  /// What the guides and the stops at the sides hold: row . (velocity, spin) = 0.
+  Eigen::Matrix<double, 3, 6> held() const;
+  Eigen::Vector3d center() const { return pose() * mass_.center; }
+  const MassProperties& mass() const { return mass_; }
+  const MuscleLawSettings& law() const { return settings_.law; }
+
+ private:
+  struct Line;
+  Line line(const Muscle& muscle) const;
+  Vector6d direction(std::size_t muscle, const Line& now) const;
+  Eigen::MatrixXd free_directions() const;
+  void pull(std::span<const double> excitations);
+  void move_hyoid();
+
+  std::vector<Muscle> muscles_;
+  MuscleJawSettings settings_;
+  JawWorldSettings world_settings_;
+  JawWorld jaw_;
+  MassProperties mass_;
+  Hyoid hyoid_;
+  BitePlane bite_;
+  std::optional<Bolus> bolus_;
+  std::vector<int> forces_;  // in the world, of each muscle; -1: it does not pull the mandible
+  int bolus_force_ = -1;
+  MuscleStates states_;
+  double time_s_ = 0, bolus_push_N_ = 0;
+};
+
+}  // namespace condyle
