@@ -48,6 +48,16 @@ class DistanceField {
 
   FieldSample at(const Eigen::Vector3d& p) const;
 
+  /// The same in two parts, for those who want few gradients.
+  struct Spot {
+    double distance_mm = 0;
+    bool known = false;
+    const float* corner = nullptr;  // null: no gradient
+    double a = 0, b = 0, c = 0;     // within its cell
+  };
+  Spot spot(const Eigen::Vector3d& p) const;
+  Eigen::Vector3d gradient(const Spot& spot) const;
+
   /// No smaller than this is the signed distance at p, near or far; infinite outside the region.
   double lower_bound(const Eigen::Vector3d& p) const;
 
@@ -91,14 +101,14 @@ class DistanceField {
 };
 
 /// In the header because sliding asks it some hundred thousand times a frame.
-inline FieldSample DistanceField::at(const Eigen::Vector3d& p) const {
-  FieldSample sample;
-  sample.distance_mm = settings_.band_mm;
+inline DistanceField::Spot DistanceField::spot(const Eigen::Vector3d& p) const {
+  Spot spot;
+  spot.distance_mm = settings_.band_mm;
   const double ux = (p.x() - origin_.x()) * per_mm_, uy = (p.y() - origin_.y()) * per_mm_,
                uz = (p.z() - origin_.z()) * per_mm_;
   if (!(ux >= 0 && uy >= 0 && uz >= 0 && ux < cells * size_[0] && uy < cells * size_[1] &&
         uz < cells * size_[2]))
-    return sample;
+    return spot;
   const auto x = static_cast<std::uint32_t>(static_cast<std::int32_t>(ux)),
              y = static_cast<std::uint32_t>(static_cast<std::int32_t>(uy)),
              z = static_cast<std::uint32_t>(static_cast<std::int32_t>(uz));
@@ -106,27 +116,44 @@ inline FieldSample DistanceField::at(const Eigen::Vector3d& p) const {
       slot(static_cast<int>(x / cells), static_cast<int>(y / cells), static_cast<int>(z / cells));
   const std::int32_t index = brick_[place];
   if (index < 0) {
-    if (bound_[place] < 0) sample.distance_mm = -settings_.band_mm;
-    return sample;
+    if (bound_[place] < 0) spot.distance_mm = -settings_.band_mm;
+    return spot;
   }
   const Brick& brick = bricks_[static_cast<std::size_t>(index)];
   const std::uint32_t i = x % cells, j = y % cells, k = z % cells;
   const float* v = &brick.value[i + corners * (j + corners * k)];
   constexpr int dy = corners, dz = corners * corners;
-  const double a = ux - x, b = uy - y, c = uz - z;
-  // Along x on the four edges, then y, then z; the slopes fall out on the way.
+  spot.corner = v;
+  spot.a = ux - x;
+  spot.b = uy - y;
+  spot.c = uz - z;
+  // Along x on the four edges, then y, then z.
+  const double v00 = v[0] + spot.a * (v[1] - v[0]), v10 = v[dy] + spot.a * (v[dy + 1] - v[dy]),
+               v01 = v[dz] + spot.a * (v[dz + 1] - v[dz]),
+               v11 = v[dz + dy] + spot.a * (v[dz + dy + 1] - v[dz + dy]);
+  const double v0 = v00 + spot.b * (v10 - v00), v1 = v01 + spot.b * (v11 - v01);
+  spot.distance_mm = v0 + spot.c * (v1 - v0);
+  spot.known = !brick.unknown[i + cells * (j + cells * k)];
+  return spot;
+}
+
+inline Eigen::Vector3d DistanceField::gradient(const Spot& spot) const {
+  const float* v = spot.corner;
+  if (!v) return Eigen::Vector3d::Zero();
+  constexpr int dy = corners, dz = corners * corners;
   const double s00 = v[1] - v[0], s10 = v[dy + 1] - v[dy], s01 = v[dz + 1] - v[dz],
                s11 = v[dz + dy + 1] - v[dz + dy];
-  const double v00 = v[0] + a * s00, v10 = v[dy] + a * s10, v01 = v[dz] + a * s01,
-               v11 = v[dz + dy] + a * s11;
-  const double v0 = v00 + b * (v10 - v00), v1 = v01 + b * (v11 - v01);
-  const double s0 = s00 + b * (s10 - s00), s1 = s01 + b * (s11 - s01);
-  sample.distance_mm = v0 + c * (v1 - v0);
-  sample.gradient = {per_mm_ * (s0 + c * (s1 - s0)),
-                     per_mm_ * ((v10 - v00) + c * ((v11 - v01) - (v10 - v00))),
-                     per_mm_ * (v1 - v0)};
-  sample.known = !brick.unknown[i + cells * (j + cells * k)];
-  return sample;
+  const double v00 = v[0] + spot.a * s00, v10 = v[dy] + spot.a * s10, v01 = v[dz] + spot.a * s01,
+               v11 = v[dz + dy] + spot.a * s11;
+  const double s0 = s00 + spot.b * (s10 - s00), s1 = s01 + spot.b * (s11 - s01);
+  return {per_mm_ * (s0 + spot.c * (s1 - s0)),
+          per_mm_ * ((v10 - v00) + spot.c * ((v11 - v01) - (v10 - v00))),
+          per_mm_ * (v01 + spot.b * (v11 - v01) - (v00 + spot.b * (v10 - v00)))};
+}
+
+inline FieldSample DistanceField::at(const Eigen::Vector3d& p) const {
+  const Spot here = spot(p);
+  return {here.distance_mm, gradient(here), here.known};
 }
 
 /// The field kept in a cache folder under the hash of mesh and settings; made and put there when it

@@ -22,7 +22,7 @@ struct Search {
 
   void ball(int index) {
     const SurfaceSamples::Ball& ball_here = samples.balls[index];
-    const Vector3d center = R * ball_here.center + t;
+    const Vector3d center = R * ball_here.center.cast<double>() + t;
     // Within the band the field tells more than its bounds do.
     const FieldSample at_center = field.at(center);
     const double bound =
@@ -44,7 +44,7 @@ struct Search {
 void lower(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS, int index,
            double& least) {
   const SurfaceSamples::Ball& ball = samples.balls[index];
-  const double bound = field.lower_bound(X_FS * ball.center) - ball.radius;
+  const double bound = field.lower_bound(X_FS * ball.center.cast<double>()) - ball.radius;
   if (bound >= least) return;
   if (ball.right == 0) {
     least = bound;

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/collide/slide_nodes.h"
 #include "engine/collide/slide_probe.h"
 #include "engine/collide/slide_walk.h"
 
@@ -18,10 +19,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double free_mm = 0.05;     // clearance of a start
-constexpr double drawn_share = 0.7;  // of the depth, at a time
-constexpr int max_draws = 60;
-constexpr double rest_reach_mm = 5;
 constexpr int max_walks = 8;
 // Of the band: poses so near each other have nothing between them.
 constexpr double near_share = 0.5;
@@ -97,9 +94,10 @@ SlidingContact::SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fix
 
 struct SlideMemory::State {
   State(const SlidingContact& model, std::uint64_t model_id, int threads)
-      : id(model_id), here(model, threads), there(model, threads) {}
+      : id(model_id), here(model, threads), there(model, threads), nodes(model, there) {}
   std::uint64_t id;
   SlideProbe here, there;  // along the body's way, and about the wanted pose
+  SlideNodes nodes;
 };
 
 SlideMemory::SlideMemory() = default;
@@ -133,7 +131,8 @@ double SlidingContact::allowed_share(const Pair& pair, const Pose& X_FM) const {
   const auto& balls = pair.mover().samples.balls;
   if (balls.empty()) return 1;
   const Pose now = pair.between(X_FM);
-  const double way = (now * balls[0].center - pair.rest * balls[0].center).norm() +
+  const Vector3d center = balls[0].center.cast<double>();
+  const double way = (now * center - pair.rest * center).norm() +
                      rotation_angle(pair.rest.inverse() * now) * balls[0].radius;
   const double share = way / fade_mm_;
   return std::max(0.0, 1 - share * share);
@@ -166,34 +165,6 @@ double SlidingContact::depth(const Pose& X_FM, int threads) const {
   return std::max(0.0, -probe.worst_gap());
 }
 
-/// A free pose near the wanted one: what overlaps there is drawn out, a part of its depth at a
-/// time, along the sum of its ways out. None where the wanted pose is free itself or these ways
-/// lead nowhere.
-std::optional<Pose> SlidingContact::start_for(const Pose& wanted, SlideProbe& probe) const {
-  Pose X = wanted;
-  Vector3d last = Vector3d::Zero();
-  for (int k = 0; k < max_draws; ++k) {
-    SlideProbe::Overlap overlap = probe.overlap_at(X);
-    if (overlap.depth_mm <= settings_.slop_mm) {  // roughly; now in full
-      probe.look_at(X, 0);
-      const double least = k == 0 ? -settings_.slop_mm : 0;
-      if (!(probe.deepest_gap() < least)) return k == 0 ? std::nullopt : std::optional(X);
-      overlap = {-probe.deepest_gap(), Vector3d::Zero(), 0};
-      for (const SlideCandidate& c : probe.candidates()) {
-        overlap.outward -= c.gap * c.gradient;
-        overlap.sum_mm -= c.gap;
-      }
-    }
-    if (!(overlap.outward.norm() > 0.02 * overlap.sum_mm)) return std::nullopt;
-    Vector3d out = overlap.outward.normalized();
-    // Between two walls it would go to and fro: what both ways have in common leads out.
-    if (out.dot(last) < 0) out = (out + last).normalized();
-    X.t += (drawn_share * overlap.depth_mm + free_mm) * out;
-    last = out;
-  }
-  return std::nullopt;
-}
-
 SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMemory* memory,
                                   int threads) const {
   SlideResult out;
@@ -207,19 +178,12 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
   SlideWalk walk(*this, here);
   if (settings_.friction > 0) return walk.towards(from, wanted);
 
-  if (auto start = start_for(wanted, there)) {
-    SlideResult answer = SlideWalk(*this, there).towards(*start, wanted);
-    // What overlaps at rest may be reached from there alone.
-    if (rest_ && there.way_of(there.between(*rest_, wanted)) < rest_reach_mm) {
-      const SlideResult other = SlideWalk(*this, there).towards(*rest_, wanted);
-      const auto left = [&](const SlideResult& a) {
-        return a.settled ? there.between(a.X_FM, wanted).norm() : infinity;
-      };
-      if (left(other) < left(answer)) {
-        answer = other;
-        start = rest_;
-      }
-    }
+  if (auto& nodes = kept.state_->nodes; nodes.overlaps(wanted)) {
+    const SlideNodes::Node start = nodes.nearest(wanted);
+    SlideResult answer;
+    if (start.found) answer = SlideWalk(*this, there).towards(start.X, wanted);
+    answer.reached &= start.reached;
+    nodes.look_ahead(wanted);
     const double near = near_share * band_mm_;
     const auto reach = [&](const Pose& to) {  // whether it does, and passes through nothing
       if (here.way_of(here.between(from, to)) <= near) return std::pair(true, true);
@@ -230,7 +194,7 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
     if (answer.settled) {
       auto [reaches, surely] = reach(answer.X_FM);
       if (!reaches) {
-        std::tie(reaches, surely) = reach(*start);
+        std::tie(reaches, surely) = reach(start.root);
         surely &= answer.reached;
       }
       answer.reached = surely;

@@ -112,12 +112,13 @@ class SlidingContact {
 
   /// The pose near the wanted one (least squares of the pivot's way and the rotation times its
   /// length) that touches and does not overlap. Without friction it depends on the wanted pose
-  /// alone: what overlaps there is drawn out along its ways out and slides back towards the wanted
-  /// pose. That answer counts where the body reaches it from `from` without passing through
-  /// anything; where it does not, or with friction, the answer is where the body gets to as it
-  /// slides from `from`. All motion goes in steps of a quarter of the band. A start that overlaps
-  /// is moved out, an answer is its own answer. Poses that are not finite move nothing and are not
-  /// settled. Same bits for any number of threads.
+  /// alone: the body slides to it from where it gets to at the nearest place of a lattice, and
+  /// there from a neighbour nearer to freedom, or to rest. The memory keeps these places: without
+  /// one each call finds them anew. That answer counts where the body reaches it from `from`
+  /// without passing through anything; where it does not, or with friction, the answer is where the
+  /// body gets to as it slides from `from`. All motion goes in steps of a quarter of the band. A
+  /// start that overlaps is moved out, an answer is its own answer. Poses that are not finite move
+  /// nothing and are not settled. Same bits for any number of threads.
   SlideResult slide(const Pose& from, const Pose& wanted, SlideMemory* memory = nullptr,
                     int threads = 1) const;
 
@@ -128,6 +129,7 @@ class SlidingContact {
   const Eigen::Vector3d& pivot() const { return pivot_; }
 
  private:
+  friend class SlideNodes;
   friend class SlideProbe;
   friend class SlideWalk;
   struct Pair {  // samples of one body in the field of the other
@@ -149,7 +151,6 @@ class SlidingContact {
     const SlideBody& mover() const { return samples_move ? *samples : *field; }
   };
 
-  std::optional<Pose> start_for(const Pose& wanted, SlideProbe& probe) const;
   /// Of what a pair allows, at a pose.
   double allowed_share(const Pair& pair, const Pose& X_FM) const;
 

@@ -13,9 +13,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double near_share = 0.5;  // of the band: gaps up to here are measured, not bounded
-constexpr double coarse_mm = 0.8;
+constexpr double near_share = 0.5;    // of the band: gaps up to here are measured, not bounded
+constexpr double coarse_mm = 1.5;     // of a ball of which one sample tells the overlap
+constexpr double close_mm = 0.06;     // all samples as near as this count
 constexpr double rounding_mm = 1e-4;  // of what is kept of a look
+
 }  // namespace
 
 /// One look at a pair.
@@ -31,27 +33,33 @@ struct SlideProbe::Search {
   Vector3d t_FS;
 
   /// Written out: this is asked more often than anything else.
-  Vector3d in_field(const Vector3d& p) const {
+  template <class Vector>
+  Vector3d in_field(const Vector& p) const {
+    const double x = p.x(), y = p.y(), z = p.z();
     const auto& R = R_FS;
-    return {R(0, 0) * p.x() + R(0, 1) * p.y() + R(0, 2) * p.z() + t_FS.x(),
-            R(1, 0) * p.x() + R(1, 1) * p.y() + R(1, 2) * p.z() + t_FS.y(),
-            R(2, 0) * p.x() + R(2, 1) * p.y() + R(2, 2) * p.z() + t_FS.z()};
+    return {R(0, 0) * x + R(0, 1) * y + R(0, 2) * z + t_FS.x(),
+            R(1, 0) * x + R(1, 1) * y + R(1, 2) * z + t_FS.y(),
+            R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + t_FS.z()};
   }
 
   /// No sample of the ball has a smaller gap than this.
   double ball(int b) {
     const SurfaceSamples::Ball& here = pair.samples->samples.balls[b];
+    const bool leaf = here.right == 0;
+    if (!leaf) {
+      __builtin_prefetch(&pair.samples->samples.balls[here.right]);
+      __builtin_prefetch(&seen[here.right]);
+    }
     const Vector3d center = in_field(here.center);
     Seen& last = seen[b];
     const double way = (center - Vector3d(last.x, last.y, last.z)).norm() +
                        (turned - last.turned) * here.radius + rounding_mm;
     if (last.gap - way > within) return last.gap - way;
     double gap = -infinity;
-    const bool leaf = here.right == 0;
     // A ball that moved by less than its size is as near as before: its parts know more.
     if (leaf || way > here.radius) {
       const DistanceField& field = pair.field->field;
-      const FieldSample at = field.at(center);
+      const DistanceField::Spot at = field.spot(center);
       // Within the band the field tells more than its bounds do.
       gap = (at.known ? at.distance_mm - field_bend_mm : field.lower_bound(center)) - here.radius -
             pair.gap_mm;
@@ -63,33 +71,51 @@ struct SlideProbe::Search {
     return gap;
   }
 
-  /// No sample of a leaf is nearer than this.
+  /// No sample of a leaf is nearer than this. Of those that are not close the nearest stands for
+  /// all: what it hides is seen at the next look, from where it matters.
   double samples(const SurfaceSamples::Ball& leaf) {
     const SurfaceSamples& s = pair.samples->samples;
+    const DistanceField& field = pair.field->field;
+    const double band = field.settings().band_mm;
     double least = infinity;
+    SlideCandidate nearest, aside;  // what faces, and what does not
+    nearest.gap = aside.gap = infinity;
     for (int i = leaf.first; i < leaf.first + leaf.count; ++i) {
       const double allowed = share > 0 ? share * static_cast<double>(pair.allowed[i]) : 0.0;
       if (allowed == -infinity) continue;
-      const Vector3d p = in_field(s.points[i]);
-      const FieldSample at = pair.field->field.at(p);
+      const DistanceField::Spot at = field.spot(in_field(s.points[i]));
       const double gap = at.distance_mm - pair.gap_mm;
-      least = std::min(least, at.known ? gap - field_bend_mm
-                              : at.distance_mm < pair.field->field.settings().band_mm ? -infinity
-                                                                                      : gap);
-      if (gap - allowed > within) continue;
-      const SampleLook look = judged(at, R_FS * s.normals[i], s.spread[i]);
+      least = std::min(least, at.known                ? gap - field_bend_mm
+                              : at.distance_mm < band ? -infinity
+                                                      : gap);
+      if (gap - allowed > std::min(within, nearest.gap)) continue;
+      const SampleLook look =
+          judged({at.distance_mm, field.gradient(at), at.known}, R_FS * s.normals[i], s.spread[i]);
       SlideCandidate c;
       c.pair = index;
       c.sample = i;
       c.known = look.known;
       c.faces = look.faces;
       c.gap = gap - allowed;
-      c.point = X_fixed * s.points[i];
-      c.gradient = R_FD * look.gradient;
-      if (!pair.samples_move) c.gradient = -c.gradient;
-      found.push_back(c);
+      c.gradient = look.gradient;
+      if (c.gap <= close_mm) {
+        add(c);
+      } else if (c.faces) {
+        nearest = c;
+      } else if (c.gap < aside.gap) {
+        aside = c;
+      }
     }
+    if (nearest.gap < infinity) add(nearest);
+    if (aside.gap < nearest.gap) add(aside);
     return least;
+  }
+
+  void add(SlideCandidate c) {
+    c.point = X_fixed * pair.samples->samples.points[c.sample];
+    c.gradient = R_FD * c.gradient;
+    if (!pair.samples_move) c.gradient = -c.gradient;
+    found.push_back(c);
   }
 };
 
@@ -129,14 +155,14 @@ void SlideProbe::look_at(const Pose& X, double within_mm) {
     }
 }
 
-SlideProbe::Overlap SlideProbe::overlap_at(const Pose& X) const {
-  Overlap sum;
+template <class At>
+void SlideProbe::each_overlap(const Pose& X, const At& at) const {
   std::vector<int> stack;
   for (const auto& pair : model_.pairs_) {
     const SurfaceSamples& s = pair.samples->samples;
     const DistanceField& field = pair.field->field;
     const Pose X_FS = pair.to_field(X);
-    const Eigen::Quaterniond R_samples = pair.samples_move ? X.R * pair.X_MS.R : pair.X_FS.R;
+    const Eigen::Matrix3d R = X_FS.R.toRotationMatrix();
     const double share = model_.allowed_share(pair, X);
     stack.assign(s.balls.empty() ? 0 : 1, 0);
     while (!stack.empty()) {
@@ -144,10 +170,11 @@ SlideProbe::Overlap SlideProbe::overlap_at(const Pose& X) const {
       stack.pop_back();
       const SurfaceSamples::Ball& ball = s.balls[index];
       const bool stands = ball.right == 0 || ball.radius < coarse_mm;
-      const Vector3d p = X_FS * (stands ? s.points[ball.first] : ball.center);
-      const FieldSample at = field.at(p);
+      const Vector3d p =
+          R * (stands ? s.points[ball.first] : Vector3d(ball.center.cast<double>())) + X_FS.t;
+      const DistanceField::Spot here = field.spot(p);
       if (!stands) {
-        const double least = at.known ? at.distance_mm - field_bend_mm : field.lower_bound(p);
+        const double least = here.known ? here.distance_mm - field_bend_mm : field.lower_bound(p);
         if (least - pair.gap_mm > ball.radius) continue;
         stack.push_back(ball.right);
         stack.push_back(index + 1);
@@ -155,15 +182,32 @@ SlideProbe::Overlap SlideProbe::overlap_at(const Pose& X) const {
       }
       const double allowed =
           share > 0 ? share * static_cast<double>(pair.allowed[ball.first]) : 0.0;
-      const double depth = allowed + pair.gap_mm - at.distance_mm;
-      if (!(depth > 0)) continue;
-      const Vector3d normal = R_samples * s.normals[ball.first];
-      sum.depth_mm = std::max(sum.depth_mm, depth);
-      sum.sum_mm += depth;
-      sum.outward += depth * (pair.samples_move ? Vector3d(-normal) : normal);
+      const double depth = allowed + pair.gap_mm - here.distance_mm;
+      if (depth > 0 && !at(pair, ball.first, depth)) return;
     }
   }
+}
+
+SlideProbe::Overlap SlideProbe::overlap_at(const Pose& X) const {
+  Overlap sum;
+  each_overlap(X, [&](const SlidingContact::Pair& pair, int sample, double depth) {
+    const Vector3d& normal = pair.samples->samples.normals[sample];
+    sum.depth_mm = std::max(sum.depth_mm, depth);
+    sum.sum_mm += depth;
+    sum.outward += depth * (pair.samples_move ? Vector3d(-(X.R * (pair.X_MS.R * normal)))
+                                              : Vector3d(pair.X_FS.R * normal));
+    return true;
+  });
   return sum;
+}
+
+bool SlideProbe::overlaps_at(const Pose& X, double depth_mm) const {
+  bool found = false;
+  each_overlap(X, [&](const SlidingContact::Pair&, int, double depth) {
+    found = depth > depth_mm;
+    return !found;
+  });
+  return found;
 }
 
 double SlideProbe::clearance(const Pose& X) {

@@ -25,7 +25,8 @@ class SlideProbe {
  public:
   SlideProbe(const SlidingContact& model, int threads);
 
-  /// Finds the samples with a gap of at most `within_mm`, and those whose gap is not known.
+  /// Finds the samples with a gap of at most `within_mm`, and those whose gap is not known. Of
+  /// neighbours that are not close one stands for all.
   void look_at(const Pose& X, double within_mm);
 
   /// Of the last look, by pair and sample.
@@ -35,13 +36,15 @@ class SlideProbe {
   /// The same, but samples too deep to be known count as deep as the band.
   double deepest_gap() const { return deepest_gap_; }
 
-  /// What overlaps at X, roughly: a sample of each ball below `coarse_mm` stands for all.
+  /// What overlaps at X, roughly: a sample of each small ball stands for all.
   struct Overlap {
     double depth_mm = 0;
     Eigen::Vector3d outward = {0, 0, 0};  // sum of the ways out, each as long as it is deep
     double sum_mm = 0;                    // of those lengths
   };
   Overlap overlap_at(const Pose& X) const;
+  /// Whether any of these samples is deeper.
+  bool overlaps_at(const Pose& X, double depth_mm) const;
 
   /// No larger than the gap at X, however far the bodies are.
   double clearance(const Pose& X);
@@ -58,6 +61,10 @@ class SlideProbe {
     float turned = 0;  // way of the body's turning until then, rad
   };
   struct Search;
+  /// Calls at(pair, sample, depth) for each sample that stands for others and overlaps, until it
+  /// tells to stop.
+  template <class At>
+  void each_overlap(const Pose& X, const At& at) const;
 
   const SlidingContact& model_;
   int threads_;

@@ -13,8 +13,7 @@ constexpr double step_share = 0.25;  // longest step, of the band
 constexpr double margin_mm = 0.05;   // beyond a step's length contacts may matter
 // With friction a contact drags from where it meets, which shorter steps find better.
 constexpr double rubbing_step_mm = 0.1, rubs_below_mm = 0.03;
-constexpr double settled_mm = 0.002;  // motion that is still wanted of a settled pose
-constexpr double kept_slop = 0.7;     // share of the slop that is not undone
+constexpr double kept_slop = 0.7;  // share of the slop that is not undone
 constexpr double first_radius_mm = 0.15, least_radius_mm = 0.05;
 constexpr double gained_mm = 5e-4;  // what a move must bring
 constexpr double cut_reach_mm = 0.1;
@@ -46,7 +45,7 @@ void SlideWalk::make_rows(const Pose& X) {
   }
 }
 
-SlideResult SlideWalk::towards(const Pose& from, const Pose& wanted) {
+SlideResult SlideWalk::towards(const Pose& from, const Pose& wanted, double settled_mm) {
   const SlideSettings& settings = model_.settings_;
   double longest = step_share * model_.band_mm_;
   if (settings.friction > 0) longest = std::min(longest, rubbing_step_mm);

@@ -13,8 +13,9 @@ class SlideWalk {
  public:
   SlideWalk(const SlidingContact& model, SlideProbe& probe) : model_(model), probe_(probe) {}
 
-  /// Slides along what is in the way, until nothing brings it nearer.
-  SlideResult towards(const Pose& from, const Pose& wanted);
+  /// Slides along what is in the way, until nothing brings it nearer: no more than `settled_mm` at
+  /// a step.
+  SlideResult towards(const Pose& from, const Pose& wanted, double settled_mm = 0.002);
 
  private:
   struct Cut {  // a row that held at a pose nearby

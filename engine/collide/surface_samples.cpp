@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/collide/sample_thinning.h"
 #include "engine/mesh/topology.h"
 
 namespace condyle {
@@ -12,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int leaf_size = 8;
+constexpr int leaf_size = 16;
 constexpr double hollow_slope =
     0.05;  // tangent of half the angle of an edge that counts as concave
 
@@ -21,11 +22,12 @@ int build_balls(SurfaceSamples& s, std::vector<int>& order, const std::vector<Ve
   Box box;
   for (int i = first; i < last; ++i) box.add(points[order[i]]);
   const int index = static_cast<int>(s.balls.size());
-  const Vector3d center = box.center();
+  const Eigen::Vector3f center = box.center().cast<float>();
   double radius2 = 0;
   for (int i = first; i < last; ++i)
-    radius2 = std::max(radius2, (points[order[i]] - center).squaredNorm());
-  s.balls.push_back({center, std::sqrt(radius2), first, last - first, 0});
+    radius2 = std::max(radius2, (points[order[i]] - center.cast<double>()).squaredNorm());
+  s.balls.push_back({center, std::nextafter(static_cast<float>(std::sqrt(radius2)), 1e30f), first,
+                     last - first, 0});
   if (last - first <= leaf_size) return index;
   Eigen::Index axis = 0;
   box.size().maxCoeff(&axis);
@@ -43,13 +45,12 @@ int build_balls(SurfaceSamples& s, std::vector<int>& order, const std::vector<Ve
 }  // namespace
 
 SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& settings) {
-  std::vector<Vector3d> points, normals;
-  std::vector<float> spread;
+  SamplePlaces places;
   const auto add = [&](const Vector3d& p, const Vector3d& normal, double widest) {
     if (settings.region && !settings.region->contains(p)) return;
-    points.push_back(p);
-    normals.push_back(normal);
-    spread.push_back(static_cast<float>(widest));
+    places.points.push_back(p);
+    places.normals.push_back(normal);
+    places.spread.push_back(static_cast<float>(widest));
   };
   std::vector<Vector3d> face(mesh.triangles.size());
   for (std::size_t i = 0; i < face.size(); ++i) {
@@ -108,6 +109,9 @@ SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& setting
   }
 
   SurfaceSamples samples;
+  if (settings.thin_share > 0)
+    places = thinned(places, settings.thin_share * settings.spacing_mm, settings.edge_rise_mm);
+  const auto& [points, normals, spread] = places;
   if (points.empty()) return samples;
   for (const auto& p : points) samples.centroid += p;
   samples.centroid /= static_cast<double>(points.size());

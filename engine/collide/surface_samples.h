@@ -17,13 +17,16 @@ struct SampleSettings {
   double edge_rise_mm = 0.03;
   double edge_spacing_mm = 0.1;
   std::optional<Box> region;  // only samples within (body coordinates)
+  // Samples nearer than this share of the spacing are one, where the surface between them bends no
+  // more than an edge may rise; 0: all stay.
+  double thin_share = 0.75;
 };
 
 /// Points spread over a surface, in a tree of balls.
 struct SurfaceSamples {
-  struct Ball {  // of a run of points
-    Eigen::Vector3d center;
-    double radius = 0;
+  struct alignas(32) Ball {  // of a run of points
+    Eigen::Vector3f center;
+    float radius = 0;  // rounded up
     int first = 0, count = 0;
     int right = 0;  // second child (the first is next); 0 for a leaf
   };

@@ -15,7 +15,7 @@ class OverlapOracle {
       : solid_(mesh),
         samples_(sample_surface(
             mesh,
-            {.spacing_mm = 0.17, .edge_rise_mm = 0.002, .edge_spacing_mm = 0.05, .region = {}})) {}
+            {.spacing_mm = 0.17, .edge_rise_mm = 0.002, .edge_spacing_mm = 0.05, .region = {}, .thin_share = 0})) {}
 
   friend double deepest(const OverlapOracle& a, const OverlapOracle& b, const Pose& X_AB) {
     double depth = 0;
@@ -27,7 +27,7 @@ class OverlapOracle {
  private:
   void search(int index, const Solid& other, const Pose& X, double& depth) const {
     const auto& ball = samples_.balls[index];
-    if (other.signed_distance(X * ball.center) - ball.radius >= -depth) return;
+    if (other.signed_distance(X * ball.center.cast<double>()) - ball.radius >= -depth) return;
     if (ball.right != 0) {
       search(index + 1, other, X, depth);
       search(ball.right, other, X, depth);

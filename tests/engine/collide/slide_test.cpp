@@ -328,6 +328,33 @@ TEST(Slide, BumpyBallsGrindWithoutOverlap) {
   EXPECT_LE(depths[depths.size() / 2], 0.05);
 }
 
+TEST(Slide, WhatWasRememberedChangesNoBit) {
+  const SlidingContact model({body(test::sphere(4, 9, {0, 0, 0}, 0.06))},
+                             {body(test::sphere(4, 6, {0, 0, 0}, 0.06))});
+  const auto wanted_at = [](int f) {
+    const double s = 0.2 * f;
+    return turned({0.2, 1, 0.4}, 12 * std::sin(1.7 * s),
+                  {2 * std::sin(s), 2 * std::sin(1.3 * s), 12.5});
+  };
+  constexpr int frames = 30;
+  SlideMemory forward, backward;
+  const Pose from = at(0, 0, 15.5);
+  for (int f = frames; f >= 0; --f) model.slide(from, wanted_at(f), &backward);
+  int touching = 0;
+  for (int f = 0; f <= frames; ++f) {
+    const SlideResult a = model.slide(from, wanted_at(f), &forward),
+                      b = model.slide(from, wanted_at(f), &backward, 2),
+                      c = model.slide(from, wanted_at(f));
+    touching += a.touching;
+    for (const SlideResult& other : {b, c}) {
+      EXPECT_EQ(a.X_FM.t, other.X_FM.t) << f;
+      EXPECT_EQ(a.X_FM.R.coeffs(), other.X_FM.R.coeffs()) << f;
+      EXPECT_EQ(a.reached, other.reached) << f;
+    }
+  }
+  EXPECT_GT(touching, 25);
+}
+
 TEST(Slide, SameBitsOnOneAndTwoThreads) {
   const TriMesh a = test::sphere(4, 9, {0, 0, 0}, 0.06), b = test::sphere(4, 6, {0, 0, 0}, 0.06);
   const auto one = grind(60, 1, a, b, nullptr), two = grind(60, 2, a, b, nullptr);
