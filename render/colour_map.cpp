@@ -53,4 +53,18 @@ ColourMap distance_colours(const DistanceBands& bands) {
   return map;
 }
 
+ColourMap displacement_colours(double most_mm) {
+  const auto most = static_cast<float>(most_mm);
+  ColourMap map;
+  map.title = "displacement";
+  map.unit = "mm";
+  const int codes[] = {0x440154, 0x414487, 0x2a788e, 0x22a884, 0x7ad151, 0xfde725};
+  constexpr int last = 5;
+  for (int i = 0; i <= last; ++i)
+    map.stops.push_back({most * static_cast<float>(i) / last, rgb(codes[i])});
+  map.beyond = rgb(0xfde725);
+  for (int i = 0; i <= last; ++i) map.ticks.push_back(most * static_cast<float>(i) / last);
+  return map;
+}
+
 }  // namespace condyle

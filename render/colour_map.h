@@ -43,4 +43,8 @@ struct DistanceBands {
 /// well as by hue, with every kind of colour vision. source: after ColorBrewer RdBu.
 ColourMap distance_colours(const DistanceBands& bands = {});
 
+/// Length of a way, mm, from 0 to most_mm: dark blue to yellow, rising in lightness, so that it is
+/// read with every kind of colour vision and without colour. source: viridis.
+ColourMap displacement_colours(double most_mm);
+
 }  // namespace condyle

@@ -170,7 +170,7 @@ void Passes::shade(const DrawItem& item, const PictureView& view, bool leave_out
   if (face) {
     glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
-    begin(skin_, item, view);
+    begin(drawable.mapped ? surface_ : skin_, item, view);
     item.mesh().draw();
     if (drawable.closed) return;
   }

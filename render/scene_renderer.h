@@ -48,9 +48,9 @@ class SceneRenderer {
   void set_finer(const std::string& name, const TriMesh& surface,
                  std::span<const Eigen::Vector3f> normals);
 
-  /// Colours a bone or an arch by one value per vertex (of its finer mesh, if it has one) from now
-  /// on; without values it is drawn as itself again. Values beyond the map, infinite ones too, have
-  /// its outer colours. The face keeps its own colours.
+  /// Colours a part by one value per vertex (of its finer mesh, if it has one) from now on; without
+  /// values it is drawn as itself again. Values beyond the map, infinite ones too, have its outer
+  /// colours.
   void color_part(const std::string& name, std::span<const float> values);
 
   /// Draws into the framebuffer that is bound, over its whole viewport of width x height.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,15 @@ struct CommonOptions {
   int threads = 2;
 };
 
+/// How the soft tissue differs from the case's own, as the user wrote it.
+struct TissueOptions {
+  std::optional<int> layers = std::nullopt;
+  std::optional<double> turgor = std::nullopt, lambda = std::nullopt;
+  std::string gravity = {};
+  bool glued = false;
+  std::vector<std::string> attach = {}, detach = {};
+};
+
 /// Who moves, and how.
 struct MotionOptions {
   std::filesystem::path patient;  // case folder; empty = the built-in patient
@@ -26,6 +36,7 @@ struct MotionOptions {
   std::vector<std::string> pairs = {};  // rules as the user wrote them
   bool tissue = true;
   int surface_nodes = 520;
+  TissueOptions tissue_model = {};
 };
 
 struct RecordOptions {

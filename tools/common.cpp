@@ -13,6 +13,7 @@
 #include "engine/core/files.h"
 #include "sim/phantom/phantom.h"
 #include "tools/pair_options.h"
+#include "tools/tissue_options.h"
 
 namespace condyle {
 
@@ -62,6 +63,7 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
   settings.threads = common.threads;
   settings.tissue = options.tissue;
   settings.tissue_model.surface_nodes = options.surface_nodes;
+  settings.tissue_model.plan = parse_tissue(options.tissue_model);
   settings.contact.friction = options.friction;
   for (const auto& pair : options.pairs) settings.contact.pair_rules.push_back(parse_pair(pair));
   return settings;
@@ -83,8 +85,8 @@ std::pair<int, int> parse_size(const std::string& text) {
   return {width, height};
 }
 
-bool apply_show_list(const std::string& list, std::span<const Part> parts,
-                     PictureSettings& settings) {
+SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
+                           PictureSettings& settings) {
   const std::map<std::string, std::set<Role>> groups = {
       {"bones", {Role::skull, Role::maxilla, Role::mandible, Role::segment, Role::transplant}},
       {"teeth", {Role::upper_teeth, Role::lower_teeth}},
@@ -94,7 +96,7 @@ bool apply_show_list(const std::string& list, std::span<const Part> parts,
       {"mouth", {Role::upper_gums, Role::lower_gums, Role::tongue}},
   };
   const auto known = [&] {
-    std::string names = "all, contacts, distance";
+    std::string names = "all, contacts, distance, displacement";
     for (const auto& [name, roles] : groups) names += ", " + name;
     for (const auto& part : parts) names += ", " + part.name;
     return names;
@@ -102,7 +104,7 @@ bool apply_show_list(const std::string& list, std::span<const Part> parts,
   std::map<std::string, double> opacity;
   for (const auto& part : parts) opacity[part.name] = 0;
   settings.contacts = false;
-  bool distance = false;
+  SurfaceMap map = SurfaceMap::none;
   std::size_t start = 0;
   while (start <= list.size()) {
     const auto end = std::min(list.find(',', start), list.size());
@@ -119,7 +121,12 @@ bool apply_show_list(const std::string& list, std::span<const Part> parts,
     }
     bool found = item == "all" || item == "contacts";
     if (found) settings.contacts = true;
-    if (item == "distance") found = distance = true;
+    for (const auto& [name, kind] : {std::pair{"distance", SurfaceMap::distance},
+                                     std::pair{"displacement", SurfaceMap::displacement}})
+      if (item == name) {
+        map = kind;
+        found = true;
+      }
     for (const auto& part : parts) {
       const auto group = groups.find(item);
       const bool chosen = item == "all" || item == part.name ||
@@ -132,7 +139,7 @@ bool apply_show_list(const std::string& list, std::span<const Part> parts,
   for (const auto& part : parts)
     if (part.role == Role::face) settings.skin_opacity = opacity[part.name];
   settings.part_opacity = std::move(opacity);
-  return distance;
+  return map;
 }
 
 Camera parse_camera(const std::string& text, const Eigen::Vector3d& low,

@@ -41,10 +41,11 @@ std::string processor();
 std::pair<int, int> parse_size(const std::string& text);
 
 /// Fills opacities from a list such as "bones,teeth,skin:0.4"; "all" shows every part.
-/// gives: whether "distance" is in the list. throws: InputError for an unknown name, listing the
-/// known ones.
-bool apply_show_list(const std::string& list, std::span<const Part> parts,
-                     PictureSettings& settings);
+/// gives: the map of numbers on the surfaces that is in the list, if one is. throws: InputError for
+/// an unknown name, listing the known ones.
+enum class SurfaceMap { none, distance, displacement };
+SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
+                           PictureSettings& settings);
 
 /// A standard view by name, or a JSON file {target, direction, up, distance_mm, field_of_view_deg}.
 Camera parse_camera(const std::string& text, const Eigen::Vector3d& low,

@@ -96,6 +96,25 @@ void add_tissue(CLI::App* command, MotionOptions& motion) {
       ->add_option("--surface-nodes", motion.surface_nodes,
                    "Soft-tissue nodes of one layer, about (520)")
       ->check(CLI::Range(100, 20000));
+  TissueOptions& model = motion.tissue_model;
+  command->add_option("--layers", model.layers, "Layers of soft tissue: 1, 2, 3 or 5 (3)");
+  command->add_option("--turgor", model.turgor,
+                      "Tension of the skin: its rest length over its length, 0.5 to 1 (1: none)");
+  command->add_option("--lambda", model.lambda,
+                      "Weight of springs against volumes, 0.001 to 0.999 (0.5)");
+  command
+      ->add_option("--gravity", model.gravity,
+                   "Give the tissue weight, down along X,Y,Z: 0,0,-1 upright, 0,1,0 on the back")
+      ->type_name("X,Y,Z");
+  command->add_flag("--glued", model.glued,
+                    "Glue soft tissue to bone and teeth instead of letting it slide");
+  command
+      ->add_option("--attach", model.attach,
+                   "Attach the tissue that lies on a bone near a landmark or point, e.g. "
+                   "mandible,pogonion,15; may be given several times")
+      ->type_name("BONE,LANDMARK|X,Y,Z,RADIUS");
+  command->add_option("--detach", model.detach, "Let it slide there instead")
+      ->type_name("BONE,LANDMARK|X,Y,Z,RADIUS");
 }
 
 void add_recording(CLI::App* command, RecordOptions& record) {
@@ -168,8 +187,9 @@ int run_program(int argc, char** argv) {
       "--show", record.show,
       "What to draw: all bones teeth segments transplants skin mouth contacts or part names, each "
       "with an opacity if wanted, e.g. bones,teeth,skin:0.4 (all); distance: colour bones and "
-      "teeth "
-      "by their distance from what they may meet");
+      "teeth by their distance from what they may meet; displacement: colour the skin by its way "
+      "from "
+      "rest");
   record_command
       ->add_option("--distance-near", record.distance_near_mm,
                    "Distances up to here are coloured, mm (2)")

@@ -12,14 +12,19 @@
 #include "render/gl_context.h"
 #include "render/recorder.h"
 #include "render/scene_renderer.h"
+#include "sim/case/tissue_plan_file.h"
 #include "sim/report/motion_plots.h"
 #include "sim/report/report.h"
 #include "sim/report/trace.h"
 #include "tools/common.h"
+#include "tools/displacement_drawing.h"
 #include "tools/distance_drawing.h"
+#include "tools/tissue_options.h"
 
 namespace condyle {
 namespace {
+
+constexpr double displacement_end_mm = 50;  // fixed: pictures can be compared
 
 /// Times of the frames: the whole motion, first and last included.
 struct FrameTimes {
@@ -80,6 +85,12 @@ std::string contact_text(const MotionOptions& options) {
   return text;
 }
 
+std::string tissue_text(const MotionOptions& options, const Case& patient) {
+  if (!options.tissue) return "none";
+  const TissuePlan plan = overlaid(patient.tissue, parse_tissue(options.tissue_model));
+  return fmt::format("{} {}", options.surface_nodes, tissue_plan_json(plan).dump());
+}
+
 std::string camera_text(const Camera& camera, bool spin) {
   const auto& t = camera.target;
   const auto& d = camera.direction;
@@ -119,7 +130,8 @@ class PictureTaker {
       : renderer_(scene.patient.parts), spin_(options.camera == "spin"), frames_(times.count) {
     std::tie(picture_.width, picture_.height) = parse_size(options.size);
     const double aspect = static_cast<double>(picture_.width) / picture_.height;
-    const bool distance = apply_show_list(options.show, scene.patient.parts, picture_);
+    const SurfaceMap map = apply_show_list(options.show, scene.patient.parts, picture_);
+    const bool distance = map == SurfaceMap::distance;
     if (ArchView::names(options.camera)) {
       arch_.emplace(options.camera, scene.patient.parts, aspect);
       for (const auto& [part, opacity] : arch_->hidden()) picture_.part_opacity[part] = opacity;
@@ -136,6 +148,8 @@ class PictureTaker {
                                              .most_triangles = 400000,
                                              .pair_rules = settings.contact.pair_rules},
                          settings.threads, renderer_);
+    if (map == SurfaceMap::displacement)
+      displacement_.emplace(scene.patient, displacement_end_mm, renderer_);
     recorder_.emplace(RecorderSettings{
         .folder = options.out,
         .width = picture_.width,
@@ -154,8 +168,7 @@ class PictureTaker {
             {"distances",
              distance ? fmt::format("up to {} mm", options.distance_near_mm) : std::string("none")},
             {"contact", contact_text(options.motion)},
-            {"tissue", options.motion.tissue ? std::to_string(options.motion.surface_nodes)
-                                             : std::string("none")}}});
+            {"tissue", tissue_text(options.motion, scene.patient)}}});
     kept_ = recorder_->kept_frames();
   }
 
@@ -166,10 +179,12 @@ class PictureTaker {
     const StageTimer timer(state.times, Stage::render);
     renderer_.update(state);
     if (distances_) distances_->color(renderer_, state);
+    if (displacement_) displacement_->color(renderer_, state);
     const double turn = spin_ ? 2 * M_PI * frame / std::max(frames_ - 1, 1) : 0;
     const Camera camera = arch_ ? arch_->at(state) : turned(camera_, turn);
     Image image = renderer_.picture(camera, picture_);
     if (distances_) distances_->add_legend_to(image);
+    if (displacement_) displacement_->add_legend_to(image);
     recorder_->add(frame, std::move(image));
   }
   void finish() { recorder_->finish(); }
@@ -184,6 +199,7 @@ class PictureTaker {
   Camera camera_;
   std::optional<ArchView> arch_;
   std::optional<DistanceDrawing> distances_;
+  std::optional<DisplacementDrawing> displacement_;
   std::optional<Recorder> recorder_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "sim/case/landmarks.h"
 #include "sim/case/motion_parameters.h"
+#include "sim/case/tissue_plan.h"
 #include "sim/frame/pair_rule.h"
 #include "sim/frame/part.h"
 
@@ -26,6 +27,7 @@ struct Case {
   std::string source_units = "mm";            // as declared at import
   std::string source_frame = "LPS";
   std::vector<std::string> notes;  // what import found and did, for people
+  TissuePlan tissue;               // how its soft tissue differs from the usual
 
   std::vector<PairRule> pair_rules;  // where they differ from the usual ones; the last that fits
                                      // counts

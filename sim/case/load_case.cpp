@@ -11,6 +11,7 @@
 #include "sim/case/json_file.h"
 #include "sim/case/landmark_files.h"
 #include "sim/case/pair_rules.h"
+#include "sim/case/tissue_plan_file.h"
 
 namespace condyle {
 namespace {
@@ -191,6 +192,7 @@ Case load_case(const fs::path& given) {
     for (std::size_t i = 0; i < rules->size(); ++i)
       patient.pair_rules.push_back(load_rule(patient, rules->at(i)));
   if (const auto motion = root.find("motion")) patient.motion = load_motion(*motion);
+  if (const auto tissue = root.find("tissue")) patient.tissue = load_tissue_plan(*tissue);
   if (const auto notes = root.find("notes"))
     for (std::size_t i = 0; i < notes->size(); ++i) patient.notes.push_back(notes->at(i).text());
   return patient;

@@ -18,6 +18,7 @@
 #include "sim/case/case_io.h"
 #include "sim/case/landmark_files.h"
 #include "sim/case/pair_rules.h"
+#include "sim/case/tissue_plan_file.h"
 
 namespace condyle {
 namespace {
@@ -58,6 +59,8 @@ json to_json(const Case& patient) {
   for (const auto& entry : motion_parameter_names())
     if (const auto value = entry.values.front(); entry.values.size() == 1 && patient.motion.*value)
       root["motion"][entry.key()] = *(patient.motion.*value);
+  if (const auto tissue = tissue_plan_json(patient.tissue); !tissue.empty())
+    root["tissue"] = tissue;
   root["notes"] = patient.notes;
   return root;
 }

@@ -17,6 +17,7 @@ struct TissueState {
   int iterations = 0;
   int evaluations = 0;  // of energy or gradient
   bool converged = true;
+  bool kept = false;    // the solve failed: this is still the tissue of an earlier frame
   double energy = 0;    // relative to rest
   double residual = 0;  // largest nodal gradient
   int inverted_prisms = 0;

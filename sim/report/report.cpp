@@ -114,6 +114,9 @@ void MotionReport::add(const FrameState& frame) {
   }
   if (frame.tissue.inverted_prisms > 0) ++inverted_frames_;
   if (!frame.tissue.converged) ++unconverged_frames_;
+  if (frame.tissue.kept) ++kept_frames_;
+  tissue_penetration_mm_ = std::max(tissue_penetration_mm_, frame.tissue.penetration_mm);
+  tissue_slip_mm_ = std::max(tissue_slip_mm_, frame.tissue.slip_mm);
   max_rotation_deg_ = std::max(max_rotation_deg_, frame.measures.rotation_deg);
   if (const auto left = rest.find("left_condyle"))
     left_travel_mm_ = std::max(left_travel_mm_, (frame.measures.left_condyle - *left).norm());
@@ -206,6 +209,14 @@ std::string MotionReport::json() const {
                    {"lips_cut", made.lips_cut},
                    {"frames_with_inverted_prisms", inverted_frames_},
                    {"frames_not_converged", unconverged_frames_},
+                   {"frames_kept_from_before", kept_frames_},
+                   {"at_rest",
+                    {{"largest_force_N", made.rest_force_N},
+                     {"moves_mm", made.rest_move_mm},
+                     {"overlap_mm", made.rest_overlap_mm},
+                     {"lip_points_left_out", made.lip_points_left_out}}},
+                   {"max_penetration_mm", tissue_penetration_mm_},
+                   {"max_slip_mm", tissue_slip_mm_},
                    {"at_widest_opening", soft_response(scene_, widest_)},
                    {"notes", made.notes}};
     std::vector<double> warm, cold;
@@ -283,6 +294,13 @@ std::string MotionReport::text() const {
     text += fmt::format("soft tissue: {} nodes, {} prisms, inverted in {} frames\n",
                         summary(*scene_.tissue).nodes, summary(*scene_.tissue).prisms,
                         inverted_frames_);
+    text += fmt::format(
+        "it slips along bone and teeth by up to {:.1f} mm and enters them by {:.2f} mm\n",
+        tissue_slip_mm_, tissue_penetration_mm_);
+    if (kept_frames_ > 0)
+      text +=
+          fmt::format("its solve failed in {} frames, which keep the tissue of the frame before\n",
+                      kept_frames_);
   }
   return text;
 }

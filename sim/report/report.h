@@ -41,7 +41,8 @@ class MotionReport {
   SimulatorSettings settings_;
   MotionSeries series_;
   int frames_ = 0, stopped_frames_ = 0, first_stopped_ = -1;
-  int inverted_frames_ = 0, unconverged_frames_ = 0;
+  int inverted_frames_ = 0, unconverged_frames_ = 0, kept_frames_ = 0;
+  double tissue_penetration_mm_ = 0, tissue_slip_mm_ = 0;
   double max_rotation_deg_ = 0, left_travel_mm_ = 0, right_travel_mm_ = 0;
   std::vector<PairRecord> pairs_;
   FrameState widest_;  // frame of largest opening

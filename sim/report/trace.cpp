@@ -20,7 +20,9 @@ const char* TraceWriter::header() {
          "mm,"
          "laterotrusion_mm,midline_deviation_mm,left_condyle_travel_mm,right_condyle_travel_mm,"
          "condyle_asymmetry_mm,helical_axis_x,helical_axis_y,helical_axis_z,helical_point_x_mm,"
-         "helical_point_y_mm,helical_point_z_mm,helical_slide_mm,incisor_speed_mm_s";
+         "helical_point_y_mm,helical_point_z_mm,helical_slide_mm,incisor_speed_mm_s,tissue_"
+         "penetration_mm,"
+         "tissue_slip_mm,tissue_kept";
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& file)
@@ -84,6 +86,8 @@ void TraceWriter::add(int frame, const FrameState& s) {
   before_s_ = s.time_s;
   incisor_before_ = m.incisor;
   ++rows_;
+  numbers({s.tissue.penetration_mm, s.tissue.slip_mm});
+  count(s.tissue.kept ? 1 : 0);
   put(row + "\n");
 }
 

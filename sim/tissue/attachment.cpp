@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "engine/core/error.h"
+
 namespace condyle {
 
 void hold_columns(const CoarseSkin& skin, const Anatomy& anatomy, std::vector<Column>& columns) {
@@ -28,6 +30,35 @@ void hold_columns(const CoarseSkin& skin, const Anatomy& anatomy, std::vector<Co
     if (c.met_normal.dot(c.inward) > -0.35) continue;
     if (c.ground == Ground::cranium && met_above > from_bite_mm) c.hold = Hold::cranium;
     if (c.ground == Ground::mandible && met_above < -from_bite_mm) c.hold = Hold::mandible;
+  }
+}
+
+void hold_as_planned(const TissuePlan& plan, const Landmarks& landmarks, const CoarseSkin& skin,
+                     std::vector<Column>& columns) {
+  const auto hold_of = [](Ground ground) {
+    return ground == Ground::mandible ? Hold::mandible : Hold::cranium;
+  };
+  if (plan.bond == TissueBond::glued)
+    for (auto& c : columns)
+      if (c.hold == Hold::free && c.ground != Ground::none) c.hold = hold_of(c.ground);
+  for (const auto& region : plan.attachments) {
+    Eigen::Vector3d centre = region.centre;
+    if (!region.landmark.empty()) {
+      const auto mark = landmarks.find(region.landmark);
+      if (!mark)
+        throw InputError("soft tissue: there is no landmark \"" + region.landmark +
+                         "\" to attach tissue around");
+      centre = *mark;
+    }
+    for (std::size_t v = 0; v < columns.size(); ++v) {
+      Column& c = columns[v];
+      if (c.ground != (region.bone == Body::mandible ? Ground::mandible : Ground::cranium))
+        continue;
+      const Eigen::Vector3d met = skin.mesh.vertices[v] + c.met_depth * c.inward;
+      if ((met - centre).norm() > region.radius_mm) continue;
+      c.hold = region.attached ? hold_of(c.ground) : Hold::free;
+      c.cartilage = c.cartilage && region.attached;
+    }
   }
 }
 

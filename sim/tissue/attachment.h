@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "sim/case/case.h"
 #include "sim/tissue/columns.h"
 
 namespace condyle {
@@ -9,5 +10,11 @@ namespace condyle {
 /// Says which columns grow on bone (their `hold`). Free are: the lips' margin, the cheeks between
 /// the jaws (teeth, and bone near the bite), and the skin under the jaw and of the neck.
 void hold_columns(const CoarseSkin& skin, const Anatomy& anatomy, std::vector<Column>& columns);
+
+/// The plan's own regions, on top of that: where tissue lies on their bone within them it is
+/// attached, or is not. Glued tissue is held by all that it lies on, teeth too.
+/// throws: InputError for a landmark that the patient does not have.
+void hold_as_planned(const TissuePlan& plan, const Landmarks& landmarks, const CoarseSkin& skin,
+                     std::vector<Column>& columns);
 
 }  // namespace condyle

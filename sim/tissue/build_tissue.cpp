@@ -3,12 +3,15 @@
 #include <memory>
 
 #include "engine/core/error.h"
+#include "engine/tissue/equilibrium.h"
 #include "engine/tissue/layered_net.h"
 #include "engine/tissue/net_weights.h"
 #include "sim/tissue/attachment.h"
 #include "sim/tissue/coarse_skin.h"
 #include "sim/tissue/columns.h"
 #include "sim/tissue/model.h"
+#include "sim/tissue/placement.h"
+#include "sim/tissue/tissue_layers.h"
 
 namespace condyle {
 namespace {
@@ -56,10 +59,31 @@ void make_path(TissueModel& model, const Anatomy& anatomy) {
   model.path.nodes = std::move(nodes);
 }
 
+/// How still the unmoved model stands, and how it lies on the bones.
+void tell_rest(TissueModel& model) {
+  TissueSummary& summary = model.summary;
+  Nodes force;
+  NetLoads loads = touching_loads(model, Pose{}, model.rest);
+  SpringPrismEnergy(model.net, loads, 1).value_and_gradient(model.rest, force);
+  for (const auto& f : force) summary.rest_force_N = std::max(summary.rest_force_N, f.norm());
+  TissueBudget budget;
+  budget.tolerance_mm = 1e-6;
+  const TissueState still = follow(model, rest_tissue(model), Pose{}, budget);
+  for (std::size_t i = 0; i < still.nodes.size(); ++i)
+    summary.rest_move_mm = std::max(summary.rest_move_mm, (still.nodes[i] - model.rest[i]).norm());
+  if (summary.rest_move_mm > 1e-4)
+    summary.notes.push_back("the unmoved tissue moves by " + std::to_string(summary.rest_move_mm) +
+                            " mm: turgor and weight could not be balanced everywhere");
+  summary.lip_points_left_out = model.contact.lip_points_left_out;
+  summary.rest_overlap_mm =
+      measure_contact(model.contact, Looks(4), Pose{}, model.rest, model.rest).rest_overlap_mm;
+}
+
 /// Columns under the whole sheet. Where the sheet itself folds too sharply for tissue of any depth
 /// it is smoothed; the displayed face keeps its shape.
 std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Anatomy& anatomy,
-                                 const ColumnSettings& settings, std::vector<std::string>& notes) {
+                                 const ColumnSettings& settings, const Landmarks& landmarks,
+                                 const TissuePlan& plan, std::vector<std::string>& notes) {
   constexpr int most_rounds = 20;
   std::vector<Column> columns;
   ShapedColumns shaped;
@@ -67,6 +91,7 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
   for (;; ++rounds) {
     columns = march_columns(skin, bones, settings);
     hold_columns(skin, anatomy, columns);
+    hold_as_planned(plan, landmarks, skin, columns);
     shaped = shape_columns(skin, settings, columns);
     if (shaped.sound() || rounds == most_rounds) break;
     relax_folds(skin, shaped.folded);
@@ -89,7 +114,9 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   if (settings.surface_nodes < 60 || settings.surface_nodes > 50000)
     throw InputError("soft tissue: surface nodes must be 60 to 50000, not " +
                      std::to_string(settings.surface_nodes));
-  const LayerStack layers = usual_layers(settings.layers);
+  check_plan(settings.plan, "soft tissue: ");
+  const TissuePlan plan = overlaid(patient.tissue, settings.plan);
+  const LayerStack layers = layers_of(plan);
   auto model = std::make_shared<TissueModel>();
   TissueSummary& summary = model->summary;
 
@@ -102,13 +129,15 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   report(progress, "soft tissue: layers", 0.5);
   ColumnSettings column_settings;
   column_settings.layer_share = layers.share;
-  const auto columns = make_columns(skin, bones, anatomy, column_settings, summary.notes);
-  const int sheets = settings.layers + 1;
+  const auto columns =
+      make_columns(skin, bones, anatomy, column_settings, patient.landmarks, plan, summary.notes);
+  check_placement(skin, bones, columns, column_settings, summary.notes);
+  const int sheets = static_cast<int>(layers.share.size()) + 1;
   model->columns = static_cast<int>(columns.size());
   model->sheets = sheets;
   model->triangles = skin.mesh.triangles;
   model->rest = column_nodes(skin, columns, column_settings);
-  model->net = layered_net(skin.mesh.triangles, sheets, model->rest, layers.material);
+  model->net = net_of(plan, layers, skin.mesh.triangles, model->rest);
   SpringPrismNet& net = model->net;
   for (std::size_t p = 0; p < net.prisms.size(); ++p)
     if (net.rest_volume[p] <= 0) {
@@ -141,6 +170,8 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
                                            : summary.attached_to_cranium);
     }
   }
+
+  check_attachment(summary.attached_to_cranium, summary.attached_to_mandible, bones, summary.notes);
 
   // Boundary springs: every node of the rim stays put. A border of the face's own (a mask that ends
   // below the jaw) goes with the mandible as far as the tissue wants to and the distance allows.
@@ -187,6 +218,12 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
                    jaw_mesh(patient, Body::cranium), jaw_mesh(patient, Body::mandible));
   net.may_touch = lips_that_may_touch(model->contact, model->rest);
 
+  // Nothing moves before surgery: strains that carry turgor and weight.
+  if (plan.down) model->node_force = weight_of_nodes(net, plan.down->normalized());
+  if (plan.down || plan.turgor.value_or(1) < 1)
+    model->anchor_offset =
+        balance_strains(net, loads_at(*model, Pose{}), model->rest).anchor_offset;
+
   report(progress, "soft tissue: path of opening", 0.6);
   make_path(*model, anatomy);
 
@@ -205,8 +242,9 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   summary.nodes = net.node_count;
   summary.springs = static_cast<int>(net.spring_a.size() + net.anchor_node.size());
   summary.prisms = static_cast<int>(net.prisms.size());
-  summary.layers = settings.layers;
+  summary.layers = sheets - 1;
   summary.lips_cut = region.mouth.found();
+  tell_rest(*model);
   report(progress, "soft tissue", 1.0);
   return model;
 }

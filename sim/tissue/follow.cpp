@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "engine/minimize/minimize.h"
@@ -16,7 +17,11 @@ NetLoads loads_at(const TissueModel& model, const Pose& X_CM) {
     const Vector3d& X = model.rest[net.anchor_node[i]];
     const double share = model.anchor_share[i];
     loads.anchor_target[i] = share == 0 ? X : Vector3d(X + share * (X_CM * X - X));
+    if (model.anchor_offset.empty()) continue;
+    const Vector3d& offset = model.anchor_offset[i];
+    loads.anchor_target[i] += offset + share * (X_CM.R * offset - offset);
   }
+  loads.node_force = model.node_force;
   return loads;
 }
 
@@ -28,9 +33,9 @@ NetLoads touching_loads(const TissueModel& model, const Pose& X_CM, const Nodes&
 
 namespace {
 
-/// Iterations after which a factor of the tissue as it is now is made at once; later frames go on
-/// with it.
-constexpr int patience = 15;
+/// Iterations after which a factor of the tissue as it is now is made at once, and after twice as
+/// many the next; later frames go on with it.
+constexpr int first_patience = 15;
 /// Iterations of a frame above which one is made beside the loop.
 constexpr int worth_making = 3;
 
@@ -80,6 +85,15 @@ TissueState rest_tissue(const TissueModel& model) {
 
 TissueState follow(const TissueModel& model, const TissueState& previous, const Pose& X_CM,
                    const TissueBudget& budget) {
+  const auto keep = [&](const TissueState& failed) {
+    TissueState kept = previous;
+    kept.iterations = failed.iterations;
+    kept.evaluations = failed.evaluations;
+    kept.converged = false;
+    kept.kept = true;
+    return kept;
+  };
+  if (!X_CM.t.allFinite() || !X_CM.R.coeffs().allFinite()) return keep({});
   NetLoads loads = loads_at(model, X_CM);
   TissueState state;
   state.X_CM = X_CM;
@@ -90,7 +104,7 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
       previous.factor ? *previous.factor : RollingFactor(path_factor(model, X_CM));
   factor.advance();
   SpringPrismEnergy energy(model.net, loads, budget.threads);
-  int since_factor = 0;  // iterations
+  int since_factor = 0, patience = first_patience;  // iterations
   const auto solve = [&] {
     while (true) {
       MinimizeSettings settings;
@@ -111,6 +125,7 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
       fresh->refactor(model.net, loads, state.nodes, budget.threads);
       factor.replace(std::move(fresh));
       since_factor = 0;
+      patience *= 2;
     }
   };
   const TouchingResult touching = solve_touching(
@@ -123,7 +138,10 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
   state.penetration_mm = contact.penetration_mm;
   state.slip_mm = contact.slip_mm;
   state.inverted_prisms = count_inverted(model.net, state.nodes);
-  return state;
+  const bool usable = std::isfinite(state.energy) && state.inverted_prisms == 0 &&
+                      std::all_of(state.nodes.begin(), state.nodes.end(),
+                                  [](const Vector3d& p) { return p.allFinite(); });
+  return usable ? state : keep(state);
 }
 
 }  // namespace condyle

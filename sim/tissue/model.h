@@ -24,6 +24,8 @@ struct TissueModel : std::enable_shared_from_this<TissueModel> {
   // A share of 1 goes with the mandible, 0 with the cranium: a point X asks for X + share (X_CM X -
   // X).
   std::vector<double> anchor_share;
+  Nodes anchor_offset;  // of each target, turned as its bone turns: what balances the strains
+  Nodes node_force;     // weight, N; or none
   TissueContact contact;
   // Preconditioners, for states turned by `from_rad` and more; rising, the first from 0.
   struct Factor {

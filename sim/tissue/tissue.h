@@ -15,8 +15,8 @@ namespace condyle {
 struct TissueModel;
 
 struct TissueSettings {
-  int layers = 3;
   int surface_nodes = 520;  // of one sheet, about
+  TissuePlan plan = {};     // counts before the case's own
 };
 
 /// How far one frame's minimisation goes.
@@ -31,6 +31,10 @@ struct TissueSummary {
   int nodes = 0, springs = 0, prisms = 0, layers = 0;
   int attached_to_cranium = 0, attached_to_mandible = 0, boundary = 0;
   bool lips_cut = false;
+  int lip_points_left_out = 0;  // so deep in the other lip at rest that nothing keeps them out
+  double rest_overlap_mm = 0;   // deepest in bone, teeth or the other lip at rest: it may stay
+  double rest_force_N = 0;      // largest on any node of the unmoved model
+  double rest_move_mm = 0;      // farthest way of any node when the unmoved model is solved
   std::vector<std::string> notes;
 };
 

@@ -174,7 +174,7 @@ TEST(NetContact, WhatOverlapsAtRestMayStayAndGoNoDeeper) {
   EXPECT_NEAR(*std::max_element(allowance.begin(), allowance.end()), 1.5, 0.05);
   const auto look = [&](const Nodes& x) {
     Looks looks(1);
-    touch_obstacle(slab.below, allowance, ball, Pose{}, x, {}, looks[0]);
+    touch_obstacle(slab.below, allowance, ball, Pose{}, x, {.stiffness = 2}, looks[0]);
     return looks;
   };
   Nodes x = slab.rest;

@@ -1,0 +1,67 @@
+#include "sim/case/tissue_plan.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/core/error.h"
+
+namespace condyle {
+
+TissuePlan overlaid(TissuePlan plan, const TissuePlan& over) {
+  if (over.layer_count) {
+    plan.layer_count = over.layer_count;
+    plan.layers.clear();
+  }
+  if (!over.layers.empty()) plan.layers = over.layers;
+  if (over.turgor) plan.turgor = over.turgor;
+  if (over.lambda) plan.lambda = over.lambda;
+  if (over.down) plan.down = over.down;
+  if (over.bond) plan.bond = over.bond;
+  plan.attachments.insert(plan.attachments.end(), over.attachments.begin(), over.attachments.end());
+  return plan;
+}
+
+void check_plan(const TissuePlan& plan, const std::string& where) {
+  // Not a number is out of any range.
+  const auto require = [&](bool holds, const std::string& item, const std::string& rule,
+                           double value) {
+    if (!holds) throw InputError(fmt::format("{}{} must be {}, not {}", where, item, rule, value));
+  };
+  if (plan.layer_count) {
+    const int n = *plan.layer_count;
+    require(n == 1 || n == 2 || n == 3 || n == 5, "layers", "1, 2, 3 or 5", n);
+  }
+  require(plan.layers.size() <= 5, "the number of layers", "at most 5",
+          static_cast<double>(plan.layers.size()));
+  double sum = plan.layers.empty() ? 1 : 0;
+  for (const auto& layer : plan.layers) {
+    require(layer.share >= 0.02 && layer.share <= 1, "a layer's share of the thickness",
+            "0.02 to 1", layer.share);
+    sum += layer.share;
+    for (const auto& [item, value] : {std::pair{"a layer's modulus (MPa)", layer.modulus_MPa},
+                                      std::pair{"a layer's bulk modulus (MPa)", layer.bulk_MPa}})
+      if (value) require(*value >= 1e-5 && *value <= 100, item, "0.00001 to 100", *value);
+    if (layer.mass_kg)
+      require(*layer.mass_kg >= 0 && *layer.mass_kg <= 10, "a layer's mass (kg)", "0 to 10",
+              *layer.mass_kg);
+  }
+  require(std::abs(sum - 1) < 1e-3, "the sum of the layers' shares", "1", sum);
+  if (plan.turgor)
+    require(*plan.turgor >= 0.5 && *plan.turgor <= 1, "turgor", "0.5 to 1 (1 is none)",
+            *plan.turgor);
+  if (plan.lambda)
+    require(*plan.lambda >= 1e-3 && *plan.lambda <= 1 - 1e-3, "lambda", "0.001 to 0.999",
+            *plan.lambda);
+  if (plan.down)
+    require(plan.down->allFinite() && plan.down->norm() > 1e-6, "the direction of gravity",
+            "a vector that is not zero; its length is", plan.down->norm());
+  for (const auto& region : plan.attachments) {
+    require(region.radius_mm > 0 && region.radius_mm <= 200, "the radius of an attachment (mm)",
+            "above 0 and at most 200", region.radius_mm);
+    require(region.centre.allFinite(), "the centre of an attachment", "finite",
+            region.centre.norm());
+  }
+}
+
+}  // namespace condyle

@@ -1,0 +1,42 @@
+#include "sim/tissue/tissue_layers.h"
+
+namespace condyle {
+
+LayerStack layers_of(const TissuePlan& plan) {
+  if (plan.layers.empty()) return usual_layers(plan.layer_count.value_or(3));
+  // Usual materials by place: skin outside, a softer middle, firmer next to the bone.
+  const LayerStack usual = usual_layers(3);
+  LayerStack stack;
+  const std::size_t count = plan.layers.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    LayerMaterial material = usual.material[count == 1 ? 2 : i == 0 ? 0 : i + 1 == count ? 2 : 1];
+    const TissueLayer& layer = plan.layers[i];
+    material.modulus_MPa = layer.modulus_MPa.value_or(material.modulus_MPa);
+    material.bulk_MPa = layer.bulk_MPa.value_or(material.bulk_MPa);
+    material.mass_kg = layer.mass_kg.value_or(0);
+    stack.share.push_back(layer.share);
+    stack.material.push_back(material);
+  }
+  return stack;
+}
+
+SpringPrismNet net_of(const TissuePlan& plan, const LayerStack& layers,
+                      const std::vector<Eigen::Vector3i>& triangles, const Nodes& rest) {
+  constexpr double kg_per_mm3 = 1e-6;
+  const int sheets = static_cast<int>(layers.share.size()) + 1;
+  SpringPrismNet net = layered_net(triangles, sheets, rest, layers.material);
+  if (plan.down) {
+    auto material = layers.material;
+    for (std::size_t layer = 0; layer < material.size(); ++layer) {
+      if (layer < plan.layers.size() && plan.layers[layer].mass_kg) continue;
+      for (std::size_t t = 0; t < triangles.size(); ++t)
+        material[layer].mass_kg += kg_per_mm3 * net.rest_volume[layer * triangles.size() + t];
+    }
+    net = layered_net(triangles, sheets, rest, material);
+  }
+  net.lambda = plan.lambda.value_or(net.lambda);
+  if (plan.turgor) set_turgor(net, *plan.turgor);
+  return net;
+}
+
+}  // namespace condyle

@@ -1,0 +1,80 @@
+// A face scan of another person, its lips fused, over the built-in bones: fiction, but the tissue
+// must be built on it and move.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/mesh_io/mesh_files.h"
+#include "sim/phantom/phantom.h"
+#include "sim/tissue/lips.h"
+#include "sim/tissue/tissue.h"
+#include "tests/support/real_cases.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The foremost point near the middle: the tip of the nose.
+Vector3d nose_tip(const TriMesh& face) {
+  Vector3d tip(0, 1e9, 0);
+  for (const auto& p : face.vertices)
+    if (std::abs(p.x()) < 15 && p.y() < tip.y()) tip = p;
+  return tip;
+}
+
+TEST(FaceScan, OfAnotherPersonOverScaledBonesIsBuiltAndOpens) {
+  const auto file = test::real_data() / "scan-leeperrysmith" / "head_lps_mm.ply";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "real anatomy absent";
+  constexpr double scale = 0.93;  // bones that fit under this face
+  Case patient = builtin_patient();
+  const Vector3d tip = nose_tip(patient.find(Role::face)->mesh);
+  const auto scaled = [&](const Vector3d& p) { return Vector3d(tip + scale * (p - tip)); };
+  TriMesh scan = read_mesh(file);
+  const Vector3d shift = tip - nose_tip(scan) + Vector3d(0, -4, 0);
+  for (auto& p : scan.vertices) p += shift;
+  for (auto& part : patient.parts)
+    if (part.role == Role::face)
+      part.mesh = scan;
+    else
+      for (auto& p : part.mesh.vertices) p = scaled(p);
+  // Soft landmarks belong to the face that is gone.
+  for (auto it = patient.landmarks.points.begin(); it != patient.landmarks.points.end();) {
+    const bool bony = it->first == "left_condyle" || it->first == "right_condyle" ||
+                      it->first == "upper_incisal_point" || it->first == "lower_incisal_point";
+    if (bony) it->second = scaled(it->second);
+    it = bony ? std::next(it) : patient.landmarks.points.erase(it);
+  }
+  part_lips(patient);
+  const auto model = build_tissue(patient, {.surface_nodes = 220});
+  const TissueSummary& made = summary(*model);
+  EXPECT_TRUE(made.lips_cut);
+  EXPECT_GT(made.attached_to_cranium, 10);
+  EXPECT_GT(made.attached_to_mandible, 10);
+  EXPECT_FALSE(made.notes.empty());  // it says what it did about this face
+  EXPECT_LT(made.rest_move_mm, 1e-4);
+
+  const Vector3d hinge =
+      0.5 * (*patient.landmarks.find("left_condyle") + *patient.landmarks.find("right_condyle"));
+  TissueState state = rest_tissue(*model);
+  for (int degrees = 1; degrees <= 8; ++degrees) {
+    Pose X_CM;
+    X_CM.R = Eigen::Quaterniond(Eigen::AngleAxisd(degrees * M_PI / 180, Vector3d::UnitX()));
+    X_CM.t = hinge - X_CM.R * hinge;
+    state = follow(*model, state, X_CM);
+    EXPECT_FALSE(state.kept) << degrees;
+    EXPECT_EQ(state.inverted_prisms, 0) << degrees;
+  }
+  EXPECT_GT(state.slip_mm, 0.2);
+  std::vector<Eigen::Vector3f> face;
+  deform_face(*model, state, face);
+  double most = 0;
+  for (std::size_t v = 0; v < face.size(); ++v) {
+    ASSERT_TRUE(face[v].allFinite());
+    most = std::max(most, (face[v].cast<double>() - scan.vertices[v]).norm());
+  }
+  EXPECT_GT(most, 5);
+}
+
+}  // namespace
+}  // namespace condyle

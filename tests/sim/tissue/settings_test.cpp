@@ -1,0 +1,193 @@
+// What the plan says of the tissue is what the model does.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "engine/core/error.h"
+#include "sim/tissue/lips.h"
+#include "sim/tissue/model.h"
+#include "tests/sim/tissue/plain_patient.h"
+
+namespace condyle::test {
+namespace {
+
+using Eigen::Vector3d;
+
+std::shared_ptr<const TissueModel> plain_model(const TissuePlan& plan) {
+  Case patient = plain_patient();
+  part_lips(patient);
+  return build_tissue(patient, {.surface_nodes = 220, .plan = plan});
+}
+
+double farthest(const Nodes& a, const Nodes& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).norm());
+  return most;
+}
+
+TEST(TissueSettings, NothingMovesBeforeSurgeryUnderTurgorAndWeightInAnyDirection) {
+  const auto plain = plain_model({});
+  for (const Vector3d& down : {Vector3d(0, 0, -1), Vector3d(0, 3, 0), Vector3d(-1, 2, 0.5)}) {
+    const auto model = plain_model({.turgor = 0.9, .down = down});
+    // It carries a load at all: without balanced strains it would sag.
+    ASSERT_FALSE(model->node_force.empty());
+    double weight = 0;
+    for (const auto& f : model->node_force) weight += f.dot(down.normalized());
+    EXPECT_GT(weight, 0.3);  // N: some 50 ml of tissue and more
+    EXPECT_LT(weight, 20);
+    EXPECT_LT(summary(*model).rest_move_mm, 1e-4) << down.transpose();
+    EXPECT_LT(summary(*model).rest_force_N, 1e-3) << down.transpose();
+    // The strains change how it answers a motion.
+    const Pose X_CM = opening(plain_patient(), 8);
+    const TissueState one = follow(*model, rest_tissue(*model), X_CM);
+    const TissueState other = follow(*plain, rest_tissue(*plain), X_CM);
+    EXPECT_GT(farthest(one.nodes, other.nodes), 0.05);
+    EXPECT_EQ(one.inverted_prisms, 0);
+  }
+}
+
+TEST(TissueSettings, LayersHaveTheirOwnShareStiffnessAndMass) {
+  TissuePlan plan;
+  plan.layers = {{.share = 0.3, .modulus_MPa = 0.08, .mass_kg = 0.05}, {.share = 0.7}};
+  plan.down = Vector3d(0, 0, -1);
+  const auto model = plain_model(plan);
+  EXPECT_EQ(summary(*model).layers, 2);
+  for (int c = 0; c < model->columns; ++c) {
+    const Vector3d outer = model->rest[3 * c], middle = model->rest[3 * c + 1],
+                   inner = model->rest[3 * c + 2];
+    EXPECT_NEAR((middle - outer).norm() / (inner - outer).norm(), 0.3, 1e-9);
+  }
+  double outer_weight = 0, all = 0;
+  for (int c = 0; c < model->columns; ++c)
+    for (int s = 0; s < 3; ++s) {
+      const double weight = -model->node_force[3 * c + s].z();
+      all += weight;
+      if (s == 0) outer_weight += 2 * weight;  // half of the layer hangs on the skin's nodes
+    }
+  EXPECT_NEAR(outer_weight, 9.81 * 0.05, 1e-6);
+  EXPECT_GT(all, outer_weight);
+}
+
+TEST(TissueSettings, AttachmentsAreChosenByLandmarkOrPlaceAndBone) {
+  const auto usual = plain_model({});
+  TissuePlan loose;
+  loose.attachments = {
+      {.bone = Body::mandible, .attached = false, .landmark = "", .radius_mm = 200}};
+  const auto without = plain_model(loose);
+  EXPECT_GT(summary(*usual).attached_to_mandible, 0);
+  EXPECT_EQ(summary(*without).attached_to_mandible, 0);
+  EXPECT_EQ(summary(*without).attached_to_cranium, summary(*usual).attached_to_cranium);
+  bool told = false;
+  for (const auto& note : summary(*without).notes)
+    told = told || note.find("no tissue is attached to the mandible") != std::string::npos;
+  EXPECT_TRUE(told);
+  loose.attachments.push_back({.bone = Body::mandible, .landmark = "stomion", .radius_mm = 45});
+  const auto some = plain_model(loose);
+  EXPECT_GT(summary(*some).attached_to_mandible, 0);
+  loose.attachments.back().landmark = "nowhere";
+  EXPECT_THROW(plain_model(loose), InputError);
+}
+
+TEST(TissueSettings, GluedAndSlidingLipsDifferAndTheSlipIsTold) {
+  const auto sliding = plain_model({});
+  const auto glued = plain_model({.bond = TissueBond::glued});
+  TissueState s = rest_tissue(*sliding), g = rest_tissue(*glued);
+  double penetration = 0;
+  for (int degrees = 1; degrees <= 12; ++degrees) {
+    const Pose X_CM = opening(plain_patient(), degrees);
+    s = follow(*sliding, s, X_CM);
+    g = follow(*glued, g, X_CM);
+    penetration = std::max(penetration, s.penetration_mm);
+  }
+  EXPECT_TRUE(s.converged);
+  EXPECT_LT(penetration, 0.2);
+  EXPECT_GT(s.slip_mm, 0.5);
+  EXPECT_LT(g.slip_mm, s.slip_mm);
+  EXPECT_GT(farthest(s.nodes, g.nodes), 1);
+}
+
+TEST(TissueSettings, ASolveThatFailsKeepsTheLastGoodStateAndSaysSo) {
+  const auto model = plain_model({});
+  const TissueState good = follow(*model, rest_tissue(*model), opening(plain_patient(), 2));
+  ASSERT_FALSE(good.kept);
+  Pose nowhere;
+  nowhere.t = Vector3d(std::nan(""), 0, 0);
+  const TissueState bad = follow(*model, good, nowhere);
+  EXPECT_TRUE(bad.kept);
+  EXPECT_FALSE(bad.converged);
+  EXPECT_EQ(bad.nodes, good.nodes);
+  const TissueState later = follow(*model, bad, opening(plain_patient(), 2.2));
+  EXPECT_FALSE(later.kept);
+  EXPECT_LT(farthest(later.nodes, good.nodes), 2);
+}
+
+struct Misplaced {
+  const char* name;
+  Vector3d shift;
+  double scale;  // about the middle of the bones
+  const char* told;
+};
+class MisplacedFace : public testing::TestWithParam<Misplaced> {};
+
+TEST_P(MisplacedFace, IsRefusedWithAReason) {
+  Case patient = plain_patient();
+  const Vector3d middle(0, -44, -40);
+  for (auto& part : patient.parts)
+    if (part.role == Role::face)
+      for (auto& p : part.mesh.vertices)
+        p = middle + GetParam().scale * (p - middle) + GetParam().shift;
+  try {
+    part_lips(patient);
+    const auto model = build_tissue(patient, {.surface_nodes = 220});
+    FAIL() << "built with " << summary(*model).nodes << " nodes";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(GetParam().told), std::string::npos) << error.what();
+  }
+}
+INSTANTIATE_TEST_SUITE_P(All, MisplacedFace,
+                         testing::Values(Misplaced{"Inside", {0, 0, 0}, 0.55, "face: "},
+                                         Misplaced{"Far", {0, -140, 0}, 1, "face: "},
+                                         Misplaced{"Elsewhere", {0, 0, 900}, 1, "face: "}),
+                         [](const auto& row) { return row.param.name; });
+
+TEST(MisplacedFaceOnBone, HasNoThickness) {
+  Case patient = plain_patient();
+  // A bone that is the face itself.
+  TriMesh bone = patient.find(Role::face)->mesh;
+  for (auto& part : patient.parts)
+    if (part.role == Role::skull || part.role == Role::mandible) part.mesh = bone;
+  part_lips(patient);
+  try {
+    build_tissue(patient, {.surface_nodes = 220});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no thickness"), std::string::npos) << error.what();
+  }
+}
+
+TEST(TissueSettings, OutOfRangeIsRefusedByNameAndValue) {
+  const auto refused = [](const TissuePlan& plan, const char* item, const char* value) {
+    try {
+      plain_model(plan);
+      ADD_FAILURE() << item;
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      EXPECT_NE(text.find(item), std::string::npos) << text;
+      EXPECT_NE(text.find(value), std::string::npos) << text;
+    }
+  };
+  refused({.turgor = 1.2}, "turgor", "1.2");
+  refused({.turgor = std::nan("")}, "turgor", "nan");
+  refused({.lambda = 0}, "lambda", "not 0");
+  refused({.lambda = 1}, "lambda", "not 1");
+  refused({.layer_count = 4}, "layers", "4");
+  refused({.layers = {{.share = 0}, {.share = 1}}}, "share", "not 0");
+  refused({.layers = {{.share = 1, .modulus_MPa = -3}}}, "modulus", "-3");
+  refused({.layers = {{.share = 0.4}, {.share = 0.4}}}, "sum", "0.8");
+  refused({.down = Vector3d::Zero()}, "gravity", "0");
+}
+
+}  // namespace
+}  // namespace condyle::test
