@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/core/error.h"
+#include "engine/tissue/spring_map.h"
 
 namespace condyle {
 namespace {
@@ -29,89 +30,103 @@ std::vector<std::array<int, 2>> edges_of(const std::vector<Eigen::Vector3i>& tri
   return edges;
 }
 
+double bulk_modulus_of_prisms(const LayerMaterial& layer) {
+  const double shear = layer.modulus_MPa / (2 * (1 + layer.poisson));
+  return shear * (4 * layer.poisson - 1) / (1 - 2 * layer.poisson);
+}
+
 SpringPrismNet layered_net(const std::vector<Eigen::Vector3i>& triangles, int sheets,
-                           const Nodes& nodes, const std::vector<LayerMaterial>& layers) {
+                           const Nodes& nodes, const std::vector<LayerMaterial>& layers,
+                           double compression_share) {
   for (const auto& layer : layers) {
     require(layer.modulus_MPa > 0 && layer.modulus_MPa < 1e6,
             "a layer's modulus must be above 0 and below 1e6 MPa", layer.modulus_MPa);
-    require(layer.bulk_MPa > 0 && layer.bulk_MPa < 1e6,
-            "a layer's resistance to volume change must be above 0 and below 1e6 MPa",
-            layer.bulk_MPa);
+    require(layer.poisson > 0.25 && layer.poisson < 0.5,
+            "a layer's Poisson's ratio must be above 0.25 and below 0.5", layer.poisson);
     require(layer.mass_kg >= 0 && layer.mass_kg < 1e3, "a layer's mass must be 0 to 1000 kg",
             layer.mass_kg);
   }
+  require(compression_share > 0 && compression_share <= 1,
+          "the stiffness of shortened springs must be above 0 and at most 1 of the stretched ones'",
+          compression_share);
   SpringPrismNet net;
   net.node_count = static_cast<int>(nodes.size());
-  const int columns = net.node_count / sheets;
+  net.compression_share = compression_share;
+  const int columns = net.node_count / sheets, last = sheets - 1;
+  const auto edges = edges_of(triangles);
+  const auto edge_at = [&](int a, int b) {
+    const std::array<int, 2> edge{std::min(a, b), std::max(a, b)};
+    return std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin();
+  };
 
-  // Volume and stiffness that each node of each layer carries: a third of every prism at its
-  // column.
-  std::vector<double> share(static_cast<std::size_t>(columns) * (sheets - 1), 0.0);
-  for (int layer = 0; layer + 1 < sheets; ++layer)
+  // Prisms, the volume that each column has of a layer, and what each spring is to resist, in
+  // N mm: shear modulus times the volume it stands for.
+  const auto of_layer = [&](std::size_t i, int layer) { return i * last + layer; };
+  const auto of_sheet = [&](std::size_t i, int sheet) { return i * sheets + sheet; };
+  std::vector<double> share(of_layer(columns, 0), 0.0), across(share);
+  std::vector<double> along(of_sheet(edges.size(), 0), 0.0);
+  std::vector<double> diagonal(of_layer(edges.size(), 0), 0.0);
+  for (int layer = 0; layer < last; ++layer) {
+    const double shear = layers[layer].modulus_MPa / (2 * (1 + layers[layer].poisson));
+    const double mean_shear = 2 * shear / (1 + compression_share);
     for (const auto& t : triangles) {
       std::array<int, 6> prism;
+      std::array<Eigen::Vector3d, 6> corners;
       for (int k = 0; k < 3; ++k) {
         prism[k] = node_of(t[k], layer, sheets);
         prism[k + 3] = node_of(t[k], layer + 1, sheets);
       }
+      for (int k = 0; k < 6; ++k) corners[k] = nodes[prism[k]];
       const double volume = prism_volume(nodes, prism);
       net.prisms.push_back(prism);
       net.rest_volume.push_back(volume);
-      net.volume_weight.push_back(0.5 * layers[layer].bulk_MPa / volume);
-      for (int k = 0; k < 3; ++k) share[t[k] * (sheets - 1) + layer] += volume / 3;
+      net.volume_weight.push_back(0.5 * bulk_modulus_of_prisms(layers[layer]) / volume);
+      const PrismWeights weights = isotropic_weights(corners, volume);
+      for (int k = 0; k < 3; ++k) {
+        share[of_layer(t[k], layer)] += volume / 3;
+        across[of_layer(t[k], layer)] += mean_shear * weights.across;
+        const auto edge = edge_at(t[k], t[(k + 1) % 3]);
+        along[of_sheet(edge, layer)] += mean_shear * weights.along[k];
+        along[of_sheet(edge, layer + 1)] += mean_shear * weights.along[k];
+        diagonal[of_layer(edge, layer)] += mean_shear * weights.diagonal[k];
+      }
     }
+  }
 
-  // A spring of length l that stands for volume v of modulus E stores E/2 (dl/l)^2 v.
-  const auto add_spring = [&](int a, int b, int layer, int sheet, double modulus_times_volume) {
+  const auto add_spring = [&](int a, int b, int layer, int sheet, double resists) {
     const double length = (nodes[b] - nodes[a]).norm();
     net.spring_a.push_back(a);
     net.spring_b.push_back(b);
     net.rest_length.push_back(length);
-    net.stiffness.push_back(0.5 * modulus_times_volume / (length * length));
+    net.stiffness.push_back(0.5 * resists / (length * length));
     net.spring_layer.push_back(layer);
     net.spring_sheet.push_back(sheet);
   };
-  const auto carried = [&](int column, int layer) {
-    return share[column * (sheets - 1) + layer] * layers[layer].modulus_MPa;
-  };
-  const int last = sheets - 1;
-  std::vector<int> valence(columns, 0);
-  const auto edges = edges_of(triangles);
-  for (const auto& [a, b] : edges) {
-    ++valence[a];
-    ++valence[b];
-  }
-  for (const auto& [a, b] : edges) {
-    // What an edge stands for: its part of both columns, per layer.
-    const auto edge_share = [&](int layer) {
-      return carried(a, layer) / valence[a] + carried(b, layer) / valence[b];
-    };
-    for (int sheet = 0; sheet < sheets; ++sheet) {
-      const double above = sheet > 0 ? edge_share(sheet - 1) : 0;
-      const double below = sheet < last ? edge_share(sheet) : 0;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto [a, b] = edges[e];
+    for (int sheet = 0; sheet < sheets; ++sheet)
       add_spring(node_of(a, sheet, sheets), node_of(b, sheet, sheets), std::min(sheet, last - 1),
-                 sheet, 0.5 * (above + below));
-    }
+                 sheet, along[of_sheet(e, sheet)]);
     for (int layer = 0; layer < last; ++layer) {
-      const double diagonal = 0.5 * edge_share(layer);
-      add_spring(node_of(a, layer, sheets), node_of(b, layer + 1, sheets), layer, -1, diagonal);
-      add_spring(node_of(b, layer, sheets), node_of(a, layer + 1, sheets), layer, -1, diagonal);
+      const double resists = diagonal[of_layer(e, layer)];
+      add_spring(node_of(a, layer, sheets), node_of(b, layer + 1, sheets), layer, -1, resists);
+      add_spring(node_of(b, layer, sheets), node_of(a, layer + 1, sheets), layer, -1, resists);
     }
   }
   for (int column = 0; column < columns; ++column)
     for (int layer = 0; layer < last; ++layer)
       add_spring(node_of(column, layer, sheets), node_of(column, layer + 1, sheets), layer, -1,
-                 carried(column, layer));
+                 across[of_layer(column, layer)]);
 
   // Masses: what a layer carries at a column, half to the node above and half to that below.
   net.node_mass_kg.assign(nodes.size(), 0.0);
   for (int layer = 0; layer < last; ++layer) {
     double volume = 0;
-    for (int column = 0; column < columns; ++column) volume += share[column * last + layer];
+    for (int column = 0; column < columns; ++column) volume += share[of_layer(column, layer)];
     for (int column = 0; column < columns; ++column)
       for (int sheet : {layer, layer + 1})
         net.node_mass_kg[node_of(column, sheet, sheets)] +=
-            0.5 * layers[layer].mass_kg * share[column * last + layer] / volume;
+            0.5 * layers[layer].mass_kg * share[of_layer(column, layer)] / volume;
   }
   return net;
 }

@@ -7,13 +7,17 @@
 
 namespace condyle {
 
-/// Material of one layer. Springs and volumes are scaled with the size of the mesh, so that the
-/// same numbers mean the same tissue at any resolution.
+/// Material of one layer, as an elastic body's.
 struct LayerMaterial {
-  double modulus_MPa = 0.02;  // Young's modulus of the springs' net
-  double bulk_MPa = 0.1;      // resistance to a change of volume
+  double modulus_MPa = 0.02;  // Young's modulus
+  double poisson = 0.45;      // above 1/4, which is the springs' own, and below 1/2
   double mass_kg = 0;         // of the whole layer; spread over its nodes by volume
 };
+
+/// What prisms add to the springs' resistance to a change of volume, MPa: with mu the shear modulus
+/// E / (2 (1 + nu)), mu (4 nu - 1) / (1 - 2 nu). Springs alone have Lame's first constant equal to
+/// mu.
+double bulk_modulus_of_prisms(const LayerMaterial& layer);
 
 /// Layers from the outermost inward, with the share of the thickness of each.
 struct LayerStack {
@@ -35,10 +39,21 @@ std::vector<std::array<int, 2>> edges_of(const std::vector<Eigen::Vector3i>& tri
 /// and both diagonals of each side quad; per column: one spring across each layer.
 /// `nodes` has columns * sheets entries in `node_of` order and is the rest state; triangles run
 /// counter-clockwise seen from the outermost sheet; one material per layer (sheets - 1).
-/// A sheet between two layers stands for half of each; in spring_layer it goes with the one below.
-/// throws: InputError for a modulus, bulk or mass out of range.
+///
+/// Spring constants follow from modulus, thickness and mesh size: k = mu A / (2 l), with l the
+/// length of the spring and A = w / l the cross-section of tissue that it stands for; w, of the
+/// order of the prism's volume, is chosen for each prism so that it resists as an isotropic body
+/// (spring_map.h), and summed over the prisms around the spring. So for even prisms of edge l and
+/// height h sheet springs go with h, those across with l^2 / h, and diagonals between; the same
+/// layers mean the same tissue at any mesh size. Springs that are weaker when shortened get
+/// 2 / (1 + compression_share) times as much, for the same mean of both ways in shear.
+/// A prism's volume_weight is bulk_modulus_of_prisms / (2 v).
+///
+/// A sheet between two layers has springs of both; in spring_layer it goes with the one below.
+/// throws: InputError for a modulus, Poisson's ratio, mass or compression share out of range.
 SpringPrismNet layered_net(const std::vector<Eigen::Vector3i>& triangles, int sheets,
-                           const Nodes& nodes, const std::vector<LayerMaterial>& layers);
+                           const Nodes& nodes, const std::vector<LayerMaterial>& layers,
+                           double compression_share = 0.05);
 
 /// Turns a layered net into equation (1) as it is printed: one spring constant for each layer's
 /// class, volumes in mm^3 against lengths in mm, springs that push as they pull and no barrier

@@ -6,7 +6,7 @@
 namespace condyle {
 
 LayerStack usual_layers(int count) {
-  const LayerMaterial outer{0.040, 0.12}, middle{0.015, 0.12}, inner{0.025, 0.12};
+  const LayerMaterial outer{0.040}, middle{0.015}, inner{0.025};
   switch (count) {
     case 1:
       return {{1.0}, {inner}};
