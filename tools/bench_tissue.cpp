@@ -12,7 +12,7 @@
 #include "engine/tissue/refreshing.h"
 #include "engine/tissue/rolling_factor.h"
 #include "tools/commands.h"
-#include "tools/tissue_target.h"
+#include "tools/tissue_tables.h"
 
 namespace condyle {
 namespace {
@@ -210,6 +210,26 @@ int run_bench_tissue(const BenchOptions& options, const CommonOptions& common) {
   for (int nodes : options.sizes) {
     const SyntheticSet large = make_synthetic_set(size_of_nodes(nodes));
     say(warm_frames(large, nodes > 30000 ? 5 : 20, 2));
+  }
+
+  // One prediction for each, from nothing, as before and after surgery.
+  std::vector<int> sizes{20000};
+  sizes.insert(sizes.end(), options.sizes.begin(), options.sizes.end());
+  for (int nodes : sizes)
+    for (int threads : {1, 2}) say(static_prediction(nodes, threads));
+
+  const Json tolerances = tolerance_rows(target, 5);
+  for (const auto& row : tolerances) results.push_back(row);
+  if (!common.quiet) {
+    fmt::print(stderr, "Tolerance against time and error, {} nodes, cold, one thread:\n",
+               set.net.node_count);
+    fmt::print(stderr, "  {:>13}{:>12}{:>12}{:>14}{:>17}\n", "tolerance mm", "median ms",
+               "iterations", "worst node mm", "relative energy");
+    for (const auto& row : tolerances)
+      fmt::print(stderr, "  {:>13.1e}{:>12.2f}{:>12}{:>14.1e}{:>17.1e}\n",
+                 row["tolerance"].get<double>(), row["median"].get<double>(),
+                 row["iterations"].get<int>(), row["error_mm"].get<double>(),
+                 row["energy_error"].get<double>());
   }
   if (common.json) fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
   return 0;

@@ -29,6 +29,11 @@ struct LayerStack {
 /// layers softer. throws: InputError for another count.
 LayerStack usual_layers(int count);
 
+/// The same layers, each cut into equal ones until none is thicker than 1.2 edges: springs cannot
+/// resist evenly in taller prisms (spring_map.h). Masses are shared out. depth_mm: of the whole
+/// stack; edge_mm: of the mesh along it.
+LayerStack split_layers(const LayerStack& layers, double depth_mm, double edge_mm);
+
 /// Node `sheet` (0 outermost) of column `column`.
 inline int node_of(int column, int sheet, int sheets) { return column * sheets + sheet; }
 

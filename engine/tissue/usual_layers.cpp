@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string>
 
 #include "engine/core/error.h"
@@ -19,6 +20,19 @@ LayerStack usual_layers(int count) {
     default:
       throw InputError("soft tissue: layers must be 1, 2, 3 or 5, not " + std::to_string(count));
   }
+}
+
+LayerStack split_layers(const LayerStack& layers, double depth_mm, double edge_mm) {
+  LayerStack split;
+  for (std::size_t i = 0; i < layers.share.size(); ++i) {
+    const double height = layers.share[i] * depth_mm;
+    const int pieces = std::max(1, static_cast<int>(std::ceil(height / (1.2 * edge_mm) - 1e-9)));
+    LayerMaterial material = layers.material[i];
+    material.mass_kg /= pieces;
+    split.share.insert(split.share.end(), pieces, layers.share[i] / pieces);
+    split.material.insert(split.material.end(), pieces, material);
+  }
+  return split;
 }
 
 }  // namespace condyle
