@@ -39,9 +39,12 @@ void check_plan(const TissuePlan& plan, const std::string& where) {
     require(layer.share >= 0.02 && layer.share <= 1, "a layer's share of the thickness",
             "0.02 to 1", layer.share);
     sum += layer.share;
-    for (const auto& [item, value] : {std::pair{"a layer's modulus (MPa)", layer.modulus_MPa},
-                                      std::pair{"a layer's bulk modulus (MPa)", layer.bulk_MPa}})
-      if (value) require(*value >= 1e-5 && *value <= 100, item, "0.00001 to 100", *value);
+    if (layer.modulus_MPa)
+      require(*layer.modulus_MPa >= 1e-5 && *layer.modulus_MPa <= 100, "a layer's modulus (MPa)",
+              "0.00001 to 100", *layer.modulus_MPa);
+    if (layer.poisson)
+      require(*layer.poisson >= 0.26 && *layer.poisson <= 0.499, "a layer's Poisson's ratio",
+              "0.26 to 0.499", *layer.poisson);
     if (layer.mass_kg)
       require(*layer.mass_kg >= 0 && *layer.mass_kg <= 10, "a layer's mass (kg)", "0 to 10",
               *layer.mass_kg);

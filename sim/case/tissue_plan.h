@@ -13,7 +13,7 @@ namespace condyle {
 struct TissueLayer {
   double share = 1;                                  // of the thickness; all add up to 1
   std::optional<double> modulus_MPa = std::nullopt;  // of the layer's springs
-  std::optional<double> bulk_MPa = std::nullopt;     // against change of volume
+  std::optional<double> poisson = std::nullopt;      // Poisson's ratio: against change of volume
   std::optional<double> mass_kg = std::nullopt;      // of the whole layer; else 1 kg a litre
 };
 

@@ -60,10 +60,10 @@ TissuePlan load_tissue_plan(const JsonItem& item) {
     } else {
       for (std::size_t i = 0; i < layers->size(); ++i) {
         const JsonItem from = layers->at(i);
-        only(from, {"share", "modulus_MPa", "bulk_MPa", "mass_kg"});
+        only(from, {"share", "modulus_MPa", "poisson", "mass_kg"});
         TissueLayer layer{.share = from.at("share").number(0, 1)};
         if (const auto value = from.find("modulus_MPa")) layer.modulus_MPa = value->number(0, 100);
-        if (const auto value = from.find("bulk_MPa")) layer.bulk_MPa = value->number(0, 100);
+        if (const auto value = from.find("poisson")) layer.poisson = value->number(0, 1);
         if (const auto value = from.find("mass_kg")) layer.mass_kg = value->number(0, 10);
         plan.layers.push_back(layer);
       }
@@ -96,7 +96,7 @@ Json tissue_plan_json(const TissuePlan& plan) {
   for (const auto& layer : plan.layers) {
     Json item = {{"share", layer.share}};
     if (layer.modulus_MPa) item["modulus_MPa"] = *layer.modulus_MPa;
-    if (layer.bulk_MPa) item["bulk_MPa"] = *layer.bulk_MPa;
+    if (layer.poisson) item["poisson"] = *layer.poisson;
     if (layer.mass_kg) item["mass_kg"] = *layer.mass_kg;
     json["layers"].push_back(item);
   }

@@ -12,7 +12,7 @@ LayerStack layers_of(const TissuePlan& plan) {
     LayerMaterial material = usual.material[count == 1 ? 2 : i == 0 ? 0 : i + 1 == count ? 2 : 1];
     const TissueLayer& layer = plan.layers[i];
     material.modulus_MPa = layer.modulus_MPa.value_or(material.modulus_MPa);
-    material.bulk_MPa = layer.bulk_MPa.value_or(material.bulk_MPa);
+    material.poisson = layer.poisson.value_or(material.poisson);
     material.mass_kg = layer.mass_kg.value_or(0);
     stack.share.push_back(layer.share);
     stack.material.push_back(material);
