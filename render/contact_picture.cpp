@@ -15,7 +15,7 @@ namespace {
 
 constexpr int width = 1600, margin = 24, panel = 440, panel_height = 460, top = 108;
 constexpr int legend_left = margin + 3 * (panel + margin) + 4;
-constexpr int line_height = 26;
+constexpr int line_height = 26, text_height = 20;
 const Eigen::Vector3f grey = Eigen::Vector3f::Constant(0.35f);
 
 void paste(Image& image, const Image& part, int x, int y) {
@@ -50,9 +50,11 @@ char letter_of(const Eigen::Vector3d& direction) {
 class Sheet {
  public:
   Sheet(const ContactPlace& place, const ColourMap& map) : place_(place), map_(map) {
+    for (const auto& line : place.lines)
+      for (auto& part : words_.lines(line, text_height, width - 2 * margin))
+        lines_.push_back(std::move(part));
     image_.width = width;
-    image_.height =
-        top + panel_height + margin + line_height * static_cast<int>(place.lines.size() + 1);
+    image_.height = top + panel_height + margin + line_height * static_cast<int>(lines_.size() + 1);
     image_.rgba.assign(4 * static_cast<std::size_t>(image_.width) * image_.height, 255);
   }
 
@@ -77,8 +79,8 @@ class Sheet {
     draw_legend(image_, words_, map_,
                 {.left = legend_left, .top = top - 32, .bar_height = panel_height - 54});
     int y = top + panel_height + margin + 10;
-    for (const auto& line : place_.lines) {
-      words_.write(image_, margin, y, 20, line);
+    for (const auto& line : lines_) {
+      words_.write(image_, margin, y, text_height, line);
       y += line_height;
     }
     words_.write(image_, margin, y, 16, "For research and education, not for clinical use.", grey);
@@ -142,6 +144,7 @@ class Sheet {
   const ContactPlace& place_;
   const ColourMap& map_;
   Lettering words_;
+  std::vector<std::string> lines_;
   Image image_;
 };
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 #include <vector>
 
 #include "engine/core/files.h"
@@ -67,6 +68,21 @@ double Lettering::width(const std::string& text, double height) const {
     x += scale * static_cast<float>(advance);
   }
   return x;
+}
+
+std::vector<std::string> Lettering::lines(const std::string& text, double height,
+                                          double most) const {
+  std::vector<std::string> lines(1);
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    auto& line = lines.back();
+    const std::string longer = line.empty() ? word : line + ' ' + word;
+    if (line.empty() || width(longer, height) <= most)
+      line = longer;
+    else
+      lines.push_back(word);
+  }
+  return lines;
 }
 
 void Lettering::write(Image& image, double x, double y, double height, const std::string& text,

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "render/image.h"
 
@@ -21,6 +22,9 @@ class Lettering {
 
   /// Pixels; text is UTF-8.
   double width(const std::string& text, double height) const;
+
+  /// Broken between words so that each line is at most `most` pixels wide, single words apart.
+  std::vector<std::string> lines(const std::string& text, double height, double most) const;
 
   /// `x`, `y`: left end of the base line, pixels from the top left. Color: sRGB, 0 to 1.
   void write(Image& image, double x, double y, double height, const std::string& text,

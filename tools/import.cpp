@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "sim/contact/push_out_parts.h"
@@ -25,11 +26,12 @@ int run_import(const ImportOptions& options, const CommonOptions& common) {
   }
   if (!common.quiet) {
     for (const auto& note : patient.notes) fmt::print(stderr, "note: {}\n", note);
-    fmt::print(
-        stderr,
-        "{}: {} parts, {} landmarks. Next: condyle record {} --motion opening --out out --film\n",
-        options.out.string(), patient.parts.size(), patient.landmarks.points.size(),
-        options.out.string());
+    const bool moves = patient.landmarks.find("lower_incisal_point") &&
+                       std::any_of(patient.parts.begin(), patient.parts.end(),
+                                   [](const Part& part) { return part.role == Role::mandible; });
+    fmt::print(stderr, "{}: {} parts, {} landmarks. Next: condyle {} {}{}\n", options.out.string(),
+               patient.parts.size(), patient.landmarks.points.size(), moves ? "record" : "view",
+               options.out.string(), moves ? " --motion opening --out out --film" : "");
   }
   return 0;
 }

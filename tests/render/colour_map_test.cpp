@@ -256,5 +256,20 @@ TEST(Lettering, WritesInsideItsWidthAndMissesNothing) {
   words.write(image, 190, 5, 40, "cut off at the edge \xff");  // and a damaged letter
 }
 
+TEST(Lettering, BreaksLinesBetweenWords) {
+  const Lettering words;
+  const std::string text = "contact 238.0 mm\u00b2 in 21 patches, left upper back teeth";
+  const auto lines = words.lines(text, 20, 180);
+  EXPECT_GT(lines.size(), 2);
+  std::string joined;
+  for (const auto& line : lines) {
+    EXPECT_LE(words.width(line, 20), 180);
+    joined += (joined.empty() ? "" : " ") + line;
+  }
+  EXPECT_EQ(joined, text);
+  EXPECT_EQ(words.lines(text, 20, 2000).size(), 1);
+  EXPECT_EQ(words.lines("unbreakable", 20, 5), std::vector<std::string>{"unbreakable"});
+}
+
 }  // namespace
 }  // namespace condyle
