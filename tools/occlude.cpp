@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <system_error>
 
 #include "engine/collide/distance_field.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/mesh/measure.h"
 #include "render/contact_picture.h"
 #include "render/gap_colours.h"
 #include "render/gl_context.h"
@@ -69,9 +71,11 @@ Image picture_of(const Case& patient, const Bite& bite, double paper_mm, int thr
   const BiteView view = bite_view(patient, bite, threads);
   const Eigen::Vector3d heaviest =
       bite.contacts.empty() ? bite.upper_edge : bite.contacts.front().place;
-  constexpr double half_arch_mm = 23;
-  Eigen::Vector3d middle = bite.upper_edge + half_arch_mm * bite.up.cross(Eigen::Vector3d::UnitX());
-  middle.x() = bite.midline_mm;
+  Box arches;
+  for (const auto& part : view.parts)
+    if (part.name == bite.upper || part.name == bite.lower)
+      for (const auto& p : part.mesh.vertices) arches.add(p);
+  constexpr double border = 1.12;  // and a panel is a little narrower than high
   ContactPlace place{
       .parts = view.parts,
       .fixed = bite.upper,
@@ -80,9 +84,9 @@ Image picture_of(const Case& patient, const Bite& bite, double paper_mm, int thr
       .moved_values = view.lower_gap,
       .X_CM = bite.rest.X_CM,
       .place = heaviest,
-      .middle = middle,
+      .middle = arches.center(),
       .normal = -bite.up,
-      .seen_mm = 68,
+      .seen_mm = border * std::max(arches.size().x(), arches.size().y()),
       .overview = "front",
       .title = "Settled bite: " + patient.name,
       .lines = {fmt::format("{} contacts at {:g} mm paper; load {:.0f} % left, {:.0f} % right; "
