@@ -104,7 +104,7 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   const auto check = check_clearance(
       scene, motion, {.margin_mm = options.margin_mm, .sampling = {options.frames, options.fps}},
       settings, bar.callback());
-  std::vector<std::string> pictures, notes;
+  std::vector<std::string> pictures, notes = motion.notes;
   if (files) pictures = write_pictures(*files, scene, check, common.threads, notes, bar.callback());
   bar.clear();
   const std::string json = check.json(scene, motion, pictures, notes);

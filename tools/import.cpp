@@ -29,9 +29,10 @@ int run_import(const ImportOptions& options, const CommonOptions& common) {
     const bool moves = patient.landmarks.find("lower_incisal_point") &&
                        std::any_of(patient.parts.begin(), patient.parts.end(),
                                    [](const Part& part) { return part.role == Role::mandible; });
-    fmt::print(stderr, "{}: {} parts, {} landmarks. Next: condyle {} {}{}\n", options.out.string(),
-               patient.parts.size(), patient.landmarks.points.size(), moves ? "record" : "view",
-               options.out.string(), moves ? " --motion opening --out out --film" : "");
+    fmt::print(stderr, "{}: {} part{}, {} landmarks. Next: condyle {} {}{}\n", options.out.string(),
+               patient.parts.size(), patient.parts.size() == 1 ? "" : "s",
+               patient.landmarks.points.size(), moves ? "record" : "view", options.out.string(),
+               moves ? " --motion opening --out out --film" : "");
   }
   return 0;
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "engine/core/error.h"
+#include "engine/mesh/holes.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/repair.h"
 #include "engine/mesh/topology.h"
@@ -32,7 +33,7 @@ struct Surface {
 
 /// What cleaning did to the files of one part.
 struct Cleaning {
-  int welded = 0, flat = 0, twice = 0, turned = 0, unused = 0;
+  int welded = 0, flat = 0, twice = 0, turned = 0, holes = 0, unused = 0;
 };
 
 bool is_bone(Role role) {
@@ -74,6 +75,11 @@ void clean(Surface& surface, Cleaning& done) {
   done.flat += drop_degenerate(surface.mesh);
   done.twice += drop_duplicates(surface.mesh);
   done.turned += orient_outward(surface.mesh).turned;
+  if (surface.source.role != Role::face) {
+    const int holes = close_small_holes(surface.mesh).holes;
+    if (holes > 0) done.turned += orient_outward(surface.mesh).turned;
+    done.holes += holes;
+  }
   done.unused += drop_unreferenced(surface.mesh);
   if (surface.mesh.triangles.empty())
     throw InputError(surface.source.file, "",
@@ -116,6 +122,7 @@ std::string description(const Cleaning& done) {
   add(done.twice, "repeated triangle dropped", "repeated triangles dropped");
   add(done.turned, "triangle turned outward or to agree with its neighbours",
       "triangles turned outward or to agree with their neighbours");
+  add(done.holes, "small hole closed", "small holes closed");
   add(done.unused, "unused vertex dropped", "unused vertices dropped");
   return text;
 }

@@ -16,7 +16,8 @@ namespace {
 constexpr double known_joint_opening_mm = 50;  // adults open 49 to 51 mm
 constexpr double imported_opening_mm = 45;     // a joint that was only guessed is asked for less
 constexpr double largest_rotation = 45 * radian_per_degree;
-constexpr double give_way_mm = 0.5;  // opening given up where bone is met
+constexpr double give_way_mm = 0.5;     // opening given up where bone is met, so that it is not
+constexpr double least_opening_mm = 5;  // of a jaw; met earlier, contact shall show where
 
 /// A symmetric opening, by rotation.
 struct OpeningPath {
@@ -143,10 +144,11 @@ OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contac
   double end = best->end;
   if (best->free_end < best->end) {
     const double free_mm = path.opening_mm(best->free_end);
-    notes.push_back(fmt::format(
-        "bone meets bone at an opening of {:.1f} mm of the {:.1f} mm wanted", free_mm, wanted));
-    // What was asked for is tried, and contact stops it; the default keeps clear.
-    if (!asked) end = path.theta_for(std::max(free_mm - give_way_mm, 0.0));
+    const bool keeps_clear = !asked && free_mm > least_opening_mm;
+    notes.push_back(
+        fmt::format("bone meets bone at an opening of {:.1f} mm of the {:.1f} mm wanted{}", free_mm,
+                    wanted, keeps_clear ? "" : ", which is tried all the same"));
+    if (keeps_clear) end = path.theta_for(std::max(free_mm - give_way_mm, 0.0));
   }
   const double forward = best->coupling.forward_mm(end);
   notes.push_back(fmt::format(
