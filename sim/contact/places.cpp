@@ -151,7 +151,10 @@ std::string Places::by_shape(Role role, const Vector3d& p) const {
   }
   if (forward > 0.1 && outward > 0.75 * half_width(patient_))
     return side + " zygomatic bone or arch";
-  if (forward > 0.45)
+  // The back teeth stand behind the middle, but low; the base lies as high as the condyles.
+  const double high = 0.5 * (left->z() + right->z());
+  const bool low = 2 * (high - p.z()) > high - incisor->z();
+  if (forward > 0.45 || (low && forward > 0.15))
     return outward < middle_mm ? "front of the upper jaw" : side + " half of the upper jaw";
   return outward < middle_mm ? "skull base" : side + " half of the skull base";
 }

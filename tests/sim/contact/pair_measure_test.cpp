@@ -78,6 +78,8 @@ TEST(Places, NamesOfTheJawsRegions) {
   EXPECT_EQ(places.name(1, {-30, -60, -70}), "right body of the mandible");
   EXPECT_EQ(places.name(1, {2, -90, -70}), "chin");
   EXPECT_EQ(places.name(0, {60, -50, -10}), "left zygomatic bone or arch");
+  EXPECT_EQ(places.name(0, {-25, -35, -40}), "right half of the upper jaw");  // the back teeth
+  EXPECT_EQ(places.name(0, {-25, -35, -5}), "right half of the skull base");
   EXPECT_EQ(both_places("tooth 26", "tooth 36"), "teeth 26 and 36");
   EXPECT_EQ(both_places("tooth 26", "chin"), "tooth 26 and chin");
 }
