@@ -66,10 +66,10 @@ SpringPrismNet layered_net(const std::vector<Eigen::Vector3i>& triangles, int sh
   std::vector<double> share(of_layer(columns, 0), 0.0), across(share);
   std::vector<double> along(of_sheet(edges.size(), 0), 0.0);
   std::vector<double> diagonal(of_layer(edges.size(), 0), 0.0);
-  for (int layer = 0; layer < last; ++layer) {
-    const double shear = layers[layer].modulus_MPa / (2 * (1 + layers[layer].poisson));
-    const double mean_shear = 2 * shear / (1 + compression_share);
-    for (const auto& t : triangles) {
+  for (const auto& t : triangles)
+    for (int layer = 0; layer < last; ++layer) {
+      const double shear = layers[layer].modulus_MPa / (2 * (1 + layers[layer].poisson));
+      const double mean_shear = 2 * shear / (1 + compression_share);
       std::array<int, 6> prism;
       std::array<Eigen::Vector3d, 6> corners;
       for (int k = 0; k < 3; ++k) {
@@ -91,7 +91,6 @@ SpringPrismNet layered_net(const std::vector<Eigen::Vector3i>& triangles, int sh
         diagonal[of_layer(edge, layer)] += mean_shear * weights.diagonal[k];
       }
     }
-  }
 
   const auto add_spring = [&](int a, int b, int layer, int sheet, double resists) {
     const double length = (nodes[b] - nodes[a]).norm();
@@ -107,11 +106,11 @@ SpringPrismNet layered_net(const std::vector<Eigen::Vector3i>& triangles, int sh
     for (int sheet = 0; sheet < sheets; ++sheet)
       add_spring(node_of(a, sheet, sheets), node_of(b, sheet, sheets), std::min(sheet, last - 1),
                  sheet, along[of_sheet(e, sheet)]);
-    for (int layer = 0; layer < last; ++layer) {
-      const double resists = diagonal[of_layer(e, layer)];
-      add_spring(node_of(a, layer, sheets), node_of(b, layer + 1, sheets), layer, -1, resists);
-      add_spring(node_of(b, layer, sheets), node_of(a, layer + 1, sheets), layer, -1, resists);
-    }
+    // One way, then the other: springs that follow each other are taken together (NetRuns).
+    for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}})
+      for (int layer = 0; layer < last; ++layer)
+        add_spring(node_of(from, layer, sheets), node_of(to, layer + 1, sheets), layer, -1,
+                   diagonal[of_layer(e, layer)]);
   }
   for (int column = 0; column < columns; ++column)
     for (int layer = 0; layer < last; ++layer)

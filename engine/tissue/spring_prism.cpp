@@ -62,9 +62,7 @@ VolumeLaw volume_law(double j, double barrier_share, double barrier_weight) {
   return law;
 }
 
-struct Range {
-  std::size_t first, last;
-};
+using Range = RunKernels::Range;
 Range share(std::size_t count, int chunk, int chunks) {
   return {count * chunk / chunks, count * (chunk + 1) / chunks};
 }
@@ -124,37 +122,49 @@ Nodes weight_of_nodes(const SpringPrismNet& net, const Vector3d& down) {
 }
 
 SpringPrismEnergy::SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads)
-    : net_(net), loads_(loads), threads_(threads) {
-  for (auto& nodes : partial_) nodes.resize(net.node_count);
-  inverse_length_.resize(net.spring_a.size());
+    : net_(net), loads_(loads), threads_(threads), runs_(net) {
+  const std::size_t size = 3 * (static_cast<std::size_t>(net.node_count) + NetRuns::lanes);
+  x_.assign(size, 0.0);
+  d_.assign(size, 0.0);
+  for (auto& gradient : gradient_) gradient.resize(size);
+  inverse_length_.resize(runs_.springs.size() * NetRuns::lanes);
 }
 
-template <bool with_gradient>
-double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, Nodes& gradient) {
-  if constexpr (with_gradient)
-    for (auto& g : gradient) g.setZero();
-  double spring_energy = 0;
-  const Range springs = share(net_.spring_a.size(), chunk, chunks_);
-  for (std::size_t s = springs.first; s < springs.last; ++s) {
-    const int a = net_.spring_a[s], b = net_.spring_b[s];
-    const Vector3d d = x[b] - x[a];
-    const double inverse = 1 / std::sqrt(d.squaredNorm());
-    if constexpr (with_gradient) inverse_length_[s] = inverse;
-    const double tension = 1 - net_.rest_length[s] * inverse;  // (l - rest) / l
-    const double k = net_.stiffness[s] * (tension < 0 ? net_.compression_share : 1.0);
-    const Vector3d force = (2 * k * tension) * d;
-    spring_energy += 0.5 * tension * force.dot(d);
-    if constexpr (with_gradient) {
-      gradient[a] -= force;
-      gradient[b] += force;
-    }
+AxisRows SpringPrismEnergy::rows(Rows& of) const {
+  const std::size_t row = of.size() / 3;
+  return {of.data(), of.data() + row, of.data() + 2 * row};
+}
+
+void SpringPrismEnergy::set_rows(const Nodes& x, Rows& to) const {
+  const AxisRows at = rows(to);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    at.x[i] = x[i].x();
+    at.y[i] = x[i].y();
+    at.z[i] = x[i].z();
   }
+}
+
+double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, bool with_gradient) {
+  const RunKernels& kernels = run_kernels();
+  const AxisRows at = rows(x_);
+  AxisRows slope{nullptr, nullptr, nullptr};
+  if (with_gradient) {
+    std::fill(gradient_[chunk].begin(), gradient_[chunk].end(), 0.0);
+    slope = rows(gradient_[chunk]);
+  }
+  const auto push = [&](int node, const Vector3d& force) {
+    slope.x[node] += force.x();
+    slope.y[node] += force.y();
+    slope.z[node] += force.z();
+  };
+  double spring_energy = kernels.springs(runs_, share(runs_.springs.size(), chunk, chunks_),
+                                         net_.compression_share, at, slope, inverse_length_.data());
   const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);
   for (std::size_t i = anchors.first; i < anchors.last; ++i) {
     const int node = net_.anchor_node[i];
     const Vector3d d = x[node] - loads_.anchor_target[i];
     spring_energy += net_.anchor_stiffness[i] * d.squaredNorm();
-    if constexpr (with_gradient) gradient[node] += (2 * net_.anchor_stiffness[i]) * d;
+    if (with_gradient) push(node, (2 * net_.anchor_stiffness[i]) * d);
   }
   const Range contacts = share(loads_.contacts.size(), chunk, chunks_);
   for (std::size_t i = contacts.first; i < contacts.last; ++i) {
@@ -162,77 +172,53 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, Nodes& gradien
     const double gap = row.gap(x);
     if (gap >= 0) continue;
     spring_energy += row.stiffness * gap * gap;
-    if constexpr (with_gradient)
-      for (int k = 0; k < row.count; ++k)
-        gradient[row.node[k]] += (2 * row.stiffness * gap * row.weight[k]) * row.normal;
+    for (int k = 0; with_gradient && k < row.count; ++k)
+      push(row.node[k], (2 * row.stiffness * gap * row.weight[k]) * row.normal);
   }
   const Range forced = share(loads_.node_force.size(), chunk, chunks_);
   for (std::size_t i = forced.first; i < forced.last; ++i) {
     spring_energy -= loads_.node_force[i].dot(x[i]);
-    if constexpr (with_gradient) gradient[i] -= loads_.node_force[i];
+    if (with_gradient) push(static_cast<int>(i), -loads_.node_force[i]);
   }
   // Springs and volumes share the gradient: the volumes' part is scaled to the springs' weight.
   const double lambda = net_.lambda, volume_scale = (1 - lambda) / lambda;
-  double volume_energy = 0;
-  const Range prisms = share(net_.prisms.size(), chunk, chunks_);
-  Corners slope;
-  for (std::size_t p = prisms.first; p < prisms.last; ++p) {
-    const auto& prism = net_.prisms[p];
-    const double rest = net_.rest_volume[p];
-    const double j = volume_and_gradient(relative_corners(x, prism), slope) / rest;
-    if (!(j > 1e-3)) return std::numeric_limits<double>::infinity();
-    const VolumeLaw law = volume_law(j, net_.barrier_share, net_.barrier_weight);
-    const double scale = volume_scale * net_.volume_weight[p] * rest;
-    volume_energy += scale * rest * law.e;
-    if constexpr (with_gradient) {
-      const double pressure = scale * law.de;
-      for (int k = 0; k < 6; ++k) gradient[prism[k]] += pressure * slope[k];
-    }
-  }
-  return lambda * (spring_energy + volume_energy);
+  const double volume_energy =
+      kernels.prisms(runs_, share(runs_.prisms.size(), chunk, chunks_), net_.barrier_share,
+                     net_.barrier_weight, at, volume_scale, slope);
+  return lambda * (spring_energy + volume_scale * volume_energy);
 }
 
-double SpringPrismEnergy::value(const Nodes& x) {
+double SpringPrismEnergy::energy(const Nodes& x, bool with_gradient) {
+  set_rows(x, x_);
   std::array<double, chunks_> energy{};
   parallel_for(chunks_, threads_, [&](std::size_t c) {
-    energy[c] = chunk_energy<false>(static_cast<int>(c), x, partial_[c]);
+    energy[c] = chunk_energy(static_cast<int>(c), x, with_gradient);
   });
   double total = 0;
   for (double e : energy) total += e;
   return total;
 }
+
+double SpringPrismEnergy::value(const Nodes& x) { return energy(x, false); }
 
 double SpringPrismEnergy::value_and_gradient(const Nodes& x, Nodes& gradient) {
-  std::array<double, chunks_> energy{};
-  parallel_for(chunks_, threads_, [&](std::size_t c) {
-    energy[c] = chunk_energy<true>(static_cast<int>(c), x, partial_[c]);
-  });
-  double total = 0;
-  for (double e : energy) total += e;
+  const double total = energy(x, true);
   gradient.resize(net_.node_count);
-  for (int i = 0; i < net_.node_count; ++i) {
-    Vector3d sum = partial_[0][i];
-    for (int c = 1; c < chunks_; ++c) sum += partial_[c][i];
-    gradient[i] = net_.lambda * sum;
-  }
+  const AxisRows a = rows(gradient_[0]), b = rows(gradient_[1]);
+  static_assert(chunks_ == 2);
+  for (int i = 0; i < net_.node_count; ++i)
+    gradient[i] = net_.lambda * Vector3d(a.x[i] + b.x[i], a.y[i] + b.y[i], a.z[i] + b.z[i]);
   return total;
 }
 
-Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& x,
-                                                        const Nodes& d) const {
-  Curvature springs_sum, volumes_sum;
-  const Range springs = share(net_.spring_a.size(), chunk, chunks_);
-  for (std::size_t s = springs.first; s < springs.last; ++s) {
-    const int a = net_.spring_a[s], b = net_.spring_b[s];
-    const Vector3d e = x[b] - x[a], de = d[b] - d[a];
-    const double along = e.dot(de) * inverse_length_[s];
-    const double along2 = along * along;
-    const double across2 = de.squaredNorm() - along2;
-    const double tension = 1 - net_.rest_length[s] * inverse_length_[s];
-    const double k2 = 2 * net_.stiffness[s] * (tension < 0 ? net_.compression_share : 1.0);
-    springs_sum.exact += k2 * (along2 + tension * across2);
-    springs_sum.gauss_newton += k2 * (along2 + (tension > 0 ? tension * across2 : 0));
-  }
+Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& x, const Nodes& d) {
+  const RunKernels& kernels = run_kernels();
+  const AxisRows at = rows(x_), way = rows(d_);
+  const auto springs =
+      kernels.springs_bend(runs_, share(runs_.springs.size(), chunk, chunks_),
+                           net_.compression_share, at, way, inverse_length_.data());
+  const auto prisms = kernels.prisms_bend(runs_, share(runs_.prisms.size(), chunk, chunks_),
+                                          net_.barrier_share, net_.barrier_weight, at, way);
   double linear = 0;  // parts whose curvature is exact and never negative
   const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);
   for (std::size_t i = anchors.first; i < anchors.last; ++i)
@@ -244,29 +230,14 @@ Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& 
     const double speed = row.along(d);
     linear += 2 * row.stiffness * speed * speed;
   }
-  const Range prisms = share(net_.prisms.size(), chunk, chunks_);
-  Corners slope;
-  for (std::size_t p = prisms.first; p < prisms.last; ++p) {
-    const Corners c = relative_corners(x, net_.prisms[p]);
-    const Corners e = relative_corners(d, net_.prisms[p]);
-    const double rest = net_.rest_volume[p];
-    const double j = volume_and_gradient(c, slope) / rest;
-    const double first = contract(slope, e);
-    volume_gradient(e, slope);  // of a cubic form: the second derivative is twice grad(d) . c
-    const double second = 2 * contract(slope, c);
-    const VolumeLaw law = volume_law(j, net_.barrier_share, net_.barrier_weight);
-    const double weight = net_.volume_weight[p];
-    const double square = weight * law.dde * first * first;
-    const double bend = weight * rest * law.de * second;
-    volumes_sum.exact += square + bend;
-    volumes_sum.gauss_newton += square;
-  }
   const double lambda = net_.lambda;
-  return {lambda * (springs_sum.exact + linear) + (1 - lambda) * volumes_sum.exact,
-          lambda * (springs_sum.gauss_newton + linear) + (1 - lambda) * volumes_sum.gauss_newton};
+  return {lambda * (springs.exact + linear) + (1 - lambda) * prisms.exact,
+          lambda * (springs.gauss_newton + linear) + (1 - lambda) * prisms.gauss_newton};
 }
 
 Objective::Curvature SpringPrismEnergy::curvature(const Nodes& x, const Nodes& d) {
+  set_rows(x, x_);
+  set_rows(d, d_);
   std::array<Curvature, chunks_> parts;
   parallel_for(chunks_, threads_,
                [&](std::size_t c) { parts[c] = chunk_curvature(static_cast<int>(c), x, d); });

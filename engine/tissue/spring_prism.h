@@ -6,6 +6,7 @@
 
 #include "engine/minimize/objective.h"
 #include "engine/tissue/contact_row.h"
+#include "engine/tissue/net_runs.h"
 
 namespace condyle {
 
@@ -77,7 +78,8 @@ double volume_pressure(double share, double barrier_share, double barrier_weight
 /// Second derivative of a prism's energy, over its weight, by its volume, at v = share * rest.
 double volume_stiffness(double share, double barrier_share, double barrier_weight);
 
-/// Energy, gradient and curvature of a net; keeps its work space. The sums are taken in an order
+/// Energy, gradient and curvature of a net; keeps its work space, and the net's constants as they
+/// were when it was made. The sums are taken in an order
 /// that does not depend on the number of threads.
 class SpringPrismEnergy final : public Objective {
  public:
@@ -94,15 +96,20 @@ class SpringPrismEnergy final : public Objective {
 
  private:
   static constexpr int chunks_ = 2;  // fixed: the sums must not know the number of threads
-  template <bool with_gradient>
-  double chunk_energy(int chunk, const Nodes& x, Nodes& gradient);
-  Curvature chunk_curvature(int chunk, const Nodes& x, const Nodes& d) const;
+  using Rows = std::vector<double>;  // see AxisRows
+  AxisRows rows(Rows& of) const;
+  void set_rows(const Nodes& x, Rows& to) const;
+  double energy(const Nodes& x, bool with_gradient);
+  double chunk_energy(int chunk, const Nodes& x, bool with_gradient);
+  Curvature chunk_curvature(int chunk, const Nodes& x, const Nodes& d);
 
   const SpringPrismNet& net_;
   const NetLoads& loads_;
   int threads_;
-  std::array<Nodes, chunks_> partial_;
-  std::vector<double> inverse_length_;  // of each spring, 1/mm
+  NetRuns runs_;
+  Rows x_, d_;
+  std::array<Rows, chunks_> gradient_;
+  std::vector<double> inverse_length_;  // of each lane of a run of springs, 1/mm
 };
 
 }  // namespace condyle
