@@ -16,9 +16,9 @@ constexpr double lateral_pole_forward_deg = -14;  // about z
 }  // namespace
 
 CondylarPath phantom_condylar_path() {
-  // Steepest 40 degrees on the way down the eminence, flat beyond its crest.
+  // Steepest 42 degrees on the way down the eminence, flat beyond its crest.
   return {{0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 19.5},
-          {0, 0.55, 1.75, 3.4, 5.05, 6.3, 7.0, 7.3, 7.35, 7.3, 7.2}};
+          {0, 1.3, 3.1, 4.8, 6.1, 6.85, 7.2, 7.35, 7.35, 7.3, 7.2}};
 }
 
 Primitive condyle_shape() {
