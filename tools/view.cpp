@@ -44,9 +44,21 @@ double widest_opening(const Case& patient, const Motion& motion) {
   return widest;
 }
 
-}  // namespace
-
-namespace {
+/// Tells the simulation what the hands want otherwise than before. A free part that is put back is
+/// wanted where it was loaded.
+void hand_over(const Hands& now, const Hands& before, std::span<const MovableBody> bodies,
+               LiveSimulation& simulation) {
+  for (const auto& body : bodies) {
+    Hands one, other;
+    one.of(body) = now.of(body);
+    other.of(body) = before.of(body);
+    if (one == other) continue;
+    if (now.of(body) || body.free)
+      simulation.drag(body.part, now.of(body).value_or(Pose{}));
+    else
+      simulation.release(body.part);
+  }
+}
 
 void show_patient(Window& window, const ViewOptions& options, const CommonOptions& common) {
   ProgressBar bar(common);
@@ -77,7 +89,8 @@ void show_patient(Window& window, const ViewOptions& options, const CommonOption
                     .max_opening_mm = widest_opening(scene.patient, motion),
                     .notes = scene.patient.notes,
                     .distance_colours = distance_colours({.near_mm = map_settings.reach_mm}),
-                    .distance_remarks = distance_remarks(scene.patient)};
+                    .distance_remarks = distance_remarks(scene.patient),
+                    .bodies = movable_bodies(scene.patient.parts)};
   shown.notes.insert(shown.notes.end(), scene.contacts.notes().begin(),
                      scene.contacts.notes().end());
   shown.notes.insert(shown.notes.end(), motion.notes.begin(), motion.notes.end());
@@ -90,6 +103,7 @@ void show_patient(Window& window, const ViewOptions& options, const CommonOption
   LiveSimulation simulation(scene, motion, settings);
   std::optional<LiveDistances> distances;  // made when first wanted
   bool map_sent = false, coloured = false;
+  Hands moved;
   FrameState newest;
   while (window.open()) {
     const ViewState& view = window.poll();
@@ -97,6 +111,10 @@ void show_patient(Window& window, const ViewOptions& options, const CommonOption
                         .opening_mm = view.opening_mm,
                         .obey_contact = view.obey_contact,
                         .face = view.shows_face(shown)});
+    if (!(view.hands == moved)) {
+      hand_over(view.hands, moved, shown.bodies, simulation);
+      moved = view.hands;
+    }
     LoopStatistics loop{.steps_per_second = simulation.steps_per_second(),
                         .message = view.distances && !map_sent ? "Measuring distances" : ""};
     auto frame = simulation.take();

@@ -63,7 +63,7 @@ void Panels::Drawing::opening() {
   const Theme& theme = panels.theme_;
   const bool held = view.opening_mm.has_value();
   const double live = input.frame ? input.frame->measures.opening_mm : 0;
-  heading(pen, "Opening", held ? "held by hand" : "from the motion");
+  heading(pen, "Opening", held || view.hands.mandible ? "held by hand" : "from the motion");
 
   const float top = ImGui::GetCursorPosY();
   const std::string number = input.frame ? fmt::format("{:.1f}", live) : "-";
@@ -87,6 +87,7 @@ void Panels::Drawing::opening() {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   double wanted = held ? *view.opening_mm : std::clamp(live, 0.0, most);
   if (slider(pen, "opening", wanted, {.high = most, .width = width, .held = held})) {
+    view.hands.mandible.reset();
     view.opening_mm = wanted;
     view.playing = false;
   }

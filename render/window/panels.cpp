@@ -90,6 +90,15 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
         view.skin_opacity = 0;
       }
       return true;
+    case Command::toggle_move:
+      view.move_tool = !view.move_tool && !scene.bodies.empty();
+      return true;
+    case Command::undo:
+      if (!history_.undo(view.hands)) say("Nothing to undo");
+      return true;
+    case Command::redo:
+      if (!history_.redo(view.hands)) say("Nothing to redo");
+      return true;
     case Command::toggle_panels:
       shown_ = !shown_;
       return true;
@@ -144,6 +153,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
     drawing.readings();
     drawing.timeline();
   }
+  if (view.move_tool && !preparing) drawing.moving();
   drawing.view_signs();
   drawing.dialogs();
   ImGui::PopFont();
@@ -155,7 +165,9 @@ void Panels::Drawing::top_bar() {
   begin_panel(pen, "top", layout.top);
   const float side = pen.px(30), gap = pen.px(5), wide_gap = pen.px(16);
   const float y = (static_cast<float>(layout.top.height) - side) / 2;
-  const float buttons = side * 9 + gap * 6 + wide_gap * 2;
+  const bool can_move = !input.scene.bodies.empty();
+  const float move_width = can_move ? pen.px(62) : 0;
+  const float buttons = side * 9 + gap * 6 + wide_gap * 2 + (can_move ? move_width + wide_gap : 0);
   const float right = static_cast<float>(layout.top.width) - pen.px(12);
 
   // Names, as far as there is room for them.
@@ -172,6 +184,12 @@ void Panels::Drawing::top_bar() {
   }
 
   ImGui::SetCursorPos({right - buttons, y});
+  if (can_move) {
+    if (word_button(pen, "move-tool", "Move", {move_width, side}, view.move_tool))
+      panels.run(Command::toggle_move, input.scene, view);
+    tooltip(pen, "Move the jaw and free bones by hand; they slide on contact. Key M");
+    ImGui::SameLine(0, wide_gap);
+  }
   for (const ViewButton& button : view_buttons) {
     const std::string id = std::string("view:") + button.letter;
     if (word_button(pen, id.c_str(), button.letter, {side, side}, false))

@@ -49,6 +49,10 @@ class Panels {
   /// Carries out what concerns playing, panels and dialogs. gives: false for the window's commands.
   bool run(Command command, const WindowScene& scene, ViewState& view);
 
+  /// An edit begins: what is wanted now comes back by undo.
+  void remember(const ViewState& view) { history_.remember(view.hands); }
+  void forget_edits() { history_ = {}; }
+
   /// Shows a sentence in a dialog until it is closed; several wait in a row.
   void report_error(const std::string& sentence);
   /// Shows a sentence at the foot of the window for a few seconds.
@@ -75,6 +79,7 @@ class Panels {
   std::deque<std::string> errors_;
   std::string said_;
   double said_until_ = 0;
+  EditHistory history_;
   std::vector<float> step_ms_;  // the last steps' times, for the curve; of bounded length
   std::uint64_t last_step_ = 0;
   std::vector<DrawnItem> items_;

@@ -7,7 +7,7 @@
 
 namespace condyle {
 
-std::optional<PointedValue> pointed_value(const Camera& camera, const ViewRect& view,
+std::optional<PointedPlace> pointed_place(const Camera& camera, const ViewRect& view,
                                           const Eigen::Vector2d& mouse,
                                           std::span<const PointedSurface> surfaces) {
   using Eigen::Vector3d;
@@ -18,10 +18,11 @@ std::optional<PointedValue> pointed_value(const Camera& camera, const ViewRect& 
   const Vector3d eye = camera.target + camera.distance_mm * axes.row(2).transpose();
   const Vector3d ray = axes.transpose() * Vector3d(x, y, -1);
 
-  std::optional<PointedValue> found;
+  std::optional<PointedPlace> found;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    const auto& [mesh, X_WS, values] = surfaces[s];
+    const TriMesh* mesh = surfaces[s].mesh;
+    const Pose& X_WS = surfaces[s].X_WS;
     const Pose X_SW = X_WS.inverse();
     const Vector3d from = X_SW * eye, along = X_SW.R * ray;
     for (const auto& t : mesh->triangles) {
@@ -35,14 +36,23 @@ std::optional<PointedValue> pointed_value(const Camera& camera, const ViewRect& 
       const double depth = (u * a + v * b + w * c).dot(along) / (sum * along.squaredNorm());
       if (!(depth > 0) || depth >= nearest) continue;
       nearest = depth;
-      float value = 0;
-      const double shares[3] = {u / sum, v / sum, w / sum};
-      for (int k = 0; k < 3; ++k)
-        if (shares[k] > 0) value += static_cast<float>(shares[k]) * values[t[k]];
-      found = {s, value};
+      found = {s, t, Vector3d(u, v, w) / sum, eye + depth * ray};
     }
   }
   return found;
+}
+
+std::optional<PointedValue> pointed_value(const Camera& camera, const ViewRect& view,
+                                          const Eigen::Vector2d& mouse,
+                                          std::span<const PointedSurface> surfaces) {
+  const auto found = pointed_place(camera, view, mouse, surfaces);
+  if (!found) return std::nullopt;
+  float value = 0;
+  for (int k = 0; k < 3; ++k)
+    if (found->shares[k] > 0)
+      value += static_cast<float>(found->shares[k]) *
+               surfaces[found->surface].values[found->triangle[k]];
+  return PointedValue{found->surface, value};
 }
 
 }  // namespace condyle

@@ -33,6 +33,7 @@ constexpr std::array bindings = {
     Binding{GLFW_KEY_I, Command::view_below, Command::view_above},
     Binding{GLFW_KEY_K, Command::toggle_skin, Command::toggle_skin},
     Binding{GLFW_KEY_D, Command::toggle_distances, Command::toggle_distances},
+    Binding{GLFW_KEY_M, Command::toggle_move, Command::toggle_move},
     Binding{GLFW_KEY_TAB, Command::toggle_panels, Command::toggle_panels},
     Binding{GLFW_KEY_F12, Command::picture, Command::window_picture},
     Binding{GLFW_KEY_F1, Command::help, Command::help},
@@ -56,6 +57,12 @@ constexpr std::array play_lines = {
     HelpLine{"left, right", "a step back, forward"},
     HelpLine{"Shift+left, right", "ten steps"},
 };
+constexpr std::array move_lines = {
+    HelpLine{"M", "move bones, on and off"},
+    HelpLine{"drag a bone", "it goes along, and slides on contact"},
+    HelpLine{"drag an arrow, a ring", "along or about one axis"},
+    HelpLine{"Ctrl+Z, Ctrl+Shift+Z", "undo, redo"},
+};
 constexpr std::array window_lines = {
     HelpLine{"K", "skin on, off"},
     HelpLine{"D", "distances on, off"},
@@ -67,9 +74,8 @@ constexpr std::array window_lines = {
     HelpLine{"Ctrl+Q", "quit"},
 };
 constexpr std::array groups = {
-    HelpGroup{"Mouse", mouse_lines},
-    HelpGroup{"Views", view_lines},
-    HelpGroup{"Motion", play_lines},
+    HelpGroup{"Mouse", mouse_lines},   HelpGroup{"Views", view_lines},
+    HelpGroup{"Motion", play_lines},   HelpGroup{"Moving bones", move_lines},
     HelpGroup{"Window", window_lines},
 };
 
@@ -78,6 +84,8 @@ constexpr std::array groups = {
 std::optional<Command> command_of(const KeyPress& press) {
   if (press.ctrl) {
     if (press.key == GLFW_KEY_Q) return Command::quit;
+    if (press.key == GLFW_KEY_Y || (press.key == GLFW_KEY_Z && press.shift)) return Command::redo;
+    if (press.key == GLFW_KEY_Z) return Command::undo;
     return std::nullopt;
   }
   for (const Binding& binding : bindings)

@@ -25,6 +25,9 @@ enum class Command {
   toggle_skin,
   toggle_distances,
   toggle_panels,
+  toggle_move,
+  undo,
+  redo,
   help,
   close_dialog,
   quit

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/colour_map.h"
+#include "render/window/movable.h"
 #include "sim/frame/part.h"
 
 namespace condyle {
@@ -24,6 +25,7 @@ struct WindowScene {
   // legend stand the remarks.
   std::optional<ColourMap> distance_colours = {};
   std::vector<std::string> distance_remarks = {};
+  std::vector<MovableBody> bodies = {};  // that a hand may move
 };
 
 /// How one part is wanted.
@@ -45,6 +47,9 @@ struct ViewState {
   bool mark_contacts = true;
   bool shadows = true;
   bool distances = false;            // colour parts by their distance from what they may meet
+  bool move_tool = false;            // the mouse moves bodies, and handles are shown
+  std::size_t chosen = 0;            // the body that has the handles, of the scene's
+  Hands hands = {};                  // where bodies are wanted instead of where they would be
   double skin_opacity = 1;           // of parts with the role `face`, on top of their own
   std::vector<PartView> parts = {};  // one per part of the scene, in its order
 

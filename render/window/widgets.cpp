@@ -178,10 +178,11 @@ bool word_button(Pen& pen, const char* name, const char* label, ImVec2 size, boo
   list.AddRectFilled(low, high, fill, pen.px(5));
   ImFont* font = pen.theme.regular;
   const ImVec2 extent = font->CalcTextSizeA(font->FontSize, 1e6f, 0, label);
+  const bool usable = ImGui::GetStyle().Alpha >= 1;  // BeginDisabled lowers it
   list.AddText(
       font, font->FontSize,
       {std::round((low.x + high.x - extent.x) / 2), std::round((low.y + high.y - extent.y) / 2)},
-      colour::text, label);
+      usable ? colour::text : colour::text_faint, label);
   return pressed;
 }
 

@@ -67,6 +67,8 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start) {
   s.frame = {};
   s.map_surfaces.clear();
   s.values.clear();
+  s.held.reset();
+  s.panels->forget_edits();
   if (!scene.parts.empty()) s.renderer.emplace(scene.parts);
   if (s.renderer && scene.distance_colours) s.renderer->set_colour_map(*scene.distance_colours);
   s.fit_scale();
@@ -126,7 +128,7 @@ void Window::show_progress(const std::string& what, double fraction) {
   s.progress_fraction = fraction;
   s.frames_due = std::max(s.frames_due, 1);
   glfwPollEvents();
-  while (s.mouse.waiting()) s.interface_frame();
+  while (s.input_waits()) s.interface_frame();
   s.draw(done);
 }
 

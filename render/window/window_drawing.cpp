@@ -53,7 +53,7 @@ PictureSettings Window::State::settings() const {
 }
 
 bool Window::State::moving() const {
-  return view.playing || drag != CameraDrag::none || seconds_since(last_change) < calm_s;
+  return view.playing || held || drag != CameraDrag::none || seconds_since(last_change) < calm_s;
 }
 
 void Window::State::fit_scale() {
@@ -70,11 +70,19 @@ void Window::State::interface_frame() {
   fit_scale();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  // The backend only knows where the mouse is now; the queue knows each press and where it was.
+  // The backend only knows where the mouse is now; the queue knows each press and where it was;
+  // so it is with keys.
   const MouseMoment moment = mouse.take();
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(moment.x), static_cast<float>(moment.y)};
   for (std::size_t i = 0; i < moment.down.size(); ++i) io.MouseDown[i] = moment.down[i];
+  if (!keys.empty()) {
+    const KeyMoment next = keys.front();
+    keys.pop_front();
+    io.KeysDown[next.key] = next.down;
+    io.KeyCtrl = (next.mods & GLFW_MOD_CONTROL) != 0;
+    io.KeyShift = (next.mods & GLFW_MOD_SHIFT) != 0;
+  }
   ImGui::NewFrame();
   const auto [w, h] = size();
   const ViewRect r = view_rect();

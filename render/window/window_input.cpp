@@ -1,3 +1,5 @@
+#include <imgui.h>
+
 #include <algorithm>
 
 #include "render/window/window_state.h"
@@ -12,6 +14,10 @@ constexpr double attentive_s = 0.5;  // after an event answers may come without 
 
 void Window::State::install_callbacks() {
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+    guarded(w, [&](State& s) {
+      if (action != GLFW_REPEAT && key >= 0 && key <= GLFW_KEY_LAST && ImGui::GetIO().WantTextInput)
+        s.keys.push_back({key, action == GLFW_PRESS, mods});
+    });
     if (action != GLFW_RELEASE) guarded(w, [&](State& s) { s.on_key(key, scancode, mods); });
   });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
@@ -31,6 +37,8 @@ void Window::State::install_callbacks() {
 }
 
 void Window::State::on_key(int key, int scancode, int mods) {
+  // What is typed into a field is no command; Esc and the keys without a letter are.
+  if (ImGui::GetIO().WantTextInput && key < GLFW_KEY_ESCAPE) return;
   // Letters are meant as they are written on the keys, whatever the layout.
   if (const char* name = glfwGetKeyName(key, scancode);
       name && name[0] >= 'a' && name[0] <= 'z' && name[1] == 0)
@@ -52,7 +60,11 @@ bool Window::State::over_view(double x, double y) const {
 void Window::State::on_button(int button, bool down, int mods) {
   mouse.pressed(button, down);
   const MouseMoment& now = mouse.now();
-  if (down && drag == CameraDrag::none && over_view(now.x, now.y)) {
+  if (down && button == GLFW_MOUSE_BUTTON_LEFT && mods == 0 && over_view(now.x, now.y) &&
+      grip_body({now.x, now.y}))
+    return;
+  if (!down && button == GLFW_MOUSE_BUTTON_LEFT) held.reset();
+  if (down && drag == CameraDrag::none && !held && over_view(now.x, now.y)) {
     drag = drag_of({.left = button == GLFW_MOUSE_BUTTON_LEFT,
                     .middle = button == GLFW_MOUSE_BUTTON_MIDDLE,
                     .right = button == GLFW_MOUSE_BUTTON_RIGHT,
@@ -68,6 +80,10 @@ void Window::State::on_button(int button, bool down, int mods) {
 void Window::State::on_move(double x, double y) {
   const MouseMoment before = mouse.now();
   mouse.moved(x, y);
+  if (held) {
+    move_body({x, y});
+    return;
+  }
   if (drag == CameraDrag::none) return;
   camera = dragged(camera, drag, {before.x, before.y}, {x, y}, view_rect(), zoom);
   scene_changed = true;
@@ -120,7 +136,7 @@ void Window::State::wait_for_events() {
     glfwPollEvents();
   }
   // Each press and release has its own pass over the panels, so that none is lost between pictures.
-  while (mouse.waiting()) interface_frame();
+  while (input_waits()) interface_frame();
 }
 
 }  // namespace condyle

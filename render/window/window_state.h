@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 
 #include <chrono>
+#include <deque>
 #include <exception>
 #include <optional>
 #include <string_view>
@@ -12,6 +13,7 @@
 
 #include "render/scene_renderer.h"
 #include "render/window/glfw_session.h"
+#include "render/window/handles.h"
 #include "render/window/mouse_queue.h"
 #include "render/window/quality.h"
 #include "render/window/view_picture.h"
@@ -52,8 +54,24 @@ struct Window::State {
   double progress_fraction = 0;
 
   MouseQueue mouse;
+  /// Keys for a field that is written in, each with its own pass over the panels.
+  struct KeyMoment {
+    int key;
+    bool down;
+    int mods;
+  };
+  std::deque<KeyMoment> keys;
   CameraDrag drag = CameraDrag::none;
   int drag_button = -1;
+  /// A body in the hand, from the moment it was gripped.
+  struct Held {
+    Grip grip;
+    std::size_t body;
+    HandleView view;
+    Pose start;  // in the cranium's frame
+    Eigen::Vector2d from;
+  };
+  std::optional<Held> held;
 
   QualityGovernor governor;
   Quality drawn_quality;
@@ -73,9 +91,13 @@ struct Window::State {
   void on_move(double x, double y);
   void on_wheel(double clicks);
   bool over_view(double x, double y) const;
+  bool grip_body(const Eigen::Vector2d& at);
+  void move_body(const Eigen::Vector2d& at);
+  std::optional<std::size_t> body_under(const Eigen::Vector2d& at, Eigen::Vector3d& place) const;
   void run(Command command);
   void set_standard_view(std::string_view name);
   void wait_for_events();
+  bool input_waits() const { return mouse.waiting() || !keys.empty(); }
   /// GLFW is C: nothing may be thrown through it.
   template <class Work>
   static void guarded(GLFWwindow* w, Work&& work) {

@@ -152,7 +152,7 @@ void LiveSimulation::work() {
         step_input = input(wanted, time_s);
         if (held[0]) step_input.X_CM_wanted = *held[0];
         for (std::size_t f = 0; f < free.size(); ++f)
-          if (held[1 + f]) X_BF[f] = carrier(f).inverse() * *held[1 + f];
+          if (held[1 + f]) X_BF[f] = *held[1 + f];
         step_input.X_BF_wanted = X_BF;
       }
       now = step(scene_, now, step_input, settings_);

@@ -33,7 +33,7 @@ class LiveSimulation {
   void request(const LiveRequest& wanted);
 
   /// A hand holds the body of a part (an index of the case) and wants it at a pose, rest to now, in
-  /// the cranium's frame, until the next call or until it lets go. It slides along what is in the
+  /// its carrier's frame (the mandible: the cranium's), until the next call or until it lets go. It slides along what is in the
   /// way if contact is obeyed. Let go, the mandible follows the motion again; a segment or
   /// transplant stays where it came to, in its carrier's frame. From any thread.
   /// throws: InputError for a part that does not move, and for values that are no numbers.
@@ -57,7 +57,7 @@ class LiveSimulation {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   LiveRequest wanted_;
-  std::vector<std::optional<Pose>> held_;  // X_CM, then X_CF of each free part, where held
+  std::vector<std::optional<Pose>> held_;  // X_CM, then X_BF of each free part, where held
   long grips_ = 0;                         // how often a hand moved
   std::optional<FrameState> newest_;
   std::exception_ptr failure_;

@@ -58,7 +58,8 @@ class RealWindow : public testing::Test {
                       .motion_name = "opening",
                       .duration_s = 4,
                       .max_opening_mm = 50,
-                      .distance_colours = distance_colours()});
+                      .distance_colours = distance_colours(),
+                      .bodies = movable_bodies(parts_)});
     // The lower teeth are told their height as a distance.
     const TriMesh& teeth = parts_[3].mesh;
     const std::vector<Eigen::Vector3f> normals(teeth.vertices.size(), {0, -1, 0});
@@ -77,7 +78,12 @@ class RealWindow : public testing::Test {
       const ViewState request = window.poll();
       const double opening =
           request.opening_mm.value_or(20 - 20 * std::cos(request.time_s * M_PI / 2));
-      window.show(box_frame(request.time_s, opening), {.steps_per_second = 60},
+      FrameState frame = box_frame(request.time_s, opening);
+      if (const auto& hand = request.hands.mandible) {
+        frame.X_CM = *hand;
+        frame.state_hash += static_cast<std::uint64_t>(1e6 * (200 + hand->t.sum()));
+      }
+      window.show(frame, {.steps_per_second = 60},
                   request.distances ? values : std::vector<std::vector<float>>{});
       const std::lock_guard lock(mutex_);
       seen_ = {window.view(),      window.camera(), window.items(),
@@ -112,6 +118,21 @@ class RealWindow : public testing::Test {
       const bool same = now.target == last.target && now.direction == last.direction &&
                         now.up == last.up && now.distance_mm == last.distance_mm;
       calm = same ? calm + 1 : 0;
+      last = now;
+    }
+    return last;
+  }
+  /// Where the hand wants the jaw, once every event of a drag has arrived.
+  Eigen::Vector3d settled_jaw() {
+    const auto jaw = [&] {
+      const auto hand = seen().view.hands.mandible;
+      return hand ? hand->t : Eigen::Vector3d::Zero().eval();
+    };
+    Eigen::Vector3d last = jaw();
+    for (int calm = 0; calm < 6;) {
+      std::this_thread::sleep_for(milliseconds(50));
+      const Eigen::Vector3d now = jaw();
+      calm = now == last ? calm + 1 : 0;
       last = now;
     }
     return last;
@@ -239,6 +260,49 @@ TEST_F(RealWindow, MouseMovesTheCameraAsInTheHelp) {
     after = settled_camera();
     EXPECT_GT(std::abs(camera_angles(after).roll - camera_angles(before).roll), 0.2);
     EXPECT_LT(turned_rad(after, before), 1e-6);
+  });
+}
+
+TEST_F(RealWindow, HandsMoveTheJawByHandlesByItselfAndByNumbers) {
+  run([&] {
+    EXPECT_TRUE(press("a"));
+    EXPECT_TRUE(press("k"));  // the skin would hide the jaw
+    EXPECT_TRUE(press("m"));
+    ASSERT_TRUE(wait_until([](const Seen& s) {
+      return std::any_of(s.items.begin(), s.items.end(),
+                         [](const DrawnItem& i) { return i.name == "handle:S"; });
+    }));
+    const Camera before = settled_camera();
+    // The upward arrow takes it down, and only that.
+    const ViewRect tip = place("handle:S");
+    drag(tip.x + 3, tip.y + 3, tip.x + 3, tip.y + 43, "1");
+    ASSERT_TRUE(wait_until(
+        [](const Seen& s) { return s.view.hands.mandible && s.view.hands.mandible->t.z() < -5; }));
+    const Eigen::Vector3d down = settled_jaw();
+    EXPECT_EQ(down.head<2>().norm(), 0);
+    EXPECT_EQ(moved_mm(settled_camera(), before), 0) << "the camera stays";
+    // Grasped itself it goes along.
+    const ViewRect rest = place("handle:S");
+    const double x = rest.x + 3 + 85, y = rest.y + 3 + 78 + 12;  // beside the rings
+    drag(x, y, x + 30, y, "1");
+    EXPECT_TRUE(wait_until(
+        [](const Seen& s) { return s.view.hands.mandible && s.view.hands.mandible->t.x() > 3; }));
+    EXPECT_NEAR(settled_jaw().z(), down.z(), 1e-6);
+    EXPECT_TRUE(press("ctrl+z"));
+    EXPECT_TRUE(wait_until(
+        [&](const Seen& s) { return s.view.hands.mandible && s.view.hands.mandible->t == down; }));
+    EXPECT_TRUE(press("ctrl+z"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return !s.view.hands.mandible; }));
+    // Digits and letters in a field are no shortcuts.
+    click("shift:L");
+    std::this_thread::sleep_for(milliseconds(200));
+    EXPECT_TRUE(xdotool({"type", "3.5"}));
+    EXPECT_TRUE(press("Return"));
+    EXPECT_TRUE(wait_until([](const Seen& s) {
+      return s.view.hands.mandible && std::abs(s.view.hands.mandible->t.x() - 3.5) < 1e-9;
+    })) << (seen().view.hands.mandible ? seen().view.hands.mandible->t.x() : -1);
+    EXPECT_EQ(moved_mm(settled_camera(), before), 0);
+    EXPECT_LT(turned_rad(settled_camera(), before), 1e-9);
   });
 }
 

@@ -1,0 +1,120 @@
+#include "render/window/movable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/mesh/measure.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+bool same(const std::optional<Pose>& a, const std::optional<Pose>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return a->t == b->t && a->R.coeffs() == b->R.coeffs();
+}
+
+}  // namespace
+
+std::vector<MovableBody> movable_bodies(std::span<const Part> parts) {
+  std::vector<MovableBody> bodies;
+  const auto jaw = std::find_if(parts.begin(), parts.end(),
+                                [](const Part& part) { return part.role == Role::mandible; });
+  if (jaw != parts.end()) {
+    Box box;
+    for (const auto& part : parts)
+      if (part.role == Role::mandible)
+        for (const auto& v : part.mesh.vertices) box.add(v);
+    bodies.push_back({.part = static_cast<std::size_t>(jaw - parts.begin()),
+                      .free = std::nullopt,
+                      .carrier = Body::cranium,
+                      .center = box.center()});
+  }
+  const auto free = free_parts(parts);
+  for (std::size_t f = 0; f < free.size(); ++f)
+    bodies.push_back({.part = free[f],
+                      .free = f,
+                      .carrier = parts[free[f]].carrier,
+                      .center = bounding_box(parts[free[f]].mesh).center()});
+  return bodies;
+}
+
+std::optional<std::size_t> movable_body_of(std::span<const MovableBody> bodies,
+                                           std::span<const Part> parts, std::size_t part) {
+  if (part >= parts.size()) return std::nullopt;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].free ? bodies[i].part == part : body_of(parts[part].role) == Body::mandible)
+      return i;
+  return std::nullopt;
+}
+
+std::optional<Pose>& Hands::of(const MovableBody& body) {
+  if (!body.free) return mandible;
+  if (free.size() <= *body.free) free.resize(*body.free + 1);
+  return free[*body.free];
+}
+
+const std::optional<Pose>& Hands::of(const MovableBody& body) const {
+  static const std::optional<Pose> none;
+  if (!body.free) return mandible;
+  return *body.free < free.size() ? free[*body.free] : none;
+}
+
+bool Hands::operator==(const Hands& other) const {
+  const std::size_t count = std::max(free.size(), other.free.size());
+  const auto at = [](const Hands& hands, std::size_t i) {
+    return i < hands.free.size() ? hands.free[i] : std::nullopt;
+  };
+  for (std::size_t i = 0; i < count; ++i)
+    if (!same(at(*this, i), at(other, i))) return false;
+  return same(mandible, other.mandible);
+}
+
+Placement placement_of(const Pose& pose, const Vector3d& center) {
+  const Eigen::Matrix3d R = pose.R.toRotationMatrix();
+  const double pitch = std::atan2(R(2, 1), R(2, 2)),
+               roll = std::atan2(-R(2, 0), std::hypot(R(2, 1), R(2, 2))),
+               yaw = std::atan2(R(1, 0), R(0, 0));
+  return {.shift_mm = pose * center - center,
+          .turn_deg = Vector3d(pitch, roll, yaw) * 180 / std::numbers::pi};
+}
+
+Pose pose_at(const Placement& placement, const Vector3d& center) {
+  const Vector3d a = placement.turn_deg * std::numbers::pi / 180;
+  const Eigen::Quaterniond R = Eigen::AngleAxisd(a.z(), Vector3d::UnitZ()) *
+                               Eigen::AngleAxisd(a.y(), Vector3d::UnitY()) *
+                               Eigen::AngleAxisd(a.x(), Vector3d::UnitX());
+  return {R, center + placement.shift_mm - R * center};
+}
+
+Pose carrier_pose(const MovableBody& body, const Pose& X_CM) {
+  return body.free && body.carrier == Body::mandible ? X_CM : Pose{};
+}
+
+void EditHistory::remember(const Hands& before) {
+  if (!before_.empty() && before_.back() == before) return;
+  before_.push_back(before);
+  after_.clear();
+}
+
+bool EditHistory::undo(Hands& now) {
+  // An edit that changed nothing is none.
+  while (!before_.empty() && before_.back() == now) before_.pop_back();
+  if (before_.empty()) return false;
+  after_.push_back(now);
+  now = before_.back();
+  before_.pop_back();
+  return true;
+}
+
+bool EditHistory::redo(Hands& now) {
+  if (after_.empty()) return false;
+  before_.push_back(now);
+  now = after_.back();
+  after_.pop_back();
+  return true;
+}
+
+}  // namespace condyle

@@ -1,0 +1,164 @@
+// Moving bodies by hand: numbers, handles, undo.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "panel_stage.h"
+#include "render/window/handles.h"
+#include "render/window/movable.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+HandleView front_view() {
+  HandleView view;
+  view.camera.target = {3, -20, 5};
+  view.camera.direction = {0, -1, 0};
+  view.view = {100, 50, 800, 600};
+  view.center = {10, -30, -15};
+  return view;
+}
+
+TEST(Movable, AreTheJawAndFreeParts) {
+  std::vector<Part> parts = box_patient();
+  parts.push_back(box_part("segment", Role::segment, {0, 0, 0}, {10, 20, 30}));
+  parts.back().carrier = Body::mandible;
+  const auto bodies = movable_bodies(parts);
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_EQ(parts[bodies[0].part].name, "mandible");
+  EXPECT_FALSE(bodies[0].free);
+  EXPECT_EQ(bodies[1].free, 0u);
+  EXPECT_EQ(bodies[1].center, Vector3d(5, 10, 15));
+  const auto of = [&](std::size_t part) { return movable_body_of(bodies, parts, part); };
+  EXPECT_EQ(of(3), 0u) << "lower teeth go with the jaw";
+  EXPECT_EQ(of(4), 0u);
+  EXPECT_EQ(of(6), 1u);
+  EXPECT_FALSE(of(0));
+  EXPECT_FALSE(of(5)) << "the face deforms";
+}
+
+TEST(Movable, PlacementIsThePoseInNumbers) {
+  const Vector3d center(3, -40, -60);
+  const Placement wanted{{1.5, -2, 7}, {20, -35, 110}};
+  const Placement read = placement_of(pose_at(wanted, center), center);
+  EXPECT_LT((read.shift_mm - wanted.shift_mm).norm(), 1e-12);
+  EXPECT_LT((read.turn_deg - wanted.turn_deg).norm(), 1e-10);
+  // Turning alone leaves the centre where it is.
+  EXPECT_LT((pose_at({Vector3d::Zero(), {0, 0, 30}}, center) * center - center).norm(), 1e-12);
+}
+
+TEST(Handles, BodyFollowsTheMouseInThePlaneOfThePicture) {
+  const HandleView view = front_view();
+  const Vector2d at = screen_place(view.camera, view.view, view.center);
+  for (const Vector2d& moved : {Vector2d(40, 0), Vector2d(0, 25), Vector2d(-60, -80)}) {
+    const Pose pose = gripped(view, Grip::body, {}, at, at + moved);
+    const Vector2d now = screen_place(view.camera, view.view, pose * view.center);
+    EXPECT_LT((now - at - moved).norm(), 1e-9);
+    EXPECT_NEAR(pose.t.y(), 0, 1e-12);
+  }
+}
+
+TEST(Handles, ArrowKeepsToItsAxisAndItsTipToTheMouse) {
+  HandleView view = front_view();
+  view.camera.direction = Vector3d(0.5, -0.8, 0.3).normalized();
+  for (const auto& [grip, axis] : {std::pair{Grip::left, 0}, {Grip::back, 1}, {Grip::up, 2}}) {
+    Vector2d tip;
+    for (const auto& handle : handles(view))
+      if (handle.grip == grip) tip = handle.line[1];
+    EXPECT_EQ(grip_at(view, tip, 8), grip);
+    const Vector2d along = (tip - screen_place(view.camera, view.view, view.center)).normalized();
+    const Pose pose = gripped(view, grip, {}, tip, tip + 12 * along);
+    EXPECT_GT(pose.t[axis], 0);
+    EXPECT_NEAR(pose.t.norm(), pose.t[axis], 1e-12);
+    const Vector2d went = screen_place(view.camera, view.view, view.center + pose.t) -
+                          screen_place(view.camera, view.view, view.center);
+    EXPECT_LT((went - 12 * along).norm(), 0.5);
+    // Across its axis an arrow does not go.
+    const Vector2d across(-along.y(), along.x());
+    EXPECT_LT(gripped(view, grip, {}, tip, tip + 30 * across).t.norm(), 1e-9);
+  }
+}
+
+TEST(Handles, RingTurnsWithTheMouseFromEitherSide) {
+  for (const double side : {-1.0, 1.0}) {
+    HandleView view = front_view();
+    view.camera.direction = {0, side, 0};
+    const Vector2d c = screen_place(view.camera, view.view, view.center);
+    const double r = view.ring_px * std::numbers::sqrt2 / 2;  // between the other handles
+    const Vector2d from = c + Vector2d(r, r), to = c + Vector2d(r, -r);
+    EXPECT_EQ(grip_at(view, from, 8), Grip::turn_back);
+    const Pose pose = gripped(view, Grip::turn_back, {}, from, to);
+    EXPECT_LT((pose * view.center - view.center).norm(), 1e-9);
+    // What was at the first place is at the second one.
+    const Vector3d right = picture_axes(view.camera).row(0);
+    const Vector2d now = screen_place(view.camera, view.view, pose * (view.center + 10 * right));
+    EXPECT_NEAR((now - c).x(), 0, 1e-6);
+    EXPECT_LT((now - c).y(), 0);
+  }
+  // A ring seen from its edge rolls: what is near goes with the mouse.
+  const HandleView view = front_view();
+  const Vector2d c = screen_place(view.camera, view.view, view.center);
+  const Pose rolled = gripped(view, Grip::turn_up, {}, c, c + Vector2d(20, 0));
+  const Vector3d near = rolled * (view.center + Vector3d(0, -10, 0)) - view.center;
+  EXPECT_GT(picture_axes(view.camera).row(0).dot(near), 1);
+}
+
+TEST(EditHistory, UndoAndRedoGoThroughAllEdits) {
+  EditHistory history;
+  Hands now;
+  std::vector<Hands> states = {now};
+  for (int i = 1; i <= 3; ++i) {
+    history.remember(now);
+    now.mandible = Pose{Eigen::Quaterniond::Identity(), Vector3d(i, 0, 0)};
+    states.push_back(now);
+  }
+  for (int i = 2; i >= 0; --i) {
+    EXPECT_TRUE(history.undo(now));
+    EXPECT_TRUE(now == states[static_cast<std::size_t>(i)]);
+  }
+  EXPECT_FALSE(history.undo(now));
+  for (std::size_t i = 1; i <= 3; ++i) {
+    EXPECT_TRUE(history.redo(now));
+    EXPECT_TRUE(now == states[i]);
+  }
+  EXPECT_FALSE(history.redo(now));
+  // Another edit after an undo ends what could be redone; a grip that moved nothing is no edit.
+  EXPECT_TRUE(history.undo(now));
+  history.remember(now);
+  EXPECT_FALSE(history.can_redo());
+  EXPECT_TRUE(history.undo(now));
+  EXPECT_TRUE(now == states[1]);
+}
+
+TEST(MovePanel, ButtonsUndoAndPutBack) {
+  PanelStage stage(1280, 720, 1);
+  stage.scene.bodies = movable_bodies(stage.parts);
+  stage.rest();
+  stage.click("move-tool");
+  stage.rest();
+  ASSERT_TRUE(stage.has("move"));
+  EXPECT_TRUE(stage.has("handle:S"));
+  stage.panels->remember(stage.view);
+  stage.view.hands.mandible = Pose{Eigen::Quaterniond::Identity(), Vector3d(0, 0, -5)};
+  stage.rest();
+  stage.click("put-back");
+  EXPECT_FALSE(stage.view.hands.mandible);
+  stage.rest();
+  stage.click("undo");
+  ASSERT_TRUE(stage.view.hands.mandible);
+  stage.click("undo");
+  EXPECT_FALSE(stage.view.hands.mandible);
+  stage.rest();
+  stage.click("redo");
+  EXPECT_TRUE(stage.view.hands.mandible);
+  // Playing takes the jaw from the hand.
+  stage.click("play");
+  EXPECT_FALSE(stage.view.hands.mandible);
+}
+
+}  // namespace
+}  // namespace condyle
