@@ -91,7 +91,10 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       }
       return true;
     case Command::toggle_move:
-      view.move_tool = !view.move_tool && !scene.bodies.empty();
+      view.tool = view.tool == Tool::move || scene.bodies.empty() ? Tool::look : Tool::move;
+      return true;
+    case Command::toggle_measure:
+      view.tool = view.tool == Tool::measure ? Tool::look : Tool::measure;
       return true;
     case Command::undo:
       if (!history_.undo(view.hands)) say("Nothing to undo");
@@ -153,7 +156,8 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
     drawing.readings();
     drawing.timeline();
   }
-  if (view.move_tool && !preparing) drawing.moving();
+  if (view.tool == Tool::move && !preparing) drawing.moving();
+  if (view.tool == Tool::measure && !preparing) drawing.measuring();
   drawing.view_signs();
   drawing.dialogs();
   ImGui::PopFont();
@@ -167,7 +171,9 @@ void Panels::Drawing::top_bar() {
   const float y = (static_cast<float>(layout.top.height) - side) / 2;
   const bool can_move = !input.scene.bodies.empty();
   const float move_width = can_move ? pen.px(62) : 0;
-  const float buttons = side * 9 + gap * 6 + wide_gap * 2 + (can_move ? move_width + wide_gap : 0);
+  const float measure_width = pen.px(80);
+  const float buttons = side * 9 + gap * 6 + wide_gap * 2 + measure_width + wide_gap +
+                        (can_move ? move_width + gap : 0);
   const float right = static_cast<float>(layout.top.width) - pen.px(12);
 
   // Names, as far as there is room for them.
@@ -185,11 +191,16 @@ void Panels::Drawing::top_bar() {
 
   ImGui::SetCursorPos({right - buttons, y});
   if (can_move) {
-    if (word_button(pen, "move-tool", "Move", {move_width, side}, view.move_tool))
+    if (word_button(pen, "move-tool", "Move", {move_width, side}, view.tool == Tool::move))
       panels.run(Command::toggle_move, input.scene, view);
     tooltip(pen, "Move the jaw and free bones by hand; they slide on contact. Key M");
-    ImGui::SameLine(0, wide_gap);
+    ImGui::SameLine(0, gap);
   }
+  if (word_button(pen, "measure-tool", "Measure", {measure_width, side},
+                  view.tool == Tool::measure))
+    panels.run(Command::toggle_measure, input.scene, view);
+  tooltip(pen, "Distances, angles and areas between points on bone, teeth and skin. Key N");
+  ImGui::SameLine(0, wide_gap);
   for (const ViewButton& button : view_buttons) {
     const std::string id = std::string("view:") + button.letter;
     if (word_button(pen, id.c_str(), button.letter, {side, side}, false))

@@ -23,6 +23,7 @@ struct Panels::Drawing {
   void parts();       // panel_parts.cpp
   void readings();    // panel_readings.cpp
   void moving();      // panel_move.cpp: handles, and the chosen body's place in numbers
+  void measuring();   // panel_measure.cpp
   void view_signs();  // panel_view.cpp: letters at the edges, cube, progress
   void dialogs();     // panel_dialogs.cpp
 

@@ -34,6 +34,7 @@ constexpr std::array bindings = {
     Binding{GLFW_KEY_K, Command::toggle_skin, Command::toggle_skin},
     Binding{GLFW_KEY_D, Command::toggle_distances, Command::toggle_distances},
     Binding{GLFW_KEY_M, Command::toggle_move, Command::toggle_move},
+    Binding{GLFW_KEY_N, Command::toggle_measure, Command::toggle_measure},
     Binding{GLFW_KEY_TAB, Command::toggle_panels, Command::toggle_panels},
     Binding{GLFW_KEY_F12, Command::picture, Command::window_picture},
     Binding{GLFW_KEY_F1, Command::help, Command::help},
@@ -66,6 +67,7 @@ constexpr std::array move_lines = {
 constexpr std::array window_lines = {
     HelpLine{"K", "skin on, off"},
     HelpLine{"D", "distances on, off"},
+    HelpLine{"N", "measure: click points"},
     HelpLine{"Tab", "panels on, off"},
     HelpLine{"F12", "save the picture as PNG"},
     HelpLine{"Shift+F12", "save the whole window"},

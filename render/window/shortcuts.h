@@ -26,6 +26,7 @@ enum class Command {
   toggle_distances,
   toggle_panels,
   toggle_move,
+  toggle_measure,
   undo,
   redo,
   help,

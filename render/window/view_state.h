@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/colour_map.h"
+#include "render/window/measuring.h"
 #include "render/window/movable.h"
 #include "sim/frame/part.h"
 
@@ -34,6 +35,9 @@ struct PartView {
   double opacity = 1;  // 0 to 1
 };
 
+/// What the left button does in the picture: turn it, move bodies, or set points to measure.
+enum class Tool { look, move, measure };
+
 /// What the person at the window asks for. The loop reads it and answers with a FrameState; nothing
 /// here steps the simulation.
 struct ViewState {
@@ -46,9 +50,10 @@ struct ViewState {
   bool obey_contact = true;  // false plays the motion through the contact
   bool mark_contacts = true;
   bool shadows = true;
-  bool distances = false;            // colour parts by their distance from what they may meet
-  bool move_tool = false;            // the mouse moves bodies, and handles are shown
-  std::size_t chosen = 0;            // the body that has the handles, of the scene's
+  bool distances = false;  // colour parts by their distance from what they may meet
+  Tool tool = Tool::look;  // what the left button does
+  std::vector<SurfacePoint> measured = {};  // points that were clicked, in their order
+  std::size_t chosen = 0;                   // the body that has the handles, of the scene's
   Hands hands = {};                  // where bodies are wanted instead of where they would be
   double skin_opacity = 1;           // of parts with the role `face`, on top of their own
   std::vector<PartView> parts = {};  // one per part of the scene, in its order

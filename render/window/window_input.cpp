@@ -61,7 +61,7 @@ void Window::State::on_button(int button, bool down, int mods) {
   mouse.pressed(button, down);
   const MouseMoment& now = mouse.now();
   if (down && button == GLFW_MOUSE_BUTTON_LEFT && mods == 0 && over_view(now.x, now.y) &&
-      grip_body({now.x, now.y}))
+      (grip_body({now.x, now.y}) || set_point({now.x, now.y})))
     return;
   if (!down && button == GLFW_MOUSE_BUTTON_LEFT) held.reset();
   if (down && drag == CameraDrag::none && !held && over_view(now.x, now.y)) {

@@ -1,4 +1,3 @@
-#include "render/window/pointing.h"
 #include "render/window/window_state.h"
 #include "sim/frame/body_poses.h"
 
@@ -10,27 +9,45 @@ constexpr double seen_through = 0.5;  // what is paler does not hide what is poi
 
 }  // namespace
 
-std::optional<std::size_t> Window::State::body_under(const Eigen::Vector2d& at,
-                                                     Eigen::Vector3d& place) const {
-  if (view.shows_face(scene) && view.skin_opacity > seen_through) return std::nullopt;
+/// The surface that is seen there; its number is the part's.
+std::optional<PointedPlace> Window::State::surface_under(const Eigen::Vector2d& at,
+                                                         bool with_face) const {
+  const bool skinned = view.shows_face(scene) && view.skin_opacity > seen_through;
+  if (skinned && !with_face) return std::nullopt;
   std::vector<PointedSurface> surfaces;
   std::vector<std::size_t> parts;
+  TriMesh face;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const Part& part = scene.parts[i];
     const bool seen =
         i < view.parts.size() && view.parts[i].shown && view.parts[i].opacity > seen_through;
-    if (!seen || !collides(scene.parts[i].role)) continue;
-    surfaces.push_back({&scene.parts[i].mesh, pose_of(scene.parts, i, frame.poses())});
+    if (!seen || (part.role == Role::face && !skinned)) continue;
+    if (part.role == Role::face && frame.face.size() == part.mesh.vertices.size()) {
+      for (const auto& p : frame.face) face.vertices.push_back(p.cast<double>());
+      face.triangles = part.mesh.triangles;
+      surfaces.push_back({&face, Pose{}});
+    } else {
+      surfaces.push_back({&part.mesh, pose_of(scene.parts, i, frame.poses())});
+    }
     parts.push_back(i);
   }
-  const auto found = pointed_place(camera, view_rect(), at, surfaces);
-  if (!found) return std::nullopt;
-  place = found->place;
-  return movable_body_of(scene.bodies, scene.parts, parts[found->surface]);
+  auto found = pointed_place(camera, view_rect(), at, surfaces);
+  if (found) found->surface = parts[found->surface];
+  return found;
+}
+
+/// Measuring: a point of the surface that is clicked. gives: whether there is one.
+bool Window::State::set_point(const Eigen::Vector2d& at) {
+  if (view.tool != Tool::measure || !has_frame) return false;
+  const auto found = surface_under(at, true);
+  if (!found) return false;
+  view.measured.push_back({found->surface, found->triangle, found->shares});
+  return true;
 }
 
 /// A handle of the chosen body, else a body that is pointed at. gives: whether the hand has one.
 bool Window::State::grip_body(const Eigen::Vector2d& at) {
-  if (!view.move_tool || !has_frame || view.chosen >= scene.bodies.size()) return false;
+  if (view.tool != Tool::move || !has_frame || view.chosen >= scene.bodies.size()) return false;
   const auto pose = [&](const MovableBody& body) {
     return pose_of(scene.parts, body.part, frame.poses());
   };
@@ -42,8 +59,11 @@ bool Window::State::grip_body(const Eigen::Vector2d& at) {
   if (grip) {
     held = {*grip, view.chosen, handle_view, pose(chosen), at};
   } else {
-    const auto body = body_under(at, handle_view.center);
+    const auto found = surface_under(at, false);
+    if (!found) return false;
+    const auto body = movable_body_of(scene.bodies, scene.parts, found->surface);
     if (!body) return false;
+    handle_view.center = found->place;
     view.chosen = *body;
     held = {Grip::body, *body, handle_view, pose(scene.bodies[*body]), at};
   }

@@ -15,6 +15,7 @@
 #include "render/window/glfw_session.h"
 #include "render/window/handles.h"
 #include "render/window/mouse_queue.h"
+#include "render/window/pointing.h"
 #include "render/window/quality.h"
 #include "render/window/view_picture.h"
 #include "render/window/window.h"
@@ -91,9 +92,10 @@ struct Window::State {
   void on_move(double x, double y);
   void on_wheel(double clicks);
   bool over_view(double x, double y) const;
+  bool set_point(const Eigen::Vector2d& at);
   bool grip_body(const Eigen::Vector2d& at);
   void move_body(const Eigen::Vector2d& at);
-  std::optional<std::size_t> body_under(const Eigen::Vector2d& at, Eigen::Vector3d& place) const;
+  std::optional<PointedPlace> surface_under(const Eigen::Vector2d& at, bool with_face) const;
   void run(Command command);
   void set_standard_view(std::string_view name);
   void wait_for_events();

@@ -15,6 +15,7 @@
 
 #include "engine/core/error.h"
 #include "panel_stage.h"
+#include "render/window/handles.h"
 #include "test_display.h"
 
 namespace condyle {
@@ -303,6 +304,32 @@ TEST_F(RealWindow, HandsMoveTheJawByHandlesByItselfAndByNumbers) {
     })) << (seen().view.hands.mandible ? seen().view.hands.mandible->t.x() : -1);
     EXPECT_EQ(moved_mm(settled_camera(), before), 0);
     EXPECT_LT(turned_rad(settled_camera(), before), 1e-9);
+  });
+}
+
+TEST_F(RealWindow, ClicksOnTheSurfaceMeasure) {
+  run([&] {
+    EXPECT_TRUE(press("a"));
+    const Camera camera = settled_camera();
+    EXPECT_TRUE(press("n"));
+    ASSERT_TRUE(wait_until([](const Seen& s) { return s.view.tool == Tool::measure; }));
+    // Two places of the face's flat front, 60 mm apart.
+    const ViewRect rect = seen().rect;
+    const auto click_at = [&](const Eigen::Vector3d& p) {
+      const auto at = screen_place(camera, rect, p);
+      EXPECT_TRUE(xdotool({"mousemove", px(at.x()), px(at.y()), "click", "1"}));
+    };
+    click_at({-30, -95, 40});
+    ASSERT_TRUE(wait_until([](const Seen& s) { return s.view.measured.size() == 1; }));
+    click_at({30, -95, 40});
+    ASSERT_TRUE(wait_until([](const Seen& s) { return s.view.measured.size() == 2; }));
+    std::vector<Eigen::Vector3d> places;
+    for (const auto& point : seen().view.measured)
+      places.push_back(place_of(point, parts_, box_frame(0, 0)));
+    EXPECT_NEAR(measured(places).length_mm, 60, 2 * pixel_mm(camera, rect));
+    EXPECT_EQ(moved_mm(settled_camera(), camera), 0);
+    click("measure-clear");
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.measured.empty(); }));
   });
 }
 
