@@ -38,6 +38,25 @@ TissueTarget make_target(SyntheticSet set, const Pose& lower_bone) {
 
 Pose bench_movement() { return synthetic_pose(0.0873, {0, -2, -2}); }
 
+StoredOpening::StoredOpening(const TissueTarget& target, const HessianFactor& at_rest, int threads)
+    : nodes(target.start()), factor(at_rest) {
+  const SpringPrismNet& net = target.set.net;
+  const NetLoads loads = synthetic_loads(target.set, synthetic_pose(opened_rad, {0, 0, 0}));
+  SpringPrismEnergy energy(net, loads, threads);
+  MinimizeSettings settings;
+  settings.tolerance_mm = 1e-2;
+  settings.max_step_mm = bench_step_mm;
+  minimize_refreshing(net, loads, energy, at_rest, settings, nodes);
+  factor = at_rest.anew(net, loads, nodes, threads);
+}
+
+Nodes StoredOpening::start(const TissueTarget& target, const Pose& lower_bone) const {
+  const double share = std::clamp(rotation_angle(lower_bone) / opened_rad, 0.0, 1.0);
+  Nodes x = target.start();
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += share * (nodes[i] - x[i]);
+  return x;
+}
+
 double largest_distance(const Nodes& a, const Nodes& b) {
   double most = 0;
   for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).norm());

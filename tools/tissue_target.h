@@ -25,6 +25,20 @@ TissueTarget make_target(SyntheticSet set, const Pose& lower_bone);
 /// The movement of the benchmarks: opened by 5 degrees, 2 mm forward and 2 mm down.
 Pose bench_movement();
 
+/// The farthest that one iteration may take a node: from rest at once to where the bones are.
+constexpr double bench_step_mm = 30;
+
+/// Where a solve from nothing may begin: the tissue solved once with the lower bone opened, and the
+/// factor there. Made in the setup of a patient, as the simulator does along the path of opening.
+struct StoredOpening {
+  StoredOpening(const TissueTarget& target, const HessianFactor& at_rest, int threads);
+  static constexpr double opened_rad = 0.1;
+  Nodes nodes;
+  HessianFactor factor;
+  /// The part of the way to `nodes` that belongs to the opening of `lower_bone`.
+  Nodes start(const TissueTarget& target, const Pose& lower_bone) const;
+};
+
 double largest_distance(const Nodes& a, const Nodes& b);  // mm, of any node
 
 /// What counts as solved: error of the worst node and of the energy (relative).

@@ -55,9 +55,8 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& precon
                  (std::abs(f_new - f) <= rounding && std::abs(dot(g_new, d)) <= 0.9 * -slope);
       if (!accepted) {
         const double fit = f_new - f - step * slope;  // parabola through f, slope and f_new
-        const double parabolic =
-            std::isfinite(f_new) && fit > 0 ? -slope * step * step / (2 * fit) : 0.3 * step;
-        step = std::clamp(parabolic, 0.1 * step, 0.6 * step);
+        const double parabolic = fit > 0 ? -slope * step * step / (2 * fit) : 0.3 * step;
+        step = std::isfinite(f_new) ? std::clamp(parabolic, 0.1 * step, 0.6 * step) : 0.75 * step;
       }
     }
     if (!accepted) {  // as low as the arithmetic goes

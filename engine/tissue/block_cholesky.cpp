@@ -112,6 +112,7 @@ int BlockCholesky::factorize_front(int index, float* work, float least, int thre
   }
 
   int raised = 0;
+  const int group = 8 * size;  // columns
   std::vector<float> copy(static_cast<std::size_t>(height) * size + FrontTree::beyond);
   for (int c = 0; c < width; c += size) {
     float* diagonal = panel + static_cast<std::size_t>(c) * height + c;
@@ -129,11 +130,18 @@ int BlockCholesky::factorize_front(int index, float* work, float least, int thre
     subtract_product({diagonal + size, copy.data(), negative.data(), below, size, size, height,
                       below, size, false},
                      threads);
-    // The columns that are yet to be factored here.
-    if (const int columns = width - c - size; columns > 0)
-      subtract_product({diagonal + static_cast<std::size_t>(size) * height + size, diagonal + size,
-                        diagonal + size, below, columns, size, height, height, height, true},
-                       threads);
+    // The columns that are yet to be factored here: those near by at once, the others together.
+    const int done = c + size, group_end = std::min(group + c / group * group, width);
+    const auto take_from = [&](int first, int last, int depth) {
+      float* to = panel + static_cast<std::size_t>(first) * height + first;
+      const float* by = panel + static_cast<std::size_t>(done - depth) * height + first;
+      if (last > first)
+        subtract_product(
+            {to, by, by, height - first, last - first, depth, height, height, height, true},
+            threads);
+    };
+    take_from(done, group_end, size);
+    if (done >= group_end) take_from(done, width, done - c / group * group);
   }
   if (left > 0)
     subtract_product(
@@ -145,7 +153,7 @@ int BlockCholesky::factorize_front(int index, float* work, float least, int thre
 int BlockCholesky::factorize(const std::function<void(int part, float* values)>& assemble,
                              float least, int threads) {
   const FrontTree& tree = *tree_;
-  std::vector<float> work(tree.work_floats);
+  const auto work = std::make_unique_for_overwrite<float[]>(tree.work_floats);
   std::array<int, 3> raised{};
   const auto do_part = [&](int part, int inner_threads) {
     const auto& part_of_fronts = tree.part;
@@ -157,7 +165,7 @@ int BlockCholesky::factorize(const std::function<void(int part, float* values)>&
     std::fill(from(part_of_fronts[part]), from(part_of_fronts[part + 1]), 0.0f);
     assemble(part, values_.data());
     for (int f = part_of_fronts[part]; f < part_of_fronts[part + 1]; ++f)
-      raised[part] += factorize_front(f, work.data(), least, inner_threads);
+      raised[part] += factorize_front(f, work.get(), least, inner_threads);
   };
   parallel_for(2, threads, [&](std::size_t half) { do_part(static_cast<int>(half), 1); });
   do_part(2, threads);

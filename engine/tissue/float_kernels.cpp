@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <vector>
 
 namespace condyle {
 namespace {
@@ -63,8 +64,86 @@ CONDYLE_INLINE void product_tile(float* C, int ldc, const float* A, int lda, con
   }
 }
 
+constexpr int strip = 6;  // columns of a tile of packed matrices; it has 2 W rows
+
+/// C -= A B^T for a packed tile of A (2 W rows) and strip of B; `rows`, `columns` of it wanted.
+template <int W>
+CONDYLE_INLINE void packed_tile(float* C, int ldc, const float* A, const float* B, int depth,
+                                int rows, int columns) {
+  using Vector = typename Lanes<W>::Vector;
+  Vector sum[strip][2];
+  CONDYLE_UNROLL for (int j = 0; j < strip; ++j) sum[j][0] = sum[j][1] = Vector{};
+  for (int k = 0; k < depth; ++k, A += 2 * W, B += strip) {
+    Vector a, b;
+    load(A, a);
+    load(A + W, b);
+    CONDYLE_UNROLL for (int j = 0; j < strip; ++j) {
+      sum[j][0] += a * B[j];
+      sum[j][1] += b * B[j];
+    }
+  }
+  CONDYLE_UNROLL for (int j = 0; j < strip; ++j) {
+    if (j >= columns) break;
+    float* to = C + static_cast<std::ptrdiff_t>(j) * ldc;
+    if (rows >= 2 * W) {
+      CONDYLE_UNROLL for (int part = 0; part < 2; ++part) {
+        Vector c;
+        load(to + part * W, c);
+        c -= sum[j][part];
+        std::memcpy(to + part * W, &c, sizeof c);
+      }
+    } else {
+      float part[2 * W];
+      std::memcpy(part, &sum[j], sizeof part);
+      for (int i = 0; i < rows; ++i) to[i] -= part[i];
+    }
+  }
+}
+
+/// Copies rows x depth of a matrix to strips of `width` rows, depth by depth, the last one filled
+/// up with zeros.
+CONDYLE_INLINE void pack(const float* from, int ld, int rows, int depth, int width, float* to) {
+  for (int k = 0; k < depth; ++k, from += ld)
+    for (int i = 0; i < rows; i += width) {
+      float* at =
+          to + static_cast<std::ptrdiff_t>(i) * depth + static_cast<std::ptrdiff_t>(k) * width;
+      const int count = std::min(width, rows - i);
+      for (int r = 0; r < count; ++r) at[r] = from[i + r];
+      for (int r = count; r < width; ++r) at[r] = 0;
+    }
+}
+
+/// Large products: parts of A and B that fit the caches are copied to where they are read in order.
+template <int W>
+CONDYLE_INLINE void packed_product(const FloatKernels::Product& p) {
+  constexpr int most_depth = 240, most_rows = 192, most_columns = 480, tile = 2 * W;
+  thread_local std::vector<float> A_pack(most_depth * most_rows), B_pack(most_depth * most_columns);
+  for (int k = 0; k < p.depth; k += most_depth) {
+    const int depth = std::min(most_depth, p.depth - k);
+    for (int j = 0; j < p.columns; j += most_columns) {
+      const int columns = std::min(most_columns, p.columns - j);
+      pack(p.B + static_cast<std::ptrdiff_t>(k) * p.ldb + j, p.ldb, columns, depth, strip,
+           B_pack.data());
+      for (int i = p.lower ? j / tile * tile : 0; i < p.rows; i += most_rows) {
+        const int rows = std::min(most_rows, p.rows - i);
+        pack(p.A + static_cast<std::ptrdiff_t>(k) * p.lda + i, p.lda, rows, depth, tile,
+             A_pack.data());
+        for (int c = 0; c < columns; c += strip)
+          for (int r = 0; r < rows; r += tile) {
+            if (p.lower && i + r + tile <= j + c) continue;
+            packed_tile<W>(p.C + static_cast<std::ptrdiff_t>(j + c) * p.ldc + i + r, p.ldc,
+                           A_pack.data() + static_cast<std::ptrdiff_t>(r) * depth,
+                           B_pack.data() + static_cast<std::ptrdiff_t>(c) * depth, depth, rows - r,
+                           columns - c);
+          }
+      }
+    }
+  }
+}
+
 template <int W>
 CONDYLE_INLINE void subtract_product(const FloatKernels::Product& p) {
+  if (p.depth >= 48 && p.columns >= 96) return packed_product<W>(p);
   constexpr int width = 6;
   for (int j = 0; j < p.columns; j += width) {
     const float* B = p.B + j;

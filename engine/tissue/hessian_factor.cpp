@@ -202,7 +202,7 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
       if (spot.part != part) continue;
       float* to = values + spot.at;
       const float most = std::max({to[0], to[spot.stride + 1], to[2 * spot.stride + 2]});
-      for (int i = 0; i < 3; ++i) to[i * (spot.stride + 1)] += 1e-4f * most + 1e-12f;
+      for (int i = 0; i < 3; ++i) to[i * (spot.stride + 1)] += 1e-5f * most + 1e-12f;
     }
   };
   constexpr float least = 1e-6f;
