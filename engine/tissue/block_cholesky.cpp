@@ -13,6 +13,8 @@ namespace {
 
 constexpr int largest_block = 18;
 using BlockBuffer = std::array<float, largest_block * largest_block>;
+/// Numbers of a block's rows, with room for what kernels read and write beyond them.
+using PaddedBlock = std::array<float, 2 * largest_block>;
 
 /// Replaces the lower half of a diagonal block by the inverse of its Cholesky factor, with zeros
 /// above: solving is then only products. Gives the number of raised pivots.
@@ -183,9 +185,9 @@ void BlockCholesky::forward(int index, float* b, float* rest, std::vector<float>
   std::fill_n(rows.begin() + width, height - width, 0.0f);
   for (int c = 0; c < width; c += size) {
     const float* diagonal = panel + static_cast<std::size_t>(c) * height + c;
-    std::array<float, largest_block> solved{};
-    for (int j = 0; j < size; ++j)
-      for (int i = j; i < size; ++i) solved[i] += diagonal[j * height + i] * rows[c + j];
+    PaddedBlock solved{};
+    for (int i = 0; i < size; ++i) rows[c + i] = -rows[c + i];
+    kernels.subtract_times(solved.data(), diagonal, height, size, size, &rows[c]);
     std::copy_n(solved.begin(), size, pivot + c);
     kernels.subtract_times(&rows[c + size], diagonal + size, height, height - c - size, size,
                            solved.data());
@@ -213,9 +215,9 @@ void BlockCholesky::backward(int index, float* b, std::vector<float>& rows) cons
     const float* diagonal = panel + static_cast<std::size_t>(c) * height + c;
     kernels.subtract_transposed(pivot + c, diagonal + size, height, height - c - size, size,
                                 &rows[c + size]);
-    std::array<float, largest_block> solved{};
-    for (int j = 0; j < size; ++j)
-      for (int i = j; i < size; ++i) solved[j] += diagonal[j * height + i] * pivot[c + i];
+    PaddedBlock negative{}, solved{};
+    for (int i = 0; i < size; ++i) negative[i] = -pivot[c + i];
+    kernels.subtract_transposed(solved.data(), diagonal, height, size, size, negative.data());
     std::copy_n(solved.begin(), size, pivot + c);
     std::copy_n(solved.begin(), size, &rows[c]);
   }

@@ -37,6 +37,21 @@ std::shared_ptr<const FrontTree> make_tree(const SpringPrismNet& net, int nodes_
                                            3 * nodes_per_column);
 }
 
+/// Lower half of a symmetric matrix.
+struct Symmetric {
+  double xx = 0, yx = 0, zx = 0, yy = 0, zy = 0, zz = 0;
+  /// += factor d d^T + diagonal I
+  void add(double factor, const Vector3d& d, double diagonal) {
+    const Vector3d u = factor * d;
+    xx += u.x() * d.x() + diagonal;
+    yx += u.y() * d.x();
+    zx += u.z() * d.x();
+    yy += u.y() * d.y() + diagonal;
+    zy += u.z() * d.y();
+    zz += u.z() * d.z() + diagonal;
+  }
+};
+
 /// Its product with v is u x v.
 Matrix3d cross_matrix(const Vector3d& u) {
   Matrix3d m;
@@ -132,6 +147,7 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
       for (int j = 0; j < 3; ++j)
         for (int i = 0; i < 3; ++i) to[j * spot.stride + i] += static_cast<float>(m(i, j));
     };
+    std::vector<Symmetric> own(net.node_count);  // each node's own entry
     for (int s : pattern.springs_of[part]) {
       const int a = net.spring_a[s], b = net.spring_b[s];
       const Vector3d d = x[b] - x[a];
@@ -141,15 +157,16 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
       // At rest a spring may yet go either way; the stretched ones are those that matter.
       const double k =
           2 * lambda * net.stiffness[s] * (strain < -1e-9 ? net.compression_share : 1.0);
-      Matrix3d m = (k * (1 - tension) / length2) * (d * d.transpose());
-      m.diagonal().array() += k * tension;
-      add(pattern.diagonal[a], m);
-      add(pattern.diagonal[b], m);
+      const double along = k * (1 - tension) / length2, across = k * tension;
+      own[a].add(along, d, across);
+      own[b].add(along, d, across);
+      if (pattern.spring[s].part != part) continue;
+      Matrix3d m = along * d * d.transpose();
+      m.diagonal().array() += across;
       add(pattern.spring[s], -m);
     }
     for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
-      add(pattern.diagonal[net.anchor_node[i]],
-          Matrix3d::Identity() * (2 * lambda * net.anchor_stiffness[i]));
+      own[net.anchor_node[i]].add(0, Vector3d::Zero(), 2 * lambda * net.anchor_stiffness[i]);
     // Two surfaces that touch may couple columns that no spring does. Then each surface alone is
     // taken (weights of one sign), which leaves the matrix positive definite.
     for (const auto& row : loads.contacts) {
@@ -185,7 +202,7 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
       }
       const Spot* pair = &pattern.prism[static_cast<std::size_t>(p) * corner_pairs];
       for (int a = 0; a < 6; ++a) {
-        add(pattern.diagonal[prism[a]], weight * slope[a] * slope[a].transpose());
+        own[prism[a]].add(weight, slope[a], 0);
         for (int b = 0; b < a; ++b, ++pair) {
           if (pair->part != part) continue;
           const bool as_is = pattern.is_below(prism[a], prism[b]);
@@ -201,6 +218,9 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
       const Spot& spot = pattern.diagonal[n];
       if (spot.part != part) continue;
       float* to = values + spot.at;
+      const std::array below{own[n].xx, own[n].yx, own[n].zx, own[n].yy, own[n].zy, own[n].zz};
+      for (int j = 0, k = 0; j < 3; ++j)
+        for (int i = j; i < 3; ++i) to[j * spot.stride + i] += static_cast<float>(below[k++]);
       const float most = std::max({to[0], to[spot.stride + 1], to[2 * spot.stride + 2]});
       for (int i = 0; i < 3; ++i) to[i * (spot.stride + 1)] += 1e-5f * most + 1e-12f;
     }
