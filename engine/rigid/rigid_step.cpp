@@ -59,9 +59,12 @@ void RigidWorld::State::collect_forces() {
     SolverBody& body = solver_bodies[static_cast<std::size_t>(m.solver)];
     body.R_WP = poses[i].R.toRotationMatrix() * m.principal;
     body.motion = body_motions[i];
-    body.force = m.body.mass.mass_kg * settings.gravity_mm_s2 -
-                 mm_per_m * m.body.drag_N_s_mm * motions[i].velocity;
-    body.torque = -mm_per_m * m.body.turning_drag_N_mm_s * motions[i].spin;
+    const Vector3d arm = m.body.drag_at ? Vector3d(poses[i] * *m.body.drag_at - centers[i])
+                                        : Vector3d(Vector3d::Zero());
+    const Vector3d drag = -mm_per_m * m.body.drag_N_s_mm *
+                          (motions[i].velocity + motions[i].spin.cross(arm));
+    body.force = m.body.mass.mass_kg * settings.gravity_mm_s2 + drag;
+    body.torque = arm.cross(drag) - mm_per_m * m.body.turning_drag_N_mm_s * motions[i].spin;
   }
   for (const RigidForce& f : forces) {
     const auto i = static_cast<std::size_t>(f.body);

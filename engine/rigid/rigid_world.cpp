@@ -76,7 +76,9 @@ int RigidWorld::add_body(const RigidBody& body) {
     if (m.principal.determinant() < 0) m.principal.col(2) *= -1;
     m.inverse_inertia = mass.inertia.inverse();
     m.give_per_mm2 = 1 / axes.eigenvalues()[0];
-    const double drag = mm_per_m * body.drag_N_s_mm / mass.mass_kg * s.settings.step_s,
+    const double arm = body.drag_at ? (*body.drag_at - mass.center).norm() : 0;
+    const double drag = mm_per_m * body.drag_N_s_mm * s.settings.step_s *
+                        (1 / mass.mass_kg + arm * arm * m.give_per_mm2),
                  turning = mm_per_m * body.turning_drag_N_mm_s * m.give_per_mm2 * s.settings.step_s;
     require(drag >= 0 && drag < 2 && turning >= 0 && turning < 2,
             "a drag times the step over the mass is " + text(std::max(drag, turning)) +

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/collide/slide.h"
@@ -25,8 +26,9 @@ struct RigidBody {
   Pose X_WB = {};
   RigidMotion motion = {};
   std::vector<std::shared_ptr<const SlideBody>> surfaces = {};  // body coordinates; may be none
-  double drag_N_s_mm = 0;                                       // force against its velocity
-  double turning_drag_N_mm_s = 0;                               // torque against its spin
+  double drag_N_s_mm = 0;          // force against the velocity of the place it acts at
+  double turning_drag_N_mm_s = 0;  // torque against its spin
+  std::optional<Eigen::Vector3d> drag_at = {};  // body coordinates; else the centre of mass
 };
 
 /// A constant force until it is set anew.

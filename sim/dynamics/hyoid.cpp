@@ -12,6 +12,12 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 constexpr double mm_per_m = 1000;  // 1 N = 1000 kg mm/s^2
 
+Matrix3d cross_matrix(const Vector3d& v) {
+  Matrix3d out;
+  out << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return out;
+}
+
 }  // namespace
 
 Hyoid::Hyoid(const BoneMechanics& bone) : bone_(bone) {}
@@ -30,15 +36,18 @@ void Hyoid::pull(const Vector3d& p_C, const Vector3d& direction, double force_N,
 
 void Hyoid::step(double step_s, const Vector3d& gravity_mm_s2) {
   const Matrix3d R = X_CH_.R.toRotationMatrix();
-  Eigen::Matrix<double, 6, 6> A = step_s * damping_;
-  A.topLeftCorner<3, 3>() += (bone_.mass_kg + step_s * bone_.drag_kg_s) * Matrix3d::Identity();
-  A.bottomRightCorner<3, 3>() += R * bone_.inertia * R.transpose() +
-                                 step_s * bone_.turning_drag_kg_mm2_s * Matrix3d::Identity();
-  Vector6d v, drag;
+  const Vector3d arm = X_CH_ * bone_.drag_at - center();
+  Eigen::Matrix<double, 3, 6> dragged;  // velocity where the drag acts
+  dragged << Matrix3d::Identity(), -cross_matrix(arm);
+  Eigen::Matrix<double, 6, 6> drag = bone_.drag_kg_s * dragged.transpose() * dragged;
+  drag.bottomRightCorner<3, 3>() += bone_.turning_drag_kg_mm2_s * Matrix3d::Identity();
+  Eigen::Matrix<double, 6, 6> A = step_s * (damping_ + drag);
+  A.topLeftCorner<3, 3>() += bone_.mass_kg * Matrix3d::Identity();
+  A.bottomRightCorner<3, 3>() += R * bone_.inertia * R.transpose();
+  Vector6d v;
   v << motion_.velocity, motion_.spin;
-  drag << bone_.drag_kg_s * motion_.velocity, bone_.turning_drag_kg_mm2_s * motion_.spin;
   wrench_.head<3>() += bone_.mass_kg * gravity_mm_s2;
-  v += A.ldlt().solve(Vector6d(step_s * (wrench_ - drag)));
+  v += A.ldlt().solve(Vector6d(step_s * (wrench_ - drag * v)));
   motion_ = {v.head<3>(), v.tail<3>()};
   const Vector3d c = center() + step_s * motion_.velocity;
   const double angle = step_s * motion_.spin.norm();

@@ -20,6 +20,7 @@ struct JawWorldSettings {
   double lost_in_step = 0.3;  // share of its speed that soft tissue takes in a step, below 2
   // In place of that share, where it is known: force and torque against velocity and spin.
   std::optional<double> drag_kg_s = {}, turning_drag_kg_mm2_s = {};
+  std::optional<Eigen::Vector3d> drag_at = {};  // of the mandible; else its centre of mass
   bool teeth = true;  // false: nothing keeps upper and lower teeth apart
   // Crowns that overlap at rest are taken as worn by as much: they may overlap so far everywhere.
   bool worn_crowns = false;

@@ -31,13 +31,14 @@ JawWorldSettings world_settings(const Case& patient, const MuscleJawSettings& se
   world.drag_kg_s = known ? patient.mechanics->mandible.drag_kg_s : usual_drag_kg_s;
   world.turning_drag_kg_mm2_s =
       known ? patient.mechanics->mandible.turning_drag_kg_mm2_s : usual_turning_drag_kg_mm2_s;
+  if (known) world.drag_at = patient.mechanics->mandible.drag_at;
   return world;
 }
 
 BoneMechanics hyoid_of(const Case& patient, const std::vector<Muscle>& muscles) {
   if (patient.mechanics && patient.mechanics->hyoid) return *patient.mechanics->hyoid;
   BoneMechanics bone = usual_hyoid;
-  if (const auto center = hyoid_center(muscles)) bone.center = *center;
+  if (const auto center = hyoid_center(muscles)) bone.center = bone.drag_at = *center;
   return bone;
 }
 
@@ -241,10 +242,12 @@ std::vector<MuscleJaw::Pull> MuscleJaw::pulls() const {
 }
 
 Vector6d MuscleJaw::other_forces() const {
+  const Vector3d arm = pose() * world_settings_.drag_at.value_or(mass_.center) - center();
+  const Vector3d drag =
+      -*world_settings_.drag_kg_s * (motion().velocity + motion().spin.cross(arm));
   Vector6d out;
-  out << mass_.mass_kg * jaw_.world.settings().gravity_mm_s2 -
-             *world_settings_.drag_kg_s * motion().velocity,
-      -*world_settings_.turning_drag_kg_mm2_s * motion().spin;
+  out << mass_.mass_kg * jaw_.world.settings().gravity_mm_s2 + drag,
+      arm.cross(drag) - *world_settings_.turning_drag_kg_mm2_s * motion().spin;
   out /= mm_per_m;
   if (bolus_) {
     const Vector3d force = bolus_push_N_ * bolus_->normal();

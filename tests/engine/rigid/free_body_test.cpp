@@ -89,6 +89,29 @@ TEST(FreeBody, DragSlowsItByItsLaw) {
   EXPECT_THROW(world.add_body(body), InputError);
 }
 
+TEST(FreeBody, DragAtAPlaceMakesABodyTurnAboutIt) {
+  RigidWorld world(test::weightless());
+  RigidBody body = test::ghost(plank);
+  body.motion.velocity = {0, 0, 100};
+  body.drag_N_s_mm = 1e-3 * body.mass.mass_kg;  // slow against the step
+  body.drag_at = body.mass.center + Vector3d(5, 0, 0);
+  const int id = world.add_body(body);
+  const auto there = [&] {
+    const Vector3d arm = world.pose(id) * *body.drag_at - world.pose(id) * body.mass.center;
+    return Vector3d(world.motion(id).velocity + world.motion(id).spin.cross(arm));
+  };
+  world.step();
+  // The first pull: against the place's velocity, with its arm.
+  const double pull = 1000 * body.drag_N_s_mm * 100 * world.settings().step_s;
+  EXPECT_NEAR(world.motion(id).velocity.z(), 100 - pull / body.mass.mass_kg, 1e-6);
+  EXPECT_NEAR(world.motion(id).spin.y(), 5 * pull / body.mass.inertia(1, 1),
+              1e-6 * std::abs(world.motion(id).spin.y()) + 1e-9);
+  const double energy = world.kinetic_energy(), speed = there().norm();
+  for (int k = 0; k < 200; ++k) world.step();
+  EXPECT_LT(world.kinetic_energy(), energy);
+  EXPECT_LT(there().norm(), speed);
+}
+
 TEST(FreeBody, ASpringSwingsAtItsFrequencyAndADamperLosesWhatItShould) {
   RigidWorld world(test::weightless());
   const int wall = world.add_body({});
