@@ -61,8 +61,8 @@ void RigidWorld::State::collect_forces() {
     body.motion = body_motions[i];
     const Vector3d arm = m.body.drag_at ? Vector3d(poses[i] * *m.body.drag_at - centers[i])
                                         : Vector3d(Vector3d::Zero());
-    const Vector3d drag = -mm_per_m * m.body.drag_N_s_mm *
-                          (motions[i].velocity + motions[i].spin.cross(arm));
+    const Vector3d drag =
+        -mm_per_m * m.body.drag_N_s_mm * (motions[i].velocity + motions[i].spin.cross(arm));
     body.force = m.body.mass.mass_kg * settings.gravity_mm_s2 + drag;
     body.torque = arm.cross(drag) - mm_per_m * m.body.turning_drag_N_mm_s * motions[i].spin;
   }

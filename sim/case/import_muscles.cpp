@@ -26,7 +26,6 @@ void check_near(const std::filesystem::path& file, const std::string& what, cons
 
 void turn(BoneMechanics& bone, const Matrix3d& axes) {
   bone.center = axes * bone.center;
-  bone.drag_at = axes * bone.drag_at;
   bone.inertia = axes * bone.inertia * axes.transpose();
 }
 

@@ -1,7 +1,5 @@
 #include "sim/case/jaw_mechanics.h"
 
-#include <fmt/core.h>
-
 #include <Eigen/Eigenvalues>
 #include <nlohmann/json.hpp>
 
@@ -18,7 +16,6 @@ using Eigen::Vector3d;
 
 constexpr const char* polyline_key = "polyline_posterior_superior_offsets_mm_from_tmj_marker";
 constexpr double heaviest_kg = 10, most_inertia = 1e5, farthest_mm = 1000, most_drag = 1e7;
-constexpr double longest_arm_mm = 150;  // of damping
 
 JsonItem list(const JsonItem& item, std::size_t size) {
   if (item.size() != size)
@@ -55,12 +52,6 @@ BoneMechanics bone(const JsonItem& item) {
   if (const auto drag = item.find("frame_damping")) out.drag_kg_s = drag->number(0, most_drag);
   if (const auto drag = item.find("rotary_damping"))
     out.turning_drag_kg_mm2_s = drag->number(0, most_drag);
-  if (const auto origin = item.find("frame_origin_mm")) out.drag_at = vector(*origin, farthest_mm);
-  if (out.drag_kg_s > 0 && (out.drag_at - out.center).norm() > longest_arm_mm)
-    item.at("frame_damping")
-        .refuse(fmt::format("acts at the origin of the bone's frame, {:.0f} mm from com_mm: say "
-                            "where it acts by frame_origin_mm",
-                            (out.drag_at - out.center).norm()));
   return out;
 }
 
@@ -87,7 +78,6 @@ json to_json(const BoneMechanics& bone) {
           {"com_mm", values(bone.center)},
           {"inertia_about_com_kg_mm2", rows},
           {"frame_damping", bone.drag_kg_s},
-          {"frame_origin_mm", values(bone.drag_at)},
           {"rotary_damping", bone.turning_drag_kg_mm2_s}};
 }
 

@@ -14,9 +14,8 @@ struct BoneMechanics {
   double mass_kg = 0;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();       // of mass, mm
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  // about the centre, kg mm^2
-  double drag_kg_s = 0;  // force against the velocity of drag_at: 1 kg/s = 0.001 N s/mm
-  double turning_drag_kg_mm2_s = 0;                   // torque against its spin
-  Eigen::Vector3d drag_at = Eigen::Vector3d::Zero();  // moves with the bone
+  double drag_kg_s = 0;              // force against its velocity: 1 kg/s = 0.001 N s/mm
+  double turning_drag_kg_mm2_s = 0;  // torque against its spin
 };
 
 /// What is known of a patient's jaw as a machine, beside its shape.
@@ -26,9 +25,8 @@ struct JawMechanics {
   std::optional<CondylarPath> guide;  // of both condyles in muscle-driven motion
 };
 
-/// JSON: {"jaw": {mass_kg, com_mm, inertia_about_com_kg_mm2, frame_damping, rotary_damping,
-/// frame_origin_mm (where frame_damping acts; 0, 0, 0 when absent)}, "hyoid": {the same, inertia may
-/// be absent}, "tmj":
+/// JSON: {"jaw": {mass_kg, com_mm, inertia_about_com_kg_mm2, frame_damping, rotary_damping},
+/// "hyoid": {the same, inertia may be absent}, "tmj":
 /// {"polyline_posterior_superior_offsets_mm_from_tmj_marker": [[back, up], ...]}}; other keys are
 /// passed over. throws: InputError with file, key and value.
 JawMechanics read_mechanics(const std::filesystem::path& file);

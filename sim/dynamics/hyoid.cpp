@@ -20,7 +20,7 @@ Matrix3d cross_matrix(const Vector3d& v) {
 
 }  // namespace
 
-Hyoid::Hyoid(const BoneMechanics& bone) : bone_(bone) {}
+Hyoid::Hyoid(const BoneMechanics& bone, const Vector3d& drag_at) : bone_(bone), drag_at_(drag_at) {}
 
 Vector3d Hyoid::velocity(const Vector3d& p_C) const {
   return motion_.velocity + motion_.spin.cross(p_C - center());
@@ -36,7 +36,7 @@ void Hyoid::pull(const Vector3d& p_C, const Vector3d& direction, double force_N,
 
 void Hyoid::step(double step_s, const Vector3d& gravity_mm_s2) {
   const Matrix3d R = X_CH_.R.toRotationMatrix();
-  const Vector3d arm = X_CH_ * bone_.drag_at - center();
+  const Vector3d arm = X_CH_ * drag_at_ - center();
   Eigen::Matrix<double, 3, 6> dragged;  // velocity where the drag acts
   dragged << Matrix3d::Identity(), -cross_matrix(arm);
   Eigen::Matrix<double, 6, 6> drag = bone_.drag_kg_s * dragged.transpose() * dragged;

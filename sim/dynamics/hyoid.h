@@ -11,7 +11,8 @@ namespace condyle {
 /// that a step of a millisecond is taken implicitly in the velocities.
 class Hyoid {
  public:
-  explicit Hyoid(const BoneMechanics& bone);
+  /// Its drag acts on the velocity of `drag_at`, which moves with it.
+  Hyoid(const BoneMechanics& bone, const Eigen::Vector3d& drag_at);
 
   const Pose& pose() const { return X_CH_; }  // rest to now
   Eigen::Vector3d velocity(const Eigen::Vector3d& p_C) const;
@@ -29,6 +30,7 @@ class Hyoid {
   Eigen::Vector3d center() const { return X_CH_ * bone_.center; }
 
   BoneMechanics bone_;
+  Eigen::Vector3d drag_at_;
   Pose X_CH_;
   RigidMotion motion_;
   Eigen::Matrix<double, 6, 1> wrench_ = Eigen::Matrix<double, 6, 1>::Zero();   // about the centre

@@ -4,6 +4,7 @@
 #include "engine/mesh/measure.h"
 #include "engine/mesh/topology.h"
 #include "sim/motion/condylar_path.h"
+#include "sim/motion/jaw_joints.h"
 
 namespace condyle {
 namespace {
@@ -15,6 +16,7 @@ constexpr double box_share = 0.12;  // of its box that a mandible fills
 constexpr double mm_per_m = 1000;   // 1 N = 1000 kg mm/s^2
 constexpr double worn_band_mm = 2;
 constexpr double least_forward_mm = -0.5, guide_step_mm = 0.5;
+constexpr double farthest_turned_mm = 16;  // the jaw opens no farther with the condyles
 
 Vector3d landmark(const Case& patient, const char* name) {
   const auto point = patient.landmarks.find(name);
@@ -65,10 +67,36 @@ double rest_depth(const SlideBody& a, const SlideBody& b) {
   return depth;
 }
 
-/// Drop of the condyles by their forward travel.
-Pchip guide_path(const Case& patient) {
-  if (patient.mechanics && patient.mechanics->guide) return known_path(*patient.mechanics->guide);
-  return patient.condylar_path ? known_path(*patient.condylar_path) : average_path();
+/// Drop of the condyles by their forward travel; on a fossa as the jaw turns when it opens.
+void find_guides(const Case& patient, bool fossa, int threads, JawWorld& jaw) {
+  const auto both = [&](Pchip path, const char* guide) {
+    jaw.drop_mm.fill(path);
+    jaw.guide = guide;
+  };
+  if (patient.mechanics && patient.mechanics->guide)
+    return both(known_path(*patient.mechanics->guide), "on the guide of the jaw's mechanics");
+  if (fossa) {
+    const JawJoints joints(patient, {}, JointReach::straight, threads);
+    if (joints.surfaces()) {
+      const Coupling coupling;
+      std::vector<double> forward, drop;
+      for (const JawSide side : {JawSide::left, JawSide::right}) {
+        forward.clear();
+        drop.clear();
+        for (double s = 0; s <= longest_forward_mm; s += guide_step_mm) {
+          forward.push_back(s);
+          drop.push_back(joints.drop_mm(side, s, coupling.theta(std::min(s, farthest_turned_mm))));
+        }
+        jaw.drop_mm[side == JawSide::left ? 0 : 1] = Pchip(forward, drop);
+      }
+      jaw.guide = "at their disc's gap on the fossa";
+      return;
+    }
+  }
+  if (patient.condylar_path)
+    both(known_path(*patient.condylar_path), "on the patient's own path");
+  else
+    both(average_path(), "on an average path");
 }
 
 }  // namespace
@@ -79,14 +107,15 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
   const Vector3d incisor = landmark(patient, "lower_incisal_point");
 
   RigidSettings world_settings;
-  JawWorld jaw{.world = RigidWorld(world_settings),
-               .condyles = condyles,
-               .drop_mm = guide_path(patient)};
+  JawWorld jaw{
+      .world = RigidWorld(world_settings), .condyles = condyles, .drop_mm = {}, .guide = {}};
+  find_guides(patient, settings.fossa, threads, jaw);
   RigidBody cranium, mandible;
   if (settings.teeth) {
     const TriMesh &upper = part(patient, Role::upper_teeth, "upper teeth").mesh,
                   &lower = part(patient, Role::lower_teeth, "lower teeth").mesh;
     SlideBodySettings how;
+    how.cache = field_cache_folder();
     if (settings.worn_crowns) how.field.band_mm = worn_band_mm;
     const auto surface = [&](const TriMesh& mesh) {
       return std::make_shared<const SlideBody>(make_slide_body(mesh, how, threads));
@@ -110,17 +139,19 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
         {.a = fixed, .b = jaw.mandible, .friction = settings.friction, .gap_mm = -jaw.worn_mm});
 
   const double first_mm = settings.stops ? 0 : least_forward_mm;
-  for (const Vector3d& condyle : condyles) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Vector3d& condyle = condyles[side];
     RigidJoint guide{.kind = RigidJoint::Kind::guide, .a = fixed, .b = jaw.mandible};
     guide.p_B = condyle;
     for (double forward = first_mm; forward <= longest_forward_mm; forward += guide_step_mm)
-      guide.curve_A.push_back(condyle - Vector3d(0, forward, jaw.drop_mm(std::max(forward, 0.0))));
+      guide.curve_A.push_back(condyle -
+                              Vector3d(0, forward, jaw.drop_mm[side](std::max(forward, 0.0))));
     guide.sideways_A = Vector3d::UnitX();
     jaw.world.add_joint(guide);
     if (!settings.stops) continue;
     RigidJoint stop{.kind = RigidJoint::Kind::plane, .a = fixed, .b = jaw.mandible};
     stop.p_A = stop.p_B = condyle;
-    stop.axis_A = (condyle == condyles[0] ? -1 : 1) * Vector3d::UnitX();
+    stop.axis_A = (side == 0 ? -1 : 1) * Vector3d::UnitX();
     jaw.world.add_joint(stop);
   }
   const Vector3d middle = 0.5 * (condyles[0] + condyles[1]);

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <string>
 
 #include "engine/math/pchip.h"
 #include "engine/rigid/rigid_world.h"
@@ -21,10 +22,11 @@ struct JawWorldSettings {
   // In place of that share, where it is known: force and torque against velocity and spin.
   std::optional<double> drag_kg_s = {}, turning_drag_kg_mm2_s = {};
   std::optional<Eigen::Vector3d> drag_at = {};  // of the mandible; else its centre of mass
-  bool teeth = true;  // false: nothing keeps upper and lower teeth apart
+  bool teeth = true;                            // false: nothing keeps upper and lower teeth apart
   // Crowns that overlap at rest are taken as worn by as much: they may overlap so far everywhere.
   bool worn_crowns = false;
   bool stops = false;  // condyles go neither behind their seats nor apart sideways
+  bool fossa = false;  // condyles keep their disc's gap to the fossa, where there is one
 };
 
 /// The mandible as a free body: lower on upper teeth, its condyles led on their paths.
@@ -34,12 +36,14 @@ struct JawWorld {
   int bite_force = 0;
   double worn_mm = 0;                       // off the crowns
   std::array<Eigen::Vector3d, 2> condyles;  // left, right, seated
-  Pchip drop_mm;                            // of the condyles by forward travel
+  std::array<Pchip, 2> drop_mm;             // of each condyle by its forward travel
+  std::string guide;                        // where these come from, for people
 };
 
-/// Condyles follow the case's own path, else an average one; they may move sideways together, as
-/// far as the teeth let them. The mass is the case's own, else that of its surface.
-/// throws: InputError when teeth, condyles or the mandible are missing.
+/// Condyles follow the guide of the case's mechanics; else their fossa, where that is asked for;
+/// else the case's own path, else an average one. They may move sideways together, as far as the
+/// teeth let them. The mass is the case's own, else that of its surface. throws: InputError when
+/// teeth, condyles or the mandible are missing.
 JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings = {},
                         int threads = 1);
 

@@ -13,6 +13,9 @@ using Eigen::Vector3d;
 
 constexpr double mm_per_m = 1000;  // 1 N = 1000 kg mm/s^2
 constexpr double arm_mm = 50;      // of a jaw about its centre of mass
+// Damping of a bone's frame, as mechanics tell it, acts at the frame's origin, not at the centre of
+// mass: the same damping slows a turning jaw twice as much there.
+const Vector3d bone_origin = Vector3d::Zero();
 // Of a jaw in its soft tissue, where the patient's own is not known.
 constexpr double usual_drag_kg_s = 20, usual_turning_drag_kg_mm2_s = 200;
 const BoneMechanics usual_hyoid = {.mass_kg = 0.01,
@@ -27,19 +30,25 @@ JawWorldSettings world_settings(const Case& patient, const MuscleJawSettings& se
   world.friction = settings.friction;
   world.teeth = settings.teeth;
   world.worn_crowns = world.stops = true;
+  world.fossa = settings.fossa;
   const bool known = patient.mechanics && patient.mechanics->mandible.drag_kg_s > 0;
   world.drag_kg_s = known ? patient.mechanics->mandible.drag_kg_s : usual_drag_kg_s;
   world.turning_drag_kg_mm2_s =
       known ? patient.mechanics->mandible.turning_drag_kg_mm2_s : usual_turning_drag_kg_mm2_s;
-  if (known) world.drag_at = patient.mechanics->mandible.drag_at;
+  if (known) world.drag_at = settings.damped_at.value_or(bone_origin);
   return world;
 }
 
 BoneMechanics hyoid_of(const Case& patient, const std::vector<Muscle>& muscles) {
   if (patient.mechanics && patient.mechanics->hyoid) return *patient.mechanics->hyoid;
   BoneMechanics bone = usual_hyoid;
-  if (const auto center = hyoid_center(muscles)) bone.center = bone.drag_at = *center;
+  if (const auto center = hyoid_center(muscles)) bone.center = *center;
   return bone;
+}
+
+Vector3d hyoid_drag_at(const Case& patient, const std::vector<Muscle>& muscles) {
+  return patient.mechanics && patient.mechanics->hyoid ? bone_origin
+                                                       : hyoid_of(patient, muscles).center;
 }
 
 }  // namespace
@@ -57,7 +66,7 @@ MuscleJaw::MuscleJaw(const Case& patient, const MuscleJawSettings& settings, int
       world_settings_(world_settings(patient, settings)),
       jaw_(make_jaw_world(patient, world_settings_, threads)),
       mass_(jaw_.world.mass(jaw_.mandible)),
-      hyoid_(hyoid_of(patient, muscles_)),
+      hyoid_(hyoid_of(patient, muscles_), hyoid_drag_at(patient, muscles_)),
       bite_(bite_plane(patient)),
       states_(muscles_.size()) {
   const auto pulled = [&](const Vector3d& point) {
@@ -119,11 +128,12 @@ Eigen::MatrixXd MuscleJaw::free_directions() const {
   };
   const Eigen::Matrix<double, 3, 6> guides = held();
   for (int k = 0; k < 3; ++k) held_rows.push_back(guides.row(k).transpose());
-  for (const Vector3d& seat : jaw_.condyles) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Vector3d& seat = jaw_.condyles[side];
     const Vector3d now = pose() * seat;
     const Vector3d velocity = motion().velocity + motion().spin.cross(now - center());
     if (seat.y() - now.y() < seated_mm && -velocity.y() < still_mm_s)
-      hold(now, Vector3d(0, -1, -jaw_.drop_mm.derivative(0)).normalized());
+      hold(now, Vector3d(0, -1, -jaw_.drop_mm[side].derivative(0)).normalized());
   }
   for (const RigidContact& contact : jaw_.world.contacts()) hold(contact.point, contact.normal);
   for (const Vector3d& seat : {bite_.left, bite_.right}) {
@@ -263,10 +273,10 @@ Eigen::Matrix<double, 3, 6> MuscleJaw::held() const {
   const auto row = [&](int k, const Vector3d& p_C, const Vector3d& along) {
     rows.row(k) << along.transpose(), (p_C - center()).cross(along).transpose();
   };
-  for (int k = 0; k < 2; ++k) {
-    const Vector3d seat = jaw_.condyles[static_cast<std::size_t>(k)], now = pose() * seat;
-    const double slope = jaw_.drop_mm.derivative(std::max(seat.y() - now.y(), 0.0));
-    row(k, now, Vector3d(0, -slope, 1).normalized());
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Vector3d seat = jaw_.condyles[k], now = pose() * seat;
+    const double slope = jaw_.drop_mm[k].derivative(std::max(seat.y() - now.y(), 0.0));
+    row(static_cast<int>(k), now, Vector3d(0, -slope, 1).normalized());
   }
   row(2, pose() * (0.5 * (jaw_.condyles[0] + jaw_.condyles[1])), Vector3d::UnitX());
   return rows;

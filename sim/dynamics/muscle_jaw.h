@@ -25,6 +25,8 @@ struct MuscleJawSettings {
   std::function<Eigen::Vector3d(double time_s)> hyoid_way = {};  // from rest, when prescribed
   bool teeth = true;      // false: the bite is flat, at the back teeth as they meet at rest
   double friction = 0.1;  // of wet teeth
+  std::optional<Eigen::Vector3d> damped_at = {};  // of the mandible, in place of its frame's origin
+  bool fossa = true;  // condyles on the fossa, where there is one and no measured guide
 };
 
 /// The mandible as a rigid body that muscles pull, on the guides of its condyles with stops behind
@@ -47,6 +49,8 @@ class MuscleJaw {
   const MuscleStates& states() const { return states_; }
   /// Taken off crowns that overlap at rest.
   double worn_mm() const { return jaw_.worn_mm; }
+  /// What leads the condyles, for people.
+  const std::string& guide() const { return jaw_.guide; }
   double bolus_push_N() const { return bolus_push_N_; }
   const RigidWorld& world() const { return jaw_.world; }
 

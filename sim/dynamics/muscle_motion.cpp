@@ -95,12 +95,12 @@ std::vector<std::string> notes_of(const Case& patient, const MuscleJaw& jaw,
                                   const MuscleMotionSettings& settings) {
   std::vector<std::string> notes;
   notes.push_back(fmt::format(
-      "{} muscles {}, {} law; hyoid {}; mandible of {:.0f} g{}", jaw.muscles().size(),
+      "{} muscles {}, {} law; hyoid {}; mandible of {:.0f} g{}; condyles {}", jaw.muscles().size(),
       patient.muscles.empty() ? "of an average adult, put to the landmarks" : "of the patient",
       settings.law.law == MuscleLaw::peck ? "Peck" : "Hill",
       settings.hyoid == "free" || settings.hyoid == "fixed" ? settings.hyoid
                                                             : "moved as " + settings.hyoid,
-      1000 * jaw.mass().mass_kg, patient.mechanics ? "" : " (from its surface)"));
+      1000 * jaw.mass().mass_kg, patient.mechanics ? "" : " (from its surface)", jaw.guide()));
   if (!settings.teeth)
     notes.push_back("the bite is flat, at the back teeth as they meet at rest");
   else if (jaw.worn_mm() > jaw.world().settings().slop_mm)

@@ -193,10 +193,9 @@ TEST_F(RightChew, ExcitationsAloneLeadTheJawAlongTheRecordedPath) {
 // Damping at the bone's frame, not at its centre of mass, makes the difference.
 TEST_F(RightChew, DampingActsWhereItsFrameIs) {
   std::erase_if(chewer_.muscles, [](const Muscle& muscle) { return muscle.kind == "pm"; });
-  const auto settings = MuscleJawSettings{.hyoid = MuscleJawSettings::HyoidMode::prescribed,
-                                          .teeth = false};
+  MuscleJawSettings settings{.hyoid = MuscleJawSettings::HyoidMode::prescribed, .teeth = false};
   const double at_frame = chew(settings).rms_mm;
-  chewer_.mechanics->mandible.drag_at = chewer_.mechanics->mandible.center;
+  settings.damped_at = chewer_.mechanics->mandible.center;
   EXPECT_GT(chew(settings).rms_mm, 1.5 * at_frame);
 }
 
