@@ -15,7 +15,11 @@ constexpr double mm_per_m = 1000;  // 1 N = 1000 kg mm/s^2
 constexpr double arm_mm = 50;      // of a jaw about its centre of mass
 // Damping of a bone's frame, as mechanics tell it, acts at the frame's origin, not at the centre of
 // mass: the same damping slows a turning jaw twice as much there.
-const Vector3d bone_origin = Vector3d::Zero();
+// Where the patient's coordinates begin elsewhere, it is taken at the centre.
+constexpr double longest_arm_mm = 150;
+Vector3d damped_place(const BoneMechanics& bone) {
+  return bone.center.norm() < longest_arm_mm ? Vector3d(Vector3d::Zero()) : bone.center;
+}
 // Of a jaw in its soft tissue, where the patient's own is not known.
 constexpr double usual_drag_kg_s = 20, usual_turning_drag_kg_mm2_s = 200;
 const BoneMechanics usual_hyoid = {.mass_kg = 0.01,
@@ -35,7 +39,7 @@ JawWorldSettings world_settings(const Case& patient, const MuscleJawSettings& se
   world.drag_kg_s = known ? patient.mechanics->mandible.drag_kg_s : usual_drag_kg_s;
   world.turning_drag_kg_mm2_s =
       known ? patient.mechanics->mandible.turning_drag_kg_mm2_s : usual_turning_drag_kg_mm2_s;
-  if (known) world.drag_at = settings.damped_at.value_or(bone_origin);
+  if (known) world.drag_at = settings.damped_at.value_or(damped_place(patient.mechanics->mandible));
   return world;
 }
 
@@ -46,9 +50,8 @@ BoneMechanics hyoid_of(const Case& patient, const std::vector<Muscle>& muscles) 
   return bone;
 }
 
-Vector3d hyoid_drag_at(const Case& patient, const std::vector<Muscle>& muscles) {
-  return patient.mechanics && patient.mechanics->hyoid ? bone_origin
-                                                       : hyoid_of(patient, muscles).center;
+Vector3d hyoid_drag_at(const Case& patient, const BoneMechanics& hyoid) {
+  return patient.mechanics && patient.mechanics->hyoid ? damped_place(hyoid) : hyoid.center;
 }
 
 }  // namespace
@@ -66,7 +69,7 @@ MuscleJaw::MuscleJaw(const Case& patient, const MuscleJawSettings& settings, int
       world_settings_(world_settings(patient, settings)),
       jaw_(make_jaw_world(patient, world_settings_, threads)),
       mass_(jaw_.world.mass(jaw_.mandible)),
-      hyoid_(hyoid_of(patient, muscles_), hyoid_drag_at(patient, muscles_)),
+      hyoid_(hyoid_of(patient, muscles_), hyoid_drag_at(patient, hyoid_of(patient, muscles_))),
       bite_(bite_plane(patient)),
       states_(muscles_.size()) {
   const auto pulled = [&](const Vector3d& point) {
