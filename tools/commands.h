@@ -75,6 +75,7 @@ struct OccludeOptions {
 struct ViewOptions {
   MotionOptions motion;
   double ui_scale = 1;
+  bool light = false;
 };
 
 struct ImportOptions {

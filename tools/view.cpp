@@ -143,7 +143,7 @@ void show_patient(Window& window, const ViewOptions& options, const CommonOption
 }  // namespace
 
 int run_view(const ViewOptions& options, const CommonOptions& common) {
-  Window window({.title = "Condyle", .ui_scale = options.ui_scale});
+  Window window({.title = "Condyle", .ui_scale = options.ui_scale, .light = options.light});
   try {
     show_patient(window, options, common);
   } catch (const Closed&) {

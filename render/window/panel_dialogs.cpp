@@ -49,12 +49,12 @@ void help_columns(const Theme& theme, Pen& pen) {
     for (std::size_t g = c; g < groups.size(); g += 2) {
       const float x = left + column * static_cast<float>(c);
       ImGui::SetCursorPosX(x);
-      text(theme.bold, colour::accent, std::string(groups[g].title));
+      text(theme.bold, palette().accent, std::string(groups[g].title));
       for (const HelpLine& line : groups[g].lines) {
         ImGui::SetCursorPosX(x);
-        text(theme.regular, colour::text, std::string(line.keys));
+        text(theme.regular, palette().text, std::string(line.keys));
         ImGui::SameLine(x + keys_width);
-        text(theme.regular, colour::text_dim, std::string(line.meaning));
+        text(theme.regular, palette().text_dim, std::string(line.meaning));
       }
       ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(12));
     }
@@ -73,10 +73,10 @@ void Panels::Drawing::dialogs() {
   if ((error || ImGui::IsPopupOpen("error")) &&
       begin_dialog(pen, "error", pen.px(460), display_width, display_height)) {
     if (error) {
-      text(theme.bold, colour::warning, "Something did not work");
+      text(theme.bold, palette().warning, "Something did not work");
       ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
       ImGui::PushTextWrapPos(0);
-      text(theme.regular, colour::text, panels.errors_.front());
+      text(theme.regular, palette().text, panels.errors_.front());
       ImGui::PopTextWrapPos();
       if (close_button(pen, "close-error")) panels.errors_.pop_front();
     }
@@ -87,7 +87,7 @@ void Panels::Drawing::dialogs() {
   if ((help || ImGui::IsPopupOpen("help")) &&
       begin_dialog(pen, "help", pen.px(820), display_width, display_height)) {
     if (help) {
-      text(theme.bold, colour::text, "Keys and mouse");
+      text(theme.bold, palette().text, "Keys and mouse");
       ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(6));
       help_columns(theme, pen);
       if (close_button(pen, "close-help")) panels.help_open_ = false;

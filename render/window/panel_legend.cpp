@@ -38,13 +38,13 @@ void Panels::Drawing::legend() {
   const ImVec2 low = {static_cast<float>(pane.x), static_cast<float>(pane.y)};
   list.AddRectFilled(
       low, {low.x + static_cast<float>(pane.width), low.y + static_cast<float>(pane.height)},
-      colour::rgb(0x191d22, 225), pen.px(4));
+      palette().floating, pen.px(4));
   const auto words = [&](ImFont* font, ImU32 tint, float x, float y, const std::string& text) {
     list.AddText(font, font->FontSize, {std::round(x), std::round(y)}, tint, text.c_str());
   };
   const float left = low.x + pad, right = left + bar_width;
   const float top = low.y + pad + title, bottom = top + bar_height;
-  words(theme.regular, colour::text, left, low.y + pad, map.title + ", " + map.unit);
+  words(theme.regular, palette().text, left, low.y + pad, map.title + ", " + map.unit);
   const auto y_of = [&](float value) {
     return bottom - (value - map.low()) / (map.high() - map.low()) * bar_height;
   };
@@ -60,20 +60,21 @@ void Panels::Drawing::legend() {
   float numbers = 0;
   for (const float tick : map.ticks) {
     const float y = y_of(tick);
-    list.AddLine({right, y}, {right + pen.px(4), y}, colour::text_dim, pen.px(1));
+    list.AddLine({right, y}, {right + pen.px(4), y}, palette().text_dim, pen.px(1));
     const std::string number =
         tick < -1e-4f ? fmt::format("-{:g}", -tick) : fmt::format("{:g}", std::abs(tick));
-    words(theme.small, colour::text, right + pen.px(7), y - letters / 2, number);
+    words(theme.small, palette().text, right + pen.px(7), y - letters / 2, number);
     numbers = std::max(numbers, text_width(theme.small, number));
   }
   for (const auto& band : map.bands)
-    words(theme.small, colour::text_dim, right + pen.px(15) + numbers,
+    words(theme.small, palette().text_dim, right + pen.px(15) + numbers,
           (y_of(band.from) + y_of(band.to) - letters) / 2, band.name);
   float y = bottom + pen.px(8);
   list.AddRectFilled({left, y + pen.px(1)}, {right, y + letters}, ink_of(map.beyond));
-  words(theme.small, colour::text, right + pen.px(7), y, fmt::format("more than {:g}", map.high()));
+  words(theme.small, palette().text, right + pen.px(7), y,
+        fmt::format("more than {:g}", map.high()));
   for (const auto& remark : input.scene.distance_remarks)
-    words(theme.small, colour::text_dim, left, y += line, remark);
+    words(theme.small, palette().text_dim, left, y += line, remark);
 }
 
 void Panels::Drawing::pointed() {
@@ -86,9 +87,9 @@ void Panels::Drawing::pointed() {
   const float x = std::min(mouse.x + pen.px(14), static_cast<float>(r.x + r.width) - wide);
   const float y = std::max(mouse.y - pen.px(10) - high, static_cast<float>(r.y));
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.AddRectFilled({x, y}, {x + wide, y + high}, colour::rgb(0x191d22, 235), pen.px(4));
+  list.AddRectFilled({x, y}, {x + wide, y + high}, palette().floating, pen.px(4));
   list.AddText(theme.regular, theme.regular->FontSize, {std::round(x + pad), std::round(y + pad)},
-               colour::text, input.pointed.c_str());
+               palette().text, input.pointed.c_str());
 }
 
 }  // namespace condyle

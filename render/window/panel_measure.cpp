@@ -53,7 +53,7 @@ void Panels::Drawing::measuring() {
   heading(pen, "Measure", places.empty() ? "" : std::to_string(places.size()) + " points");
   if (places.size() < 2) {
     ImGui::PushTextWrapPos(0);
-    text(theme.small, colour::text_dim,
+    text(theme.small, palette().text_dim,
          "Click two points for a distance, three for an angle and an area, more for a way and an "
          "area. They stay on their bone or skin.");
     ImGui::PopTextWrapPos();
@@ -61,9 +61,9 @@ void Panels::Drawing::measuring() {
     constexpr std::array names = {"Length", "Angle", "Area"};
     const auto words = words_of(result);
     const auto row = [&](const char* name, const std::string& value) {
-      text(theme.regular, colour::text_dim, name);
+      text(theme.regular, palette().text_dim, name);
       ImGui::SameLine();
-      text_right(theme.regular, colour::text, value);
+      text_right(theme.regular, palette().text, value);
       pen.mark(std::string("measured:") + name);
     };
     row(names[0], words[0]);

@@ -27,7 +27,7 @@ ImVec2 point(const Vector2d& p) { return {static_cast<float>(p.x()), static_cast
 /// A number with its name and unit in a column of its own. gives: true while it changes.
 bool number_field(Pen& pen, const std::string& name, const char* label, const char* format,
                   double& value) {
-  text(pen.theme.small, colour::text_dim, label);
+  text(pen.theme.small, palette().text_dim, label);
   ImGui::SetNextItemWidth(pen.px(92));
   const bool changed =
       ImGui::InputDouble(("##" + name).c_str(), &value, 0, 0, format,
@@ -96,7 +96,7 @@ void Panels::Drawing::moving() {
     }
     pen.mark("body");
   } else {
-    text(theme.regular, colour::text, display_name(input.scene.parts[body.part].name));
+    text(theme.regular, palette().text, display_name(input.scene.parts[body.part].name));
   }
   const Pose carrier = carrier_pose(body, input.frame->X_CM);
   const Pose reached = carrier.inverse() * now;
@@ -127,13 +127,13 @@ void Panels::Drawing::moving() {
     view.hands.of(body) = pose_at(wanted, body.center);
   }
   std::string state = body.free ? "as it was loaded" : "follows the motion";
-  ImU32 tint = colour::text_dim;
+  ImU32 tint = palette().text_dim;
   if (hand) {
     const double short_mm = (*hand * body.center - reached * body.center).norm();
     constexpr double held_mm = 0.05;
     state = short_mm > held_mm ? fmt::format("held by contact, {:.1f} mm short", short_mm)
                                : std::string("where it is wanted");
-    tint = short_mm > held_mm ? colour::warning : colour::good;
+    tint = short_mm > held_mm ? palette().warning : palette().good;
   }
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(3));
   text(theme.small, tint, state);

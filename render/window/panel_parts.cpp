@@ -88,7 +88,7 @@ void Panels::Drawing::parts() {
     heading(pen, "Notes");
     ImGui::BeginChild("notes", {0, std::max(pen.px(20), ImGui::GetContentRegionAvail().y)});
     ImGui::PushTextWrapPos(0);
-    for (const std::string& note : input.scene.notes) text(theme.small, colour::text_dim, note);
+    for (const std::string& note : input.scene.notes) text(theme.small, palette().text_dim, note);
     ImGui::PopTextWrapPos();
     ImGui::EndChild();
   }

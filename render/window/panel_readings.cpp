@@ -17,8 +17,8 @@ constexpr double deeper_mm = 0.01;  // overlap beyond the one at rest that is ca
 
 // A line with a dim name at the left and a value at the right.
 void reading(const Theme& theme, const std::string& name, const std::string& value,
-             ImU32 tint = colour::text) {
-  text(theme.regular, colour::text_dim, name);
+             ImU32 tint = palette().text) {
+  text(theme.regular, palette().text_dim, name);
   ImGui::SameLine();
   text_right(theme.regular, tint, value);
 }
@@ -67,12 +67,12 @@ void Panels::Drawing::opening() {
 
   const float top = ImGui::GetCursorPosY();
   const std::string number = input.frame ? fmt::format("{:.1f}", live) : "-";
-  text(theme.large, colour::text, number);
+  text(theme.large, palette().text, number);
   const float after = ImGui::GetCursorPosY();
   ImGui::SetCursorPos(
       {ImGui::GetStyle().WindowPadding.x + text_width(theme.large, number) + pen.px(6),
        top + (theme.large->FontSize - theme.regular->FontSize) * 0.78f});
-  text(theme.regular, colour::text_dim, "mm");
+  text(theme.regular, palette().text_dim, "mm");
   if (held) {
     const float wide = pen.px(76), high = pen.px(26);
     ImGui::SetCursorPos({ImGui::GetWindowContentRegionMax().x - wide, top + pen.px(3)});
@@ -98,20 +98,21 @@ void Panels::Drawing::opening() {
   };
   const float y = at.y + ImGui::GetFrameHeight() / 2 + pen.px(8);
   if (most > usual_low_mm)
-    list.AddRectFilled({x_of(usual_low_mm), y}, {x_of(usual_high_mm), y + pen.px(3)}, colour::good);
+    list.AddRectFilled({x_of(usual_low_mm), y}, {x_of(usual_high_mm), y + pen.px(3)},
+                       palette().good);
   const double step = most > 80 ? 20 : 10;
   for (double mm = 0; mm <= most + 1e-9; mm += step) {
     const std::string label = fmt::format("{:g}", mm);
-    list.AddLine({x_of(mm), y}, {x_of(mm), y + pen.px(4)}, colour::text_faint,
+    list.AddLine({x_of(mm), y}, {x_of(mm), y + pen.px(4)}, palette().text_faint,
                  std::max(1.0f, pen.px(1)));
     list.AddText(theme.small, theme.small->FontSize,
-                 {x_of(mm) - text_width(theme.small, label) / 2, y + pen.px(5)}, colour::text_faint,
-                 label.c_str());
+                 {x_of(mm) - text_width(theme.small, label) / 2, y + pen.px(5)},
+                 palette().text_faint, label.c_str());
   }
   if (held && input.frame) {
     const float x = x_of(live), r = pen.px(4);
     list.AddTriangleFilled({x, y - pen.px(1)}, {x - r, y + r * 1.5f}, {x + r, y + r * 1.5f},
-                           colour::text);
+                           palette().text);
   }
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(13));
 
@@ -143,18 +144,18 @@ void Panels::Drawing::contacts(float list_height) {
   }
   heading(pen, "Contact", summary);
   ImGui::BeginChild("contact-list", {0, list_height});
-  if (pairs.empty()) text(theme.regular, colour::text_faint, "No pairs to check");
+  if (pairs.empty()) text(theme.regular, palette().text_faint, "No pairs to check");
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const PairContact& pair = *pairs[i];
     const double deeper = pair.depth_mm - pair.rest_depth_mm;
     std::string value = fmt::format("{:.1f} mm", pair.distance_mm);
-    ImU32 tint = pair.distance_mm < 2 ? colour::text : colour::text_dim;
+    ImU32 tint = pair.distance_mm < 2 ? palette().text : palette().text_dim;
     if (deeper > deeper_mm) {
       value = fmt::format("{:.2f} mm deep", deeper);
-      tint = colour::bad;
+      tint = palette().bad;
     } else if (pair.touching) {
       value = pair.rest_depth_mm > deeper_mm ? "as at rest" : "touching";
-      tint = colour::warning;
+      tint = palette().warning;
     }
     const float end = ImGui::GetContentRegionAvail().x, dot = pen.px(4);
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -163,13 +164,13 @@ void Panels::Drawing::contacts(float list_height) {
     if (pair.touching) {
       list.AddCircleFilled(centre, dot, tint, 16);
     } else {
-      list.AddCircle(centre, dot - pen.px(0.5f), colour::text_faint, 16, pen.px(1));
+      list.AddCircle(centre, dot - pen.px(0.5f), palette().text_faint, 16, pen.px(1));
     }
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 2 * dot + pen.px(8));
     const float room = end - 2 * dot - pen.px(8) - text_width(theme.regular, value) - pen.px(10);
     const std::string both =
         part_name(input.scene, pair.part_a) + " / " + part_name(input.scene, pair.part_b);
-    text(theme.regular, pair.touching ? colour::text : colour::text_dim,
+    text(theme.regular, pair.touching ? palette().text : palette().text_dim,
          fitted(theme.regular, both, room));
     tooltip(pen,
             fmt::format(
@@ -189,10 +190,10 @@ void Panels::Drawing::tissue() {
   heading(pen, "Tissue", fmt::format("{} nodes", state.nodes.size()));
   reading(theme, "Iterations",
           fmt::format("{}{}", state.iterations, state.converged ? "" : ", not converged"),
-          state.converged ? colour::text : colour::warning);
+          state.converged ? palette().text : palette().warning);
   reading(theme, "Energy, residual", fmt::format("{:.3g}, {:.1e}", state.energy, state.residual));
   reading(theme, "Inverted prisms", fmt::format("{}", state.inverted_prisms),
-          state.inverted_prisms ? colour::bad : colour::text);
+          state.inverted_prisms ? palette().bad : palette().text);
 }
 
 void Panels::Drawing::times() {
@@ -217,17 +218,17 @@ void Panels::Drawing::times() {
                 mid = at.y + pen.px(bar_row / 2);
     const std::string name = picture ? "picture" : std::string(stage_names[i]);
     const std::string value = fmt::format("{:.1f} ms", times.ms[i]);
-    list.AddText(theme.small, theme.small->FontSize, {at.x, text_y}, colour::text_dim,
+    list.AddText(theme.small, theme.small->FontSize, {at.x, text_y}, palette().text_dim,
                  name.c_str());
     list.AddRectFilled({at.x + name_width, mid - pen.px(3)},
-                       {at.x + name_width + bar, mid + pen.px(3)}, colour::field, pen.px(3));
+                       {at.x + name_width + bar, mid + pen.px(3)}, palette().field, pen.px(3));
     const float fill = bar * static_cast<float>(std::clamp(times.ms[i] / full, 0.0, 1.0));
     if (fill > 0.5f)
       list.AddRectFilled({at.x + name_width, mid - pen.px(3)},
                          {at.x + name_width + std::max(fill, pen.px(3)), mid + pen.px(3)},
-                         picture ? colour::text_faint : colour::accent, pen.px(3));
+                         picture ? palette().text_faint : palette().accent, pen.px(3));
     list.AddText(theme.small, theme.small->FontSize,
-                 {at.x + width - text_width(theme.small, value), text_y}, colour::text,
+                 {at.x + width - text_width(theme.small, value), text_y}, palette().text,
                  value.c_str());
     ImGui::Dummy({width, pen.px(bar_row) - ImGui::GetStyle().ItemSpacing.y});
   }
@@ -236,13 +237,13 @@ void Panels::Drawing::times() {
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
   const ImVec2 low = ImGui::GetCursorScreenPos();
   const float curve = pen.px(curve_height);
-  list.AddRectFilled(low, {low.x + width, low.y + curve}, colour::rgb(0x14181c), pen.px(3));
+  list.AddRectFilled(low, {low.x + width, low.y + curve}, palette().well, pen.px(3));
   const auto& history = panels.step_ms_;
   float highest = static_cast<float>(step_budget_ms) * 1.25f;
   for (const float ms : history) highest = std::max(highest, ms * 1.1f);
   const auto y_of = [&](float ms) { return low.y + curve - curve * ms / highest; };
   const float budget_y = y_of(static_cast<float>(step_budget_ms));
-  list.AddLine({low.x, budget_y}, {low.x + width, budget_y}, colour::rgb(0x4a545f),
+  list.AddLine({low.x, budget_y}, {low.x + width, budget_y}, palette().outline,
                std::max(1.0f, pen.px(1)));
   if (history.size() > 1) {
     std::vector<ImVec2> points;
@@ -250,19 +251,19 @@ void Panels::Drawing::times() {
     for (std::size_t i = 0; i < history.size(); ++i)
       points.push_back(
           {low.x + width - dx * static_cast<float>(history.size() - 1 - i), y_of(history[i])});
-    list.AddPolyline(points.data(), static_cast<int>(points.size()), colour::accent, 0,
+    list.AddPolyline(points.data(), static_cast<int>(points.size()), palette().accent, 0,
                      std::max(1.0f, pen.px(1.3f)));
   }
   ImGui::Dummy({width, curve});
   pen.mark("curve");
   const double pictures = input.pictures.pictures_per_second;
-  text(theme.small, colour::text_dim,
+  text(theme.small, palette().text_dim,
        fmt::format("{:.0f} steps/s, ", input.loop.steps_per_second) +
            (pictures > 0 ? fmt::format("{:.0f} pictures/s", pictures) : "picture at rest"));
   pen.mark("rates");
   if (input.pictures.render_scale < 1 || input.pictures.samples < 4) {
     ImGui::SameLine();
-    text_right(theme.small, colour::text_faint,
+    text_right(theme.small, palette().text_faint,
                input.pictures.render_scale < 1
                    ? fmt::format("picture at {:.0f} %", 100 * input.pictures.render_scale)
                    : "faster picture");

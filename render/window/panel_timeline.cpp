@@ -21,10 +21,10 @@ void draw_ticks(const Pen& pen, ImVec2 low, float width, float y, double duratio
   ImFont* font = pen.theme.small;
   for (int i = 0; i * step <= duration_s + 1e-9; ++i) {
     const float x = low.x + knob + span * static_cast<float>(i * step / duration_s);
-    list.AddLine({x, y}, {x, y + pen.px(4)}, colour::text_faint, std::max(1.0f, pen.px(1)));
+    list.AddLine({x, y}, {x, y + pen.px(4)}, palette().text_faint, std::max(1.0f, pen.px(1)));
     const std::string label = fmt::format("{:g}", i * step);
     list.AddText(font, font->FontSize, {x - text_width(font, label) / 2, y + pen.px(5)},
-                 colour::text_faint, label.c_str());
+                 palette().text_faint, label.c_str());
   }
 }
 
@@ -40,25 +40,25 @@ void Panels::Drawing::timeline() {
 
   ImGui::BeginDisabled(duration <= 0);
   ImGui::SetCursorPos({pen.px(14), row});
-  if (sign_button(pen, "to-start", Sign::to_start, {side, side}, colour::field))
+  if (sign_button(pen, "to-start", Sign::to_start, {side, side}, palette().field))
     seek(view, 0, duration);
   tooltip(pen, "To the beginning");
   ImGui::SameLine(0, gap);
-  if (sign_button(pen, "step-back", Sign::step_back, {side, side}, colour::field))
+  if (sign_button(pen, "step-back", Sign::step_back, {side, side}, palette().field))
     panels.run(Command::step_back, input.scene, view);
   tooltip(pen, "A step back. Left arrow; ten with Shift");
   ImGui::SameLine(0, gap);
   if (sign_button(pen, "play", view.playing ? Sign::pause : Sign::play, {side * 1.5f, side},
-                  colour::accent_dark))
+                  palette().accent_dark))
     toggle_playing(view, duration);
   tooltip(pen, view.playing ? "Pause. Space" : "Play. Space");
   ImGui::SameLine(0, gap);
-  if (sign_button(pen, "step-forward", Sign::step_forward, {side, side}, colour::field))
+  if (sign_button(pen, "step-forward", Sign::step_forward, {side, side}, palette().field))
     panels.run(Command::step_forward, input.scene, view);
   tooltip(pen, "A step forward. Right arrow; ten with Shift");
   ImGui::SameLine(0, gap);
   if (sign_button(pen, "loop", Sign::loop, {side, side},
-                  view.loop ? colour::accent_dark : colour::field))
+                  view.loop ? palette().accent_dark : palette().field))
     view.loop = !view.loop;
   tooltip(pen, view.loop ? "Plays again and again" : "Stops at the end");
   ImGui::SameLine(0, pen.px(16));
@@ -67,9 +67,9 @@ void Panels::Drawing::timeline() {
   const std::string now = fmt::format("{:.2f}", view.time_s);
   const float time_x = ImGui::GetCursorPosX(), time_width = text_width(theme.bold, "00.00");
   ImGui::SetCursorPosX(time_x + std::max(0.0f, time_width - text_width(theme.bold, now)));
-  text(theme.bold, colour::text, now);
+  text(theme.bold, palette().text, now);
   ImGui::SameLine(0, pen.px(5));
-  text(theme.regular, colour::text_dim, fmt::format("of {:.2f} s", duration));
+  text(theme.regular, palette().text_dim, fmt::format("of {:.2f} s", duration));
 
   // The scrub bar takes what the speed at the right leaves.
   ImGui::SameLine(0, pen.px(14));
@@ -90,7 +90,7 @@ void Panels::Drawing::timeline() {
              duration);
 
   ImGui::SetCursorPos({speed_x, row + (side - theme.small->FontSize) / 2});
-  text(theme.small, colour::text_dim, "Speed");
+  text(theme.small, palette().text_dim, "Speed");
   ImGui::SetCursorPos({speed_x + speed_title + pen.px(8), slider_y});
   if (slider(pen, "speed", view.speed,
              {.low = 0.1, .high = 2, .width = speed_width, .logarithmic = true, .filled = false})) {
@@ -99,22 +99,22 @@ void Panels::Drawing::timeline() {
   }
   tooltip(pen, "0.1 to 2 times real time");
   ImGui::SetCursorPos({end - speed_label, text_y});
-  text(theme.regular, colour::text, fmt::format("{:.2f}\u00d7", view.speed));
+  text(theme.regular, palette().text, fmt::format("{:.2f}\u00d7", view.speed));
   ImGui::EndDisabled();
 
   // The foot: what happens, and what this is for.
   const float foot = static_cast<float>(layout.bottom.height) - theme.small->FontSize - pen.px(9);
   const float purpose_width = text_width(theme.small, purpose);
   std::string message = !panels.said_.empty() ? panels.said_ : input.loop.message;
-  ImU32 tint = colour::text_dim;
+  ImU32 tint = palette().text_dim;
   if (message.empty() && input.frame && input.frame->stopped) {
     message = "Stopped at the contact: the bones cannot follow the wanted motion any further";
-    tint = colour::warning;
+    tint = palette().warning;
   }
   ImGui::SetCursorPos({pen.px(14), foot});
   text(theme.small, tint, fitted(theme.small, message, end - purpose_width - pen.px(40)));
   ImGui::SetCursorPos({end - purpose_width, foot});
-  text(theme.small, colour::text_dim, purpose);
+  text(theme.small, palette().text_dim, purpose);
   end_panel();
 }
 

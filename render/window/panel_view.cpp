@@ -68,19 +68,19 @@ void Panels::Drawing::view_signs() {
     const std::string words =
         fitted(theme.regular, input.progress, static_cast<float>(r.width) - pen.px(40));
     list.AddText(theme.regular, theme.regular->FontSize,
-                 {centre.x - text_width(theme.regular, words) / 2, at.y - pen.px(30)}, colour::text,
-                 words.c_str());
-    list.AddRectFilled({at.x, at.y - thick}, {at.x + wide, at.y + thick}, colour::field, thick);
+                 {centre.x - text_width(theme.regular, words) / 2, at.y - pen.px(30)},
+                 palette().text, words.c_str());
+    list.AddRectFilled({at.x, at.y - thick}, {at.x + wide, at.y + thick}, palette().field, thick);
     const float done = static_cast<float>(std::clamp(input.progress_fraction, 0.0, 1.0));
-    list.AddRectFilled({at.x, at.y - thick}, {at.x + wide * done, at.y + thick}, colour::accent,
+    list.AddRectFilled({at.x, at.y - thick}, {at.x + wide * done, at.y + thick}, palette().accent,
                        thick);
   }
   if (input.scene.parts.empty()) {
     const auto line = [&](ImFont* font, ImU32 tint, const char* words, float y) {
       list.AddText(font, font->FontSize, {centre.x - text_width(font, words) / 2, y}, tint, words);
     };
-    line(theme.large, colour::text, "Condyle", centre.y - pen.px(110));
-    line(theme.small, colour::text_dim, purpose, static_cast<float>(r.height) - pen.px(30));
+    line(theme.large, palette().text, "Condyle", centre.y - pen.px(110));
+    line(theme.small, palette().text_dim, purpose, static_cast<float>(r.height) - pen.px(30));
     return;
   }
 
@@ -146,7 +146,7 @@ void Panels::Drawing::cube() {
     if (over && pressed) commands.push_back(face.command);
     // Lighter when it faces us.
     const auto shade = static_cast<std::uint32_t>(52 + 46 * facing);
-    const ImU32 fill = over ? colour::accent_dark
+    const ImU32 fill = over ? colour::dark.accent_dark
                             : colour::rgb((shade << 16) | ((shade + 6) << 8) | (shade + 13), 235);
     list.AddQuadFilled(quad[0], quad[1], quad[2], quad[3], fill);
     list.AddQuad(quad[0], quad[1], quad[2], quad[3], colour::rgb(0x8a96a3),
@@ -158,7 +158,7 @@ void Panels::Drawing::cube() {
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6f, 0, face.letter);
     const ImVec2 flat = {centre.x - size.x / 2, centre.y - size.y / 2};
     const int first = list.VtxBuffer.Size;
-    list.AddText(font, font->FontSize, flat, over ? colour::rgb(0xffffff) : colour::text,
+    list.AddText(font, font->FontSize, flat, over ? colour::dark.bright : colour::dark.text,
                  face.letter);
     const float unit = 1.2f / font->FontSize;  // letter height against the face's side of 2
     for (int i = first; i < list.VtxBuffer.Size; ++i) {

@@ -39,10 +39,14 @@ std::string display_name(const std::string& part_name) {
   return name;
 }
 
-Panels::Panels(float scale) : theme_(apply_theme(scale)) {}
+Panels::Panels(float scale, bool light) : theme_(apply_theme(scale, light)) {}
 
 void Panels::set_scale(float scale) {
-  if (scale != theme_.scale) theme_ = apply_theme(scale);
+  if (scale != theme_.scale) theme_ = apply_theme(scale, theme_.light);
+}
+
+void Panels::set_light(bool light) {
+  if (light != theme_.light) theme_ = apply_theme(theme_.scale, light);
 }
 
 void Panels::report_error(const std::string& sentence) {
@@ -181,11 +185,11 @@ void Panels::Drawing::top_bar() {
   const std::string name = fitted(theme.bold, input.scene.case_name, room * 0.6f);
   ImGui::SetCursorPos(
       {pen.px(14), (static_cast<float>(layout.top.height) - theme.bold->FontSize) / 2});
-  text(theme.bold, colour::text, name);
+  text(theme.bold, palette().text, name);
   if (!input.scene.motion_name.empty()) {
     const float used = text_width(theme.bold, name) + pen.px(14);
     ImGui::SameLine(0, pen.px(14));
-    text(theme.regular, colour::text_dim,
+    text(theme.regular, palette().text_dim,
          fitted(theme.regular, input.scene.motion_name, room - used));
   }
 
@@ -208,15 +212,15 @@ void Panels::Drawing::top_bar() {
     tooltip(pen, button.tip);
     ImGui::SameLine(0, gap);
   }
-  if (sign_button(pen, "view:home", Sign::reset, {side, side}, colour::field))
+  if (sign_button(pen, "view:home", Sign::reset, {side, side}, palette().field))
     commands.push_back(Command::reset_view);
   tooltip(pen, "The first view again. Key 0 or Home");
   ImGui::SameLine(0, wide_gap);
-  if (sign_button(pen, "picture", Sign::camera, {side, side}, colour::field))
+  if (sign_button(pen, "picture", Sign::camera, {side, side}, palette().field))
     commands.push_back(Command::picture);
   tooltip(pen, "Save the picture as PNG. F12; with Shift the whole window");
   ImGui::SameLine(0, wide_gap);
-  if (sign_button(pen, "help-button", Sign::help, {side, side}, colour::field))
+  if (sign_button(pen, "help-button", Sign::help, {side, side}, palette().field))
     panels.help_open_ = true;
   tooltip(pen, "Keys and mouse. F1");
   end_panel();

@@ -40,7 +40,7 @@ struct DrawnItem {
 class Panels {
  public:
   /// Loads the theme into the current ImGui context.
-  explicit Panels(float scale);
+  explicit Panels(float scale, bool light = false);
 
   /// Draws all panels over a display of this size; changes `view` by what the person does.
   /// gives: commands that the window must carry out (views, pictures, quit).
@@ -60,6 +60,7 @@ class Panels {
 
   /// Loads fonts and sizes for another scale; the renderer's font texture must be made anew.
   void set_scale(float scale);
+  void set_light(bool light);
   const Theme& theme() const { return theme_; }
 
   bool dialog_open() const { return help_open_ || !errors_.empty(); }

@@ -25,6 +25,7 @@ enum class Command {
   toggle_skin,
   toggle_distances,
   toggle_panels,
+  toggle_theme,
   toggle_move,
   toggle_measure,
   undo,

@@ -74,8 +74,10 @@ float fitting_scale(double wanted, int width, int height) {
   return static_cast<float>(std::clamp(scale, 0.5, 6.0));
 }
 
-Theme apply_theme(float scale) {
+Theme apply_theme(float scale, bool light) {
+  colour::in_use = light ? &colour::light : &colour::dark;
   Theme theme;
+  theme.light = light;
   theme.scale = scale;
   load_fonts(theme);
 
@@ -100,24 +102,24 @@ Theme apply_theme(float scale) {
     style.Colors[which] = ImGui::ColorConvertU32ToFloat4(value);
   };
   ImGui::StyleColorsDark(&style);
-  set(ImGuiCol_Text, colour::text);
-  set(ImGuiCol_TextDisabled, colour::text_dim);
-  set(ImGuiCol_WindowBg, colour::panel);
+  set(ImGuiCol_Text, palette().text);
+  set(ImGuiCol_TextDisabled, palette().text_dim);
+  set(ImGuiCol_WindowBg, palette().panel);
   set(ImGuiCol_ChildBg, colour::rgb(0, 0));
-  set(ImGuiCol_PopupBg, colour::rgb(0x20262d));
-  set(ImGuiCol_Border, colour::panel_edge);
-  set(ImGuiCol_FrameBg, colour::field);
-  set(ImGuiCol_FrameBgHovered, colour::field_hovered);
-  set(ImGuiCol_FrameBgActive, colour::field_hovered);
-  set(ImGuiCol_Button, colour::field);
-  set(ImGuiCol_ButtonHovered, colour::field_hovered);
-  set(ImGuiCol_ButtonActive, colour::accent_dark);
-  set(ImGuiCol_CheckMark, colour::accent);
-  set(ImGuiCol_SliderGrab, colour::accent);
-  set(ImGuiCol_SliderGrabActive, colour::accent);
-  set(ImGuiCol_Separator, colour::panel_edge);
+  set(ImGuiCol_PopupBg, palette().popup);
+  set(ImGuiCol_Border, palette().panel_edge);
+  set(ImGuiCol_FrameBg, palette().field);
+  set(ImGuiCol_FrameBgHovered, palette().field_hovered);
+  set(ImGuiCol_FrameBgActive, palette().field_hovered);
+  set(ImGuiCol_Button, palette().field);
+  set(ImGuiCol_ButtonHovered, palette().field_hovered);
+  set(ImGuiCol_ButtonActive, palette().accent_dark);
+  set(ImGuiCol_CheckMark, palette().accent);
+  set(ImGuiCol_SliderGrab, palette().accent);
+  set(ImGuiCol_SliderGrabActive, palette().accent);
+  set(ImGuiCol_Separator, palette().panel_edge);
   set(ImGuiCol_ScrollbarBg, colour::rgb(0, 0));
-  set(ImGuiCol_ScrollbarGrab, colour::rgb(0x3a424d));
+  set(ImGuiCol_ScrollbarGrab, palette().track);
   set(ImGuiCol_ModalWindowDimBg, colour::rgb(0x05070a, 150));
   ImGui::GetStyle() = style;
   return theme;

@@ -9,6 +9,7 @@ namespace condyle {
 
 /// Fonts and the size of everything in the current ImGui context.
 struct Theme {
+  bool light = false;
   float scale = 1;  // 1 is a screen of about 96 dots per inch
   ImFont* regular = nullptr;
   ImFont* small = nullptr;
@@ -17,18 +18,64 @@ struct Theme {
   std::string font_file;    // empty when only ImGui's own font was found
 };
 
-/// Colours of the dark theme, as ImU32 (0xAABBGGRR). Signals are from the Okabe-Ito palette, which
-/// colour-blind people can tell apart; each is always said in words too.
+/// Colours of the theme in use, as ImU32 (0xAABBGGRR). Signals are from the Okabe-Ito palette,
+/// which colour-blind people can tell apart; each is always said in words too.
 namespace colour {
 constexpr std::uint32_t rgb(std::uint32_t hex, std::uint32_t alpha = 255) {
   return (alpha << 24) | ((hex & 0xff) << 16) | (hex & 0xff00) | (hex >> 16);
 }
-constexpr std::uint32_t window = rgb(0x0f1215), panel = rgb(0x191d22), panel_edge = rgb(0x2b313a);
-constexpr std::uint32_t field = rgb(0x262c34), field_hovered = rgb(0x313944);
-constexpr std::uint32_t text = rgb(0xe4e8ec), text_dim = rgb(0x97a3b0), text_faint = rgb(0x6b7783);
-constexpr std::uint32_t accent = rgb(0x56b4e9), accent_dark = rgb(0x2b6b93);
-constexpr std::uint32_t good = rgb(0x2fbf93), warning = rgb(0xe69f00), bad = rgb(0xe8713a);
+struct Palette {
+  std::uint32_t window, panel, panel_edge, popup, floating;
+  std::uint32_t field, field_hovered, well, track, outline;
+  std::uint32_t text, text_dim, text_faint, bright;  // bright: what the mouse is on
+  std::uint32_t accent, accent_dark, good, warning, bad;
+};
+inline constexpr Palette dark = {
+    .window = rgb(0x0f1215),
+    .panel = rgb(0x191d22),
+    .panel_edge = rgb(0x2b313a),
+    .popup = rgb(0x20262d),
+    .floating = rgb(0x191d22, 230),
+    .field = rgb(0x262c34),
+    .field_hovered = rgb(0x313944),
+    .well = rgb(0x14181c),
+    .track = rgb(0x3a424d),
+    .outline = rgb(0x4a545f),
+    .text = rgb(0xe4e8ec),
+    .text_dim = rgb(0x97a3b0),
+    .text_faint = rgb(0x6b7783),
+    .bright = rgb(0xffffff),
+    .accent = rgb(0x56b4e9),
+    .accent_dark = rgb(0x2b6b93),
+    .good = rgb(0x2fbf93),
+    .warning = rgb(0xe69f00),
+    .bad = rgb(0xe8713a),
+};
+inline constexpr Palette light = {
+    .window = rgb(0xccd3da),
+    .panel = rgb(0xf3f5f7),
+    .panel_edge = rgb(0xd0d7de),
+    .popup = rgb(0xffffff),
+    .floating = rgb(0xf3f5f7, 236),
+    .field = rgb(0xe0e6eb),
+    .field_hovered = rgb(0xd0d9e1),
+    .well = rgb(0xe6ebef),
+    .track = rgb(0xc3ccd5),
+    .outline = rgb(0x9aa6b2),
+    .text = rgb(0x1b232b),
+    .text_dim = rgb(0x52606d),
+    .text_faint = rgb(0x7c8995),
+    .bright = rgb(0x003f63),
+    .accent = rgb(0x0072b2),
+    .accent_dark = rgb(0x9fcdea),
+    .good = rgb(0x007a5a),
+    .warning = rgb(0x946200),
+    .bad = rgb(0xb8400a),
+};
+/// Chosen by apply_theme; one window is open at a time.
+inline const Palette* in_use = &dark;
 }  // namespace colour
+inline const colour::Palette& palette() { return *colour::in_use; }
 
 /// The scale to use in a window of this size, pixels: the wanted one, or less where the panels
 /// would not fit; in steps of 0.05, so that resizing does not load fonts at every pixel.
@@ -37,6 +84,6 @@ float fitting_scale(double wanted, int width, int height);
 /// Loads the fonts at this scale and sets colours and spacing of the current ImGui context. The
 /// renderer's font texture must be made anew afterwards. Looks for Inter, Noto Sans and DejaVu Sans
 /// (package fonts-dejavu-core) where Debian puts them; ImGui's own font is the last resort.
-Theme apply_theme(float scale);
+Theme apply_theme(float scale, bool light = false);
 
 }  // namespace condyle

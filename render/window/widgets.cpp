@@ -9,7 +9,7 @@ namespace {
 ImVec2 operator+(ImVec2 a, ImVec2 b) { return {a.x + b.x, a.y + b.y}; }
 
 ImU32 ink(bool hovered, bool active) {
-  return active ? colour::accent : hovered ? colour::rgb(0xffffff) : colour::text;
+  return active ? palette().accent : hovered ? palette().bright : palette().text;
 }
 
 // A sign inside the square of side 2r about c.
@@ -120,15 +120,15 @@ void heading(Pen& pen, const char* words, const std::string& right) {
     ImGui::SetCursorPosY(top + pen.px(7));
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::GetWindowDrawList()->AddLine(at, {at.x + ImGui::GetContentRegionAvail().x, at.y},
-                                        colour::panel_edge, std::max(1.0f, pen.px(1)));
+                                        palette().panel_edge, std::max(1.0f, pen.px(1)));
     ImGui::SetCursorPosY(top + pen.px(17));
   }
-  text(pen.theme.bold, colour::text, words);
+  text(pen.theme.bold, palette().text, words);
   if (!right.empty()) {
     ImGui::SameLine();
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() +
                          (pen.theme.bold->FontSize - pen.theme.small->FontSize) * 0.7f);
-    text_right(pen.theme.small, colour::text_dim, right);
+    text_right(pen.theme.small, palette().text_dim, right);
   }
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(2));
 }
@@ -138,7 +138,7 @@ void tooltip(Pen& pen, const char* words) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, pen.px(10, 7));
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(pen.px(300));
-  text(pen.theme.small, colour::text, words);
+  text(pen.theme.small, palette().text, words);
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
   ImGui::PopStyleVar();
@@ -151,9 +151,10 @@ bool sign_button(Pen& pen, const char* name, Sign sign, ImVec2 size, ImU32 backg
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   const ImVec2 centre = {(low.x + high.x) / 2, (low.y + high.y) / 2};
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImU32 fill = hovered && background == colour::field ? colour::field_hovered : background;
+  const ImU32 fill =
+      hovered && background == palette().field ? palette().field_hovered : background;
   list.AddRectFilled(low, high, fill, pen.px(5));
-  if (hovered && background != colour::field)
+  if (hovered && background != palette().field)
     list.AddRectFilled(low, high, colour::rgb(0xffffff, 26), pen.px(5));
   const float r = std::min(size.x, size.y) * 0.24f;
   if (sign == Sign::help) {
@@ -172,9 +173,9 @@ bool word_button(Pen& pen, const char* name, const char* label, ImVec2 size, boo
   const bool hovered = ImGui::IsItemHovered(), active = ImGui::IsItemActive();
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImU32 fill = on || active ? colour::accent_dark
-                     : hovered    ? colour::field_hovered
-                                  : colour::field;
+  const ImU32 fill = on || active ? palette().accent_dark
+                     : hovered    ? palette().field_hovered
+                                  : palette().field;
   list.AddRectFilled(low, high, fill, pen.px(5));
   ImFont* font = pen.theme.regular;
   const ImVec2 extent = font->CalcTextSizeA(font->FontSize, 1e6f, 0, label);
@@ -182,7 +183,7 @@ bool word_button(Pen& pen, const char* name, const char* label, ImVec2 size, boo
   list.AddText(
       font, font->FontSize,
       {std::round((low.x + high.x - extent.x) / 2), std::round((low.y + high.y - extent.y) / 2)},
-      usable ? colour::text : colour::text_faint, label);
+      usable ? palette().text : palette().text_faint, label);
   return pressed;
 }
 
@@ -210,11 +211,10 @@ bool slider(Pen& pen, const char* name, double& value, const SliderLook& look) {
   const float y = low.y + height / 2, x = low.x + knob + span * fraction_of(value);
   const float thick = pen.px(2);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImU32 tint = look.held ? colour::warning : colour::accent;
-  list.AddRectFilled({low.x, y - thick}, {low.x + look.width, y + thick}, colour::rgb(0x3a424d),
-                     thick);
+  const ImU32 tint = look.held ? palette().warning : palette().accent;
+  list.AddRectFilled({low.x, y - thick}, {low.x + look.width, y + thick}, palette().track, thick);
   if (look.filled) list.AddRectFilled({low.x, y - thick}, {x, y + thick}, tint, thick);
-  list.AddCircleFilled({x, y}, lit ? knob : knob * 0.85f, lit ? colour::rgb(0xffffff) : tint, 24);
+  list.AddCircleFilled({x, y}, lit ? knob : knob * 0.85f, lit ? palette().bright : tint, 24);
   return changed;
 }
 
@@ -230,21 +230,21 @@ bool tick_box(Pen& pen, const char* name, const char* label, bool& on) {
   const bool hovered = ImGui::IsItemHovered();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled({low.x, y}, {low.x + side, y + side},
-                     on        ? colour::accent
-                     : hovered ? colour::field_hovered
-                               : colour::field,
+                     on        ? palette().accent
+                     : hovered ? palette().field_hovered
+                               : palette().field,
                      pen.px(3));
   if (on) {
     const ImVec2 mark[3] = {{low.x + side * 0.22f, y + side * 0.52f},
                             {low.x + side * 0.43f, y + side * 0.74f},
                             {low.x + side * 0.80f, y + side * 0.28f}};
-    list.AddPolyline(mark, 3, colour::panel, 0, pen.px(2));
+    list.AddPolyline(mark, 3, palette().panel, 0, pen.px(2));
   } else {
-    list.AddRect({low.x, y}, {low.x + side, y + side}, colour::rgb(0x4a545f), pen.px(3));
+    list.AddRect({low.x, y}, {low.x + side, y + side}, palette().outline, pen.px(3));
   }
   list.AddText(font, font->FontSize,
                {low.x + side + gap, std::round(low.y + (height - font->FontSize) / 2)},
-               on ? colour::text : colour::text_dim, label);
+               on ? palette().text : palette().text_dim, label);
   return pressed;
 }
 

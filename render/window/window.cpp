@@ -37,7 +37,7 @@ Window::State::State(const WindowOptions& wanted) : options(wanted) {
   imgui = ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // leave no files behind
   ImGui::GetIO().LogFilename = nullptr;
-  panels.emplace(1.0f);
+  panels.emplace(1.0f, options.light);
   view_picture.emplace();
   ImGui_ImplGlfw_InitForOpenGL(window, true);  // calls our callbacks before its own
   ImGui_ImplOpenGL3_Init("#version 330 core");

@@ -18,6 +18,7 @@ struct WindowOptions {
   std::string title = "Condyle";
   int width = 1280, height = 720;              // screen coordinates, before the screen's own scale
   double ui_scale = 1;                         // of panels and text, times the screen's own scale
+  bool light = false;                          // theme of the panels
   std::filesystem::path picture_folder = ".";  // where F12 saves
 };
 

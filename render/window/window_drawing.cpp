@@ -61,9 +61,11 @@ void Window::State::fit_scale() {
   glfwGetWindowContentScale(window, &x, &y);
   const auto [w, h] = size();
   const float scale = fitting_scale(std::max(x, y) * options.ui_scale, w, h);
-  if (scale == panels->theme().scale) return;
+  if (scale == panels->theme().scale && options.light == panels->theme().light) return;
   panels->set_scale(scale);
-  ImGui_ImplOpenGL3_DestroyDeviceObjects();  // made anew, with the new fonts, by the next frame
+  panels->set_light(options.light);
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
 void Window::State::interface_frame() {
@@ -192,7 +194,7 @@ void Window::State::draw(bool always, Image* copy) {
   glfwGetFramebufferSize(window, &w, &h);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, w, h);
-  const ImVec4 back = ImGui::ColorConvertU32ToFloat4(colour::window);
+  const ImVec4 back = ImGui::ColorConvertU32ToFloat4(palette().window);
   glClearColor(back.x, back.y, back.z, 1);
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

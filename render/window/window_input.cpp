@@ -104,6 +104,9 @@ void Window::State::run(Command command) {
     case Command::quit:
       glfwSetWindowShouldClose(window, GLFW_TRUE);
       break;
+    case Command::toggle_theme:
+      options.light = !options.light;
+      break;
     case Command::window_picture:
       save_window = true;
       break;

@@ -118,6 +118,12 @@ void PanelStage::step(double x, double y, bool down) {
   ImGui::Render();
 }
 
+void PanelStage::set_light(bool light) {
+  panels->set_light(light);
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
 Image PanelStage::image() {
   picture_.bind();
   glClearColor(0.06f, 0.07f, 0.08f, 1);

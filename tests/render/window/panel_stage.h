@@ -33,6 +33,7 @@ class PanelStage {
   /// One picture of the panels with the mouse there.
   void step(double x, double y, bool down);
   void rest(int pictures = 3);
+  void set_light(bool light);
   /// Presses and releases the middle of an item; or slides from one part of its width to another.
   void click(const std::string& item);
   void slide(const std::string& item, double from, double to);

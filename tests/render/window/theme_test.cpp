@@ -1,0 +1,57 @@
+#include "render/window/theme.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "panel_stage.h"
+
+namespace condyle {
+namespace {
+
+/// Relative luminance of an ImU32 (WCAG 2.1).
+double luminance(std::uint32_t c) {
+  const auto linear = [&](int shift) {
+    const double v = ((c >> shift) & 255) / 255.0;
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(0) + 0.7152 * linear(8) + 0.0722 * linear(16);
+}
+
+double contrast(std::uint32_t a, std::uint32_t b) {
+  const double la = luminance(a), lb = luminance(b);
+  return (std::max(la, lb) + 0.05) / (std::min(la, lb) + 0.05);
+}
+
+TEST(Theme, WordsCanBeReadInBothThemes) {
+  for (const auto* p : {&colour::dark, &colour::light}) {
+    for (const auto ground : {p->panel, p->popup, p->field})
+      EXPECT_GE(contrast(p->text, ground), 7);
+    EXPECT_GE(contrast(p->text, p->accent_dark), 4.5);
+    for (const auto ink : {p->text_dim, p->good, p->warning, p->bad, p->accent})
+      EXPECT_GE(contrast(ink, p->panel), 4.5);
+  }
+}
+
+TEST(Theme, PanelsTurnLightAndDark) {
+  PanelStage stage(1280, 720, 1);
+  stage.rest();
+  const auto brightness = [&] {
+    const Image image = stage.image();
+    double sum = 0;  // of the left panel
+    for (int y = 100; y < 600; ++y)
+      for (int x = 4; x < 240; ++x)
+        sum += image.rgba[4 * (static_cast<std::size_t>(y) * image.width + x)];
+    return sum / (500 * 236);
+  };
+  EXPECT_LT(brightness(), 80);
+  stage.set_light(true);
+  stage.rest();
+  EXPECT_GT(brightness(), 190);
+  stage.set_light(false);
+  stage.rest();
+  EXPECT_LT(brightness(), 80);
+}
+
+}  // namespace
+}  // namespace condyle
