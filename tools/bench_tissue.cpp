@@ -55,6 +55,7 @@ struct WarmPlan {
   int frames = 60, samples_every = 5;
   int budget = 40;             // iterations of a frame
   double reference_mm = 1e-7;  // tolerance of the answers that errors are measured against
+  double lead_mm = 1e-3;       // of the frames before the first
   RefreshSchedule from_rest = {}, near = {.first = 12, .far = 0};
 };
 WarmPlan plan_for(int nodes) {
@@ -63,8 +64,9 @@ WarmPlan plan_for(int nodes) {
   return {.from_deg = 5,
           .frames = huge ? 4 : 20,
           .samples_every = huge ? 4 : 5,
-          .budget = 12,
+          .budget = 40,
           .reference_mm = huge ? 1e-3 : 1e-4,
+          .lead_mm = huge ? 1e-2 : 1e-3,
           .from_rest = sparing_refreshes,
           .near = {.first = 20, .far = 0, .later = 20, .most = 20}};
 }
@@ -99,13 +101,13 @@ Json warm_frames(const SyntheticSet& set, int threads) {
   Nodes x = set.rest;
   std::shared_ptr<const HessianFactor> first =
       std::make_shared<const HessianFactor>(set.net, rest_loads, set.sheets, set.rest, threads);
-  settle(-lead, *first, x, 1e-3, plan.from_rest);
+  settle(-lead, *first, x, plan.lead_mm, plan.from_rest);
   Nodes own, own_before;  // what the last frames added to the bones' motion
   for (int frame = 1 - lead; frame < 0; ++frame) {
     first = std::make_shared<const HessianFactor>(
         first->anew(set.net, synthetic_loads(set, pose_at(frame - 1)), x, threads));
     const Nodes taken = carried(set, x, pose_at(frame - 1), pose_at(frame));
-    settle(frame, *first, x, 1e-3, plan.near);
+    settle(frame, *first, x, plan.lead_mm, plan.near);
     own.swap(own_before);
     own = difference(x, taken);
   }
@@ -131,7 +133,10 @@ Json warm_frames(const SyntheticSet& set, int threads) {
     waited.push_back(watch.wall_ms());
     const Nodes taken = carried(set, x, pose_at(frame - 1), pose_at(frame));
     Nodes next = taken;
-    for (std::size_t i = 0; i < next.size(); ++i) next[i] += 2 * own[i] - own_before[i];
+    // Where the tissue has just snapped over, its last motion foretells nothing.
+    constexpr double steady_mm = 0.3;
+    if (largest_distance(own, own_before) < steady_mm)
+      for (std::size_t i = 0; i < next.size(); ++i) next[i] += 2 * own[i] - own_before[i];
     MinimizeResult result = minimize(Method::preconditioned, energy, settings, next, &factor.now());
     if (result.status == MinimizeResult::Status::bad_start) {
       next = x;
@@ -142,7 +147,7 @@ Json warm_frames(const SyntheticSet& set, int threads) {
     iterations += result.iterations;
     spent += !result.converged();
     residual = std::max(residual, result.residual);
-    constexpr int worth_making = 5;
+    constexpr int worth_making = 2;
     if (result.iterations > worth_making) factor.begin(set.net, loads, next, threads, nullptr);
     own.swap(own_before);
     own = difference(next, taken);

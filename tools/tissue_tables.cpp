@@ -67,8 +67,8 @@ Json static_prediction(int nodes, int threads) {
     throw MachineError("bench: the prediction at " + std::to_string(nodes) +
                        " nodes did not converge");
   Nodes reference = x;
-  settings.tolerance_mm *= 1e-2;
-  HessianFactor near = factor.anew(set.net, loads, x, threads);
+  settings.tolerance_mm *= 0.1;
+  const HessianFactor near = factor.anew(set.net, loads, x, threads);
   const MinimizeResult tight = minimize_refreshing(set.net, loads, energy, near, settings,
                                                    reference, {.first = 12, .far = 0});
   return {{"name", "tissue.static"},

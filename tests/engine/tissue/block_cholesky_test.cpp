@@ -182,5 +182,32 @@ TEST(FloatKernels, GiveTheBitsOfPlainLoops) {
     }
 }
 
+TEST(FloatKernels, LargeProductsAreThoseOfPlainLoops) {
+  for (const bool lower : {false, true}) {
+    const int columns = 131, rows = lower ? columns : 250, depth = 250;
+    const auto size = [](int r, int c) { return static_cast<std::size_t>(r) * c + 16; };
+    const std::vector<float> A = right_hand_side(size(std::max(rows, columns), depth));
+    std::vector<float> C = right_hand_side(size(rows, columns));
+    const std::vector<float> before = C;
+    const int ld = rows;
+    float_kernels().subtract_product(
+        {C.data(), A.data(), A.data(), rows, columns, depth, rows, ld, ld, lower});
+    double error = 0, most = 0;
+    for (int j = 0; j < columns; ++j)
+      for (int i = lower ? j : 0; i < rows; ++i) {
+        double sum = 0;
+        for (int k = 0; k < depth; ++k)
+          sum += static_cast<double>(A[k * ld + i]) * static_cast<double>(A[k * ld + j]);
+        const double wanted = static_cast<double>(before[j * rows + i]) - sum;
+        error = std::max(error, std::abs(static_cast<double>(C[j * rows + i]) - wanted));
+        most = std::max(most, std::abs(wanted));
+      }
+    EXPECT_LT(error, 1e-5 * most);
+    EXPECT_GT(most, 10);
+    for (std::size_t i = static_cast<std::size_t>(rows) * columns; i < C.size(); ++i)
+      EXPECT_EQ(C[i], before[i]);  // nothing is written beyond
+  }
+}
+
 }  // namespace
 }  // namespace condyle
