@@ -71,10 +71,10 @@ WarmPlan plan_for(int nodes) {
           .near = {.first = 20, .far = 0, .later = 20, .most = 20}};
 }
 
-/// Frames of half a degree, at the pace of the frame loop while
-/// they keep to it; factors are made beside it. Each frame starts from the last one, taken on by
-/// the bones' motion and what the tissue's last two own motions foretell. A frame's time has in it
-/// what it waited for a factor. A frame that has spent its budget goes on from where it is.
+/// Frames of half a degree, at the pace of the frame loop while they keep to it; factors are made
+/// beside it. Each frame starts from the last one, taken on by the bones' motion and what the
+/// tissue's last two own motions foretell. A frame's time has in it what it waited for a factor. A
+/// frame that has spent its budget is left as it is.
 Json warm_frames(const SyntheticSet& set, int threads) {
   constexpr std::chrono::microseconds pace(8333);
   const WarmPlan plan = plan_for(set.net.node_count);
@@ -235,6 +235,8 @@ int run_bench_tissue(const BenchOptions& options, const CommonOptions& common) {
     settings.max_step_mm = bench_step_mm;
     return minimize_refreshing(set.net, target.loads, energy, from, settings, x, schedule).energy;
   };
+  // "condyle" begins from what the setup has stored, as the simulator does; "with setup" makes a
+  // factor at rest and begins there, "from rest" has that factor.
   constexpr RefreshSchedule from_stored{.first = 4, .far = 0};
   for (int threads : {1, 2}) {
     const HessianFactor factor(set.net, target.rest_loads, set.sheets, set.rest, threads);
