@@ -1,6 +1,7 @@
 #include "sim/report/motion_plots.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -180,10 +181,73 @@ MotionPlot rotation(const MotionSeries& series) {
   return {"rotation", {std::move(turn), std::move(travel), std::move(speed)}};
 }
 
+/// Muscles by side: "lat" is the left one of "lat" and "rat"; what has no twin comes last.
+std::array<std::vector<std::size_t>, 3> muscles_by_side(const std::vector<std::string>& names) {
+  std::array<std::vector<std::size_t>, 3> sides;
+  const auto has_twin = [&](const std::string& name, char other) {
+    return std::find(names.begin(), names.end(), other + name.substr(1)) != names.end();
+  };
+  for (std::size_t m = 0; m < names.size(); ++m) {
+    const char first = names[m].empty() ? ' ' : names[m][0];
+    if (first == 'l' && has_twin(names[m], 'r'))
+      sides[0].push_back(m);
+    else if (first == 'r' && has_twin(names[m], 'l'))
+      sides[1].push_back(m);
+    else
+      sides[2].push_back(m);
+  }
+  return sides;
+}
+
+/// A value of the muscles over time, a panel for each side with those that do the most.
+MotionPlot muscles(const MotionSeries& series, const char* file, const std::string& what,
+                   const char* y_label, double MuscleState::*value) {
+  constexpr std::size_t most_curves = 8;
+  constexpr double least_share = 0.02;  // of the largest of all
+  const auto peak = [&](std::size_t m) {
+    double most = 0;
+    for (const auto& states : series.muscles) most = std::max(most, states[m].*value);
+    return most;
+  };
+  std::vector<double> peaks;
+  for (std::size_t m = 0; m < series.muscle_names.size(); ++m) peaks.push_back(peak(m));
+  const double least = least_share * *std::max_element(peaks.begin(), peaks.end());
+  MotionPlot plot{file, {}};
+  const std::array<const char*, 3> titles = {", left", ", right", ", of no side"};
+  auto sides = muscles_by_side(series.muscle_names);
+  for (std::size_t side = 0; side < sides.size(); ++side) {
+    auto& shown = sides[side];
+    if (side == 2 && shown.empty()) continue;
+    std::stable_sort(shown.begin(), shown.end(),
+                     [&](std::size_t a, std::size_t b) { return peaks[a] > peaks[b]; });
+    if (shown.size() > most_curves) shown.resize(most_curves);
+    PlotPanel panel{{},
+                    {.title = what + titles[side],
+                     .x_label = "time, s",
+                     .y_label = y_label,
+                     .legend_beside = true}};
+    for (const std::size_t m : shown)
+      if (peaks[m] >= least && peaks[m] > 0)
+        panel.curves.push_back(
+            over_time(series.muscle_names[m].c_str(), series,
+                      [&](std::size_t i) { return series.muscles[i][m].*value; }));
+    if (panel.curves.empty()) panel.curves.push_back({"none", {0, 1}, {0, 0}});
+    plot.panels.push_back(std::move(panel));
+  }
+  return plot;
+}
+
 }  // namespace
 
 std::vector<MotionPlot> motion_plots(const MotionSeries& series) {
-  return {posselt(series), axiography(series), opening(series), rotation(series)};
+  std::vector<MotionPlot> plots = {posselt(series), axiography(series), opening(series),
+                                   rotation(series)};
+  if (!series.muscles.empty()) {
+    plots.push_back(muscles(series, "muscle_activity", "Muscle activity", "activation, 0 to 1",
+                            &MuscleState::activation));
+    plots.push_back(muscles(series, "muscle_force", "Muscle force", "N", &MuscleState::force_N));
+  }
+  return plots;
 }
 
 }  // namespace condyle

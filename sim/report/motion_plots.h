@@ -16,7 +16,8 @@ struct MotionPlot {
 
 /// What clinicians look at, with the published bands behind: Posselt's diagram of the incisal
 /// point, axiography of both condyles (sagittal, horizontal, frontal each), opening and excursions
-/// over time, rotation and speed over time.
+/// over time, rotation and speed over time; of a motion that muscles drive, the activations and
+/// forces of the strongest of each side over time.
 std::vector<MotionPlot> motion_plots(const MotionSeries& series);
 
 }  // namespace condyle

@@ -7,7 +7,10 @@
 namespace condyle {
 
 MotionSeries::MotionSeries(const Scene& scene, const Motion& motion)
-    : rest(measure(scene.patient, {})), phases(motion.phases), borders(motion.borders) {
+    : muscle_names(motion.muscle_names),
+      rest(measure(scene.patient, {})),
+      phases(motion.phases),
+      borders(motion.borders) {
   known_landmarks = true;
   for (const char* name : {"lower_incisal_point", "left_condyle", "right_condyle"})
     known_landmarks &= scene.patient.landmarks.find(name).has_value();
@@ -21,6 +24,8 @@ void MotionSeries::add(const FrameState& frame) {
   time_s.push_back(frame.time_s);
   measures.push_back(frame.measures);
   X_CM.push_back(frame.X_CM);
+  if (frame.muscles.size() == muscle_names.size() && !muscle_names.empty())
+    muscles.push_back(frame.muscles);
   tooth_gap_mm.push_back(gap);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "sim/frame/frame_state.h"
@@ -13,6 +14,8 @@ struct MotionSeries {
   std::vector<Measures> measures;
   std::vector<Pose> X_CM;
   std::vector<double> tooth_gap_mm;  // between pairs that may touch; 0 when they do; else 1e300
+  std::vector<std::string> muscle_names;  // of a motion that muscles drive
+  std::vector<MuscleStates> muscles;      // of each frame then
   Measures rest;
   std::vector<MotionPhase> phases;
   MotionBorders borders;         // of the incisal point, where the motion has them

@@ -311,7 +311,7 @@ class Judge {
   }
 
   void disc_gaps() {
-    if (motion_.recorded) return;
+    if (motion_.recorded && !motion_.muscles) return;  // a recording tells its own
     const auto joint = JointSurfaces::find(scene_.patient);
     if (!joint) return;
     constexpr std::size_t most = 120;

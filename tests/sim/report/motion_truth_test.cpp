@@ -32,6 +32,7 @@ MotionSeries series_of(const Scene& scene, const Motion& motion, int frames = 20
     frame.time_s = motion.duration_s * i / (frames - 1);
     frame.X_CM = motion.wanted(frame.time_s);
     frame.measures = measure(scene.patient, frame.X_CM);
+    if (motion.muscles) frame.muscles = motion.muscles(frame.time_s);
     series.add(frame);
   }
   return series;
@@ -107,6 +108,7 @@ TEST(Report, PrintsFindingsWithTheirBands) {
     frame.time_s = i / 60.0;
     frame.X_CM = motion.wanted(frame.time_s);
     frame.measures = measure(scene.patient, frame.X_CM);
+    if (motion.muscles) frame.muscles = motion.muscles(frame.time_s);
     report.add(frame);
   }
   const auto json = nlohmann::json::parse(report.json());
@@ -151,6 +153,33 @@ TEST(MotionPlots, HaveAxesUnitsAndBandsAndKeepAllPointsInside) {
     EXPECT_EQ(opened, plot.panels.size() + 1);
     EXPECT_EQ(opened, closed);
   }
+}
+
+TEST(MotionPlots, ShowWhatTheMusclesOfEachSideDo) {
+  const Scene scene = make_scene(box_patient());
+  Motion motion = there_and_back(
+      [](double share) {
+        return Pose{Eigen::Quaterniond::Identity(), {0, 0, -20 * share}};
+      },
+      "opening");
+  motion.muscle_names = {"lat", "rat", "lad", "rad", "ta"};
+  motion.muscles = [](double time_s) {
+    MuscleStates states(5);
+    states[1].activation = 0.5 * std::min(time_s, 1.0);
+    states[1].force_N = 80;
+    states[3].activation = 0.001;  // too little to be drawn
+    return states;
+  };
+  const auto plots = motion_plots(series_of(scene, motion));
+  ASSERT_EQ(plots.size(), 6u);
+  const auto& activity = plots[4].panels;
+  ASSERT_EQ(activity.size(), 3u);  // left, right, and the one without a twin
+  EXPECT_EQ(activity[0].curves[0].name, "none");
+  ASSERT_EQ(activity[1].curves.size(), 1u);
+  EXPECT_EQ(activity[1].curves[0].name, "rat");
+  EXPECT_NEAR(*std::max_element(activity[1].curves[0].y.begin(), activity[1].curves[0].y.end()),
+              0.5, 0.01);
+  EXPECT_EQ(plots[5].panels[1].settings.y_label, "N");
 }
 
 }  // namespace condyle::test
