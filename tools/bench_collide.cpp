@@ -4,7 +4,9 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <thread>
 
 #include "engine/collide/collision_mesh.h"
@@ -15,6 +17,7 @@
 #include "engine/mesh/simplify.h"
 #include "engine/rigid/mesh_baseline.h"
 #include "engine/rigid/rigid_world.h"
+#include "sim/contact/contact.h"
 #include "sim/report/report.h"
 #include "tools/common.h"
 
@@ -296,6 +299,50 @@ void measure_dynamics(const Jaws& jaws, int threads, Results& results) {
   }
 }
 
+/// Blocked frames as the window's loop has them: the jaw is dragged into the bite, slides on all
+/// that its bones may meet, and the exact surfaces judge where it ends.
+void measure_blocked_jaw(const Case& patient, const Jaws& jaws, int threads, Results& results) {
+  constexpr int frames = 240;
+  constexpr double round = 2 * std::numbers::pi / frames;
+  const ContactModel model(patient);
+  model.prepare_sliding({}, threads);
+  const auto shifted = [](double x, double y, double z) {
+    return Pose{Eigen::Quaterniond::Identity(), {x, y, z}};
+  };
+  const auto circling = [&](int f) {
+    return shifted(2.5 * std::sin(round * f), 0.5 * std::sin(2 * round * f), 1.5);
+  };
+  const auto grinding_jaw = [&](int f) {
+    Pose X = shifted(0, 0, 0);
+    X.R = Eigen::AngleAxisd(0.03 * std::sin(2 * round * f), Vector3d(0.3, 0.2, 1).normalized());
+    const Vector3d middle = 0.5 * (jaws.condyles[0] + jaws.condyles[1]);
+    X.t =
+        Vector3d(3 * std::sin(round * f), 2 * std::sin(2 * round * f), 0.6) + middle - X.R * middle;
+    return X;
+  };
+  const auto pushed_up = [&](int f) { return shifted(0.5, 0, 6 * std::sin(round * f)); };
+  const std::pair<const char*, std::function<Pose(int)>> drags[] = {
+      {"circling in the bite", circling}, {"grinding", grinding_jaw}, {"pushed up", pushed_up}};
+  for (const int count : thread_counts(threads))
+    for (const auto& [name, wanted] : drags) {
+      std::vector<double> ms;
+      double deepest = 0;
+      BodyPoses at = model.placed({});
+      ContactSet last = model.at_rest();
+      for (int f = 0; f < frames; ++f) {
+        ContactModel::Slide slide;
+        const double took = timed([&] { slide = model.slide(at, {wanted(f)}, &last, count); });
+        at = slide.at;
+        last = std::move(slide.contacts);
+        deepest = std::max(deepest, last.max_penetration_mm());
+        if (slide.stopped) ms.push_back(took);
+      }
+      if (ms.empty()) continue;
+      results.add("collide.blocked_jaw", ms,
+                  {{"drag", name}, {"threads", count}, {"worst_depth_mm", deepest}});
+    }
+}
+
 void measure_field(const Jaws& jaws, int threads, Results& results) {
   const TriMesh bone = sized(jaws.lower, 50000, jaws.center);
   const FieldSettings settings = near_bite(jaws).field;
@@ -324,12 +371,15 @@ void measure_field(const Jaws& jaws, int threads, Results& results) {
 
 int run_bench_collide(const BenchOptions& options, const CommonOptions& common) {
   ProgressBar bar(common);
-  const Jaws jaws = find_jaws(open_patient(options.patient, common, bar));
+  const Case patient = open_patient(options.patient, common, bar);
+  const Jaws jaws = find_jaws(patient);
   Results results;
   bar.show("two bones of 50,000", 0.05);
   measure_pair(jaws, 50000, common.threads, true, results);
   bar.show("two bones of 300,000", 0.25);
   measure_pair(jaws, 300000, common.threads, false, results);
+  bar.show("the jaw in its bite", 0.5);
+  measure_blocked_jaw(patient, jaws, common.threads, results);
   bar.show("ten segments", 0.6);
   for (const int threads : thread_counts(common.threads)) measure_segments(threads, results);
   bar.show("distance field", 0.7);

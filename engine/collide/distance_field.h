@@ -58,6 +58,17 @@ class DistanceField {
   Spot spot(const Eigen::Vector3d& p) const;
   Eigen::Vector3d gradient(const Spot& spot) const;
 
+  /// Sixteen points about a middle, and how their coordinates lie in the field's: R_F takes one
+  /// into the other, in floats.
+  struct Sixteen {
+    alignas(64) std::array<float, 16> x, y, z;
+  };
+  /// What spot() tells of all of them, to 1e-4 mm, in a quarter of the time. `middle_F`: where
+  /// their middle is. Returns a bit for each point that is known; of the others nothing is told.
+  /// Same bits on every processor.
+  unsigned distances(const Sixteen& points, const Eigen::Matrix3f& R_F,
+                     const Eigen::Vector3d& middle_F, std::array<float, 16>& distance_mm) const;
+
   /// No smaller than this is the signed distance at p, near or far; infinite outside the region.
   double lower_bound(const Eigen::Vector3d& p) const;
 
@@ -87,6 +98,7 @@ class DistanceField {
   }
   void lay_out(const TriMesh& mesh);
   static void mark_unknown(Brick& brick, double spacing_mm);
+  void find_whole();
 
   friend class FieldBuilder;
 
@@ -98,6 +110,7 @@ class DistanceField {
   std::vector<float> bound_;  // of each place: lower bound of the distance at its centre; where
                               // below zero without a brick: wholly inside
   std::vector<Brick> bricks_;
+  std::vector<std::int32_t> whole_;  // as brick_, but -1 where a brick has unknown cells
 };
 
 /// In the header because sliding asks it some hundred thousand times a frame.

@@ -335,6 +335,7 @@ DistanceField::DistanceField(const TriMesh& mesh, const FieldSettings& settings,
     : settings_(settings) {
   lay_out(mesh);
   FieldBuilder(*this, mesh).run(threads);
+  find_whole();
 }
 
 }  // namespace condyle

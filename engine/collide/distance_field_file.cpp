@@ -100,6 +100,7 @@ std::optional<DistanceField> DistanceField::from_bytes(std::string_view bytes, s
   for (const std::int32_t index : field.brick_)
     if (index < -1 || index >= static_cast<std::int64_t>(head[1])) return std::nullopt;
   if (!bytes.empty()) return std::nullopt;
+  field.find_whole();
   return field;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <set>
 #include <vector>
 
 #include "engine/collide/solid.h"
@@ -14,6 +15,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding_mm = 1e-9;
 constexpr double touching_mm2 = 1e-20;
+constexpr std::size_t most_inside = 500;  // faces to look at one by one
 
 }  // namespace
 
@@ -32,8 +34,10 @@ class DepthSearch {
       sides_[0].put_crossing(crossing->b);
       sides_[1].put_crossing(crossing->a);
     }
+    const bool spreads = crossing_known_ && !has_hidden_piece();
     for (int i = 0; i < 2; ++i)
-      for (std::size_t k = 0; k < sides_[i].solid.shells_.size(); ++k) offer_ball({i, k}, 0, {});
+      for (std::size_t k = 0; k < sides_[i].solid.shells_.size(); ++k)
+        if (!spreads || !offer_inside({i, k})) offer_ball({i, k}, 0, {});
     while (!waiting_.empty() && waiting_.top().bound > enough() && looks_ < settings_.max_looks) {
       const Waiting next = waiting_.top();
       waiting_.pop();
@@ -64,6 +68,7 @@ class DepthSearch {
     void put_crossing(const std::vector<int>& triangles) {
       for (const int t : triangles) crossing.push_back(surface.slot_[t]);
       std::sort(crossing.begin(), crossing.end());
+      crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
     }
     bool crosses(int first, int count) const {
       const auto at = std::lower_bound(crossing.begin(), crossing.end(), first);
@@ -187,18 +192,77 @@ class DepthSearch {
       offer_ball(item.into, ball.right, item.middle);
       return;
     }
-    for (int i = ball.first; i < ball.first + ball.count; ++i) {
-      Triangle face = from.surface.faces_[i];
-      for (auto& corner : face) corner = from.X * corner;
-      if (bound(item.into, face, item.middle) <= enough()) continue;
-      const Place middle = look_at_middle(item.into, face, item.middle);
-      if (bound(item.into, face, middle) <= enough()) continue;
-      if (crossing_known_ && !from.crosses(i, 1) ? middle.depth < -rounding_mm
-                                                 : is_outside(item.into, face, middle))
-        continue;
-      for (const auto& corner : face) look_at_point(item.into, corner, middle);
-      wait(bound(item.into, face, middle), {item.into, -1, face, middle});
+    for (int i = ball.first; i < ball.first + ball.count; ++i)
+      offer_face(item.into, i, item.middle);
+  }
+
+  Triangle face_of(const Side& from, int face) const {
+    Triangle t = from.surface.faces_[face];
+    for (auto& corner : t) corner = from.X * corner;
+    return t;
+  }
+
+  /// Returns what was looked at last.
+  Place offer_face(Into into, int index, const Place& near) {
+    const Side& from = sides_[into.side];
+    const Triangle face = face_of(from, index);
+    if (near.triangle >= 0 && bound(into, face, near) <= enough()) return near;
+    const Place middle = look_at_middle(into, face, near);
+    if (bound(into, face, middle) <= enough()) return middle;
+    if (crossing_known_ && !from.crosses(index, 1) ? middle.depth < -rounding_mm
+                                                   : is_outside(into, face, middle))
+      return middle;
+    for (const auto& corner : face) look_at_point(into, corner, middle);
+    wait(bound(into, face, middle), {into, -1, face, middle});
+    return middle;
+  }
+
+  /// Whether a piece of a surface lies wholly inside a shell that it does not cross.
+  bool has_hidden_piece() const {
+    for (const Side& from : sides_) {
+      std::vector<bool> crosses(from.surface.piece_face_.size(), false);
+      for (const int face : from.crossing) crosses[from.surface.piece_[face]] = true;
+      for (std::size_t piece = 0; piece < crosses.size(); ++piece) {
+        if (crosses[piece]) continue;
+        const Eigen::Vector3d p = from.X * from.surface.faces_[from.surface.piece_face_[piece]][0];
+        for (const auto& shell : from.solid.shells_)
+          if (shell.depth(p, 0, infinity) > -rounding_mm) return true;
+      }
     }
+    return false;
+  }
+
+  /// Offers what of a surface is inside a shell where none of its pieces is hidden: the faces that
+  /// cross, and what hangs together with them on the inner side. False where that is much: then the
+  /// balls know better.
+  bool offer_inside(Into into) {
+    const Side& from = sides_[into.side];
+    std::vector<int> inside;
+    std::set<int> seen;
+    const auto spread = [&](int face, const Place& near) {
+      from.surface.each_neighbour(face, [&](int other) {
+        if (from.crosses(other, 1) || !seen.insert(other).second) return;
+        if (look_at_point(into, face_of(from, other)[0], near).depth >= -rounding_mm)
+          inside.push_back(other);
+      });
+    };
+    Place near;
+    for (const int face : from.crossing) {
+      const Triangle t = face_of(from, face);
+      Box box;
+      for (const auto& corner : t) box.add(corner);
+      if ((box.low.array() > shell(into).box.high.array()).any() ||
+          (box.high.array() < shell(into).box.low.array()).any())
+        continue;
+      near = offer_face(into, face, near);
+      spread(face, near);
+    }
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      if (inside.size() > most_inside) return false;
+      near = offer_face(into, inside[i], near);
+      spread(inside[i], near);
+    }
+    return true;
   }
 
   Place look_at_middle(Into into, const Triangle& t, const Place& near) {

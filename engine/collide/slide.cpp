@@ -12,6 +12,7 @@
 #include "engine/collide/slide_nodes.h"
 #include "engine/collide/slide_probe.h"
 #include "engine/collide/slide_walk.h"
+#include "engine/core/parallel.h"
 
 namespace condyle {
 namespace {
@@ -94,7 +95,7 @@ SlidingContact::SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fix
 
 struct SlideMemory::State {
   State(const SlidingContact& model, std::uint64_t model_id, int threads)
-      : id(model_id), here(model, threads), there(model, threads), nodes(model, there) {}
+      : id(model_id), here(model, threads), there(model, threads), nodes(model, threads) {}
   std::uint64_t id;
   SlideProbe here, there;  // along the body's way, and about the wanted pose
   SlideNodes nodes;
@@ -175,19 +176,27 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
   if (!kept.state_ || kept.state_->id != id_)
     kept.state_ = std::make_unique<SlideMemory::State>(*this, id_, threads);
   SlideProbe &here = kept.state_->here, &there = kept.state_->there;
-  SlideWalk walk(*this, here);
-  if (settings_.friction > 0) return walk.towards(from, wanted);
+  const auto walk = [&](const Pose& start, const Pose& to) {
+    return SlideWalk(*this, here, start, to).run();
+  };
+  if (settings_.friction > 0) return walk(from, wanted);
 
-  if (auto& nodes = kept.state_->nodes; nodes.overlaps(wanted)) {
+  if (there.overlaps_at(wanted, settings_.slop_mm)) {
+    auto& nodes = kept.state_->nodes;
     const SlideNodes::Node start = nodes.nearest(wanted);
     SlideResult answer;
-    if (start.found) answer = SlideWalk(*this, there).towards(start.X, wanted);
+    parallel_for(2, threads, [&](std::size_t job) {
+      if (job == 1) return nodes.look_ahead(wanted);
+      if (!start.found) return;
+      answer = SlideWalk(*this, there, nodes.carried(start, wanted), wanted).run();
+      if (!answer.settled || !answer.reached)
+        answer = SlideWalk(*this, there, start.X, wanted).run();
+    });
     answer.reached &= start.reached;
-    nodes.look_ahead(wanted);
     const double near = near_share * band_mm_;
     const auto reach = [&](const Pose& to) {  // whether it does, and passes through nothing
       if (here.way_of(here.between(from, to)) <= near) return std::pair(true, true);
-      const SlideResult there_by_walk = walk.towards(from, to);
+      const SlideResult there_by_walk = walk(from, to);
       return std::pair(here.way_of(here.between(there_by_walk.X_FM, to)) <= near,
                        there_by_walk.reached);
     };
@@ -205,7 +214,7 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
   int steps = 0;
   bool reached = true;
   for (int k = 0; k < max_walks; ++k) {
-    out = walk.towards(X, wanted);
+    out = walk(X, wanted);
     steps += out.steps;
     reached &= out.reached;
     if (same_bits(out.X_FM, X)) break;

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
-
-#include "engine/collide/slide_walk.h"
+#include <limits>
 
 namespace condyle {
 namespace {
@@ -18,7 +16,10 @@ constexpr double cell_share = 0.5;        // of the band: between places of the 
 constexpr double node_settled_mm = 0.02;  // they are but starts
 constexpr std::size_t most_kept = 20000;
 constexpr int longest_chain = 400;
-constexpr double ahead_frames = 4, farthest_ahead = 4;  // cells
+constexpr double farthest_carried_mm = 0.3;
+constexpr double ahead_frames[] = {2, 4, 8};
+constexpr double farthest_ahead = 4;  // cells
+constexpr int ahead_steps = 4;        // in one frame
 constexpr double rest_reach_mm = 5;
 constexpr double free_mm = 0.05;     // clearance of what is drawn out
 constexpr double drawn_share = 0.7;  // of the depth, at a time
@@ -26,15 +27,8 @@ constexpr int max_draws = 60;
 
 }  // namespace
 
-bool SlideNodes::overlaps(const Pose& X) {
-  const double slop = model_.settings_.slop_mm;
-  if (probe_.overlaps_at(X, slop)) return true;  // roughly; else in full
-  probe_.look_at(X, 0);
-  return probe_.deepest_gap() < -slop;
-}
-
-SlideNodes::SlideNodes(const SlidingContact& model, SlideProbe& probe)
-    : model_(model), probe_(probe), cell_mm_(cell_share * model.band_mm_) {
+SlideNodes::SlideNodes(const SlidingContact& model, int threads)
+    : model_(model), probe_(model, threads), cell_mm_(cell_share * model.band_mm_) {
   if (model.pairs_.empty()) return;
   // The lattice lies in the surfaces: they give the same answers wherever they are placed.
   const auto& first = model.pairs_.front();
@@ -96,14 +90,18 @@ std::optional<Pose> SlideNodes::drawn_out(const Pose& wanted) {
   return std::nullopt;
 }
 
+SlideWalk SlideNodes::walk(const Node& parent, const Pose& to) {
+  return {model_, probe_, parent.X, to, node_settled_mm};
+}
+
 /// Where it slides from its parent's answer; there it stays where that fails.
-SlideNodes::Node SlideNodes::slid(const Node& parent, const Pose& to) {
-  ++solved_;
+SlideNodes::Node SlideNodes::at_end(const Node& parent, SlideWalk&& walk, const Pose& to) {
   Node node = parent;
-  const SlideResult result = SlideWalk(model_, probe_).towards(node.X, to, node_settled_mm);
+  const SlideResult result = walk.run();
   if (result.settled) {
     node.X = result.X_FM;
     node.reached &= result.reached;
+    node.contacts = result.contacts;
   }
   node.left = probe_.between(node.X, to).norm();
   return node;
@@ -146,31 +144,22 @@ SlideNodes::Node& SlideNodes::visited(const Key& key) {
   return node;
 }
 
-/// Solves a chain from its end on, whose parent's answer is `node`; at most so many.
-SlideNodes::Node SlideNodes::solve(Tree& tree, const std::vector<Key>& chain, Node node, int most) {
-  for (auto k = chain.rbegin(); k != chain.rend(); ++k) {
-    if (most-- == 0) return {};
-    const Pose place = place_of(*k);
-    node = node.found ? slid(node, place) : alone(place);
-    tree[*k] = node;
-  }
-  return node;
-}
-
-SlideNodes::Node SlideNodes::from_outside(const Key& key, int most) {
+/// The nodes to solve before this one, itself the first, and what is known of the last one's
+/// parent.
+std::pair<std::vector<SlideNodes::Key>, SlideNodes::Node> SlideNodes::chain_outside(Key key) {
   std::vector<Key> chain;
-  for (Key here = key;;) {
-    const Node& node = visited(here);
-    if (node.solved) return solve(outside_, chain, node, most);
-    if (const auto again = std::find(chain.begin(), chain.end(), here); again != chain.end()) {
+  for (;;) {
+    const Node& node = visited(key);
+    if (node.solved) return {chain, node};
+    if (const auto again = std::find(chain.begin(), chain.end(), key); again != chain.end()) {
       // Ways out that lead round in a circle: each of these finds out alone.
       for (auto k = again; k != chain.end(); ++k) outside_[*k] = alone(place_of(*k));
       chain.erase(again, chain.end());
       continue;
     }
-    if (static_cast<int>(chain.size()) == longest_chain) return {};
-    chain.push_back(here);
-    here = node.parent;
+    if (static_cast<int>(chain.size()) == longest_chain) return {{}, {}};
+    chain.push_back(key);
+    key = node.parent;
   }
 }
 
@@ -180,45 +169,94 @@ bool SlideNodes::near_rest(const Key& key) const {
 }
 
 /// What overlaps at rest may be reached from there alone.
-SlideNodes::Node SlideNodes::from_rest(const Key& key, int most) {
+std::pair<std::vector<SlideNodes::Key>, SlideNodes::Node> SlideNodes::chain_to_rest(Key key) {
   rest_.try_emplace(Key{}, Node{.solved = true,
                                 .found = true,
                                 .reached = true,
                                 .X = *model_.rest_,
                                 .root = *model_.rest_});
   std::vector<Key> chain;
-  Key here = key;
-  while (!rest_.contains(here)) {
-    chain.push_back(here);
+  for (auto known = rest_.find(key);; known = rest_.find(key)) {
+    if (known != rest_.end()) return {chain, known->second};
+    chain.push_back(key);
     int farthest = 0;
-    for (const int k : here) farthest = std::max(farthest, std::abs(k));
-    for (int& k : here) k = static_cast<int>(std::lround(k * (farthest - 1.0) / farthest));
+    for (const int k : key) farthest = std::max(farthest, std::abs(k));
+    for (int& k : key) k = static_cast<int>(std::lround(k * (farthest - 1.0) / farthest));
   }
-  return solve(rest_, chain, rest_[here], most);
+}
+
+SlideNodes::Node SlideNodes::solve(Tree& tree, const std::pair<std::vector<Key>, Node>& chain) {
+  Node node = chain.second;
+  for (auto k = chain.first.rbegin(); k != chain.first.rend(); ++k) {
+    asked_ = true;
+    if (ahead_ && ahead_->tree == &tree && ahead_->key == *k) {
+      go_on_ahead(std::numeric_limits<int>::max());
+      node = tree[*k];
+      continue;
+    }
+    const Pose place = place_of(*k);
+    node = node.found ? slid(node, place) : alone(place);
+    tree[*k] = node;
+  }
+  return node;
 }
 
 SlideNodes::Node SlideNodes::nearest(const Pose& wanted) {
   if (outside_.size() + rest_.size() > most_kept) {
+    ahead_.reset();
     outside_.clear();
     rest_.clear();
   }
   const Key key = key_of(wanted);
-  const Node node = from_outside(key, longest_chain);
+  const Node node = solve(outside_, chain_outside(key));
   if (!near_rest(key)) return node;
-  const Node other = from_rest(key, longest_chain);
+  const Node other = solve(rest_, chain_to_rest(key));
   return !node.found || other.left < node.left ? other : node;
+}
+
+Pose SlideNodes::carried(const Node& node, const Pose& wanted) const {
+  TwistSettings settings;
+  settings.rotation_length_mm = model_.rotation_length_mm_;
+  std::vector<ContactRow> rows;
+  for (const SlideContact& contact : node.contacts)
+    rows.push_back(contact_row(contact.point - node.X * model_.pivot_, contact.normal,
+                               std::max(0.0, contact.gap_mm), model_.rotation_length_mm_));
+  const Twist way = nearest_allowed(probe_.between(node.X, wanted), rows, settings).x;
+  const double length = probe_.way_of(way);
+  return probe_.moved(node.X, way * std::min(1.0, farthest_carried_mm / length));
+}
+
+/// True where there is something to solve.
+bool SlideNodes::begin_ahead(Tree& tree, const std::pair<std::vector<Key>, Node>& chain) {
+  const auto& [keys, parent] = chain;
+  if (keys.empty()) return false;
+  const Pose place = place_of(keys.back());
+  if (parent.found)
+    ahead_.emplace(&tree, keys.back(), parent, walk(parent, place));
+  else
+    tree[keys.back()] = alone(place);
+  return true;
+}
+
+void SlideNodes::go_on_ahead(int steps) {
+  if (!ahead_->walk.go_on(steps)) return;
+  ahead_->tree->insert_or_assign(
+      ahead_->key, at_end(ahead_->parent, std::move(ahead_->walk), place_of(ahead_->key)));
+  ahead_.reset();
 }
 
 void SlideNodes::look_ahead(const Pose& wanted) {
   const auto last = std::exchange(last_wanted_, wanted);
-  const bool busy = std::exchange(solved_, 0) > 0;
-  if (busy || !last) return;
-  const Twist way = ahead_frames * probe_.between(*last, wanted);
-  if (!(way.norm() < farthest_ahead * cell_mm_)) return;
-  const Key key = key_of(probe_.moved(wanted, way));
-  from_outside(key, 1);
-  if (solved_ == 0 && near_rest(key)) from_rest(key, 1);
-  solved_ = 0;
+  if (std::exchange(asked_, false) || !last) return;
+  const Twist way = probe_.between(*last, wanted);
+  for (const double frames : ahead_frames) {
+    if (ahead_) return go_on_ahead(ahead_steps);
+    if (!(frames * way.norm() < farthest_ahead * cell_mm_)) return;
+    const Key key = key_of(probe_.moved(wanted, frames * way));
+    if (!begin_ahead(outside_, chain_outside(key)) && near_rest(key))
+      begin_ahead(rest_, chain_to_rest(key));
+  }
+  if (ahead_) go_on_ahead(ahead_steps);
 }
 
 }  // namespace condyle

@@ -4,10 +4,12 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/collide/slide.h"
 #include "engine/collide/slide_probe.h"
+#include "engine/collide/slide_walk.h"
 
 namespace condyle {
 
@@ -25,18 +27,19 @@ class SlideNodes {
     Pose root = {};        // free, or rest
     double left = 0;       // from the answer to the place
     Key parent = {};
+    std::vector<SlideContact> contacts = {};  // that hold the answer
   };
 
-  SlideNodes(const SlidingContact& model, SlideProbe& probe);
-
-  /// Whether anything is too deep at X.
-  bool overlaps(const Pose& X);
+  SlideNodes(const SlidingContact& model, int threads);
 
   /// What to slide from towards a wanted pose that overlaps.
   Node nearest(const Pose& wanted);
 
-  /// Does a part of the work that the next wanted poses will ask for, where the last two lead, so
-  /// that not all of it falls on one frame.
+  /// A node's answer carried along its contacts as far as the wanted pose lies from its place.
+  Pose carried(const Node& node, const Pose& wanted) const;
+
+  /// Does a few steps of the walks that the next wanted poses will ask for, where the last two
+  /// lead, so that no whole one falls on one frame.
   void look_ahead(const Pose& wanted);
 
  private:
@@ -47,26 +50,39 @@ class SlideNodes {
     Eigen::Vector3d direction = {0, 0, 0};  // unit; zero where none leads out
   };
 
+  /// A node that is being solved ahead of time.
+  struct Ahead {
+    Tree* tree;
+    Key key;
+    Node parent;
+    SlideWalk walk;
+  };
+
   Key key_of(const Pose& X) const;
   Pose place_of(const Key& key) const;
   bool near_rest(const Key& key) const;
   WayOut way_out(const Pose& X);
   std::optional<Pose> drawn_out(const Pose& wanted);
-  Node slid(const Node& parent, const Pose& to);
+  SlideWalk walk(const Node& parent, const Pose& to);
+  Node at_end(const Node& parent, SlideWalk&& walk, const Pose& to);
+  Node slid(const Node& parent, const Pose& to) { return at_end(parent, walk(parent, to), to); }
   Node alone(const Pose& place);
   Node& visited(const Key& key);
   Key outer(const Key& key, const Eigen::Vector3d& direction) const;
-  Node solve(Tree& tree, const std::vector<Key>& chain, Node node, int most);
-  Node from_outside(const Key& key, int most);
-  Node from_rest(const Key& key, int most);
+  std::pair<std::vector<Key>, Node> chain_outside(Key key);
+  std::pair<std::vector<Key>, Node> chain_to_rest(Key key);
+  Node solve(Tree& tree, const std::pair<std::vector<Key>, Node>& chain);
+  bool begin_ahead(Tree& tree, const std::pair<std::vector<Key>, Node>& chain);
+  void go_on_ahead(int steps);
 
   const SlidingContact& model_;
-  SlideProbe& probe_;
+  SlideProbe probe_;
   double cell_mm_;  // between places
   Pose origin_;     // the place of the key 0: rest, where there is one
   Eigen::Quaterniond axes_ = Eigen::Quaterniond::Identity();
   Tree outside_, rest_;
-  int solved_ = 0;                   // since the last look ahead
+  std::optional<Ahead> ahead_;
+  bool asked_ = false;               // for nodes that were not there, since the last look ahead
   std::optional<Pose> last_wanted_;  // at the last look ahead
 };
 

@@ -2,7 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 #include "engine/collide/near_samples.h"
 #include "engine/core/parallel.h"
@@ -15,7 +18,8 @@ using Eigen::Vector3d;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double near_share = 0.5;    // of the band: gaps up to here are measured, not bounded
 constexpr double coarse_mm = 1.5;     // of a ball of which one sample tells the overlap
-constexpr double close_mm = 0.06;     // all samples as near as this count
+constexpr double close_mm = 0.015;    // all samples as near as this count
+constexpr double straight = 0.01;     // off 1: of a slope where the cell has no edge in it
 constexpr double rounding_mm = 1e-4;  // of what is kept of a look
 
 }  // namespace
@@ -31,6 +35,7 @@ struct SlideProbe::Search {
   Pose X_fixed;                // of the samples in the fixed frame
   Eigen::Matrix3d R_FS, R_FD;  // samples in the field; field in the fixed frame
   Vector3d t_FS;
+  Eigen::Matrix3f R_float;  // R_FS
 
   /// Written out: this is asked more often than anything else.
   template <class Vector>
@@ -57,7 +62,7 @@ struct SlideProbe::Search {
     if (last.gap - way > within) return last.gap - way;
     double gap = -infinity;
     // A ball that moved by less than its size is as near as before: its parts know more.
-    if (leaf || way > here.radius) {
+    if (way > here.radius) {
       const DistanceField& field = pair.field->field;
       const DistanceField::Spot at = field.spot(center);
       // Within the band the field tells more than its bounds do.
@@ -65,7 +70,7 @@ struct SlideProbe::Search {
             pair.gap_mm;
     }
     if (gap <= within)
-      gap = std::max(gap, leaf ? samples(here) : std::min(ball(b + 1), ball(here.right)));
+      gap = std::max(gap, leaf ? samples(here, center) : std::min(ball(b + 1), ball(here.right)));
     last = {static_cast<float>(center.x()), static_cast<float>(center.y()),
             static_cast<float>(center.z()), static_cast<float>(gap), static_cast<float>(turned)};
     return gap;
@@ -73,49 +78,77 @@ struct SlideProbe::Search {
 
   /// No sample of a leaf is nearer than this. Of those that are not close the nearest stands for
   /// all: what it hides is seen at the next look, from where it matters.
-  double samples(const SurfaceSamples::Ball& leaf) {
+  double samples(const SurfaceSamples::Ball& leaf, const Vector3d& center) {
     const SurfaceSamples& s = pair.samples->samples;
     const DistanceField& field = pair.field->field;
-    const double band = field.settings().band_mm;
+    std::array<float, 16> gap;
+    const unsigned told = field.distances(s.blocks[leaf.block], R_float, center, gap);
     double least = infinity;
-    SlideCandidate nearest, aside;  // what faces, and what does not
-    nearest.gap = aside.gap = infinity;
-    for (int i = leaf.first; i < leaf.first + leaf.count; ++i) {
+    unsigned near = 0;  // a bit for each sample to look at
+    for (int k = 0; k < leaf.count; ++k) {
+      const int i = leaf.first + k;
       const double allowed = share > 0 ? share * static_cast<double>(pair.allowed[i]) : 0.0;
       if (allowed == -infinity) continue;
-      const DistanceField::Spot at = field.spot(in_field(s.points[i]));
-      const double gap = at.distance_mm - pair.gap_mm;
-      least = std::min(least, at.known                ? gap - field_bend_mm
-                              : at.distance_mm < band ? -infinity
-                                                      : gap);
-      if (gap - allowed > std::min(within, nearest.gap)) continue;
-      const SampleLook look =
-          judged({at.distance_mm, field.gradient(at), at.known}, R_FS * s.normals[i], s.spread[i]);
-      SlideCandidate c;
-      c.pair = index;
-      c.sample = i;
-      c.known = look.known;
-      c.faces = look.faces;
-      c.gap = gap - allowed;
-      c.gradient = look.gradient;
-      if (c.gap <= close_mm) {
-        add(c);
-      } else if (c.faces) {
-        nearest = c;
-      } else if (c.gap < aside.gap) {
-        aside = c;
+      double here = static_cast<double>(gap[k]), at_least = here - field_bend_mm;
+      if (!(told >> k & 1)) {
+        const DistanceField::Spot at = field.spot(in_field(s.points[i]));
+        here = at_least = at.distance_mm;
+        if (at.known)
+          at_least -= field_bend_mm;
+        else if (at.distance_mm < field.settings().band_mm)
+          at_least = -infinity;
       }
+      least = std::min(least, at_least - pair.gap_mm);
+      gap[k] = static_cast<float>(here - pair.gap_mm - allowed);
+      near |= (gap[k] <= within + rounding_mm ? 1u : 0u) << k;
     }
-    if (nearest.gap < infinity) add(nearest);
-    if (aside.gap < nearest.gap) add(aside);
+    bool turned_away = false;
+    while (near != 0) {
+      int nearest = std::countr_zero(near);
+      for (unsigned rest = near & (near - 1); rest != 0; rest &= rest - 1)
+        if (const int k = std::countr_zero(rest); gap[k] < gap[nearest]) nearest = k;
+      near &= ~(1u << nearest);
+      const SlideCandidate c = candidate(leaf.first + nearest);
+      if (c.gap > within) continue;
+      if (c.gap > close_mm && !c.faces && std::exchange(turned_away, true)) continue;
+      found.push_back(c);
+      if (c.gap > close_mm && c.faces) break;
+    }
     return least;
   }
 
-  void add(SlideCandidate c) {
-    c.point = X_fixed * pair.samples->samples.points[c.sample];
-    c.gradient = R_FD * c.gradient;
+  /// Where a cell has an edge of the surface in it, its slope leans towards what lies behind the
+  /// edge. A cell farther out knows the way better.
+  Vector3d gradient(const Vector3d& p, const DistanceField::Spot& at) const {
+    const DistanceField& field = pair.field->field;
+    const double spacing = field.settings().spacing_mm;
+    const Vector3d here = field.gradient(at);
+    const double off = std::abs(here.norm() - 1);
+    if (off < straight || off > 0.9 || std::abs(at.distance_mm) > spacing) return here;
+    const DistanceField::Spot beyond = field.spot(p + spacing * here);
+    if (!beyond.known) return here;
+    const Vector3d there = field.gradient(beyond);
+    return std::abs(there.norm() - 1) < off ? there : here;
+  }
+
+  SlideCandidate candidate(int sample) const {
+    const SurfaceSamples& s = pair.samples->samples;
+    const DistanceField& field = pair.field->field;
+    const Vector3d p = in_field(s.points[sample]);
+    const DistanceField::Spot at = field.spot(p);
+    const SampleLook look = judged({at.distance_mm, gradient(p, at), at.known},
+                                   R_FS * s.normals[sample], s.spread[sample]);
+    SlideCandidate c;
+    c.pair = index;
+    c.sample = sample;
+    c.known = look.known;
+    c.faces = look.faces;
+    c.gap = at.distance_mm - pair.gap_mm;
+    if (share > 0) c.gap -= share * static_cast<double>(pair.allowed[sample]);
+    c.gradient = R_FD * look.gradient;
     if (!pair.samples_move) c.gradient = -c.gradient;
-    found.push_back(c);
+    c.point = X_fixed * s.points[sample];
+    return c;
   }
 };
 
@@ -142,7 +175,8 @@ void SlideProbe::look_at(const Pose& X, double within_mm) {
            pair.samples_move ? X_moving : pair.X_FS,
            X_FS.R.toRotationMatrix(),
            (pair.samples_move ? pair.X_FS : X_moving).R.toRotationMatrix(),
-           X_FS.t}
+           X_FS.t,
+           X_FS.R.toRotationMatrix().cast<float>()}
         .ball(0);
   });
   candidates_.clear();
@@ -201,13 +235,15 @@ SlideProbe::Overlap SlideProbe::overlap_at(const Pose& X) const {
   return sum;
 }
 
-bool SlideProbe::overlaps_at(const Pose& X, double depth_mm) const {
+bool SlideProbe::overlaps_at(const Pose& X, double depth_mm) {
   bool found = false;
   each_overlap(X, [&](const SlidingContact::Pair&, int, double depth) {
     found = depth > depth_mm;
     return !found;
   });
-  return found;
+  if (found) return true;  // roughly; else in full
+  look_at(X, 0);
+  return deepest_gap_ < -depth_mm;
 }
 
 double SlideProbe::clearance(const Pose& X) {

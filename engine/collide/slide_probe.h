@@ -29,7 +29,7 @@ class SlideProbe {
   /// neighbours that are not close one stands for all.
   void look_at(const Pose& X, double within_mm);
 
-  /// Of the last look, by pair and sample.
+  /// Of the last look, by pair.
   const std::vector<SlideCandidate>& candidates() const { return candidates_; }
   /// Least gap of the known ones; infinite when there are none.
   double worst_gap() const { return worst_gap_; }
@@ -43,8 +43,8 @@ class SlideProbe {
     double sum_mm = 0;                    // of those lengths
   };
   Overlap overlap_at(const Pose& X) const;
-  /// Whether any of these samples is deeper.
-  bool overlaps_at(const Pose& X, double depth_mm) const;
+  /// Whether any sample is deeper.
+  bool overlaps_at(const Pose& X, double depth_mm);
 
   /// No larger than the gap at X, however far the bodies are.
   double clearance(const Pose& X);

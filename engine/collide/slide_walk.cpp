@@ -1,7 +1,6 @@
 #include "engine/collide/slide_walk.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,8 +21,108 @@ constexpr double still_mm = 1e-4;  // steps shorter than this lead nowhere
 
 }  // namespace
 
-void SlideWalk::make_rows(const Pose& X) {
-  const Eigen::Vector3d pivot = X * model_.pivot_;
+SlideWalk::SlideWalk(const SlidingContact& model, SlideProbe& probe, const Pose& from,
+                     const Pose& wanted, double settled_mm)
+    : model_(model),
+      probe_(probe),
+      from_(from),
+      wanted_(wanted),
+      settled_mm_(settled_mm),
+      X_(from) {
+  const SlideSettings& settings = model_.settings_;
+  longest_ = step_share * model_.band_mm_;
+  if (settings.friction > 0) longest_ = std::min(longest_, rubbing_step_mm);
+  solver_.friction = settings.friction;
+  solver_.rotation_length_mm = model_.rotation_length_mm_;
+  solver_.max_contacts = settings.max_contacts;
+  solver_.thinning_mm = settings.thinning_mm;
+  const double whole = probe_.way_of(probe_.between(from, wanted));
+  max_steps_ = 24 + static_cast<int>(3 * whole / longest_);
+  radius_ = std::min(longest_, first_radius_mm);
+  lately_.fill(infinity);
+  out_.reached = true;
+}
+
+SlideResult SlideWalk::run() {
+  go_on(max_steps_ + 1);
+  return std::move(out_);
+}
+
+bool SlideWalk::go_on(int steps) {
+  for (; !ended_ && steps > 0; --steps) ended_ = step();
+  return ended_;
+}
+
+/// True where it was the last.
+bool SlideWalk::step() {
+  const SlideSettings& settings = model_.settings_;
+  if (out_.steps == max_steps_) {
+    end();
+    return true;
+  }
+  const Twist left = probe_.between(X_, wanted_);
+  const double way = probe_.way_of(left);
+  const double active = radius_ + margin_mm;
+  probe_.look_at(X_, active);
+  if (probe_.deepest_gap() > active) {
+    const double clear = probe_.clearance(X_);
+    if (clear >= way) {
+      out_ = {wanted_, false, true, 0, {}, out_.steps, out_.reached};
+      return true;
+    }
+    X_ = probe_.moved(X_, left * (std::max(clear, radius_) / way));
+    radius_ = longest_;
+    ++out_.steps;
+    return false;
+  }
+  out_.reached &= probe_.deepest_gap() >= -(longest_ + settings.slop_mm);
+  make_rows();
+  const TwistSolution solution = nearest_allowed(share_ * left, rows_, solver_);
+  Twist x = solution.x;
+  const double length = probe_.way_of(x);
+  report(solution);
+  double& before = lately_[static_cast<std::size_t>(out_.steps) % lately_.size()];
+  const bool stalls = settings.friction == 0 && before - left.norm() < gained_mm;
+  before = left.norm();
+  out_.settled = (length <= settled_mm_ * share_ || length <= still_mm || stalls) &&
+                 out_.depth_mm <= settings.slop_mm;
+  if (out_.steps == 0) start_ = out_;
+  if (out_.settled) {
+    end();
+    return true;
+  }
+  if (length > radius_) x *= radius_ / length;
+  const bool arrives = length <= radius_ && share_ == 1 && solution.pushes.empty();
+  // Steps that swing back and forth are too long: over a crease of the surface each sees one of
+  // its sides. What held on the other side is kept. Steps that agree may grow.
+  const double agree = x.dot(last_);
+  if (agree < 0) {
+    share_ = std::max(0.5 * share_, 1e-3);
+    keep_cuts(solution);
+  } else if (agree > 0.5 * x.norm() * last_.norm()) {
+    share_ = std::min(2 * share_, 1.0);
+  }
+  last_ = x;
+  X_ = arrives ? wanted_ : probe_.moved(X_, x);
+  radius_ = std::min(longest_, std::max(2 * std::min(length, radius_), least_radius_mm));
+  ++out_.steps;
+  return false;
+}
+
+/// Where nothing was gained it stays where it was.
+void SlideWalk::end() {
+  const SlideSettings& settings = model_.settings_;
+  const bool start_is_free = start_.X_FM.t == from_.t && start_.depth_mm <= settings.slop_mm;
+  if (out_.steps == 0 || !start_is_free || settings.friction > 0 ||
+      probe_.between(from_, wanted_).norm() > probe_.between(out_.X_FM, wanted_).norm() + gained_mm)
+    return;
+  start_.steps = out_.steps;
+  start_.settled = start_.reached = true;
+  out_ = std::move(start_);
+}
+
+void SlideWalk::make_rows() {
+  const Eigen::Vector3d pivot = X_ * model_.pivot_;
   rows_.clear();
   row_candidate_.clear();
   for (std::size_t i = 0; i < probe_.candidates().size(); ++i) {
@@ -37,7 +136,7 @@ void SlideWalk::make_rows(const Pose& X) {
     row_candidate_.push_back(static_cast<int>(i));
   }
   for (const Cut& cut : cuts_) {
-    const Twist since = probe_.between(cut.X, X);
+    const Twist since = probe_.between(cut.X, X_);
     if (probe_.way_of(since) > cut_reach_mm) continue;
     rows_.push_back(cut.row);
     rows_.back().gap_mm = std::max(0.0, cut.row.gap_mm + cut.row.along.dot(since));
@@ -45,98 +144,22 @@ void SlideWalk::make_rows(const Pose& X) {
   }
 }
 
-SlideResult SlideWalk::towards(const Pose& from, const Pose& wanted, double settled_mm) {
-  const SlideSettings& settings = model_.settings_;
-  double longest = step_share * model_.band_mm_;
-  if (settings.friction > 0) longest = std::min(longest, rubbing_step_mm);
-  TwistSettings solver;
-  solver.friction = settings.friction;
-  solver.rotation_length_mm = model_.rotation_length_mm_;
-  solver.max_contacts = settings.max_contacts;
-  solver.thinning_mm = settings.thinning_mm;
-
-  SlideResult out, start;
-  Pose X = from;
-  const double whole = probe_.way_of(probe_.between(from, wanted));
-  const int max_steps = 24 + static_cast<int>(3 * whole / longest);
-  double share = 1;
-  double radius = std::min(longest, first_radius_mm);  // no step is longer
-  Twist last = Twist::Zero();
-  cuts_.clear();
-  std::array<double, 8> lately;  // how far from the wanted pose it was
-  lately.fill(infinity);
-  out.reached = true;
-  for (out.steps = 0; out.steps < max_steps; ++out.steps) {
-    const Twist left = probe_.between(X, wanted);
-    const double way = probe_.way_of(left);
-    const double active = radius + margin_mm;
-    probe_.look_at(X, active);
-    if (probe_.deepest_gap() > active) {
-      const double clear = probe_.clearance(X);
-      if (clear >= way) {
-        out = {wanted, false, true, 0, {}, out.steps, out.reached};
-        return out;
-      }
-      X = probe_.moved(X, left * (std::max(clear, radius) / way));
-      radius = longest;
-      continue;
-    }
-    out.reached &= probe_.deepest_gap() >= -(longest + settings.slop_mm);
-    make_rows(X);
-    const TwistSolution solution = nearest_allowed(share * left, rows_, solver);
-    Twist x = solution.x;
-    const double step = probe_.way_of(x);
-    report(X, solution, share, out);
-    double& before = lately[static_cast<std::size_t>(out.steps) % lately.size()];
-    const bool stalls = settings.friction == 0 && before - left.norm() < gained_mm;
-    before = left.norm();
-    out.settled = (step <= settled_mm * share || step <= still_mm || stalls) &&
-                  out.depth_mm <= settings.slop_mm;
-    if (out.steps == 0) start = out;
-    if (out.settled) break;
-    if (step > radius) x *= radius / step;
-    const bool arrives = step <= radius && share == 1 && solution.pushes.empty();
-    // Steps that swing back and forth are too long: over a crease of the surface each sees one of
-    // its sides. What held on the other side is kept. Steps that agree may grow.
-    const double agree = x.dot(last);
-    if (agree < 0) {
-      share = std::max(0.5 * share, 1e-3);
-      keep_cuts(X, solution);
-    } else if (agree > 0.5 * x.norm() * last.norm()) {
-      share = std::min(2 * share, 1.0);
-    }
-    last = x;
-    X = arrives ? wanted : probe_.moved(X, x);
-    radius = std::min(longest, std::max(2 * std::min(step, radius), least_radius_mm));
-  }
-  // Nothing gained: it stays where it was.
-  const bool start_is_free = start.X_FM.t == from.t && start.depth_mm <= settings.slop_mm;
-  if (out.steps > 0 && start_is_free && settings.friction == 0 &&
-      probe_.between(from, wanted).norm() <= probe_.between(out.X_FM, wanted).norm() + gained_mm) {
-    start.steps = out.steps;
-    start.settled = start.reached = true;
-    return start;
-  }
-  return out;
-}
-
-void SlideWalk::report(const Pose& X, const TwistSolution& solution, double share,
-                       SlideResult& out) const {
-  out.X_FM = X;
-  out.depth_mm = std::max(0.0, -probe_.worst_gap());
-  out.touching = !solution.pushes.empty();
-  out.contacts.clear();
+void SlideWalk::report(const TwistSolution& solution) {
+  out_.X_FM = X_;
+  out_.depth_mm = std::max(0.0, -probe_.worst_gap());
+  out_.touching = !solution.pushes.empty();
+  out_.contacts.clear();
   for (const Push& push : solution.pushes) {
     const int index = row_candidate_[push.row];
     if (index < 0) continue;
     const SlideCandidate& c = probe_.candidates()[index];
-    out.contacts.push_back({c.point, rows_[push.row].normal, c.gap, push.length_mm / share});
+    out_.contacts.push_back({c.point, rows_[push.row].normal, c.gap, push.length_mm / share_});
   }
 }
 
-void SlideWalk::keep_cuts(const Pose& X, const TwistSolution& solution) {
+void SlideWalk::keep_cuts(const TwistSolution& solution) {
   for (const Push& push : solution.pushes)
-    if (row_candidate_[push.row] >= 0) cuts_.push_back({rows_[push.row], X});
+    if (row_candidate_[push.row] >= 0) cuts_.push_back({rows_[push.row], X_});
   if (cuts_.size() > max_cuts)
     cuts_.erase(cuts_.begin(), cuts_.end() - static_cast<std::ptrdiff_t>(max_cuts));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "engine/collide/contact_twist.h"
@@ -8,14 +9,22 @@
 
 namespace condyle {
 
-/// Walks of a body towards wanted poses, in steps that pass through nothing.
+/// Walk of a body towards a wanted pose, in steps that pass through nothing: it slides along what
+/// is in the way, until nothing brings it nearer, which is no more than `settled_mm` at a step.
 class SlideWalk {
  public:
-  SlideWalk(const SlidingContact& model, SlideProbe& probe) : model_(model), probe_(probe) {}
+  static constexpr double usual_settled_mm = 0.002;
 
-  /// Slides along what is in the way, until nothing brings it nearer: no more than `settled_mm` at
-  /// a step.
-  SlideResult towards(const Pose& from, const Pose& wanted, double settled_mm = 0.002);
+  SlideWalk(const SlidingContact& model, SlideProbe& probe, const Pose& from, const Pose& wanted,
+            double settled_mm = usual_settled_mm);
+
+  /// To the end.
+  SlideResult run();
+
+  /// Takes at most so many steps. True at the end.
+  bool go_on(int steps);
+  /// Of a walk that is at its end.
+  const SlideResult& result() const { return out_; }
 
  private:
   struct Cut {  // a row that held at a pose nearby
@@ -23,12 +32,26 @@ class SlideWalk {
     Pose X;
   };
 
-  void make_rows(const Pose& X);
-  void report(const Pose& X, const TwistSolution& solution, double share, SlideResult& out) const;
-  void keep_cuts(const Pose& X, const TwistSolution& solution);
+  bool step();
+  void end();
+  void make_rows();
+  void report(const TwistSolution& solution);
+  void keep_cuts(const TwistSolution& solution);
 
   const SlidingContact& model_;
   SlideProbe& probe_;
+  Pose from_, wanted_;
+  double settled_mm_;
+  TwistSettings solver_;
+  double longest_;  // step
+  int max_steps_ = 0;
+  Pose X_;             // where it is
+  double radius_ = 0;  // no step is longer
+  double share_ = 1;   // of the way left that is asked for
+  Twist last_ = Twist::Zero();
+  std::array<double, 8> lately_;  // how far from the wanted pose it was
+  bool ended_ = false;
+  SlideResult out_, start_;
   std::vector<ContactRow> rows_;
   std::vector<int> row_candidate_;  // of each row, -1 for a cut
   std::vector<Cut> cuts_;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/collide/shells.h"
+#include "engine/mesh/topology.h"
 
 namespace condyle {
 namespace {
@@ -45,6 +46,29 @@ void Solid::order_faces(const TriMesh& mesh) {
     const auto& t = mesh.triangles[i];
     slot_[i] = static_cast<int>(faces_.size());
     faces_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+  }
+  find_neighbours(mesh);
+}
+
+void Solid::find_neighbours(const TriMesh& mesh) {
+  face_corners_.resize(faces_.size());
+  first_at_.assign(mesh.vertices.size() + 1, 0);
+  for (std::size_t i = 0; i < slot_.size(); ++i) {
+    face_corners_[slot_[i]] = mesh.triangles[i];
+    for (const int v : mesh.triangles[i]) ++first_at_[v + 1];
+  }
+  std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
+  at_corner_.resize(3 * faces_.size());
+  std::vector<int> next = first_at_;
+  for (std::size_t face = 0; face < face_corners_.size(); ++face)
+    for (const int v : face_corners_[face]) at_corner_[next[v]++] = static_cast<int>(face);
+
+  const Components components = find_components(mesh);
+  piece_.resize(faces_.size());
+  piece_face_.assign(static_cast<std::size_t>(components.count), -1);
+  for (std::size_t i = 0; i < slot_.size(); ++i) {
+    piece_[slot_[i]] = components.of_triangle[i];
+    piece_face_[components.of_triangle[i]] = slot_[i];
   }
 }
 

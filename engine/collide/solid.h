@@ -60,13 +60,24 @@ class Solid {
   void order_faces(const TriMesh& mesh);
   int build_balls(const TriMesh& mesh, std::vector<int>& order, int first, int last);
   void find_connected(const TriMesh& mesh, const std::vector<int>& order);
+  void find_neighbours(const TriMesh& mesh);
+  /// Calls at(face) for each face at one of this one's corners, this one too.
+  template <class At>
+  void each_neighbour(int face, const At& at) const {
+    for (const int v : face_corners_[face])
+      for (int i = first_at_[v]; i < first_at_[v + 1]; ++i) at(at_corner_[i]);
+  }
   bool has_shell_inside(const Solid& other, const Pose& X_OS) const;
 
-  std::vector<ClosedShell> shells_;       // facing outward
-  std::vector<Eigen::Vector3d> samples_;  // a vertex of each shell, open ones included
-  std::vector<Triangle> faces_;           // in the order of the balls
-  std::vector<int> slot_;                 // of each of the mesh's triangles, among the faces
-  std::vector<Ball> balls_;               // depth first
+  std::vector<ClosedShell> shells_;            // facing outward
+  std::vector<Eigen::Vector3d> samples_;       // a vertex of each shell, open ones included
+  std::vector<Triangle> faces_;                // in the order of the balls
+  std::vector<int> slot_;                      // of each of the mesh's triangles, among the faces
+  std::vector<Ball> balls_;                    // depth first
+  std::vector<Eigen::Vector3i> face_corners_;  // of each face
+  std::vector<int> first_at_, at_corner_;      // faces at each corner
+  std::vector<int> piece_;                     // of each face; pieces share no corner
+  std::vector<int> piece_face_;                // one of each piece
   int shell_count_ = 0, open_shell_count_ = 0;
 };
 

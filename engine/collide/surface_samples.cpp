@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int leaf_size = 16;
+constexpr int leaf_size = 16;  // what a field tells at once
 constexpr double hollow_slope =
     0.05;  // tangent of half the angle of an edge that counts as concave
 
@@ -40,6 +40,21 @@ int build_balls(SurfaceSamples& s, std::vector<int>& order, const std::vector<Ve
   build_balls(s, order, points, first, middle);
   s.balls[index].right = build_balls(s, order, points, middle, last);
   return index;
+}
+
+void make_blocks(SurfaceSamples& s) {
+  for (SurfaceSamples::Ball& ball : s.balls) {
+    if (ball.right != 0) continue;
+    ball.block = static_cast<int>(s.blocks.size());
+    DistanceField::Sixteen& block = s.blocks.emplace_back();
+    for (int i = 0; i < leaf_size; ++i) {
+      const Vector3d& p = s.points[ball.first + std::min(i, ball.count - 1)];
+      const Eigen::Vector3f from_center = (p - ball.center.cast<double>()).cast<float>();
+      block.x[i] = from_center.x();
+      block.y[i] = from_center.y();
+      block.z[i] = from_center.z();
+    }
+  }
 }
 
 }  // namespace
@@ -126,6 +141,7 @@ SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& setting
     samples.normals.push_back(normals[i]);
     samples.spread.push_back(spread[i]);
   }
+  make_blocks(samples);
   return samples;
 }
 

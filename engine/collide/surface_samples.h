@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/collide/distance_field.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/tri_mesh.h"
 
@@ -28,12 +29,15 @@ struct SurfaceSamples {
     Eigen::Vector3f center;
     float radius = 0;  // rounded up
     int first = 0, count = 0;
-    int right = 0;  // second child (the first is next); 0 for a leaf
+    int right = 0;   // second child (the first is next); 0 for a leaf
+    int block = -1;  // of a leaf: its points once more
   };
   std::vector<Eigen::Vector3d> points;   // in the order of the balls
   std::vector<Eigen::Vector3d> normals;  // unit, outward
   std::vector<float> spread;             // cosine of the widest angle to a face's normal there
   std::vector<Ball> balls;               // depth first
+  // Of each leaf, from its centre; the last point stands in the places that are left.
+  std::vector<DistanceField::Sixteen> blocks;
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
   double gyration_mm = 0;  // root mean square distance from the centroid
 };

@@ -115,7 +115,7 @@ std::vector<SlideResult> SlidingDrive::proposals() const {
 Arrival SlidingDrive::run(bool exact) {
   const Pose &from = drive_.from(), &wanted = drive_.wanted;
   if (judge_.pairs().empty()) return {wanted, false};
-  Found at_wanted = judge_.look(wanted, true);
+  Found at_wanted;
   if (judge_.clear(at_wanted)) return arrive(wanted, std::move(at_wanted));
 
   state_.slider->prepare({}, threads_);

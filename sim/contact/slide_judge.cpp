@@ -87,12 +87,32 @@ std::vector<SlideJudge::Look> SlideJudge::looks(const Pose& X_CD) const {
   return all;
 }
 
-bool SlideJudge::clear(const Found& at_wanted) const {
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const Passage p = passage(k, drive_.from(), drive_.wanted);
-    const double margin = p.margin(at_wanted[k]);
-    if (p.length_mm < 1e-12 ? margin < 0 : margin <= p.length_mm) return false;
+bool SlideJudge::clear(const PairContact& at_wanted, std::size_t k) const {
+  const Passage p = passage(k, drive_.from(), drive_.wanted);
+  const double margin = p.margin(at_wanted);
+  return p.length_mm < 1e-12 ? margin >= 0 : margin > p.length_mm;
+}
+
+bool SlideJudge::clear(Found& at_wanted) const {
+  // The pair that was last in the way, or nearest to it, is likely to be so again: then no other
+  // need be looked at.
+  std::size_t likely = 0;
+  const auto before = [&](std::size_t k) -> const PairContact& {
+    return state_.slot(set_, pairs_[k]);
+  };
+  for (std::size_t k = 1; k < pairs_.size(); ++k) {
+    const PairContact &a = before(k), &b = before(likely);
+    if (a.touching != b.touching ? a.touching
+        : a.touching             ? a.depth_mm - limit_[k] > b.depth_mm - limit_[likely]
+                                 : a.distance_mm - kept_[k] < b.distance_mm - kept_[likely])
+      likely = k;
   }
+  const bool near = before(likely).touching ||
+                    before(likely).distance_mm - kept_[likely] < way(drive_.from(), drive_.wanted);
+  if (near && !clear(look_at(likely, drive_.wanted, true).contact, likely)) return false;
+  at_wanted = look(drive_.wanted, true);
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    if (!clear(at_wanted[k], k)) return false;
   return true;
 }
 

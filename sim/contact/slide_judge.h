@@ -23,8 +23,9 @@ class SlideJudge {
   /// `rough`: of pairs that were apart at rest the depth is left out.
   Found look(const Pose& X_CD, bool rough = false) const;
 
-  /// Nothing is within reach of the whole way to the wanted pose, where `at_wanted` was taken.
-  bool clear(const Found& at_wanted) const;
+  /// Nothing is within reach of the whole way to the wanted pose; then `at_wanted` is what was
+  /// found there.
+  bool clear(Found& at_wanted) const;
 
   /// Limits are as at rest. A start that is beyond them may stay so, but goes no farther.
   void start_at(const Found& at_start);
@@ -56,6 +57,7 @@ class SlideJudge {
   Passage passage(std::size_t k, const Pose& from, const Pose& to) const;
   Look look_at(std::size_t k, const Pose& X_CD, bool rough) const;
   std::vector<Look> looks(const Pose& X_CD) const;
+  bool clear(const PairContact& at_wanted, std::size_t k) const;
   bool allowed(const PairContact& contact, std::size_t k) const;
   bool allowed(const std::vector<Look>& looks) const;
   void add_rows(const Pose& X, const std::vector<Look>& looks, const Twist& so_far,

@@ -13,6 +13,8 @@ constexpr double tooth_sample_mm = 0.4, bone_sample_mm = 0.6;
 // Of a guided pair: fields reach little farther than twice the gap. Wider gaps are kept by exact
 // distances alone.
 constexpr double widest_gap_mm = 4;
+// Half of what the exact surfaces allow: then they seldom disagree.
+constexpr double slop_mm = 0.01;
 constexpr double fade_mm = 2;  // from rest, where overlap that is there at rest must be gone
 // Between looks along a way, of points as far from the middle as those of a jaw.
 constexpr double sight_step_mm = 5, turning_mm = 80;
@@ -105,7 +107,7 @@ std::unique_ptr<SlidingContact> Slider::make_contact(int body) const {
   }
   auto contact = std::make_unique<SlidingContact>(
       std::move(fixed), std::move(moving), pairs,
-      SlideSettings{.friction = state_.settings.friction, .pivot = {}});
+      SlideSettings{.friction = state_.settings.friction, .slop_mm = slop_mm, .pivot = {}});
   contact->allow_overlap_at({}, fade_mm);
   return contact;
 }
