@@ -61,10 +61,10 @@ struct WarmPlan {
 WarmPlan plan_for(int nodes) {
   if (nodes < 5000) return {};
   const bool huge = nodes > 30000;
-  return {.from_deg = 5,
+  return {.from_deg = huge ? 2.0 : 5.0,
           .frames = huge ? 4 : 20,
           .samples_every = huge ? 4 : 5,
-          .budget = 40,
+          .budget = huge ? 12 : 40,
           .reference_mm = huge ? 1e-3 : 1e-4,
           .lead_mm = huge ? 1e-2 : 1e-3,
           .from_rest = sparing_refreshes,
