@@ -18,6 +18,7 @@
 #include "engine/rigid/mesh_baseline.h"
 #include "engine/rigid/rigid_world.h"
 #include "sim/contact/contact.h"
+#include "sim/dynamics/muscle_jaw.h"
 #include "sim/report/report.h"
 #include "tools/common.h"
 
@@ -343,6 +344,35 @@ void measure_blocked_jaw(const Case& patient, const Jaws& jaws, int threads, Res
     }
 }
 
+/// Muscles chew on food with the patient's own crowns: a simulated second at a time, one thread.
+void measure_chewing(const Case& patient, Results& results) {
+  constexpr int seconds = 5;
+  constexpr double cycle_s = 0.7;
+  MuscleJaw jaw(patient, {.bolus = {.side = BolusSettings::Side::right},
+                          .hyoid = MuscleJawSettings::HyoidMode::fixed});
+  std::vector<double> ms, excitations(jaw.muscles().size());
+  double widest_mm = 0;
+  const Vector3d incisor = *patient.landmarks.find("lower_incisal_point");
+  for (int second = 0; second < seconds; ++second)
+    ms.push_back(timed([&] {
+      for (int i = 0; i < 1000; ++i) {
+        const double phase = std::fmod(jaw.time_s() / cycle_s, 1.0);
+        for (std::size_t m = 0; m < excitations.size(); ++m) {
+          const bool closes = jaw.muscles()[m].group == "closer";
+          excitations[m] =
+              closes ? (phase > 0.45 && phase < 0.9 ? 0.1 : 0.01) : (phase < 0.4 ? 0.1 : 0.0);
+        }
+        jaw.step(excitations);
+        widest_mm = std::max(widest_mm, incisor.z() - (jaw.pose() * incisor).z());
+      }
+    }));
+  results.add("collide.chewing", ms,
+              {{"simulated_s", 1},
+               {"muscles", excitations.size()},
+               {"widest_mm", widest_mm},
+               {"threads", 1}});
+}
+
 void measure_field(const Jaws& jaws, int threads, Results& results) {
   const TriMesh bone = sized(jaws.lower, 50000, jaws.center);
   const FieldSettings settings = near_bite(jaws).field;
@@ -386,6 +416,8 @@ int run_bench_collide(const BenchOptions& options, const CommonOptions& common) 
   measure_field(jaws, common.threads, results);
   bar.show("dynamics", 0.8);
   measure_dynamics(jaws, common.threads, results);
+  bar.show("chewing", 0.95);
+  measure_chewing(patient, results);
   bar.clear();
 
   Json json;
