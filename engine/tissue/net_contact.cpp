@@ -15,6 +15,10 @@ constexpr double band_mm = 2.0;
 /// The error is an eighth of the spacing's square times the curvature: 0.01 mm on a crown.
 constexpr double spacing_mm = 0.5;
 constexpr double deepest_mm = 12;  // the exact search looks no farther
+/// A point of the net is sought this deep below another part of it,
+constexpr double deepest_of_surface_mm = 7;
+/// and this far beyond its rim: there the surface goes on level.
+constexpr double beside_mm = 6;
 /// Nearer than this the way to the nearest point says little about the surface's direction.
 constexpr double close_mm = 0.02;
 
@@ -82,6 +86,7 @@ void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<doubl
                                  X_WO.R * near.normal, allowance[i], settings.stiffness));
     Touch& touch = touches.back();
     touch.row.offset = touch.row.along(x) - touch.gap;
+    touch.at = points[i].at(x);
   }
 }
 
@@ -93,26 +98,37 @@ void touch_surface(const std::vector<NetPoint>& points, const std::vector<double
     for (int node : t) box.add(x[node]);
   std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (box.contains(points[i].at(x), settings.reach_mm)) candidates.push_back(i);
+    if (box.contains(points[i].at(x), std::max(settings.reach_mm, deepest_of_surface_mm)))
+      candidates.push_back(i);
   if (candidates.empty()) return;
 
+  // Joined at its nodes: there the normals are the means of the faces around.
   TriMesh surface;  // some hundred triangles: a tree of them is made in no time
-  surface.vertices.reserve(3 * triangles.size());
-  for (const auto& t : triangles) {
-    const int first = static_cast<int>(surface.vertices.size());
-    for (int node : t) surface.vertices.push_back(x[node]);
-    surface.triangles.emplace_back(first, first + 1, first + 2);
-  }
+  std::vector<int> use;
+  for (const auto& t : triangles) use.insert(use.end(), t.begin(), t.end());
+  std::sort(use.begin(), use.end());
+  use.erase(std::unique(use.begin(), use.end()), use.end());
+  const auto vertex_of = [&](int node) {
+    return static_cast<int>(std::lower_bound(use.begin(), use.end(), node) - use.begin());
+  };
+  for (int node : use) surface.vertices.push_back(x[node]);
+  for (const auto& t : triangles)
+    surface.triangles.emplace_back(vertex_of(t[0]), vertex_of(t[1]), vertex_of(t[2]));
+  const auto normals = vertex_normals(surface);
   const TriangleTree tree(surface);
   for (std::size_t i : candidates) {
     const Vector3d p = points[i].at(x);
-    const SurfacePoint found = tree.signed_nearest(p, settings.reach_mm);
+    const SurfacePoint found = tree.nearest(p, std::max(settings.reach_mm, deepest_of_surface_mm));
     if (found.triangle < 0) continue;
-    const Vector3d normal = std::abs(found.distance) > close_mm
-                                ? Vector3d((p - found.point) / found.distance)
-                                : Vector3d(tree.pseudonormal(found).normalized());
-    touches.push_back(make_touch(static_cast<int>(i), points[i], found.distance, normal,
-                                 allowance[i], settings.stiffness));
+    const auto& corners = surface.triangles[found.triangle];
+    Vector3d normal = Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) normal += found.barycentric[k] * normals[corners[k]];
+    normal.normalize();
+    const double distance = normal.dot(p - found.point);
+    const double beside = (p - found.point - distance * normal).norm();
+    if (distance > settings.reach_mm || beside > beside_mm) continue;
+    touches.push_back(make_touch(static_cast<int>(i), points[i], distance, normal, allowance[i],
+                                 settings.stiffness));
     Touch& touch = touches.back();
     const auto& other = triangles[static_cast<std::size_t>(found.triangle)];
     for (int k = 0; k < 3; ++k) {
@@ -121,6 +137,7 @@ void touch_surface(const std::vector<NetPoint>& points, const std::vector<double
       touch.row.weight[touch.row.count++] = -found.barycentric[k];
     }
     touch.row.offset = touch.row.along(x) - touch.gap;
+    touch.at = p;
   }
 }
 
@@ -130,63 +147,96 @@ void allow(const std::vector<Touch>& touches, std::vector<double>& allowance) {
 }
 
 double plane_error(const std::vector<Touch>& used, const std::vector<Touch>& now, const Nodes& x) {
-  const auto push = [](double gap) { return std::max(0.0, -gap); };
   double worst = 0;
   std::size_t i = 0;
   for (const auto& touch : now) {
     for (; i < used.size() && used[i].point < touch.point; ++i)
-      worst = std::max(worst, push(used[i].row.gap(x)));
-    double least = push(touch.gap);  // where no plane stood
+      worst = std::max(worst, used[i].pressed(x));
+    double least = std::max(0.0, -touch.gap);  // where no plane stood
     for (bool first = true; i < used.size() && used[i].point == touch.point; ++i, first = false) {
-      const Vector3d was = push(used[i].row.gap(x)) * used[i].row.normal;
-      const double error = (push(touch.gap) * touch.row.normal - was).norm();
+      const Vector3d was = used[i].pressed(x) * used[i].row.normal;
+      const Vector3d is = std::max(0.0, used[i].push - touch.gap) * touch.row.normal;
+      const double error = (is - was).norm();
       least = first ? error : std::min(least, error);
     }
     worst = std::max(worst, least);
   }
-  for (; i < used.size(); ++i) worst = std::max(worst, push(used[i].row.gap(x)));
+  for (; i < used.size(); ++i) worst = std::max(worst, used[i].pressed(x));
   return worst;
 }
 
-std::vector<Touch> with_other_faces(const std::vector<Touch>& used, std::vector<Touch> now,
-                                    const Nodes& x) {
+std::vector<Touch> carried_on(const std::vector<Touch>& used, std::vector<Touch> now,
+                              const Nodes& x) {
   constexpr double same_face = 0.9;  // cosine between the planes
+  constexpr double stale_mm = 0.5;   // a plane serves no longer when its point has gone this far
   std::vector<Touch> both;
   std::size_t i = 0;
   for (auto& touch : now) {
     while (i < used.size() && used[i].point < touch.point) ++i;
+    const std::size_t at = both.size();
     both.push_back(std::move(touch));
-    const Vector3d normal = both.back().row.normal;
-    for (; i < used.size() && used[i].point == both.back().point; ++i)
-      if (used[i].row.normal.dot(normal) < same_face && used[i].row.gap(x) < 0.5)
+    for (; i < used.size() && used[i].point == both[at].point; ++i) {
+      const double cosine = used[i].row.normal.dot(both[at].row.normal);
+      if (cosine >= same_face) {
+        both[at].push = std::max(both[at].push, cosine * used[i].pressed(x));
+      } else if ((used[i].at - both[at].at).norm() < stale_mm && used[i].row.gap(x) < stale_mm) {
         both.push_back(used[i]);
+        both.back().push = used[i].pressed(x);
+      }
+    }
   }
   return both;
+}
+
+void move_touches(const Pose& X, std::vector<Touch>& touches) {
+  for (auto& touch : touches) {
+    touch.row.normal = X.R * touch.row.normal;
+    touch.row.offset += touch.row.normal.dot(X.t);
+    touch.at = X * touch.at;
+  }
 }
 
 void set_contacts(const Looks& looks, NetLoads& loads) {
   loads.contacts.clear();
   for (const auto& touches : looks)
-    for (const auto& touch : touches) loads.contacts.push_back(touch.row);
+    for (const auto& touch : touches) {
+      loads.contacts.push_back(touch.row);
+      loads.contacts.back().offset += touch.push;
+    }
 }
+
+namespace {
+
+/// How far anything that presses is from the surface it presses on, mm.
+double gap_left(const std::vector<Touch>& touches, const Nodes& x) {
+  double most = 0;
+  for (const auto& touch : touches)
+    if (touch.pressed(x) > 0) most = std::max(most, std::abs(touch.row.gap(x)));
+  return most;
+}
+
+}  // namespace
 
 TouchingResult solve_touching(const std::function<Looks(const Nodes&)>& look,
                               const std::function<void()>& solve, NetLoads& loads, Nodes& x,
-                              const TouchingSettings& settings) {
+                              const TouchingSettings& settings, const Looks& before) {
   TouchingResult result;
   Looks used = look(x);
+  for (std::size_t i = 0; i < before.size(); ++i) used[i] = carried_on(before[i], used[i], x);
   while (true) {
     set_contacts(used, loads);
     solve();
     ++result.solves;
     result.looks = look(x);
-    result.error_mm = 0;
-    for (std::size_t i = 0; i < used.size(); ++i)
+    result.error_mm = result.gap_mm = 0;
+    for (std::size_t i = 0; i < used.size(); ++i) {
       result.error_mm = std::max(result.error_mm, plane_error(used[i], result.looks[i], x));
-    if (result.error_mm <= settings.tolerance_mm || result.solves >= settings.most_looks)
-      return result;
-    for (std::size_t i = 0; i < used.size(); ++i)
-      used[i] = with_other_faces(used[i], result.looks[i], x);
+      result.looks[i] = carried_on(used[i], std::move(result.looks[i]), x);
+      result.gap_mm = std::max(result.gap_mm, gap_left(result.looks[i], x));
+    }
+    const bool good = result.error_mm <= settings.tolerance_mm && result.gap_mm <= settings.gap_mm;
+    if (good || result.solves >= settings.most_looks) return result;
+    used = result.looks;
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -54,11 +55,18 @@ struct Touch {
   /// places. Elsewhere the row's plane stands for the surface, whose nearest point it touches.
   double gap = 0;
   ContactRow row;
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  // where the point was when the plane was laid
+  /// What it pressed with before, as mm of the row's spring: that much it presses at a gap of 0, so
+  /// a soft row holds a point out as a hard one would (augmented Lagrangian).
+  double push = 0;
+
+  /// What it presses with at x, mm of its spring.
+  double pressed(const Nodes& x) const { return std::max(0.0, push - row.gap(x)); }
 };
 
 struct TouchSettings {
-  double reach_mm = 1.5;    // points farther than this have no row; below 2
-  double stiffness = 12.0;  // N/mm: tissue presses with up to 4 N a point
+  double reach_mm = 1.5;   // points farther than this have no row; below 2
+  double stiffness = 3.0;  // N/mm: a tenfold of the tissue's own; tissue presses with up to 4 N
 };
 
 /// Appends the points that are near the obstacle at pose X_WO. `allowance` (mm, one per point) is
@@ -82,10 +90,14 @@ void allow(const std::vector<Touch>& touches, std::vector<double>& allowance);
 /// at x. Of several planes of a point the nearest counts.
 double plane_error(const std::vector<Touch>& used, const std::vector<Touch>& now, const Nodes& x);
 
-/// `now` with those planes of `used` that stood for another face nearby: in a groove a point that
-/// saw one side and then the other must obey both, or it goes to and fro for ever.
-std::vector<Touch> with_other_faces(const std::vector<Touch>& used, std::vector<Touch> now,
-                                    const Nodes& x);
+/// `now`, with what `used` presses with at x, and with those planes of it that stood for another
+/// face nearby: in a groove a point that saw one side and then the other must obey both, or it goes
+/// to and fro for ever.
+std::vector<Touch> carried_on(const std::vector<Touch>& used, std::vector<Touch> now,
+                              const Nodes& x);
+
+/// The touches of an obstacle that has moved on by X.
+void move_touches(const Pose& X, std::vector<Touch>& touches);
 
 /// All touches at x: one list for each thing that may be touched.
 using Looks = std::vector<std::vector<Touch>>;
@@ -95,16 +107,19 @@ void set_contacts(const Looks& looks, NetLoads& loads);
 /// there: then it is a minimum of the energy with the surfaces themselves.
 struct TouchingSettings {
   int most_looks = 5;
-  double tolerance_mm = 0.01;  // of push, see plane_error
+  double tolerance_mm = 0.03;  // of push, see plane_error
+  double gap_mm = 0.02;        // what presses is at most so far from what it presses on
 };
 struct TouchingResult {
   int solves = 0;
   double error_mm = 0;  // what the planes are still wrong by
-  Looks looks;          // at the answer
+  double gap_mm = 0;    // how far what presses is from what it presses on
+  Looks looks;          // at the answer; to be carried on to the next solve
 };
-/// `solve` moves x downhill under `loads`, whose contacts are set before each call.
+/// `solve` moves x downhill under `loads`, whose contacts are set before each call. `before`: the
+/// looks of an earlier solve, or nothing.
 TouchingResult solve_touching(const std::function<Looks(const Nodes&)>& look,
                               const std::function<void()>& solve, NetLoads& loads, Nodes& x,
-                              const TouchingSettings& settings = {});
+                              const TouchingSettings& settings = {}, const Looks& before = {});
 
 }  // namespace condyle

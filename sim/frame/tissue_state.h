@@ -9,6 +9,7 @@
 namespace condyle {
 
 class RollingFactor;
+struct Touch;
 
 /// Where the soft tissue is, and how its minimiser ended. The next frame starts from it.
 struct TissueState {
@@ -25,6 +26,8 @@ struct TissueState {
   double slip_mm = 0;         // farthest way of a point along the jaw that it lay on at rest
   /// What the next frame is solved with: a factor of an earlier frame's tissue, or none.
   std::shared_ptr<const RollingFactor> factor;
+  /// What the tissue touches and how it presses: lists of things touched; or none.
+  std::shared_ptr<const std::vector<std::vector<Touch>>> touches;
 };
 
 }  // namespace condyle

@@ -23,6 +23,10 @@ constexpr double boundary_stiffness = 2.0;   // N/mm
 constexpr double cartilage_stiffness = 0.5;  // N/mm
 constexpr double neck_stiffness = 0.1;       // N/mm
 constexpr double loose_stiffness = 0.04;     // N/mm
+/// N/mm: the muscles of a lip hold its inner side to its own jaw, so that it does not roll over the
+/// teeth's edges.
+constexpr double lip_stiffness = 0.12;
+constexpr double lip_margin_mm = 14;  // from the mouth's line
 
 double smoothstep(double t) {
   t = std::clamp(t, 0.0, 1.0);
@@ -137,6 +141,13 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   model->sheets = sheets;
   model->triangles = skin.mesh.triangles;
   model->rest = column_nodes(skin, columns, column_settings);
+  model->slit = region.slit;
+  model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, 30);
+  const double parted =
+      part_closed_lips({skin, columns, model->handle_side, sheets, model->rest, {}}, model->rest);
+  if (parted > 0.5)
+    summary.notes.push_back("the simulated lips overlapped: parted by up to " +
+                            std::to_string(parted) + " mm");
   model->net = net_of(plan, layers, skin.mesh.triangles, model->rest);
   SpringPrismNet& net = model->net;
   for (std::size_t p = 0; p < net.prisms.size(); ++p)
@@ -207,12 +218,14 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
     const int inner = node_of(c, sheets - 1, sheets);
     if (held[inner]) continue;
     const bool neck = columns[c].ground == Ground::none;
-    anchor(inner, model->node_share[inner], neck ? neck_stiffness : loose_stiffness);
+    const bool lip = columns[c].to_mouth < lip_margin_mm;
+    anchor(inner, model->node_share[inner],
+           neck  ? neck_stiffness
+           : lip ? lip_stiffness
+                 : loose_stiffness);
   }
 
   report(progress, "soft tissue: contact", 0.55);
-  model->slit = region.slit;
-  model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, 30);
   model->contact =
       make_contact({skin, columns, model->handle_side, sheets, model->rest, held},
                    jaw_mesh(patient, Body::cranium), jaw_mesh(patient, Body::mandible));

@@ -35,7 +35,7 @@ namespace {
 
 /// Iterations after which a factor of the tissue as it is now is made at once, and after twice as
 /// many the next; later frames go on with it.
-constexpr int first_patience = 15;
+constexpr int first_patience = 8;
 /// Iterations of a frame above which one is made beside the loop.
 constexpr int worth_making = 3;
 
@@ -128,13 +128,20 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
       patience *= 2;
     }
   };
-  const TouchingResult touching = solve_touching(
-      [&](const Nodes& x) { return look_at(model.contact, X_CM, x); }, solve, loads, state.nodes);
+  Looks before;
+  if (previous.touches) {
+    before = *previous.touches;
+    move_touches(X_CM * previous.X_CM.inverse(), before[on_mandible]);
+  }
+  TouchingResult touching =
+      solve_touching([&](const Nodes& x) { return look_at(model.contact, X_CM, x); }, solve, loads,
+                     state.nodes, {}, before);
   if (state.iterations > worth_making)
     factor.begin(model.net, loads, state.nodes, budget.threads, model.weak_from_this().lock());
   state.factor = std::make_shared<const RollingFactor>(std::move(factor));
   const ContactMeasure contact =
       measure_contact(model.contact, touching.looks, X_CM, model.rest, state.nodes);
+  state.touches = std::make_shared<const Looks>(std::move(touching.looks));
   state.penetration_mm = contact.penetration_mm;
   state.slip_mm = contact.slip_mm;
   state.inverted_prisms = count_inverted(model.net, state.nodes);

@@ -12,40 +12,36 @@ namespace {
 using Eigen::Vector3d;
 using Triangle = std::array<int, 3>;
 
-constexpr double lip_mm = 16;  // of the lips' surfaces, from the mouth's line
-constexpr double lip_edge_mm =
-    7;                           // of the points that may meet the other lip, or teeth from before
-constexpr double corner_mm = 5;  // nearer to a corner both lips are one
+constexpr double lip_edge_mm = 7;  // of the points that may meet teeth from before
+constexpr double led_mm = 12;      // of the points that are led before the teeth
+constexpr double corner_mm = 5;    // nearer to a corner both lips are one
 constexpr double deepest_lip_mm = 0.4;
+constexpr double apart_mm = 0.02;      // between the lips when their nodes have been moved apart
 constexpr double lip_stiffness = 0.5;  // N/mm; lips give way to each other themselves
 constexpr double swept_mm = 10;        // points come this far from where they rest, beside the jaw
 
-/// Surface of the lip on one side: skin, the edge between skin and inner side, and that.
+/// Columns along one lip's edge, from the right corner to the left, both with.
+std::vector<int> lip_edge(const ContactSource& from, int side) {
+  std::vector<int> run = side > 0 ? from.skin.mouth.upper : from.skin.mouth.lower;
+  run.insert(run.begin(), from.skin.mouth.right_corner);
+  run.push_back(from.skin.mouth.left_corner);
+  return run;
+}
+
+/// The side of the lip that meets the other lip: from the skin's edge inward.
 std::vector<Triangle> lip_surface(const ContactSource& from, int side) {
-  const auto on_lip = [&](int column) {
-    return from.columns[column].to_mouth < lip_mm &&
-           (from.side[column] == side || from.columns[column].to_mouth == 0);
-  };
-  const auto node = [&](int column, int sheet) { return node_of(column, sheet, from.sheets); };
-  std::vector<Triangle> surface;
-  std::map<std::pair<int, int>, int> edges;  // directed edges of the lip's triangles
-  const int last = from.sheets - 1;
-  for (const auto& t : from.skin.mesh.triangles) {
-    if (!on_lip(t[0]) || !on_lip(t[1]) || !on_lip(t[2])) continue;
-    if (from.side[t[0]] != side && from.side[t[1]] != side && from.side[t[2]] != side) continue;
-    surface.push_back({node(t[0], 0), node(t[1], 0), node(t[2], 0)});
-    surface.push_back({node(t[0], last), node(t[2], last), node(t[1], last)});
+  std::map<std::pair<int, int>, int> edges;  // directed edges of the skin
+  for (const auto& t : from.skin.mesh.triangles)
     for (int k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
-  }
+  std::vector<Triangle> surface;
+  const auto node = [&](int column, int sheet) { return node_of(column, sheet, from.sheets); };
   const auto wall = [&](int a, int b) {  // the skin's border runs from a to b
-    for (int s = 0; s < last; ++s) {
+    for (int s = 0; s + 1 < from.sheets; ++s) {
       surface.push_back({node(a, s), node(a, s + 1), node(b, s + 1)});
       surface.push_back({node(a, s), node(b, s + 1), node(b, s)});
     }
   };
-  std::vector<int> run = side > 0 ? from.skin.mouth.upper : from.skin.mouth.lower;
-  run.insert(run.begin(), from.skin.mouth.right_corner);
-  run.push_back(from.skin.mouth.left_corner);
+  const std::vector<int> run = lip_edge(from, side);
   for (std::size_t i = 0; i + 1 < run.size(); ++i) {
     if (edges.count({run[i], run[i + 1]}) > 0) wall(run[i], run[i + 1]);
     if (edges.count({run[i + 1], run[i]}) > 0) wall(run[i + 1], run[i]);
@@ -58,13 +54,12 @@ TissueContact::Lip make_lip(const ContactSource& from, int side) {
   if (!from.skin.mouth.found()) return lip;
   lip.surface = lip_surface(from, side);
   const auto& vertices = from.skin.mesh.vertices;
-  for (std::size_t c = 0; c < from.columns.size(); ++c) {
-    if (from.side[c] != side || from.columns[c].to_mouth > lip_edge_mm) continue;
+  for (int c : lip_edge(from, side)) {
     const auto to = [&](int corner) { return (vertices[c] - vertices[corner]).norm(); };
     if (std::min(to(from.skin.mouth.right_corner), to(from.skin.mouth.left_corner)) < corner_mm)
       continue;
     for (int s = 0; s < from.sheets; ++s)
-      lip.points.push_back(NetPoint::of_node(node_of(static_cast<int>(c), s, from.sheets)));
+      lip.points.push_back(NetPoint::of_node(node_of(c, s, from.sheets)));
   }
   lip.allowance.assign(lip.points.size(), 0.0);
   return lip;
@@ -84,6 +79,28 @@ int leave_out_deep(const std::vector<Touch>& touches, TissueContact::Lip& lip) {
   return gone;
 }
 
+/// Ways of the two ends of each column, outer and inner; between them it stays straight.
+struct ColumnWays {
+  Nodes sum;
+  std::vector<double> weight;
+  explicit ColumnWays(std::size_t columns)
+      : sum(2 * columns, Vector3d::Zero()), weight(2 * columns, 0.0) {}
+
+  void add(std::size_t column, double fraction, const Vector3d& way) {
+    sum[2 * column] += (1 - fraction) * way;
+    weight[2 * column] += 1 - fraction;
+    sum[2 * column + 1] += fraction * way;
+    weight[2 * column + 1] += fraction;
+  }
+  Vector3d way(std::size_t column, double fraction) const {
+    const auto end = [&](std::size_t i) {
+      return weight[i] > 0 ? Vector3d(sum[i] / weight[i]) : Vector3d(Vector3d::Zero());
+    };
+    return (1 - fraction) * end(2 * column) + fraction * end(2 * column + 1);
+  }
+  void stop(std::size_t column) { weight[2 * column] = weight[2 * column + 1] = 0; }
+};
+
 TissueContact::Jaw make_jaw(const TissueContact& contact, const Nodes& rest, const TriMesh& mesh,
                             int threads) {
   TissueContact::Jaw jaw;
@@ -102,7 +119,82 @@ TissueContact::Jaw make_jaw(const TissueContact& contact, const Nodes& rest, con
   return jaw;
 }
 
+/// Where the teeth's edges would let a lip's point go either way, it is led to the front.
+void lead_lips(const TissueContact& contact, const Pose& X_CM, const Nodes& x,
+               std::vector<Touch>& touches) {
+  constexpr double least = 0.5;    // cosine between a plane and the front
+  constexpr double behind = -0.8;  // what lies behind the teeth stays there
+  for (auto& touch : touches) {
+    Vector3d front = contact.front[touch.point];
+    if (front.isZero()) continue;
+    if (contact.lower_lip[touch.point]) front = X_CM.R * front;
+    Vector3d& normal = touch.row.normal;
+    const double cosine = normal.dot(front);
+    if (cosine >= least || cosine < behind) continue;
+    normal = least * front + std::sqrt(1 - least * least) * (normal - cosine * front).normalized();
+    touch.row.offset = touch.row.along(x) - touch.gap;
+  }
+}
+
 }  // namespace
+
+double part_closed_lips(const ContactSource& from, Nodes& rest) {
+  constexpr int most_rounds = 60;
+  constexpr double least_share = 0.4;  // of a prism's volume that must remain
+  const TissueContact::Lip upper = make_lip(from, +1), lower = make_lip(from, -1);
+  const Nodes before = rest;
+  const auto fraction = [&](int node) {
+    const int outer = node - node % from.sheets, inner = outer + from.sheets - 1;
+    return (before[node] - before[outer]).norm() / (before[inner] - before[outer]).norm();
+  };
+  const auto sound = [&](const Eigen::Vector3i& t) {
+    for (int s = 0; s + 1 < from.sheets; ++s) {
+      std::array<int, 6> prism;
+      for (int k = 0; k < 3; ++k) {
+        prism[k] = node_of(t[k], s, from.sheets);
+        prism[k + 3] = node_of(t[k], s + 1, from.sheets);
+      }
+      if (prism_volume(rest, prism) < least_share * prism_volume(before, prism)) return false;
+    }
+    return true;
+  };
+  for (int round = 0; round < most_rounds; ++round) {
+    std::vector<Touch> touches;
+    touch_surface(upper.points, upper.allowance, lower.surface, rest, {}, touches);
+    touch_surface(lower.points, lower.allowance, upper.surface, rest, {}, touches);
+    ColumnWays ways(from.columns.size());
+    bool any = false;
+    for (const auto& touch : touches) {
+      if (touch.gap >= 0) continue;
+      any = true;
+      const ContactRow& row = touch.row;
+      double square = 0;
+      for (int k = 0; k < row.count; ++k) square += row.weight[k] * row.weight[k];
+      for (int k = 0; k < row.count; ++k)
+        ways.add(row.node[k] / from.sheets, fraction(row.node[k]),
+                 (apart_mm - touch.gap) * row.weight[k] / square * row.normal);
+    }
+    if (!any) break;
+    const Nodes last = rest;
+    const auto move = [&](int column) {
+      for (int s = 0; s < from.sheets; ++s) {
+        const int node = node_of(column, s, from.sheets);
+        rest[node] = last[node] + ways.way(column, fraction(node));
+      }
+    };
+    for (std::size_t c = 0; c < from.columns.size(); ++c) move(static_cast<int>(c));
+    for (const auto& t : from.skin.mesh.triangles)
+      if (!sound(t))
+        for (int column : t) {
+          ways.stop(column);
+          move(column);
+        }
+  }
+  double farthest = 0;
+  for (std::size_t n = 0; n < rest.size(); ++n)
+    farthest = std::max(farthest, (rest[n] - before[n]).norm());
+  return farthest;
+}
 
 std::vector<std::array<int, 2>> lips_that_may_touch(const TissueContact& contact,
                                                     const Nodes& rest) {
@@ -138,6 +230,17 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
               c = node_of(t[2], last, from.sheets);
     if (free(a) && free(b) && free(c)) contact.points.push_back(NetPoint::centre(a, b, c));
   }
+  for (const auto& point : contact.points) {
+    Vector3d front = Vector3d::Zero();
+    bool lip = true;
+    for (int k = 0; k < point.count; ++k) {
+      const int column = point.node[k] / from.sheets;
+      lip = lip && from.columns[column].to_mouth < led_mm;
+      front -= from.columns[column].inward;
+    }
+    contact.front.push_back(lip ? Vector3d(front.normalized()) : Vector3d::Zero());
+    contact.lower_lip.push_back(from.side[point.node[0] / from.sheets] < 0);
+  }
   contact.cranium = make_jaw(contact, from.rest, cranium, threads);
   contact.mandible = make_jaw(contact, from.rest, mandible, threads);
 
@@ -164,6 +267,8 @@ Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x) {
   if (contact.mandible.obstacle)
     touch_obstacle(contact.points, contact.mandible.allowance, *contact.mandible.obstacle, X_CM, x,
                    settings, looks[on_mandible]);
+  lead_lips(contact, X_CM, x, looks[on_cranium]);
+  lead_lips(contact, X_CM, x, looks[on_mandible]);
   const TouchSettings soft{.stiffness = lip_stiffness};
   touch_surface(contact.upper.points, contact.upper.allowance, contact.lower.surface, x, soft,
                 looks[upper_on_lower]);

@@ -20,6 +20,10 @@ struct TissueContact {
   };
   std::vector<NetPoint> points;
   Jaw cranium, mandible;
+  /// Of each point of the lips, the way out of the mouth at rest (unit); 0 for others. Lips belong
+  /// before the teeth: on edges they are led that way, so that none is caught behind.
+  std::vector<Eigen::Vector3d> front;
+  std::vector<char> lower_lip;  // of each point: it turns with the mandible
 
   /// Points of one lip, which must not enter the surface of the other.
   struct Lip {
@@ -40,6 +44,10 @@ struct ContactSource {
   const Nodes& rest;
   const std::vector<char>& held;  // of each node: anchored firmly
 };
+/// Moves the nodes of closed lips apart where the coarse lips overlap, so that at rest neither is
+/// inside the other. Gives the farthest way, mm. `from.rest` and `from.held` are not used.
+double part_closed_lips(const ContactSource& from, Nodes& rest);
+
 /// Cranium and mandible with teeth, merged. Fields are kept in the cache of the user.
 TissueContact make_contact(const ContactSource& source, const TriMesh& cranium,
                            const TriMesh& mandible, int threads = 1);

@@ -1,0 +1,87 @@
+// Lips slide on teeth and on each other, enter neither, and come back to where they rested.
+#include "sim/tissue/lips.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "sim/case/case_io.h"
+#include "sim/phantom/phantom.h"
+#include "sim/tissue/tissue.h"
+#include "tests/support/real_cases.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Turned about the condyles, which slide forward and down; the jaw goes aside.
+Pose moved(const Case& patient, double open_deg, double aside_mm) {
+  constexpr double degree = std::numbers::pi / 180;
+  const Vector3d condyles =
+      0.5 * (*patient.landmarks.find("left_condyle") + *patient.landmarks.find("right_condyle"));
+  const double slide = std::max(0.0, open_deg - 4) * 0.4;
+  Pose X_CM;
+  X_CM.R = Eigen::Quaterniond(Eigen::AngleAxisd(open_deg * degree, Vector3d::UnitX()));
+  X_CM.t =
+      condyles - X_CM.R * condyles + Vector3d(aside_mm, -slide, -7.3 * (1 - std::exp(-slide / 6)));
+  return X_CM;
+}
+
+struct Way {
+  double penetration_mm = 0, slip_mm = 0, left_behind_mm = 0;
+  int bad = 0;  // frames that did not converge, or with a prism turned inside out
+};
+
+/// There and back.
+Way travel(const Case& patient, double open_deg, double aside_mm, int frames) {
+  const auto model = build_tissue(patient);
+  EXPECT_EQ(summary(*model).lip_points_left_out, 0);
+  const TissueState rest = rest_tissue(*model);
+  TissueState state = rest;
+  Way way;
+  for (int i = 1; i <= frames; ++i) {
+    const double part = 0.5 * (1 - std::cos(2 * std::numbers::pi * i / frames));
+    state = follow(*model, state, moved(patient, part * open_deg, part * aside_mm));
+    way.penetration_mm = std::max(way.penetration_mm, state.penetration_mm);
+    way.slip_mm = std::max(way.slip_mm, state.slip_mm);
+    way.bad += !state.converged || state.kept || state.inverted_prisms > 0;
+  }
+  state = follow(*model, state, Pose{});
+  for (std::size_t i = 0; i < rest.nodes.size(); ++i)
+    way.left_behind_mm = std::max(way.left_behind_mm, (state.nodes[i] - rest.nodes[i]).norm());
+  return way;
+}
+
+void expect_good(const Way& way) {
+  EXPECT_LT(way.penetration_mm, 0.2);
+  EXPECT_GT(way.slip_mm, 2);
+  EXPECT_LT(way.left_behind_mm, 0.1);
+  EXPECT_EQ(way.bad, 0);
+}
+
+Case builtin() {
+  Case patient = builtin_patient();
+  part_lips(patient);
+  return patient;
+}
+
+TEST(BuiltInLips, OpenCloseAndRestWhereTheyRested) { expect_good(travel(builtin(), 38, 0, 140)); }
+
+TEST(BuiltInLips, GlideAsideOverTeethAndBack) { expect_good(travel(builtin(), 3, 8, 70)); }
+
+TEST(CaseBadinLips, OpenCloseAndRestWhereTheyRested) {
+  const auto folder = test::real_data() / "case-badin";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "real anatomy absent";
+  Case patient = import_meshes({.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
+                                          {Role::mandible, folder / "mandible.ply"},
+                                          {Role::face, folder / "face_skin.ply"}},
+                                .landmarks = folder / "markers.csv"});
+  part_lips(patient);
+  expect_good(travel(patient, 36, 0, 140));
+}
+
+}  // namespace
+}  // namespace condyle
