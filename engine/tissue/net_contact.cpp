@@ -168,7 +168,7 @@ double plane_error(const std::vector<Touch>& used, const std::vector<Touch>& now
 std::vector<Touch> carried_on(const std::vector<Touch>& used, std::vector<Touch> now,
                               const Nodes& x) {
   constexpr double same_face = 0.9;  // cosine between the planes
-  constexpr double stale_mm = 0.5;   // a plane serves no longer when its point has gone this far
+  constexpr double stale_mm = 0.1;   // a plane serves no longer when its point has gone this far
   std::vector<Touch> both;
   std::size_t i = 0;
   for (auto& touch : now) {
@@ -179,7 +179,8 @@ std::vector<Touch> carried_on(const std::vector<Touch>& used, std::vector<Touch>
       const double cosine = used[i].row.normal.dot(both[at].row.normal);
       if (cosine >= same_face) {
         both[at].push = std::max(both[at].push, cosine * used[i].pressed(x));
-      } else if ((used[i].at - both[at].at).norm() < stale_mm && used[i].row.gap(x) < stale_mm) {
+      } else if ((used[i].at - both[at].at).norm() < stale_mm &&
+                 used[i].row.gap(x) - cosine * both[at].gap > 0) {  // a groove, not an edge
         both.push_back(used[i]);
         both.back().push = used[i].pressed(x);
       }

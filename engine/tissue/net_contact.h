@@ -106,9 +106,9 @@ void set_contacts(const Looks& looks, NetLoads& loads);
 /// A solve in which the planes are laid anew at each answer, until they stand for the surfaces
 /// there: then it is a minimum of the energy with the surfaces themselves.
 struct TouchingSettings {
-  int most_looks = 5;
+  int most_looks = 8;
   double tolerance_mm = 0.03;  // of push, see plane_error
-  double gap_mm = 0.02;        // what presses is at most so far from what it presses on
+  double gap_mm = 0.03;        // what presses is at most so far from what it presses on
 };
 struct TouchingResult {
   int solves = 0;

@@ -133,9 +133,11 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
     before = *previous.touches;
     move_touches(X_CM * previous.X_CM.inverse(), before[on_mandible]);
   }
+  const TouchingSettings contact_settings{.tolerance_mm = 3 * budget.tolerance_mm,
+                                          .gap_mm = 3 * budget.tolerance_mm};
   TouchingResult touching =
       solve_touching([&](const Nodes& x) { return look_at(model.contact, X_CM, x); }, solve, loads,
-                     state.nodes, {}, before);
+                     state.nodes, contact_settings, before);
   if (state.iterations > worth_making)
     factor.begin(model.net, loads, state.nodes, budget.threads, model.weak_from_this().lock());
   state.factor = std::make_shared<const RollingFactor>(std::move(factor));

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 using Triangle = std::array<int, 3>;
 
 constexpr double lip_edge_mm = 7;  // of the points that may meet teeth from before
-constexpr double led_mm = 12;      // of the points that are led before the teeth
+constexpr double led_mm = 8;       // of the points that are led before the teeth
 constexpr double corner_mm = 5;    // nearer to a corner both lips are one
 constexpr double deepest_lip_mm = 0.4;
 constexpr double apart_mm = 0.02;      // between the lips when their nodes have been moved apart
@@ -122,16 +122,18 @@ TissueContact::Jaw make_jaw(const TissueContact& contact, const Nodes& rest, con
 /// Where the teeth's edges would let a lip's point go either way, it is led to the front.
 void lead_lips(const TissueContact& contact, const Pose& X_CM, const Nodes& x,
                std::vector<Touch>& touches) {
-  constexpr double least = 0.5;    // cosine between a plane and the front
-  constexpr double behind = -0.8;  // what lies behind the teeth stays there
+  constexpr double least = 0.5;  // cosine between a plane and the front
   for (auto& touch : touches) {
     Vector3d front = contact.front[touch.point];
     if (front.isZero()) continue;
     if (contact.lower_lip[touch.point]) front = X_CM.R * front;
     Vector3d& normal = touch.row.normal;
     const double cosine = normal.dot(front);
-    if (cosine >= least || cosine < behind) continue;
-    normal = least * front + std::sqrt(1 - least * least) * (normal - cosine * front).normalized();
+    if (cosine >= least) continue;
+    const Vector3d across = normal - cosine * front;
+    normal = least * front;
+    if (across.norm() > 1e-6) normal += std::sqrt(1 - least * least) * across.normalized();
+    normal.normalize();
     touch.row.offset = touch.row.along(x) - touch.gap;
   }
 }
