@@ -24,7 +24,8 @@
 namespace condyle {
 namespace {
 
-constexpr double displacement_end_mm = 50;  // fixed: pictures can be compared
+// Fixed, so that pictures can be compared; nothing goes farther at full opening.
+constexpr double displacement_end_mm = 60;
 
 /// Times of the frames: the whole motion, first and last included.
 struct FrameTimes {

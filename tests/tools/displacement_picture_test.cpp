@@ -1,0 +1,53 @@
+// The map of how far the skin has come, as it is recorded.
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "tests/support/program.h"
+
+namespace condyle::test {
+namespace {
+
+struct Picture {
+  png_image head{};
+  std::vector<std::uint8_t> rgb;
+
+  explicit Picture(const std::string& file) {
+    head.version = PNG_IMAGE_VERSION;
+    if (!png_image_begin_read_from_file(&head, file.c_str())) return;
+    head.format = PNG_FORMAT_RGB;
+    rgb.resize(PNG_IMAGE_SIZE(head));
+    png_image_finish_read(&head, nullptr, rgb.data(), 0, nullptr);
+  }
+  const std::uint8_t* at(double x, double y) const {
+    const auto column = static_cast<std::size_t>(x * head.width),
+               row = static_cast<std::size_t>(y * head.height);
+    return &rgb[3 * (row * head.width + column)];
+  }
+};
+
+TEST(Record, ColoursTheSkinByItsWayFromRest) {
+  const Folder folder;
+  const auto outcome =
+      condyle({"record", "--motion", "open 30 over 0.25", "--frames", "2", "--out", folder / "out",
+               "--camera", "front", "--size", "350x400", "--show", "skin,displacement"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const Picture rest(folder / "out/frames/000000.png"), open(folder / "out/frames/000001.png");
+  ASSERT_FALSE(rest.rgb.empty());
+  ASSERT_FALSE(open.rgb.empty());
+  // Nothing has moved: all is of the colour for 0, dark violet. Opened, the chin is green, the
+  // forehead is as it was.
+  const auto violet = [](const std::uint8_t* p) { return p[2] > p[1] + 20 && p[1] < 60; };
+  constexpr double forehead[] = {0.5, 0.25}, chin[] = {0.5, 0.72};
+  EXPECT_TRUE(violet(rest.at(forehead[0], forehead[1])));
+  EXPECT_TRUE(violet(rest.at(chin[0], chin[1])));
+  EXPECT_TRUE(violet(open.at(forehead[0], forehead[1])));
+  const auto* p = open.at(chin[0], chin[1]);
+  EXPECT_GT(p[1], p[0] + 20) << int{p[0]} << ' ' << int{p[1]} << ' ' << int{p[2]};
+}
+
+}  // namespace
+}  // namespace condyle::test
