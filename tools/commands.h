@@ -72,6 +72,13 @@ struct OccludeOptions {
   double paper_mm = 0.1;  // what is marked when bitten on
 };
 
+struct LetGoOptions {
+  std::filesystem::path patient, out;
+  std::string part;  // empty: the only free one
+  std::vector<double> push_N;
+  double friction = 0.3;
+};
+
 struct ViewOptions {
   MotionOptions motion;
   double ui_scale = 1;
@@ -93,6 +100,7 @@ struct BenchOptions {
 int run_record(const RecordOptions& options, const CommonOptions& common);
 int run_check(const CheckOptions& options, const CommonOptions& common);
 int run_occlude(const OccludeOptions& options, const CommonOptions& common);
+int run_let_go(const LetGoOptions& options, const CommonOptions& common);
 int run_view(const ViewOptions& options, const CommonOptions& common);
 int run_import(const ImportOptions& options, const CommonOptions& common);
 int run_info(const std::filesystem::path& what, const CommonOptions& common);

@@ -274,6 +274,22 @@ int run_program(int argc, char** argv) {
                               "Folder for report.html with its picture, report.json, pose.csv, "
                               "motion.csv");
 
+  LetGoOptions let_go;
+  auto* let_go_command =
+      add_command(app, "let-go", "Let a segment or transplant settle on the bone under a push",
+                  "condyle let-go mycase --part transplant --push 0,5,0 --out settled");
+  let_go_command->add_option("CASE", let_go.patient, "Folder with case.json")->required();
+  let_go_command->add_option("--part", let_go.part, "Name of the part (the only free one)");
+  let_go_command
+      ->add_option("--push", let_go.push_N, "Push of the hand to the left, back and up, N")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z")
+      ->required();
+  let_go_command->add_option("--friction", let_go.friction, "Coefficient of friction (0.3)")
+      ->check(within(0.0, 2.0));
+  let_go_command->add_option("--out", let_go.out, "Folder of the case with the part where it lies");
+
   ImportOptions import;
   auto* import_command =
       add_command(app, "import", "Make a case from your files",
@@ -372,6 +388,7 @@ int run_program(int argc, char** argv) {
   if (run_command->parsed()) return run_record(run, common);
   if (check_command->parsed()) return run_check(check, common);
   if (occlude_command->parsed()) return run_occlude(occlude, common);
+  if (let_go_command->parsed()) return run_let_go(let_go, common);
   if (meshes->parsed()) {
     for (const auto& role : roles)
       for (const auto& file : role.files) import.request.files.push_back({role.role, file});

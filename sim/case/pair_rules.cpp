@@ -61,6 +61,14 @@ void check_rules(const Case& patient, std::span<const PairRule> rules, const std
       if (!is_rule_part(patient, name))
         throw InputError(pair + "no bone or teeth are called \"" + name + "\"; there are " +
                          rule_part_names(patient) + ", and * for any");
+    if (rule.a == rule.b && rule.a != "*")
+      throw InputError(pair + "a pair has two different parts");
+    if (rule.gap_mm != 0 && rule.policy != PairPolicy::guided)
+      throw InputError(pair + "a gap is kept by guided pairs only, not by " +
+                       policy_name(rule.policy) + " ones");
+    if (rule.margin_mm && rule.policy != PairPolicy::forbidden)
+      throw InputError(pair + "a margin is kept by forbidden pairs only, not by " +
+                       policy_name(rule.policy) + " ones");
     if (rule.margin_mm && !(*rule.margin_mm >= 0 && std::isfinite(*rule.margin_mm)))
       throw InputError(pair +
                        fmt::format("a margin of {} mm; it must be 0 or more", *rule.margin_mm));

@@ -9,7 +9,6 @@ namespace condyle {
 namespace {
 
 constexpr double deep_mm = 0.5;
-constexpr int most_pushes = 8;
 
 struct Bone {
   const Part* part;
@@ -18,25 +17,51 @@ struct Bone {
   explicit Bone(const Part& of) : part(&of), surface(of.mesh), solid(of.mesh) {}
 };
 
-/// Out of the bone that it lies deepest in; false when it is in none, or no way out is found.
-bool push_once(Part& part, const std::vector<Bone>& others, Case& patient) {
-  const Bone own(part);
-  const Bone* in = nullptr;
-  double depth = deep_mm;
+/// The bone that it lies deepest in; none when it is in none.
+struct Inside {
+  const Bone* bone = nullptr;
+  double depth_mm = deep_mm;
+};
+Inside deepest_bone(const Bone& own, const std::vector<Bone>& others) {
+  Inside in;
   for (const auto& other : others)
-    if (const double d = overlap_depth(other.solid, {}, own.solid, {}).depth_mm; d > depth) {
-      depth = d;
-      in = &other;
-    }
-  if (!in) return false;
-  const PushOut out = push_out({in->surface, in->solid}, {}, {own.surface, own.solid}, {});
-  if (out.status != PushOut::Status::found) return false;
+    if (const double d = overlap_depth(other.solid, {}, own.solid, {}).depth_mm; d > in.depth_mm)
+      in = {&other, d};
+  return in;
+}
+
+/// Out of all that have an inside at once: out of one alone it could come into the next.
+void push(Part& part, const std::vector<Bone>& others, Case& patient) {
+  const Bone own(part);
+  const Inside in = deepest_bone(own, others);
+  if (!in.bone) return;
+  TriMesh together;
+  for (const auto& other : others) {
+    if (other.solid.open_shell_count() > 0) continue;
+    const auto first = static_cast<int>(together.vertices.size());
+    const TriMesh& mesh = other.part->mesh;
+    together.vertices.insert(together.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const auto& t : mesh.triangles)
+      together.triangles.push_back(t + Eigen::Vector3i::Constant(first));
+  }
+  PushOut out;
+  if (!together.empty()) {
+    const CollisionMesh surface(together);
+    const Solid solid(together);
+    out = push_out({surface, solid}, {}, {own.surface, own.solid}, {});
+  }
+  if (out.status != PushOut::Status::found) {
+    patient.notes.push_back(
+        fmt::format("{}: lies {:.1f} mm deep inside {}, and no way out of all bones was found; "
+                    "move it by hand",
+                    part.name, in.depth_mm, in.bone->part->name));
+    return;
+  }
   const Eigen::Vector3d way = out.length_mm * out.direction;
   for (auto& v : part.mesh.vertices) v += way;
   patient.notes.push_back(fmt::format(
       "{}: was {:.1f} mm deep inside {} and was moved out by ({:.2f}, {:.2f}, {:.2f}) mm",
-      part.name, depth, in->part->name, way.x(), way.y(), way.z()));
-  return true;
+      part.name, in.depth_mm, in.bone->part->name, way.x(), way.y(), way.z()));
 }
 
 }  // namespace
@@ -46,8 +71,7 @@ void push_out_free_parts(Case& patient) {
   for (const auto& part : patient.parts)
     if (collides(part.role) && body_of(part.role) != Body::free) others.emplace_back(part);
   for (const std::size_t i : free_parts(patient.parts)) {
-    for (int k = 0; k < most_pushes && push_once(patient.parts[i], others, patient); ++k) {
-    }
+    push(patient.parts[i], others, patient);
     others.emplace_back(patient.parts[i]);
   }
 }

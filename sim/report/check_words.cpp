@@ -36,13 +36,20 @@ std::vector<std::size_t> pairs_to_show(const ClearanceCheck& check, std::size_t 
 std::string summary_words(const ClearanceCheck& check) {
   if (check.pairs.empty())
     return "Nothing to check: the case has no two bones of which one moves against the other.";
-  int collide = 0, near = 0, rest = 0;
+  int collide = 0, near = 0, rest = 0, overlap = 0;
+  constexpr double told_overlap_mm = 0.05;
   for (const auto& pair : check.pairs) {
     collide += pair.collides;
     near += !pair.collides && pair.too_near;
-    rest += !pair.collides && !pair.too_near && pair.at_rest;
+    rest += !pair.collides && !pair.too_near && (pair.at_rest || pair.coincide);
+    overlap += pair.rest_depth_mm > told_overlap_mm;
   }
-  if (!check.violated()) return "No violation. Every pair keeps its rule during the whole motion.";
+  if (!check.violated()) {
+    const std::string words = "No violation. Every pair keeps its rule during the whole motion";
+    if (overlap == 0) return words + ".";
+    return words + fmt::format(", but {} {} already at rest.", overlap,
+                               overlap == 1 ? "pair overlaps" : "pairs overlap");
+  }
   std::string words;
   const auto add = [&](int count, const char* one, const char* several) {
     if (count > 0)

@@ -38,6 +38,7 @@ struct PairVerdict {
   bool collides = false;  // the motion makes them touch, or sink deeper than at rest
   bool too_near = false;  // the motion brings them nearer than keep_mm
   bool at_rest = false;   // already at rest they are nearer than keep_mm, or too deep
+  bool coincide = false;  // they share much room though neither surface is deep in the other
 
   /// Deepest beyond rest, else nearest, the first if several.
   struct Worst {
@@ -52,7 +53,7 @@ struct PairVerdict {
 
   std::vector<double> clearance_mm;  // one per frame; negative: depth of the overlap
 
-  bool violated() const { return collides || too_near || at_rest; }
+  bool violated() const { return collides || too_near || at_rest || coincide; }
 };
 
 struct ClearanceCheck {

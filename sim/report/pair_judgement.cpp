@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/report/clearance.h"
@@ -10,11 +11,21 @@ namespace {
 // Faces of one cut may overlap by this: meshes of the two sides need not be the same.
 constexpr double cut_overlap_mm = 0.1;
 
+// Less than this is within what contact itself keeps to.
+constexpr double least_overlap_mm = 0.05;
+
 std::string number(double mm) { return fmt::format("{:.2f} mm", mm); }
 
 }  // namespace
 
 void judge(PairVerdict& pair, double slack_mm) {
+  slack_mm = std::max(slack_mm, least_overlap_mm);
+  // Of a copy in the same place no point is deep in the other; its volume tells.
+  const auto& worst = pair.worst;
+  const double thick_mm =
+      worst.measure.area_mm2 > 0 ? worst.measure.volume_mm3 / worst.measure.area_mm2 : 0;
+  pair.coincide = worst.sample.contact.touching && worst.measure.volume_known &&
+                  thick_mm > 2 * worst.sample.depth_mm + 2 * cut_overlap_mm;
   const bool apart_at_rest = pair.rest_distance_mm > 0;
   // Bones apart at rest must not touch at all: a thin shell gives no depth to measure.
   const bool meets = (apart_at_rest && pair.first_touch) || pair.beyond_rest_mm > slack_mm;
@@ -61,6 +72,9 @@ std::string verdict_words(const PairVerdict& pair) {
   const auto add = [&words](const std::string& more) {
     words += (words.empty() ? "" : "; ") + more;
   };
+  if (pair.coincide)
+    add(fmt::format("they fill the same room: {:.0f} mm\u00b3 belong to both",
+                    pair.worst.measure.volume_mm3));
   if (pair.collides) {
     const MotionTime& when = pair.beyond_rest_mm > 0 ? pair.deepest_at : *pair.first_touch;
     const std::string at = " at " + tenths(when.opening_mm) + " mm opening";

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include "engine/collide/solid.h"
 #include "engine/collide/surface_samples.h"
@@ -11,11 +12,14 @@ namespace condyle::test {
 /// millimetre apart, on sharp edges a twentieth.
 class OverlapOracle {
  public:
-  explicit OverlapOracle(const TriMesh& mesh)
+  /// `region`: only there is its surface asked for in the other.
+  explicit OverlapOracle(const TriMesh& mesh, const std::optional<Box>& region = {})
       : solid_(mesh),
-        samples_(sample_surface(
-            mesh,
-            {.spacing_mm = 0.17, .edge_rise_mm = 0.002, .edge_spacing_mm = 0.05, .region = {}, .thin_share = 0})) {}
+        samples_(sample_surface(mesh, {.spacing_mm = 0.17,
+                                       .edge_rise_mm = 0.002,
+                                       .edge_spacing_mm = 0.05,
+                                       .region = region,
+                                       .thin_share = 0})) {}
 
   friend double deepest(const OverlapOracle& a, const OverlapOracle& b, const Pose& X_AB) {
     double depth = 0;

@@ -182,6 +182,9 @@ TEST(Check, BadRulesAndNumbersAreRefusedBeforeAnythingIsWritten) {
   refused("--pair", "maxilla,mandible,perhaps", {"perhaps", "forbidden"});
   refused("--pair", "maxilla,mandible,guided,gap=-1", {"-1"});
   refused("--pair", "maxilla,mandible,forbidden,margin=nan", {"nan"});
+  refused("--pair", "mandible,mandible,forbidden", {"two different parts"});
+  refused("--pair", "maxilla,mandible,allowed,gap=1", {"guided pairs only"});
+  refused("--pair", "maxilla,mandible,cut-face,margin=2", {"forbidden pairs only"});
   refused("--margin", "-0.5", {"--margin", "-0.5"});
   refused("--margin", "nan", {"--margin", "nan"});
   refused("--frames", "0", {"--frames", "0"});

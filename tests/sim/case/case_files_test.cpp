@@ -88,8 +88,9 @@ Case sample_with_free_parts() {
   patient.parts.push_back({"segment", Role::segment, test::sphere(1, 5), {}, Body::cranium});
   patient.parts.push_back(
       {"transplant", Role::transplant, test::sphere(1, 5, {20, 0, 0}), {}, Body::mandible});
-  patient.pair_rules = {{"mandible", "segment", PairPolicy::guided, 1.0 / 3, 0.1},
-                        {"*", "transplant", PairPolicy::cut_face, {}, 0}};
+  patient.pair_rules = {{"mandible", "segment", PairPolicy::guided, std::nullopt, 0.1},
+                        {"*", "transplant", PairPolicy::cut_face, {}, 0},
+                        {"lower-teeth", "transplant", PairPolicy::forbidden, 1.0 / 3, 0}};
   return patient;
 }
 
@@ -103,7 +104,7 @@ TEST(CaseFiles, FreePartsAndRulesComeBackAsTheyWere) {
   EXPECT_EQ(loaded.parts[2].carrier, Body::cranium);
   EXPECT_EQ(loaded.parts[3].role, Role::transplant);
   EXPECT_EQ(loaded.parts[3].carrier, Body::mandible);
-  ASSERT_EQ(loaded.pair_rules.size(), 2u);
+  ASSERT_EQ(loaded.pair_rules.size(), 3u);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(loaded.pair_rules[i].a, saved.pair_rules[i].a);
     EXPECT_EQ(loaded.pair_rules[i].b, saved.pair_rules[i].b);

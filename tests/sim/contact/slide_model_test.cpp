@@ -189,6 +189,17 @@ TEST(PushOut, AFreePartThatStartsDeepIsNotedAndCanBeMovedOut) {
   EXPECT_NEAR(bounding_box(patient.parts[2].mesh).center().norm(), 13, 0.6);  // some 2 mm outward
 }
 
+TEST(PushOut, ASegmentBetweenTwoBonesLeavesBoth) {
+  // Out of either bone alone the way leads into the other, 1 mm beyond.
+  Case patient = test::box_patient();
+  patient.parts.push_back({"segment", Role::segment, test::box({-5, -60, -52}, {5, -50, -42}), {}});
+  push_out_free_parts(patient);
+  ASSERT_EQ(patient.notes.size(), 1u);
+  EXPECT_NE(patient.notes[0].find("was moved out"), std::string::npos) << patient.notes[0];
+  EXPECT_EQ(ContactModel(patient).at_rest().max_penetration_mm(), 0);
+  for (const auto& pair : ContactModel(patient).at_rest().pairs) EXPECT_LE(pair.depth_mm, 0.02);
+}
+
 TEST(SlideRealAnatomy, BadinDrivenUpSlidesOn) {
   const auto patient = test::case_badin();
   if (!patient) GTEST_SKIP() << "real anatomy absent";

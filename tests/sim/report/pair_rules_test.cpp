@@ -99,6 +99,32 @@ TEST(PairRules, CutFacesMayLieOnEachOtherButNotSinkIn) {
   EXPECT_EQ(breaks(verdict(rule, -1, 0, -0.3)), "at rest ");
 }
 
+TEST(PairRules, CopiesInOnePlaceAreNotTakenForTouching) {
+  // No point of either is deep in the other.
+  for (const double aside : {0.0, 0.05}) {
+    Case patient = ball_below();
+    const auto graft = [&](const char* name, double x) {
+      Part part{name, Role::transplant, box({x, -70, -56}, {x + 10, -60, -46}), {}};
+      part.carrier = Body::cranium;
+      return part;
+    };
+    patient.parts.push_back(graft("graft", -20));
+    patient.parts.push_back(graft("graft-2", -20 + aside));
+    const Scene scene = make_scene(patient);
+    const auto check = check_clearance(scene, lift(0.1), {.sampling = {.frames = 2}}, {});
+    int found = 0;
+    for (const auto& pair : check.pairs) {
+      if (pair.a != "graft" || pair.b != "graft-2") continue;
+      ++found;
+      EXPECT_TRUE(pair.coincide);
+      EXPECT_TRUE(pair.violated());
+      EXPECT_NE(verdict_words(pair).find("belong to both"), std::string::npos)
+          << verdict_words(pair);
+    }
+    EXPECT_EQ(found, 1);
+  }
+}
+
 TEST(PairRules, SegmentsAndTransplantsAreCheckedWithAllOtherBodies) {
   Case patient = ball_below();
   Part segment{"graft", Role::transplant, box({-20, -70, -46}, {-10, -60, -40.5}), {}};
