@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/core/error.h"
+#include "engine/mesh/measure.h"
 #include "engine/mesh/triangle_tree.h"
 #include "sim/case/import_checks.h"
 
@@ -22,6 +23,20 @@ double distance_to_body(const Case& patient, const Part& part, Body body) {
   return nearest;
 }
 
+/// How deep a vertex of the part lies in a bone or tooth of the body, mm; 0 outside all.
+double depth_in_body(const Case& patient, const Part& part, Body body) {
+  double deepest = 0;
+  for (const auto& other : patient.parts) {
+    if (body_of(other.role) != body || !collides(other.role)) continue;
+    const TriangleTree tree(other.mesh);
+    const Box box = bounding_box(other.mesh);
+    for (const auto& v : part.mesh.vertices)
+      if (box.contains(v, 0) && tree.winding_number(v) > 0.5)
+        deepest = std::max(deepest, tree.nearest(v).distance);
+  }
+  return deepest;
+}
+
 }  // namespace
 
 void choose_carriers(Case& patient, const std::map<std::string, Body>& asked) {
@@ -36,11 +51,17 @@ void choose_carriers(Case& patient, const std::map<std::string, Body>& asked) {
     const double to_cranium = distance_to_body(patient, part, Body::cranium),
                  to_mandible = distance_to_body(patient, part, Body::mandible);
     part.carrier = to_mandible < to_cranium ? Body::mandible : Body::cranium;
-    patient.notes.push_back(fmt::format(
-        "{}: lies {:.1f} mm from the {} and goes along with it; --carrier-of {}={} would change "
-        "that",
-        part.name, std::min(to_cranium, to_mandible), carrier_name(part.carrier), part.name,
-        carrier_name(part.carrier == Body::mandible ? Body::cranium : Body::mandible)));
+    constexpr double deep_mm = 0.5;
+    const double depth = depth_in_body(patient, part, part.carrier);
+    const std::string where =
+        depth > deep_mm ? fmt::format("{:.1f} mm deep inside", depth)
+                        : fmt::format("{:.1f} mm from", std::min(to_cranium, to_mandible));
+    patient.notes.push_back(
+        fmt::format("{}: lies {} the {} and goes along with it; --carrier-of {}={} would change "
+                    "that{}",
+                    part.name, where, carrier_name(part.carrier), part.name,
+                    carrier_name(part.carrier == Body::mandible ? Body::cranium : Body::mandible),
+                    depth > deep_mm ? ", --push-out moves it out" : ""));
   }
   for (const auto& [name, body] : asked) {
     const auto named = [&](const Part& part) {

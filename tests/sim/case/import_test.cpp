@@ -97,6 +97,9 @@ TEST_F(Import, FreePartsGoAlongWithTheNearerBoneUnlessToldOtherwise) {
   EXPECT_EQ(carrier(patient, "segment-2"), "cranium");
   EXPECT_EQ(carrier(patient, "transplant"), "mandible");
   EXPECT_TRUE(has_note(patient, "segment-2: lies 2.0 mm from the cranium"));
+  ImportRequest deep = request;
+  deep.files[3] = {Role::segment, mesh("inner.ply", test::cuboid({-2, -47, 58}, {2, -43, 62}))};
+  EXPECT_TRUE(has_note(import_meshes(deep), "segment-2: lies 2.0 mm deep inside the cranium"));
   request.carriers = {{"segment-2", Body::mandible}};
   EXPECT_EQ(carrier(import_meshes(request), "segment-2"), "mandible");
   request.carriers = {{"segment-9", Body::mandible}};
