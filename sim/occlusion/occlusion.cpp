@@ -13,7 +13,7 @@
 namespace condyle {
 namespace {
 
-constexpr double farthest_start_mm = 25;
+constexpr double farthest_start_mm = 25, farthest_turn_deg = 30;
 constexpr double residual_share = 0.01;  // of the closing force, that may be left at rest
 constexpr double least_side_share = 0.05;
 constexpr double most_joint_share = 0.5;
@@ -100,6 +100,12 @@ Bite BiteFinder::find(const Pose& start, const Progress& progress) const {
           "the start holds the lower teeth {:.3g} mm from where they are in the case; a bite is "
           "looked for from at most {:.0f} mm away",
           way, farthest_start_mm));
+  const double turn_deg = rotation_angle(start) * 180 / std::numbers::pi;
+  if (turn_deg > farthest_turn_deg)
+    throw InputError(fmt::format(
+        "the start turns the lower teeth by {:.3g} degrees; a bite is looked for from at most "
+        "{:.0f} degrees away",
+        turn_deg, farthest_turn_deg));
 
   Bite bite;
   bite.notes = arches.notes;

@@ -200,6 +200,11 @@ TEST(SettleBite, MissingArchesAndImpossibleStartsAreRefused) {
   EXPECT_TRUE(mentions(complaint(patient, start), "finite"));
   start.t = {0, 0, -60};
   EXPECT_TRUE(mentions(complaint(patient, start), "at most 25 mm")) << complaint(patient, start);
+  start.t = {0, 0, 0};
+  start.R = Eigen::AngleAxisd(0.55, Vector3d::UnitY());
+  EXPECT_TRUE(mentions(complaint(patient, start), "at most 30 degrees"))
+      << complaint(patient, start);
+  start.R.setIdentity();
   start.t = {1e300, 0, 0};
   EXPECT_TRUE(mentions(complaint(patient, start), "at most 25 mm"));
 }
