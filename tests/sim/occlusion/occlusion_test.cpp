@@ -200,8 +200,9 @@ TEST(SettleBite, MissingArchesAndImpossibleStartsAreRefused) {
   EXPECT_TRUE(mentions(complaint(patient, start), "finite"));
   start.t = {0, 0, -60};
   EXPECT_TRUE(mentions(complaint(patient, start), "at most 25 mm")) << complaint(patient, start);
-  start.t = {0, 0, 0};
-  start.R = Eigen::AngleAxisd(0.55, Vector3d::UnitY());
+  start.R = Eigen::AngleAxisd(0.6, Vector3d::UnitY());
+  const Vector3d middle(0, -65, -40);  // of the teeth
+  start.t = middle - start.R * middle;
   EXPECT_TRUE(mentions(complaint(patient, start), "at most 30 degrees"))
       << complaint(patient, start);
   start.R.setIdentity();
