@@ -121,11 +121,10 @@ TEST(Grinding, ArchesOfFiftyThousandTrianglesSlideWithManyContactsAndWithoutOver
     X = result.X_FM;
     const std::size_t n = result.touching ? pairs_in_touch(upper_mesh, lower_mesh, result) : 0;
     if (n < 50) continue;
-    // The oracle is dear: it sees one frame in five.
-    if (counted++ % 5 == 0) depths.push_back(deepest(upper_oracle, lower_oracle, X));
+    ++counted;
+    depths.push_back(deepest(upper_oracle, lower_oracle, X));
   }
   EXPECT_EQ(counted, 300);
-  ASSERT_GE(depths.size(), 60u);
   std::sort(depths.begin(), depths.end());
   EXPECT_LE(depths.back(), 0.1);
   EXPECT_LE(depths[depths.size() / 2], 0.05);
