@@ -21,6 +21,8 @@ using Eigen::Vector3d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int max_walks = 8;
+constexpr int most_rubs = 4;
+constexpr double rest_mm = 0.005;
 // Of the band: poses so near each other have nothing between them.
 constexpr double near_share = 0.5;
 
@@ -179,7 +181,18 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
   const auto walk = [&](const Pose& start, const Pose& to) {
     return SlideWalk(*this, here, start, to).run();
   };
-  if (settings_.friction > 0) return walk(from, wanted);
+  if (settings_.friction > 0) {
+    // What a walk had learnt of a crease may hold it back: it rests where a fresh one stays.
+    SlideResult result = walk(from, wanted);
+    for (int again = 0; again < most_rubs && result.touching; ++again) {
+      SlideResult more = walk(result.X_FM, wanted);
+      if (here.way_of(here.between(result.X_FM, more.X_FM)) <= rest_mm) break;
+      more.steps += result.steps;
+      more.reached &= result.reached;
+      result = std::move(more);
+    }
+    return result;
+  }
 
   if (there.overlaps_at(wanted, settings_.slop_mm)) {
     auto& nodes = kept.state_->nodes;

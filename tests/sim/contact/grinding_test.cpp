@@ -130,6 +130,43 @@ TEST(Grinding, ArchesOfFiftyThousandTrianglesSlideWithManyContactsAndWithoutOver
   EXPECT_LE(depths[depths.size() / 2], 0.05);
 }
 
+TEST(Grinding, CrownsRubWithFrictionWithoutOverlapAndRestWhereTheHandRests) {
+  const Case patient = builtin_patient();
+  const TriMesh &upper = surface(patient, Role::upper_teeth),
+                &lower = surface(patient, Role::lower_teeth);
+  const auto body = [](const TriMesh& mesh) {
+    return std::make_shared<const SlideBody>(make_slide_body(mesh, {}, 2));
+  };
+  SlideSettings settings;
+  settings.friction = 0.3;
+  const SlidingContact free({body(upper)}, {body(lower)}),
+      rough({body(upper)}, {body(lower)}, settings);
+  const test::OverlapOracle upper_oracle(upper), lower_oracle(lower);
+  Pose X{Eigen::Quaterniond::Identity(), {0, 0, -6}}, Y = X;
+  std::vector<double> depths;
+  double rough_way = 0, free_way = 0;
+  constexpr int frames = 120;
+  for (int f = 0; f < frames; ++f) {
+    const Pose wanted = wanted_at(static_cast<double>(f) / frames);
+    const SlideResult result = rough.slide(X, wanted);
+    const Pose smooth = free.slide(Y, wanted).X_FM;
+    if (f > 0) {
+      rough_way += (result.X_FM.t - X.t).norm();
+      free_way += (smooth.t - Y.t).norm();
+    }
+    X = result.X_FM;
+    Y = smooth;
+    if (!result.touching) continue;
+    depths.push_back(deepest(upper_oracle, lower_oracle, X));
+    EXPECT_LE((rough.slide(X, wanted).X_FM.t - X.t).norm(), 0.02) << f;
+  }
+  ASSERT_GT(depths.size(), 60u);
+  std::sort(depths.begin(), depths.end());
+  EXPECT_LE(depths.back(), 0.1);
+  EXPECT_LE(depths[depths.size() / 2], 0.05);
+  EXPECT_LT(rough_way, 0.98 * free_way) << "friction holds it back";
+}
+
 /// Farthest that any point of the lower crowns lies apart at two poses.
 double apart(const TriMesh& lower, const Pose& a, const Pose& b) {
   double most = 0;
