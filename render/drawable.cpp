@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "engine/core/hash.h"
+#include "engine/mesh/triangle_tree.h"
 #include "render/ambient_occlusion.h"
+#include "render/cut_cover.h"
 #include "render/skin_table.h"
 #include "render/vertex_normals.h"
 
@@ -120,12 +122,10 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
     mesh.send_colors(colors);
     mesh.send_extras(extras);
     std::vector<Crease> creases;
-    if (part.role == Role::face)
-      creases = find_creases(positions, normals, occlusion[p].together);
-    else
-      colors.clear();
+    if (part.role == Role::face) creases = find_creases(positions, normals, occlusion[p].together);
     drawables.push_back({&part, material, is_closed_surface(part.mesh.triangles), box,
-                         std::move(mesh), std::move(creases), std::move(colors)});
+                         std::move(mesh), std::move(creases), std::move(colors),
+                         std::move(extras)});
   }
   return drawables;
 }
@@ -141,6 +141,51 @@ void Drawable::set_finer(const TriMesh& surface, std::span<const Eigen::Vector3f
   const std::vector<GpuMesh::Bytes> none(positions.size());
   finer->send_colors(none);
   finer->send_extras(none);
+  undressed = std::move(positions);
+}
+
+void Drawable::dress_finer() {
+  if (undressed.empty()) return;
+  const TriangleTree tree(part->mesh);
+  std::vector<GpuMesh::Bytes> fine_colors(undressed.size()), fine_extras(undressed.size());
+  for (std::size_t v = 0; v < undressed.size(); ++v) {
+    const SurfacePoint at = tree.nearest(undressed[v].cast<double>());
+    if (at.triangle < 0) continue;
+    const auto& corners = part->mesh.triangles[static_cast<std::size_t>(at.triangle)];
+    for (std::size_t k = 0; k < 4; ++k) {
+      double color = 0, extra = 0;
+      for (int c = 0; c < 3; ++c) {
+        const auto corner = static_cast<std::size_t>(corners[c]);
+        color += at.barycentric[c] * colors[corner][k];
+        extra += at.barycentric[c] * extras[corner][k];
+      }
+      fine_colors[v][k] = to_byte(static_cast<float>(color / 255));
+      fine_extras[v][k] = to_byte(static_cast<float>(extra / 255));
+    }
+  }
+  finer->send_colors(fine_colors);
+  finer->send_extras(fine_extras);
+  undressed.clear();
+}
+
+void Drawable::cover() {
+  if (covered) return;
+  mesh.send_cover(cover_rims(part->mesh.triangles));
+  covered = true;
+}
+
+const GpuMesh& Drawable::rest_mesh() {
+  if (body_of(part->role) != Body::tissue) return mesh;
+  if (!at_rest) {
+    std::vector<Eigen::Vector3f> positions, normals;
+    for (const auto& v : part->mesh.vertices) positions.push_back(v.cast<float>());
+    vertex_normals(positions, part->mesh.triangles, normals);
+    at_rest.emplace(positions, part->mesh.triangles, false);
+    at_rest->send_shape(positions, normals);
+    at_rest->send_colors(colors);
+    at_rest->send_extras(extras);
+  }
+  return *at_rest;
 }
 
 void Drawable::move_face(std::span<const Eigen::Vector3f> positions,

@@ -19,17 +19,26 @@ struct Drawable {
   bool closed;              // its back is never seen
   Eigen::AlignedBox3f box;  // at rest, mm
   GpuMesh mesh;
-  // Of a face only:
-  std::vector<Crease> creases;
-  std::vector<GpuMesh::Bytes> colors;  // at rest
+  std::vector<Crease> creases;                 // of a face only
+  std::vector<GpuMesh::Bytes> colors, extras;  // at rest, one per vertex
 
   bool mapped = false;                // coloured by its values
   std::optional<GpuMesh> finer = {};  // drawn instead while it is
   std::size_t finer_vertices = 0;
+  std::vector<Eigen::Vector3f> undressed = {};  // vertices of a finer mesh without colours as yet
+  bool covered = false;
+  std::optional<GpuMesh> at_rest = {};  // of a part that deforms, for its ghost
 
   const GpuMesh& shown() const { return mapped && finer ? *finer : mesh; }
   /// The same surface in smaller triangles, for maps.
   void set_finer(const TriMesh& surface, std::span<const Eigen::Vector3f> normals);
+
+  /// Gives the finer mesh the colours and shade of the part.
+  void dress_finer();
+  /// Makes ready to count how often the solid goes round a place (see cut_cover.h).
+  void cover();
+  /// The part as it was before anything moved.
+  const GpuMesh& rest_mesh();
 
   /// Sends a moved face, its normals and the shade of its folds.
   void move_face(std::span<const Eigen::Vector3f> positions,

@@ -5,7 +5,7 @@
 
 namespace condyle {
 
-/// Colour (RGBA, 8 bit) and depth off the screen, with or without multisampling.
+/// Colour (RGBA, 8 bit), depth and stencil off the screen, with or without multisampling.
 class Framebuffer {
  public:
   /// `samples` is lowered to what the context gives.

@@ -69,6 +69,9 @@ void GlProgram::set(const char* uniform, const Eigen::Vector2f& value) {
 void GlProgram::set(const char* uniform, const Eigen::Vector3f& value) {
   glUniform3fv(place(uniform), 1, value.data());
 }
+void GlProgram::set(const char* uniform, const Eigen::Vector4f& value) {
+  glUniform4fv(place(uniform), 1, value.data());
+}
 void GlProgram::set(const char* uniform, const Eigen::Matrix4f& value) {
   glUniformMatrix4fv(place(uniform), 1, GL_FALSE, value.data());
 }

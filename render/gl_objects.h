@@ -64,6 +64,7 @@ class GlProgram {
   void set(const char* uniform, float value);
   void set(const char* uniform, const Eigen::Vector2f& value);
   void set(const char* uniform, const Eigen::Vector3f& value);
+  void set(const char* uniform, const Eigen::Vector4f& value);
   void set(const char* uniform, const Eigen::Matrix4f& value);
 
  private:

@@ -121,6 +121,47 @@ void GpuMesh::draw(const Piece& piece) const {
       reinterpret_cast<const void*>(sizeof(Eigen::Vector3i) * std::size_t(piece.first_triangle)));
 }
 
+void GpuMesh::send_cover(std::span<const Eigen::Vector3i> triangles) {
+  cover_count_ = static_cast<GLsizei>(3 * triangles.size());
+  glBindVertexArray(0);
+  send(GL_ELEMENT_ARRAY_BUFFER, cover_, triangles, GL_STATIC_DRAW);
+}
+
+void GpuMesh::draw_cover() const {
+  if (cover_count_ == 0) return;
+  glBindVertexArray(array_);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, cover_);
+  glDrawElements(GL_TRIANGLES, cover_count_, GL_UNSIGNED_INT, nullptr);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
+}
+
+GpuLines::GpuLines() {
+  glBindVertexArray(array_);
+  glBindBuffer(GL_ARRAY_BUFFER, ends_);
+  constexpr GLsizei stride = 6 * sizeof(float);
+  for (const GLuint place : {0u, 1u}) {
+    glEnableVertexAttribArray(place);
+    glVertexAttribPointer(place, 3, GL_FLOAT, GL_FALSE, stride,
+                          reinterpret_cast<const void*>(place * 3 * sizeof(float)));
+    glVertexAttribDivisor(place, 1);
+  }
+  floats(2, colors_);
+  glVertexAttribDivisor(2, 1);
+  glBindVertexArray(0);
+}
+
+void GpuLines::send(std::span<const Eigen::Vector3f> ends,
+                    std::span<const Eigen::Vector3f> colors) {
+  count_ = static_cast<GLsizei>(colors.size());
+  condyle::send(GL_ARRAY_BUFFER, ends_, ends, GL_STREAM_DRAW);
+  condyle::send(GL_ARRAY_BUFFER, colors_, colors, GL_STREAM_DRAW);
+}
+
+void GpuLines::draw() const {
+  glBindVertexArray(array_);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count_);
+}
+
 GpuPoints::GpuPoints() {
   glBindVertexArray(array_);
   floats(0, points_);

@@ -36,16 +36,36 @@ class GpuMesh {
   /// One number per vertex, attribute 4; none: taken as 0.
   void send_values(std::span<const float> values);
 
+  /// Triangles that only `draw_cover` draws.
+  void send_cover(std::span<const Eigen::Vector3i> triangles);
+
   void draw() const;
   void draw(const Piece& piece) const;
+  void draw_cover() const;
   const std::vector<Piece>& pieces() const { return pieces_; }
 
  private:
   GlVertexArray array_;
-  GlBuffer positions_, normals_, colors_, extras_, values_, indices_;
+  GlBuffer positions_, normals_, colors_, extras_, values_, indices_, cover_;
+  GLsizei cover_count_ = 0;
   std::vector<Eigen::Vector3i> triangles_;  // in the order of the pieces
   std::vector<Piece> pieces_;
   GLenum usage_;
+};
+
+/// Lines on the graphics card, each drawn as an instance: attributes 0 from, 1 to, 2 colour.
+class GpuLines {
+ public:
+  GpuLines();
+  /// Two ends a line; one colour a line, sRGB.
+  void send(std::span<const Eigen::Vector3f> ends, std::span<const Eigen::Vector3f> colors);
+  void draw() const;
+  bool empty() const { return count_ == 0; }
+
+ private:
+  GlVertexArray array_;
+  GlBuffer ends_, colors_;
+  GLsizei count_ = 0;
 };
 
 /// Points on the graphics card; attribute 0.

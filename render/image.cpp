@@ -2,6 +2,7 @@
 
 #include <png.h>
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstring>
 
@@ -76,6 +77,26 @@ bool decompress(png_structp png, png_infop info, Image& image) {
 }
 
 }  // namespace
+
+Image averaged(const Image& image, int n) {
+  Image small;
+  small.width = image.width / n;
+  small.height = image.height / n;
+  small.rgba.resize(std::size_t{4} * small.width * small.height);
+  const unsigned count = static_cast<unsigned>(n * n);
+  std::vector<unsigned> sums(std::size_t{4} * small.width);
+  for (int y = 0; y < small.height; ++y) {
+    std::fill(sums.begin(), sums.end(), count / 2);
+    for (int j = 0; j < n; ++j) {
+      const auto* row = &image.rgba[std::size_t{4} * image.width * (y * n + j)];
+      for (int x = 0; x < n * small.width; ++x)
+        for (int k = 0; k < 4; ++k) sums[4 * (x / n) + k] += row[4 * x + k];
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i)
+      small.rgba[std::size_t{4} * small.width * y + i] = static_cast<std::uint8_t>(sums[i] / count);
+  }
+  return small;
+}
 
 std::string encode_png(const Image& image) {
   if (image.width < 1 || image.height < 1 ||

@@ -13,6 +13,10 @@ struct Image {
   std::vector<std::uint8_t> rgba;
 };
 
+/// A picture of 1/n the width and height, each pixel the mean of n x n; with alpha as weight when
+/// colours are multiplied by it already.
+Image averaged(const Image& image, int n);
+
 /// PNG bytes (libpng, level 1, SUB filter: fast, and the same bytes every time).
 std::string encode_png(const Image& image);
 /// throws: MachineError when it cannot be written; the old file stays whole.

@@ -29,4 +29,24 @@ Material material_of(Role role) {
   return {{.8f, .8f, .8f}, .5f, .03f, .2f, {0, 0, 0}, 0};
 }
 
+Eigen::Vector3f cut_color_of(Role role) {
+  switch (role) {
+    case Role::upper_teeth:
+    case Role::lower_teeth:
+      return {.93f, .90f, .80f};
+    case Role::face:
+      return {.70f, .42f, .38f};
+    case Role::eyes:
+      return {.86f, .88f, .88f};
+    case Role::upper_gums:
+    case Role::lower_gums:
+    case Role::tongue:
+      return {.66f, .34f, .33f};
+    case Role::transplant:
+      return {.52f, .72f, .68f};
+    default:
+      return {.86f, .72f, .55f};  // marrow and spongy bone
+  }
+}
+
 }  // namespace condyle

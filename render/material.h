@@ -18,4 +18,7 @@ struct Material {
 
 Material material_of(Role role);
 
+/// sRGB, of a face cut through it.
+Eigen::Vector3f cut_color_of(Role role);
+
 }  // namespace condyle

@@ -34,6 +34,8 @@ int OcclusionCulling::ask(const GpuMesh& mesh, const Eigen::Matrix4f& model_view
     glGenQueries(1, &queries_.back());
   }
   program_.use();
+  glDisable(GL_CLIP_DISTANCE0);
+  glDisable(GL_CLIP_DISTANCE1);
   program_.set("view_projection", model_view_projection);
   glBindVertexArray(array_);
   glEnable(GL_CULL_FACE);

@@ -27,4 +27,16 @@ void paint_frame(Image& image, const PixelBox& b, const Eigen::Vector3f& color, 
   paint_box(image, {b.x1, b.y0, b.x1 + width, b.y1}, color);
 }
 
+Image wiped(const Image& left, const Image& right, double at) {
+  Image image = right;
+  const int border = static_cast<int>(std::lround(std::clamp(at, 0.0, 1.0) * image.width));
+  for (int y = 0; y < image.height; ++y) {
+    const std::size_t row = std::size_t{4} * y * image.width;
+    std::copy_n(&left.rgba[row], 4 * static_cast<std::size_t>(border), &image.rgba[row]);
+  }
+  const int half = std::max(1, image.height / 720);
+  paint_box(image, {border - half, 0, border + half, image.height}, {0.93f, 0.93f, 0.93f});
+  return image;
+}
+
 }  // namespace condyle

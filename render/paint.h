@@ -18,4 +18,8 @@ void shade_box(Image& image, const PixelBox& box, const Eigen::Vector3f& color, 
 /// A line of that width just outside of the box.
 void paint_frame(Image& image, const PixelBox& box, const Eigen::Vector3f& color, int width = 1);
 
+/// Left of `at` (share of the width) the one, right of it the other, with a light line between
+/// them. Both of one size.
+Image wiped(const Image& left, const Image& right, double at);
+
 }  // namespace condyle

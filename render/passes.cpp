@@ -24,8 +24,8 @@ GlProgram build(const char* what, const ShaderSource& source) {
   return {what, source.vertex, source.fragment};
 }
 
-void cull_by_closure(const Drawable& drawable) {
-  if (drawable.closed) {
+void cull_by_closure(const DrawItem& item) {
+  if (item.drawable->closed && !item.cut()) {
     glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
   } else {
@@ -34,6 +34,25 @@ void cull_by_closure(const Drawable& drawable) {
 }
 
 }  // namespace
+
+void set_cut(GlProgram& program, const DrawItem& item, const PictureView& view) {
+  program.set("clip_plane", view.clip_plane);
+  program.set("cut_ball", view.cut_ball);
+  const Eigen::Vector3f color = cut_color_of(item.role()).array().pow(2.2f);
+  program.set("cut", Eigen::Vector4f(color.x(), color.y(), color.z(), item.cut() ? 1.f : 0.f));
+  program.set("cut_normal", view.cut_normal);
+}
+
+void begin_cut(GlProgram& program, const DrawItem& item, const PictureView& view) {
+  set_cut(program, item, view);
+  (item.clipped ? glEnable : glDisable)(GL_CLIP_DISTANCE0);
+  (item.holed ? glEnable : glDisable)(GL_CLIP_DISTANCE1);
+}
+
+void end_cut() {
+  glDisable(GL_CLIP_DISTANCE0);
+  glDisable(GL_CLIP_DISTANCE1);
+}
 
 Eigen::AlignedBox3f DrawItem::box() const {
   Eigen::AlignedBox3f moved;
@@ -99,14 +118,16 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
   // the face does not cast already.
   Eigen::AlignedBox3f enclosed;
   for (const auto& item : items)
-    if (item.opaque() && item.role() == Role::face) enclosed.extend(item.box());
+    if (item.opaque() && !item.cut() && item.role() == Role::face) enclosed.extend(item.box());
   for (const auto& item : items) {
     if (!item.opaque()) continue;
     const bool shows = item.role() == Role::face || is_teeth(item.role());
     if (!shows && !enclosed.isEmpty() && enclosed.contains(item.box())) continue;
-    cull_by_closure(*item.drawable);
+    cull_by_closure(item);
+    begin_cut(depth_, item, view);
     depth_.set("model", item.model);
     item.mesh().draw();
+    end_cut();
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
@@ -151,6 +172,7 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
   program.set("coat", material.coat);
   program.set("together", role == Role::eyes ? view.skin_opacity : view.at_rest);
   program.set("mapped", mapped ? 1.f : 0.f);
+  program.set("mapped_up_to", view.mapped_up_to);
   program.set("colour_table", 2);
   if (mapped) {
     program.set("map_range", Eigen::Vector2f(colour_map_.low(), colour_map_.high()));
@@ -162,6 +184,7 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
   const bool in_mouth =
       view.opaque_face && role != Role::face && role != Role::eyes && body_of(role) != Body::free;
   program.set("cavity", Eigen::Vector2f(view.lips_y, in_mouth ? 1 / mouth_depth_mm : 0.f));
+  begin_cut(program, item, view);
 }
 
 void Passes::shade(const DrawItem& item, const PictureView& view, bool leave_out_hidden) {
@@ -172,7 +195,8 @@ void Passes::shade(const DrawItem& item, const PictureView& view, bool leave_out
     glCullFace(GL_BACK);
     begin(drawable.mapped ? surface_ : skin_, item, view);
     item.mesh().draw();
-    if (drawable.closed) return;
+    end_cut();
+    if (drawable.closed && !item.cut()) return;
   }
   // What is left lies under the face, if there is one: the other parts, and its own inside.
   const int answers =
@@ -181,13 +205,14 @@ void Passes::shade(const DrawItem& item, const PictureView& view, bool leave_out
     glEnable(GL_CULL_FACE);
     glCullFace(GL_FRONT);
   } else {
-    cull_by_closure(drawable);
+    cull_by_closure(item);
   }
   begin(face ? interior_ : surface_, item, view);
   if (leave_out_hidden)
     culling_.draw(item.mesh(), answers);
   else
     item.mesh().draw();
+  end_cut();
 }
 
 void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
@@ -200,12 +225,14 @@ void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
 }
 
 void Passes::depth_only(const DrawItem& item, const PictureView& view) {
-  cull_by_closure(*item.drawable);
+  cull_by_closure(item);
   depth_.use();
   depth_.set("view_projection", view.view_projection);
+  begin_cut(depth_, item, view);
   depth_.set("model", item.model);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   item.mesh().draw();
+  end_cut();
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
@@ -238,6 +265,7 @@ void Passes::contacts(const GpuPoints& points, const PictureView& view, bool thr
   marker_.set("radius", marker_radius_mm);
   marker_.set("nearer", 1.2f * marker_radius_mm);
   marker_.set("pixels_per_unit", view.pixels_per_unit);
+  marker_.set("color", Eigen::Vector3f(0.835f, 0.369f, 0.f));  // Okabe-Ito vermilion
   glEnable(GL_PROGRAM_POINT_SIZE);
   if (through) {
     // Contacts lie between surfaces.

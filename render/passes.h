@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <span>
 
 #include "render/colour_map.h"
@@ -16,7 +17,10 @@ struct DrawItem {
   Drawable* drawable;
   double opacity;         // above 0; 1 is drawn as opaque
   Eigen::Matrix4f model;  // rigid, from rest to now
+  bool clipped = false;   // by the picture's plane
+  bool holed = false;     // by its ball
 
+  bool cut() const { return clipped || holed; }
   Role role() const { return drawable->part->role; }
   bool opaque() const { return opacity >= 1; }
   const GpuMesh& mesh() const { return drawable->shown(); }
@@ -34,9 +38,24 @@ struct PictureView {
   bool opaque_face = false;  // keeps the sky out of the mouth, and hides most of the rest
   bool may_cull = true;      // the eye is outside of everything
   float skin_opacity = 1;
-  float at_rest = 1;  // 1 with the jaw at rest, 0 when it is well away
-  float lips_y = 0;   // front of the teeth, mm
+  float at_rest = 1;                          // 1 with the jaw at rest, 0 when it is well away
+  float lips_y = 0;                           // front of the teeth, mm
+  float away = 600;                           // of the target from the eye, mm
+  Eigen::Vector4f clip_plane = {0, 0, 0, 1};  // product with what is kept: > 0
+  Eigen::Vector3f cut_normal = Eigen::Vector3f::UnitX();        // toward what is left out
+  bool capped = false;                                          // cut solids get faces
+  Eigen::Vector4f cut_ball = {0, 0, 0, -1};                     // centre, radius
+  float mapped_up_to = std::numeric_limits<float>::infinity();  // values beyond are not shown
 };
+
+/// A ball that cuts nothing.
+inline const Eigen::Vector4f no_ball = {0, 0, 0, -1};
+
+/// Tells the program in use what is cut of a part.
+void set_cut(GlProgram& program, const DrawItem& item, const PictureView& view);
+/// The same, and lets it be cut until `end_cut`.
+void begin_cut(GlProgram& program, const DrawItem& item, const PictureView& view);
+void end_cut();
 
 /// The steps of a picture, in the order in which they run. They leave depth test on, blending off.
 class Passes {

@@ -9,7 +9,9 @@
 
 #include "render/drawable.h"
 #include "render/framebuffer.h"
+#include "render/overlay_passes.h"
 #include "render/passes.h"
+#include "render/smoothing.h"
 #include "sim/frame/body_poses.h"
 
 namespace condyle {
@@ -23,6 +25,11 @@ Eigen::Matrix4f matrix_of(const Pose& pose) {
   matrix.topLeftCorner<3, 3>() = pose.R.toRotationMatrix().cast<float>();
   matrix.topRightCorner<3, 1>() = pose.t.cast<float>();
   return matrix;
+}
+
+/// Whether a list names the part; an empty one says `usual`.
+bool names(const std::vector<std::string>& list, const std::string& name, bool usual = false) {
+  return list.empty() ? usual : std::find(list.begin(), list.end(), name) != list.end();
 }
 
 /// Front of the teeth, else of the jaws: where the mouth begins, mm.
@@ -43,6 +50,7 @@ float front_of_mouth(std::span<const Drawable> drawables) {
 struct SceneRenderer::State {
   std::span<const Part> parts;
   Passes passes;
+  OverlayPasses overlays;
   std::vector<Drawable> drawables;
   Eigen::AlignedBox3f box;  // of all parts at rest
   float mouth_y;
@@ -55,6 +63,21 @@ struct SceneRenderer::State {
   std::vector<Eigen::Vector3f> normals;  // kept for its memory
   // Kept from picture to picture of one size:
   std::optional<Framebuffer> sampled, resolved;
+  struct Smoothed {
+    EdgeSmoothing smoothing;
+    GlTexture copy;  // what is smoothed
+    Framebuffer target;
+    Smoothed(int width, int height) : target(width, height, 1) {
+      glBindTexture(GL_TEXTURE_2D, copy);
+      glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                   nullptr);
+      glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+      glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+      glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+      glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    }
+  };
+  std::optional<Smoothed> smoothed;
   int samples_asked = 0;
   float map_low = 0, map_high = 1;  // values are kept within
 
@@ -66,11 +89,13 @@ struct SceneRenderer::State {
   }
 
   void place(const BodyPoses& at);
+  void smooth();
 
   std::vector<DrawItem> items(const PictureSettings& settings);
   PictureView view(const Camera& camera, const PictureSettings& settings,
                    std::span<const DrawItem> items) const;
   float at_rest(std::span<const DrawItem> items) const;
+  bool leaves_ghost(const DrawItem& item, const Ghost& ghost) const;
 };
 
 std::vector<DrawItem> SceneRenderer::State::items(const PictureSettings& settings) {
@@ -82,7 +107,11 @@ std::vector<DrawItem> SceneRenderer::State::items(const PictureSettings& setting
     if (const auto own = settings.part_opacity.find(part.name); own != settings.part_opacity.end())
       opacity *= own->second;
     if (part.mesh.empty() || !(opacity >= nearly_hidden)) continue;
-    found.push_back({&drawable, opacity > nearly_opaque ? 1.0 : opacity, matrix_of(poses[i])});
+    DrawItem item{&drawable, opacity > nearly_opaque ? 1.0 : opacity, matrix_of(poses[i])};
+    item.clipped = settings.clip && names(settings.clip->parts, part.name, true);
+    item.holed =
+        settings.cut_away && names(settings.cut_away->parts, part.name, part.role == Role::face);
+    found.push_back(item);
   }
   return found;
 }
@@ -96,6 +125,17 @@ void SceneRenderer::State::place(const BodyPoses& at) {
     if (body_of(parts[i].role) != Body::free || drawables[i].box.isEmpty()) continue;
     reached.extend(DrawItem{&drawables[i], 1, matrix_of(poses[i])}.box());
   }
+}
+
+/// From `resolved` to `smoothed`.
+void SceneRenderer::State::smooth() {
+  const int width = resolved->width(), height = resolved->height();
+  if (!smoothed) smoothed.emplace(width, height);
+  resolved->bind();
+  glBindTexture(GL_TEXTURE_2D, smoothed->copy);
+  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, width, height);
+  smoothed->target.bind();
+  smoothed->smoothing.draw(smoothed->copy, width, height);
 }
 
 /// How far the jaw is from the place where its shade was baked: 1 there, 0 far off, and where
@@ -122,6 +162,13 @@ float SceneRenderer::State::at_rest(std::span<const DrawItem> items) const {
   return 1;
 }
 
+bool SceneRenderer::State::leaves_ghost(const DrawItem& item, const Ghost& ghost) const {
+  if (!ghost.parts.empty()) return names(ghost.parts, item.drawable->part->name);
+  if (item.role() == Role::face) return face_moved;
+  constexpr float moved = 1e-3f;
+  return !item.model.isApprox(Eigen::Matrix4f::Identity(), moved);
+}
+
 PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettings& settings,
                                        std::span<const DrawItem> items) const {
   const float radius = 0.5f * reached.diagonal().norm() + opening_room_mm;
@@ -146,6 +193,18 @@ PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettin
   v.skin_opacity = static_cast<float>(std::clamp(settings.skin_opacity, 0.0, 1.0));
   v.at_rest = at_rest(items);
   v.lips_y = mouth_y;
+  v.away = static_cast<float>(camera.distance_mm);
+  if (settings.clip) {
+    v.cut_normal = settings.clip->normal.normalized().cast<float>();
+    v.clip_plane << -v.cut_normal, v.cut_normal.dot(settings.clip->point.cast<float>());
+    v.capped = settings.clip->capped;
+  } else if (settings.cut_away) {
+    v.cut_normal = (v.eye - settings.cut_away->center.cast<float>()).normalized();
+  }
+  if (settings.cut_away)
+    v.cut_ball << settings.cut_away->center.cast<float>(),
+        static_cast<float>(settings.cut_away->radius_mm);
+  if (settings.mapped_up_to) v.mapped_up_to = *settings.mapped_up_to;
   return v;
 }
 
@@ -208,6 +267,10 @@ void SceneRenderer::color_part(const std::string& name, std::span<const float> v
   }
 }
 
+void SceneRenderer::set_lines(const std::string& name, const LineSet& lines) {
+  state_->overlays.set_lines(name, lines);
+}
+
 void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings) {
   auto& s = *state_;
   GLint target = 0;
@@ -215,8 +278,11 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings) 
   const auto items = s.items(settings);
   auto view = s.view(camera, settings, items);
   view.opaque_face = std::any_of(items.begin(), items.end(), [](const DrawItem& item) {
-    return item.role() == Role::face && item.opaque();
+    return item.role() == Role::face && item.opaque() && !item.cut();
   });
+  if (settings.mapped_up_to)
+    for (const auto& item : items)
+      if (item.drawable->mapped && item.drawable->finer) item.drawable->dress_finer();
 
   // Whoever drew before may have left anything.
   for (const GLenum off : {GL_BLEND, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_FRAMEBUFFER_SRGB})
@@ -232,13 +298,35 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings) 
   if (settings.shadows) s.passes.shadow_map(items, view);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
   glViewport(0, 0, settings.width, settings.height);
+  if (settings.from_x > 0 || settings.to_x < 1) {
+    const auto column = [&](double x) {
+      return static_cast<GLint>(std::lround(std::clamp(x, 0.0, 1.0) * settings.width));
+    };
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(column(settings.from_x), 0,
+              std::max(0, column(settings.to_x) - column(settings.from_x)), settings.height);
+  }
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   if (!settings.transparent_background) s.passes.background();
   s.passes.opaque(items, view);
+  s.overlays.caps(items, view);
   if (settings.contacts) s.passes.contacts(s.contacts, view, !view.opaque_face);
+  for (const auto& item : items)
+    if (settings.ghost && item.role() != Role::face && s.leaves_ghost(item, *settings.ghost))
+      s.overlays.ghost(item, *settings.ghost, view);
+  s.overlays.lines(view, settings.width, settings.height);
   s.passes.translucent(items, view);
+  // The skin's ghost lies around all the rest.
+  for (const auto& item : items)
+    if (settings.ghost && item.role() == Role::face && s.leaves_ghost(item, *settings.ghost))
+      s.overlays.ghost(item, *settings.ghost, view);
+  const bool all_edges = names(settings.wireframe, "*");
+  for (const auto& item : items)
+    if (all_edges || names(settings.wireframe, item.drawable->part->name))
+      s.overlays.wireframe(item, view);
 
+  glDisable(GL_SCISSOR_TEST);
   glBindVertexArray(0);
   glUseProgram(0);
   glDisable(GL_CULL_FACE);
@@ -249,27 +337,34 @@ Image SceneRenderer::picture(const Camera& camera, const PictureSettings& settin
   auto& s = *state_;
   GLint before = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
-  if (!s.resolved || s.resolved->width() != settings.width ||
-      s.resolved->height() != settings.height) {
+  const int finer = std::clamp(settings.supersampling, 1, 4);
+  auto drawn = settings;
+  drawn.width *= finer;
+  drawn.height *= finer;
+  if (!s.resolved || s.resolved->width() != drawn.width || s.resolved->height() != drawn.height) {
     s.sampled.reset();
+    s.smoothed.reset();
     s.resolved.reset();
-    s.resolved.emplace(settings.width, settings.height, 1);
+    s.resolved.emplace(drawn.width, drawn.height, 1);
   }
-  if (settings.samples <= 1) {
+  if (drawn.samples <= 1) {
     s.resolved->bind();
-    draw(camera, settings);
+    draw(camera, drawn);
   } else {
-    if (!s.sampled || s.samples_asked != settings.samples) {
+    if (!s.sampled || s.samples_asked != drawn.samples) {
       s.sampled.reset();
-      s.sampled.emplace(settings.width, settings.height, settings.samples);
-      s.samples_asked = settings.samples;
+      s.sampled.emplace(drawn.width, drawn.height, drawn.samples);
+      s.samples_asked = drawn.samples;
     }
     s.sampled->bind();
-    draw(camera, settings);
+    draw(camera, drawn);
     s.sampled->resolve_to(s.resolved->name());
   }
-  Image image = s.resolved->read();
+  const bool smooths = drawn.smooth_edges && drawn.samples <= 1;
+  if (smooths) s.smooth();
+  Image image = (smooths ? s.smoothed->target : *s.resolved).read();
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
+  if (finer > 1) image = averaged(image, finer);
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     auto& alpha = image.rgba[i + 3];
     if (!settings.transparent_background) alpha = 255;

@@ -3,12 +3,15 @@
 #include <Eigen/Core>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "render/camera.h"
 #include "render/colour_map.h"
 #include "render/image.h"
+#include "render/overlays.h"
 #include "sim/frame/frame_state.h"
 #include "sim/frame/part.h"
 
@@ -23,6 +26,19 @@ struct PictureSettings {
   bool transparent_background = false;
   double skin_opacity = 1.0;                   // 0 hides the face
   std::map<std::string, double> part_opacity;  // by part name; missing = 1; 0 hides
+  std::optional<ClippingPlane> clip = {};
+  std::optional<CutAway> cut_away = {};
+  std::optional<Ghost> ghost = {};
+  std::vector<std::string> wireframe = {};  // parts drawn with their triangles' edges; "*" = all
+  /// Parts coloured by values are so only where the value is at most this; elsewhere they look like
+  /// themselves: patches of contact.
+  std::optional<float> mapped_up_to = {};
+  // Share of the width that is drawn; the rest of the target stays as it is: for two states with a
+  // wipe. Only of `draw`.
+  double from_x = 0, to_x = 1;
+  // Only of `picture`:
+  bool smooth_edges = false;  // FXAA, for pictures without multisampling
+  int supersampling = 1;      // drawn this many times as wide and high, then averaged; 1 to 4
 };
 
 /// Draws a case at a frame. Needs a current OpenGL 3.3 core context for its whole life.
@@ -52,6 +68,9 @@ class SceneRenderer {
   /// values it is drawn as itself again. Values beyond the map, infinite ones too, have its outer
   /// colours.
   void color_part(const std::string& name, std::span<const float> values);
+
+  /// Lines of this name from now on; empty ones are gone. Drawn in the order of the names.
+  void set_lines(const std::string& name, const LineSet& lines);
 
   /// Draws into the framebuffer that is bound, over its whole viewport of width x height.
   void draw(const Camera& camera, const PictureSettings& settings);

@@ -14,6 +14,9 @@ ShaderSource skin_shaders();      // outside of the face
 ShaderSource interior_shaders();  // inside of the face, seen through the mouth or from behind
 ShaderSource depth_shaders();     // only depth: shadow map and prepass of translucent parts
 ShaderSource background_shaders();
-ShaderSource marker_shaders();  // contact points
+ShaderSource marker_shaders();  // contact points and dots
+ShaderSource line_shaders();
+ShaderSource cap_shaders();   // the plane that closes a cut solid
+ShaderSource tint_shaders();  // ghosts and wireframes
 
 }  // namespace condyle

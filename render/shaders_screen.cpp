@@ -8,10 +8,15 @@ const char* const depth_vertex = R"(#version 330 core
 layout(location = 0) in vec3 position;
 uniform mat4 model;
 uniform mat4 view_projection;
+uniform vec4 clip_plane;
+uniform vec4 cut_ball;
+out float gl_ClipDistance[2];
 invariant gl_Position;
 void main() {
   vec4 world = model * vec4(position, 1.0);
   gl_Position = view_projection * world;
+  gl_ClipDistance[0] = dot(clip_plane, world);
+  gl_ClipDistance[1] = distance(world.xyz, cut_ball.xyz) - cut_ball.w;
 }
 )";
 
@@ -60,6 +65,7 @@ void main() {
 
 const char* const marker_fragment = R"(#version 330 core
 uniform float opacity;
+uniform vec3 color;
 out vec4 result;
 void main() {
   vec2 q = 2.0 * gl_PointCoord - 1.0;
@@ -67,14 +73,59 @@ void main() {
   if (r2 > 1.0) discard;
   vec3 n = vec3(q.x, -q.y, sqrt(1.0 - r2));
   float light = 0.72 + 0.38 * max(dot(n, normalize(vec3(-0.4, 0.6, 0.7))), 0.0);
-  // Okabe-Ito vermilion, nearly unlit; a dark rim keeps it apart from red tissue.
-  vec3 c = vec3(0.835, 0.369, 0.0) * light * mix(1.0, 0.45, smoothstep(0.7, 1.0, r2));
+  // Nearly unlit; a dark rim keeps it apart from red tissue.
+  vec3 c = color * light * mix(1.0, 0.45, smoothstep(0.7, 1.0, r2));
   result = vec4(c, opacity);
+}
+)";
+
+// Each line is four corners of a strip along it, of the wanted width on the screen.
+const char* const line_vertex = R"(#version 330 core
+layout(location = 0) in vec3 from;
+layout(location = 1) in vec3 to;
+layout(location = 2) in vec3 color;
+uniform mat4 view;
+uniform mat4 projection;
+uniform vec2 half_picture;  // pixels
+uniform float half_width;   // pixels
+uniform float near;         // mm before the eye
+uniform float nearer;       // share of the way to the eye, so that a line on a surface is not swallowed
+out vec3 line_color;
+out float across;
+void main() {
+  vec3 a = (view * vec4(from, 1.0)).xyz, b = (view * vec4(to, 1.0)).xyz;
+  // What lies behind the eye cannot be projected: the line ends before it.
+  if (a.z > -near && b.z < -near) a = mix(a, b, (a.z + near) / (a.z - b.z));
+  if (b.z > -near && a.z < -near) b = mix(b, a, (b.z + near) / (b.z - a.z));
+  vec4 p = projection * vec4(a * (1.0 - nearer), 1.0), q = projection * vec4(b * (1.0 - nearer), 1.0);
+  vec2 along = (q.xy / q.w - p.xy / p.w) * half_picture;
+  along = length(along) > 1e-4 ? normalize(along) : vec2(1.0, 0.0);
+  vec4 end = (gl_VertexID & 1) == 0 ? p : q;
+  float side = (gl_VertexID & 2) == 0 ? -1.0 : 1.0;
+  float w = half_width + 0.7;  // room for a soft edge
+  vec2 shift = side * w * vec2(-along.y, along.x) / half_picture;
+  end.xy += shift * end.w;
+  if (a.z > -near && b.z > -near) end = vec4(2.0, 2.0, 2.0, 1.0);
+  gl_Position = end;
+  across = side * w;
+  line_color = pow(color, vec3(2.2));
+}
+)";
+
+const char* const line_fragment = R"(#version 330 core
+in vec3 line_color;
+in float across;
+uniform float opacity, half_width;
+out vec4 result;
+void main() {
+  float cover = clamp(half_width + 0.5 - abs(across), 0.0, 1.0);
+  result = vec4(pow(line_color, vec3(1.0 / 2.2)), opacity * cover);
 }
 )";
 
 }  // namespace
 
+ShaderSource line_shaders() { return {line_vertex, line_fragment}; }
 ShaderSource depth_shaders() { return {depth_vertex, depth_fragment}; }
 ShaderSource background_shaders() { return {background_vertex, background_fragment}; }
 ShaderSource marker_shaders() { return {marker_vertex, marker_fragment}; }

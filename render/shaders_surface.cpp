@@ -17,6 +17,9 @@ uniform vec3 eye, key_direction;
 uniform float two_sided;       // 1 when the surface is open
 uniform float together;        // 1 with everything as at rest, 0 far from it
 uniform vec2 cavity;           // y where the mouth's darkness starts, 1/length; 0 length = none
+uniform vec4 clip_plane;       // what is kept has dot(plane, place) > 0
+uniform vec4 cut_ball;         // centre and radius; what is kept lies outside
+out float gl_ClipDistance[2];
 invariant gl_Position;
 out vec3 to_eye;
 out vec3 world_normal;
@@ -28,6 +31,8 @@ void main() {
   mapped_value = value;
   vec4 world = model * vec4(position, 1.0);
   gl_Position = view_projection * world;
+  gl_ClipDistance[0] = dot(clip_plane, world);
+  gl_ClipDistance[1] = distance(world.xyz, cut_ball.xyz) - cut_ball.w;
   to_eye = eye - world.xyz;
   world_normal = mat3(model) * normal;
   albedo = pow(color.rgb, vec3(2.2));
@@ -101,6 +106,14 @@ float fresnel(float nv, float f0) {
   return f0 + (1.0 - f0) * m2 * m2 * m;
 }
 
+// Flat, as a plane through the tissue would be: what is seen of an inner side where a part is cut.
+uniform vec4 cut;          // colour, linear; 1 while the part is cut
+uniform vec3 cut_normal;   // unit, toward the side that is left out
+vec3 cut_face(vec3 color) {
+  return color * (0.45 + 0.45 * max(dot(cut_normal, key_direction), 0.0)
+                + 0.20 * max(dot(cut_normal, normalize(to_eye)), 0.0));
+}
+
 // Straight up to 0.72, then a shoulder that keeps the hue; then sRGB.
 vec3 display(vec3 c) {
   float peak = max(c.r, max(c.g, c.b));
@@ -122,6 +135,7 @@ uniform float coat;    // strength of the second, sharp reflection of wet or ena
 uniform vec2 cavity;   // as in the vertex shader
 in float mapped_value;
 uniform float mapped;  // 1: coloured by its value
+uniform float mapped_up_to;
 uniform sampler2D colour_table;
 uniform vec2 map_range;
 uniform vec3 map_beyond;
@@ -142,10 +156,14 @@ vec3 map_color() {
 void main() {
   vec3 v = normalize(to_eye);
   vec3 n = normalize(world_normal);
+  if (cut.w > 0.5 && !gl_FrontFacing) {
+    result = vec4(display(cut_face(cut.xyz)), opacity);
+    return;
+  }
   // An open surface is lit from whichever side is seen.
   if (!gl_FrontFacing) n = -n;
   float nv = clamp(dot(n, v), 0.0, 1.0);
-  if (mapped > 0.5) {
+  if (mapped > 0.5 && mapped_value <= mapped_up_to) {
     float shade = 0.55 * nv + 0.45 * wrapped(dot(n, key_direction), 0.5);
     float a = opacity >= 1.0 ? 1.0 : 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35));
     result = vec4(map_color() * mix(0.68, 1.0, clamp(1.25 * shade, 0.0, 1.0)), a);
@@ -211,6 +229,10 @@ void main() {
 // The mucous side: dark, red and a little wet; no shadow map, the darkness is in the colour.
 const char* const interior_source = R"(
 void main() {
+  if (cut.w > 0.5) {
+    result = vec4(display(cut_face(cut.xyz)), opacity);
+    return;
+  }
   vec3 v = normalize(to_eye);
   vec3 n = -normalize(world_normal);
   float nv = clamp(dot(n, v), 0.0, 1.0);
@@ -221,8 +243,27 @@ void main() {
 }
 )";
 
+// A cut face that closes a solid: a plane.
+const char* const cap_source = R"(
+void main() { result = vec4(display(cut_face(cut.xyz)), 1.0); }
+)";
+
+// A part as it was, or the edges of its triangles.
+const char* const tint_source = R"(
+uniform vec3 tint;    // linear
+uniform float rim;    // 1: clear in the middle, as glass is
+void main() {
+  float nv = abs(dot(normalize(world_normal), normalize(to_eye)));
+  float edge = 1.0 - nv;
+  result = vec4(display(tint * mix(0.75 + 0.25 * nv, 1.0, 1.0 - rim)),
+                opacity * mix(1.0, 0.45 + 0.55 * edge, rim));
+}
+)";
+
 }  // namespace
 
+ShaderSource cap_shaders() { return {vertex_source, std::string(lighting_source) + cap_source}; }
+ShaderSource tint_shaders() { return {vertex_source, std::string(lighting_source) + tint_source}; }
 ShaderSource surface_shaders() {
   return {vertex_source, std::string(lighting_source) + surface_source};
 }

@@ -8,7 +8,7 @@
 #include "engine/core/error.h"
 #include "render/framebuffer.h"
 #include "render/scene_renderer.h"
-#include "render/window/smoothing.h"
+#include "render/smoothing.h"
 
 namespace condyle {
 

@@ -1,4 +1,4 @@
-#include "render/window/smoothing.h"
+#include "render/smoothing.h"
 
 #include "render/gl_objects.h"
 
@@ -20,7 +20,8 @@ out vec4 result;
 float luma(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
 void main() {
   vec2 at = gl_FragCoord.xy * pixel;
-  vec3 middle = texture(picture, at).rgb;
+  vec4 own = texture(picture, at);
+  vec3 middle = own.rgb;
   float nw = luma(texture(picture, at + vec2(-0.5, 0.5) * pixel).rgb);
   float ne = luma(texture(picture, at + vec2(0.5, 0.5) * pixel).rgb);
   float sw = luma(texture(picture, at + vec2(-0.5, -0.5) * pixel).rgb);
@@ -28,16 +29,16 @@ void main() {
   float m = luma(middle);
   float low = min(m, min(min(nw, ne), min(sw, se)));
   float high = max(m, max(max(nw, ne), max(sw, se)));
-  result = vec4(middle, 1.0);
+  result = own;
   if (high - low < max(0.03, 0.1 * high)) return;
   vec2 edge = vec2((sw + se) - (nw + ne), (nw + sw) - (ne + se));
   float shorten = 1.0 / (min(abs(edge.x), abs(edge.y)) + max(0.03 * (nw + ne + sw + se), 0.008));
   edge = clamp(edge * shorten, -6.0, 6.0) * pixel;
-  vec3 near = 0.5 * (texture(picture, at - edge / 6.0).rgb + texture(picture, at + edge / 6.0).rgb);
-  vec3 far = 0.5 * near +
-             0.25 * (texture(picture, at - 0.5 * edge).rgb + texture(picture, at + 0.5 * edge).rgb);
-  float f = luma(far);
-  result.rgb = f < low || f > high ? near : far;
+  vec4 near = 0.5 * (texture(picture, at - edge / 6.0) + texture(picture, at + edge / 6.0));
+  vec4 far = 0.5 * near +
+             0.25 * (texture(picture, at - 0.5 * edge) + texture(picture, at + 0.5 * edge));
+  float f = luma(far.rgb);
+  result = f < low || f > high ? near : far;
 }
 )";
 

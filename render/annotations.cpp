@@ -1,0 +1,147 @@
+#include "render/annotations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/paint.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+const Vector3f ink = Vector3f::Constant(0.96f), dark = Vector3f::Constant(0.05f);
+
+Eigen::Matrix3d rows_of(const Camera& camera) {
+  return view_matrix(camera).topLeftCorner<3, 3>().cast<double>();
+}
+
+/// Light letters with a dark border are read on skin and on the background.
+void write(Image& image, const Lettering& words, double x, double y, double height,
+           const std::string& text) {
+  const double off = std::max(1.0, height / 14);
+  for (const double dx : {-off, 0.0, off})
+    for (const double dy : {-off, 0.0, off})
+      if (dx != 0 || dy != 0) words.write(image, x + dx, y + dy, height, text, dark);
+  words.write(image, x, y, height, text, ink);
+}
+
+void write_centred(Image& image, const Lettering& words, double x, double y, double height,
+                   const std::string& text) {
+  write(image, words, x - words.width(text, height) / 2, y, height, text);
+}
+
+/// A line of round dots, soft at the edge.
+void stroke(Image& image, const Vector2d& from, const Vector2d& to, double radius,
+            const Vector3f& color) {
+  const Vector2d along = to - from;
+  const Vector2d low = from.cwiseMin(to).array() - radius - 1;
+  const Vector2d high = from.cwiseMax(to).array() + radius + 1;
+  for (int y = std::max(0, static_cast<int>(low.y())); y <= high.y(); ++y)
+    for (int x = std::max(0, static_cast<int>(low.x())); x <= high.x(); ++x) {
+      const Vector2d p(x + 0.5, y + 0.5);
+      const double t = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+      const double cover = std::clamp(radius + 0.5 - (p - from - t * along).norm(), 0.0, 1.0);
+      if (cover > 0) shade_box(image, {x, y, x + 1, y + 1}, color, static_cast<float>(cover));
+    }
+}
+
+void draw_bar(Image& image, const Lettering& words, const Camera& camera, double unit) {
+  const ScaleBar bar = scale_bar(camera, image.height, image.width);
+  const int right = static_cast<int>(image.width - 2.2 * unit);
+  const int left = right - static_cast<int>(std::lround(bar.pixels));
+  const int low = static_cast<int>(image.height - 2.2 * unit), thick = std::max(2, int(unit / 6));
+  const int tick = std::max(4, static_cast<int>(unit / 3));
+  for (const PixelBox& box : {PixelBox{left, low - thick, right, low},
+                              PixelBox{left, low - tick - thick, left + thick, low},
+                              PixelBox{right - thick, low - tick - thick, right, low}})
+    paint_frame(image, box, dark), paint_box(image, box, ink);
+  paint_box(image, {left, low - thick, right, low}, ink);
+  write_centred(image, words, 0.5 * (left + right), low - tick - 0.6 * unit, unit, bar.text);
+}
+
+void draw_letters(Image& image, const Lettering& words, const Camera& camera, double unit) {
+  const auto [left, right, top, bottom] = edge_letters(camera);
+  const double size = 1.5 * unit, middle = image.height / 2.0 + 0.35 * size;
+  write_centred(image, words, 1.6 * unit, middle, size, {left});
+  write_centred(image, words, image.width - 1.6 * unit, middle, size, {right});
+  write_centred(image, words, image.width / 2.0, 2.2 * unit, size, {top});
+  write_centred(image, words, image.width / 2.0, image.height - 1.2 * unit, size, {bottom});
+
+  // Okabe-Ito vermilion, bluish green and sky blue; the letters say what colours cannot.
+  const double reach = 3.2 * unit;
+  const Vector2d cross(image.width - reach - 2.2 * unit, reach + 2.2 * unit);
+  for (const auto& axis : axis_letters(camera)) {
+    const bool positive = axis.letter == 'L' || axis.letter == 'P' || axis.letter == 'S';
+    const Vector3f color = axis.letter == 'L' || axis.letter == 'R'   ? Vector3f(.90f, .45f, .10f)
+                           : axis.letter == 'A' || axis.letter == 'P' ? Vector3f(.10f, .68f, .52f)
+                                                                      : Vector3f(.40f, .75f, .95f);
+    const Vector2d end = cross + reach * Vector2d(axis.direction.x(), -axis.direction.y());
+    if (positive) stroke(image, cross, end, std::max(1.0, unit / 9), color);
+    const double faint = axis.toward_eye < -0.9 ? 0 : positive ? 0.95 : 0.6;
+    if (faint > 0)
+      write_centred(image, words, end.x(), end.y() + 0.35 * unit, unit * faint, {axis.letter});
+  }
+}
+
+}  // namespace
+
+ScaleBar scale_bar(const Camera& camera, int height_px, int width_px, double share) {
+  const double pixels_per_mm =
+      height_px / 2.0 /
+      (camera.distance_mm * std::tan(camera.field_of_view_deg * std::numbers::pi / 360));
+  const double most_mm = share * width_px / pixels_per_mm;
+  const double power = std::pow(10, std::floor(std::log10(most_mm)));
+  const double digit = most_mm / power >= 5 ? 5 : most_mm / power >= 2 ? 2 : 1;
+  ScaleBar bar;
+  bar.length_mm = digit * power;
+  bar.pixels = bar.length_mm * pixels_per_mm;
+  bar.text = fmt::format("{:g} mm", bar.length_mm);
+  return bar;
+}
+
+std::array<AxisLetter, 6> axis_letters(const Camera& camera) {
+  const Eigen::Matrix3d rows = rows_of(camera);
+  std::array<AxisLetter, 6> letters;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int sign : {1, -1}) {
+      const Vector3d seen = sign * rows.col(axis);
+      const int i = 2 * axis + (sign < 0);
+      letters[static_cast<std::size_t>(i)] = {"LRPASI"[i], seen.head<2>(), seen.z()};
+    }
+  std::stable_sort(letters.begin(), letters.end(), [](const AxisLetter& a, const AxisLetter& b) {
+    return a.toward_eye < b.toward_eye;
+  });
+  return letters;
+}
+
+EdgeLetters edge_letters(const Camera& camera) {
+  const Eigen::Matrix3d rows = rows_of(camera);
+  const auto letter = [](const Vector3d& direction) {
+    Eigen::Index axis = 0;
+    direction.cwiseAbs().maxCoeff(&axis);
+    return "LRPASI"[2 * axis + (direction[axis] < 0)];
+  };
+  const Vector3d right = rows.row(0), up = rows.row(1);
+  return {letter(-right), letter(right), letter(up), letter(-up)};
+}
+
+void annotate(Image& image, const Lettering& words, const Camera& camera,
+              const Annotations& annotations) {
+  const double unit = std::max(10.0, image.height / 45.0);  // height of letters
+  if (annotations.letters) draw_letters(image, words, camera, unit);
+  if (annotations.scale_bar) draw_bar(image, words, camera, unit);
+  const double below = annotations.letters ? 3.2 * unit : 1.6 * unit;
+  const auto count = static_cast<double>(annotations.caption.size());
+  for (std::size_t i = 0; i < annotations.caption.size(); ++i)
+    write_centred(image, words, image.width / 2.0,
+                  image.height - below - 1.4 * unit * (count - 1 - static_cast<double>(i)),
+                  1.1 * unit, annotations.caption[i]);
+}
+
+}  // namespace condyle

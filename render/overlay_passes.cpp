@@ -1,0 +1,221 @@
+#include "render/overlay_passes.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "render/shaders.h"
+
+namespace condyle {
+namespace {
+
+GlProgram build(const char* what, const ShaderSource& source) {
+  return {what, source.vertex, source.fragment};
+}
+
+/// Later ones lie over earlier ones where solids share a place: teeth in bone, bone in flesh.
+int order_of_caps(Role role) {
+  if (role == Role::face) return 0;
+  if (is_teeth(role)) return 3;
+  return collides(role) ? 2 : 1;
+}
+
+bool has_stencil() {
+  GLint target = 0, kind = GL_NONE;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+  glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER,
+                                        target == 0 ? GL_STENCIL : GL_STENCIL_ATTACHMENT,
+                                        GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &kind);
+  return kind != GL_NONE;
+}
+
+void blend_over() {
+  // Colours are multiplied by alpha as they are blended, as translucent parts are.
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+}
+
+}  // namespace
+
+OverlayPasses::OverlayPasses()
+    : cap_(build("cap", cap_shaders())),
+      tint_(build("tint", tint_shaders())),
+      depth_(build("depth", depth_shaders())),
+      line_(build("line", line_shaders())),
+      dot_(build("dot", marker_shaders())) {}
+
+void OverlayPasses::set_lines(const std::string& name, const LineSet& lines) {
+  if (lines.empty()) {
+    sets_.erase(name);
+    return;
+  }
+  auto& kept = sets_[name];
+  kept.set = lines;
+  auto colors = lines.colors;
+  colors.resize(lines.ends.size() / 2, lines.color);
+  kept.lines.send(lines.ends, colors);
+  kept.dots.send(lines.dots);
+}
+
+void OverlayPasses::begin(GlProgram& program, const PictureView& view,
+                          const Eigen::Matrix4f& model) {
+  program.use();
+  view.lights.set_in(program);
+  program.set("model", model);
+  program.set("view_projection", view.view_projection);
+  program.set("eye", view.eye);
+  program.set("opacity", 1.f);
+}
+
+void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& view) {
+  std::vector<const DrawItem*> cut;
+  for (const auto& item : items)
+    if (item.clipped && item.opaque()) cut.push_back(&item);
+  // From the kept side the surfaces themselves hide the cut.
+  const bool seen = view.clip_plane.dot(view.eye.homogeneous()) < 0;
+  if (cut.empty() || !view.capped || !seen || !has_stencil()) return;
+  std::stable_sort(cut.begin(), cut.end(), [](const DrawItem* a, const DrawItem* b) {
+    return order_of_caps(a->role()) < order_of_caps(b->role());
+  });
+
+  Eigen::AlignedBox3f box;
+  for (const auto* item : cut) box.extend(item->box());
+  const float half = box.diagonal().norm() + 100;
+  const Eigen::Vector3f middle =
+      box.center() + view.clip_plane.dot(box.center().homogeneous()) * view.cut_normal;
+  const Eigen::Vector3f u = half * view.cut_normal.unitOrthogonal(), v = view.cut_normal.cross(u);
+  const std::array<Eigen::Vector3f, 4> corners = {middle - u - v, middle + u - v, middle - u + v,
+                                                  middle + u + v};
+  glBindVertexArray(quad_);
+  glBindBuffer(GL_ARRAY_BUFFER, corners_);
+  glBufferData(GL_ARRAY_BUFFER, sizeof corners, corners.data(), GL_STREAM_DRAW);
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+
+  glEnable(GL_STENCIL_TEST);
+  glDisable(GL_CULL_FACE);
+  glStencilMask(0xff);
+  glClearStencil(0);
+  for (const auto* item : cut) {
+    // How often the solid goes round the place where the line of sight crosses the plane.
+    glClear(GL_STENCIL_BUFFER_BIT);
+    glStencilFunc(GL_ALWAYS, 0, 0xff);
+    glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_KEEP, GL_DECR_WRAP);
+    glStencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_INCR_WRAP);
+    glDisable(GL_DEPTH_TEST);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    item->drawable->cover();
+    begin(depth_, view, item->model);
+    depth_.set("clip_plane", view.clip_plane);
+    depth_.set("cut_ball", no_ball);
+    glEnable(GL_CLIP_DISTANCE0);
+    item->drawable->mesh.draw();
+    item->drawable->mesh.draw_cover();
+    glDisable(GL_CLIP_DISTANCE0);
+
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glStencilFunc(GL_NOTEQUAL, 0, 0xff);
+    glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+    begin(cap_, view, Eigen::Matrix4f::Identity());
+    set_cut(cap_, *item, view);
+    if (item->holed) glEnable(GL_CLIP_DISTANCE1);
+    glBindVertexArray(quad_);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glDisable(GL_CLIP_DISTANCE1);
+  }
+  glDepthFunc(GL_LESS);
+  glDisable(GL_STENCIL_TEST);
+}
+
+void OverlayPasses::wireframe(const DrawItem& item, const PictureView& view) {
+  begin(tint_, view, item.model);
+  begin_cut(tint_, item, view);
+  tint_.set("tint", Eigen::Vector3f(0.004f, 0.006f, 0.010f));
+  tint_.set("rim", 0.f);
+  tint_.set("opacity", 0.5f);
+  if (item.drawable->closed && !item.cut()) {
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+  } else {
+    glDisable(GL_CULL_FACE);
+  }
+  blend_over();
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_LEQUAL);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+  glEnable(GL_POLYGON_OFFSET_LINE);
+  glPolygonOffset(-1, -2);
+  item.mesh().draw();
+  glDisable(GL_POLYGON_OFFSET_LINE);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  glDepthFunc(GL_LESS);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+  end_cut();
+}
+
+void OverlayPasses::ghost(const DrawItem& item, const Ghost& look, const PictureView& view) {
+  const GpuMesh& mesh = item.drawable->rest_mesh();
+  const Eigen::Matrix4f still = Eigen::Matrix4f::Identity();
+  glDisable(GL_CULL_FACE);
+  begin(depth_, view, still);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  mesh.draw();
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  begin(tint_, view, still);
+  tint_.set("tint", Eigen::Vector3f(look.color.cast<float>().array().pow(2.2f)));
+  tint_.set("rim", 1.f);
+  tint_.set("opacity", static_cast<float>(look.opacity));
+  blend_over();
+  glDepthFunc(GL_EQUAL);
+  mesh.draw();
+  glDepthFunc(GL_LESS);
+  glDisable(GL_BLEND);
+}
+
+void OverlayPasses::lines(const PictureView& view, int width, int height) {
+  blend_over();
+  glDisable(GL_CULL_FACE);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  for (auto& [name, kept] : sets_) {
+    const LineSet& set = kept.set;
+    for (const bool through : {true, false}) {
+      const float opacity = through ? set.through : 1;
+      if (!(opacity > 0)) continue;
+      (through ? glDisable : glEnable)(GL_DEPTH_TEST);
+      if (!kept.lines.empty()) {
+        line_.use();
+        line_.set("view", view.view);
+        line_.set("projection", view.projection);
+        line_.set("half_picture", Eigen::Vector2f(0.5f * static_cast<float>(width),
+                                                  0.5f * static_cast<float>(height)));
+        line_.set("half_width",
+                  std::max(0.5f, 0.5f * set.width_px * static_cast<float>(height) / 1080));
+        line_.set("near", 1.f);
+        line_.set("nearer", 0.8f / view.away);
+        line_.set("opacity", opacity);
+        kept.lines.draw();
+      }
+      if (!kept.dots.empty()) {
+        dot_.use();
+        dot_.set("view", view.view);
+        dot_.set("projection", view.projection);
+        dot_.set("radius", set.dot_mm);
+        dot_.set("nearer", 1.2f * set.dot_mm);
+        dot_.set("pixels_per_unit", view.pixels_per_unit);
+        dot_.set("opacity", opacity);
+        dot_.set("color", set.color);
+        kept.dots.draw();
+      }
+    }
+  }
+  glEnable(GL_DEPTH_TEST);
+  glDisable(GL_PROGRAM_POINT_SIZE);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+}  // namespace condyle

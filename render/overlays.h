@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace condyle {
+
+// What a picture can show beside the surfaces themselves, and what it can leave out of them. Places
+// are in the cranium's frame, mm; colours sRGB, 0 to 1; parts are named as in the case.
+
+/// Leaves out what lies on the side that the normal points to. No light is kept from the rest by
+/// what is left out.
+struct ClippingPlane {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // any length but 0
+  /// Cut faces are closed in the tissue's own colour. Without, and where a surface is too damaged
+  /// to have an inside, its inner side is drawn flat in that colour, so that nothing looks hollow.
+  bool capped = true;
+  std::vector<std::string> parts = {};  // which are cut; none = all
+};
+
+/// Leaves out what lies in a ball: a window in the skin over the joint.
+struct CutAway {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double radius_mm = 30;
+  std::vector<std::string> parts = {};  // which are cut; none = the face
+};
+
+/// Parts as they are at rest, see-through, beside where they are now.
+struct Ghost {
+  std::vector<std::string> parts = {};  // none = those that have moved and are drawn
+  double opacity = 0.35;
+  Eigen::Vector3f color = {0.34f, 0.71f, 0.91f};  // Okabe-Ito sky blue
+};
+
+/// Lines and dots in space, of the same width on the screen wherever they are.
+struct LineSet {
+  std::vector<Eigen::Vector3f> ends;    // two for each line
+  std::vector<Eigen::Vector3f> colors;  // one for each line; none = `color`
+  std::vector<Eigen::Vector3f> dots;
+  Eigen::Vector3f color = {0.9f, 0.9f, 0.9f};
+  float width_px = 2;   // of a picture 1080 high
+  float dot_mm = 0.8f;  // radius
+  float through = 0.3;  // opacity where something lies before them; 0 = hidden
+
+  bool empty() const { return ends.empty() && dots.empty(); }
+};
+
+/// A run of points as lines, added to the set.
+void add_run(LineSet& lines, const std::vector<Eigen::Vector3f>& points);
+/// A line with a head of a tenth of its length.
+void add_arrow(LineSet& lines, const Eigen::Vector3f& from, const Eigen::Vector3f& to);
+
+}  // namespace condyle
