@@ -36,9 +36,9 @@ struct Ghost {
 
 /// Lines and dots in space, of the same width on the screen wherever they are.
 struct LineSet {
-  std::vector<Eigen::Vector3f> ends;    // two for each line
-  std::vector<Eigen::Vector3f> colors;  // one for each line; none = `color`
-  std::vector<Eigen::Vector3f> dots;
+  std::vector<Eigen::Vector3f> ends = {};    // two for each line
+  std::vector<Eigen::Vector3f> colors = {};  // one for each line; none = `color`
+  std::vector<Eigen::Vector3f> dots = {};
   Eigen::Vector3f color = {0.9f, 0.9f, 0.9f};
   float width_px = 2;   // of a picture 1080 high
   float dot_mm = 0.8f;  // radius

@@ -27,6 +27,22 @@ struct TissueOptions {
   std::vector<std::string> attach = {}, detach = {};
 };
 
+/// What is cut, laid over and written on pictures, as the user wrote it.
+struct PictureOptions {
+  std::string size = "1280x720";
+  std::string camera = "three-quarter";  // several by commas
+  std::string show = "all";
+  double distance_near_mm = 2;  // end of the map of distances
+  std::string clip = {}, clip_parts = {}, cut_away = {}, overlay = {};
+  bool clip_open = false;
+  std::optional<double> wipe = std::nullopt;
+  std::string caption = {};
+  bool transparent = false;
+  std::string edges = "msaa4";
+  int supersample = 1;
+  bool shadows = true;
+};
+
 /// Who moves, and how.
 struct MotionOptions {
   std::filesystem::path patient;  // case folder; empty = the built-in patient
@@ -49,10 +65,7 @@ struct RecordOptions {
   bool plots = false;
   // pictures; `run` has none
   bool pictures = false;
-  std::string size = "1280x720";
-  std::string camera = "three-quarter";
-  std::string show = "all";
-  double distance_near_mm = 2;  // end of the map of distances
+  PictureOptions picture = {};
   bool film = false;
   bool resume = false;
 };

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <nlohmann/json.hpp>
-#include <set>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -90,9 +88,8 @@ std::pair<int, int> parse_size(const std::string& text) {
   return {width, height};
 }
 
-SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
-                           PictureSettings& settings) {
-  const std::map<std::string, std::set<Role>> groups = {
+const std::map<std::string, std::set<Role>>& part_groups() {
+  static const std::map<std::string, std::set<Role>> groups = {
       {"bones", {Role::skull, Role::maxilla, Role::mandible, Role::segment, Role::transplant}},
       {"teeth", {Role::upper_teeth, Role::lower_teeth}},
       {"segments", {Role::segment}},
@@ -100,6 +97,12 @@ SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
       {"skin", {Role::face, Role::eyes}},
       {"mouth", {Role::upper_gums, Role::lower_gums, Role::tongue}},
   };
+  return groups;
+}
+
+SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
+                           PictureSettings& settings) {
+  const auto& groups = part_groups();
   const auto known = [&] {
     std::string names = "all, contacts, distance, displacement";
     for (const auto& [name, roles] : groups) names += ", " + name;
@@ -145,45 +148,6 @@ SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
     if (part.role == Role::face) settings.skin_opacity = opacity[part.name];
   settings.part_opacity = std::move(opacity);
   return map;
-}
-
-Camera parse_camera(const std::string& text, const Eigen::Vector3d& low,
-                    const Eigen::Vector3d& high, double aspect) {
-  if (!text.ends_with(".json")) return standard_camera(text, low, high, aspect);
-  const auto json = nlohmann::json::parse(read_file(text, 1 << 20), nullptr, false);
-  if (!json.is_object()) throw InputError(text, "", "is not a JSON object");
-  for (const auto& [key, value] : json.items())
-    if (key != "target" && key != "direction" && key != "up" && key != "distance_mm" &&
-        key != "field_of_view_deg")
-      throw InputError(text, key,
-                       "is not known; known are target, direction, up, distance_mm and "
-                       "field_of_view_deg");
-  Camera camera = standard_camera("front", low, high, aspect);
-  const auto vector = [&](const char* name, Eigen::Vector3d& value) {
-    if (!json.contains(name)) return;
-    const auto& list = json[name];
-    if (!list.is_array() || list.size() != 3 || !list[0].is_number() || !list[1].is_number() ||
-        !list[2].is_number())
-      throw InputError(text, name, "must be three numbers");
-    value = {list[0].get<double>(), list[1].get<double>(), list[2].get<double>()};
-  };
-  const auto number = [&](const char* name, double& value, double least, double most) {
-    if (!json.contains(name)) return;
-    if (!json[name].is_number()) throw InputError(text, name, "must be a number");
-    value = json[name].get<double>();
-    if (!(value >= least && value <= most))
-      throw InputError(text, name, fmt::format("is {}; must be {} to {}", value, least, most));
-  };
-  vector("target", camera.target);
-  vector("direction", camera.direction);
-  vector("up", camera.up);
-  number("distance_mm", camera.distance_mm, 10, 10000);
-  number("field_of_view_deg", camera.field_of_view_deg, 1, 120);
-  if (camera.direction.norm() < 1e-9) throw InputError(text, "direction", "must not be zero");
-  camera.direction.normalize();
-  if (camera.direction.cross(camera.up).norm() < 1e-6)
-    throw InputError(text, "up", "must not be zero or along the direction");
-  return camera;
 }
 
 }  // namespace condyle

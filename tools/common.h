@@ -1,9 +1,10 @@
 #pragma once
 
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
-#include "render/camera.h"
 #include "render/scene_renderer.h"
 #include "sim/simulator/simulator.h"
 #include "tools/commands.h"
@@ -43,15 +44,14 @@ std::string processor();
 /// "1280x720". throws: InputError unless both are between 16 and 8192.
 std::pair<int, int> parse_size(const std::string& text);
 
+/// What "bones", "teeth", "skin" and so on mean.
+const std::map<std::string, std::set<Role>>& part_groups();
+
 /// Fills opacities from a list such as "bones,teeth,skin:0.4"; "all" shows every part.
 /// gives: the map of numbers on the surfaces that is in the list, if one is. throws: InputError for
 /// an unknown name, listing the known ones.
 enum class SurfaceMap { none, distance, displacement };
 SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
                            PictureSettings& settings);
-
-/// A standard view by name, or a JSON file {target, direction, up, distance_mm, field_of_view_deg}.
-Camera parse_camera(const std::string& text, const Eigen::Vector3d& low,
-                    const Eigen::Vector3d& high, double aspect);
 
 }  // namespace condyle

@@ -162,6 +162,62 @@ void add_recording(CLI::App* command, RecordOptions& record) {
   command->add_flag("--plots", record.plots, "Also draw plots (SVG)");
 }
 
+void add_pictures(CLI::App* command, PictureOptions& picture) {
+  command->add_option("--size", picture.size,
+                      "Picture size, WIDTHxHEIGHT up to 8192 a side (1280x720; 4K: 3840x2160)");
+  command->add_option(
+      "--camera", picture.camera,
+      "front back left right three-quarter above below spin upper-arch lower-arch, or a JSON file "
+      "with a view or a path of views; several at once by commas (three-quarter)");
+  command->add_option(
+      "--show", picture.show,
+      "What to draw: all bones teeth segments transplants skin mouth contacts or part names, each "
+      "with an opacity if wanted, e.g. bones,teeth,skin:0.4 (all); distance: colour bones and "
+      "teeth by their distance from what they may meet; displacement: colour the skin by its way "
+      "from rest");
+  command
+      ->add_option("--distance-near", picture.distance_near_mm,
+                   "Distances up to here are coloured, mm (2)")
+      ->check(within(0.5, 10.0));
+  command
+      ->add_option("--clip", picture.clip,
+                   "Leave out what lies beyond a plane, and close what it cuts: left right front "
+                   "back above or below, with a place in mm from the middle between the condyles "
+                   "if wanted (left:10), or X,Y,Z,NX,NY,NZ: a point and the way out")
+      ->type_name("SIDE[:MM]");
+  command->add_option("--clip-parts", picture.clip_parts,
+                      "Which parts the plane cuts, as in --show (all)");
+  command->add_flag("--clip-open", picture.clip_open,
+                    "Show the inner sides, drawn flat, instead of closing what is cut");
+  command
+      ->add_option("--cut-away", picture.cut_away,
+                   "Open a round window in the skin about a landmark or point, e.g. "
+                   "left_condyle,35")
+      ->type_name("LANDMARK|X,Y,Z,RADIUS");
+  command->add_option(
+      "--overlay", picture.overlay,
+      "Also draw, by commas: springs prisms bone-springs (of the tissue) axes paths (of condyles "
+      "and incisal point) ghost (where all was at rest) wireframe[:PARTS] patches (of contact) "
+      "scale letters (L R A P S I)");
+  command
+      ->add_option("--wipe", picture.wipe,
+                   "Left of this share of the width the patient at rest, right of it as he is now")
+      ->check(within(0.0, 1.0));
+  command->add_option("--caption", picture.caption,
+                      "Words under the picture; {time}, {opening}, {rotation}, {frame} and "
+                      "{motion} are filled in, | breaks the line");
+  command->add_flag("--transparent", picture.transparent, "No background: PNG with alpha");
+  command
+      ->add_option("--edges", picture.edges,
+                   "How edges are made smooth: msaa4, msaa2, fxaa (twice as fast) or none (msaa4)")
+      ->check(CLI::IsMember({"msaa4", "msaa2", "fxaa", "none"}));
+  command
+      ->add_option("--supersample", picture.supersample,
+                   "Draw so many times as wide and high, then average: 1 to 4 (1)")
+      ->check(CLI::Range(1, 4));
+  command->add_flag("!--no-shadows", picture.shadows, "Leave shadows out");
+}
+
 CLI::App* add_command(CLI::App& app, const char* name, const char* what, const char* example) {
   auto* command = app.add_subcommand(name, what);
   command->footer(std::string("\nExample\n  ") + example);
@@ -209,22 +265,7 @@ int run_program(int argc, char** argv) {
       app, "record", "Record a motion as pictures, off-screen",
       "condyle record --motion opening --out out --camera spin --show bones,teeth,skin:0.4 --film");
   add_recording(record_command, record);
-  record_command->add_option("--size", record.size, "Picture size, WIDTHxHEIGHT (1280x720)");
-  record_command->add_option(
-      "--camera", record.camera,
-      "front back left right three-quarter above below spin upper-arch lower-arch, or a JSON file "
-      "(three-quarter)");
-  record_command->add_option(
-      "--show", record.show,
-      "What to draw: all bones teeth segments transplants skin mouth contacts or part names, each "
-      "with an opacity if wanted, e.g. bones,teeth,skin:0.4 (all); distance: colour bones and "
-      "teeth by their distance from what they may meet; displacement: colour the skin by its way "
-      "from "
-      "rest");
-  record_command
-      ->add_option("--distance-near", record.distance_near_mm,
-                   "Distances up to here are coloured, mm (2)")
-      ->check(within(0.5, 10.0));
+  add_pictures(record_command, record.picture);
   record_command->add_flag("--film", record.film, "Also make film.mp4 (needs the ffmpeg program)");
   record_command->add_flag("--resume", record.resume, "Complete an interrupted recording");
 

@@ -5,28 +5,15 @@
 #include "engine/core/error.h"
 #include "sim/case/case_io.h"
 #include "sim/case/pair_rules.h"
+#include "tools/text_list.h"
 
 namespace condyle {
-namespace {
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> fields(1);
-  for (const char c : text)
-    if (c == ',')
-      fields.emplace_back();
-    else
-      fields.back() += c;
-  return fields;
-}
-
-}  // namespace
-
 PairRule parse_pair(const std::string& text) {
   constexpr double most_mm = 1000;
   const auto refuse = [&](const std::string& problem) {
     throw InputError("--pair " + text + ": " + problem);
   };
-  const std::vector<std::string> fields = split(text);
+  const std::vector<std::string> fields = split_list(text);
   if (fields.size() < 3)
     refuse("must be A,B,POLICY[,gap=MM][,margin=MM], e.g. skull,mandible,guided,gap=1.5");
   PairRule rule;

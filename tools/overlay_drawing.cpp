@@ -1,0 +1,114 @@
+#include "tools/overlay_drawing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/tissue/net_lines.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3f;
+
+// Okabe and Ito's, which are told apart with every kind of colour vision.
+const Vector3f vermilion(.84f, .37f, 0), blue(0, .45f, .70f), sky(.34f, .71f, .91f),
+    yellow(.94f, .89f, .26f), green(0, .62f, .45f), purple(.80f, .47f, .65f);
+
+/// Blue to grey to red over half to one and a half times the rest length.
+Vector3f stretch_color(float stretch) {
+  const Vector3f shortened(.13f, .40f, .67f), rest(.86f, .86f, .86f), stretched(.80f, .20f, .16f);
+  const float t = std::clamp((stretch - 1) / 0.5f, -1.f, 1.f);
+  return t < 0 ? Vector3f(rest - t * (shortened - rest)) : Vector3f(rest + t * (stretched - rest));
+}
+
+LineSet springs(const Scene& scene, const FrameState& frame) {
+  LineSet set{.width_px = 1.2f, .through = 0};
+  for (const auto& spring : spring_lines(*scene.tissue, frame.tissue)) {
+    set.ends.insert(set.ends.end(), spring.ends.begin(), spring.ends.end());
+    set.colors.push_back(stretch_color(spring.stretch));
+  }
+  return set;
+}
+
+LineSet prisms(const Scene& scene, const FrameState& frame) {
+  LineSet set{.color = green, .width_px = 1.2f, .through = 0};
+  for (const auto& line : prism_lines(*scene.tissue, frame.tissue))
+    set.ends.insert(set.ends.end(), line.begin(), line.end());
+  return set;
+}
+
+LineSet bone_springs(const Scene& scene, const FrameState& frame, bool mandible) {
+  LineSet set{
+      .color = mandible ? vermilion : blue, .width_px = 2.5f, .dot_mm = 0.7f, .through = 0.35f};
+  for (const auto& spring : bone_spring_lines(*scene.tissue, frame.tissue)) {
+    if ((spring.mandible_share > 0.5) != mandible) continue;
+    set.ends.insert(set.ends.end(), spring.ends.begin(), spring.ends.end());
+    set.dots.push_back(spring.ends[1]);
+  }
+  return set;
+}
+
+LineSet axes(const Measures& m) {
+  LineSet set{.width_px = 2.5f, .through = 0.6f};
+  const Vector3f left = m.left_condyle.cast<float>(), right = m.right_condyle.cast<float>();
+  const Vector3f between = 0.5f * (left + right), across = (left - right).normalized();
+  const auto color = [&](const Vector3f& c) { set.colors.resize(set.ends.size() / 2, c); };
+  set.ends.insert(set.ends.end(), {right - 25 * across, left + 25 * across});
+  color(yellow);
+  if (m.helical_axis.known) {
+    const Vector3f p = m.helical_axis.point.cast<float>(),
+                   d = m.helical_axis.direction.cast<float>();
+    set.ends.insert(set.ends.end(), {p - 80 * d, p + 80 * d});
+    color(purple);
+  }
+  constexpr float reach = 40;
+  add_arrow(set, between, between + reach * Vector3f::UnitX());
+  color(vermilion);
+  add_arrow(set, between, between + reach * Vector3f::UnitY());
+  color(green);
+  add_arrow(set, between, between + reach * Vector3f::UnitZ());
+  color(sky);
+  return set;
+}
+
+void extend(std::vector<Vector3f>& path, const Eigen::Vector3d& place) {
+  constexpr float step_mm = 0.05f;
+  const Vector3f p = place.cast<float>();
+  if (path.empty() || (path.back() - p).norm() > step_mm) path.push_back(p);
+}
+
+}  // namespace
+
+void MotionPaths::add(const Measures& measures) {
+  extend(incisor_, measures.incisor);
+  extend(left_, measures.left_condyle);
+  extend(right_, measures.right_condyle);
+}
+
+LineSet MotionPaths::lines() const {
+  LineSet set{.color = yellow, .width_px = 3, .dot_mm = 1.1f, .through = 0.7f};
+  for (const auto& [path, color] :
+       {std::pair{&incisor_, yellow}, std::pair{&left_, sky}, std::pair{&right_, vermilion}}) {
+    add_run(set, *path);
+    set.colors.resize(set.ends.size() / 2, color);
+    if (!path->empty()) set.dots.push_back(path->back());
+  }
+  return set;
+}
+
+std::map<std::string, LineSet> overlay_lines(const Scene& scene, const FrameState& frame,
+                                             const OverlayChoice& choice,
+                                             const MotionPaths& paths) {
+  const bool tissue = scene.tissue && !frame.tissue.nodes.empty();
+  std::map<std::string, LineSet> all;
+  all["springs"] = tissue && choice.springs ? springs(scene, frame) : LineSet{};
+  all["prisms"] = tissue && choice.prisms ? prisms(scene, frame) : LineSet{};
+  for (const bool mandible : {false, true})
+    all[mandible ? "bone springs of the mandible" : "bone springs of the cranium"] =
+        tissue && choice.bone_springs ? bone_springs(scene, frame, mandible) : LineSet{};
+  all["axes"] = choice.axes ? axes(frame.measures) : LineSet{};
+  all["paths"] = choice.paths ? paths.lines() : LineSet{};
+  return all;
+}
+
+}  // namespace condyle

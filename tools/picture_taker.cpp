@@ -1,0 +1,135 @@
+#include "tools/picture_taker.h"
+
+#include <fmt/format.h>
+
+#include "engine/core/error.h"
+#include "engine/mesh/measure.h"
+#include "render/gap_colours.h"
+#include "render/paint.h"
+
+namespace condyle {
+namespace {
+
+// Fixed, so that pictures can be compared; nothing goes farther at full opening.
+constexpr double displacement_end_mm = 60;
+
+/// The box of what is shown, grown by where the motion takes the mandible: what the camera keeps in
+/// view.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const Motion& motion,
+                                                     const PictureSettings& picture) {
+  constexpr int samples = 24;
+  constexpr std::size_t stride = 16;  // a few vertices tell the extent
+  Box box;
+  for (const auto& part : patient.parts) {
+    const auto opacity = picture.part_opacity.find(part.name);
+    if (opacity != picture.part_opacity.end() && opacity->second <= 0) continue;
+    const Body body = body_of(part.role);
+    const bool moves = (body == Body::free ? part.carrier : body) == Body::mandible;
+    for (int i = 0; i <= (moves ? samples : 0); ++i) {
+      const Pose X_CM = moves ? motion.wanted(motion.duration_s * i / samples) : Pose{};
+      for (std::size_t v = 0; v < part.mesh.vertices.size(); v += stride)
+        box.add(X_CM * part.mesh.vertices[v]);
+    }
+  }
+  if (box.empty()) throw InputError("--show: nothing is left to draw");
+  return {box.low, box.high};
+}
+
+}  // namespace
+
+PictureTaker::PictureTaker(const RecordOptions& options, const RecordingSubject& subject)
+    : subject_(subject),
+      caption_(options.picture.caption),
+      plan_(parse_pictures(options.picture, subject.scene.patient)),
+      renderer_(subject.scene.patient.parts),
+      rest_(rest_frame(subject.scene)) {
+  const auto& patient = subject.scene.patient;
+  const auto& wanted = options.picture;
+  const bool distance = plan_.map == SurfaceMap::distance;
+  if (distance || plan_.patches)
+    // Finer than a window has time for.
+    distances_.emplace(patient,
+                       DistanceMapSettings{.reach_mm = distance ? wanted.distance_near_mm : 1,
+                                           .teeth_edge_mm = 0.4,
+                                           .bone_edge_mm = 1,
+                                           .most_triangles = 400000,
+                                           .pair_rules = subject.settings.contact.pair_rules},
+                       subject.settings.threads, renderer_,
+                       distance ? std::nullopt : std::optional(gap_colours(0.1)));
+  if (plan_.map == SurfaceMap::displacement)
+    displacement_.emplace(patient, displacement_end_mm, renderer_);
+  if (subject.settings.face) carry_face(subject.scene, rest_, subject.settings.threads);
+
+  const double aspect = static_cast<double>(plan_.settings.width) / plan_.settings.height;
+  const auto [low, high] = view_box(patient, subject.motion, plan_.settings);
+  const auto cameras = split_cameras(wanted.camera);
+  for (const auto& text : cameras) {
+    View view{RecordingCamera(text, patient.parts, low, high, aspect), plan_.settings, nullptr};
+    if (const auto* arch = view.camera.arch())
+      for (const auto& [part, opacity] : arch->hidden()) view.settings.part_opacity[part] = opacity;
+    auto identity = subject.identity;
+    identity["camera"] = view.camera.description();
+    identity["show"] = wanted.show;
+    identity["distances"] =
+        distance ? fmt::format("up to {} mm", wanted.distance_near_mm) : std::string("none");
+    identity["picture"] = describe(wanted);
+    view.recorder = std::make_unique<Recorder>(RecorderSettings{
+        .folder = cameras.size() == 1 ? options.out : options.out / view.camera.name(),
+        .width = plan_.settings.width,
+        .height = plan_.settings.height,
+        .frames = subject.frames,
+        .frames_per_second = subject.frames_per_second,
+        .film = options.film,
+        .resume = options.resume,
+        .identity = std::move(identity)});
+    kept_ += view.recorder->kept_frames();
+    views_.push_back(std::move(view));
+  }
+}
+
+bool PictureTaker::wanted(int frame) const {
+  for (const auto& view : views_)
+    if (!view.recorder->has(frame)) return true;
+  return false;
+}
+
+Image PictureTaker::drawn(const View& view, const Camera& camera, const FrameState& state,
+                          bool with_paths) {
+  renderer_.update(state);
+  if (distances_) distances_->color(renderer_, state);
+  if (displacement_) displacement_->color(renderer_, state);
+  for (const auto& [name, lines] :
+       overlay_lines(subject_.scene, state, plan_.overlays, with_paths ? paths_ : MotionPaths{}))
+    renderer_.set_lines(name, lines);
+  return renderer_.picture(camera, view.settings);
+}
+
+Image PictureTaker::picture(const View& view, const Camera& camera, const FrameState& state) {
+  Image image = drawn(view, camera, state, true);
+  if (plan_.wipe) image = wiped(drawn(view, camera, rest_, false), image, *plan_.wipe);
+  if (distances_) distances_->add_legend_to(image);
+  if (displacement_) displacement_->add_legend_to(image);
+  return image;
+}
+
+void PictureTaker::take(int frame, FrameState& state) {
+  paths_.add(state.measures);
+  if (!wanted(frame)) return;
+  const StageTimer timer(state.times, Stage::render);
+  const double share = subject_.frames > 1 ? static_cast<double>(frame) / (subject_.frames - 1) : 0;
+  for (auto& view : views_) {
+    if (view.recorder->has(frame)) continue;
+    const Camera camera = view.camera.at(share, state);
+    Image image = picture(view, camera, state);
+    auto notes = plan_.annotations;
+    notes.caption = caption_lines(caption_, frame, state, subject_.motion.name);
+    annotate(image, words_, camera, notes);
+    view.recorder->add(frame, std::move(image));
+  }
+}
+
+void PictureTaker::finish() {
+  for (auto& view : views_) view.recorder->finish();
+}
+
+}  // namespace condyle
