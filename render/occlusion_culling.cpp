@@ -34,6 +34,7 @@ int OcclusionCulling::ask(const GpuMesh& mesh, const Eigen::Matrix4f& model_view
     glGenQueries(1, &queries_.back());
   }
   program_.use();
+  program_.set("clip_plane", Eigen::Vector4f(0, 0, 0, 1));  // nothing is cut
   glDisable(GL_CLIP_DISTANCE0);
   glDisable(GL_CLIP_DISTANCE1);
   program_.set("view_projection", model_view_projection);

@@ -65,6 +65,8 @@ void OverlayPasses::begin(GlProgram& program, const PictureView& view,
   program.set("view_projection", view.view_projection);
   program.set("eye", view.eye);
   program.set("opacity", 1.f);
+  program.set("clip_plane", nothing_clipped);
+  program.set("cut_ball", no_ball);
 }
 
 void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& view) {
@@ -107,7 +109,6 @@ void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& vie
     item->drawable->cover();
     begin(depth_, view, item->model);
     depth_.set("clip_plane", view.clip_plane);
-    depth_.set("cut_ball", no_ball);
     glEnable(GL_CLIP_DISTANCE0);
     item->drawable->mesh.draw();
     item->drawable->mesh.draw_cover();
@@ -120,6 +121,7 @@ void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& vie
     glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
     begin(cap_, view, Eigen::Matrix4f::Identity());
     set_cut(cap_, *item, view);
+    cap_.set("clip_plane", nothing_clipped);  // it lies in the plane itself
     if (item->holed) glEnable(GL_CLIP_DISTANCE1);
     glBindVertexArray(quad_);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
@@ -192,11 +194,12 @@ void OverlayPasses::lines(const PictureView& view, int width, int height) {
         line_.set("projection", view.projection);
         line_.set("half_picture", Eigen::Vector2f(0.5f * static_cast<float>(width),
                                                   0.5f * static_cast<float>(height)));
-        line_.set("half_width",
-                  std::max(0.5f, 0.5f * set.width_px * static_cast<float>(height) / 1080));
+        // Thinner than a pixel, a line is fainter instead.
+        const float line_width = set.width_px * static_cast<float>(height) / 1080;
+        line_.set("half_width", std::max(0.5f, 0.5f * line_width));
         line_.set("near", 1.f);
         line_.set("nearer", 0.8f / view.away);
-        line_.set("opacity", opacity);
+        line_.set("opacity", opacity * std::min(1.f, line_width));
         kept.lines.draw();
       }
       if (!kept.dots.empty()) {

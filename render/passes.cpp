@@ -36,8 +36,9 @@ void cull_by_closure(const DrawItem& item) {
 }  // namespace
 
 void set_cut(GlProgram& program, const DrawItem& item, const PictureView& view) {
-  program.set("clip_plane", view.clip_plane);
-  program.set("cut_ball", view.cut_ball);
+  // Not left to the switches alone: Mesa's rasteriser cuts by distances that are off.
+  program.set("clip_plane", item.clipped ? view.clip_plane : nothing_clipped);
+  program.set("cut_ball", item.holed ? view.cut_ball : no_ball);
   const Eigen::Vector3f color = cut_color_of(item.role()).array().pow(2.2f);
   program.set("cut", Eigen::Vector4f(color.x(), color.y(), color.z(), item.cut() ? 1.f : 0.f));
   program.set("cut_normal", view.cut_normal);

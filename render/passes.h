@@ -48,8 +48,8 @@ struct PictureView {
   float mapped_up_to = std::numeric_limits<float>::infinity();  // values beyond are not shown
 };
 
-/// A ball that cuts nothing.
-inline const Eigen::Vector4f no_ball = {0, 0, 0, -1};
+// A plane and a ball that cut nothing.
+inline const Eigen::Vector4f nothing_clipped = {0, 0, 0, 1}, no_ball = {0, 0, 0, -1};
 
 /// Tells the program in use what is cut of a part.
 void set_cut(GlProgram& program, const DrawItem& item, const PictureView& view);

@@ -22,7 +22,7 @@ Vector3f stretch_color(float stretch) {
 }
 
 LineSet springs(const Scene& scene, const FrameState& frame) {
-  LineSet set{.width_px = 1.2f, .through = 0};
+  LineSet set{.width_px = 0.7f, .through = 0};
   for (const auto& spring : spring_lines(*scene.tissue, frame.tissue)) {
     set.ends.insert(set.ends.end(), spring.ends.begin(), spring.ends.end());
     set.colors.push_back(stretch_color(spring.stretch));
@@ -31,7 +31,7 @@ LineSet springs(const Scene& scene, const FrameState& frame) {
 }
 
 LineSet prisms(const Scene& scene, const FrameState& frame) {
-  LineSet set{.color = green, .width_px = 1.2f, .through = 0};
+  LineSet set{.color = green, .width_px = 0.9f, .through = 0};
   for (const auto& line : prism_lines(*scene.tissue, frame.tissue))
     set.ends.insert(set.ends.end(), line.begin(), line.end());
   return set;

@@ -1,0 +1,82 @@
+#include "render/annotations.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace condyle {
+namespace {
+
+Camera seen(const Eigen::Vector3d& direction, const Eigen::Vector3d& up = {0, 0, 1}) {
+  Camera camera;
+  camera.direction = direction;
+  camera.up = up;
+  return camera;
+}
+
+TEST(Annotations, LettersStandWhereThePatientsSidesAre) {
+  // As one faces the patient: his right on the left.
+  const EdgeLetters front = edge_letters(seen({0, -1, 0}));
+  EXPECT_EQ(front.left, 'R');
+  EXPECT_EQ(front.right, 'L');
+  EXPECT_EQ(front.top, 'S');
+  EXPECT_EQ(front.bottom, 'I');
+  const EdgeLetters left = edge_letters(seen({1, 0, 0}));
+  EXPECT_EQ(left.left, 'A');
+  EXPECT_EQ(left.right, 'P');
+  const EdgeLetters above = edge_letters(seen({0, 0, 1}, {0, -1, 0}));
+  EXPECT_EQ(above.top, 'A');
+  const auto axes = axis_letters(seen({0, -1, 0}));
+  EXPECT_EQ(axes.front().letter, 'P');  // the farthest first
+  EXPECT_EQ(axes.back().letter, 'A');
+  for (const auto& axis : axes) {
+    if (axis.letter == 'S') {
+      EXPECT_NEAR(axis.direction.y(), 1, 1e-6);
+    }
+  }
+}
+
+TEST(Annotations, TheBarIsARoundLengthOfTheSizeThatItSays) {
+  Camera camera;
+  for (const double away : {60.0, 200.0, 600.0, 1500.0}) {
+    camera.distance_mm = away;
+    const ScaleBar bar = scale_bar(camera, 1080, 1920);
+    // Height of the picture at the target.
+    const double height_mm = 2 * away * std::tan(camera.field_of_view_deg * M_PI / 360);
+    EXPECT_NEAR(bar.pixels, bar.length_mm / height_mm * 1080, 1e-6);
+    EXPECT_LE(bar.pixels, 0.18 * 1920);
+    EXPECT_GE(bar.pixels, 0.18 * 1920 / 2.5 - 1e-9);
+    const double digit = bar.length_mm / std::pow(10, std::floor(std::log10(bar.length_mm) + 1e-9));
+    EXPECT_TRUE(std::abs(digit - 1) < 1e-9 || std::abs(digit - 2) < 1e-9 ||
+                std::abs(digit - 5) < 1e-9)
+        << bar.text;
+  }
+}
+
+TEST(Annotations, ArePaintedWhereTheyBelongAndOnlyWhenWanted) {
+  Image image{640, 360, std::vector<std::uint8_t>(std::size_t{4} * 640 * 360, 90)};
+  const Image before = image;
+  const Lettering words;
+  const Camera camera = seen({0, -1, 0});
+  annotate(image, words, camera, {});
+  EXPECT_EQ(image.rgba, before.rgba);
+  annotate(image, words, camera, {.scale_bar = true});
+  const auto differs = [&](int x0, int y0, int x1, int y1) {
+    int count = 0;
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) {
+        const std::size_t i = 4 * (std::size_t{640} * y + x);
+        count += image.rgba[i] != before.rgba[i];
+      }
+    return count;
+  };
+  EXPECT_GT(differs(440, 300, 640, 360), 40);
+  EXPECT_EQ(differs(0, 0, 440, 300), 0);
+  if (!words.has_font()) GTEST_SKIP() << "no font on this machine";
+  annotate(image, words, camera, {.letters = true, .caption = {"Opening 31.0 mm"}});
+  EXPECT_GT(differs(0, 140, 60, 220), 20);      // R
+  EXPECT_GT(differs(220, 300, 420, 345), 100);  // the caption
+}
+
+}  // namespace
+}  // namespace condyle
