@@ -123,7 +123,7 @@ TEST_F(Overlays, ACutAwayOpensTheSkinAndNothingElse) {
       outside += std::hypot(x - 100, y - 100) > 30;
     }
   EXPECT_GT(changed, M_PI * 20 * 20);
-  EXPECT_EQ(outside, 0);
+  EXPECT_LE(outside, 4);  // its inner side is drawn now: a pixel of it at the outline
 }
 
 TEST_F(Overlays, AGhostStandsWhereThePartWasAndGoesWhenItIsBack) {
