@@ -198,12 +198,15 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
     auto& nodes = kept.state_->nodes;
     const SlideNodes::Node start = nodes.nearest(wanted);
     SlideResult answer;
+    std::atomic<bool> answered = false;  // how far it looks ahead meanwhile changes no answer
     parallel_for(2, threads, [&](std::size_t job) {
-      if (job == 1) return nodes.look_ahead(wanted);
-      if (!start.found) return;
-      answer = SlideWalk(*this, there, nodes.carried(start, wanted), wanted).run();
-      if (!answer.settled || !answer.reached)
-        answer = SlideWalk(*this, there, start.X, wanted).run();
+      if (job == 1) return nodes.look_ahead(wanted, [&] { return !answered; });
+      if (start.found) {
+        answer = SlideWalk(*this, there, nodes.carried(start, wanted), wanted).run();
+        if (!answer.settled || !answer.reached)
+          answer = SlideWalk(*this, there, start.X, wanted).run();
+      }
+      answered = true;
     });
     answer.reached &= start.reached;
     const double near = near_share * band_mm_;

@@ -18,8 +18,8 @@ constexpr std::size_t most_kept = 20000;
 constexpr int longest_chain = 400;
 constexpr double farthest_carried_mm = 0.3;
 constexpr double ahead_frames[] = {2, 4, 8};
-constexpr double farthest_ahead = 4;  // cells
-constexpr int ahead_steps = 4;        // in one frame
+constexpr double farthest_ahead = 4;            // cells
+constexpr int least_ahead = 2, most_ahead = 8;  // steps in one frame
 constexpr double rest_reach_mm = 5;
 constexpr double free_mm = 0.05;     // clearance of what is drawn out
 constexpr double drawn_share = 0.7;  // of the depth, at a time
@@ -245,18 +245,26 @@ void SlideNodes::go_on_ahead(int steps) {
   ahead_.reset();
 }
 
-void SlideNodes::look_ahead(const Pose& wanted) {
-  const auto last = std::exchange(last_wanted_, wanted);
-  if (std::exchange(asked_, false) || !last) return;
-  const Twist way = probe_.between(*last, wanted);
+/// True where a walk is under way.
+bool SlideNodes::find_ahead(const Pose& wanted, const Twist& way) {
   for (const double frames : ahead_frames) {
-    if (ahead_) return go_on_ahead(ahead_steps);
-    if (!(frames * way.norm() < farthest_ahead * cell_mm_)) return;
+    if (ahead_) return true;
+    if (!(frames * way.norm() < farthest_ahead * cell_mm_)) return false;
     const Key key = key_of(probe_.moved(wanted, frames * way));
     if (!begin_ahead(outside_, chain_outside(key)) && near_rest(key))
       begin_ahead(rest_, chain_to_rest(key));
   }
-  if (ahead_) go_on_ahead(ahead_steps);
+  return ahead_.has_value();
+}
+
+void SlideNodes::look_ahead(const Pose& wanted, const std::function<bool()>& more) {
+  const auto last = std::exchange(last_wanted_, wanted);
+  if (std::exchange(asked_, false) || !last) return;
+  const Twist way = probe_.between(*last, wanted);
+  for (int steps = 0; steps < least_ahead || (more() && steps < most_ahead); ++steps) {
+    if (!find_ahead(wanted, way)) return;
+    go_on_ahead(1);
+  }
 }
 
 }  // namespace condyle

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -38,9 +39,9 @@ class SlideNodes {
   /// A node's answer carried along its contacts as far as the wanted pose lies from its place.
   Pose carried(const Node& node, const Pose& wanted) const;
 
-  /// Does a few steps of the walks that the next wanted poses will ask for, where the last two
-  /// lead, so that no whole one falls on one frame.
-  void look_ahead(const Pose& wanted);
+  /// Does some steps of the walks that the next wanted poses will ask for, where the last two lead,
+  /// so that no whole one falls on one frame: a few, and more while `more` holds.
+  void look_ahead(const Pose& wanted, const std::function<bool()>& more);
 
  private:
   using Tree = std::map<Key, Node>;
@@ -74,6 +75,7 @@ class SlideNodes {
   Node solve(Tree& tree, const std::pair<std::vector<Key>, Node>& chain);
   bool begin_ahead(Tree& tree, const std::pair<std::vector<Key>, Node>& chain);
   void go_on_ahead(int steps);
+  bool find_ahead(const Pose& wanted, const Twist& way);
 
   const SlidingContact& model_;
   SlideProbe probe_;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double step_share = 0.25;  // longest step, of the band
-constexpr double margin_mm = 0.05;   // beyond a step's length contacts may matter
+constexpr double margin_mm = 0.02;   // beyond a step's length contacts may matter
 // With friction a contact drags from where it meets, which shorter steps find better.
 constexpr double rubbing_step_mm = 0.1, rubs_below_mm = 0.03;
 constexpr double kept_slop = 0.7;  // share of the slop that is not undone

@@ -49,7 +49,7 @@ class SlideWalk {
   double radius_ = 0;  // no step is longer
   double share_ = 1;   // of the way left that is asked for
   Twist last_ = Twist::Zero();
-  std::array<double, 8> lately_;  // how far from the wanted pose it was
+  std::array<double, 5> lately_;  // how far from the wanted pose it was
   bool ended_ = false;
   SlideResult out_, start_;
   std::vector<ContactRow> rows_;
