@@ -90,6 +90,7 @@ struct LetGoOptions {
   std::string part;  // empty: the only free one
   std::vector<double> push_N;
   double friction = 0.3;
+  std::vector<std::string> yielding;  // parts that are pushed along
 };
 
 struct ViewOptions {

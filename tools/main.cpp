@@ -327,9 +327,14 @@ int run_program(int argc, char** argv) {
       ->expected(3)
       ->type_name("X,Y,Z")
       ->required();
+  let_go_command
+      ->add_option("--yields", let_go.yielding,
+                   "Another free part that gives way when it is pushed; may be repeated")
+      ->type_name("PART");
   let_go_command->add_option("--friction", let_go.friction, "Coefficient of friction (0.3)")
       ->check(within(0.0, 2.0));
-  let_go_command->add_option("--out", let_go.out, "Folder of the case with the part where it lies");
+  let_go_command->add_option("--out", let_go.out,
+                             "Folder of the case with the parts where they lie");
 
   ImportOptions import;
   auto* import_command =

@@ -33,48 +33,86 @@ bool overlaps(const Box& a, const Box& b) {
   return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
 }
 
+void refuse_bad(const Case& patient, const std::vector<std::size_t>& parts,
+                const std::vector<std::size_t>& free, const LetGoSettings& settings) {
+  for (const std::size_t part : parts) {
+    if (std::find(free.begin(), free.end(), part) == free.end())
+      throw InputError("only a segment or a transplant can be let go; part " +
+                       std::to_string(part) + " is neither");
+    if (std::count(parts.begin(), parts.end(), part) > 1)
+      throw InputError(patient.parts[part].name + " is let go twice");
+  }
+  const std::string& name = patient.parts[parts[0]].name;
+  if (!(settings.push_N.norm() > 0) || !settings.push_N.allFinite())
+    throw InputError(name + ": it needs a push in some direction to settle");
+  if (!(settings.speed_mm_s > 0) || !(settings.reach_mm > 0))
+    throw InputError(name + ": the speed and the reach must be above 0");
+}
+
+/// With the inertia of the hand, or of the soft tissue around it: so large that the push and its
+/// yielding end at the wanted speed.
+RigidBody loose(const Part& part, const Pose& X_CP, double step_s, const LetGoSettings& settings,
+                int threads) {
+  RigidBody body;
+  body.mass = mass_properties(part.mesh, 1e-6);
+  const double mass_kg =
+      1000 * settings.push_N.norm() * step_s / (lost_in_step * settings.speed_mm_s);
+  body.mass.inertia *= mass_kg / body.mass.mass_kg;
+  body.mass.mass_kg = mass_kg;
+  body.drag_N_s_mm = lost_in_step * mass_kg / step_s / 1000;
+  body.turning_drag_N_mm_s = lost_in_step * least_moment(body.mass) / step_s / 1000;
+  body.X_WB = X_CP;
+  body.surfaces = {std::make_shared<const SlideBody>(make_slide_body(part.mesh, {}, threads))};
+  return body;
+}
+
 }  // namespace
 
 LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
              const LetGoSettings& settings, int threads) {
   const std::vector<std::size_t> free = free_parts(patient.parts);
-  const auto found = std::find(free.begin(), free.end(), part);
-  if (found == free.end())
-    throw InputError("only a segment or a transplant can be let go; part " + std::to_string(part) +
-                     " is neither");
-  const Part& graft = patient.parts[part];
-  const double push = settings.push_N.norm();
-  if (!(push > 0) || !settings.push_N.allFinite())
-    throw InputError(graft.name + ": it needs a push in some direction to settle");
-  if (!(settings.speed_mm_s > 0) || !(settings.reach_mm > 0))
-    throw InputError(graft.name + ": the speed and the reach must be above 0");
+  std::vector<std::size_t> parts = {part};
+  parts.insert(parts.end(), settings.yielding.begin(), settings.yielding.end());
+  refuse_bad(patient, parts, free, settings);
 
   RigidSettings world_settings;
   world_settings.gravity_mm_s2.setZero();
   RigidWorld world(world_settings);
-  const double step = world_settings.step_s;
-  const Pose X_CG = pose_of(patient.parts, part, from);
-  RigidBody body;
-  body.mass = mass_properties(graft.mesh, 1e-6);
-  // The hand's inertia: so large that its push and its yielding end at the wanted speed.
-  const double mass_kg = 1000 * push * step / (lost_in_step * settings.speed_mm_s);
-  body.mass.inertia *= mass_kg / body.mass.mass_kg;
-  body.mass.mass_kg = mass_kg;
-  body.drag_N_s_mm = lost_in_step * mass_kg / step / 1000;
-  body.turning_drag_N_mm_s = lost_in_step * least_moment(body.mass) / step / 1000;
-  body.X_WB = X_CG;
-  body.surfaces = {std::make_shared<const SlideBody>(make_slide_body(graft.mesh, {}, threads))};
-  const int moving = world.add_body(body);
-  world.add_force({.body = moving, .point = body.mass.center, .force_N = settings.push_N});
+  std::vector<int> bodies;
+  std::vector<Box> near;  // in the cranium
+  for (const std::size_t p : parts) {
+    const Pose X_CP = pose_of(patient.parts, p, from);
+    bodies.push_back(
+        world.add_body(loose(patient.parts[p], X_CP, world_settings.step_s, settings, threads)));
+    near.push_back(grown(moved(bounding_box(patient.parts[p].mesh), X_CP), settings.reach_mm));
+  }
+  world.add_force(
+      {.body = bodies[0], .point = world.mass(bodies[0]).center, .force_N = settings.push_N});
 
-  const Box near = grown(moved(bounding_box(graft.mesh), X_CG), settings.reach_mm);
-  std::vector<int> part_of_pair;
+  struct PairParts {
+    int below, lies;
+  };
+  std::vector<PairParts> pairs;
+  const auto add_pair = [&](int below, std::size_t on, std::size_t mover) {
+    world.add_pair({.a = below, .b = bodies[mover], .friction = settings.friction});
+    pairs.push_back({static_cast<int>(on), static_cast<int>(parts[mover])});
+  };
   for (std::size_t i = 0; i < patient.parts.size(); ++i) {
     const Part& other = patient.parts[i];
-    if (i == part || !collides(other.role) || other.mesh.empty()) continue;
+    if (std::find(parts.begin(), parts.end(), i) != parts.end() || !collides(other.role) ||
+        other.mesh.empty())
+      continue;
     const Pose X_CO = pose_of(patient.parts, i, from);
-    const Box here = moved(near, X_CO.inverse());
-    if (!overlaps(here, bounding_box(other.mesh))) continue;
+    const Box box = bounding_box(other.mesh);
+    Box here;
+    std::vector<std::size_t> movers;
+    for (std::size_t m = 0; m < parts.size(); ++m) {
+      const Box reach = moved(near[m], X_CO.inverse());
+      if (!overlaps(reach, box)) continue;
+      here.add(reach);
+      movers.push_back(m);
+    }
+    if (movers.empty()) continue;
     SlideBodySettings surface;
     surface.field.region = here;
     RigidBody fixed;
@@ -82,22 +120,41 @@ LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
     fixed.surfaces = {
         std::make_shared<const SlideBody>(make_slide_body(other.mesh, surface, threads))};
     if (fixed.surfaces[0]->samples.points.empty()) continue;
-    world.add_pair({.a = world.add_body(fixed), .b = moving, .friction = settings.friction});
-    part_of_pair.push_back(static_cast<int>(i));
+    const int below = world.add_body(fixed);
+    for (const std::size_t m : movers) add_pair(below, i, m);
   }
-  if (part_of_pair.empty())
-    throw InputError(graft.name + ": nothing lies within " + std::to_string(settings.reach_mm) +
+  for (std::size_t a = 0; a < parts.size(); ++a)
+    for (std::size_t b = a + 1; b < parts.size(); ++b)
+      if (overlaps(near[a], near[b])) add_pair(bodies[b], parts[b], a);
+  const std::string& name = patient.parts[part].name;
+  if (std::none_of(pairs.begin(), pairs.end(), [&](const PairParts& pair) {
+        return pair.below == static_cast<int>(part) || pair.lies == static_cast<int>(part);
+      }))
+    throw InputError(name + ": nothing lies within " + std::to_string(settings.reach_mm) +
                      " mm of it; bring it nearer before letting it go");
 
   LetGo out;
-  out.rest = run_to_rest(world, moving, settings.rest, threads);
+  out.rest = run_to_rest(world, bodies, settings.rest, threads);
+  // Farther away bone is not looked at.
+  for (std::size_t m = 0; m < parts.size(); ++m) {
+    const Vector3d& center = world.mass(bodies[m]).center;
+    const Vector3d way =
+        world.pose(bodies[m]) * center - pose_of(patient.parts, parts[m], from) * center;
+    out.rest.reached &= way.norm() < settings.reach_mm;
+  }
   out.poses = from;
   out.poses.X_CF.clear();
-  for (const std::size_t f : free) out.poses.X_CF.push_back(pose_of(patient.parts, f, from));
-  out.poses.X_CF[static_cast<std::size_t>(found - free.begin())] = world.pose(moving);
-  for (const RigidContact& c : world.contacts())
-    out.contacts.push_back(
-        {part_of_pair[static_cast<std::size_t>(c.pair)], c.point, c.normal, c.gap_mm, c.push_N});
+  for (const std::size_t f : free) {
+    const auto loosed = std::find(parts.begin(), parts.end(), f);
+    out.poses.X_CF.push_back(
+        loosed == parts.end()
+            ? pose_of(patient.parts, f, from)
+            : world.pose(bodies[static_cast<std::size_t>(loosed - parts.begin())]));
+  }
+  for (const RigidContact& c : world.contacts()) {
+    const PairParts& pair = pairs[static_cast<std::size_t>(c.pair)];
+    out.contacts.push_back({pair.below, c.point, c.normal, c.gap_mm, c.push_N, pair.lies});
+  }
   return out;
 }
 

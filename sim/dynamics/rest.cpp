@@ -4,7 +4,8 @@
 
 namespace condyle {
 
-Rest run_to_rest(RigidWorld& world, int body, const RestSettings& settings, int threads) {
+Rest run_to_rest(RigidWorld& world, std::span<const int> bodies, const RestSettings& settings,
+                 int threads) {
   constexpr double radius_mm = 50;  // of a jaw; smaller pieces are stiller than asked for
   Rest rest;
   double still_s = 0;
@@ -13,13 +14,18 @@ Rest run_to_rest(RigidWorld& world, int body, const RestSettings& settings, int 
     if (!step.taken) return rest;
     rest.seconds += world.settings().step_s;
     rest.depth_mm = step.depth_mm;
-    const RigidMotion& motion = world.motion(body);
-    const bool still =
-        motion.velocity.norm() + radius_mm * motion.spin.norm() < settings.still_mm_s;
+    const bool still = std::all_of(bodies.begin(), bodies.end(), [&](int body) {
+      const RigidMotion& motion = world.motion(body);
+      return motion.velocity.norm() + radius_mm * motion.spin.norm() < settings.still_mm_s;
+    });
     still_s = still && !world.contacts().empty() ? still_s + world.settings().step_s : 0;
   }
   rest.reached = still_s >= settings.still_for_s;
   return rest;
+}
+
+Rest run_to_rest(RigidWorld& world, int body, const RestSettings& settings, int threads) {
+  return run_to_rest(world, std::span(&body, 1), settings, threads);
 }
 
 }  // namespace condyle

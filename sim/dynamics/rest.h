@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "engine/rigid/rigid_world.h"
 
 namespace condyle {
@@ -16,7 +18,9 @@ struct Rest {
   double depth_mm = 0;  // of the contacts at rest
 };
 
-/// Steps until a body lies still on what it touches.
+/// Steps until bodies lie still on what they touch.
+Rest run_to_rest(RigidWorld& world, std::span<const int> bodies, const RestSettings& settings = {},
+                 int threads = 1);
 Rest run_to_rest(RigidWorld& world, int body, const RestSettings& settings = {}, int threads = 1);
 
 }  // namespace condyle

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <map>
 #include <numbers>
 
 #include "engine/core/error.h"
@@ -147,6 +148,44 @@ TEST(LetGo, AGraftSettlesOnTheMandibleAndStays) {
   const LetGo alone = let_go(with, part, from, settings, 1);
   EXPECT_EQ(alone.poses.X_CF[0].t, X.t);
   EXPECT_EQ(alone.poses.X_CF[0].R.coeffs(), X.R.coeffs());
+}
+
+TEST(LetGo, GraftsPushEachOtherOntoTheMandible) {
+  Pose start;
+  Case with = with_graft(start);
+  Part another = with.parts.back();
+  another.name = "another";
+  with.parts.push_back(another);
+  const std::size_t first = with.parts.size() - 2, second = first + 1;
+  const Pose behind = Pose{Eigen::Quaterniond::Identity(), {1, -5, 0}} * start;
+  const BodyPoses from({}, {start, behind});
+  LetGoSettings settings{.push_N = {0, 5, 0}};
+  settings.yielding = {first};
+  const LetGo settled = let_go(with, second, from, settings, 2);
+  EXPECT_TRUE(settled.rest.reached);
+  EXPECT_LT(settled.rest.depth_mm, 0.05);
+  const int jaw = static_cast<int>(with.find(Role::mandible) - with.parts.data());
+  std::map<std::pair<int, int>, double> push;  // backwards; by what lies on what
+  for (const auto& contact : settled.contacts)
+    push[{contact.lies, contact.part}] -= contact.push_N * contact.normal.y();
+  // The hand's push goes through the first to the bone.
+  const int a = static_cast<int>(first), b = static_cast<int>(second);
+  EXPECT_GT((push[{b, a}]), 1);
+  EXPECT_GT((push[{a, jaw}]), 1);
+  EXPECT_NEAR((push[{b, a}] + push[{b, jaw}]), 5, 1.5);  // the rest is friction's
+  EXPECT_NEAR((push[{a, jaw}] + push[{b, jaw}]), 5, 1.5);
+  const Pose &A = settled.poses.X_CF[0], &B = settled.poses.X_CF[1];
+  EXPECT_GT((A.t - start.t).norm(), 1);
+  EXPECT_GT((B.t - behind.t).norm(), 1);
+  const test::OverlapOracle bone(with.find(Role::mandible)->mesh), graft(another.mesh);
+  EXPECT_LT(deepest(bone, graft, A), 0.06);
+  EXPECT_LT(deepest(bone, graft, B), 0.06);
+  EXPECT_LT(deepest(graft, graft, A.inverse() * B), 0.06);
+  const LetGo alone = let_go(with, second, from, settings, 1);
+  EXPECT_EQ(alone.poses.X_CF[1].t, B.t);
+  EXPECT_EQ(alone.poses.X_CF[0].R.coeffs(), A.R.coeffs());
+  settings.yielding = {first, second};
+  EXPECT_THROW(let_go(with, second, from, settings), InputError);
 }
 
 TEST(LetGo, WhatCannotSettleIsRefused) {
