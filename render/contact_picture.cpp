@@ -112,7 +112,7 @@ class Sheet {
     letter(right, x + panel - 24, top + panel_height / 2);
     letter(up, x + panel / 2 - 6, top + 24);
     letter(-up, x + panel / 2 - 6, top + panel_height - 10);
-    ring(camera, x, only.empty() ? 20 : 9);
+    ring(camera, x, only.empty() ? 20 : 15);
     if (only.empty()) return;
     // A ruler, right in the plane of the place.
     const double pixels_per_mm = panel_height / place_.seen_mm;

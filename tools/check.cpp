@@ -42,7 +42,10 @@ Image picture_of(const Scene& scene, const PairVerdict& pair, int threads) {
                      .title = pair.a + " and " + pair.b,
                      .lines = {worst_caption(pair)}};
   if (const auto words = open_surface_words(pair); !words.empty()) place.lines.push_back(words);
-  return contact_picture(place, distance_colours({.near_mm = 5, .deepest_mm = 2}));
+  // Pairs that stay far apart have a wider scale, so that where they are nearest is seen.
+  const double least = std::abs(worst.sample.signed_distance_mm());
+  const double near_mm = least < 4 ? 5 : least < 9 ? 10 : least < 18 ? 20 : 50;
+  return contact_picture(place, distance_colours({.near_mm = near_mm, .deepest_mm = 2}));
 }
 
 /// A name that every file system takes.
@@ -77,6 +80,27 @@ std::vector<std::string> write_pictures(StagedFiles& files, const Scene& scene,
   return names;
 }
 
+/// Crowns that are part of the bones' surfaces may not touch either, unless a rule says so.
+std::vector<std::string> notes_on_crowns(const Case& patient, const ClearanceCheck& check) {
+  std::vector<std::string> notes;
+  if (patient.find(Role::upper_teeth) || patient.find(Role::lower_teeth)) return notes;
+  const auto role = [&](const std::string& name) {
+    const auto part = std::find_if(patient.parts.begin(), patient.parts.end(),
+                                   [&](const Part& p) { return p.name == name; });
+    return part->role;
+  };
+  const Role upper = patient.find(Role::maxilla) ? Role::maxilla : Role::skull;
+  for (const auto& pair : check.pairs) {
+    if (!pair.violated() || pair.rule.policy != PairPolicy::forbidden) continue;
+    if (std::set{role(pair.a), role(pair.b)} != std::set{upper, Role::mandible}) continue;
+    notes.push_back(fmt::format(
+        "the case has no separate teeth: where crowns on {0} and {1} meet counts as bones that "
+        "collide; --pair {0},{1},allowed lets them touch",
+        pair.a, pair.b));
+  }
+  return notes;
+}
+
 /// Pictures of an earlier check must not be taken for this one's.
 void remove_other_pictures(const std::filesystem::path& folder,
                            const std::vector<std::string>& kept) {
@@ -105,6 +129,7 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
       scene, motion, {.margin_mm = options.margin_mm, .sampling = {options.frames, options.fps}},
       settings, bar.callback());
   std::vector<std::string> pictures, notes = motion.notes;
+  for (const auto& note : notes_on_crowns(scene.patient, check)) notes.push_back(note);
   if (files) pictures = write_pictures(*files, scene, check, common.threads, notes, bar.callback());
   bar.clear();
   const std::string json = check.json(scene, motion, pictures, notes);

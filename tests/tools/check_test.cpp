@@ -45,6 +45,7 @@ TEST(Check, ExitCodeTellsAViolation) {
   EXPECT_TRUE(fs::exists(folder / "out/pairs.csv"));
   const std::string page = read_text(folder / "out/report.html");
   EXPECT_NE(page.find("Violation."), std::string::npos);
+  EXPECT_NE(page.find("--pair maxilla,mandible,allowed lets them touch"), std::string::npos);
   EXPECT_NE(page.find(read_text(folder / "out/clearance.svg")), std::string::npos);
   const auto worst = report["pairs"][0]["worst"];
   EXPECT_NEAR(worst["penetration_volume_mm3"].get<double>(), 60 * 50 * 5, 150);
