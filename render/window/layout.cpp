@@ -5,12 +5,12 @@
 
 namespace condyle {
 
-Layout lay_out(double width, double height, double scale, bool with_panels) {
+Layout lay_out(double width, double height, double scale, bool with_panels, bool with_plots) {
   Layout layout;
   width = std::max(1.0, width);
   height = std::max(1.0, height);
   if (!with_panels) {
-    layout.top = layout.left = layout.right = layout.bottom = {0, 0, 0, 0};
+    layout.top = layout.left = layout.right = layout.bottom = layout.plots = {0, 0, 0, 0};
     layout.view = {0, 0, width, height};
     return layout;
   }
@@ -24,6 +24,13 @@ Layout lay_out(double width, double height, double scale, bool with_panels) {
   layout.left = {0, top + gap, left, middle};
   layout.right = {width - right, top + gap, right, middle};
   layout.view = {left + gap, top + gap, std::max(1.0, width - left - right - 2 * gap), middle};
+  layout.plots = {0, 0, 0, 0};
+  if (with_plots) {
+    const double high = std::round(std::clamp(0.42 * middle, px(190), px(330)));
+    layout.view.height = std::max(1.0, middle - high - gap);
+    layout.plots = {layout.view.x, layout.view.y + layout.view.height + gap, layout.view.width,
+                    high};
+  }
   return layout;
 }
 

@@ -16,6 +16,7 @@ struct SurfacePoint {
   std::size_t part = 0;
   Eigen::Vector3i triangle = Eigen::Vector3i::Zero();
   Eigen::Vector3d shares = Eigen::Vector3d::Zero();  // of the triangle's corners
+  bool operator==(const SurfacePoint&) const = default;
 };
 
 /// Where it is now, in the cranium's frame, mm.

@@ -93,28 +93,4 @@ Pose carrier_pose(const MovableBody& body, const Pose& X_CM) {
   return body.free && body.carrier == Body::mandible ? X_CM : Pose{};
 }
 
-void EditHistory::remember(const Hands& before) {
-  if (!before_.empty() && before_.back() == before) return;
-  before_.push_back(before);
-  after_.clear();
-}
-
-bool EditHistory::undo(Hands& now) {
-  // An edit that changed nothing is none.
-  while (!before_.empty() && before_.back() == now) before_.pop_back();
-  if (before_.empty()) return false;
-  after_.push_back(now);
-  now = before_.back();
-  before_.pop_back();
-  return true;
-}
-
-bool EditHistory::redo(Hands& now) {
-  if (after_.empty()) return false;
-  before_.push_back(now);
-  now = after_.back();
-  after_.pop_back();
-  return true;
-}
-
 }  // namespace condyle

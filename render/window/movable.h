@@ -51,18 +51,4 @@ Pose pose_at(const Placement& placement, const Eigen::Vector3d& center);
 /// Where the body's carrier is; a body's pose in the cranium's frame is carrier * pose.
 Pose carrier_pose(const MovableBody& body, const Pose& X_CM);
 
-/// What was wanted before and after each edit.
-class EditHistory {
- public:
-  void remember(const Hands& before);
-  /// Both exchange `now`; false when there is nothing.
-  bool undo(Hands& now);
-  bool redo(Hands& now);
-  bool can_undo() const { return !before_.empty(); }
-  bool can_redo() const { return !after_.empty(); }
-
- private:
-  std::vector<Hands> before_, after_;
-};
-
 }  // namespace condyle

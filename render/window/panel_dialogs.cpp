@@ -5,7 +5,6 @@
 #include "render/window/panels_drawing.h"
 
 namespace condyle {
-namespace {
 
 // Centred, above everything, with the rest dimmed. ImGui needs a width or it draws nothing useful.
 bool begin_dialog(Pen& pen, const char* name, float dialog_width, double width, double height) {
@@ -28,6 +27,8 @@ bool begin_dialog(Pen& pen, const char* name, float dialog_width, double width, 
   }
   return open;
 }
+
+namespace {
 
 bool close_button(Pen& pen, const char* name) {
   const float wide = pen.px(96);
@@ -83,7 +84,22 @@ void Panels::Drawing::dialogs() {
     if (panels.errors_.empty()) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
   }
-  const bool help = panels.help_open_ && !error;
+  auto& files = panels.drafts_.files;
+  auto& import = panels.drafts_.import;
+  const bool asks = import && !error, opens = files.open && !asks && !error;
+  if ((asks || ImGui::IsPopupOpen("import")) &&
+      begin_dialog(pen, "import", pen.px(560), display_width, display_height)) {
+    if (asks) import_dialog();
+    if (!asks || !import) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+  }
+  if ((opens || ImGui::IsPopupOpen("open")) &&
+      begin_dialog(pen, "open", pen.px(700), display_width, display_height)) {
+    if (opens) open_dialog();
+    if (!opens || !files.open) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+  }
+  const bool help = panels.help_open_ && !error && !asks && !opens;
   if ((help || ImGui::IsPopupOpen("help")) &&
       begin_dialog(pen, "help", pen.px(820), display_width, display_height)) {
     if (help) {

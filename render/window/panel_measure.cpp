@@ -74,9 +74,15 @@ void Panels::Drawing::measuring() {
   const ImVec2 size = {std::floor((ImGui::GetContentRegionAvail().x - gap) / 2), pen.px(26)};
   ImGui::SetCursorPosY(static_cast<float>(high) - size.y - pen.px(14));
   ImGui::BeginDisabled(places.empty());
-  if (word_button(pen, "measure-back", "Last off", size, false)) view.measured.pop_back();
+  if (word_button(pen, "measure-back", "Last off", size, false)) {
+    panels.remember(view);
+    view.measured.pop_back();
+  }
   ImGui::SameLine(0, gap);
-  if (word_button(pen, "measure-clear", "Clear", size, false)) view.measured.clear();
+  if (word_button(pen, "measure-clear", "Clear", size, false)) {
+    panels.remember(view);
+    view.measured.clear();
+  }
   ImGui::EndDisabled();
   end_panel();
 }

@@ -2,6 +2,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "render/window/panels_drawing.h"
@@ -39,8 +40,32 @@ std::string part_name(const WindowScene& scene, int index) {
 
 }  // namespace
 
-void Panels::Drawing::readings() {
+void Panels::Drawing::side_tabs() {
+  constexpr std::array<std::pair<SideTab, const char*>, 3> tabs = {
+      {{SideTab::readings, "Readings"}, {SideTab::motion, "Motion"}, {SideTab::record, "Record"}}};
+  const float gap = pen.px(4);
+  const float wide = std::floor((ImGui::GetContentRegionAvail().x - 2 * gap) / 3);
+  for (const auto& [tab, label] : tabs) {
+    if (tab != SideTab::readings) ImGui::SameLine(0, gap);
+    if (word_button(pen, (std::string("tab:") + label).c_str(), label, {wide, pen.px(26)},
+                    view.tab == tab))
+      view.tab = tab;
+  }
+}
+
+void Panels::Drawing::side() {
   begin_panel(pen, "right", layout.right);
+  side_tabs();
+  if (view.tab == SideTab::motion)
+    motion();
+  else if (view.tab == SideTab::record)
+    record();
+  else
+    readings();
+  end_panel();
+}
+
+void Panels::Drawing::readings() {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 4));
   opening();
   // Contacts get the height that tissue and times leave.
@@ -56,7 +81,6 @@ void Panels::Drawing::readings() {
   if (has_tissue) tissue();
   times();
   ImGui::PopStyleVar();
-  end_panel();
 }
 
 void Panels::Drawing::opening() {

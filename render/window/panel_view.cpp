@@ -62,19 +62,7 @@ void Panels::Drawing::view_signs() {
   const ImVec2 centre = {static_cast<float>(r.x + r.width / 2),
                          static_cast<float>(r.y + r.height / 2)};
 
-  if (!input.progress.empty()) {
-    const float wide = pen.px(260), thick = pen.px(3);
-    const ImVec2 at = {centre.x - wide / 2, centre.y};
-    const std::string words =
-        fitted(theme.regular, input.progress, static_cast<float>(r.width) - pen.px(40));
-    list.AddText(theme.regular, theme.regular->FontSize,
-                 {centre.x - text_width(theme.regular, words) / 2, at.y - pen.px(30)},
-                 palette().text, words.c_str());
-    list.AddRectFilled({at.x, at.y - thick}, {at.x + wide, at.y + thick}, palette().field, thick);
-    const float done = static_cast<float>(std::clamp(input.progress_fraction, 0.0, 1.0));
-    list.AddRectFilled({at.x, at.y - thick}, {at.x + wide * done, at.y + thick}, palette().accent,
-                       thick);
-  }
+  progress();
   if (input.scene.parts.empty()) {
     const auto line = [&](ImFont* font, ImU32 tint, const char* words, float y) {
       list.AddText(font, font->FontSize, {centre.x - text_width(font, words) / 2, y}, tint, words);
@@ -109,6 +97,39 @@ void Panels::Drawing::view_signs() {
   cube();
   legend();
   pointed();
+}
+
+/// What is being prepared: in the middle while there is nothing else to see, else above the
+/// picture.
+void Panels::Drawing::progress() {
+  if (input.progress.empty()) return;
+  const Theme& theme = panels.theme_;
+  const ViewRect& r = layout.view;
+  const bool alone = input.scene.parts.empty();
+  const float pad = pen.px(12), bar = pen.px(3), button = pen.px(72);
+  const float room = static_cast<float>(r.width) - pen.px(80);
+  const std::string words = fitted(theme.regular, input.progress, room - 2 * pad);
+  const float wide = std::max(pen.px(280), text_width(theme.regular, words) + 2 * pad +
+                                               (input.can_cancel ? button + pad : 0));
+  const float high = pen.px(44);
+  const float x = static_cast<float>(r.x + r.width / 2) - wide / 2;
+  const float y =
+      alone ? static_cast<float>(r.y + r.height / 2) - high : static_cast<float>(r.y) + pen.px(30);
+  const auto place = [](float v) { return std::round(v); };
+  begin_panel(pen, "progress", {place(x), place(y), place(wide), place(high)});
+  ImGui::SetCursorPos({pad, pen.px(9)});
+  text(theme.regular, palette().text, words);
+  if (input.can_cancel) {
+    ImGui::SetCursorPos({wide - pad - button, pen.px(6)});
+    if (word_button(pen, "cancel", "Cancel", {button, pen.px(24)}, false))
+      panels.wishes_.push_back(wish::Cancel{});
+  }
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float left = place(x) + pad, full = wide - 2 * pad, top = place(y) + high - pen.px(9);
+  const float done = static_cast<float>(std::clamp(input.progress_fraction, 0.0, 1.0));
+  list.AddRectFilled({left, top}, {left + full, top + bar}, palette().track, bar);
+  list.AddRectFilled({left, top}, {left + full * done, top + bar}, palette().accent, bar);
+  end_panel();
 }
 
 void Panels::Drawing::cube() {

@@ -100,11 +100,20 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
     case Command::toggle_measure:
       view.tool = view.tool == Tool::measure ? Tool::look : Tool::measure;
       return true;
+    case Command::toggle_landmarks:
+      view.tool = view.tool == Tool::landmarks ? Tool::look : Tool::landmarks;
+      return true;
+    case Command::toggle_plots:
+      view.plots = !view.plots;
+      return true;
+    case Command::open_files:
+      drafts_.files.open = true;
+      return true;
     case Command::undo:
-      if (!history_.undo(view.hands)) say("Nothing to undo");
+      if (!undo(view, true)) say("Nothing to undo");
       return true;
     case Command::redo:
-      if (!history_.redo(view.hands)) say("Nothing to redo");
+      if (!undo(view, false)) say("Nothing to redo");
       return true;
     case Command::toggle_panels:
       shown_ = !shown_;
@@ -115,6 +124,10 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
     case Command::close_dialog:
       if (!errors_.empty()) {
         errors_.pop_front();
+      } else if (drafts_.import) {
+        drafts_.import.reset();
+      } else if (drafts_.files.open) {
+        drafts_.files.open = false;
       } else {
         help_open_ = false;
       }
@@ -122,6 +135,13 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
     default:
       return false;
   }
+}
+
+bool Panels::undo(ViewState& view, bool back) {
+  Edits now = Edits::of(view);
+  if (!(back ? history_.undo(now) : history_.redo(now))) return false;
+  now.put_into(view);
+  return true;
 }
 
 std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, double width,
@@ -139,6 +159,8 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
         if (static_cast<Stage>(i) != Stage::render) total += input.frame->times.ms[i];
       if (step_ms_.size() >= curve_length) step_ms_.erase(step_ms_.begin());
       step_ms_.push_back(static_cast<float>(total));
+      if (stage_ms_.size() >= curve_length) stage_ms_.erase(stage_ms_.begin());
+      stage_ms_.push_back(input.frame->times.ms);
       last_step_ = step;
     }
   }
@@ -146,22 +168,25 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
   ImGui::PushFont(theme_.regular);
   // Until there is a patient there is nothing to set: only what is being prepared.
   const bool preparing = input.scene.parts.empty();
-  Drawing drawing{*this,
-                  input,
-                  view,
-                  preparing ? lay_out(width, height, theme_.scale, false) : layout(width, height),
-                  width,
-                  height,
-                  Pen{theme_, items_, ""},
-                  {}};
+  Drawing drawing{
+      *this,
+      input,
+      view,
+      preparing ? lay_out(width, height, theme_.scale, false) : layout(width, height, view.plots),
+      width,
+      height,
+      Pen{theme_, items_, ""},
+      {}};
   if (shown_ && !preparing) {
     drawing.top_bar();
     drawing.parts();
-    drawing.readings();
+    drawing.side();
     drawing.timeline();
+    drawing.plots();
   }
   if (view.tool == Tool::move && !preparing) drawing.moving();
   if (view.tool == Tool::measure && !preparing) drawing.measuring();
+  if (view.tool == Tool::landmarks && !preparing) drawing.landmarks();
   drawing.view_signs();
   drawing.dialogs();
   ImGui::PopFont();
@@ -170,21 +195,49 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
 
 void Panels::Drawing::top_bar() {
   const Theme& theme = panels.theme_;
+  struct ToolButton {
+    const char* item;
+    const char* label;
+    const char* tip;
+    Command command;
+    bool on, there = true;
+  };
+  const std::array tools = {
+      ToolButton{"move-tool", "Move",
+                 "Move the jaw and free bones by hand; they slide on contact. Key M",
+                 Command::toggle_move, view.tool == Tool::move, !input.scene.bodies.empty()},
+      ToolButton{"measure-tool", "Measure",
+                 "Distances, angles and areas between points on bone, teeth and skin. Key N",
+                 Command::toggle_measure, view.tool == Tool::measure},
+      ToolButton{"landmarks-tool", "Landmarks",
+                 "Named points of the patient: place, rename, save. Key B",
+                 Command::toggle_landmarks, view.tool == Tool::landmarks},
+      ToolButton{"plots-tool", "Plots",
+                 "Posselt, axiography, opening, clearance and more, as the motion runs. Key G",
+                 Command::toggle_plots, view.plots}};
   begin_panel(pen, "top", layout.top);
   const float side = pen.px(30), gap = pen.px(5), wide_gap = pen.px(16);
   const float y = (static_cast<float>(layout.top.height) - side) / 2;
-  const bool can_move = !input.scene.bodies.empty();
-  const float move_width = can_move ? pen.px(62) : 0;
-  const float measure_width = pen.px(80);
-  const float buttons = side * 9 + gap * 6 + wide_gap * 2 + measure_width + wide_gap +
-                        (can_move ? move_width + gap : 0);
+  const auto width_of = [&](const char* words) {
+    return text_width(theme.regular, words) + pen.px(22);
+  };
+  float buttons = side * 9 + gap * 6 + wide_gap * 2;
+  for (const ToolButton& tool : tools)
+    if (tool.there) buttons += width_of(tool.label) + gap;
+  buttons += wide_gap - gap;
   const float right = static_cast<float>(layout.top.width) - pen.px(12);
 
+  ImGui::SetCursorPos({pen.px(12), y});
+  const float open_width = width_of("Open");
+  if (word_button(pen, "open-files", "Open", {open_width, side}, false))
+    panels.run(Command::open_files, input.scene, view);
+  tooltip(pen, "A patient, a motion or surfaces; they can also be dropped on the window. Ctrl+O");
+
   // Names, as far as there is room for them.
-  const float room = right - buttons - pen.px(14) - wide_gap;
+  const float from = pen.px(26) + open_width;
+  const float room = right - buttons - from - wide_gap;
   const std::string name = fitted(theme.bold, input.scene.case_name, room * 0.6f);
-  ImGui::SetCursorPos(
-      {pen.px(14), (static_cast<float>(layout.top.height) - theme.bold->FontSize) / 2});
+  ImGui::SetCursorPos({from, (static_cast<float>(layout.top.height) - theme.bold->FontSize) / 2});
   text(theme.bold, palette().text, name);
   if (!input.scene.motion_name.empty()) {
     const float used = text_width(theme.bold, name) + pen.px(14);
@@ -194,17 +247,13 @@ void Panels::Drawing::top_bar() {
   }
 
   ImGui::SetCursorPos({right - buttons, y});
-  if (can_move) {
-    if (word_button(pen, "move-tool", "Move", {move_width, side}, view.tool == Tool::move))
-      panels.run(Command::toggle_move, input.scene, view);
-    tooltip(pen, "Move the jaw and free bones by hand; they slide on contact. Key M");
-    ImGui::SameLine(0, gap);
+  for (const ToolButton& tool : tools) {
+    if (!tool.there) continue;
+    if (word_button(pen, tool.item, tool.label, {width_of(tool.label), side}, tool.on))
+      panels.run(tool.command, input.scene, view);
+    tooltip(pen, tool.tip);
+    ImGui::SameLine(0, &tool == &tools.back() ? wide_gap : gap);
   }
-  if (word_button(pen, "measure-tool", "Measure", {measure_width, side},
-                  view.tool == Tool::measure))
-    panels.run(Command::toggle_measure, input.scene, view);
-  tooltip(pen, "Distances, angles and areas between points on bone, teeth and skin. Key N");
-  ImGui::SameLine(0, wide_gap);
   for (const ViewButton& button : view_buttons) {
     const std::string id = std::string("view:") + button.letter;
     if (word_button(pen, id.c_str(), button.letter, {side, side}, false))

@@ -1,12 +1,18 @@
 #pragma once
 
+#include <array>
 #include <deque>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/window/camera_control.h"
+#include "render/window/drafts.h"
+#include "render/window/edit_history.h"
 #include "render/window/layout.h"
+#include "render/window/plot_set.h"
 #include "render/window/shortcuts.h"
 #include "render/window/theme.h"
 #include "render/window/view_state.h"
@@ -23,7 +29,13 @@ struct PanelInput {
   Camera camera = {};
   std::string progress = {};     // what is being prepared; empty when nothing is
   double progress_fraction = 0;  // 0 to 1
+  bool can_cancel = false;       // whether what is prepared can be ended
   std::string pointed = {};      // what is said beside the mouse; empty for nothing
+  std::span<const PlotSet> plots = {};
+  bool recording = false;  // a recording is being made
+  std::string recording_what = {};
+  double recording_fraction = 0;
+  std::filesystem::path picture_folder = ".";  // of pictures and recordings
 };
 
 /// A panel, or a thing in it that can be used, as last drawn. Names: panels "top", "left", "right",
@@ -50,7 +62,7 @@ class Panels {
   bool run(Command command, const WindowScene& scene, ViewState& view);
 
   /// An edit begins: what is wanted now comes back by undo.
-  void remember(const ViewState& view) { history_.remember(view.hands); }
+  void remember(const ViewState& view) { history_.remember(Edits::of(view)); }
   void forget_edits() { history_ = {}; }
 
   /// Shows a sentence in a dialog until it is closed; several wait in a row.
@@ -63,25 +75,38 @@ class Panels {
   void set_light(bool light);
   const Theme& theme() const { return theme_; }
 
-  bool dialog_open() const { return help_open_ || !errors_.empty(); }
+  /// Asks for the roles of surfaces.
+  void ask_roles(wish::Import import) { drafts_.import = std::move(import); }
+  /// What was asked for once, since the last call.
+  std::vector<Wish> take_wishes() { return std::exchange(wishes_, {}); }
+
+  bool dialog_open() const {
+    return help_open_ || !errors_.empty() || drafts_.files.open || drafts_.import;
+  }
   /// Whether something said is still on show, so that it must be taken away in time.
   bool talking() const { return !said_.empty(); }
   bool shown() const { return shown_; }
-  Layout layout(double width, double height) const {
-    return lay_out(width, height, theme_.scale, shown_);
+  Layout layout(double width, double height, bool with_plots = false) const {
+    return lay_out(width, height, theme_.scale, shown_, with_plots);
   }
   const std::vector<DrawnItem>& items() const { return items_; }
 
  private:
   struct Drawing;  // one pass over all panels: panels_*.cpp
+  PlotSet stage_plots() const;
   Theme theme_;
   bool shown_ = true, help_open_ = false;
   double skin_before_ = 1;  // opacity to come back to
   std::deque<std::string> errors_;
   std::string said_;
   double said_until_ = 0;
-  EditHistory history_;
-  std::vector<float> step_ms_;  // the last steps' times, for the curve; of bounded length
+  EditHistory<Edits> history_;
+  bool undo(ViewState& view, bool back);
+  Drafts drafts_;
+  std::vector<Wish> wishes_;
+  // The last steps' times, for the curves; of bounded length.
+  std::vector<float> step_ms_;
+  std::vector<std::array<double, stage_names.size()>> stage_ms_;
   std::uint64_t last_step_ = 0;
   std::vector<DrawnItem> items_;
 };

@@ -21,17 +21,26 @@ struct Panels::Drawing {
   void top_bar();     // panels.cpp
   void timeline();    // panel_timeline.cpp
   void parts();       // panel_parts.cpp
-  void readings();    // panel_readings.cpp
+  void side();        // panel_readings.cpp
   void moving();      // panel_move.cpp: handles, and the chosen body's place in numbers
   void measuring();   // panel_measure.cpp
+  void landmarks();   // panel_landmarks.cpp
+  void plots();       // panel_plots.cpp
   void view_signs();  // panel_view.cpp: letters at the edges, cube, progress
   void dialogs();     // panel_dialogs.cpp
 
  private:
+  void motion();         // panel_motion.cpp
+  void record();         // panel_record.cpp
+  void open_dialog();    // panel_files.cpp
+  void import_dialog();  // panel_files.cpp
+  void side_tabs();
+  void readings();
   void opening();
   void contacts(float list_height);
   void tissue();
   void times();
+  void progress();
   void cube();
   void legend();   // panel_legend.cpp
   void pointed();  // what the mouse is on
@@ -39,6 +48,9 @@ struct Panels::Drawing {
 
 /// Stands in the window at all times.
 constexpr const char* purpose = "For research and education, not for clinical use";
+
+/// Centred, above everything, with the rest dimmed; pair with EndPopup when it gives true.
+bool begin_dialog(Pen& pen, const char* name, float dialog_width, double width, double height);
 
 /// "upper_teeth" as "Upper teeth".
 std::string display_name(const std::string& part_name);

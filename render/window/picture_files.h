@@ -8,4 +8,7 @@ namespace condyle {
 /// number where that is taken already.
 std::filesystem::path next_picture_file(const std::filesystem::path& folder);
 
+/// The same for a folder of pictures: condyle-20240131-140509.
+std::filesystem::path next_recording_folder(const std::filesystem::path& folder);
+
 }  // namespace condyle

@@ -35,6 +35,8 @@ constexpr std::array bindings = {
     Binding{GLFW_KEY_D, Command::toggle_distances, Command::toggle_distances},
     Binding{GLFW_KEY_M, Command::toggle_move, Command::toggle_move},
     Binding{GLFW_KEY_N, Command::toggle_measure, Command::toggle_measure},
+    Binding{GLFW_KEY_B, Command::toggle_landmarks, Command::toggle_landmarks},
+    Binding{GLFW_KEY_G, Command::toggle_plots, Command::toggle_plots},
     Binding{GLFW_KEY_T, Command::toggle_theme, Command::toggle_theme},
     Binding{GLFW_KEY_TAB, Command::toggle_panels, Command::toggle_panels},
     Binding{GLFW_KEY_F12, Command::picture, Command::window_picture},
@@ -69,12 +71,14 @@ constexpr std::array window_lines = {
     HelpLine{"K", "skin on, off"},
     HelpLine{"D", "distances on, off"},
     HelpLine{"N", "measure: click points"},
+    HelpLine{"B", "landmarks: choose, click"},
+    HelpLine{"G", "plots on, off"},
+    HelpLine{"Ctrl+O", "open a patient or a motion"},
     HelpLine{"Tab", "panels on, off"},
     HelpLine{"T", "dark or light panels"},
     HelpLine{"F12", "save the picture as PNG"},
     HelpLine{"Shift+F12", "save the whole window"},
-    HelpLine{"F1", "this help"},
-    HelpLine{"Esc", "close a dialog"},
+    HelpLine{"F1, Esc", "this help; close a dialog"},
     HelpLine{"Ctrl+Q", "quit"},
 };
 constexpr std::array groups = {
@@ -88,6 +92,7 @@ constexpr std::array groups = {
 std::optional<Command> command_of(const KeyPress& press) {
   if (press.ctrl) {
     if (press.key == GLFW_KEY_Q) return Command::quit;
+    if (press.key == GLFW_KEY_O) return Command::open_files;
     if (press.key == GLFW_KEY_Y || (press.key == GLFW_KEY_Z && press.shift)) return Command::redo;
     if (press.key == GLFW_KEY_Z) return Command::undo;
     return std::nullopt;

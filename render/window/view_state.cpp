@@ -11,6 +11,18 @@ bool ViewState::shows_face(const WindowScene& scene) const {
   return false;
 }
 
+Edits Edits::of(const ViewState& view) {
+  return {view.hands, view.measured, view.landmarks, view.motion};
+}
+
+void Edits::put_into(ViewState& view) const {
+  view.hands = hands;
+  view.measured = measured;
+  view.landmarks = landmarks;
+  view.motion = motion;
+  if (view.landmark && *view.landmark >= landmarks.size()) view.landmark.reset();
+}
+
 std::map<std::string, double> part_opacities(const WindowScene& scene, const ViewState& view) {
   std::map<std::string, double> opacities;
   for (std::size_t i = 0; i < scene.parts.size() && i < view.parts.size(); ++i)

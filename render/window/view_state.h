@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "render/colour_map.h"
+#include "render/window/landmark_list.h"
 #include "render/window/measuring.h"
 #include "render/window/movable.h"
+#include "render/window/wishes.h"
 #include "sim/frame/part.h"
 
 namespace condyle {
@@ -26,7 +28,14 @@ struct WindowScene {
   // legend stand the remarks.
   std::optional<ColourMap> distance_colours = {};
   std::vector<std::string> distance_remarks = {};
-  std::vector<MovableBody> bodies = {};  // that a hand may move
+  std::vector<MovableBody> bodies = {};    // that a hand may move
+  std::filesystem::path case_folder = {};  // none: not kept in files
+  std::vector<std::string> motions = {};   // names to choose from
+  MotionChoice motion = {};                // what the motion was made from
+  std::vector<MotionSetting> motion_settings = {};
+  std::vector<ExcitationSetting> excitations = {};  // of a motion that muscles drive
+  std::vector<Landmark> landmarks = {};             // of the case
+  std::vector<std::filesystem::path> recent = {};   // opened before, the last one first
 };
 
 /// How one part is wanted.
@@ -35,8 +44,12 @@ struct PartView {
   double opacity = 1;  // 0 to 1
 };
 
-/// What the left button does in the picture: turn it, move bodies, or set points to measure.
-enum class Tool { look, move, measure };
+/// What the left button does in the picture: turn it, move bodies, set points to measure or place
+/// landmarks.
+enum class Tool { look, move, measure, landmarks };
+
+/// What the right column shows.
+enum class SideTab { readings, motion, record };
 
 /// What the person at the window asks for. The loop reads it and answers with a FrameState; nothing
 /// here steps the simulation.
@@ -54,12 +67,30 @@ struct ViewState {
   Tool tool = Tool::look;  // what the left button does
   std::vector<SurfacePoint> measured = {};  // points that were clicked, in their order
   std::size_t chosen = 0;                   // the body that has the handles, of the scene's
-  Hands hands = {};                  // where bodies are wanted instead of where they would be
+  Hands hands = {};                      // where bodies are wanted instead of where they would be
+  std::vector<Landmark> landmarks = {};  // where the person has them; the scene's at first
+  std::optional<std::size_t> landmark = {};  // the one that the next click places
+  MotionChoice motion = {};                  // wanted; the scene's at first
+  SideTab tab = SideTab::readings;
+  bool plots = false;                // below the picture
+  std::size_t plot_set = 0;          // the one that is shown
   double skin_opacity = 1;           // of parts with the role `face`, on top of their own
   std::vector<PartView> parts = {};  // one per part of the scene, in its order
 
   /// Whether any face is visible: without one the loop may leave out the face and its tissue.
   bool shows_face(const WindowScene& scene) const;
+};
+
+/// What a person sets in a view and may take back.
+struct Edits {
+  Hands hands;
+  std::vector<SurfacePoint> measured;
+  std::vector<Landmark> landmarks;
+  MotionChoice motion;
+  bool operator==(const Edits&) const = default;
+
+  static Edits of(const ViewState& view);
+  void put_into(ViewState& view) const;
 };
 
 /// Opacity of every part by name, hidden ones 0: what a SceneRenderer wants.

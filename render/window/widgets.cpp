@@ -1,6 +1,7 @@
 #include "render/window/widgets.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace condyle {
@@ -56,6 +57,10 @@ void draw_sign(ImDrawList& list, Sign sign, ImVec2 c, float r, ImU32 ink_colour)
       break;
     case Sign::help:
       break;  // a letter, drawn by the caller
+    case Sign::close:
+      list.AddLine(at(-0.7f, -0.7f), at(0.7f, 0.7f), ink_colour, line);
+      list.AddLine(at(-0.7f, 0.7f), at(0.7f, -0.7f), ink_colour, line);
+      break;
     case Sign::reset:
       list.AddTriangleFilled(at(0, -0.95f), at(-1, 0), at(1, 0), ink_colour);
       list.AddRectFilled(at(-0.65f, -0.1f), at(0.65f, 0.85f), ink_colour);
@@ -216,6 +221,18 @@ bool slider(Pen& pen, const char* name, double& value, const SliderLook& look) {
   if (look.filled) list.AddRectFilled({low.x, y - thick}, {x, y + thick}, tint, thick);
   list.AddCircleFilled({x, y}, lit ? knob : knob * 0.85f, lit ? palette().bright : tint, 24);
   return changed;
+}
+
+bool text_field(Pen& pen, const char* name, std::string& words, float width, const char* hint) {
+  std::array<char, 1024> letters{};
+  words.copy(letters.data(), letters.size() - 1);
+  ImGui::SetNextItemWidth(width);
+  const bool entered =
+      ImGui::InputTextWithHint((std::string("##") + name).c_str(), hint, letters.data(),
+                               letters.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+  pen.mark(name);
+  words = letters.data();
+  return entered;
 }
 
 bool tick_box(Pen& pen, const char* name, const char* label, bool& on) {

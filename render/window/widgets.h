@@ -39,7 +39,18 @@ float text_width(ImFont* font, const std::string& words);
 void tooltip(Pen& pen, const char* words);
 
 /// Buttons with a drawn sign.
-enum class Sign { play, pause, step_back, step_forward, to_start, loop, camera, help, reset };
+enum class Sign {
+  play,
+  pause,
+  step_back,
+  step_forward,
+  to_start,
+  loop,
+  camera,
+  help,
+  reset,
+  close
+};
 bool sign_button(Pen& pen, const char* name, Sign sign, ImVec2 size, ImU32 background);
 /// A button with a word or a letter; `on` fills it with the accent.
 bool word_button(Pen& pen, const char* name, const char* label, ImVec2 size, bool on);
@@ -53,6 +64,9 @@ struct SliderLook {
   bool held = false;   // handle in the warning colour: the hand overrides the motion
 };
 bool slider(Pen& pen, const char* name, double& value, const SliderLook& look);
+
+/// A line of text to write in, with a hint while it is empty. gives: true when Enter is pressed.
+bool text_field(Pen& pen, const char* name, std::string& words, float width, const char* hint);
 
 /// A box to tick with its label.
 bool tick_box(Pen& pen, const char* name, const char* label, bool& on);

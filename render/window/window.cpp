@@ -5,6 +5,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "render/window/playback.h"
@@ -68,6 +70,9 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start) {
   s.map_surfaces.clear();
   s.values.clear();
   s.held.reset();
+  s.plots.clear();
+  s.view.landmarks = scene.landmarks;
+  s.view.motion = scene.motion;
   s.panels->forget_edits();
   if (!scene.parts.empty()) s.renderer.emplace(scene.parts);
   if (s.renderer && scene.distance_colours) s.renderer->set_colour_map(*scene.distance_colours);
@@ -121,15 +126,64 @@ void Window::show(FrameState frame, const LoopStatistics& loop,
 
 void Window::draw() { state_->draw(false); }
 
-void Window::show_progress(const std::string& what, double fraction) {
+void Window::update_scene(const WindowScene& scene) {
   State& s = *state_;
-  const bool done = what.empty() != s.progress.empty();
+  const bool other_motion = !(scene.motion == s.scene.motion);
+  s.scene = scene;
+  s.view.motion = scene.motion;
+  if (other_motion) s.view.time_s = 0;
+  s.view.time_s = std::min(s.view.time_s, scene.duration_s);
+  s.noticed();
+}
+
+void Window::change(const std::function<void(ViewState&)>& edit, bool remember) {
+  State& s = *state_;
+  if (remember) s.panels->remember(s.view);
+  edit(s.view);
+  s.noticed();
+}
+
+std::vector<Wish> Window::take_wishes() {
+  State& s = *state_;
+  auto wishes = s.panels->take_wishes();
+  for (Wish& one : wishes)
+    if (auto* record = std::get_if<wish::Record>(&one)) record->picture = s.settings();
+  if (!s.dropped.empty()) wishes.push_back(wish::Open{std::exchange(s.dropped, {})});
+  return wishes;
+}
+
+void Window::ask_roles(const wish::Import& files) {
+  state_->panels->ask_roles(files);
+  state_->noticed();
+}
+
+void Window::show_plots(std::vector<PlotSet> plots) {
+  state_->plots = std::move(plots);
+  if (state_->view.plots) state_->frames_due = std::max(state_->frames_due, 1);
+}
+
+void Window::show_progress(const std::string& what, double fraction, bool can_cancel) {
+  State& s = *state_;
+  if (what == s.progress && std::abs(fraction - s.progress_fraction) < 0.005 &&
+      can_cancel == s.can_cancel)
+    return;
   s.progress = what;
   s.progress_fraction = fraction;
+  s.can_cancel = can_cancel;
   s.frames_due = std::max(s.frames_due, 1);
-  glfwPollEvents();
-  while (s.input_waits()) s.interface_frame();
-  s.draw(done);
+}
+
+void Window::show_recording(const std::string& what, double fraction) {
+  State& s = *state_;
+  if (what == s.recording && fraction == s.recording_fraction) return;
+  s.recording = what;
+  s.recording_fraction = fraction;
+  s.frames_due = std::max(s.frames_due, 1);
+}
+
+void Window::say(const std::string& sentence) {
+  state_->panels->say(sentence);
+  state_->noticed();
 }
 
 void Window::report_error(const std::string& sentence) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include "render/camera.h"
 #include "render/image.h"
 #include "render/window/panels.h"
+#include "render/window/plot_set.h"
 #include "render/window/view_state.h"
 #include "sim/frame/frame_state.h"
 
@@ -19,7 +21,7 @@ struct WindowOptions {
   int width = 1280, height = 720;              // screen coordinates, before the screen's own scale
   double ui_scale = 1;                         // of panels and text, times the screen's own scale
   bool light = false;                          // theme of the panels
-  std::filesystem::path picture_folder = ".";  // where F12 saves
+  std::filesystem::path picture_folder = ".";  // where F12 and recordings go
 };
 
 /// A part's surface in smaller triangles, for colours by values. normals: unit, one per vertex.
@@ -72,8 +74,22 @@ class Window {
   /// Draws if anything has changed: when there is no new frame.
   void draw();
 
-  /// Shows what is being prepared, 0 to 1, and handles events meanwhile; empty when it is done.
-  void show_progress(const std::string& what, double fraction);
+  /// Another motion, other words or lists of the same case; its parts are the same.
+  void update_scene(const WindowScene& scene);
+  /// An edit that the person did not make by hand; with `remember` it can be undone.
+  void change(const std::function<void(ViewState&)>& edit, bool remember = false);
+  /// What was asked for once, since the last call.
+  std::vector<Wish> take_wishes();
+  /// Asks for the roles of surfaces that were dropped or opened.
+  void ask_roles(const wish::Import& files);
+  void show_plots(std::vector<PlotSet> plots);
+
+  /// What is being prepared, 0 to 1; empty when it is done.
+  void show_progress(const std::string& what, double fraction, bool can_cancel = false);
+  /// The recording that is being made, 0 to 1; none when `what` is empty.
+  void show_recording(const std::string& what, double fraction);
+  /// Says a sentence at the foot of the window for some seconds.
+  void say(const std::string& sentence);
   /// Shows a sentence in a dialog.
   void report_error(const std::string& sentence);
   /// Ends the wait of poll(), e.g. when a frame is ready. From any thread, while the window lives.

@@ -34,7 +34,7 @@ std::pair<int, int> Window::State::size() const {
 
 ViewRect Window::State::view_rect() const {
   const auto [w, h] = size();
-  return panels->layout(w, h).view;
+  return panels->layout(w, h, view.plots).view;
 }
 
 PictureSettings Window::State::settings() const {
@@ -103,7 +103,13 @@ void Window::State::interface_frame() {
                          .camera = camera,
                          .progress = progress,
                          .progress_fraction = progress_fraction,
-                         .pointed = pointed()};
+                         .can_cancel = can_cancel,
+                         .pointed = pointed(),
+                         .plots = plots,
+                         .recording = !recording.empty(),
+                         .recording_what = recording,
+                         .recording_fraction = recording_fraction,
+                         .picture_folder = options.picture_folder};
   const std::vector<Command> commands = panels->draw(input, view, w, h);
   ImGui::Render();
   for (const Command command : commands) run(command);

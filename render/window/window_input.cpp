@@ -32,6 +32,9 @@ void Window::State::install_callbacks() {
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) {
     guarded(w, [](State& s) { s.scene_changed = true; });
   });
+  glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+    guarded(w, [&](State& s) { s.dropped.insert(s.dropped.end(), paths, paths + count); });
+  });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { guarded(w, [](State&) {}); });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { guarded(w, [](State&) {}); });
 }

@@ -36,11 +36,21 @@ std::optional<PointedPlace> Window::State::surface_under(const Eigen::Vector2d& 
   return found;
 }
 
-/// Measuring: a point of the surface that is clicked. gives: whether there is one.
+/// Measuring, placing a landmark: a point of the surface that is clicked. gives: whether there is
+/// one.
 bool Window::State::set_point(const Eigen::Vector2d& at) {
-  if (view.tool != Tool::measure || !has_frame) return false;
+  const bool places = view.tool == Tool::landmarks && view.landmark;
+  if ((view.tool != Tool::measure && !places) || !has_frame) return false;
   const auto found = surface_under(at, true);
   if (!found) return false;
+  panels->remember(view);
+  if (places) {
+    Landmark& landmark = view.landmarks[*view.landmark];
+    landmark =
+        landmark_on(landmark.name, {found->surface, found->triangle, found->shares}, scene.parts);
+    frames_due = 3;
+    return true;
+  }
   view.measured.push_back({found->surface, found->triangle, found->shares});
   return true;
 }

@@ -51,8 +51,11 @@ struct Window::State {
   LoopStatistics loop;
   Camera camera;
   ZoomLimits zoom;
-  std::string progress;
-  double progress_fraction = 0;
+  std::string progress, recording;
+  double progress_fraction = 0, recording_fraction = 0;
+  bool can_cancel = false;
+  std::vector<PlotSet> plots;
+  std::vector<std::filesystem::path> dropped;  // on the window, not taken yet
 
   MouseQueue mouse;
   /// Keys for a field that is written in, each with its own pass over the panels.

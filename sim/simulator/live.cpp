@@ -155,7 +155,10 @@ void LiveSimulation::work() {
           if (held[1 + f]) X_BF[f] = *held[1 + f];
         step_input.X_BF_wanted = X_BF;
       }
-      now = step(scene_, now, step_input, settings_);
+      // Soft tissue that nobody sees waits; it follows from where it was left.
+      SimulatorSettings seen = settings_;
+      seen.tissue = seen.tissue && wanted.face;
+      now = step(scene_, now, step_input, seen);
       for (std::size_t f = 0; f < free.size(); ++f)
         if (held[1 + f]) X_BF[f] = carrier(f).inverse() * now.X_CF[f];
       now.times[Stage::motion] = motion_time[Stage::motion];

@@ -16,7 +16,7 @@ struct LiveRequest {
   double time_s = 0;                                // of the motion
   std::optional<double> opening_mm = std::nullopt;  // wanted instead of the motion's pose
   bool obey_contact = true;
-  bool face = true;  // carry the displayed face
+  bool face = true;  // the face is seen: its tissue is stepped, and it is carried
   bool operator==(const LiveRequest&) const = default;
 };
 

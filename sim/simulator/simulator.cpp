@@ -54,7 +54,9 @@ FrameState step(const Scene& scene, const FrameState& previous, const StepInput&
     now.X_CM = at.X_CM;
     now.X_CF = std::move(at.X_CF);
   }
-  if (scene.tissue) {
+  if (scene.tissue && !settings.tissue) {
+    now.tissue = previous.tissue;  // nobody looks at it
+  } else if (scene.tissue) {
     const StageTimer timer(now.times, Stage::tissue);
     TissueBudget budget = settings.tissue_budget;
     budget.threads = settings.threads;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "panel_stage.h"
+#include "render/window/edit_history.h"
 #include "render/window/handles.h"
 #include "render/window/movable.h"
 
@@ -108,7 +109,7 @@ TEST(Handles, RingTurnsWithTheMouseFromEitherSide) {
 }
 
 TEST(EditHistory, UndoAndRedoGoThroughAllEdits) {
-  EditHistory history;
+  EditHistory<Hands> history;
   Hands now;
   std::vector<Hands> states = {now};
   for (int i = 1; i <= 3; ++i) {

@@ -1,0 +1,202 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "render/window/panels_drawing.h"
+
+namespace condyle {
+namespace fs = std::filesystem;
+namespace {
+
+/// Reads a folder: its folders, and its files that may be opened, each in order.
+void list_folder(Drafts::OpenFields& fields) {
+  fields.listed = fields.folder;
+  fields.folders.clear();
+  fields.files.clear();
+  std::error_code error;
+  for (auto it = fs::directory_iterator(fields.folder,
+                                        fs::directory_options::skip_permission_denied, error);
+       !error && it != fs::directory_iterator(); it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (name.starts_with('.')) continue;
+    std::error_code ignored;
+    if (it->is_directory(ignored)) {
+      fields.folders.push_back(it->path());
+      continue;
+    }
+    std::string ending = it->path().extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    for (const char* known : {".stl", ".ply", ".obj", ".glb", ".gltf", ".csv", ".motion", ".mot",
+                              ".sto", ".trc", ".raw", ".txt"})
+      if (ending == known) fields.files.push_back(it->path());
+  }
+  std::sort(fields.folders.begin(), fields.folders.end());
+  std::sort(fields.files.begin(), fields.files.end());
+}
+
+bool is_case(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_regular_file(folder / "case.json", ignored);
+}
+
+constexpr const char* roles[] = {
+    "",     "skull",   "maxilla",    "mandible", "upper-teeth", "lower-teeth",
+    "face", "segment", "transplant", "landmarks"};
+const char* role_words(const std::string& role) {
+  return role.empty() ? "leave out" : role.c_str();
+}
+
+bool choice(Pen& pen, const std::string& name, float width, std::string& value,
+            std::span<const char* const> choices) {
+  bool changed = false;
+  ImGui::SetNextItemWidth(width);
+  if (ImGui::BeginCombo(("##" + name).c_str(), role_words(value))) {
+    for (const char* one : choices) {
+      if (ImGui::Selectable(role_words(one), value == one)) {
+        value = one;
+        changed = true;
+      }
+      pen.mark(name + ":" + one);
+    }
+    ImGui::EndCombo();
+  }
+  pen.mark(name);
+  return changed;
+}
+
+}  // namespace
+
+void Panels::Drawing::open_dialog() {
+  const Theme& theme = panels.theme_;
+  Drafts::OpenFields& fields = panels.drafts_.files;
+  std::optional<fs::path> wanted;
+  bool builtin = false, close = false;
+  text(theme.bold, palette().text, "Open");
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
+  const float gap = pen.px(8), whole = ImGui::GetContentRegionAvail().x;
+  const float column = std::floor((whole - gap) / 2), high = pen.px(250);
+
+  ImGui::BeginGroup();
+  text(theme.small, palette().text_dim, "Opened before");
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, palette().well);
+  ImGui::BeginChild("recent", {column, high});
+  if (ImGui::Selectable("Built-in patient")) builtin = true;
+  pen.mark("open:builtin");
+  for (std::size_t i = 0; i < input.scene.recent.size(); ++i) {
+    const fs::path& path = input.scene.recent[i];
+    const std::string label = fitted(theme.regular, path.filename().string(), column - pen.px(16));
+    if (ImGui::Selectable((label + "##" + std::to_string(i)).c_str())) wanted = path;
+    pen.mark(fmt::format("recent:{}", i));
+    tooltip(pen, path.c_str());
+  }
+  ImGui::EndChild();
+  ImGui::EndGroup();
+  ImGui::SameLine(0, gap);
+  ImGui::BeginGroup();
+  if (fields.folder.empty()) {
+    std::error_code ignored;
+    fields.folder = fs::current_path(ignored);
+  }
+  if (fields.folder != fields.listed) list_folder(fields);
+  text(theme.small, palette().text_dim, fitted(theme.small, fields.folder.string(), column));
+  tooltip(pen, fields.folder.c_str());
+  ImGui::BeginChild("folder", {column, high});
+  if (fields.folder.has_parent_path() && ImGui::Selectable(".."))
+    fields.folder = fields.folder.parent_path();
+  const auto row = [&](const fs::path& path, const std::string& end) {
+    const std::string label =
+        fitted(theme.regular, path.filename().string() + end, column - pen.px(16));
+    const bool pressed = ImGui::Selectable((label + "##" + path.filename().string()).c_str());
+    pen.mark("file:" + path.filename().string());
+    return pressed;
+  };
+  for (const fs::path& folder : fields.folders) {
+    const bool patient = is_case(folder);
+    if (!row(folder, patient ? "   (patient)" : "/")) continue;
+    if (patient)
+      wanted = folder;
+    else
+      fields.folder = folder;
+  }
+  for (const fs::path& file : fields.files)
+    if (row(file, "")) wanted = file;
+  ImGui::EndChild();
+  ImGui::PopStyleColor();
+  ImGui::EndGroup();
+
+  text(theme.small, palette().text_dim,
+       "A case folder, a motion (CSV, .motion, .mot, .trc ...) or surfaces (STL, PLY, OBJ, glTF); "
+       "all can also be dropped on the window");
+  const float button = pen.px(96);
+  const bool entered = text_field(pen, "open-path", fields.path, whole - 2 * button - 2 * gap,
+                                  "path of a file or folder");
+  ImGui::SameLine(0, gap);
+  if ((word_button(pen, "open-go", "Open", {button, ImGui::GetFrameHeight()}, true) || entered) &&
+      !fields.path.empty())
+    wanted = fields.path.starts_with("~/") && std::getenv("HOME")
+                 ? fs::path(std::getenv("HOME")) / fields.path.substr(2)
+                 : fs::path(fields.path);
+  ImGui::SameLine(0, gap);
+  if (word_button(pen, "close-open", "Close", {button, ImGui::GetFrameHeight()}, false))
+    close = true;
+  if (wanted) panels.wishes_.push_back(wish::Open{{*wanted}});
+  if (builtin) panels.wishes_.push_back(wish::Open{});
+  if (wanted || builtin || close) fields.open = false;
+}
+
+void Panels::Drawing::import_dialog() {
+  const Theme& theme = panels.theme_;
+  wish::Import& import = *panels.drafts_.import;
+  constexpr const char* units[] = {"mm", "cm", "m", "in"};
+  constexpr const char* frames[] = {"LPS", "RAS", "LAS", "RPS", "RSA", "LSA", "RIP", "LIP"};
+  text(theme.bold, palette().text, "What are these surfaces?");
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
+  const float whole = ImGui::GetContentRegionAvail().x, right = pen.px(150);
+  const float row = ImGui::GetFrameHeightWithSpacing();
+  ImGui::BeginChild(
+      "import-list",
+      {0, row * static_cast<float>(std::clamp<std::size_t>(import.files.size(), 1, 8))});
+  for (std::size_t i = 0; i < import.files.size(); ++i) {
+    FileRole& one = import.files[i];
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::AlignTextToFramePadding();
+    text(theme.regular, palette().text,
+         fitted(theme.regular, one.file.filename().string(), whole - right - pen.px(20)));
+    ImGui::SameLine(ImGui::GetContentRegionAvail().x - right);
+    choice(pen, fmt::format("import-role:{}", i), right, one.role, roles);
+    ImGui::PopID();
+  }
+  ImGui::EndChild();
+  const auto line = [&](const char* words, const char* name, std::string& value,
+                        std::span<const char* const> choices, const char* help) {
+    ImGui::AlignTextToFramePadding();
+    text(theme.regular, palette().text_dim, words);
+    ImGui::SameLine(whole - right + ImGui::GetStyle().WindowPadding.x);
+    choice(pen, name, right, value, choices);
+    tooltip(pen, help);
+  };
+  line("Unit of lengths", "import-units", import.units, units,
+       "Of the surfaces; landmarks are in mm");
+  line("Directions of the axes", "import-frame", import.frame, frames,
+       "L left, R right, P back, A front, S up, I down: where x, y and z point. Scanners and 3D "
+       "Slicer's files are mostly LPS or RAS");
+  const bool any = std::any_of(import.files.begin(), import.files.end(), [](const FileRole& one) {
+    return !one.role.empty() && one.role != "landmarks";
+  });
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(8));
+  const float button = pen.px(130);
+  ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * button - pen.px(8));
+  const bool close =
+      word_button(pen, "import-close", "Leave them out", {button, pen.px(30)}, false);
+  ImGui::SameLine(0, pen.px(8));
+  ImGui::BeginDisabled(!any);
+  const bool go = word_button(pen, "import-go", "Make a patient", {button, pen.px(30)}, true);
+  ImGui::EndDisabled();
+  if (go) panels.wishes_.push_back(import);
+  if (go || close) panels.drafts_.import.reset();
+}
+
+}  // namespace condyle

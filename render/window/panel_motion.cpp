@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "render/window/panels_drawing.h"
+
+namespace condyle {
+namespace {
+
+/// A named number with its unit, and what was published of it as a bar under the slider.
+struct Setting {
+  std::string item, label, unit, help;
+  double low, high, usual_low = 0, usual_high = 0;
+  bool known = true;
+};
+
+/// gives: true when the hand lets go of a changed value.
+bool setting_slider(Pen& pen, const Setting& setting, std::map<std::string, double>& drafts,
+                    const std::string& name, double& value, bool set_by_hand) {
+  const auto draft = drafts.find(name);
+  double shown = draft != drafts.end() ? draft->second : value;
+  const bool unusual = (setting.known || draft != drafts.end()) &&
+                       setting.usual_low < setting.usual_high &&
+                       (shown < setting.usual_low - 1e-9 || shown > setting.usual_high + 1e-9);
+  text(pen.theme.regular, set_by_hand ? palette().text : palette().text_dim, setting.label);
+  ImGui::SameLine();
+  text_right(pen.theme.regular, unusual ? palette().warning : palette().text,
+             draft == drafts.end() && !setting.known
+                 ? std::string("the patient's")
+                 : fmt::format("{:.4g}{}{}", shown, setting.unit.empty() ? "" : " ", setting.unit));
+  const float width = ImGui::GetContentRegionAvail().x;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  if (setting.usual_low < setting.usual_high) {
+    const float knob = pen.px(6.5f), span = width - 2 * knob;
+    const auto x = [&](double v) {
+      return at.x + knob +
+             span * static_cast<float>((v - setting.low) / (setting.high - setting.low));
+    };
+    const float y = at.y + ImGui::GetFrameHeight() / 2 + pen.px(7);
+    ImGui::GetWindowDrawList()->AddRectFilled({x(setting.usual_low), y},
+                                              {x(setting.usual_high), y + pen.px(3)},
+                                              palette().good, pen.px(1));
+  }
+  if (slider(pen, setting.item.c_str(), shown,
+             {.low = setting.low, .high = setting.high, .width = width}))
+    drafts[name] = shown;
+  const bool let_go = ImGui::IsItemDeactivated();
+  std::string help = setting.help;
+  if (setting.usual_low < setting.usual_high)
+    help += fmt::format("\nPublished for adults: {:g} to {:g} {}", setting.usual_low,
+                        setting.usual_high, setting.unit);
+  tooltip(pen, help.c_str());
+  if (!let_go || !drafts.count(name)) return false;
+  value = drafts[name];
+  drafts.erase(name);
+  return true;
+}
+
+}  // namespace
+
+void Panels::Drawing::motion() {
+  Drafts& drafts = panels.drafts_;
+  heading(pen, "Motion", input.scene.motion_name);
+
+  const std::string now = view.motion.spec;
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+  const bool named = std::find(input.scene.motions.begin(), input.scene.motions.end(), now) !=
+                     input.scene.motions.end();
+  if (ImGui::BeginCombo("##motion",
+                        named ? display_name(now).c_str() : "In words or from a file")) {
+    for (const std::string& name : input.scene.motions) {
+      if (ImGui::Selectable(display_name(name).c_str(), name == now)) {
+        panels.remember(view);
+        view.motion = {.spec = name, .parameters = view.motion.parameters, .excitations = {}};
+        drafts.motion_words.clear();
+      }
+      pen.mark("motion:" + name);
+    }
+    ImGui::EndCombo();
+  }
+  pen.mark("motion");
+  tooltip(pen, "Motions that come with the program");
+  if (text_field(pen, "motion-words", drafts.motion_words, ImGui::GetContentRegionAvail().x,
+                 "open 40; close; left 6") &&
+      !drafts.motion_words.empty()) {
+    panels.remember(view);
+    view.motion = {
+        .spec = drafts.motion_words, .parameters = view.motion.parameters, .excitations = {}};
+  }
+  tooltip(
+      pen,
+      "A motion in words; Enter plays it. open 40 over 1.5; close; hinge 10; protrude 6; retrude; "
+      "left 8; right 8; rest; hold 0.5; posselt; chew left 10. Lengths in mm, times in s. "
+      "A motion file can be dropped on the window");
+
+  if (!input.scene.excitations.empty()) {
+    heading(pen, "Muscles", "excitation");
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 1));
+    const float row = 2 * ImGui::GetFrameHeight();
+    const float wanted = row * static_cast<float>(input.scene.excitations.size());
+    const float most = input.scene.motion_settings.empty()
+                           ? ImGui::GetContentRegionAvail().y - pen.px(4)
+                           : 0.5f * ImGui::GetContentRegionAvail().y;
+    ImGui::BeginChild("muscle-list", {0, std::min(wanted, most)});
+    for (const ExcitationSetting& muscle : input.scene.excitations) {
+      const auto mine = view.motion.excitations.find(muscle.name);
+      double value = mine != view.motion.excitations.end() ? mine->second : muscle.value;
+      double percent = 100 * value;
+      const Setting setting{"excitation:" + muscle.name,
+                            muscle.label,
+                            "%",
+                            muscle.high > 1 ? "Share of what the motion's file says"
+                                            : "How much the muscle is excited while it lasts",
+                            0,
+                            100 * muscle.high};
+      if (setting_slider(pen, setting, drafts.excitations, muscle.name, percent,
+                         mine != view.motion.excitations.end())) {
+        panels.remember(view);
+        view.motion.excitations[muscle.name] = percent / 100;
+      }
+    }
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+  }
+
+  if (input.scene.motion_settings.empty()) return;
+  heading(pen, "Parameters", "usual range in green");
+  const float foot = pen.px(34);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 1));
+  ImGui::BeginChild("parameter-list",
+                    {0, std::max(pen.px(60), ImGui::GetContentRegionAvail().y - foot)});
+  for (const MotionSetting& one : input.scene.motion_settings) {
+    const auto mine = view.motion.parameters.find(one.name);
+    const bool by_hand = mine != view.motion.parameters.end();
+    double value = by_hand ? mine->second : one.value;
+    const Setting setting{"parameter:" + one.name,
+                          one.label,
+                          one.unit,
+                          one.help,
+                          one.low,
+                          one.high,
+                          one.usual_low,
+                          one.usual_high,
+                          one.known || by_hand};
+    if (setting_slider(pen, setting, drafts.parameters, one.name, value, by_hand)) {
+      panels.remember(view);
+      view.motion.parameters[one.name] = value;
+    }
+  }
+  ImGui::EndChild();
+  ImGui::PopStyleVar();
+  ImGui::BeginDisabled(view.motion.parameters.empty());
+  if (word_button(pen, "parameters-reset", "As in the patient",
+                  {ImGui::GetContentRegionAvail().x, pen.px(26)}, false)) {
+    panels.remember(view);
+    view.motion.parameters.clear();
+  }
+  ImGui::EndDisabled();
+  tooltip(pen, "All parameters as the patient's joints, teeth and case say");
+}
+
+}  // namespace condyle

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/scene_renderer.h"
+#include "sim/frame/part.h"
+
+namespace condyle {
+
+/// How the jaw is wanted to move: what a command line says, as values.
+struct MotionChoice {
+  std::string spec;                           // a name, a file or movements in words
+  std::map<std::string, double> parameters;   // by name, where they differ from the case's
+  std::map<std::string, double> excitations;  // by group of muscles, where they are set by hand
+  bool operator==(const MotionChoice&) const = default;
+};
+
+/// One number that shapes the motion, as the panel shows it.
+struct MotionSetting {
+  std::string name, label, unit, help;
+  double low = 0, high = 1;              // what is accepted
+  double usual_low = 0, usual_high = 0;  // published band of adults; none when equal
+  double value = 0;                      // in use
+  bool known = true;                     // false: what the patient's joints and teeth give
+};
+
+/// One group of muscles: 0 to 1 of what it can do, or a share of what the motion's file says.
+struct ExcitationSetting {
+  std::string name, label;
+  double high = 1, value = 0;
+};
+
+/// A surface, or a list of landmarks, that shall become part of a patient.
+struct FileRole {
+  std::filesystem::path file;
+  std::string role;  // "mandible", "upper-teeth", ..., "landmarks", or empty: leave it out
+};
+
+/// What the person asks for once. Whoever runs the window does it.
+namespace wish {
+/// Whatever it is: a case folder, a motion; several may be surfaces. None: the built-in patient.
+struct Open {
+  std::vector<std::filesystem::path> files;
+};
+struct Import {
+  std::vector<FileRole> files;
+  std::string units = "mm", frame = "LPS";
+};
+/// A film or pictures of the motion, as the view is now.
+struct Record {
+  std::filesystem::path folder;
+  int width = 1920, height = 1080;
+  double frames_per_second = 30;
+  bool film = true, turntable = false;
+  Camera camera;
+  PictureSettings picture;
+  bool distances = false;
+};
+/// Ends what runs beside and can be ended.
+struct Cancel {};
+/// Lets the dynamics take a free body from where the hand has it.
+struct LetGo {
+  std::size_t body = 0;  // of the scene's
+};
+struct SaveCase {
+  std::filesystem::path folder;
+};
+}  // namespace wish
+
+using Wish =
+    std::variant<wish::Open, wish::Import, wish::Record, wish::Cancel, wish::LetGo, wish::SaveCase>;
+
+}  // namespace condyle

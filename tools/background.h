@@ -1,0 +1,76 @@
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "engine/core/progress.h"
+
+namespace condyle {
+
+/// Thrown inside work that is not wanted any more.
+struct Cancelled {};
+
+/// Long work on a thread of its own, with progress; it is cancelled where it next tells of it.
+template <class Result>
+class Background {
+ public:
+  /// `told`: called when there is news, from the other thread.
+  Background(std::function<Result(const Progress&)> work, std::function<void()> told)
+      : told_(std::move(told)), thread_([this, work = std::move(work)] { run(work); }) {}
+  ~Background() {
+    cancel();
+    thread_.join();
+  }
+  Background(const Background&) = delete;
+  Background& operator=(const Background&) = delete;
+
+  void cancel() { cancelled_ = true; }
+  bool cancelled() const { return cancelled_; }
+  bool done() const { return done_; }
+  std::pair<std::string, double> progress() const {
+    const std::lock_guard lock(mutex_);
+    return {what_, fraction_};
+  }
+  /// Of work that is done: what it made, none when it was cancelled. Rethrows what stopped it.
+  std::optional<Result> take() {
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+    return std::exchange(result_, std::nullopt);
+  }
+
+ private:
+  void run(const std::function<Result(const Progress&)>& work) {
+    try {
+      result_.emplace(work([this](std::string_view what, double fraction) {
+        if (cancelled_) throw Cancelled{};
+        {
+          const std::lock_guard lock(mutex_);
+          what_ = what;
+          fraction_ = fraction;
+        }
+        if (told_) told_();
+      }));
+    } catch (const Cancelled&) {
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
+    done_ = true;
+    if (told_) told_();
+  }
+
+  std::function<void()> told_;
+  mutable std::mutex mutex_;
+  std::string what_;
+  double fraction_ = 0;
+  std::optional<Result> result_;
+  std::exception_ptr failure_;
+  std::atomic<bool> cancelled_ = false, done_ = false;
+  std::thread thread_;
+};
+
+}  // namespace condyle

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/window/plot_set.h"
+#include "sim/dynamics/muscle_motion.h"
+#include "tools/commands.h"
+#include "tools/view_patient.h"
+
+namespace condyle {
+
+/// A motion of a patient as the window has it.
+struct ViewMotion {
+  MotionChoice choice;
+  Motion motion;
+  double widest_mm = 0;  // opening
+  std::vector<MotionSetting> settings;
+  std::vector<ExcitationSetting> excitations;
+};
+
+/// Names to choose from; "by-muscles" is a motion whose muscles are excited by hand.
+std::vector<std::string> motion_names();
+
+/// Makes the motion that was chosen. throws: InputError.
+ViewMotion make_view_motion(const MotionChoice& choice, const ViewPatient& patient,
+                            const MotionOptions& options, int threads);
+
+/// What is plotted of the whole motion, walked through with contact but without soft tissue.
+/// `partly` is told now and then what there is so far.
+std::vector<PlotSet> motion_plot_sets(const ViewPatient& patient, const Motion& motion,
+                                      SimulatorSettings settings, bool obey_contact,
+                                      const std::function<void(std::vector<PlotSet>)>& partly,
+                                      const Progress& progress);
+
+}  // namespace condyle

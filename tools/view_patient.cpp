@@ -1,0 +1,110 @@
+#include "tools/view_patient.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+#include "engine/core/error.h"
+
+namespace condyle {
+namespace fs = std::filesystem;
+namespace {
+
+std::string lower_case(std::string words) {
+  std::transform(words.begin(), words.end(), words.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return words;
+}
+
+/// The first line that is neither empty nor a comment.
+std::string first_line(const fs::path& file) {
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);)
+    if (!line.empty() && line.front() != '#' && line.front() != '\r') return lower_case(line);
+  return {};
+}
+
+}  // namespace
+
+std::shared_ptr<const ViewPatient> make_view_patient(Case patient, fs::path folder,
+                                                     SimulatorSettings settings,
+                                                     const Progress& progress) {
+  std::string trouble;
+  const auto build = [&]() -> Scene {
+    try {
+      return make_scene(patient, settings, progress);
+    } catch (const InputError& error) {
+      if (!settings.tissue) throw;
+      trouble = std::string("The soft tissue is left out. ") + error.what();
+      settings.tissue = false;
+      return make_scene(patient, settings, progress);
+    }
+  };
+  auto made = std::make_shared<ViewPatient>(
+      ViewPatient{std::move(folder), build(), {}, {}, std::move(trouble)});
+  made->at_rest = rest_frame(made->scene);
+  carry_face(made->scene, made->at_rest, settings.threads);
+  for (const auto& [name, at] : made->scene.patient.landmarks.points)
+    made->landmarks.push_back(landmark_at(name, at, made->scene.patient.parts));
+  return made;
+}
+
+Case with_landmarks(Case patient, const std::vector<Landmark>& landmarks) {
+  patient.landmarks.points.clear();
+  for (const auto& landmark : landmarks) patient.landmarks.points[landmark.name] = landmark.at_rest;
+  return patient;
+}
+
+FileKind kind_of(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return FileKind::patient;
+  if (path.filename() == "case.json") return FileKind::patient;
+  const std::string ending = lower_case(path.extension().string());
+  for (const char* surface : {".stl", ".ply", ".obj", ".glb", ".gltf"})
+    if (ending == surface) return FileKind::surface;
+  if (lower_case(path.string()).ends_with(".mrk.json")) return FileKind::landmarks;
+  if (ending == ".csv") {
+    const std::string header = first_line(path);
+    if (header.starts_with("name") || header.find("x_mm") == 0) return FileKind::landmarks;
+    const bool has_place = header.find('x') != std::string::npos;
+    return header.starts_with("time_s") && !has_place ? FileKind::excitations : FileKind::motion;
+  }
+  for (const char* motion : {".motion", ".mot", ".sto", ".trc", ".raw", ".txt", ".json"})
+    if (ending == motion) return FileKind::motion;
+  return FileKind::unknown;
+}
+
+std::string role_guess(const fs::path& file) {
+  const std::string name = lower_case(file.stem().string());
+  const auto has = [&](std::initializer_list<const char*> words) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const char* word) { return name.find(word) != std::string::npos; });
+  };
+  const bool teeth = has({"teeth", "tooth", "dent", "arch", "crown"});
+  if (teeth && has({"lower", "mandib", "inferior"})) return "lower-teeth";
+  if (teeth && has({"upper", "maxill", "superior"})) return "upper-teeth";
+  if (has({"mandib", "lower", "jaw"})) return "mandible";
+  if (has({"maxill", "upper"})) return "maxilla";
+  if (has({"skull", "crani", "head_bone"})) return "skull";
+  if (has({"face", "skin", "soft"})) return "face";
+  if (has({"transplant", "graft", "fibula"})) return "transplant";
+  if (has({"segment"})) return "segment";
+  if (kind_of(file) == FileKind::landmarks) return "landmarks";
+  return {};
+}
+
+Case import_files(const wish::Import& wanted) {
+  ImportRequest request{
+      .files = {}, .landmarks = {}, .units = wanted.units, .frame = wanted.frame, .name = {}};
+  for (const FileRole& one : wanted.files) {
+    if (one.role == "landmarks")
+      request.landmarks = one.file;
+    else if (const auto role = role_named(one.role))
+      request.files.push_back({*role, one.file});
+  }
+  if (!request.files.empty())
+    request.name = request.files.front().file.parent_path().filename().string();
+  return import_meshes(request);
+}
+
+}  // namespace condyle

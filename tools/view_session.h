@@ -1,0 +1,103 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/window/recent_files.h"
+#include "render/window/window.h"
+#include "sim/contact/live_distances.h"
+#include "sim/dynamics/let_go.h"
+#include "sim/simulator/live.h"
+#include "tools/background.h"
+#include "tools/view_motion.h"
+
+namespace condyle {
+
+/// What goes on behind a window: loading, simulating, plotting, recording, each beside it, so that
+/// the window answers at all times.
+class ViewSession {
+ public:
+  ViewSession(Window& window, const ViewOptions& options, const CommonOptions& common);
+
+  /// Loads the case in a folder, or the built-in patient when it is empty.
+  void open_patient(const std::filesystem::path& folder);
+  /// One turn: what the person wants goes out, what is ready comes in, the picture is drawn.
+  void turn();
+
+ private:
+  using PatientPtr = std::shared_ptr<const ViewPatient>;
+  using MotionPtr = std::shared_ptr<const ViewMotion>;
+
+  void load(std::function<Case(const Progress&)> read, std::filesystem::path folder);
+  void take_patient();
+  void want_motion(const MotionChoice& choice);
+  void take_motion();
+  void take_plots();
+  void take_recording();
+  void take_let_go();
+  void take_save();
+  void carry_out(const wish::Open& wanted);
+  void carry_out(const wish::Import& wanted);
+  void carry_out(const wish::Record& wanted);
+  void carry_out(const wish::Cancel& wanted);
+  void carry_out(const wish::LetGo& wanted);
+  void carry_out(const wish::SaveCase& wanted);
+  bool obeys_contact() const;
+  void show_scene(bool other_patient);
+  void show_progress();
+  void simulate(const ViewState& view);
+
+  /// Runs a piece of work, its trouble told as a sentence.
+  template <class Work>
+  void guarded(const Work& work);
+  /// Ends work that is not wanted any more without waiting for it.
+  template <class Result>
+  void retire(std::unique_ptr<Background<Result>>& work);
+  template <class Result>
+  std::unique_ptr<Background<Result>> beside(std::function<Result(const Progress&)> work) const;
+
+  Window& window_;
+  ViewOptions options_;
+  CommonOptions common_;
+  SimulatorSettings settings_;
+  RecentFiles recent_;
+
+  PatientPtr patient_;
+  MotionPtr motion_;
+  MotionChoice asked_;  // the motion that is being made, or was made last
+  WindowScene shown_;
+  std::optional<FrameState> newest_;
+  Hands moved_;
+  bool map_sent_ = false, coloured_ = false, plots_due_ = false;
+  PatientPtr ready_for_;  // whose bones are, or are being made, ready to slide
+
+  struct LetGoResult {
+    std::size_t body;
+    Pose in_carrier;
+    std::string words;
+  };
+  /// Plots as far as they are, from the thread that makes them.
+  struct PlotPost {
+    std::mutex mutex;
+    std::optional<std::vector<PlotSet>> sets;
+  };
+
+  // What runs beside, last of all members: it ends first.
+  std::vector<std::function<bool()>> ending_;  // whether it has ended
+  std::shared_ptr<PlotPost> plot_post_;
+  std::unique_ptr<LiveDistances> distances_;
+  std::unique_ptr<LiveSimulation> simulation_;
+  std::unique_ptr<Background<PatientPtr>> loading_;
+  std::unique_ptr<Background<MotionPtr>> moving_;
+  std::unique_ptr<Background<bool>> readying_;  // bones to slide
+  std::unique_ptr<Background<std::vector<PlotSet>>> plotting_;
+  std::unique_ptr<Background<std::filesystem::path>> recording_;
+  std::unique_ptr<Background<LetGoResult>> letting_go_;
+  std::unique_ptr<Background<std::filesystem::path>> saving_;
+};
+
+}  // namespace condyle
