@@ -97,6 +97,8 @@ struct ViewOptions {
   MotionOptions motion;
   double ui_scale = 1;
   bool light = false;
+  std::string size = "1280x720";
+  std::filesystem::path state_file;  // kept up to date with what the window shows; empty = none
 };
 
 struct ImportOptions {

@@ -257,6 +257,10 @@ int run_program(int argc, char** argv) {
   add_tissue(view_command, view.motion);
   view_command->add_option("--ui-scale", view.ui_scale, "Size of the panels (1)")
       ->check(within(0.5, 4.0));
+  view_command->add_option("--size", view.size, "Of the window (1280x720)");
+  view_command->add_option("--state-file", view.state_file,
+                           "Keep a JSON file up to date with what the window shows, for programs "
+                           "that use the window");
   view_command->add_flag("--light", view.light, "Light panels instead of dark ones (key T)");
 
   RecordOptions record;

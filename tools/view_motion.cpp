@@ -12,6 +12,7 @@
 #include "engine/core/files.h"
 #include "sim/motion/measures.h"
 #include "sim/report/motion_plots.h"
+#include "sim/tissue/model.h"
 
 namespace condyle {
 namespace {
@@ -235,7 +236,25 @@ class ClearanceCurves {
   std::vector<double> time_s_;
 };
 
-std::vector<PlotSet> sets_of(const MotionSeries& series, const ClearanceCurves& clearance) {
+LineSet paths_of(const MotionSeries& series) {
+  const std::array<std::pair<Eigen::Vector3d Measures::*, Eigen::Vector3f>, 3> points = {
+      {{&Measures::incisor, {0.94f, 0.89f, 0.26f}},
+       {&Measures::left_condyle, {0.34f, 0.71f, 0.91f}},
+       {&Measures::right_condyle, {0.90f, 0.62f, 0.0f}}}};
+  LineSet lines;
+  lines.width_px = 2.5f;
+  lines.through = 0.75f;
+  for (const auto& [point, color] : points) {
+    std::vector<Eigen::Vector3f> run;
+    for (const Measures& m : series.measures) run.push_back((m.*point).cast<float>());
+    const std::size_t before = lines.ends.size();
+    add_run(lines, run);
+    lines.colors.insert(lines.colors.end(), (lines.ends.size() - before) / 2, color);
+  }
+  return lines;
+}
+
+MotionPictures pictures_of(const MotionSeries& series, const ClearanceCurves& clearance) {
   std::vector<PlotSet> sets;
   for (auto& plot : motion_plots(series)) {
     std::string name = plot.name;
@@ -244,7 +263,7 @@ std::vector<PlotSet> sets_of(const MotionSeries& series, const ClearanceCurves& 
     sets.push_back({std::move(name), std::move(plot.panels), series.time_s});
   }
   sets.push_back(clearance.plots());
-  return sets;
+  return {std::move(sets), paths_of(series)};
 }
 
 }  // namespace
@@ -279,10 +298,10 @@ ViewMotion make_view_motion(const MotionChoice& choice, const ViewPatient& patie
   return made;
 }
 
-std::vector<PlotSet> motion_plot_sets(const ViewPatient& patient, const Motion& motion,
-                                      SimulatorSettings settings, bool obey_contact,
-                                      const std::function<void(std::vector<PlotSet>)>& partly,
-                                      const Progress& progress) {
+MotionPictures motion_pictures(const ViewPatient& patient, const Motion& motion,
+                               SimulatorSettings settings, bool obey_contact,
+                               const std::function<void(MotionPictures)>& partly,
+                               const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   constexpr double each_s = 1.0 / 30;
   constexpr long most_frames = 1800;
@@ -303,10 +322,24 @@ std::vector<PlotSet> motion_plot_sets(const ViewPatient& patient, const Motion& 
     series.add(frame);
     clearance.add(frame);
     if (Clock::now() - told < news_every) continue;
-    partly(sets_of(series, clearance));
+    partly(pictures_of(series, clearance));
     told = Clock::now();
   }
-  return sets_of(series, clearance);
+  return pictures_of(series, clearance);
+}
+
+LineSet tissue_springs(const Scene& scene, const TissueState& now) {
+  LineSet lines;
+  if (!scene.tissue || now.nodes.empty()) return lines;
+  const SpringPrismNet& net = scene.tissue->net;
+  lines.color = {0.18f, 0.75f, 0.58f};
+  lines.width_px = 1;
+  lines.through = 0.25f;
+  lines.ends.reserve(2 * net.spring_a.size());
+  for (std::size_t s = 0; s < net.spring_a.size(); ++s)
+    for (const int node : {net.spring_a[s], net.spring_b[s]})
+      lines.ends.push_back(now.nodes[static_cast<std::size_t>(node)].cast<float>());
+  return lines;
 }
 
 }  // namespace condyle

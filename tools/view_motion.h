@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "render/overlays.h"
 #include "render/window/plot_set.h"
 #include "sim/dynamics/muscle_motion.h"
 #include "tools/commands.h"
@@ -27,11 +29,20 @@ std::vector<std::string> motion_names();
 ViewMotion make_view_motion(const MotionChoice& choice, const ViewPatient& patient,
                             const MotionOptions& options, int threads);
 
-/// What is plotted of the whole motion, walked through with contact but without soft tissue.
-/// `partly` is told now and then what there is so far.
-std::vector<PlotSet> motion_plot_sets(const ViewPatient& patient, const Motion& motion,
-                                      SimulatorSettings settings, bool obey_contact,
-                                      const std::function<void(std::vector<PlotSet>)>& partly,
-                                      const Progress& progress);
+/// What is plotted of a motion, and where the incisal point and the condyles go in space.
+struct MotionPictures {
+  std::vector<PlotSet> plots;
+  LineSet paths;
+};
+
+/// Walks through the whole motion with contact but without soft tissue. `partly` is told now and
+/// then what there is so far.
+MotionPictures motion_pictures(const ViewPatient& patient, const Motion& motion,
+                               SimulatorSettings settings, bool obey_contact,
+                               const std::function<void(MotionPictures)>& partly,
+                               const Progress& progress);
+
+/// Springs of the soft tissue as they are now.
+LineSet tissue_springs(const Scene& scene, const TissueState& now);
 
 }  // namespace condyle

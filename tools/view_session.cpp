@@ -118,12 +118,12 @@ void ViewSession::take_patient() {
   const bool first = patient_ == nullptr;
   const PatientPtr earlier = std::exchange(patient_, *made);
   if (!patient_->folder.empty()) recent_.add(patient_->folder);
+  // The command line's motion is for its own patient; another one opens first.
+  if (!first) asked_ = {.spec = "opening", .parameters = {}, .excitations = {}};
   show_scene(true);
   window_.show(patient_->at_rest);
   if (!patient_->trouble.empty()) window_.report_error(patient_->trouble);
-  // The command line's motion is for its own patient; another one opens first.
-  want_motion(first ? asked_
-                    : MotionChoice{.spec = "opening", .parameters = {}, .excitations = {}});
+  want_motion(asked_);
 }
 
 bool ViewSession::obeys_contact() const {
@@ -181,10 +181,11 @@ void ViewSession::take_motion() {
   guarded([&] { made = finished->take(); });
   if (!made) {
     // What was asked for cannot be: the motion stays as it was, or the jaw at rest.
-    if (motion_) {
-      asked_ = motion_->choice;
-      window_.change([&](ViewState& view) { view.motion = asked_; });
-    }
+    const MotionChoice rest{.spec = "rest", .parameters = {}, .excitations = {}};
+    const MotionChoice back = motion_ ? motion_->choice : rest;
+    if (!motion_ && asked_.spec != rest.spec) want_motion(rest);
+    asked_ = back;
+    window_.change([&](ViewState& view) { view.motion = back; });
     return;
   }
   retire(plotting_);
@@ -220,27 +221,32 @@ void ViewSession::take_plots() {
   if (plots_due_ && !readying_ && motion_) {
     plots_due_ = false;
     plot_post_ = std::make_shared<PlotPost>();
-    plotting_ = beside<std::vector<PlotSet>>(
+    plotting_ = beside<MotionPictures>(
         [patient = patient_, motion = motion_, settings = settings_, post = plot_post_,
          obey = options_.motion.respect_contact](const Progress& progress) {
-          const auto partly = [&post](std::vector<PlotSet> sets) {
+          const auto partly = [&post](MotionPictures pictures) {
             const std::lock_guard lock(post->mutex);
-            post->sets = std::move(sets);
+            post->pictures = std::move(pictures);
           };
-          return motion_plot_sets(*patient, motion->motion, settings, obey, partly, progress);
+          return motion_pictures(*patient, motion->motion, settings, obey, partly, progress);
         });
   }
   if (!plotting_) return;
   if (plotting_->done()) {
     const auto finished = std::move(plotting_);
     guarded([&] {
-      if (auto sets = finished->take()) window_.show_plots(std::move(*sets));
+      if (auto pictures = finished->take()) show(std::move(*pictures));
     });
     return;
   }
   const std::lock_guard lock(plot_post_->mutex);
-  if (plot_post_->sets) window_.show_plots(std::move(*plot_post_->sets));
-  plot_post_->sets.reset();
+  if (plot_post_->pictures) show(std::move(*plot_post_->pictures));
+  plot_post_->pictures.reset();
+}
+
+void ViewSession::show(MotionPictures pictures) {
+  window_.show_plots(std::move(pictures.plots));
+  window_.show_lines("paths", std::move(pictures.paths));
 }
 
 void ViewSession::take_recording() {
@@ -387,12 +393,14 @@ void ViewSession::show_progress() {
     std::string words = what.empty() ? "working" : what;
     words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
     window_.show_progress(words, fraction, can_cancel);
+    busy_with_ = std::move(words);
     return true;
   };
   if (show(loading_, patient_ != nullptr) || show(moving_, false) || show(letting_go_, false) ||
       show(saving_, false) || show(readying_, false))
     return;
   window_.show_progress("", 1);
+  busy_with_ = recording_ ? "recording" : "";
 }
 
 void ViewSession::turn() {
@@ -430,6 +438,9 @@ void ViewSession::simulate(const ViewState& view) {
   const bool news = frame.has_value();
   if (news) newest_ = std::move(frame);
   if (!newest_) return window_.draw();
+  if (view.look.springs && (news || !springs_shown_))
+    window_.show_lines("springs", tissue_springs(patient_->scene, newest_->tissue));
+  springs_shown_ = view.look.springs;
   if (view.distances && !distances_)
     distances_ = std::make_unique<LiveDistances>(
         patient_->scene.patient, DistanceMapSettings{.pair_rules = settings_.contact.pair_rules});

@@ -28,6 +28,11 @@ class ViewSession {
   /// One turn: what the person wants goes out, what is ready comes in, the picture is drawn.
   void turn();
 
+  /// The newest frame; none before the first.
+  const FrameState* frame() const { return newest_ ? &*newest_ : nullptr; }
+  /// What runs beside and is shown as progress; empty for nothing.
+  const std::string& busy_with() const { return busy_with_; }
+
  private:
   using PatientPtr = std::shared_ptr<const ViewPatient>;
   using MotionPtr = std::shared_ptr<const ViewMotion>;
@@ -50,6 +55,7 @@ class ViewSession {
   void show_scene(bool other_patient);
   void show_progress();
   void simulate(const ViewState& view);
+  void show(MotionPictures pictures);
 
   /// Runs a piece of work, its trouble told as a sentence.
   template <class Work>
@@ -72,6 +78,8 @@ class ViewSession {
   WindowScene shown_;
   std::optional<FrameState> newest_;
   Hands moved_;
+  std::string busy_with_;
+  bool springs_shown_ = false;
   bool map_sent_ = false, coloured_ = false, plots_due_ = false;
   PatientPtr ready_for_;  // whose bones are, or are being made, ready to slide
 
@@ -83,7 +91,7 @@ class ViewSession {
   /// Plots as far as they are, from the thread that makes them.
   struct PlotPost {
     std::mutex mutex;
-    std::optional<std::vector<PlotSet>> sets;
+    std::optional<MotionPictures> pictures;
   };
 
   // What runs beside, last of all members: it ends first.
@@ -94,7 +102,7 @@ class ViewSession {
   std::unique_ptr<Background<PatientPtr>> loading_;
   std::unique_ptr<Background<MotionPtr>> moving_;
   std::unique_ptr<Background<bool>> readying_;  // bones to slide
-  std::unique_ptr<Background<std::vector<PlotSet>>> plotting_;
+  std::unique_ptr<Background<MotionPictures>> plotting_;
   std::unique_ptr<Background<std::filesystem::path>> recording_;
   std::unique_ptr<Background<LetGoResult>> letting_go_;
   std::unique_ptr<Background<std::filesystem::path>> saving_;

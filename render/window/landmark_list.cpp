@@ -37,7 +37,7 @@ Landmark landmark_at(const std::string& name, const Vector3d& at_rest,
   return landmark;
 }
 
-Landmark landmark_on(const std::string& name, const SurfacePoint& point,
+Landmark landmark_on(const std::string& name, const PinnedPoint& point,
                      std::span<const Part> parts) {
   Landmark landmark{name, Vector3d::Zero(), point.part, point.triangle[0]};
   double largest = -1;

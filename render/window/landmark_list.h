@@ -25,7 +25,7 @@ struct Landmark {
 Landmark landmark_at(const std::string& name, const Eigen::Vector3d& at_rest,
                      std::span<const Part> parts);
 /// A landmark where a surface was clicked.
-Landmark landmark_on(const std::string& name, const SurfacePoint& point,
+Landmark landmark_on(const std::string& name, const PinnedPoint& point,
                      std::span<const Part> parts);
 
 /// Where it is now, in the cranium's frame, mm.

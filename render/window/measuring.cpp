@@ -12,7 +12,7 @@ namespace condyle {
 
 using Eigen::Vector3d;
 
-Vector3d place_of(const SurfacePoint& point, std::span<const Part> parts, const FrameState& frame) {
+Vector3d place_of(const PinnedPoint& point, std::span<const Part> parts, const FrameState& frame) {
   const Part& part = parts[point.part];
   const bool deformed = part.role == Role::face && frame.face.size() == part.mesh.vertices.size();
   Vector3d p = Vector3d::Zero();

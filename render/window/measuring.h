@@ -12,15 +12,15 @@
 namespace condyle {
 
 /// A point that stays on its place of a surface while that moves or deforms.
-struct SurfacePoint {
+struct PinnedPoint {
   std::size_t part = 0;
   Eigen::Vector3i triangle = Eigen::Vector3i::Zero();
   Eigen::Vector3d shares = Eigen::Vector3d::Zero();  // of the triangle's corners
-  bool operator==(const SurfacePoint&) const = default;
+  bool operator==(const PinnedPoint&) const = default;
 };
 
 /// Where it is now, in the cranium's frame, mm.
-Eigen::Vector3d place_of(const SurfacePoint& point, std::span<const Part> parts,
+Eigen::Vector3d place_of(const PinnedPoint& point, std::span<const Part> parts,
                          const FrameState& frame);
 
 /// What points in a row say. Angle: at the second of three. Area: of the polygon through three or

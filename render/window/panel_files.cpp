@@ -82,12 +82,12 @@ void Panels::Drawing::open_dialog() {
   ImGui::BeginGroup();
   text(theme.small, palette().text_dim, "Opened before");
   ImGui::PushStyleColor(ImGuiCol_ChildBg, palette().well);
-  ImGui::BeginChild("recent", {column, high});
+  ImGui::BeginChild("recent", {column, high}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
   if (ImGui::Selectable("Built-in patient")) builtin = true;
   pen.mark("open:builtin");
   for (std::size_t i = 0; i < input.scene.recent.size(); ++i) {
     const fs::path& path = input.scene.recent[i];
-    const std::string label = fitted(theme.regular, path.filename().string(), column - pen.px(16));
+    const std::string label = fitted(theme.regular, path.filename().string(), column - pen.px(32));
     if (ImGui::Selectable((label + "##" + std::to_string(i)).c_str())) wanted = path;
     pen.mark(fmt::format("recent:{}", i));
     tooltip(pen, path.c_str());
@@ -103,12 +103,12 @@ void Panels::Drawing::open_dialog() {
   if (fields.folder != fields.listed) list_folder(fields);
   text(theme.small, palette().text_dim, fitted(theme.small, fields.folder.string(), column));
   tooltip(pen, fields.folder.c_str());
-  ImGui::BeginChild("folder", {column, high});
+  ImGui::BeginChild("folder", {column, high}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
   if (fields.folder.has_parent_path() && ImGui::Selectable(".."))
     fields.folder = fields.folder.parent_path();
   const auto row = [&](const fs::path& path, const std::string& end) {
     const std::string label =
-        fitted(theme.regular, path.filename().string() + end, column - pen.px(16));
+        fitted(theme.regular, path.filename().string() + end, column - pen.px(32));
     const bool pressed = ImGui::Selectable((label + "##" + path.filename().string()).c_str());
     pen.mark("file:" + path.filename().string());
     return pressed;
@@ -174,7 +174,7 @@ void Panels::Drawing::import_dialog() {
                         std::span<const char* const> choices, const char* help) {
     ImGui::AlignTextToFramePadding();
     text(theme.regular, palette().text_dim, words);
-    ImGui::SameLine(whole - right + ImGui::GetStyle().WindowPadding.x);
+    ImGui::SameLine(whole - right + ImGui::GetCursorStartPos().x);
     choice(pen, name, right, value, choices);
     tooltip(pen, help);
   };

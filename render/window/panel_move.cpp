@@ -80,7 +80,8 @@ void Panels::Drawing::moving() {
 
   // Its place in numbers.
   const bool several = input.scene.bodies.size() > 1;
-  const double wide = pen.px(224), high = pen.px((several ? 270 : 258) + (body.free ? 34 : 0)), margin = pen.px(12);
+  const double wide = pen.px(224), high = pen.px((several ? 270 : 258) + (body.free ? 34 : 0)),
+               margin = pen.px(12);
   if (r.width < 2 * wide || r.height < high + 2 * margin) return;
   begin_panel(pen, "move", {r.x + margin, r.y + margin, wide, high});
   heading(pen, "Move", "slides on contact");
@@ -157,8 +158,8 @@ void Panels::Drawing::moving() {
   ImGui::EndDisabled();
   tooltip(pen, body.free ? "To where it was loaded" : "The jaw follows the motion again");
   if (body.free) {
-    if (word_button(pen, "let-go", "Let go onto the bone", {ImGui::GetContentRegionAvail().x, size.y},
-                    false))
+    if (word_button(pen, "let-go", "Let go onto the bone",
+                    {ImGui::GetContentRegionAvail().x, size.y}, false))
       panels.wishes_.push_back(wish::LetGo{view.chosen});
     tooltip(pen, "It is pushed gently to the nearest bone, slides and turns until it lies still");
   }

@@ -19,9 +19,26 @@ constexpr SkinChoice skin_choices[] = {
 }  // namespace
 
 void Panels::Drawing::parts() {
-  const Theme& theme = panels.theme_;
   begin_panel(pen, "left", layout.left);
+  const float tab_gap = pen.px(4);
+  const float tab_wide = std::floor((ImGui::GetContentRegionAvail().x - tab_gap) / 2);
+  constexpr std::pair<LeftTab, const char*> tabs[] = {{LeftTab::parts, "Parts"},
+                                                      {LeftTab::look, "Look"}};
+  for (const auto& [tab, label] : tabs) {
+    if (tab != LeftTab::parts) ImGui::SameLine(0, tab_gap);
+    if (word_button(pen, (std::string("left-tab:") + label).c_str(), label, {tab_wide, pen.px(26)},
+                    view.left_tab == tab))
+      view.left_tab = tab;
+  }
+  if (view.left_tab == LeftTab::look)
+    look();
+  else
+    part_list();
+  end_panel();
+}
 
+void Panels::Drawing::part_list() {
+  const Theme& theme = panels.theme_;
   // Skin first: it hides everything else.
   bool has_face = false;
   for (const Part& part : input.scene.parts) has_face |= part.role == Role::face;
@@ -42,8 +59,7 @@ void Panels::Drawing::parts() {
   heading(pen, "Parts", input.scene.parts.empty() ? "" : "opacity");
   const float row = ImGui::GetFrameHeight() + pen.px(3);
   const float notes_room = input.scene.notes.empty() ? 0 : pen.px(96);
-  const float settings_room =
-      pen.px(34) + static_cast<float>(input.scene.distance_colours ? 4 : 3) * row;
+  const float settings_room = pen.px(34) + 2 * row;
   const float most =
       std::max(2 * row, ImGui::GetContentRegionAvail().y - settings_room - notes_room);
   const float wanted = row * static_cast<float>(input.scene.parts.size());
@@ -73,15 +89,6 @@ void Panels::Drawing::parts() {
   tooltip(pen, "On: bones cannot pass through each other. Off: the motion is played as it is");
   tick_box(pen, "mark-contacts", "Mark contacts", view.mark_contacts);
   tooltip(pen, "Points where bones or teeth touch");
-  if (input.scene.distance_colours) {
-    bool on = view.distances;
-    if (tick_box(pen, "distances", "Distances", on))
-      panels.run(Command::toggle_distances, input.scene, view);
-    tooltip(pen,
-            "Bones and teeth coloured by how far they are from what they may meet. Takes the skin "
-            "away: it would hide them. Key D");
-  }
-  tick_box(pen, "shadows", "Shadows", view.shadows);
   ImGui::PopStyleVar();
 
   if (!input.scene.notes.empty()) {
@@ -92,7 +99,6 @@ void Panels::Drawing::parts() {
     ImGui::PopTextWrapPos();
     ImGui::EndChild();
   }
-  end_panel();
 }
 
 }  // namespace condyle

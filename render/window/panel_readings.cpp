@@ -74,7 +74,7 @@ void Panels::Drawing::readings() {
   const bool has_tissue = input.frame && !input.frame->tissue.nodes.empty();
   const float bars =
       static_cast<float>(stage_names.size()) * pen.px(bar_row) + pen.px(curve_height);
-  const float below = (has_tissue ? head + 3 * line : 0) + head + bars + line + pen.px(5);
+  const float below = (has_tissue ? head + 2 * line : 0) + head + bars + line + pen.px(5);
   const float pairs = input.frame ? static_cast<float>(input.frame->contacts.pairs.size()) : 0;
   const float room = ImGui::GetContentRegionAvail().y - below - head;
   contacts(std::max(2 * line, std::min(room, std::max(1.0f, pairs) * line)));
@@ -215,8 +215,10 @@ void Panels::Drawing::tissue() {
   reading(theme, "Iterations",
           fmt::format("{}{}", state.iterations, state.converged ? "" : ", not converged"),
           state.converged ? palette().text : palette().warning);
-  reading(theme, "Energy, residual", fmt::format("{:.3g}, {:.1e}", state.energy, state.residual));
-  reading(theme, "Inverted prisms", fmt::format("{}", state.inverted_prisms),
+  // What few people look at stands in the second line only when there is something to say.
+  reading(theme, state.inverted_prisms ? "Inverted prisms" : "Residual",
+          state.inverted_prisms ? fmt::format("{}", state.inverted_prisms)
+                                : fmt::format("{:.1e}", state.residual),
           state.inverted_prisms ? palette().bad : palette().text);
 }
 

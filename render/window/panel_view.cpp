@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "render/annotations.h"
 #include "render/window/panels_drawing.h"
 
 namespace condyle {
@@ -90,10 +91,22 @@ void Panels::Drawing::view_signs() {
                    words.c_str());
     list.AddText(theme.bold, theme.bold->FontSize, {x, y}, colour::rgb(0xc4ccd4), words.c_str());
   };
-  letter(right, 1, 0);
-  letter(-right, -1, 0);
-  letter(up, 0, -1);
-  letter(-up, 0, 1);
+  if (view.look.letters) {
+    letter(right, 1, 0);
+    letter(-right, -1, 0);
+    letter(up, 0, -1);
+    letter(-up, 0, 1);
+  }
+  if (view.look.scale_bar) scale();
+  if (view.look.wipe) {
+    const float x = static_cast<float>(r.x + r.width * view.look.wipe_at);
+    const float top = static_cast<float>(r.y), bottom = top + static_cast<float>(r.height);
+    list.AddLine({x, top}, {x, bottom}, colour::rgb(0xf0e442), std::max(1.0f, pen.px(1.5f)));
+    const char* words = "kept  |  now";
+    const float before = text_width(theme.small, "kept  ");
+    list.AddText(theme.small, theme.small->FontSize, {x - before, top + pen.px(34)},
+                 colour::rgb(0xf0e442), words);
+  }
   cube();
   legend();
   pointed();
@@ -130,6 +143,33 @@ void Panels::Drawing::progress() {
   list.AddRectFilled({left, top}, {left + full, top + bar}, palette().track, bar);
   list.AddRectFilled({left, top}, {left + full * done, top + bar}, palette().accent, bar);
   end_panel();
+}
+
+/// A round length at the depth of what the camera looks at, in the lower middle of the view.
+void Panels::Drawing::scale() {
+  const Theme& theme = panels.theme_;
+  const ViewRect& r = layout.view;
+  if (r.width < pen.px(400) || r.height < pen.px(160)) return;
+  const ScaleBar bar =
+      scale_bar(input.camera, static_cast<int>(r.height), static_cast<int>(r.width), 0.16);
+  const auto wide = static_cast<float>(bar.pixels);
+  const float right = static_cast<float>(r.x + r.width) - pen.px(120);
+  const float y = static_cast<float>(r.y + r.height) - pen.px(16);
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  constexpr ImU32 edge = colour::rgb(0x0f1215, 200), tint = colour::rgb(0xc4ccd4);
+  for (const auto& [ink, thick] : {std::pair{edge, pen.px(4)}, {tint, pen.px(1.6f)}}) {
+    list.AddLine({right - wide, y}, {right, y}, ink, thick);
+    for (const float x : {right - wide, right})
+      list.AddLine({x, y - pen.px(4)}, {x, y + pen.px(4)}, ink, thick);
+  }
+  const float words = text_width(theme.small, bar.text);
+  const ImVec2 at = {std::round(right - wide / 2 - words / 2),
+                     std::round(y - theme.small->FontSize - pen.px(5))};
+  const float d = std::max(1.0f, pen.px(1));
+  for (const auto& [dx, dy] : {std::pair{-d, 0.f}, {d, 0.f}, {0.f, -d}, {0.f, d}})
+    list.AddText(theme.small, theme.small->FontSize, {at.x + dx, at.y + dy}, edge,
+                 bar.text.c_str());
+  list.AddText(theme.small, theme.small->FontSize, at, tint, bar.text.c_str());
 }
 
 void Panels::Drawing::cube() {

@@ -35,6 +35,9 @@ struct Panels::Drawing {
   void open_dialog();    // panel_files.cpp
   void import_dialog();  // panel_files.cpp
   void side_tabs();
+  void part_list();
+  void look();  // panel_look.cpp
+  void scale();
   void readings();
   void opening();
   void contacts(float list_height);

@@ -31,6 +31,7 @@ enum class Command {
   toggle_landmarks,
   toggle_plots,
   open_files,
+  keep_state,
   undo,
   redo,
   help,

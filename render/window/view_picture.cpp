@@ -64,7 +64,7 @@ ViewPicture::ViewPicture() : state_(std::make_unique<State>()) {}
 ViewPicture::~ViewPicture() = default;
 
 double ViewPicture::draw(SceneRenderer& renderer, const Camera& camera, PictureSettings settings,
-                         const Quality& quality) {
+                         const Quality& quality, const std::optional<Wipe>& wipe) {
   const auto start = std::chrono::steady_clock::now();
   const auto side = [&](int full) {
     return std::max(1, static_cast<int>(std::lround(full * quality.render_scale)));
@@ -75,6 +75,13 @@ double ViewPicture::draw(SceneRenderer& renderer, const Camera& camera, PictureS
   settings.shadows = settings.shadows && quality.shadows;
   state_->fit(settings.width, settings.height, quality.samples);
   state_->drawn->bind();
+  if (wipe) {
+    PictureSettings left = settings;
+    left.to_x = settings.from_x = wipe->at;
+    renderer.update(*wipe->left);
+    renderer.draw(camera, left);
+    renderer.update(*wipe->right);
+  }
   renderer.draw(camera, settings);
   if (quality.samples > 1) {
     state_->drawn->resolve_to(state_->finished.framebuffer);

@@ -48,6 +48,27 @@ struct PartView {
 /// landmarks.
 enum class Tool { look, move, measure, landmarks };
 
+/// What the picture shows beside the surfaces, and what it leaves out of them.
+struct Look {
+  bool clip = false;
+  char clip_from = 'L';     // side that is taken away: L R A P S I
+  double clip_share = 0.5;  // of the patient's extent, from that side
+  bool cut_away = false;
+  enum class Window { left_joint, right_joint, mouth } cut_at = Window::left_joint;
+  double cut_radius_mm = 35;
+  bool ghost = false;      // of the rest state
+  bool wireframe = false;  // of all parts
+  bool patches = false;    // only where surfaces touch, of the map of distances
+  bool paths = false, axes = false, springs = false;
+  bool scale_bar = true, letters = true;
+  bool wipe = false;     // the kept state at the left, the present one at the right
+  double wipe_at = 0.5;  // share of the width
+  bool operator==(const Look&) const = default;
+};
+
+/// What the left column shows.
+enum class LeftTab { parts, look };
+
 /// What the right column shows.
 enum class SideTab { readings, motion, record };
 
@@ -63,15 +84,17 @@ struct ViewState {
   bool obey_contact = true;  // false plays the motion through the contact
   bool mark_contacts = true;
   bool shadows = true;
-  bool distances = false;  // colour parts by their distance from what they may meet
-  Tool tool = Tool::look;  // what the left button does
-  std::vector<SurfacePoint> measured = {};  // points that were clicked, in their order
-  std::size_t chosen = 0;                   // the body that has the handles, of the scene's
-  Hands hands = {};                      // where bodies are wanted instead of where they would be
-  std::vector<Landmark> landmarks = {};  // where the person has them; the scene's at first
+  bool distances = false;                  // colour parts by their distance from what they may meet
+  Tool tool = Tool::look;                  // what the left button does
+  std::vector<PinnedPoint> measured = {};  // points that were clicked, in their order
+  std::size_t chosen = 0;                  // the body that has the handles, of the scene's
+  Hands hands = {};                        // where bodies are wanted instead of where they would be
+  std::vector<Landmark> landmarks = {};    // where the person has them; the scene's at first
   std::optional<std::size_t> landmark = {};  // the one that the next click places
   MotionChoice motion = {};                  // wanted; the scene's at first
   SideTab tab = SideTab::readings;
+  LeftTab left_tab = LeftTab::parts;
+  Look look = {};
   bool plots = false;                // below the picture
   std::size_t plot_set = 0;          // the one that is shown
   double skin_opacity = 1;           // of parts with the role `face`, on top of their own
@@ -84,7 +107,7 @@ struct ViewState {
 /// What a person sets in a view and may take back.
 struct Edits {
   Hands hands;
-  std::vector<SurfacePoint> measured;
+  std::vector<PinnedPoint> measured;
   std::vector<Landmark> landmarks;
   MotionChoice motion;
   bool operator==(const Edits&) const = default;

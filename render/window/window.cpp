@@ -71,6 +71,8 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start) {
   s.values.clear();
   s.held.reset();
   s.plots.clear();
+  s.lines.clear();
+  s.lines_new = true;
   s.view.landmarks = scene.landmarks;
   s.view.motion = scene.motion;
   s.panels->forget_edits();
@@ -116,6 +118,7 @@ void Window::show(FrameState frame, const LoopStatistics& loop,
     s.frames_due = std::max(s.frames_due, 1);
   }
   if (!same) {
+    if (!s.has_frame) s.kept = frame;
     s.frame = std::move(frame);
     s.has_frame = s.frame_new = true;
     s.last_change = State::Clock::now();
@@ -160,6 +163,12 @@ void Window::ask_roles(const wish::Import& files) {
 void Window::show_plots(std::vector<PlotSet> plots) {
   state_->plots = std::move(plots);
   if (state_->view.plots) state_->frames_due = std::max(state_->frames_due, 1);
+}
+
+void Window::show_lines(const std::string& name, LineSet lines) {
+  state_->lines[name] = std::move(lines);
+  state_->lines_new = true;
+  state_->frames_due = std::max(state_->frames_due, 1);
 }
 
 void Window::show_progress(const std::string& what, double fraction, bool can_cancel) {

@@ -9,6 +9,7 @@
 
 #include "render/camera.h"
 #include "render/image.h"
+#include "render/overlays.h"
 #include "render/window/panels.h"
 #include "render/window/plot_set.h"
 #include "render/window/view_state.h"
@@ -83,6 +84,8 @@ class Window {
   /// Asks for the roles of surfaces that were dropped or opened.
   void ask_roles(const wish::Import& files);
   void show_plots(std::vector<PlotSet> plots);
+  /// Lines in space: "paths" of the motion, "springs" of the tissue; drawn while they are wanted.
+  void show_lines(const std::string& name, LineSet lines);
 
   /// What is being prepared, 0 to 1; empty when it is done.
   void show_progress(const std::string& what, double fraction, bool can_cancel = false);

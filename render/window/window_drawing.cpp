@@ -4,8 +4,10 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 
 #include "render/window/panels_drawing.h"
 #include "render/window/picture_files.h"
@@ -49,7 +51,62 @@ PictureSettings Window::State::settings() const {
   wanted.contacts = view.mark_contacts;
   wanted.skin_opacity = view.skin_opacity;
   wanted.part_opacity = part_opacities(scene, view);
+  if (renderer) apply_look(wanted);
   return wanted;
+}
+
+void Window::State::apply_look(PictureSettings& wanted) const {
+  const Look& look = view.look;
+  if (look.clip) {
+    const auto [low, high] = renderer->bounds();
+    const std::string_view sides = "LRPASI";  // of the axes left, back, up: to and fro
+    const auto which = sides.find(look.clip_from);
+    const auto axis = static_cast<Eigen::Index>(which / 2);
+    const double sign = which % 2 == 0 ? 1 : -1;
+    ClippingPlane plane;
+    plane.normal = sign * Eigen::Vector3d::Unit(axis);
+    const double from = sign > 0 ? high[axis] : low[axis];
+    plane.point =
+        Eigen::Vector3d::Unit(axis) * (from - sign * look.clip_share * (high - low)[axis]);
+    wanted.clip = plane;
+  }
+  if (look.cut_away) {
+    constexpr std::array names = {"left_condyle", "right_condyle", "stomion"};
+    const std::string name = names[static_cast<std::size_t>(look.cut_at)];
+    for (const Landmark& landmark : view.landmarks)
+      if (landmark.name == name)
+        wanted.cut_away = CutAway{.center = landmark.at_rest, .radius_mm = look.cut_radius_mm};
+  }
+  if (look.ghost) wanted.ghost = Ghost{};
+  if (look.wireframe) wanted.wireframe = {"*"};
+  constexpr float touching_mm = 0.1f;
+  if (look.patches && view.distances) wanted.mapped_up_to = touching_mm;
+}
+
+/// Lines that the window makes itself: the axes through the middle of the patient.
+void Window::State::update_lines() {
+  LineSet axes;
+  if (view.look.axes) {
+    const auto [low, high] = renderer->bounds();
+    const Eigen::Vector3f middle = ((low + high) / 2).cast<float>();
+    const float length = 0.6f * static_cast<float>((high - low).maxCoeff());
+    constexpr std::array<std::array<float, 3>, 3> tints = {
+        {{0.91f, 0.44f, 0.23f}, {0.18f, 0.75f, 0.58f}, {0.34f, 0.71f, 0.91f}}};
+    for (int i = 0; i < 3; ++i) {
+      const std::size_t before = axes.ends.size();
+      add_arrow(axes, middle, middle + length * Eigen::Vector3f::Unit(i));
+      const auto& tint = tints[static_cast<std::size_t>(i)];
+      axes.colors.insert(axes.colors.end(), (axes.ends.size() - before) / 2,
+                         Eigen::Vector3f(tint[0], tint[1], tint[2]));
+    }
+  }
+  renderer->set_lines("axes", axes);
+  for (const auto& [name, set] : lines) {
+    const bool on = name == "paths"     ? view.look.paths
+                    : name == "springs" ? view.look.springs
+                                        : true;
+    renderer->set_lines(name, on ? set : LineSet{});
+  }
 }
 
 bool Window::State::moving() const {
@@ -145,6 +202,11 @@ std::string Window::State::pointed() const {
 
 void Window::State::draw_scene(const PictureSettings& wanted) {
   if (!renderer) return;
+  if (lines_new) {
+    update_lines();
+    lines_new = false;
+    scene_changed = true;
+  }
   if (frame_new) {
     renderer->update(frame);
     frame_new = false;
@@ -163,7 +225,10 @@ void Window::State::draw_scene(const PictureSettings& wanted) {
   scene_changed = false;  // also when it fails: the next change tries again
   drawn_settings = wanted;
   drawn_quality = quality;
-  const double ms = view_picture->draw(*renderer, camera, wanted, quality);
+  const double ms = view_picture->draw(*renderer, camera, wanted, quality,
+                                       view.look.wipe && has_frame
+                                           ? std::optional<Wipe>({&kept, &frame, view.look.wipe_at})
+                                           : std::nullopt);
   governor.measured(in_motion, ms);
   pictures.picture_ms = ms;
   pictures.render_scale = quality.render_scale;
@@ -179,6 +244,12 @@ void Window::State::draw_scene(const PictureSettings& wanted) {
 
 void Window::State::draw(bool always, Image* copy) {
   const PictureSettings wanted = settings();
+  if (renderer && !(view.look == drawn_look)) {
+    drawn_look = view.look;
+    lines_new = true;
+    scene_changed = true;
+    last_change = Clock::now();
+  }
   if (renderer && !same(wanted, drawn_settings)) {
     scene_changed = true;
     last_change = Clock::now();

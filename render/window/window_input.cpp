@@ -40,8 +40,11 @@ void Window::State::install_callbacks() {
 }
 
 void Window::State::on_key(int key, int scancode, int mods) {
-  // What is typed into a field is no command; Esc and the keys without a letter are.
-  if (ImGui::GetIO().WantTextInput && key < GLFW_KEY_ESCAPE) return;
+  // What is typed into a field is no command; Esc, the F keys and Ctrl+Q are.
+  const bool command_anyway = key == GLFW_KEY_ESCAPE ||
+                              (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12) ||
+                              (key == GLFW_KEY_Q && (mods & GLFW_MOD_CONTROL) != 0);
+  if (ImGui::GetIO().WantTextInput && !command_anyway) return;
   // Letters are meant as they are written on the keys, whatever the layout.
   if (const char* name = glfwGetKeyName(key, scancode);
       name && name[0] >= 'a' && name[0] <= 'z' && name[1] == 0)
@@ -106,6 +109,10 @@ void Window::State::run(Command command) {
   switch (command) {
     case Command::quit:
       glfwSetWindowShouldClose(window, GLFW_TRUE);
+      break;
+    case Command::keep_state:
+      kept = frame;
+      scene_changed = true;
       break;
     case Command::toggle_theme:
       options.light = !options.light;

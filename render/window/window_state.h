@@ -7,6 +7,7 @@
 #include <chrono>
 #include <deque>
 #include <exception>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -45,6 +46,8 @@ struct Window::State {
   FrameState frame;
   bool has_frame = false;
   bool frame_new = false;  // the renderer has not seen it
+  FrameState kept;         // to compare with: the first, or the one that was kept
+  Look drawn_look;
   std::vector<MapSurface> map_surfaces;
   std::vector<std::vector<float>> values;  // of the frame, one list per map surface; or none
   bool values_new = false;                 // the renderer has not seen them
@@ -55,6 +58,8 @@ struct Window::State {
   double progress_fraction = 0, recording_fraction = 0;
   bool can_cancel = false;
   std::vector<PlotSet> plots;
+  std::map<std::string, LineSet> lines;        // in space, by name
+  bool lines_new = false;                      // the renderer has not seen them
   std::vector<std::filesystem::path> dropped;  // on the window, not taken yet
 
   MouseQueue mouse;
@@ -124,6 +129,8 @@ struct Window::State {
   std::pair<int, int> size() const;
   ViewRect view_rect() const;
   PictureSettings settings() const;
+  void apply_look(PictureSettings& wanted) const;
+  void update_lines();
   bool moving() const;
   void fit_scale();
   void interface_frame();

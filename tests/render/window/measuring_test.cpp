@@ -32,12 +32,12 @@ TEST(Measuring, DistanceAngleAndArea) {
 TEST(Measuring, PointsGoAlongWithTheirBoneAndTheDeformingFace) {
   const std::vector<Part> parts = box_patient();
   FrameState frame = box_frame(1, 20);
-  const SurfacePoint on_jaw{4, parts[4].mesh.triangles[3], {0.2, 0.3, 0.5}};
+  const PinnedPoint on_jaw{4, parts[4].mesh.triangles[3], {0.2, 0.3, 0.5}};
   Vector3d at_rest = Vector3d::Zero();
   for (int k = 0; k < 3; ++k)
     at_rest += on_jaw.shares[k] * parts[4].mesh.vertices[on_jaw.triangle[k]];
   EXPECT_LT((place_of(on_jaw, parts, frame) - frame.X_CM * at_rest).norm(), 1e-12);
-  const SurfacePoint on_face{5, parts[5].mesh.triangles[0], {1, 0, 0}};
+  const PinnedPoint on_face{5, parts[5].mesh.triangles[0], {1, 0, 0}};
   frame.face.clear();
   for (const auto& v : parts[5].mesh.vertices)
     frame.face.push_back((v + Vector3d(0, 0, -7)).cast<float>());

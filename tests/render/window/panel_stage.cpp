@@ -112,7 +112,12 @@ void PanelStage::step(double x, double y, bool down) {
                          .pictures = {.pictures_per_second = 24, .picture_ms = 31},
                          .camera = camera,
                          .progress = progress,
-                         .progress_fraction = 0.4};
+                         .progress_fraction = 0.4,
+                         .can_cancel = can_cancel,
+                         .plots = plots,
+                         .recording = !recording.empty(),
+                         .recording_what = recording,
+                         .recording_fraction = 0.3};
   const auto asked = panels->draw(input, view, width_, height_);
   commands.insert(commands.end(), asked.begin(), asked.end());
   ImGui::Render();

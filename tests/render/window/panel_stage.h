@@ -50,7 +50,9 @@ class PanelStage {
   FrameState frame = box_frame(1.2, 23.4);
   Camera camera;
   std::vector<Command> commands;  // all so far
-  std::string progress;
+  std::string progress, recording;
+  bool can_cancel = false;
+  std::vector<PlotSet> plots;
   std::unique_ptr<Panels> panels;
 
  private:

@@ -60,8 +60,8 @@ TEST_P(PanelsOn, NothingOverlapsOrLeavesTheScreen) {
   EXPECT_EQ(panels, 5);  // top, left, right, bottom, cube
   EXPECT_GT(pairs, 500);
   for (const char* name : {"play", "scrub", "speed", "loop", "opening", "release", "skin",
-                           "show:mandible", "opacity:mandible", "obey-contact", "shadows", "view:A",
-                           "view:I", "picture", "help-button", "pair:0", "pair:5"})
+                           "show:mandible", "opacity:mandible", "obey-contact", "tab:Motion",
+                           "view:A", "view:I", "picture", "help-button", "pair:0", "pair:2"})
     EXPECT_TRUE(stage.has(name)) << name;
   keep("held");
 }
@@ -124,6 +124,7 @@ TEST_P(PanelsOn, TickBoxHidesAPart) {
 }
 
 TEST_P(PanelsOn, DistancesBringTheirLegendAndTakeTheSkinAway) {
+  stage.click("left-tab:Look");
   EXPECT_FALSE(stage.has("distances"));  // this loop cannot tell them
   stage.scene.distance_colours = distance_colours();
   stage.scene.distance_remarks = {"to the opposing jaw",
@@ -270,7 +271,7 @@ TEST_P(PanelsOn, AnEmptySceneAndLongNamesAreDrawn) {
       EXPECT_FALSE(overlap(a.rect, b.rect)) << a.name << " and " << b.name;
     }
   }
-  EXPECT_TRUE(stage.has("shadows"));  // the long list leaves room for what stands below it
+  EXPECT_TRUE(stage.has("obey-contact"));  // the long list leaves room for what stands below it
   keep("long");
 }
 

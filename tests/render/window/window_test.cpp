@@ -16,7 +16,7 @@
 #include "engine/core/error.h"
 #include "panel_stage.h"
 #include "render/window/handles.h"
-#include "test_display.h"
+#include "tests/support/display.h"
 
 namespace condyle {
 namespace {
@@ -385,6 +385,9 @@ TEST_F(RealWindow, KeyDShowsDistancesAndTheLegendIsNoPartOfTheView) {
     EXPECT_EQ(turned_rad(settled_camera(), before), 0);
     EXPECT_TRUE(press("a"));
     EXPECT_TRUE(wait_until([](const Seen& s) { return s.camera.direction.y() < -0.999; }));
+    click("left-tab:Look");
+    ASSERT_TRUE(wait_until([](const Seen& s) { return s.view.left_tab == LeftTab::look; }));
+    std::this_thread::sleep_for(milliseconds(150));
     click("distances");
     EXPECT_TRUE(wait_until([](const Seen& s) { return !s.view.distances; }));
     click("distances");

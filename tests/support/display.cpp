@@ -1,4 +1,4 @@
-#include "test_display.h"
+#include "tests/support/display.h"
 
 #include <fcntl.h>
 #include <poll.h>

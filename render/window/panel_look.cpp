@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <array>
+#include <cmath>
+
+#include "render/window/panels_drawing.h"
+
+namespace condyle {
+
+void Panels::Drawing::look() {
+  Look& look = view.look;
+  ImGui::BeginChild("look-list", {0, 0});
+  const float gap = pen.px(5), high = pen.px(24), whole = ImGui::GetContentRegionAvail().x;
+  const auto share = [&](int n) {
+    return std::floor((whole - gap * static_cast<float>(n - 1)) / static_cast<float>(n));
+  };
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 3));
+
+  heading(pen, "Cut open");
+  tick_box(pen, "clip", "Clipping plane", look.clip);
+  tooltip(pen, "Takes everything away on one side of a plane; cut faces are closed");
+  if (look.clip) {
+    for (const char side : {'L', 'R', 'A', 'P', 'S', 'I'}) {
+      if (side != 'L') ImGui::SameLine(0, gap);
+      const char label[2] = {side, 0};
+      if (word_button(pen, (std::string("clip-from:") + side).c_str(), label, {share(6), high},
+                      look.clip_from == side))
+        look.clip_from = side;
+    }
+    tooltip(pen, "The side that is taken away");
+    slider(pen, "clip-depth", look.clip_share, {.width = whole});
+    tooltip(pen, "How deep, of the patient's whole extent");
+  }
+  tick_box(pen, "cut-away", "Window in the skin", look.cut_away);
+  tooltip(pen, "Leaves the skin out in a ball around a joint or the mouth");
+  if (look.cut_away) {
+    constexpr std::array<std::pair<Look::Window, const char*>, 3> places = {
+        {{Look::Window::left_joint, "Left"},
+         {Look::Window::right_joint, "Right"},
+         {Look::Window::mouth, "Mouth"}}};
+    for (const auto& [place, label] : places) {
+      if (place != Look::Window::left_joint) ImGui::SameLine(0, gap);
+      if (word_button(pen, (std::string("cut-at:") + label).c_str(), label, {share(3), high},
+                      look.cut_at == place))
+        look.cut_at = place;
+    }
+    slider(pen, "cut-radius", look.cut_radius_mm, {.low = 10, .high = 90, .width = whole});
+    tooltip(pen, fmt::format("Radius {:.0f} mm", look.cut_radius_mm).c_str());
+  }
+
+  heading(pen, "Compare");
+  tick_box(pen, "ghost", "Ghost of the rest state", look.ghost);
+  tooltip(pen, "What has moved, as it was at rest, in blue glass");
+  tick_box(pen, "wipe", "Two states with a wipe", look.wipe);
+  tooltip(pen, "At the left the kept state (at first: rest), at the right the present one");
+  if (look.wipe) {
+    slider(pen, "wipe-at", look.wipe_at, {.width = whole, .filled = false});
+    if (word_button(pen, "wipe-keep", "Keep the present state", {whole, high}, false))
+      commands.push_back(Command::keep_state);
+  }
+
+  heading(pen, "Show");
+  if (input.scene.distance_colours) {
+    bool on = view.distances;
+    if (tick_box(pen, "distances", "Distances", on))
+      panels.run(Command::toggle_distances, input.scene, view);
+    tooltip(pen,
+            "Bones and teeth coloured by how far they are from what they may meet. Takes the skin "
+            "away: it would hide them. Key D");
+    if (view.distances) {
+      ImGui::SetCursorPosX(ImGui::GetCursorPosX() + pen.px(16));
+      tick_box(pen, "patches", "only where they touch", look.patches);
+      tooltip(pen, "Contact patches: colours up to the width of contact, bone beyond");
+    }
+  }
+  const bool has_tissue = input.frame && !input.frame->tissue.nodes.empty();
+  tick_box(pen, "paths", "Paths of incisor and condyles", look.paths);
+  tooltip(pen, "Where the lower incisal point and the condyles go in the whole motion");
+  if (has_tissue) {
+    tick_box(pen, "springs", "Springs of the soft tissue", look.springs);
+    tooltip(pen, "The network that deforms the face. Thin the skin to see it");
+  }
+  tick_box(pen, "wireframe", "Triangles", look.wireframe);
+  tick_box(pen, "axes", "Axes: left, back, up", look.axes);
+  tick_box(pen, "scale-bar", "Scale bar", look.scale_bar);
+  tick_box(pen, "letters", "Orientation letters", look.letters);
+  tooltip(pen, "L left, R right, A front, P back, S up, I down: the patient's");
+  tick_box(pen, "shadows", "Shadows", view.shadows);
+  ImGui::PopStyleVar();
+  ImGui::EndChild();
+}
+
+}  // namespace condyle

@@ -1,0 +1,347 @@
+// Plots, motions, recordings, landmarks, files and what the picture shows, through the panels.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "panel_stage.h"
+#include "render/window/plot_drawing.h"
+#include "render/window/recent_files.h"
+
+namespace condyle {
+namespace {
+
+bool within(const ViewRect& inner, const ViewRect& outer) {
+  return inner.x >= outer.x - 0.5 && inner.y >= outer.y - 0.5 &&
+         inner.x + inner.width <= outer.x + outer.width + 0.5 &&
+         inner.y + inner.height <= outer.y + outer.height + 0.5;
+}
+
+struct Screen {
+  int width, height;
+  float scale;
+  bool light;
+};
+
+class Instrument : public testing::TestWithParam<Screen> {
+ protected:
+  Instrument() {
+    stage.set_light(GetParam().light);
+    stage.scene.motions = {"opening", "posselt", "chewing-left"};
+    stage.scene.motion =
+        stage.view.motion = {.spec = "opening", .parameters = {}, .excitations = {}};
+    stage.scene.motion_settings = {{.name = "opening",
+                                    .label = "Maximum opening",
+                                    .unit = "mm",
+                                    .help = "At the incisors",
+                                    .low = 0,
+                                    .high = 80,
+                                    .usual_low = 42,
+                                    .usual_high = 58,
+                                    .value = 50},
+                                   {.name = "bennett",
+                                    .label = "Bennett angle",
+                                    .unit = "deg",
+                                    .help = "Seen from above",
+                                    .low = 0,
+                                    .high = 40,
+                                    .usual_low = 5,
+                                    .usual_high = 15,
+                                    .value = 7.5}};
+    stage.scene.excitations = {{"lm", "Masseter, left", 1, 0.2}, {"rm", "Masseter, right", 1, 0.2}};
+    stage.scene.landmarks = {landmark_at("lower_incisal_point", {0, -80, -39}, stage.parts),
+                             landmark_at("left_condyle", {45, 0, -48}, stage.parts)};
+    stage.view.landmarks = stage.scene.landmarks;
+    Curve round{"lower incisal point", {}, {}};
+    Curve over_time{"opening", {}, {}};
+    PlotSet posselt{"Posselt", {}, {}}, opening{"Opening", {}, {}};
+    for (int i = 0; i <= 60; ++i) {
+      const double t = i / 15.0;
+      posselt.time_s.push_back(t);
+      round.x.push_back(-10 * std::sin(t * M_PI / 4));
+      round.y.push_back(-45 * std::sin(t * M_PI / 4));
+      over_time.x.push_back(t);
+      over_time.y.push_back(45 * std::sin(t * M_PI / 4));
+    }
+    opening.time_s = posselt.time_s;
+    posselt.panels = {
+        {{round},
+         {.title = "Posselt, sagittal",
+          .x_label = "mm",
+          .y_label = "mm",
+          .equal_scale = true,
+          .bands = {{"maximum opening", {-27, -19, -19, -27}, {-48, -48, -44, -44}}}}}};
+    opening.panels = {{{over_time},
+                       {.title = "Opening over time",
+                        .x_label = "time, s",
+                        .y_label = "mm",
+                        .bands = {{"maximum opening 42 to 58", {}, {42, 58}}}}}};
+    stage.plots = {posselt, opening};
+    stage.rest();
+  }
+  void keep(const std::string& what) {
+    const auto file = kept_picture(what + "-" + std::to_string(GetParam().height) +
+                                   (GetParam().light ? "-light" : "-dark") + ".png");
+    if (!file.empty()) write_png(file, stage.image());
+  }
+  /// Everything that is drawn lies in its panel, and panels lie beside each other.
+  void expect_tidy() {
+    for (const DrawnItem& a : stage.panels->items()) {
+      if (!a.panel.empty()) {
+        const auto holder =
+            std::find_if(stage.panels->items().begin(), stage.panels->items().end(),
+                         [&](const DrawnItem& b) { return b.panel.empty() && b.name == a.panel; });
+        if (holder != stage.panels->items().end()) {
+          EXPECT_LE(a.rect.x + a.rect.width, holder->rect.x + holder->rect.width + 0.5) << a.name;
+          EXPECT_GE(a.rect.x, holder->rect.x - 0.5) << a.name;
+        }
+      }
+      for (const DrawnItem& b : stage.panels->items()) {
+        const auto floats = [](const DrawnItem& item) {
+          return item.name == "open" || item.name == "import";  // above all panels
+        };
+        if (&a == &b || a.panel != b.panel || floats(a) || floats(b)) continue;
+        const bool apart = a.rect.x + a.rect.width <= b.rect.x + 0.5 ||
+                           b.rect.x + b.rect.width <= a.rect.x + 0.5 ||
+                           a.rect.y + a.rect.height <= b.rect.y + 0.5 ||
+                           b.rect.y + b.rect.height <= a.rect.y + 0.5;
+        EXPECT_TRUE(apart) << a.name << " and " << b.name << " in '" << a.panel << "'";
+      }
+    }
+  }
+
+  PanelStage stage{GetParam().width, GetParam().height, GetParam().scale};
+};
+
+TEST_P(Instrument, PlotsStandBelowThePictureAndFollowTheClock) {
+  stage.click("plots-tool");
+  stage.rest();
+  const ViewRect plots = stage.item("plots").rect;
+  EXPECT_TRUE(within(stage.item("plot:Posselt, sagittal").rect, plots));
+  expect_tidy();
+  keep("plots");
+  stage.click("plot-tab:Opening");
+  stage.rest();
+  const ViewRect plot = stage.item("plot:Opening over time").rect;
+  const Image early = stage.image();
+  stage.frame.time_s = 3.4;
+  stage.rest();
+  const Image late = stage.image();
+  std::size_t changed = 0;
+  for (int y = static_cast<int>(plot.y); y < plot.y + plot.height; ++y)
+    for (int x = static_cast<int>(plot.x); x < plot.x + plot.width; ++x) {
+      const auto at = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(early.width) +
+                           static_cast<std::size_t>(x));
+      changed += early.rgba[at] != late.rgba[at];
+    }
+  EXPECT_GT(changed, 50u) << "the clock's line moves";
+  stage.click("plot-tab:Stage times");
+  stage.rest();
+  EXPECT_TRUE(stage.has("plot:Stage times of the last steps, ms"));
+  stage.click("plots-close");
+  stage.rest();
+  EXPECT_FALSE(stage.has("plots"));
+}
+
+TEST_P(Instrument, SlidersShapeTheMotionWhenTheyAreLetGo) {
+  stage.click("tab:Motion");
+  stage.rest();
+  expect_tidy();
+  keep("motion");
+  stage.slide("parameter:bennett", 0.2, 0.5);
+  ASSERT_TRUE(stage.view.motion.parameters.count("bennett"));
+  EXPECT_NEAR(stage.view.motion.parameters["bennett"], 20, 1);
+  EXPECT_FALSE(stage.view.motion.parameters.count("opening"));
+  stage.slide("excitation:lm", 0.2, 0.75);
+  EXPECT_NEAR(stage.view.motion.excitations["lm"], 0.75, 0.03);
+  stage.panels->run(Command::undo, stage.scene, stage.view);
+  EXPECT_TRUE(stage.view.motion.excitations.empty());
+  stage.panels->run(Command::redo, stage.scene, stage.view);
+  EXPECT_EQ(stage.view.motion.excitations.size(), 1u);
+  stage.click("parameters-reset");
+  EXPECT_TRUE(stage.view.motion.parameters.empty());
+  // A motion by its name.
+  stage.click("motion");
+  stage.rest();
+  stage.click("motion:posselt");
+  EXPECT_EQ(stage.view.motion.spec, "posselt");
+}
+
+TEST_P(Instrument, ARecordingIsAskedForAsItIsSet) {
+  stage.click("tab:Record");
+  stage.rest();
+  expect_tidy();
+  keep("record");
+  stage.click("record-height:720");
+  stage.click("record-rate:24");
+  stage.click("record-film");
+  stage.click("record");
+  const auto wishes = stage.panels->take_wishes();
+  ASSERT_EQ(wishes.size(), 1u);
+  const auto* record = std::get_if<wish::Record>(&wishes.front());
+  ASSERT_TRUE(record);
+  EXPECT_EQ(record->width, 1280);
+  EXPECT_EQ(record->height, 720);
+  EXPECT_EQ(record->frames_per_second, 24);
+  EXPECT_FALSE(record->film);
+  EXPECT_FALSE(record->folder.empty());
+  stage.recording = "picture 3 of 97";
+  stage.rest();
+  EXPECT_TRUE(stage.has("record-progress"));
+  EXPECT_FALSE(stage.has("record"));
+  stage.click("record-cancel");
+  const auto stopped = stage.panels->take_wishes();
+  ASSERT_EQ(stopped.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<wish::Cancel>(stopped.front()));
+}
+
+TEST_P(Instrument, LandmarksAreChosenDeletedAndSaved) {
+  stage.click("landmarks-tool");
+  stage.rest();
+  ASSERT_TRUE(stage.has("landmarks"));
+  expect_tidy();
+  keep("landmarks");
+  stage.click("landmark:left_condyle");
+  EXPECT_EQ(stage.view.landmark, 1u);
+  stage.click("landmark-delete");
+  ASSERT_EQ(stage.view.landmarks.size(), 1u);
+  EXPECT_EQ(stage.view.landmarks[0].name, "lower_incisal_point");
+  stage.panels->run(Command::undo, stage.scene, stage.view);
+  EXPECT_EQ(stage.view.landmarks.size(), 2u);
+  EXPECT_FALSE(stage.view.landmark.has_value());
+}
+
+TEST_P(Instrument, FilesAreOpenedFromAListAndSurfacesAskForTheirRoles) {
+  stage.scene.recent = {"/data/patient-a", "/data/patient-b"};
+  stage.click("open-files");
+  stage.rest(4);
+  ASSERT_TRUE(stage.panels->dialog_open());
+  keep("open");
+  expect_tidy();
+  stage.click("recent:1");
+  auto wishes = stage.panels->take_wishes();
+  ASSERT_EQ(wishes.size(), 1u);
+  EXPECT_EQ(std::get<wish::Open>(wishes.front()).files.at(0), "/data/patient-b");
+  EXPECT_FALSE(stage.panels->dialog_open());
+
+  stage.panels->ask_roles({.files = {{"/data/lower.stl", "mandible"}, {"/data/what.stl", ""}}});
+  stage.rest(4);
+  keep("import");
+  expect_tidy();
+  stage.click("import-go");
+  wishes = stage.panels->take_wishes();
+  ASSERT_EQ(wishes.size(), 1u);
+  const auto& import = std::get<wish::Import>(wishes.front());
+  EXPECT_EQ(import.files.at(0).role, "mandible");
+  EXPECT_EQ(import.files.at(1).role, "");
+  EXPECT_FALSE(stage.panels->dialog_open());
+}
+
+TEST_P(Instrument, LookTabSetsWhatThePictureShows) {
+  stage.scene.distance_colours = distance_colours();
+  stage.click("left-tab:Look");
+  stage.rest();
+  stage.click("clip");
+  stage.rest();
+  stage.click("clip-from:S");
+  stage.slide("clip-depth", 0.5, 0.25);
+  stage.click("cut-away");
+  stage.rest();
+  stage.click("cut-at:Mouth");
+  stage.click("ghost");
+  stage.click("wipe");
+  stage.rest();
+  stage.slide("wipe-at", 0.5, 0.75);
+  expect_tidy();
+  keep("look");
+  EXPECT_TRUE(stage.view.look.clip && stage.view.look.cut_away && stage.view.look.ghost);
+  EXPECT_EQ(stage.view.look.clip_from, 'S');
+  EXPECT_NEAR(stage.view.look.clip_share, 0.25, 0.03);
+  EXPECT_NEAR(stage.view.look.wipe_at, 0.75, 0.03);
+  EXPECT_EQ(stage.view.look.cut_at, Look::Window::mouth);
+}
+
+TEST_P(Instrument, WhatIsPreparedShowsAboveThePictureAndCanBeEnded) {
+  stage.progress = "Building the soft tissue";
+  stage.can_cancel = true;
+  stage.rest();
+  EXPECT_TRUE(within(stage.item("progress").rect,
+                     stage.panels->layout(GetParam().width, GetParam().height).view));
+  EXPECT_TRUE(stage.has("play")) << "the window stays usable";
+  stage.click("cancel");
+  const auto wishes = stage.panels->take_wishes();
+  ASSERT_EQ(wishes.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<wish::Cancel>(wishes.front()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Screens, Instrument,
+                         testing::Values(Screen{1280, 720, 1, false}, Screen{1280, 720, 1, true},
+                                         Screen{3840, 2160, 2.5f, false}),
+                         [](const auto& screen) {
+                           return std::to_string(screen.param.height) +
+                                  (screen.param.light ? "light" : "dark");
+                         });
+
+TEST(Plots, TicksAreRoundAndFew) {
+  for (const double span : {0.003, 0.7, 4.0, 61.0, 1234.0})
+    for (const int most : {2, 5, 9}) {
+      const double step = tick_step(span, most);
+      EXPECT_LE(span / step, most + 1e-9);
+      EXPECT_GT(span / step, most / 5.1) << span << " in " << most;
+      const double mantissa = step / std::pow(10, std::floor(std::log10(step) + 1e-9));
+      EXPECT_TRUE(std::abs(mantissa - 1) < 1e-6 || std::abs(mantissa - 2) < 1e-6 ||
+                  std::abs(mantissa - 5) < 1e-6)
+          << mantissa;
+    }
+}
+
+TEST(Plots, ThePlaceOnACurveLiesBetweenItsSamples) {
+  const Curve curve{"way", {0, 2, 4}, {0, 10, 0}};
+  const std::vector<double> times = {0, 1, 3};
+  EXPECT_EQ(*place_on(curve, times, 0.5), Eigen::Vector2d(1, 5));
+  EXPECT_EQ(*place_on(curve, times, 2), Eigen::Vector2d(3, 5));
+  EXPECT_EQ(*place_on(curve, times, -1), Eigen::Vector2d(0, 0));
+  EXPECT_FALSE(place_on(curve, times, 4)) << "not walked through yet";
+  EXPECT_FALSE(place_on(curve, {0, 1}, 0.5));
+}
+
+TEST(Landmarks, GoWithTheBoneTheyAreNearest) {
+  const auto parts = box_patient();
+  const FrameState open = box_frame(1, 30);
+  const Landmark lower = landmark_at("lower_incisal_point", {0, -80, -39}, parts);
+  EXPECT_EQ(parts[lower.part].name, "lower_teeth");
+  EXPECT_LT((place_of(lower, parts, open) - open.X_CM * lower.at_rest).norm(), 1e-9);
+  // A condyle's centre may lie nearer to the skull.
+  const Landmark condyle = landmark_at("left_condyle", {60, 50, 1}, parts);
+  EXPECT_EQ(parts[condyle.part].role, Role::mandible);
+  EXPECT_EQ(landmark_name("  Lower incisal-Point "), "lower_incisal_point");
+  EXPECT_EQ(landmark_name("--"), "");
+}
+
+TEST(RecentFiles, AreKeptInOrderWithoutDoublesAndComeBack) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("condyle-recent-" + std::to_string(::getpid()));
+  const auto file = folder / "deep" / "recent";
+  {
+    RecentFiles recent(file);
+    for (int i = 0; i < 14; ++i) recent.add("/data/case-" + std::to_string(i % 12));
+    EXPECT_EQ(recent.list().front(), "/data/case-1");
+  }
+  RecentFiles again(file);
+  ASSERT_EQ(again.list().size(), 10u);
+  EXPECT_EQ(again.list()[0], "/data/case-1");
+  EXPECT_EQ(again.list()[1], "/data/case-0");
+  again.forget("/data/case-1");
+  EXPECT_EQ(RecentFiles(file).list().front(), "/data/case-0");
+  // Nothing is left beside it, and a list that cannot be written is no error.
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file.parent_path()), {}), 1);
+  RecentFiles nowhere("/proc/condyle/recent");
+  nowhere.add("/data/case-5");
+  EXPECT_EQ(nowhere.list().size(), 1u);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace condyle

@@ -1,0 +1,255 @@
+// The window as people use it: the program on a virtual screen, with real mouse and keyboard.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/support/display.h"
+#include "tests/support/program.h"
+
+namespace condyle::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::json;
+using std::chrono::milliseconds;
+namespace fs = std::filesystem;
+
+/// `condyle view` running on a screen of its own.
+class WindowSession : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(has_program("Xvfb") && has_program("xdotool")) << "install xvfb and xdotool";
+    display_ = std::make_unique<TestDisplay>();
+    ASSERT_TRUE(display_->running());
+    setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
+  }
+  void TearDown() override {
+    if (program_ > 0) {
+      kill(program_, SIGKILL);
+      waitpid(program_, nullptr, 0);
+    }
+    unsetenv("XDG_CONFIG_HOME");
+  }
+  void start(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {CONDYLE_PROGRAM, "--threads", "1", "view"});
+    arguments.insert(arguments.end(), {"--state-file", folder_ / "state.json"});
+    std::vector<char*> words;
+    for (auto& word : arguments) words.push_back(word.data());
+    words.push_back(nullptr);
+    ASSERT_EQ(posix_spawn(&program_, CONDYLE_PROGRAM, nullptr, nullptr, words.data(), environ), 0);
+  }
+  Json state() {
+    const std::string file = folder_ / "state.json";
+    return fs::exists(file) ? Json::parse(read_text(file)) : Json::object();
+  }
+  bool wait_until(const std::function<bool(const Json&)>& law, double longest_s = 40) {
+    const auto start = Clock::now();
+    while (Clock::now() - start < std::chrono::duration<double>(longest_s)) {
+      const Json now = state();
+      if (!now.empty() && law(now)) return true;
+      std::this_thread::sleep_for(milliseconds(30));
+    }
+    return false;
+  }
+  bool wait_for_item(const std::string& name, bool there = true) {
+    return wait_until([&](const Json& s) { return s["items"].contains(name) == there; });
+  }
+  std::array<double, 4> rect(const std::string& name) {
+    const Json now = state();
+    if (!now["items"].contains(name)) {
+      ADD_FAILURE() << "no item '" << name << "' is in the window";
+      return {};
+    }
+    return now["items"][name];
+  }
+  static std::string px(double value) { return std::to_string(std::lround(value)); }
+  void click(const std::string& name) {
+    ASSERT_TRUE(wait_for_item(name)) << name;
+    const auto r = rect(name);
+    EXPECT_TRUE(xdotool({"mousemove", px(r[0] + r[2] / 2), px(r[1] + r[3] / 2), "click", "1"}));
+  }
+  void drag(double x0, double y0, double x1, double y1) {
+    std::vector<std::string> moves = {"mousemove", px(x0), px(y0), "mousedown", "1"};
+    for (int i = 1; i <= 5; ++i)
+      moves.insert(moves.end(), {"mousemove", px(x0 + (x1 - x0) * i / 5),
+                                 px(y0 + (y1 - y0) * i / 5), "sleep", "0.03"});
+    moves.insert(moves.end(), {"mouseup", "1"});
+    EXPECT_TRUE(xdotool(moves));
+  }
+  static bool press(const std::string& key) { return xdotool({"key", key}); }
+  int wait_for_end() {
+    int status = 0;
+    for (int i = 0; i < 400; ++i) {
+      if (waitpid(program_, &status, WNOHANG) == program_) {
+        program_ = -1;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+      }
+      std::this_thread::sleep_for(milliseconds(50));
+    }
+    return -1;
+  }
+
+  Folder folder_;
+
+ private:
+  std::unique_ptr<TestDisplay> display_;
+  pid_t program_ = -1;
+};
+
+bool idle(const Json& s) { return s["busy_with"] == "" && s.contains("frame"); }
+
+TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
+  const std::string patient = box_case(folder_);
+  write_text(folder_ / "down.csv",
+             "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0.5,0,0,-10,1,0,0,0\n"
+             "1,0,0,0,1,0,0,0\n");
+  start({patient, "--motion", folder_ / "down.csv"});
+  ASSERT_TRUE(wait_until(idle)) << "the patient is loaded";
+
+  // Open the same patient by its path.
+  EXPECT_TRUE(press("ctrl+o"));
+  click("open-path");
+  std::this_thread::sleep_for(milliseconds(200));
+  EXPECT_TRUE(xdotool({"type", patient}));
+  EXPECT_TRUE(press("Return"));
+  EXPECT_TRUE(wait_for_item("open", false)) << "the dialog closes";
+  ASSERT_TRUE(wait_until([](const Json& s) { return idle(s) && s["motion"] == "opening"; }));
+  EXPECT_EQ(read_text(folder_ / "config/condyle/recent"),
+            fs::weakly_canonical(patient).string() + "\n");
+  // A motion from a file.
+  EXPECT_TRUE(press("ctrl+o"));
+  click("open-path");
+  std::this_thread::sleep_for(milliseconds(200));
+  EXPECT_TRUE(xdotool({"key", "ctrl+a"}));
+  EXPECT_TRUE(xdotool({"type", folder_ / "down.csv"}));
+  EXPECT_TRUE(press("Return"));
+  ASSERT_TRUE(wait_until([&](const Json& s) { return idle(s) && s["motion"] != "opening"; }));
+
+  // Play, pause, scrub.
+  click("play");
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["playing"] == true && s["time_s"] > 0.1; }));
+  click("play");
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["playing"] == false; }));
+  const auto scrub = rect("scrub");
+  drag(scrub[0] + 0.2 * scrub[2], scrub[1] + scrub[3] / 2, scrub[0] + 0.5 * scrub[2],
+       scrub[1] + scrub[3] / 2);
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return std::abs(double(s["time_s"]) - 0.5) < 0.05 && double(s["frame"]["mandible_mm"][2]) < -8;
+  }));
+  click("to-start");
+
+  // Drag the mandible up by its handle until it meets the maxilla, 1 mm above.
+  EXPECT_TRUE(press("a"));
+  EXPECT_TRUE(press("m"));
+  ASSERT_TRUE(wait_for_item("handle:S"));
+  std::this_thread::sleep_for(milliseconds(300));
+  auto tip = rect("handle:S");
+  drag(tip[0] + 3, tip[1] + 3, tip[0] + 3, tip[1] - 57);
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    return s.contains("hand_mm") && double(s["hand_mm"][2]) > 5 && s["frame"]["stopped"] == true;
+  }));
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    return std::abs(double(s["frame"]["mandible_mm"][2]) - 1) < 0.2;
+  })) << state()["frame"].dump();
+  // Held there, it slides aside.
+  std::this_thread::sleep_for(milliseconds(300));
+  const double before = double(state()["frame"]["mandible_mm"][0]);
+  tip = rect("handle:L");
+  drag(tip[0] + 3, tip[1] + 3, tip[0] + 53, tip[1] + 3);
+  EXPECT_TRUE(wait_until([&](const Json& s) {
+    return std::abs(double(s["frame"]["mandible_mm"][0]) - before) > 3 &&
+           std::abs(double(s["frame"]["mandible_mm"][2]) - 1) < 0.2 &&
+           double(s["frame"]["penetration_mm"]) < 0.1;
+  })) << state()["frame"].dump();
+  EXPECT_TRUE(press("ctrl+z"));
+  EXPECT_TRUE(press("ctrl+z"));
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return !s.contains("hand_mm") && std::abs(double(s["frame"]["mandible_mm"][2])) < 1e-6;
+  }));
+
+  // Measure between two places of the bone in front.
+  EXPECT_TRUE(press("n"));
+  EXPECT_TRUE(wait_for_item("measure"));
+  const std::array<double, 4> view = state()["view"];
+  for (const double x : {0.48, 0.54})
+    EXPECT_TRUE(xdotool({"mousemove", px(view[0] + x * view[2]), px(view[1] + 0.40 * view[3]),
+                         "click", "1", "sleep", "0.2"}));
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["measured"] == 2; })) << state()["measured"];
+  EXPECT_TRUE(press("n"));
+
+  // Record; the window stays usable meanwhile.
+  click("tab:Record");
+  click("record-height:720");
+  click("record-rate:10");
+  click("record-folder");
+  std::this_thread::sleep_for(milliseconds(200));
+  EXPECT_TRUE(press("ctrl+a"));
+  EXPECT_TRUE(xdotool({"type", folder_ / "film"}));
+  EXPECT_TRUE(press("Return"));
+  click("record");
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["busy_with"] == "recording"; }));
+  EXPECT_TRUE(press("l"));
+  EXPECT_TRUE(wait_until([](const Json& s) { return double(s["camera_direction"][0]) > 0.99; }));
+  ASSERT_TRUE(wait_until(idle, 60));
+  EXPECT_TRUE(fs::exists(folder_ / "film/frames/000010.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "film/film.mp4"));
+  EXPECT_GT(fs::file_size(folder_ / "film/film.mp4"), 2000u);
+
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, TroubleIsToldAsASentenceAndTheWindowStays) {
+  const std::string patient = box_case(folder_);
+  write_text(folder_ / "bad.csv", "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n0,nothing,0,0,1,0,0,0\n");
+  start({patient, "--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle));
+  // No such file; a motion that cannot be read; a folder that cannot be written.
+  for (const std::string& path : {folder_ / "not-there", folder_ / "bad.csv"}) {
+    EXPECT_TRUE(press("ctrl+o"));
+    click("open-path");
+    std::this_thread::sleep_for(milliseconds(200));
+    EXPECT_TRUE(press("ctrl+a"));
+    EXPECT_TRUE(xdotool({"type", path}));
+    EXPECT_TRUE(press("Return"));
+    ASSERT_TRUE(wait_for_item("error")) << path;
+    click("close-error");
+    ASSERT_TRUE(wait_for_item("error", false));
+  }
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["motion"] == "rest"; }))
+      << "as it was before";
+  click("tab:Record");
+  click("record-folder");
+  std::this_thread::sleep_for(milliseconds(200));
+  EXPECT_TRUE(press("ctrl+a"));
+  EXPECT_TRUE(xdotool({"type", "/proc/film"}));
+  EXPECT_TRUE(press("Return"));
+  click("record");
+  ASSERT_TRUE(wait_for_item("error"));
+  click("close-error");
+  // Resized to almost nothing and back.
+  EXPECT_TRUE(xdotool({"search", "--name", "Condyle", "windowsize", "--sync", "640", "400"}));
+  EXPECT_TRUE(wait_until([](const Json& s) { return double(s["view"][2]) < 500; }));
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST(NoDisplay, IsToldWithWhatToDoInstead) {
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  const Outcome outcome = condyle({"view"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("no display"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("condyle record"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace condyle::test

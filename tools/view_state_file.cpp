@@ -1,0 +1,43 @@
+#include "tools/view_state_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/files.h"
+
+namespace condyle {
+
+void ViewStateFile::update(const Window& window, const FrameState* frame,
+                           const std::string& busy_with) {
+  if (file_.empty()) return;
+  const auto list = [](const Eigen::Vector3d& v) { return nlohmann::json{v.x(), v.y(), v.z()}; };
+  const ViewState& view = window.view();
+  const PictureStatistics& pictures = window.pictures();
+  nlohmann::json json = {{"busy_with", busy_with},
+                         {"playing", view.playing},
+                         {"time_s", view.time_s},
+                         {"motion", view.motion.spec},
+                         {"tool", static_cast<int>(view.tool)},
+                         {"measured", view.measured.size()},
+                         {"landmarks", view.landmarks.size()},
+                         {"camera_direction", list(window.camera().direction)},
+                         {"pictures_per_second", pictures.pictures_per_second},
+                         {"samples", pictures.samples}};
+  if (view.hands.mandible) json["hand_mm"] = list(view.hands.mandible->t);
+  if (frame) {
+    json["frame"] = {{"time_s", frame->time_s},
+                     {"mandible_mm", list(frame->X_CM.t)},
+                     {"stopped", frame->stopped},
+                     {"opening_mm", frame->measures.opening_mm},
+                     {"penetration_mm", frame->contacts.max_penetration_mm()}};
+  }
+  for (const DrawnItem& item : window.items())
+    json["items"][item.name] = {item.rect.x, item.rect.y, item.rect.width, item.rect.height};
+  const ViewRect rect = window.view_rect();
+  json["view"] = {rect.x, rect.y, rect.width, rect.height};
+  std::string text = json.dump(1);
+  if (text == written_) return;
+  write_file(file_, text);
+  written_ = std::move(text);
+}
+
+}  // namespace condyle
