@@ -9,7 +9,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double step_share = 0.25;  // longest step, of the band
-constexpr double margin_mm = 0.02;   // beyond a step's length contacts may matter
+// Beyond a step's length contacts may matter, with friction more of them.
+constexpr double margin_mm = 0.02, rubbing_margin_mm = 0.05;
 // With friction a contact drags from where it meets, which shorter steps find better.
 constexpr double rubbing_step_mm = 0.1, rubs_below_mm = 0.03;
 constexpr double kept_slop = 0.7;  // share of the slop that is not undone
@@ -62,7 +63,7 @@ bool SlideWalk::step() {
   }
   const Twist left = probe_.between(X_, wanted_);
   const double way = probe_.way_of(left);
-  const double active = radius_ + margin_mm;
+  const double active = radius_ + (settings.friction > 0 ? rubbing_margin_mm : margin_mm);
   probe_.look_at(X_, active);
   if (probe_.deepest_gap() > active) {
     const double clear = probe_.clearance(X_);
