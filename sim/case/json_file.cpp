@@ -77,6 +77,14 @@ double JsonItem::number(double low, double high) const {
   refuse(fmt::format("is {}; a number from {} to {} is needed", shown(*value_), low, high));
 }
 
+void JsonItem::only_keys(std::initializer_list<std::string_view> known) const {
+  if (!value_->is_object()) refuse("is no object { ... }");
+  for (const auto& [key, value] : value_->items())
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      refuse(fmt::format("the key \"{}\" is not known; known are {}", key.substr(0, 40),
+                         fmt::join(known, ", ")));
+}
+
 JsonFile::JsonFile(const std::filesystem::path& file, std::string_view text) : file_(file) {
   if (json_depth(text) > max_json_depth)
     throw InputError(file, "", "nests its lists deeper than a case or list of landmarks does");
@@ -91,6 +99,14 @@ JsonFile::JsonFile(const std::filesystem::path& file, std::string_view text) : f
   } catch (const json::exception& error) {
     throw InputError(file, "", "is not valid JSON: " + reason_of(error));
   }
+}
+
+std::optional<std::filesystem::path> sidecar_of(const std::filesystem::path& file) {
+  std::filesystem::path beside = file;
+  beside += ".json";
+  std::error_code ignored;
+  if (!std::filesystem::exists(beside, ignored)) return std::nullopt;
+  return beside;
 }
 
 }  // namespace condyle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -26,6 +27,8 @@ class JsonItem {
   std::string text() const;
   int integer(int low, int high) const;
   double number(double low, double high) const;
+  /// Refuses an object with other keys than these, naming them.
+  void only_keys(std::initializer_list<std::string_view> known) const;
 
   [[noreturn]] void refuse(const std::string& problem) const;
 
@@ -45,5 +48,8 @@ class JsonFile {
   std::filesystem::path file_;
   nlohmann::json value_;
 };
+
+/// What is told of a file beside it: FILE.json ("chew.csv.json"). Absent when there is none.
+std::optional<std::filesystem::path> sidecar_of(const std::filesystem::path& file);
 
 }  // namespace condyle

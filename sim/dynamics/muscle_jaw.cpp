@@ -54,6 +54,14 @@ Vector3d hyoid_drag_at(const Case& patient, const BoneMechanics& hyoid) {
   return patient.mechanics && patient.mechanics->hyoid ? damped_place(hyoid) : hyoid.center;
 }
 
+std::vector<Muscle> muscles_left(const Case& patient, const std::vector<std::string>& without) {
+  std::vector<Muscle> muscles = muscles_of(patient);
+  std::erase_if(muscles, [&](const Muscle& muscle) {
+    return std::find(without.begin(), without.end(), muscle.name) != without.end();
+  });
+  return muscles;
+}
+
 }  // namespace
 
 /// A muscle's line of action now.
@@ -64,7 +72,7 @@ struct MuscleJaw::Line {
 };
 
 MuscleJaw::MuscleJaw(const Case& patient, const MuscleJawSettings& settings, int threads)
-    : muscles_(muscles_of(patient)),
+    : muscles_(muscles_left(patient, settings.without)),
       settings_(settings),
       world_settings_(world_settings(patient, settings)),
       jaw_(make_jaw_world(patient, world_settings_, threads)),

@@ -27,6 +27,7 @@ struct MuscleJawSettings {
   double friction = 0.1;  // of wet teeth
   std::optional<Eigen::Vector3d> damped_at = {};  // of the mandible, in place of its frame's origin
   bool fossa = true;  // condyles on the fossa, where there is one and no measured guide
+  std::vector<std::string> without = {};  // names of muscles that are taken out
 };
 
 /// The mandible as a rigid body that muscles pull, on the guides of its condyles with stops behind

@@ -48,13 +48,16 @@ std::function<Vector3d(double)> read_way(const std::filesystem::path& file) {
   std::vector<std::string> names;
   for (const auto field : fields_of(lines.line(), ',')) names.push_back(lower_case(field));
   std::vector<std::size_t> columns;
-  for (const char* name : {"time_s", "x_mm", "y_mm", "z_mm"}) {
-    const auto found = std::find(names.begin(), names.end(), name);
+  for (const std::string wanted : {"time_s", "x_mm", "y_mm", "z_mm"}) {
+    // In a table of several marks the hyoid's columns say so: "hyoidRef_dx_mm".
+    const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+      return name == wanted || (name.starts_with("hyoid") && name.ends_with(wanted));
+    });
     if (found == names.end())
       throw InputError(file, lines.where(),
                        fmt::format("column {} is missing; the hyoid's way has the header "
-                                   "time_s,x_mm,y_mm,z_mm (found \"{}\")",
-                                   name, shortened(lines.line())));
+                                   "time_s,x_mm,y_mm,z_mm, or hyoid_x_mm and so on (found \"{}\")",
+                                   wanted, shortened(lines.line())));
     columns.push_back(static_cast<std::size_t>(found - names.begin()));
   }
   const NumberTable table = read_rows(file, lines, names, ',', columns);
@@ -145,10 +148,15 @@ Motion simulate(const std::string& name, double duration_s, MuscleJaw& jaw, int 
 Motion muscles_from_file(const std::filesystem::path& file, const Case& patient,
                          const MuscleMotionSettings& settings, int threads) {
   const Excitations excitations = read_excitations(file, muscles_of(patient));
-  MuscleJaw jaw(patient, jaw_settings(settings), threads);
+  MuscleJawSettings how = jaw_settings(settings);
+  how.without = excitations.without;
+  MuscleJaw jaw(patient, how, threads);
   Motion motion = simulate(file.stem().string(), excitations.duration_s, jaw, threads,
                            [&](double time_s) { return excitations.at(time_s); });
   motion.notes = notes_of(patient, jaw, settings);
+  if (!excitations.without.empty())
+    motion.notes.push_back(
+        fmt::format("without the muscles {}", fmt::join(excitations.without, " ")));
   return motion;
 }
 
@@ -193,7 +201,8 @@ Motion motion_of(const std::string& spec, const Case& patient, const ContactMode
 }
 
 std::string excitations_csv(const Motion& motion) {
-  std::string text = "time_s";
+  // Each row holds until the next, to the bit: an open jaw magnifies the least difference.
+  std::string text = "# interpolation: step\ntime_s";
   for (const auto& name : motion.muscle_names) text += "," + name;
   text += "\n";
   const auto rows = std::lround(motion.duration_s / muscles_each_s);
@@ -201,7 +210,7 @@ std::string excitations_csv(const Motion& motion) {
     const double time_s = static_cast<double>(r) * muscles_each_s;
     text += fmt::format("{:.3f}", time_s);
     for (const MuscleState& state : motion.muscles(time_s))
-      text += fmt::format(",{:.6f}", state.excitation);
+      text += fmt::format(",{}", state.excitation);
     text += "\n";
   }
   return text;

@@ -95,8 +95,9 @@ void add_inputs(Motion& motion, const JawJoints& joints, const MotionParameters&
   motion.inputs.push_back({"balkwill_angle", "deg", joints.balkwill_deg()});
 }
 
+/// `round`: ends in the case's own pose, where that is not its bite.
 Motion move(const std::string& name, const MotionScript* script, const Case& patient,
-            const ContactModel& contacts, const MotionSettings& settings) {
+            const ContactModel& contacts, const MotionSettings& settings, bool round = false) {
   MotionParameters parameters = settings.parameters.over(patient.motion);
   if (script) parameters = script->parameters.over(parameters);
   const bool aside = script && goes_aside(script->statements);
@@ -109,6 +110,7 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
                       [&](const Pose& X_CM) { return bones_free(patient, contacts, X_CM); });
   if (script) {
     for (const auto& statement : script->statements) movements.add(statement);
+    if (round && guide->bite_theta() != 0) movements.back("back to the start", {});
   } else {
     // The same share of time to open and to close, a pause between them.
     constexpr double stroke_share = 0.45;
@@ -117,7 +119,7 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
     if (parameters.speed_mm_s && settings.duration_s == 0) open.duration_s.reset();
     movements.add(open);
     movements.add({.verb = Verb::hold, .amount = (1 - 2 * stroke_share) * whole, .where = "hold"});
-    movements.back(open.duration_s);
+    movements.back("closing", open.duration_s);
   }
   if (!guide->notes().empty()) notes.push_back(guide->notes());
   Motion motion = movements.finish(name);
@@ -154,7 +156,7 @@ Motion make_motion(const std::string& spec, const Case& patient, const ContactMo
   for (const auto& [name, text] : builtin_scripts())
     if (spec == name) {
       const MotionScript script = parse_motion_script(text, name);
-      return move(name, &script, patient, contacts, settings);
+      return move(name, &script, patient, contacts, settings, true);
     }
   if (looks_like_a_file(spec)) {
     if (ending_of(spec) != ".motion") {

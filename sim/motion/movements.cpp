@@ -201,7 +201,8 @@ void Movements::close(const Pace& pace) {
     swing(biting(0, 0), pace);
 }
 
-void Movements::back(std::optional<double> duration_s) {
+void Movements::back(const std::string& phase, std::optional<double> duration_s) {
+  begin(phase);
   swing({}, {.duration_s = duration_s, .speed_mm_s = {}});
 }
 

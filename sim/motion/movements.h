@@ -35,7 +35,7 @@ class Movements {
 
   void add(const Statement& statement);
   /// Back to the case's own pose.
-  void back(std::optional<double> duration_s);
+  void back(const std::string& phase, std::optional<double> duration_s);
 
   /// Border movements without their time, for what is measured by them.
   MotionBorders borders();

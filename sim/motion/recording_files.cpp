@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "sim/case/json_file.h"
 #include "sim/motion/condylar_path.h"
 
 namespace condyle {

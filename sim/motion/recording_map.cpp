@@ -16,14 +16,6 @@ namespace {
 
 constexpr std::size_t max_bytes = std::size_t{1} << 20;
 
-void check_keys(const JsonItem& item, std::initializer_list<std::string_view> known) {
-  if (!item.value().is_object()) item.refuse("is no object { ... }");
-  for (const auto& [key, value] : item.value().items())
-    if (std::find(known.begin(), known.end(), key) == known.end())
-      item.refuse(fmt::format("the key \"{}\" is not known; known are {}", key.substr(0, 40),
-                              fmt::join(known, ", ")));
-}
-
 std::vector<std::string> names(const JsonItem& list, std::initializer_list<std::size_t> sizes) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < list.size(); ++i) out.push_back(list.at(i).text());
@@ -35,7 +27,7 @@ std::vector<std::string> names(const JsonItem& list, std::initializer_list<std::
 
 BodyColumns body(const JsonItem& item) {
   using Rotation = BodyColumns::Rotation;
-  check_keys(item, {"translation", "quaternion", "euler", "order", "matrix", "markers"});
+  item.only_keys({"translation", "quaternion", "euler", "order", "matrix", "markers"});
   BodyColumns out;
   if (const auto markers = item.find("markers")) {
     out.markers = names(*markers, {});
@@ -87,19 +79,11 @@ double choice(const JsonItem& item, const std::array<std::pair<const char*, doub
 
 }  // namespace
 
-std::optional<std::filesystem::path> sidecar_of(const std::filesystem::path& recording) {
-  std::filesystem::path file = recording;
-  file += ".json";
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) return std::nullopt;
-  return file;
-}
-
 RecordingMap read_sidecar(const std::filesystem::path& file, RecordingMap map) {
   const JsonFile json(file, read_file(file, max_bytes));
   const JsonItem root = json.root();
-  check_keys(root, {"time", "time_unit", "rate_hz", "length_unit", "angle_unit", "axes",
-                    "origin_mm", "rest", "smooth_hz", "mandible", "cranium"});
+  root.only_keys({"time", "time_unit", "rate_hz", "length_unit", "angle_unit", "axes", "origin_mm",
+                  "rest", "smooth_hz", "mandible", "cranium"});
   if (const auto item = root.find("time")) map.time = item->text();
   if (const auto item = root.find("time_unit"))
     map.time_unit_s = choice(*item, std::array{std::pair{"s", 1.0}, std::pair{"ms", 1e-3}});

@@ -33,10 +33,8 @@ struct RecordingMap {
   std::optional<BodyColumns> cranium = {};  // moves in the file too: the mandible counts against it
 };
 
-/// Beside a recording: FILE.json ("chew.csv.json"). Absent when there is none.
-std::optional<std::filesystem::path> sidecar_of(const std::filesystem::path& recording);
-
-/// Reads a sidecar over what a format takes for granted. All keys are optional:
+/// Reads a sidecar (FILE.json beside the recording) over what a format takes for granted. All keys
+/// are optional:
 /// {"time": COLUMN, "time_unit": "s|ms", "rate_hz": 100, "length_unit": "mm|cm|m|in", "angle_unit":
 /// "deg|rad", "axes": "LPS", "origin_mm": [x, y, z], "rest": "first|identity", "smooth_hz": 10,
 /// "mandible": BODY, "cranium": BODY}; BODY is {"translation": [3 columns], "quaternion": [w, x, y,

@@ -3,149 +3,259 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
-#include <set>
-#include <string>
+#include <array>
+#include <optional>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/text_table.h"
+#include "sim/case/json_file.h"
+#include "sim/muscles/muscle_names.h"
 
 namespace condyle {
 namespace {
 
-constexpr std::size_t max_bytes = std::size_t{256} << 20;
-constexpr double rounding = 1e-3;  // of excitations computed elsewhere: so far beyond 0 and 1
-
+namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
-/// What groups are made of: kinds, or other groups.
-const std::map<std::string, Names>& groups() {
-  static const std::map<std::string, Names> table = {
-      {"t", {"at", "mt", "pt"}},
-      {"m", {"dm", "sm"}},
-      {"my", {"am", "pm"}},
-      {"lp", {"ip", "sp"}},
-      {"close", {"t", "m", "mp"}},
-      {"hopen", {"ad", "my", "gh"}},
-      {"pro", {"lp"}},
-      {"open", {"hopen", "pro"}},
-      {"stiffenjaw", {"open", "close"}},
-      {"protracthyoid", {"ad", "gh", "my"}},
-      {"retracthyoid", {"pd", "sh"}},
-      {"suprahyoid", {"ad", "gh", "my", "pd", "sh"}},
-      {"infrahyoid", {"th", "stet", "steh", "oh"}},
-  };
-  return table;
+constexpr std::size_t max_bytes = std::size_t{256} << 20, max_sidecar_bytes = std::size_t{1} << 20;
+constexpr double rounding = 1e-3;  // of excitations made elsewhere: so far beyond 0 and 1
+constexpr double dip = 0.05;       // below 0, of knots that shape a cubic; cut off at 0
+
+const std::array<std::pair<std::string_view, Between>, 4> words = {{{"step", Between::step},
+                                                                    {"linear", Between::linear},
+                                                                    {"smooth", Between::smooth},
+                                                                    {"cubic", Between::cubic}}};
+
+std::optional<Between> between_called(std::string_view word) {
+  for (const auto& [name, between] : words)
+    if (lower_case(word) == name) return between;
+  return std::nullopt;
 }
 
-void add_kinds(const std::string& name, std::set<std::string>& kinds) {
-  const auto group = groups().find(name);
-  if (group == groups().end()) {
-    kinds.insert(name);
-    return;
+std::string no_interpolation(std::string_view word) {
+  std::string known;
+  for (const auto& [name, between] : words)
+    known += (known.empty() ? "" : ", ") + std::string(name);
+  return "\"" + shortened(word) + "\" is no interpolation; known are " + known;
+}
+
+/// Reads one file for the muscles of a case.
+class Reader {
+ public:
+  Reader(const fs::path& file, std::span<const Muscle> muscles)
+      : file_(file),
+        muscles_(muscles),
+        kept_(muscles.begin(), muscles.end()),
+        text_(read_file(file, max_bytes)),
+        lines_(text_) {}
+
+  Excitations read() {
+    if (const auto sidecar = sidecar_of(file_)) read_sidecar(*sidecar);
+    if (out_.tone.empty()) out_.tone.assign(kept_.size(), 0.0);
+    find_header();
+    if (const auto muscle = column("muscle"))
+      read_knots(*muscle);
+    else
+      read_columns();
+    return std::move(out_);
   }
-  for (const auto& member : group->second) add_kinds(member, kinds);
-}
 
-/// Muscles of a kind or group on the side 'l' or 'r', or on both (0).
-std::vector<std::size_t> of_kinds(const std::string& name, char side,
-                                  std::span<const Muscle> muscles) {
-  std::set<std::string> kinds;
-  add_kinds(name, kinds);
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < muscles.size(); ++i) {
-    const std::string kind = lower_case(muscles[i].kind);
-    if (!kinds.contains(kind)) continue;
-    if (side == 0 || lower_case(muscles[i].name) == side + kind) found.push_back(i);
+ private:
+  void read_sidecar(const fs::path& sidecar) {
+    const JsonFile json(sidecar, read_file(sidecar, max_sidecar_bytes));
+    const JsonItem root = json.root();
+    root.only_keys({"interpolation", "tone", "without"});
+    if (const auto item = root.find("interpolation")) {
+      between_ = between_called(item->text());
+      if (!between_) item->refuse(no_interpolation(item->text()));
+    }
+    if (const auto list = root.find("without")) {
+      std::vector<bool> out(muscles_.size(), false);
+      for (std::size_t i = 0; i < list->size(); ++i)
+        for (const std::size_t m : called(list->at(i), list->at(i).text(), muscles_)) out[m] = true;
+      kept_.clear();
+      for (std::size_t m = 0; m < muscles_.size(); ++m)
+        if (out[m])
+          out_.without.push_back(muscles_[m].name);
+        else
+          kept_.push_back(muscles_[m]);
+      if (kept_.empty()) list->refuse("leaves no muscle");
+    }
+    out_.tone.assign(kept_.size(), 0.0);
+    if (const auto tones = root.find("tone")) {
+      if (!tones->value().is_object()) tones->refuse("is no object {\"MUSCLE\": 0.001, ...}");
+      for (const auto& [name, value] : tones->value().items()) {
+        const JsonItem item = tones->at(name);
+        for (const std::size_t m : called(item, name, kept_)) out_.tone[m] += item.number(0, 1);
+      }
+    }
   }
-  return found;
-}
+  static std::vector<std::size_t> called(const JsonItem& item, const std::string& name,
+                                         std::span<const Muscle> among) {
+    auto found = muscles_called(name, among);
+    if (found.empty())
+      item.refuse("\"" + shortened(name) + "\" is no muscle of this case; known are " +
+                  known_muscle_names(among));
+    return found;
+  }
 
-std::vector<std::size_t> muscles_called(std::string name, std::span<const Muscle> muscles) {
-  name = lower_case(name);
-  for (std::size_t i = 0; i < muscles.size(); ++i)
-    if (lower_case(muscles[i].name) == name) return {i};
-  if (name.starts_with("bi_")) name.erase(0, 3);
-  if (auto both = of_kinds(name, 0, muscles); !both.empty()) return both;
-  if (name.size() > 1 && (name[0] == 'l' || name[0] == 'r'))
-    return of_kinds(name.substr(1), name[0], muscles);
-  return {};
-}
+  void find_header() {
+    bool filled = false;
+    while ((filled = lines_.next_filled()) && trimmed(lines_.line()).starts_with('#')) {
+      const auto fields = fields_of(trimmed(lines_.line()).substr(1), ':');
+      if (fields.size() != 2 || lower_case(fields[0]) != "interpolation" || between_) continue;
+      between_ = between_called(fields[1]);
+      if (!between_) throw InputError(file_, lines_.where(), no_interpolation(fields[1]));
+    }
+    if (!filled) throw InputError(file_, "", "the file is empty");
+    for (const auto field : fields_of(lines_.line(), ',')) names_.emplace_back(field);
+    header_ = lines_.where();
+    for (const auto& name : names_)
+      if (std::count(names_.begin(), names_.end(), name) > 1)
+        throw InputError(file_, header_, "column " + shortened(name) + " stands twice");
+  }
+  std::optional<std::size_t> column(std::string_view wanted) const {
+    for (std::size_t c = 0; c < names_.size(); ++c)
+      if (lower_case(names_[c]) == wanted) return c;
+    return std::nullopt;
+  }
+  std::optional<std::size_t> column_like(std::string_view begin) const {
+    for (std::size_t c = 0; c < names_.size(); ++c)
+      if (lower_case(names_[c]).starts_with(begin)) return c;
+    return std::nullopt;
+  }
+  std::size_t needed_column(std::string_view wanted, const char* shape) const {
+    if (const auto found = column(wanted)) return *found;
+    throw InputError(file_, header_,
+                     fmt::format("column {} is missing; {} (found \"{}\")", wanted, shape,
+                                 shortened(lines_.line())));
+  }
 
-std::string known_names(std::span<const Muscle> muscles) {
-  std::string text;
-  for (const Muscle& muscle : muscles) text += muscle.name + " ";
-  text += "and the groups";
-  for (const auto& [name, members] : groups()) text += " " + name;
-  return text;
-}
+  /// Muscles that a name means and that are not taken out.
+  std::vector<std::size_t> driven(std::string_view name, const std::string& where) const {
+    auto found = muscles_called(name, kept_);
+    if (found.empty() && muscles_called(name, muscles_).empty())
+      throw InputError(file_, where,
+                       "\"" + shortened(name) + "\" is no muscle of this case; known are " +
+                           known_muscle_names(muscles_));
+    return found;
+  }
+  void check(double value, const std::string& where, double below = rounding) const {
+    if (!(value >= -below && value <= 1 + rounding))
+      throw InputError(file_, where,
+                       fmt::format("{} is no excitation; it goes from 0 to 1", value));
+  }
+
+  void read_columns() {
+    const std::size_t time = needed_column(
+        "time_s", "a file of excitations starts with the header time_s,MUSCLE,MUSCLE,...");
+    std::vector<std::vector<std::size_t>> of_column(names_.size());
+    for (std::size_t c = 0; c < names_.size(); ++c)
+      if (c != time) of_column[c] = driven(names_[c], header_);
+    if (names_.size() < 2) throw InputError(file_, header_, "no muscle has a column");
+    const NumberTable table = read_rows(file_, lines_, names_, ',');
+    if (table.rows() == 0) throw InputError(file_, "", "there is a header but no excitation");
+    check_times(file_, table, time);
+    std::vector<double> times;
+    for (std::size_t r = 0; r < table.rows(); ++r)
+      times.push_back(table.at(r, time) - table.at(0, time));
+    out_.duration_s = times.back();
+    for (std::size_t c = 0; c < names_.size(); ++c) {
+      if (c == time) continue;
+      std::vector<double> values;
+      for (std::size_t r = 0; r < table.rows(); ++r) {
+        check(table.at(r, c), table.where(r, c));
+        values.push_back(table.at(r, c));
+      }
+      out_.channels.push_back(
+          {ExcitationCurve(times, values, between_.value_or(Between::smooth)), of_column[c]});
+    }
+  }
+
+  void read_knots(std::size_t muscle) {
+    const char* shape = "a file of knots has the header muscle,time_s,excitation";
+    const std::size_t time = needed_column("time_s", shape),
+                      excitation = needed_column("excitation", shape);
+    const auto interpolation = column("interpolation"), active = column_like("active");
+    struct Knots {
+      std::string name;
+      Between between;
+      std::vector<std::size_t> muscles;
+      std::vector<double> times, values;
+    };
+    std::vector<Knots> all;
+    while (lines_.next_filled()) {
+      const auto fields = fields_of(lines_.line(), ',');
+      if (fields.size() != names_.size())
+        throw InputError(
+            file_, lines_.where(),
+            fmt::format("has {} columns; the header has {}", fields.size(), names_.size()));
+      const auto where = [&](std::size_t c) { return lines_.where() + ", " + names_[c]; };
+      const double t = parse_number(file_, where(time), fields[time]);
+      const double value = parse_number(file_, where(excitation), fields[excitation]);
+      if (active && parse_number(file_, where(*active), fields[*active]) == 0) continue;
+      check(value, where(excitation), dip);
+      Between between = between_.value_or(Between::smooth);
+      if (interpolation && !between_) {
+        const auto told = between_called(fields[*interpolation]);
+        if (!told)
+          throw InputError(file_, where(*interpolation), no_interpolation(fields[*interpolation]));
+        between = *told;
+      }
+      auto found = std::find_if(all.begin(), all.end(),
+                                [&](const Knots& k) { return k.name == fields[muscle]; });
+      if (found == all.end()) {
+        all.push_back(
+            {std::string(fields[muscle]), between, driven(fields[muscle], where(muscle)), {}, {}});
+        found = all.end() - 1;
+      }
+      if (found->between != between)
+        throw InputError(
+            file_, where(*interpolation),
+            fmt::format("{} goes on in another way than before; one muscle has one", found->name));
+      if (t < 0 || (!found->times.empty() && !(t > found->times.back())))
+        throw InputError(file_, where(time),
+                         found->times.empty()
+                             ? fmt::format("{} lies before the beginning, 0", t)
+                             : fmt::format("{} does not come after {}", t, found->times.back()));
+      found->times.push_back(t);
+      found->values.push_back(value);
+      out_.duration_s = std::max(out_.duration_s, t);
+    }
+    if (all.empty()) throw InputError(file_, "", "there is a header but no excitation");
+    for (auto& knots : all)
+      out_.channels.push_back(
+          {ExcitationCurve(std::move(knots.times), std::move(knots.values), knots.between),
+           std::move(knots.muscles)});
+  }
+
+  const fs::path& file_;
+  std::span<const Muscle> muscles_;
+  std::vector<Muscle> kept_;
+  std::string text_;
+  TextLines lines_;
+  Names names_;
+  std::string header_;
+  std::optional<Between> between_;  // of the whole file
+  Excitations out_;
+};
 
 }  // namespace
 
 std::vector<double> Excitations::at(double time_s) const {
-  std::vector<double> values;
-  for (const Pchip& curve : of_muscle) values.push_back(std::clamp(curve(time_s), 0.0, 1.0));
+  std::vector<double> values = tone;
+  for (const Channel& channel : channels) {
+    const double value = std::max(channel.curve(time_s), 0.0);
+    for (const std::size_t m : channel.muscles) values[m] += value;
+  }
+  for (double& value : values) value = std::clamp(value, 0.0, 1.0);
   return values;
 }
 
-Excitations read_excitations(const std::filesystem::path& file, std::span<const Muscle> muscles) {
-  const std::string content = read_file(file, max_bytes);
-  TextLines lines(content);
-  bool filled = false;
-  while ((filled = lines.next_filled()) && trimmed(lines.line()).starts_with('#')) {
-  }
-  if (!filled) throw InputError(file, "", "the file is empty");
-  Names names;
-  for (const auto field : fields_of(lines.line(), ',')) names.emplace_back(field);
-  const auto time = static_cast<std::size_t>(
-      std::find_if(names.begin(), names.end(),
-                   [](const std::string& name) { return lower_case(name) == "time_s"; }) -
-      names.begin());
-  const std::string header = lines.where();
-  if (time == names.size())
-    throw InputError(file, header,
-                     "column time_s is missing; a file of excitations starts with the header "
-                     "time_s,MUSCLE,MUSCLE,... (found \"" +
-                         shortened(lines.line()) + "\")");
-  std::vector<std::vector<std::size_t>> driven(names.size());
-  for (std::size_t c = 0; c < names.size(); ++c) {
-    if (c == time) continue;
-    if (std::count(names.begin(), names.end(), names[c]) > 1)
-      throw InputError(file, header, "column " + shortened(names[c]) + " stands twice");
-    driven[c] = muscles_called(names[c], muscles);
-    if (driven[c].empty())
-      throw InputError(file, header,
-                       "\"" + shortened(names[c]) + "\" is no muscle of this case; known are " +
-                           known_names(muscles));
-  }
-  if (names.size() < 2) throw InputError(file, header, "no muscle has a column");
-
-  const NumberTable table = read_rows(file, lines, names, ',');
-  if (table.rows() == 0) throw InputError(file, "", "there is a header but no excitation");
-  check_times(file, table, time);
-  std::vector<double> times;
-  std::vector<std::vector<double>> sums(muscles.size());
-  for (std::size_t r = 0; r < table.rows(); ++r) {
-    times.push_back(table.at(r, time) - table.at(0, time));
-    for (auto& sum : sums) sum.push_back(0);
-    for (std::size_t c = 0; c < names.size(); ++c) {
-      const double value = table.at(r, c);
-      if (c != time && !(value >= -rounding && value <= 1 + rounding))
-        throw InputError(file, table.where(r, c),
-                         fmt::format("{} is no excitation; it goes from 0 to 1", value));
-      for (const std::size_t m : driven[c]) sums[m].back() += value;
-    }
-  }
-  Excitations out;
-  out.duration_s = times.back();
-  if (times.size() == 1) times.push_back(1);
-  for (auto& sum : sums) {
-    if (sum.size() == 1) sum.push_back(sum[0]);
-    for (double& value : sum) value = std::clamp(value, 0.0, 1.0);
-    out.of_muscle.emplace_back(times, sum);
-  }
-  return out;
+Excitations read_excitations(const fs::path& file, std::span<const Muscle> muscles) {
+  return Reader(file, muscles).read();
 }
 
 }  // namespace condyle

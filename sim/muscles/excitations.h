@@ -2,28 +2,42 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "engine/math/pchip.h"
 #include "sim/case/muscle.h"
+#include "sim/muscles/excitation_curve.h"
 
 namespace condyle {
 
 /// How much each muscle is excited over time.
 struct Excitations {
-  double duration_s = 0;
-  std::vector<Pchip> of_muscle;  // one per muscle; a constant when the file has one row
+  struct Channel {
+    ExcitationCurve curve;
+    std::vector<std::size_t> muscles;  // that it excites
+  };
 
-  /// One value of 0 to 1 for each muscle; constant beyond the ends.
+  double duration_s = 0;
+  std::vector<Channel> channels;
+  std::vector<double> tone;          // of each muscle, beside what the channels say
+  std::vector<std::string> without;  // muscles that were taken out of those given
+
+  /// One value of 0 to 1 for each muscle that is not taken out; constant beyond the ends.
   std::vector<double> at(double time_s) const;
 };
 
-/// A CSV with the column time_s and one column per muscle, 0 to 1; smooth without overshoot between
-/// its rows, time counted from the first. A column names a muscle ("lat"), a kind of both sides
-/// ("at"), or a group: t temporalis, m masseter, my mylohyoid, lp lateral pterygoid, close, open,
-/// hopen, pro, protracthyoid, retracthyoid, suprahyoid, infrahyoid, stiffenjaw, with l or r before
-/// it for one side (bi_ before any name: both). What several columns say of a muscle adds up, to 1
-/// at most. Lines that start with # are passed over. throws: InputError with file, line and value.
+/// A CSV in one of two shapes. Wide: the column time_s and a column for each muscle, kind or group
+/// (sim/muscles/muscle_names.h); time is counted from the first row. Long: a row for each knot with
+/// the columns muscle, time_s, excitation and, if wanted, interpolation and active (rows with 0
+/// there are passed over); time as it stands. All from 0 to 1 (knots of a cubic may dip a little
+/// below, which is cut off); what several columns say of a muscle adds up, to 1 at most. Between
+/// its rows a value goes "smooth" (cubic without overshoot), unless told: step, linear or cubic
+/// (see Between). Lines that start with # are passed over, but for "# interpolation: step".
+///
+/// FILE.json beside it, all keys optional: {"interpolation": "cubic", "tone": {"close": 0.001},
+/// "without": ["pm"]}. The tone is added to what the file says of these muscles; those in `without`
+/// are taken out, and what the file says of them is passed over.
+/// throws: InputError with file, line and value.
 Excitations read_excitations(const std::filesystem::path& file, std::span<const Muscle> muscles);
 
 }  // namespace condyle

@@ -81,6 +81,21 @@ Json told(const RecordingFacts& facts) {
   return json;
 }
 
+Json told(const std::vector<Extreme>& extremes) {
+  Json json;
+  for (const Extreme& extreme : extremes)
+    json[extreme.name] = {
+        {"value", extreme.value}, {"unit", extreme.unit}, {"time_s", extreme.time_s}};
+  return json;
+}
+
+Json told(const HelicalAxis& axis) {
+  const auto list = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
+  return {{"direction", list(axis.direction)},
+          {"point_mm", list(axis.point)},
+          {"slide_mm", axis.slide_mm}};
+}
+
 /// What the motion does not show is left out.
 Json told(const JointFit& fit) {
   Json json;
@@ -143,6 +158,9 @@ void MotionReport::add(const FrameState& frame) {
   if (frame.stopped) {
     ++stopped_frames_;
     if (first_stopped_ < 0) first_stopped_ = frames_;
+    const auto incisor = rest.find("lower_incisal_point").value_or(Eigen::Vector3d::Zero());
+    kept_back_mm_ =
+        std::max(kept_back_mm_, (frame.X_CM * incisor - frame.X_CM_wanted * incisor).norm());
   }
   if (frame.tissue.inverted_prisms > 0) ++inverted_frames_;
   if (!frame.tissue.converged) ++unconverged_frames_;
@@ -186,7 +204,8 @@ std::string MotionReport::json() const {
   json["motion"]["notes"] = motion_.notes;
   if (motion_.recording) json["motion"]["recording"] = told(*motion_.recording);
   if (motion_.recorded)
-    if (const auto joint = fit_joint(scene_.patient, motion_)) json["motion"]["joint"] = told(*joint);
+    if (const auto joint = fit_joint(scene_.patient, motion_))
+      json["motion"]["joint"] = told(*joint);
   json["frames"] = frames_;
   json["step_s"] = settings_.step_s;
   const auto& w = widest_.measures;
@@ -197,6 +216,9 @@ std::string MotionReport::json() const {
                      {"max_rotation_deg", banded(max_rotation_deg_, 28, 45)},
                      {"left_condylar_travel_mm", banded(left_travel_mm_, 10, 20)},
                      {"right_condylar_travel_mm", banded(right_travel_mm_, 10, 20)}};
+  if (w.helical_axis.known) json["opening"]["helical_axis"] = told(w.helical_axis);
+
+  if (series_.known_landmarks) json["measures"] = told(extremes(series_));
 
   Json list = Json::array(), outside = Json::array();
   for (const auto& finding : findings(scene_, motion_, series_)) {
@@ -230,7 +252,10 @@ std::string MotionReport::json() const {
     pairs.push_back(pair);
   }
   json["contact"] = {{"pairs", pairs}, {"stopped_frames", stopped_frames_}};
-  if (first_stopped_ >= 0) json["contact"]["first_stopped_frame"] = first_stopped_;
+  if (first_stopped_ >= 0) {
+    json["contact"]["first_stopped_frame"] = first_stopped_;
+    json["contact"]["kept_from_where_wanted_mm"] = kept_back_mm_;
+  }
 
   if (scene_.tissue) {
     const auto& made = summary(*scene_.tissue);
@@ -323,8 +348,10 @@ std::string MotionReport::text() const {
   if (motion_.recorded && penetrates && stopped_frames_ == 0)
     text += "a recorded motion is played as it is; --respect-contact stops it where bones meet\n";
   if (stopped_frames_ > 0)
-    text += fmt::format("stopped at a contact in {} frames, first in frame {}\n", stopped_frames_,
-                        first_stopped_);
+    text += fmt::format(
+        "contact keeps the jaw from where it is wanted in {} frames, first in frame {}, by up to "
+        "{:.2f} mm at the incisors\n",
+        stopped_frames_, first_stopped_, kept_back_mm_);
   if (scene_.tissue) {
     text += fmt::format("soft tissue: {} nodes, {} prisms, inverted in {} frames\n",
                         summary(*scene_.tissue).nodes, summary(*scene_.tissue).prisms,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/motion/joint_fit.h"
+#include "sim/report/motion_extremes.h"
 #include "sim/report/motion_truth.h"
 #include "sim/simulator/simulator.h"
 
@@ -46,6 +47,7 @@ class MotionReport {
   int inverted_frames_ = 0, unconverged_frames_ = 0, kept_frames_ = 0;
   double tissue_penetration_mm_ = 0, tissue_slip_mm_ = 0;
   double max_rotation_deg_ = 0, left_travel_mm_ = 0, right_travel_mm_ = 0;
+  double kept_back_mm_ = 0;  // of the incisal point from where it was wanted, by contact
   std::vector<PairRecord> pairs_;
   FrameState widest_;  // frame of largest opening
   int widest_frame_ = 0;

@@ -28,14 +28,20 @@ class ExcitationFile : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  Excitations read(const std::string& content) {
+  Excitations read(const std::string& content, const std::string& sidecar = "") {
+    const auto beside = folder_ / "excite.csv.json";
+    if (sidecar.empty())
+      std::filesystem::remove(beside);
+    else
+      std::ofstream(beside, std::ios::binary) << sidecar;
     const auto file = folder_ / "excite.csv";
     std::ofstream(file, std::ios::binary) << content;
     return read_excitations(file, muscles_);
   }
-  void expect_refused(const std::string& content, const std::vector<std::string>& words) {
+  void expect_refused(const std::string& content, const std::vector<std::string>& words,
+                      const std::string& sidecar = "") {
     try {
-      read(content);
+      read(content, sidecar);
       FAIL() << content;
     } catch (const InputError& error) {
       const std::string message = error.what();
@@ -83,6 +89,63 @@ TEST_F(ExcitationFile, RefusesWhatIsWrongAndSaysWhere) {
   expect_refused("time_s,lat\n0,0\n1,much\n", {"line 3", "lat", "much"});
   expect_refused("time_s,lat\n1,0\n1,0\n", {"line 3", "time_s", "after 1"});
   expect_refused("time_s,lat\n1,0\n0.5,0\n", {"line 3", "time_s", "0.5"});
+}
+
+TEST_F(ExcitationFile, KnotsOfEachMuscleHaveTimesOfTheirOwn) {
+  const std::string header = "muscle,time_s,excitation,interpolation,probe\n";
+  const Excitations e = read(header +
+                             "lat,0.1,0.2,Cubic,7\nlat,0.2,0.6,Cubic,7\nlat,0.4,0.4,Cubic,7\n"
+                             "rmy,0,0.3,linear,7\nrmy,0.5,0.1,linear,7\nt,0.2,0.1,step,7\n");
+  EXPECT_NEAR(e.duration_s, 0.5, 1e-12);
+  EXPECT_NEAR(e.at(0)[0], 0.2 + 0.1, 1e-12);  // of its own, and of the temporalis
+  EXPECT_NEAR(e.at(0.2)[0], 0.7, 1e-12);
+  // Hermite with a slope of (0.4 - 0.2) / 0.3 at the middle knot and none at the ends.
+  EXPECT_NEAR(e.at(0.15)[0], 0.1 + 0.4 - 0.1 * (0.2 / 0.3) / 8, 1e-12);
+  EXPECT_NEAR(e.at(0.25)[5], 0.2, 1e-12);
+  EXPECT_NEAR(e.at(0.25)[7], 0.2, 1e-12);
+  EXPECT_EQ(read("muscle,time_s,excitation,active_in_file\nlat,0,0.1,1\nrat,0,0.1,0\n").at(0)[1],
+            0);
+  expect_refused("muscle,time_s\nlat,0\n", {"line 1", "excitation", "missing"});
+  expect_refused(header, {"no excitation"});
+  expect_refused(header + "lat,0,0.2,Cubic\n", {"line 2", "4 columns", "5"});
+  expect_refused(header + "biceps,0,0.2,Cubic,1\n", {"line 2", "muscle", "biceps", "lat"});
+  expect_refused(header + "lat,0,2,Cubic,1\n", {"line 2", "excitation", "2", "0 to 1"});
+  expect_refused(header + "lat,x,0,Cubic,1\n", {"line 2", "time_s", "x"});
+  expect_refused(header + "lat,0,0,Cubist,1\n", {"line 2", "interpolation", "Cubist", "linear"});
+  expect_refused(header + "lat,-1,0,step,1\n", {"line 2", "time_s", "-1"});
+  expect_refused(header + "lat,1,0,step,1\nrat,0,0,step,1\nlat,1,0,step,1\n",
+                 {"line 4", "time_s", "after 1"});
+  expect_refused(header + "lat,0,0,step,1\nlat,1,0,linear,1\n", {"line 3", "lat"});
+}
+
+TEST_F(ExcitationFile, HoldsOrJoinsItsRowsAsToldInItOrBesideIt) {
+  const std::string rows = "time_s,lat\n0,0\n0.3,0.6\n0.6,0.2\n";
+  const Excitations held = read("# interpolation: step\n" + rows);
+  EXPECT_EQ(held.at(0.299)[0], 0);
+  EXPECT_EQ(held.at(3 * 0.1)[0], 0.6);  // a time that rounding puts off by a little
+  EXPECT_EQ(held.at(0.59)[0], 0.6);
+  EXPECT_NEAR(read(rows, R"({"interpolation": "linear"})").at(0.15)[0], 0.3, 1e-12);
+  EXPECT_NEAR(read(rows, R"({"interpolation": "cubic"})").at(0.15)[0], 0.3 - 0.3 * (0.2 / 0.6) / 8,
+              1e-12);
+  expect_refused("# interpolation: wild\n" + rows, {"line 1", "wild", "smooth"});
+  expect_refused(rows, {"excite.csv.json", "interpolation", "wild"},
+                 R"({"interpolation": "wild"})");
+}
+
+TEST_F(ExcitationFile, ASidecarGivesAToneAndTakesMusclesOut) {
+  const std::string rows = "time_s,lat,rmy,lpm\n0,0.1,0.3,0.4\n";
+  const Excitations e = read(rows, R"({"tone": {"t": 0.01, "lat": 0.02}, "without": ["pm"]})");
+  EXPECT_EQ(e.without, (std::vector<std::string>{"lpm", "rpm"}));
+  const std::vector<double> wanted = {0.13, 0.01, 0.01, 0.01, 0, 0.3};  // lat rat lmt rmt lam ram
+  const auto at = e.at(0);
+  ASSERT_EQ(at.size(), wanted.size());
+  for (std::size_t m = 0; m < wanted.size(); ++m) EXPECT_NEAR(at[m], wanted[m], 1e-12) << m;
+  expect_refused(rows, {"excite.csv.json", "without", "biceps"}, R"({"without": ["biceps"]})");
+  expect_refused(rows, {"excite.csv.json", "without", "no muscle"},
+                 R"({"without": ["at", "mt", "my"]})");
+  expect_refused(rows, {"excite.csv.json", "tone.t", "2"}, R"({"tone": {"t": 2}})");
+  expect_refused(rows, {"excite.csv.json", "tones", "without"}, R"({"tones": {}})");
+  expect_refused(rows, {"excite.csv.json", "line 1"}, "{");
 }
 
 TEST(UsualMuscles, AreMirroredAndPullWhereTheirGroupSays) {

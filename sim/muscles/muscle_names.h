@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/case/muscle.h"
+
+namespace condyle {
+
+/// Which muscles a name means: one ("lat"), a kind on both sides ("at"), or a group: t temporalis,
+/// m masseter, my mylohyoid, lp lateral pterygoid, close, open, hopen, pro, protracthyoid,
+/// retracthyoid, suprahyoid, infrahyoid, stiffenjaw, with l or r before it for one side (bi_ before
+/// any name: both). None: the name is unknown.
+std::vector<std::size_t> muscles_called(std::string_view name, std::span<const Muscle> muscles);
+
+/// All names there are, for a message.
+std::string known_muscle_names(std::span<const Muscle> muscles);
+
+}  // namespace condyle
