@@ -156,7 +156,7 @@ Motion make_motion(const std::string& spec, const Case& patient, const ContactMo
   for (const auto& [name, text] : builtin_scripts())
     if (spec == name) {
       const MotionScript script = parse_motion_script(text, name);
-      return move(name, &script, patient, contacts, settings, true);
+      return move(name, &script, patient, contacts, settings, name != "rest");
     }
   if (looks_like_a_file(spec)) {
     if (ending_of(spec) != ".motion") {
