@@ -2,13 +2,17 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -18,137 +22,188 @@ extern char** environ;
 namespace condyle {
 namespace {
 
-struct Outcome {
-  int status = 0;          // of waitpid
-  std::string last_words;  // last line of standard error
-};
+std::vector<std::string> words_for(const std::filesystem::path& beside, int width, int height,
+                                   double frames_per_second) {
+  return {"ffmpeg",
+          "-nostdin",
+          "-hide_banner",
+          "-loglevel",
+          "error",
+          "-y",
+          "-f",
+          "rawvideo",
+          "-pix_fmt",
+          "rgba",
+          "-video_size",
+          fmt::format("{}x{}", width, height),
+          "-framerate",
+          fmt::format("{:.6g}", frames_per_second),
+          "-i",
+          "pipe:0",
+          "-vf",
+          "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv:flags=+bitexact+"
+          "accurate_rnd,format=yuv420p",
+          "-colorspace",
+          "bt709",
+          "-color_primaries",
+          "bt709",
+          "-color_trc",
+          "bt709",
+          "-color_range",
+          "tv",
+          "-c:v",
+          "libx264",
+          "-preset",
+          "veryfast",
+          "-crf",
+          "18",
+          "-threads",
+          "2",
+          "-filter_threads",
+          "1",
+          "-fflags",
+          "+bitexact",
+          "-flags:v",
+          "+bitexact",
+          "-map_metadata",
+          "-1",
+          "-movflags",
+          "+faststart",
+          "-f",
+          "mp4",
+          "file:" + beside.string()};
+}
 
-/// Runs a program without a shell in `folder`, its standard error read to the end.
-/// throws: MachineError when it cannot be started.
-Outcome run_in(const std::filesystem::path& folder, const std::vector<std::string>& words) {
-  std::vector<char*> arguments;
-  for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  int pipe_ends[2];
-  if (::pipe2(pipe_ends, O_CLOEXEC) != 0)
-    throw MachineError(std::string("no pipe to ffmpeg: ") + std::strerror(errno));
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], 2);
-  pid_t child = 0;
-  const int refused =
-      ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  ::close(pipe_ends[1]);
-  if (refused != 0) {
-    ::close(pipe_ends[0]);
-    throw MachineError(std::string("the program ffmpeg cannot be started (") +
-                       std::strerror(refused) + ")");
-  }
-  Outcome outcome;
-  std::string line;
-  char block[4096];
-  for (;;) {
-    const ssize_t size = ::read(pipe_ends[0], block, sizeof block);
-    if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) break;
-    for (ssize_t i = 0; i < size; ++i) {
-      if (block[i] != '\n' && block[i] != '\r') {
-        if (line.size() < 500) line += block[i];
-      } else {
-        if (!line.empty()) outcome.last_words = line;
-        line.clear();
+/// Writes all of it; a reader that is gone is an error of this call, not a signal to the program.
+bool write_whole(int pipe, const std::uint8_t* data, std::size_t size) {
+  sigset_t broken, before;
+  sigemptyset(&broken);
+  sigaddset(&broken, SIGPIPE);
+  pthread_sigmask(SIG_BLOCK, &broken, &before);
+  bool whole = true;
+  while (size > 0 && whole) {
+    const ssize_t done = ::write(pipe, data, size);
+    if (done > 0) {
+      data += done;
+      size -= static_cast<std::size_t>(done);
+    } else if (done < 0 && errno != EINTR) {
+      whole = false;
+      const timespec at_once{};
+      while (errno == EPIPE && sigtimedwait(&broken, nullptr, &at_once) < 0 && errno == EINTR) {
       }
     }
   }
-  if (!line.empty()) outcome.last_words = line;
-  ::close(pipe_ends[0]);
-  while (::waitpid(child, &outcome.status, 0) < 0 && errno == EINTR) {
-  }
-  return outcome;
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return whole;
 }
 
 }  // namespace
 
-void make_film(const std::filesystem::path& folder, const std::filesystem::path& film, int frames,
-               double frames_per_second) {
-  const auto beside = std::filesystem::absolute(film).parent_path() /
-                      ("." + film.filename().string() + "." + std::to_string(::getpid()) + ".part");
-  // The frames are named relative to the folder, for a % in its own name would be read as a number.
-  const std::vector<std::string> words = {
-      "ffmpeg",
-      "-nostdin",
-      "-hide_banner",
-      "-loglevel",
-      "error",
-      "-y",
-      "-f",
-      "image2",
-      "-framerate",
-      fmt::format("{:.6g}", frames_per_second),
-      "-start_number",
-      "0",
-      "-i",
-      "frames/%06d.png",
-      "-frames:v",
-      std::to_string(frames),
-      "-vf",
-      "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv:flags=+bitexact+"
-      "accurate_rnd,format=yuv420p",
-      "-colorspace",
-      "bt709",
-      "-color_primaries",
-      "bt709",
-      "-color_trc",
-      "bt709",
-      "-color_range",
-      "tv",
-      "-c:v",
-      "libx264",
-      "-preset",
-      "veryfast",
-      "-crf",
-      "18",
-      "-threads",
-      "2",
-      "-filter_threads",
-      "1",
-      "-fflags",
-      "+bitexact",
-      "-flags:v",
-      "+bitexact",
-      "-map_metadata",
-      "-1",
-      "-movflags",
-      "+faststart",
-      "-f",
-      "mp4",
-      "file:" + beside.string()};
-  const auto fail = [&](const std::string& reason) {
-    ::unlink(beside.c_str());
-    throw MachineError(film.string() + ": no film was made: " + reason + "; the frames in " +
-                       (folder / "frames").string() +
-                       " are whole: install ffmpeg ('apt-get install ffmpeg') or mend the cause, "
-                       "then go on with --resume");
-  };
-  Outcome outcome;
-  try {
-    outcome = run_in(folder, words);
-  } catch (const MachineError& error) {
-    fail(error.what());
+struct Film::State {
+  std::filesystem::path file, beside;
+  pid_t child = 0;
+  int pipe = -1;
+  std::FILE* words = nullptr;  // what ffmpeg says
+
+  ~State() {
+    close_pipe();
+    if (child > 0) {
+      ::kill(child, SIGKILL);
+      wait();
+    }
+    if (words) std::fclose(words);
+    if (!beside.empty()) ::unlink(beside.c_str());
   }
-  if (WIFSIGNALED(outcome.status))
-    fail("ffmpeg was stopped by signal " + std::to_string(WTERMSIG(outcome.status)));
-  if (WEXITSTATUS(outcome.status) != 0)
-    fail("ffmpeg says: " +
-         (outcome.last_words.empty()
-              ? "nothing, exit code " + std::to_string(WEXITSTATUS(outcome.status))
-              : outcome.last_words));
-  if (::rename(beside.c_str(), film.c_str()) != 0)
-    fail(std::string("it cannot be put in place: ") + std::strerror(errno));
+
+  void close_pipe() {
+    if (pipe >= 0) ::close(pipe);
+    pipe = -1;
+  }
+
+  int wait() {
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    child = 0;
+    return status;
+  }
+
+  std::string last_words() const {
+    std::string last, line;
+    std::rewind(words);
+    for (int c = std::fgetc(words); c != EOF; c = std::fgetc(words)) {
+      if (c != '\n' && c != '\r') {
+        if (line.size() < 500) line += static_cast<char>(c);
+      } else if (!line.empty()) {
+        last = std::exchange(line, {});
+      }
+    }
+    return line.empty() ? last : line;
+  }
+
+  /// Waits for the end and says what was wrong, if anything.
+  std::string outcome() {
+    const int status = wait();
+    if (WIFSIGNALED(status))
+      return "ffmpeg was stopped by signal " + std::to_string(WTERMSIG(status));
+    if (WEXITSTATUS(status) == 0) return {};
+    const std::string said = last_words();
+    return "ffmpeg says: " +
+           (said.empty() ? "nothing, exit code " + std::to_string(WEXITSTATUS(status)) : said);
+  }
+};
+
+Film::Film(const std::filesystem::path& file, int width, int height, double frames_per_second)
+    : state_(std::make_unique<State>()) {
+  auto& s = *state_;
+  s.file = std::filesystem::absolute(file);
+  s.words = std::tmpfile();
+  int ends[2];
+  if (!s.words || ::pipe2(ends, O_CLOEXEC) != 0)
+    throw MachineError(std::string("no pipe to ffmpeg: ") + std::strerror(errno));
+  s.pipe = ends[1];
+  const auto beside = s.file.parent_path() / ("." + s.file.filename().string() + "." +
+                                              std::to_string(::getpid()) + ".part");
+  const auto words = words_for(beside, width, height, frames_per_second);
+  std::vector<char*> arguments;
+  for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[0], 0);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(s.words), 2);
+  const int refused =
+      ::posix_spawnp(&s.child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  ::close(ends[0]);
+  if (refused != 0) {
+    s.child = 0;
+    throw MachineError(std::string("the program ffmpeg cannot be started (") +
+                       std::strerror(refused) + ")");
+  }
+  s.beside = beside;
+}
+
+Film::~Film() = default;
+
+void Film::add(const Image& picture) {
+  auto& s = *state_;
+  if (s.pipe >= 0 && write_whole(s.pipe, picture.rgba.data(), picture.rgba.size())) return;
+  const std::string pipe_trouble = std::strerror(errno);
+  s.close_pipe();
+  const std::string said = s.child > 0 ? s.outcome() : std::string();
+  throw MachineError(said.empty() ? "ffmpeg takes no more pictures: " + pipe_trouble : said);
+}
+
+void Film::finish() {
+  auto& s = *state_;
+  s.close_pipe();
+  const std::string trouble = s.outcome();
+  if (!trouble.empty()) throw MachineError(trouble);
+  if (::rename(s.beside.c_str(), s.file.c_str()) != 0)
+    throw MachineError(std::string("it cannot be put in place: ") + std::strerror(errno));
+  s.beside.clear();
 }
 
 }  // namespace condyle

@@ -7,12 +7,15 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/hash.h"
 #include "render/film.h"
 
 namespace condyle {
@@ -31,7 +34,8 @@ bool is_leftover(const std::string& name) {
   if (!name.starts_with('.') || !name.ends_with(".part")) return false;
   const std::string inner = name.substr(1, name.size() - 6);
   const std::string target = inner.substr(0, inner.rfind('.'));
-  return is_frame_name(target) || target == "film.mp4" || target == "recording.json";
+  return is_frame_name(target) || target == "film.mp4" || target == "recording.json" ||
+         target == "hashes.csv";
 }
 
 template <class Wanted>
@@ -71,10 +75,17 @@ struct Recorder::State {
   std::exception_ptr trouble;
   std::thread writer;
 
+  // Of the writer while it runs and after it is idle:
+  std::optional<Film> film;
+  int film_frames = 0;       // the film has those before
+  std::string film_trouble;  // frames go on without a film
+  std::map<int, std::uint64_t> hashes;
+
   fs::path frames() const { return settings.folder / "frames"; }
   fs::path frame_file(int frame) const { return frames() / fmt::format("{:06d}.png", frame); }
   fs::path sheet_file() const { return settings.folder / "recording.json"; }
   fs::path film_file() const { return settings.folder / "film.mp4"; }
+  fs::path hash_file() const { return settings.folder / "hashes.csv"; }
 
   void clean() {
     for (const auto& folder : {settings.folder, frames()})
@@ -89,6 +100,7 @@ struct Recorder::State {
     std::error_code error;
     fs::remove(sheet_file(), error);
     fs::remove(film_file(), error);
+    fs::remove(hash_file(), error);
     if (fs::is_directory(frames())) remove_files(frames(), is_frame_name);
   }
 
@@ -100,7 +112,7 @@ struct Recorder::State {
       remove_results();
     } else if (fs::exists(sheet_file())) {
       make_folder(earlier());
-      for (const auto& result : {sheet_file(), film_file()})
+      for (const auto& result : {sheet_file(), film_file(), hash_file()})
         if (fs::exists(result)) fs::rename(result, earlier() / result.filename());
       move_frames(frames(), earlier() / "frames");
     } else {
@@ -117,13 +129,68 @@ struct Recorder::State {
       if (!fs::exists(earlier())) return;
       remove_results();
       move_frames(earlier() / "frames", frames());
-      for (const auto& result : {film_file(), sheet_file()})
+      for (const auto& result : {film_file(), hash_file(), sheet_file()})
         if (fs::exists(earlier() / result.filename()))
           fs::rename(earlier() / result.filename(), result);
       fs::remove_all(earlier());
     } catch (const std::exception&) {
       // What cannot be moved back stays whole in the folder set aside.
     }
+  }
+
+  bool is_present(int frame) {
+    const std::lock_guard lock(mutex);
+    return frame < settings.frames && present[static_cast<std::size_t>(frame)];
+  }
+
+  /// Gives the film all that is ready from where it is: the picture in hand, and kept ones.
+  void feed_film(int frame = -1, const Image* picture = nullptr) {
+    if (!settings.film || !film_trouble.empty()) return;
+    try {
+      if (!film)
+        film.emplace(film_file(), settings.width, settings.height, settings.frames_per_second);
+      for (;; ++film_frames) {
+        if (film_frames == frame)
+          film->add(*picture);
+        else if (is_present(film_frames))
+          film->add(read_png(frame_file(film_frames)));
+        else
+          break;
+      }
+    } catch (const std::exception& error) {
+      film_trouble = error.what();
+      film.reset();
+    }
+  }
+
+  void finish_film() {
+    feed_film();
+    if (film_trouble.empty()) {
+      try {
+        film->finish();
+      } catch (const MachineError& error) {
+        film_trouble = error.what();
+      }
+    }
+    film.reset();
+    if (!film_trouble.empty())
+      throw MachineError(film_file().string() + ": no film was made: " + film_trouble +
+                         "; the frames in " + frames().string() +
+                         " are whole: install ffmpeg ('apt-get install ffmpeg') or mend the cause, "
+                         "then go on with --resume");
+  }
+
+  /// One number for each picture's file, to compare recordings by.
+  void write_hashes() {
+    std::string text = "frame,hash\n";
+    for (int frame = 0; frame < settings.frames; ++frame) {
+      if (!hashes.contains(frame)) {
+        const std::string bytes = read_file(frame_file(frame));
+        hashes[frame] = hash_bytes(bytes.data(), bytes.size());
+      }
+      text += fmt::format("{},{:016x}\n", frame, hashes[frame]);
+    }
+    write_file(hash_file(), text);
   }
 
   void write_all() {
@@ -142,6 +209,8 @@ struct Recorder::State {
         const std::string bytes = encode_png(next.second);
         begin();
         write_file(frame_file(next.first), bytes);
+        hashes[next.first] = hash_bytes(bytes.data(), bytes.size());
+        feed_film(next.first, &next.second);
       } catch (...) {
         failed = std::current_exception();
       }
@@ -240,8 +309,8 @@ void Recorder::finish() {
   if (missing != s.present.end())
     throw MachineError(s.frame_file(static_cast<int>(missing - s.present.begin())).string() +
                        ": this frame was never drawn; go on with --resume");
-  if (s.settings.film)
-    make_film(s.settings.folder, s.film_file(), s.settings.frames, s.settings.frames_per_second);
+  s.write_hashes();
+  if (s.settings.film) s.finish_film();
   std::error_code error;
   fs::remove_all(s.earlier(), error);
 }

@@ -19,9 +19,10 @@ struct RecorderSettings {
   RecordingSheet identity;  // what else decides the pictures: camera, case and motion hashes …
 };
 
-/// Writes frames/000000.png … and film.mp4 into a folder. A frame is written beside and renamed, so
-/// that whatever kills the program leaves whole frames; `recording.json` says what they are of.
-/// Pictures are packed and written on a thread of their own, a few behind the drawing.
+/// Writes frames/000000.png …, hashes.csv (of each picture's file) and film.mp4 into a folder. A
+/// frame is written beside and renamed, so that whatever kills the program leaves whole frames;
+/// `recording.json` says what they are of. Pictures are packed, written and given to the film on a
+/// thread of their own, a few behind the drawing.
 class Recorder {
  public:
   /// Touches nothing but leftovers of a killed run. An earlier recording is set aside when the

@@ -4,11 +4,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <sstream>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -72,7 +74,7 @@ TEST_F(Recording, GivesNamedFramesAndTheSameBytesTwice) {
   const auto a = content(top / "a");
   EXPECT_EQ(a, content(top / "b"));
   EXPECT_TRUE(a.contains("frames/000000.png") && a.contains("frames/000011.png"));
-  EXPECT_EQ(a.size(), have_ffmpeg() ? 14u : 13u);
+  EXPECT_EQ(a.size(), have_ffmpeg() ? 15u : 14u);
 }
 
 TEST_F(Recording, AKilledOneIsCompletedToTheSameBits) {
@@ -162,7 +164,7 @@ TEST_F(Recording, WithoutFfmpegTheFramesStayAndTheWayOutIsNamed) {
     EXPECT_NE(std::string(error.what()).find("install ffmpeg"), std::string::npos) << error.what();
   }
   ::setenv("PATH", path.c_str(), 1);
-  EXPECT_EQ(content(top / "a").size(), 13u);
+  EXPECT_EQ(content(top / "a").size(), 14u);
   s.resume = true;
   if (have_ffmpeg()) {
     EXPECT_EQ(record(s), 0);
@@ -188,6 +190,26 @@ TEST_F(Recording, AFailingFfmpegIsQuotedAndTheOldFilmKept) {
   }
   ::setenv("PATH", path.c_str(), 1);
   EXPECT_EQ(read_file(s.folder / "film.mp4"), "old film");
+}
+
+TEST_F(Recording, EachPictureHasItsHash) {
+  record(settings("a"));
+  const std::string hashes = read_file(top / "a/hashes.csv");
+  EXPECT_EQ(std::count(hashes.begin(), hashes.end(), '\n'), 13);
+  auto s = settings("b");
+  {
+    Recorder recorder(s);
+    for (int k = 0; k < 12; ++k) {
+      Image picture = frame(s, k);
+      if (k == 7) picture.rgba[400] ^= 1;
+      recorder.add(k, std::move(picture));
+    }
+    recorder.finish();
+  }
+  std::istringstream one(hashes), other(read_file(top / "b/hashes.csv"));
+  std::string a, b;
+  for (int line = 0; std::getline(one, a) && std::getline(other, b); ++line)
+    EXPECT_EQ(a == b, line != 8) << line;  // the head, then frames from 0
 }
 
 TEST_F(Recording, AFolderThatCannotBeWrittenIsNamed) {
