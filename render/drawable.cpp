@@ -121,6 +121,7 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
     mesh.send_shape(positions, normals);
     mesh.send_colors(colors);
     mesh.send_extras(extras);
+    if (part.role == Role::face) mesh.send_rest(positions);
     std::vector<Crease> creases;
     if (part.role == Role::face) creases = find_creases(positions, normals, occlusion[p].together);
     drawables.push_back({&part, material, is_closed_surface(part.mesh.triangles), box,

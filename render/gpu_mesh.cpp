@@ -96,6 +96,13 @@ void GpuMesh::send_extras(std::span<const Bytes> extras) {
   send(GL_ARRAY_BUFFER, extras_, extras, GL_STATIC_DRAW);
 }
 
+void GpuMesh::send_rest(std::span<const Eigen::Vector3f> positions) {
+  glBindVertexArray(array_);
+  send(GL_ARRAY_BUFFER, rest_, positions, GL_STATIC_DRAW);
+  floats(5, rest_);
+  glBindVertexArray(0);
+}
+
 void GpuMesh::send_values(std::span<const float> values) {
   glBindVertexArray(array_);
   if (values.empty()) {

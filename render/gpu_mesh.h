@@ -33,6 +33,8 @@ class GpuMesh {
                   std::span<const Eigen::Vector3f> normals);
   void send_colors(std::span<const Bytes> colors);
   void send_extras(std::span<const Bytes> extras);
+  /// Where the vertices are at rest, attribute 5: what detail of the surface is tied to.
+  void send_rest(std::span<const Eigen::Vector3f> positions);
   /// One number per vertex, attribute 4; none: taken as 0.
   void send_values(std::span<const float> values);
 
@@ -46,7 +48,7 @@ class GpuMesh {
 
  private:
   GlVertexArray array_;
-  GlBuffer positions_, normals_, colors_, extras_, values_, indices_, cover_;
+  GlBuffer positions_, normals_, colors_, extras_, values_, rest_, indices_, cover_;
   GLsizei cover_count_ = 0;
   std::vector<Eigen::Vector3i> triangles_;  // in the order of the pieces
   std::vector<Piece> pieces_;

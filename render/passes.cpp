@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/shaders.h"
+#include "render/skin_detail.h"
 #include "render/skin_table.h"
 
 namespace condyle {
@@ -82,6 +83,14 @@ Passes::Passes()
     glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
   for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+
+  constexpr int side = SkinDetail::side;
+  glBindTexture(GL_TEXTURE_3D, skin_detail_);
+  glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, side, side, side, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+               make_skin_detail().rgba.data());
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glGenerateMipmap(GL_TEXTURE_3D);
 }
 
 void Passes::set_colour_map(const ColourMap& map) {
@@ -134,12 +143,14 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
 }
 
 void Passes::background() {
-  glDisable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_FALSE);
   glDisable(GL_CULL_FACE);
   background_.use();
   glBindVertexArray(no_attributes_);
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
 }
 
 void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& view) {
@@ -149,6 +160,10 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
   if (mapped) {
     glActiveTexture(GL_TEXTURE2);
     glBindTexture(GL_TEXTURE_2D, colour_table_);
+  }
+  if (role == Role::face) {
+    glActiveTexture(GL_TEXTURE3);
+    glBindTexture(GL_TEXTURE_3D, skin_detail_);
   }
   glActiveTexture(GL_TEXTURE1);
   glBindTexture(GL_TEXTURE_2D, skin_table_);
@@ -162,6 +177,7 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
   program.set("eye", view.eye);
   program.set("shadow_map", 0);
   program.set("skin_table", 1);
+  program.set("skin_detail", 3);
   program.set("shadows", view.shadows ? 1.f : 0.f);
   program.set("shadow_texel", 1.f / shadow_side);
   program.set("two_sided", item.drawable->closed || role == Role::face ? 0.f : 1.f);
@@ -182,8 +198,7 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
       program.set(map_line_names[i],
                   i < colour_map_.lines.size() ? colour_map_.lines[i] : colour_map_.low() - 100);
   }
-  const bool in_mouth =
-      view.opaque_face && role != Role::face && role != Role::eyes && body_of(role) != Body::free;
+  const bool in_mouth = view.opaque_face && role != Role::eyes && body_of(role) != Body::free;
   program.set("cavity", Eigen::Vector2f(view.lips_y, in_mouth ? 1 / mouth_depth_mm : 0.f));
   begin_cut(program, item, view);
 }

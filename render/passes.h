@@ -80,7 +80,7 @@ class Passes {
 
   GlProgram surface_, skin_, interior_, depth_, background_, marker_;
   GlVertexArray no_attributes_;
-  GlTexture skin_table_, colour_table_;
+  GlTexture skin_table_, skin_detail_, colour_table_;
   ColourMap colour_map_;
   DepthMap shadow_map_;
   OcclusionCulling culling_;

@@ -308,9 +308,9 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings) 
   }
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  if (!settings.transparent_background) s.passes.background();
   s.passes.opaque(items, view);
   s.overlays.caps(items, view);
+  if (!settings.transparent_background) s.passes.background();
   if (settings.contacts) s.passes.contacts(s.contacts, view, !view.opaque_face);
   for (const auto& item : items)
     if (settings.ghost && item.role() != Role::face && s.leaves_ghost(item, *settings.ghost))

@@ -24,13 +24,14 @@ const char* const depth_fragment = R"(#version 330 core
 void main() {}
 )";
 
-// One triangle over the whole picture, no buffers.
+// One triangle over the whole picture, no buffers; as far as can be, so that only what is empty
+// is shaded.
 const char* const background_vertex = R"(#version 330 core
 out vec2 place;
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
   place = 0.5 + 0.5 * corner;
-  gl_Position = vec4(corner, 0.0, 1.0);
+  gl_Position = vec4(corner, 1.0, 1.0);
 }
 )";
 

@@ -10,6 +10,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 color;  // sRGB, occlusion with everything at rest
 layout(location = 3) in vec4 extra;  // occlusion by its own body, curvature, gloss
 layout(location = 4) in float value; // what a colour map shows
+layout(location = 5) in vec3 rest;   // place before anything moved; of skin
 uniform mat4 model;            // rigid
 uniform mat4 view_projection;
 uniform mat4 shadow_matrix;
@@ -27,8 +28,10 @@ out vec3 albedo;               // linear
 out vec3 shadow_place;
 out vec4 traits;               // occlusion, curvature, gloss, depth in the mouth
 out float mapped_value;
+out vec3 rest_place;
 void main() {
   mapped_value = value;
+  rest_place = rest;
   vec4 world = model * vec4(position, 1.0);
   gl_Position = view_projection * world;
   gl_ClipDistance[0] = dot(clip_plane, world);
@@ -196,12 +199,21 @@ void main() {
 )";
 
 const char* const skin_source = R"(
-uniform sampler2D skin_table;  // diffuse light by cosine and curvature
+uniform sampler2D skin_table;   // diffuse light by cosine and curvature
+uniform sampler3D skin_detail;  // slope of a rough surface, and its height
+in vec3 rest_place;
 void main() {
   vec3 v = normalize(to_eye);
-  vec3 n = normalize(world_normal);
-  float nv = clamp(dot(n, v), 0.0, 1.0);
+  vec3 smooth_normal = normalize(world_normal);
   float ao = traits.x, gloss = traits.z;
+  // Pores and fine creases, and the unevenness under them. Light inside the skin smooths them away:
+  // they are in the shine more than in the rest.
+  vec4 fine = texture(skin_detail, rest_place * (1.0 / 21.0)) - 0.5;
+  vec4 coarse = texture(skin_detail, rest_place.zxy * (1.0 / 83.0)) - 0.5;
+  vec3 slope = (0.34 * fine.xyz + 0.20 * coarse.xyz) * (1.0 - 0.5 * gloss);
+  vec3 n = normalize(smooth_normal - (slope - smooth_normal * dot(slope, smooth_normal)));
+  vec3 shine_normal = normalize(mix(smooth_normal, n, 1.6));
+  float nv = clamp(dot(n, v), 0.0, 1.0);
   float lit = key_visibility();
   // Light that enters beside a shadow's edge comes out red inside it.
   vec3 tinted = pow(vec3(lit), vec3(0.55, 1.0, 1.15));
@@ -211,15 +223,17 @@ void main() {
   float fn = dot(n, fill_direction), rn = dot(n, rim_direction);
   vec3 fill = max(vec3(fn) + bleed, 0.0) / ((1.0 + bleed) * (1.0 + bleed));
   vec3 rim = max(vec3(rn) + 0.5 * bleed, 0.0) / ((1.0 + 0.5 * bleed) * (1.0 + 0.5 * bleed));
+  float pore = clamp(1.0 + 0.55 * fine.a + 0.35 * coarse.a, 0.6, 1.4);
   vec3 light = key_color * through * tinted + (fill_color * fill + rim_color * rim) * occlusion
              + ambient_light(n, v) * occlusion;
   float open = ao * ao;
   float wide = mix(0.50, 0.40, gloss), tight = mix(0.34, 0.22, gloss);
-  vec3 shine = key_color * lit * (0.75 * specular(n, v, key_direction, wide)
-                                + 0.25 * specular(n, v, key_direction, tight))
-             + open * (fill_color * specular(n, v, fill_direction, wide)
-                     + rim_color * specular(n, v, rim_direction, wide));
-  vec3 c = albedo * light + mix(0.028, 0.05, gloss) * shine;
+  vec3 shine = key_color * lit * (0.75 * specular(shine_normal, v, key_direction, wide)
+                                + 0.25 * specular(shine_normal, v, key_direction, tight))
+             + open * (fill_color * specular(shine_normal, v, fill_direction, wide)
+                     + rim_color * specular(shine_normal, v, rim_direction, wide));
+  shine *= mix(pore * pore, 1.0, gloss);
+  vec3 c = albedo * mix(vec3(1.0), vec3(pore), vec3(0.05, 0.10, 0.12)) * light + mix(0.028, 0.05, gloss) * shine;
   c += 0.5 * ambient_light(reflect(-v, n), v) * fresnel(nv, 0.028) * (1.0 - wide) * open;
   float a = opacity >= 1.0 ? 1.0 : 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35));
   result = vec4(display(c), a);
@@ -236,8 +250,12 @@ void main() {
   vec3 v = normalize(to_eye);
   vec3 n = -normalize(world_normal);
   float nv = clamp(dot(n, v), 0.0, 1.0);
+  // Mucosa near the lips, dark further in.
+  float depth = traits.w;
   float lit = wrapped(dot(n, key_direction), 0.3) + 0.35;
-  vec3 c = vec3(0.085, 0.022, 0.018) * (lit * (0.35 + 0.65 * nv));
+  vec3 c = mix(vec3(0.060, 0.014, 0.012), vec3(0.235, 0.062, 0.055), depth * depth)
+         * (lit * (0.45 + 0.55 * nv));
+  c += depth * 0.02 * key_color * specular(n, v, key_direction, 0.3);
   float a = opacity >= 1.0 ? 1.0 : 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35));
   result = vec4(display(c), a);
 }
