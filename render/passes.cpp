@@ -187,7 +187,11 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
   program.set("wrap", material.wrap);
   program.set("scatter", material.scatter);
   program.set("coat", material.coat);
-  program.set("together", role == Role::eyes ? view.skin_opacity : view.at_rest);
+  // The face's own folds are followed as they open.
+  program.set("together", role == Role::eyes   ? view.skin_opacity
+                          : role == Role::face ? 1.f
+                                               : view.at_rest);
+  program.set("open_mouth", 1 - view.at_rest);
   program.set("mapped", mapped ? 1.f : 0.f);
   program.set("mapped_up_to", view.mapped_up_to);
   program.set("colour_table", 2);

@@ -201,16 +201,19 @@ void main() {
 const char* const skin_source = R"(
 uniform sampler2D skin_table;   // diffuse light by cosine and curvature
 uniform sampler3D skin_detail;  // slope of a rough surface, and its height
+uniform float open_mouth;       // 0 as at rest, 1 with the jaw well away
 in vec3 rest_place;
 void main() {
   vec3 v = normalize(to_eye);
   vec3 smooth_normal = normalize(world_normal);
-  float ao = traits.x, gloss = traits.z;
+  float gloss = traits.z;
+  // What lines the lips was shaded while they were closed.
+  float ao = max(traits.x, 0.42 * gloss * open_mouth);
   // Pores and fine creases, and the unevenness under them. Light inside the skin smooths them away:
   // they are in the shine more than in the rest.
   vec4 fine = texture(skin_detail, rest_place * (1.0 / 21.0)) - 0.5;
   vec4 coarse = texture(skin_detail, rest_place.zxy * (1.0 / 83.0)) - 0.5;
-  vec3 slope = (0.34 * fine.xyz + 0.20 * coarse.xyz) * (1.0 - 0.5 * gloss);
+  vec3 slope = (0.27 * fine.xyz + 0.12 * coarse.xyz) * (1.0 - 0.5 * gloss);
   vec3 n = normalize(smooth_normal - (slope - smooth_normal * dot(slope, smooth_normal)));
   vec3 shine_normal = normalize(mix(smooth_normal, n, 1.6));
   float nv = clamp(dot(n, v), 0.0, 1.0);
