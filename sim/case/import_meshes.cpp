@@ -8,9 +8,11 @@
 #include "engine/core/error.h"
 #include "engine/mesh/holes.h"
 #include "engine/mesh/measure.h"
+#include "engine/mesh/refine.h"
 #include "engine/mesh/repair.h"
 #include "engine/mesh/topology.h"
 #include "engine/mesh_io/mesh_files.h"
+#include "engine/mesh_io/texture.h"
 #include "sim/case/case_format.h"
 #include "sim/case/case_io.h"
 #include "sim/case/import_checks.h"
@@ -196,6 +198,27 @@ Part join_teeth(Role role, const std::vector<Surface>& surfaces, std::vector<std
   return part;
 }
 
+/// Colours the face by its file's own picture, if there is one: in triangles that are small enough
+/// to keep what is seen in it.
+void lay_texture(const fs::path& file, const SourceFrame& frame, Case& patient) {
+  constexpr int most_triangles = 150000;
+  const auto part = std::find_if(patient.parts.begin(), patient.parts.end(),
+                                 [](const Part& p) { return p.role == Role::face; });
+  if (part == patient.parts.end() || !part->mesh.colors.empty()) return;
+  const auto texture = read_texture(file);
+  if (!texture) return;
+  // Of even triangles there would be about so many; longer edges alone are halved.
+  const double edge_mm =
+      1.3 * std::sqrt(4 / std::sqrt(3.0) * surface_area(part->mesh) / most_triangles);
+  const std::vector<double> edges(part->mesh.vertices.size(), edge_mm);
+  part->mesh = refine(std::move(part->mesh), edges, most_triangles);
+  paint(part->mesh, *texture, Eigen::Affine3d(frame.to_lps_mm));
+  patient.notes.push_back(fmt::format(
+      "{}: coloured by the picture of {} ({}x{}), in {} triangles so that it stays sharp",
+      part->name, file.filename().string(), texture->width, texture->height,
+      part->mesh.triangles.size()));
+}
+
 std::vector<Part> make_parts(std::vector<Surface>& surfaces, std::vector<std::string>& notes) {
   std::vector<Part> parts;
   std::set<std::string> names;
@@ -292,6 +315,7 @@ Case import_meshes(const ImportRequest& request) {
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   patient.landmarks = import_landmarks(request, frame, box, patient.notes);
   patient.parts = make_parts(surfaces, patient.notes);
+  if (face) lay_texture(face->file, frame, patient);
   choose_carriers(patient, request.carriers);
   check_frame(patient, request);
   check_landmarks(patient, request);
