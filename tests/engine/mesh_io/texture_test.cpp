@@ -44,7 +44,7 @@ TEST_F(Textures, AnObjTakesItsMaterialsPictureTheRightWayUp) {
   EXPECT_EQ(texture->height, 2);
   EXPECT_EQ(texture->corners.size(), 3 * texture->surface.triangles.size());
   TriMesh probes;
-  probes.vertices = {{-1.5, 0, 1.5}, {1.5, 0, 1.5}, {-1.5, 0, -1.5}, {1.5, 0, -1.5}};
+  probes.vertices = {{-1, 0, 1}, {1, 0, 1}, {-1, 0, -1}, {1, 0, -1}};
   for (auto& p : probes.vertices) p *= 0.5 * 10;  // the file is in cm
   paint(probes, *texture, Eigen::Affine3d(10 * Eigen::Matrix3d::Identity()));
   const auto is = [&](std::size_t v, float r, float g, float b) {
