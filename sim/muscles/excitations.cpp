@@ -59,6 +59,7 @@ class Reader {
       read_knots(*muscle);
     else
       read_columns();
+    out_.duration_s = until_s_.value_or(out_.duration_s);
     return std::move(out_);
   }
 
@@ -66,7 +67,8 @@ class Reader {
   void read_sidecar(const fs::path& sidecar) {
     const JsonFile json(sidecar, read_file(sidecar, max_sidecar_bytes));
     const JsonItem root = json.root();
-    root.only_keys({"interpolation", "tone", "without"});
+    root.only_keys({"interpolation", "tone", "without", "until_s"});
+    if (const auto item = root.find("until_s")) until_s_ = item->number(0.001, 3600);
     if (const auto item = root.find("interpolation")) {
       between_ = between_called(item->text());
       if (!between_) item->refuse(no_interpolation(item->text()));
@@ -239,6 +241,7 @@ class Reader {
   Names names_;
   std::string header_;
   std::optional<Between> between_;  // of the whole file
+  std::optional<double> until_s_;
   Excitations out_;
 };
 

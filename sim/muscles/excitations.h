@@ -35,9 +35,9 @@ struct Excitations {
 /// (see Between). Lines that start with # are passed over, but for "# interpolation: step".
 ///
 /// FILE.json beside it, all keys optional: {"interpolation": "cubic", "tone": {"close": 0.001},
-/// "without": ["pm"]}. The tone is added to what the file says of these muscles; those in `without`
-/// are taken out, and what the file says of them is passed over.
-/// throws: InputError with file, line and value.
+/// "without": ["pm"], "until_s": 1}. The tone is added to what the file says of these muscles;
+/// those in `without` are taken out, and what the file says of them is passed over; the motion ends
+/// at `until_s` in place of the last time. throws: InputError with file, line and value.
 Excitations read_excitations(const std::filesystem::path& file, std::span<const Muscle> muscles);
 
 }  // namespace condyle

@@ -226,11 +226,13 @@ MotionPlot muscles(const MotionSeries& series, const char* file, const std::stri
                      .x_label = "time, s",
                      .y_label = y_label,
                      .legend_beside = true}};
-    for (const std::size_t m : shown)
-      if (peaks[m] >= least && peaks[m] > 0)
-        panel.curves.push_back(
-            over_time(series.muscle_names[m].c_str(), series,
-                      [&](std::size_t i) { return series.muscles[i][m].*value; }));
+    constexpr std::size_t colours = 6;  // the seventh has the first one's again
+    for (const std::size_t m : shown) {
+      if (!(peaks[m] >= least && peaks[m] > 0)) continue;
+      panel.curves.push_back(over_time(series.muscle_names[m].c_str(), series,
+                                       [&](std::size_t i) { return series.muscles[i][m].*value; }));
+      panel.curves.back().dashed = panel.curves.size() > colours;
+    }
     if (panel.curves.empty()) panel.curves.push_back({"none", {0, 1}, {0, 0}});
     plot.panels.push_back(std::move(panel));
   }

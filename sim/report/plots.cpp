@@ -159,19 +159,20 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
     const auto& curve = curves[c];
     const std::size_t number = curve.colour < 0 ? c : static_cast<std::size_t>(curve.colour);
     const char* colour = colours[number % colours.size()];
+    const char* dashes = curve.dashed ? " stroke-dasharray=\"6 4\"" : "";
     svg += fmt::format(
         "<polyline clip-path=\"url(#axes)\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{} "
         "points=\"",
-        colour, curve.dashed ? " stroke-dasharray=\"6 4\"" : "");
+        colour, dashes);
     for (std::size_t i = 0; i < curve.x.size(); ++i)
       svg += fmt::format("{:.2f},{:.2f} ", px(curve.x[i]), py(curve.y[i]));
     svg += "\"/>\n";
     if (curve.name.empty() || !settings.legend) continue;
     svg += fmt::format(
         "<line x1=\"{}\" x2=\"{}\" y1=\"{:.0f}\" y2=\"{:.0f}\" stroke=\"{}\" "
-        "stroke-width=\"2\"/><text x=\"{}\" y=\"{:.0f}\" fill=\"#222\">{}</text>\n",
-        legend_x, legend_x + 22, legend_y - 4, legend_y - 4, colour, legend_x + 28, legend_y,
-        escaped(curve.name));
+        "stroke-width=\"2\"{}/><text x=\"{}\" y=\"{:.0f}\" fill=\"#222\">{}</text>\n",
+        legend_x, legend_x + 22, legend_y - 4, legend_y - 4, colour, dashes, legend_x + 28,
+        legend_y, escaped(curve.name));
     legend_y += 18;
   }
   for (const auto& remark : settings.remarks) {

@@ -347,7 +347,8 @@ std::string MotionReport::text() const {
   });
   if (motion_.recorded && penetrates && stopped_frames_ == 0)
     text += "a recorded motion is played as it is; --respect-contact stops it where bones meet\n";
-  if (stopped_frames_ > 0)
+  constexpr double glide_mm = 0.05;  // teeth that glide are led by as much
+  if (kept_back_mm_ > glide_mm)
     text += fmt::format(
         "contact keeps the jaw from where it is wanted in {} frames, first in frame {}, by up to "
         "{:.2f} mm at the incisors\n",

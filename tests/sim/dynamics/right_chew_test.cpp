@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector3d;
 
 // The recorded run had one mylohyoid a side; its closers pull with a tone of 0.001 from the start.
-constexpr const char* sidecar = R"({"tone": {"close": 0.001}, "without": ["pm"]})";
+constexpr const char* sidecar = R"({"tone": {"close": 0.001}, "without": ["pm"], "until_s": 1})";
 
 NumberTable table(const std::filesystem::path& file) {
   const std::string content = read_file(file);

@@ -204,4 +204,12 @@ TEST(RealMovements, BadinClosesUntilItMeets) {
   EXPECT_GT(moved.incisor(moved.end_of("closing")).z(), 3);  // its rest pose is open
 }
 
+TEST(RealMovements, BadinsLateralMotionEndsWhereItBegan) {
+  const auto patient = case_badin();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  const Moved moved(*patient, "laterotrusion-left");
+  EXPECT_GT(moved.incisor(moved.end_of("closing")).norm(), 3);  // in its bite, above its rest
+  EXPECT_LT(moved.incisor(moved.motion.duration_s).norm(), 1e-9);
+}
+
 }  // namespace condyle::test

@@ -134,7 +134,9 @@ TEST_F(ExcitationFile, HoldsOrJoinsItsRowsAsToldInItOrBesideIt) {
 
 TEST_F(ExcitationFile, ASidecarGivesAToneAndTakesMusclesOut) {
   const std::string rows = "time_s,lat,rmy,lpm\n0,0.1,0.3,0.4\n";
-  const Excitations e = read(rows, R"({"tone": {"t": 0.01, "lat": 0.02}, "without": ["pm"]})");
+  const Excitations e =
+      read(rows, R"({"tone": {"t": 0.01, "lat": 0.02}, "without": ["pm"], "until_s": 0.4})");
+  EXPECT_EQ(e.duration_s, 0.4);
   EXPECT_EQ(e.without, (std::vector<std::string>{"lpm", "rpm"}));
   const std::vector<double> wanted = {0.13, 0.01, 0.01, 0.01, 0, 0.3};  // lat rat lmt rmt lam ram
   const auto at = e.at(0);
