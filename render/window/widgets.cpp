@@ -231,6 +231,7 @@ bool text_field(Pen& pen, const char* name, std::string& words, float width, con
       ImGui::InputTextWithHint((std::string("##") + name).c_str(), hint, letters.data(),
                                letters.size(), ImGuiInputTextFlags_EnterReturnsTrue);
   pen.mark(name);
+  if (ImGui::IsItemActive()) pen.mark("writing");
   words = letters.data();
   return entered;
 }

@@ -138,9 +138,14 @@ void Window::State::interface_frame() {
   if (!keys.empty()) {
     const KeyMoment next = keys.front();
     keys.pop_front();
-    io.KeysDown[next.key] = next.down;
-    io.KeyCtrl = (next.mods & GLFW_MOD_CONTROL) != 0;
-    io.KeyShift = (next.mods & GLFW_MOD_SHIFT) != 0;
+    if (next.letter) {
+      io.KeyCtrl = io.KeyShift = false;
+      io.AddInputCharacter(next.letter);
+    } else {
+      io.KeysDown[next.key] = next.down;
+      io.KeyCtrl = (next.mods & GLFW_MOD_CONTROL) != 0;
+      io.KeyShift = (next.mods & GLFW_MOD_SHIFT) != 0;
+    }
   }
   ImGui::NewFrame();
   const auto [w, h] = size();

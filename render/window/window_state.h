@@ -63,11 +63,13 @@ struct Window::State {
   std::vector<std::filesystem::path> dropped;  // on the window, not taken yet
 
   MouseQueue mouse;
-  /// Keys for a field that is written in, each with its own pass over the panels.
+  /// Keys and letters for a field that is written in, in their order, each with its own pass over
+  /// the panels.
   struct KeyMoment {
-    int key;
-    bool down;
-    int mods;
+    int key = 0;
+    bool down = false;
+    int mods = 0;
+    unsigned letter = 0;  // that was typed; 0: a key
   };
   std::deque<KeyMoment> keys;
   CameraDrag drag = CameraDrag::none;

@@ -117,7 +117,7 @@ TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
   // Open the same patient by its path.
   EXPECT_TRUE(press("ctrl+o"));
   click("open-path");
-  std::this_thread::sleep_for(milliseconds(200));
+  ASSERT_TRUE(wait_for_item("writing"));
   EXPECT_TRUE(xdotool({"type", patient}));
   EXPECT_TRUE(press("Return"));
   EXPECT_TRUE(wait_for_item("open", false)) << "the dialog closes";
@@ -127,8 +127,8 @@ TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
   // A motion from a file.
   EXPECT_TRUE(press("ctrl+o"));
   click("open-path");
-  std::this_thread::sleep_for(milliseconds(200));
-  EXPECT_TRUE(xdotool({"key", "ctrl+a"}));
+  ASSERT_TRUE(wait_for_item("writing"));
+  EXPECT_TRUE(press("ctrl+a"));
   EXPECT_TRUE(xdotool({"type", folder_ / "down.csv"}));
   EXPECT_TRUE(press("Return"));
   ASSERT_TRUE(wait_until([&](const Json& s) { return idle(s) && s["motion"] != "opening"; }));
@@ -146,6 +146,8 @@ TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
   }));
   click("to-start");
 
+  // A recorded motion is played as it is until contact is asked for.
+  click("obey-contact");
   // Drag the mandible up by its handle until it meets the maxilla, 1 mm above.
   EXPECT_TRUE(press("a"));
   EXPECT_TRUE(press("m"));
@@ -190,7 +192,7 @@ TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
   click("record-height:720");
   click("record-rate:10");
   click("record-folder");
-  std::this_thread::sleep_for(milliseconds(200));
+  ASSERT_TRUE(wait_for_item("writing"));
   EXPECT_TRUE(press("ctrl+a"));
   EXPECT_TRUE(xdotool({"type", folder_ / "film"}));
   EXPECT_TRUE(press("Return"));
@@ -216,7 +218,7 @@ TEST_F(WindowSession, TroubleIsToldAsASentenceAndTheWindowStays) {
   for (const std::string& path : {folder_ / "not-there", folder_ / "bad.csv"}) {
     EXPECT_TRUE(press("ctrl+o"));
     click("open-path");
-    std::this_thread::sleep_for(milliseconds(200));
+    ASSERT_TRUE(wait_for_item("writing"));
     EXPECT_TRUE(press("ctrl+a"));
     EXPECT_TRUE(xdotool({"type", path}));
     EXPECT_TRUE(press("Return"));
@@ -228,7 +230,7 @@ TEST_F(WindowSession, TroubleIsToldAsASentenceAndTheWindowStays) {
       << "as it was before";
   click("tab:Record");
   click("record-folder");
-  std::this_thread::sleep_for(milliseconds(200));
+  ASSERT_TRUE(wait_for_item("writing"));
   EXPECT_TRUE(press("ctrl+a"));
   EXPECT_TRUE(xdotool({"type", "/proc/film"}));
   EXPECT_TRUE(press("Return"));
