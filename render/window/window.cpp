@@ -42,12 +42,7 @@ Window::State::State(const WindowOptions& wanted) : options(wanted) {
   panels.emplace(1.0f, options.light);
   view_picture.emplace();
   ImGui_ImplGlfw_InitForOpenGL(window, true);  // calls our callbacks before its own
-  // Letters wait in one row with the keys, or they would overtake them.
-  glfwSetCharCallback(window, [](GLFWwindow* w, unsigned letter) {
-    guarded(w, [&](State& s) {
-      if (ImGui::GetIO().WantTextInput) s.keys.push_back({.letter = letter});
-    });
-  });
+  install_key_callbacks();
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 

@@ -13,13 +13,6 @@ constexpr double attentive_s = 0.5;  // after an event answers may come without 
 }  // namespace
 
 void Window::State::install_callbacks() {
-  glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
-    guarded(w, [&](State& s) {
-      if (action != GLFW_REPEAT && key >= 0 && key <= GLFW_KEY_LAST && ImGui::GetIO().WantTextInput)
-        s.keys.push_back({key, action == GLFW_PRESS, mods});
-    });
-    if (action != GLFW_RELEASE) guarded(w, [&](State& s) { s.on_key(key, scancode, mods); });
-  });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
     guarded(w, [&](State& s) { s.on_button(button, action == GLFW_PRESS, mods); });
   });
@@ -37,6 +30,24 @@ void Window::State::install_callbacks() {
   });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { guarded(w, [](State&) {}); });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { guarded(w, [](State&) {}); });
+}
+
+/// Instead of ImGui's own: keys and letters wait in one row, each for its pass over the panels, or
+/// they would overtake each other.
+void Window::State::install_key_callbacks() {
+  glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+    guarded(w, [&](State& s) {
+      if (action != GLFW_REPEAT && key >= 0 && key <= GLFW_KEY_LAST &&
+          (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput))
+        s.keys.push_back({key, action == GLFW_PRESS, mods});
+    });
+    if (action != GLFW_RELEASE) guarded(w, [&](State& s) { s.on_key(key, scancode, mods); });
+  });
+  glfwSetCharCallback(window, [](GLFWwindow* w, unsigned letter) {
+    guarded(w, [&](State& s) {
+      if (ImGui::GetIO().WantTextInput) s.keys.push_back({.letter = letter});
+    });
+  });
 }
 
 void Window::State::on_key(int key, int scancode, int mods) {

@@ -97,6 +97,7 @@ struct Window::State {
 
   // window_input.cpp
   void install_callbacks();
+  void install_key_callbacks();
   void on_key(int key, int scancode, int mods);
   void on_button(int button, bool down, int mods);
   void on_move(double x, double y);
