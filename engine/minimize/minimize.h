@@ -25,8 +25,9 @@ struct MethodFacts {
 std::span<const MethodFacts> all_methods();
 
 struct MinimizeSettings {
-  /// preconditioned: estimated distance left to the minimum, of the worst point. The others: the
-  /// largest way of any point in one iteration.
+  /// preconditioned: estimated distance left to the minimum, of the worst point, from the
+  /// preconditioned gradient and how fast iterations shorten it. The others: the largest way of any
+  /// point in one iteration.
   double tolerance_mm = 1e-3;
   /// The others also stop where an iteration lowers the value by less than this share of it; 0:
   /// never.

@@ -24,7 +24,11 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& precon
   d.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
 
-  if (largest_norm(z) < 0.05 * settings.tolerance_mm) result.status = Status::converged;
+  // The way that is left, by the preconditioner. Iterations that shorten it by a factor each leave
+  // the sum of a geometric series; before the first nothing is known of that factor.
+  constexpr double unknown_share = 0.3, least_contraction = 0.95;
+  double way = largest_norm(z), shortest = way;
+  if (way < unknown_share * settings.tolerance_mm) result.status = Status::converged;
   for (; !result.converged() && result.iterations < settings.max_iterations && !counted.spent();
        ++result.iterations) {
     double slope = dot(g, d);
@@ -60,7 +64,7 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& precon
       }
     }
     if (!accepted) {  // as low as the arithmetic goes
-      if (largest_norm(z) < settings.tolerance_mm)
+      if (way < settings.tolerance_mm)
         result.status = Status::converged;
       else if (!counted.spent())
         result.status = Status::stalled;
@@ -76,9 +80,11 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& precon
     g.swap(g_new);
     z.swap(z_new);
     gz = dot(g, z);
-    const double moved = step * reach;
     for (std::size_t i = 0; i < x.size(); ++i) d[i] = beta * d[i] - z[i];
-    if (moved < settings.tolerance_mm && largest_norm(z) < settings.tolerance_mm) {
+    way = largest_norm(z);
+    const double contraction = std::min(way / shortest, least_contraction);
+    shortest = std::min(shortest, way);
+    if (way < settings.tolerance_mm * (1 - contraction)) {
       ++result.iterations;
       result.status = Status::converged;
       break;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 
 #include "engine/core/parallel.h"
@@ -11,48 +10,9 @@
 namespace condyle {
 namespace {
 
-constexpr int largest_block = 18;
 using BlockBuffer = std::array<float, largest_block * largest_block>;
 /// Numbers of a block's rows, with room for what kernels read and write beyond them.
 using PaddedBlock = std::array<float, 2 * largest_block>;
-
-/// Replaces the lower half of a diagonal block by the inverse of its Cholesky factor, with zeros
-/// above: solving is then only products. Gives the number of raised pivots.
-int invert_diagonal(float* block, int stride, int size, float least) {
-  BlockBuffer L{}, inverse{};
-  float largest = 0;
-  for (int j = 0; j < size; ++j) {
-    largest = std::max(largest, std::abs(block[j * stride + j]));
-    for (int i = j; i < size; ++i) L[j * size + i] = block[j * stride + i];
-  }
-  if (!(largest > 0)) largest = 1;
-  std::array<float, largest_block> reciprocal;
-  int raised = 0;
-  for (int j = 0; j < size; ++j) {
-    float* column = &L[j * size];
-    for (int k = 0; k < j; ++k) {
-      const float factor = L[k * size + j];
-      for (int i = j; i < size; ++i) column[i] -= factor * L[k * size + i];
-    }
-    if (!(column[j] > least * largest)) {
-      column[j] = largest;
-      ++raised;
-    }
-    reciprocal[j] = 1 / std::sqrt(column[j]);
-    for (int i = j + 1; i < size; ++i) column[i] *= reciprocal[j];
-  }
-  for (int j = 0; j < size; ++j) {
-    float* column = &inverse[j * size];
-    column[j] = reciprocal[j];
-    for (int k = j; k < size; ++k) {  // what row k's entry takes from the rows below
-      if (k > j) column[k] *= -reciprocal[k];
-      for (int i = k + 1; i < size; ++i) column[i] += L[k * size + i] * column[k];
-    }
-  }
-  for (int j = 0; j < size; ++j)
-    for (int i = 0; i < size; ++i) block[j * stride + i] = inverse[j * size + i];
-  return raised;
-}
 
 /// subtract_product, its columns shared among threads where that is worth it.
 void subtract_product(const FloatKernels::Product& p, int threads) {
@@ -78,12 +38,13 @@ void subtract_product(const FloatKernels::Product& p, int threads) {
 BlockCholesky::BlockCholesky(std::shared_ptr<const FrontTree> tree)
     : tree_(std::move(tree)), values_(tree_->panel_floats) {}
 
-int BlockCholesky::factorize_front(int index, float* work, float least, int threads) {
+int BlockCholesky::factorize_front(int index, float* panels, float* work, float least,
+                                   int threads) {
   const FrontTree& tree = *tree_;
   const FrontTree::Front& front = tree.fronts[index];
   const int size = tree.block, height = tree.height(front), width = front.pivots * size;
   const int left = tree.update_height(front);
-  float* panel = values_.data() + front.panel;
+  float* panel = panels + front.panel;
   float* update = work + front.update;
   const FloatKernels& kernels = float_kernels();
   std::fill_n(update, static_cast<std::size_t>(left) * left, 0.0f);
@@ -118,7 +79,7 @@ int BlockCholesky::factorize_front(int index, float* work, float least, int thre
   std::vector<float> copy(static_cast<std::size_t>(height) * size + FrontTree::beyond);
   for (int c = 0; c < width; c += size) {
     float* diagonal = panel + static_cast<std::size_t>(c) * height + c;
-    raised += invert_diagonal(diagonal, height, size, least);
+    raised += kernels.invert_diagonal(diagonal, height, size, least);
     const int below = height - c - size;
     if (below == 0) continue;
     // The rows below, times the transposed inverse.
@@ -149,25 +110,26 @@ int BlockCholesky::factorize_front(int index, float* work, float least, int thre
     subtract_product(
         {update, panel + width, panel + width, left, left, width, left, height, height, true},
         threads);
+  kernels.narrow(panel, static_cast<std::size_t>(height) * width, values_.data() + front.panel);
   return raised;
 }
 
 int BlockCholesky::factorize(const std::function<void(int part, float* values)>& assemble,
                              float least, int threads) {
   const FrontTree& tree = *tree_;
+  const auto panels = std::make_unique_for_overwrite<float[]>(tree.panel_floats);
   const auto work = std::make_unique_for_overwrite<float[]>(tree.work_floats);
   std::array<int, 3> raised{};
   const auto do_part = [&](int part, int inner_threads) {
     const auto& part_of_fronts = tree.part;
     const auto from = [&](int f) {
-      return values_.begin() + (f < static_cast<int>(tree.fronts.size())
-                                    ? static_cast<std::ptrdiff_t>(tree.fronts[f].panel)
-                                    : static_cast<std::ptrdiff_t>(values_.size()));
+      return panels.get() +
+             (f < static_cast<int>(tree.fronts.size()) ? tree.fronts[f].panel : tree.panel_floats);
     };
     std::fill(from(part_of_fronts[part]), from(part_of_fronts[part + 1]), 0.0f);
-    assemble(part, values_.data());
+    assemble(part, panels.get());
     for (int f = part_of_fronts[part]; f < part_of_fronts[part + 1]; ++f)
-      raised[part] += factorize_front(f, work.get(), least, inner_threads);
+      raised[part] += factorize_front(f, panels.get(), work.get(), least, inner_threads);
   };
   parallel_for(2, threads, [&](std::size_t half) { do_part(static_cast<int>(half), 1); });
   do_part(2, threads);
@@ -179,12 +141,12 @@ void BlockCholesky::forward(int index, float* b, float* rest, std::vector<float>
   const FrontTree::Front& front = tree.fronts[index];
   const FloatKernels& kernels = float_kernels();
   const int size = tree.block, height = tree.height(front), width = front.pivots * size;
-  const float* panel = values_.data() + front.panel;
+  const ShortFloat* panel = values_.data() + front.panel;
   float* pivot = b + static_cast<std::size_t>(front.first) * size;
   std::copy_n(pivot, width, rows.begin());
   std::fill_n(rows.begin() + width, height - width, 0.0f);
   for (int c = 0; c < width; c += size) {
-    const float* diagonal = panel + static_cast<std::size_t>(c) * height + c;
+    const ShortFloat* diagonal = panel + static_cast<std::size_t>(c) * height + c;
     PaddedBlock solved{};
     for (int i = 0; i < size; ++i) rows[c + i] = -rows[c + i];
     kernels.subtract_times(solved.data(), diagonal, height, size, size, &rows[c]);
@@ -206,13 +168,13 @@ void BlockCholesky::backward(int index, float* b, std::vector<float>& rows) cons
   const FrontTree::Front& front = tree.fronts[index];
   const FloatKernels& kernels = float_kernels();
   const int size = tree.block, height = tree.height(front), width = front.pivots * size;
-  const float* panel = values_.data() + front.panel;
+  const ShortFloat* panel = values_.data() + front.panel;
   float* pivot = b + static_cast<std::size_t>(front.first) * size;
   for (int r = front.rows_begin, i = width; r < front.rows_end; ++r, i += size)
     std::copy_n(b + static_cast<std::size_t>(tree.rows[r]) * size, size, &rows[i]);
   std::fill_n(rows.begin() + height, FrontTree::beyond, 0.0f);
   for (int c = width - size; c >= 0; c -= size) {
-    const float* diagonal = panel + static_cast<std::size_t>(c) * height + c;
+    const ShortFloat* diagonal = panel + static_cast<std::size_t>(c) * height + c;
     kernels.subtract_transposed(pivot + c, diagonal + size, height, height - c - size, size,
                                 &rows[c + size]);
     PaddedBlock negative{}, solved{};
@@ -247,7 +209,7 @@ void BlockCholesky::solve(std::vector<float>& b, int threads) const {
 
 std::size_t BlockCholesky::bytes() const {
   const std::size_t order = tree_->order.at.size() * tree_->block;
-  return (values_.capacity() + 2 * order) * sizeof(float) +
+  return values_.capacity() * sizeof(ShortFloat) + 2 * order * sizeof(float) +
          (tree_->rows.capacity() + tree_->seat.capacity()) * sizeof(int);
 }
 

@@ -128,6 +128,7 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
 
   front_of.resize(count);
   for (const Range& range : ranges) {
+    if (range.first == order.part[1] || range.first == order.part[2]) panel_floats += beyond;
     Front front;
     front.first = range.first;
     front.pivots = range.last - range.first + 1;

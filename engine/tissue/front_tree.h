@@ -28,7 +28,7 @@ struct FrontTree {
   /// Panel's first float of the block (row, column); places, row >= column. -1 if not stored.
   std::ptrdiff_t find(int row, int column) const;
 
-  static constexpr int beyond = 16;  // floats that kernels may read past the end
+  static constexpr int beyond = 16;  // floats that may be touched past the end of each part
 
   int block = 0;
   EliminationOrder order;

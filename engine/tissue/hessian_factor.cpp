@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace condyle {
 namespace {
@@ -52,11 +53,16 @@ struct Symmetric {
   }
 };
 
-/// Its product with v is u x v.
-Matrix3d cross_matrix(const Vector3d& u) {
-  Matrix3d m;
-  m << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
-  return m;
+/// Three numbers of a column of the matrix; the fourth is 0, and what stands below them stays.
+typedef float Column __attribute__((vector_size(4 * sizeof(float))));
+inline Column column_of(const Vector3d& v) {
+  return Column{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
+}
+inline void add_column(float* to, const Column& column) {
+  Column sum;
+  std::memcpy(&sum, to, sizeof sum);
+  sum += column;
+  std::memcpy(to, &sum, sizeof sum);
 }
 
 }  // namespace
@@ -66,7 +72,9 @@ Matrix3d cross_matrix(const Vector3d& u) {
 struct HessianFactor::Pattern {
   struct Spot {
     std::ptrdiff_t at = -1;  // -1: not stored
-    int stride = 0, part = 0;
+    int stride = 0;
+    signed char part = 0;
+    bool swapped = false;  // the row is the second of the two nodes
   };
 
   std::shared_ptr<const FrontTree> tree;
@@ -105,7 +113,8 @@ struct HessianFactor::Pattern {
     if (spot.at >= 0)
       spot.at += static_cast<std::ptrdiff_t>(3 * (column % nodes_per_column)) * spot.stride +
                  3 * (row % nodes_per_column);
-    spot.part = part_of(column);
+    spot.part = static_cast<signed char>(part_of(column));
+    spot.swapped = row == b && a != b;
     return spot;
   }
   int part_of(int node) const {
@@ -144,8 +153,7 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
     const auto add = [&](const Spot& spot, const Matrix3d& m) {
       if (spot.part != part) return;
       float* to = values + spot.at;
-      for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i) to[j * spot.stride + i] += static_cast<float>(m(i, j));
+      for (int j = 0; j < 3; ++j) add_column(to + j * spot.stride, column_of(m.col(j)));
     };
     std::vector<Symmetric> own(net.node_count);  // each node's own entry
     for (int s : pattern.springs_of[part]) {
@@ -200,16 +208,28 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
                                 volume_pressure(j, net.barrier_share, net.barrier_weight);
         for (auto& b : bend) b *= pressure;
       }
+      std::array<Column, 6> slopes, weighted;
+      for (int a = 0; a < 6; ++a) {
+        slopes[a] = column_of(slope[a]);
+        weighted[a] = static_cast<float>(weight) * slopes[a];
+      }
       const Spot* pair = &pattern.prism[static_cast<std::size_t>(p) * corner_pairs];
       for (int a = 0; a < 6; ++a) {
         own[prism[a]].add(weight, slope[a], 0);
         for (int b = 0; b < a; ++b, ++pair) {
           if (pair->part != part) continue;
-          const bool as_is = pattern.is_below(prism[a], prism[b]);
-          const Vector3d &row = slope[as_is ? a : b], &column = slope[as_is ? b : a];
-          Matrix3d m = weight * row * column.transpose();
-          if (exact) m += (as_is ? 1 : -1) * cross_matrix(bend[a * (a - 1) / 2 + b]);
-          add(*pair, m);
+          const int row = pair->swapped ? b : a, column = pair->swapped ? a : b;
+          float* to = values + pair->at;
+          const Column &steep = slopes[row], &along = weighted[column];
+          if (exact) {
+            // The matrix whose product with v is u x v.
+            const Column u = (pair->swapped ? -1.0f : 1.0f) * column_of(bend[a * (a - 1) / 2 + b]);
+            add_column(to, along[0] * steep + Column{0, u[2], -u[1], 0});
+            add_column(to + pair->stride, along[1] * steep + Column{-u[2], 0, u[0], 0});
+            add_column(to + 2 * pair->stride, along[2] * steep + Column{u[1], -u[0], 0, 0});
+          } else {
+            for (int k = 0; k < 3; ++k) add_column(to + k * pair->stride, along[k] * steep);
+          }
         }
       }
     }

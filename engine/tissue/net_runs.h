@@ -14,14 +14,22 @@ struct SpringPrismNet;
 /// one go, and no two lanes write to one node.
 struct NetRuns {
   static constexpr int lanes = 4;
+  static constexpr std::size_t align = 4;  // the numbers of runs are multiples of it
   explicit NetRuns(const SpringPrismNet& net);
 
+  /// The first of the nodes that stand at one end of a run. Where it is `late`, forces are added
+  /// from the node before it on, the last lane's going nowhere: then the nodes of a column are
+  /// written to at one place, which the processor's stores want.
+  struct Place {
+    int first = 0;
+    int late = 0;
+  };
   struct Springs {
-    int a, b;  // first nodes
+    Place a, b;
   };
   struct Prisms {
-    std::array<int, 6> corner;  // first nodes
-    int count;                  // lanes in use
+    std::array<Place, 6> corner;
+    int count;  // lanes in use
   };
   std::vector<Springs> springs;
   std::vector<Prisms> prisms;
@@ -34,8 +42,8 @@ struct AxisRows {
   double *x, *y, *z;
 };
 
-/// Sums over runs [first, last) of a net; see SpringPrismEnergy. They use the widest vectors that
-/// the processor has and give the same bits on each.
+/// Sums over runs [first, last) of a net, both even; see SpringPrismEnergy. They use the widest
+/// vectors that the processor has and give the same bits on each that can fuse products and sums.
 struct RunKernels {
   struct Range {
     std::size_t first, last;

@@ -21,11 +21,16 @@ class RollingFactor {
   /// One made within the frame serves at once.
   void replace(std::shared_ptr<const HessianFactor> by) { now_ = std::move(by); }
 
-  static constexpr int lag = 2;  // frames
+  static constexpr int lag = 1;  // frames
   /// Begins one of state x, to serve `lag` frames later; not while one is being made. With one
-  /// thread it is made when it is due. `owner` keeps the net.
+  /// thread it is made when it is due, or when `finish` is called. `owner` keeps the net.
   void begin(const SpringPrismNet& net, NetLoads loads, Nodes x, int threads,
              std::shared_ptr<const void> owner);
+  /// Waits for the one being made, or makes it: in the time between frames, where there is only one
+  /// thread.
+  void finish() const {
+    if (next_.valid()) next_.wait();
+  }
 
  private:
   std::shared_ptr<const HessianFactor> now_;

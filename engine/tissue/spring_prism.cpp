@@ -121,13 +121,17 @@ Nodes weight_of_nodes(const SpringPrismNet& net, const Vector3d& down) {
   return weight;
 }
 
-SpringPrismEnergy::SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads)
-    : net_(net), loads_(loads), threads_(threads), runs_(net) {
+SpringPrismEnergy::SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads,
+                                     std::shared_ptr<const NetRuns> runs)
+    : net_(net),
+      loads_(loads),
+      threads_(threads),
+      runs_(runs ? std::move(runs) : std::make_shared<const NetRuns>(net)) {
   const std::size_t size = 3 * (static_cast<std::size_t>(net.node_count) + NetRuns::lanes);
   x_.assign(size, 0.0);
   d_.assign(size, 0.0);
   for (auto& gradient : gradient_) gradient.resize(size);
-  inverse_length_.resize(runs_.springs.size() * NetRuns::lanes);
+  inverse_length_.resize(runs_->springs.size() * NetRuns::lanes);
 }
 
 AxisRows SpringPrismEnergy::rows(Rows& of) const {
@@ -157,7 +161,7 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, bool with_grad
     slope.y[node] += force.y();
     slope.z[node] += force.z();
   };
-  double spring_energy = kernels.springs(runs_, share(runs_.springs.size(), chunk, chunks_),
+  double spring_energy = kernels.springs(*runs_, share(runs_->springs.size(), chunk, chunks_),
                                          net_.compression_share, at, slope, inverse_length_.data());
   const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);
   for (std::size_t i = anchors.first; i < anchors.last; ++i) {
@@ -183,7 +187,7 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, bool with_grad
   // Springs and volumes share the gradient: the volumes' part is scaled to the springs' weight.
   const double lambda = net_.lambda, volume_scale = (1 - lambda) / lambda;
   const double volume_energy =
-      kernels.prisms(runs_, share(runs_.prisms.size(), chunk, chunks_), net_.barrier_share,
+      kernels.prisms(*runs_, share(runs_->prisms.size(), chunk, chunks_), net_.barrier_share,
                      net_.barrier_weight, at, volume_scale, slope);
   return lambda * (spring_energy + volume_scale * volume_energy);
 }
@@ -215,9 +219,9 @@ Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& 
   const RunKernels& kernels = run_kernels();
   const AxisRows at = rows(x_), way = rows(d_);
   const auto springs =
-      kernels.springs_bend(runs_, share(runs_.springs.size(), chunk, chunks_),
+      kernels.springs_bend(*runs_, share(runs_->springs.size(), chunk, chunks_),
                            net_.compression_share, at, way, inverse_length_.data());
-  const auto prisms = kernels.prisms_bend(runs_, share(runs_.prisms.size(), chunk, chunks_),
+  const auto prisms = kernels.prisms_bend(*runs_, share(runs_->prisms.size(), chunk, chunks_),
                                           net_.barrier_share, net_.barrier_weight, at, way);
   double linear = 0;  // parts whose curvature is exact and never negative
   const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);

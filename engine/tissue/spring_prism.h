@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "engine/minimize/objective.h"
@@ -83,7 +84,10 @@ double volume_stiffness(double share, double barrier_share, double barrier_weigh
 /// that does not depend on the number of threads.
 class SpringPrismEnergy final : public Objective {
  public:
-  SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads);
+  /// Keeps `loads` by reference: they may change between calls. `runs`: those of the net, when they
+  /// have been made before.
+  SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads,
+                    std::shared_ptr<const NetRuns> runs = nullptr);
 
   /// Energy, mJ: lambda sum k (l - l0)^2 + (1 - lambda) sum w (v - v0)^2, anchors, contacts and
   /// node forces with the springs. Infinite where a prism has no positive volume.
@@ -106,7 +110,7 @@ class SpringPrismEnergy final : public Objective {
   const SpringPrismNet& net_;
   const NetLoads& loads_;
   int threads_;
-  NetRuns runs_;
+  std::shared_ptr<const NetRuns> runs_;
   Rows x_, d_;
   std::array<Rows, chunks_> gradient_;
   std::vector<double> inverse_length_;  // of each lane of a run of springs, 1/mm

@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
 
 #include "engine/tissue/float_kernels.h"
@@ -77,6 +79,12 @@ int factorize(const Sparse& s, BlockCholesky& factor, int threads) {
       1e-6f, threads);
 }
 
+std::vector<ShortFloat> shortened(const std::vector<float>& values) {
+  std::vector<ShortFloat> shorts(values.size());
+  float_kernels().narrow(values.data(), values.size(), shorts.data());
+  return shorts;
+}
+
 std::vector<float> right_hand_side(std::size_t size) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> entry(-1, 1);
@@ -101,7 +109,7 @@ TEST(BlockCholesky, SolvesAsADenseFactorDoes) {
     for (std::size_t i = 0; i < b.size(); ++i)
       error = std::max(
           error, std::abs(b[i] - expected[at[i / block] * block + static_cast<int>(i) % block]));
-    EXPECT_LT(error, 1e-3 * expected.cwiseAbs().maxCoeff()) << block;
+    EXPECT_LT(error, 0.03 * expected.cwiseAbs().maxCoeff()) << block;  // it is kept in 8 bits
     EXPECT_GT(expected.norm(), 1);
   }
 }
@@ -140,6 +148,51 @@ TEST(EliminationOrder, HalvesTouchOnlyThroughTheLastPart) {
   }
 }
 
+/// a b + c, rounded once where the processor can.
+float fused(float a, float b, float c) {
+#ifdef __x86_64__
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return a * b + c;
+  return std::fma(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
+TEST(FloatKernels, ShortFloatsAreTheNearest) {
+  for (float v : right_hand_side(1000)) {
+    const float near = float_of(short_float(v));
+    EXPECT_LE(std::abs(near - v), std::ldexp(std::abs(v), -8));
+    EXPECT_EQ(short_float(near), shortened({v})[0]);
+    EXPECT_EQ(shortened(std::vector<float>(16, v))[5], short_float(v));
+  }
+  EXPECT_EQ(float_of(short_float(-1.5f)), -1.5f);
+  EXPECT_TRUE(std::isinf(float_of(short_float(std::numeric_limits<float>::infinity()))));
+}
+
+TEST(FloatKernels, ABlockTimesItsInverseFactorsIsOne) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> entry(-1, 1);
+  for (int size : {3, 6, 12, 15, 18}) {
+    Eigen::MatrixXf root(size, size + 4);
+    for (auto& v : root.reshaped()) v = entry(random);
+    const Eigen::MatrixXf block = root * root.transpose();
+    const int stride = size + 5;
+    std::vector<float> given(static_cast<std::size_t>(stride) * size, 7.0f);
+    for (int j = 0; j < size; ++j)
+      for (int i = j; i < size; ++i) given[j * stride + i] = block(i, j);
+    EXPECT_EQ(float_kernels().invert_diagonal(given.data(), stride, size, 1e-6f), 0);
+    Eigen::MatrixXf inverse(size, size);
+    for (int j = 0; j < size; ++j)
+      for (int i = 0; i < size; ++i) inverse(i, j) = given[j * stride + i];
+    for (int j = 0; j < size; ++j)
+      for (int i = 0; i < j; ++i) EXPECT_EQ(inverse(i, j), 0);
+    EXPECT_LT(
+        (inverse * block * inverse.transpose() - Eigen::MatrixXf::Identity(size, size)).norm(),
+        1e-3);
+    EXPECT_EQ(given[size], 7.0f);  // what stands between the columns stays
+  }
+}
+
 TEST(FloatKernels, GiveTheBitsOfPlainLoops) {
   const FloatKernels& kernels = float_kernels();
   for (int rows : {1, 12, 16, 37, 64})
@@ -154,27 +207,29 @@ TEST(FloatKernels, GiveTheBitsOfPlainLoops) {
       for (int j = 0; j < columns; ++j)
         for (int i = 0; i < rows; ++i) {
           float sum = 0;
-          for (int k = 0; k < depth; ++k) sum += A[k * rows + i] * B[k * columns + j];
+          for (int k = 0; k < depth; ++k) sum = fused(A[k * rows + i], B[k * columns + j], sum);
           expected[j * rows + i] -= sum;
         }
       EXPECT_EQ(C, expected);
 
       std::vector<float> y = right_hand_side(rows + 16), y_expected = y;
       const std::vector<float> x = right_hand_side(depth);
-      kernels.subtract_times(y.data(), A.data(), rows, rows, depth, x.data());
+      const std::vector<ShortFloat> A_short = shortened(A);
+      kernels.subtract_times(y.data(), A_short.data(), rows, rows, depth, x.data());
       for (int i = 0; i < rows; ++i) {
         float sum = 0;
-        for (int k = 0; k < depth; ++k) sum += A[k * rows + i] * x[k];
+        for (int k = 0; k < depth; ++k) sum = fused(float_of(A_short[k * rows + i]), x[k], sum);
         EXPECT_EQ(y[i], y_expected[i] - sum);
       }
 
       std::vector<float> padded = right_hand_side(rows);
       padded.resize(rows + 16, 0.0f);
       std::vector<float> z = right_hand_side(depth), z_expected = z;
-      kernels.subtract_transposed(z.data(), A.data(), rows, rows, depth, padded.data());
+      kernels.subtract_transposed(z.data(), A_short.data(), rows, rows, depth, padded.data());
       for (int k = 0; k < depth; ++k) {
         std::array<float, 16> part{};
-        for (int i = 0; i < rows; ++i) part[i % 16] += A[k * rows + i] * padded[i];
+        for (int i = 0; i < rows; ++i)
+          part[i % 16] = fused(float_of(A_short[k * rows + i]), padded[i], part[i % 16]);
         for (int half = 8; half > 0; half /= 2)
           for (int i = 0; i < half; ++i) part[i] += part[i + half];
         EXPECT_EQ(z[k], z_expected[k] - part[0]);

@@ -202,8 +202,8 @@ TEST(HessianFactor, ExactCurvaturesUndoADifferenceOfGradients) {
     error = std::max(error, (z[i] - d[i]).norm());
     without = std::max(without, (z_gauss_newton[i] - d[i]).norm());
   }
-  EXPECT_LT(error, 0.004);  // what holds loose nodes is in the factor only
-  EXPECT_GT(without, 3 * error);
+  EXPECT_LT(error, 0.01);  // it is kept in eight bits, and what holds loose nodes is in it only
+  EXPECT_GT(without, 2 * error);
 }
 
 TEST(Minimizer, NeverInvertsAPrismHoweverHardItIsPressed) {
