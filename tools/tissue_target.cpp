@@ -21,7 +21,7 @@ double clock_ms(clockid_t clock) {
 }  // namespace
 
 TissueTarget make_target(SyntheticSet set, const Pose& lower_bone) {
-  TissueTarget target{std::move(set), {}, {}, {}, 0};
+  TissueTarget target{std::move(set), {}, {}, {}, 0, {}};
   target.rest_loads = synthetic_loads(target.set, Pose{});
   target.loads = synthetic_loads(target.set, lower_bone);
   target.converged = target.start();
@@ -39,7 +39,7 @@ TissueTarget make_target(SyntheticSet set, const Pose& lower_bone) {
 Pose bench_movement() { return synthetic_pose(0.0873, {0, -2, -2}); }
 
 StoredOpening::StoredOpening(const TissueTarget& target, const HessianFactor& at_rest, int threads)
-    : nodes(target.start()), factor(at_rest) {
+    : nodes(target.set.rest), factor(at_rest) {
   const SpringPrismNet& net = target.set.net;
   const NetLoads loads = synthetic_loads(target.set, synthetic_pose(opened_rad, {0, 0, 0}));
   SpringPrismEnergy energy(net, loads, threads);
@@ -52,7 +52,7 @@ StoredOpening::StoredOpening(const TissueTarget& target, const HessianFactor& at
 
 Nodes StoredOpening::start(const TissueTarget& target, const Pose& lower_bone) const {
   const double share = std::clamp(rotation_angle(lower_bone) / opened_rad, 0.0, 1.0);
-  Nodes x = target.start();
+  Nodes x = target.set.rest;
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += share * (nodes[i] - x[i]);
   return x;
 }

@@ -15,8 +15,9 @@ struct TissueTarget {
   NetLoads rest_loads, loads;  // the lower bone at rest; moved
   Nodes converged;
   double converged_energy = 0;
+  Nodes begun;  // where solves start; at rest if empty
 
-  const Nodes& start() const { return set.rest; }
+  const Nodes& start() const { return begun.empty() ? set.rest : begun; }
 };
 /// The set as it is, with its lower bone at the pose. throws: MachineError when it does not
 /// converge.

@@ -208,11 +208,12 @@ void set_contacts(const Looks& looks, NetLoads& loads) {
 
 namespace {
 
-/// How far anything that presses is from the surface it presses on, mm.
+/// How far anything that presses is from the surface it presses on, mm. `touches` have been carried
+/// on: their push is what pressed at x, also where that holds a point too far out.
 double gap_left(const std::vector<Touch>& touches, const Nodes& x) {
   double most = 0;
   for (const auto& touch : touches)
-    if (touch.pressed(x) > 0) most = std::max(most, std::abs(touch.row.gap(x)));
+    if (touch.push > 0 || touch.pressed(x) > 0) most = std::max(most, std::abs(touch.row.gap(x)));
   return most;
 }
 

@@ -27,7 +27,7 @@ MinimizeResult minimize_refreshing(const SpringPrismNet& net, const NetLoads& lo
       fresh.refactor(net, loads, x, energy.threads());
     const int wanted =
         near ? std::min(schedule.later + (refresh - schedule.far) / 2 * 3, schedule.most)
-             : schedule.first;
+             : schedule.each_far;
     part.max_iterations = std::min(wanted, settings.max_iterations - result.iterations);
     part.max_evaluations = settings.max_evaluations - result.evaluations;
     const MinimizeResult before = result;

@@ -6,16 +6,19 @@
 namespace condyle {
 
 /// When the preconditioner is made anew, in iterations: fixed, so that the bits do not depend on
-/// timing. Far from the minimum a factor serves for one iteration: the springs that push change
-/// with each. Near it the exact one, where it is positive definite, brings two to three digits.
+/// timing. A factor costs as much as a dozen iterations. Far from the minimum it serves for few, as
+/// the springs that push change with each; near it the exact one, where it is positive definite,
+/// for many.
 struct RefreshSchedule {
-  int first = 1;  // with the factor that is given, and with each made far from the minimum
-  int far = 2;    // factors made far from the minimum
-  int later = 4;  // with each of the next two; then three more for each further two
-  int most = 12;
+  int first = 1;     // with the factor that is given
+  int far = 1;       // factors made far from the minimum
+  int each_far = 4;  // with each of them
+  int later = 9;     // with each of the next two; then three more for each further two
+  int most = 16;
 };
-/// For nets of ten thousand nodes and more, where a factor costs as much as dozens of iterations.
-constexpr RefreshSchedule sparing_refreshes{.first = 1, .far = 2, .later = 8, .most = 20};
+/// For nets of ten thousand nodes and more.
+constexpr RefreshSchedule sparing_refreshes{
+    .first = 1, .far = 2, .each_far = 1, .later = 8, .most = 20};
 
 /// The preconditioned method for a long way from where its factor was made: springs that have begun
 /// to push and tissue that has turned ask for a factor of the state on the way.

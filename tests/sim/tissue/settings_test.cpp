@@ -167,6 +167,49 @@ TEST(MisplacedFaceOnBone, HasNoThickness) {
   }
 }
 
+TEST(TissueSettings, NothingAttachedIsRefusedWithWhatToDo) {
+  TissuePlan loose;
+  for (Body bone : {Body::cranium, Body::mandible})
+    loose.attachments.push_back(
+        {.bone = bone, .attached = false, .landmark = "", .radius_mm = 200});
+  try {
+    plain_model(loose);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no place is attached"), std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find("--attach"), std::string::npos) << error.what();
+  }
+}
+
+// A strip of the cheek is folded over and through itself.
+TEST(TissueSettings, AFaceThatPassesThroughItselfMovesWithoutInversion) {
+  Case patient = plain_patient();
+  int folded = 0;
+  for (auto& part : patient.parts)
+    if (part.role == Role::face)
+      for (auto& p : part.mesh.vertices)
+        if (p.x() > 30 && p.x() < 52 && p.z() < -15 && p.z() > -35) {
+          p.z() = -25 - 0.7 * (p.z() + 25);  // upside down: rows cross the rows around them
+          p.y() -= 0.4 * std::sin(0.6 * p.z());
+          ++folded;
+        }
+  ASSERT_GT(folded, 100);
+  part_lips(patient);
+  const auto model = build_tissue(patient, {.surface_nodes = 220});
+  EXPECT_LT(summary(*model).rest_move_mm, 1e-4);
+  TissueState state = rest_tissue(*model);
+  for (double degrees : {4.0, 8.0, 12.0}) {
+    state = follow(*model, state, opening(patient, degrees));
+    EXPECT_EQ(state.inverted_prisms, 0);
+    EXPECT_FALSE(state.kept);
+    std::vector<Eigen::Vector3f> face;
+    deform_face(*model, state, face);
+    ASSERT_EQ(face.size(), patient.find(Role::face)->mesh.vertices.size());
+    for (const auto& p : face) EXPECT_TRUE(p.allFinite());
+  }
+}
+
 TEST(TissueSettings, OutOfRangeIsRefusedByNameAndValue) {
   const auto refused = [](const TissuePlan& plan, const char* item, const char* value) {
     try {

@@ -105,14 +105,11 @@ TEST(Tissue, TenSmallStepsEqualOneLarge) {
   for (int i = 1; i <= 10; ++i) small = follow(*model, small, moved(0.1 * i), tight);
   const TissueState large = follow(*model, rest_tissue(*model), moved(1.0), tight);
   double moved_most = 0;
-  int apart = 0;  // a point on a block's sharp edge may rest on either side of it
   for (std::size_t i = 0; i < small.nodes.size(); ++i) {
     const double difference = (small.nodes[i] - large.nodes[i]).norm();
-    EXPECT_LT(difference, 0.02);
-    apart += difference >= 0.01;
+    EXPECT_LT(difference, 0.01) << i;
     moved_most = std::max(moved_most, (large.nodes[i] - rest_tissue(*model).nodes[i]).norm());
   }
-  EXPECT_LE(apart, 2);
   EXPECT_GT(moved_most, 0.9);
 }
 
