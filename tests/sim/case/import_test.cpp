@@ -393,6 +393,18 @@ TEST_F(RealImport, OpenAndForeignSurfacesComeWithTruthfulNotes) {
     EXPECT_TRUE(has_note(*patient, "17672 triangles in 1 piece, closed"));
   EXPECT_LT((bounding_box(glb.parts[0].mesh).high - bounding_box(ply.parts[0].mesh).high).norm(),
             0.01);
+  // As a face it has its own colours, on the same surface in smaller triangles.
+  const Case scan = import_meshes(
+      {{{Role::face, head / "head_lps_mm.obj"}, {Role::skull, head / "head_lps_mm.ply"}},
+       {},
+       "mm",
+       "LPS",
+       "x"});
+  EXPECT_TRUE(has_note(scan, "coloured by the picture of head_lps_mm.obj (1024x1024)"));
+  const TriMesh& face = scan.find(Role::face)->mesh;
+  EXPECT_EQ(face.colors.size(), face.vertices.size());
+  EXPECT_GT(face.triangles.size(), 50000u);
+  EXPECT_NEAR(surface_area(face), surface_area(ply.parts[0].mesh), 1e-3 * surface_area(face));
 }
 
 }  // namespace

@@ -1,0 +1,149 @@
+// What `record` can leave out of pictures, lay over them and write on them, as a person asks for
+// it.
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "tests/support/program.h"
+
+namespace condyle::test {
+namespace {
+
+struct Picture {
+  png_image head{};
+  std::vector<std::uint8_t> rgba;
+
+  explicit Picture(const std::string& file) {
+    head.version = PNG_IMAGE_VERSION;
+    if (!png_image_begin_read_from_file(&head, file.c_str())) return;
+    head.format = PNG_FORMAT_RGBA;
+    rgba.resize(PNG_IMAGE_SIZE(head));
+    png_image_finish_read(&head, nullptr, rgba.data(), 0, nullptr);
+  }
+};
+
+/// Share of the pixels that differ clearly.
+double difference(const Picture& a, const Picture& b) {
+  if (a.rgba.empty() || a.rgba.size() != b.rgba.size()) return 1;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
+    int most = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+      most = std::max(most, std::abs(a.rgba[i + k] - b.rgba[i + k]));
+    count += most > 12;
+  }
+  return 4.0 * static_cast<double>(count) / static_cast<double>(a.rgba.size());
+}
+
+class PictureOptions : public testing::Test {
+ protected:
+  Folder folder_;
+  std::string patient_ = box_case(folder_);
+
+  std::vector<std::string> command(const std::string& out,
+                                   const std::vector<std::string>& more) const {
+    std::vector<std::string> all = {"record",   patient_,     "--motion", "open 20 over 0.1",
+                                    "--frames", "2",          "--size",   "240x180",
+                                    "--out",    folder_ / out};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  /// The second frame, opened.
+  Picture opened(const std::string& out, const std::vector<std::string>& more) const {
+    const auto outcome = condyle(command(out, more));
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return Picture(folder_ / (out + "/frames/000001.png"));
+  }
+};
+
+TEST_F(PictureOptions, EachOfThemChangesThePicture) {
+  const Picture plain = opened("plain", {});
+  ASSERT_FALSE(plain.rgba.empty());
+  EXPECT_EQ(difference(plain, opened("again", {})), 0);
+  int number = 0;
+  for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
+           {"--clip", "left:5"},
+           {"--clip", "0,0,0,0,-1,0", "--clip-open"},
+           {"--clip", "left", "--clip-parts", "mandible"},
+           {"--overlay", "ghost"},
+           {"--overlay", "wireframe:mandible"},
+           {"--overlay", "axes,paths"},
+           {"--overlay", "scale"},
+           {"--overlay", "letters"},
+           {"--caption", "Opening {opening} mm|{motion} {time} s"},
+           {"--wipe", "0.5"},
+           {"--transparent"}}) {
+    std::string words;
+    for (const auto& word : more) words += word + " ";
+    EXPECT_GT(difference(plain, opened("other" + std::to_string(number++), more)), 1e-4) << words;
+  }
+  // Other ways to smooth edges: nearly the same picture.
+  for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
+           {"--edges", "fxaa"}, {"--edges", "none", "--supersample", "2"}}) {
+    const double differs = difference(plain, opened("smooth" + std::to_string(number++), more));
+    EXPECT_GT(differs, 0) << more[1];
+    EXPECT_LT(differs, 0.06) << more[1];
+  }
+}
+
+TEST_F(PictureOptions, SeveralCamerasAndAPathAreRecordedAtOnce) {
+  write_text(folder_ / "around.json",
+             R"({"path": [{"view": "front"}, {"view": "left", "distance_mm": 300}]})");
+  const auto outcome =
+      condyle(command("many", {"--camera", "front,left," + folder_ / "around.json"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto frame = [&](const std::string& camera, const std::string& number) {
+    return Picture(folder_ / ("many/" + camera + "/frames/00000" + number + ".png"));
+  };
+  EXPECT_EQ(difference(frame("front", "0"), frame("around", "0")), 0);
+  EXPECT_GT(difference(frame("left", "1"), frame("around", "1")), 0.01);  // nearer
+  EXPECT_GT(difference(frame("front", "1"), frame("around", "1")), 0.01);
+  // One camera alone gives the same bits.
+  EXPECT_EQ(difference(frame("left", "1"), opened("left", {"--camera", "left"})), 0);
+  EXPECT_EQ(read_text(folder_ / "many/left/hashes.csv"), read_text(folder_ / "left/hashes.csv"));
+}
+
+TEST_F(PictureOptions, WrongOnesAreNamedWithWhatIsKnown) {
+  write_text(folder_ / "bad.json", R"({"path": [{"view": "front", "at": 0.5}, {"at": 0.2}]})");
+  write_text(folder_ / "odd.json", R"({"view": "front", "zoom": 2})");
+  const std::map<std::string, std::pair<std::vector<std::string>, std::string>> cases = {
+      {"side", {{"--clip", "sideways"}, "left, right, front, back, above or below"}},
+      {"zero", {{"--clip", "0,0,0,0,0,0"}, "must not be zero"}},
+      {"parts", {{"--clip", "left", "--clip-parts", "nose"}, "known are all"}},
+      {"alone", {{"--clip-open"}, "need --clip"}},
+      {"hole", {{"--cut-away", "nowhere,20"}, "no landmark nowhere"}},
+      {"radius", {{"--cut-away", "0,0,0,-3"}, "above 0"}},
+      {"overlay", {{"--overlay", "halo"}, "bone-springs"}},
+      {"caption", {{"--caption", "{speed}"}, "{opening}"}},
+      {"twice", {{"--camera", "front,front"}, "two cameras have the name front"}},
+      {"path", {{"--camera", folder_ / "bad.json"}, "must be later"}},
+      {"key", {{"--camera", folder_ / "odd.json"}, "zoom"}}};
+  for (const auto& [name, wrong] : cases) {
+    const auto outcome = condyle(command(name, wrong.first));
+    EXPECT_EQ(outcome.code, 2) << name;
+    EXPECT_NE(outcome.err.find(wrong.second), std::string::npos) << name << ": " << outcome.err;
+  }
+}
+
+TEST_F(PictureOptions, WhatTheDriverCannotDrawIsSaidInASentence) {
+  auto too_large = command("large", {"--supersample", "4"});
+  std::replace(too_large.begin(), too_large.end(), std::string("240x180"),
+               std::string("8192x8192"));
+  const auto large = condyle(too_large);
+  EXPECT_EQ(large.code, 1);
+  EXPECT_NE(large.err.find("32768x32768"), std::string::npos) << large.err;
+  ::setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere.json", 1);
+  const auto none = condyle(command("none", {}));
+  ::unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
+  EXPECT_EQ(none.code, 1);
+  EXPECT_NE(none.err.find("install libegl1"), std::string::npos) << none.err;
+}
+
+}  // namespace
+}  // namespace condyle::test
