@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "sim/report/bite_place.h"
+
 namespace condyle {
 namespace {
 
@@ -51,7 +53,7 @@ void add_border(std::vector<Curve>& curves, std::vector<Vector3d> round, const V
 
 MotionPlot posselt(const MotionSeries& series) {
   const auto incisor = points_of(series, &Measures::incisor);
-  const Vector3d& rest = series.rest.incisor;
+  const Vector3d rest = bite_place(series);
   const auto panel = [&](const char* title, const char* x, const char* y, Part across, Part up,
                          const std::vector<Vector3d>& border, std::vector<PlotBand> bands) {
     PlotPanel made{{path("lower incisal point", incisor, rest, across, up)},

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "sim/motion/joint_surfaces.h"
+#include "sim/report/bite_place.h"
 #include "sim/report/motion_extremes.h"
 
 namespace condyle {
@@ -20,7 +21,7 @@ constexpr double degrees = 180 / 3.14159265358979323846;
 class Judge {
  public:
   Judge(const Scene& scene, const Motion& motion, const MotionSeries& series)
-      : scene_(scene), motion_(motion), series_(series) {}
+      : scene_(scene), motion_(motion), series_(series), bite_(bite_place(series)) {}
 
   std::vector<Finding> all() {
     if (!series_.known_landmarks || series_.size() < 2) return {};
@@ -50,8 +51,8 @@ class Judge {
   const Measures& at(std::size_t frame) const { return series_.measures[frame]; }
 
   /// From the bite, forward and up.
-  double anterior(std::size_t frame) const { return at(frame).protrusion_mm; }
-  double superior(std::size_t frame) const { return -at(frame).opening_mm; }
+  double anterior(std::size_t frame) const { return bite_.y() - at(frame).incisor.y(); }
+  double superior(std::size_t frame) const { return at(frame).incisor.z() - bite_.z(); }
 
   std::size_t frame_of_largest(std::size_t first, std::size_t last, double Measures::*value) const {
     std::size_t best = first;
@@ -110,7 +111,7 @@ class Judge {
   void tooth_path(std::size_t first, std::size_t end, const std::string& what) {
     const auto low = std::min(first, end), high = std::max(first, end);
     const auto dip = frame_of_largest(low, high, &Measures::opening_mm);
-    add({"dip of the incisal point in " + what, "mm", at(dip).opening_mm, 0.5, 6,
+    add({"dip of the incisal point in " + what, "mm", -superior(dip), 0.5, 6,
          "an edge-to-edge dip of about the overbite (Posselt)", false,
          "the teeth's overbite decides it"});
     // The place 2 mm in front of the bite.
@@ -119,7 +120,7 @@ class Judge {
       if (anterior(i) >= 2 && (!place || anterior(i) < anterior(*place))) place = i;
     if (place)
       add({"incisal guidance over 2 mm of " + what, "deg",
-           std::atan2(at(*place).opening_mm, anterior(*place)) * degrees, 20, 70,
+           std::atan2(-superior(*place), anterior(*place)) * degrees, 20, 70,
            "an incisal table is set to 20 to 70", false, "overjet and overbite decide it"});
   }
 
@@ -202,6 +203,7 @@ class Judge {
   void rest_position(const MotionPhase& phase) {
     const auto [first, last] = series_.frames_of(phase);
     (void)first;
+    if (at(last).opening_mm <= 0) return;  // a case that rests with its teeth apart
     add({"freeway space", "mm", at(last).opening_mm, 2, 3, "2 to 3", built_in(), "it is set"});
   }
 
@@ -330,7 +332,7 @@ class Judge {
       const std::string published =
           "1.3 anterior, 2.5 superior, 2.1 posterior (Ikeda & Kawamura 2013)";
       // A case that came in with another gap keeps its own.
-      const double low = std::min(0.8, 0.45 * rest);
+      const double low = std::min(0.8, std::floor(45 * rest) / 100);
       const std::string why = fmt::format("its gap at rest is {:.2f} mm", rest);
       add({name + " condyle to fossa, least", "mm", least, low, 3.2, published, false, why});
       add({name + " condyle to fossa, most", "mm", most_mm, low, 3.2, published, false, why});
@@ -340,6 +342,7 @@ class Judge {
   const Scene& scene_;
   const Motion& motion_;
   const MotionSeries& series_;
+  const Vector3d bite_;  // incisal point
   std::vector<Finding> found_;
 };
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/motion/measures.h"
+#include "sim/report/bite_place.h"
 #include "sim/report/report.h"
 #include "tests/support/boxes.h"
 
@@ -62,6 +63,26 @@ TEST(Extremes, AreTheLargestOfEachMeasureAndWhen) {
   EXPECT_EQ(json["measures"]["opening"]["unit"], "mm");
   EXPECT_NEAR(json["contact"]["kept_from_where_wanted_mm"], 2, 1e-9);
   EXPECT_NE(report.text().find("by up to 2.00 mm at the incisors"), std::string::npos);
+}
+
+TEST(BitePlace, IsWhereBordersBeginOrAGlideCloses) {
+  const Scene scene = make_scene(box_patient());
+  Motion motion = down_and_back();
+  const auto bite = [&] {
+    MotionSeries series(scene, motion);
+    for (int i = 0; i <= 150; ++i) {
+      FrameState frame = rest_frame(scene);
+      frame.time_s = 0.01 * i;
+      frame.measures = measure(scene.patient, motion.wanted(frame.time_s));
+      series.add(frame);
+    }
+    return Eigen::Vector3d(bite_place(series) - series.rest.incisor);
+  };
+  EXPECT_LT(bite().norm(), 1e-12);
+  motion.phases = {{"protrusion", 0, 0.2}, {"closing", 0.2, 0.3}, {"back to the start", 0.3, 1.5}};
+  EXPECT_NEAR(bite().z(), -9, 1e-9);
+  motion.borders.sagittal = {scene.patient.landmarks.points.at("lower_incisal_point")};
+  EXPECT_LT(bite().norm(), 1e-12);
 }
 
 }  // namespace condyle::test
