@@ -333,7 +333,7 @@ LineSet tissue_springs(const Scene& scene, const TissueState& now) {
   if (!scene.tissue || now.nodes.empty()) return lines;
   const SpringPrismNet& net = scene.tissue->net;
   lines.color = {0.18f, 0.75f, 0.58f};
-  lines.width_px = 1;
+  lines.width_px = 0.6f;
   lines.through = 0.25f;
   lines.ends.reserve(2 * net.spring_a.size());
   for (std::size_t s = 0; s < net.spring_a.size(); ++s)

@@ -1,6 +1,9 @@
 #include "tools/view_state_file.h"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "engine/core/files.h"
 
@@ -9,6 +12,10 @@ namespace condyle {
 void ViewStateFile::update(const Window& window, const FrameState* frame,
                            const std::string& busy_with) {
   if (file_.empty()) return;
+  const auto now = std::chrono::steady_clock::now();
+  longest_turn_ms_ =
+      std::max(longest_turn_ms_,
+               std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count());
   const auto list = [](const Eigen::Vector3d& v) { return nlohmann::json{v.x(), v.y(), v.z()}; };
   const ViewState& view = window.view();
   const PictureStatistics& pictures = window.pictures();
@@ -21,7 +28,8 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
                          {"landmarks", view.landmarks.size()},
                          {"camera_direction", list(window.camera().direction)},
                          {"pictures_per_second", pictures.pictures_per_second},
-                         {"samples", pictures.samples}};
+                         {"samples", pictures.samples},
+                         {"longest_turn_ms", std::round(longest_turn_ms_)}};
   if (view.hands.mandible) json["hand_mm"] = list(view.hands.mandible->t);
   if (frame) {
     json["frame"] = {{"time_s", frame->time_s},

@@ -10,6 +10,7 @@ namespace condyle {
 
 void Panels::Drawing::look() {
   Look& look = view.look;
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(6));
   ImGui::BeginChild("look-list", {0, 0});
   const float gap = pen.px(5), high = pen.px(24), whole = ImGui::GetContentRegionAvail().x;
   const auto share = [&](int n) {
