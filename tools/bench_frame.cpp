@@ -13,7 +13,7 @@
 namespace condyle {
 namespace {
 
-/// The most triangles that a displayed face is meant to have.
+/// As many triangles as a displayed face is meant to have at most, about.
 constexpr int dense_triangles = 200000;
 
 /// The patient's tissue under the same face in smaller triangles; null without a face.
@@ -22,9 +22,10 @@ std::shared_ptr<const TissueModel> dense_face(const Case& patient, const TissueS
   Case dense = patient;
   for (auto& part : dense.parts) {
     if (part.role != Role::face || part.mesh.empty()) continue;
-    constexpr double edge_mm = 0.05;  // shorter than any: the count is the limit
-    const std::vector<double> edges(part.mesh.vertices.size(), edge_mm);
-    part.mesh = refine(std::move(part.mesh), edges, dense_triangles);
+    for (double edge_mm = 8; part.mesh.triangles.size() < dense_triangles; edge_mm *= 0.85) {
+      const std::vector<double> edges(part.mesh.vertices.size(), edge_mm);
+      part.mesh = refine(std::move(part.mesh), edges);
+    }
     triangles = part.mesh.triangles.size();
   }
   return build_tissue(dense, settings);

@@ -7,6 +7,12 @@
 namespace condyle {
 
 using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+namespace {
+/// The nine entries of a matrix by columns, and a shift.
+using LinearMap = Eigen::Array<float, 12, 1>;
+}  // namespace
 
 CarriedPoint carry_face_point(const TissueModel& model, const Vector3d& p, int side) {
   CarriedPoint point;
@@ -31,15 +37,31 @@ void deform_face(const TissueModel& model, const TissueState& state,
   const std::size_t count = model.face_rest.size();
   if (face.size() != count) face.resize(count);
   for (std::size_t v = 0; v < count; ++v) face[v] = model.face_rest[v].cast<float>();
+  if (model.carried.empty()) return;
   const HandleMotion motion = handle_motion(model.handles, model.rest, state.nodes);
+  // As `carried`, with each handle's motion as one linear map in single precision, about a place in
+  // the face so that none of it is lost: a dense face has to follow within a frame.
+  const Vector3d origin = model.rest[model.handles.node.front()];
+  std::vector<LinearMap> maps(model.handles.node.size());
+  for (std::size_t h = 0; h < maps.size(); ++h) {
+    const Vector3d shift =
+        motion.moved[h] - motion.stretched[h] * (model.rest[model.handles.node[h]] - origin);
+    maps[h].segment<9>(0) = motion.stretched[h].reshaped().cast<float>().array();
+    maps[h].segment<3>(9) = shift.cast<float>().array();
+  }
   constexpr std::size_t block = 2048;
   const std::size_t blocks = (model.carried.size() + block - 1) / block;
   parallel_for(blocks, threads, [&](std::size_t b) {
     const std::size_t last = std::min(model.carried.size(), (b + 1) * block);
     for (std::size_t i = b * block; i < last; ++i) {
       const int v = model.carried_vertex[i];
-      face[v] = carried(model.carried[i], model.handles, model.rest, motion, model.face_rest[v])
-                    .cast<float>();
+      const CarriedPoint& point = model.carried[i];
+      LinearMap sum = LinearMap::Zero();
+      for (int k = 0; k < CarriedPoint::capacity; ++k)
+        sum += point.weight[k] * maps[static_cast<std::size_t>(point.handle[k])];
+      const Vector3f from = (model.face_rest[v] - origin).cast<float>();
+      face[v] += point.fade * (Eigen::Map<const Eigen::Matrix3f>(sum.data()) * from +
+                               Eigen::Map<const Vector3f>(sum.data() + 9));
     }
   });
 }
