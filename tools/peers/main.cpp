@@ -57,6 +57,7 @@ void race_all(const TissueTarget& target, const char* start, int repeats, Json& 
     add("tissue.cold", "condyle", [&](double tolerance, Nodes& x) {
       MinimizeSettings settings;
       settings.tolerance_mm = tolerance;
+      settings.max_step_mm = bench_step_mm;
       return minimize_refreshing(target.set.net, target.loads, energy, factor, settings, x).energy;
     });
   add("tissue.cold", "cg_parabolic", [&](double tolerance, Nodes& x) {

@@ -55,10 +55,10 @@ Way travel(const Case& patient, double open_deg, double aside_mm, int frames) {
   return way;
 }
 
-void expect_good(const Way& way, double left_behind_mm) {
+void expect_good(const Way& way) {
   EXPECT_LT(way.penetration_mm, 0.2);
   EXPECT_GT(way.slip_mm, 2);
-  EXPECT_LT(way.left_behind_mm, left_behind_mm);
+  EXPECT_LT(way.left_behind_mm, 0.05);
   EXPECT_EQ(way.bad, 0);
 }
 
@@ -68,24 +68,28 @@ Case builtin() {
   return patient;
 }
 
-TEST(BuiltInLips, OpenCloseAndRestWhereTheyRested) {
-  expect_good(travel(builtin(), 38, 0, 140), 0.1);
-}
+TEST(BuiltInLips, OpenCloseAndRestWhereTheyRested) { expect_good(travel(builtin(), 38, 0, 140)); }
 
-TEST(BuiltInLips, GlideAsideOverTeethAndBack) { expect_good(travel(builtin(), 3, 8, 70), 0.1); }
+TEST(BuiltInLips, GlideAsideOverTeethAndBack) { expect_good(travel(builtin(), 3, 8, 70)); }
 
-TEST(CaseBadinLips, OpenCloseAndRestWhereTheyRested) {
-  const auto folder = test::real_data() / "case-badin";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "real anatomy absent";
-  Case patient = import_meshes({.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
-                                          {Role::mandible, folder / "mandible.ply"},
-                                          {Role::face, folder / "face_skin.ply"}},
-                                .landmarks = folder / "markers.csv",
-                                .name = "badin"});
-  part_lips(patient);
-  // One point of the upper lip may stay between two crowns.
-  expect_good(travel(patient, 36, 0, 140), 0.5);
-}
+class CaseBadinLips : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto folder = test::real_data() / "case-badin";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "real anatomy absent";
+    patient = import_meshes({.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
+                                       {Role::mandible, folder / "mandible.ply"},
+                                       {Role::face, folder / "face_skin.ply"}},
+                             .landmarks = folder / "markers.csv",
+                             .name = "badin"});
+    part_lips(patient);
+  }
+  Case patient;
+};
+
+TEST_F(CaseBadinLips, OpenCloseAndRestWhereTheyRested) { expect_good(travel(patient, 36, 0, 140)); }
+
+TEST_F(CaseBadinLips, GlideAsideOverTeethAndBack) { expect_good(travel(patient, 3, 8, 70)); }
 
 }  // namespace
 }  // namespace condyle
