@@ -67,8 +67,8 @@ void Panels::Drawing::motion() {
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
   const bool named = std::find(input.scene.motions.begin(), input.scene.motions.end(), now) !=
                      input.scene.motions.end();
-  if (ImGui::BeginCombo("##motion",
-                        named ? display_name(now).c_str() : "In words or from a file")) {
+  if (ImGui::BeginCombo("##motion", named ? display_name(now).c_str() : "In words or from a file",
+                        ImGuiComboFlags_HeightLarge)) {
     for (const std::string& name : input.scene.motions) {
       if (ImGui::Selectable(display_name(name).c_str(), name == now)) {
         panels.remember(view);
