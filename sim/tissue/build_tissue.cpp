@@ -41,6 +41,7 @@ double rim_follows(double to_mandible_mm) { return 1 - smoothstep((to_mandible_m
 /// lower face turns with the jaw, and a factor made unturned asks for several times the iterations.
 void make_path(TissueModel& model, const Anatomy& anatomy) {
   constexpr int knots = 13;  // to 43 degrees
+  model.runs = std::make_shared<const NetRuns>(model.net);
   model.path.condyles = anatomy.condyles;
   model.factors.push_back(
       {0, std::make_shared<HessianFactor>(model.net, touching_loads(model, Pose{}, model.rest),

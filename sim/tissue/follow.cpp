@@ -103,7 +103,7 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
   RollingFactor factor =
       previous.factor ? *previous.factor : RollingFactor(path_factor(model, X_CM));
   factor.advance();
-  SpringPrismEnergy energy(model.net, loads, budget.threads);
+  SpringPrismEnergy energy(model.net, loads, budget.threads, model.runs);
   int since_factor = 0, patience = first_patience;  // iterations
   const auto solve = [&] {
     while (true) {

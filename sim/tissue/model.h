@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "engine/tissue/frame_embedding.h"
@@ -20,6 +21,7 @@ struct TissueModel : std::enable_shared_from_this<TissueModel> {
   std::vector<Eigen::Vector3i> triangles;  // of the columns, seen from outside
   Nodes rest;
   SpringPrismNet net;
+  std::shared_ptr<const NetRuns> runs;  // of the net as it is solved
 
   // A share of 1 goes with the mandible, 0 with the cranium: a point X asks for X + share (X_CM X -
   // X).
