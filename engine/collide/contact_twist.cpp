@@ -75,6 +75,60 @@ void sweep(std::vector<Joined>& joined, const std::vector<ContactRow>& rows,
   }
 }
 
+/// Rows whose gap a motion closes, worst first: one after the other, as long as the motion stays.
+class Violated {
+ public:
+  Violated(const std::vector<ContactRow>& rows, double tolerance_mm)
+      : rows_(rows), tolerance_mm_(tolerance_mm), given_up_(rows.size(), false) {}
+
+  /// -1: none is left.
+  int worst(const Twist& x) {
+    if (!sorted_) return first(x);
+    return next_ < order_.size() ? order_[next_].second : -1;
+  }
+
+  /// The worst one is not looked at again. What comes after it is sorted only now: mostly none is
+  /// given up, but where bodies are deep in each other thousands are.
+  void give_up_worst(int row, const Twist& x) {
+    given_up_[static_cast<std::size_t>(row)] = true;
+    if (sorted_) {
+      ++next_;
+      return;
+    }
+    order_.clear();
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (const double gap = gap_of(i, x); gap < -tolerance_mm_ && !given_up_[i])
+        order_.emplace_back(gap, static_cast<int>(i));
+    std::sort(order_.begin(), order_.end());
+    sorted_ = true;
+    next_ = 0;
+  }
+
+  void moved() { sorted_ = false; }
+
+ private:
+  double gap_of(std::size_t i, const Twist& x) const {
+    return rows_[i].gap_mm + rows_[i].along.dot(x);
+  }
+  int first(const Twist& x) const {
+    int found = -1;
+    double least = -tolerance_mm_;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (const double gap = gap_of(i, x); gap < least && !given_up_[i]) {
+        least = gap;
+        found = static_cast<int>(i);
+      }
+    return found;
+  }
+
+  const std::vector<ContactRow>& rows_;
+  double tolerance_mm_;
+  std::vector<bool> given_up_;
+  bool sorted_ = false;
+  std::vector<std::pair<double, int>> order_;  // gap, row
+  std::size_t next_ = 0;
+};
+
 /// The motion nearest to `wanted` that keeps every gap open, exactly: rows are added and dropped
 /// one at a time and at most six hold. source: Goldfarb and Idnani 1983, with the unit matrix.
 TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<ContactRow>& rows,
@@ -85,17 +139,9 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
   Twist& x = solution.x;
   x = wanted;
   std::vector<Push>& active = solution.pushes;
-  std::vector<bool> given_up(rows.size(), false);
+  Violated violated(rows, settings.tolerance_mm);
   for (int changes = 0; changes < max_changes;) {
-    int joining = -1;
-    double gap = -settings.tolerance_mm;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double here = rows[i].gap_mm + rows[i].along.dot(x);
-      if (here < gap && !given_up[i]) {
-        gap = here;
-        joining = static_cast<int>(i);
-      }
-    }
+    const int joining = violated.worst(x);
     if (joining < 0) break;
     const Twist& n = rows[joining].along;
     double push = 0;
@@ -119,12 +165,15 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
       const bool free = count < 6 && z.squaredNorm() > dependent * n.squaredNorm();
       const double full = -(rows[joining].gap_mm + n.dot(x)) / z.squaredNorm();
       if (!free && dropped < 0) {  // the others forbid it: no motion opens all gaps
-        given_up[joining] = true;
+        violated.give_up_worst(joining, x);
         break;
       }
       const bool joins = free && full <= drop_at;
       const double step = joins ? full : drop_at;
-      if (free) x += step * z;
+      if (free) {
+        x += step * z;
+        violated.moved();
+      }
       for (Eigen::Index k = 0; k < count; ++k)
         active[k].length_mm = std::max(0.0, active[k].length_mm - step * r[k]);
       push += step;
