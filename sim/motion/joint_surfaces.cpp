@@ -8,7 +8,7 @@ namespace {
 
 constexpr double condyle_radius_mm = 15;  // of the mandible about the landmark
 constexpr double fossa_radius_mm = 45;    // of the cranium: the condyle travels some 20 mm
-constexpr double largest_gap_mm = 8;      // a farther surface is no fossa
+constexpr double largest_gap_mm = 6;      // a farther surface is no fossa
 constexpr double least_gap_mm = 0.02;     // a nearer one cannot be kept free
 
 /// Appends the triangles of `mesh` that have a corner within `radius` of `center`.

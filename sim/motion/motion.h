@@ -41,6 +41,8 @@ struct RecordingFacts {
   bool has_markers = false;
   double residual_rms_mm = 0, residual_max_mm = 0;  // of markers from the fitted rigid pose
   double smooth_hz = 0;                             // jitter above was taken out; 0: nothing was
+  std::string file_name;
+  double largest_shift_mm = 0;  // of the translations as they stand in the file
 };
 
 /// Asks for a pose of the mandible at each time.

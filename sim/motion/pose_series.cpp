@@ -35,6 +35,13 @@ std::vector<std::size_t> places(const std::filesystem::path& file, const NumberT
   return out;
 }
 
+const char* unit_name(double unit_mm) {
+  return unit_mm == 1000 ? "metres"
+         : unit_mm == 10 ? "centimetres"
+         : unit_mm == 1  ? "millimetres"
+                         : "inches";
+}
+
 }  // namespace
 
 Quaterniond rotation_of(const std::filesystem::path& file, const std::string& where,
@@ -43,10 +50,13 @@ Quaterniond rotation_of(const std::filesystem::path& file, const std::string& wh
   if (!(off <= rotation_tolerance))
     throw InputError(file, where,
                      fmt::format("the 3x3 part is no rotation: R'R differs from 1 by {:.3g} (its "
-                                 "first row is {:.4g} {:.4g} {:.4g})",
+                                 "first row is {:.4g} {:.4g} {:.4g}); write poses without scale or "
+                                 "shear, and check which columns hold them",
                                  off, R(0, 0), R(0, 1), R(0, 2)));
   if (R.determinant() < 0)
-    throw InputError(file, where, "the 3x3 part mirrors; it must be a rotation");
+    throw InputError(file, where,
+                     "the 3x3 part mirrors; it must be a rotation. Write poses of a right-handed "
+                     "frame");
   const Eigen::JacobiSVD<Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return Quaterniond(Matrix3d(svd.matrixU() * svd.matrixV().transpose())).normalized();
 }
@@ -125,16 +135,20 @@ PoseSeries poses_from_columns(const std::filesystem::path& file, const NumberTab
                                             : Vector3d(value(12), value(13), value(14)));
         if (!by_rows) R.transposeInPlace();  // written column by column
       }
-      X.R = rotation_of(file, line, R);
+      X.R = rotation_of(
+          file, fmt::format("{}, columns {} to {}", line, body.turn.front(), body.turn.back()), R);
     }
     for (std::size_t k = 0; k < shift.size(); ++k) {
       const double mm = table.at(r, shift[k]) * map.length_unit_mm;
       X.t[static_cast<int>(k)] = mm;
       if (!map.first_is_rest && std::abs(mm) > farthest_mm)
-        throw InputError(file, table.where(r, shift[k]),
-                         fmt::format("{} mm is farther than {} mm; translations are in millimetres "
-                                     "unless a file beside it, {}.json, tells a length_unit",
-                                     mm, farthest_mm, file.filename().string()));
+        throw InputError(
+            file, table.where(r, shift[k]),
+            fmt::format(
+                "{:.6g} mm is farther than {} mm; lengths are taken in {}. If another unit is "
+                "meant, write {{\"length_unit\": ...}} with mm, cm, m or in into {}.json "
+                "beside it",
+                mm, farthest_mm, unit_name(map.length_unit_mm), file.filename().string()));
     }
     series.X.push_back(X);
   }

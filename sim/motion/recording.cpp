@@ -132,6 +132,8 @@ RecordingFacts facts_of(const RecordingFile& file, const PoseSeries& series) {
     facts.residual_rms_mm = std::sqrt(squares / static_cast<double>(series.residual_mm.size()));
   facts.has_markers = !series.residual_mm.empty();
   facts.smooth_hz = file.map.smooth_hz;
+  for (const Pose& pose : series.X)
+    facts.largest_shift_mm = std::max(facts.largest_shift_mm, pose.t.norm());
   return facts;
 }
 
@@ -180,6 +182,7 @@ Motion read_recording(const std::filesystem::path& file) {
                 .notes = {},
                 .sample_times = recording->time_s};
   motion.recording = facts_of(content, series);
+  motion.recording->file_name = file.filename().string();
   motion.notes = notes_of(*motion.recording);
   return motion;
 }
@@ -187,46 +190,69 @@ Motion read_recording(const std::filesystem::path& file) {
 void note_what_looks_wrong(const Case& patient, Motion& motion) {
   constexpr double hardly_mm = 1, far_mm = 90, rise_mm = 3, from_rest_mm = 5;
   constexpr double fastest_mm_s = 1000, widest_rad = 60 * radian_per_degree;
+  constexpr double tiny_mm = 0.2, written_mm = 1e-4, clear_turn_rad = 5 * radian_per_degree;
   const auto incisor = patient.landmarks.find("lower_incisal_point");
-  if (!incisor || motion.sample_times.size() < 2) return;
-  double drop = 0, rise = 0, far = 0, speed = 0, turn = 0, before_s = 0;
+  if (!incisor || !motion.recording || motion.sample_times.size() < 2) return;
+  struct Most {
+    double value = 0, time_s = 0;
+    void see(double now, double at_s) {
+      if (now > value) value = now, time_s = at_s;
+    }
+  } drop, rise, far, speed, turn;
+  double before_s = 0;
   Vector3d before = motion.wanted(0) * *incisor;
   for (const double time : motion.sample_times) {
     const Pose X = motion.wanted(time);
     const Vector3d now = X * *incisor;
-    drop = std::max(drop, incisor->z() - now.z());
-    rise = std::max(rise, now.z() - incisor->z());
-    far = std::max(far, (now - *incisor).norm());
-    turn = std::max(turn, rotation_angle(X));
-    if (time > before_s) speed = std::max(speed, (now - before).norm() / (time - before_s));
+    drop.see(incisor->z() - now.z(), time);
+    rise.see(now.z() - incisor->z(), time);
+    far.see((now - *incisor).norm(), time);
+    turn.see(rotation_angle(X), time);
+    if (time > before_s) speed.see((now - before).norm() / (time - before_s), time);
     before = now;
     before_s = time;
   }
-  auto& notes = motion.notes;
+  const std::string& file = motion.recording->file_name;
+  const auto suspect = [&](const std::string& what) {
+    motion.notes.push_back(fmt::format("suspicious: {}: {}", file, what));
+  };
   const double start = (motion.wanted(0) * *incisor - *incisor).norm();
-  if (far < hardly_mm)
-    notes.push_back(fmt::format(
-        "suspicious: the incisal point moves {:.3g} mm at most; are the file's lengths metres?",
-        far));
-  if (far > far_mm)
-    notes.push_back(fmt::format(
-        "suspicious: the incisal point goes {:.0f} mm away; no jaw does. Check units and origin",
-        far));
-  if (rise > rise_mm && rise > drop)
-    notes.push_back(fmt::format(
-        "suspicious: the incisal point goes up {:.1f} mm and down {:.1f} mm; check the axes", rise,
-        drop));
+  const double shift = motion.recording->largest_shift_mm;
+  if (far.value < hardly_mm)
+    suspect(
+        fmt::format("the motion is tiny, {:.3g} mm at the incisal point; if the file's lengths are "
+                    "metres, write {{\"length_unit\": \"m\"}} into {}.json beside it",
+                    far.value, file));
+  else if (turn.value > clear_turn_rad && shift > written_mm && shift < tiny_mm)
+    suspect(fmt::format(
+        "the jaw turns by {:.0f} degrees but its translations are tiny, {:.3g} mm at most; if they "
+        "are metres, write {{\"length_unit\": \"m\"}} into {}.json beside it",
+        turn.value / radian_per_degree, shift, file));
+  if (far.value > far_mm)
+    suspect(
+        fmt::format("the incisal point goes {:.0f} mm away at {:.2f} s; no jaw does. Check "
+                    "length_unit and origin_mm in {}.json",
+                    far.value, far.time_s, file));
+  if (rise.value > rise_mm && rise.value > drop.value)
+    suspect(
+        fmt::format("the incisal point goes up {:.1f} mm at {:.2f} s and down only {:.1f} mm; tell "
+                    "where the file's x, y and z point, as in {{\"axes\": \"LPS\"}}, in {}.json",
+                    rise.value, rise.time_s, drop.value, file));
   if (start > from_rest_mm)
-    notes.push_back(fmt::format(
-        "suspicious: the recording starts {:.1f} mm from rest; \"rest\": \"first\" in a sidecar "
-        "counts from its first row",
-        start));
-  if (speed > fastest_mm_s)
-    notes.push_back(fmt::format(
-        "suspicious: the incisal point is as fast as {:.0f} mm/s; jaws reach about 460", speed));
-  if (turn > widest_rad)
-    notes.push_back(
-        fmt::format("suspicious: the mandible turns by {:.0f} degrees", turn / radian_per_degree));
+    suspect(
+        fmt::format("the recording starts {:.1f} mm from rest; {{\"rest\": \"first\"}} in {}.json "
+                    "counts from its first row",
+                    start, file));
+  if (speed.value > fastest_mm_s)
+    suspect(fmt::format(
+        "the incisal point is as fast as {:.0f} mm/s at {:.2f} s; jaws reach about 460. "
+        "Check time_unit and single rows there",
+        speed.value, speed.time_s));
+  if (turn.value > widest_rad)
+    suspect(
+        fmt::format("the mandible turns by {:.0f} degrees at {:.2f} s; check the order of the "
+                    "angles or of the quaternion's columns",
+                    turn.value / radian_per_degree, turn.time_s));
 }
 
 }  // namespace condyle

@@ -14,13 +14,35 @@ MotionSeries::MotionSeries(const Scene& scene, const Motion& motion)
   known_landmarks = true;
   for (const char* name : {"lower_incisal_point", "left_condyle", "right_condyle"})
     known_landmarks &= scene.patient.landmarks.find(name).has_value();
+  for (const auto& part : scene.patient.parts) bodies_.push_back(body_of(part.role));
+  const bool has_teeth =
+      scene.patient.find(Role::upper_teeth) && scene.patient.find(Role::lower_teeth);
+  if (known_landmarks && !has_teeth) {
+    constexpr double front_share = 0.4;  // of the way from the condyles to the incisors
+    const double hinge_y = 0.5 * (rest.left_condyle.y() + rest.right_condyle.y());
+    bite_y_ = hinge_y + front_share * (rest.incisor.y() - hinge_y);
+  }
+}
+
+/// Whether what a pair tells of its distance is told of the bite.
+bool MotionSeries::bites(const PairContact& pair) const {
+  if (pair.policy == PairPolicy::allowed) return true;
+  const auto body = [&](int part) { return bodies_.at(static_cast<std::size_t>(part)); };
+  if (!bite_y_ || pair.distance_is_bound || body(pair.part_a) != Body::cranium ||
+      body(pair.part_b) != Body::mandible)
+    return false;
+  if (!pair.touching) return pair.witness_a.y() < *bite_y_;
+  return std::any_of(pair.contacts.begin(), pair.contacts.end(),
+                     [&](const ContactPoint& contact) { return contact.point.y() < *bite_y_; });
 }
 
 void MotionSeries::add(const FrameState& frame) {
   double gap = 1e300;
-  for (const auto& pair : frame.contacts.pairs)
-    if (pair.policy == PairPolicy::allowed)
-      gap = std::min(gap, pair.touching ? 0.0 : pair.distance_mm);
+  for (const auto& pair : frame.contacts.pairs) {
+    if (!bites(pair)) continue;
+    gap = std::min(gap, pair.touching ? 0.0 : pair.distance_mm);
+    tooth_overlap_at_rest_mm = std::max(tooth_overlap_at_rest_mm, pair.rest_depth_mm);
+  }
   time_s.push_back(frame.time_s);
   measures.push_back(frame.measures);
   X_CM.push_back(frame.X_CM);

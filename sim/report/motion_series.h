@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,10 @@ struct MotionSeries {
   std::vector<double> time_s;
   std::vector<Measures> measures;
   std::vector<Pose> X_CM;
-  std::vector<double> tooth_gap_mm;  // between pairs that may touch; 0 when they do; else 1e300
+  // Between teeth, or between the bones' biting parts where a case has no teeth of their own; 0
+  // when they touch, 1e300 where neither is known.
+  std::vector<double> tooth_gap_mm;
+  double tooth_overlap_at_rest_mm = 0;
   std::vector<std::string> muscle_names;  // of a motion that muscles drive
   std::vector<MuscleStates> muscles;      // of each frame then
   Measures rest;
@@ -32,6 +36,12 @@ struct MotionSeries {
   double opening_speed_mm_s(std::size_t frame) const;
   /// First and last frame within a phase.
   std::pair<std::size_t, std::size_t> frames_of(const MotionPhase& phase) const;
+
+ private:
+  bool bites(const PairContact& pair) const;
+
+  std::vector<Body> bodies_;      // of the case's parts
+  std::optional<double> bite_y_;  // of cases without teeth: bone in front of it bites
 };
 
 }  // namespace condyle

@@ -288,8 +288,13 @@ class Judge {
          speed});
     add({what + ": closing speed, middle third", "mm/s", mean(closing_speed), 40, 80, "58", false,
          speed});
+    constexpr double felt_mm = 0.1;
+    const double overlap = series_.tooth_overlap_at_rest_mm;
     add({what + ": glide on the teeth", "mm", mean(glides), 0.5, 4, "about 1.4", false,
-         "teeth touch as far aside as the cycle is wide there; flat cusps shorten it"});
+         overlap > felt_mm
+             ? fmt::format("crowns overlap by {:.2f} mm at rest: they touch long before the bite",
+                           overlap)
+             : "teeth touch as far aside as the cycle is wide there; flat cusps shorten it"});
   }
 
   // ---- joints
@@ -333,7 +338,10 @@ class Judge {
           "1.3 anterior, 2.5 superior, 2.1 posterior (Ikeda & Kawamura 2013)";
       // A case that came in with another gap keeps its own.
       const double low = std::min(0.8, std::floor(45 * rest) / 100);
-      const std::string why = fmt::format("its gap at rest is {:.2f} mm", rest);
+      const std::string why =
+          fmt::format("its gap at rest is {:.2f} mm; going back or aside takes {:.2f} mm of it, {}",
+                      rest, std::max(0.0, rest - least),
+                      least > 0 ? "and bone stays off bone" : "and bone meets bone");
       add({name + " condyle to fossa, least", "mm", least, low, 3.2, published, false, why});
       add({name + " condyle to fossa, most", "mm", most_mm, low, 3.2, published, false, why});
     }

@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "sim/motion/recording.h"
+#include "tests/support/boxes.h"
 #include "tests/support/real_cases.h"
 
 namespace condyle {
@@ -289,6 +290,39 @@ TEST_F(RecordingFormats, JitterIsTakenOutOnlyOnRequest) {
                smooth = rms(read("a.csv", text, R"({"smooth_hz": 6})"));
   EXPECT_NEAR(raw, 0.1 * std::sqrt(3), 0.02);
   EXPECT_LT(smooth, 0.35 * raw);
+}
+
+TEST_F(RecordingFormats, MistakenUnitsAndAxesAreTold) {
+  const Case patient = test::box_patient();
+  const auto notes = [&](const std::string& name, const std::string& rows,
+                         const std::string& sidecar = "") {
+    Motion motion =
+        read(name, "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n" + rows, sidecar);
+    note_what_looks_wrong(patient, motion);
+    std::string all;
+    for (const auto& note : motion.notes) all += note + "\n";
+    return all;
+  };
+  const auto expect_in = [](const std::string& text, std::initializer_list<const char*> words) {
+    for (const char* word : words) EXPECT_NE(text.find(word), std::string::npos) << text;
+  };
+  EXPECT_EQ(notes("good.csv", "1,0,-3,-30,1,0,0,0\n"), "");
+  // Metres read as millimetres, without and with a turn, and with the unit told.
+  expect_in(notes("m.csv", "1,0,0,-0.04,1,0,0,0\n"),
+            {"m.csv", "motion is tiny, 0.04 mm", "{\"length_unit\": \"m\"}", "m.csv.json"});
+  const std::string turn = "0.98480775,0.17364818,0,0\n";  // 20 degrees
+  expect_in(notes("turned.csv", "1,0,-0.008,-0.005," + turn),
+            {"turned.csv", "turns by 20 degrees", "tiny", "{\"length_unit\": \"m\"}"});
+  EXPECT_EQ(notes("told.csv", "1,0,0,-0.04,1,0,0,0\n", R"({"length_unit": "m"})"), "");
+  EXPECT_EQ(notes("hinge.csv", "1,0,0,0," + turn).find("tiny"), std::string::npos);
+  // Millimetres read as metres.
+  expect_refused("mm.csv",
+                 "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0,-40,1,0,0,0\n",
+                 R"({"length_unit": "m"})",
+                 {"mm.csv", "line 3", "tz_mm", "-40000 mm", "in metres", "length_unit"});
+  expect_in(notes("far.csv", "1,0,0,-0.8,1,0,0,0\n", R"({"length_unit": "m"})"),
+            {"far.csv", "goes 800 mm away at 1.00 s", "length_unit"});
+  expect_in(notes("up.csv", "1,0,0,30,1,0,0,0\n"), {"up.csv", "goes up 30.0 mm", "\"axes\""});
 }
 
 TEST_F(RecordingFormats, SidecarsAreReadStrictly) {

@@ -93,6 +93,54 @@ TEST(Warnings, NameWhatNoJawDoesAndAreSilentOtherwise) {
   expect_warning(by({-20, 0, 0}), "to the right");
   expect_warning(by({0, 8, 0}), "behind its seat");
   expect_warning(by({0, -18, 0}), "protrusion");
+  expect_warning(by({0, -15, -20}), "the left condyle travels 25.0 mm");
+  expect_warning(by({0, -15, -20}), "the right condyle travels 25.0 mm");
+  const auto turned = [&](double degrees, const Eigen::Vector3d& axis, const Eigen::Vector3d& way) {
+    const Motion motion = there_and_back([=](double share) {
+      const double angle = share * degrees * M_PI / 180;
+      return Pose{Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), way * share};
+    });
+    return physiology_warnings(series_of(scene, motion));
+  };
+  expect_warning(turned(55, Eigen::Vector3d::UnitX(), {0, 0, 0}), "the jaw turns by 55.0 deg");
+  const auto fast = [&](double way) {  // there in a twentieth of a second
+    Motion motion = there_and_back([way](double share) {
+      return Pose{Eigen::Quaterniond::Identity(), {0, 0, -way * share}};
+    });
+    motion.duration_s = 0.1;
+    motion.wanted = [slow = motion.wanted](double t) { return slow(10 * t); };
+    return physiology_warnings(series_of(scene, motion));
+  };
+  expect_warning(fast(40), "the incisors open at");
+  expect_warning(fast(40), "the incisors close at");
+  const auto opened = [&](double way) {
+    const Motion motion = there_and_back(
+        [way](double share) {
+          return Pose{Eigen::Quaterniond::Identity(), {0, 0, -way * share}};
+        },
+        "opening");
+    return physiology_warnings(series_of(scene, motion));
+  };
+  expect_warning(opened(20), "counts as impaired");
+}
+
+TEST(Warnings, TellCondylesThatGoUnequallyFarWhileTheJawOpensStraight) {
+  const Scene scene = make_scene(box_patient());
+  const Eigen::Vector3d incisor = *scene.patient.landmarks.find("lower_incisal_point");
+  MotionSeries series(scene, there_and_back([](double) { return Pose{}; }));
+  const auto by = [&](double difference_mm) {
+    FrameState frame = rest_frame(scene);
+    frame.measures.opening_mm = 30;
+    frame.measures.incisor = incisor - Eigen::Vector3d(0, 0, 30);
+    frame.measures.left_condyle_travel_mm = 12 + difference_mm;
+    frame.measures.right_condyle_travel_mm = 12;
+    MotionSeries one = series;
+    one.add(frame);
+    return physiology_warnings(one);
+  };
+  EXPECT_TRUE(by(3).empty());
+  ASSERT_EQ(by(5).size(), 1u);
+  EXPECT_NE(by(5)[0].find("ways differ by 5.0 mm"), std::string::npos);
 }
 
 TEST(Report, PrintsFindingsWithTheirBands) {
