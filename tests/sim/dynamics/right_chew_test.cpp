@@ -158,5 +158,28 @@ TEST_F(RightChew, DampingActsWhereItsFrameIs) {
   EXPECT_GT(rms(), 1.3 * at_frame);
 }
 
+TEST_F(RightChew, AMinuteOfItOnCrownsRepeatsItself) {
+  const Excitations excitations = read_excitations(knots_, chewer_.muscles);
+  MuscleJaw jaw(chewer_, {.law = {.law = MuscleLaw::peck},
+                          .bolus = {.side = BolusSettings::Side::right},
+                          .hyoid = MuscleJawSettings::HyoidMode::fixed,
+                          .without = excitations.without});
+  std::vector<Vector3d> ends;  // of the incisal point, cycle by cycle
+  std::vector<double> drops;
+  for (int cycle = 0; cycle < 60; ++cycle) {
+    drops.push_back(0);
+    for (int k = 0; k < 1000; ++k) {
+      ASSERT_TRUE(jaw.step(excitations.at(k * 0.001))) << cycle;
+      drops.back() = std::max(drops.back(), incisor_.z() - (jaw.pose() * incisor_).z());
+    }
+    ends.emplace_back(jaw.pose() * incisor_);
+  }
+  for (std::size_t c = 2; c < ends.size(); ++c) {
+    EXPECT_NEAR(drops[c], drops[2], 0.05) << c;
+    EXPECT_LT((ends[c] - ends[2]).norm(), 0.05) << c;
+  }
+  EXPECT_NEAR(drops[2], 20.09, 0.2 * 20.09);
+}
+
 }  // namespace
 }  // namespace condyle
