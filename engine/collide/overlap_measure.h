@@ -46,8 +46,8 @@ struct OverlapVolume {
 };
 
 /// Both are cut into columns along the shortest side of their common box; along a column the common
-/// length is exact, across it stands for its cell (midpoint rule, `columns` along the longer side).
-/// Only closed shells have an inside; see closed_shells.
+/// length is exact, across it stands for its cell (midpoint rule, `columns` along either side of
+/// what they share). Only closed shells have an inside; see closed_shells.
 OverlapVolume overlap_volume(const TriMesh& a, const Pose& X_WA, const TriMesh& b, const Pose& X_WB,
                              int columns = 256);
 

@@ -10,12 +10,11 @@ namespace {
 /// Columns along axis `w` over a rectangle of the plane of `u` and `v`.
 struct Columns {
   int u, v, w;
-  Eigen::Vector2d low;
-  double step = 0;
+  Eigen::Vector2d low, step = Eigen::Vector2d::Zero();
   int count_u = 0, count_v = 0;
 
   Eigen::Vector2d middle(int i, int j) const {
-    return low + step * Eigen::Vector2d(i + 0.5, j + 0.5);
+    return low + step.cwiseProduct(Eigen::Vector2d(i + 0.5, j + 0.5));
   }
 };
 
@@ -61,8 +60,8 @@ void cross_columns(const TriMesh& mesh, const Pose& X, const Columns& columns, i
     const Eigen::Vector3d* t[3] = {&moved[triangle[0]], &moved[triangle[1]], &moved[triangle[2]]};
     const Eigen::Vector3d low = t[0]->cwiseMin(*t[1]).cwiseMin(*t[2]);
     const Eigen::Vector3d high = t[0]->cwiseMax(*t[1]).cwiseMax(*t[2]);
-    const Eigen::Vector2d first = (low.head<2>() - columns.low) / columns.step;
-    const Eigen::Vector2d last = (high.head<2>() - columns.low) / columns.step;
+    const Eigen::Vector2d first = (low.head<2>() - columns.low).cwiseQuotient(columns.step);
+    const Eigen::Vector2d last = (high.head<2>() - columns.low).cwiseQuotient(columns.step);
     const Eigen::Vector2d p[3] = {t[0]->head<2>(), t[1]->head<2>(), t[2]->head<2>()};
     const double area = cross(p[1] - p[0], p[2] - p[0]);
     if (area == 0) continue;
@@ -93,7 +92,7 @@ struct Counted {
 Counted count(std::vector<Crossing>& crossings, const Columns& columns) {
   std::sort(crossings.begin(), crossings.end());
   Counted counted;
-  const double cell = columns.step * columns.step;
+  const double cell = columns.step.prod();
   for (std::size_t i = 0; i < crossings.size();) {
     const int column = crossings[i].column;
     int inside[2] = {0, 0};
@@ -136,15 +135,16 @@ OverlapVolume overlap_volume(const TriMesh& a, const Pose& X_WA, const TriMesh& 
   Eigen::Vector2d low(box.low[columns.u], box.low[columns.v]);
   Eigen::Vector2d high(box.high[columns.u], box.high[columns.v]);
   OverlapVolume overlap;
-  // Bones overlap in a small part of their common box: a second look sees that part closer.
-  constexpr int looks = 3;
+  // Bones overlap in a small part of their common box: further looks see that part closer, long and
+  // narrow ones across as finely as along. Where a look misses all, a finer one may not.
+  constexpr int looks = 6, finest = 512;
+  int along = std::max(8, columns_along);
   for (int look = 0; look < looks; ++look) {
     const Eigen::Vector2d size = high - low;
-    if (!(size.maxCoeff() > 0)) break;
+    if (!(size.minCoeff() > 0)) break;
     columns.low = low;
-    columns.step = size.maxCoeff() / std::max(8, columns_along);
-    columns.count_u = std::max(1, static_cast<int>(std::ceil(size.x() / columns.step)));
-    columns.count_v = std::max(1, static_cast<int>(std::ceil(size.y() / columns.step)));
+    columns.count_u = columns.count_v = along;
+    columns.step = size / along;
     std::vector<Crossing> crossings;
     cross_columns(a, Pose{}, columns, 0, crossings);
     cross_columns(b, X_AB, columns, 1, crossings);
@@ -152,12 +152,18 @@ OverlapVolume overlap_volume(const TriMesh& a, const Pose& X_WA, const TriMesh& 
     overlap = {counted.volume, 0};
     for (const double coarse : counted.quarter)
       overlap.error_mm3 = std::max(overlap.error_mm3, std::abs(coarse - counted.volume));
-    if (counted.used.empty()) break;
+    if (counted.used.empty()) {
+      if (along >= finest) break;
+      along = std::min(4 * along, finest);
+      continue;
+    }
     // Columns stand for their cells, and a neighbour may just have missed.
-    const Eigen::Vector2d air = Eigen::Vector2d::Constant(1.5 * columns.step);
+    const Eigen::Vector2d air = 1.5 * columns.step;
     const Eigen::Vector2d next_low = low.cwiseMax(counted.used.low.head<2>() - air);
     const Eigen::Vector2d next_high = high.cwiseMin(counted.used.high.head<2>() + air);
-    if ((next_high - next_low).maxCoeff() > 0.7 * size.maxCoeff()) break;
+    const bool narrower = ((next_high - next_low).array() < 0.7 * size.array()).any();
+    if (!narrower && along <= std::max(8, columns_along)) break;
+    along = std::max(8, columns_along);
     low = next_low;
     high = next_high;
   }

@@ -5,6 +5,7 @@
 
 #include "engine/core/error.h"
 #include "engine/mesh/measure.h"
+#include "engine/mesh/topology.h"
 #include "engine/mesh/triangle_tree.h"
 #include "sim/case/import_checks.h"
 
@@ -23,16 +24,23 @@ double distance_to_body(const Case& patient, const Part& part, Body body) {
   return nearest;
 }
 
-/// How deep a vertex of the part lies in a bone or tooth of the body, mm; 0 outside all.
-double depth_in_body(const Case& patient, const Part& part, Body body) {
-  double deepest = 0;
+/// How deep a vertex of the part lies in a bone or tooth of the body, mm; 0 outside all. An open
+/// surface has an inside in rough terms only.
+struct Inside {
+  double depth_mm = 0;
+  bool open = false;
+};
+Inside depth_in_body(const Case& patient, const Part& part, Body body) {
+  Inside deepest;
   for (const auto& other : patient.parts) {
     if (body_of(other.role) != body || !collides(other.role)) continue;
     const TriangleTree tree(other.mesh);
     const Box box = bounding_box(other.mesh);
+    double depth = 0;
     for (const auto& v : part.mesh.vertices)
       if (box.contains(v, 0) && tree.winding_number(v) > 0.5)
-        deepest = std::max(deepest, tree.nearest(v).distance);
+        depth = std::max(depth, tree.nearest(v).distance);
+    if (depth > deepest.depth_mm) deepest = {depth, !inspect(other.mesh).closed()};
   }
   return deepest;
 }
@@ -52,16 +60,20 @@ void choose_carriers(Case& patient, const std::map<std::string, Body>& asked) {
                  to_mandible = distance_to_body(patient, part, Body::mandible);
     part.carrier = to_mandible < to_cranium ? Body::mandible : Body::cranium;
     constexpr double deep_mm = 0.5;
-    const double depth = depth_in_body(patient, part, part.carrier);
+    const Inside inside = depth_in_body(patient, part, part.carrier);
+    const bool deep = inside.depth_mm > deep_mm;
     const std::string where =
-        depth > deep_mm ? fmt::format("{:.1f} mm deep inside", depth)
-                        : fmt::format("{:.1f} mm from", std::min(to_cranium, to_mandible));
-    patient.notes.push_back(
-        fmt::format("{}: lies {} the {} and goes along with it; --carrier-of {}={} would change "
-                    "that{}",
-                    part.name, where, carrier_name(part.carrier), part.name,
-                    carrier_name(part.carrier == Body::mandible ? Body::cranium : Body::mandible),
-                    depth > deep_mm ? ", --push-out moves it out" : ""));
+        deep ? fmt::format("{:.1f} mm deep inside", inside.depth_mm)
+             : fmt::format("{:.1f} mm from", std::min(to_cranium, to_mandible));
+    const std::string way_out = !deep         ? ""
+                                : inside.open ? "; that surface is open, so no way out can be "
+                                                "told: close it, or move the part by hand"
+                                              : ", --push-out moves it out";
+    patient.notes.push_back(fmt::format(
+        "{}: lies {} the {} and goes along with it; --carrier-of {}={} would change "
+        "that{}",
+        part.name, where, carrier_name(part.carrier), part.name,
+        carrier_name(part.carrier == Body::mandible ? Body::cranium : Body::mandible), way_out));
   }
   for (const auto& [name, body] : asked) {
     const auto named = [&](const Part& part) {

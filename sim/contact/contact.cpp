@@ -83,8 +83,8 @@ std::string deep_start_note(const ColliderPair& pair, const Case& patient, doubl
     return start + "; a way out cannot be told, for one of them is an open surface";
   const Eigen::Vector3d way = out.length_mm * out.direction;
   return start + fmt::format(
-                     "; moved by ({:.1f}, {:.1f}, {:.1f}) mm it would be clear of it (import "
-                     "it again with --push-out)",
+                     "; moved by ({:.1f}, {:.1f}, {:.1f}) mm it would be clear of this "
+                     "one; to have it clear of all, import it again with --push-out",
                      way.x(), way.y(), way.z());
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr double middle_mm = 5;     // to either side of the midline
 constexpr double one_sided = 0.95;  // share of the area that makes a contact left or right
 constexpr double together_mm = 70;  // patches farther apart, as of both condyles, are not one place
-constexpr int volume_columns = 128;
+constexpr int volume_columns = 256;
 // Contacts wider than 1250 mm^2 (bones that lie in each other) are measured with coarser pieces.
 constexpr double most_pieces = 20000;
 

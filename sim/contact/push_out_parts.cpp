@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "engine/collide/push_out.h"
+#include "engine/mesh/measure.h"
 #include "sim/frame/body_poses.h"
 
 namespace condyle {
@@ -30,11 +31,25 @@ Inside deepest_bone(const Bone& own, const std::vector<Bone>& others) {
   return in;
 }
 
+/// Whether it lies among another's surfaces, as what is inside does.
+bool box_within(const TriMesh& mesh, const TriMesh& other) {
+  const Box box = bounding_box(mesh), around = bounding_box(other);
+  return around.contains(box.low) && around.contains(box.high);
+}
+
 /// Out of all that have an inside at once: out of one alone it could come into the next.
 void push(Part& part, const std::vector<Bone>& others, Case& patient) {
   const Bone own(part);
   const Inside in = deepest_bone(own, others);
-  if (!in.bone) return;
+  if (!in.bone) {
+    for (const auto& other : others)
+      if (other.solid.open_shell_count() > 0 && box_within(part.mesh, other.part->mesh))
+        patient.notes.push_back(
+            fmt::format("{}: was left where it is: {} is an open surface without an inside to "
+                        "push it out of",
+                        part.name, other.part->name));
+    return;
+  }
   TriMesh together;
   for (const auto& other : others) {
     if (other.solid.open_shell_count() > 0) continue;

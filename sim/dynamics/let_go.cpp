@@ -1,7 +1,11 @@
 #include "sim/dynamics/let_go.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
+#include "engine/collide/solid.h"
 #include "engine/core/error.h"
 #include "engine/mesh/measure.h"
 
@@ -13,6 +17,8 @@ using Eigen::Vector3d;
 // Share of its speed that a part loses in a step to the hand: settles within some steps, far from
 // the 2 at which damping would swing up.
 constexpr double lost_in_step = 0.2;
+
+constexpr double deep_start_mm = 1, deep_rest_mm = 0.1;
 
 Box moved(const Box& box, const Pose& X) {
   Box out;
@@ -66,6 +72,31 @@ RigidBody loose(const Part& part, const Pose& X_CP, double step_s, const LetGoSe
   return body;
 }
 
+/// Parts of which one may lie in the other.
+struct PairParts {
+  int below, lies;
+};
+
+/// The deepest of all pairs, by the exact surfaces.
+struct Deepest {
+  double depth_mm = 0;
+  PairParts pair = {};
+};
+Deepest deepest_of(const Case& patient, const std::vector<PairParts>& pairs,
+                   const std::map<int, Solid>& solids, const BodyPoses& at) {
+  Deepest deepest;
+  for (const PairParts& pair : pairs) {
+    const auto pose = [&](int part) {
+      return pose_of(patient.parts, static_cast<std::size_t>(part), at);
+    };
+    const double depth = overlap_depth(solids.at(pair.below), pose(pair.below),
+                                       solids.at(pair.lies), pose(pair.lies))
+                             .depth_mm;
+    if (depth > deepest.depth_mm) deepest = {depth, pair};
+  }
+  return deepest;
+}
+
 }  // namespace
 
 LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
@@ -89,9 +120,6 @@ LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
   world.add_force(
       {.body = bodies[0], .point = world.mass(bodies[0]).center, .force_N = settings.push_N});
 
-  struct PairParts {
-    int below, lies;
-  };
   std::vector<PairParts> pairs;
   const auto add_pair = [&](int below, std::size_t on, std::size_t mover) {
     world.add_pair({.a = below, .b = bodies[mover], .friction = settings.friction});
@@ -133,6 +161,18 @@ LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
     throw InputError(name + ": nothing lies within " + std::to_string(settings.reach_mm) +
                      " mm of it; bring it nearer before letting it go");
 
+  std::map<int, Solid> solids;
+  for (const PairParts& pair : pairs)
+    for (const int p : {pair.below, pair.lies})
+      solids.try_emplace(p, patient.parts[static_cast<std::size_t>(p)].mesh);
+  if (const Deepest start = deepest_of(patient, pairs, solids, from);
+      start.depth_mm > deep_start_mm) {
+    const auto part_name = [&](int p) { return patient.parts[static_cast<std::size_t>(p)].name; };
+    throw InputError(fmt::format(
+        "{}: starts {:.1f} mm deep in {}; move it out, or import it again with --push-out",
+        part_name(start.pair.lies), start.depth_mm, part_name(start.pair.below)));
+  }
+
   LetGo out;
   out.rest = run_to_rest(world, bodies, settings.rest, threads);
   // Farther away bone is not looked at.
@@ -151,6 +191,8 @@ LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
             ? pose_of(patient.parts, f, from)
             : world.pose(bodies[static_cast<std::size_t>(loosed - parts.begin())]));
   }
+  out.rest.depth_mm = deepest_of(patient, pairs, solids, out.poses).depth_mm;
+  out.rest.reached &= out.rest.depth_mm <= deep_rest_mm;
   for (const RigidContact& c : world.contacts()) {
     const PairParts& pair = pairs[static_cast<std::size_t>(c.pair)];
     out.contacts.push_back({pair.below, c.point, c.normal, c.gap_mm, c.push_N, pair.lies});

@@ -38,8 +38,9 @@ struct LetGo {
 /// slides until it lies still. Parts that yield are pushed along, and push others in turn; all else
 /// stays where it is. The hand that pushes has inertia and yields slowly, as does the soft tissue
 /// about what is pushed along, so that they settle without a bump. Same bits for any thread count.
-/// throws: InputError when a part is not free, nothing lies within reach, or the push is zero or
-/// not finite.
+/// What is more than 0.1 mm deep in bone in the end, by the exact surfaces, is not at rest.
+/// throws: InputError when a part is not free, starts more than 1 mm deep in bone, nothing lies
+/// within reach, or the push is zero or not finite.
 LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
              const LetGoSettings& settings, int threads = 1);
 

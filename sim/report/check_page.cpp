@@ -153,8 +153,8 @@ class PageWriter {
     if (drawn == 0) return;
     html_ +=
         "<p class=\"small\">Red: inside the other bone. White: within 0.1 mm of touching. Blue: "
-        "apart, paler when nearer. Grey: more than 5 mm apart. The scale is the same in every "
-        "picture.";
+        "apart, paler the farther. Grey: farther apart than the scale of the picture reaches, 5 mm "
+        "where bones come near.";
     if (drawn < worth) add(" The {} worst of {} pairs are drawn.", drawn, worth);
     html_ += "</p>\n";
   }

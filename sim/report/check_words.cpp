@@ -79,7 +79,7 @@ std::string push_out_words(const PairVerdict& pair) {
   const auto along = [](double mm, const char* plus, const char* minus) {
     return fmt::format("{:.2f} mm {}", std::abs(mm), mm >= 0 ? plus : minus);
   };
-  return fmt::format("At rest, moving {} by {}, {} and {} ({:.2f} mm) parts them.", pair.b,
+  return fmt::format("At rest, moving {} by {}, {} and {} ({:.2f} mm) parts these two.", pair.b,
                      along(out.x(), "left", "right"), along(out.y(), "back", "forward"),
                      along(out.z(), "up", "down"), out.norm());
 }

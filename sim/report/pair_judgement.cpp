@@ -78,10 +78,11 @@ std::string verdict_words(const PairVerdict& pair) {
   if (pair.collides) {
     const MotionTime& when = pair.beyond_rest_mm > 0 ? pair.deepest_at : *pair.first_touch;
     const std::string at = " at " + tenths(when.opening_mm) + " mm opening";
-    if (pair.beyond_rest_mm > 0 && pair.rest_depth_mm > 0)
+    constexpr double told_mm = 0.005;  // what would read 0.00 is touch
+    if (pair.beyond_rest_mm >= told_mm && pair.rest_depth_mm > 0)
       add("the motion makes them overlap " + number(pair.beyond_rest_mm) + " more than at rest" +
           at);
-    else if (pair.beyond_rest_mm > 0)
+    else if (pair.beyond_rest_mm >= told_mm)
       add("the motion makes them overlap by " + number(pair.beyond_rest_mm) + at);
     else
       add("the motion makes them meet" + at);

@@ -155,7 +155,7 @@ TEST(Check, ATransplantThatOverlapsItsBoneAtRestIsToldAndDrawn) {
     // A millimetre up parts them.
     EXPECT_NEAR(pair["push_out"][2].get<double>(), 1, 0.03);
     EXPECT_NEAR(pair["push_out"][0].get<double>(), 0, 0.1);
-    EXPECT_NE(read_text(folder / "out/report.html").find("parts them"), std::string::npos);
+    EXPECT_NE(read_text(folder / "out/report.html").find("parts these two"), std::string::npos);
     const std::string page = read_text(folder / "out/report.html");
     const bool blind = page.find("pictures are left out") != std::string::npos;
     EXPECT_EQ(pair["worst"].contains("picture"), !blind);

@@ -80,6 +80,19 @@ TEST(LetGo, PartsPushEachOtherOntoTheBone) {
   EXPECT_EQ(check.code, 0) << check.err;
 }
 
+TEST(LetGo, WhatStartsDeepInBoneIsRefusedAndNothingIsSaved) {
+  const Folder folder;
+  for (const double z_mm : {-3.0, -8.0}) {  // half in, and wholly
+    const std::string patient = case_with(folder, {strut(folder, "deep.obj", z_mm)}),
+                      out = folder / "settled";
+    const auto outcome = condyle({"let-go", patient, "--push", "0,0,-5", "--out", out});
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find("mm deep in maxilla; move it out"), std::string::npos)
+        << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+  }
+}
+
 TEST(LetGo, BadInputIsRefusedWithWords) {
   const Folder folder;
   const std::string patient = box_case(folder);

@@ -53,9 +53,30 @@ TEST(OverlapVolume, BoxesInAnyPose) {
         Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::Ones(), Eigen::Vector3d::UnitZ());
     corner.t = {0, 0, 10 - 1.2};
     const double tetrahedron = std::sqrt(3.0) / 2 * 1.2 * 1.2 * 1.2;
-    EXPECT_NEAR(overlap_volume(a, X_WA, cube, X_WA * corner).mm3, tetrahedron, 0.02 * tetrahedron);
+    EXPECT_NEAR(overlap_volume(a, X_WA, cube, X_WA * corner).mm3, tetrahedron, 0.01 * tetrahedron);
     const Pose away{Eigen::Quaterniond::Identity(), {0, 0, 13.001}};
     EXPECT_EQ(overlap_volume(a, X_WA, b, X_WA * away).mm3, 0);
+  }
+}
+
+TEST(OverlapVolume, SmallAndNarrowOverlapsAreMeasuredAsWell) {
+  std::mt19937_64 random(17);
+  const TriMesh slab = box({-20, -15, -10}, {20, 15, 0}), cube = box({-7, 0, 0}, {7, 10, 10});
+  for (const double deep : {2.0, 0.5, 0.1}) {
+    const Pose X = any_pose(random, 50);
+    // An edge of 14 mm pressed in, and a corner.
+    Pose ridge;
+    ridge.R = Eigen::AngleAxisd(pi / 4, Eigen::Vector3d::UnitX());
+    ridge.t = {1, 2, -deep};
+    const double wedge = deep * deep * 14;
+    EXPECT_NEAR(overlap_volume(slab, X, cube, X * ridge).mm3, wedge, 0.01 * wedge) << deep;
+    Pose tip;
+    tip.R = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::Ones(), Eigen::Vector3d::UnitZ());
+    tip.t = Eigen::Vector3d(3, -4, -deep);
+    const double tetrahedron = std::sqrt(3.0) / 2 * deep * deep * deep;
+    EXPECT_NEAR(overlap_volume(slab, X, box({0, 0, 0}, {10, 10, 10}), X * tip).mm3, tetrahedron,
+                0.01 * tetrahedron)
+        << deep;
   }
 }
 
