@@ -45,9 +45,16 @@ void draw_legend(Image& image, const Lettering& words, const ColourMap& map,
     words.write(image, right + 10 * line, y + letters / 3, letters, number, place.ink);
     widest = std::max(widest, words.width(number, letters));
   }
-  for (const auto& band : map.bands) {
-    const double y = (y_of(band.from) + y_of(band.to)) / 2 + letters / 3;
-    words.write(image, right + 18 * line + widest, y, 0.95 * letters, band.name, place.faint);
+  // Names of narrow bands are moved apart, from the lowest up.
+  std::vector<std::pair<double, std::string>> names;
+  for (const auto& band : map.bands)
+    names.emplace_back((y_of(band.from) + y_of(band.to)) / 2 + letters / 3, band.name);
+  std::sort(names.rbegin(), names.rend());
+  double free = image.height;
+  for (const auto& [y, name] : names) {
+    const double at = std::min(y, free);
+    words.write(image, right + 18 * line + widest, at, 0.95 * letters, name, place.faint);
+    free = at - 1.1 * letters;
   }
   const int patch = static_cast<int>(std::lround(letters));
   paint_box(image, {left, bottom + patch, right, bottom + 2 * patch}, map.beyond);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace condyle {
 namespace {
@@ -140,6 +141,9 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
   x = wanted;
   std::vector<Push>& active = solution.pushes;
   Violated violated(rows, settings.tolerance_mm);
+  using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
+  Columns N;
+  std::optional<Eigen::HouseholderQR<Columns>> factored;  // N, as long as the same rows hold
   for (int changes = 0; changes < max_changes;) {
     const int joining = violated.worst(x);
     if (joining < 0) break;
@@ -147,12 +151,15 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
     double push = 0;
     for (;; ++changes) {
       const auto count = static_cast<Eigen::Index>(active.size());
-      Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> N(6, count);
-      for (Eigen::Index k = 0; k < count; ++k) N.col(k) = rows[active[k].row].along;
+      if (count > 0 && !factored) {
+        N.resize(6, count);
+        for (Eigen::Index k = 0; k < count; ++k) N.col(k) = rows[active[k].row].along;
+        factored.emplace(N);
+      }
       Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> r(count);
       Twist z = n;
       if (count > 0) {
-        r = N.householderQr().solve(n);
+        r = factored->solve(n);
         z -= N * r;
       }
       double drop_at = std::numeric_limits<double>::infinity();
@@ -179,10 +186,12 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
       push += step;
       if (joins) {
         active.push_back({joining, push});
+        factored.reset();
         ++changes;
         break;
       }
       active.erase(active.begin() + dropped);
+      factored.reset();
     }
   }
   for (const ContactRow& row : rows)
