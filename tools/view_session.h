@@ -42,6 +42,7 @@ class ViewSession {
   void want_motion(const MotionChoice& choice);
   void take_motion();
   void take_plots();
+  // view_wishes.cpp:
   void take_recording();
   void take_let_go();
   void take_save();
@@ -54,17 +55,51 @@ class ViewSession {
   bool obeys_contact() const;
   void show_scene(bool other_patient);
   void show_progress();
-  void simulate(const ViewState& view);
+  void simulate(const ViewState& view);  // view_live.cpp
   void show(MotionPictures pictures);
 
   /// Runs a piece of work, its trouble told as a sentence.
   template <class Work>
-  void guarded(const Work& work);
+  void guarded(const Work& work) {
+    try {
+      work();
+    } catch (const std::exception& error) {
+      window_.report_error(error.what());
+    }
+  }
+  template <class Result>
+  std::unique_ptr<Background<Result>> beside(std::function<Result(const Progress&)> work) const {
+    return std::make_unique<Background<Result>>(std::move(work), [] { Window::wake(); });
+  }
   /// Ends work that is not wanted any more without waiting for it.
   template <class Result>
-  void retire(std::unique_ptr<Background<Result>>& work);
+  void retire(std::unique_ptr<Background<Result>>& work) {
+    if (!work) return;
+    work->cancel();
+    end_with(std::shared_ptr<Background<Result>>(std::move(work)));
+  }
+  /// Takes apart what runs, or is large, on a thread of its own; the patient that it works on stays
+  /// as long.
+  template <class Thing>
+  void retire(std::shared_ptr<Thing>& thing) {
+    if (!thing) return;
+    struct Retired {
+      PatientPtr patient;
+      std::shared_ptr<Thing> thing;  // goes first
+    };
+    auto retired = std::make_shared<Retired>(Retired{patient_, std::move(thing)});
+    end_with(std::make_shared<Background<bool>>(
+        [retired](const Progress&) {
+          retired->thing.reset();
+          retired->patient.reset();
+          return true;
+        },
+        [] {}));
+  }
   template <class Result>
-  std::unique_ptr<Background<Result>> beside(std::function<Result(const Progress&)> work) const;
+  void end_with(std::shared_ptr<Background<Result>> work) {
+    ending_.push_back([work] { return work->done(); });
+  }
 
   Window& window_;
   ViewOptions options_;
@@ -97,8 +132,8 @@ class ViewSession {
   // What runs beside, last of all members: it ends first.
   std::vector<std::function<bool()>> ending_;  // whether it has ended
   std::shared_ptr<PlotPost> plot_post_;
-  std::unique_ptr<LiveDistances> distances_;
-  std::unique_ptr<LiveSimulation> simulation_;
+  std::shared_ptr<LiveDistances> distances_;
+  std::shared_ptr<LiveSimulation> simulation_;
   std::unique_ptr<Background<PatientPtr>> loading_;
   std::unique_ptr<Background<MotionPtr>> moving_;
   std::unique_ptr<Background<bool>> readying_;  // bones to slide

@@ -1,6 +1,5 @@
 #include "tools/view_state_file.h"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -12,10 +11,6 @@ namespace condyle {
 void ViewStateFile::update(const Window& window, const FrameState* frame,
                            const std::string& busy_with) {
   if (file_.empty()) return;
-  const auto now = std::chrono::steady_clock::now();
-  longest_turn_ms_ =
-      std::max(longest_turn_ms_,
-               std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count());
   const auto list = [](const Eigen::Vector3d& v) { return nlohmann::json{v.x(), v.y(), v.z()}; };
   const ViewState& view = window.view();
   const PictureStatistics& pictures = window.pictures();
@@ -29,7 +24,7 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
                          {"camera_direction", list(window.camera().direction)},
                          {"pictures_per_second", pictures.pictures_per_second},
                          {"samples", pictures.samples},
-                         {"longest_turn_ms", std::round(longest_turn_ms_)}};
+                         {"longest_away_ms", std::round(pictures.longest_away_ms)}};
   if (view.hands.mandible) json["hand_mm"] = list(view.hands.mandible->t);
   if (frame) {
     json["frame"] = {{"time_s", frame->time_s},

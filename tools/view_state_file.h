@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <string>
 
@@ -14,14 +13,12 @@ class ViewStateFile {
  public:
   /// Empty: none is kept.
   explicit ViewStateFile(std::filesystem::path file) : file_(std::move(file)) {}
-  /// Called once a turn of the window's loop: the longest time between two calls is kept, too.
+  /// Called once a turn of the window's loop.
   void update(const Window& window, const FrameState* frame, const std::string& busy_with);
 
  private:
   std::filesystem::path file_;
   std::string written_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-  double longest_turn_ms_ = 0;
 };
 
 }  // namespace condyle

@@ -1,25 +1,15 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
-#include "render/camera.h"
-#include "render/window/quality.h"
+#include "render/window/picture_order.h"
 
 namespace condyle {
 
-class SceneRenderer;
-struct PictureSettings;
-struct FrameState;
-
-/// Two states in one picture: up to a share of the width one, from there on the other.
-struct Wipe {
-  const FrameState* left;
-  const FrameState* right;
-  double at;
-};
-
-/// The last 3-D picture as a texture, so that panels can be redrawn without drawing the patient.
+/// Draws pictures of the window's 3-D view and keeps what pictures of one size share. Needs a
+/// current OpenGL 3.3 core context for its whole life.
 class ViewPicture {
  public:
   ViewPicture();
@@ -27,17 +17,12 @@ class ViewPicture {
   ViewPicture(const ViewPicture&) = delete;
   ViewPicture& operator=(const ViewPicture&) = delete;
 
-  /// Draws at a quality; `settings` gives the full size. Waits for the driver to finish.
-  /// With a wipe the renderer is left with the right state.
-  /// gives: time taken, ms. throws: MachineError when the driver cannot make a picture of this
-  /// size.
-  double draw(SceneRenderer& renderer, const Camera& camera, PictureSettings settings,
-              const Quality& quality, const std::optional<Wipe>& wipe = {});
-
-  /// GL texture, its first row at the bottom, opaque; 0 before the first picture.
-  unsigned texture() const;
-  /// Samples that the context gave.
-  int samples() const;
+  /// Draws what the renderer has, at the order's quality; the settings give the full size. With a
+  /// wipe the renderer is left with the right state. Large pictures of the best quality, at rest,
+  /// are drawn column by column: none when `given_up` says, between two, that nobody waits for it
+  /// any more. throws: MachineError when the driver cannot make a picture of this size.
+  std::optional<DrawnPicture> draw(SceneRenderer& renderer, const PictureOrder& order,
+                                   const std::function<bool()>& given_up = {});
 
  private:
   struct State;

@@ -128,7 +128,9 @@ struct LoopStatistics {
 /// What the drawing does, measured by the window itself.
 struct PictureStatistics {
   double pictures_per_second = 0;
-  double picture_ms = 0;    // the 3-D picture alone
+  double picture_ms = 0;  // the 3-D picture alone
+  // Longest time between two looks at mouse and keyboard, waiting for them not counted.
+  double longest_away_ms = 0;
   double render_scale = 1;  // 1 is full resolution
   int samples = 1;          // of multisampling
 };

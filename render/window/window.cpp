@@ -40,15 +40,17 @@ Window::State::State(const WindowOptions& wanted) : options(wanted) {
   ImGui::GetIO().IniFilename = nullptr;  // leave no files behind
   ImGui::GetIO().LogFilename = nullptr;
   panels.emplace(1.0f, options.light);
-  view_picture.emplace();
+  texture.emplace();
+  painter.emplace([] { Window::wake(); });
   ImGui_ImplGlfw_InitForOpenGL(window, true);  // calls our callbacks before its own
   install_key_callbacks();
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 
 Window::State::~State() {
-  renderer.reset();
-  view_picture.reset();
+  if (window) glfwHideWindow(window);  // it is gone at once, though a picture is being drawn
+  painter.reset();
+  texture.reset();
   if (imgui) {
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
@@ -60,27 +62,31 @@ Window::State::~State() {
 Window::Window(const WindowOptions& options) : state_(std::make_unique<State>(options)) {}
 Window::~Window() = default;
 
-void Window::set_scene(const WindowScene& scene, const ViewState& start) {
+void Window::set_scene(const WindowScene& scene, const ViewState& start,
+                       std::shared_ptr<const void> keeper) {
   State& s = *state_;
-  s.renderer.reset();
   s.scene = scene;
   s.view = start;
   s.view.parts.resize(scene.parts.size());
-  s.has_frame = s.frame_new = false;
-  s.frame = {};
-  s.map_surfaces.clear();
-  s.values.clear();
+  s.order = {};
+  s.kept.reset();
+  s.cannot_draw = false;
+  if (!scene.parts.empty())
+    s.order.parts = std::make_shared<DrawnParts>(
+        DrawnParts{scene.parts, scene.distance_colours, std::move(keeper)});
+  s.box.setEmpty();
+  for (const Part& part : scene.parts)
+    for (const auto& vertex : part.mesh.vertices) s.box.extend(vertex);
+  if (s.box.isEmpty()) s.box.extend(Eigen::Vector3d::Zero());
   s.held.reset();
   s.plots.clear();
   s.lines.clear();
-  s.lines_new = true;
   s.view.landmarks = scene.landmarks;
   s.view.motion = scene.motion;
   s.panels->forget_edits();
-  if (!scene.parts.empty()) s.renderer.emplace(scene.parts);
-  if (s.renderer && scene.distance_colours) s.renderer->set_colour_map(*scene.distance_colours);
   s.fit_scale();
   s.set_standard_view(camera_of(Command::reset_view));
+  s.scene_changed = true;
   s.noticed();
 }
 
@@ -92,38 +98,35 @@ const ViewState& Window::poll() {
   const double elapsed = std::min(0.25, seconds_since(s.last_poll));
   s.last_poll = State::Clock::now();
   if (s.view.playing) {
-    advance_clock(s.view, elapsed, s.scene.duration_s, s.has_frame ? s.frame.time_s : 0);
-    s.frames_due = std::max(s.frames_due, 1);
+    advance_clock(s.view, elapsed, s.scene.duration_s, s.frame() ? s.frame()->time_s : 0);
   }
   return s.view;
 }
 
-void Window::set_map_surfaces(std::vector<MapSurface> surfaces) {
+void Window::set_map_surfaces(std::vector<MapSurface> surfaces,
+                              std::shared_ptr<const void> keeper) {
   State& s = *state_;
-  s.map_surfaces = std::move(surfaces);
-  for (const auto& surface : s.map_surfaces)
-    s.renderer->set_finer(s.scene.parts[surface.part].name, *surface.mesh, surface.normals);
+  s.order.map = std::make_shared<DrawnMap>(DrawnMap{std::move(surfaces), std::move(keeper)});
+  s.scene_changed = true;
 }
 
-void Window::show(FrameState frame, const LoopStatistics& loop,
-                  std::vector<std::vector<float>> values) {
+void Window::show(FrameState frame, const LoopStatistics& loop, MapValues values) {
   State& s = *state_;
-  const bool same = s.has_frame && s.frame.time_s == frame.time_s &&
-                    s.frame.state_hash == frame.state_hash &&
-                    s.frame.face.size() == frame.face.size();
+  const FrameState* before = s.frame();
+  const bool same = before && before->time_s == frame.time_s &&
+                    before->state_hash == frame.state_hash &&
+                    before->face.size() == frame.face.size();
   if (s.loop.message != loop.message) s.frames_due = std::max(s.frames_due, 1);
   s.loop = loop;
-  if (values != s.values) {
-    s.values = std::move(values);
-    s.values_new = true;
-    s.frames_due = std::max(s.frames_due, 1);
+  if (s.order.values ? values != *s.order.values : !values.empty()) {
+    s.order.values = values.empty() ? nullptr : std::make_shared<MapValues>(std::move(values));
+    s.scene_changed = true;
   }
   if (!same) {
-    if (!s.has_frame) s.kept = frame;
-    s.frame = std::move(frame);
-    s.has_frame = s.frame_new = true;
+    s.order.frame = std::make_shared<FrameState>(std::move(frame));
+    if (!s.kept) s.kept = s.order.frame;
     s.last_change = State::Clock::now();
-    s.frames_due = std::max(s.frames_due, 1);
+    s.scene_changed = true;
   }
   s.draw(false);
 }
@@ -167,9 +170,8 @@ void Window::show_plots(std::vector<PlotSet> plots) {
 }
 
 void Window::show_lines(const std::string& name, LineSet lines) {
-  state_->lines[name] = std::move(lines);
-  state_->lines_new = true;
-  state_->frames_due = std::max(state_->frames_due, 1);
+  state_->lines[name] = std::make_shared<LineSet>(std::move(lines));
+  state_->scene_changed = true;
 }
 
 void Window::show_progress(const std::string& what, double fraction, bool can_cancel) {
@@ -215,6 +217,8 @@ ViewRect Window::view_rect() const { return state_->view_rect(); }
 
 Image Window::picture() {
   Image image;
+  state_->order_picture();
+  state_->painter->finish();
   state_->draw(true, &image);
   return image;
 }

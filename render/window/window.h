@@ -11,6 +11,7 @@
 #include "render/image.h"
 #include "render/overlays.h"
 #include "render/window/panels.h"
+#include "render/window/picture_order.h"
 #include "render/window/plot_set.h"
 #include "render/window/view_state.h"
 #include "sim/frame/frame_state.h"
@@ -25,15 +26,8 @@ struct WindowOptions {
   std::filesystem::path picture_folder = ".";  // where F12 and recordings go
 };
 
-/// A part's surface in smaller triangles, for colours by values. normals: unit, one per vertex.
-struct MapSurface {
-  std::size_t part = 0;  // in the scene
-  const TriMesh* mesh = nullptr;
-  std::span<const Eigen::Vector3f> normals = {};
-};
-
-/// The window on a case. It asks by a ViewState and shows what it is given; the simulation runs
-/// elsewhere, best in another thread:
+/// The window on a case. It asks by a ViewState and shows what it is given; the picture is drawn on
+/// a thread of its own, and the simulation runs elsewhere, best in another thread, too:
 ///
 ///     Window window({.title = "Condyle"});
 ///     window.set_scene({.parts = parts, .case_name = "Built-in patient", .duration_s = 4});
@@ -53,8 +47,10 @@ class Window {
   Window& operator=(const Window&) = delete;
 
   /// Shows another case, from its first view. `start` may hold other settings than the defaults.
-  /// Uploads the parts, which must outlive the window or the next scene.
-  void set_scene(const WindowScene& scene, const ViewState& start = {});
+  /// The parts are uploaded beside the window; `keeper` keeps them for as long as they are needed
+  /// (without one they must outlive the window).
+  void set_scene(const WindowScene& scene, const ViewState& start = {},
+                 std::shared_ptr<const void> keeper = {});
 
   /// False once the person has closed the window.
   bool open() const;
@@ -63,15 +59,13 @@ class Window {
   /// picture's time while something moves (at most 1/60 s) and up to 1/4 s when nothing does.
   const ViewState& poll();
 
-  /// Surfaces that frames may come with values for, in the order of these. Uploads them; they must
-  /// outlive the window or the next scene.
-  void set_map_surfaces(std::vector<MapSurface> surfaces);
+  /// Surfaces that frames may come with values for, in the order of these; kept as the parts are.
+  void set_map_surfaces(std::vector<MapSurface> surfaces, std::shared_ptr<const void> keeper = {});
 
   /// Takes over a frame and draws if anything has changed. The same frame again costs nothing.
   /// `values`: one per vertex of each map surface, drawn in the scene's colours for distances;
   /// none: parts look like themselves.
-  void show(FrameState frame, const LoopStatistics& loop = {},
-            std::vector<std::vector<float>> values = {});
+  void show(FrameState frame, const LoopStatistics& loop = {}, MapValues values = {});
   /// Draws if anything has changed: when there is no new frame.
   void draw();
 
@@ -106,7 +100,7 @@ class Window {
   const std::vector<DrawnItem>& items() const;
   /// Where the 3-D view is.
   ViewRect view_rect() const;
-  /// Draws now and gives the whole window.
+  /// Draws now, the finished 3-D picture with it, and gives the whole window.
   Image picture();
 
  private:

@@ -10,7 +10,6 @@
 #include <string_view>
 
 #include "render/window/panels_drawing.h"
-#include "render/window/picture_files.h"
 #include "render/window/pointing.h"
 #include "render/window/window_state.h"
 #include "sim/frame/body_poses.h"
@@ -18,8 +17,12 @@
 namespace condyle {
 namespace {
 
+constexpr const char* preparing = "Preparing the picture";
 constexpr double calm_s = 0.25;  // nothing has moved for so long: full quality
 
+constexpr double clock_interval_s = 0.05;  // the time line's while pictures come slower
+
+/// Whether two settings give the same picture.
 bool same(const PictureSettings& a, const PictureSettings& b) {
   return a.width == b.width && a.height == b.height && a.shadows == b.shadows &&
          a.contacts == b.contacts && a.skin_opacity == b.skin_opacity &&
@@ -51,14 +54,14 @@ PictureSettings Window::State::settings() const {
   wanted.contacts = view.mark_contacts;
   wanted.skin_opacity = view.skin_opacity;
   wanted.part_opacity = part_opacities(scene, view);
-  if (renderer) apply_look(wanted);
+  if (order.parts) apply_look(wanted);
   return wanted;
 }
 
 void Window::State::apply_look(PictureSettings& wanted) const {
   const Look& look = view.look;
   if (look.clip) {
-    const auto [low, high] = renderer->bounds();
+    const Eigen::Vector3d low = box.min(), high = box.max();
     const std::string_view sides = "LRPASI";  // of the axes left, back, up: to and fro
     const auto which = sides.find(look.clip_from);
     const auto axis = static_cast<Eigen::Index>(which / 2);
@@ -83,30 +86,31 @@ void Window::State::apply_look(PictureSettings& wanted) const {
   if (look.patches && view.distances) wanted.mapped_up_to = touching_mm;
 }
 
-/// Lines that the window makes itself: the axes through the middle of the patient.
-void Window::State::update_lines() {
-  LineSet axes;
+/// Lines in space that are wanted; the axes through the middle of the patient are made here.
+std::map<std::string, std::shared_ptr<const LineSet>> Window::State::shown_lines() const {
+  std::map<std::string, std::shared_ptr<const LineSet>> shown;
   if (view.look.axes) {
-    const auto [low, high] = renderer->bounds();
-    const Eigen::Vector3f middle = ((low + high) / 2).cast<float>();
-    const float length = 0.6f * static_cast<float>((high - low).maxCoeff());
+    auto axes = std::make_shared<LineSet>();
+    const Eigen::Vector3f middle = box.center().cast<float>();
+    const float length = 0.6f * static_cast<float>(box.sizes().maxCoeff());
     constexpr std::array<std::array<float, 3>, 3> tints = {
         {{0.91f, 0.44f, 0.23f}, {0.18f, 0.75f, 0.58f}, {0.34f, 0.71f, 0.91f}}};
     for (int i = 0; i < 3; ++i) {
-      const std::size_t before = axes.ends.size();
-      add_arrow(axes, middle, middle + length * Eigen::Vector3f::Unit(i));
+      const std::size_t before = axes->ends.size();
+      add_arrow(*axes, middle, middle + length * Eigen::Vector3f::Unit(i));
       const auto& tint = tints[static_cast<std::size_t>(i)];
-      axes.colors.insert(axes.colors.end(), (axes.ends.size() - before) / 2,
-                         Eigen::Vector3f(tint[0], tint[1], tint[2]));
+      axes->colors.insert(axes->colors.end(), (axes->ends.size() - before) / 2,
+                          Eigen::Vector3f(tint[0], tint[1], tint[2]));
     }
+    shown["axes"] = axes;
   }
-  renderer->set_lines("axes", axes);
   for (const auto& [name, set] : lines) {
     const bool on = name == "paths"     ? view.look.paths
                     : name == "springs" ? view.look.springs
                                         : true;
-    renderer->set_lines(name, on ? set : LineSet{});
+    if (on) shown[name] = set;
   }
+  return shown;
 }
 
 bool Window::State::moving() const {
@@ -150,20 +154,22 @@ void Window::State::interface_frame() {
   ImGui::NewFrame();
   const auto [w, h] = size();
   const ViewRect r = view_rect();
-  if (const unsigned texture = view_picture->texture(); texture && renderer) {
+  if (drawn()) {
     const ImVec2 low = {static_cast<float>(r.x), static_cast<float>(r.y)};
     const ImVec2 high = {static_cast<float>(r.x + r.width), static_cast<float>(r.y + r.height)};
     // GL keeps the first row at the bottom.
     ImGui::GetBackgroundDrawList()->AddImage(
-        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), low, high, {0, 1},
-        {1, 0});
+        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture->name())), low, high,
+        {0, 1}, {1, 0});
   }
   const PanelInput input{.scene = scene,
-                         .frame = has_frame ? &frame : nullptr,
+                         .frame = frame(),
                          .loop = loop,
                          .pictures = pictures,
                          .camera = camera,
-                         .progress = progress,
+                         .progress = progress.empty() && order.parts && !drawn() && !cannot_draw
+                                         ? std::string(preparing)
+                                         : progress,
                          .progress_fraction = progress_fraction,
                          .can_cancel = can_cancel,
                          .pointed = pointed(),
@@ -181,18 +187,20 @@ void Window::State::interface_frame() {
 std::string Window::State::pointed() const {
   constexpr double seen_through = 0.5;  // what is paler does not hide what is pointed at
   const MouseMoment& now = mouse.now();
-  if (!view.distances || values.empty() || drag != CameraDrag::none || !over_view(now.x, now.y))
+  if (!view.distances || !order.values || !order.map || drag != CameraDrag::none ||
+      !over_view(now.x, now.y))
     return {};
   if (view.shows_face(scene) && view.skin_opacity > seen_through) return {};
   std::vector<PointedSurface> surfaces;
   std::vector<std::size_t> parts;
-  for (std::size_t i = 0; i < map_surfaces.size(); ++i) {
-    const std::size_t part = map_surfaces[i].part;
+  const auto& finer = order.map->surfaces;
+  for (std::size_t i = 0; i < std::min(finer.size(), order.values->size()); ++i) {
+    const std::size_t part = finer[i].part;
     if (part >= view.parts.size() || !view.parts[part].shown ||
         view.parts[part].opacity <= seen_through)
       continue;
     surfaces.push_back(
-        {map_surfaces[i].mesh, pose_of(scene.parts, part, frame.poses()), values[i]});
+        {finer[i].mesh, pose_of(scene.parts, part, frame()->poses()), (*order.values)[i]});
     parts.push_back(part);
   }
   const auto found = pointed_value(camera, view_rect(), {now.x, now.y}, surfaces);
@@ -205,71 +213,74 @@ std::string Window::State::pointed() const {
   return fmt::format("{}: {:.2f} mm", name, found->value);
 }
 
-void Window::State::draw_scene(const PictureSettings& wanted) {
-  if (!renderer) return;
-  if (lines_new) {
-    update_lines();
-    lines_new = false;
-    scene_changed = true;
-  }
-  if (frame_new) {
-    renderer->update(frame);
-    frame_new = false;
-    scene_changed = true;
-  }
-  if (values_new) {
-    for (std::size_t i = 0; i < map_surfaces.size(); ++i)
-      renderer->color_part(scene.parts[map_surfaces[i].part].name,
-                           i < values.size() ? values[i] : std::vector<float>{});
-    values_new = false;
-    scene_changed = true;
-  }
-  const bool in_motion = moving();
-  const Quality quality = governor.choose(in_motion);
-  if (!scene_changed && quality == drawn_quality) return;
+bool Window::State::drawn() const { return order.parts && texture->parts() == order.parts; }
+
+/// Asks for the picture as everything is now.
+void Window::State::order_picture() {
+  if (!order.parts) return;
+  order.camera = camera;
+  order.settings = settings();
+  order.moving = moving();
+  order.quality = governor.choose(order.moving);
+  order.beside = view.look.wipe && order.frame ? kept : nullptr;
+  order.wipe_at = view.look.wipe_at;
+  order.lines = shown_lines();
+  painter->order(order);
+  ordered_look = view.look;
   scene_changed = false;  // also when it fails: the next change tries again
-  drawn_settings = wanted;
-  drawn_quality = quality;
-  const double ms = view_picture->draw(*renderer, camera, wanted, quality,
-                                       view.look.wipe && has_frame
-                                           ? std::optional<Wipe>({&kept, &frame, view.look.wipe_at})
-                                           : std::nullopt);
-  governor.measured(in_motion, ms);
-  pictures.picture_ms = ms;
-  pictures.render_scale = quality.render_scale;
-  pictures.samples = std::max(1, view_picture->samples());
+}
+
+/// Shows the newest picture if there is one. gives: whether there was.
+bool Window::State::take_picture() {
+  const auto picture = painter->take();
+  if (!picture || picture->parts != order.parts) return false;
+  texture->show(*picture);
+  cannot_draw = false;
+  governor.measured(picture->moving, picture->ms);
+  pictures.picture_ms = picture->ms;
+  pictures.render_scale = picture->quality.render_scale;
+  pictures.samples = picture->samples;
   // Pictures a second only mean something while things move.
   const double counted_s = seconds_since(counted_from);
   ++counted_pictures;
-  if (in_motion && counted_s < 0.5) return;
-  pictures.pictures_per_second = in_motion && counted_s < 2 ? counted_pictures / counted_s : 0;
+  if (picture->moving && counted_s < 0.5) return true;
+  pictures.pictures_per_second =
+      picture->moving && counted_s < 2 ? counted_pictures / counted_s : 0;
   counted_pictures = 0;
   counted_from = Clock::now();
+  return true;
 }
 
 void Window::State::draw(bool always, Image* copy) {
-  const PictureSettings wanted = settings();
-  if (renderer && !(view.look == drawn_look)) {
-    drawn_look = view.look;
-    lines_new = true;
+  if (order.parts && (!(view.look == ordered_look) || !same(settings(), order.settings))) {
     scene_changed = true;
     last_change = Clock::now();
   }
-  if (renderer && !same(wanted, drawn_settings)) {
-    scene_changed = true;
-    last_change = Clock::now();
-  }
-  const bool better_due = renderer && !(governor.choose(moving()) == drawn_quality);
-  const bool due = frames_due > 0 || scene_changed || frame_new || values_new || better_due ||
-                   save_window || panels->talking();
-  // A hair early is in time: the wait before was for this picture.
-  if (!always && (!due || seconds_since(last_draw) < 0.9 * picture_interval_s)) return;
-  last_draw = Clock::now();
+  if (order.parts && (scene_changed || !(governor.choose(moving()) == order.quality)))
+    order_picture();
+  bool news = false;
   try {
-    draw_scene(wanted);
+    news = take_picture();
   } catch (const std::exception& error) {
+    cannot_draw = true;
     panels->report_error(error.what());
+    frames_due = 3;
   }
+  while (const auto saved = painter->take_saved()) {
+    if (saved->trouble.empty())
+      panels->say("Saved " + saved->file.string());
+    else
+      panels->report_error(saved->trouble);
+    frames_due = 3;
+  }
+  const bool clock_due = view.playing && seconds_since(last_draw) > clock_interval_s;
+  const bool due = news || frames_due > 0 || clock_due || save_window || panels->talking();
+  // A hair early is in time: the wait before was for this picture.
+  if (!always && (!due || seconds_since(last_draw) < 0.9 * picture_interval_s)) {
+    if (news) frames_due = std::max(frames_due, 1);
+    return;
+  }
+  last_draw = Clock::now();
   interface_frame();
 
   int w = 0, h = 0;
@@ -283,7 +294,7 @@ void Window::State::draw(bool always, Image* copy) {
   if (copy) *copy = read_back();
   if (save_window) {
     save_window = false;
-    save(read_back());
+    painter->save(read_back(), options.picture_folder);
   }
   glfwSwapBuffers(window);
   frames_due = std::max(0, frames_due - 1);
@@ -302,16 +313,6 @@ Image Window::State::read_back() const {
     image.rgba.insert(image.rgba.end(), rows.begin() + static_cast<std::ptrdiff_t>(row * stride),
                       rows.begin() + static_cast<std::ptrdiff_t>((row + 1) * stride));
   return image;
-}
-
-void Window::State::save(const Image& image) {
-  try {
-    const std::filesystem::path file = next_picture_file(options.picture_folder);
-    write_png(file, image);
-    panels->say("Saved " + file.string());
-  } catch (const std::exception& error) {
-    panels->report_error(error.what());
-  }
 }
 
 }  // namespace condyle

@@ -122,7 +122,7 @@ void Window::State::run(Command command) {
       glfwSetWindowShouldClose(window, GLFW_TRUE);
       break;
     case Command::keep_state:
-      kept = frame;
+      kept = order.frame;
       scene_changed = true;
       break;
     case Command::toggle_theme:
@@ -132,7 +132,8 @@ void Window::State::run(Command command) {
       save_window = true;
       break;
     case Command::picture:
-      if (renderer) save(renderer->picture(camera, settings()));
+      if (order.parts) order_picture();
+      painter->save_picture(options.picture_folder);
       break;
     default:
       set_standard_view(camera_of(command));
@@ -140,9 +141,9 @@ void Window::State::run(Command command) {
 }
 
 void Window::State::set_standard_view(std::string_view name) {
-  if (!renderer || name.empty()) return;
+  if (!order.parts || name.empty()) return;
   const ViewRect rect = view_rect();
-  const auto [low, high] = renderer->bounds();
+  const Eigen::Vector3d low = box.min(), high = box.max();
   camera = standard_camera(std::string(name), low, high, rect.width / rect.height);
   const double size = std::max(1.0, (high - low).norm());
   zoom = {.nearest_mm = 0.05 * size, .farthest_mm = 12 * size};
@@ -150,15 +151,19 @@ void Window::State::set_standard_view(std::string_view name) {
 }
 
 void Window::State::wait_for_events() {
-  const bool active = moving() || frames_due > 0 || scene_changed || frame_new;
+  const bool active = moving() || frames_due > 0 || scene_changed;
   const double wait =
-      active ? picture_interval_s - seconds_since(last_draw)
+      active ? picture_interval_s - seconds_since(last_look)
              : (seconds_since(last_event) < attentive_s ? picture_interval_s : idle_wait_s);
+  if (looked)
+    pictures.longest_away_ms = std::max(pictures.longest_away_ms, 1e3 * seconds_since(last_look));
+  looked = true;
   if (wait > 0) {
     glfwWaitEventsTimeout(wait);
   } else {
     glfwPollEvents();
   }
+  last_look = Clock::now();
   // Each press and release has its own pass over the panels, so that none is lost between pictures.
   while (input_waits()) interface_frame();
 }

@@ -22,12 +22,12 @@ std::optional<PointedPlace> Window::State::surface_under(const Eigen::Vector2d& 
     const bool seen =
         i < view.parts.size() && view.parts[i].shown && view.parts[i].opacity > seen_through;
     if (!seen || (part.role == Role::face && !skinned)) continue;
-    if (part.role == Role::face && frame.face.size() == part.mesh.vertices.size()) {
-      for (const auto& p : frame.face) face.vertices.push_back(p.cast<double>());
+    if (part.role == Role::face && frame()->face.size() == part.mesh.vertices.size()) {
+      for (const auto& p : frame()->face) face.vertices.push_back(p.cast<double>());
       face.triangles = part.mesh.triangles;
       surfaces.push_back({&face, Pose{}});
     } else {
-      surfaces.push_back({&part.mesh, pose_of(scene.parts, i, frame.poses())});
+      surfaces.push_back({&part.mesh, pose_of(scene.parts, i, frame()->poses())});
     }
     parts.push_back(i);
   }
@@ -40,7 +40,7 @@ std::optional<PointedPlace> Window::State::surface_under(const Eigen::Vector2d& 
 /// one.
 bool Window::State::set_point(const Eigen::Vector2d& at) {
   const bool places = view.tool == Tool::landmarks && view.landmark;
-  if ((view.tool != Tool::measure && !places) || !has_frame) return false;
+  if ((view.tool != Tool::measure && !places) || !frame()) return false;
   const auto found = surface_under(at, true);
   if (!found) return false;
   panels->remember(view);
@@ -57,9 +57,9 @@ bool Window::State::set_point(const Eigen::Vector2d& at) {
 
 /// A handle of the chosen body, else a body that is pointed at. gives: whether the hand has one.
 bool Window::State::grip_body(const Eigen::Vector2d& at) {
-  if (view.tool != Tool::move || !has_frame || view.chosen >= scene.bodies.size()) return false;
+  if (view.tool != Tool::move || !frame() || view.chosen >= scene.bodies.size()) return false;
   const auto pose = [&](const MovableBody& body) {
-    return pose_of(scene.parts, body.part, frame.poses());
+    return pose_of(scene.parts, body.part, frame()->poses());
   };
   const MovableBody& chosen = scene.bodies[view.chosen];
   HandleView handle_view{camera, view_rect(), pose(chosen) * chosen.center};
@@ -88,7 +88,7 @@ void Window::State::move_body(const Eigen::Vector2d& at) {
     view.opening_mm.reset();
   }
   const Pose wanted = gripped(held->view, held->grip, held->start, held->from, at);
-  view.hands.of(body) = carrier_pose(body, frame.X_CM).inverse() * wanted;
+  view.hands.of(body) = carrier_pose(body, frame()->X_CM).inverse() * wanted;
   last_change = Clock::now();
   frames_due = 3;
 }

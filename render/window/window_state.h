@@ -4,6 +4,7 @@
 // GLFW after epoxy, which brings the GL header.
 #include <GLFW/glfw3.h>
 
+#include <Eigen/Geometry>
 #include <chrono>
 #include <deque>
 #include <exception>
@@ -12,13 +13,13 @@
 #include <string_view>
 #include <utility>
 
-#include "render/scene_renderer.h"
 #include "render/window/glfw_session.h"
 #include "render/window/handles.h"
 #include "render/window/mouse_queue.h"
+#include "render/window/picture_texture.h"
+#include "render/window/picture_thread.h"
 #include "render/window/pointing.h"
 #include "render/window/quality.h"
-#include "render/window/view_picture.h"
 #include "render/window/window.h"
 
 struct ImGuiContext;
@@ -37,20 +38,19 @@ struct Window::State {
   GLFWwindow* window = nullptr;
   ImGuiContext* imgui = nullptr;
   std::optional<Panels> panels;
-  std::optional<ViewPicture> view_picture;
-  std::optional<SceneRenderer> renderer;
+  std::optional<PictureTexture> texture;
+  std::optional<PictureThread> painter;
 
   WindowOptions options;
   WindowScene scene;
   ViewState view;
-  FrameState frame;
-  bool has_frame = false;
-  bool frame_new = false;  // the renderer has not seen it
-  FrameState kept;         // to compare with: the first, or the one that was kept
-  Look drawn_look;
-  std::vector<MapSurface> map_surfaces;
-  std::vector<std::vector<float>> values;  // of the frame, one list per map surface; or none
-  bool values_new = false;                 // the renderer has not seen them
+  Eigen::AlignedBox3d box;  // of the scene at rest
+  PictureOrder order;       // the newest picture that is wanted
+  // To compare with: the first frame, or the one that was kept.
+  std::shared_ptr<const FrameState> kept;
+  Look ordered_look;
+  bool looked = false;       // at mouse and keyboard, at least once
+  bool cannot_draw = false;  // the last picture failed
   LoopStatistics loop;
   Camera camera;
   ZoomLimits zoom;
@@ -58,9 +58,8 @@ struct Window::State {
   double progress_fraction = 0, recording_fraction = 0;
   bool can_cancel = false;
   std::vector<PlotSet> plots;
-  std::map<std::string, LineSet> lines;        // in space, by name
-  bool lines_new = false;                      // the renderer has not seen them
-  std::vector<std::filesystem::path> dropped;  // on the window, not taken yet
+  std::map<std::string, std::shared_ptr<const LineSet>> lines;  // in space, by name
+  std::vector<std::filesystem::path> dropped;                   // on the window, not taken yet
 
   MouseQueue mouse;
   /// Keys and letters for a field that is written in, in their order, each with its own pass over
@@ -85,15 +84,13 @@ struct Window::State {
   std::optional<Held> held;
 
   QualityGovernor governor;
-  Quality drawn_quality;
-  PictureSettings drawn_settings;
   PictureStatistics pictures;
-  bool scene_changed = true;  // the 3-D picture is out of date
+  bool scene_changed = true;  // what was ordered last is out of date
   bool save_window = false;
   int frames_due = 3;        // pictures of the panels still to draw
   int counted_pictures = 0;  // since counted_from
-  Clock::time_point last_poll = Clock::now(), last_draw = last_poll, last_change = last_poll,
-                    last_event = last_poll, counted_from = last_poll;
+  Clock::time_point last_poll = Clock::now(), last_look = last_poll, last_draw = last_poll,
+                    last_change = last_poll, last_event = last_poll, counted_from = last_poll;
 
   // window_input.cpp
   void install_callbacks();
@@ -133,15 +130,17 @@ struct Window::State {
   ViewRect view_rect() const;
   PictureSettings settings() const;
   void apply_look(PictureSettings& wanted) const;
-  void update_lines();
+  std::map<std::string, std::shared_ptr<const LineSet>> shown_lines() const;
+  bool drawn() const;  // the picture on show is of this scene
   bool moving() const;
   void fit_scale();
   void interface_frame();
   std::string pointed() const;
-  void draw_scene(const PictureSettings& wanted);
+  void order_picture();
+  bool take_picture();
   void draw(bool always, Image* copy = nullptr);
   Image read_back() const;
-  void save(const Image& image);
+  const FrameState* frame() const { return order.frame.get(); }
 };
 
 inline double seconds_since(std::chrono::steady_clock::time_point start) {

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/mesh/tri_mesh.h"
+#include "render/camera.h"
+#include "render/overlays.h"
+#include "render/scene_renderer.h"
+#include "render/window/quality.h"
+#include "sim/frame/frame_state.h"
+
+namespace condyle {
+
+/// A part's surface in smaller triangles, for colours by values. normals: unit, one per vertex.
+struct MapSurface {
+  std::size_t part = 0;  // in the scene
+  const TriMesh* mesh = nullptr;
+  std::span<const Eigen::Vector3f> normals = {};
+};
+
+/// The patient as it is uploaded.
+struct DrawnParts {
+  std::span<const Part> parts = {};
+  std::optional<ColourMap> colours = {};
+  std::shared_ptr<const void> keeper = {};  // keeps the parts
+};
+
+/// Finer surfaces of parts, in the order in which values come.
+struct DrawnMap {
+  std::vector<MapSurface> surfaces = {};
+  std::shared_ptr<const void> keeper = {};  // keeps the surfaces
+};
+
+using MapValues = std::vector<std::vector<float>>;
+
+/// All that one picture shows. What is large is shared and never changes once it is ordered:
+/// something else is another pointer.
+struct PictureOrder {
+  std::shared_ptr<const DrawnParts> parts = {};   // none: nothing is drawn
+  std::shared_ptr<const FrameState> frame = {};   // none: at rest
+  std::shared_ptr<const FrameState> beside = {};  // left of a wipe; none: no wipe
+  double wipe_at = 0.5;                           // share of the width
+  std::shared_ptr<const DrawnMap> map = {};       // none: parts have their own surfaces alone
+  std::shared_ptr<const MapValues> values = {};   // of the map's surfaces; none: no colours
+  std::map<std::string, std::shared_ptr<const LineSet>> lines = {};
+  Camera camera = {};
+  PictureSettings settings = {};
+  Quality quality = {};
+  bool moving = false;  // told back with the picture
+};
+
+/// A finished picture: opaque RGBA of 8 bits, the lowest row first, as OpenGL has it.
+struct DrawnPicture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgba = {};
+  std::shared_ptr<const DrawnParts> parts = {};  // whom it shows
+  Quality quality = {};
+  int samples = 1;  // that the context gave
+  bool moving = false;
+  double ms = 0;  // it took
+};
+
+}  // namespace condyle

@@ -1,0 +1,176 @@
+#include "render/window/picture_thread.h"
+
+#include <utility>
+
+#include "render/gl_context.h"
+#include "render/window/picture_files.h"
+#include "render/window/view_picture.h"
+
+namespace condyle {
+
+struct PictureThread::Drawing {
+  OffscreenContext context;
+  ViewPicture view;
+  std::optional<SceneRenderer> renderer;
+  PictureOrder applied;  // what the renderer has
+
+  /// Gives the renderer what the order has otherwise than the last one.
+  void apply(const PictureOrder& wanted) {
+    const bool other = wanted.parts != applied.parts;
+    if (other) {
+      renderer.reset();
+      applied = {.parts = wanted.parts};  // also where it cannot be uploaded: once is enough
+      if (wanted.parts) {
+        renderer.emplace(wanted.parts->parts);
+        if (wanted.parts->colours) renderer->set_colour_map(*wanted.parts->colours);
+      }
+    }
+    if (!renderer) return;
+    if (wanted.frame && (wanted.frame != applied.frame || applied.beside))
+      renderer->update(*wanted.frame);
+    applied.frame = wanted.frame;
+    applied.beside = wanted.beside;
+    const auto name = [&](const MapSurface& surface) {
+      return wanted.parts->parts[surface.part].name;
+    };
+    if (wanted.map && wanted.map != applied.map)
+      for (const auto& surface : wanted.map->surfaces)
+        renderer->set_finer(name(surface), *surface.mesh, surface.normals);
+    if (wanted.map && (wanted.map != applied.map || wanted.values != applied.values))
+      for (std::size_t i = 0; i < wanted.map->surfaces.size(); ++i)
+        renderer->color_part(name(wanted.map->surfaces[i]),
+                             wanted.values && i < wanted.values->size() ? (*wanted.values)[i]
+                                                                        : std::vector<float>{});
+    applied.map = wanted.map;
+    applied.values = wanted.values;
+    for (const auto& [of, lines] : wanted.lines)
+      if (const auto before = applied.lines.find(of);
+          before == applied.lines.end() || before->second != lines)
+        renderer->set_lines(of, lines ? *lines : LineSet{});
+    for (const auto& [of, lines] : applied.lines)
+      if (!wanted.lines.contains(of)) renderer->set_lines(of, {});
+    applied.lines = wanted.lines;
+  }
+};
+
+PictureThread::PictureThread(std::function<void()> told)
+    : told_(std::move(told)), thread_([this] { work(); }) {}
+
+PictureThread::~PictureThread() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void PictureThread::order(PictureOrder wanted) {
+  {
+    const std::lock_guard lock(mutex_);
+    ordered_ = std::move(wanted);
+  }
+  changed_.notify_all();
+}
+
+std::optional<DrawnPicture> PictureThread::take() {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  return std::exchange(newest_, std::nullopt);
+}
+
+void PictureThread::finish() {
+  std::unique_lock lock(mutex_);
+  finished_.wait(lock, [this] { return !busy_ && !ordered_ && saves_.empty(); });
+}
+
+void PictureThread::save_picture(std::filesystem::path folder) {
+  {
+    const std::lock_guard lock(mutex_);
+    saves_.push_back({std::move(folder), std::nullopt});
+  }
+  changed_.notify_all();
+}
+
+void PictureThread::save(Image image, std::filesystem::path folder) {
+  {
+    const std::lock_guard lock(mutex_);
+    saves_.push_back({std::move(folder), std::move(image)});
+  }
+  changed_.notify_all();
+}
+
+std::optional<PictureThread::Saved> PictureThread::take_saved() {
+  const std::lock_guard lock(mutex_);
+  if (saved_.empty()) return std::nullopt;
+  Saved first = std::move(saved_.front());
+  saved_.pop_front();
+  return first;
+}
+
+bool PictureThread::given_up() const {
+  const std::lock_guard lock(mutex_);
+  return stop_ || ordered_;
+}
+
+void PictureThread::work() {
+  std::optional<Drawing> drawing;
+  PictureOrder last;
+  while (true) {
+    std::optional<SaveOrder> save_order;
+    bool ordered = false;
+    {
+      std::unique_lock lock(mutex_);
+      busy_ = false;
+      finished_.notify_all();
+      changed_.wait(lock, [this] { return stop_ || ordered_ || !saves_.empty(); });
+      if (stop_) return;
+      busy_ = true;
+      ordered = ordered_.has_value();
+      if (ordered) {
+        last = *std::exchange(ordered_, std::nullopt);
+      } else {
+        save_order = std::move(saves_.front());
+        saves_.pop_front();
+      }
+    }
+    if (ordered)
+      draw(drawing, last);
+    else
+      save(drawing, last, std::move(*save_order));
+    if (told_) told_();
+  }
+}
+
+void PictureThread::draw(std::optional<Drawing>& drawing, const PictureOrder& wanted) {
+  try {
+    if (!drawing) drawing.emplace();
+    drawing->apply(wanted);
+    if (!drawing->renderer) return;
+    auto picture = drawing->view.draw(*drawing->renderer, wanted, [this] { return given_up(); });
+    const std::lock_guard lock(mutex_);
+    if (picture) newest_ = std::move(picture);
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+  }
+}
+
+void PictureThread::save(std::optional<Drawing>& drawing, const PictureOrder& shown,
+                         SaveOrder wanted) {
+  Saved saved;
+  try {
+    if (!wanted.image) {
+      if (!drawing || !drawing->renderer) return;
+      wanted.image = drawing->renderer->picture(shown.camera, shown.settings);
+    }
+    saved.file = next_picture_file(wanted.folder);
+    write_png(saved.file, *wanted.image);
+  } catch (const std::exception& error) {
+    saved.trouble = error.what();
+  }
+  const std::lock_guard lock(mutex_);
+  saved_.push_back(std::move(saved));
+}
+
+}  // namespace condyle

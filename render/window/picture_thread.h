@@ -1,0 +1,72 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "render/image.h"
+#include "render/window/picture_order.h"
+
+namespace condyle {
+
+/// Draws the patient on a thread of its own, with an OpenGL context of its own, so that the
+/// window's panels never wait for a picture: not for the first one of a patient, for which all is
+/// prepared and uploaded, nor for a large one. Pixels come back through memory: two contexts of one
+/// software driver would wait for each other.
+class PictureThread {
+ public:
+  /// `told`: called when there is news, from that thread.
+  explicit PictureThread(std::function<void()> told);
+  ~PictureThread();
+  PictureThread(const PictureThread&) = delete;
+  PictureThread& operator=(const PictureThread&) = delete;
+
+  /// What the next picture shows; an earlier order that is not begun is forgotten.
+  void order(PictureOrder wanted);
+  /// The newest picture when there is one that was not taken yet.
+  /// Rethrows what a picture failed of: MachineError.
+  std::optional<DrawnPicture> take();
+  /// Waits until every order is drawn and everything is saved.
+  void finish();
+
+  /// Draws what was ordered last in full quality and saves it as PNG under a free name in the
+  /// folder; or saves an image.
+  void save_picture(std::filesystem::path folder);
+  void save(Image image, std::filesystem::path folder);
+
+  struct Saved {
+    std::filesystem::path file;
+    std::string trouble;  // why it is not there; empty: it is
+  };
+  /// What was saved since the last call, one at a time.
+  std::optional<Saved> take_saved();
+
+ private:
+  struct Drawing;  // what lives as long as the context
+  struct SaveOrder {
+    std::filesystem::path folder;
+    std::optional<Image> image;  // none: the view
+  };
+  void work();
+  void draw(std::optional<Drawing>& drawing, const PictureOrder& wanted);
+  void save(std::optional<Drawing>& drawing, const PictureOrder& shown, SaveOrder wanted);
+  bool given_up() const;
+
+  std::function<void()> told_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_, finished_;
+  std::optional<PictureOrder> ordered_;
+  std::deque<SaveOrder> saves_;
+  std::optional<DrawnPicture> newest_;
+  std::deque<Saved> saved_;
+  std::exception_ptr failure_;
+  bool busy_ = false, stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace condyle

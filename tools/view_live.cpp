@@ -1,0 +1,75 @@
+#include <utility>
+
+#include "tools/view_session.h"
+
+// Of a ViewSession: what the simulation is asked for, and its frames on their way to the window.
+
+namespace condyle {
+namespace {
+
+std::vector<MapSurface> map_surfaces(const DistanceMap& map) {
+  std::vector<MapSurface> surfaces;
+  for (const auto& surface : map.surfaces())
+    surfaces.push_back({static_cast<std::size_t>(surface.part), &surface.mesh, surface.normals});
+  return surfaces;
+}
+
+/// Tells the simulation what the hands want otherwise than before. A free part that is put back is
+/// wanted where it was loaded.
+void hand_over(const Hands& now, const Hands& before, std::span<const MovableBody> bodies,
+               LiveSimulation& simulation) {
+  for (const auto& body : bodies) {
+    Hands one, other;
+    one.of(body) = now.of(body);
+    other.of(body) = before.of(body);
+    if (one == other) continue;
+    if (now.of(body) || body.free)
+      simulation.drag(body.part, now.of(body).value_or(Pose{}));
+    else
+      simulation.release(body.part);
+  }
+}
+
+}  // namespace
+
+void ViewSession::simulate(const ViewState& view) {
+  simulation_->request({.time_s = view.time_s,
+                        .opening_mm = view.opening_mm,
+                        .obey_contact = view.obey_contact,
+                        .face = view.shows_face(shown_)});
+  if (!(view.hands == moved_)) {
+    guarded([&] { hand_over(view.hands, moved_, shown_.bodies, *simulation_); });
+    moved_ = view.hands;
+  }
+  LoopStatistics loop{.steps_per_second = simulation_->steps_per_second(),
+                      .message = view.distances && !map_sent_ ? "Measuring distances" : ""};
+  std::optional<FrameState> frame;
+  guarded([&] { frame = simulation_->take(); });
+  const bool news = frame.has_value();
+  if (news) newest_ = std::move(frame);
+  if (!newest_) return window_.draw();
+  if (view.look.springs && (news || !springs_shown_))
+    window_.show_lines("springs", tissue_springs(patient_->scene, newest_->tissue));
+  springs_shown_ = view.look.springs;
+  if (view.distances && !distances_)
+    distances_ = std::make_shared<LiveDistances>(
+        patient_->scene.patient, DistanceMapSettings{.pair_rules = settings_.contact.pair_rules});
+  const bool switched = coloured_ != view.distances;
+  if (view.distances && (news || switched)) distances_->request(*newest_);
+  coloured_ = view.distances;
+  auto answer = distances_ ? distances_->take() : std::nullopt;
+  if (answer && !map_sent_) {
+    window_.set_map_surfaces(map_surfaces(*distances_->map()), distances_);
+    map_sent_ = true;
+    loop.message.clear();
+  }
+  // A frame waits for its colours, so that both are of one time.
+  if (answer && view.distances)
+    window_.show(std::move(answer->frame), loop, std::move(answer->values));
+  else if ((news || switched) && !(view.distances && map_sent_))
+    window_.show(*newest_, loop);
+  else
+    window_.draw();
+}
+
+}  // namespace condyle

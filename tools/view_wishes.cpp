@@ -1,0 +1,166 @@
+#include <fmt/format.h>
+
+#include "engine/core/error.h"
+#include "tools/view_recording.h"
+#include "tools/view_session.h"
+
+// Of a ViewSession: what the person asks for once, and what comes of it.
+
+namespace condyle {
+namespace fs = std::filesystem;
+namespace {
+
+/// Where a part that is let go is pushed: to the bone that is nearest, with a newton.
+Eigen::Vector3d push_toward_bone(const FrameState& frame, std::size_t part) {
+  double nearest = 1e300;
+  Eigen::Vector3d way = -Eigen::Vector3d::UnitZ();
+  for (const auto& pair : frame.contacts.pairs) {
+    const bool first = pair.part_a == static_cast<int>(part);
+    if ((!first && pair.part_b != static_cast<int>(part)) || pair.distance_is_bound) continue;
+    if (pair.touching || pair.distance_mm >= nearest) continue;
+    nearest = pair.distance_mm;
+    way = first ? pair.witness_b - pair.witness_a : pair.witness_a - pair.witness_b;
+  }
+  return way.norm() > 1e-9 ? way.normalized() : -Eigen::Vector3d::UnitZ();
+}
+
+}  // namespace
+
+void ViewSession::carry_out(const wish::Open& wanted) {
+  if (wanted.files.empty()) return open_patient({});
+  const fs::path& one = wanted.files.front();
+  std::error_code ignored;
+  if (!fs::exists(one, ignored)) {
+    recent_.forget(one);
+    if (patient_) show_scene(false);
+    throw InputError(one, "", "is not there (any more)");
+  }
+  wish::Import surfaces;
+  for (const fs::path& file : wanted.files) {
+    const FileKind kind = kind_of(file);
+    if (kind == FileKind::surface || kind == FileKind::landmarks)
+      surfaces.files.push_back({file, role_guess(file)});
+  }
+  if (!surfaces.files.empty()) return window_.ask_roles(surfaces);
+  switch (kind_of(one)) {
+    case FileKind::patient:
+      return open_patient(fs::is_directory(one) ? one : one.parent_path());
+    case FileKind::motion:
+    case FileKind::excitations: {
+      const std::string spec =
+          (kind_of(one) == FileKind::excitations ? "muscles:" : "") + fs::absolute(one).string();
+      return window_.change(
+          [&](ViewState& view) {
+            view.motion = {spec, view.motion.parameters, {}};
+          },
+          true);
+    }
+    default:
+      throw InputError(one, "",
+                       "is of no kind that can be opened: give a case folder, a motion (CSV, "
+                       ".motion, .mot, .sto, .trc) or a surface (STL, PLY, OBJ, glTF)");
+  }
+}
+
+void ViewSession::carry_out(const wish::Import& wanted) {
+  load(
+      [wanted](const Progress& progress) {
+        report(progress, "reading the surfaces", 0.05);
+        return import_files(wanted);
+      },
+      {});
+}
+
+void ViewSession::carry_out(const wish::Record& wanted) {
+  if (recording_ || !motion_) return;
+  recording_ = beside<fs::path>([wanted, patient = patient_, motion = motion_, settings = settings_,
+                                 obey = options_.motion.respect_contact](const Progress& progress) {
+    return record_view(wanted, *patient, motion->motion, settings, obey, progress);
+  });
+}
+
+void ViewSession::carry_out(const wish::Cancel&) {
+  if (recording_) return recording_->cancel();
+  if (loading_) return retire(loading_);
+}
+
+void ViewSession::carry_out(const wish::LetGo& wanted) {
+  if (letting_go_ || !newest_ || wanted.body >= shown_.bodies.size()) return;
+  const MovableBody& body = shown_.bodies[wanted.body];
+  if (!body.free) return;
+  letting_go_ =
+      beside<LetGoResult>([patient = patient_, body, number = wanted.body, frame = *newest_,
+                           threads = common_.threads](const Progress& progress) {
+        report(progress, "letting go", 0.5);
+        const Case& of = patient->scene.patient;
+        LetGoSettings settings;
+        settings.push_N = push_toward_bone(frame, body.part);
+        const LetGo settled = let_go(of, body.part, frame.poses(), settings, threads);
+        if (!settled.rest.reached)
+          throw InputError(of.parts[body.part].name +
+                           ": did not come to rest; move it nearer to the bone");
+        const Pose now = pose_of(of.parts, body.part, settled.poses);
+        return LetGoResult{number, carrier_pose(body, frame.X_CM).inverse() * now,
+                           fmt::format("Lies still after {:.2f} s on {} places",
+                                       settled.rest.seconds, settled.contacts.size())};
+      });
+}
+
+void ViewSession::carry_out(const wish::SaveCase& wanted) {
+  if (saving_ || !patient_) return;
+  saving_ = beside<fs::path>([patient = patient_, landmarks = window_.view().landmarks,
+                              folder = wanted.folder](const Progress& progress) {
+    report(progress, "saving the patient", 0.5);
+    save_case(with_landmarks(patient->scene.patient, landmarks), folder);
+    return folder;
+  });
+}
+
+void ViewSession::take_recording() {
+  if (!recording_) return;
+  if (!recording_->done()) {
+    const auto [what, fraction] = recording_->progress();
+    window_.show_recording(what.empty() ? "starting" : what, fraction);
+    return;
+  }
+  const auto finished = std::move(recording_);
+  window_.show_recording("", 0);
+  guarded([&] {
+    if (const auto made = finished->take())
+      window_.say("Recorded " + made->string());
+    else
+      window_.say("The recording was stopped; its pictures stay in the folder");
+  });
+}
+
+void ViewSession::take_let_go() {
+  if (!letting_go_ || !letting_go_->done()) return;
+  const auto finished = std::move(letting_go_);
+  guarded([&] {
+    const auto result = finished->take();
+    if (!result) return;
+    window_.change(
+        [&](ViewState& view) {
+          view.hands.of(shown_.bodies.at(result->body)) = result->in_carrier;
+        },
+        true);
+    window_.say(result->words);
+  });
+}
+
+void ViewSession::take_save() {
+  if (!saving_ || !saving_->done()) return;
+  const auto finished = std::move(saving_);
+  guarded([&] {
+    const auto folder = finished->take();
+    if (!folder) return;
+    recent_.add(*folder);
+    shown_.recent = recent_.list();
+    shown_.landmarks = window_.view().landmarks;
+    shown_.case_folder = *folder;
+    window_.update_scene(shown_);
+    window_.say("Saved the patient in " + folder->string());
+  });
+}
+
+}  // namespace condyle
