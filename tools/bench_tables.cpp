@@ -41,7 +41,7 @@ Published published(Method method) {
 /// One solve by a method; the preconditioned one with factors made on the way.
 MinimizeResult solve(Method method, const TissueTarget& target, const NetLoads& loads,
                      const HessianFactor& factor, double tolerance, Nodes& x) {
-  SpringPrismEnergy energy(target.set.net, loads, 1);
+  SpringPrismEnergy energy(target.set.net, loads, 1, target.runs);
   MinimizeSettings settings;
   settings.tolerance_mm = tolerance;
   settings.max_iterations = 20000;

@@ -2,186 +2,26 @@
 // warm frames of a steady opening, and sizes beyond those of the frame loop.
 #include <fmt/format.h>
 
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <thread>
 
 #include "engine/core/error.h"
 #include "engine/tissue/refreshing.h"
-#include "engine/tissue/rolling_factor.h"
 #include "tools/commands.h"
 #include "tools/tissue_tables.h"
+#include "tools/tissue_warm.h"
 
 namespace condyle {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double degree = 3.14159265358979 / 180;
-
-struct Line {
-  const char* name;
-  int nodes, threads;
-  std::string method;
-};
-Json result_json(const Line& line, const Quantiles& times, double cpu_ms, double error_mm) {
-  return {{"name", line.name},       {"median", times.median},
-          {"p95", times.p95},        {"unit", "ms"},
-          {"cpu_median", cpu_ms},    {"nodes", line.nodes},
-          {"threads", line.threads}, {"method", line.method},
-          {"error_mm", error_mm}};
-}
-
-Json race_json(const Line& line, const Race& result) {
-  Json json = result_json(line, {result.median_ms, result.p95_ms}, result.cpu_ms, result.error_mm);
+Json race_json(const TimingLine& line, const Race& result) {
+  Json json = timing_json(line, {result.median_ms, result.p95_ms}, result.cpu_ms, result.error_mm);
   json["energy_error"] = result.energy_error;
   json["tolerance"] = result.tolerance;
   json["met_target"] = result.met;
   if (!result.met) json["median"] = json["p95"] = nullptr;
-  return json;
-}
-
-Nodes difference(const Nodes& a, const Nodes& b) {
-  Nodes d = a;
-  for (std::size_t i = 0; i < d.size(); ++i) d[i] -= b[i];
-  return d;
-}
-
-/// How many frames, and how exactly errors are measured: large tissues get less of both.
-struct WarmPlan {
-  double from_deg = 10;
-  int frames = 60, samples_every = 1;
-  int budget = 40;             // iterations of a frame
-  double reference_mm = 1e-7;  // tolerance of the answers that errors are measured against
-  double lead_mm = 1e-3;       // of the frames before the first
-  RefreshSchedule from_rest = {}, near = {.first = 12, .far = 0};
-};
-WarmPlan plan_for(int nodes) {
-  if (nodes < 5000) return {};
-  const bool huge = nodes > 30000;
-  return {.from_deg = huge ? 2.0 : 5.0,
-          .frames = huge ? 4 : 20,
-          .samples_every = huge ? 4 : 5,
-          .budget = huge ? 12 : 40,
-          .reference_mm = huge ? 1e-3 : 1e-4,
-          .lead_mm = huge ? 1e-2 : 1e-3,
-          .from_rest = sparing_refreshes,
-          .near = {.first = 20, .far = 0, .later = 20, .most = 20}};
-}
-
-/// Frames of half a degree, at the pace of the frame loop while they keep to it; factors are made
-/// beside it, and with one thread in the time between frames, which is told. Each frame starts from
-/// the last one, taken on by the bones' motion and what the tissue's last two own motions foretell.
-/// A frame's time has in it what it waited for a factor. A frame that has spent its budget is left
-/// as it is.
-Json warm_frames(const SyntheticSet& set, int threads) {
-  constexpr std::chrono::microseconds pace(8333);
-  const WarmPlan plan = plan_for(set.net.node_count);
-  MinimizeSettings settings;
-  settings.tolerance_mm = 5e-3;
-  settings.max_iterations = plan.budget;
-  const auto pose_at = [&](int frame) {
-    return synthetic_pose((plan.from_deg + 0.5 * frame) * degree, Eigen::Vector3d::Zero());
-  };
-  const NetLoads rest_loads = synthetic_loads(set, Pose{});
-  const auto settle = [&](int frame, const HessianFactor& factor, Nodes& nodes, double tolerance,
-                          const RefreshSchedule& schedule) {
-    MinimizeSettings tight;
-    tight.tolerance_mm = tolerance;
-    tight.max_step_mm = bench_step_mm;
-    const NetLoads loads = synthetic_loads(set, pose_at(frame));
-    SpringPrismEnergy energy(set.net, loads, threads);
-    const auto result = minimize_refreshing(set.net, loads, energy, factor, tight, nodes, schedule);
-    if (!result.converged()) throw MachineError("bench: the reference did not converge");
-    return result.energy;
-  };
-  // The motion is under way when the clock starts.
-  constexpr int lead = 3;
-  Nodes x = set.rest;
-  std::shared_ptr<const HessianFactor> first =
-      std::make_shared<const HessianFactor>(set.net, rest_loads, set.sheets, set.rest, threads);
-  settle(-lead, *first, x, plan.lead_mm, plan.from_rest);
-  Nodes own, own_before;  // what the last frames added to the bones' motion
-  for (int frame = 1 - lead; frame < 0; ++frame) {
-    first = std::make_shared<const HessianFactor>(
-        first->anew(set.net, synthetic_loads(set, pose_at(frame - 1)), x, threads));
-    const Nodes taken = carried(set, x, pose_at(frame - 1), pose_at(frame));
-    settle(frame, *first, x, plan.lead_mm, plan.near);
-    own.swap(own_before);
-    own = difference(x, taken);
-  }
-  RollingFactor factor(first);
-
-  std::vector<double> wall, cpu, waited, beside, steps;
-  NetLoads loads = synthetic_loads(set, pose_at(0));
-  SpringPrismEnergy energy(set.net, loads, threads);
-  struct Sample {
-    int frame;
-    Nodes nodes;
-    double energy;
-  };
-  std::vector<Sample> samples;
-  int spent = 0;
-  double residual = 0;
-  auto next_frame = std::chrono::steady_clock::now();
-  for (int frame = 0; frame < plan.frames; ++frame) {
-    std::this_thread::sleep_until(next_frame);
-    next_frame = std::max(next_frame + pace, std::chrono::steady_clock::now());
-    const Stopwatch watch;
-    loads = synthetic_loads(set, pose_at(frame));
-    factor.advance();
-    waited.push_back(watch.wall_ms());
-    const Nodes taken = carried(set, x, pose_at(frame - 1), pose_at(frame));
-    Nodes next = taken;
-    // Where the tissue has just snapped over, its last motion foretells nothing.
-    constexpr double steady_mm = 0.3;
-    if (largest_distance(own, own_before) < steady_mm)
-      for (std::size_t i = 0; i < next.size(); ++i) next[i] += 2 * own[i] - own_before[i];
-    MinimizeResult result = minimize(Method::preconditioned, energy, settings, next, &factor.now());
-    if (result.status == MinimizeResult::Status::bad_start) {
-      next = x;
-      result = minimize(Method::preconditioned, energy, settings, next, &factor.now());
-    }
-    wall.push_back(watch.wall_ms());
-    cpu.push_back(watch.cpu_ms());
-    steps.push_back(result.iterations);
-    spent += !result.converged();
-    residual = std::max(residual, result.residual);
-    constexpr int worth_making = 1;
-    if (result.iterations >= worth_making) factor.begin(set.net, loads, next, threads, nullptr);
-    if (threads == 1) {
-      const Stopwatch between;
-      factor.finish();
-      beside.push_back(between.wall_ms());
-    }
-    own.swap(own_before);
-    own = difference(next, taken);
-    x = next;
-    if (frame % plan.samples_every == plan.samples_every - 1)
-      samples.push_back({frame, x, result.energy});
-  }
-  double worst_error = 0, worst_energy = 0;
-  for (const auto& [frame, nodes, reached] : samples) {
-    Nodes reference = nodes;
-    const HessianFactor fresh =
-        first->anew(set.net, synthetic_loads(set, pose_at(frame)), nodes, threads);
-    const double least = settle(frame, fresh, reference, plan.reference_mm, plan.near);
-    worst_error = std::max(worst_error, largest_distance(nodes, reference));
-    worst_energy = std::max(worst_energy, (reached - least) / least);
-  }
-  Json json = result_json({"tissue.warm", set.net.node_count, threads, "condyle"}, quantiles(wall),
-                          quantiles(cpu).median, worst_error);
-  json["energy_error"] = worst_energy;
-  json["cpu_p95"] = quantiles(cpu).p95;
-  json["frames"] = plan.frames;
-  json["iterations"] = quantiles(steps).median;
-  json["iterations_p95"] = quantiles(steps).p95;
-  json["frames_cut_short"] = spent;
-  json["residual_N"] = residual;
-  json["waited_p95_ms"] = quantiles(waited).p95;
-  if (threads == 1) json["factor_between_frames_ms"] = quantiles(beside).median;
   return json;
 }
 
@@ -225,8 +65,9 @@ int run_bench_tissue(const BenchOptions& options, const CommonOptions& common) {
     fmt::print(stderr, "ms  {:<12}{:<20}{:<16}{:>8}{:>8}{:>12}{:>12}{:>12}{:>12}\n", "", "method",
                "start", "nodes", "threads", "median", "p95", "processor", "error mm");
 
-  // Cold, against the published method, each from rest and from what the setup has stored, as the
-  // simulator begins; "with setup" makes its factor first.
+  // Cold, against the published method, each from rest and from where the setup's stored opening
+  // foretells the tissue, as the simulator begins; "foretelling" is given rest and takes itself
+  // there, "with setup" makes its factor first.
   TissueTarget target = make_target(make_synthetic_set(patient2_size()), bench_movement());
   const SyntheticSet& set = target.set;
   std::vector<double> setup, setup_cpu;
@@ -237,17 +78,18 @@ int run_bench_tissue(const BenchOptions& options, const CommonOptions& common) {
     setup.push_back(watch.wall_ms());
     setup_cpu.push_back(watch.cpu_ms());
   }
-  say(result_json({"tissue.setup", set.net.node_count, 1, "condyle"}, quantiles(setup),
+  say(timing_json({"tissue.setup", set.net.node_count, 1, "condyle"}, quantiles(setup),
                   quantiles(setup_cpu).median, 0));
   const auto condyle_solve = [&](double tolerance, int threads, Nodes& x, const HessianFactor& from,
                                  const RefreshSchedule& schedule) {
-    SpringPrismEnergy energy(set.net, target.loads, threads);
+    SpringPrismEnergy energy(set.net, target.loads, threads, target.runs);
     MinimizeSettings settings;
     settings.tolerance_mm = tolerance;
     settings.max_step_mm = bench_step_mm;
-    return minimize_refreshing(set.net, target.loads, energy, from, settings, x, schedule).energy;
+    auto r = minimize_refreshing(set.net, target.loads, energy, from, settings, x, schedule);
+    return r.energy;
   };
-  constexpr RefreshSchedule from_stored{.first = 20, .far = 0};
+  constexpr RefreshSchedule from_stored{.first = 1, .far = 0};
   for (int threads : {1, 2}) {
     const HessianFactor factor(set.net, target.rest_loads, set.sheets, set.rest, threads);
     const StoredOpening stored(target, factor, threads);
@@ -266,12 +108,17 @@ int run_bench_tissue(const BenchOptions& options, const CommonOptions& common) {
           const HessianFactor own(set.net, target.rest_loads, set.sheets, set.rest, threads);
           return condyle_solve(tolerance, threads, x, own, {});
         });
+      if (at_rest)
+        row("condyle foretelling", repeats, [&](double tolerance, Nodes& x) {
+          x = stored.start(target, bench_movement());
+          return condyle_solve(tolerance, threads, x, stored.factor, from_stored);
+        });
       row("condyle", repeats, [&](double tolerance, Nodes& x) {
         return at_rest ? condyle_solve(tolerance, threads, x, factor, {})
                        : condyle_solve(tolerance, threads, x, stored.factor, from_stored);
       });
       row("cg_parabolic", options.repeats, [&](double tolerance, Nodes& x) {
-        SpringPrismEnergy energy(set.net, target.loads, threads);
+        SpringPrismEnergy energy(set.net, target.loads, threads, target.runs);
         MinimizeSettings settings;
         settings.tolerance_mm = tolerance;
         settings.max_iterations = 20000;

@@ -22,7 +22,7 @@ Json tolerance_rows(const TissueTarget& target, int repeats) {
     Nodes x;
     for (int i = 0; i < repeats; ++i) {
       x = target.start();
-      SpringPrismEnergy energy(set.net, target.loads, 1);
+      SpringPrismEnergy energy(set.net, target.loads, 1, target.runs);
       const Stopwatch watch;
       result = minimize_refreshing(set.net, target.loads, energy, factor, settings, x);
       wall.push_back(watch.wall_ms());

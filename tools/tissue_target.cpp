@@ -21,12 +21,13 @@ double clock_ms(clockid_t clock) {
 }  // namespace
 
 TissueTarget make_target(SyntheticSet set, const Pose& lower_bone) {
-  TissueTarget target{std::move(set), {}, {}, {}, 0, {}};
+  TissueTarget target{.set = std::move(set)};
+  target.runs = std::make_shared<const NetRuns>(target.set.net);
   target.rest_loads = synthetic_loads(target.set, Pose{});
   target.loads = synthetic_loads(target.set, lower_bone);
   target.converged = target.start();
   const HessianFactor factor(target.set.net, target.rest_loads, target.set.sheets, target.start());
-  SpringPrismEnergy energy(target.set.net, target.loads, 1);
+  SpringPrismEnergy energy(target.set.net, target.loads, 1, target.runs);
   MinimizeSettings settings;
   settings.tolerance_mm = 1e-7;
   const auto result =
@@ -42,7 +43,7 @@ StoredOpening::StoredOpening(const TissueTarget& target, const HessianFactor& at
     : nodes(target.set.rest), factor(at_rest) {
   const SpringPrismNet& net = target.set.net;
   const NetLoads loads = synthetic_loads(target.set, synthetic_pose(opened_rad, {0, 0, 0}));
-  SpringPrismEnergy energy(net, loads, threads);
+  SpringPrismEnergy energy(net, loads, threads, target.runs);
   MinimizeSettings settings;
   settings.tolerance_mm = 1e-2;
   settings.max_step_mm = bench_step_mm;
@@ -103,6 +104,15 @@ Stopwatch::Stopwatch()
     : wall_(clock_ms(CLOCK_MONOTONIC)), cpu_(clock_ms(CLOCK_PROCESS_CPUTIME_ID)) {}
 double Stopwatch::wall_ms() const { return clock_ms(CLOCK_MONOTONIC) - wall_; }
 double Stopwatch::cpu_ms() const { return clock_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu_; }
+
+nlohmann::ordered_json timing_json(const TimingLine& line, const Quantiles& times, double cpu_ms,
+                                   double error_mm) {
+  return {{"name", line.name},       {"median", times.median},
+          {"p95", times.p95},        {"unit", "ms"},
+          {"cpu_median", cpu_ms},    {"nodes", line.nodes},
+          {"threads", line.threads}, {"method", line.method},
+          {"error_mm", error_mm}};
+}
 
 nlohmann::ordered_json machine_json() {
   std::string processor = "unknown";

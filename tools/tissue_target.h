@@ -12,10 +12,11 @@ namespace condyle {
 /// that tells how near each came.
 struct TissueTarget {
   SyntheticSet set;
-  NetLoads rest_loads, loads;  // the lower bone at rest; moved
-  Nodes converged;
+  NetLoads rest_loads = {}, loads = {};  // the lower bone at rest; moved
+  Nodes converged = {};
   double converged_energy = 0;
-  Nodes begun;  // where solves start; at rest if empty
+  std::shared_ptr<const NetRuns> runs = {};  // of the net
+  Nodes begun = {};  // where solves start; at rest if empty
 
   const Nodes& start() const { return begun.empty() ? set.rest : begun; }
 };
@@ -71,6 +72,15 @@ class Stopwatch {
  private:
   double wall_, cpu_;
 };
+
+struct TimingLine {
+  const char* name;
+  int nodes, threads;
+  std::string method;
+};
+/// A row of a benchmark's results; times in ms.
+nlohmann::ordered_json timing_json(const TimingLine& line, const Quantiles& times, double cpu_ms,
+                                   double error_mm);
 
 /// {"processor", "cores"}: where the figures come from.
 nlohmann::ordered_json machine_json();

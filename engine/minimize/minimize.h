@@ -34,7 +34,10 @@ struct MinimizeSettings {
   double value_tolerance = 0;
   int max_iterations = 2000;
   int max_evaluations = 1000000000;
-  double max_step_mm = 4.0;     // of any point in one iteration; not for powell
+  double max_step_mm = 4.0;  // of any point in one iteration; not for powell
+  /// preconditioned: the preconditioner was made at the start, so that its first step is tried at
+  /// full length without a look at the curvature along it.
+  bool fresh = false;
   double line_tolerance = 0.1;  // of the line searches of the first three: width over position
 };
 

@@ -4,7 +4,8 @@ namespace condyle::minimizers {
 
 // Preconditioned Polak-Ribiere with a parabolic line search: where every squared length is
 // quadratic along a direction and every volume cubic, one step with the exact slope and curvature
-// is nearly always taken as it is.
+// is nearly always taken as it is. The first step of a fresh preconditioner is of full length, if
+// that leaves the line nearly flat; else the line goes on where its slopes say.
 MinimizeResult preconditioned(Objective& objective, const Preconditioner& preconditioner,
                               const MinimizeSettings& settings, Points& x) {
   using Status = MinimizeResult::Status;
@@ -26,6 +27,7 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& precon
 
   // The way that is left, by the preconditioner. Iterations that shorten it by a factor each leave
   // the sum of a geometric series; before the first nothing is known of that factor.
+  constexpr double flat = 0.1;  // of the slope at the start of a step of full length, if it serves
   constexpr double unknown_share = 0.3, least_contraction = 0.95;
   double way = largest_norm(z), shortest = way;
   if (way < unknown_share * settings.tolerance_mm) result.status = Status::converged;
@@ -36,23 +38,33 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& precon
       for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
       slope = -gz;
     }
-    // Parabolic line search: the minimum of the parabola with the exact slope and curvature.
-    const auto curvature = objective.curvature(x, d);
-    const double bend =
-        curvature.exact > 0.1 * curvature.gauss_newton ? curvature.exact : curvature.gauss_newton;
-    if (!(bend > 0)) {
-      result.status = Status::stalled;
-      break;
+    const double longest = settings.max_step_mm / largest_norm(d);
+    double step = 1;
+    bool foretold = settings.fresh && result.iterations == 0 && step < longest;
+    if (!foretold) {
+      const auto curvature = objective.curvature(x, d);
+      const double bend =
+          curvature.exact > 0.1 * curvature.gauss_newton ? curvature.exact : curvature.gauss_newton;
+      if (!(bend > 0)) {
+        result.status = Status::stalled;
+        break;
+      }
+      step = std::min(-slope / bend, longest);
     }
-    double step = -slope / bend;
-    const double reach = largest_norm(d);
-    step = std::min(step, settings.max_step_mm / reach);
 
     double f_new = 0;
     bool accepted = false;
     for (int attempt = 0; attempt < 30 && !accepted && !counted.spent(); ++attempt) {
       step_along(x, step, d, trial);
       f_new = counted.value_and_gradient(trial, g_new);
+      if (foretold && std::isfinite(f_new)) {
+        foretold = false;
+        const double slope_new = dot(g_new, d);
+        if (slope_new > slope && std::abs(slope_new) > flat * -slope) {
+          step = std::min(slope / (slope - slope_new), longest);
+          continue;
+        }
+      }
       // Near the minimum the energies differ by less than their rounding; then the slope decides.
       const double rounding = 1e-13 * std::abs(f);
       accepted = f_new <= f + 1e-4 * step * slope ||

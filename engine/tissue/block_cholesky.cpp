@@ -35,8 +35,29 @@ void subtract_product(const FloatKernels::Product& p, int threads) {
 
 }  // namespace
 
+/// Factors are made anew from frame to frame.
+struct BlockCholesky::Memory {
+  explicit Memory(const FrontTree& tree)
+      : values(tree.panel_floats), panels(tree.panel_floats), work(tree.work_floats) {}
+  BufferPool<ShortFloat> values;
+  BufferPool<float> panels, work;
+};
+
 BlockCholesky::BlockCholesky(std::shared_ptr<const FrontTree> tree)
-    : tree_(std::move(tree)), values_(tree_->panel_floats) {}
+    : BlockCholesky(tree, std::make_shared<const Memory>(*tree)) {}
+
+BlockCholesky::BlockCholesky(std::shared_ptr<const FrontTree> tree,
+                             std::shared_ptr<const Memory> memory)
+    : tree_(std::move(tree)), memory_(std::move(memory)), values_(memory_->values.take()) {}
+
+BlockCholesky::BlockCholesky(const BlockCholesky& other)
+    : BlockCholesky(other.tree_, other.memory_) {
+  std::copy_n(other.values_.get(), memory_->values.length(), values_.get());
+}
+
+BlockCholesky& BlockCholesky::operator=(const BlockCholesky& other) {
+  return *this = BlockCholesky(other);
+}
 
 int BlockCholesky::factorize_front(int index, float* panels, float* work, float least,
                                    int threads) {
@@ -110,15 +131,15 @@ int BlockCholesky::factorize_front(int index, float* panels, float* work, float 
     subtract_product(
         {update, panel + width, panel + width, left, left, width, left, height, height, true},
         threads);
-  kernels.narrow(panel, static_cast<std::size_t>(height) * width, values_.data() + front.panel);
+  kernels.narrow(panel, static_cast<std::size_t>(height) * width, values_.get() + front.panel);
   return raised;
 }
 
 int BlockCholesky::factorize(const std::function<void(int part, float* values)>& assemble,
                              float least, int threads) {
   const FrontTree& tree = *tree_;
-  const auto panels = std::make_unique_for_overwrite<float[]>(tree.panel_floats);
-  const auto work = std::make_unique_for_overwrite<float[]>(tree.work_floats);
+  const auto panels = memory_->panels.take();
+  const auto work = memory_->work.take();
   std::array<int, 3> raised{};
   const auto do_part = [&](int part, int inner_threads) {
     const auto& part_of_fronts = tree.part;
@@ -141,7 +162,7 @@ void BlockCholesky::forward(int index, float* b, float* rest, std::vector<float>
   const FrontTree::Front& front = tree.fronts[index];
   const FloatKernels& kernels = float_kernels();
   const int size = tree.block, height = tree.height(front), width = front.pivots * size;
-  const ShortFloat* panel = values_.data() + front.panel;
+  const ShortFloat* panel = values_.get() + front.panel;
   float* pivot = b + static_cast<std::size_t>(front.first) * size;
   std::copy_n(pivot, width, rows.begin());
   std::fill_n(rows.begin() + width, height - width, 0.0f);
@@ -168,7 +189,7 @@ void BlockCholesky::backward(int index, float* b, std::vector<float>& rows) cons
   const FrontTree::Front& front = tree.fronts[index];
   const FloatKernels& kernels = float_kernels();
   const int size = tree.block, height = tree.height(front), width = front.pivots * size;
-  const ShortFloat* panel = values_.data() + front.panel;
+  const ShortFloat* panel = values_.get() + front.panel;
   float* pivot = b + static_cast<std::size_t>(front.first) * size;
   for (int r = front.rows_begin, i = width; r < front.rows_end; ++r, i += size)
     std::copy_n(b + static_cast<std::size_t>(tree.rows[r]) * size, size, &rows[i]);
@@ -209,7 +230,7 @@ void BlockCholesky::solve(std::vector<float>& b, int threads) const {
 
 std::size_t BlockCholesky::bytes() const {
   const std::size_t order = tree_->order.at.size() * tree_->block;
-  return values_.capacity() * sizeof(ShortFloat) + 2 * order * sizeof(float) +
+  return memory_->values.length() * sizeof(ShortFloat) + 2 * order * sizeof(float) +
          (tree_->rows.capacity() + tree_->seat.capacity()) * sizeof(int);
 }
 

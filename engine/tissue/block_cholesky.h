@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/core/buffer_pool.h"
 #include "engine/tissue/float_kernels.h"
 #include "engine/tissue/front_tree.h"
 
@@ -16,6 +17,13 @@ namespace condyle {
 class BlockCholesky {
  public:
   explicit BlockCholesky(std::shared_ptr<const FrontTree> tree);
+  BlockCholesky(const BlockCholesky& other);
+  BlockCholesky& operator=(const BlockCholesky& other);
+  BlockCholesky(BlockCholesky&&) = default;
+  BlockCholesky& operator=(BlockCholesky&&) = default;
+
+  /// One of the same pattern, yet to be factored.
+  BlockCholesky another() const { return {tree_, memory_}; }
 
   const FrontTree& tree() const { return *tree_; }
 
@@ -32,12 +40,15 @@ class BlockCholesky {
   std::size_t bytes() const;
 
  private:
+  struct Memory;
+  BlockCholesky(std::shared_ptr<const FrontTree> tree, std::shared_ptr<const Memory> memory);
   int factorize_front(int front, float* panels, float* work, float least, int threads);
   void forward(int front, float* b, float* rest, std::vector<float>& rows) const;
   void backward(int front, float* b, std::vector<float>& rows) const;
 
   std::shared_ptr<const FrontTree> tree_;
-  std::vector<ShortFloat> values_;
+  std::shared_ptr<const Memory> memory_;  // of all factors of the tree
+  BufferPool<ShortFloat>::Buffer values_;
 };
 
 }  // namespace condyle

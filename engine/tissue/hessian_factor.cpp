@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
 namespace condyle {
@@ -70,11 +71,13 @@ inline void add_column(float* to, const Column& column) {
 /// A 3 x 3 part of the matrix: its first float, that of its row node and column node, which is the
 /// one eliminated first.
 struct HessianFactor::Pattern {
-  struct Spot {
-    std::ptrdiff_t at = -1;  // -1: not stored
-    int stride = 0;
-    signed char part = 0;
-    bool swapped = false;  // the row is the second of the two nodes
+  struct Spot {  // eight bytes: there are many, and all are read
+    static constexpr std::uint32_t nowhere = ~0u;
+    std::uint32_t at = nowhere;  // not stored
+    std::uint32_t stride : 28;
+    std::uint32_t part : 3;
+    std::uint32_t swapped : 1;  // the row is the second of the two nodes
+    bool stored() const { return at != nowhere; }
   };
 
   std::shared_ptr<const FrontTree> tree;
@@ -107,13 +110,15 @@ struct HessianFactor::Pattern {
     const int row = is_below(a, b) ? a : b, column = row == a ? b : a;
     const int at_row = tree->place[row / nodes_per_column];
     const int at_column = tree->place[column / nodes_per_column];
+    const std::ptrdiff_t block = tree->find(at_row, at_column);
+    const int stride = tree->height(tree->fronts[tree->front_of[at_column]]);
     Spot spot;
-    spot.at = tree->find(at_row, at_column);
-    spot.stride = tree->height(tree->fronts[tree->front_of[at_column]]);
-    if (spot.at >= 0)
-      spot.at += static_cast<std::ptrdiff_t>(3 * (column % nodes_per_column)) * spot.stride +
-                 3 * (row % nodes_per_column);
-    spot.part = static_cast<signed char>(part_of(column));
+    spot.stride = static_cast<std::uint32_t>(stride);
+    if (block >= 0)
+      spot.at = static_cast<std::uint32_t>(
+          block + static_cast<std::ptrdiff_t>(3 * (column % nodes_per_column)) * stride +
+          3 * (row % nodes_per_column));
+    spot.part = static_cast<std::uint32_t>(part_of(column));
     spot.swapped = row == b && a != b;
     return spot;
   }
@@ -132,8 +137,8 @@ struct HessianFactor::Pattern {
   }
 };
 
-HessianFactor::HessianFactor(std::shared_ptr<const Pattern> pattern)
-    : pattern_(std::move(pattern)), factor_(pattern_->tree) {}
+HessianFactor::HessianFactor(std::shared_ptr<const Pattern> pattern, BlockCholesky factor)
+    : pattern_(std::move(pattern)), factor_(std::move(factor)) {}
 
 HessianFactor::HessianFactor(const SpringPrismNet& net, const NetLoads& loads, int nodes_per_column,
                              const Nodes& x, int threads)
@@ -150,8 +155,9 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
   const Pattern& pattern = *pattern_;
   const double lambda = net.lambda;
   const auto assemble = [&](int part, float* values) {
+    const auto wanted = static_cast<std::uint32_t>(part);
     const auto add = [&](const Spot& spot, const Matrix3d& m) {
-      if (spot.part != part) return;
+      if (spot.part != wanted) return;
       float* to = values + spot.at;
       for (int j = 0; j < 3; ++j) add_column(to + j * spot.stride, column_of(m.col(j)));
     };
@@ -168,7 +174,7 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
       const double along = k * (1 - tension) / length2, across = k * tension;
       own[a].add(along, d, across);
       own[b].add(along, d, across);
-      if (pattern.spring[s].part != part) continue;
+      if (pattern.spring[s].part != wanted) continue;
       Matrix3d m = along * d * d.transpose();
       m.diagonal().array() += across;
       add(pattern.spring[s], -m);
@@ -185,14 +191,14 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
         for (int b = 0; b <= a; ++b) {
           Spot& spot = spots[a * ContactRow::capacity + b];
           spot = pattern.spot(row.node[a], row.node[b]);
-          whole = whole && spot.at >= 0;
+          whole = whole && spot.stored();
         }
       const Matrix3d m = row.normal * row.normal.transpose() * (2 * lambda * row.stiffness);
       for (int a = 0; a < row.count; ++a)
         for (int b = 0; b <= a; ++b) {
           const double weight = row.weight[a] * row.weight[b];
           const Spot& spot = spots[a * ContactRow::capacity + b];
-          if (spot.at >= 0 && (whole || weight > 0)) add(spot, weight * m);
+          if (spot.stored() && (whole || weight > 0)) add(spot, weight * m);
         }
     }
     for (int p : pattern.prisms_of[part]) {
@@ -217,7 +223,7 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
       for (int a = 0; a < 6; ++a) {
         own[prism[a]].add(weight, slope[a], 0);
         for (int b = 0; b < a; ++b, ++pair) {
-          if (pair->part != part) continue;
+          if (pair->part != wanted) continue;
           const int row = pair->swapped ? b : a, column = pair->swapped ? a : b;
           float* to = values + pair->at;
           const Column &steep = slopes[row], &along = weighted[column];
@@ -236,7 +242,7 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
     // A node that nothing holds in some direction must not get an endless step.
     for (int n = 0; n < net.node_count; ++n) {
       const Spot& spot = pattern.diagonal[n];
-      if (spot.part != part) continue;
+      if (spot.part != wanted) continue;
       float* to = values + spot.at;
       const std::array below{own[n].xx, own[n].yx, own[n].zx, own[n].yy, own[n].zy, own[n].zz};
       for (int j = 0, k = 0; j < 3; ++j)
@@ -251,7 +257,7 @@ int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, co
 
 HessianFactor HessianFactor::anew(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
                                   int threads) const {
-  HessianFactor made(pattern_);
+  HessianFactor made = another();
   made.set_threads(threads_);
   if (made.refactor(net, loads, x, threads, Curvatures::exact) > 0)
     made.refactor(net, loads, x, threads);

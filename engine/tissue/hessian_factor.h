@@ -32,6 +32,7 @@ class HessianFactor final : public Preconditioner {
   int refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x, int threads = 1,
                Curvatures curvatures = Curvatures::gauss_newton);
   /// Another factor, of another state: of the exact curvatures where they are positive definite.
+  HessianFactor another() const { return {pattern_, factor_.another()}; }  // yet to be factored
   HessianFactor anew(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
                      int threads = 1) const;
 
@@ -45,7 +46,7 @@ class HessianFactor final : public Preconditioner {
  private:
   /// Where the net's springs and prisms go; made once.
   struct Pattern;
-  explicit HessianFactor(std::shared_ptr<const Pattern> pattern);
+  HessianFactor(std::shared_ptr<const Pattern> pattern, BlockCholesky factor);
 
   int threads_ = 1;
   std::shared_ptr<const Pattern> pattern_;

@@ -17,7 +17,7 @@ MinimizeResult minimize_refreshing(const SpringPrismNet& net, const NetLoads& lo
            result.evaluations < settings.max_evaluations;
   };
   if (!goes_on()) return result;
-  HessianFactor fresh = factor;
+  HessianFactor fresh = factor.another();
   fresh.set_threads(energy.threads());
   bool exact_serves = true;
   for (int refresh = 0; goes_on(); ++refresh) {

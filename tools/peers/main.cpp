@@ -51,7 +51,7 @@ void race_all(const TissueTarget& target, const char* start, int repeats, Json& 
   const auto with = [&](auto solver) {
     return [&target, solver](double tolerance, Nodes& x) { return solver(target, tolerance, x); };
   };
-  SpringPrismEnergy energy(target.set.net, target.loads, 1);
+  SpringPrismEnergy energy(target.set.net, target.loads, 1, target.runs);
   const HessianFactor factor(target.set.net, target.rest_loads, target.set.sheets, target.set.rest);
   if (target.begun.empty())
     add("tissue.cold", "condyle", [&](double tolerance, Nodes& x) {
