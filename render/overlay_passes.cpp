@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/shaders.h"
+#include "render/vertex_normals.h"
 
 namespace condyle {
 namespace {
@@ -55,6 +56,26 @@ void OverlayPasses::set_lines(const std::string& name, const LineSet& lines) {
   colors.resize(lines.ends.size() / 2, lines.color);
   kept.lines.send(lines.ends, colors);
   kept.dots.send(lines.dots);
+}
+
+void OverlayPasses::set_sheet(const std::string& name, const GlassSheet& sheet) {
+  if (sheet.empty()) {
+    sheets_.erase(name);
+    return;
+  }
+  auto& kept = sheets_[name];
+  if (!kept.mesh || kept.triangles != sheet.triangles) {
+    kept.triangles = sheet.triangles;
+    kept.mesh.emplace(sheet.positions, sheet.triangles, true);
+    // The tint has its own colour, but the card reads these.
+    const std::vector<GpuMesh::Bytes> none(sheet.positions.size());
+    kept.mesh->send_colors(none);
+    kept.mesh->send_extras(none);
+  }
+  kept.color = sheet.color;
+  kept.opacity = sheet.opacity;
+  vertex_normals(sheet.positions, sheet.triangles, normals_);
+  kept.mesh->send_shape(sheet.positions, normals_);
 }
 
 void OverlayPasses::begin(GlProgram& program, const PictureView& view,
@@ -159,7 +180,15 @@ void OverlayPasses::wireframe(const DrawItem& item, const PictureView& view) {
 }
 
 void OverlayPasses::ghost(const DrawItem& item, const Ghost& look, const PictureView& view) {
-  const GpuMesh& mesh = item.drawable->rest_mesh();
+  glass(item.drawable->rest_mesh(), look.color, static_cast<float>(look.opacity), view);
+}
+
+void OverlayPasses::sheets(const PictureView& view) {
+  for (const auto& [name, sheet] : sheets_) glass(*sheet.mesh, sheet.color, sheet.opacity, view);
+}
+
+void OverlayPasses::glass(const GpuMesh& mesh, const Eigen::Vector3f& color, float opacity,
+                          const PictureView& view) {
   const Eigen::Matrix4f still = Eigen::Matrix4f::Identity();
   glDisable(GL_CULL_FACE);
   begin(depth_, view, still);
@@ -167,9 +196,9 @@ void OverlayPasses::ghost(const DrawItem& item, const Ghost& look, const Picture
   mesh.draw();
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   begin(tint_, view, still);
-  tint_.set("tint", Eigen::Vector3f(look.color.cast<float>().array().pow(2.2f)));
+  tint_.set("tint", Eigen::Vector3f(color.array().pow(2.2f)));
   tint_.set("rim", 1.f);
-  tint_.set("opacity", static_cast<float>(look.opacity));
+  tint_.set("opacity", opacity);
   blend_over();
   glDepthFunc(GL_EQUAL);
   mesh.draw();
@@ -185,7 +214,7 @@ void OverlayPasses::lines(const PictureView& view, int width, int height) {
   for (auto& [name, kept] : sets_) {
     const LineSet& set = kept.set;
     for (const bool through : {true, false}) {
-      const float opacity = through ? set.through : 1;
+      const float opacity = set.opacity * (through ? set.through : 1);
       if (!(opacity > 0)) continue;
       (through ? glDisable : glEnable)(GL_DEPTH_TEST);
       if (!kept.lines.empty()) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -15,6 +16,7 @@ class OverlayPasses {
   OverlayPasses();
 
   void set_lines(const std::string& name, const LineSet& lines);
+  void set_sheet(const std::string& name, const GlassSheet& sheet);
 
   /// Closes the opaque solids that the clipping plane cuts; needs a stencil, and does nothing
   /// without one.
@@ -23,6 +25,8 @@ class OverlayPasses {
   /// The part as at rest: behind what is nearer, its nearest layer alone.
   void ghost(const DrawItem& item, const Ghost& look, const PictureView& view);
   void lines(const PictureView& view, int width, int height);
+  /// In the order of their names, each over those before it.
+  void sheets(const PictureView& view);
 
  private:
   struct Lines {
@@ -30,12 +34,23 @@ class OverlayPasses {
     GpuLines lines;
     GpuPoints dots;
   };
+  struct ShownSheet {
+    std::vector<Eigen::Vector3i> triangles;
+    Eigen::Vector3f color;
+    float opacity;
+    std::optional<GpuMesh> mesh;
+  };
+  /// The nearest layer of a mesh, tinted, behind what is nearer.
+  void glass(const GpuMesh& mesh, const Eigen::Vector3f& color, float opacity,
+             const PictureView& view);
   void begin(GlProgram& program, const PictureView& view, const Eigen::Matrix4f& model);
 
   GlProgram cap_, tint_, depth_, line_, dot_;
   GlVertexArray quad_;
   GlBuffer corners_;
   std::map<std::string, Lines> sets_;
+  std::map<std::string, ShownSheet> sheets_;
+  std::vector<Eigen::Vector3f> normals_;  // kept for its memory
 };
 
 }  // namespace condyle

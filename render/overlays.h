@@ -43,8 +43,19 @@ struct LineSet {
   float width_px = 2;   // of a picture 1080 high
   float dot_mm = 0.8f;  // radius
   float through = 0.3;  // opacity where something lies before them; 0 = hidden
+  float opacity = 1;    // of all of it
 
   bool empty() const { return ends.empty() && dots.empty(); }
+};
+
+/// A see-through surface in space of one colour, e.g. a layer of tissue: its nearest side alone.
+struct GlassSheet {
+  std::vector<Eigen::Vector3f> positions = {};
+  std::vector<Eigen::Vector3i> triangles = {};
+  Eigen::Vector3f color = {0.9f, 0.9f, 0.9f};
+  float opacity = 0.4f;
+
+  bool empty() const { return triangles.empty() || !(opacity > 0); }
 };
 
 /// A run of points as lines, added to the set.

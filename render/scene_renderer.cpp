@@ -271,6 +271,10 @@ void SceneRenderer::set_lines(const std::string& name, const LineSet& lines) {
   state_->overlays.set_lines(name, lines);
 }
 
+void SceneRenderer::set_sheet(const std::string& name, const GlassSheet& sheet) {
+  state_->overlays.set_sheet(name, sheet);
+}
+
 void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings) {
   auto& s = *state_;
   GLint target = 0;
@@ -316,6 +320,7 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings) 
     if (settings.ghost && item.role() != Role::face && s.leaves_ghost(item, *settings.ghost))
       s.overlays.ghost(item, *settings.ghost, view);
   s.overlays.lines(view, settings.width, settings.height);
+  s.overlays.sheets(view);
   s.passes.translucent(items, view);
   // The skin's ghost lies around all the rest.
   for (const auto& item : items)

@@ -71,6 +71,8 @@ class SceneRenderer {
 
   /// Lines of this name from now on; empty ones are gone. Drawn in the order of the names.
   void set_lines(const std::string& name, const LineSet& lines);
+  /// The same for a see-through surface.
+  void set_sheet(const std::string& name, const GlassSheet& sheet);
 
   /// Draws into the framebuffer that is bound, over its whole viewport of width x height.
   void draw(const Camera& camera, const PictureSettings& settings);

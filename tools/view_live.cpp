@@ -46,11 +46,17 @@ void ViewSession::simulate(const ViewState& view) {
   std::optional<FrameState> frame;
   guarded([&] { frame = simulation_->take(); });
   const bool news = frame.has_value();
-  if (news) newest_ = std::move(frame);
+  if (news) {
+    newest_ = std::move(frame);
+    const bool follows_motion = !view.hands.mandible && !view.opening_mm;
+    if (motion_->motion.muscles && follows_motion)
+      newest_->muscles = motion_->motion.muscles(newest_->time_s);
+  }
   if (!newest_) return window_.draw();
-  if (view.look.springs && (news || !springs_shown_))
-    window_.show_lines("springs", tissue_springs(patient_->scene, newest_->tissue));
-  springs_shown_ = view.look.springs;
+  if (OverlayWish wish = OverlayWish::of(view, paths_); news || wish != overlaid_) {
+    window_.show_overlays(view_overlays(*patient_, motion_->motion, *newest_, view, paths_));
+    overlaid_ = std::move(wish);
+  }
   if (view.distances && !distances_)
     distances_ = std::make_shared<LiveDistances>(
         patient_->scene.patient, DistanceMapSettings{.pair_rules = settings_.contact.pair_rules});

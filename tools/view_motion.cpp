@@ -12,7 +12,6 @@
 #include "engine/core/files.h"
 #include "sim/motion/measures.h"
 #include "sim/report/motion_plots.h"
-#include "sim/tissue/model.h"
 
 namespace condyle {
 namespace {
@@ -326,20 +325,6 @@ MotionPictures motion_pictures(const ViewPatient& patient, const Motion& motion,
     told = Clock::now();
   }
   return pictures_of(series, clearance);
-}
-
-LineSet tissue_springs(const Scene& scene, const TissueState& now) {
-  LineSet lines;
-  if (!scene.tissue || now.nodes.empty()) return lines;
-  const SpringPrismNet& net = scene.tissue->net;
-  lines.color = {0.18f, 0.75f, 0.58f};
-  lines.width_px = 0.6f;
-  lines.through = 0.25f;
-  lines.ends.reserve(2 * net.spring_a.size());
-  for (std::size_t s = 0; s < net.spring_a.size(); ++s)
-    for (const int node : {net.spring_a[s], net.spring_b[s]})
-      lines.ends.push_back(now.nodes[static_cast<std::size_t>(node)].cast<float>());
-  return lines;
 }
 
 }  // namespace condyle

@@ -42,7 +42,4 @@ MotionPictures motion_pictures(const ViewPatient& patient, const Motion& motion,
                                const std::function<void(MotionPictures)>& partly,
                                const Progress& progress);
 
-/// Springs of the soft tissue as they are now.
-LineSet tissue_springs(const Scene& scene, const TissueState& now);
-
 }  // namespace condyle

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "engine/core/error.h"
+#include "sim/muscles/usual_muscles.h"
 
 namespace condyle {
 namespace fs = std::filesystem;
@@ -41,11 +42,16 @@ std::shared_ptr<const ViewPatient> make_view_patient(Case patient, fs::path fold
     }
   };
   auto made = std::make_shared<ViewPatient>(
-      ViewPatient{std::move(folder), build(), {}, {}, std::move(trouble)});
+      ViewPatient{std::move(folder), build(), {}, {}, {}, std::move(trouble)});
   made->at_rest = rest_frame(made->scene);
   carry_face(made->scene, made->at_rest, settings.threads);
   for (const auto& [name, at] : made->scene.patient.landmarks.points)
     made->landmarks.push_back(landmark_at(name, at, made->scene.patient.parts));
+  try {
+    made->muscles = muscles_of(made->scene.patient);
+  } catch (const InputError&) {
+    // Nobody asked for them; a motion by muscles says what is missing.
+  }
   return made;
 }
 

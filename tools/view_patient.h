@@ -16,7 +16,8 @@ struct ViewPatient {
   Scene scene;
   FrameState at_rest;  // with its face
   std::vector<Landmark> landmarks;
-  std::string trouble;  // what had to be left out, as a sentence
+  std::vector<Muscle> muscles;  // the case's, or usual ones; none where landmarks are missing
+  std::string trouble;          // what had to be left out, as a sentence
 };
 
 /// Builds the scene of a patient, without soft tissue when the face does not allow any: the bones

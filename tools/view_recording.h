@@ -2,19 +2,29 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <vector>
 
-#include "engine/core/progress.h"
-#include "render/window/wishes.h"
 #include "tools/view_motion.h"
+#include "tools/view_patient.h"
 
 namespace condyle {
 
-/// Records a motion as the window shows it, off the screen, in full quality; pictures are packed
-/// and written beside the drawing. gives: the film, or the folder of the pictures.
-/// throws: MachineError when the disk is full or ffmpeg is missing; what was recorded there before
-/// comes back.
-std::filesystem::path record_view(const wish::Record& wanted, const ViewPatient& patient,
-                                  const Motion& motion, const SimulatorSettings& settings,
-                                  bool obey_contact, const Progress& progress);
+/// What a window recorded from shows when the recording begins.
+struct ViewRecording {
+  wish::Record wanted;
+  ViewState view;
+  std::vector<MovableBody> bodies;
+  std::optional<Pose> held_jaw;  // where a hand or the slider wants it; none: as the motion does
+  std::shared_ptr<const ViewPatient> patient;
+  std::shared_ptr<const ViewMotion> motion;
+  std::shared_ptr<const LineSet> paths;
+};
+
+/// Records the motion as the window shows it: its parts, overlays, colours, wipe, scale and
+/// letters; bones stay where hands have put them, and slide on contact if it is obeyed. gives: what
+/// was made. throws: MachineError.
+std::filesystem::path record_view(const ViewRecording& subject, const SimulatorSettings& settings,
+                                  const Progress& progress);
 
 }  // namespace condyle

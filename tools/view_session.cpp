@@ -48,6 +48,8 @@ void ViewSession::take_patient() {
   retire(simulation_);
   retire(distances_);
   map_sent_ = coloured_ = false;
+  paths_.reset();
+  overlaid_.reset();
   motion_.reset();
   newest_.reset();
   const bool first = patient_ == nullptr;
@@ -78,6 +80,8 @@ void ViewSession::show_scene(bool other_patient) {
     shown_.case_folder = patient_->folder;
     shown_.landmarks = patient_->landmarks;
     shown_.motions = motion_names();
+    shown_.muscles = muscle_items(*patient_);
+    shown_.layers = layer_items(*patient_);
   }
   shown_.recent = recent_.list();
   shown_.notes = scene.patient.notes;
@@ -182,7 +186,7 @@ void ViewSession::take_plots() {
 
 void ViewSession::show(MotionPictures pictures) {
   window_.show_plots(std::move(pictures.plots));
-  window_.show_lines("paths", std::move(pictures.paths));
+  paths_ = std::make_shared<LineSet>(std::move(pictures.paths));
 }
 
 void ViewSession::show_progress() {

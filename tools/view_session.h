@@ -14,6 +14,7 @@
 #include "sim/simulator/live.h"
 #include "tools/background.h"
 #include "tools/view_motion.h"
+#include "tools/view_overlays.h"
 
 namespace condyle {
 
@@ -114,7 +115,8 @@ class ViewSession {
   std::optional<FrameState> newest_;
   Hands moved_;
   std::string busy_with_;
-  bool springs_shown_ = false;
+  std::shared_ptr<const LineSet> paths_;  // of the motion, as far as they are known
+  std::optional<OverlayWish> overlaid_;   // what the window's overlays were made for
   bool map_sent_ = false, coloured_ = false, plots_due_ = false;
   PatientPtr ready_for_;  // whose bones are, or are being made, ready to slide
 

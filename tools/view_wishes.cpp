@@ -73,9 +73,17 @@ void ViewSession::carry_out(const wish::Import& wanted) {
 
 void ViewSession::carry_out(const wish::Record& wanted) {
   if (recording_ || !motion_) return;
-  recording_ = beside<fs::path>([wanted, patient = patient_, motion = motion_, settings = settings_,
-                                 obey = options_.motion.respect_contact](const Progress& progress) {
-    return record_view(wanted, *patient, motion->motion, settings, obey, progress);
+  std::optional<Pose> held_jaw = window_.view().hands.mandible;
+  if (!held_jaw && window_.view().opening_mm && newest_) held_jaw = newest_->X_CM_wanted;
+  recording_ = beside<fs::path>([subject = ViewRecording{.wanted = wanted,
+                                                         .view = window_.view(),
+                                                         .bodies = shown_.bodies,
+                                                         .held_jaw = held_jaw,
+                                                         .patient = patient_,
+                                                         .motion = motion_,
+                                                         .paths = paths_},
+                                 settings = settings_](const Progress& progress) {
+    return record_view(subject, settings, progress);
   });
 }
 

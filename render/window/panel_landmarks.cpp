@@ -76,7 +76,6 @@ void Panels::Drawing::landmarks() {
   ImGui::BeginDisabled(name.empty() || taken);
   if (word_button(pen, "landmark-add", "Add", {third, button}, false)) {
     // In the middle of what is there until it is placed by a click.
-    panels.remember(view);
     view.landmarks.push_back(landmark_at(name, input.camera.target, input.scene.parts));
     view.landmark = view.landmarks.size() - 1;
   }
@@ -84,7 +83,6 @@ void Panels::Drawing::landmarks() {
   ImGui::SameLine(0, gap);
   ImGui::BeginDisabled(!view.landmark);
   if (word_button(pen, "landmark-rename", "Rename", {third, button}, false)) {
-    panels.remember(view);
     view.landmarks[*view.landmark].name = name;
   }
   ImGui::EndDisabled();
@@ -92,7 +90,6 @@ void Panels::Drawing::landmarks() {
   ImGui::SameLine(0, gap);
   ImGui::BeginDisabled(!view.landmark);
   if (word_button(pen, "landmark-delete", "Delete", {third, button}, false)) {
-    panels.remember(view);
     view.landmarks.erase(view.landmarks.begin() + static_cast<std::ptrdiff_t>(*view.landmark));
     view.landmark.reset();
     drafts.landmark_words.clear();

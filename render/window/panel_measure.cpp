@@ -75,12 +75,10 @@ void Panels::Drawing::measuring() {
   ImGui::SetCursorPosY(static_cast<float>(high) - size.y - pen.px(14));
   ImGui::BeginDisabled(places.empty());
   if (word_button(pen, "measure-back", "Last off", size, false)) {
-    panels.remember(view);
     view.measured.pop_back();
   }
   ImGui::SameLine(0, gap);
   if (word_button(pen, "measure-clear", "Clear", size, false)) {
-    panels.remember(view);
     view.measured.clear();
   }
   ImGui::EndDisabled();

@@ -77,7 +77,6 @@ void Panels::Drawing::motion() {
                         ImGuiComboFlags_HeightLarge)) {
     for (const std::string& name : input.scene.motions) {
       if (ImGui::Selectable(motion_label(name).c_str(), name == now)) {
-        panels.remember(view);
         view.motion = {.spec = name, .parameters = view.motion.parameters, .excitations = {}};
         drafts.motion_words.clear();
       }
@@ -90,7 +89,6 @@ void Panels::Drawing::motion() {
   if (text_field(pen, "motion-words", drafts.motion_words, ImGui::GetContentRegionAvail().x,
                  "open 40; close; left 6") &&
       !drafts.motion_words.empty()) {
-    panels.remember(view);
     view.motion = {
         .spec = drafts.motion_words, .parameters = view.motion.parameters, .excitations = {}};
   }
@@ -122,7 +120,6 @@ void Panels::Drawing::motion() {
                             100 * muscle.high};
       if (setting_slider(pen, setting, drafts.excitations, muscle.name, percent,
                          mine != view.motion.excitations.end())) {
-        panels.remember(view);
         view.motion.excitations[muscle.name] = percent / 100;
       }
     }
@@ -150,7 +147,6 @@ void Panels::Drawing::motion() {
                           one.usual_high,
                           one.known || by_hand};
     if (setting_slider(pen, setting, drafts.parameters, one.name, value, by_hand)) {
-      panels.remember(view);
       view.motion.parameters[one.name] = value;
     }
   }
@@ -159,7 +155,6 @@ void Panels::Drawing::motion() {
   ImGui::BeginDisabled(view.motion.parameters.empty());
   if (word_button(pen, "parameters-reset", "As in the patient",
                   {ImGui::GetContentRegionAvail().x, pen.px(26)}, false)) {
-    panels.remember(view);
     view.motion.parameters.clear();
   }
   ImGui::EndDisabled();

@@ -120,7 +120,6 @@ void Panels::Drawing::moving() {
   }
   ImGui::Columns(1);
   if (edited && wanted.shift_mm.allFinite() && wanted.turn_deg.allFinite()) {
-    panels.remember(view);
     if (!body.free) {
       view.playing = false;
       view.opening_mm.reset();
@@ -152,7 +151,6 @@ void Panels::Drawing::moving() {
   ImGui::SameLine(0, gap);
   ImGui::BeginDisabled(!hand);
   if (word_button(pen, "put-back", "Put back", size, false)) {
-    panels.remember(view);
     view.hands.of(body).reset();
   }
   ImGui::EndDisabled();

@@ -62,26 +62,9 @@ void Panels::Drawing::part_list() {
   const float settings_room = pen.px(34) + 2 * row;
   const float most =
       std::max(2 * row, ImGui::GetContentRegionAvail().y - settings_room - notes_room);
-  const float wanted = row * static_cast<float>(input.scene.parts.size());
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 3));
-  ImGui::BeginChild("part-list", {0, std::min(wanted, most)});
-  for (std::size_t i = 0; i < input.scene.parts.size(); ++i) {
-    const Part& part = input.scene.parts[i];
-    PartView& one = view.parts[i];
-    const float bar = pen.px(66), end = ImGui::GetContentRegionAvail().x;
-    const float room = end - bar - pen.px(15 + 8 + 8);
-    const std::string label = fitted(theme.regular, display_name(part.name), room);
-    const float y = ImGui::GetCursorPosY();
-    tick_box(pen, ("show:" + part.name).c_str(), label.c_str(), one.shown);
-    if (label.ends_with("...")) tooltip(pen, part.name.c_str());
-    if (part.role == Role::face) continue;  // its opacity is the skin's
-    ImGui::SameLine();
-    ImGui::SetCursorPos({end - bar, y});
-    ImGui::BeginDisabled(!one.shown);
-    slider(pen, ("opacity:" + part.name).c_str(), one.opacity, {.width = bar});
-    tooltip(pen, fmt::format("{:.0f} %", 100 * one.opacity).c_str());
-    ImGui::EndDisabled();
-  }
+  ImGui::BeginChild("part-list", {0, std::min(row * static_cast<float>(tree_rows()), most)});
+  tree();
   ImGui::EndChild();
 
   heading(pen, "Settings");

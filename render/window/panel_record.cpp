@@ -79,8 +79,7 @@ void Panels::Drawing::record() {
                           .film = fields.film,
                           .turntable = fields.turntable,
                           .camera = input.camera,
-                          .picture = {},
-                          .distances = view.distances};
+                          .picture = {}};
       panels.wishes_.push_back(std::move(wanted));
     }
     ImGui::EndDisabled();
@@ -91,8 +90,8 @@ void Panels::Drawing::record() {
   ImGui::PushTextWrapPos(0);
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(8));
   text(theme.small, palette().text_dim,
-       "Pictures are drawn in full quality beside the window, which stays usable. Skin, parts, "
-       "camera and colours are as they are now; the jaw follows the motion.");
+       "Pictures are drawn in full quality beside the window, which stays usable. They show what "
+       "the view shows now, bones moved by hand included.");
   ImGui::PopTextWrapPos();
 }
 

@@ -78,6 +78,7 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       step_clock(view, 10 * step, duration);
       return true;
     case Command::toggle_skin:
+      remember(view);
       if (view.skin_opacity > 0) {
         skin_before_ = view.skin_opacity;
         view.skin_opacity = 0;
@@ -87,6 +88,7 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       return true;
     case Command::toggle_distances:
       if (!scene.distance_colours) return true;
+      remember(view);
       view.distances = !view.distances;
       // They are seen on bones and teeth alone. Key K brings the skin back.
       if (view.distances && view.skin_opacity > 0.5) {
@@ -141,13 +143,23 @@ bool Panels::undo(ViewState& view, bool back) {
   Edits now = Edits::of(view);
   if (!(back ? history_.undo(now) : history_.redo(now))) return false;
   now.put_into(view);
+  undone_ = true;
   return true;
+}
+
+/// Whatever a pass over the panels has changed is an edit; while one thing is held, one edit.
+void Panels::remember_edits(const Edits& before, const ViewState& view) {
+  const bool changed = !(Edits::of(view) == before);
+  if (changed && !undone_ && !editing_) history_.remember(before);
+  editing_ = ImGui::IsAnyItemActive() && (editing_ || changed);
 }
 
 std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, double width,
                                   double height) {
   items_.clear();
-  view.parts.resize(input.scene.parts.size());
+  view.fit(input.scene);
+  undone_ = false;
+  const Edits before = Edits::of(view);
   if (said_until_ < 0) said_until_ = ImGui::GetTime() + said_for_s;
   if (ImGui::GetTime() > said_until_) said_.clear();
   if (input.frame) {
@@ -190,6 +202,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
   drawing.view_signs();
   drawing.dialogs();
   ImGui::PopFont();
+  remember_edits(before, view);
   return std::move(drawing.commands);
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <deque>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -97,11 +98,15 @@ class Panels {
   Theme theme_;
   bool shown_ = true, help_open_ = false;
   double skin_before_ = 1;  // opacity to come back to
+  std::set<std::string> open_groups_ = {"bones", "teeth", "mouth", "free"};  // of the tree
   std::deque<std::string> errors_;
   std::string said_;
   double said_until_ = 0;
   EditHistory<Edits> history_;
   bool undo(ViewState& view, bool back);
+  void remember_edits(const Edits& before, const ViewState& view);
+  bool undone_ = false;   // in this pass
+  bool editing_ = false;  // something is held that has changed the view already
   Drafts drafts_;
   std::vector<Wish> wishes_;
   // The last steps' times, for the curves; of bounded length.

@@ -36,6 +36,8 @@ struct Panels::Drawing {
   void import_dialog();  // panel_files.cpp
   void side_tabs();
   void part_list();
+  void tree();  // panel_tree.cpp
+  int tree_rows() const;
   void look();  // panel_look.cpp
   void scale();
   void readings();

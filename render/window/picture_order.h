@@ -1,18 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "engine/mesh/tri_mesh.h"
 #include "render/camera.h"
-#include "render/overlays.h"
 #include "render/scene_renderer.h"
 #include "render/window/quality.h"
+#include "render/window/shown_overlays.h"
 #include "sim/frame/frame_state.h"
 
 namespace condyle {
@@ -48,7 +46,7 @@ struct PictureOrder {
   double wipe_at = 0.5;                           // share of the width
   std::shared_ptr<const DrawnMap> map = {};       // none: parts have their own surfaces alone
   std::shared_ptr<const MapValues> values = {};   // of the map's surfaces; none: no colours
-  std::map<std::string, std::shared_ptr<const LineSet>> lines = {};
+  std::shared_ptr<const Overlays> overlays = {};  // none: nothing beside the parts
   Camera camera = {};
   PictureSettings settings = {};
   Quality quality = {};

@@ -12,6 +12,7 @@ struct PictureThread::Drawing {
   OffscreenContext context;
   ViewPicture view;
   std::optional<SceneRenderer> renderer;
+  OverlaySender overlays;
   PictureOrder applied;  // what the renderer has
 
   /// Gives the renderer what the order has otherwise than the last one.
@@ -19,6 +20,7 @@ struct PictureThread::Drawing {
     const bool other = wanted.parts != applied.parts;
     if (other) {
       renderer.reset();
+      overlays = {};
       applied = {.parts = wanted.parts};  // also where it cannot be uploaded: once is enough
       if (wanted.parts) {
         renderer.emplace(wanted.parts->parts);
@@ -43,13 +45,9 @@ struct PictureThread::Drawing {
                                                                         : std::vector<float>{});
     applied.map = wanted.map;
     applied.values = wanted.values;
-    for (const auto& [of, lines] : wanted.lines)
-      if (const auto before = applied.lines.find(of);
-          before == applied.lines.end() || before->second != lines)
-        renderer->set_lines(of, lines ? *lines : LineSet{});
-    for (const auto& [of, lines] : applied.lines)
-      if (!wanted.lines.contains(of)) renderer->set_lines(of, {});
-    applied.lines = wanted.lines;
+    if (wanted.overlays != applied.overlays)
+      overlays.send(*renderer, wanted.overlays ? *wanted.overlays : Overlays{});
+    applied.overlays = wanted.overlays;
   }
 };
 

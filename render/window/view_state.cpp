@@ -11,8 +11,17 @@ bool ViewState::shows_face(const WindowScene& scene) const {
   return false;
 }
 
+void ViewState::fit(const WindowScene& scene) {
+  constexpr PartView muscle{.shown = false}, layer{.shown = false, .opacity = 0.5};
+  parts.resize(scene.parts.size());
+  muscles.resize(scene.muscles.size(), muscle);
+  layers.resize(scene.layers.size(), layer);
+}
+
 Edits Edits::of(const ViewState& view) {
-  return {view.hands, view.measured, view.landmarks, view.motion};
+  return {view.hands,        view.measured,      view.landmarks, view.motion,    view.look,
+          view.obey_contact, view.mark_contacts, view.shadows,   view.distances, view.skin_opacity,
+          view.parts,        view.muscles,       view.layers};
 }
 
 void Edits::put_into(ViewState& view) const {
@@ -20,6 +29,15 @@ void Edits::put_into(ViewState& view) const {
   view.measured = measured;
   view.landmarks = landmarks;
   view.motion = motion;
+  view.look = look;
+  view.obey_contact = obey_contact;
+  view.mark_contacts = mark_contacts;
+  view.shadows = shadows;
+  view.distances = distances;
+  view.skin_opacity = skin_opacity;
+  view.parts = parts;
+  view.muscles = muscles;
+  view.layers = layers;
   if (view.landmark && *view.landmark >= landmarks.size()) view.landmark.reset();
 }
 

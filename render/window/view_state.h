@@ -15,6 +15,11 @@
 
 namespace condyle {
 
+/// What the tree lists beside the parts.
+struct TreeItem {
+  std::string name, label;
+};
+
 /// What a window shows. Plain data; the parts must outlive the window or the next scene.
 struct WindowScene {
   std::span<const Part> parts = {};
@@ -35,13 +40,16 @@ struct WindowScene {
   std::vector<MotionSetting> motion_settings = {};
   std::vector<ExcitationSetting> excitations = {};  // of a motion that muscles drive
   std::vector<Landmark> landmarks = {};             // of the case
-  std::vector<std::filesystem::path> recent = {};   // opened before, the last one first
+  std::vector<TreeItem> muscles = {};  // lines of action that can be shown, in the case's order
+  std::vector<TreeItem> layers = {};   // sheets of the soft tissue, from the skin inward
+  std::vector<std::filesystem::path> recent = {};  // opened before, the last one first
 };
 
 /// How one part is wanted.
 struct PartView {
   bool shown = true;
   double opacity = 1;  // 0 to 1
+  bool operator==(const PartView&) const = default;
 };
 
 /// What the left button does in the picture: turn it, move bodies, set points to measure or place
@@ -99,17 +107,26 @@ struct ViewState {
   std::size_t plot_set = 0;          // the one that is shown
   double skin_opacity = 1;           // of parts with the role `face`, on top of their own
   std::vector<PartView> parts = {};  // one per part of the scene, in its order
+  // The same of muscles and layers of tissue; not shown at first.
+  std::vector<PartView> muscles = {}, layers = {};
 
   /// Whether any face is visible: without one the loop may leave out the face and its tissue.
   bool shows_face(const WindowScene& scene) const;
+  /// Gives everything of the scene its view; what is new is as at first.
+  void fit(const WindowScene& scene);
 };
 
-/// What a person sets in a view and may take back.
+/// What a person sets in a view and may take back: all but the clock, the camera and which panels
+/// and tools are in use.
 struct Edits {
   Hands hands;
   std::vector<PinnedPoint> measured;
   std::vector<Landmark> landmarks;
   MotionChoice motion;
+  Look look;
+  bool obey_contact = true, mark_contacts = true, shadows = true, distances = false;
+  double skin_opacity = 1;
+  std::vector<PartView> parts, muscles, layers;
   bool operator==(const Edits&) const = default;
 
   static Edits of(const ViewState& view);

@@ -67,7 +67,7 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
   State& s = *state_;
   s.scene = scene;
   s.view = start;
-  s.view.parts.resize(scene.parts.size());
+  s.view.fit(scene);
   s.order = {};
   s.kept.reset();
   s.cannot_draw = false;
@@ -80,7 +80,8 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
   if (s.box.isEmpty()) s.box.extend(Eigen::Vector3d::Zero());
   s.held.reset();
   s.plots.clear();
-  s.lines.clear();
+  s.overlays = {};
+  s.overlays_due = true;
   s.view.landmarks = scene.landmarks;
   s.view.motion = scene.motion;
   s.panels->forget_edits();
@@ -154,7 +155,10 @@ std::vector<Wish> Window::take_wishes() {
   State& s = *state_;
   auto wishes = s.panels->take_wishes();
   for (Wish& one : wishes)
-    if (auto* record = std::get_if<wish::Record>(&one)) record->picture = s.settings();
+    if (auto* record = std::get_if<wish::Record>(&one)) {
+      record->picture = s.settings();
+      if (s.view.look.wipe) record->kept = s.kept;
+    }
   if (!s.dropped.empty()) wishes.push_back(wish::Open{std::exchange(s.dropped, {})});
   return wishes;
 }
@@ -169,9 +173,9 @@ void Window::show_plots(std::vector<PlotSet> plots) {
   if (state_->view.plots) state_->frames_due = std::max(state_->frames_due, 1);
 }
 
-void Window::show_lines(const std::string& name, LineSet lines) {
-  state_->lines[name] = std::make_shared<LineSet>(std::move(lines));
-  state_->scene_changed = true;
+void Window::show_overlays(Overlays overlays) {
+  state_->overlays = std::move(overlays);
+  state_->overlays_due = state_->scene_changed = true;
 }
 
 void Window::show_progress(const std::string& what, double fraction, bool can_cancel) {

@@ -9,7 +9,6 @@
 
 #include "render/camera.h"
 #include "render/image.h"
-#include "render/overlays.h"
 #include "render/window/panels.h"
 #include "render/window/picture_order.h"
 #include "render/window/plot_set.h"
@@ -78,8 +77,8 @@ class Window {
   /// Asks for the roles of surfaces that were dropped or opened.
   void ask_roles(const wish::Import& files);
   void show_plots(std::vector<PlotSet> plots);
-  /// Lines in space: "paths" of the motion, "springs" of the tissue; drawn while they are wanted.
-  void show_lines(const std::string& name, LineSet lines);
+  /// Lines and sheets in space, of the newest frame, instead of those before.
+  void show_overlays(Overlays overlays);
 
   /// What is being prepared, 0 to 1; empty when it is done.
   void show_progress(const std::string& what, double fraction, bool can_cancel = false);

@@ -86,33 +86,6 @@ void Window::State::apply_look(PictureSettings& wanted) const {
   if (look.patches && view.distances) wanted.mapped_up_to = touching_mm;
 }
 
-/// Lines in space that are wanted; the axes through the middle of the patient are made here.
-std::map<std::string, std::shared_ptr<const LineSet>> Window::State::shown_lines() const {
-  std::map<std::string, std::shared_ptr<const LineSet>> shown;
-  if (view.look.axes) {
-    auto axes = std::make_shared<LineSet>();
-    const Eigen::Vector3f middle = box.center().cast<float>();
-    const float length = 0.6f * static_cast<float>(box.sizes().maxCoeff());
-    constexpr std::array<std::array<float, 3>, 3> tints = {
-        {{0.91f, 0.44f, 0.23f}, {0.18f, 0.75f, 0.58f}, {0.34f, 0.71f, 0.91f}}};
-    for (int i = 0; i < 3; ++i) {
-      const std::size_t before = axes->ends.size();
-      add_arrow(*axes, middle, middle + length * Eigen::Vector3f::Unit(i));
-      const auto& tint = tints[static_cast<std::size_t>(i)];
-      axes->colors.insert(axes->colors.end(), (axes->ends.size() - before) / 2,
-                          Eigen::Vector3f(tint[0], tint[1], tint[2]));
-    }
-    shown["axes"] = axes;
-  }
-  for (const auto& [name, set] : lines) {
-    const bool on = name == "paths"     ? view.look.paths
-                    : name == "springs" ? view.look.springs
-                                        : true;
-    if (on) shown[name] = set;
-  }
-  return shown;
-}
-
 bool Window::State::moving() const {
   return view.playing || held || drag != CameraDrag::none || seconds_since(last_change) < calm_s;
 }
@@ -224,7 +197,12 @@ void Window::State::order_picture() {
   order.quality = governor.choose(order.moving);
   order.beside = view.look.wipe && order.frame ? kept : nullptr;
   order.wipe_at = view.look.wipe_at;
-  order.lines = shown_lines();
+  if (overlays_due || view.look.axes != ordered_look.axes) {
+    Overlays all = overlays;
+    if (view.look.axes) all.lines["axes"] = patient_axes(box.min(), box.max());
+    order.overlays = std::make_shared<Overlays>(std::move(all));
+    overlays_due = false;
+  }
   painter->order(order);
   ordered_look = view.look;
   scene_changed = false;  // also when it fails: the next change tries again

@@ -58,8 +58,9 @@ struct Window::State {
   double progress_fraction = 0, recording_fraction = 0;
   bool can_cancel = false;
   std::vector<PlotSet> plots;
-  std::map<std::string, std::shared_ptr<const LineSet>> lines;  // in space, by name
-  std::vector<std::filesystem::path> dropped;                   // on the window, not taken yet
+  Overlays overlays;                           // as given, without the window's own
+  bool overlays_due = true;                    // not ordered yet
+  std::vector<std::filesystem::path> dropped;  // on the window, not taken yet
 
   MouseQueue mouse;
   /// Keys and letters for a field that is written in, in their order, each with its own pass over
@@ -130,7 +131,6 @@ struct Window::State {
   ViewRect view_rect() const;
   PictureSettings settings() const;
   void apply_look(PictureSettings& wanted) const;
-  std::map<std::string, std::shared_ptr<const LineSet>> shown_lines() const;
   bool drawn() const;  // the picture on show is of this scene
   bool moving() const;
   void fit_scale();

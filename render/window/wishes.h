@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "render/camera.h"
 #include "render/scene_renderer.h"
+#include "sim/frame/frame_state.h"
 #include "sim/frame/part.h"
 
 namespace condyle {
@@ -52,7 +54,7 @@ struct Import {
   std::vector<FileRole> files;
   std::string units = "mm", frame = "LPS";
 };
-/// A film or pictures of the motion, as the view is now.
+/// A film or pictures of the motion, all as the window shows it now.
 struct Record {
   std::filesystem::path folder;
   int width = 1920, height = 1080;
@@ -60,7 +62,7 @@ struct Record {
   bool film = true, turntable = false;
   Camera camera;
   PictureSettings picture;
-  bool distances = false;
+  std::shared_ptr<const FrameState> kept = {};  // left of the wipe, if there is one
 };
 /// Ends what runs beside and can be ended.
 struct Cancel {};

@@ -77,16 +77,20 @@ void carry_face(const Scene& scene, FrameState& frame, int threads) {
 }
 
 Playback::Playback(const Scene& scene, Motion motion, const SimulatorSettings& settings,
-                   bool respect_contact)
+                   bool respect_contact, std::vector<Pose> X_BF_wanted)
     : scene_(scene),
       motion_(std::move(motion)),
       settings_(settings),
       obey_contact_(respect_contact || !motion_.recorded),
+      X_BF_wanted_(std::move(X_BF_wanted)),
       now_(step_to(0, rest_frame(scene))) {}
 
 FrameState Playback::step_to(double time_s, const FrameState& from) const {
   StageTimes motion_time;
-  StepInput input{.time_s = time_s, .X_CM_wanted = {}, .obey_contact = obey_contact_};
+  StepInput input{.time_s = time_s,
+                  .X_CM_wanted = {},
+                  .obey_contact = obey_contact_,
+                  .X_BF_wanted = X_BF_wanted_};
   {
     const StageTimer timer(motion_time, Stage::motion);
     input.X_CM_wanted = motion_.wanted(time_s);

@@ -45,8 +45,9 @@ void carry_face(const Scene& scene, FrameState& frame, int threads = 1);
 class Playback {
  public:
   /// The scene must outlive the playback. Recorded motion is not altered by contact unless asked.
+  /// `X_BF_wanted`: where free parts are wanted all the time (StepInput).
   Playback(const Scene& scene, Motion motion, const SimulatorSettings& settings,
-           bool respect_contact = false);
+           bool respect_contact = false, std::vector<Pose> X_BF_wanted = {});
 
   /// State at `time_s`, which must not be earlier than in the call before. Times between two steps
   /// are answered by one extra step that the sequence forgets: what is asked for changes nothing.
@@ -61,6 +62,7 @@ class Playback {
   Motion motion_;
   SimulatorSettings settings_;
   bool obey_contact_;
+  std::vector<Pose> X_BF_wanted_;
   long step_ = 0;
   FrameState now_;  // after step_ fixed steps
 };

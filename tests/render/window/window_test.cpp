@@ -493,18 +493,18 @@ TEST_F(RealWindow, APictureThatCannotBeSavedIsASentence) {
 
 TEST_F(RealWindow, AnIdleWindowRests) {
   run([&] {
-    // Until the full picture is drawn and the window has come to rest.
-    for (int i = 0; i < 40; ++i) {
-      const int before = seen().loops;
-      std::this_thread::sleep_for(milliseconds(1000));
-      if (const int loops = seen().loops - before; loops > 0 && loops < 6) break;
-    }
     const auto cpu_s = [] {
       rusage usage{};
       getrusage(RUSAGE_SELF, &usage);
       return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
              1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
     };
+    // Until the full picture is drawn, beside the window, and all has come to rest.
+    for (int i = 0; i < 40; ++i) {
+      const double start = cpu_s();
+      std::this_thread::sleep_for(milliseconds(1000));
+      if (cpu_s() - start < 0.05) break;
+    }
     const double before = cpu_s();
     const int loops = seen().loops;
     std::this_thread::sleep_for(milliseconds(2000));

@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "render/window/panels_drawing.h"
+
+namespace condyle {
+namespace {
+
+/// One line of the tree.
+struct TreeRow {
+  std::string name;  // of its items
+  std::string label;
+  PartView* view;
+  bool has_opacity = true;
+  std::string tip = {};
+};
+
+struct TreeGroup {
+  const char* name;
+  const char* label;
+  const char* tip;
+  std::vector<TreeRow> rows = {};
+};
+
+enum GroupNumber { bones, teeth, face, mouth, free_parts, muscles, layers };
+
+GroupNumber group_of(Role role) {
+  switch (role) {
+    case Role::upper_teeth:
+    case Role::lower_teeth:
+      return teeth;
+    case Role::face:
+    case Role::eyes:
+      return face;
+    case Role::upper_gums:
+    case Role::lower_gums:
+    case Role::tongue:
+      return mouth;
+    case Role::segment:
+    case Role::transplant:
+      return free_parts;
+    default:
+      return bones;
+  }
+}
+
+/// All that can be shown, in groups; empty ones are left out.
+std::vector<TreeGroup> groups_of(const PanelInput& input, ViewState& view) {
+  std::vector<TreeGroup> groups = {
+      {"bones", "Bones", "Skull and jaws"},
+      {"teeth", "Teeth", "Both arches"},
+      {"face", "Face", "Skin and eyes. How dense the skin is stands above"},
+      {"mouth", "Mouth", "Gums and tongue"},
+      {"free", "Free parts", "Segments and transplants, which a hand can move (key M)"},
+      {"muscles", "Muscles",
+       "Their lines of action: dark red at rest, bright yellow when fully excited"},
+      {"layers", "Soft tissue", "Its layers, each drawn by its outer surface"}};
+  const WindowScene& scene = input.scene;
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const Part& part = scene.parts[i];
+    groups[group_of(part.role)].rows.push_back(
+        {part.name, display_name(part.name), &view.parts[i], part.role != Role::face});
+  }
+  const MuscleStates* states = input.frame ? &input.frame->muscles : nullptr;
+  for (std::size_t i = 0; i < scene.muscles.size(); ++i) {
+    std::string tip = scene.muscles[i].label;
+    if (states && states->size() == scene.muscles.size())
+      tip += fmt::format(": excited {:.0f} %, {:.0f} N", 100 * (*states)[i].excitation,
+                         (*states)[i].force_N);
+    groups[muscles].rows.push_back({"muscle:" + scene.muscles[i].name, scene.muscles[i].label,
+                                    &view.muscles[i], true, std::move(tip)});
+  }
+  for (std::size_t i = 0; i < scene.layers.size(); ++i)
+    groups[layers].rows.push_back(
+        {"layer:" + scene.layers[i].name, scene.layers[i].label, &view.layers[i]});
+  std::erase_if(groups, [](const TreeGroup& group) { return group.rows.empty(); });
+  return groups;
+}
+
+/// A small triangle that opens and closes a group. gives: true when it is clicked.
+bool fold(Pen& pen, const std::string& name, bool open) {
+  const float side = ImGui::GetFrameHeight();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const bool clicked = ImGui::InvisibleButton(("##" + name).c_str(), {pen.px(15), side});
+  pen.mark(name);
+  const float r = pen.px(4);
+  const ImVec2 middle = {at.x + pen.px(5), at.y + side / 2};
+  const ImU32 tint = ImGui::IsItemHovered() ? palette().text : palette().text_dim;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (open)
+    list.AddTriangleFilled({middle.x - r, middle.y - r / 2}, {middle.x + r, middle.y - r / 2},
+                           {middle.x, middle.y + r}, tint);
+  else
+    list.AddTriangleFilled({middle.x - r / 2, middle.y - r}, {middle.x + r, middle.y},
+                           {middle.x - r / 2, middle.y + r}, tint);
+  return clicked;
+}
+
+}  // namespace
+
+int Panels::Drawing::tree_rows() const {
+  int rows = 0;
+  for (const TreeGroup& group : groups_of(input, view))
+    rows +=
+        1 + (panels.open_groups_.contains(group.name) ? static_cast<int>(group.rows.size()) : 0);
+  return rows;
+}
+
+void Panels::Drawing::tree() {
+  const Theme& theme = panels.theme_;
+  const float indent = pen.px(15), bar = pen.px(66);
+  for (TreeGroup& group : groups_of(input, view)) {
+    const bool open = panels.open_groups_.contains(group.name);
+    if (fold(pen, std::string("group:") + group.name, open)) {
+      if (open)
+        panels.open_groups_.erase(group.name);
+      else
+        panels.open_groups_.insert(group.name);
+    }
+    tooltip(pen, open ? "Fold" : "Unfold");
+    ImGui::SameLine(0, 0);
+    bool any = std::any_of(group.rows.begin(), group.rows.end(),
+                           [](const TreeRow& row) { return row.view->shown; });
+    if (tick_box(pen, (std::string("show-all:") + group.name).c_str(), group.label, any))
+      for (TreeRow& row : group.rows) row.view->shown = any;
+    tooltip(pen, group.tip);
+    if (!open) continue;
+    for (TreeRow& row : group.rows) {
+      ImGui::SetCursorPosX(ImGui::GetCursorPosX() + indent);
+      const float end = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
+      const float room =
+          end - ImGui::GetCursorPosX() - (row.has_opacity ? bar + pen.px(8) : 0) - pen.px(15 + 8);
+      const std::string label = fitted(theme.regular, row.label, room);
+      const float y = ImGui::GetCursorPosY();
+      tick_box(pen, ("show:" + row.name).c_str(), label.c_str(), row.view->shown);
+      if (!row.tip.empty() || label.ends_with("..."))
+        tooltip(pen, (row.tip.empty() ? row.label : row.tip).c_str());
+      if (!row.has_opacity) continue;
+      ImGui::SameLine();
+      ImGui::SetCursorPos({end - bar, y});
+      ImGui::BeginDisabled(!row.view->shown);
+      slider(pen, ("opacity:" + row.name).c_str(), row.view->opacity, {.width = bar});
+      tooltip(pen, fmt::format("{:.0f} %", 100 * row.view->opacity).c_str());
+      ImGui::EndDisabled();
+    }
+  }
+}
+
+}  // namespace condyle

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+
+#include "render/window/shown_overlays.h"
+#include "sim/frame/frame_state.h"
+#include "tools/view_motion.h"
+#include "tools/view_patient.h"
+
+namespace condyle {
+
+/// What stands beside the parts in a view, of one frame: paths of the motion, springs, layers of
+/// tissue, lines of action of muscles. `paths`: where incisor and condyles go; none: not known yet.
+Overlays view_overlays(const ViewPatient& patient, const Motion& motion, const FrameState& frame,
+                       const ViewState& view, const std::shared_ptr<const LineSet>& paths);
+
+/// The part of a view that the overlays follow from: the same while nothing of it changes.
+struct OverlayWish {
+  bool springs = false, paths = false;
+  std::vector<PartView> muscles = {}, layers = {};
+  std::shared_ptr<const LineSet> known_paths = {};
+  bool operator==(const OverlayWish&) const = default;
+
+  static OverlayWish of(const ViewState& view, std::shared_ptr<const LineSet> paths) {
+    return {view.look.springs, view.look.paths, view.muscles, view.layers, std::move(paths)};
+  }
+};
+
+/// What a tree lists of a patient's muscles, and of the layers of the soft tissue.
+std::vector<TreeItem> muscle_items(const ViewPatient& patient);
+std::vector<TreeItem> layer_items(const ViewPatient& patient);
+
+}  // namespace condyle
