@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "render/cover_grid.h"
 #include "render/creases.h"
 #include "render/gpu_mesh.h"
 #include "render/material.h"
@@ -21,6 +22,9 @@ struct Drawable {
   GpuMesh mesh;
   std::vector<Crease> creases;                 // of a face only
   std::vector<GpuMesh::Bytes> colors, extras;  // at rest, one per vertex
+  // Of a face only: its vertices where they are now, and its edges, to tell what it hides.
+  std::vector<Eigen::Vector3f> places;
+  std::optional<SurfaceEdges> edges;
 
   bool mapped = false;                // coloured by its values
   std::optional<GpuMesh> finer = {};  // drawn instead while it is

@@ -1,7 +1,10 @@
 #include "render/gpu_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+
+#include "engine/mesh/patches.h"
 
 namespace condyle {
 namespace {
@@ -24,48 +27,66 @@ void bytes(GLuint place, GLuint buffer) {
   glVertexAttribPointer(place, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0, nullptr);
 }
 
-constexpr int piece_triangles = 2048;
+constexpr int piece_triangles = 64;
 
-/// Every third bit from the ten low ones of x: for a curve through space that stays close.
-std::uint32_t spread_bits(std::uint32_t x) {
-  x = (x | x << 16) & 0x030000ffu;
-  x = (x | x << 8) & 0x0300f00fu;
-  x = (x | x << 4) & 0x030c30c3u;
-  return (x | x << 2) & 0x09249249u;
-}
-
-/// The triangles along a Morton curve through their centres.
-std::vector<Eigen::Vector3i> along_a_curve(std::span<const Eigen::Vector3f> positions,
-                                           std::span<const Eigen::Vector3i> triangles) {
-  Eigen::AlignedBox3f box;
-  for (const auto& p : positions) box.extend(p);
-  const float scale = box.isEmpty() ? 0 : 1023 / std::max(box.sizes().maxCoeff(), 1e-6f);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> order(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const auto& t = triangles[i];
-    const Eigen::Vector3f q =
-        scale * ((positions[t[0]] + positions[t[1]] + positions[t[2]]) / 3 - box.min());
-    std::uint32_t key = 0;
-    for (int k = 0; k < 3; ++k)
-      key |= spread_bits(static_cast<std::uint32_t>(std::clamp(q[k], 0.f, 1023.f))) << k;
-    order[i] = {key, static_cast<std::uint32_t>(i)};
+/// What a piece's triangles face. Those without area face nowhere: they are not drawn either.
+DirectionCone cone_of(std::span<const Eigen::Vector3f> positions,
+                      std::span<const Eigen::Vector3i> triangles) {
+  std::array<Eigen::Vector3f, piece_triangles> normals;
+  std::size_t count = 0;
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (const auto& t : triangles) {
+    const Eigen::Vector3f& a = positions[t[0]];
+    const Eigen::Vector3f n = (positions[t[1]] - a).cross(positions[t[2]] - a);
+    const float length = n.norm();
+    if (!(length > 0)) continue;
+    normals[count] = n / length;
+    sum += normals[count++];
   }
-  std::sort(order.begin(), order.end());
-  std::vector<Eigen::Vector3i> sorted;
-  sorted.reserve(triangles.size());
-  for (const auto& [key, i] : order) sorted.push_back(triangles[i]);
-  return sorted;
+  DirectionCone cone;
+  const float length = sum.norm();
+  if (!(length > 0)) return cone;
+  cone.axis = sum / length;
+  float least = 1;
+  for (std::size_t i = 0; i < count; ++i) least = std::min(least, cone.axis.dot(normals[i]));
+  if (least > 0.05f) cone.sine = std::sqrt(std::max(0.f, 1 - least * least));
+  return cone;
 }
 
 }  // namespace
 
+template <class T>
+std::vector<T> GpuMesh::ordered(std::span<const T> values) const {
+  std::vector<T> on_card;
+  on_card.reserve(order_.size());
+  for (const int from : order_) on_card.push_back(values[static_cast<std::size_t>(from)]);
+  return on_card;
+}
+
+template <class T>
+void GpuMesh::send_ordered(GLuint buffer, std::span<const T> values, GLenum usage) {
+  send(GL_ARRAY_BUFFER, buffer, std::span<const T>(ordered(values)), usage);
+}
+
 GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
                  std::span<const Eigen::Vector3i> triangles, bool moving)
-    : triangles_(along_a_curve(positions, triangles)),
-      usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
-  const int count = static_cast<int>(triangles.size());
-  for (int first = 0; first < count; first += piece_triangles)
-    pieces_.push_back({first, std::min(piece_triangles, count - first), {}});
+    : usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
+  auto patches = cut_into_patches(positions, triangles, piece_triangles);
+  triangles_ = std::move(patches.triangles);
+  for (std::size_t i = 0; i + 1 < patches.first.size(); ++i)
+    pieces_.push_back({patches.first[i], patches.first[i + 1] - patches.first[i], {}, {}});
+  // Vertices in the order of their first use: without a card a few hundred neighbours are kept at a
+  // time, and what falls out is computed again.
+  place_.assign(positions.size(), -1);
+  for (auto& t : triangles_)
+    for (int& v : t) {
+      int& place = place_[static_cast<std::size_t>(v)];
+      if (place < 0) {
+        place = static_cast<int>(order_.size());
+        order_.push_back(v);
+      }
+      v = place;
+    }
   glBindVertexArray(array_);
   send(GL_ELEMENT_ARRAY_BUFFER, indices_, std::span<const Eigen::Vector3i>(triangles_),
        GL_STATIC_DRAW);
@@ -78,27 +99,29 @@ GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
 
 void GpuMesh::send_shape(std::span<const Eigen::Vector3f> positions,
                          std::span<const Eigen::Vector3f> normals) {
-  send(GL_ARRAY_BUFFER, positions_, positions, usage_);
-  send(GL_ARRAY_BUFFER, normals_, normals, usage_);
+  points_ = ordered(positions);
+  send(GL_ARRAY_BUFFER, positions_, std::span<const Eigen::Vector3f>(points_), usage_);
+  send_ordered(normals_, normals, usage_);
+  const std::span<const Eigen::Vector3i> all = triangles_;
   for (auto& piece : pieces_) {
+    const auto own = all.subspan(static_cast<std::size_t>(piece.first_triangle),
+                                 static_cast<std::size_t>(piece.triangle_count));
     piece.box.setEmpty();
-    for (int t = 0; t < piece.triangle_count; ++t)
-      for (const int v : triangles_[static_cast<std::size_t>(piece.first_triangle + t)])
-        piece.box.extend(positions[v]);
+    for (const auto& t : own)
+      for (const int v : t) piece.box.extend(points_[static_cast<std::size_t>(v)]);
+    piece.normals = cone_of(points_, own);
   }
 }
 
-void GpuMesh::send_colors(std::span<const Bytes> colors) {
-  send(GL_ARRAY_BUFFER, colors_, colors, usage_);
-}
+void GpuMesh::send_colors(std::span<const Bytes> colors) { send_ordered(colors_, colors, usage_); }
 
 void GpuMesh::send_extras(std::span<const Bytes> extras) {
-  send(GL_ARRAY_BUFFER, extras_, extras, GL_STATIC_DRAW);
+  send_ordered(extras_, extras, GL_STATIC_DRAW);
 }
 
 void GpuMesh::send_rest(std::span<const Eigen::Vector3f> positions) {
   glBindVertexArray(array_);
-  send(GL_ARRAY_BUFFER, rest_, positions, GL_STATIC_DRAW);
+  send_ordered(rest_, positions, GL_STATIC_DRAW);
   floats(5, rest_);
   glBindVertexArray(0);
 }
@@ -108,7 +131,7 @@ void GpuMesh::send_values(std::span<const float> values) {
   if (values.empty()) {
     glDisableVertexAttribArray(4);
   } else {
-    send(GL_ARRAY_BUFFER, values_, values, GL_STREAM_DRAW);
+    send_ordered(values_, values, GL_STREAM_DRAW);
     glEnableVertexAttribArray(4);
     glVertexAttribPointer(4, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
   }
@@ -121,17 +144,21 @@ void GpuMesh::draw() const {
                  nullptr);
 }
 
-void GpuMesh::draw(const Piece& piece) const {
+void GpuMesh::draw(std::span<const Eigen::Vector3i> chosen) const {
+  if (chosen.empty()) return;
   glBindVertexArray(array_);
-  glDrawElements(
-      GL_TRIANGLES, 3 * piece.triangle_count, GL_UNSIGNED_INT,
-      reinterpret_cast<const void*>(sizeof(Eigen::Vector3i) * std::size_t(piece.first_triangle)));
+  send(GL_ELEMENT_ARRAY_BUFFER, chosen_, chosen, GL_STREAM_DRAW);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * chosen.size()), GL_UNSIGNED_INT, nullptr);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
 }
 
 void GpuMesh::send_cover(std::span<const Eigen::Vector3i> triangles) {
   cover_count_ = static_cast<GLsizei>(3 * triangles.size());
+  std::vector<Eigen::Vector3i> on_card(triangles.begin(), triangles.end());
+  for (auto& t : on_card)
+    for (int& v : t) v = place_[static_cast<std::size_t>(v)];
   glBindVertexArray(0);
-  send(GL_ELEMENT_ARRAY_BUFFER, cover_, triangles, GL_STATIC_DRAW);
+  send(GL_ELEMENT_ARRAY_BUFFER, cover_, std::span<const Eigen::Vector3i>(on_card), GL_STATIC_DRAW);
 }
 
 void GpuMesh::draw_cover() const {

@@ -11,17 +11,25 @@
 
 namespace condyle {
 
-/// A triangle surface on the graphics card, in pieces that lie close together, so that hidden ones
-/// can be left out. Attributes: 0 position, 1 normal, 2 colour with occlusion, 3 extra (see the
-/// surface shaders).
+/// Directions within an angle of an axis.
+struct DirectionCone {
+  Eigen::Vector3f axis = Eigen::Vector3f::Zero();
+  float sine = 2;  // of the angle; above 1: any direction
+};
+
+/// A triangle surface on the graphics card, in small pieces that lie close together and face nearly
+/// the same way, so that those not seen can be left out. Attributes: 0 position, 1 normal, 2 colour
+/// with occlusion, 3 extra (see the surface shaders). What is given for vertices is given in the
+/// order of the positions; on the card they lie in the order in which they are drawn.
 class GpuMesh {
  public:
   using Bytes = std::array<std::uint8_t, 4>;
 
-  /// A run of triangles and the box around it, mm.
+  /// A run of triangles with the box around it, mm, and the directions that they face.
   struct Piece {
     int first_triangle, triangle_count;
     Eigen::AlignedBox3f box;
+    DirectionCone normals;
   };
 
   /// `moving`: positions and normals will be sent again each frame.
@@ -42,15 +50,27 @@ class GpuMesh {
   void send_cover(std::span<const Eigen::Vector3i> triangles);
 
   void draw() const;
-  void draw(const Piece& piece) const;
+  /// Some of its `triangles`.
+  void draw(std::span<const Eigen::Vector3i> chosen) const;
   void draw_cover() const;
+
+  // As on the card:
+  const std::vector<Eigen::Vector3f>& points() const { return points_; }
+  const std::vector<Eigen::Vector3i>& triangles() const { return triangles_; }
   const std::vector<Piece>& pieces() const { return pieces_; }
 
  private:
+  template <class T>
+  std::vector<T> ordered(std::span<const T> values) const;
+  template <class T>
+  void send_ordered(GLuint buffer, std::span<const T> values, GLenum usage);
+
   GlVertexArray array_;
-  GlBuffer positions_, normals_, colors_, extras_, values_, rest_, indices_, cover_;
+  GlBuffer positions_, normals_, colors_, extras_, values_, rest_, indices_, cover_, chosen_;
   GLsizei cover_count_ = 0;
   std::vector<Eigen::Vector3i> triangles_;  // in the order of the pieces
+  std::vector<Eigen::Vector3f> points_;
+  std::vector<int> order_, place_;  // vertex on the card -> as given, and back; -1: not used
   std::vector<Piece> pieces_;
   GLenum usage_;
 };

@@ -34,6 +34,25 @@ void cull_by_closure(const DrawItem& item) {
   }
 }
 
+/// Sides that `cull_by_closure` leaves.
+Sides sides_of(const DrawItem& item) {
+  return item.drawable->closed && !item.cut() ? Sides::front : Sides::both;
+}
+
+Viewpoint eye_of(const PictureView& view) {
+  return {view.view_projection, view.eye.homogeneous(), view.width, view.height};
+}
+
+/// Fills in what opaque faces hide.
+void cover_by_faces(CoverGrid& cover, std::span<const DrawItem> items, float depth_slope = 0,
+                    float depth_units = 0) {
+  for (const auto& item : items)
+    if (item.role() == Role::face && item.opaque() && !item.cut())
+      cover.add(item.drawable->places, item.drawable->part->mesh.triangles, *item.drawable->edges,
+                item.model, depth_slope, depth_units);
+  cover.finish();
+}
+
 }  // namespace
 
 void set_cut(GlProgram& program, const DrawItem& item, const PictureView& view) {
@@ -118,14 +137,20 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
   Eigen::Matrix4f to_clip = Eigen::Matrix4f::Identity();
   to_clip.diagonal().head<3>().setConstant(2);
   to_clip.topRightCorner<3, 1>().setConstant(-1);
+  const Viewpoint light = {to_clip * view.shadow,
+                           (Eigen::Vector4f() << view.lights.key_direction, 0).finished(),
+                           shadow_side, shadow_side};
+  constexpr float slope = 2, units = 4, unit_in_clip_space = 2.f / (1 << 24);
   shadow_map_.bind();
   glClear(GL_DEPTH_BUFFER_BIT);
   glEnable(GL_POLYGON_OFFSET_FILL);
-  glPolygonOffset(2, 4);
+  glPolygonOffset(slope, units);
   depth_.use();
-  depth_.set("view_projection", Eigen::Matrix4f(to_clip * view.shadow));
+  depth_.set("view_projection", light.view_projection);
   // What is seen through lets the light through; what an opaque face encloses casts no shadow that
   // the face does not cast already.
+  cover_from_light_.start(shadow_side, shadow_side, light.view_projection);
+  cover_by_faces(cover_from_light_, items, slope, 2 * units * unit_in_clip_space);
   Eigen::AlignedBox3f enclosed;
   for (const auto& item : items)
     if (item.opaque() && !item.cut() && item.role() == Role::face) enclosed.extend(item.box());
@@ -136,7 +161,8 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
     cull_by_closure(item);
     begin_cut(depth_, item, view);
     depth_.set("model", item.model);
-    item.mesh().draw();
+    item.mesh().draw(
+        visibility_.choose(item.mesh(), item.model, light, sides_of(item), &cover_from_light_));
     end_cut();
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
@@ -207,41 +233,36 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
   begin_cut(program, item, view);
 }
 
-void Passes::shade(const DrawItem& item, const PictureView& view, bool leave_out_hidden) {
+void Passes::shade(const DrawItem& item, const PictureView& view) {
   const auto& drawable = *item.drawable;
-  const bool face = item.role() == Role::face;
-  if (face) {
-    glEnable(GL_CULL_FACE);
-    glCullFace(GL_BACK);
-    begin(drawable.mapped ? surface_ : skin_, item, view);
-    item.mesh().draw();
-    end_cut();
-    if (drawable.closed && !item.cut()) return;
-  }
-  // What is left lies under the face, if there is one: the other parts, and its own inside.
-  const int answers =
-      leave_out_hidden ? culling_.ask(item.mesh(), view.view_projection * item.model) : 0;
-  if (face) {
-    glEnable(GL_CULL_FACE);
-    glCullFace(GL_FRONT);
-  } else {
+  const auto& mesh = item.mesh();
+  const Viewpoint eye = eye_of(view);
+  if (item.role() != Role::face) {
     cull_by_closure(item);
+    begin(surface_, item, view);
+    mesh.draw(visibility_.choose(mesh, item.model, eye, sides_of(item), &cover_));
+    end_cut();
+    return;
   }
-  begin(face ? interior_ : surface_, item, view);
-  if (leave_out_hidden)
-    culling_.draw(item.mesh(), answers);
-  else
-    item.mesh().draw();
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  begin(drawable.mapped ? surface_ : skin_, item, view);
+  mesh.draw(visibility_.choose(mesh, item.model, eye, Sides::front));
+  end_cut();
+  if (drawable.closed && !item.cut()) return;
+  glCullFace(GL_FRONT);
+  begin(interior_, item, view);
+  mesh.draw(visibility_.choose(mesh, item.model, eye, Sides::back, &cover_));
   end_cut();
 }
 
 void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
+  cover_.start(view.width, view.height, view.view_projection);
+  if (view.may_cull) cover_by_faces(cover_, items);
   // The face hides most of the rest: drawn first, it spares the shading of what lies under it.
-  culling_.start();
   for (const bool face : {true, false})
     for (const auto& item : items)
-      if (item.opaque() && (item.role() == Role::face) == face)
-        shade(item, view, view.opaque_face && view.may_cull);
+      if (item.opaque() && (item.role() == Role::face) == face) shade(item, view);
 }
 
 void Passes::depth_only(const DrawItem& item, const PictureView& view) {
@@ -251,7 +272,8 @@ void Passes::depth_only(const DrawItem& item, const PictureView& view) {
   begin_cut(depth_, item, view);
   depth_.set("model", item.model);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  item.mesh().draw();
+  item.mesh().draw(
+      visibility_.choose(item.mesh(), item.model, eye_of(view), sides_of(item), &cover_));
   end_cut();
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
@@ -271,7 +293,7 @@ void Passes::translucent(std::span<const DrawItem> items, const PictureView& vie
     depth_only(item, view);
     glDepthFunc(GL_EQUAL);
     glEnable(GL_BLEND);
-    shade(item, view, false);
+    shade(item, view);
     glDisable(GL_BLEND);
     glDepthFunc(GL_LESS);
   }

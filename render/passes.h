@@ -8,7 +8,7 @@
 #include "render/drawable.h"
 #include "render/framebuffer.h"
 #include "render/lights.h"
-#include "render/occlusion_culling.h"
+#include "render/visibility.h"
 
 namespace condyle {
 
@@ -32,6 +32,7 @@ struct DrawItem {
 struct PictureView {
   Eigen::Matrix4f view, projection, view_projection, shadow;
   Eigen::Vector3f eye;
+  int width, height;  // pixels
   Lights lights;
   float pixels_per_unit;  // of a length across the line of sight at distance 1
   bool shadows = true;
@@ -75,7 +76,7 @@ class Passes {
 
  private:
   void begin(GlProgram& program, const DrawItem& item, const PictureView& view);
-  void shade(const DrawItem& item, const PictureView& view, bool leave_out_hidden);
+  void shade(const DrawItem& item, const PictureView& view);
   void depth_only(const DrawItem& item, const PictureView& view);
 
   GlProgram surface_, skin_, interior_, depth_, background_, marker_;
@@ -83,7 +84,8 @@ class Passes {
   GlTexture skin_table_, skin_detail_, colour_table_;
   ColourMap colour_map_;
   DepthMap shadow_map_;
-  OcclusionCulling culling_;
+  Visibility visibility_;
+  CoverGrid cover_, cover_from_light_;  // by the opaque face
 };
 
 }  // namespace condyle

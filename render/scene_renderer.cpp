@@ -180,6 +180,8 @@ PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettin
                                    std::max({2.0, away - radius, camera.near_mm}),
                                    std::max(away + radius, camera.near_mm + 1));
   v.view_projection = v.projection * v.view;
+  v.width = settings.width;
+  v.height = settings.height;
   v.lights = lights_for(camera);
   auto moving = reached;
   moving.min().z() -= opening_room_mm;

@@ -1,0 +1,164 @@
+#include "render/cover_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace condyle {
+namespace {
+
+constexpr int tile = 4;               // pixels a side
+constexpr float snap = 1.f / 64;      // pixels; cards move corners by less
+constexpr float depth_error = 2e-5f;  // in clip space; of rounding here and on the card
+constexpr float infinite = std::numeric_limits<float>::infinity();
+
+/// Twice the area of a, b and (x, y), positive when they run to the left.
+float area_of(const Eigen::Vector3f& a, const Eigen::Vector3f& b, float x, float y) {
+  return (b.x() - a.x()) * (y - a.y()) - (b.y() - a.y()) * (x - a.x());
+}
+
+/// A triangle in the picture.
+struct Corners {
+  const Eigen::Vector3f &a, &b, &c;
+  float area;  // twice
+  Eigen::Vector2f low, high;
+
+  Corners(const std::vector<Eigen::Vector3f>& at, const Eigen::Vector3i& t)
+      : a(at[t[0]]),
+        b(at[t[1]]),
+        c(at[t[2]]),
+        area(area_of(a, b, c.x(), c.y())),
+        low(a.cwiseMin(b).cwiseMin(c).head<2>()),
+        high(a.cwiseMax(b).cwiseMax(c).head<2>()) {}
+  /// 1 when it goes round the place, -1 when it goes round the other way, else 0.
+  int around(float x, float y) const {
+    const float p = area_of(a, b, x, y), q = area_of(b, c, x, y), r = area_of(c, a, x, y);
+    if (p >= 0 && q >= 0 && r >= 0) return 1;
+    return p <= 0 && q <= 0 && r <= 0 ? -1 : 0;
+  }
+};
+
+}  // namespace
+
+SurfaceEdges::SurfaceEdges(std::span<const Eigen::Vector3i> triangles) {
+  struct Half {
+    int low, high, triangle;
+    bool forward;
+  };
+  std::vector<Half> halves;
+  halves.reserve(3 * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+      halves.push_back({std::min(a, b), std::max(a, b), static_cast<int>(t), a < b});
+    }
+  std::sort(halves.begin(), halves.end(), [](const Half& p, const Half& q) {
+    if (p.low != q.low) return p.low < q.low;
+    if (p.high != q.high) return p.high < q.high;
+    return p.triangle < q.triangle;
+  });
+  for (std::size_t i = 0; i < halves.size();) {
+    std::size_t end = i;
+    while (end < halves.size() && halves[end].low == halves[i].low &&
+           halves[end].high == halves[i].high)
+      ++end;
+    const auto& h = halves[i];
+    if (end - i == 2 && h.forward != halves[i + 1].forward) {
+      edges_.push_back({h.low, h.high, h.triangle, halves[i + 1].triangle});
+      i = end;
+    }
+    for (; i < end; ++i) edges_.push_back({h.low, h.high, halves[i].triangle, -1});
+  }
+}
+
+void CoverGrid::start(int width, int height, const Eigen::Matrix4f& view_projection) {
+  width_ = width;
+  height_ = height;
+  columns_ = (width + tile - 1) / tile;
+  rows_ = (height + tile - 1) / tile;
+  view_projection_ = view_projection;
+  any_ = false;
+  tiles_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_),
+                {infinite, -infinite, -infinite, 0});
+}
+
+CoverGrid::Range CoverGrid::range(const Eigen::Vector2f& low, const Eigen::Vector2f& high) const {
+  const auto at = [](float pixel, int count) {
+    return static_cast<int>(std::clamp(std::floor(pixel / tile), -1.f, static_cast<float>(count)));
+  };
+  return {std::max(at(low.x() - snap, columns_), 0), std::max(at(low.y() - snap, rows_), 0),
+          std::min(at(high.x() + snap, columns_), columns_ - 1),
+          std::min(at(high.y() + snap, rows_), rows_ - 1)};
+}
+
+template <class Visit>
+void CoverGrid::each_tile(const Eigen::Vector2f& low, const Eigen::Vector2f& high,
+                          const Visit& visit) {
+  const Range reach = range(low, high);
+  for (int y = reach.y0; y <= reach.y1; ++y)
+    for (int x = reach.x0; x <= reach.x1; ++x)
+      visit(tiles_[static_cast<std::size_t>(y * columns_ + x)], x, y);
+}
+
+void CoverGrid::add(std::span<const Eigen::Vector3f> positions,
+                    std::span<const Eigen::Vector3i> triangles, const SurfaceEdges& edges,
+                    const Eigen::Matrix4f& model, float depth_slope, float depth_units) {
+  const Eigen::Matrix4f to_clip = view_projection_ * model;
+  const Eigen::Vector2f half(0.5f * static_cast<float>(width_), 0.5f * static_cast<float>(height_));
+  projected_.resize(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Eigen::Vector4f p = to_clip * positions[i].homogeneous();
+    const float inverse = 1 / p.w();
+    projected_[i] << (p.x() * inverse + 1) * half.x(), (p.y() * inverse + 1) * half.y(),
+        p.z() * inverse;
+    if (!(p.w() > 0) || !(p.z() > -p.w())) return;  // it may be cut by the near plane
+  }
+  // The sheet is what turns to the eye, with what is so narrow that rounding may turn it over: such
+  // folds cover a place once more forth than back, and so leave no gap.
+  sheet_.assign(triangles.size(), 0);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Corners t(projected_, triangles[i]);
+    sheet_[i] = t.area > -4 * snap * (t.high - t.low).sum();
+  }
+  for (const auto& edge : edges.all()) {
+    const bool left = sheet_[static_cast<std::size_t>(edge.left)];
+    const bool right = edge.right >= 0 && sheet_[static_cast<std::size_t>(edge.right)];
+    if (left == right) continue;
+    const Eigen::Vector3f &a = projected_[edge.a], &b = projected_[edge.b];
+    const float nearest = std::min(a.z(), b.z());
+    each_tile(a.cwiseMin(b).head<2>(), a.cwiseMax(b).head<2>(),
+              [&](Tile& at, int, int) { at.rim = std::min(at.rim, nearest); });
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (!sheet_[i]) continue;
+    const Corners t(projected_, triangles[i]);
+    const float nearest = std::min({t.a.z(), t.b.z(), t.c.z()});
+    const float farthest = std::max({t.a.z(), t.b.z(), t.c.z()});
+    float moved = depth_units;
+    if (depth_slope > 0) {
+      const Eigen::Vector3f ab = t.b - t.a, ac = t.c - t.a;
+      const float dx = std::abs(ab.z() * ac.y() - ac.z() * ab.y()),
+                  dy = std::abs(ab.x() * ac.z() - ac.x() * ab.z());
+      moved += t.area > 0 ? depth_slope * 1.01f * std::max(dx, dy) / t.area : infinite;
+    }
+    each_tile(t.low, t.high, [&](Tile& at, int x, int y) {
+      if (nearest >= at.rim) return;
+      at.farthest = std::max(at.farthest, farthest);
+      at.covered_to = std::max(at.covered_to, farthest + moved);
+      at.layers +=
+          t.around(tile * (static_cast<float>(x) + 0.5f), tile * (static_cast<float>(y) + 0.5f));
+    });
+  }
+  any_ = true;
+}
+
+void CoverGrid::finish() {
+  // Neighbours in a sheet share corners. So what is nearer than all rims of a tile hangs together
+  // without them, unless a triangle reaches across the nearest rim's depth; and where the middle of
+  // the tile is covered, so is all of it.
+  for (auto& at : tiles_)
+    at.covered_to = at.layers > 0 && at.farthest < at.rim ? at.covered_to + depth_error : infinite;
+}
+
+}  // namespace condyle
