@@ -1,5 +1,6 @@
 #include "sim/tissue/attachment.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/error.h"
@@ -10,6 +11,9 @@ void hold_columns(const CoarseSkin& skin, const Anatomy& anatomy, std::vector<Co
   constexpr double lip_margin_mm = 9;
   constexpr double deepest_mm = 22;
   constexpr double from_bite_mm = 11;  // crowns and the gums' edge
+  // Over the ramus lies the parotid gland, and skin glides on it: the hold begins at its front edge
+  // and is whole in the premolars' region.
+  constexpr double ramus_mm = 30, to_whole_mm = 30;  // in front of the condyles
   for (std::size_t v = 0; v < columns.size(); ++v) {
     Column& c = columns[v];
     const Eigen::Vector3d& p = skin.mesh.vertices[v];
@@ -29,7 +33,12 @@ void hold_columns(const CoarseSkin& skin, const Anatomy& anatomy, std::vector<Co
     // The march must meet the bone's outside, face on.
     if (c.met_normal.dot(c.inward) > -0.35) continue;
     if (c.ground == Ground::cranium && met_above > from_bite_mm) c.hold = Hold::cranium;
-    if (c.ground == Ground::mandible && met_above < -from_bite_mm) c.hold = Hold::mandible;
+    if (c.ground == Ground::mandible && met_above < -from_bite_mm) {
+      const double before_ramus = anatomy.condyles.y() - ramus_mm - met.y();
+      if (before_ramus <= 0) continue;
+      c.hold = Hold::mandible;
+      c.firm = std::min(1.0, before_ramus / to_whole_mm);
+    }
   }
 }
 
@@ -39,8 +48,10 @@ void hold_as_planned(const TissuePlan& plan, const Landmarks& landmarks, const C
     return ground == Ground::mandible ? Hold::mandible : Hold::cranium;
   };
   if (plan.bond == TissueBond::glued)
-    for (auto& c : columns)
+    for (auto& c : columns) {
       if (c.hold == Hold::free && c.ground != Ground::none) c.hold = hold_of(c.ground);
+      c.firm = 1;
+    }
   for (const auto& region : plan.attachments) {
     Eigen::Vector3d centre = region.centre;
     if (!region.landmark.empty()) {
@@ -57,6 +68,7 @@ void hold_as_planned(const TissuePlan& plan, const Landmarks& landmarks, const C
       const Eigen::Vector3d met = skin.mesh.vertices[v] + c.met_depth * c.inward;
       if ((met - centre).norm() > region.radius_mm) continue;
       c.hold = region.attached ? hold_of(c.ground) : Hold::free;
+      c.firm = 1;
       c.cartilage = c.cartilage && region.attached;
     }
   }

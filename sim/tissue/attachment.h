@@ -7,8 +7,9 @@
 
 namespace condyle {
 
-/// Says which columns grow on bone (their `hold`). Free are: the lips' margin, the cheeks between
-/// the jaws (teeth, and bone near the bite), and the skin under the jaw and of the neck.
+/// Says which columns grow on bone (their `hold`), and how firmly. Free are: the lips' margin, the
+/// cheeks between the jaws (teeth, and bone near the bite), the skin over the ramus, under the jaw
+/// and of the neck.
 void hold_columns(const CoarseSkin& skin, const Anatomy& anatomy, std::vector<Column>& columns);
 
 /// The plan's own regions, on top of that: where tissue lies on their bone within them it is

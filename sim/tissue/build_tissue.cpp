@@ -25,7 +25,7 @@ constexpr double neck_stiffness = 0.1;       // N/mm
 constexpr double loose_stiffness = 0.04;     // N/mm
 /// N/mm: the muscles of a lip hold its inner side to its own jaw, so that it does not roll over the
 /// teeth's edges.
-constexpr double lip_stiffness = 0.12;
+constexpr double lip_stiffness = 0.3;
 constexpr double lip_margin_mm = 14;  // from the mouth's line
 
 double smoothstep(double t) {
@@ -36,6 +36,18 @@ double smoothstep(double t) {
 /// How much the rim of a face that ends below the jaw goes with the mandible: fully at it, not at
 /// all from this far on.
 double rim_follows(double to_mandible_mm) { return 1 - smoothstep((to_mandible_mm - 15) / 65); }
+
+/// N/mm of a bone spring.
+double held_stiffness(double firm) {
+  return loose_stiffness * std::pow(bone_stiffness / loose_stiffness, firm);
+}
+
+/// The share of a lip's inner side: with its own jaw but near the corners.
+double lip_share(double share) { return smoothstep(smoothstep(share)); }
+
+/// How much the displayed face evens out the motion of a column: the coarse net of neck and jaw
+/// folds more sharply than skin does; at the mouth it is fine enough.
+double evened(double to_mouth_mm) { return 0.6 * smoothstep((to_mouth_mm - 35) / 25); }
 
 /// Solves a plain opening knot by knot, and keeps a factor at each: the tissue of the
 /// lower face turns with the jaw, and a factor made unturned asks for several times the iterations.
@@ -172,7 +184,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
     if (skin.rim[c]) continue;
     if (columns[c].hold != Hold::free) {
       const double share = columns[c].hold == Hold::mandible ? 1 : 0;
-      anchor(inner, share, bone_stiffness);
+      anchor(inner, share, held_stiffness(columns[c].firm));
       given.push_back(inner);
       given_share.push_back(share);
       if (columns[c].cartilage)
@@ -220,11 +232,16 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
     if (held[inner]) continue;
     const bool neck = columns[c].ground == Ground::none;
     const bool lip = columns[c].to_mouth < lip_margin_mm;
-    anchor(inner, model->node_share[inner],
+    const double share = model->node_share[inner];
+    anchor(inner, lip && !neck ? lip_share(share) : share,
            neck  ? neck_stiffness
            : lip ? lip_stiffness
                  : loose_stiffness);
   }
+
+  // What is held loosely still slides.
+  for (int c = 0; c < model->columns; ++c)
+    if (!skin.rim[c] && columns[c].firm < 0.5) held[node_of(c, sheets - 1, sheets)] = 0;
 
   report(progress, "soft tissue: contact", 0.55);
   model->contact =
@@ -244,6 +261,8 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   report(progress, "soft tissue: displayed face", 0.8);
   model->region = region.shape;
   model->handles = make_handles(skin.mesh.triangles, sheets, model->rest);
+  for (int c = 0; c < model->columns; ++c)
+    model->handle_evened.push_back(skin.rim[c] || skin.border[c] ? 0 : evened(columns[c].to_mouth));
   model->face_rest = face->mesh.vertices;
   model->face_side = region.face_side;
   for (std::size_t v = 0; v < model->face_rest.size(); ++v) {

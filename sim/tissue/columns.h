@@ -25,6 +25,7 @@ struct Column {
   double met_depth = 0;                                  // mm, of what was met
   Eigen::Vector3d met_normal = Eigen::Vector3d::Zero();  // outward, of what was met
   Hold hold = Hold::free;
+  double firm = 1;         // of the hold: 1 grown on, towards 0 more and more loosely
   bool cartilage = false;  // the nose: the whole column holds its shape
   double to_mouth = 1e9;   // mm from the opening between the lips
 };

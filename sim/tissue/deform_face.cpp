@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "engine/core/parallel.h"
+#include "engine/tissue/layered_net.h"
 #include "sim/tissue/model.h"
 
 namespace condyle {
@@ -12,6 +13,37 @@ using Eigen::Vector3f;
 namespace {
 /// The nine entries of a matrix by columns, and a shift.
 using LinearMap = Eigen::Array<float, 12, 1>;
+
+/// The nodes as the displayed face follows them: where a node moves unlike its neighbours by
+/// millimetres, as in a sharp fold of the net, it goes with them.
+Nodes shown_nodes(const TissueModel& model, const Nodes& now) {
+  constexpr int rounds = 4;
+  constexpr double ignored_mm = 1, whole_mm = 4;
+  const auto& ring = model.handles.ring;
+  Nodes shown = now, next = now;
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t c = 0; c < ring.size(); ++c) {
+      if (model.handle_evened[c] <= 0) continue;
+      for (int s = 0; s < model.sheets; ++s) {
+        const int node = node_of(static_cast<int>(c), s, model.sheets);
+        Vector3d away = Vector3d::Zero();  // from its own motion to its neighbours'
+        for (int n : ring[c]) {
+          const int other = node_of(n, s, model.sheets);
+          away += shown[other] - model.rest[other];
+        }
+        away = away / static_cast<double>(ring[c].size()) - (shown[node] - model.rest[node]);
+        const double t = std::clamp((away.norm() - ignored_mm) / (whole_mm - ignored_mm), 0.0, 1.0);
+        next[node] = shown[node] + model.handle_evened[c] * t * t * (3 - 2 * t) * away;
+      }
+    }
+    shown = next;
+  }
+  return shown;
+}
+
+HandleMotion shown_motion(const TissueModel& model, const TissueState& state) {
+  return handle_motion(model.handles, model.rest, shown_nodes(model, state.nodes));
+}
 }  // namespace
 
 CarriedPoint carry_face_point(const TissueModel& model, const Vector3d& p, int side) {
@@ -38,7 +70,7 @@ void deform_face(const TissueModel& model, const TissueState& state,
   if (face.size() != count) face.resize(count);
   for (std::size_t v = 0; v < count; ++v) face[v] = model.face_rest[v].cast<float>();
   if (model.carried.empty()) return;
-  const HandleMotion motion = handle_motion(model.handles, model.rest, state.nodes);
+  const HandleMotion motion = shown_motion(model, state);
   // As `carried`, with each handle's motion as one linear map in single precision, about a place in
   // the face so that none of it is lost: a dense face has to follow within a frame.
   const Vector3d origin = model.rest[model.handles.node.front()];
@@ -73,7 +105,7 @@ Vector3d carried_point(const TissueModel& model, const TissueState& state, const
     if ((model.face_rest[v] - rest).squaredNorm() < (model.face_rest[nearest] - rest).squaredNorm())
       nearest = v;
   const CarriedPoint point = carry_face_point(model, rest, model.face_side[nearest]);
-  const HandleMotion motion = handle_motion(model.handles, model.rest, state.nodes);
+  const HandleMotion motion = shown_motion(model, state);
   return carried(point, model.handles, model.rest, motion, rest);
 }
 

@@ -42,6 +42,7 @@ struct TissueModel : std::enable_shared_from_this<TissueModel> {
   RegionShape region;
   LipSlit slit;
   HandleSet handles;
+  std::vector<double> handle_evened;     // 0 to 1: how much its motion is evened out for display
   std::vector<signed char> handle_side;  // +1 above the lip line, -1 below
   std::vector<int> carried_vertex;       // of the face part
   std::vector<CarriedPoint> carried;
