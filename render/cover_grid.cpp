@@ -84,12 +84,16 @@ void CoverGrid::start(int width, int height, const Eigen::Matrix4f& view_project
 }
 
 CoverGrid::Range CoverGrid::range(const Eigen::Vector2f& low, const Eigen::Vector2f& high) const {
-  const auto at = [](float pixel, int count) {
-    return static_cast<int>(std::clamp(std::floor(pixel / tile), -1.f, static_cast<float>(count)));
+  // Truncation is rounding down here; std::floor is a call on a plain processor.
+  const auto first = [](float pixel) { return static_cast<int>(std::max(pixel, 0.f) / tile); };
+  const auto last = [](float pixel, int count) {
+    return pixel < 0 ? -1 : std::min(static_cast<int>(pixel / tile), count - 1);
   };
-  return {std::max(at(low.x() - snap, columns_), 0), std::max(at(low.y() - snap, rows_), 0),
-          std::min(at(high.x() + snap, columns_), columns_ - 1),
-          std::min(at(high.y() + snap, rows_), rows_ - 1)};
+  // Far outside, numbers may be beyond an int.
+  const Eigen::Vector2f most(static_cast<float>(width_ + tile), static_cast<float>(height_ + tile));
+  return {first(std::min(low.x() - snap, most.x())), first(std::min(low.y() - snap, most.y())),
+          last(std::min(high.x() + snap, most.x()), columns_),
+          last(std::min(high.y() + snap, most.y()), rows_)};
 }
 
 template <class Visit>

@@ -118,17 +118,21 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
                    to_byte(gloss), 0};
     }
     GpuMesh mesh(positions, part.mesh.triangles, moving);
+    mesh.add_coarse(positions, part.mesh.triangles);
     mesh.send_shape(positions, normals);
     mesh.send_colors(colors);
     mesh.send_extras(extras);
     if (part.role == Role::face) mesh.send_rest(positions);
     std::vector<Crease> creases;
     if (part.role == Role::face) creases = find_creases(positions, normals, occlusion[p].together);
-    const bool hides = part.role == Role::face;
+    std::optional<SurfaceEdges> edges, coarse_edges;
+    if (part.role == Role::face) {
+      edges.emplace(mesh.fine().triangles);
+      coarse_edges.emplace(mesh.coarse().triangles);
+    }
     drawables.push_back({&part, material, is_closed_surface(part.mesh.triangles), box,
                          std::move(mesh), std::move(creases), std::move(colors), std::move(extras),
-                         hides ? positions : std::vector<Eigen::Vector3f>(),
-                         hides ? std::optional<SurfaceEdges>(part.mesh.triangles) : std::nullopt});
+                         std::move(edges), std::move(coarse_edges)});
   }
   return drawables;
 }
@@ -193,7 +197,6 @@ const GpuMesh& Drawable::rest_mesh() {
 
 void Drawable::move_face(std::span<const Eigen::Vector3f> positions,
                          std::vector<Eigen::Vector3f>& normals_scratch) {
-  places.assign(positions.begin(), positions.end());
   vertex_normals(positions, part->mesh.triangles, normals_scratch);
   mesh.send_shape(positions, normals_scratch);
   if (creases.empty()) return;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/drawn_box.h"
 #include "render/gl_objects.h"
 #include "render/image.h"
 
@@ -18,9 +19,10 @@ class Framebuffer {
   int samples() const { return samples_; }
   GLuint name() const { return framebuffer_; }
 
-  /// Sends the picture to another framebuffer of the same size (0 is the window's). Averages
-  /// samples.
+  /// Sends the picture, or a part of it, to another framebuffer of the same size (0 is the
+  /// window's). Averages samples.
   void resolve_to(GLuint target) const;
+  void resolve_to(GLuint target, const DrawnBox& box) const;
   /// Pixels, rows from the top. Only without multisampling.
   Image read() const;
 

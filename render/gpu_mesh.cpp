@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "engine/mesh/patches.h"
+#include "engine/mesh/simplify.h"
 
 namespace condyle {
 namespace {
@@ -28,6 +29,9 @@ void bytes(GLuint place, GLuint buffer) {
 }
 
 constexpr int piece_triangles = 64;
+// A shadow's edge is some 3 mm wide, and begins farther off its surface than this.
+constexpr double coarse_error_mm = 0.2;
+constexpr int few_triangles = 4000;
 
 /// What a piece's triangles face. Those without area face nowhere: they are not drawn either.
 DirectionCone cone_of(std::span<const Eigen::Vector3f> positions,
@@ -53,6 +57,28 @@ DirectionCone cone_of(std::span<const Eigen::Vector3f> positions,
   return cone;
 }
 
+GpuMesh::Surface surface_of(std::span<const Eigen::Vector3f> positions,
+                            std::span<const Eigen::Vector3i> triangles) {
+  auto patches = cut_into_patches(positions, triangles, piece_triangles);
+  GpuMesh::Surface surface{std::move(patches.triangles), {}};
+  for (std::size_t i = 0; i + 1 < patches.first.size(); ++i)
+    surface.pieces.push_back({patches.first[i], patches.first[i + 1] - patches.first[i], {}, {}});
+  return surface;
+}
+
+/// Finds the boxes and directions of the pieces.
+void measure(GpuMesh::Surface& surface, std::span<const Eigen::Vector3f> points) {
+  const std::span<const Eigen::Vector3i> all = surface.triangles;
+  for (auto& piece : surface.pieces) {
+    const auto own = all.subspan(static_cast<std::size_t>(piece.first_triangle),
+                                 static_cast<std::size_t>(piece.triangle_count));
+    piece.box.setEmpty();
+    for (const auto& t : own)
+      for (const int v : t) piece.box.extend(points[static_cast<std::size_t>(v)]);
+    piece.normals = cone_of(points, own);
+  }
+}
+
 }  // namespace
 
 template <class T>
@@ -70,15 +96,11 @@ void GpuMesh::send_ordered(GLuint buffer, std::span<const T> values, GLenum usag
 
 GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
                  std::span<const Eigen::Vector3i> triangles, bool moving)
-    : usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
-  auto patches = cut_into_patches(positions, triangles, piece_triangles);
-  triangles_ = std::move(patches.triangles);
-  for (std::size_t i = 0; i + 1 < patches.first.size(); ++i)
-    pieces_.push_back({patches.first[i], patches.first[i + 1] - patches.first[i], {}, {}});
+    : fine_(surface_of(positions, triangles)), usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
   // Vertices in the order of their first use: without a card a few hundred neighbours are kept at a
   // time, and what falls out is computed again.
   place_.assign(positions.size(), -1);
-  for (auto& t : triangles_)
+  for (auto& t : fine_.triangles)
     for (int& v : t) {
       int& place = place_[static_cast<std::size_t>(v)];
       if (place < 0) {
@@ -88,7 +110,7 @@ GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
       v = place;
     }
   glBindVertexArray(array_);
-  send(GL_ELEMENT_ARRAY_BUFFER, indices_, std::span<const Eigen::Vector3i>(triangles_),
+  send(GL_ELEMENT_ARRAY_BUFFER, indices_, std::span<const Eigen::Vector3i>(fine_.triangles),
        GL_STATIC_DRAW);
   floats(0, positions_);
   floats(1, normals_);
@@ -97,20 +119,21 @@ GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
   glBindVertexArray(0);
 }
 
+void GpuMesh::add_coarse(std::span<const Eigen::Vector3f> positions,
+                         std::span<const Eigen::Vector3i> triangles) {
+  const int few = std::max(few_triangles, static_cast<int>(triangles.size()) / 4);
+  if (static_cast<int>(triangles.size()) <= few) return;
+  coarse_ = surface_of(positions, coarser(positions, triangles, few, coarse_error_mm));
+  for (auto& t : coarse_.triangles)
+    for (int& v : t) v = place_[static_cast<std::size_t>(v)];
+}
+
 void GpuMesh::send_shape(std::span<const Eigen::Vector3f> positions,
                          std::span<const Eigen::Vector3f> normals) {
   points_ = ordered(positions);
   send(GL_ARRAY_BUFFER, positions_, std::span<const Eigen::Vector3f>(points_), usage_);
   send_ordered(normals_, normals, usage_);
-  const std::span<const Eigen::Vector3i> all = triangles_;
-  for (auto& piece : pieces_) {
-    const auto own = all.subspan(static_cast<std::size_t>(piece.first_triangle),
-                                 static_cast<std::size_t>(piece.triangle_count));
-    piece.box.setEmpty();
-    for (const auto& t : own)
-      for (const int v : t) piece.box.extend(points_[static_cast<std::size_t>(v)]);
-    piece.normals = cone_of(points_, own);
-  }
+  for (Surface* surface : {&fine_, &coarse_}) measure(*surface, points_);
 }
 
 void GpuMesh::send_colors(std::span<const Bytes> colors) { send_ordered(colors_, colors, usage_); }
@@ -140,7 +163,7 @@ void GpuMesh::send_values(std::span<const float> values) {
 
 void GpuMesh::draw() const {
   glBindVertexArray(array_);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles_.size()), GL_UNSIGNED_INT,
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * fine_.triangles.size()), GL_UNSIGNED_INT,
                  nullptr);
 }
 

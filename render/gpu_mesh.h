@@ -32,10 +32,19 @@ class GpuMesh {
     DirectionCone normals;
   };
 
+  /// Triangles on the mesh's points, and their pieces one after the other.
+  struct Surface {
+    std::vector<Eigen::Vector3i> triangles;
+    std::vector<Piece> pieces;
+  };
+
   /// `moving`: positions and normals will be sent again each frame.
   GpuMesh(std::span<const Eigen::Vector3f> positions, std::span<const Eigen::Vector3i> triangles,
           bool moving);
 
+  /// Makes the coarse surface of what the mesh was made of; before the shape is sent.
+  void add_coarse(std::span<const Eigen::Vector3f> positions,
+                  std::span<const Eigen::Vector3i> triangles);
   /// Positions as many as at the start.
   void send_shape(std::span<const Eigen::Vector3f> positions,
                   std::span<const Eigen::Vector3f> normals);
@@ -50,14 +59,15 @@ class GpuMesh {
   void send_cover(std::span<const Eigen::Vector3i> triangles);
 
   void draw() const;
-  /// Some of its `triangles`.
+  /// Some of its triangles, fine or coarse.
   void draw(std::span<const Eigen::Vector3i> chosen) const;
   void draw_cover() const;
 
   // As on the card:
   const std::vector<Eigen::Vector3f>& points() const { return points_; }
-  const std::vector<Eigen::Vector3i>& triangles() const { return triangles_; }
-  const std::vector<Piece>& pieces() const { return pieces_; }
+  const Surface& fine() const { return fine_; }
+  /// What is good enough to throw a shadow.
+  const Surface& coarse() const { return coarse_.triangles.empty() ? fine_ : coarse_; }
 
  private:
   template <class T>
@@ -68,10 +78,9 @@ class GpuMesh {
   GlVertexArray array_;
   GlBuffer positions_, normals_, colors_, extras_, values_, rest_, indices_, cover_, chosen_;
   GLsizei cover_count_ = 0;
-  std::vector<Eigen::Vector3i> triangles_;  // in the order of the pieces
+  Surface fine_, coarse_;  // coarse: none unless asked for
   std::vector<Eigen::Vector3f> points_;
   std::vector<int> order_, place_;  // vertex on the card -> as given, and back; -1: not used
-  std::vector<Piece> pieces_;
   GLenum usage_;
 };
 

@@ -206,6 +206,14 @@ void OverlayPasses::glass(const GpuMesh& mesh, const Eigen::Vector3f& color, flo
   glDisable(GL_BLEND);
 }
 
+void OverlayPasses::add_lines(PictureBounds& bounds, const PictureView& view) const {
+  for (const auto& [name, kept] : sets_) {
+    for (const auto& end : kept.set.ends)
+      bounds.add(end, kept.set.width_px * static_cast<float>(view.height) / 1080);
+    for (const auto& dot : kept.set.dots) bounds.add(dot, view.radius_px(dot, kept.set.dot_mm));
+  }
+}
+
 void OverlayPasses::lines(const PictureView& view, int width, int height) {
   blend_over();
   glDisable(GL_CULL_FACE);

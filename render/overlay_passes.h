@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "render/drawn_box.h"
 #include "render/overlays.h"
 #include "render/passes.h"
 
@@ -25,6 +26,8 @@ class OverlayPasses {
   /// The part as at rest: behind what is nearer, its nearest layer alone.
   void ghost(const DrawItem& item, const Ghost& look, const PictureView& view);
   void lines(const PictureView& view, int width, int height);
+  /// Where the lines and their dots fall.
+  void add_lines(PictureBounds& bounds, const PictureView& view) const;
   /// In the order of their names, each over those before it.
   void sheets(const PictureView& view);
 

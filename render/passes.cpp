@@ -43,14 +43,11 @@ Viewpoint eye_of(const PictureView& view) {
   return {view.view_projection, view.eye.homogeneous(), view.width, view.height};
 }
 
-/// Fills in what opaque faces hide.
-void cover_by_faces(CoverGrid& cover, std::span<const DrawItem> items, float depth_slope = 0,
-                    float depth_units = 0) {
+/// Calls for each face that hides what lies behind it.
+template <class Add>
+void each_covering(std::span<const DrawItem> items, const Add& add) {
   for (const auto& item : items)
-    if (item.role() == Role::face && item.opaque() && !item.cut())
-      cover.add(item.drawable->places, item.drawable->part->mesh.triangles, *item.drawable->edges,
-                item.model, depth_slope, depth_units);
-  cover.finish();
+    if (item.role() == Role::face && item.opaque() && !item.cut()) add(item);
 }
 
 }  // namespace
@@ -89,7 +86,6 @@ Passes::Passes()
       skin_(build("skin", skin_shaders())),
       interior_(build("interior", interior_shaders())),
       depth_(build("depth", depth_shaders())),
-      background_(build("background", background_shaders())),
       marker_(build("marker", marker_shaders())),
       shadow_map_(shadow_side) {
   const auto table = make_skin_table();
@@ -150,7 +146,12 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
   // What is seen through lets the light through; what an opaque face encloses casts no shadow that
   // the face does not cast already.
   cover_from_light_.start(shadow_side, shadow_side, light.view_projection);
-  cover_by_faces(cover_from_light_, items, slope, 2 * units * unit_in_clip_space);
+  each_covering(items, [&](const DrawItem& item) {
+    const auto& mesh = item.drawable->mesh;
+    cover_from_light_.add(mesh.points(), mesh.coarse().triangles, *item.drawable->coarse_edges,
+                          item.model, slope, 2 * units * unit_in_clip_space);
+  });
+  cover_from_light_.finish();
   Eigen::AlignedBox3f enclosed;
   for (const auto& item : items)
     if (item.opaque() && !item.cut() && item.role() == Role::face) enclosed.extend(item.box());
@@ -161,23 +162,16 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
     cull_by_closure(item);
     begin_cut(depth_, item, view);
     depth_.set("model", item.model);
-    item.mesh().draw(
-        visibility_.choose(item.mesh(), item.model, light, sides_of(item), &cover_from_light_));
+    const auto& mesh = item.drawable->mesh;
+    mesh.draw(visibility_.choose(mesh, mesh.coarse(), item.model, light, sides_of(item),
+                                 &cover_from_light_));
     end_cut();
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
+  glFlush();  // without a card it is drawn beside what follows
 }
 
-void Passes::background() {
-  glDepthFunc(GL_LEQUAL);
-  glDepthMask(GL_FALSE);
-  glDisable(GL_CULL_FACE);
-  background_.use();
-  glBindVertexArray(no_attributes_);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDepthMask(GL_TRUE);
-  glDepthFunc(GL_LESS);
-}
+void Passes::background(const PictureView& view) { background_.draw(view.width, view.height); }
 
 void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& view) {
   const auto& material = item.drawable->material;
@@ -240,25 +234,31 @@ void Passes::shade(const DrawItem& item, const PictureView& view) {
   if (item.role() != Role::face) {
     cull_by_closure(item);
     begin(surface_, item, view);
-    mesh.draw(visibility_.choose(mesh, item.model, eye, sides_of(item), &cover_));
+    mesh.draw(visibility_.choose(mesh, mesh.fine(), item.model, eye, sides_of(item), &cover_));
     end_cut();
     return;
   }
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
   begin(drawable.mapped ? surface_ : skin_, item, view);
-  mesh.draw(visibility_.choose(mesh, item.model, eye, Sides::front));
+  mesh.draw(visibility_.choose(mesh, mesh.fine(), item.model, eye, Sides::front));
   end_cut();
+  glFlush();  // as after the shadow map
   if (drawable.closed && !item.cut()) return;
   glCullFace(GL_FRONT);
   begin(interior_, item, view);
-  mesh.draw(visibility_.choose(mesh, item.model, eye, Sides::back, &cover_));
+  mesh.draw(visibility_.choose(mesh, mesh.fine(), item.model, eye, Sides::back, &cover_));
   end_cut();
 }
 
 void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
   cover_.start(view.width, view.height, view.view_projection);
-  if (view.may_cull) cover_by_faces(cover_, items);
+  if (view.may_cull)
+    each_covering(items, [&](const DrawItem& item) {
+      const auto& mesh = item.drawable->mesh;
+      cover_.add(mesh.points(), mesh.fine().triangles, *item.drawable->edges, item.model);
+    });
+  cover_.finish();
   // The face hides most of the rest: drawn first, it spares the shading of what lies under it.
   for (const bool face : {true, false})
     for (const auto& item : items)
@@ -272,8 +272,8 @@ void Passes::depth_only(const DrawItem& item, const PictureView& view) {
   begin_cut(depth_, item, view);
   depth_.set("model", item.model);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  item.mesh().draw(
-      visibility_.choose(item.mesh(), item.model, eye_of(view), sides_of(item), &cover_));
+  item.mesh().draw(visibility_.choose(item.mesh(), item.mesh().fine(), item.model, eye_of(view),
+                                      sides_of(item), &cover_));
   end_cut();
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
@@ -297,6 +297,11 @@ void Passes::translucent(std::span<const DrawItem> items, const PictureView& vie
     glDisable(GL_BLEND);
     glDepthFunc(GL_LESS);
   }
+}
+
+void Passes::add_contacts(std::span<const Eigen::Vector3f> points, PictureBounds& bounds,
+                          const PictureView& view) {
+  for (const auto& point : points) bounds.add(point, view.radius_px(point, marker_radius_mm));
 }
 
 void Passes::contacts(const GpuPoints& points, const PictureView& view, bool through) {

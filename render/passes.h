@@ -1,11 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <limits>
 #include <span>
 
+#include "render/background.h"
 #include "render/colour_map.h"
 #include "render/drawable.h"
+#include "render/drawn_box.h"
 #include "render/framebuffer.h"
 #include "render/lights.h"
 #include "render/visibility.h"
@@ -47,6 +50,12 @@ struct PictureView {
   bool capped = false;                                          // cut solids get faces
   Eigen::Vector4f cut_ball = {0, 0, 0, -1};                     // centre, radius
   float mapped_up_to = std::numeric_limits<float>::infinity();  // values beyond are not shown
+
+  /// Of a dot at a place: at least so many pixels to each side.
+  float radius_px(const Eigen::Vector3f& place, float radius_mm) const {
+    const float distance = (place - eye).norm() - 2 * radius_mm;
+    return 3 + pixels_per_unit * 1.5f * radius_mm / std::max(distance, 1.f);
+  }
 };
 
 // A plane and a ball that cut nothing.
@@ -67,8 +76,11 @@ class Passes {
   void set_colour_map(const ColourMap& map);
 
   void shadow_map(std::span<const DrawItem> items, const PictureView& view);
-  void background();
+  void background(const PictureView& view);
   void opaque(std::span<const DrawItem> items, const PictureView& view);
+  /// Where they fall.
+  static void add_contacts(std::span<const Eigen::Vector3f> points, PictureBounds& bounds,
+                           const PictureView& view);
   /// `through`: also faintly through what lies in front.
   void contacts(const GpuPoints& points, const PictureView& view, bool through);
   /// Far to near, the face last; of each part only its front layer.
@@ -79,8 +91,8 @@ class Passes {
   void shade(const DrawItem& item, const PictureView& view);
   void depth_only(const DrawItem& item, const PictureView& view);
 
-  GlProgram surface_, skin_, interior_, depth_, background_, marker_;
-  GlVertexArray no_attributes_;
+  GlProgram surface_, skin_, interior_, depth_, marker_;
+  Background background_;
   GlTexture skin_table_, skin_detail_, colour_table_;
   ColourMap colour_map_;
   DepthMap shadow_map_;

@@ -8,10 +8,9 @@
 #include <optional>
 
 #include "render/drawable.h"
-#include "render/framebuffer.h"
 #include "render/overlay_passes.h"
 #include "render/passes.h"
-#include "render/smoothing.h"
+#include "render/picture_target.h"
 #include "sim/frame/body_poses.h"
 
 namespace condyle {
@@ -61,24 +60,8 @@ struct SceneRenderer::State {
   Eigen::AlignedBox3f reached;  // `box` and the free parts where they are
   bool face_moved = false;
   std::vector<Eigen::Vector3f> normals;  // kept for its memory
-  // Kept from picture to picture of one size:
-  std::optional<Framebuffer> sampled, resolved;
-  struct Smoothed {
-    EdgeSmoothing smoothing;
-    GlTexture copy;  // what is smoothed
-    Framebuffer target;
-    Smoothed(int width, int height) : target(width, height, 1) {
-      glBindTexture(GL_TEXTURE_2D, copy);
-      glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                   nullptr);
-      glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-      glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-      glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-      glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    }
-  };
-  std::optional<Smoothed> smoothed;
-  int samples_asked = 0;
+  std::vector<Eigen::Vector3f> contact_points;
+  PictureTarget target;
   float map_low = 0, map_high = 1;  // values are kept within
 
   explicit State(std::span<const Part> all)
@@ -89,7 +72,6 @@ struct SceneRenderer::State {
   }
 
   void place(const BodyPoses& at);
-  void smooth();
 
   std::vector<DrawItem> items(const PictureSettings& settings);
   PictureView view(const Camera& camera, const PictureSettings& settings,
@@ -125,17 +107,6 @@ void SceneRenderer::State::place(const BodyPoses& at) {
     if (body_of(parts[i].role) != Body::free || drawables[i].box.isEmpty()) continue;
     reached.extend(DrawItem{&drawables[i], 1, matrix_of(poses[i])}.box());
   }
-}
-
-/// From `resolved` to `smoothed`.
-void SceneRenderer::State::smooth() {
-  const int width = resolved->width(), height = resolved->height();
-  if (!smoothed) smoothed.emplace(width, height);
-  resolved->bind();
-  glBindTexture(GL_TEXTURE_2D, smoothed->copy);
-  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, width, height);
-  smoothed->target.bind();
-  smoothed->smoothing.draw(smoothed->copy, width, height);
 }
 
 /// How far the jaw is from the place where its shade was baked: 1 there, 0 far off, and where
@@ -235,10 +206,11 @@ void SceneRenderer::update(const FrameState& frame) {
     s.face_moved = frame.face.size() == rest.size();
     break;
   }
-  std::vector<Eigen::Vector3f> points;
+  s.contact_points.clear();
   for (const auto& pair : frame.contacts.pairs)
-    for (const auto& contact : pair.contacts) points.push_back(contact.point.cast<float>());
-  s.contacts.send(points);
+    for (const auto& contact : pair.contacts)
+      s.contact_points.push_back(contact.point.cast<float>());
+  s.contacts.send(s.contact_points);
 }
 
 void SceneRenderer::set_colour_map(const ColourMap& map) {
@@ -277,7 +249,29 @@ void SceneRenderer::set_sheet(const std::string& name, const GlassSheet& sheet) 
   state_->overlays.set_sheet(name, sheet);
 }
 
-void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings) {
+DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& settings) const {
+  auto& s = *state_;
+  const auto items = s.items(settings);
+  const auto view = s.view(camera, settings, items);
+  PictureBounds bounds(settings.width, settings.height, view.view_projection);
+  const auto add = [&](const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& model) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto at = static_cast<Eigen::AlignedBox3f::CornerType>(corner);
+      bounds.add((model * box.corner(at).homogeneous()).head<3>(), 0);
+    }
+  };
+  for (const auto& item : items) {
+    for (const auto& piece : item.mesh().fine().pieces) add(piece.box, item.model);
+    if (settings.ghost && s.leaves_ghost(item, *settings.ghost))
+      add(item.drawable->box, Eigen::Matrix4f::Identity());
+  }
+  if (settings.contacts) Passes::add_contacts(s.contact_points, bounds, view);
+  s.overlays.add_lines(bounds, view);
+  return bounds.box(drawn_air);
+}
+
+void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
+                         const std::optional<DrawnBox>& within) {
   auto& s = *state_;
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
@@ -304,19 +298,18 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings) 
   if (settings.shadows) s.passes.shadow_map(items, view);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
   glViewport(0, 0, settings.width, settings.height);
-  if (settings.from_x > 0 || settings.to_x < 1) {
-    const auto column = [&](double x) {
-      return static_cast<GLint>(std::lround(std::clamp(x, 0.0, 1.0) * settings.width));
-    };
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(column(settings.from_x), 0,
-              std::max(0, column(settings.to_x) - column(settings.from_x)), settings.height);
-  }
+  const auto column = [&](double x) {
+    return static_cast<int>(std::lround(std::clamp(x, 0.0, 1.0) * settings.width));
+  };
+  DrawnBox box = {column(settings.from_x), 0, column(settings.to_x), settings.height};
+  if (within) box = box.both(*within);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(box.x0, box.y0, box.width(), box.height());
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   s.passes.opaque(items, view);
   s.overlays.caps(items, view);
-  if (!settings.transparent_background) s.passes.background();
+  if (!settings.transparent_background) s.passes.background(view);
   if (settings.contacts) s.passes.contacts(s.contacts, view, !view.opaque_face);
   for (const auto& item : items)
     if (settings.ghost && item.role() != Role::face && s.leaves_ghost(item, *settings.ghost))
@@ -348,33 +341,19 @@ Image SceneRenderer::picture(const Camera& camera, const PictureSettings& settin
   auto drawn = settings;
   drawn.width *= finer;
   drawn.height *= finer;
-  if (!s.resolved || s.resolved->width() != drawn.width || s.resolved->height() != drawn.height) {
-    s.sampled.reset();
-    s.smoothed.reset();
-    s.resolved.reset();
-    s.resolved.emplace(drawn.width, drawn.height, 1);
-  }
-  if (drawn.samples <= 1) {
-    s.resolved->bind();
-    draw(camera, drawn);
-  } else {
-    if (!s.sampled || s.samples_asked != drawn.samples) {
-      s.sampled.reset();
-      s.sampled.emplace(drawn.width, drawn.height, drawn.samples);
-      s.samples_asked = drawn.samples;
-    }
-    s.sampled->bind();
-    draw(camera, drawn);
-    s.sampled->resolve_to(s.resolved->name());
-  }
-  const bool smooths = drawn.smooth_edges && drawn.samples <= 1;
-  if (smooths) s.smooth();
-  Image image = (smooths ? s.smoothed->target : *s.resolved).read();
+  drawn.from_x = 0;
+  drawn.to_x = 1;
+  s.target.fit(drawn.width, drawn.height, drawn.samples, drawn.smooth_edges && drawn.samples <= 1);
+  const DrawnBox box = drawn_box(camera, drawn);
+  s.target.drawn().bind();
+  draw(camera, drawn, box);
+  Image image{drawn.width, drawn.height, {}};
+  s.target.read(box, settings.transparent_background, true, image.rgba);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
   if (finer > 1) image = averaged(image, finer);
+  if (!settings.transparent_background) return image;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-    auto& alpha = image.rgba[i + 3];
-    if (!settings.transparent_background) alpha = 255;
+    const auto alpha = image.rgba[i + 3];
     if (alpha == 0 || alpha == 255) continue;
     // Drawn multiplied by alpha; an image has straight alpha.
     for (std::size_t k = i; k < i + 3; ++k)

@@ -10,6 +10,7 @@
 
 #include "render/camera.h"
 #include "render/colour_map.h"
+#include "render/drawn_box.h"
 #include "render/image.h"
 #include "render/overlays.h"
 #include "sim/frame/frame_state.h"
@@ -74,8 +75,13 @@ class SceneRenderer {
   /// The same for a see-through surface.
   void set_sheet(const std::string& name, const GlassSheet& sheet);
 
-  /// Draws into the framebuffer that is bound, over its whole viewport of width x height.
-  void draw(const Camera& camera, const PictureSettings& settings);
+  /// Where a picture shows anything but the background, with `drawn_air` around it.
+  DrawnBox drawn_box(const Camera& camera, const PictureSettings& settings) const;
+
+  /// Draws into the framebuffer that is bound, of width x height; within the box only, if one is
+  /// given.
+  void draw(const Camera& camera, const PictureSettings& settings,
+            const std::optional<DrawnBox>& within = {});
 
   /// Draws off-screen and reads the picture back.
   Image picture(const Camera& camera, const PictureSettings& settings);

@@ -27,18 +27,17 @@ void main() {}
 // One triangle over the whole picture, no buffers; as far as can be, so that only what is empty
 // is shaded.
 const char* const background_vertex = R"(#version 330 core
-out vec2 place;
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  place = 0.5 + 0.5 * corner;
   gl_Position = vec4(corner, 1.0, 1.0);
 }
 )";
 
 const char* const background_fragment = R"(#version 330 core
-in vec2 place;
+uniform vec2 pixel;  // 1 / size of the picture
 out vec4 result;
 void main() {
+  vec2 place = gl_FragCoord.xy * pixel;  // of the whole pixel, however it is sampled
   // A pool of light behind the head; half a grey level of ordered noise hides the bands.
   float pool = exp(-2.2 * dot(place - vec2(0.5, 0.48), place - vec2(0.5, 0.48)));
   vec3 c = mix(vec3(0.085, 0.090, 0.100), vec3(0.295, 0.305, 0.325), pool * (0.55 + 0.45 * place.y));

@@ -52,11 +52,13 @@ struct EdgeSmoothing::State {
 EdgeSmoothing::EdgeSmoothing() : state_(std::make_unique<State>()) {}
 EdgeSmoothing::~EdgeSmoothing() = default;
 
-void EdgeSmoothing::draw(unsigned texture, int width, int height) {
+void EdgeSmoothing::draw(unsigned texture, int width, int height, const DrawnBox& box) {
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
   glViewport(0, 0, width, height);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(box.x0, box.y0, box.width(), box.height());
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, texture);
   state_->program.use();
@@ -65,6 +67,7 @@ void EdgeSmoothing::draw(unsigned texture, int width, int height) {
                                                1.0f / static_cast<float>(height)));
   glBindVertexArray(state_->nothing);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_SCISSOR_TEST);
   glBindVertexArray(0);
   glBindTexture(GL_TEXTURE_2D, 0);
 }

@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include "render/drawn_box.h"
+
 namespace condyle {
 
 /// Smooths the stairs at edges of a finished picture (FXAA): a tenth of the cost of multisampling
@@ -13,8 +15,9 @@ class EdgeSmoothing {
   EdgeSmoothing(const EdgeSmoothing&) = delete;
   EdgeSmoothing& operator=(const EdgeSmoothing&) = delete;
 
-  /// Draws the texture, smoothed, over the framebuffer that is bound, both width x height.
-  void draw(unsigned texture, int width, int height);
+  /// Draws the texture, smoothed, into the box of the framebuffer that is bound, both width x
+  /// height.
+  void draw(unsigned texture, int width, int height, const DrawnBox& box);
 
  private:
   struct State;

@@ -72,6 +72,7 @@ bool unseen(const Eigen::Vector4f& a, const Eigen::Vector4f& b, const Eigen::Vec
 }  // namespace
 
 const std::vector<Eigen::Vector3i>& Visibility::choose(const GpuMesh& mesh,
+                                                       const GpuMesh::Surface& surface,
                                                        const Eigen::Matrix4f& model,
                                                        const Viewpoint& from, Sides sides,
                                                        const CoverGrid* cover) {
@@ -84,11 +85,11 @@ const std::vector<Eigen::Vector3i>& Visibility::choose(const GpuMesh& mesh,
   chosen_.clear();
   if (cover || sides != Sides::both)
     project(mesh.points(), to_clip, from.width, from.height, projected_);
-  for (const auto& piece : mesh.pieces()) {
+  for (const auto& piece : surface.pieces) {
     if (frustum.misses(piece.box)) continue;
     if (sides != Sides::both && all_turned(piece, eye, sides == Sides::front ? -1.f : 1.f))
       continue;
-    const auto first = mesh.triangles().begin() + piece.first_triangle;
+    const auto first = surface.triangles.begin() + piece.first_triangle;
     for (auto t = first; t != first + piece.triangle_count; ++t)
       if ((!cover && sides == Sides::both) ||
           !unseen(projected_[(*t)[0]], projected_[(*t)[1]], projected_[(*t)[2]], sides, cover))

@@ -22,11 +22,11 @@ enum class Sides { both, front, back };
 /// lie behind what covers. What it leaves out changes no pixel.
 class Visibility {
  public:
-  /// model: rigid. cover: null or empty covers nothing.
-  /// gives: triangles of the mesh in their order, valid until the next call.
-  const std::vector<Eigen::Vector3i>& choose(const GpuMesh& mesh, const Eigen::Matrix4f& model,
-                                             const Viewpoint& from, Sides sides,
-                                             const CoverGrid* cover = nullptr);
+  /// surface: of the mesh. model: rigid. cover: null or empty covers nothing.
+  /// gives: triangles of the surface in their order, valid until the next call.
+  const std::vector<Eigen::Vector3i>& choose(const GpuMesh& mesh, const GpuMesh::Surface& surface,
+                                             const Eigen::Matrix4f& model, const Viewpoint& from,
+                                             Sides sides, const CoverGrid* cover = nullptr);
 
  private:
   std::vector<Eigen::Vector4f> projected_;  // pixels, depth and 1; 0 before the near plane

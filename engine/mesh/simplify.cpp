@@ -78,4 +78,26 @@ TriMesh simplify(const TriMesh& mesh, int target_triangles) {
   return mesh;
 }
 
+std::vector<Eigen::Vector3i> coarser(std::span<const Eigen::Vector3f> positions,
+                                     std::span<const Eigen::Vector3i> triangles,
+                                     int target_triangles, double error_mm) {
+  std::vector<Eigen::Vector3i> result(triangles.begin(), triangles.end());
+  if (static_cast<int>(triangles.size()) <= target_triangles) return result;
+  std::vector<unsigned int> indices, kept(3 * triangles.size());
+  indices.reserve(kept.size());
+  for (const auto& t : triangles)
+    for (const int v : t) indices.push_back(static_cast<unsigned int>(v));
+  const float* at = positions[0].data();
+  constexpr std::size_t stride = sizeof(Eigen::Vector3f);
+  const float extent = meshopt_simplifyScale(at, positions.size(), stride);
+  kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), at, positions.size(),
+                               stride, 3 * static_cast<std::size_t>(std::max(target_triangles, 1)),
+                               static_cast<float>(error_mm) / std::max(extent, 1e-6f), 0, nullptr));
+  result.clear();
+  for (std::size_t i = 0; i + 2 < kept.size(); i += 3)
+    result.emplace_back(static_cast<int>(kept[i]), static_cast<int>(kept[i + 1]),
+                        static_cast<int>(kept[i + 2]));
+  return result;
+}
+
 }  // namespace condyle

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
 #include "engine/mesh/tri_mesh.h"
 
 namespace condyle {
@@ -8,5 +12,11 @@ namespace condyle {
 /// mesh itself when it is small enough. The mesh must be welded. A closed manifold stays closed and
 /// manifold: where the edge collapses would break it, the result keeps more triangles.
 TriMesh simplify(const TriMesh& mesh, int target_triangles);
+
+/// Coarser triangles on the same vertices, down to about `target_triangles` but nowhere farther off
+/// than about `error_mm`; the given ones when there are few enough. Rims stay.
+std::vector<Eigen::Vector3i> coarser(std::span<const Eigen::Vector3f> positions,
+                                     std::span<const Eigen::Vector3i> triangles,
+                                     int target_triangles, double error_mm);
 
 }  // namespace condyle

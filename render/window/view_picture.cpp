@@ -4,8 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "render/framebuffer.h"
-#include "render/smoothing.h"
+#include "render/picture_target.h"
 
 namespace condyle {
 namespace {
@@ -13,48 +12,10 @@ namespace {
 // Of the best quality, drawn without a break: about a tenth of a second without a GPU.
 constexpr double pixels_at_once = 1.2e6;
 
-/// What is smoothed: a picture as a texture.
-struct RawPicture {
-  GlTexture texture;
-  GlFramebuffer framebuffer;
-  int width = 0, height = 0;
-
-  void fit(int w, int h) {
-    if (width == w && height == h) return;
-    glBindTexture(GL_TEXTURE_2D, texture);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    glBindTexture(GL_TEXTURE_2D, 0);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
-    width = w;
-    height = h;
-  }
-};
-
 }  // namespace
 
 struct ViewPicture::State {
-  std::optional<Framebuffer> drawn, finished;
-  int samples_wanted = 0;
-  RawPicture raw;  // only while there is no multisampling
-  EdgeSmoothing smoothing;
-
-  void fit(int w, int h, int samples) {
-    if (!drawn || drawn->width() != w || drawn->height() != h || samples_wanted != samples) {
-      drawn.reset();  // the old memory first
-      drawn.emplace(w, h, samples);
-      samples_wanted = samples;
-    }
-    if (!finished || finished->width() != w || finished->height() != h) {
-      finished.reset();
-      finished.emplace(w, h, 1);
-    }
-    if (samples <= 1) raw.fit(w, h);
-  }
+  PictureTarget target;
 };
 
 ViewPicture::ViewPicture() : state_(std::make_unique<State>()) {}
@@ -72,16 +33,22 @@ std::optional<DrawnPicture> ViewPicture::draw(SceneRenderer& renderer, const Pic
   settings.height = side(settings.height);
   settings.samples = quality.samples;
   settings.shadows = settings.shadows && quality.shadows;
-  state_->fit(settings.width, settings.height, quality.samples);
+  auto& target = state_->target;
+  target.fit(settings.width, settings.height, quality.samples, quality.samples <= 1);
+  DrawnBox box = renderer.drawn_box(order.camera, settings);
   const auto draw_part = [&](double from_x, double to_x) {
     settings.from_x = from_x;
     settings.to_x = to_x;
-    state_->drawn->bind();
-    renderer.draw(order.camera, settings);
+    target.drawn().bind();
+    renderer.draw(order.camera, settings, box);
     glFinish();
   };
   if (order.beside && order.frame) {
+    // Each is drawn where either shows something.
+    renderer.update(*order.frame);
+    box = renderer.drawn_box(order.camera, settings);
     renderer.update(*order.beside);
+    box = box.around(renderer.drawn_box(order.camera, settings));
     draw_part(0, order.wipe_at);
     renderer.update(*order.frame);
     draw_part(order.wipe_at, 1);
@@ -95,25 +62,13 @@ std::optional<DrawnPicture> ViewPicture::draw(SceneRenderer& renderer, const Pic
       draw_part(static_cast<double>(i) / columns, static_cast<double>(i + 1) / columns);
     }
   }
-  if (quality.samples > 1) {
-    state_->drawn->resolve_to(state_->finished->name());
-  } else {
-    state_->drawn->resolve_to(state_->raw.framebuffer);
-    state_->finished->bind();
-    state_->smoothing.draw(state_->raw.texture, settings.width, settings.height);
-  }
   DrawnPicture picture{.width = settings.width,
                        .height = settings.height,
                        .parts = order.parts,
                        .quality = quality,
-                       .samples = std::max(1, state_->drawn->samples()),
+                       .samples = std::max(1, target.drawn().samples()),
                        .moving = order.moving};
-  picture.rgba.resize(std::size_t{4} * static_cast<std::size_t>(settings.width) *
-                      static_cast<std::size_t>(settings.height));
-  state_->finished->bind();
-  glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glReadPixels(0, 0, settings.width, settings.height, GL_RGBA, GL_UNSIGNED_BYTE,
-               picture.rgba.data());
+  target.read(box, settings.transparent_background, false, picture.rgba);
   picture.ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return picture;

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "render/background.h"
+#include "render/drawn_box.h"
+#include "render/framebuffer.h"
+#include "render/smoothing.h"
+
+namespace condyle {
+
+/// Pixels of background to be drawn around everything else, for smoothing to look at.
+inline constexpr int drawn_air = 8;
+
+/// Where a picture is drawn, made smooth and read back. Keeps what pictures of one size share, and
+/// works only where something is drawn: the rest is known.
+class PictureTarget {
+ public:
+  /// smooth: FXAA, without multisampling.
+  /// throws: MachineError when the driver cannot make a picture of this size.
+  void fit(int width, int height, int samples, bool smooth);
+
+  /// To be drawn into.
+  const Framebuffer& drawn() const { return *drawn_; }
+
+  /// The finished picture, RGBA. drawn: what was drawn into, `drawn_air` wider than all but the
+  /// background; around it is the background, or nothing when that is `transparent`. Opaque unless
+  /// `transparent`.
+  void read(const DrawnBox& drawn, bool transparent, bool from_the_top,
+            std::vector<std::uint8_t>& rgba);
+
+ private:
+  /// A texture that can be drawn into.
+  struct Canvas {
+    Canvas(int width, int height);
+    GlTexture texture;
+    GlFramebuffer framebuffer;
+  };
+
+  int samples_asked_ = 0;
+  std::optional<Framebuffer> drawn_, finished_;
+  std::optional<Canvas> raw_;  // what is smoothed
+  std::optional<EdgeSmoothing> smoothing_;
+  std::optional<Background> background_;
+  std::vector<std::uint8_t> read_;  // kept for its memory
+};
+
+}  // namespace condyle

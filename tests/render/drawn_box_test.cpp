@@ -1,0 +1,112 @@
+#include <algorithm>
+
+#include "render/background.h"
+#include "render/framebuffer.h"
+#include "render/smoothing.h"
+#include "tests/render/scene_fixture.h"
+
+namespace condyle {
+namespace {
+
+using DrawnBoxes = WithContext;
+
+std::vector<Part> two_balls() {
+  return {make_part("mandible", Role::mandible, ball({20, 0, -10}, 12)),
+          make_part("skull", Role::skull, ball({-5, 10, 5}, 15))};
+}
+
+/// The whole picture drawn, resolved and made smooth, with nothing known before.
+Image whole(SceneRenderer& renderer, const Camera& camera, const PictureSettings& settings) {
+  const int w = settings.width, h = settings.height;
+  const Framebuffer drawn(w, h, settings.samples), resolved(w, h, 1);
+  drawn.bind();
+  renderer.draw(camera, settings);
+  drawn.resolve_to(resolved.name());
+  if (!settings.smooth_edges) return resolved.read();
+  const Image plain = resolved.read();
+  GlTexture texture;
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  resolved.bind();
+  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, w, h);
+  const Framebuffer target(w, h, 1);
+  target.bind();
+  EdgeSmoothing().draw(texture, w, h, {0, 0, w, h});
+  return target.read();
+}
+
+void expect_whole(SceneRenderer& renderer, const Camera& camera, PictureSettings settings,
+                  bool smaller) {
+  settings.width = 300;
+  settings.height = 220;
+  const DrawnBox box = renderer.drawn_box(camera, settings);
+  EXPECT_EQ(box.width() * box.height() < 300 * 220 / 2, smaller);
+  for (const int samples : {1, 4})
+    for (const bool smooth : {false, true}) {
+      if (samples > 1 && smooth) continue;
+      settings.samples = samples;
+      settings.smooth_edges = smooth;
+      Image expected = whole(renderer, camera, settings);
+      for (std::size_t i = 3; i < expected.rgba.size(); i += 4) expected.rgba[i] = 255;
+      EXPECT_EQ(renderer.picture(camera, settings).rgba, expected.rgba)
+          << samples << " samples, smooth " << smooth;
+    }
+}
+
+TEST_F(DrawnBoxes, WorkOnlyWhereSomethingIsDrawnChangesNoPixel) {
+  const auto parts = two_balls();
+  SceneRenderer renderer(parts);
+  expect_whole(renderer, front_camera(220), {}, true);
+  expect_whole(renderer, front_camera(40), {}, false);  // beyond the picture's edges
+}
+
+TEST_F(DrawnBoxes, HoldLinesDotsAndContacts) {
+  const auto parts = two_balls();
+  SceneRenderer renderer(parts);
+  LineSet lines;
+  lines.ends = {{-50, 0, 40}, {-30, 0, 45}};
+  lines.dots = {{40, 0, 30}};
+  lines.width_px = 14;
+  lines.dot_mm = 3;
+  renderer.set_lines("path", lines);
+  FrameState frame;
+  frame.contacts.pairs.emplace_back();
+  frame.contacts.pairs.back().contacts.emplace_back();
+  frame.contacts.pairs.back().contacts.back().point = {-10, 0, -40};
+  renderer.update(frame);
+  expect_whole(renderer, front_camera(260), {}, true);
+}
+
+TEST_F(DrawnBoxes, HoldGhostsAndWireframes) {
+  const auto parts = two_balls();
+  SceneRenderer renderer(parts);
+  FrameState frame;
+  frame.X_CM.t = {-60, 0, 30};
+  renderer.update(frame);
+  PictureSettings settings;
+  settings.ghost.emplace();
+  settings.wireframe = {"*"};
+  expect_whole(renderer, front_camera(300), settings, true);
+}
+
+TEST_F(DrawnBoxes, AreEmptyWithNothingToDraw) {
+  const auto parts = two_balls();
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.part_opacity = {{"mandible", 0}, {"skull", 0}};
+  settings.width = 64;
+  settings.height = 48;
+  EXPECT_TRUE(renderer.drawn_box(front_camera(), settings).empty());
+  const Image image = renderer.picture(front_camera(), settings);
+  const auto background = Background().picture(64, 48);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x)
+      EXPECT_EQ(pixel(image, x, y).g, background[4 * ((47 - y) * 64 + x) + 1]);
+}
+
+}  // namespace
+}  // namespace condyle
