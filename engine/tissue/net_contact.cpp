@@ -17,8 +17,12 @@ constexpr double spacing_mm = 0.5;
 constexpr double deepest_mm = 12;  // the exact search looks no farther
 /// A point of the net is sought this deep below another part of it,
 constexpr double deepest_of_surface_mm = 7;
-/// and this far beyond its rim: there the surface goes on level.
+/// and this far beyond its rim.
 constexpr double beside_mm = 6;
+/// There the surface goes on, bent away with this radius, and straight from this cosine on. Were it
+/// level, a point far beside the rim would be thrown about by the least turn of the surface.
+constexpr double round_mm = 8;
+constexpr double least_cosine = 0.5;
 /// Nearer than this the way to the nearest point says little about the surface's direction.
 constexpr double close_mm = 0.02;
 
@@ -40,6 +44,37 @@ Touch make_touch(int index, const NetPoint& point, double distance, const Vector
   touch.row.count = point.count;
   return touch;
 }
+
+/// Which corners and edges of a surface lie on its rim.
+class Rim {
+ public:
+  explicit Rim(const TriMesh& surface) : corner_(surface.vertices.size(), 0) {
+    for (const auto& t : surface.triangles)
+      for (int k = 0; k < 3; ++k) edges_.push_back(edge(t[k], t[(k + 1) % 3]));
+    std::sort(edges_.begin(), edges_.end());
+    std::vector<std::array<int, 2>> once;
+    for (std::size_t i = 0, next = 0; i < edges_.size(); i = next) {
+      while (next < edges_.size() && edges_[next] == edges_[i]) ++next;
+      if (next - i > 1) continue;
+      once.push_back(edges_[i]);
+      for (int end : edges_[i]) corner_[static_cast<std::size_t>(end)] = 1;
+    }
+    edges_ = std::move(once);
+  }
+  bool holds(const Eigen::Vector3i& corners, const Vector3d& barycentric) const {
+    std::array<int, 3> on{};
+    int count = 0;
+    for (int k = 0; k < 3; ++k)
+      if (barycentric[k] > 0) on[static_cast<std::size_t>(count++)] = corners[k];
+    if (count == 1) return corner_[static_cast<std::size_t>(on[0])] != 0;
+    return count == 2 && std::binary_search(edges_.begin(), edges_.end(), edge(on[0], on[1]));
+  }
+
+ private:
+  static std::array<int, 2> edge(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+  std::vector<std::array<int, 2>> edges_;
+  std::vector<char> corner_;
+};
 
 }  // namespace
 
@@ -75,13 +110,22 @@ bool NetObstacle::near(const Vector3d& p, double reach, Near& near) const {
   return true;
 }
 
+Vector3d NetObstacle::way_out(const Vector3d& p) const {
+  const SurfacePoint found = surface_.signed_nearest(p, deepest_mm);
+  return found.triangle < 0 || found.distance >= 0 ? Vector3d(Vector3d::Zero())
+                                                   : Vector3d(found.point - p);
+}
+
 void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                     const NetObstacle& obstacle, const Pose& X_WO, const Nodes& x,
-                    const TouchSettings& settings, std::vector<Touch>& touches) {
+                    const TouchSettings& settings, std::vector<Touch>& touches,
+                    const Nodes& shift) {
   const Pose X_OW = X_WO.inverse();
   NetObstacle::Near near;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!obstacle.near(X_OW * points[i].at(x), settings.reach_mm, near)) continue;
+    Vector3d p = X_OW * points[i].at(x);
+    if (!shift.empty()) p += shift[i];
+    if (!obstacle.near(p, settings.reach_mm, near)) continue;
     touches.push_back(make_touch(static_cast<int>(i), points[i], near.distance,
                                  X_WO.R * near.normal, allowance[i], settings.stiffness));
     Touch& touch = touches.back();
@@ -116,6 +160,7 @@ void touch_surface(const std::vector<NetPoint>& points, const std::vector<double
     surface.triangles.emplace_back(vertex_of(t[0]), vertex_of(t[1]), vertex_of(t[2]));
   const auto normals = vertex_normals(surface);
   const TriangleTree tree(surface);
+  const Rim rim(surface);
   for (std::size_t i : candidates) {
     const Vector3d p = points[i].at(x);
     const SurfacePoint found = tree.nearest(p, std::max(settings.reach_mm, deepest_of_surface_mm));
@@ -124,9 +169,18 @@ void touch_surface(const std::vector<NetPoint>& points, const std::vector<double
     Vector3d normal = Vector3d::Zero();
     for (int k = 0; k < 3; ++k) normal += found.barycentric[k] * normals[corners[k]];
     normal.normalize();
-    const double distance = normal.dot(p - found.point);
-    const double beside = (p - found.point - distance * normal).norm();
+    double distance = normal.dot(p - found.point);
+    const Vector3d beyond = p - found.point - distance * normal;
+    const double beside = beyond.norm();
     if (distance > settings.reach_mm || beside > beside_mm) continue;
+    if (beside > 0 && rim.holds(corners, found.barycentric)) {
+      const Vector3d middle = found.point - round_mm * normal;
+      const double far = std::hypot(distance + round_mm, beside);
+      const double cosine = std::max((distance + round_mm) / far, least_cosine);
+      normal = cosine * normal + std::sqrt(1 - cosine * cosine) / beside * beyond;
+      distance = normal.dot(p - middle) - round_mm;
+      if (distance > settings.reach_mm) continue;
+    }
     touches.push_back(make_touch(static_cast<int>(i), points[i], distance, normal, allowance[i],
                                  settings.stiffness));
     Touch& touch = touches.back();
@@ -165,8 +219,18 @@ double plane_error(const std::vector<Touch>& used, const std::vector<Touch>& now
   return worst;
 }
 
+namespace {
+
+/// Turns a touch's plane by a share toward `normal`, about the point's gap at x.
+void lean(const Vector3d& normal, double share, Touch& touch, const Nodes& x) {
+  touch.row.normal = ((1 - share) * touch.row.normal + share * normal).normalized();
+  touch.row.offset = touch.row.along(x) - touch.gap;
+}
+
+}  // namespace
+
 std::vector<Touch> carried_on(const std::vector<Touch>& used, std::vector<Touch> now,
-                              const Nodes& x) {
+                              const Nodes& x, double share) {
   constexpr double same_face = 0.9;  // cosine between the planes
   constexpr double stale_mm = 0.1;   // a plane serves no longer when its point has gone this far
   std::vector<Touch> both;
@@ -179,6 +243,7 @@ std::vector<Touch> carried_on(const std::vector<Touch>& used, std::vector<Touch>
       const double cosine = used[i].row.normal.dot(both[at].row.normal);
       if (cosine >= same_face) {
         both[at].push = std::max(both[at].push, cosine * used[i].pressed(x));
+        if (share > 0) lean(used[i].row.normal, share, both[at], x);
       } else if ((used[i].at - both[at].at).norm() < stale_mm &&
                  used[i].row.gap(x) - cosine * both[at].gap > 0) {  // a groove, not an edge
         both.push_back(used[i]);
@@ -222,6 +287,8 @@ double gap_left(const std::vector<Touch>& touches, const Nodes& x) {
 TouchingResult solve_touching(const std::function<Looks(const Nodes&)>& look,
                               const std::function<void()>& solve, NetLoads& loads, Nodes& x,
                               const TouchingSettings& settings, const Looks& before) {
+  // Planes that have not settled by then may go to and fro between two directions.
+  constexpr int undamped_looks = 2;
   TouchingResult result;
   Looks used = look(x);
   for (std::size_t i = 0; i < before.size(); ++i) used[i] = carried_on(before[i], used[i], x);
@@ -231,13 +298,14 @@ TouchingResult solve_touching(const std::function<Looks(const Nodes&)>& look,
     ++result.solves;
     result.looks = look(x);
     result.error_mm = result.gap_mm = 0;
+    const double share = result.solves > undamped_looks ? 0.5 : 0.0;
     for (std::size_t i = 0; i < used.size(); ++i) {
       result.error_mm = std::max(result.error_mm, plane_error(used[i], result.looks[i], x));
-      result.looks[i] = carried_on(used[i], std::move(result.looks[i]), x);
+      result.looks[i] = carried_on(used[i], std::move(result.looks[i]), x, share);
       result.gap_mm = std::max(result.gap_mm, gap_left(result.looks[i], x));
     }
-    const bool good = result.error_mm <= settings.tolerance_mm && result.gap_mm <= settings.gap_mm;
-    if (good || result.solves >= settings.most_looks) return result;
+    result.settled = result.error_mm <= settings.tolerance_mm && result.gap_mm <= settings.gap_mm;
+    if (result.settled || result.solves >= settings.most_looks) return result;
     used = result.looks;
   }
 }

@@ -42,6 +42,8 @@ class NetObstacle {
   };
   /// Whether p is nearer than `reach` (mm, below 2), and how near. Nothing beyond the region.
   bool near(const Eigen::Vector3d& p, double reach, Near& near) const;
+  /// The shortest way out for a point inside, mm; zero outside.
+  Eigen::Vector3d way_out(const Eigen::Vector3d& p) const;
 
  private:
   DistanceField field_;
@@ -70,10 +72,13 @@ struct TouchSettings {
 };
 
 /// Appends the points that are near the obstacle at pose X_WO. `allowance` (mm, one per point) is
-/// how deep each may be: that of overlap at rest.
+/// how deep each may be: that of overlap at rest. `shift`: where each is felt, from where it is, mm
+/// in the obstacle's coordinates; one per point, or none. A point deep inside at rest is better
+/// felt where its way out ends: from deep inside an edge more than one way leads out.
 void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                     const NetObstacle& obstacle, const Pose& X_WO, const Nodes& x,
-                    const TouchSettings& settings, std::vector<Touch>& touches);
+                    const TouchSettings& settings, std::vector<Touch>& touches,
+                    const Nodes& shift = {});
 
 /// The same against another part of the net's own surface: triangles of nodes, counter-clockwise
 /// seen from outside. It may have a rim; what is nearest to a rim from behind counts as inside, so
@@ -92,9 +97,9 @@ double plane_error(const std::vector<Touch>& used, const std::vector<Touch>& now
 
 /// `now`, with what `used` presses with at x, and with those planes of it that stood for another
 /// face nearby: in a groove a point that saw one side and then the other must obey both, or it goes
-/// to and fro for ever.
+/// to and fro for ever. The planes of `now` are turned by `share` (0 to 1) toward those of `used`.
 std::vector<Touch> carried_on(const std::vector<Touch>& used, std::vector<Touch> now,
-                              const Nodes& x);
+                              const Nodes& x, double share = 0);
 
 /// The touches of an obstacle that has moved on by X.
 void move_touches(const Pose& X, std::vector<Touch>& touches);
@@ -106,15 +111,16 @@ void set_contacts(const Looks& looks, NetLoads& loads);
 /// A solve in which the planes are laid anew at each answer, until they stand for the surfaces
 /// there: then it is a minimum of the energy with the surfaces themselves.
 struct TouchingSettings {
-  int most_looks = 8;
+  int most_looks = 12;
   double tolerance_mm = 0.03;  // of push, see plane_error
   double gap_mm = 0.03;        // what presses is at most so far from what it presses on
 };
 struct TouchingResult {
   int solves = 0;
-  double error_mm = 0;  // what the planes are still wrong by
-  double gap_mm = 0;    // how far what presses is from what it presses on
-  Looks looks;          // at the answer; to be carried on to the next solve
+  bool settled = false;  // both within the settings
+  double error_mm = 0;   // what the planes are still wrong by
+  double gap_mm = 0;     // how far what presses is from what it presses on
+  Looks looks;           // at the answer; to be carried on to the next solve
 };
 /// `solve` moves x downhill under `loads`, whose contacts are set before each call. `before`: the
 /// looks of an earlier solve, or nothing.

@@ -167,6 +167,7 @@ void MotionReport::add(const FrameState& frame) {
   if (frame.tissue.kept) ++kept_frames_;
   tissue_penetration_mm_ = std::max(tissue_penetration_mm_, frame.tissue.penetration_mm);
   tissue_slip_mm_ = std::max(tissue_slip_mm_, frame.tissue.slip_mm);
+  tissue_contact_error_mm_ = std::max(tissue_contact_error_mm_, frame.tissue.contact_error_mm);
   max_rotation_deg_ = std::max(max_rotation_deg_, frame.measures.rotation_deg);
   if (const auto left = rest.find("left_condyle"))
     left_travel_mm_ = std::max(left_travel_mm_, (frame.measures.left_condyle - *left).norm());
@@ -277,6 +278,7 @@ std::string MotionReport::json() const {
                      {"lip_points_left_out", made.lip_points_left_out}}},
                    {"max_penetration_mm", tissue_penetration_mm_},
                    {"max_slip_mm", tissue_slip_mm_},
+                   {"max_contact_error_mm", tissue_contact_error_mm_},
                    {"at_widest_opening", soft_response(scene_, widest_)},
                    {"notes", made.notes}};
     std::vector<double> warm, cold;
@@ -364,6 +366,11 @@ std::string MotionReport::text() const {
       text +=
           fmt::format("its solve failed in {} frames, which keep the tissue of the frame before\n",
                       kept_frames_);
+    if (unconverged_frames_ > kept_frames_)
+      text += fmt::format(
+          "it had not settled in {} more frames (tissue_converged 0 in trace.csv), on what it "
+          "touches by up to {:.2f} mm\n",
+          unconverged_frames_ - kept_frames_, tissue_contact_error_mm_);
   }
   return text;
 }

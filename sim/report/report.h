@@ -45,7 +45,7 @@ class MotionReport {
   MotionSeries series_;
   int frames_ = 0, stopped_frames_ = 0, first_stopped_ = -1;
   int inverted_frames_ = 0, unconverged_frames_ = 0, kept_frames_ = 0;
-  double tissue_penetration_mm_ = 0, tissue_slip_mm_ = 0;
+  double tissue_penetration_mm_ = 0, tissue_slip_mm_ = 0, tissue_contact_error_mm_ = 0;
   double max_rotation_deg_ = 0, left_travel_mm_ = 0, right_travel_mm_ = 0;
   double kept_back_mm_ = 0;  // of the incisal point from where it was wanted, by contact
   std::vector<PairRecord> pairs_;

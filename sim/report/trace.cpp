@@ -22,7 +22,7 @@ const char* TraceWriter::header() {
          "condyle_asymmetry_mm,helical_axis_x,helical_axis_y,helical_axis_z,helical_point_x_mm,"
          "helical_point_y_mm,helical_point_z_mm,helical_slide_mm,incisor_speed_mm_s,tissue_"
          "penetration_mm,"
-         "tissue_slip_mm,tissue_kept";
+         "tissue_slip_mm,tissue_kept,tissue_converged,tissue_contact_error_mm";
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& muscles)
@@ -91,6 +91,8 @@ void TraceWriter::add(int frame, const FrameState& s) {
   ++rows_;
   numbers({s.tissue.penetration_mm, s.tissue.slip_mm});
   count(s.tissue.kept ? 1 : 0);
+  count(s.tissue.converged ? 1 : 0);
+  numbers({s.tissue.contact_error_mm});
   for (const MuscleState& muscle : s.muscles)
     numbers({muscle.excitation, muscle.length_mm, muscle.force_N});
   put(row + "\n");

@@ -36,6 +36,8 @@ namespace {
 /// Iterations after which a factor of the tissue as it is now is made at once, and after twice as
 /// many the next; later frames go on with it.
 constexpr int first_patience = 8;
+/// A frame whose contacts are farther off than this has not converged.
+constexpr double well_touched_mm = 0.1;
 /// Iterations of a frame above which one is made beside the loop.
 constexpr int worth_making = 3;
 
@@ -143,6 +145,8 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
   state.factor = std::make_shared<const RollingFactor>(std::move(factor));
   const ContactMeasure contact =
       measure_contact(model.contact, touching.looks, X_CM, model.rest, state.nodes);
+  state.contact_error_mm = std::max(touching.error_mm, touching.gap_mm);
+  state.converged = state.converged && state.contact_error_mm < well_touched_mm;
   state.touches = std::make_shared<const Looks>(std::move(touching.looks));
   state.penetration_mm = contact.penetration_mm;
   state.slip_mm = contact.slip_mm;

@@ -12,6 +12,10 @@ namespace {
 using Eigen::Vector3d;
 using Triangle = std::array<int, 3>;
 
+/// Points that may meet the jaws, along each edge of the tissue's inner side: with 5 mm between
+/// nodes one every mm, or the edges of bones stand in the triangles between them by up to 2 mm. The
+/// lips have only one in each triangle: more of them are caught under the teeth's edges.
+constexpr int face_parts = 5;
 constexpr double lip_edge_mm = 7;  // of the points that may meet teeth from before
 constexpr double led_mm = 8;       // of the points that are led before the teeth
 constexpr double corner_mm = 5;    // nearer to a corner both lips are one
@@ -65,6 +69,17 @@ TissueContact::Lip make_lip(const ContactSource& from, int side) {
   return lip;
 }
 
+/// Points spread evenly over triangles of nodes, between their corners.
+void spread(const std::vector<Eigen::Vector3i>& triangles, std::vector<NetPoint>& points) {
+  constexpr double part = 1.0 / face_parts;
+  for (const auto& [a, b] : edges_of(triangles))
+    for (int i = 1; i < face_parts; ++i) points.push_back({{a, b}, {1 - i * part, i * part}, 2});
+  for (const auto& t : triangles)
+    for (int i = 1; i < face_parts; ++i)
+      for (int j = 1; i + j < face_parts; ++j)
+        points.push_back({{t[0], t[1], t[2]}, {1 - (i + j) * part, i * part, j * part}, 3});
+}
+
 /// Takes out points so deep in the other lip at rest that nothing tells which way is out. Returns
 /// how many.
 int leave_out_deep(const std::vector<Touch>& touches, TissueContact::Lip& lip) {
@@ -114,8 +129,15 @@ TissueContact::Jaw make_jaw(const TissueContact& contact, const Nodes& rest, con
   jaw.obstacle = std::make_shared<NetObstacle>(mesh, region, field_cache_folder(), threads);
   std::vector<Touch> touches;
   touch_obstacle(contact.points, jaw.allowance, *jaw.obstacle, Pose{}, rest, {}, touches);
+  jaw.shift.assign(contact.points.size(), Vector3d::Zero());
+  for (const auto& touch : touches) {
+    jaw.near_at_rest[touch.point] = 1;
+    if (touch.gap < 0) jaw.shift[touch.point] = jaw.obstacle->way_out(touch.at);
+  }
+  touches.clear();
+  touch_obstacle(contact.points, jaw.allowance, *jaw.obstacle, Pose{}, rest, {}, touches,
+                 jaw.shift);
   allow(touches, jaw.allowance);
-  for (const auto& touch : touches) jaw.near_at_rest[touch.point] = 1;
   return jaw;
 }
 
@@ -227,11 +249,18 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
       if (const int node = node_of(static_cast<int>(c), s, from.sheets); free(node))
         contact.points.push_back(NetPoint::of_node(node));
   }
+  std::vector<Eigen::Vector3i> sliding;
   for (const auto& t : from.skin.mesh.triangles) {
-    const int a = node_of(t[0], last, from.sheets), b = node_of(t[1], last, from.sheets),
-              c = node_of(t[2], last, from.sheets);
-    if (free(a) && free(b) && free(c)) contact.points.push_back(NetPoint::centre(a, b, c));
+    const Eigen::Vector3i inner = t.unaryExpr([&](int c) { return node_of(c, last, from.sheets); });
+    if (!free(inner[0]) || !free(inner[1]) || !free(inner[2])) continue;
+    double to_mouth = 0;
+    for (int c : t) to_mouth = std::max(to_mouth, from.columns[c].to_mouth);
+    if (to_mouth < led_mm)
+      contact.points.push_back(NetPoint::centre(inner[0], inner[1], inner[2]));
+    else
+      sliding.push_back(inner);
   }
+  spread(sliding, contact.points);
   for (const auto& point : contact.points) {
     Vector3d front = Vector3d::Zero();
     bool lip = true;
@@ -265,10 +294,10 @@ Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x) {
   const TouchSettings settings;
   if (contact.cranium.obstacle)
     touch_obstacle(contact.points, contact.cranium.allowance, *contact.cranium.obstacle, Pose{}, x,
-                   settings, looks[on_cranium]);
+                   settings, looks[on_cranium], contact.cranium.shift);
   if (contact.mandible.obstacle)
     touch_obstacle(contact.points, contact.mandible.allowance, *contact.mandible.obstacle, X_CM, x,
-                   settings, looks[on_mandible]);
+                   settings, looks[on_mandible], contact.mandible.shift);
   lead_lips(contact, X_CM, x, looks[on_cranium]);
   lead_lips(contact, X_CM, x, looks[on_mandible]);
   const TouchSettings soft{.stiffness = lip_stiffness};
@@ -285,9 +314,12 @@ ContactMeasure measure_contact(const TissueContact& contact, const Looks& looks,
   for (const auto& touches : looks)
     for (const auto& touch : touches)
       measure.penetration_mm = std::max(measure.penetration_mm, -touch.gap);
-  for (const auto* allowance : {&contact.cranium.allowance, &contact.mandible.allowance,
-                                &contact.upper.allowance, &contact.lower.allowance})
-    for (double depth : *allowance)
+  for (const auto* jaw : {&contact.cranium, &contact.mandible})
+    for (std::size_t i = 0; i < jaw->shift.size(); ++i)
+      measure.rest_overlap_mm =
+          std::max(measure.rest_overlap_mm, jaw->shift[i].norm() + jaw->allowance[i]);
+  for (const auto* lip : {&contact.upper, &contact.lower})
+    for (double depth : lip->allowance)
       measure.rest_overlap_mm = std::max(measure.rest_overlap_mm, depth);
   const auto slip = [&](const TissueContact::Jaw& jaw, const Pose& X_CJ,
                         const std::vector<Touch>& touches) {

@@ -15,8 +15,9 @@ struct TissueContact {
   /// Points that must not enter a jaw, and one jaw.
   struct Jaw {
     std::shared_ptr<const NetObstacle> obstacle;  // null when there is no such bone
-    std::vector<double> allowance;                // mm, one per point: overlap at rest
-    std::vector<char> near_at_rest;               // of each point
+    Nodes shift;                    // one per point, mm: out of the bone, where it overlaps at rest
+    std::vector<double> allowance;  // mm, one per point: overlap at rest that is left so
+    std::vector<char> near_at_rest;  // of each point
   };
   std::vector<NetPoint> points;
   Jaw cranium, mandible;

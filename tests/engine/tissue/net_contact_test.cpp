@@ -75,6 +75,9 @@ double deepest(const TriMesh& body, const std::vector<NetPoint>& points, const N
   return depth;
 }
 
+/// A factor made before anything presses holds none of the rows that will: along those directions it
+/// is wrong by contact's stiffness over the tissue's, and with it alone a draped slab takes some 500
+/// iterations, ten times as many as with one that is made anew on the way.
 TouchingResult settle(const SpringPrismNet& net, int sheets, NetLoads& loads,
                       const std::function<Looks(const Nodes&)>& look, Nodes& x,
                       double tolerance_mm = 1e-4) {
@@ -168,7 +171,7 @@ TEST(NetContact, WhatOverlapsAtRestMayStayAndGoNoDeeper) {
   EXPECT_NEAR(*std::max_element(allowance.begin(), allowance.end()), 1.5, 0.05);
   const auto look = [&](const Nodes& x) {
     Looks looks(1);
-    touch_obstacle(slab.below, allowance, ball, Pose{}, x, {.stiffness = 2}, looks[0]);
+    touch_obstacle(slab.below, allowance, ball, Pose{}, x, {}, looks[0]);
     return looks;
   };
   Nodes x = slab.rest;
