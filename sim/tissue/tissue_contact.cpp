@@ -13,9 +13,10 @@ using Eigen::Vector3d;
 using Triangle = std::array<int, 3>;
 
 /// Points that may meet the jaws, along each edge of the tissue's inner side: with 5 mm between
-/// nodes one every mm, or the edges of bones stand in the triangles between them by up to 2 mm. The
-/// lips have only one in each triangle: more of them are caught under the teeth's edges.
+/// nodes one every mm, or the edges of bones stand in the triangles between them by up to 2 mm.
 constexpr int face_parts = 5;
+/// Nearer to the mouth a triangle has only one: more of them are caught under the teeth's edges.
+constexpr double supple_mm = 12;
 constexpr double lip_edge_mm = 7;  // of the points that may meet teeth from before
 constexpr double led_mm = 8;       // of the points that are led before the teeth
 constexpr double corner_mm = 5;    // nearer to a corner both lips are one
@@ -255,7 +256,7 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
     if (!free(inner[0]) || !free(inner[1]) || !free(inner[2])) continue;
     double to_mouth = 0;
     for (int c : t) to_mouth = std::max(to_mouth, from.columns[c].to_mouth);
-    if (to_mouth < led_mm)
+    if (to_mouth < supple_mm)
       contact.points.push_back(NetPoint::centre(inner[0], inner[1], inner[2]));
     else
       sliding.push_back(inner);
