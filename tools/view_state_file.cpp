@@ -23,6 +23,8 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
                          {"landmarks", view.landmarks.size()},
                          {"camera_direction", list(window.camera().direction)},
                          {"pictures_per_second", pictures.pictures_per_second},
+                         {"picture_ms", pictures.picture_ms},
+                         {"render_scale", pictures.render_scale},
                          {"samples", pictures.samples},
                          {"longest_away_ms", std::round(pictures.longest_away_ms)}};
   if (view.hands.mandible) json["hand_mm"] = list(view.hands.mandible->t);

@@ -18,9 +18,10 @@ constexpr std::array<Quality, 6> levels = {{
     {.render_scale = 0.4, .samples = 1, .shadows = false},
 }};
 
-// The last is a way out for a large window without a GPU: only when less would stand still.
+// The last is a way out for a large window without a GPU: only when there would be fewer than 15
+// pictures a second.
 constexpr int coarse = static_cast<int>(levels.size()) - 1;
-constexpr double standstill_ms = 150;
+constexpr double standstill_ms = 1000.0 / 15;
 
 }  // namespace
 

@@ -77,7 +77,7 @@ TEST(Quality, FallsWhileMovingOnASlowDriverAndIsFullAtRest) {
         now.render_scale * now.render_scale * (now.samples > 1 ? 4 : 1) + (now.shadows ? 0.5 : 0);
     EXPECT_LE(cost, cost_before);
     cost_before = cost;
-    governor.measured(true, 80);
+    governor.measured(true, 60);
   }
   const Quality slow = governor.choose(true);
   EXPECT_NEAR(slow.render_scale, 0.66, 1e-9);
@@ -90,7 +90,7 @@ TEST(Quality, FallsWhileMovingOnASlowDriverAndIsFullAtRest) {
 
 TEST(Quality, GetsCoarseOnlyWhereThePictureWouldStandStill) {
   QualityGovernor governor;
-  for (int i = 0; i < 100; ++i) governor.measured(true, 400);
+  for (int i = 0; i < 100; ++i) governor.measured(true, 70);  // 14 a second
   EXPECT_LT(governor.choose(true).render_scale, 0.5);
   EXPECT_EQ(governor.choose(false), Quality{});
 }
