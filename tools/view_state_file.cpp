@@ -1,5 +1,6 @@
 #include "tools/view_state_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -12,6 +13,9 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
                            const std::string& busy_with) {
   if (file_.empty()) return;
   const auto list = [](const Eigen::Vector3d& v) { return nlohmann::json{v.x(), v.y(), v.z()}; };
+  const auto shown = [](const std::vector<PartView>& parts) {
+    return std::count_if(parts.begin(), parts.end(), [](const PartView& p) { return p.shown; });
+  };
   const ViewState& view = window.view();
   const PictureStatistics& pictures = window.pictures();
   nlohmann::json json = {{"busy_with", busy_with},
@@ -21,14 +25,21 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
                          {"tool", static_cast<int>(view.tool)},
                          {"measured", view.measured.size()},
                          {"landmarks", view.landmarks.size()},
+                         {"skin_opacity", view.skin_opacity},
+                         {"muscles_shown", shown(view.muscles)},
+                         {"layers_shown", shown(view.layers)},
                          {"camera_direction", list(window.camera().direction)},
                          {"pictures_per_second", pictures.pictures_per_second},
                          {"picture_ms", pictures.picture_ms},
                          {"render_scale", pictures.render_scale},
                          {"samples", pictures.samples},
+                         {"picture_finished", pictures.finished},
                          {"longest_away_ms", std::round(pictures.longest_away_ms)}};
   if (view.hands.mandible) json["hand_mm"] = list(view.hands.mandible->t);
+  for (const Landmark& landmark : view.landmarks)
+    json["landmark_mm"][landmark.name] = list(landmark.at_rest);
   if (frame) {
+    for (const Pose& pose : frame->X_CF) json["free_mm"].push_back(list(pose.t));
     json["frame"] = {{"time_s", frame->time_s},
                      {"mandible_mm", list(frame->X_CM.t)},
                      {"stopped", frame->stopped},

@@ -88,11 +88,11 @@ void Panels::Drawing::moving() {
   if (several) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
     if (ImGui::BeginCombo("##body", display_name(input.scene.parts[body.part].name).c_str())) {
-      for (std::size_t i = 0; i < input.scene.bodies.size(); ++i)
-        if (ImGui::Selectable(
-                display_name(input.scene.parts[input.scene.bodies[i].part].name).c_str(),
-                i == view.chosen))
-          view.chosen = i;
+      for (std::size_t i = 0; i < input.scene.bodies.size(); ++i) {
+        const std::string& name = input.scene.parts[input.scene.bodies[i].part].name;
+        if (ImGui::Selectable(display_name(name).c_str(), i == view.chosen)) view.chosen = i;
+        pen.mark("body:" + name);
+      }
       ImGui::EndCombo();
     }
     pen.mark("body");

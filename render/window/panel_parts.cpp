@@ -58,7 +58,7 @@ void Panels::Drawing::part_list() {
 
   heading(pen, "Parts", input.scene.parts.empty() ? "" : "opacity");
   const float row = ImGui::GetFrameHeight() + pen.px(3);
-  const float notes_room = input.scene.notes.empty() ? 0 : pen.px(96);
+  const float notes_room = input.scene.notes.empty() ? 0 : pen.px(74);
   const float settings_room = pen.px(34) + 2 * row;
   const float most =
       std::max(2 * row, ImGui::GetContentRegionAvail().y - settings_room - notes_room);

@@ -25,7 +25,7 @@ struct TreeGroup {
   std::vector<TreeRow> rows = {};
 };
 
-enum GroupNumber { bones, teeth, face, mouth, free_parts, muscles, layers };
+enum GroupNumber { bones, teeth, soft, free_parts, muscles, layers };
 
 GroupNumber group_of(Role role) {
   switch (role) {
@@ -34,11 +34,10 @@ GroupNumber group_of(Role role) {
       return teeth;
     case Role::face:
     case Role::eyes:
-      return face;
     case Role::upper_gums:
     case Role::lower_gums:
     case Role::tongue:
-      return mouth;
+      return soft;
     case Role::segment:
     case Role::transplant:
       return free_parts;
@@ -52,8 +51,7 @@ std::vector<TreeGroup> groups_of(const PanelInput& input, ViewState& view) {
   std::vector<TreeGroup> groups = {
       {"bones", "Bones", "Skull and jaws"},
       {"teeth", "Teeth", "Both arches"},
-      {"face", "Face", "Skin and eyes. How dense the skin is stands above"},
-      {"mouth", "Mouth", "Gums and tongue"},
+      {"soft", "Face and mouth", "Skin, eyes, gums, tongue. How dense the skin is stands above"},
       {"free", "Free parts", "Segments and transplants, which a hand can move (key M)"},
       {"muscles", "Muscles",
        "Their lines of action: dark red at rest, bright yellow when fully excited"},

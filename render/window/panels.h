@@ -97,8 +97,8 @@ class Panels {
   PlotSet stage_plots() const;
   Theme theme_;
   bool shown_ = true, help_open_ = false;
-  double skin_before_ = 1;  // opacity to come back to
-  std::set<std::string> open_groups_ = {"bones", "teeth", "mouth", "free"};  // of the tree
+  double skin_before_ = 1;                                          // opacity to come back to
+  std::set<std::string> open_groups_ = {"bones", "teeth", "free"};  // of the tree
   std::deque<std::string> errors_;
   std::string said_;
   double said_until_ = 0;

@@ -50,7 +50,8 @@ struct PictureOrder {
   Camera camera = {};
   PictureSettings settings = {};
   Quality quality = {};
-  bool moving = false;  // told back with the picture
+  bool moving = false;  // told back with the picture, and so is:
+  long number = 0;      // of the order
 };
 
 /// A finished picture: opaque RGBA of 8 bits, the lowest row first, as OpenGL has it.
@@ -61,7 +62,8 @@ struct DrawnPicture {
   Quality quality = {};
   int samples = 1;  // that the context gave
   bool moving = false;
-  double ms = 0;  // it took
+  long number = 0;  // of its order
+  double ms = 0;    // it took
 };
 
 }  // namespace condyle

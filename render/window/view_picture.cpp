@@ -67,7 +67,8 @@ std::optional<DrawnPicture> ViewPicture::draw(SceneRenderer& renderer, const Pic
                        .parts = order.parts,
                        .quality = quality,
                        .samples = std::max(1, target.drawn().samples()),
-                       .moving = order.moving};
+                       .moving = order.moving,
+                       .number = order.number};
   target.read(box, settings.transparent_background, false, picture.rgba);
   picture.ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

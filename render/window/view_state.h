@@ -146,6 +146,7 @@ struct LoopStatistics {
 struct PictureStatistics {
   double pictures_per_second = 0;
   double picture_ms = 0;  // the 3-D picture alone
+  bool finished = false;  // it shows all that is wanted, in full quality
   // Longest time between two looks at mouse and keyboard, waiting for them not counted.
   double longest_away_ms = 0;
   double render_scale = 1;  // 1 is full resolution

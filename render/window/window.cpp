@@ -68,7 +68,7 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
   s.scene = scene;
   s.view = start;
   s.view.fit(scene);
-  s.order = {};
+  s.order = {.number = s.order.number};
   s.kept.reset();
   s.cannot_draw = false;
   if (!scene.parts.empty())

@@ -203,7 +203,9 @@ void Window::State::order_picture() {
     order.overlays = std::make_shared<Overlays>(std::move(all));
     overlays_due = false;
   }
+  ++order.number;
   painter->order(order);
+  pictures.finished = false;
   ordered_look = view.look;
   scene_changed = false;  // also when it fails: the next change tries again
 }
@@ -216,6 +218,7 @@ bool Window::State::take_picture() {
   cannot_draw = false;
   governor.measured(picture->moving, picture->ms);
   pictures.picture_ms = picture->ms;
+  pictures.finished = picture->number == order.number && !picture->moving && !scene_changed;
   pictures.render_scale = picture->quality.render_scale;
   pictures.samples = picture->samples;
   // Pictures a second only mean something while things move.

@@ -53,6 +53,8 @@ Slider::Slider(const Case& patient, const ContactModel::State& state) : state_(s
       field.region.emplace();
       for (int body = 0; body < state.body_count(); ++body)
         if (body != collider->body) field.region->add(boxes[static_cast<std::size_t>(body)]);
+      // Nothing else is there: a field of one place, which nobody will ask.
+      if (field.region->empty()) field.region->add(collider->surface.box().low);
       field.region->low.array() -= reach_mm;
       field.region->high.array() += reach_mm;
     }

@@ -8,8 +8,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 namespace condyle {
@@ -22,7 +25,10 @@ bool has_program(const std::string& name) {
   return false;
 }
 
-TestDisplay::TestDisplay() {
+TestDisplay::TestDisplay(int width, int height) {
+  std::string folder = (std::filesystem::temp_directory_path() / "condyle-screen-XXXXXX").string();
+  if (mkdtemp(folder.data())) folder_ = folder;
+  const std::string screen = std::to_string(width) + "x" + std::to_string(height) + "x24";
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return;
   const pid_t parent = getpid();
@@ -36,8 +42,9 @@ TestDisplay::TestDisplay() {
     const int nothing = open("/dev/null", O_WRONLY);
     dup2(nothing, 1);
     dup2(nothing, 2);
-    execlp("Xvfb", "Xvfb", "-displayfd", report_to.c_str(), "-screen", "0", "1280x720x24",
-           "+extension", "GLX", "-nolisten", "tcp", "-noreset", static_cast<char*>(nullptr));
+    execlp("Xvfb", "Xvfb", "-displayfd", report_to.c_str(), "-screen", "0", screen.c_str(),
+           "-fbdir", folder_.c_str(), "+extension", "GLX", "-nolisten", "tcp", "-noreset",
+           static_cast<char*>(nullptr));
     _exit(127);
   }
   close(ends[1]);
@@ -58,10 +65,41 @@ TestDisplay::TestDisplay() {
 }
 
 TestDisplay::~TestDisplay() {
-  if (process_ <= 0) return;
-  kill(process_, SIGTERM);
-  waitpid(process_, nullptr, 0);
-  unsetenv("DISPLAY");
+  if (process_ > 0) {
+    kill(process_, SIGTERM);
+    waitpid(process_, nullptr, 0);
+    unsetenv("DISPLAY");
+  }
+  std::error_code ignored;
+  if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+}
+
+test::Picture TestDisplay::picture() const {
+  // An XWD file: a head of big-endian 32-bit numbers, a table of colours, rows of BGRX.
+  std::ifstream file(folder_ / "Xvfb_screen0", std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  const auto number = [&](std::size_t which) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 4 * which; i < 4 * which + 4; ++i)
+      value = value << 8 | static_cast<unsigned char>(bytes[i]);
+    return std::size_t{value};
+  };
+  constexpr std::size_t head_numbers = 25, colour_bytes = 12;
+  test::Picture picture;
+  if (bytes.size() < 4 * head_numbers) return picture;
+  const std::size_t width = number(4), height = number(5), row_bytes = number(12),
+                    start = number(0) + colour_bytes * number(19);
+  if (bytes.size() < start + row_bytes * height || row_bytes < 4 * width) return picture;
+  picture.width = static_cast<int>(width);
+  picture.height = static_cast<int>(height);
+  picture.rgba.reserve(4 * width * height);
+  for (std::size_t y = 0; y < height; ++y)
+    for (std::size_t x = 0; x < width; ++x) {
+      const auto* pixel =
+          reinterpret_cast<const std::uint8_t*>(&bytes[start + y * row_bytes + 4 * x]);
+      picture.rgba.insert(picture.rgba.end(), {pixel[2], pixel[1], pixel[0], 255});
+    }
+  return picture;
 }
 
 bool xdotool(std::vector<std::string> arguments) {

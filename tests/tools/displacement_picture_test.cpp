@@ -1,33 +1,13 @@
 // The map of how far the skin has come, as it is recorded.
 #include <gtest/gtest.h>
-#include <png.h>
 
 #include <cstdint>
-#include <filesystem>
-#include <vector>
 
+#include "tests/support/picture.h"
 #include "tests/support/program.h"
 
 namespace condyle::test {
 namespace {
-
-struct Picture {
-  png_image head{};
-  std::vector<std::uint8_t> rgb;
-
-  explicit Picture(const std::string& file) {
-    head.version = PNG_IMAGE_VERSION;
-    if (!png_image_begin_read_from_file(&head, file.c_str())) return;
-    head.format = PNG_FORMAT_RGB;
-    rgb.resize(PNG_IMAGE_SIZE(head));
-    png_image_finish_read(&head, nullptr, rgb.data(), 0, nullptr);
-  }
-  const std::uint8_t* at(double x, double y) const {
-    const auto column = static_cast<std::size_t>(x * head.width),
-               row = static_cast<std::size_t>(y * head.height);
-    return &rgb[3 * (row * head.width + column)];
-  }
-};
 
 TEST(Record, ColoursTheSkinByItsWayFromRest) {
   const Folder folder;
@@ -36,8 +16,8 @@ TEST(Record, ColoursTheSkinByItsWayFromRest) {
                "--camera", "front", "--size", "350x400", "--show", "skin,displacement"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Picture rest(folder / "out/frames/000000.png"), open(folder / "out/frames/000001.png");
-  ASSERT_FALSE(rest.rgb.empty());
-  ASSERT_FALSE(open.rgb.empty());
+  ASSERT_FALSE(rest.empty());
+  ASSERT_FALSE(open.empty());
   // Nothing has moved: all is of the colour for 0, dark violet. Opened, the chin is green, the
   // forehead is as it was.
   const auto violet = [](const std::uint8_t* p) { return p[2] > p[1] + 20 && p[1] < 60; };

@@ -1,45 +1,18 @@
 // What `record` can leave out of pictures, lay over them and write on them, as a person asks for
 // it.
 #include <gtest/gtest.h>
-#include <png.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <vector>
 
+#include "tests/support/picture.h"
 #include "tests/support/program.h"
 
 namespace condyle::test {
 namespace {
-
-struct Picture {
-  png_image head{};
-  std::vector<std::uint8_t> rgba;
-
-  explicit Picture(const std::string& file) {
-    head.version = PNG_IMAGE_VERSION;
-    if (!png_image_begin_read_from_file(&head, file.c_str())) return;
-    head.format = PNG_FORMAT_RGBA;
-    rgba.resize(PNG_IMAGE_SIZE(head));
-    png_image_finish_read(&head, nullptr, rgba.data(), 0, nullptr);
-  }
-};
-
-/// Share of the pixels that differ clearly.
-double difference(const Picture& a, const Picture& b) {
-  if (a.rgba.empty() || a.rgba.size() != b.rgba.size()) return 1;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
-    int most = 0;
-    for (std::size_t k = 0; k < 4; ++k)
-      most = std::max(most, std::abs(a.rgba[i + k] - b.rgba[i + k]));
-    count += most > 12;
-  }
-  return 4.0 * static_cast<double>(count) / static_cast<double>(a.rgba.size());
-}
 
 class PictureOptions : public testing::Test {
  protected:
@@ -64,7 +37,7 @@ class PictureOptions : public testing::Test {
 
 TEST_F(PictureOptions, EachOfThemChangesThePicture) {
   const Picture plain = opened("plain", {});
-  ASSERT_FALSE(plain.rgba.empty());
+  ASSERT_FALSE(plain.empty());
   EXPECT_EQ(difference(plain, opened("again", {})), 0);
   int number = 0;
   for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{

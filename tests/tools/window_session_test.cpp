@@ -1,110 +1,8 @@
 // The window as people use it: the program on a virtual screen, with real mouse and keyboard.
-#include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <chrono>
-#include <cmath>
-#include <functional>
-#include <nlohmann/json.hpp>
-#include <thread>
-
-#include "tests/support/display.h"
-#include "tests/support/program.h"
+#include "window_session.h"
 
 namespace condyle::test {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-using Json = nlohmann::json;
-using std::chrono::milliseconds;
-namespace fs = std::filesystem;
-
-/// `condyle view` running on a screen of its own.
-class WindowSession : public testing::Test {
- protected:
-  void SetUp() override {
-    ASSERT_TRUE(has_program("Xvfb") && has_program("xdotool")) << "install xvfb and xdotool";
-    display_ = std::make_unique<TestDisplay>();
-    ASSERT_TRUE(display_->running());
-    setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
-  }
-  void TearDown() override {
-    if (program_ > 0) {
-      kill(program_, SIGKILL);
-      waitpid(program_, nullptr, 0);
-    }
-    unsetenv("XDG_CONFIG_HOME");
-  }
-  void start(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {CONDYLE_PROGRAM, "--threads", "1", "view"});
-    arguments.insert(arguments.end(), {"--state-file", folder_ / "state.json"});
-    std::vector<char*> words;
-    for (auto& word : arguments) words.push_back(word.data());
-    words.push_back(nullptr);
-    ASSERT_EQ(posix_spawn(&program_, CONDYLE_PROGRAM, nullptr, nullptr, words.data(), environ), 0);
-  }
-  Json state() {
-    const std::string file = folder_ / "state.json";
-    return fs::exists(file) ? Json::parse(read_text(file)) : Json::object();
-  }
-  bool wait_until(const std::function<bool(const Json&)>& law, double longest_s = 40) {
-    const auto start = Clock::now();
-    while (Clock::now() - start < std::chrono::duration<double>(longest_s)) {
-      const Json now = state();
-      if (!now.empty() && law(now)) return true;
-      std::this_thread::sleep_for(milliseconds(30));
-    }
-    return false;
-  }
-  bool wait_for_item(const std::string& name, bool there = true) {
-    return wait_until([&](const Json& s) { return s["items"].contains(name) == there; });
-  }
-  std::array<double, 4> rect(const std::string& name) {
-    const Json now = state();
-    if (!now["items"].contains(name)) {
-      ADD_FAILURE() << "no item '" << name << "' is in the window";
-      return {};
-    }
-    return now["items"][name];
-  }
-  static std::string px(double value) { return std::to_string(std::lround(value)); }
-  void click(const std::string& name) {
-    ASSERT_TRUE(wait_for_item(name)) << name;
-    const auto r = rect(name);
-    EXPECT_TRUE(xdotool({"mousemove", px(r[0] + r[2] / 2), px(r[1] + r[3] / 2), "click", "1"}));
-  }
-  void drag(double x0, double y0, double x1, double y1) {
-    std::vector<std::string> moves = {"mousemove", px(x0), px(y0), "mousedown", "1"};
-    for (int i = 1; i <= 5; ++i)
-      moves.insert(moves.end(), {"mousemove", px(x0 + (x1 - x0) * i / 5),
-                                 px(y0 + (y1 - y0) * i / 5), "sleep", "0.03"});
-    moves.insert(moves.end(), {"mouseup", "1"});
-    EXPECT_TRUE(xdotool(moves));
-  }
-  static bool press(const std::string& key) { return xdotool({"key", key}); }
-  int wait_for_end() {
-    int status = 0;
-    for (int i = 0; i < 400; ++i) {
-      if (waitpid(program_, &status, WNOHANG) == program_) {
-        program_ = -1;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-      }
-      std::this_thread::sleep_for(milliseconds(50));
-    }
-    return -1;
-  }
-
-  Folder folder_;
-
- private:
-  std::unique_ptr<TestDisplay> display_;
-  pid_t program_ = -1;
-};
-
-bool idle(const Json& s) { return s["busy_with"] == "" && s.contains("frame"); }
 
 TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
   const std::string patient = box_case(folder_);
@@ -152,7 +50,7 @@ TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
   EXPECT_TRUE(press("a"));
   EXPECT_TRUE(press("m"));
   ASSERT_TRUE(wait_for_item("handle:S"));
-  std::this_thread::sleep_for(milliseconds(300));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   auto tip = rect("handle:S");
   drag(tip[0] + 3, tip[1] + 3, tip[0] + 3, tip[1] - 57);
   ASSERT_TRUE(wait_until([](const Json& s) {
@@ -162,7 +60,7 @@ TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
     return std::abs(double(s["frame"]["mandible_mm"][2]) - 1) < 0.2;
   })) << state()["frame"].dump();
   // Held there, it slides aside.
-  std::this_thread::sleep_for(milliseconds(300));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   const double before = double(state()["frame"]["mandible_mm"][0]);
   tip = rect("handle:L");
   drag(tip[0] + 3, tip[1] + 3, tip[0] + 53, tip[1] + 3);
@@ -238,7 +136,7 @@ TEST_F(WindowSession, TroubleIsToldAsASentenceAndTheWindowStays) {
   ASSERT_TRUE(wait_for_item("error"));
   click("close-error");
   // Loading, simulating and failing went on beside: the window never stood still.
-  EXPECT_LT(double(state()["longest_away_ms"]), 3000);
+  EXPECT_LT(double(state()["longest_away_ms"]), 800);
   // Resized to almost nothing.
   EXPECT_TRUE(xdotool({"search", "--name", "Condyle", "windowsize", "--sync", "640", "400"}));
   EXPECT_TRUE(wait_until([](const Json& s) { return double(s["view"][2]) < 500; }));

@@ -1,0 +1,192 @@
+// Files that come into the window and go out of it, and bones that are let go.
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+
+#include "tests/support/file_drop.h"
+#include "window_session.h"
+
+namespace condyle::test {
+namespace {
+
+/// A folder on a disk of 1 MB of its own, seen by this process and its children alone; where the
+/// system forbids that, a folder like any other.
+class SmallDisk {
+ public:
+  explicit SmallDisk(const std::string& folder) : folder_(folder) {
+    fs::create_directories(folder);
+    const int own_names = geteuid() == 0 ? CLONE_NEWNS : CLONE_NEWUSER | CLONE_NEWNS;
+    mounted_ = unshare(own_names) == 0 &&
+               mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+               mount("none", folder.c_str(), "tmpfs", 0, "size=1m") == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) umount2(folder_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  bool mounted() const { return mounted_; }
+
+ private:
+  std::string folder_;
+  bool mounted_ = false;
+};
+
+TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
+  const std::string patient = box_case(folder_);
+  write_text(folder_ / "down.csv",
+             "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0.5,0,0,-10,1,0,0,0\n");
+  start({patient, "--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle));
+
+  // A motion, something that is nothing, a patient, a bone without anything else.
+  EXPECT_TRUE(drop_files("Condyle", {folder_ / "down.csv"}));
+  EXPECT_TRUE(wait_until(
+      [&](const Json& s) { return idle(s) && std::string(s["motion"]).ends_with("down.csv"); }));
+  write_text(folder_ / "note.xyz", "nothing to open");
+  EXPECT_TRUE(drop_files("Condyle", {folder_ / "note.xyz"}));
+  ASSERT_TRUE(wait_for_item("error"));
+  see("dropped-nonsense");
+  click("close-error");
+  ASSERT_TRUE(wait_for_item("error", false));
+  EXPECT_TRUE(drop_files("Condyle", {patient}));
+  EXPECT_TRUE(wait_until([](const Json& s) { return idle(s) && s["motion"] == "opening"; }));
+
+  // A landmark: added, placed on the bone by a click, renamed, taken back, saved.
+  EXPECT_TRUE(press("a"));
+  EXPECT_TRUE(press("b"));
+  const int known = state()["landmarks"];
+  write_into("landmark-name", "Chin point");
+  click("landmark-add");
+  ASSERT_TRUE(wait_until([&](const Json& s) { return s["landmarks"] == known + 1; }));
+  const Region view = view_region();
+  EXPECT_TRUE(xdotool(
+      {"mousemove", px(view.x + 0.6 * view.width), px(view.y + 0.6 * view.height), "click", "1"}));
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return s["landmark_mm"].contains("chin_point") &&
+           std::abs(double(s["landmark_mm"]["chin_point"][1]) + 92) < 0.01;
+  })) << state()["landmark_mm"].dump();
+  see("landmark-placed");
+  write_into("landmark-name", "Pogonion");
+  click("landmark-rename");
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["landmark_mm"].contains("pogonion"); }));
+  EXPECT_TRUE(press("ctrl+z"));
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["landmark_mm"].contains("chin_point"); }));
+  EXPECT_TRUE(press("ctrl+shift+z"));
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["landmark_mm"].contains("pogonion"); }));
+  const Json placed = state()["landmark_mm"]["pogonion"];
+  write_into("case-folder", folder_ / "saved");
+  click("case-save");
+  EXPECT_TRUE(wait_until(
+      [&](const Json& s) { return idle(s) && fs::exists(folder_ / "saved/case.json"); }));
+  // What was saved is what is opened.
+  EXPECT_TRUE(drop_files("Condyle", {folder_ / "saved"}));
+  EXPECT_TRUE(wait_until([&](const Json& s) {
+    return idle(s) && s["landmark_mm"].contains("pogonion") &&
+           std::abs(double(s["landmark_mm"]["pogonion"][0]) - double(placed[0])) < 1e-3;
+  }));
+
+  // One bone alone, without landmarks: it can be looked at. A face without any bone is refused.
+  EXPECT_TRUE(drop_files("Condyle", {folder_ / "mandible.stl"}));
+  click("import-go");
+  EXPECT_TRUE(wait_until([](const Json& s) { return idle(s) && s["landmarks"] == 0; }));
+  see("bone-alone");
+  EXPECT_TRUE(press("b"));
+  EXPECT_TRUE(press("m"));
+  ASSERT_TRUE(wait_for_item("handle:S"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto tip = rect("handle:S");
+  drag(tip[0] + 3, tip[1] + 3, tip[0] + 3, tip[1] - 27);
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return s.contains("hand_mm") && double(s["frame"]["mandible_mm"][2]) > 3;
+  })) << state().dump();
+  fs::copy_file(folder_ / "maxilla.stl", folder_ / "face.stl");
+  EXPECT_TRUE(drop_files("Condyle", {folder_ / "face.stl"}));
+  click("import-go");
+  ASSERT_TRUE(wait_for_item("error"));
+  see("no-bone");
+  click("close-error");
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, ATransplantIsMovedLetGoAndTheDiskIsFull) {
+  write_box_patient(folder_.path());
+  std::string strut;
+  for (int i = 0; i < 8; ++i)
+    strut += "v " + std::string(i & 1 ? "25" : "5") + (i & 2 ? " -54" : " -60") +
+             (i & 4 ? " 6.5\n" : " 2.5\n");
+  write_text(folder_ / "strut.obj",
+             strut + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+  const auto import =
+      condyle({"import", "meshes", "--maxilla", folder_ / "maxilla.stl", "--mandible",
+               folder_ / "mandible.stl", "--landmarks", folder_ / "marks.csv", "--transplant",
+               folder_ / "strut.obj", "--out", folder_ / "case"});
+  ASSERT_EQ(import.code, 0) << import.err;
+  const SmallDisk disk(folder_ / "small");
+  start({folder_ / "case", "--motion", "open 5 over 0.2; close over 0.2"});
+  ASSERT_TRUE(wait_until(idle));
+
+  EXPECT_TRUE(press("a"));
+  EXPECT_TRUE(press("m"));
+  ASSERT_TRUE(wait_for_item("body"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  click("body");
+  ASSERT_TRUE(
+      wait_until([&](const Json&) { return !item_called("body:", "body:mandible").empty(); }));
+  click(item_called("body:", "body:mandible"));
+  ASSERT_TRUE(wait_for_item("let-go"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto tip = rect("handle:S");
+  drag(tip[0] + 3, tip[1] + 3, tip[0] + 3, tip[1] - 22);
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["free_mm"][0][2]) > 1; }));
+  see("lifted");
+  const double lifted = double(state()["free_mm"][0][2]);
+  click("let-go");
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return idle(s) && std::abs(double(s["free_mm"][0][2]) + 2.5) < 0.1;
+  })) << state()["free_mm"];
+  EXPECT_GT(see("let-go"), 1e-4);
+  EXPECT_TRUE(press("ctrl+z"));
+  EXPECT_TRUE(wait_until(
+      [&](const Json& s) { return std::abs(double(s["free_mm"][0][2]) - lifted) < 1e-3; }));
+
+  // The recording has the strut where the hand has it.
+  const auto record = [&](const std::string& folder) {
+    write_into("record-folder", folder);
+    click("record");
+  };
+  click("tab:Record");
+  click("record-height:720");
+  click("record-rate:10");
+  record(folder_ / "lifted");
+  ASSERT_TRUE(wait_until(
+      [&](const Json& s) { return idle(s) && fs::exists(folder_ / "lifted/film.mp4"); }));
+  EXPECT_TRUE(press("ctrl+z"));
+  ASSERT_TRUE(
+      wait_until([](const Json& s) { return std::abs(double(s["free_mm"][0][2])) < 1e-6; }));
+  record(folder_ / "put-back");
+  ASSERT_TRUE(wait_until(
+      [&](const Json& s) { return idle(s) && fs::exists(folder_ / "put-back/film.mp4"); }));
+  EXPECT_GT(difference(Picture(folder_ / "lifted/frames/000000.png"),
+                       Picture(folder_ / "put-back/frames/000000.png")),
+            2e-4);
+
+  // The disk is full in the middle of a recording: a sentence, and the window goes on.
+  if (!disk.mounted()) {
+    const rlimit limit{400000, 400000};
+    ASSERT_EQ(prlimit(program(), RLIMIT_FSIZE, &limit, nullptr), 0);
+  }
+  click("record-height:2160");
+  record(folder_ / "small/film");
+  ASSERT_TRUE(wait_for_item("error"));
+  see("disk-full");
+  click("close-error");
+  EXPECT_TRUE(press("space"));
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["playing"] == true; }));
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+}  // namespace
+}  // namespace condyle::test

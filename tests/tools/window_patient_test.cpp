@@ -1,0 +1,122 @@
+// A whole session on the built-in patient, with a picture of the screen at every step. Pictures are
+// kept in build/test-results/pictures; `difference` (tests/support/picture.h) is their measure.
+#include "window_session.h"
+
+namespace condyle::test {
+namespace {
+
+TEST_F(WindowSession, ThePatientIsUsedFromOpeningToQuitting) {
+  start({"--motion", "open 12 over 0.4; close over 0.4"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  see("opened");
+  EXPECT_TRUE(press("k"));
+  EXPECT_TRUE(press("a"));
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["skin_opacity"] == 0; }));
+  EXPECT_GT(see("skull"), 0.03);
+
+  // Play, pause, scrub, back to the start.
+  EXPECT_TRUE(press("space"));
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["playing"] == true && s["time_s"] > 0.1; }));
+  EXPECT_TRUE(press("space"));
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["playing"] == false; }));
+  click("to-start");
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["frame"]["time_s"] == 0; }));
+  EXPECT_LT(see("played-and-back"), 0.003);
+  const auto scrub = rect("scrub");
+  drag(scrub[0] + 0.1 * scrub[2], scrub[1] + scrub[3] / 2, scrub[0] + 0.5 * scrub[2],
+       scrub[1] + scrub[3] / 2);
+  EXPECT_TRUE(wait_until([](const Json& s) { return double(s["frame"]["opening_mm"]) > 9; }));
+  EXPECT_GT(see("scrubbed"), 0.005);
+  click("to-start");
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["frame"]["time_s"] == 0; }));
+
+  // The mandible by its handles: down, up until the teeth meet, and aside along them.
+  EXPECT_TRUE(press("m"));
+  ASSERT_TRUE(wait_for_item("handle:S"));
+  see("handles");
+  const Picture at_rest = seen_;
+  const auto pull = [&](const std::string& handle, double dx, double dy) {
+    const auto tip = rect(handle);
+    drag(tip[0] + 3, tip[1] + 3, tip[0] + 3 + dx, tip[1] + 3 + dy);
+  };
+  pull("handle:S", 0, 50);
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    return double(s["frame"]["mandible_mm"][2]) < -8 && s["frame"]["stopped"] == false;
+  })) << state()["frame"].dump();
+  EXPECT_GT(see("pulled-down"), 0.005);
+  pull("handle:S", 0, -110);
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    return s["frame"]["stopped"] == true && double(s["hand_mm"][2]) > 5 &&
+           std::abs(double(s["frame"]["mandible_mm"][2])) < 2 &&
+           double(s["frame"]["penetration_mm"]) < 0.1;
+  })) << state()["frame"].dump();
+  EXPECT_GT(see("teeth-meet"), 0.005);
+  const double before = double(state()["frame"]["mandible_mm"][0]);
+  pull("handle:L", 15, 0);
+  EXPECT_TRUE(wait_until([&](const Json& s) {
+    return std::abs(double(s["frame"]["mandible_mm"][0]) - before) > 1 &&
+           s["frame"]["stopped"] == true && double(s["frame"]["penetration_mm"]) < 0.1;
+  })) << state()["frame"].dump();
+  EXPECT_GT(see("teeth-slide"), 0.002);
+
+  // Every step is undone.
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(press("ctrl+z"));
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    return !s.contains("hand_mm") && std::abs(double(s["frame"]["mandible_mm"][2])) < 1e-6;
+  }));
+  see("undone");
+  EXPECT_LT(difference(seen_, at_rest, view_region()), 0.003);
+  EXPECT_TRUE(press("m"));
+
+  // Muscles and layers of the tree; undone, too.
+  click("show-all:muscles");
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["muscles_shown"] > 10; }));
+  EXPECT_GT(see("muscles"), 0.002);
+  click("show-all:layers");
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["layers_shown"] == 4; }));
+  EXPECT_GT(see("layers"), 0.05);
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(press("ctrl+z"));
+  EXPECT_TRUE(
+      wait_until([](const Json& s) { return s["layers_shown"] == 0 && s["muscles_shown"] == 0; }));
+
+  // Measure between two places of the forehead.
+  EXPECT_TRUE(press("n"));
+  EXPECT_TRUE(wait_for_item("measure"));
+  const Region view = view_region();
+  see("measuring");
+  for (const double x : {0.47, 0.54})
+    EXPECT_TRUE(xdotool({"mousemove", px(view.x + x * view.width), px(view.y + 0.25 * view.height),
+                         "click", "1", "sleep", "0.2"}));
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["measured"] == 2; }));
+  EXPECT_GT(see("measured"), 2e-4);
+  EXPECT_TRUE(press("n"));
+
+  // Record; the film shows the skull as the window does.
+  click("tab:Record");
+  click("record-height:720");
+  click("record-rate:10");
+  write_into("record-folder", folder_ / "film");
+  click("record");
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["busy_with"] == "recording"; }));
+  see("recording");
+  ASSERT_TRUE(wait_until(idle, 120));
+  const auto frame = [&](const char* number) {
+    return Picture(folder_ / (std::string("film/frames/00000") + number + ".png"));
+  };
+  EXPECT_TRUE(fs::exists(folder_ / "film/film.mp4"));
+  EXPECT_GT(difference(frame("0"), frame("4")), 0.005) << "the mouth opens";
+  EXPECT_LT(difference(frame("0"), frame("8")), 0.005) << "and closes";
+  frame("4").save(kept_pictures() / "ThePatientIsUsedFromOpeningToQuitting-film.png");
+
+  // The interface answered all the time. On a quiet machine about a tenth of a second; a shared one
+  // takes the processor away for longer.
+  RecordProperty("longest_away_ms", int(state()["longest_away_ms"]));
+  std::printf("longest time away from mouse and keyboard: %d ms\n",
+              int(state()["longest_away_ms"]));
+  EXPECT_LT(double(state()["longest_away_ms"]), 800);
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+}  // namespace
+}  // namespace condyle::test

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/support/display.h"
+#include "tests/support/program.h"
+
+namespace condyle::test {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// `condyle view` running on a screen of its own.
+class WindowSession : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(has_program("Xvfb") && has_program("xdotool")) << "install xvfb and xdotool";
+    display_ = std::make_unique<TestDisplay>();
+    ASSERT_TRUE(display_->running());
+    setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
+  }
+  void TearDown() override {
+    if (program_ > 0) {
+      kill(program_, SIGKILL);
+      waitpid(program_, nullptr, 0);
+    }
+    unsetenv("XDG_CONFIG_HOME");
+  }
+  void start(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {CONDYLE_PROGRAM, "--threads", "1", "view"});
+    arguments.insert(arguments.end(), {"--state-file", folder_ / "state.json"});
+    std::vector<char*> words;
+    for (auto& word : arguments) words.push_back(word.data());
+    words.push_back(nullptr);
+    ASSERT_EQ(posix_spawn(&program_, CONDYLE_PROGRAM, nullptr, nullptr, words.data(), environ), 0);
+  }
+  Json state() {
+    const std::string file = folder_ / "state.json";
+    return fs::exists(file) ? Json::parse(read_text(file)) : Json::object();
+  }
+  bool wait_until(const std::function<bool(const Json&)>& law, double longest_s = 40) {
+    const auto start = std::chrono::steady_clock::now();
+    while (std::chrono::steady_clock::now() - start < std::chrono::duration<double>(longest_s)) {
+      const Json now = state();
+      if (!now.empty() && law(now)) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    }
+    return false;
+  }
+  bool wait_for_item(const std::string& name, bool there = true) {
+    return wait_until([&](const Json& s) { return s["items"].contains(name) == there; });
+  }
+  std::array<double, 4> rect(const std::string& name) {
+    const Json now = state();
+    if (!now["items"].contains(name)) {
+      ADD_FAILURE() << "no item '" << name << "' is in the window";
+      return {};
+    }
+    return now["items"][name];
+  }
+  static std::string px(double value) { return std::to_string(std::lround(value)); }
+  void click(const std::string& name) {
+    ASSERT_TRUE(wait_for_item(name)) << name;
+    const auto r = rect(name);
+    EXPECT_TRUE(xdotool({"mousemove", px(r[0] + r[2] / 2), px(r[1] + r[3] / 2), "click", "1"}));
+  }
+  void drag(double x0, double y0, double x1, double y1) {
+    std::vector<std::string> moves = {"mousemove", px(x0), px(y0), "mousedown", "1"};
+    for (int i = 1; i <= 5; ++i)
+      moves.insert(moves.end(), {"mousemove", px(x0 + (x1 - x0) * i / 5),
+                                 px(y0 + (y1 - y0) * i / 5), "sleep", "0.03"});
+    moves.insert(moves.end(), {"mouseup", "1"});
+    EXPECT_TRUE(xdotool(moves));
+  }
+  pid_t program() const { return program_; }
+  static bool press(const std::string& key) { return xdotool({"key", key}); }
+  int wait_for_end() {
+    int status = 0;
+    for (int i = 0; i < 400; ++i) {
+      if (waitpid(program_, &status, WNOHANG) == program_) {
+        program_ = -1;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return -1;
+  }
+
+  /// The first item whose name begins so.
+  std::string item_called(const std::string& beginning, const std::string& but = "?") {
+    for (const auto& [name, place] : state()["items"].items())
+      if (name.starts_with(beginning) && name != but) return name;
+    return {};
+  }
+  /// Writes words into a field instead of what it held.
+  void write_into(const std::string& field, const std::string& words) {
+    click(field);
+    ASSERT_TRUE(wait_for_item("writing"));
+    EXPECT_TRUE(press("ctrl+a"));
+    EXPECT_TRUE(xdotool({"type", words}));
+    EXPECT_TRUE(press("Return"));
+  }
+  /// What the screen shows once it has come to rest.
+  Picture settled_picture() {
+    Picture last = display_->picture();
+    int calm = 0;
+    for (int i = 0; i < 60 && calm < 2; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      Picture now = display_->picture();
+      const bool same = difference(now, last) < 2e-4;
+      calm = same && state()["picture_finished"] == true ? calm + 1 : 0;
+      last = std::move(now);
+    }
+    return last;
+  }
+  Region view_region() {
+    const std::array<double, 4> view = state()["view"];
+    return {view[0], view[1], view[2], view[3]};
+  }
+  /// Keeps the picture of a step (SESSION-NUMBER-STEP.png), also of one that fails. gives: the
+  /// share of the 3-D view that differs from the step before; 1 for the first.
+  double see(const std::string& step) {
+    Picture now = settled_picture();
+    now.save(kept_pictures() /
+             (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "-" +
+              std::to_string(10 + steps_++) + "-" + step + ".png"));
+    const double changed = difference(now, seen_, view_region());
+    seen_ = std::move(now);
+    return changed;
+  }
+
+  Folder folder_;
+  Picture seen_;  // at the last step
+
+ private:
+  int steps_ = 0;
+  std::unique_ptr<TestDisplay> display_;
+  pid_t program_ = -1;
+};
+
+/// The patient is loaded and nothing runs beside.
+inline bool idle(const Json& s) { return s["busy_with"] == "" && s.contains("frame"); }
+
+}  // namespace condyle::test
