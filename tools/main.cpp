@@ -9,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "tools/commands.h"
+#include "tools/pair_options.h"
 #include "tools/shared_options.h"
 
 namespace {

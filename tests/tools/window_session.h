@@ -99,7 +99,8 @@ class WindowSession : public testing::Test {
 
   /// The first item whose name begins so.
   std::string item_called(const std::string& beginning, const std::string& but = "?") {
-    for (const auto& [name, place] : state()["items"].items())
+    const Json now = state();
+    for (const auto& [name, place] : now["items"].items())
       if (name.starts_with(beginning) && name != but) return name;
     return {};
   }
