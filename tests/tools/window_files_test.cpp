@@ -129,6 +129,9 @@ TEST_F(WindowSession, ATransplantIsMovedLetGoAndTheDiskIsFull) {
   ASSERT_TRUE(wait_until(idle));
 
   EXPECT_TRUE(press("a"));
+  const Region view = view_region();  // farther off, so that the handles are within it
+  EXPECT_TRUE(xdotool({"mousemove", px(view.x + view.width / 2), px(view.y + view.height / 2),
+                       "click", "--repeat", "5", "5"}));
   EXPECT_TRUE(press("m"));
   ASSERT_TRUE(wait_for_item("body"));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
