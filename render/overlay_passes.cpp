@@ -72,6 +72,7 @@ void OverlayPasses::set_sheet(const std::string& name, const GlassSheet& sheet) 
     kept.mesh->send_colors(none);
     kept.mesh->send_extras(none);
   }
+  kept.positions = sheet.positions;
   kept.color = sheet.color;
   kept.opacity = sheet.opacity;
   vertex_normals(sheet.positions, sheet.triangles, normals_);
@@ -206,12 +207,14 @@ void OverlayPasses::glass(const GpuMesh& mesh, const Eigen::Vector3f& color, flo
   glDisable(GL_BLEND);
 }
 
-void OverlayPasses::add_lines(PictureBounds& bounds, const PictureView& view) const {
+void OverlayPasses::add_bounds(PictureBounds& bounds, const PictureView& view) const {
   for (const auto& [name, kept] : sets_) {
     for (const auto& end : kept.set.ends)
       bounds.add(end, kept.set.width_px * static_cast<float>(view.height) / 1080);
     for (const auto& dot : kept.set.dots) bounds.add(dot, view.radius_px(dot, kept.set.dot_mm));
   }
+  for (const auto& [name, sheet] : sheets_)
+    for (const auto& place : sheet.positions) bounds.add(place, 0);
 }
 
 void OverlayPasses::lines(const PictureView& view, int width, int height) {

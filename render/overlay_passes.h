@@ -26,8 +26,8 @@ class OverlayPasses {
   /// The part as at rest: behind what is nearer, its nearest layer alone.
   void ghost(const DrawItem& item, const Ghost& look, const PictureView& view);
   void lines(const PictureView& view, int width, int height);
-  /// Where the lines and their dots fall.
-  void add_lines(PictureBounds& bounds, const PictureView& view) const;
+  /// Where lines, their dots and sheets fall.
+  void add_bounds(PictureBounds& bounds, const PictureView& view) const;
   /// In the order of their names, each over those before it.
   void sheets(const PictureView& view);
 
@@ -38,6 +38,7 @@ class OverlayPasses {
     GpuPoints dots;
   };
   struct ShownSheet {
+    std::vector<Eigen::Vector3f> positions;
     std::vector<Eigen::Vector3i> triangles;
     Eigen::Vector3f color;
     float opacity;

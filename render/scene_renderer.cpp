@@ -266,7 +266,7 @@ DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& s
       add(item.drawable->box, Eigen::Matrix4f::Identity());
   }
   if (settings.contacts) Passes::add_contacts(s.contact_points, bounds, view);
-  s.overlays.add_lines(bounds, view);
+  s.overlays.add_bounds(bounds, view);
   return bounds.box(drawn_air);
 }
 
