@@ -165,6 +165,8 @@ void LiveSimulation::work() {
       if (!runs_on) {
         answered = wanted;
         answered_grips = grips;
+      } else {
+        answered.reset();  // or going back to what was answered last would be no news
       }
       // Steps on the way are shown only as often as a screen wants pictures.
       const bool shown = !runs_on || Clock::now() - last_shown > picture_interval;
