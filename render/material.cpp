@@ -24,7 +24,7 @@ Material material_of(Role role) {
     case Role::lower_gums:
       return {{.76f, .45f, .43f}, .42f, .030f, .30f, {.45f, .12f, .10f}, .3f};
     case Role::tongue:
-      return {{.76f, .45f, .44f}, .48f, .030f, .30f, {.45f, .12f, .10f}, .25f};
+      return {{.78f, .47f, .46f}, .42f, .034f, .32f, {.45f, .12f, .10f}, .45f};
   }
   return {{.8f, .8f, .8f}, .5f, .03f, .2f, {0, 0, 0}, 0};
 }

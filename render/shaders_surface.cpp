@@ -26,7 +26,7 @@ out vec3 to_eye;
 out vec3 world_normal;
 out vec3 albedo;               // linear
 out vec3 shadow_place;
-out vec4 traits;               // occlusion, curvature, gloss, depth in the mouth
+out vec4 traits;               // occlusion, curvature, gloss, depth in the mouth, counted at rest
 out float mapped_value;
 out vec3 rest_place;
 void main() {
@@ -47,7 +47,7 @@ void main() {
   vec4 s = shadow_matrix * vec4(world.xyz + offset * world_normal, 1.0);
   shadow_place = s.xyz;
   traits = vec4(mix(extra.x, color.a, together), extra.y, extra.z,
-                exp(-max(world.y - cavity.x, 0.0) * cavity.y));
+                exp(-max(position.y - cavity.x, 0.0) * cavity.y));
 }
 )";
 

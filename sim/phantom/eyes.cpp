@@ -12,34 +12,39 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr double limbus = 5.8, pupil = 2.0, cornea_bulge = 0.6;  // mm
+constexpr double limbus = 5.8, pupil = 1.8, cornea_bulge = 0.6;  // mm
 
 /// Colour of the eye at a distance from the gaze axis, by direction about it.
 Vector3f eye_color(double off_axis, double angle) {
   const auto mixed = [](const Vector3f& a, const Vector3f& b, double t) -> Vector3f {
     return a + (b - a) * static_cast<float>(smooth_step(t));
   };
-  const double rays = .5 + .25 * std::sin(17 * angle) + .25 * std::sin(29 * angle + 1);
-  const Vector3f white(.93f, .91f, .89f), rim(.16f, .20f, .23f), black(.02f, .02f, .02f);
-  const Vector3f outer = mixed({.30f, .42f, .48f}, {.40f, .52f, .56f}, rays);
-  const Vector3f inner = mixed({.46f, .48f, .42f}, {.38f, .50f, .54f}, rays);
-  Vector3f color = mixed(inner, outer, (off_axis - pupil) / (limbus - pupil) * 1.3);
-  color = mixed(color, rim, (off_axis - limbus + 1.0) / 0.9);
+  // Fibres run outward, uneven in width and slightly bent.
+  const double turn = angle + .12 * std::sin(1.9 * off_axis);
+  const double rays = .5 + .2 * std::sin(19 * turn) + .2 * std::sin(31 * turn + 1) +
+                      .1 * std::sin(43 * turn + off_axis);
+  const Vector3f white(.84f, .80f, .77f), rim(.13f, .11f, .10f), black(.015f, .012f, .012f);
+  const Vector3f outer = mixed({.25f, .20f, .14f}, {.38f, .33f, .24f}, rays);
+  const Vector3f inner = mixed({.36f, .23f, .12f}, {.50f, .34f, .19f}, rays);
+  Vector3f color = mixed(inner, outer, (off_axis - pupil) / (limbus - pupil) * 1.5);
+  color = mixed(color, rim, (off_axis - limbus + 1.3) / 1.2);
   color = mixed(black, color, (off_axis - pupil + .15) / .3);
-  color = mixed(color, white, (off_axis - limbus + .15) / .45);
-  return mixed(color, {.86f, .70f, .66f}, (off_axis - 7) / 8);  // veins toward the corners
+  color = mixed(color, white, (off_axis - limbus + .25) / .7);
+  // Moist and redder toward the corners, with veins.
+  const double veins = .75 + .25 * std::sin(23 * angle + 3 * std::sin(1.3 * off_axis));
+  return mixed(color, {.76f, .56f, .52f}, veins * (off_axis - 6.5) / 6.5);
 }
 
 }  // namespace
 
 TriMesh eyes_surface() {
   // Rings about the gaze axis (-y), close together where the colour changes.
-  std::vector<double> off_axis{.5,  1,   1.5, 1.85, 2.15, 2.6, 3.2, 3.8,
-                               4.4, 4.8, 5.2, 5.65, 5.85, 6.1, 6.6};
+  std::vector<double> off_axis{.5,  1,   1.5, 1.65, 1.95, 2.2, 2.6, 3,   3.4, 3.8, 4.2,
+                               4.5, 4.8, 5.1, 5.4,  5.6,  5.8, 6,   6.2, 6.6, 7.1, 7.6};
   std::vector<double> polar;
   for (const double r : off_axis) polar.push_back(std::asin(r / eye_radius));
   for (double a = polar.back() + .07; a < std::numbers::pi - .05; a += .07) polar.push_back(a);
-  const int around = 64;
+  const int around = 128;
   TriMesh eye;
   const auto add = [&](double a, double turn) {
     const double r = eye_radius * std::sin(a);

@@ -60,8 +60,8 @@ FieldRecipe parted_face() {
 
 /// Positive where the surface is not skin: deep behind the lips, and the eye sockets.
 double hidden(const Vector3d& p, const Primitive& space, const Primitive& lids) {
-  // No lining beside the corners: a pocket there would be torn when the lips part.
-  const double lining = 6.5 * smooth_step((mouth_corner_x - std::abs(p.x())) / 4);
+  // Ever less lining toward the corners: it would hang there like a curtain when the lips part.
+  const double lining = 6.5 * smooth_step((mouth_corner_x - std::abs(p.x())) / 16);
   const double mouth =
       std::min(0.6 - space.distance(p),
                std::max(std::abs(p.z() - lip_line(p.x(), p.y())) - lining, p.y() + 79));
@@ -78,6 +78,17 @@ double importance(const Vector3d& p) {
                        smooth_step((65 - p.z()) / 20);
   return 1 + 60 * front + 250 * (bump(12, -98, -50, 15) + bump(32, -82, 15, 17)) +
          120 * (bump(0, -112, -18, 17) + bump(28, -86, 35, 16)) + 60 * bump(78, 10, 0, 30);
+}
+
+/// Nobody's face is the same on both sides: the nose leans to the left and the chin to the right,
+/// the left brow stands higher and the left ear lower. Lips and lids, which have to fit, stay.
+Vector3d uneven(const Vector3d& p) {
+  const auto near = [&](const Vector3d& c, const Vector3d& r) {
+    return std::exp(-((p - c).cwiseQuotient(r)).squaredNorm());
+  };
+  return p + Vector3d(
+                 1.1 * near({0, -110, -14}, {16, 22, 18}) - 1.2 * near({0, -95, -88}, {26, 24, 15}),
+                 0, 1.1 * near({32, -84, 38}, {22, 16, 11}) - 1.6 * near({78, 8, 0}, {14, 26, 34}));
 }
 
 }  // namespace
@@ -101,6 +112,7 @@ TriMesh face_surface() {
                         std::abs(p.z() - lip_line(left.x(), p.y())) < 12;
     face.colors.push_back(lining ? Eigen::Vector3f(.48f, .20f, .20f) : skin_color(p));
   }
+  for (auto& p : face.vertices) p = uneven(p);
   return face;
 }
 

@@ -38,7 +38,8 @@ void add_eyes(FieldRecipe& head) {
            6);  // lid fold
   head.cut(lid_opening(), 1.0);
   head.add(ellipsoid(eye_center, Vector3d::Constant(eye_radius)), 0);
-  head.add(ellipsoid({17, -79.5, 12.2}, {2, 2.5, 1.8}), 1.2);  // caruncle
+  head.add(ellipsoid({17.6, -79.2, 12.3}, {2.4, 3, 2}), 1.2);    // caruncle
+  head.add(ellipsoid({20.4, -79, 12.9}, {2.6, 2.6, 2.2}), 1.2);  // fold between it and the eyeball
 }
 
 void add_nose(FieldRecipe& head) {
@@ -91,7 +92,7 @@ Primitive lid_opening() {
             double d = -50;
             // Two arcs; the upper one peaks toward the nose, the lower one away from it.
             for (const int side : {1, -1}) {
-              const double height = side > 0 ? 5.2 : 4.0;
+              const double height = side > 0 ? 4.7 : 3.8;
               const double radius = (half * half + height * height) / (2 * height);
               d = std::max(d, std::hypot(u + 1.2 * side, v * side + radius - height) - radius);
             }

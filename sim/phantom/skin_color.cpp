@@ -44,8 +44,11 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
   if (x > 68)
     mix({.82, .50, .42}, .6 * smooth_step((x - 68) / 8) * spot({84, 14, 0}, {14, 25, 38}));
   mix({.70, .50, .44}, .35 * spot({31, -84, 16}, {17, 14, 9}));  // around the eye
-  mix({.74, .58, .50}, .30 * spot({0, -100, -72}, {30, 22, 30}) +
-                           .18 * spot({0, -106, -36}, {20, 12, 9}));  // beard shadow
+  // Shaven beard: denser on chin and upper lip, thinning toward cheek and throat.
+  const double beard =
+      .9 * spot({0, -98, -76}, {34, 26, 26}) + .8 * spot({0, -105, -37}, {24, 12, 8}) +
+      .7 * spot({46, -52, -66}, {26, 34, 24}) + .5 * spot({62, -18, -40}, {14, 16, 30});
+  mix({.60, .48, .43}, std::min(beard, 1.0) * (.30 + .07 * mottle(at, 3) + .05 * mottle(at, 11)));
 
   if (y < -76) {  // lips
     const double s = std::min(x / 25.6, 1.0);
@@ -62,14 +65,18 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
     const double across = (z - brow_height(x)) / (brow_width(x) + .6);
     const double hairs = .88 + .12 * std::sin(3.1 * x - 1.7 * z + 2 * std::sin(.9 * x));
     const double ends = smooth_step((x - 8.5) / 4) * smooth_step((49 - x) / 8);
-    mix({.27, .19, .14}, .78 * hairs * ends * std::exp(-std::pow(std::abs(across), 2.6)));
+    mix({.21, .15, .11}, .82 * hairs * ends * std::exp(-std::pow(std::abs(across), 2.6)));
   }
   const double from_eye = (p - eye_center).norm();
   if (from_eye < eye_radius + 3 && y < -74) {  // lash line
     const double lid = lids.distance({x, -100, z});
-    mix({.36, .23, .19}, .75 * std::exp(-std::pow(lid / 0.9, 2)));
+    const bool upper = z > 13.6 + .1 * (x - 31);
+    mix({.24, .15, .12}, (upper ? .9 : .55) * std::exp(-std::pow(lid / (upper ? 1.0 : .7), 2)));
   }
-  mix({.78, .62, .53}, .25 * smooth_step((z - hair_line(y)) / 14 + .5));  // shaved scalp
+  mix({.78, .47, .43}, .8 * spot({18.6, -80.5, 12.5}, {2.6, 3, 2.2}));  // caruncle
+  // Hair cut to the skin.
+  const double hair = smooth_step((z - hair_line(y) + 3 * mottle(at, 19)) / 18 + .5);
+  mix({.50, .42, .38}, hair * (.42 + .05 * mottle(at, 9)) * smooth_step((78 - x) / 6));
   return color.cast<float>();
 }
 

@@ -84,9 +84,11 @@ void expect_separate_teeth() {
   EXPECT_LT(gap, 0.15);
 }
 
-/// Vertices as a set of exact coordinates must be the same after x -> -x.
+/// Vertices as a set of exact coordinates must be the same after x -> -x; but a face is never
+/// quite even.
 void expect_mirror_symmetry() {
   for (const auto& part : patient().parts) {
+    if (part.role == Role::face) continue;
     std::vector<std::array<double, 3>> here, there;
     for (const auto& p : part.mesh.vertices) {
       here.push_back({p.x() == 0 ? 0 : p.x(), p.y(), p.z()});
