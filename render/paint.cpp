@@ -39,4 +39,20 @@ Image wiped(const Image& left, const Image& right, double at) {
   return image;
 }
 
+Image beside(std::span<const Image> images) {
+  Image whole;
+  const int width = images.front().width, count = static_cast<int>(images.size());
+  whole.width = count * width;
+  whole.height = images.front().height;
+  whole.rgba.resize(std::size_t{4} * whole.width * whole.height);
+  const int half = std::max(1, whole.height / 720);
+  for (int i = 0; i < count; ++i)
+    for (int y = 0; y < whole.height; ++y)
+      std::copy_n(&images[i].rgba[std::size_t{4} * y * width], std::size_t{4} * width,
+                  &whole.rgba[std::size_t{4} * (std::size_t{1} * y * whole.width + i * width)]);
+  for (int i = 1; i < count; ++i)
+    paint_box(whole, {i * width - half, 0, i * width + half, whole.height}, {0.93f, 0.93f, 0.93f});
+  return whole;
+}
+
 }  // namespace condyle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "render/image.h"
 
@@ -21,5 +22,8 @@ void paint_frame(Image& image, const PixelBox& box, const Eigen::Vector3f& color
 /// Left of `at` (share of the width) the one, right of it the other, with a light line between
 /// them. Both of one size.
 Image wiped(const Image& left, const Image& right, double at);
+
+/// From left to right, with a light line between them; all of one size.
+Image beside(std::span<const Image> images);
 
 }  // namespace condyle

@@ -36,6 +36,7 @@ struct PictureOptions {
   std::string clip = {}, clip_parts = {}, cut_away = {}, overlay = {};
   bool clip_open = false;
   std::optional<double> wipe = std::nullopt;
+  bool before_after = false;
   std::string caption = {};
   bool transparent = false;
   std::string edges = "msaa4";

@@ -20,4 +20,8 @@ void DisplacementDrawing::color(SceneRenderer& renderer, const FrameState& frame
   renderer.color_part(name_, way);
 }
 
+void DisplacementDrawing::clear(SceneRenderer& renderer) const {
+  if (!name_.empty()) renderer.color_part(name_, {});
+}
+
 }  // namespace condyle

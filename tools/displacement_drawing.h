@@ -16,6 +16,8 @@ class DisplacementDrawing {
 
   /// A frame without a face, or with the face at rest, has none.
   void color(SceneRenderer& renderer, const FrameState& frame) const;
+  /// The face in its own colours again.
+  void clear(SceneRenderer& renderer) const;
   void add_legend_to(Image& image) const { add_legend(image, words_, colours_, {"from rest"}); }
 
  private:

@@ -156,6 +156,14 @@ PicturePlan parse(const PictureOptions& options, const Case* patient) {
   settings.supersampling = options.supersample;
   settings.shadows = options.shadows;
   plan.wipe = options.wipe;
+  if (options.before_after) {
+    if (plan.map == SurfaceMap::distance || plan.patches || plan.wipe)
+      throw InputError(
+          "--before-after: shows rest, now and the skin's way beside one another; leave --wipe, "
+          "--show distance and --overlay patches out");
+    plan.before_after = true;
+    plan.map = SurfaceMap::displacement;
+  }
   return plan;
 }
 
@@ -179,6 +187,7 @@ std::string describe(const PictureOptions& o) {
                         o.clip_open ? ", open" : "");
   if (!o.cut_away.empty()) text += "; cut away " + o.cut_away;
   if (!o.overlay.empty()) text += "; overlay " + o.overlay;
+  if (o.before_after) text += "; before and after";
   if (o.wipe) text += fmt::format("; wipe {}", *o.wipe);
   if (!o.caption.empty()) text += "; caption " + o.caption;
   if (o.transparent) text += "; transparent";

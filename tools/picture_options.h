@@ -17,6 +17,7 @@ struct PicturePlan {
   SurfaceMap map = SurfaceMap::none;
   bool patches = false;
   std::optional<double> wipe = std::nullopt;
+  bool before_after = false;
 };
 
 /// throws: InputError saying which option is wrong and what is known.

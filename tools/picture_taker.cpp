@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "engine/core/error.h"
 #include "engine/mesh/measure.h"
 #include "render/gap_colours.h"
@@ -11,7 +13,7 @@ namespace condyle {
 namespace {
 
 // Fixed, so that pictures can be compared; nothing goes farther at full opening.
-constexpr double displacement_end_mm = 60;
+constexpr double displacement_end_mm = 75;
 
 /// The box of what is shown, grown by where the motion takes the mandible: what the camera keeps in
 /// view.
@@ -75,7 +77,7 @@ PictureTaker::PictureTaker(const RecordOptions& options, const RecordingSubject&
     identity["picture"] = describe(wanted);
     view.recorder = std::make_unique<Recorder>(RecorderSettings{
         .folder = cameras.size() == 1 ? options.out : options.out / view.camera.name(),
-        .width = plan_.settings.width,
+        .width = (plan_.before_after ? 3 : 1) * plan_.settings.width,
         .height = plan_.settings.height,
         .frames = subject.frames,
         .frames_per_second = subject.frames_per_second,
@@ -94,10 +96,15 @@ bool PictureTaker::wanted(int frame) const {
 }
 
 Image PictureTaker::drawn(const View& view, const Camera& camera, const FrameState& state,
-                          bool with_paths) {
+                          bool with_paths, bool with_map) {
   renderer_.update(state);
   if (distances_) distances_->color(renderer_, state);
-  if (displacement_) displacement_->color(renderer_, state);
+  if (displacement_) {
+    if (with_map)
+      displacement_->color(renderer_, state);
+    else
+      displacement_->clear(renderer_);
+  }
   for (const auto& [name, lines] :
        overlay_lines(subject_.scene, state, plan_.overlays, with_paths ? paths_ : MotionPaths{}))
     renderer_.set_lines(name, lines);
@@ -105,11 +112,23 @@ Image PictureTaker::drawn(const View& view, const Camera& camera, const FrameSta
 }
 
 Image PictureTaker::picture(const View& view, const Camera& camera, const FrameState& state) {
-  Image image = drawn(view, camera, state, true);
-  if (plan_.wipe) image = wiped(drawn(view, camera, rest_, false), image, *plan_.wipe);
+  Image image = drawn(view, camera, state, true, true);
+  if (plan_.wipe) image = wiped(drawn(view, camera, rest_, false, true), image, *plan_.wipe);
   if (distances_) distances_->add_legend_to(image);
   if (displacement_) displacement_->add_legend_to(image);
   return image;
+}
+
+Image PictureTaker::before_after(const View& view, const Camera& camera, const FrameState& state) {
+  std::array<Image, 3> images;  // at rest, now, the way between
+  auto notes = plan_.annotations;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const bool mapped = i == 2, moved = i > 0;
+    images[i] = drawn(view, camera, moved ? state : rest_, moved, mapped);
+    if (mapped) displacement_->add_legend_to(images[i]);
+    annotate(images[i], words_, camera, notes);
+  }
+  return beside(images);
 }
 
 void PictureTaker::take(int frame, FrameState& state) {
@@ -120,9 +139,15 @@ void PictureTaker::take(int frame, FrameState& state) {
   for (auto& view : views_) {
     if (view.recorder->has(frame)) continue;
     const Camera camera = view.camera.at(share, state);
-    Image image = picture(view, camera, state);
     auto notes = plan_.annotations;
     notes.caption = caption_lines(caption_, frame, state, subject_.motion.name);
+    Image image;
+    if (plan_.before_after) {
+      image = before_after(view, camera, state);
+      notes = {.caption = notes.caption};
+    } else {
+      image = picture(view, camera, state);
+    }
     annotate(image, words_, camera, notes);
     view.recorder->add(frame, std::move(image));
   }

@@ -45,7 +45,9 @@ class PictureTaker {
     std::unique_ptr<Recorder> recorder;
   };
   Image picture(const View& view, const Camera& camera, const FrameState& state);
-  Image drawn(const View& view, const Camera& camera, const FrameState& state, bool with_paths);
+  Image before_after(const View& view, const Camera& camera, const FrameState& state);
+  Image drawn(const View& view, const Camera& camera, const FrameState& state, bool with_paths,
+              bool with_map);
 
   OffscreenContext context_;
   const RecordingSubject subject_;

@@ -184,6 +184,9 @@ void add_pictures(CLI::App* command, PictureOptions& picture) {
       ->add_option("--wipe", picture.wipe,
                    "Left of this share of the width the patient at rest, right of it as he is now")
       ->check(within(0.0, 1.0));
+  command->add_flag("--before-after", picture.before_after,
+                    "Three pictures of that size beside one another: at rest, as he is now, and "
+                    "now with the skin coloured by its way from rest");
   command->add_option("--caption", picture.caption,
                       "Words under the picture; {time}, {opening}, {rotation}, {frame} and "
                       "{motion} are filled in, | breaks the line");
