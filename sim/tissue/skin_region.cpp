@@ -193,7 +193,9 @@ double RegionShape::inside(const Vector3d& p) const {
   // side.
   const double top = 13 - height;
   const double back_limit = anatomy.condyles.y() + 3 + 72 * smoothstep((-24 - height) / 40);
-  const double back = back_limit - p.y();
+  // That border runs steeply: it is nearer than along y.
+  constexpr double steepness = 0.45;
+  const double back = steepness * (back_limit - p.y());
   return std::min({top, back, p.z() - floor_z});
 }
 
