@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int surface_version = 4;  // raise when surfaces or landmarks change but no solid does
+constexpr int surface_version = 5;  // raise when surfaces or landmarks change but no solid does
 
 template <class T>
 void mix(std::uint64_t& hash, const T& value) {
