@@ -117,7 +117,8 @@ StepInput LiveSimulation::input(const LiveRequest& wanted, double time_s) const 
 void LiveSimulation::work() {
   using Clock = std::chrono::steady_clock;
   FrameState now = rest_frame(scene_);
-  std::optional<LiveRequest> answered;
+  LiveRequest answered;
+  bool any = false;  // whether it counts
   long answered_grips = 0;
   const auto free = free_parts(scene_.patient.parts);
   std::vector<Pose> X_BF(free.size());  // where free parts are to be in their carriers' frames
@@ -132,8 +133,8 @@ void LiveSimulation::work() {
       long grips = 0;
       {
         std::unique_lock lock(mutex_);
-        changed_.wait(lock,
-                      [&] { return stop_ || answered != wanted_ || answered_grips != grips_; });
+        changed_.wait(
+            lock, [&] { return stop_ || !any || answered != wanted_ || answered_grips != grips_; });
         if (stop_) return;
         wanted = wanted_;
         held = held_;
@@ -164,9 +165,10 @@ void LiveSimulation::work() {
       now.times[Stage::motion] = motion_time[Stage::motion];
       if (!runs_on) {
         answered = wanted;
+        any = true;
         answered_grips = grips;
       } else {
-        answered.reset();  // or going back to what was answered last would be no news
+        any = false;  // or going back to what was answered last would be no news
       }
       // Steps on the way are shown only as often as a screen wants pictures.
       const bool shown = !runs_on || Clock::now() - last_shown > picture_interval;
