@@ -39,6 +39,12 @@ Sides sides_of(const DrawItem& item) {
   return item.drawable->closed && !item.cut() ? Sides::front : Sides::both;
 }
 
+/// What is drawn of a part. Values are shown where they are, on all of its triangles.
+const GpuMesh::Surface& surface_of(const DrawItem& item, const PictureView& view) {
+  const bool coarse = view.coarse && !item.drawable->mapped;
+  return coarse ? item.mesh().coarse() : item.mesh().fine();
+}
+
 Viewpoint eye_of(const PictureView& view) {
   return {view.view_projection, view.eye.homogeneous(), view.width, view.height};
 }
@@ -230,24 +236,25 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
 void Passes::shade(const DrawItem& item, const PictureView& view) {
   const auto& drawable = *item.drawable;
   const auto& mesh = item.mesh();
+  const auto& surface = surface_of(item, view);
   const Viewpoint eye = eye_of(view);
   if (item.role() != Role::face) {
     cull_by_closure(item);
     begin(surface_, item, view);
-    mesh.draw(visibility_.choose(mesh, mesh.fine(), item.model, eye, sides_of(item), &cover_));
+    mesh.draw(visibility_.choose(mesh, surface, item.model, eye, sides_of(item), &cover_));
     end_cut();
     return;
   }
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
   begin(drawable.mapped ? surface_ : skin_, item, view);
-  mesh.draw(visibility_.choose(mesh, mesh.fine(), item.model, eye, Sides::front));
+  mesh.draw(visibility_.choose(mesh, surface, item.model, eye, Sides::front));
   end_cut();
   glFlush();  // as after the shadow map
   if (drawable.closed && !item.cut()) return;
   glCullFace(GL_FRONT);
   begin(interior_, item, view);
-  mesh.draw(visibility_.choose(mesh, mesh.fine(), item.model, eye, Sides::back, &cover_));
+  mesh.draw(visibility_.choose(mesh, surface, item.model, eye, Sides::back, &cover_));
   end_cut();
 }
 
@@ -256,7 +263,9 @@ void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
   if (view.may_cull)
     each_covering(items, [&](const DrawItem& item) {
       const auto& mesh = item.drawable->mesh;
-      cover_.add(mesh.points(), mesh.fine().triangles, *item.drawable->edges, item.model);
+      const bool fine = &surface_of(item, view) == &mesh.fine();
+      cover_.add(mesh.points(), surface_of(item, view).triangles,
+                 fine ? *item.drawable->edges : *item.drawable->coarse_edges, item.model);
     });
   cover_.finish();
   // The face hides most of the rest: drawn first, it spares the shading of what lies under it.
@@ -272,7 +281,7 @@ void Passes::depth_only(const DrawItem& item, const PictureView& view) {
   begin_cut(depth_, item, view);
   depth_.set("model", item.model);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  item.mesh().draw(visibility_.choose(item.mesh(), item.mesh().fine(), item.model, eye_of(view),
+  item.mesh().draw(visibility_.choose(item.mesh(), surface_of(item, view), item.model, eye_of(view),
                                       sides_of(item), &cover_));
   end_cut();
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

@@ -39,6 +39,7 @@ struct PictureView {
   Lights lights;
   float pixels_per_unit;  // of a length across the line of sight at distance 1
   bool shadows = true;
+  bool coarse = false;       // shapes, where they serve
   bool opaque_face = false;  // keeps the sky out of the mouth, and hides most of the rest
   bool may_cull = true;      // the eye is outside of everything
   float skin_opacity = 1;

@@ -162,6 +162,7 @@ PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettin
   v.pixels_per_unit = static_cast<float>(
       settings.height / 2.0 / std::tan(camera.field_of_view_deg * std::numbers::pi / 360));
   v.shadows = settings.shadows;
+  v.coarse = settings.coarse;
   v.may_cull = away > radius + 5;
   v.skin_opacity = static_cast<float>(std::clamp(settings.skin_opacity, 0.0, 1.0));
   v.at_rest = at_rest(items);

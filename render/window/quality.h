@@ -7,6 +7,7 @@ struct Quality {
   double render_scale = 1;  // of each side; 0.66 to 1, and 0.4 when that would stand still
   int samples = 4;
   bool shadows = true;
+  bool coarse = false;  // see PictureSettings
   bool operator==(const Quality&) const = default;
 };
 

@@ -32,6 +32,7 @@ std::optional<DrawnPicture> ViewPicture::draw(SceneRenderer& renderer, const Pic
   settings.width = side(settings.width);
   settings.height = side(settings.height);
   settings.samples = quality.samples;
+  settings.coarse = quality.coarse;
   settings.shadows = settings.shadows && quality.shadows;
   auto& target = state_->target;
   target.fit(settings.width, settings.height, quality.samples, quality.samples <= 1);

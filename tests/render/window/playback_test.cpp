@@ -88,7 +88,7 @@ TEST(Quality, FallsWhileMovingOnASlowDriverAndIsFullAtRest) {
   EXPECT_EQ(governor.choose(true), best);
 }
 
-TEST(Quality, GetsCoarseOnlyWhereThePictureWouldStandStill) {
+TEST(Quality, LosesMostPixelsOnlyWhereThePictureWouldStandStill) {
   QualityGovernor governor;
   for (int i = 0; i < 100; ++i) governor.measured(true, 70);  // 14 a second
   EXPECT_LT(governor.choose(true).render_scale, 0.5);
