@@ -118,7 +118,7 @@ void LiveSimulation::work() {
   using Clock = std::chrono::steady_clock;
   FrameState now = rest_frame(scene_);
   LiveRequest answered;
-  bool any = false;  // whether it counts
+  bool caught_up = false;  // with it
   long answered_grips = 0;
   const auto free = free_parts(scene_.patient.parts);
   std::vector<Pose> X_BF(free.size());  // where free parts are to be in their carriers' frames
@@ -133,8 +133,9 @@ void LiveSimulation::work() {
       long grips = 0;
       {
         std::unique_lock lock(mutex_);
-        changed_.wait(
-            lock, [&] { return stop_ || !any || answered != wanted_ || answered_grips != grips_; });
+        changed_.wait(lock, [&] {
+          return stop_ || !caught_up || answered != wanted_ || answered_grips != grips_;
+        });
         if (stop_) return;
         wanted = wanted_;
         held = held_;
@@ -163,12 +164,10 @@ void LiveSimulation::work() {
       for (std::size_t f = 0; f < free.size(); ++f)
         if (held[1 + f]) X_BF[f] = carrier(f).inverse() * now.X_CF[f];
       now.times[Stage::motion] = motion_time[Stage::motion];
-      if (!runs_on) {
+      caught_up = !runs_on;
+      if (caught_up) {
         answered = wanted;
-        any = true;
         answered_grips = grips;
-      } else {
-        any = false;  // or going back to what was answered last would be no news
       }
       // Steps on the way are shown only as often as a screen wants pictures.
       const bool shown = !runs_on || Clock::now() - last_shown > picture_interval;

@@ -33,10 +33,10 @@ class LiveSimulation {
   void request(const LiveRequest& wanted);
 
   /// A hand holds the body of a part (an index of the case) and wants it at a pose, rest to now, in
-  /// its carrier's frame (the mandible: the cranium's), until the next call or until it lets go. It slides along what is in the
-  /// way if contact is obeyed. Let go, the mandible follows the motion again; a segment or
-  /// transplant stays where it came to, in its carrier's frame. From any thread.
-  /// throws: InputError for a part that does not move, and for values that are no numbers.
+  /// its carrier's frame (the mandible: the cranium's), until the next call or until it lets go. It
+  /// slides along what is in the way if contact is obeyed. Let go, the mandible follows the motion
+  /// again; a segment or transplant stays where it came to, in its carrier's frame. From any
+  /// thread. throws: InputError for a part that does not move, and for values that are no numbers.
   void drag(std::size_t part, const Pose& wanted);
   void release(std::size_t part);
 
