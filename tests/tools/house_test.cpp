@@ -77,11 +77,15 @@ TEST(House, IncludesRunDownwardOnly) {
 
 TEST(House, EachLibraryHasOneRoom) {
   const std::map<std::string, std::vector<std::string>> homes = {
-      {"fcl/", {"engine/collide/"}},    {"openvdb/", {"engine/field/"}},
-      {"assimp/", {"engine/mesh_io/"}}, {"imgui", {"render/window/"}},
-      {"GLFW/", {"render/window/"}},    {"epoxy/egl", {"render/"}},
-      {"epoxy/gl", {"render/"}},        {"stb/", {"render/", "engine/mesh_io/"}},
-      {"CLI/", {"tools/main.cpp"}}};
+      {"fcl/", {"engine/collide/"}},
+      {"openvdb/", {"engine/field/"}},
+      {"assimp/", {"engine/mesh_io/"}},
+      {"imgui", {"render/window/"}},
+      {"GLFW/", {"render/window/"}},
+      {"epoxy/egl", {"render/"}},
+      {"epoxy/gl", {"render/"}},
+      {"stb/", {"render/", "engine/mesh_io/"}},
+      {"CLI/", {"tools/main.cpp", "tools/shared_options.cpp"}}};
   std::set<std::string> seen;
   for (const auto& source : sources())
     for (const auto& header : source.library_includes)

@@ -62,7 +62,8 @@ TEST_F(WindowSession, ThePatientIsUsedFromOpeningToQuitting) {
   // Every step is undone.
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(wait_until([](const Json& s) {
-    return !s.contains("hand_mm") && std::abs(double(s["frame"]["mandible_mm"][2])) < 1e-6;
+    // Home within what contact leaves open: the teeth touch there.
+    return !s.contains("hand_mm") && std::abs(double(s["frame"]["mandible_mm"][2])) < 1e-3;
   }));
   see("undone");
   EXPECT_LT(difference(seen_, at_rest, view_region()), 0.003);
