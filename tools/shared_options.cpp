@@ -110,7 +110,7 @@ void add_tissue(CLI::App* command, MotionOptions& motion) {
   TissueOptions& model = motion.tissue_model;
   command->add_option("--layers", model.layers, "Layers of soft tissue: 1, 2, 3 or 5 (3)");
   command->add_option("--turgor", model.turgor,
-                      "Tension of the skin: its rest length over its length, 0.5 to 1 (1: none)");
+                      "Tension of the skin: its rest length over its length, above 0 to 1 (1: none)");
   command->add_option("--lambda", model.lambda,
                       "Weight of springs against volumes, 0.001 to 0.999 (0.5)");
   command

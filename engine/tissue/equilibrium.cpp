@@ -13,169 +13,345 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// Tension (N, a pull is above zero) of a spring strained by e = (l - l0) / l.
-double tension_of(const SpringPrismNet& net, std::size_t s, double length, double strain) {
-  return 2 * net.stiffness[s] * (strain < 0 ? net.compression_share : 1.0) * length * strain;
-}
-
 double largest(const VectorXd& force) {
   double most = 0;
   for (Index i = 0; i < force.size(); i += 3) most = std::max(most, force.segment<3>(i).norm());
   return most;
 }
 
-}  // namespace
+/// Adds a block of nodes a and b, if it lies in the matrix's lower half.
+void add_block(std::vector<Eigen::Triplet<double>>& entries, int a, int b, const Matrix3d& m) {
+  if (a < b) return;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < (a == b ? i + 1 : 3); ++j)
+      entries.emplace_back(3 * a + i, 3 * b + j, m(i, j));
+}
 
-// The strains of least energy that balance given forces are those that a linear net would take if
-// these forces displaced it: with B the force on the nodes per tension (or pressure) and W the
-// stiffnesses, the tensions are W B^T y where B W B^T y = -force. A spring that would push counts
-// with its stiffness when it pushes; one that comes to its bound keeps that tension and leaves the
-// system. Both choices are taken again in each round until nothing changes. Without the pressures
-// the weight of soft tissue would have to rest on fibres that buckle.
-Equilibrium balance_strains(SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
-                            const EquilibriumSettings& settings) {
-  const std::size_t springs = net.spring_a.size();
-  const Index n = 3 * static_cast<Index>(net.node_count);
-  Equilibrium result;
+/// Something whose tension is chosen: N of a spring, N/mm^2 of a prism that pulls inward. It
+/// answers a stretch with its stiffness of that way, up to a bound.
+struct Element {
+  double pulls = 0, pushes = 0;  // stiffness when stretched and when shortened
+  double low = 0, high = 0;      // bounds of the tension
+  double stretch = 0;
 
-  std::vector<char> chosen(springs);
-  std::vector<double> length(springs), strain(springs, 0.0), given(springs, 0.0);
-  std::vector<Vector3d> along(springs);
-  for (std::size_t s = 0; s < springs; ++s) {
-    along[s] = x[net.spring_b[s]] - x[net.spring_a[s]];
-    length[s] = along[s].norm();
-    along[s] /= length[s];
-    chosen[s] = net.spring_sheet[s] != 0;
-    if (chosen[s]) net.rest_length[s] = length[s];
+  double tension(double at) const { return std::clamp((at < 0 ? pushes : pulls) * at, low, high); }
+  double tension() const { return tension(stretch); }
+  bool bound() const { return tension() == low || tension() == high; }
+  double stiffness() const { return bound() ? 0 : stretch < 0 ? pushes : pulls; }
+};
+
+// The strains of least energy that balance given forces are those that a net of such elements would
+// take if these forces displaced its nodes by y; what gives way at a bound leaves the rest to the
+// others. That y is the minimum of a convex function, which Newton's method with a search along
+// each step always finds. Every node is held a little, so that what nothing can balance does not
+// run away; what this hold takes is asked for again, and so goes to zero where strains can balance
+// it. Without the pressures of prisms the weight of soft tissue would have to rest on fibres that
+// buckle.
+class Balance {
+ public:
+  Balance(const SpringPrismNet& net, const Nodes& x, const EquilibriumSettings& settings);
+  /// Tensions that balance `outer` within bounds, or nearly; goes on from the last ones.
+  void solve(const VectorXd& outer);
+  /// No strain is chosen any more for what meets these nodes.
+  void let_go(const std::vector<char>& node);
+  /// Writes the rest lengths and volumes, and what was found.
+  void write(SpringPrismNet& net, Equilibrium& result) const;
+
+ private:
+  using Matrix = Eigen::SparseMatrix<double>;
+  void factorize();
+  /// Stretch of each element by displacements: of the springs, then of the prisms.
+  std::vector<double> stretches(const VectorXd& y) const;
+  VectorXd force(const VectorXd& outer, const VectorXd& y) const;
+  void take_step(const VectorXd& outer, const VectorXd& held_at, const VectorXd& d);
+
+  const SpringPrismNet net_;
+  const EquilibriumSettings settings_;
+  std::vector<std::size_t> springs_;  // whose strain is chosen
+  std::vector<double> length_;        // of those
+  std::vector<Vector3d> along_;
+  std::vector<double> volume_;
+  std::vector<std::array<Vector3d, 6>> slope_;  // of the volumes
+  std::vector<Element> elements_;               // springs_, then prisms
+  VectorXd anchor_;                             // stiffness of each node's anchors
+  VectorXd y_;
+  double stiffest_ = 0, hold_ = 0;
+  Eigen::SimplicialLDLT<Matrix> solver_;
+  bool analyzed_ = false;
+};
+
+Balance::Balance(const SpringPrismNet& net, const Nodes& x, const EquilibriumSettings& settings)
+    : net_(net), settings_(settings) {
+  for (std::size_t s = 0; s < net.spring_a.size(); ++s) {
+    if (net.spring_sheet[s] == 0) continue;
+    const Vector3d d = x[net.spring_b[s]] - x[net.spring_a[s]];
+    springs_.push_back(s);
+    length_.push_back(d.norm());
+    along_.push_back(d / d.norm());
+    const double k = 2 * net.stiffness[s], l = d.norm(), push = net.compression_share * k;
+    elements_.push_back({k, push, -settings.max_push * l * push, settings.max_pull * l * k});
+    stiffest_ = std::max(stiffest_, k);
   }
-  const std::size_t prisms = net.prisms.size();
-  std::vector<std::array<Vector3d, 6>> slope(prisms);  // of the volumes
-  std::vector<double> volume(prisms), volume_weight(prisms);
-  for (std::size_t p = 0; p < prisms; ++p) {
-    volume[p] = net.rest_volume[p] = prism_volume_gradient(x, net.prisms[p], slope[p]);
-    volume_weight[p] = 2 * (1 - net.lambda) / net.lambda * net.volume_weight[p];
+  for (std::size_t p = 0; p < net.prisms.size(); ++p) {
+    slope_.emplace_back();
+    volume_.push_back(prism_volume_gradient(x, net.prisms[p], slope_.back()));
+    const double k = 2 * (1 - net.lambda) / net.lambda * net.volume_weight[p];
+    const double most = settings.max_volume * volume_.back() * k;
+    elements_.push_back({k, k, -most, most});
   }
-  Nodes gradient;
-  SpringPrismEnergy(net, loads, 1).value_and_gradient(x, gradient);
-  VectorXd outer(n);  // force of all that is not chosen
-  for (int i = 0; i < net.node_count; ++i) outer.segment<3>(3 * i) = -gradient[i] / net.lambda;
-  result.force_before = largest(outer);
-
-  enum class State : char { pulls, pushes, bound };
-  std::vector<State> state(springs, State::pulls);
-  VectorXd anchor_force = VectorXd::Zero(n), force = outer;
-  VectorXd pressure(static_cast<Index>(prisms));  // above zero: it would grow
-  const auto spread = [&](VectorXd& to, std::size_t s, double tension) {
-    to.segment<3>(3 * net.spring_a[s]) += tension * along[s];
-    to.segment<3>(3 * net.spring_b[s]) -= tension * along[s];
-  };
-  VectorXd anchor_stiffness = VectorXd::Zero(net.node_count);
+  y_ = anchor_ = VectorXd::Zero(3 * net.node_count);
   for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
-    anchor_stiffness[net.anchor_node[i]] += 2 * net.anchor_stiffness[i];
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
-  for (int round = 0; round < settings.rounds; ++round) {
-    std::vector<Eigen::Triplet<double>> entries;
-    const auto add = [&](int a, int b, const Matrix3d& m) {
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) entries.emplace_back(3 * a + i, 3 * b + j, m(i, j));
-    };
-    VectorXd wanted = outer;
-    double scale = 0;
-    const auto weight = [&](std::size_t s) {
-      if (state[s] == State::bound) return 0.0;  // but stays in the matrix's pattern
-      return 2 * net.stiffness[s] * (state[s] == State::pushes ? net.compression_share : 1.0);
-    };
-    for (std::size_t s = 0; s < springs; ++s) {
-      if (!chosen[s]) continue;
-      if (state[s] == State::bound) spread(wanted, s, tension_of(net, s, length[s], strain[s]));
-      const int a = net.spring_a[s], b = net.spring_b[s];
-      const Matrix3d m = weight(s) * along[s] * along[s].transpose();
-      add(a, a, m);
-      add(b, b, m);
-      add(a, b, -m);
-      add(b, a, -m);
-      scale = std::max(scale, weight(s));
-    }
-    for (std::size_t p = 0; p < prisms; ++p)
-      for (int a = 0; a < 6; ++a)
-        for (int b = 0; b < 6; ++b)
-          add(net.prisms[p][a], net.prisms[p][b],
-              volume_weight[p] * slope[p][a] * slope[p][b].transpose());
-    // Every node is held a little, so that what no spring can balance does not run away.
-    for (int i = 0; i < net.node_count; ++i)
-      add(i, i, Matrix3d::Identity() * (anchor_stiffness[i] + 1e-7 * scale));
-    Eigen::SparseMatrix<double> matrix(n, n);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    if (round == 0) solver.analyzePattern(matrix);
-    solver.factorize(matrix);
+    anchor_.segment<3>(3 * net.anchor_node[i]).array() += 2 * net.anchor_stiffness[i];
+}
 
-    // Solve for the tensions; what the small hold took is asked for again.
-    VectorXd tension = VectorXd::Zero(static_cast<Index>(springs));
-    pressure.setZero();
-    anchor_force.setZero();
-    force = wanted;
-    for (int refine = 0; refine < 6; ++refine) {
-      const VectorXd y = solver.solve(force);
-      for (std::size_t s = 0; s < springs; ++s)
-        if (chosen[s] && state[s] != State::bound)
-          tension[static_cast<Index>(s)] +=
-              weight(s) *
-              along[s].dot(y.segment<3>(3 * net.spring_b[s]) - y.segment<3>(3 * net.spring_a[s]));
-      for (std::size_t p = 0; p < prisms; ++p) {
-        double change = 0;
-        for (int k = 0; k < 6; ++k) change += slope[p][k].dot(y.segment<3>(3 * net.prisms[p][k]));
-        pressure[static_cast<Index>(p)] -= volume_weight[p] * change;
-      }
-      for (int i = 0; i < net.node_count; ++i)
-        anchor_force.segment<3>(3 * i) -= anchor_stiffness[i] * y.segment<3>(3 * i);
-      force = wanted + anchor_force;
-      for (std::size_t s = 0; s < springs; ++s)
-        if (chosen[s] && state[s] != State::bound) spread(force, s, tension[static_cast<Index>(s)]);
-      for (std::size_t p = 0; p < prisms; ++p)
-        for (int k = 0; k < 6; ++k)
-          force.segment<3>(3 * net.prisms[p][k]) += pressure[static_cast<Index>(p)] * slope[p][k];
-      if (largest(force) < 1e-13 * result.force_before) break;
-    }
-
-    bool changed = false;
-    for (std::size_t s = 0; s < springs; ++s) {
-      if (!chosen[s] || state[s] == State::bound) continue;
-      const double t = tension[static_cast<Index>(s)];
-      const State now = t < 0 ? State::pushes : State::pulls;
-      strain[s] = t / (2 * net.stiffness[s] * length[s] * (t < 0 ? net.compression_share : 1.0));
-      if (std::abs(strain[s]) > settings.max_strain) {
-        strain[s] = std::copysign(settings.max_strain, strain[s]);
-        state[s] = State::bound;
-        changed = true;
-      } else if (now != state[s]) {
-        state[s] = now;
-        changed = true;
-      }
-    }
-    if (!changed) break;
+void Balance::let_go(const std::vector<char>& node) {
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    bool meets = false;
+    if (i < springs_.size())
+      meets = node[net_.spring_a[springs_[i]]] || node[net_.spring_b[springs_[i]]];
+    else
+      for (int corner : net_.prisms[i - springs_.size()]) meets = meets || node[corner];
+    if (meets) elements_[i].low = elements_[i].high = 0;
   }
+}
 
-  for (std::size_t s = 0; s < springs; ++s) {
-    if (!chosen[s]) continue;
-    net.rest_length[s] = length[s] * (1 - strain[s]);
-    result.max_strain = std::max(result.max_strain, std::abs(strain[s]));
-    result.at_bound += state[s] == State::bound;
+void Balance::factorize() {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(27 * springs_.size() + 189 * volume_.size() + 3 * net_.node_count);
+  const auto add = [&](int a, int b, const Matrix3d& m) { add_block(entries, a, b, m); };
+  for (std::size_t i = 0; i < springs_.size(); ++i) {
+    const int a = net_.spring_a[springs_[i]], b = net_.spring_b[springs_[i]];
+    const Matrix3d m = elements_[i].stiffness() * along_[i] * along_[i].transpose();
+    add(a, a, m);
+    add(b, b, m);
+    add(a, b, -m);
+    add(b, a, -m);
   }
-  for (std::size_t p = 0; p < prisms; ++p) {
-    const double change = pressure[static_cast<Index>(p)] / volume_weight[p];
-    net.rest_volume[p] = volume[p] + change;
-    result.max_volume_strain = std::max(result.max_volume_strain, std::abs(change) / volume[p]);
+  for (std::size_t p = 0; p < volume_.size(); ++p) {
+    const double k = elements_[springs_.size() + p].stiffness();
+    for (int a = 0; a < 6; ++a)
+      for (int b = 0; b < 6; ++b)
+        add(net_.prisms[p][a], net_.prisms[p][b], k * slope_[p][a] * slope_[p][b].transpose());
+  }
+  for (Index i = 0; i < anchor_.size(); ++i) {
+    const int row = static_cast<int>(i);
+    entries.emplace_back(row, row, anchor_[i] + hold_);
+  }
+  Matrix matrix(anchor_.size(), anchor_.size());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  if (!analyzed_) solver_.analyzePattern(matrix);
+  analyzed_ = true;
+  solver_.factorize(matrix);
+}
+
+std::vector<double> Balance::stretches(const VectorXd& y) const {
+  std::vector<double> stretch;
+  stretch.reserve(elements_.size());
+  for (std::size_t i = 0; i < springs_.size(); ++i)
+    stretch.push_back(along_[i].dot(y.segment<3>(3 * net_.spring_b[springs_[i]]) -
+                                    y.segment<3>(3 * net_.spring_a[springs_[i]])));
+  for (std::size_t p = 0; p < volume_.size(); ++p) {
+    double sum = 0;
+    for (int k = 0; k < 6; ++k) sum += slope_[p][k].dot(y.segment<3>(3 * net_.prisms[p][k]));
+    stretch.push_back(sum);
+  }
+  return stretch;
+}
+
+VectorXd Balance::force(const VectorXd& outer, const VectorXd& y) const {
+  VectorXd sum = outer - anchor_.cwiseProduct(y);
+  for (std::size_t i = 0; i < springs_.size(); ++i) {
+    const Vector3d pull = elements_[i].tension() * along_[i];
+    sum.segment<3>(3 * net_.spring_a[springs_[i]]) += pull;
+    sum.segment<3>(3 * net_.spring_b[springs_[i]]) -= pull;
+  }
+  for (std::size_t p = 0; p < volume_.size(); ++p) {
+    const double tension = elements_[springs_.size() + p].tension();
+    for (int k = 0; k < 6; ++k) sum.segment<3>(3 * net_.prisms[p][k]) -= tension * slope_[p][k];
+  }
+  return sum;
+}
+
+void Balance::solve(const VectorXd& outer) {
+  VectorXd held_at = y_, left = force(outer, y_);
+  const double goal = 1e-13 * largest(outer);
+  std::vector<double> factored;  // stiffness of each element in the factor
+  int round = 0;
+  for (double share : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-7, 1e-7}) {
+    const double before = largest(left);
+    hold_ = share * stiffest_;
+    factored.clear();
+    for (; round < settings_.rounds; ++round) {
+      const VectorXd down = left - hold_ * (y_ - held_at);
+      if (largest(down) < std::max(goal, 1e-3 * std::min(before, largest(left)))) break;
+      std::vector<double> now;
+      for (const auto& e : elements_) now.push_back(e.stiffness());
+      if (now != factored) factorize();
+      factored = std::move(now);
+      take_step(outer, held_at, solver_.solve(down));
+      left = force(outer, y_);
+    }
+    held_at = y_;
+    // Where less does not come of asking again, strains cannot balance it.
+    const double now = largest(left);
+    if (now < goal || now > 0.8 * before || round == settings_.rounds) return;
+  }
+}
+
+void Balance::take_step(const VectorXd& outer, const VectorXd& held_at, const VectorXd& d) {
+  const std::vector<double> by_d = stretches(d);
+  // The slope along d rises; a step that goes too far is cut where it is nearly flat.
+  const double constant = (anchor_.cwiseProduct(y_) + hold_ * (y_ - held_at) - outer).dot(d);
+  const double linear = (anchor_.array() + hold_).matrix().cwiseProduct(d).dot(d);
+  const auto slope = [&](double step) {
+    double sum = constant + step * linear;
+    for (std::size_t i = 0; i < elements_.size(); ++i)
+      sum += elements_[i].tension(elements_[i].stretch + step * by_d[i]) * by_d[i];
+    return sum;
+  };
+  constexpr double flat = 0.1;
+  const double steep = -slope(0);
+  double step = 1, low = 0, high = 1;
+  for (int cut = 0; cut < 30; ++cut) {
+    const double at = slope(step);
+    if (at <= flat * steep && (cut == 0 || at >= -flat * steep)) break;
+    (at > 0 ? high : low) = step;
+    step = 0.5 * (low + high);
+  }
+  y_ += step * d;
+  for (std::size_t i = 0; i < elements_.size(); ++i) elements_[i].stretch += step * by_d[i];
+}
+
+void Balance::write(SpringPrismNet& net, Equilibrium& result) const {
+  result.at_bound = 0;
+  result.max_strain = result.max_volume_strain = 0;
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    const Element& e = elements_[i];
+    const double t = e.tension(), change = t / (t < 0 ? e.pushes : e.pulls);
+    result.at_bound += e.bound();
+    if (i < springs_.size()) {
+      net.rest_length[springs_[i]] = length_[i] - change;
+      result.max_strain = std::max(result.max_strain, std::abs(change) / length_[i]);
+    } else {
+      const std::size_t p = i - springs_.size();
+      net.rest_volume[p] = volume_[p] - change;
+      result.max_volume_strain = std::max(result.max_volume_strain, std::abs(change) / volume_[p]);
+    }
   }
   // What the anchors of a node must pull together, by a shift of their targets.
-  NetLoads shifted = loads;
-  for (std::size_t i = 0; i < net.anchor_node.size(); ++i) {
-    const int node = net.anchor_node[i];
-    result.anchor_offset.emplace_back(anchor_force.segment<3>(3 * node) / anchor_stiffness[node]);
-    shifted.anchor_target[i] += result.anchor_offset.back();
+  result.anchor_offset.clear();
+  for (int node : net.anchor_node) result.anchor_offset.emplace_back(-y_.segment<3>(3 * node));
+}
+
+/// Nodes at which the state does not come back when it is shaken a little: where a pivot of the
+/// exact second derivatives is not above zero. In double precision: prisms may be slivers, stiff as
+/// a wall next to their springs. Empty when the state is stable.
+std::vector<char> unstable_nodes(const SpringPrismNet& net, const Nodes& x) {
+  const Index n = 3 * static_cast<Index>(net.node_count);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(27 * net.spring_a.size() + 189 * net.prisms.size());
+  for (std::size_t s = 0; s < net.spring_a.size(); ++s) {
+    const int a = net.spring_a[s], b = net.spring_b[s];
+    const Vector3d d = x[b] - x[a];
+    const double strain = 1 - net.rest_length[s] / d.norm();
+    const double k = 2 * net.stiffness[s] * (strain < 0 ? net.compression_share : 1.0);
+    Matrix3d m = k * (1 - strain) / d.squaredNorm() * d * d.transpose();
+    m.diagonal().array() += k * strain;
+    add_block(entries, a, a, m);
+    add_block(entries, b, b, m);
+    add_block(entries, a, b, -m);
+    add_block(entries, b, a, -m);
   }
-  result.rest_energy = SpringPrismEnergy(net, shifted, 1).value_and_gradient(x, gradient);
-  for (const auto& g : gradient)
-    result.force_after = std::max(result.force_after, g.norm() / net.lambda);
+  for (std::size_t p = 0; p < net.prisms.size(); ++p) {
+    const auto& prism = net.prisms[p];
+    std::array<Vector3d, 6> slope;
+    const double j = prism_volume_gradient(x, prism, slope) / net.rest_volume[p];
+    const double weight = (1 - net.lambda) / net.lambda * net.volume_weight[p];
+    const double stiff = weight * volume_stiffness(j, net.barrier_share, net.barrier_weight);
+    const double pressure =
+        weight * net.rest_volume[p] * volume_pressure(j, net.barrier_share, net.barrier_weight);
+    const auto bend = prism_volume_bend(x, prism);
+    for (int a = 0; a < 6; ++a)
+      for (int b = 0; b <= a; ++b) {
+        Matrix3d m = stiff * slope[a] * slope[b].transpose();
+        if (a != b) {
+          const Vector3d u = pressure * bend[a * (a - 1) / 2 + b];
+          m += (Matrix3d() << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0).finished();
+          add_block(entries, prism[b], prism[a], m.transpose());
+        }
+        add_block(entries, prism[a], prism[b], m);
+      }
+  }
+  for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
+    add_block(entries, net.anchor_node[i], net.anchor_node[i],
+              2 * net.anchor_stiffness[i] * Matrix3d::Identity());
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
+  std::vector<char> unstable;
+  for (Index i = 0; i < n; ++i) {
+    if (factor.vectorD()[i] > 0) continue;
+    unstable.resize(x.size(), 0);
+    unstable[static_cast<std::size_t>(factor.permutationPinv().indices()[i] / 3)] = 1;
+  }
+  return unstable;
+}
+
+/// Force on each node at x, N of the springs' own.
+Nodes forces(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x, double& energy) {
+  Nodes force;
+  energy = SpringPrismEnergy(net, loads, 1).value_and_gradient(x, force);
+  for (auto& f : force) f /= -net.lambda;
+  return force;
+}
+
+}  // namespace
+
+Equilibrium balance_strains(SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
+                            const EquilibriumSettings& settings) {
+  Equilibrium result;
+  for (std::size_t s = 0; s < net.spring_a.size(); ++s)
+    if (net.spring_sheet[s] != 0)
+      net.rest_length[s] = (x[net.spring_b[s]] - x[net.spring_a[s]]).norm();
+  for (std::size_t p = 0; p < net.prisms.size(); ++p)
+    net.rest_volume[p] = prism_volume(x, net.prisms[p]);
+  VectorXd outer(3 * static_cast<Index>(net.node_count));  // force of all that is not chosen
+  const Nodes before = forces(net, loads, x, result.rest_energy);
+  for (int i = 0; i < net.node_count; ++i) outer.segment<3>(3 * i) = before[i];
+  result.force_before = largest(outer);
+
+  Balance balance(net, x, settings);
+  NetLoads balanced;
+  for (int attempt = 0; attempt < settings.attempts; ++attempt) {
+    balance.solve(outer);
+    balance.write(net, result);
+    balanced = loads;
+    for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
+      balanced.anchor_target[i] += result.anchor_offset[i];
+    const std::vector<char> unstable = unstable_nodes(net, x);
+    result.stable = unstable.empty();
+    if (result.stable) break;
+    balance.let_go(unstable);
+  }
+
+  // The rest is held.
+  const double small = 1e-9 * result.force_before;
+  const Nodes left = forces(net, balanced, x, result.rest_energy);
+  for (const auto& f : left) {
+    result.force_held = std::max(result.force_held, f.norm());
+  }
+  for (const auto& f : left)
+    result.nodes_held += f.norm() > std::max(small, 0.01 * result.force_held);
+  if (result.nodes_held > 0) {
+    for (const auto& f : left)
+      result.held.push_back(f.norm() > small ? Vector3d(-f) : Vector3d::Zero());
+    balanced.node_force.resize(x.size(), Vector3d::Zero());
+    for (std::size_t i = 0; i < x.size(); ++i) balanced.node_force[i] += result.held[i];
+  } else {
+    result.force_held = 0;
+  }
+  for (const auto& f : forces(net, balanced, x, result.rest_energy))
+    result.force_after = std::max(result.force_after, f.norm());
   return result;
 }
 

@@ -51,14 +51,16 @@ void check_plan(const TissuePlan& plan, const std::string& where) {
   }
   require(std::abs(sum - 1) < 1e-3, "the sum of the layers' shares", "1", sum);
   if (plan.turgor)
-    require(*plan.turgor >= 0.5 && *plan.turgor <= 1, "turgor", "0.5 to 1 (1 is none)",
+    require(*plan.turgor > 0 && *plan.turgor <= 1, "turgor", "above 0 and at most 1 (1 is none)",
             *plan.turgor);
   if (plan.lambda)
     require(*plan.lambda >= 1e-3 && *plan.lambda <= 1 - 1e-3, "lambda", "0.001 to 0.999",
             *plan.lambda);
-  if (plan.down)
-    require(plan.down->allFinite() && plan.down->norm() > 1e-6, "the direction of gravity",
-            "a vector that is not zero; its length is", plan.down->norm());
+  if (plan.down && !(plan.down->allFinite() && plan.down->norm() > 1e-6 && plan.down->norm() < 1e6))
+    throw InputError(fmt::format(
+        "{}the direction of gravity is {}, {}, {}; it must have a length of more than 0.000001 and "
+        "less than 1000000 (its size does not matter: 0, 0, -1 is upright)",
+        where, plan.down->x(), plan.down->y(), plan.down->z()));
   for (const auto& region : plan.attachments) {
     require(region.radius_mm > 0 && region.radius_mm <= 200, "the radius of an attachment (mm)",
             "above 0 and at most 200", region.radius_mm);

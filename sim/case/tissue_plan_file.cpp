@@ -70,7 +70,7 @@ TissuePlan load_tissue_plan(const JsonItem& item) {
       if (plan.layers.empty()) layers->refuse("is empty; name one layer or more");
     }
   }
-  if (const auto value = item.find("turgor")) plan.turgor = value->number(0.5, 1);
+  if (const auto value = item.find("turgor")) plan.turgor = value->number(0, 1);
   if (const auto value = item.find("lambda")) plan.lambda = value->number(0.001, 0.999);
   if (const auto value = item.find("gravity")) plan.down = vector_of(*value);
   if (const auto bond = item.find("bond")) {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -76,6 +78,25 @@ void make_path(TissueModel& model, const Anatomy& anatomy) {
   model.path.nodes = std::move(nodes);
 }
 
+/// Nothing moves before surgery: strains carry turgor and weight, and what they cannot carry is
+/// held and told.
+void balance(TissueModel& model) {
+  const Equilibrium balanced = balance_strains(model.net, loads_at(model, Pose{}), model.rest);
+  model.anchor_offset = balanced.anchor_offset;
+  if (!balanced.stable)
+    model.summary.notes.push_back(
+        "turgor and weight leave the tissue at rest where a touch would move it: turgor nearer to "
+        "1 "
+        "or more layers are steadier");
+  if (balanced.held.empty()) return;
+  model.node_force.resize(model.rest.size(), Vector3d::Zero());
+  for (std::size_t i = 0; i < model.rest.size(); ++i) model.node_force[i] += balanced.held[i];
+  model.summary.notes.push_back(fmt::format(
+      "strains alone cannot balance this turgor and weight everywhere: constant forces of up to "
+      "{:.2g} N hold the rest at {} of {} points",
+      balanced.force_held, balanced.nodes_held, model.rest.size()));
+}
+
 /// How still the unmoved model stands, and how it lies on the bones.
 void tell_rest(TissueModel& model) {
   TissueSummary& summary = model.summary;
@@ -88,7 +109,9 @@ void tell_rest(TissueModel& model) {
   const TissueState still = follow(model, rest_tissue(model), Pose{}, budget);
   for (std::size_t i = 0; i < still.nodes.size(); ++i)
     summary.rest_move_mm = std::max(summary.rest_move_mm, (still.nodes[i] - model.rest[i]).norm());
-  if (summary.rest_move_mm > 1e-4)
+  if (still.kept || !still.converged)
+    summary.notes.push_back("the unmoved tissue could not be solved: it may move by itself");
+  else if (summary.rest_move_mm > 1e-4)
     summary.notes.push_back("the unmoved tissue moves by " + std::to_string(summary.rest_move_mm) +
                             " mm: turgor and weight could not be balanced everywhere");
   summary.lip_points_left_out = model.contact.lip_points_left_out;
@@ -251,9 +274,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
 
   // Nothing moves before surgery: strains that carry turgor and weight.
   if (plan.down) model->node_force = weight_of_nodes(net, plan.down->normalized());
-  if (plan.down || plan.turgor.value_or(1) < 1)
-    model->anchor_offset =
-        balance_strains(net, loads_at(*model, Pose{}), model->rest).anchor_offset;
+  if (plan.down || plan.turgor.value_or(1) < 1) balance(*model);
 
   report(progress, "soft tissue: path of opening", 0.6);
   make_path(*model, anatomy);

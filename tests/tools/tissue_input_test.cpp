@@ -30,10 +30,14 @@ TEST(TissueInput, OptionsOutOfRangeAreNamed) {
   };
   refused("--turgor", "1.5", {"turgor", "1.5"});
   refused("--turgor", "nan", {"turgor", "nan"});
+  refused("--turgor", "0", {"turgor", "above 0", "not 0"});
+  refused("--turgor", "-0.3", {"turgor", "-0.3"});
   refused("--lambda", "0", {"lambda", "0"});
   refused("--lambda", "1", {"lambda", "not 1"});
   refused("--layers", "4", {"layers", "4"});
-  refused("--gravity", "0,0,0", {"gravity"});
+  refused("--gravity", "0,0,0", {"direction of gravity is 0, 0, 0"});
+  refused("--gravity", "0,nan,1", {"gravity", "nan"});
+  refused("--gravity", "inf,0,1", {"gravity", "inf"});
   refused("--gravity", "down", {"--gravity", "down"});
   refused("--attach", "tibia,pogonion,10", {"--attach", "tibia"});
   refused("--attach", "mandible,pogonion,-4", {"radius", "-4"});

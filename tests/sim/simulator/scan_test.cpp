@@ -4,49 +4,21 @@
 
 #include <cmath>
 
-#include "engine/mesh_io/mesh_files.h"
-#include "sim/case/soft_landmarks.h"
-#include "sim/phantom/phantom.h"
 #include "sim/tissue/lips.h"
 #include "sim/tissue/tissue.h"
-#include "tests/support/real_cases.h"
+#include "tests/support/scan_case.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-/// The foremost point near the middle: the tip of the nose.
-Vector3d nose_tip(const TriMesh& face) {
-  Vector3d tip(0, 1e9, 0);
-  for (const auto& p : face.vertices)
-    if (std::abs(p.x()) < 15 && p.y() < tip.y()) tip = p;
-  return tip;
-}
-
 TEST(FaceScan, OfAnotherPersonOverScaledBonesIsBuiltAndOpens) {
-  const auto file = test::real_data() / "scan-leeperrysmith" / "head_lps_mm.ply";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "real anatomy absent";
-  constexpr double scale = 0.93;  // bones that fit under this face
-  Case patient = builtin_patient();
-  const Vector3d tip = nose_tip(patient.find(Role::face)->mesh);
-  const auto scaled = [&](const Vector3d& p) { return Vector3d(tip + scale * (p - tip)); };
-  TriMesh scan = read_mesh(file);
-  const Vector3d shift = tip - nose_tip(scan) + Vector3d(0, -4, 0);
-  for (auto& p : scan.vertices) p += shift;
-  for (auto& part : patient.parts)
-    if (part.role == Role::face)
-      part.mesh = scan;
-    else
-      for (auto& p : part.mesh.vertices) p = scaled(p);
-  // Soft landmarks belong to the face that is gone.
-  for (auto it = patient.landmarks.points.begin(); it != patient.landmarks.points.end();) {
-    const bool bony = it->first == "left_condyle" || it->first == "right_condyle" ||
-                      it->first == "upper_incisal_point" || it->first == "lower_incisal_point";
-    if (bony) it->second = scaled(it->second);
-    it = bony ? std::next(it) : patient.landmarks.points.erase(it);
-  }
-  estimate_profile_landmarks(patient);
+  const auto built = test::scan_over_scaled_bones();
+  if (!built) GTEST_SKIP() << "real anatomy absent";
+  Case patient = *built;
+  const Vector3d tip = test::nose_tip(patient.find(Role::face)->mesh);
+  const std::vector<Vector3d> scan = patient.find(Role::face)->mesh.vertices;
   // The lips meet as far below the tip of the nose as in the built-in face, about.
   const Vector3d stomion = *patient.landmarks.find("stomion");
   EXPECT_NEAR(tip.z() - stomion.z(), 33, 4);
@@ -77,7 +49,7 @@ TEST(FaceScan, OfAnotherPersonOverScaledBonesIsBuiltAndOpens) {
   double most = 0;
   for (std::size_t v = 0; v < face.size(); ++v) {
     ASSERT_TRUE(face[v].allFinite());
-    most = std::max(most, (face[v].cast<double>() - scan.vertices[v]).norm());
+    most = std::max(most, (face[v].cast<double>() - scan[v]).norm());
   }
   EXPECT_GT(most, 25);
   // Both lips go with their own jaw.

@@ -1,0 +1,84 @@
+// Nothing moves before surgery: on every patient, whatever the layers, the skin's tension and where
+// weight pulls.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "sim/phantom/phantom.h"
+#include "sim/tissue/lips.h"
+#include "sim/tissue/tissue.h"
+#include "tests/support/scan_case.h"
+
+namespace condyle::test {
+namespace {
+
+using Eigen::Vector3d;
+
+struct AtRest {
+  int layers;
+  double turgor;
+  Vector3d down;  // zero: no weight
+};
+
+const Vector3d upright(0, 0, -1), lying(0, 1, 0), oblique(0.5, 0.6, -0.6), none(0, 0, 0);
+
+bool told_to_be_held(const TissueSummary& summary) {
+  for (const auto& note : summary.notes)
+    if (note.find("constant forces of up to") != std::string::npos) return true;
+  return false;
+}
+
+void expect_still(Case patient, const std::vector<AtRest>& rows, int surface_nodes) {
+  part_lips(patient);
+  for (const auto& [layers, turgor, down] : rows) {
+    SCOPED_TRACE(testing::Message() << layers << " layers, turgor " << turgor << ", weight along "
+                                    << down.transpose());
+    TissuePlan plan{.layer_count = layers, .turgor = turgor};
+    if (down.norm() > 0) plan.down = down;
+    const auto model = build_tissue(patient, {.surface_nodes = surface_nodes, .plan = plan});
+    const TissueSummary& made = summary(*model);
+    EXPECT_LT(made.rest_move_mm, 1e-4);
+    EXPECT_LT(made.rest_force_N, 1e-8);
+    EXPECT_TRUE(turgor < 0.8 || !told_to_be_held(made));  // strains do it alone
+
+    // It does not only stand still, it comes back.
+    TissueBudget budget;
+    budget.tolerance_mm = 1e-4;
+    budget.max_iterations = 100;
+    const TissueState rest = rest_tissue(*model);
+    TissueState shaken = rest;
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> uniform(-0.01, 0.01);
+    for (auto& p : shaken.nodes) p += Vector3d(uniform(random), uniform(random), uniform(random));
+    const TissueState back = follow(*model, shaken, Pose{}, budget);
+    EXPECT_FALSE(back.kept);
+    double most = 0;
+    for (std::size_t i = 0; i < rest.nodes.size(); ++i)
+      most = std::max(most, (back.nodes[i] - rest.nodes[i]).norm());
+    EXPECT_LT(most, 0.005);  // slivers at the lips' edges come last
+  }
+}
+
+TEST(NothingMovesBeforeSurgery, OnTheBuiltInPatient) {
+  expect_still(builtin_patient(),
+               {{1, 0.9, upright}, {2, 0.6, oblique}, {3, 0.3, lying}, {5, 0.6, none}}, 220);
+}
+
+TEST(NothingMovesBeforeSurgery, OnARealFace) {
+  const auto patient = case_badin_with_face();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  expect_still(*patient, {{1, 0.9, oblique}}, 520);
+  expect_still(*patient, {{1, 0.05, none}, {2, 0.3, upright}, {3, 0.6, lying}, {5, 0.9, oblique}},
+               220);
+}
+
+TEST(NothingMovesBeforeSurgery, OnAScanOverScaledBones) {
+  const auto patient = scan_over_scaled_bones();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  expect_still(*patient, {{1, 0.3, oblique}, {2, 0.9, none}, {3, 0.1, upright}, {5, 0.6, lying}},
+               220);
+}
+
+}  // namespace
+}  // namespace condyle::test
