@@ -26,6 +26,9 @@ constexpr double least_cosine = 0.5;
 /// Nearer than this the way to the nearest point says little about the surface's direction.
 constexpr double close_mm = 0.02;
 
+constexpr std::size_t most_of_run = 8;  // points that are looked at as one
+constexpr double run_mm = 4;            // as far as they are from the first of them
+
 FieldSettings field_settings(const Box& region) {
   return {.spacing_mm = spacing_mm, .band_mm = band_mm, .region = region};
 }
@@ -91,12 +94,14 @@ NetObstacle::NetObstacle(const TriMesh& mesh, const Box& region, const std::file
       surface_(mesh) {}
 
 bool NetObstacle::near(const Vector3d& p, double reach, Near& near) const {
-  const FieldSample sample = field_.at(p);
-  if (sample.known) {
-    const double steep = sample.gradient.norm();
-    if (sample.distance_mm > reach) return false;
+  const DistanceField::Spot spot = field_.spot(p);
+  if (!spot.corner && spot.distance_mm > 0) return false;  // beyond the band, or the region
+  if (spot.known) {
+    if (spot.distance_mm > reach) return false;
+    const Vector3d gradient = field_.gradient(spot);
+    const double steep = gradient.norm();
     if (steep > 0.7) {  // not where two surfaces are equally near
-      near = {sample.distance_mm, sample.gradient / steep};
+      near = {spot.distance_mm, gradient / steep};
       return true;
     }
   } else if (field_.lower_bound(p) > reach || surface_.empty()) {
@@ -110,6 +115,12 @@ bool NetObstacle::near(const Vector3d& p, double reach, Near& near) const {
   return true;
 }
 
+bool NetObstacle::farther(const Vector3d& p, double reach) const {
+  const DistanceField::Spot spot = field_.spot(p);
+  if (spot.known) return spot.distance_mm > reach;
+  return field_.lower_bound(p) > reach;
+}
+
 Vector3d NetObstacle::way_out(const Vector3d& p) const {
   const SurfacePoint found = surface_.signed_nearest(p, deepest_mm);
   return found.triangle < 0 || found.distance >= 0 ? Vector3d(Vector3d::Zero())
@@ -121,16 +132,29 @@ void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<doubl
                     const TouchSettings& settings, std::vector<Touch>& touches,
                     const Nodes& shift) {
   const Pose X_OW = X_WO.inverse();
+  const bool shifted = !shift.empty();
   NetObstacle::Near near;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    Vector3d p = X_OW * points[i].at(x);
-    if (!shift.empty()) p += shift[i];
-    if (!obstacle.near(p, settings.reach_mm, near)) continue;
-    touches.push_back(make_touch(static_cast<int>(i), points[i], near.distance,
-                                 X_WO.R * near.normal, allowance[i], settings.stiffness));
-    Touch& touch = touches.back();
-    touch.row.offset = touch.row.along(x) - touch.gap;
-    touch.at = points[i].at(x);
+  std::array<Vector3d, most_of_run> p;
+  for (std::size_t first = 0, end = 0; first < points.size(); first = end) {
+    // Neighbours in the list mostly lie side by side: one look for all of them tells most of it.
+    double reach2 = 0;
+    for (; end < points.size() && end - first < most_of_run; ++end) {
+      Vector3d& here = p[end - first];
+      here = X_OW * points[end].at(x);
+      if (shifted) here += shift[end];
+      const double way2 = (here - p[0]).squaredNorm();
+      if (way2 > run_mm * run_mm) break;
+      reach2 = std::max(reach2, way2);
+    }
+    if (obstacle.farther(p[0], settings.reach_mm + std::sqrt(reach2))) continue;
+    for (std::size_t i = first; i < end; ++i) {
+      if (!obstacle.near(p[i - first], settings.reach_mm, near)) continue;
+      touches.push_back(make_touch(static_cast<int>(i), points[i], near.distance,
+                                   X_WO.R * near.normal, allowance[i], settings.stiffness));
+      Touch& touch = touches.back();
+      touch.row.offset = touch.row.along(x) - touch.gap;
+      touch.at = points[i].at(x);
+    }
   }
 }
 
@@ -285,7 +309,7 @@ double gap_left(const std::vector<Touch>& touches, const Nodes& x) {
 }  // namespace
 
 TouchingResult solve_touching(const std::function<Looks(const Nodes&)>& look,
-                              const std::function<void()>& solve, NetLoads& loads, Nodes& x,
+                              const std::function<Solved()>& solve, NetLoads& loads, Nodes& x,
                               const TouchingSettings& settings, const Looks& before) {
   // Planes that have not settled by then may go to and fro between two directions.
   constexpr int undamped_looks = 2;
@@ -294,7 +318,7 @@ TouchingResult solve_touching(const std::function<Looks(const Nodes&)>& look,
   for (std::size_t i = 0; i < before.size(); ++i) used[i] = carried_on(before[i], used[i], x);
   while (true) {
     set_contacts(used, loads);
-    solve();
+    const Solved solved = solve();
     ++result.solves;
     result.looks = look(x);
     result.error_mm = result.gap_mm = 0;
@@ -304,8 +328,14 @@ TouchingResult solve_touching(const std::function<Looks(const Nodes&)>& look,
       result.looks[i] = carried_on(used[i], std::move(result.looks[i]), x, share);
       result.gap_mm = std::max(result.gap_mm, gap_left(result.looks[i], x));
     }
-    result.settled = result.error_mm <= settings.tolerance_mm && result.gap_mm <= settings.gap_mm;
-    if (result.settled || result.solves >= settings.most_looks) return result;
+    const auto within = [&](double error_mm, double gap_mm) {
+      return result.error_mm <= error_mm && result.gap_mm <= gap_mm;
+    };
+    result.settled =
+        solved == Solved::at_minimum && within(settings.tolerance_mm, settings.gap_mm);
+    const bool as_good_as_may_be =
+        solved == Solved::spent && within(settings.rough_mm, settings.rough_mm);
+    if (result.settled || as_good_as_may_be || result.solves >= settings.most_looks) return result;
     used = result.looks;
   }
 }

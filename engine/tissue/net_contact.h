@@ -42,6 +42,8 @@ class NetObstacle {
   };
   /// Whether p is nearer than `reach` (mm, below 2), and how near. Nothing beyond the region.
   bool near(const Eigen::Vector3d& p, double reach, Near& near) const;
+  /// Whether nothing of the body is within `reach` (mm) of p, as far as is easily told.
+  bool farther(const Eigen::Vector3d& p, double reach) const;
   /// The shortest way out for a point inside, mm; zero outside.
   Eigen::Vector3d way_out(const Eigen::Vector3d& p) const;
 
@@ -114,6 +116,7 @@ struct TouchingSettings {
   int most_looks = 12;
   double tolerance_mm = 0.03;  // of push, see plane_error
   double gap_mm = 0.03;        // what presses is at most so far from what it presses on
+  double rough_mm = 0.1;       // of both, where no more may be spent
 };
 struct TouchingResult {
   int solves = 0;
@@ -122,10 +125,13 @@ struct TouchingResult {
   double gap_mm = 0;     // how far what presses is from what it presses on
   Looks looks;           // at the answer; to be carried on to the next solve
 };
+/// How a call of `solve` ended: at the minimum (or as near as it can come), on the way to it, or
+/// where what may be spent is spent: then the answer stands once its touches are within `rough_mm`.
+enum class Solved { at_minimum, on_the_way, spent };
 /// `solve` moves x downhill under `loads`, whose contacts are set before each call. `before`: the
 /// looks of an earlier solve, or nothing.
 TouchingResult solve_touching(const std::function<Looks(const Nodes&)>& look,
-                              const std::function<void()>& solve, NetLoads& loads, Nodes& x,
+                              const std::function<Solved()>& solve, NetLoads& loads, Nodes& x,
                               const TouchingSettings& settings = {}, const Looks& before = {});
 
 }  // namespace condyle

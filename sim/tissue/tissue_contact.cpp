@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "engine/core/parallel.h"
 #include "engine/mesh/measure.h"
 #include "engine/tissue/layered_net.h"
 
@@ -290,22 +291,25 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
   return contact;
 }
 
-Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x) {
+Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads) {
   Looks looks(4);
-  const TouchSettings settings;
-  if (contact.cranium.obstacle)
-    touch_obstacle(contact.points, contact.cranium.allowance, *contact.cranium.obstacle, Pose{}, x,
-                   settings, looks[on_cranium], contact.cranium.shift);
-  if (contact.mandible.obstacle)
-    touch_obstacle(contact.points, contact.mandible.allowance, *contact.mandible.obstacle, X_CM, x,
-                   settings, looks[on_mandible], contact.mandible.shift);
-  lead_lips(contact, X_CM, x, looks[on_cranium]);
-  lead_lips(contact, X_CM, x, looks[on_mandible]);
+  const auto jaw = [&](const TissueContact::Jaw& of, const Pose& X_CJ, std::vector<Touch>& touches) {
+    if (!of.obstacle) return;
+    touch_obstacle(contact.points, of.allowance, *of.obstacle, X_CJ, x, {}, touches, of.shift);
+    lead_lips(contact, X_CM, x, touches);
+  };
   const TouchSettings soft{.stiffness = lip_stiffness};
-  touch_surface(contact.upper.points, contact.upper.allowance, contact.lower.surface, x, soft,
-                looks[upper_on_lower]);
-  touch_surface(contact.lower.points, contact.lower.allowance, contact.upper.surface, x, soft,
-                looks[lower_on_upper]);
+  parallel_for(2, threads, [&](std::size_t i) {
+    if (i == 0) {
+      jaw(contact.cranium, Pose{}, looks[on_cranium]);
+      touch_surface(contact.upper.points, contact.upper.allowance, contact.lower.surface, x, soft,
+                    looks[upper_on_lower]);
+    } else {
+      jaw(contact.mandible, X_CM, looks[on_mandible]);
+      touch_surface(contact.lower.points, contact.lower.allowance, contact.upper.surface, x, soft,
+                    looks[lower_on_upper]);
+    }
+  });
   return looks;
 }
 

@@ -61,7 +61,7 @@ std::vector<std::array<int, 2>> lips_that_may_touch(const TissueContact& contact
 enum ContactList : std::size_t { on_cranium, on_mandible, upper_on_lower, lower_on_upper };
 
 /// Everything the tissue touches at x, with the mandible at X_CM.
-Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x);
+Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads = 1);
 
 /// How tissue lies on the jaws and on itself.
 struct ContactMeasure {

@@ -88,6 +88,7 @@ TouchingResult settle(const SpringPrismNet& net, int sheets, NetLoads& loads,
                           const auto result = minimize_refreshing(
                               net, loads, energy, factor, {.tolerance_mm = tolerance_mm}, x);
                           EXPECT_TRUE(result.converged());
+                          return Solved::at_minimum;
                         },
                         loads, x, {.most_looks = 12, .tolerance_mm = 1e-3});
 }
