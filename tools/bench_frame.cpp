@@ -8,6 +8,7 @@
 #include "render/gl_context.h"
 #include "render/scene_renderer.h"
 #include "sim/report/report.h"
+#include "tools/bench_window.h"
 #include "tools/common.h"
 
 namespace condyle {
@@ -70,11 +71,16 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
   const TissueState dense_tissue = dense ? rest_tissue(*dense) : TissueState{};
   std::vector<Eigen::Vector3f> dense_vertices;
 
+  // As a film of the motion shows it.
+  constexpr int film_frames = 16;
+  std::vector<FrameState> of_film;
   std::map<std::string, std::vector<double>> samples;
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
     Playback playback(scene, motion, settings);
     for (int i = 0; i <= steps; ++i) {
       FrameState frame = playback.at(i * settings.step_s);
+      if (repeat == 0 && i % std::max(1, steps / film_frames) == 0 && of_film.size() < film_frames)
+        of_film.push_back(frame);
       const double simulation =
           frame.times[Stage::motion] + frame.times[Stage::contact] + frame.times[Stage::tissue];
       samples["frame.motion"].push_back(frame.times[Stage::motion]);
@@ -103,6 +109,11 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
       bar.show("measuring", (repeat + (i + 1.0) / (steps + 1)) / options.repeats);
     }
   }
+  bar.show("recording", 1);
+  std::vector<BenchRow> rows = bench_film(renderer, of_film, camera, smoothed);
+  bar.show("playing as the window does", 1);
+  for (BenchRow& row : bench_window(scene, motion, settings, camera))
+    rows.push_back(std::move(row));
   bar.clear();
 
   std::size_t bone_triangles = 0;
@@ -128,20 +139,31 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
                                {"nodes", nodes},
                                {"triangles", bone_triangles}});
   }
+  for (const BenchRow& row : rows) {
+    if (row.samples.empty()) continue;
+    const auto measured = summarise(row.samples);
+    nlohmann::ordered_json one = {
+        {"name", row.name}, {"median", measured.median},     {"p95", measured.p95},
+        {"unit", row.unit}, {"samples", row.samples.size()}, {"threads", common.threads}};
+    for (const auto& [name, value] : row.parameters) one[name] = value;
+    json["results"].push_back(std::move(one));
+  }
   if (common.json)
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   if (!common.quiet) {
     fmt::print(
         stderr,
-        "{} ms; {} tissue nodes, largest bone {} triangles, {} threads; frame.total is motion + "
+        "{}; {} tissue nodes, largest bone {} triangles, {} threads; frame.total is motion + "
         "contact + tissue; frame.face_dense carries {} triangles of the face; frame.render is "
         "a picture of 1920x1080 with shadows, edges smoothed (fxaa) or sampled four times (msaa), "
-        "on {}\n",
-        "median and 95th percentile in", nodes, bone_triangles, common.threads, face_triangles,
+        "on {}; frame.record_with_film: a recording with a film against one without; frame.window: "
+        "pictures and steps a second while the motion plays in a window of that size\n",
+        "median and 95th percentile", nodes, bone_triangles, common.threads, face_triangles,
         context.description());
     for (const auto& result : json["results"])
-      fmt::print(stderr, "  {:<18}{:>9.3f}{:>9.3f}\n", result["name"].get<std::string>(),
-                 result["median"].get<double>(), result["p95"].get<double>());
+      fmt::print(stderr, "  {:<28}{:>9.3f}{:>9.3f} {}\n", result["name"].get<std::string>(),
+                 result["median"].get<double>(), result["p95"].get<double>(),
+                 result["unit"].get<std::string>());
   }
   return 0;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/mesh/measure.h"
 #include "sim/tissue/net_lines.h"
 
 namespace condyle {
@@ -48,13 +49,28 @@ LineSet bone_springs(const Scene& scene, const FrameState& frame, bool mandible)
   return set;
 }
 
-LineSet axes(const Measures& m) {
+/// Middle of all parts at rest.
+Vector3f middle_of(const Scene& scene) {
+  Box box;
+  for (const auto& part : scene.patient.parts)
+    for (const auto& v : part.mesh.vertices) box.add(v);
+  return box.empty() ? Vector3f(0, 0, 0) : Vector3f(box.center().cast<float>());
+}
+
+LineSet axes(const Scene& scene, const Measures& m) {
   LineSet set{.width_px = 2.5f, .through = 0.6f};
-  const Vector3f left = m.left_condyle.cast<float>(), right = m.right_condyle.cast<float>();
-  const Vector3f between = 0.5f * (left + right), across = (left - right).normalized();
   const auto color = [&](const Vector3f& c) { set.colors.resize(set.ends.size() / 2, c); };
-  set.ends.insert(set.ends.end(), {right - 25 * across, left + 25 * across});
-  color(yellow);
+  const auto& marks = scene.patient.landmarks;
+  Vector3f from;
+  if (marks.find("left_condyle") && marks.find("right_condyle")) {
+    const Vector3f left = m.left_condyle.cast<float>(), right = m.right_condyle.cast<float>();
+    const Vector3f across = (left - right).normalized();
+    from = 0.5f * (left + right);
+    set.ends.insert(set.ends.end(), {right - 25 * across, left + 25 * across});
+    color(yellow);
+  } else {
+    from = middle_of(scene);
+  }
   if (m.helical_axis.known) {
     const Vector3f p = m.helical_axis.point.cast<float>(),
                    d = m.helical_axis.direction.cast<float>();
@@ -62,12 +78,12 @@ LineSet axes(const Measures& m) {
     color(purple);
   }
   constexpr float reach = 40;
-  add_arrow(set, between, between + reach * Vector3f::UnitX());
-  color(vermilion);
-  add_arrow(set, between, between + reach * Vector3f::UnitY());
-  color(green);
-  add_arrow(set, between, between + reach * Vector3f::UnitZ());
-  color(sky);
+  for (const auto& [way, tint] :
+       {std::pair{Vector3f::UnitX().eval(), vermilion}, std::pair{Vector3f::UnitY().eval(), green},
+        std::pair{Vector3f::UnitZ().eval(), sky}}) {
+    add_arrow(set, from, from + reach * way);
+    color(tint);
+  }
   return set;
 }
 
@@ -97,17 +113,17 @@ LineSet MotionPaths::lines() const {
 }
 
 std::map<std::string, LineSet> overlay_lines(const Scene& scene, const FrameState& frame,
-                                             const OverlayChoice& choice,
-                                             const MotionPaths& paths) {
-  const bool tissue = scene.tissue && !frame.tissue.nodes.empty();
+                                             const OverlayChoice& choice) {
   std::map<std::string, LineSet> all;
-  all["springs"] = tissue && choice.springs ? springs(scene, frame) : LineSet{};
-  all["prisms"] = tissue && choice.prisms ? prisms(scene, frame) : LineSet{};
-  for (const bool mandible : {false, true})
-    all[mandible ? "bone springs of the mandible" : "bone springs of the cranium"] =
-        tissue && choice.bone_springs ? bone_springs(scene, frame, mandible) : LineSet{};
-  all["axes"] = choice.axes ? axes(frame.measures) : LineSet{};
-  all["paths"] = choice.paths ? paths.lines() : LineSet{};
+  if (scene.tissue && !frame.tissue.nodes.empty()) {
+    if (choice.springs) all["springs"] = springs(scene, frame);
+    if (choice.prisms) all["prisms"] = prisms(scene, frame);
+    if (choice.bone_springs) {
+      all["bone springs of the cranium"] = bone_springs(scene, frame, false);
+      all["bone springs of the mandible"] = bone_springs(scene, frame, true);
+    }
+  }
+  if (choice.axes) all["axes"] = axes(scene, frame.measures);
   return all;
 }
 

@@ -15,9 +15,11 @@ struct OverlayChoice {
   bool springs = false;  // of the tissue: blue shortened, grey as at rest, red stretched
   bool prisms = false;   // their edges
   bool bone_springs =
-      false;           // nodes attached to bone, vermilion the mandible's, blue the cranium's
-  bool axes = false;   // through both condyles; the finite helical axis; L, P and S
-  bool paths = false;  // of the condyles and the lower incisal point, as far as they came
+      false;             // nodes attached to bone, vermilion the mandible's, blue the cranium's
+  bool axes = false;     // through both condyles; the finite helical axis; L, P and S
+  bool paths = false;    // of the condyles and the lower incisal point, as far as they came
+  bool muscles = false;  // their lines of action
+  bool layers = false;   // of the soft tissue, as see-through sheets
 };
 
 /// Where condyles and lower incisal point have been.
@@ -32,9 +34,8 @@ class MotionPaths {
   std::vector<Eigen::Vector3f> incisor_, left_, right_;
 };
 
-/// Lines of what is chosen, by name, as the frame has it; all names are always there, so that what
-/// is not chosen is taken away. For SceneRenderer::set_lines.
+/// Lines of the springs, prisms and axes that are chosen, by name, as the frame has them.
 std::map<std::string, LineSet> overlay_lines(const Scene& scene, const FrameState& frame,
-                                             const OverlayChoice& choice, const MotionPaths& paths);
+                                             const OverlayChoice& choice);
 
 }  // namespace condyle

@@ -105,6 +105,8 @@ void add_overlay(const std::string& item, const Case* patient, PicturePlan& plan
                                                  {"bone-springs", &plan.overlays.bone_springs},
                                                  {"axes", &plan.overlays.axes},
                                                  {"paths", &plan.overlays.paths},
+                                                 {"muscles", &plan.overlays.muscles},
+                                                 {"layers", &plan.overlays.layers},
                                                  {"patches", &plan.patches},
                                                  {"scale", &plan.annotations.scale_bar},
                                                  {"letters", &plan.annotations.letters}};
@@ -151,7 +153,7 @@ PicturePlan parse(const PictureOptions& options, const Case* patient) {
     settings.mapped_up_to = patch_mm;
   }
   settings.transparent_background = options.transparent;
-  settings.samples = options.edges == "msaa4" ? 4 : options.edges == "msaa2" ? 2 : 1;
+  settings.samples = options.edges == "msaa4" ? 4 : 1;
   settings.smooth_edges = options.edges == "fxaa";
   settings.supersampling = options.supersample;
   settings.shadows = options.shadows;

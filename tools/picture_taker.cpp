@@ -8,12 +8,12 @@
 #include "engine/mesh/measure.h"
 #include "render/gap_colours.h"
 #include "render/paint.h"
+#include "sim/muscles/usual_muscles.h"
+#include "sim/tissue/model.h"
+#include "tools/anatomy_drawing.h"
 
 namespace condyle {
 namespace {
-
-// Fixed, so that pictures can be compared; nothing goes farther at full opening.
-constexpr double displacement_end_mm = 75;
 
 /// The box of what is shown, grown by where the motion takes the mandible: what the camera keeps in
 /// view.
@@ -58,8 +58,8 @@ PictureTaker::PictureTaker(const RecordOptions& options, const RecordingSubject&
                                            .pair_rules = subject.settings.contact.pair_rules},
                        subject.settings.threads, renderer_,
                        distance ? std::nullopt : std::optional(gap_colours(0.1)));
-  if (plan_.map == SurfaceMap::displacement)
-    displacement_.emplace(patient, displacement_end_mm, renderer_);
+  if (plan_.map == SurfaceMap::displacement) displacement_.emplace(patient.parts);
+  if (plan_.overlays.muscles) muscles_ = muscles_of(patient);
   if (subject.settings.face) carry_face(subject.scene, rest_, subject.settings.threads);
 
   const double aspect = static_cast<double>(plan_.settings.width) / plan_.settings.height;
@@ -105,10 +105,21 @@ Image PictureTaker::drawn(const View& view, const Camera& camera, const FrameSta
     else
       displacement_->clear(renderer_);
   }
-  for (const auto& [name, lines] :
-       overlay_lines(subject_.scene, state, plan_.overlays, with_paths ? paths_ : MotionPaths{}))
-    renderer_.set_lines(name, lines);
+  overlays_.send(renderer_, overlays_of(state, with_paths));
   return renderer_.picture(camera, view.settings);
+}
+
+Overlays PictureTaker::overlays_of(const FrameState& state, bool with_paths) const {
+  Overlays all;
+  all.lines = overlay_lines(subject_.scene, state, plan_.overlays);
+  if (plan_.overlays.paths && with_paths) all.lines["paths"] = paths_.lines();
+  for (const Muscle& muscle : muscles_)
+    all.lines["muscle " + muscle.name] = muscle_line(muscle, subject_.motion, state);
+  const TissueModel* tissue = subject_.scene.tissue.get();
+  if (plan_.overlays.layers && tissue && !state.tissue.nodes.empty())
+    for (int sheet = 0; sheet < tissue->sheets; ++sheet)
+      all.sheets[layer_overlay_name(sheet)] = layer_sheet(*tissue, state.tissue, sheet);
+  return all;
 }
 
 Image PictureTaker::picture(const View& view, const Camera& camera, const FrameState& state) {

@@ -4,10 +4,12 @@
 #include <optional>
 #include <vector>
 
+#include "render/displacement_drawing.h"
 #include "render/gl_context.h"
 #include "render/recorder.h"
+#include "render/shown_overlays.h"
+#include "sim/case/muscle.h"
 #include "tools/camera_options.h"
-#include "tools/displacement_drawing.h"
 #include "tools/distance_drawing.h"
 #include "tools/picture_options.h"
 
@@ -48,6 +50,7 @@ class PictureTaker {
   Image before_after(const View& view, const Camera& camera, const FrameState& state);
   Image drawn(const View& view, const Camera& camera, const FrameState& state, bool with_paths,
               bool with_map);
+  Overlays overlays_of(const FrameState& state, bool with_paths) const;
 
   OffscreenContext context_;
   const RecordingSubject subject_;
@@ -56,6 +59,8 @@ class PictureTaker {
   SceneRenderer renderer_;
   FrameState rest_;  // for wipes
   MotionPaths paths_;
+  std::vector<Muscle> muscles_;  // that are drawn
+  OverlaySender overlays_;
   Lettering words_;
   std::optional<DistanceDrawing> distances_;
   std::optional<DisplacementDrawing> displacement_;

@@ -177,9 +177,9 @@ void add_pictures(CLI::App* command, PictureOptions& picture) {
       ->type_name("LANDMARK|X,Y,Z,RADIUS");
   command->add_option(
       "--overlay", picture.overlay,
-      "Also draw, by commas: springs prisms bone-springs (of the tissue) axes paths (of condyles "
-      "and incisal point) ghost (where all was at rest) wireframe[:PARTS] patches (of contact) "
-      "scale letters (L R A P S I)");
+      "Also draw, by commas: springs prisms bone-springs layers (of the tissue) muscles (their lines "
+      "of action) axes paths (of condyles and incisal point) ghost (where all was at rest) "
+      "wireframe[:PARTS] patches (of contact) scale letters (L R A P S I)");
   command
       ->add_option("--wipe", picture.wipe,
                    "Left of this share of the width the patient at rest, right of it as he is now")
@@ -193,8 +193,8 @@ void add_pictures(CLI::App* command, PictureOptions& picture) {
   command->add_flag("--transparent", picture.transparent, "No background: PNG with alpha");
   command
       ->add_option("--edges", picture.edges,
-                   "How edges are made smooth: msaa4, msaa2, fxaa (twice as fast) or none (msaa4)")
-      ->check(CLI::IsMember({"msaa4", "msaa2", "fxaa", "none"}));
+                   "How edges are made smooth: msaa4, fxaa (twice as fast) or none (msaa4)")
+      ->check(CLI::IsMember({"msaa4", "fxaa", "none"}));
   command
       ->add_option("--supersample", picture.supersample,
                    "Draw so many times as wide and high, then average: 1 to 4 (1)")

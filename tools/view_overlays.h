@@ -2,27 +2,29 @@
 
 #include <memory>
 
-#include "render/window/shown_overlays.h"
+#include "render/shown_overlays.h"
 #include "sim/frame/frame_state.h"
 #include "tools/view_motion.h"
 #include "tools/view_patient.h"
 
 namespace condyle {
 
-/// What stands beside the parts in a view, of one frame: paths of the motion, springs, layers of
-/// tissue, lines of action of muscles. `paths`: where incisor and condyles go; none: not known yet.
+/// What stands beside the parts in a view, of one frame: axes, paths of the motion, what the tissue
+/// is made of, lines of action of muscles. `paths`: where incisor and condyles go; none: not known yet.
 Overlays view_overlays(const ViewPatient& patient, const Motion& motion, const FrameState& frame,
                        const ViewState& view, const std::shared_ptr<const LineSet>& paths);
 
 /// The part of a view that the overlays follow from: the same while nothing of it changes.
 struct OverlayWish {
-  bool springs = false, paths = false;
+  bool springs = false, prisms = false, bone_springs = false, axes = false, paths = false;
   std::vector<PartView> muscles = {}, layers = {};
   std::shared_ptr<const LineSet> known_paths = {};
   bool operator==(const OverlayWish&) const = default;
 
   static OverlayWish of(const ViewState& view, std::shared_ptr<const LineSet> paths) {
-    return {view.look.springs, view.look.paths, view.muscles, view.layers, std::move(paths)};
+    const Look& look = view.look;
+    return {look.springs, look.prisms,  look.bone_springs, look.axes,
+            look.paths,   view.muscles, view.layers,       std::move(paths)};
   }
 };
 

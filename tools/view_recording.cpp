@@ -8,10 +8,12 @@
 #include <optional>
 
 #include "render/annotations.h"
+#include "render/displacement_drawing.h"
 #include "render/gl_context.h"
 #include "render/paint.h"
 #include "render/recorder.h"
 #include "render/scene_renderer.h"
+#include "render/shown_overlays.h"
 #include "tools/distance_drawing.h"
 #include "tools/view_overlays.h"
 
@@ -48,6 +50,7 @@ class ViewDrawing {
       distances_.emplace(subject.patient->scene.patient,
                          DistanceMapSettings{.pair_rules = settings.contact.pair_rules},
                          settings.threads, renderer_);
+    if (subject.view.look.displacement) displacement_.emplace(subject.patient->scene.patient.parts);
   }
 
   Image picture(const FrameState& frame, const Camera& camera) {
@@ -56,6 +59,7 @@ class ViewDrawing {
     if (look.wipe && subject_.wanted.kept)
       image = wiped(drawn(*subject_.wanted.kept, camera), image, look.wipe_at);
     if (distances_) distances_->add_legend_to(image);
+    if (displacement_) displacement_->add_legend_to(image);
     annotate(image, words_, camera,
              {.scale_bar = look.scale_bar, .letters = look.letters, .caption = {}});
     return image;
@@ -65,13 +69,9 @@ class ViewDrawing {
   Image drawn(const FrameState& frame, const Camera& camera) {
     renderer_.update(frame);
     if (distances_) distances_->color(renderer_, frame);
-    Overlays overlays = view_overlays(*subject_.patient, subject_.motion->motion, frame,
-                                      subject_.view, subject_.paths);
-    if (subject_.view.look.axes) {
-      const auto [low, high] = renderer_.bounds();
-      overlays.lines["axes"] = patient_axes(low, high);
-    }
-    overlays_.send(renderer_, overlays);
+    if (displacement_) displacement_->color(renderer_, frame);
+    overlays_.send(renderer_, view_overlays(*subject_.patient, subject_.motion->motion, frame,
+                                            subject_.view, subject_.paths));
     return renderer_.picture(camera, picture_);
   }
 
@@ -80,6 +80,7 @@ class ViewDrawing {
   SceneRenderer renderer_;
   OverlaySender overlays_;
   std::optional<DistanceDrawing> distances_;
+  std::optional<DisplacementDrawing> displacement_;
   Lettering words_;
   PictureSettings picture_;
 };

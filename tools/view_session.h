@@ -120,6 +120,11 @@ class ViewSession {
   bool map_sent_ = false, coloured_ = false, plots_due_ = false;
   PatientPtr ready_for_;  // whose bones are, or are being made, ready to slide
 
+  struct Saved {
+    PatientPtr patient;
+    std::vector<Landmark> landmarks;
+    std::filesystem::path folder;
+  };
   struct LetGoResult {
     std::size_t body;
     Pose in_carrier;
@@ -142,7 +147,7 @@ class ViewSession {
   std::unique_ptr<Background<MotionPictures>> plotting_;
   std::unique_ptr<Background<std::filesystem::path>> recording_;
   std::unique_ptr<Background<LetGoResult>> letting_go_;
-  std::unique_ptr<Background<std::filesystem::path>> saving_;
+  std::unique_ptr<Background<Saved>> saving_;
 };
 
 }  // namespace condyle

@@ -9,6 +9,49 @@
 
 namespace condyle {
 
+namespace {
+
+/// What the tree and the look of the picture are set to.
+nlohmann::json edits_of(const ViewState& view) {
+  const auto parts = [](const std::vector<PartView>& views) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const PartView& one : views) list.push_back(one.shown ? one.opacity : 0);
+    return list;
+  };
+  const Look& look = view.look;
+  return {{"clip", look.clip},
+          {"clip_from", std::string(1, look.clip_from)},
+          {"clip_share", look.clip_share},
+          {"clip_skin", look.clip_skin},
+          {"cut_away", look.cut_away},
+          {"cut_at", static_cast<int>(look.cut_at)},
+          {"cut_radius_mm", look.cut_radius_mm},
+          {"ghost", look.ghost},
+          {"wipe", look.wipe},
+          {"wipe_at", look.wipe_at},
+          {"distances", view.distances},
+          {"patches", look.patches},
+          {"displacement", look.displacement},
+          {"wireframe", look.wireframe},
+          {"paths", look.paths},
+          {"axes", look.axes},
+          {"springs", look.springs},
+          {"prisms", look.prisms},
+          {"bone_springs", look.bone_springs},
+          {"scale_bar", look.scale_bar},
+          {"letters", look.letters},
+          {"shadows", view.shadows},
+          {"mark_contacts", view.mark_contacts},
+          {"obey_contact", view.obey_contact},
+          {"skin_opacity", view.skin_opacity},
+          {"parts", parts(view.parts)},
+          {"muscles", parts(view.muscles)},
+          {"layers", parts(view.layers)},
+          {"parameters", view.motion.parameters}};
+}
+
+}  // namespace
+
 void ViewStateFile::update(const Window& window, const FrameState* frame,
                            const std::string& busy_with) {
   if (file_.empty()) return;
@@ -35,6 +78,12 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
                          {"samples", pictures.samples},
                          {"picture_finished", pictures.finished},
                          {"longest_away_ms", std::round(pictures.longest_away_ms)}};
+  json["edits"] = edits_of(view);
+  json["case"] = {{"name", window.scene().case_name},
+                  {"folder", window.scene().case_folder.string()}};
+  json["recent"] = nlohmann::json::array();
+  for (const auto& path : window.scene().recent) json["recent"].push_back(path.string());
+  if (const std::string trouble = window.trouble(); !trouble.empty()) json["trouble"] = trouble;
   if (view.hands.mandible) json["hand_mm"] = list(view.hands.mandible->t);
   for (const Landmark& landmark : view.landmarks)
     json["landmark_mm"][landmark.name] = list(landmark.at_rest);

@@ -115,12 +115,13 @@ void ViewSession::carry_out(const wish::LetGo& wanted) {
 }
 
 void ViewSession::carry_out(const wish::SaveCase& wanted) {
-  if (saving_ || !patient_) return;
-  saving_ = beside<fs::path>([patient = patient_, landmarks = window_.view().landmarks,
-                              folder = wanted.folder](const Progress& progress) {
+  if (!patient_) return;
+  if (saving_) return window_.say("A patient is being saved; ask again when that is done");
+  saving_ = beside<Saved>([patient = patient_, landmarks = window_.view().landmarks,
+                           folder = wanted.folder](const Progress& progress) {
     report(progress, "saving the patient", 0.5);
     save_case(with_landmarks(patient->scene.patient, landmarks), folder);
-    return folder;
+    return Saved{patient, landmarks, folder};
   });
 }
 
@@ -160,14 +161,18 @@ void ViewSession::take_save() {
   if (!saving_ || !saving_->done()) return;
   const auto finished = std::move(saving_);
   guarded([&] {
-    const auto folder = finished->take();
-    if (!folder) return;
-    recent_.add(*folder);
+    const auto saved = finished->take();
+    if (!saved) return;
+    recent_.add(saved->folder);
+    if (saved->patient == patient_) {
+      shown_.landmarks = saved->landmarks;
+      shown_.case_folder = saved->folder;
+    } else if (!shown_.case_folder.empty()) {
+      recent_.add(shown_.case_folder);  // another patient was opened meanwhile
+    }
     shown_.recent = recent_.list();
-    shown_.landmarks = window_.view().landmarks;
-    shown_.case_folder = *folder;
     window_.update_scene(shown_);
-    window_.say("Saved the patient in " + folder->string());
+    window_.say("Saved the patient in " + saved->folder.string());
   });
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/displacement_drawing.h"
 #include "render/window/panels_drawing.h"
 
 namespace condyle {
@@ -15,20 +16,21 @@ ImU32 ink_of(const Eigen::Vector3f& c) {
 
 }  // namespace
 
-/// In the lower left corner of the view while distances are shown.
+/// In the lower left corner of the view while something is coloured by values.
 void Panels::Drawing::legend() {
-  if (!view.distances || !input.scene.distance_colours) return;
+  const bool distances = view.distances && input.scene.distance_colours;
+  if (!distances && !view.look.displacement) return;
   const Theme& theme = panels.theme_;
-  const ColourMap& map = *input.scene.distance_colours;
+  const ColourMap map = distances ? *input.scene.distance_colours : displacement_map();
+  const auto& remarks = distances ? input.scene.distance_remarks : displacement_remarks();
   const ViewRect& r = layout.view;
   const float letters = theme.small->FontSize, pad = pen.px(10), bar_width = pen.px(18);
   const float bar_height = pen.px(150), title = theme.regular->FontSize + pen.px(8);
   const float line = letters + pen.px(3);
   float wide = pen.px(136);
-  for (const auto& remark : input.scene.distance_remarks)
-    wide = std::max(wide, text_width(theme.small, remark));
-  const float high = title + bar_height + pen.px(8) + line +
-                     line * static_cast<float>(input.scene.distance_remarks.size());
+  for (const auto& remark : remarks) wide = std::max(wide, text_width(theme.small, remark));
+  const float high =
+      title + bar_height + pen.px(8) + line + line * static_cast<float>(remarks.size());
   const double pane_width = wide + 2 * pad, pane_height = high + 2 * pad;
   if (r.width < 2.5 * pane_width || r.height < 1.4 * pane_height) return;  // no room
   const ViewRect pane = {r.x + pad, r.y + r.height - pad - pane_height, pane_width, pane_height};
@@ -73,7 +75,7 @@ void Panels::Drawing::legend() {
   list.AddRectFilled({left, y + pen.px(1)}, {right, y + letters}, ink_of(map.beyond));
   words(theme.small, palette().text, right + pen.px(7), y,
         fmt::format("more than {:g}", map.high()));
-  for (const auto& remark : input.scene.distance_remarks)
+  for (const auto& remark : remarks)
     words(theme.small, palette().text_dim, left, y += line, remark);
 }
 

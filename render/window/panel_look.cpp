@@ -17,6 +17,8 @@ void Panels::Drawing::look() {
     return std::floor((whole - gap * static_cast<float>(n - 1)) / static_cast<float>(n));
   };
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 3));
+  bool has_face = false;
+  for (const Part& part : input.scene.parts) has_face |= part.role == Role::face;
 
   heading(pen, "Cut open");
   tick_box(pen, "clip", "Clipping plane", look.clip);
@@ -32,6 +34,11 @@ void Panels::Drawing::look() {
     tooltip(pen, "The side that is taken away");
     slider(pen, "clip-depth", look.clip_share, {.width = whole});
     tooltip(pen, "How deep, of the patient's whole extent");
+    if (has_face) {
+      ImGui::SetCursorPosX(ImGui::GetCursorPosX() + pen.px(16));
+      tick_box(pen, "clip-skin", "only the skin", look.clip_skin);
+      tooltip(pen, "Bones and teeth stay whole");
+    }
   }
   tick_box(pen, "cut-away", "Window in the skin", look.cut_away);
   tooltip(pen, "Leaves the skin out in a ball around a joint or the mouth");
@@ -76,14 +83,31 @@ void Panels::Drawing::look() {
     }
   }
   const bool has_tissue = input.frame && !input.frame->tissue.nodes.empty();
+  if (has_tissue && tick_box(pen, "displacement", "Way of the skin from rest", look.displacement) &&
+      look.displacement) {
+    view.distances = false;  // one scale of colours at a time
+    if (view.skin_opacity < 0.5) view.skin_opacity = 1;
+  }
+  if (has_tissue) tooltip(pen, "The skin coloured by how far each point has come, in mm");
   tick_box(pen, "paths", "Paths of incisor and condyles", look.paths);
   tooltip(pen, "Where the lower incisal point and the condyles go in the whole motion");
   if (has_tissue) {
     tick_box(pen, "springs", "Springs of the soft tissue", look.springs);
-    tooltip(pen, "The network that deforms the face. Thin the skin to see it");
+    tooltip(pen,
+            "The network that deforms the face: blue shortened, red stretched. Thin the skin to "
+            "see it");
+    tick_box(pen, "prisms", "Prisms of the soft tissue", look.prisms);
+    tooltip(pen, "The cells whose volume the tissue keeps. Thin the skin to see them");
+    tick_box(pen, "bone-springs", "Springs to the bone", look.bone_springs);
+    tooltip(pen,
+            "Where the tissue is attached: to the mandible orange, to the skull blue. Thin the "
+            "skin to see them");
   }
   tick_box(pen, "wireframe", "Triangles", look.wireframe);
-  tick_box(pen, "axes", "Axes: left, back, up", look.axes);
+  tick_box(pen, "axes", "Axes", look.axes);
+  tooltip(pen,
+          "Through both condyles (yellow); about which the jaw has turned from rest (purple); the "
+          "patient's left, back and up (orange, green, blue)");
   tick_box(pen, "scale-bar", "Scale bar", look.scale_bar);
   tick_box(pen, "letters", "Orientation letters", look.letters);
   tooltip(pen, "L left, R right, A front, P back, S up, I down: the patient's");

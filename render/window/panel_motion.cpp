@@ -19,14 +19,18 @@ struct Setting {
 bool setting_slider(Pen& pen, const Setting& setting, std::map<std::string, double>& drafts,
                     const std::string& name, double& value, bool set_by_hand) {
   const auto draft = drafts.find(name);
-  double shown = draft != drafts.end() ? draft->second : value;
-  const bool unusual = (setting.known || draft != drafts.end()) &&
-                       setting.usual_low < setting.usual_high &&
+  const bool told = setting.known || draft != drafts.end();
+  // What the patient's own joints give stands in the middle of the slider's usual range, unfilled.
+  const double patients = setting.usual_low < setting.usual_high
+                              ? (setting.usual_low + setting.usual_high) / 2
+                              : setting.low;
+  double shown = draft != drafts.end() ? draft->second : told ? value : patients;
+  const bool unusual = told && setting.usual_low < setting.usual_high &&
                        (shown < setting.usual_low - 1e-9 || shown > setting.usual_high + 1e-9);
   text(pen.theme.regular, set_by_hand ? palette().text : palette().text_dim, setting.label);
   ImGui::SameLine();
   text_right(pen.theme.regular, unusual ? palette().warning : palette().text,
-             draft == drafts.end() && !setting.known
+             !told
                  ? std::string("the patient's")
                  : fmt::format("{:.4g}{}{}", shown, setting.unit.empty() ? "" : " ", setting.unit));
   const float width = ImGui::GetContentRegionAvail().x;
@@ -43,7 +47,7 @@ bool setting_slider(Pen& pen, const Setting& setting, std::map<std::string, doub
                                               palette().good, pen.px(1));
   }
   if (slider(pen, setting.item.c_str(), shown,
-             {.low = setting.low, .high = setting.high, .width = width}))
+             {.low = setting.low, .high = setting.high, .width = width, .filled = told}))
     drafts[name] = shown;
   const bool let_go = ImGui::IsItemDeactivated();
   std::string help = setting.help;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 
 #include "render/window/panels_drawing.h"
 #include "render/window/playback.h"
@@ -31,6 +32,13 @@ bool worse(const PairContact& a, const PairContact& b) {
   if (deep_a != deep_b) return deep_a > deep_b;
   if (a.touching != b.touching) return a.touching;
   return a.distance_mm < b.distance_mm;
+}
+
+bool has_landmarks(const WindowScene& scene, std::initializer_list<const char*> names) {
+  return std::all_of(names.begin(), names.end(), [&](const char* name) {
+    return std::any_of(scene.landmarks.begin(), scene.landmarks.end(),
+                       [&](const Landmark& one) { return one.name == name; });
+  });
 }
 
 std::string part_name(const WindowScene& scene, int index) {
@@ -90,7 +98,8 @@ void Panels::Drawing::opening() {
   heading(pen, "Opening", held || view.hands.mandible ? "held by hand" : "from the motion");
 
   const float top = ImGui::GetCursorPosY();
-  const std::string number = input.frame ? fmt::format("{:.1f}", live) : "-";
+  const bool known = input.frame && has_landmarks(input.scene, {"lower_incisal_point"});
+  const std::string number = known ? fmt::format("{:.1f}", live) : "-";
   text(theme.large, palette().text, number);
   const float after = ImGui::GetCursorPosY();
   ImGui::SetCursorPos(
@@ -145,9 +154,20 @@ void Panels::Drawing::opening() {
   const Pose rest = input.frame ? input.frame->X_CM.inverse() : Pose{};
   const double left = (m.left_condyle - rest * m.left_condyle).norm();
   const double right = (m.right_condyle - rest * m.right_condyle).norm();
-  reading(theme, "Between incisors", fmt::format("{:.1f} mm", m.interincisal_mm));
+  const auto needs = [&](const char* name, std::initializer_list<const char*> marks,
+                         const std::string& value, const char* without) {
+    const bool there = has_landmarks(input.scene, marks);
+    reading(theme, name, there ? value : std::string("unknown"),
+            there ? palette().text : palette().text_faint);
+    if (!there) tooltip(pen, without);
+  };
+  needs("Between incisors", {"upper_incisal_point", "lower_incisal_point"},
+        fmt::format("{:.1f} mm", m.interincisal_mm),
+        "Needs the landmarks upper incisal point and lower incisal point: key B");
   reading(theme, "Rotation", fmt::format("{:.1f}\u00b0", m.rotation_deg));
-  reading(theme, "Condyle travel", fmt::format("L {:.1f}   R {:.1f} mm", left, right));
+  needs("Condyle travel", {"left_condyle", "right_condyle"},
+        fmt::format("L {:.1f}   R {:.1f} mm", left, right),
+        "Needs the landmarks left condyle and right condyle: key B");
 }
 
 void Panels::Drawing::contacts(float list_height) {

@@ -90,6 +90,7 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       if (!scene.distance_colours) return true;
       remember(view);
       view.distances = !view.distances;
+      if (view.distances) view.look.displacement = false;  // one scale of colours at a time
       // They are seen on bones and teeth alone. Key K brings the skin back.
       if (view.distances && view.skin_opacity > 0.5) {
         skin_before_ = view.skin_opacity;
@@ -139,17 +140,27 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
   }
 }
 
+void Panels::forget_patient() {
+  history_ = {};
+  editing_ = false;
+  skin_before_ = 1;
+  drafts_.case_folder.clear();
+  drafts_.landmark_words.clear();
+  drafts_.parameters.clear();
+  drafts_.excitations.clear();
+}
+
 bool Panels::undo(ViewState& view, bool back) {
-  Edits now = Edits::of(view);
+  Edits now = view.edits();
   if (!(back ? history_.undo(now) : history_.redo(now))) return false;
-  now.put_into(view);
+  view.set_edits(std::move(now));
   undone_ = true;
   return true;
 }
 
 /// Whatever a pass over the panels has changed is an edit; while one thing is held, one edit.
 void Panels::remember_edits(const Edits& before, const ViewState& view) {
-  const bool changed = !(Edits::of(view) == before);
+  const bool changed = !(view.edits() == before);
   if (changed && !undone_ && !editing_) history_.remember(before);
   editing_ = ImGui::IsAnyItemActive() && (editing_ || changed);
 }
@@ -159,7 +170,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
   items_.clear();
   view.fit(input.scene);
   undone_ = false;
-  const Edits before = Edits::of(view);
+  const Edits before = view.edits();
   if (said_until_ < 0) said_until_ = ImGui::GetTime() + said_for_s;
   if (ImGui::GetTime() > said_until_) said_.clear();
   if (input.frame) {

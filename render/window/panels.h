@@ -63,11 +63,15 @@ class Panels {
   bool run(Command command, const WindowScene& scene, ViewState& view);
 
   /// An edit begins: what is wanted now comes back by undo.
-  void remember(const ViewState& view) { history_.remember(Edits::of(view)); }
-  void forget_edits() { history_ = {}; }
+  void remember(const ViewState& view) { history_.remember(view.edits()); }
+  /// Another patient: what was done to the one before cannot be undone, and what stands in fields
+  /// was meant for that one.
+  void forget_patient();
 
   /// Shows a sentence in a dialog until it is closed; several wait in a row.
   void report_error(const std::string& sentence);
+  /// The one that is on show; empty without one.
+  std::string trouble() const { return errors_.empty() ? std::string() : errors_.front(); }
   /// Shows a sentence at the foot of the window for a few seconds.
   void say(const std::string& sentence);
 

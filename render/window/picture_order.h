@@ -9,8 +9,8 @@
 #include "engine/mesh/tri_mesh.h"
 #include "render/camera.h"
 #include "render/scene_renderer.h"
+#include "render/shown_overlays.h"
 #include "render/window/quality.h"
-#include "render/window/shown_overlays.h"
 #include "sim/frame/frame_state.h"
 
 namespace condyle {
@@ -40,12 +40,14 @@ using MapValues = std::vector<std::vector<float>>;
 /// All that one picture shows. What is large is shared and never changes once it is ordered:
 /// something else is another pointer.
 struct PictureOrder {
-  std::shared_ptr<const DrawnParts> parts = {};   // none: nothing is drawn
-  std::shared_ptr<const FrameState> frame = {};   // none: at rest
-  std::shared_ptr<const FrameState> beside = {};  // left of a wipe; none: no wipe
-  double wipe_at = 0.5;                           // share of the width
-  std::shared_ptr<const DrawnMap> map = {};       // none: parts have their own surfaces alone
-  std::shared_ptr<const MapValues> values = {};   // of the map's surfaces; none: no colours
+  std::shared_ptr<const DrawnParts> parts = {};         // none: nothing is drawn
+  std::shared_ptr<const FrameState> frame = {};         // none: at rest
+  std::shared_ptr<const FrameState> beside = {};        // left of a wipe; none: no wipe
+  double wipe_at = 0.5;                                 // share of the width
+  std::shared_ptr<const DrawnMap> map = {};             // none: parts have their own surfaces alone
+  std::shared_ptr<const MapValues> values = {};         // of the map's surfaces; none: no colours
+  std::shared_ptr<const MapValues> beside_values = {};  // the same of the state beside
+  bool displacement = false;                      // the face in the colours of its way from rest
   std::shared_ptr<const Overlays> overlays = {};  // none: nothing beside the parts
   Camera camera = {};
   PictureSettings settings = {};

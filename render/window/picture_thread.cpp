@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "render/displacement_drawing.h"
 #include "render/gl_context.h"
 #include "render/window/picture_files.h"
 #include "render/window/view_picture.h"
@@ -9,10 +10,13 @@
 namespace condyle {
 
 struct PictureThread::Drawing {
-  OffscreenContext context;
+  explicit Drawing(std::shared_ptr<void> made) : context(std::move(made)) {}
+
+  std::shared_ptr<void> context;
   ViewPicture view;
   std::optional<SceneRenderer> renderer;
   OverlaySender overlays;
+  std::optional<DisplacementDrawing> displacement;
   PictureOrder applied;  // what the renderer has
 
   /// Gives the renderer what the order has otherwise than the last one.
@@ -20,6 +24,7 @@ struct PictureThread::Drawing {
     const bool other = wanted.parts != applied.parts;
     if (other) {
       renderer.reset();
+      displacement.reset();
       overlays = {};
       applied = {.parts = wanted.parts};  // also where it cannot be uploaded: once is enough
       if (wanted.parts) {
@@ -28,31 +33,52 @@ struct PictureThread::Drawing {
       }
     }
     if (!renderer) return;
-    if (wanted.frame && (wanted.frame != applied.frame || applied.beside))
-      renderer->update(*wanted.frame);
-    applied.frame = wanted.frame;
-    applied.beside = wanted.beside;
     const auto name = [&](const MapSurface& surface) {
       return wanted.parts->parts[surface.part].name;
     };
     if (wanted.map && wanted.map != applied.map)
       for (const auto& surface : wanted.map->surfaces)
         renderer->set_finer(name(surface), *surface.mesh, surface.normals);
-    if (wanted.map && (wanted.map != applied.map || wanted.values != applied.values))
-      for (std::size_t i = 0; i < wanted.map->surfaces.size(); ++i)
-        renderer->color_part(name(wanted.map->surfaces[i]),
-                             wanted.values && i < wanted.values->size() ? (*wanted.values)[i]
-                                                                        : std::vector<float>{});
-    applied.map = wanted.map;
-    applied.values = wanted.values;
+    const bool moved = wanted.frame != applied.frame || applied.beside;
+    const bool tinted = wanted.map != applied.map || wanted.values != applied.values ||
+                        wanted.displacement != applied.displacement ||
+                        (wanted.displacement && moved) || applied.beside;
+    if (wanted.frame && moved) renderer->update(*wanted.frame);
+    if (tinted) tint(wanted, wanted.frame.get(), wanted.values.get());
     if (wanted.overlays != applied.overlays)
       overlays.send(*renderer, wanted.overlays ? *wanted.overlays : Overlays{});
-    applied.overlays = wanted.overlays;
+    applied = wanted;
+  }
+
+  /// Shows the state beside, or the order's own.
+  void turn_to(const PictureOrder& wanted, bool beside) {
+    const FrameState& frame = beside ? *wanted.beside : *wanted.frame;
+    renderer->update(frame);
+    tint(wanted, &frame, beside ? wanted.beside_values.get() : wanted.values.get());
+  }
+
+ private:
+  /// Colours by values, of a frame (none: at rest).
+  void tint(const PictureOrder& wanted, const FrameState* frame, const MapValues* values) {
+    if (wanted.map)
+      for (std::size_t i = 0; i < wanted.map->surfaces.size(); ++i)
+        renderer->color_part(wanted.parts->parts[wanted.map->surfaces[i].part].name,
+                             values && i < values->size() ? (*values)[i] : std::vector<float>{});
+    if (wanted.displacement) {
+      if (!displacement) displacement.emplace(wanted.parts->parts);
+      displacement->color(*renderer, frame ? *frame : FrameState{});
+    } else if (displacement) {
+      displacement->clear(*renderer);
+      displacement.reset();
+      if (wanted.parts->colours) renderer->set_colour_map(*wanted.parts->colours);
+    }
   }
 };
 
 PictureThread::PictureThread(std::function<void()> told)
-    : told_(std::move(told)), thread_([this] { work(); }) {}
+    : told_(std::move(told)),
+      make_context_([] { return std::make_shared<OffscreenContext>(); }),
+      thread_([this] { work(); }) {}
 
 PictureThread::~PictureThread() {
   {
@@ -75,6 +101,16 @@ std::optional<DrawnPicture> PictureThread::take() {
   const std::lock_guard lock(mutex_);
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   return std::exchange(newest_, std::nullopt);
+}
+
+bool PictureThread::lacks_context() const {
+  const std::lock_guard lock(mutex_);
+  return lacks_context_;
+}
+
+void PictureThread::use_context(ContextMaker maker) {
+  const std::lock_guard lock(mutex_);
+  make_context_ = std::move(maker);
 }
 
 void PictureThread::finish() {
@@ -142,10 +178,22 @@ void PictureThread::work() {
 
 void PictureThread::draw(std::optional<Drawing>& drawing, const PictureOrder& wanted) {
   try {
-    if (!drawing) drawing.emplace();
+    if (!drawing) {
+      ContextMaker maker;
+      {
+        const std::lock_guard lock(mutex_);
+        lacks_context_ = true;
+        maker = make_context_;
+      }
+      drawing.emplace(maker());
+      const std::lock_guard lock(mutex_);
+      lacks_context_ = false;
+    }
     drawing->apply(wanted);
     if (!drawing->renderer) return;
-    auto picture = drawing->view.draw(*drawing->renderer, wanted, [this] { return given_up(); });
+    auto picture = drawing->view.draw(
+        *drawing->renderer, wanted, [&](bool beside) { drawing->turn_to(wanted, beside); },
+        [this] { return given_up(); });
     const std::lock_guard lock(mutex_);
     if (picture) newest_ = std::move(picture);
   } catch (...) {

@@ -4,6 +4,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -14,13 +15,17 @@
 
 namespace condyle {
 
+/// Makes an OpenGL 3.3 core context current on the calling thread for as long as what it gives
+/// lives. throws: MachineError.
+using ContextMaker = std::function<std::shared_ptr<void>()>;
+
 /// Draws the patient on a thread of its own, with an OpenGL context of its own, so that the
 /// window's panels never wait for a picture: not for the first one of a patient, for which all is
 /// prepared and uploaded, nor for a large one. Pixels come back through memory: two contexts of one
 /// software driver would wait for each other.
 class PictureThread {
  public:
-  /// `told`: called when there is news, from that thread.
+  /// `told`: called when there is news, from that thread. Draws off-screen, through EGL.
   explicit PictureThread(std::function<void()> told);
   ~PictureThread();
   PictureThread(const PictureThread&) = delete;
@@ -31,6 +36,10 @@ class PictureThread {
   /// The newest picture when there is one that was not taken yet.
   /// Rethrows what a picture failed of: MachineError.
   std::optional<DrawnPicture> take();
+  /// Whether the last picture failed because there is no context to draw it with.
+  bool lacks_context() const;
+  /// Where the context comes from at the next picture, if there is none yet.
+  void use_context(ContextMaker maker);
   /// Waits until every order is drawn and everything is saved.
   void finish();
 
@@ -65,6 +74,8 @@ class PictureThread {
   std::optional<DrawnPicture> newest_;
   std::deque<Saved> saved_;
   std::exception_ptr failure_;
+  ContextMaker make_context_;
+  bool lacks_context_ = false;
   bool busy_ = false, stop_ = false;
   std::thread thread_;
 };

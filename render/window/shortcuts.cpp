@@ -65,14 +65,9 @@ constexpr std::array move_lines = {
     HelpLine{"M", "move bones, on and off"},
     HelpLine{"drag a bone", "it goes along, and slides on contact"},
     HelpLine{"drag an arrow, a ring", "along or about one axis"},
-    HelpLine{"Ctrl+Z, Ctrl+Shift+Z", "undo, redo"},
 };
 constexpr std::array window_lines = {
-    HelpLine{"K", "skin on, off"},
-    HelpLine{"D", "distances on, off"},
-    HelpLine{"N", "measure: click points"},
-    HelpLine{"B", "landmarks: choose, click"},
-    HelpLine{"G", "plots on, off"},
+    HelpLine{"Ctrl+Z, Ctrl+Y", "undo, redo: settings and moves"},
     HelpLine{"Ctrl+O", "open a patient or a motion"},
     HelpLine{"Tab", "panels on, off"},
     HelpLine{"T", "dark or light panels"},
@@ -81,10 +76,15 @@ constexpr std::array window_lines = {
     HelpLine{"F1, Esc", "this help; close a dialog"},
     HelpLine{"Ctrl+Q", "quit"},
 };
+constexpr std::array show_lines = {
+    HelpLine{"K", "skin on, off"},          HelpLine{"D", "distances on, off"},
+    HelpLine{"N", "measure: click points"}, HelpLine{"B", "landmarks: choose, click"},
+    HelpLine{"G", "plots on, off"},
+};
 constexpr std::array groups = {
     HelpGroup{"Mouse", mouse_lines},   HelpGroup{"Views", view_lines},
     HelpGroup{"Motion", play_lines},   HelpGroup{"Moving bones", move_lines},
-    HelpGroup{"Window", window_lines},
+    HelpGroup{"Window", window_lines}, HelpGroup{"Showing and measuring", show_lines},
 };
 
 }  // namespace

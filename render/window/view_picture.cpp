@@ -22,6 +22,7 @@ ViewPicture::ViewPicture() : state_(std::make_unique<State>()) {}
 ViewPicture::~ViewPicture() = default;
 
 std::optional<DrawnPicture> ViewPicture::draw(SceneRenderer& renderer, const PictureOrder& order,
+                                              const std::function<void(bool beside)>& turn_to,
                                               const std::function<bool()>& given_up) {
   const auto start = std::chrono::steady_clock::now();
   const Quality& quality = order.quality;
@@ -46,12 +47,12 @@ std::optional<DrawnPicture> ViewPicture::draw(SceneRenderer& renderer, const Pic
   };
   if (order.beside && order.frame) {
     // Each is drawn where either shows something.
-    renderer.update(*order.frame);
+    turn_to(false);
     box = renderer.drawn_box(order.camera, settings);
-    renderer.update(*order.beside);
+    turn_to(true);
     box = box.around(renderer.drawn_box(order.camera, settings));
     draw_part(0, order.wipe_at);
-    renderer.update(*order.frame);
+    turn_to(false);
     draw_part(order.wipe_at, 1);
   } else {
     const double pixels = static_cast<double>(settings.width) * settings.height;

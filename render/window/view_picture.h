@@ -17,11 +17,13 @@ class ViewPicture {
   ViewPicture(const ViewPicture&) = delete;
   ViewPicture& operator=(const ViewPicture&) = delete;
 
-  /// Draws what the renderer has, at the order's quality; the settings give the full size. With a
-  /// wipe the renderer is left with the right state. Large pictures of the best quality, at rest,
-  /// are drawn column by column: none when `given_up` says, between two, that nobody waits for it
-  /// any more. throws: MachineError when the driver cannot make a picture of this size.
+  /// Draws what the renderer has, at the order's quality; the settings give the full size. For a
+  /// wipe `turn_to` shows the state beside (true) and the order's own, which is left. Large
+  /// pictures of the best quality, at rest, are drawn column by column: none when `given_up` says,
+  /// between two, that nobody waits for it any more. throws: MachineError when the driver cannot
+  /// make a picture of this size.
   std::optional<DrawnPicture> draw(SceneRenderer& renderer, const PictureOrder& order,
+                                   const std::function<void(bool beside)>& turn_to,
                                    const std::function<bool()>& given_up = {});
 
  private:

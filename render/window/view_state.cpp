@@ -1,5 +1,7 @@
 #include "render/window/view_state.h"
 
+#include <utility>
+
 namespace condyle {
 
 bool ViewState::shows_face(const WindowScene& scene) const {
@@ -18,27 +20,9 @@ void ViewState::fit(const WindowScene& scene) {
   layers.resize(scene.layers.size(), layer);
 }
 
-Edits Edits::of(const ViewState& view) {
-  return {view.hands,        view.measured,      view.landmarks, view.motion,    view.look,
-          view.obey_contact, view.mark_contacts, view.shadows,   view.distances, view.skin_opacity,
-          view.parts,        view.muscles,       view.layers};
-}
-
-void Edits::put_into(ViewState& view) const {
-  view.hands = hands;
-  view.measured = measured;
-  view.landmarks = landmarks;
-  view.motion = motion;
-  view.look = look;
-  view.obey_contact = obey_contact;
-  view.mark_contacts = mark_contacts;
-  view.shadows = shadows;
-  view.distances = distances;
-  view.skin_opacity = skin_opacity;
-  view.parts = parts;
-  view.muscles = muscles;
-  view.layers = layers;
-  if (view.landmark && *view.landmark >= landmarks.size()) view.landmark.reset();
+void ViewState::set_edits(Edits other) {
+  static_cast<Edits&>(*this) = std::move(other);
+  if (landmark && *landmark >= landmarks.size()) landmark.reset();
 }
 
 std::map<std::string, double> part_opacities(const WindowScene& scene, const ViewState& view) {

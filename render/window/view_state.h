@@ -59,6 +59,7 @@ enum class Tool { look, move, measure, landmarks };
 /// What the picture shows beside the surfaces, and what it leaves out of them.
 struct Look {
   bool clip = false;
+  bool clip_skin = false;   // and nothing but the face
   char clip_from = 'L';     // side that is taken away: L R A P S I
   double clip_share = 0.5;  // of the patient's extent, from that side
   bool cut_away = false;
@@ -67,7 +68,9 @@ struct Look {
   bool ghost = false;      // of the rest state
   bool wireframe = false;  // of all parts
   bool patches = false;    // only where surfaces touch, of the map of distances
-  bool paths = false, axes = false, springs = false;
+  bool paths = false, axes = false;
+  bool springs = false, prisms = false, bone_springs = false;  // of the soft tissue
+  bool displacement = false;  // the skin coloured by its way from rest
   bool scale_bar = true, letters = true;
   bool wipe = false;     // the kept state at the left, the present one at the right
   double wipe_at = 0.5;  // share of the width
@@ -80,57 +83,50 @@ enum class LeftTab { parts, look };
 /// What the right column shows.
 enum class SideTab { readings, motion, record };
 
+/// What a person sets in a view and may take back: all but the clock, the camera and which panels
+/// and tools are in use.
+struct Edits {
+  bool obey_contact = true;  // false plays the motion through the contact
+  bool mark_contacts = true;
+  bool shadows = true;
+  bool distances = false;                  // colour parts by their distance from what they may meet
+  std::vector<PinnedPoint> measured = {};  // points that were clicked, in their order
+  Hands hands = {};                        // where bodies are wanted instead of where they would be
+  std::vector<Landmark> landmarks = {};    // where the person has them; the scene's at first
+  MotionChoice motion = {};                // wanted; the scene's at first
+  Look look = {};
+  double skin_opacity = 1;           // of parts with the role `face`, on top of their own
+  std::vector<PartView> parts = {};  // one per part of the scene, in its order
+  // The same of muscles and layers of tissue; not shown at first.
+  std::vector<PartView> muscles = {}, layers = {};
+  bool operator==(const Edits&) const = default;
+};
+
 /// What the person at the window asks for. The loop reads it and answers with a FrameState; nothing
 /// here steps the simulation.
-struct ViewState {
+struct ViewState : Edits {
   bool playing = false;
   bool loop = true;
   double speed = 1;   // times real time, 0.1 to 2
   double time_s = 0;  // of the motion, 0 to duration
   std::optional<double> opening_mm =
-      {};                    // while set, this opening is wanted instead of the motion's
-  bool obey_contact = true;  // false plays the motion through the contact
-  bool mark_contacts = true;
-  bool shadows = true;
-  bool distances = false;                  // colour parts by their distance from what they may meet
-  Tool tool = Tool::look;                  // what the left button does
-  std::vector<PinnedPoint> measured = {};  // points that were clicked, in their order
-  std::size_t chosen = 0;                  // the body that has the handles, of the scene's
-  Hands hands = {};                        // where bodies are wanted instead of where they would be
-  std::vector<Landmark> landmarks = {};    // where the person has them; the scene's at first
+      {};                  // while set, this opening is wanted instead of the motion's
+  Tool tool = Tool::look;  // what the left button does
+  std::size_t chosen = 0;  // the body that has the handles, of the scene's
   std::optional<std::size_t> landmark = {};  // the one that the next click places
-  MotionChoice motion = {};                  // wanted; the scene's at first
   SideTab tab = SideTab::readings;
   LeftTab left_tab = LeftTab::parts;
-  Look look = {};
-  bool plots = false;                // below the picture
-  std::size_t plot_set = 0;          // the one that is shown
-  double skin_opacity = 1;           // of parts with the role `face`, on top of their own
-  std::vector<PartView> parts = {};  // one per part of the scene, in its order
-  // The same of muscles and layers of tissue; not shown at first.
-  std::vector<PartView> muscles = {}, layers = {};
+  bool plots = false;        // below the picture
+  std::size_t plot_set = 0;  // the one that is shown
+
+  const Edits& edits() const { return *this; }
+  /// What was set at another time; the rest stays.
+  void set_edits(Edits other);
 
   /// Whether any face is visible: without one the loop may leave out the face and its tissue.
   bool shows_face(const WindowScene& scene) const;
   /// Gives everything of the scene its view; what is new is as at first.
   void fit(const WindowScene& scene);
-};
-
-/// What a person sets in a view and may take back: all but the clock, the camera and which panels
-/// and tools are in use.
-struct Edits {
-  Hands hands;
-  std::vector<PinnedPoint> measured;
-  std::vector<Landmark> landmarks;
-  MotionChoice motion;
-  Look look;
-  bool obey_contact = true, mark_contacts = true, shadows = true, distances = false;
-  double skin_opacity = 1;
-  std::vector<PartView> parts, muscles, layers;
-  bool operator==(const Edits&) const = default;
-
-  static Edits of(const ViewState& view);
-  void put_into(ViewState& view) const;
 };
 
 /// Opacity of every part by name, hidden ones 0: what a SceneRenderer wants.

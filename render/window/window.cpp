@@ -14,11 +14,19 @@
 
 namespace condyle {
 
-Window::State::State(const WindowOptions& wanted) : options(wanted) {
+namespace {
+
+void ask_for_opengl() {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+}
+
+}  // namespace
+
+Window::State::State(const WindowOptions& wanted) : options(wanted) {
+  ask_for_opengl();
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   glfwWindowHint(GLFW_SAMPLES, 0);  // the 3-D view has its own
   window = glfwCreateWindow(std::max(1, options.width), std::max(1, options.height),
@@ -56,7 +64,26 @@ Window::State::~State() {
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext(imgui);
   }
+  if (spare) glfwDestroyWindow(spare);
   if (window) glfwDestroyWindow(window);
+}
+
+/// The painter found no context through EGL: it gets one of the display's. gives: whether there is
+/// one.
+bool Window::State::lend_context() {
+  if (spare) return false;
+  glfwDefaultWindowHints();
+  ask_for_opengl();
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  spare = glfwCreateWindow(16, 16, "", nullptr, nullptr);
+  if (!spare) return false;
+  painter->use_context([lent = spare] {
+    glfwMakeContextCurrent(lent);
+    if (glfwGetCurrentContext() != lent)
+      throw MachineError("the display lends no OpenGL context to draw pictures with");
+    return std::shared_ptr<void>(lent, [](void*) { glfwMakeContextCurrent(nullptr); });
+  });
+  return true;
 }
 
 Window::Window(const WindowOptions& options) : state_(std::make_unique<State>(options)) {}
@@ -70,6 +97,7 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
   s.view.fit(scene);
   s.order = {.number = s.order.number};
   s.kept.reset();
+  s.kept_values.reset();
   s.cannot_draw = false;
   if (!scene.parts.empty())
     s.order.parts = std::make_shared<DrawnParts>(
@@ -84,7 +112,10 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
   s.overlays_due = true;
   s.view.landmarks = scene.landmarks;
   s.view.motion = scene.motion;
-  s.panels->forget_edits();
+  s.panels->forget_patient();
+  glfwSetWindowTitle(s.window, scene.case_name.empty()
+                                   ? s.options.title.c_str()
+                                   : (scene.case_name + " - " + s.options.title).c_str());
   s.fit_scale();
   s.set_standard_view(camera_of(Command::reset_view));
   s.scene_changed = true;
@@ -210,6 +241,8 @@ void Window::report_error(const std::string& sentence) {
 void Window::wake() { glfwPostEmptyEvent(); }
 
 const ViewState& Window::view() const { return state_->view; }
+const WindowScene& Window::scene() const { return state_->scene; }
+std::string Window::trouble() const { return state_->panels->trouble(); }
 const Camera& Window::camera() const { return state_->camera; }
 void Window::set_camera(const Camera& camera) {
   state_->camera = camera;

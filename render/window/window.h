@@ -92,6 +92,9 @@ class Window {
   static void wake();
 
   const ViewState& view() const;
+  const WindowScene& scene() const;
+  /// The sentence of the dialog that is open; empty without one.
+  std::string trouble() const;
   const Camera& camera() const;
   void set_camera(const Camera& camera);
   const PictureStatistics& pictures() const;

@@ -71,6 +71,9 @@ void Window::State::apply_look(PictureSettings& wanted) const {
     const double from = sign > 0 ? high[axis] : low[axis];
     plane.point =
         Eigen::Vector3d::Unit(axis) * (from - sign * look.clip_share * (high - low)[axis]);
+    if (look.clip_skin)
+      for (const Part& part : scene.parts)
+        if (part.role == Role::face) plane.parts.push_back(part.name);
     wanted.clip = plane;
   }
   if (look.cut_away) {
@@ -197,12 +200,10 @@ void Window::State::order_picture() {
   order.quality = governor.choose(order.moving);
   order.beside = view.look.wipe && order.frame ? kept : nullptr;
   order.wipe_at = view.look.wipe_at;
-  if (overlays_due || view.look.axes != ordered_look.axes) {
-    Overlays all = overlays;
-    if (view.look.axes) all.lines["axes"] = patient_axes(box.min(), box.max());
-    order.overlays = std::make_shared<Overlays>(std::move(all));
-    overlays_due = false;
-  }
+  order.beside_values = order.beside ? kept_values : nullptr;
+  order.displacement = view.look.displacement;
+  if (overlays_due) order.overlays = std::make_shared<Overlays>(overlays);
+  overlays_due = false;
   ++order.number;
   painter->order(order);
   pictures.finished = false;
@@ -243,9 +244,13 @@ void Window::State::draw(bool always, Image* copy) {
   try {
     news = take_picture();
   } catch (const std::exception& error) {
-    cannot_draw = true;
-    panels->report_error(error.what());
-    frames_due = 3;
+    if (painter->lacks_context() && lend_context()) {
+      order_picture();
+    } else {
+      cannot_draw = true;
+      panels->report_error(error.what());
+      frames_due = 3;
+    }
   }
   while (const auto saved = painter->take_saved()) {
     if (saved->trouble.empty())

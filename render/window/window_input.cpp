@@ -123,6 +123,7 @@ void Window::State::run(Command command) {
       break;
     case Command::keep_state:
       kept = order.frame;
+      kept_values = order.values;
       scene_changed = true;
       break;
     case Command::toggle_theme:

@@ -39,6 +39,7 @@ struct Window::State {
   ImGuiContext* imgui = nullptr;
   std::optional<Panels> panels;
   std::optional<PictureTexture> texture;
+  GLFWwindow* spare = nullptr;  // never seen: lends its context to the painter where EGL has none
   std::optional<PictureThread> painter;
 
   WindowOptions options;
@@ -48,6 +49,7 @@ struct Window::State {
   PictureOrder order;       // the newest picture that is wanted
   // To compare with: the first frame, or the one that was kept.
   std::shared_ptr<const FrameState> kept;
+  std::shared_ptr<const MapValues> kept_values;  // its distances; none: they were not shown
   Look ordered_look;
   bool looked = false;       // at mouse and keyboard, at least once
   bool cannot_draw = false;  // the last picture failed
@@ -58,7 +60,7 @@ struct Window::State {
   double progress_fraction = 0, recording_fraction = 0;
   bool can_cancel = false;
   std::vector<PlotSet> plots;
-  Overlays overlays;                           // as given, without the window's own
+  Overlays overlays;
   bool overlays_due = true;                    // not ordered yet
   std::vector<std::filesystem::path> dropped;  // on the window, not taken yet
 
@@ -138,6 +140,7 @@ struct Window::State {
   std::string pointed() const;
   void order_picture();
   bool take_picture();
+  bool lend_context();
   void draw(bool always, Image* copy = nullptr);
   Image read_back() const;
   const FrameState* frame() const { return order.frame.get(); }

@@ -27,6 +27,7 @@ struct Record {
   double step_s = 0;
   std::vector<Pose> X_CM;  // from rest on
   std::vector<MuscleStates> muscles;
+  std::vector<Pose> X_CH;  // of the hyoid, as often as the muscles
 
   Pose pose(double time_s) const {
     const double place = std::clamp(time_s / step_s, 0.0, static_cast<double>(X_CM.size() - 1));
@@ -34,10 +35,14 @@ struct Record {
     if (i + 1 == X_CM.size()) return X_CM[i];
     return interpolate(X_CM[i], X_CM[i + 1], place - static_cast<double>(i));
   }
-  MuscleStates muscles_at(double time_s) const {
+  MuscleStates muscles_at(double time_s) const { return kept_at(muscles, time_s); }
+  Pose hyoid(double time_s) const { return kept_at(X_CH, time_s); }
+
+ private:
+  template <class Value>
+  static const Value& kept_at(const std::vector<Value>& kept, double time_s) {
     const double place = std::round(std::max(time_s, 0.0) / muscles_each_s);
-    return muscles[static_cast<std::size_t>(
-        std::min(place, static_cast<double>(muscles.size() - 1)))];
+    return kept[static_cast<std::size_t>(std::min(place, static_cast<double>(kept.size() - 1)))];
   }
 };
 
@@ -130,15 +135,22 @@ Motion simulate(const std::string& name, double duration_s, MuscleJaw& jaw, int 
           "{}: at {:.3f} s the muscles pull so hard that the jaw would fly off; excite less", name,
           static_cast<double>(k) * record->step_s));
     record->X_CM.push_back(jaw.pose());
-    if (k % keep == 0) record->muscles.push_back(jaw.states());
+    if (k % keep == 0) {
+      record->muscles.push_back(jaw.states());
+      record->X_CH.push_back(jaw.hyoid_pose());
+    }
   }
-  if (record->muscles.empty()) record->muscles.push_back(jaw.states());
+  if (record->muscles.empty()) {
+    record->muscles.push_back(jaw.states());
+    record->X_CH.push_back(jaw.hyoid_pose());
+  }
   Motion motion;
   motion.name = name;
   motion.duration_s = static_cast<double>(steps) * record->step_s;
   motion.recorded = true;  // contact has had its say
   motion.wanted = [record](double time_s) { return record->pose(time_s); };
   motion.muscles = [record](double time_s) { return record->muscles_at(time_s); };
+  motion.hyoid = [record](double time_s) { return record->hyoid(time_s); };
   for (const Muscle& muscle : jaw.muscles()) motion.muscle_names.push_back(muscle.name);
   return motion;
 }

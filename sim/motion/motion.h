@@ -60,6 +60,8 @@ struct Motion {
   // Of a motion driven by muscles: their names, and what each does at a time.
   std::vector<std::string> muscle_names = {};
   std::function<MuscleStates(double time_s)> muscles = {};
+  // X_CH at a time, rest to now, where muscles hang from a hyoid; none: it stays.
+  std::function<Pose(double time_s)> hyoid = {};
   std::optional<RecordingFacts> recording = {};  // of a file
 };
 

@@ -10,11 +10,11 @@
 namespace condyle::test {
 namespace {
 
-/// The window of that title below `from`; 0 when there is none.
+/// The window whose title ends so, below `from`; 0 when there is none.
 Window window_called(Display* display, Window from, const std::string& title) {
   char* name = nullptr;
   if (XFetchName(display, from, &name) && name) {
-    const bool found = title == name;
+    const bool found = std::string_view(name).ends_with(title);
     XFree(name);
     if (found) return from;
   }

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "engine/core/error.h"
+#include "sim/muscles/usual_muscles.h"
 #include "sim/phantom/phantom.h"
 
 namespace condyle {
@@ -95,6 +96,38 @@ TEST_F(MuscleMotion, FromAFileOfGroupsItOpensAndCloses) {
   EXPECT_LT((motion.wanted(1) * incisor() - incisor()).norm(), 1);
   EXPECT_NEAR(motion.muscles(0.3)[16].excitation, 0.15, 0.02);  // an opener
   EXPECT_FALSE(motion.notes.empty());
+}
+
+TEST_F(MuscleMotion, AMuscleIsAsLongAsItsEndsAreApartTheHyoidsToo) {
+  const auto file = write("open.csv", "time_s,open,close\n0,0,0\n0.1,0.15,0\n0.4,0.15,0\n");
+  const std::string way =
+      write("way.csv", "time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.2,2,5,-9\n1,2,5,-9\n");
+  const std::vector<Muscle> muscles = muscles_of(*patient_);
+  for (const std::string& hyoid : {way, std::string("free")}) {
+    const Motion motion = make("muscles:" + file, {.hyoid = hyoid});
+    ASSERT_TRUE(motion.hyoid);
+    EXPECT_GT(motion.hyoid(0.4).t.norm(), 0.5) << "it moves";
+    int of_the_hyoid = 0;
+    for (const double t : {0.0, 0.1, 0.2, 0.4}) {
+      const MuscleStates states = motion.muscles(t);
+      const auto now = [&](MuscleBody body, const Vector3d& rest) -> Vector3d {
+        if (body == MuscleBody::mandible) return motion.wanted(t) * rest;
+        if (body == MuscleBody::hyoid) return motion.hyoid(t) * rest;
+        return rest;
+      };
+      for (std::size_t m = 0; m < muscles.size(); ++m) {
+        ASSERT_EQ(motion.muscle_names[m], muscles[m].name);
+        of_the_hyoid += muscles[m].moves(MuscleBody::hyoid);
+        // What is kept of the muscles is of the beginning of its step of a millisecond.
+        EXPECT_NEAR((now(muscles[m].origin_body, muscles[m].origin) -
+                     now(muscles[m].insertion_body, muscles[m].insertion))
+                        .norm(),
+                    states[m].length_mm, 0.3)
+            << muscles[m].name << " at " << t << " s, hyoid " << hyoid;
+      }
+    }
+    EXPECT_GT(of_the_hyoid, 10);
+  }
 }
 
 TEST_F(MuscleMotion, BadInputIsRefusedWithItsPlace) {

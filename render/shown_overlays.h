@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <map>
 #include <set>
 #include <string>
@@ -16,9 +15,6 @@ struct Overlays {
   std::map<std::string, LineSet> lines = {};
   std::map<std::string, GlassSheet> sheets = {};
 };
-
-/// The patient's directions left, back and up, as arrows from the middle of a box.
-LineSet patient_axes(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
 
 /// Keeps the overlays of one renderer as they are wanted.
 class OverlaySender {

@@ -1,13 +1,13 @@
-#include "tools/displacement_drawing.h"
+#include "render/displacement_drawing.h"
+
+#include <algorithm>
 
 namespace condyle {
 
-DisplacementDrawing::DisplacementDrawing(const Case& patient, double most_mm,
-                                         SceneRenderer& renderer)
-    : colours_(displacement_colours(most_mm)) {
-  renderer.set_colour_map(colours_);
-  const Part* face = patient.find(Role::face);
-  if (!face) return;
+DisplacementDrawing::DisplacementDrawing(std::span<const Part> parts) {
+  const auto face = std::find_if(parts.begin(), parts.end(),
+                                 [](const Part& part) { return part.role == Role::face; });
+  if (face == parts.end()) return;
   name_ = face->name;
   for (const auto& v : face->mesh.vertices) rest_.push_back(v.cast<float>());
 }
@@ -17,11 +17,16 @@ void DisplacementDrawing::color(SceneRenderer& renderer, const FrameState& frame
   std::vector<float> way(rest_.size(), 0.f);
   if (frame.face.size() == rest_.size())
     for (std::size_t v = 0; v < way.size(); ++v) way[v] = (frame.face[v] - rest_[v]).norm();
+  renderer.set_colour_map(colours_);
   renderer.color_part(name_, way);
 }
 
 void DisplacementDrawing::clear(SceneRenderer& renderer) const {
   if (!name_.empty()) renderer.color_part(name_, {});
+}
+
+void DisplacementDrawing::add_legend_to(Image& image) const {
+  add_legend(image, words_, colours_, displacement_remarks());
 }
 
 }  // namespace condyle

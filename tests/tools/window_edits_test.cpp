@@ -1,0 +1,177 @@
+// Whatever a person sets in the window can be taken back; two patients are not mixed up.
+#include "tests/support/file_drop.h"
+#include "window_session.h"
+
+namespace condyle::test {
+namespace {
+
+TEST_F(WindowSession, EverySettingOfThePictureIsUndoneAndRedone) {
+  start({"--motion", "open 20 over 0.3; hold 0.1"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  const auto scrub = rect("scrub");
+  drag(scrub[0] + 0.1 * scrub[2], scrub[1] + scrub[3] / 2, scrub[0] + 0.98 * scrub[2],
+       scrub[1] + scrub[3] / 2);
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["frame"]["opening_mm"]) > 12; }));
+  click("left-tab:Look");
+  ASSERT_TRUE(wait_for_item("clip"));
+  const auto edits = [&] { return state()["edits"]; };
+  int settings = 0;
+  // Sets something, takes it back, and sets it again.
+  const auto set = [&](const std::string& what, const std::function<void()>& edit) {
+    SCOPED_TRACE(what);
+    const Json before = edits();
+    edit();
+    EXPECT_TRUE(wait_until([&](const Json& s) { return s["edits"] != before; }, 10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));  // the mouse is up
+    const Json after = edits();
+    EXPECT_TRUE(press("ctrl+z"));
+    EXPECT_TRUE(wait_until([&](const Json& s) { return s["edits"] == before; }, 10))
+        << Json::diff(before, edits()).dump();
+    EXPECT_TRUE(press("ctrl+y"));
+    EXPECT_TRUE(wait_until([&](const Json& s) { return s["edits"] == after; }, 10))
+        << Json::diff(after, edits()).dump();
+    ++settings;
+  };
+  const auto click_it = [&](const std::string& item) { set(item, [&] { click(item); }); };
+  const auto slide = [&](const std::string& item, double from, double to) {
+    set(item, [&] {
+      ASSERT_TRUE(wait_for_item(item));
+      const auto r = rect(item);
+      drag(r[0] + from * r[2], r[1] + r[3] / 2, r[0] + to * r[2], r[1] + r[3] / 2);
+    });
+  };
+  click_it("shadows");
+  click_it("letters");
+  click_it("scale-bar");
+  click_it("axes");
+  click_it("wireframe");
+  EXPECT_GT(see("triangles"), 0.01);
+  click_it("wireframe");
+  click_it("displacement");
+  EXPECT_GT(see("displacement"), 0.01);
+  click_it("displacement");
+  click_it("bone-springs");
+  click_it("prisms");
+  click_it("springs");
+  click_it("paths");
+  click_it("distances");  // with the skin that it takes away: one edit
+  click_it("patches");
+  click_it("distances");
+  click_it("wipe");
+  slide("wipe-at", 0.5, 0.7);
+  click_it("ghost");
+  EXPECT_GT(see("ghost-and-wipe"), 0.01);
+  click_it("wipe");
+  click_it("ghost");
+  click_it("cut-away");
+  click_it("cut-at:Mouth");
+  slide("cut-radius", 0.3, 0.6);
+  click_it("cut-away");
+  click_it("clip");
+  click_it("clip-from:A");
+  click_it("clip-skin");
+  slide("clip-depth", 0.5, 0.3);
+  see("clipped");
+
+  // All of it, back to the first picture and forth again.
+  const Json all = edits();
+  for (int i = 0; i < settings; ++i) EXPECT_TRUE(press("ctrl+z"));
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    const Json& e = s["edits"];
+    return e["shadows"] == true && e["clip"] == false && e["skin_opacity"] == 1;
+  }));
+  for (int i = 0; i < settings; ++i) EXPECT_TRUE(press("ctrl+y"));
+  EXPECT_TRUE(wait_until([&](const Json& s) { return s["edits"] == all; }));
+  for (int i = 0; i < settings; ++i) EXPECT_TRUE(press("ctrl+z"));
+
+  // The tree, the skin, contact, a parameter of the motion.
+  click("left-tab:Parts");
+  ASSERT_TRUE(wait_for_item("skin:glass"));
+  click_it("skin:glass");
+  click_it("skin:off");
+  slide("skin", 0.02, 0.6);
+  click_it("show:mandible");
+  slide("opacity:skull", 0.9, 0.4);
+  click_it("show-all:layers");
+  click_it("mark-contacts");
+  click_it("obey-contact");
+  set("key K", [&] { EXPECT_TRUE(press("k")); });
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, APatientSavedWhileAnotherIsOpenedKeepsItsFolderToItself) {
+  const std::string boxes = box_case(folder_);
+  start({"--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  EXPECT_TRUE(press("b"));
+  write_into("case-folder", folder_ / "first");
+  const auto save = rect("case-save");
+  // Saving the large patient takes longer than opening the small one.
+  EXPECT_TRUE(
+      xdotool({"mousemove", px(save[0] + save[2] / 2), px(save[1] + save[3] / 2), "click", "1"}));
+  EXPECT_TRUE(drop_files("Condyle", {boxes}));
+  ASSERT_TRUE(wait_until([&](const Json& s) {
+    return idle(s) && s["case"]["folder"] == fs::weakly_canonical(boxes).string() &&
+           fs::exists(folder_ / "first/case.json");
+  })) << state()["case"].dump();
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  const Json now = state();
+  EXPECT_EQ(now["case"]["folder"], fs::weakly_canonical(boxes).string());
+  ASSERT_EQ(now["recent"].size(), 2u) << now["recent"].dump();
+  EXPECT_EQ(now["recent"][0], fs::weakly_canonical(boxes).string());
+  // What would be saved now goes where this patient is from, not where the other one went.
+  ASSERT_TRUE(wait_for_item("case-save"));
+  click("case-save");
+  ASSERT_TRUE(wait_until([&](const Json& s) { return idle(s); }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  const auto told = condyle({"info", folder_ / "first", "--json"});
+  EXPECT_NE(told.out.find("face"), std::string::npos) << told.out;
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, ATextureThatIsTooLargeIsToldAndTheWindowStays) {
+  const std::string boxes = box_case(folder_);
+  // The head of a PNG says 24,576 x 2 pixels.
+  std::string picture("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x60\0\0\0\0\x02\x08\x02\0\0\0", 29);
+  write_text(folder_ / "face.png", picture + std::string(64, 'x'));
+  write_text(folder_ / "face.mtl", "newmtl skin\nKd 1 1 1\nmap_Kd face.png\n");
+  write_text(folder_ / "face.obj",
+             "mtllib face.mtl\nv -50 -90 -50\nv 50 -90 -50\nv 50 -90 50\nv -50 -90 50\n"
+             "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+  start({boxes, "--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle));
+  EXPECT_TRUE(drop_files("Condyle", {folder_ / "face.obj", folder_ / "mandible.stl"}));
+  click("import-go");
+  ASSERT_TRUE(wait_for_item("error"));
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    const std::string words = s.value("trouble", "");
+    return words.find("24576x2") != std::string::npos && words.find("face") != std::string::npos;
+  })) << state().value("trouble", "nothing was said");
+  see("texture-too-large");
+  click("close-error");
+  ASSERT_TRUE(wait_for_item("error", false));
+  EXPECT_EQ(state()["case"]["folder"], fs::weakly_canonical(boxes).string()) << "as it was";
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, WithoutEglThePictureIsDrawnWithTheDisplaysOwnOpenGl) {
+  const std::string boxes = box_case(folder_);
+  setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere.json", 1);
+  start({boxes, "--motion", "rest"});
+  unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
+  ASSERT_TRUE(wait_until(idle));
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["picture_finished"] == true; }))
+      << state().value("trouble", "nothing was said");
+  EXPECT_FALSE(state()["items"].contains("error"));
+  see("without-egl");
+  EXPECT_TRUE(press("l"));
+  EXPECT_GT(see("without-egl-from-the-left"), 0.05);
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+}  // namespace
+}  // namespace condyle::test

@@ -1,0 +1,73 @@
+#include "tools/anatomy_drawing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "engine/tissue/layered_net.h"
+#include "sim/tissue/model.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3f;
+
+// By place, from the skin to the bone; lightness tells them apart, too.
+const std::array<Vector3f, 4> layer_colors = {
+    {{0.88f, 0.67f, 0.56f}, {0.94f, 0.83f, 0.45f}, {0.72f, 0.24f, 0.20f}, {0.62f, 0.68f, 0.74f}}};
+
+/// Lightness alone tells it.
+Vector3f excited_color(double excitation) {
+  const Vector3f rest(0.50f, 0.12f, 0.11f), full(1.0f, 0.88f, 0.25f);
+  return rest + static_cast<float>(std::clamp(excitation, 0.0, 1.0)) * (full - rest);
+}
+
+double excitation_of(const Muscle& muscle, const Motion& motion, const FrameState& frame) {
+  for (std::size_t k = 0; k < std::min(frame.muscles.size(), motion.muscle_names.size()); ++k)
+    if (motion.muscle_names[k] == muscle.name) return frame.muscles[k].excitation;
+  return 0;
+}
+
+}  // namespace
+
+LineSet muscle_line(const Muscle& muscle, const Motion& motion, const FrameState& frame,
+                    double opacity) {
+  const auto now = [&](MuscleBody body, const Eigen::Vector3d& rest) -> Vector3f {
+    if (body == MuscleBody::mandible) return (frame.X_CM * rest).cast<float>();
+    // A hand that moves the jaw elsewhere leaves the hyoid where the motion has it.
+    if (body == MuscleBody::hyoid && motion.hyoid)
+      return (motion.hyoid(frame.time_s) * rest).cast<float>();
+    return rest.cast<float>();
+  };
+  const Vector3f origin = now(muscle.origin_body, muscle.origin),
+                 insertion = now(muscle.insertion_body, muscle.insertion);
+  return {.ends = {origin, insertion},
+          .colors = {},
+          .dots = {origin, insertion},
+          .color = excited_color(excitation_of(muscle, motion, frame)),
+          .width_px = 6,
+          .dot_mm = 1.2f,
+          .through = 0.45f,
+          .opacity = static_cast<float>(opacity)};
+}
+
+GlassSheet layer_sheet(const TissueModel& model, const TissueState& now, int sheet,
+                       double opacity) {
+  GlassSheet made{.positions = {},
+                  .triangles = model.triangles,
+                  .color = layer_colors[3],
+                  .opacity = static_cast<float>(opacity)};
+  const int layers = model.sheets - 1;
+  if (sheet < layers)
+    made.color = layer_colors[static_cast<std::size_t>(layers == 1 ? 0 : 2 * sheet / (layers - 1))];
+  made.positions.reserve(static_cast<std::size_t>(model.columns));
+  for (int column = 0; column < model.columns; ++column)
+    made.positions.push_back(
+        now.nodes[static_cast<std::size_t>(node_of(column, sheet, model.sheets))].cast<float>());
+  return made;
+}
+
+std::string layer_overlay_name(int sheet) { return fmt::format("layer {:03}", 999 - sheet); }
+
+}  // namespace condyle

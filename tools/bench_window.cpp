@@ -1,0 +1,155 @@
+#include "tools/bench_window.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <thread>
+
+#include "engine/core/error.h"
+#include "render/recorder.h"
+#include "render/window/layout.h"
+#include "render/window/picture_thread.h"
+#include "render/window/playback.h"
+#include "sim/simulator/live.h"
+
+namespace condyle {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+std::vector<BenchRow> play(const Scene& scene, const Motion& motion,
+                           const SimulatorSettings& settings, const Camera& camera, int width,
+                           int height, const std::string& name) {
+  constexpr double settle_s = 3, measure_s = 6, span_s = 0.5;
+  constexpr std::chrono::milliseconds turn(4);
+  LiveSimulation simulation(scene, motion, settings);
+  PictureThread painter([] {});
+  QualityGovernor governor;
+  PictureOrder order{.parts = std::make_shared<DrawnParts>(DrawnParts{scene.patient.parts, {}, {}}),
+                     .camera = camera};
+  order.settings.width = width;
+  order.settings.height = height;
+  order.moving = true;
+  ViewState view;
+  view.playing = true;
+  BenchRow pictures{name + "_pictures", "1/s", {}, {}}, steps{name + "_steps", "1/s", {}, {}};
+  double scale = 1;
+  int counted = 0;
+  // Time counts from the first picture on: before it all is uploaded.
+  bool begun = false;
+  Clock::time_point start = Clock::now(), last = start, span = start;
+  while (!begun || seconds(start, Clock::now()) < settle_s + measure_s) {
+    const auto now = Clock::now();
+    advance_clock(view, seconds(last, now), motion.duration_s,
+                  order.frame ? order.frame->time_s : 0);
+    last = now;
+    simulation.request({.time_s = view.time_s});
+    if (auto frame = simulation.take()) {
+      order.frame = std::make_shared<FrameState>(std::move(*frame));
+      order.quality = governor.choose(true);
+      ++order.number;
+      painter.order(order);
+    }
+    if (const auto picture = painter.take()) {
+      if (!begun) {
+        begun = true;
+        start = span = Clock::now();
+      } else {
+        governor.measured(true, picture->ms);
+        ++counted;
+        scale = picture->quality.render_scale;
+      }
+    }
+    if (begun && seconds(span, now) >= span_s) {
+      if (seconds(start, span) >= settle_s - 1e-3) {
+        pictures.samples.push_back(counted / seconds(span, now));
+        steps.samples.push_back(simulation.steps_per_second());
+      }
+      counted = 0;
+      span = now;
+    }
+    std::this_thread::sleep_for(turn);
+  }
+  for (BenchRow* row : {&pictures, &steps})
+    row->parameters = {{"width", width}, {"height", height}, {"render_scale", scale}};
+  return {pictures, steps};
+}
+
+/// A folder that goes with the object.
+class PassingFolder {
+ public:
+  PassingFolder()
+      : path_(std::filesystem::temp_directory_path() /
+              fmt::format("condyle-bench-{}", ::getpid())) {}
+  ~PassingFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  PassingFolder(const PassingFolder&) = delete;
+  PassingFolder& operator=(const PassingFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace
+
+std::vector<BenchRow> bench_window(const Scene& scene, const Motion& motion,
+                                   const SimulatorSettings& settings, const Camera& camera) {
+  constexpr int width = 1920, height = 1080;
+  const ViewRect with_panels = lay_out(width, height, 1, true).view;
+  std::vector<BenchRow> rows =
+      play(scene, motion, settings, camera, static_cast<int>(std::lround(with_panels.width)),
+           static_cast<int>(std::lround(with_panels.height)), "frame.window");
+  for (auto& row : play(scene, motion, settings, camera, width, height, "frame.whole_window"))
+    rows.push_back(std::move(row));
+  return rows;
+}
+
+std::vector<BenchRow> bench_film(SceneRenderer& renderer, const std::vector<FrameState>& frames,
+                                 const Camera& camera, const PictureSettings& picture) {
+  constexpr int rounds = 5;
+  const PassingFolder folder;
+  const auto record = [&](bool film) {
+    const auto start = Clock::now();
+    Recorder recorder({.folder = folder.path(),
+                       .width = picture.width,
+                       .height = picture.height,
+                       .frames = static_cast<int>(frames.size()),
+                       .film = film,
+                       .identity = {}});
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      renderer.update(frames[i]);
+      recorder.add(static_cast<int>(i), renderer.picture(camera, picture));
+    }
+    recorder.finish();
+    return seconds(start, Clock::now()) / static_cast<double>(frames.size());
+  };
+  BenchRow ratio{"frame.record_with_film", "times as long", {}, {}},
+      plain{"frame.record", "pictures/s", {}, {}};
+  try {
+    record(true);  // the first has all to prepare
+    for (int i = 0; i < rounds; ++i) {
+      const double without = record(false);
+      plain.samples.push_back(1 / without);
+      ratio.samples.push_back(record(true) / without);
+    }
+  } catch (const MachineError&) {
+    return {};  // no ffmpeg, or no room
+  }
+  for (BenchRow* row : {&plain, &ratio})
+    row->parameters = {{"width", picture.width},
+                       {"height", picture.height},
+                       {"pictures", static_cast<double>(frames.size())}};
+  return {plain, ratio};
+}
+
+}  // namespace condyle

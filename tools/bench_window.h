@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/scene_renderer.h"
+#include "sim/simulator/simulator.h"
+
+namespace condyle {
+
+/// Measured values of one name.
+struct BenchRow {
+  std::string name, unit;
+  std::vector<double> samples;
+  std::map<std::string, double> parameters;
+};
+
+/// Pictures a second and steps of the simulation a second while a motion is played as the window
+/// plays it: the simulation and the pictures each on a thread of their own, the governor choosing
+/// the quality. One sample each half second, after the governor has found its level. For the view
+/// of a window of 1920x1080 with its panels, and for one without.
+std::vector<BenchRow> bench_window(const Scene& scene, const Motion& motion,
+                                   const SimulatorSettings& settings, const Camera& camera);
+
+/// How many times as long a recording takes with a film as without; empty without ffmpeg.
+std::vector<BenchRow> bench_film(SceneRenderer& renderer, const std::vector<FrameState>& frames,
+                                 const Camera& camera, const PictureSettings& picture);
+
+}  // namespace condyle
