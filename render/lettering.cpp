@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/core/files.h"
+#include "render/paint.h"
 
 namespace condyle {
 namespace {
@@ -109,11 +110,7 @@ void Lettering::write(Image& image, double x, double y, double height, const std
           if (px < 0 || py < 0 || px >= image.width || py >= image.height) continue;
           const float a =
               static_cast<float>(cover[static_cast<std::size_t>(j) * columns + i]) / 255;
-          auto* pixel = &image.rgba[4 * (static_cast<std::size_t>(py) * image.width + px)];
-          for (int k = 0; k < 3; ++k)
-            pixel[k] = static_cast<std::uint8_t>(
-                std::lround(a * 255 * color[k] + (1 - a) * static_cast<float>(pixel[k])));
-          pixel[3] = 255;
+          lay_over(&image.rgba[4 * (static_cast<std::size_t>(py) * image.width + px)], color, a);
         }
     }
     x += scale * static_cast<float>(advance);

@@ -165,15 +165,35 @@ void OverlayPasses::wireframe(const DrawItem& item, const PictureView& view) {
   } else {
     glDisable(GL_CULL_FACE);
   }
-  blend_over();
   glDepthMask(GL_FALSE);
   glDepthFunc(GL_LEQUAL);
+  // Lines are moved to the front by the slope of their triangle, at an outline by any length: they
+  // would stand before the skin. So they are drawn only where the surface itself is seen.
+  const bool marks = has_stencil();
+  if (marks) {
+    glStencilMask(0xff);
+    glClearStencil(0);
+    glClear(GL_STENCIL_BUFFER_BIT);
+    glEnable(GL_STENCIL_TEST);
+    glStencilFunc(GL_ALWAYS, 1, 0xff);
+    glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(0, -4);
+    item.mesh().draw();
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glStencilFunc(GL_EQUAL, 1, 0xff);
+    glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  }
+  blend_over();
   glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   glEnable(GL_POLYGON_OFFSET_LINE);
   glPolygonOffset(-1, -2);
   item.mesh().draw();
   glDisable(GL_POLYGON_OFFSET_LINE);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  glDisable(GL_STENCIL_TEST);
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);

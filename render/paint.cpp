@@ -5,15 +5,20 @@
 
 namespace condyle {
 
+void lay_over(std::uint8_t* pixel, const Eigen::Vector3f& color, float cover) {
+  const float below = (1 - cover) * static_cast<float>(pixel[3]) / 255, all = cover + below;
+  if (!(all > 0)) return;
+  const float share = pixel[3] == 255 ? cover : cover / all;
+  for (int k = 0; k < 3; ++k)
+    pixel[k] = static_cast<std::uint8_t>(
+        std::lround(share * 255 * color[k] + (1 - share) * static_cast<float>(pixel[k])));
+  pixel[3] = static_cast<std::uint8_t>(std::lround(255 * all));
+}
+
 void shade_box(Image& image, const PixelBox& box, const Eigen::Vector3f& color, float cover) {
   for (int y = std::max(0, box.y0); y < std::min(image.height, box.y1); ++y)
-    for (int x = std::max(0, box.x0); x < std::min(image.width, box.x1); ++x) {
-      auto* pixel = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + x)];
-      for (int k = 0; k < 3; ++k)
-        pixel[k] = static_cast<std::uint8_t>(
-            std::lround(cover * 255 * color[k] + (1 - cover) * static_cast<float>(pixel[k])));
-      pixel[3] = 255;
-    }
+    for (int x = std::max(0, box.x0); x < std::min(image.width, box.x1); ++x)
+      lay_over(&image.rgba[4 * (static_cast<std::size_t>(y) * image.width + x)], color, cover);
 }
 
 void paint_box(Image& image, const PixelBox& box, const Eigen::Vector3f& color) {

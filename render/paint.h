@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 
 #include "render/image.h"
@@ -13,6 +14,9 @@ struct PixelBox {
 };
 
 // Colours are sRGB, 0 to 1.
+/// A colour laid over one pixel, RGBA that is not premultiplied; `cover` 0 changes nothing, 1 hides
+/// what is there.
+void lay_over(std::uint8_t* pixel, const Eigen::Vector3f& color, float cover);
 void paint_box(Image& image, const PixelBox& box, const Eigen::Vector3f& color);
 /// The color laid over what is there; `cover` 0 changes nothing, 1 hides it.
 void shade_box(Image& image, const PixelBox& box, const Eigen::Vector3f& color, float cover);

@@ -20,13 +20,14 @@ namespace {
 std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const Motion& motion,
                                                      const PictureSettings& picture) {
   constexpr int samples = 24;
-  constexpr std::size_t stride = 16;  // a few vertices tell the extent
+  constexpr std::size_t few = 1000;  // of more a part of them tells the extent
   Box box;
   for (const auto& part : patient.parts) {
     const auto opacity = picture.part_opacity.find(part.name);
     if (opacity != picture.part_opacity.end() && opacity->second <= 0) continue;
     const Body body = body_of(part.role);
     const bool moves = (body == Body::free ? part.carrier : body) == Body::mandible;
+    const std::size_t stride = part.mesh.vertices.size() > few ? 16 : 1;
     for (int i = 0; i <= (moves ? samples : 0); ++i) {
       const Pose X_CM = moves ? motion.wanted(motion.duration_s * i / samples) : Pose{};
       for (std::size_t v = 0; v < part.mesh.vertices.size(); v += stride)

@@ -88,7 +88,7 @@ void Panels::Drawing::look() {
     view.distances = false;  // one scale of colours at a time
     if (view.skin_opacity < 0.5) view.skin_opacity = 1;
   }
-  if (has_tissue) tooltip(pen, "The skin coloured by how far each point has come, in mm");
+  if (has_tissue) tooltip(pen, "The skin coloured by how far each point has come");
   tick_box(pen, "paths", "Paths of incisor and condyles", look.paths);
   tooltip(pen, "Where the lower incisal point and the condyles go in the whole motion");
   if (has_tissue) {

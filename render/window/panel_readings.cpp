@@ -263,7 +263,8 @@ void Panels::Drawing::times() {
     const float text_y = at.y + (pen.px(bar_row) - theme.small->FontSize) / 2,
                 mid = at.y + pen.px(bar_row / 2);
     const std::string name = picture ? "picture" : std::string(stage_names[i]);
-    const std::string value = fmt::format("{:.1f} ms", times.ms[i]);
+    const std::string value = times.ms[i] < 1000 ? fmt::format("{:.1f} ms", times.ms[i])
+                                                 : fmt::format("{:.1f} s", times.ms[i] / 1000);
     list.AddText(theme.small, theme.small->FontSize, {at.x, text_y}, palette().text_dim,
                  name.c_str());
     list.AddRectFilled({at.x + name_width, mid - pen.px(3)},

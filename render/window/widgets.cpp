@@ -1,5 +1,7 @@
 #include "render/window/widgets.h"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -105,8 +107,50 @@ std::string fitted(ImFont* font, const std::string& words, float width) {
   return cut + "...";
 }
 
+namespace {
+
+/// Broken between words alone: ImGui breaks numbers at their point, too.
+std::string broken(ImFont* font, const std::string& words, float width) {
+  std::string lines, line;
+  const auto add = [&](const std::string& word, char after) {
+    const std::string longer = line.empty() ? word : line + " " + word;
+    if (line.empty() || text_width(font, longer) <= width) {
+      line = longer;
+    } else {
+      lines += line + "\n";
+      line = word;
+    }
+    if (after == '\n') {
+      lines += line + "\n";
+      line.clear();
+    }
+  };
+  std::string word;
+  for (const char c : words) {
+    if (c != ' ' && c != '\n') {
+      word += c;
+      continue;
+    }
+    add(word, c);
+    word.clear();
+  }
+  add(word, ' ');
+  return lines + line;
+}
+
+}  // namespace
+
 void text(ImFont* font, ImU32 colour, const std::string& words) {
   ImGui::PushFont(font);
+  const float wrap_at = ImGui::GetCurrentContext()->CurrentWindow->DC.TextWrapPos;
+  if (wrap_at >= 0) {
+    const float width = ImGui::CalcWrapWidthForPos(ImGui::GetCursorScreenPos(), wrap_at);
+    ImGui::PushStyleColor(ImGuiCol_Text, colour);
+    ImGui::TextUnformatted(broken(font, words, width).c_str());
+    ImGui::PopStyleColor();
+    ImGui::PopFont();
+    return;
+  }
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
   ImGui::TextUnformatted(words.c_str());
   ImGui::PopStyleColor();

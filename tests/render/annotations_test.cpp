@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "render/paint.h"
+
 namespace condyle {
 namespace {
 
@@ -51,6 +53,33 @@ TEST(Annotations, TheBarIsARoundLengthOfTheSizeThatItSays) {
                 std::abs(digit - 5) < 1e-9)
         << bar.text;
   }
+}
+
+TEST(Annotations, OnATransparentPictureLeaveNoBoxBehind) {
+  Image image{640, 360, std::vector<std::uint8_t>(std::size_t{4} * 640 * 360, 0)};
+  const Lettering words;
+  ASSERT_TRUE(words.has_font()) << "install fonts-dejavu-core";
+  words.write(image, 100, 200, 60, "I", Eigen::Vector3f::Constant(0.96f));
+  int solid = 0, partly = 0, empty = 0;
+  for (int y = 150; y < 205; ++y)
+    for (int x = 100; x < 118; ++x) {
+      const auto* p = &image.rgba[4 * (std::size_t{640} * y + x)];
+      solid += p[3] == 255;
+      partly += p[3] > 0 && p[3] < 255;
+      empty += p[3] == 0;
+      if (p[3] > 0) {
+        EXPECT_NEAR(p[0], 245, 1) << "the letter's own colour, however thin";
+      }
+    }
+  EXPECT_GT(solid, 100);
+  EXPECT_GT(partly, 20);
+  EXPECT_GT(empty, 100);
+  // Laid over what is there, coverage adds up.
+  std::uint8_t pixel[4] = {0, 0, 0, 0};
+  lay_over(pixel, Eigen::Vector3f::Ones(), 0.5f);
+  lay_over(pixel, Eigen::Vector3f::Zero(), 0.5f);
+  EXPECT_NEAR(pixel[3], 191, 1);
+  EXPECT_NEAR(pixel[0], 85, 1);  // a quarter of white under half of black
 }
 
 TEST(Annotations, ArePaintedWhereTheyBelongAndOnlyWhenWanted) {

@@ -163,6 +163,21 @@ TEST_F(Overlays, WireframesDrawTheEdgesOfTheNamedPart) {
   EXPECT_GT(right, 150);
 }
 
+TEST_F(Overlays, AWireframeIsHiddenByWhatHidesItsPart) {
+  // Hardly a millimetre below the skin, as cheek and chin have it.
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 29, 24)),
+                                   make_part("face", Role::face, ball({0, 0, 0}, 30, 48))};
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = settings.height = 300;
+  settings.shadows = false;
+  const Image plain = renderer.picture(front_camera(), settings);
+  settings.wireframe = {"skull"};
+  EXPECT_EQ(plain.rgba, renderer.picture(front_camera(), settings).rgba);
+  settings.skin_opacity = 0;
+  EXPECT_NE(plain.rgba, renderer.picture(front_camera(), settings).rgba);
+}
+
 TEST_F(Overlays, LinesHaveTheirWidthWhereverTheyAreAndShowThroughFaintly) {
   const std::vector<Part> parts = {skull_ball()};
   SceneRenderer renderer(parts);

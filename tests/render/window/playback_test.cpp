@@ -12,13 +12,17 @@ namespace condyle {
 namespace {
 
 TEST(Playback, ClockRunsAtTheWantedSpeed) {
-  ViewState view{.playing = true, .speed = 0.5};
+  ViewState view;
+  view.playing = true;
+  view.speed = 0.5;
   for (int i = 0; i < 60; ++i) advance_clock(view, 1.0 / 60, 4, view.time_s);
   EXPECT_NEAR(view.time_s, 0.5, 1e-9);
 }
 
 TEST(Playback, ClockWaitsForASlowSimulation) {
-  ViewState view{.playing = true, .time_s = 1.0};
+  ViewState view;
+  view.playing = true;
+  view.time_s = 1.0;
   for (int i = 0; i < 60; ++i) advance_clock(view, 1.0 / 60, 4, 1.0);
   EXPECT_NEAR(view.time_s, 1.0 + allowed_lead_s(1.0 / 60), 1e-9);
   // Also when the clock has begun anew and the frame is still at the end.
@@ -29,18 +33,25 @@ TEST(Playback, ClockWaitsForASlowSimulation) {
 
 TEST(Playback, ClockRunsOnWhenTheFrameIsAStepAhead) {
   for (const bool loop : {true, false}) {
-    ViewState view{.playing = true, .loop = loop, .time_s = 1.0};
+    ViewState view;
+    view.playing = true;
+    view.loop = loop;
+    view.time_s = 1.0;
     advance_clock(view, 0.02, 4, 1.0 + 1.0 / 120);
     EXPECT_NEAR(view.time_s, 1.02, 1e-9);
   }
 }
 
 TEST(Playback, LoopsOrStopsAtTheEnd) {
-  ViewState view{.playing = true, .time_s = 3.99};
+  ViewState view;
+  view.playing = true;
+  view.time_s = 3.99;
   advance_clock(view, 0.05, 4, 3.99);
   EXPECT_TRUE(view.playing);
   EXPECT_NEAR(view.time_s, 0.04, 1e-9);
-  view = {.playing = true, .loop = false, .time_s = 3.99};
+  view.playing = true;
+  view.loop = false;
+  view.time_s = 3.99;
   advance_clock(view, 0.05, 4, 3.99);
   EXPECT_FALSE(view.playing);
   EXPECT_EQ(view.time_s, 4);
@@ -50,7 +61,8 @@ TEST(Playback, LoopsOrStopsAtTheEnd) {
 }
 
 TEST(Playback, TimeStaysInTheMotionAndTheHandLetsGo) {
-  ViewState view{.opening_mm = 12};
+  ViewState view;
+  view.opening_mm = 12;
   step_clock(view, -1, 4);
   EXPECT_EQ(view.time_s, 0);
   EXPECT_FALSE(view.opening_mm.has_value());
