@@ -110,8 +110,10 @@ void Window::State::interface_frame() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   // The backend only knows where the mouse is now; the queue knows each press and where it was;
-  // so it is with keys.
-  const MouseMoment moment = mouse.take();
+  // so it is with keys. What was typed goes first: it is for a field that was clicked before, and a
+  // click on a button beside the field must find it written.
+  if (keys.empty()) mouse_shown = mouse.take();
+  const MouseMoment& moment = mouse_shown;
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(moment.x), static_cast<float>(moment.y)};
   for (std::size_t i = 0; i < moment.down.size(); ++i) io.MouseDown[i] = moment.down[i];

@@ -65,6 +65,7 @@ struct Window::State {
   std::vector<std::filesystem::path> dropped;  // on the window, not taken yet
 
   MouseQueue mouse;
+  MouseMoment mouse_shown;  // to the panels
   /// Keys and letters for a field that is written in, in their order, each with its own pass over
   /// the panels.
   struct KeyMoment {

@@ -23,11 +23,13 @@ TEST_F(WindowSession, EverySettingOfThePictureIsUndoneAndRedone) {
     edit();
     EXPECT_TRUE(wait_until([&](const Json& s) { return s["edits"] != before; }, 10));
     // The whole drag has arrived, and the mouse is up.
-    Json after;
-    do {
-      after = edits();
-      std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    } while (after != edits());
+    Json after = edits();
+    for (int calm = 0; calm < 4;) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      Json now = edits();
+      calm = now == after ? calm + 1 : 0;
+      after = std::move(now);
+    }
     EXPECT_TRUE(press("ctrl+z"));
     EXPECT_TRUE(wait_until([&](const Json& s) { return s["edits"] == before; }, 10))
         << Json::diff(before, edits()).dump();
