@@ -124,6 +124,7 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   if (!options.out.empty()) files.emplace(options.out);  // fails before the long work
   const Scene scene =
       make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
+  tell_notes(scene, common, bar);
   const Motion motion = motion_of(options.motion, scene, common.threads);
   const auto check = check_clearance(
       scene, motion, {.margin_mm = options.margin_mm, .sampling = {options.frames, options.fps}},
@@ -147,7 +148,6 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   }
   if (common.json) fmt::print("{}", json);
   if (!common.quiet) {
-    for (const auto& note : scene.contacts.notes()) fmt::print(stderr, "note: {}\n", note);
     for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
     fmt::print(stderr, "{}", check.text());
   }

@@ -67,6 +67,15 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
   return settings;
 }
 
+void tell_notes(const Scene& scene, const CommonOptions& common, ProgressBar& bar) {
+  if (common.quiet) return;
+  bar.clear();
+  for (const auto& note : scene.contacts.notes()) fmt::print(stderr, "note: {}\n", note);
+  if (!scene.tissue) return;
+  for (const auto& note : summary(*scene.tissue).notes)
+    fmt::print(stderr, "note: soft tissue: {}\n", note);
+}
+
 Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
   return motion_of(options.motion, scene.patient, scene.contacts, options.settings, options.muscles,
                    threads);

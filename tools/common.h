@@ -35,6 +35,10 @@ Case open_patient(const std::filesystem::path& folder, const CommonOptions& comm
 
 SimulatorSettings simulator_settings(const MotionOptions& options, const CommonOptions& common);
 
+/// What is told of a scene before the long work: surfaces that overlap or are open, and what the
+/// soft tissue had to leave out.
+void tell_notes(const Scene& scene, const CommonOptions& common, ProgressBar& bar);
+
 /// The motion that the command line asks for.
 Motion motion_of(const MotionOptions& options, const Scene& scene, int threads);
 

@@ -98,6 +98,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   settings.face = options.pictures;
   const Scene scene =
       make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
+  tell_notes(scene, common, bar);
   bar.show("preparing the motion", 0);
   Playback playback(scene, motion_of(options.motion, scene, common.threads), settings,
                     options.motion.respect_contact);
@@ -141,7 +142,6 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   if (pictures) pictures->finish();
   if (common.json) fmt::print("{}", json);
   if (!common.quiet) {
-    for (const auto& note : scene.contacts.notes()) fmt::print(stderr, "note: {}\n", note);
     for (const auto& note : motion.notes) fmt::print(stderr, "note: {}\n", note);
     fmt::print(stderr, "{}", report.text());
     if (pictures && pictures->kept() > 0)

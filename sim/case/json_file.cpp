@@ -22,8 +22,9 @@ std::string shown(const json& value) {
 std::string reason_of(const json::exception& error) {
   const std::string what = error.what();
   const std::size_t end = what.find("; last read");
-  const std::size_t colon = what.find(": ", what.find("] ") + 2);
-  if (colon == std::string::npos) return what;
+  const std::size_t start = what.find("] ") + 2;
+  const std::size_t colon = what.find(": ", start);
+  if (colon == std::string::npos) return what.substr(start);
   return what.substr(colon + 2, end == std::string::npos ? end : end - colon - 2);
 }
 

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int build_threads = 2;
 constexpr double deep_start_mm = 0.5;
+constexpr double mixed_bones_mm = 3;  // crowns of one patient overlap by up to 1.2 mm
 
 bool is_finite(const Pose& X) {
   return X.R.coeffs().allFinite() && X.t.allFinite() && std::abs(X.R.norm() - 1) < 1e-6;
@@ -101,10 +102,15 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
       pair.kept_mm = std::min(state.rules[i].gap_mm, rest.distance_mm);
     if (!rest.touching) continue;
     const TriMesh& mesh = patient.parts[static_cast<std::size_t>(rest.part_b)].mesh;
+    const bool mixed = pair.b->body < first_free_body && rest.depth_mm > mixed_bones_mm;
     state.notes.push_back(fmt::format(
-        "{} and {} overlap by {:.2f} mm at rest: taken as the baseline, only deeper contact counts",
+        "{} and {} overlap by {:.2f} mm at rest{}: taken as the baseline, only deeper contact "
+        "counts",
         patient.parts[static_cast<std::size_t>(rest.part_a)].name,
-        patient.parts[static_cast<std::size_t>(rest.part_b)].name, rest.depth_mm));
+        patient.parts[static_cast<std::size_t>(rest.part_b)].name, rest.depth_mm,
+        mixed ? ", more than jaws of one patient do (check that both are of the same patient, unit "
+                "and frame)"
+              : ""));
     if (pair.b->body >= first_free_body && rest.depth_mm > deep_start_mm)
       state.notes.push_back(deep_start_note(pair, patient, rest.depth_mm));
     const TriMesh away = away_from_overlap(mesh, overlap_at_rest(pair));

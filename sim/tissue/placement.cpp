@@ -49,9 +49,11 @@ void check_placement(const CoarseSkin& skin, const Bones& bones, const std::vect
                      std::to_string(thin_mm).substr(0, 3) +
                      " mm), so the soft tissue has no thickness; is the face a bone's surface?");
   if (behind > most_of * count)
-    throw InputError("face: " + percent(behind / count) +
-                     " of the skin around the jaw has bone outside it, so the face lies inside the "
-                     "skull; check that face and bones have the same unit and frame");
+    throw InputError(
+        "face: " + percent(behind / count) +
+        " of the skin around the jaw has bone outside it, so the face lies inside the "
+        "skull, or its triangles are turned inside out; check that face and bones have "
+        "the same unit and frame, and the direction of the face's triangles");
   if (met == 0)
     throw InputError(
         "face: no bone lies within " + std::to_string(std::lround(settings.march_mm)) +

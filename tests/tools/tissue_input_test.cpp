@@ -57,6 +57,16 @@ TEST(TissueInput, CasesNameTheFileTheItemAndTheValue) {
     expect_refused({"info", good}, told);
   };
   refused("{\"turgor\": 7}", {"tissue.turgor", "7"});
+  refused("{\"turgor\": 0}", {"turgor", "above 0"});
+  refused("{\"turgor\": NaN}", {"line", "JSON"});
+  refused("{\"turgor\": 1e999}", {"JSON", "1e999"});
+  refused("{\"gravity\": [0, 0, 0]}", {"direction of gravity is 0, 0, 0"});
+  refused("{\"gravity\": [0, 1e300, 0]}", {"tissue.gravity[1]", "1e+300"});
+  refused("{\"layers\": [{\"share\": 1, \"modulus_MPa\": 0}]}", {"modulus", "not 0"});
+  refused("{\"layers\": [{\"share\": 1, \"poisson\": 0.5}]}", {"Poisson", "0.5"});
+  refused("{\"layers\": [{\"share\": 0}, {\"share\": 1}]}", {"share", "not 0"});
+  refused("{\"attachments\": [{\"bone\": \"mandible\", \"centre\": [0, 0, 1e300]}]}",
+          {"attachments[0].centre[2]", "1e+300"});
   refused("{\"lambda\": -1}", {"tissue.lambda", "-1"});
   refused("{\"stiffness\": 1}", {"stiffness", "turgor"});
   refused("{\"layers\": [{\"share\": 0.5}]}", {"tissue", "0.5"});

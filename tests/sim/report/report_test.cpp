@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -38,6 +39,40 @@ TEST(Trace, HasTheColumnsOfTheContractAndAnEarlierTraceStaysUntilFinish) {
   EXPECT_TRUE(header.starts_with("frame,time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz,incisor_x_mm,"));
   EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
   EXPECT_TRUE(row.starts_with("0,0,0.3333333333333333,0,0,1,")) << row;
+}
+
+TEST(Trace, SaysWhetherTheTissueWasKeptBecauseItsSolveFailed) {
+  const Folder folder;
+  const auto file = folder.path() / "trace.csv";
+  TraceWriter trace(file);
+  FrameState good, failed;
+  failed.tissue.kept = true;
+  failed.tissue.converged = false;
+  failed.tissue.energy = std::nan("");
+  trace.add(0, good);
+  trace.add(1, failed);
+  trace.finish();
+  const std::string text = read_text(file);
+  EXPECT_EQ(text.find("nan"), std::string::npos);
+  std::istringstream lines(text);
+  const auto cells = [&] {
+    std::string line, cell;
+    std::getline(lines, line);
+    std::istringstream row(line);
+    std::vector<std::string> all;
+    while (std::getline(row, cell, ',')) all.push_back(cell);
+    return all;
+  };
+  const auto names = cells();
+  for (const char* wanted : {"0", "1"}) {
+    const auto row = cells();
+    const auto value = [&](const char* name) {
+      return row.at(
+          static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()));
+    };
+    EXPECT_EQ(value("tissue_kept"), wanted);
+    EXPECT_NE(value("tissue_converged"), wanted);
+  }
 }
 
 TEST(Clearance, MarginAndPenetrationAreToldApart) {
