@@ -217,7 +217,7 @@ int run_bench_table2(const CommonOptions& common) {
   if (common.quiet) return 0;
   fmt::print(stderr,
              "Table 2. Time of a prediction. No sheets of one triangle net have the first "
-             "patient's counts;\nthese are the nearest.\n");
+             "patient's counts\n(754, 6067, 874); these are the nearest.\n");
   fmt::print(stderr, "  {:<17}{:<14}{:>10}{:>9}{:>9}{:>12}{:>9}\n", "", "", "positions", "springs",
              "volumes", "time ms", "paper s");
   for (const auto& row : json["results"])

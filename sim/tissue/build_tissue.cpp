@@ -91,6 +91,8 @@ void balance(TissueModel& model) {
   if (balanced.held.empty()) return;
   model.node_force.resize(model.rest.size(), Vector3d::Zero());
   for (std::size_t i = 0; i < model.rest.size(); ++i) model.node_force[i] += balanced.held[i];
+  constexpr double worth_telling_N = 1e-4;
+  if (balanced.force_held < worth_telling_N) return;
   model.summary.notes.push_back(fmt::format(
       "strains alone cannot balance this turgor and weight everywhere: constant forces of up to "
       "{:.2g} N hold the rest at {} of {} points",
