@@ -23,9 +23,9 @@ struct AtRest {
 
 const Vector3d upright(0, 0, -1), lying(0, 1, 0), oblique(0.5, 0.6, -0.6), none(0, 0, 0);
 
-bool told_to_be_held(const TissueSummary& summary) {
+bool told(const TissueSummary& summary, const char* words) {
   for (const auto& note : summary.notes)
-    if (note.find("constant forces of up to") != std::string::npos) return true;
+    if (note.find(words) != std::string::npos) return true;
   return false;
 }
 
@@ -40,7 +40,8 @@ void expect_still(Case patient, const std::vector<AtRest>& rows, int surface_nod
     const TissueSummary& made = summary(*model);
     EXPECT_LT(made.rest_move_mm, 1e-4);
     EXPECT_LT(made.rest_force_N, 1e-8);
-    EXPECT_TRUE(turgor < 0.8 || !told_to_be_held(made));  // strains do it alone
+    EXPECT_TRUE(turgor < 0.8 || !told(made, "constant forces of up to"));  // strains do it alone
+    EXPECT_FALSE(told(made, "a touch would move it"));
 
     // It does not only stand still, it comes back.
     TissueBudget budget;
