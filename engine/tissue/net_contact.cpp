@@ -158,9 +158,19 @@ void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<doubl
   }
 }
 
+Vector3d led(const Vector3d& normal, const Vector3d& front, double least) {
+  const double cosine = normal.dot(front);
+  if (cosine >= least) return normal;
+  const Vector3d across = normal - cosine * front;
+  if (across.norm() < 1e-6) return front;
+  return least * front + std::sqrt(1 - least * least) * across.normalized();
+}
+
 void touch_surface(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                    const std::vector<std::array<int, 3>>& triangles, const Nodes& x,
-                   const TouchSettings& settings, std::vector<Touch>& touches) {
+                   const TouchSettings& settings, std::vector<Touch>& touches,
+                   const Vector3d& facing) {
+  constexpr double least_facing = 0.5;
   Box box;
   for (const auto& t : triangles)
     for (int node : t) box.add(x[node]);
@@ -193,6 +203,7 @@ void touch_surface(const std::vector<NetPoint>& points, const std::vector<double
     Vector3d normal = Vector3d::Zero();
     for (int k = 0; k < 3; ++k) normal += found.barycentric[k] * normals[corners[k]];
     normal.normalize();
+    if (!facing.isZero()) normal = led(normal, facing, least_facing);
     double distance = normal.dot(p - found.point);
     const Vector3d beyond = p - found.point - distance * normal;
     const double beside = beyond.norm();

@@ -74,9 +74,10 @@ struct TouchSettings {
 };
 
 /// Appends the points that are near the obstacle at pose X_WO. `allowance` (mm, one per point) is
-/// how deep each may be: that of overlap at rest. `shift`: where each is felt, from where it is, mm
-/// in the obstacle's coordinates; one per point, or none. A point deep inside at rest is better
-/// felt where its way out ends: from deep inside an edge more than one way leads out.
+/// how deep each may be: that of overlap at rest; negative where one keeps a distance. `shift`:
+/// where each is felt, from where it is, mm in the obstacle's coordinates; one per point, or none.
+/// A point deep inside at rest is better felt where its way out ends: from deep inside an edge more
+/// than one way leads out.
 void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                     const NetObstacle& obstacle, const Pose& X_WO, const Nodes& x,
                     const TouchSettings& settings, std::vector<Touch>& touches,
@@ -84,10 +85,16 @@ void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<doubl
 
 /// The same against another part of the net's own surface: triangles of nodes, counter-clockwise
 /// seen from outside. It may have a rim; what is nearest to a rim from behind counts as inside, so
-/// the surface must reach beyond the points. Both sides feel the contact.
+/// the surface must reach beyond the points. Both sides feel the contact. `facing` (unit, or 0 for
+/// none): the surface counts as leaning no farther than 60 degrees away from it, so that none that
+/// curls up takes for its inside what is beside it.
 void touch_surface(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                    const std::vector<std::array<int, 3>>& triangles, const Nodes& x,
-                   const TouchSettings& settings, std::vector<Touch>& touches);
+                   const TouchSettings& settings, std::vector<Touch>& touches,
+                   const Eigen::Vector3d& facing = Eigen::Vector3d::Zero());
+
+/// A unit normal, turned toward `front` (unit) until their cosine is at least `least`.
+Eigen::Vector3d led(const Eigen::Vector3d& normal, const Eigen::Vector3d& front, double least);
 
 /// Adds each touch's depth to its point's allowance: what overlaps at rest may stay so.
 void allow(const std::vector<Touch>& touches, std::vector<double>& allowance);

@@ -29,6 +29,9 @@ constexpr double loose_stiffness = 0.04;     // N/mm
 /// teeth's edges.
 constexpr double lip_stiffness = 0.3;
 constexpr double lip_margin_mm = 14;  // from the mouth's line
+/// N/mm: and, much less, the whole of its edge, which would buckle to and fro.
+constexpr double lip_edge_stiffness = 0.05;
+constexpr double lip_edge_mm = 6;
 
 double smoothstep(double t) {
   t = std::clamp(t, 0.0, 1.0);
@@ -262,6 +265,11 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
            neck  ? neck_stiffness
            : lip ? lip_stiffness
                  : loose_stiffness);
+    if (neck || columns[c].to_mouth > lip_edge_mm) continue;
+    for (int s = 0; s + 1 < sheets; ++s) {
+      const int node = node_of(c, s, sheets);
+      if (!held[node]) anchor(node, lip_share(model->node_share[node]), lip_edge_stiffness);
+    }
   }
 
   // What is held loosely still slides.

@@ -1,6 +1,7 @@
 #include "sim/tissue/tissue_contact.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "engine/core/parallel.h"
@@ -13,13 +14,17 @@ namespace {
 using Eigen::Vector3d;
 using Triangle = std::array<int, 3>;
 
-/// Points that may meet the jaws, along each edge of the tissue's inner side: with 5 mm between
-/// nodes one every mm, or the edges of bones stand in the triangles between them by up to 2 mm.
-constexpr int face_parts = 5;
-/// Nearer to the mouth a triangle has only one: more of them are caught under the teeth's edges.
-constexpr double supple_mm = 12;
+/// Between nodes 5 mm and more apart bones and teeth would stand in the flat faces by up to 2 mm:
+/// there more points may meet them, so close together, and keep a distance, as far as they have it
+/// at rest.
+constexpr double near_mm = 1.5;  // near the mouth, where teeth have edges
+constexpr double far_mm = 2;
+constexpr double kept_mm = 0.25;
+constexpr double slack_mm = 0.1;  // that at rest little presses when it is stirred
+constexpr double near_mouth_mm = 18;
 constexpr double lip_edge_mm = 7;  // of the points that may meet teeth from before
-constexpr double led_mm = 8;       // of the points that are led before the teeth
+constexpr double led_mm = 14;      // of the points that are led before the teeth
+constexpr double whole_mm = 7;     // of the lip that the other one meets
 constexpr double corner_mm = 5;    // nearer to a corner both lips are one
 constexpr double deepest_lip_mm = 0.4;
 constexpr double apart_mm = 0.02;      // between the lips when their nodes have been moved apart
@@ -35,7 +40,7 @@ std::vector<int> lip_edge(const ContactSource& from, int side) {
 }
 
 /// The side of the lip that meets the other lip: from the skin's edge inward.
-std::vector<Triangle> lip_surface(const ContactSource& from, int side) {
+std::vector<Triangle> edge_faces(const ContactSource& from, int side) {
   std::map<std::pair<int, int>, int> edges;  // directed edges of the skin
   for (const auto& t : from.skin.mesh.triangles)
     for (int k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
@@ -55,10 +60,29 @@ std::vector<Triangle> lip_surface(const ContactSource& from, int side) {
   return surface;
 }
 
+/// The lip's edge with what is around it: alone it would count what lies before it as inside.
+std::vector<Triangle> whole_lip(const ContactSource& from, int side, std::vector<Triangle> edge) {
+  const int inner = from.sheets - 1;
+  const auto node = [&](int column, int sheet) { return node_of(column, sheet, from.sheets); };
+  for (const auto& t : from.skin.mesh.triangles) {
+    if (!std::all_of(t.begin(), t.end(), [&](int c) {
+          return from.side[c] * side > 0 && from.columns[c].to_mouth < whole_mm;
+        }))
+      continue;
+    edge.push_back({node(t[0], 0), node(t[1], 0), node(t[2], 0)});
+    edge.push_back({node(t[0], inner), node(t[2], inner), node(t[1], inner)});
+  }
+  return edge;
+}
+
 TissueContact::Lip make_lip(const ContactSource& from, int side) {
   TissueContact::Lip lip;
   if (!from.skin.mouth.found()) return lip;
-  lip.surface = lip_surface(from, side);
+  lip.edge = edge_faces(from, side);
+  for (const auto& [a, b, c] : lip.edge)
+    lip.facing += (from.rest[b] - from.rest[a]).cross(from.rest[c] - from.rest[a]);
+  lip.facing.normalize();
+  lip.whole = whole_lip(from, side, lip.edge);
   const auto& vertices = from.skin.mesh.vertices;
   for (int c : lip_edge(from, side)) {
     const auto to = [&](int corner) { return (vertices[c] - vertices[corner]).norm(); };
@@ -72,14 +96,23 @@ TissueContact::Lip make_lip(const ContactSource& from, int side) {
 }
 
 /// Points spread evenly over triangles of nodes, between their corners.
-void spread(const std::vector<Eigen::Vector3i>& triangles, std::vector<NetPoint>& points) {
-  constexpr double part = 1.0 / face_parts;
-  for (const auto& [a, b] : edges_of(triangles))
-    for (int i = 1; i < face_parts; ++i) points.push_back({{a, b}, {1 - i * part, i * part}, 2});
-  for (const auto& t : triangles)
-    for (int i = 1; i < face_parts; ++i)
-      for (int j = 1; i + j < face_parts; ++j)
+void spread(const std::vector<Eigen::Vector3i>& triangles, const Nodes& rest, double spacing_mm,
+            std::vector<NetPoint>& points) {
+  const auto parts_of = [&](int a, int b) {
+    return static_cast<int>(std::ceil((rest[a] - rest[b]).norm() / spacing_mm));
+  };
+  for (const auto& [a, b] : edges_of(triangles)) {
+    const int parts = parts_of(a, b);
+    const double part = 1.0 / parts;
+    for (int i = 1; i < parts; ++i) points.push_back({{a, b}, {1 - i * part, i * part}, 2});
+  }
+  for (const auto& t : triangles) {
+    const int parts = std::max({parts_of(t[0], t[1]), parts_of(t[1], t[2]), parts_of(t[2], t[0])});
+    const double part = 1.0 / parts;
+    for (int i = 1; i < parts; ++i)
+      for (int j = 1; i + j < parts; ++j)
         points.push_back({{t[0], t[1], t[2]}, {1 - (i + j) * part, i * part, j * part}, 3});
+  }
 }
 
 /// Takes out points so deep in the other lip at rest that nothing tells which way is out. Returns
@@ -118,6 +151,9 @@ struct ColumnWays {
   void stop(std::size_t column) { weight[2 * column] = weight[2 * column + 1] = 0; }
 };
 
+/// Cosine between the plane of a point that is led and its front.
+constexpr double least_front = 0.5;
+
 TissueContact::Jaw make_jaw(const TissueContact& contact, const Nodes& rest, const TriMesh& mesh,
                             int threads) {
   TissueContact::Jaw jaw;
@@ -132,7 +168,11 @@ TissueContact::Jaw make_jaw(const TissueContact& contact, const Nodes& rest, con
   std::vector<Touch> touches;
   touch_obstacle(contact.points, jaw.allowance, *jaw.obstacle, Pose{}, rest, {}, touches);
   jaw.shift.assign(contact.points.size(), Vector3d::Zero());
+  jaw.led.resize(contact.points.size());
+  for (std::size_t i = 0; i < jaw.led.size(); ++i) jaw.led[i] = !contact.front[i].isZero();
   for (const auto& touch : touches) {
+    // What rests under a tooth's edge would not find back there.
+    if (touch.row.normal.dot(contact.front[touch.point]) < least_front) jaw.led[touch.point] = 0;
     jaw.near_at_rest[touch.point] = 1;
     if (touch.gap < 0) jaw.shift[touch.point] = jaw.obstacle->way_out(touch.at);
   }
@@ -140,24 +180,23 @@ TissueContact::Jaw make_jaw(const TissueContact& contact, const Nodes& rest, con
   touch_obstacle(contact.points, jaw.allowance, *jaw.obstacle, Pose{}, rest, {}, touches,
                  jaw.shift);
   allow(touches, jaw.allowance);
+  std::vector<double> kept(contact.points.size(), kept_mm);
+  for (const auto& touch : touches)
+    kept[touch.point] = std::clamp(touch.gap - slack_mm, 0.0, kept_mm);
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    if (contact.points[i].count > 1) jaw.allowance[i] -= kept[i];
   return jaw;
 }
 
 /// Where the teeth's edges would let a lip's point go either way, it is led to the front.
-void lead_lips(const TissueContact& contact, const Pose& X_CM, const Nodes& x,
-               std::vector<Touch>& touches) {
-  constexpr double least = 0.5;  // cosine between a plane and the front
+void lead_lips(const TissueContact& contact, const TissueContact::Jaw& jaw, const Pose& X_CM,
+               const Nodes& x, std::vector<Touch>& touches) {
   for (auto& touch : touches) {
+    if (!jaw.led[touch.point]) continue;
     Vector3d front = contact.front[touch.point];
-    if (front.isZero()) continue;
     if (contact.lower_lip[touch.point]) front = X_CM.R * front;
-    Vector3d& normal = touch.row.normal;
-    const double cosine = normal.dot(front);
-    if (cosine >= least) continue;
-    const Vector3d across = normal - cosine * front;
-    normal = least * front;
-    if (across.norm() > 1e-6) normal += std::sqrt(1 - least * least) * across.normalized();
-    normal.normalize();
+    if (touch.row.normal.dot(front) >= least_front) continue;
+    touch.row.normal = led(touch.row.normal, front, least_front);
     touch.row.offset = touch.row.along(x) - touch.gap;
   }
 }
@@ -186,8 +225,8 @@ double part_closed_lips(const ContactSource& from, Nodes& rest) {
   };
   for (int round = 0; round < most_rounds; ++round) {
     std::vector<Touch> touches;
-    touch_surface(upper.points, upper.allowance, lower.surface, rest, {}, touches);
-    touch_surface(lower.points, lower.allowance, upper.surface, rest, {}, touches);
+    touch_surface(upper.points, upper.allowance, lower.edge, rest, {}, touches);
+    touch_surface(lower.points, lower.allowance, upper.edge, rest, {}, touches);
     ColumnWays ways(from.columns.size());
     bool any = false;
     for (const auto& touch : touches) {
@@ -224,13 +263,13 @@ double part_closed_lips(const ContactSource& from, Nodes& rest) {
 
 std::vector<std::array<int, 2>> lips_that_may_touch(const TissueContact& contact,
                                                     const Nodes& rest) {
-  constexpr double near_mm = 6;
+  constexpr double beside_mm = 6;
   std::vector<std::array<int, 2>> pairs;
   const auto add = [&](const TissueContact::Lip& lip, const TissueContact::Lip& other) {
     for (const auto& point : lip.points)
-      for (const auto& triangle : other.surface)
+      for (const auto& triangle : other.edge)
         for (int node : triangle)
-          if ((rest[point.node[0]] - rest[node]).norm() < near_mm)
+          if ((rest[point.node[0]] - rest[node]).norm() < beside_mm)
             pairs.push_back({point.node[0], node});
   };
   add(contact.upper, contact.lower);
@@ -251,18 +290,20 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
       if (const int node = node_of(static_cast<int>(c), s, from.sheets); free(node))
         contact.points.push_back(NetPoint::of_node(node));
   }
-  std::vector<Eigen::Vector3i> sliding;
+  std::vector<Eigen::Vector3i> before_teeth, sliding;
   for (const auto& t : from.skin.mesh.triangles) {
     const Eigen::Vector3i inner = t.unaryExpr([&](int c) { return node_of(c, last, from.sheets); });
     if (!free(inner[0]) || !free(inner[1]) || !free(inner[2])) continue;
     double to_mouth = 0;
     for (int c : t) to_mouth = std::max(to_mouth, from.columns[c].to_mouth);
-    if (to_mouth < supple_mm)
-      contact.points.push_back(NetPoint::centre(inner[0], inner[1], inner[2]));
-    else
-      sliding.push_back(inner);
+    (to_mouth < near_mouth_mm ? before_teeth : sliding).push_back(inner);
   }
-  spread(sliding, contact.points);
+  contact.upper = make_lip(from, 1);
+  contact.lower = make_lip(from, -1);
+  for (const auto* lip : {&contact.upper, &contact.lower})
+    for (const auto& [a, b, c] : lip->edge) before_teeth.emplace_back(a, b, c);
+  spread(before_teeth, from.rest, near_mm, contact.points);
+  spread(sliding, from.rest, far_mm, contact.points);
   for (const auto& point : contact.points) {
     Vector3d front = Vector3d::Zero();
     bool lip = true;
@@ -277,15 +318,13 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
   contact.cranium = make_jaw(contact, from.rest, cranium, threads);
   contact.mandible = make_jaw(contact, from.rest, mandible, threads);
 
-  contact.upper = make_lip(from, 1);
-  contact.lower = make_lip(from, -1);
   for (const auto& [lip, other] :
        {std::pair{&contact.upper, &contact.lower}, std::pair{&contact.lower, &contact.upper}}) {
     std::vector<Touch> touches;
-    touch_surface(lip->points, lip->allowance, other->surface, from.rest, {}, touches);
+    touch_surface(lip->points, lip->allowance, other->whole, from.rest, {}, touches, other->facing);
     contact.lip_points_left_out += leave_out_deep(touches, *lip);
     touches.clear();
-    touch_surface(lip->points, lip->allowance, other->surface, from.rest, {}, touches);
+    touch_surface(lip->points, lip->allowance, other->whole, from.rest, {}, touches, other->facing);
     allow(touches, lip->allowance);
   }
   return contact;
@@ -293,21 +332,22 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
 
 Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads) {
   Looks looks(4);
-  const auto jaw = [&](const TissueContact::Jaw& of, const Pose& X_CJ, std::vector<Touch>& touches) {
+  const auto jaw = [&](const TissueContact::Jaw& of, const Pose& X_CJ,
+                       std::vector<Touch>& touches) {
     if (!of.obstacle) return;
     touch_obstacle(contact.points, of.allowance, *of.obstacle, X_CJ, x, {}, touches, of.shift);
-    lead_lips(contact, X_CM, x, touches);
+    lead_lips(contact, of, X_CM, x, touches);
   };
   const TouchSettings soft{.stiffness = lip_stiffness};
   parallel_for(2, threads, [&](std::size_t i) {
     if (i == 0) {
       jaw(contact.cranium, Pose{}, looks[on_cranium]);
-      touch_surface(contact.upper.points, contact.upper.allowance, contact.lower.surface, x, soft,
-                    looks[upper_on_lower]);
+      touch_surface(contact.upper.points, contact.upper.allowance, contact.lower.whole, x, soft,
+                    looks[upper_on_lower], X_CM.R * contact.lower.facing);
     } else {
       jaw(contact.mandible, X_CM, looks[on_mandible]);
-      touch_surface(contact.lower.points, contact.lower.allowance, contact.upper.surface, x, soft,
-                    looks[lower_on_upper]);
+      touch_surface(contact.lower.points, contact.lower.allowance, contact.upper.whole, x, soft,
+                    looks[lower_on_upper], contact.upper.facing);
     }
   });
   return looks;

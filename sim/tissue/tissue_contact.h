@@ -15,22 +15,27 @@ struct TissueContact {
   /// Points that must not enter a jaw, and one jaw.
   struct Jaw {
     std::shared_ptr<const NetObstacle> obstacle;  // null when there is no such bone
-    Nodes shift;                    // one per point, mm: out of the bone, where it overlaps at rest
-    std::vector<double> allowance;  // mm, one per point: overlap at rest that is left so
+    Nodes shift;  // one per point, mm: out of the bone, where it overlaps at rest
+    /// mm, one per point: overlap at rest that is left so; or less than 0, a distance that is kept.
+    std::vector<double> allowance;
     std::vector<char> near_at_rest;  // of each point
+    std::vector<char> led;           // of each point: to the front, see below
   };
   std::vector<NetPoint> points;
   Jaw cranium, mandible;
   /// Of each point of the lips, the way out of the mouth at rest (unit); 0 for others. Lips belong
-  /// before the teeth: on edges they are led that way, so that none is caught behind.
+  /// before the teeth: on edges they are led that way, so that none is caught behind, unless it
+  /// rests there.
   std::vector<Eigen::Vector3d> front;
   std::vector<char> lower_lip;  // of each point: it turns with the mandible
 
-  /// Points of one lip, which must not enter the surface of the other.
+  /// Points of one lip, which must not enter the other.
   struct Lip {
     std::vector<NetPoint> points;
-    std::vector<std::array<int, 3>> surface;  // of nodes; skin, edge and inner side
-    std::vector<double> allowance;            // of its points in the other lip
+    std::vector<std::array<int, 3>> edge;   // triangles of nodes, from the skin to the inner side
+    std::vector<std::array<int, 3>> whole;  // with the skin before and the inner side behind it
+    Eigen::Vector3d facing = Eigen::Vector3d::Zero();  // the edge's mean way at rest; unit
+    std::vector<double> allowance;                     // of its points in the other lip
   };
   Lip upper, lower;
   int lip_points_left_out = 0;  // too deep in the other lip at rest
