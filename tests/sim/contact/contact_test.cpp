@@ -35,6 +35,19 @@ void expect_same_bits(const ContactSet& a, const ContactSet& b) {
   }
 }
 
+TEST(ContactModel, JawsThatOverlapDeeplyAreNamedAsOfTwoPatients) {
+  const auto note = [](double deep) {
+    const auto notes = ContactModel(two_bones(test::box({0, 0, 0}, {30, 30, 30}),
+                                              test::box({0, 0, deep - 30}, {30, 30, deep})))
+                           .notes();
+    return notes.empty() ? std::string() : notes.front();
+  };
+  EXPECT_NE(note(6.5).find("overlap by 6.50 mm at rest"), std::string::npos) << note(6.5);
+  EXPECT_NE(note(6.5).find("of the same patient"), std::string::npos) << note(6.5);
+  EXPECT_NE(note(1).find("overlap by 1.00 mm at rest"), std::string::npos) << note(1);
+  EXPECT_EQ(note(1).find("of the same patient"), std::string::npos) << note(1);
+}
+
 TEST(ContactModel, PairsEveryCraniumPartWithEveryMandiblePart) {
   Case patient = two_bones(test::box({-5, -5, 10}, {5, 5, 20}), test::box({-5, -5, 0}, {5, 5, 5}));
   patient.parts.push_back({"skull", Role::skull, test::box({-5, -5, 30}, {5, 5, 40}), {}});
