@@ -91,9 +91,8 @@ void balance(TissueModel& model) {
         "turgor and weight leave the tissue at rest where a touch would move it: turgor nearer to "
         "1 "
         "or more layers are steadier");
+  model.held_force = balanced.held;
   if (balanced.held.empty()) return;
-  model.node_force.resize(model.rest.size(), Vector3d::Zero());
-  for (std::size_t i = 0; i < model.rest.size(); ++i) model.node_force[i] += balanced.held[i];
   constexpr double worth_telling_N = 1e-4;
   if (balanced.force_held < worth_telling_N) return;
   model.summary.notes.push_back(fmt::format(

@@ -22,6 +22,14 @@ NetLoads loads_at(const TissueModel& model, const Pose& X_CM) {
     loads.anchor_target[i] += offset + share * (X_CM.R * offset - offset);
   }
   loads.node_force = model.node_force;
+  if (model.held_force.empty()) return loads;
+  loads.node_force.resize(model.rest.size(), Vector3d::Zero());
+  for (std::size_t i = 0; i < model.rest.size(); ++i) {
+    const Vector3d& held = model.held_force[i];
+    if (held.isZero(0)) continue;
+    const double share = model.node_share.empty() ? 0 : model.node_share[i];
+    loads.node_force[i] += held + share * (X_CM.R * held - held);
+  }
   return loads;
 }
 
@@ -39,8 +47,8 @@ constexpr int first_patience = 30;
 /// Iterations of a frame above which one is made beside the loop.
 constexpr int worth_making = 8;
 /// After so many iterations contact is looked at anew, at the minimum or not: where tissue buckles,
-/// planes laid before it gave way lead it astray (median of an opening 8 iterations either way, 95th
-/// percentile 36 for 49).
+/// planes laid before it gave way lead it astray (median of an opening 8 iterations either way,
+/// 95th percentile 36 for 49).
 constexpr int one_look = 8;
 constexpr int most_looks = 40;
 /// A frame whose contacts are farther off than this has not converged.
@@ -146,9 +154,9 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
                                           .tolerance_mm = 3 * budget.tolerance_mm,
                                           .gap_mm = 3 * budget.tolerance_mm,
                                           .rough_mm = well_touched_mm};
-  TouchingResult touching =
-      solve_touching([&](const Nodes& x) { return look_at(model.contact, X_CM, x, budget.threads); }, solve, loads,
-                     state.nodes, contact_settings, before);
+  TouchingResult touching = solve_touching(
+      [&](const Nodes& x) { return look_at(model.contact, X_CM, x, budget.threads); }, solve, loads,
+      state.nodes, contact_settings, before);
   if (state.iterations > worth_making)
     factor.begin(model.net, loads, state.nodes, budget.threads, model.weak_from_this().lock());
   state.factor = std::make_shared<const RollingFactor>(std::move(factor));

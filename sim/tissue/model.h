@@ -28,6 +28,8 @@ struct TissueModel : std::enable_shared_from_this<TissueModel> {
   std::vector<double> anchor_share;
   Nodes anchor_offset;  // of each target, turned as its bone turns: what balances the strains
   Nodes node_force;     // weight, N; or none
+  Nodes held_force;  // N, turned as far as its node's bone turns: what strains cannot balance; or
+                     // none
   TissueContact contact;
   // Preconditioners, for states turned by `from_rad` and more; rising, the first from 0.
   struct Factor {
