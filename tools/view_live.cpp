@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "tools/view_session.h"
@@ -12,6 +13,14 @@ std::vector<MapSurface> map_surfaces(const DistanceMap& map) {
   for (const auto& surface : map.surfaces())
     surfaces.push_back({static_cast<std::size_t>(surface.part), &surface.mesh, surface.normals});
   return surfaces;
+}
+
+/// Whether anything of the soft tissue is seen though the skin may be off.
+bool shows_tissue(const ViewState& view) {
+  const Look& look = view.look;
+  return look.springs || look.prisms || look.bone_springs ||
+         std::any_of(view.layers.begin(), view.layers.end(),
+                     [](const PartView& layer) { return layer.shown; });
 }
 
 /// Tells the simulation what the hands want otherwise than before. A free part that is put back is
@@ -36,7 +45,7 @@ void ViewSession::simulate(const ViewState& view) {
   simulation_->request({.time_s = view.time_s,
                         .opening_mm = view.opening_mm,
                         .obey_contact = view.obey_contact,
-                        .face = view.shows_face(shown_)});
+                        .face = view.shows_face(shown_) || shows_tissue(view)});
   if (!(view.hands == moved_)) {
     guarded([&] { hand_over(view.hands, moved_, shown_.bodies, *simulation_); });
     moved_ = view.hands;

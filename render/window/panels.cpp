@@ -33,6 +33,8 @@ constexpr std::array<ViewButton, 6> view_buttons = {{
 
 std::string display_name(const std::string& part_name) {
   std::string name = part_name;
+  if (name == "ans") return "ANS";
+  if (name == "pns") return "PNS";
   for (char& c : name)
     if (c == '_') c = ' ';
   if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));

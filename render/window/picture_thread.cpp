@@ -55,6 +55,13 @@ struct PictureThread::Drawing {
     const FrameState& frame = beside ? *wanted.beside : *wanted.frame;
     renderer->update(frame);
     tint(wanted, &frame, beside ? wanted.beside_values.get() : wanted.values.get());
+    if (!wanted.overlays) return;
+    // Lines and sheets are of the order's own state; paths are of the whole motion.
+    Overlays lasting;
+    if (const auto paths = wanted.overlays->lines.find("paths");
+        paths != wanted.overlays->lines.end())
+      lasting.lines.insert(*paths);
+    overlays.send(*renderer, beside ? lasting : *wanted.overlays);
   }
 
  private:
