@@ -221,7 +221,9 @@ bool Window::State::take_picture() {
   cannot_draw = false;
   governor.measured(picture->moving, picture->ms);
   pictures.picture_ms = picture->ms;
-  pictures.finished = picture->number == order.number && !picture->moving && !scene_changed;
+  // A quick machine draws no better at rest than while things move: then none follows.
+  pictures.finished = picture->number == order.number && !scene_changed &&
+                      picture->quality == governor.choose(false);
   pictures.render_scale = picture->quality.render_scale;
   pictures.samples = picture->samples;
   // Pictures a second only mean something while things move.
