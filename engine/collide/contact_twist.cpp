@@ -135,6 +135,9 @@ class Violated {
 TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<ContactRow>& rows,
                                        const TwistSettings& settings) {
   constexpr int max_changes = 200;
+  // So many of the worst in a row that cannot be opened: then bodies are so deep in each other that
+  // the rest cannot, either.
+  constexpr int most_given_up = 256;
   constexpr double dependent = 1e-9;  // square share of a row that others do not span
   TwistSolution solution;
   Twist& x = solution.x;
@@ -144,7 +147,7 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
   Columns N;
   std::optional<Eigen::HouseholderQR<Columns>> factored;  // N, as long as the same rows hold
-  for (int changes = 0; changes < max_changes;) {
+  for (int changes = 0, given_up = 0; changes < max_changes && given_up < most_given_up;) {
     const int joining = violated.worst(x);
     if (joining < 0) break;
     const Twist& n = rows[joining].along;
@@ -173,6 +176,7 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
       const double full = -(rows[joining].gap_mm + n.dot(x)) / z.squaredNorm();
       if (!free && dropped < 0) {  // the others forbid it: no motion opens all gaps
         violated.give_up_worst(joining, x);
+        ++given_up;
         break;
       }
       const bool joins = free && full <= drop_at;
@@ -186,6 +190,7 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
       push += step;
       if (joins) {
         active.push_back({joining, push});
+        given_up = 0;
         factored.reset();
         ++changes;
         break;

@@ -19,6 +19,10 @@ constexpr double gained_mm = 5e-4;  // what a move must bring
 constexpr double cut_reach_mm = 0.1;
 constexpr std::size_t max_cuts = 24;
 constexpr double still_mm = 1e-4;  // steps shorter than this lead nowhere
+// Contacts that contradict each other (bodies of two patients in each other, surfaces turned inside
+// out) ask for ways longer than any head; after so many such steps there is no way out.
+constexpr double senseless_mm = 1000;
+constexpr int most_senseless = 3;
 
 }  // namespace
 
@@ -90,6 +94,12 @@ bool SlideWalk::step() {
   if (out_.steps == 0) start_ = out_;
   if (out_.settled) {
     end();
+    return true;
+  }
+  senseless_ = length > senseless_mm ? senseless_ + 1 : 0;
+  if (senseless_ >= most_senseless && start_.X_FM.t == from_.t) {  // it stays where it was
+    start_.steps = out_.steps;
+    out_ = std::move(start_);
     return true;
   }
   if (length > radius_) x *= radius_ / length;

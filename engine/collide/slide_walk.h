@@ -52,6 +52,7 @@ class SlideWalk {
   std::array<double, 5> lately_;  // how far from the wanted pose it was
   bool ended_ = false;
   SlideResult out_, start_;
+  int senseless_ = 0;  // steps, one after the other, that no body could take
   std::vector<ContactRow> rows_;
   std::vector<int> row_candidate_;  // of each row, -1 for a cut
   std::vector<Cut> cuts_;

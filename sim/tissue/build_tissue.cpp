@@ -187,7 +187,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
       part_closed_lips({skin, columns, model->handle_side, sheets, model->rest, {}}, model->rest);
   if (parted > 0.5)
     summary.notes.push_back("the simulated lips overlapped: parted by up to " +
-                            std::to_string(parted) + " mm");
+                            fmt::format("{:.1f} mm", parted));
   model->net = net_of(plan, layers, skin.mesh.triangles, model->rest);
   SpringPrismNet& net = model->net;
   for (std::size_t p = 0; p < net.prisms.size(); ++p)

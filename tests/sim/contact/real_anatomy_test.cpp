@@ -61,5 +61,33 @@ TEST(RealAnatomy, UbcCrownsOverlapAtRestAndMaySlideOutButNoDeeper) {
   EXPECT_GT(model.find(turn(0.3, 0, 0), nullptr).max_penetration_mm(), 0.1);
 }
 
+/// A scan's skull is open and some of it inside out; with another patient's jaw in it contacts
+/// contradict each other. Then there is no way out, but none leads deeper, either.
+TEST(RealAnatomy, JawsOfTwoPatientsDoNotWanderIntoEachOther) {
+  const auto data = test::real_data();
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "real anatomy absent";
+  ImportRequest request;
+  request.files = {{Role::skull, data / "ct-cranium/skull_iso300.ply"},
+                   {Role::mandible, data / "case-ubc/mandible_8k.ply"}};
+  request.name = "mixed";
+  const Case mixed = import_meshes(request);
+  const ContactModel model(mixed);
+  const Eigen::Vector3d condyles(0, 32.1, 79.2);
+  BodyPoses at;
+  ContactSet last = model.at_rest();
+  const double deep_at_rest = last.pairs.front().depth_mm;
+  EXPECT_GT(deep_at_rest, 5);
+  for (int i = 1; i <= 6; ++i) {
+    const Eigen::Quaterniond R(Eigen::AngleAxisd(0.004 * i, Eigen::Vector3d::UnitX()));
+    const Pose wanted{R, condyles - R * condyles};
+    const auto slide = model.slide(at, {wanted}, &last, 2);
+    for (const auto& vertex : mixed.parts.back().mesh.vertices)
+      ASSERT_LT((slide.at.X_CM * vertex - vertex).norm(), (wanted * vertex - vertex).norm() + 0.5);
+    at = slide.at;
+    last = slide.contacts;
+    EXPECT_LT(last.pairs.front().depth_mm, deep_at_rest + 0.5);
+  }
+}
+
 }  // namespace
 }  // namespace condyle
