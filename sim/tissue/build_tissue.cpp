@@ -88,9 +88,8 @@ void balance(TissueModel& model) {
   model.anchor_offset = balanced.anchor_offset;
   if (!balanced.stable)
     model.summary.notes.push_back(
-        "turgor and weight leave the tissue at rest where a touch would move it: turgor nearer to "
-        "1 "
-        "or more layers are steadier");
+        "turgor and weight leave the tissue at rest where a touch would move it: turgor nearer "
+        "to 1 or more layers are steadier");
   model.held_force = balanced.held;
   if (balanced.held.empty()) return;
   constexpr double worth_telling_N = 1e-4;
