@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "render/shaders.h"
 #include "render/skin_detail.h"
 #include "render/skin_table.h"
 
@@ -63,7 +62,7 @@ void set_cut(GlProgram& program, const DrawItem& item, const PictureView& view) 
   program.set("clip_plane", item.clipped ? view.clip_plane : nothing_clipped);
   program.set("cut_ball", item.holed ? view.cut_ball : no_ball);
   const Eigen::Vector3f color = cut_color_of(item.role()).array().pow(2.2f);
-  program.set("cut", Eigen::Vector4f(color.x(), color.y(), color.z(), item.cut() ? 1.f : 0.f));
+  program.set("cut", Eigen::Vector3f(color));
   program.set("cut_normal", view.cut_normal);
 }
 
@@ -88,9 +87,9 @@ Eigen::AlignedBox3f DrawItem::box() const {
 }
 
 Passes::Passes()
-    : surface_(build("surface", surface_shaders())),
-      skin_(build("skin", skin_shaders())),
-      interior_(build("interior", interior_shaders())),
+    : surfaces_("surface", surface_shaders),
+      skins_("skin", skin_shaders),
+      interiors_("interior", interior_shaders),
       depth_(build("depth", depth_shaders())),
       marker_(build("marker", marker_shaders())),
       shadow_map_(shadow_side) {
@@ -179,7 +178,14 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
 
 void Passes::background(const PictureView& view) { background_.draw(view.width, view.height); }
 
-void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& view) {
+GlProgram& Passes::Programs::of(const Shading& shading) {
+  const auto found = built_.find(shading);
+  if (found != built_.end()) return found->second;
+  const ShaderSource source = source_(shading);
+  return built_.try_emplace(shading, what_, source.vertex, source.fragment).first->second;
+}
+
+void Passes::begin(Programs& programs, const DrawItem& item, const PictureView& view) {
   const auto& material = item.drawable->material;
   const auto role = item.role();
   const bool mapped = item.drawable->mapped;
@@ -195,6 +201,11 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
   glBindTexture(GL_TEXTURE_2D, skin_table_);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, shadow_map_.texture());
+  GlProgram& program = programs.of({.shadowed = view.shadows,
+                                    .mapped = mapped,
+                                    .coated = material.coat > 0,
+                                    .cuttable = item.cut(),
+                                    .seen_through = !item.opaque()});
   program.use();
   view.lights.set_in(program);
   program.set("model", item.model);
@@ -204,7 +215,6 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
   program.set("shadow_map", 0);
   program.set("skin_table", 1);
   program.set("skin_detail", 3);
-  program.set("shadows", view.shadows ? 1.f : 0.f);
   program.set("shadow_texel", 1.f / shadow_side);
   program.set("two_sided", item.drawable->closed || role == Role::face ? 0.f : 1.f);
   program.set("opacity", static_cast<float>(item.opacity));
@@ -218,7 +228,6 @@ void Passes::begin(GlProgram& program, const DrawItem& item, const PictureView& 
                           : role == Role::face ? 1.f
                                                : view.at_rest);
   program.set("open_mouth", 1 - view.at_rest);
-  program.set("mapped", mapped ? 1.f : 0.f);
   program.set("mapped_up_to", view.mapped_up_to);
   program.set("colour_table", 2);
   if (mapped) {
@@ -240,20 +249,20 @@ void Passes::shade(const DrawItem& item, const PictureView& view) {
   const Viewpoint eye = eye_of(view);
   if (item.role() != Role::face) {
     cull_by_closure(item);
-    begin(surface_, item, view);
+    begin(surfaces_, item, view);
     mesh.draw(visibility_.choose(mesh, surface, item.model, eye, sides_of(item), &cover_));
     end_cut();
     return;
   }
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
-  begin(drawable.mapped ? surface_ : skin_, item, view);
+  begin(drawable.mapped ? surfaces_ : skins_, item, view);
   mesh.draw(visibility_.choose(mesh, surface, item.model, eye, Sides::front));
   end_cut();
   glFlush();  // as after the shadow map
   if (drawable.closed && !item.cut()) return;
   glCullFace(GL_FRONT);
-  begin(interior_, item, view);
+  begin(interiors_, item, view);
   mesh.draw(visibility_.choose(mesh, surface, item.model, eye, Sides::back, &cover_));
   end_cut();
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <span>
 
 #include "render/background.h"
@@ -11,6 +12,7 @@
 #include "render/drawn_box.h"
 #include "render/framebuffer.h"
 #include "render/lights.h"
+#include "render/shaders.h"
 #include "render/visibility.h"
 
 namespace condyle {
@@ -88,11 +90,25 @@ class Passes {
   void translucent(std::span<const DrawItem> items, const PictureView& view);
 
  private:
-  void begin(GlProgram& program, const DrawItem& item, const PictureView& view);
+  /// Programs of one source, built when they are first wanted.
+  class Programs {
+   public:
+    Programs(const char* what, ShaderSource (*source)(const Shading&))
+        : what_(what), source_(source) {}
+    GlProgram& of(const Shading& shading);
+
+   private:
+    const char* what_;
+    ShaderSource (*source_)(const Shading&);
+    std::map<Shading, GlProgram> built_;
+  };
+
+  void begin(Programs& programs, const DrawItem& item, const PictureView& view);
   void shade(const DrawItem& item, const PictureView& view);
   void depth_only(const DrawItem& item, const PictureView& view);
 
-  GlProgram surface_, skin_, interior_, depth_, marker_;
+  Programs surfaces_, skins_, interiors_;
+  GlProgram depth_, marker_;
   Background background_;
   GlTexture skin_table_, skin_detail_, colour_table_;
   ColourMap colour_map_;

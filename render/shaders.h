@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <string>
 
 namespace condyle {
@@ -9,10 +10,17 @@ struct ShaderSource {
   std::string vertex, fragment;
 };
 
-ShaderSource surface_shaders();   // bone, teeth, eyes, gums, tongue
-ShaderSource skin_shaders();      // outside of the face
-ShaderSource interior_shaders();  // inside of the face, seen through the mouth or from behind
-ShaderSource depth_shaders();     // only depth: shadow map and prepass of translucent parts
+/// What of its work a shader does. Fixed when it is built: without a card both sides of a branch
+/// are run for every pixel.
+struct Shading {
+  bool shadowed = false, mapped = false, coated = false, cuttable = false, seen_through = false;
+  auto operator<=>(const Shading&) const = default;
+};
+
+ShaderSource surface_shaders(const Shading&);   // bone, teeth, eyes, gums, tongue
+ShaderSource skin_shaders(const Shading&);      // outside of the face
+ShaderSource interior_shaders(const Shading&);  // its inside, seen through the mouth or from behind
+ShaderSource depth_shaders();  // only depth: shadow map and prepass of translucent parts
 ShaderSource background_shaders();
 ShaderSource marker_shaders();  // contact points and dots
 ShaderSource line_shaders();

@@ -51,7 +51,7 @@ void main() {
 }
 )";
 
-const char* const lighting_source = R"(#version 330 core
+const char* const lighting_source = R"(
 in vec3 to_eye;
 in vec3 world_normal;
 in vec3 albedo;
@@ -62,14 +62,13 @@ uniform vec3 fill_direction, fill_color;
 uniform vec3 rim_direction, rim_color;
 uniform vec3 sky_direction, sky_color, ground_color, front_color;
 uniform sampler2DShadow shadow_map;
-uniform float shadows;         // 0 off, 1 on
 uniform float shadow_texel;
 uniform float opacity;
 out vec4 result;
 
 // Nine bilinear comparisons over about 3 mm.
 float key_visibility() {
-  if (shadows < 0.5) return 1.0;
+  if (!shadowed) return 1.0;
   float r = 2.0 * shadow_texel;
   float sum = 0.0;
   for (int j = -1; j <= 1; ++j)
@@ -110,7 +109,7 @@ float fresnel(float nv, float f0) {
 }
 
 // Flat, as a plane through the tissue would be: what is seen of an inner side where a part is cut.
-uniform vec4 cut;          // colour, linear; 1 while the part is cut
+uniform vec3 cut;          // its colour, linear
 uniform vec3 cut_normal;   // unit, toward the side that is left out
 vec3 cut_face(vec3 color) {
   return color * (0.45 + 0.45 * max(dot(cut_normal, key_direction), 0.0)
@@ -137,7 +136,6 @@ uniform vec3 scatter;  // colour of the light that comes through at grazing angl
 uniform float coat;    // strength of the second, sharp reflection of wet or enamelled surfaces
 uniform vec2 cavity;   // as in the vertex shader
 in float mapped_value;
-uniform float mapped;  // 1: coloured by its value
 uniform float mapped_up_to;
 uniform sampler2D colour_table;
 uniform vec2 map_range;
@@ -159,16 +157,16 @@ vec3 map_color() {
 void main() {
   vec3 v = normalize(to_eye);
   vec3 n = normalize(world_normal);
-  if (cut.w > 0.5 && !gl_FrontFacing) {
-    result = vec4(display(cut_face(cut.xyz)), opacity);
+  if (cuttable && !gl_FrontFacing) {
+    result = vec4(display(cut_face(cut)), opacity);
     return;
   }
   // An open surface is lit from whichever side is seen.
   if (!gl_FrontFacing) n = -n;
   float nv = clamp(dot(n, v), 0.0, 1.0);
-  if (mapped > 0.5 && mapped_value <= mapped_up_to) {
+  if (mapped && mapped_value <= mapped_up_to) {
     float shade = 0.55 * nv + 0.45 * wrapped(dot(n, key_direction), 0.5);
-    float a = opacity >= 1.0 ? 1.0 : 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35));
+    float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
     result = vec4(map_color() * mix(0.68, 1.0, clamp(1.25 * shade, 0.0, 1.0)), a);
     return;
   }
@@ -190,10 +188,10 @@ void main() {
   vec3 c = albedo * light + reflectance * shine;
   vec3 mirrored = reflect(-v, n);
   c += ambient_light(mirrored, v) * fresnel(nv, reflectance) * (1.0 - roughness) * open;
-  if (coat > 0.0)
+  if (coated)
     c += coat * reflectance * (key_color * specular(n, v, key_direction, 0.16) * lit
        + fill_color * specular(n, v, fill_direction, 0.2) * open);
-  float a = opacity >= 1.0 ? 1.0 : 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35));
+  float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
   result = vec4(display(c), a);
 }
 )";
@@ -219,7 +217,7 @@ void main() {
   float nv = clamp(dot(n, v), 0.0, 1.0);
   float lit = key_visibility();
   // Light that enters beside a shadow's edge comes out red inside it.
-  vec3 tinted = pow(vec3(lit), vec3(0.55, 1.0, 1.15));
+  vec3 tinted = shadowed ? pow(vec3(lit), vec3(0.55, 1.0, 1.15)) : vec3(1.0);
   vec3 through = texture(skin_table, vec2(0.5 + 0.5 * dot(n, key_direction), traits.y)).rgb;
   vec3 occlusion = colored_occlusion(ao, albedo);
   const vec3 bleed = vec3(0.42, 0.24, 0.16);
@@ -238,7 +236,7 @@ void main() {
   shine *= mix(pore * pore, 1.0, gloss);
   vec3 c = albedo * mix(vec3(1.0), vec3(pore), vec3(0.05, 0.10, 0.12)) * light + mix(0.028, 0.05, gloss) * shine;
   c += 0.5 * ambient_light(reflect(-v, n), v) * fresnel(nv, 0.028) * (1.0 - wide) * open;
-  float a = opacity >= 1.0 ? 1.0 : 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35));
+  float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
   result = vec4(display(c), a);
 }
 )";
@@ -246,8 +244,8 @@ void main() {
 // The mucous side: dark, red and a little wet; no shadow map, the darkness is in the colour.
 const char* const interior_source = R"(
 void main() {
-  if (cut.w > 0.5) {
-    result = vec4(display(cut_face(cut.xyz)), opacity);
+  if (cuttable) {
+    result = vec4(display(cut_face(cut)), opacity);
     return;
   }
   vec3 v = normalize(to_eye);
@@ -259,14 +257,14 @@ void main() {
   vec3 c = mix(vec3(0.060, 0.014, 0.012), vec3(0.235, 0.062, 0.055), depth * depth)
          * (lit * (0.45 + 0.55 * nv));
   c += depth * 0.02 * key_color * specular(n, v, key_direction, 0.3);
-  float a = opacity >= 1.0 ? 1.0 : 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35));
+  float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
   result = vec4(display(c), a);
 }
 )";
 
 // A cut face that closes a solid: a plane.
 const char* const cap_source = R"(
-void main() { result = vec4(display(cut_face(cut.xyz)), 1.0); }
+void main() { result = vec4(display(cut_face(cut)), 1.0); }
 )";
 
 // A part as it was, or the edges of its triangles.
@@ -281,16 +279,25 @@ void main() {
 }
 )";
 
+ShaderSource lit(const Shading& shading, const char* own) {
+  std::string fragment = "#version 330 core\n";
+  const auto fixed = [&](const char* name, bool value) {
+    fragment += std::string("const bool ") + name + " = " + (value ? "true" : "false") + ";\n";
+  };
+  fixed("shadowed", shading.shadowed);
+  fixed("mapped", shading.mapped);
+  fixed("coated", shading.coated);
+  fixed("cuttable", shading.cuttable);
+  fixed("seen_through", shading.seen_through);
+  return {vertex_source, fragment + lighting_source + own};
+}
+
 }  // namespace
 
-ShaderSource cap_shaders() { return {vertex_source, std::string(lighting_source) + cap_source}; }
-ShaderSource tint_shaders() { return {vertex_source, std::string(lighting_source) + tint_source}; }
-ShaderSource surface_shaders() {
-  return {vertex_source, std::string(lighting_source) + surface_source};
-}
-ShaderSource skin_shaders() { return {vertex_source, std::string(lighting_source) + skin_source}; }
-ShaderSource interior_shaders() {
-  return {vertex_source, std::string(lighting_source) + interior_source};
-}
+ShaderSource cap_shaders() { return lit({}, cap_source); }
+ShaderSource tint_shaders() { return lit({}, tint_source); }
+ShaderSource surface_shaders(const Shading& shading) { return lit(shading, surface_source); }
+ShaderSource skin_shaders(const Shading& shading) { return lit(shading, skin_source); }
+ShaderSource interior_shaders(const Shading& shading) { return lit(shading, interior_source); }
 
 }  // namespace condyle
