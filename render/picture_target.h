@@ -7,7 +7,6 @@
 #include "render/background.h"
 #include "render/drawn_box.h"
 #include "render/framebuffer.h"
-#include "render/smoothing.h"
 
 namespace condyle {
 
@@ -32,19 +31,11 @@ class PictureTarget {
             std::vector<std::uint8_t>& rgba);
 
  private:
-  /// A texture that can be drawn into.
-  struct Canvas {
-    Canvas(int width, int height);
-    GlTexture texture;
-    GlFramebuffer framebuffer;
-  };
-
   int samples_asked_ = 0;
   std::optional<Framebuffer> drawn_, finished_;
-  std::optional<Canvas> raw_;  // what is smoothed
-  std::optional<EdgeSmoothing> smoothing_;
+  bool smooth_ = false;
   std::optional<Background> background_;
-  std::vector<std::uint8_t> read_;  // kept for its memory
+  std::vector<std::uint8_t> read_, smoothed_;  // kept for their memory
 };
 
 }  // namespace condyle

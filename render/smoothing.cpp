@@ -1,75 +1,109 @@
 #include "render/smoothing.h"
 
-#include "render/gl_objects.h"
+#include <Eigen/Core>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <utility>
 
 namespace condyle {
 namespace {
 
-const char* const vertex = R"(#version 330 core
-void main() {
-  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}
-)";
+// Brightness is counted in whole numbers, summed over four pixels.
+constexpr int red = 77, green = 150, blue = 29;
+constexpr int white = 4 * 255 * (red + green + blue);
+constexpr int least_contrast = static_cast<int>(0.03 * white);
 
-// Lottes' FXAA in its short form: where brightness changes, blur along the edge, and keep the
-// longer blur only if it stays between the neighbours.
-const char* const fragment = R"(#version 330 core
-uniform sampler2D picture;
-uniform vec2 pixel;
-out vec4 result;
-float luma(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
-void main() {
-  vec2 at = gl_FragCoord.xy * pixel;
-  vec4 own = texture(picture, at);
-  vec3 middle = own.rgb;
-  float nw = luma(texture(picture, at + vec2(-0.5, 0.5) * pixel).rgb);
-  float ne = luma(texture(picture, at + vec2(0.5, 0.5) * pixel).rgb);
-  float sw = luma(texture(picture, at + vec2(-0.5, -0.5) * pixel).rgb);
-  float se = luma(texture(picture, at + vec2(0.5, -0.5) * pixel).rgb);
-  float m = luma(middle);
-  float low = min(m, min(min(nw, ne), min(sw, se)));
-  float high = max(m, max(max(nw, ne), max(sw, se)));
-  result = own;
-  if (high - low < max(0.03, 0.1 * high)) return;
-  vec2 edge = vec2((sw + se) - (nw + ne), (nw + sw) - (ne + se));
-  float shorten = 1.0 / (min(abs(edge.x), abs(edge.y)) + max(0.03 * (nw + ne + sw + se), 0.008));
-  edge = clamp(edge * shorten, -6.0, 6.0) * pixel;
-  vec4 near = 0.5 * (texture(picture, at - edge / 6.0) + texture(picture, at + edge / 6.0));
-  vec4 far = 0.5 * near +
-             0.25 * (texture(picture, at - 0.5 * edge) + texture(picture, at + 0.5 * edge));
-  float f = luma(far.rgb);
-  result = f < low || f > high ? near : far;
+struct Pixels {
+  const std::uint8_t* rgba;
+  int width, height;
+
+  const std::uint8_t* at(int x, int y) const {
+    const auto column = static_cast<std::size_t>(std::clamp(x, 0, width - 1));
+    const auto row = static_cast<std::size_t>(std::clamp(y, 0, height - 1));
+    return rgba + 4 * (row * static_cast<std::size_t>(width) + column);
+  }
+  Eigen::Array4f color(int x, int y) const {
+    const std::uint8_t* p = at(x, y);
+    return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]),
+            static_cast<float>(p[3])};
+  }
+  /// Between the middles of pixels.
+  Eigen::Array4f between(float x, float y) const {
+    const float left = std::floor(x), low = std::floor(y), s = x - left, t = y - low;
+    const int i = static_cast<int>(left), j = static_cast<int>(low);
+    return (1 - t) * ((1 - s) * color(i, j) + s * color(i + 1, j)) +
+           t * ((1 - s) * color(i, j + 1) + s * color(i + 1, j + 1));
+  }
+  /// Brightness of a row's pixels from the one at `x` on.
+  void brightness(int x, int y, std::vector<int>& row) const {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::uint8_t* p = at(x + static_cast<int>(i), y);
+      row[i] = red * p[0] + green * p[1] + blue * p[2];
+    }
+  }
+};
+
+/// Brightness at the four corners of a pixel and of itself.
+struct Around {
+  int sw, se, nw, ne, own;
+  int low() const { return std::min({own, sw, se, nw, ne}); }
+  int high() const { return std::max({own, sw, se, nw, ne}); }
+};
+
+/// Lottes' FXAA in its short form: where brightness changes, blur along the edge, and keep the
+/// longer blur only if it stays between the neighbours.
+Eigen::Array4f blurred(const Pixels& pixels, int x, int y, const Around& a) {
+  const auto share = [](int sum) { return static_cast<float>(sum) / white; };
+  Eigen::Array2f edge(share(a.sw + a.se - a.nw - a.ne), share(a.nw + a.sw - a.ne - a.se));
+  const float shorten =
+      1 / (edge.abs().minCoeff() + std::max(0.03f * share(a.nw + a.ne + a.sw + a.se), 0.008f));
+  edge = (edge * shorten).max(-6).min(6);
+  const auto at = [&](float way) {
+    return pixels.between(static_cast<float>(x) + way * edge.x(),
+                          static_cast<float>(y) + way * edge.y());
+  };
+  const Eigen::Array4f near = 0.5f * (at(-1.f / 6) + at(1.f / 6));
+  const Eigen::Array4f far = 0.5f * near + 0.25f * (at(-0.5f) + at(0.5f));
+  const float f = 4 * (red * far[0] + green * far[1] + blue * far[2]);
+  return f < static_cast<float>(a.low()) || f > static_cast<float>(a.high()) ? near : far;
 }
-)";
 
 }  // namespace
 
-struct EdgeSmoothing::State {
-  GlProgram program{"edge smoothing", vertex, fragment};
-  GlVertexArray nothing;  // a core context draws nothing without one
-};
-
-EdgeSmoothing::EdgeSmoothing() : state_(std::make_unique<State>()) {}
-EdgeSmoothing::~EdgeSmoothing() = default;
-
-void EdgeSmoothing::draw(unsigned texture, int width, int height, const DrawnBox& box) {
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_CULL_FACE);
-  glDisable(GL_BLEND);
-  glViewport(0, 0, width, height);
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(box.x0, box.y0, box.width(), box.height());
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, texture);
-  state_->program.use();
-  state_->program.set("picture", 0);
-  state_->program.set("pixel", Eigen::Vector2f(1.0f / static_cast<float>(width),
-                                               1.0f / static_cast<float>(height)));
-  glBindVertexArray(state_->nothing);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDisable(GL_SCISSOR_TEST);
-  glBindVertexArray(0);
-  glBindTexture(GL_TEXTURE_2D, 0);
+void smooth_edges(std::span<const std::uint8_t> rgba, int width, int height, const DrawnBox& within,
+                  std::vector<std::uint8_t>& smoothed) {
+  assert(rgba.size() == std::size_t{4} * width * height);
+  const Pixels pixels{rgba.data(), width, height};
+  const auto columns = static_cast<std::size_t>(within.width());
+  smoothed.resize(4 * columns * static_cast<std::size_t>(within.height()));
+  // Rows of pixels with one more to each side, and of the corners below and above them.
+  std::vector<int> under(columns + 2), row(columns + 2), over(columns + 2);
+  std::vector<int> below(columns + 1), above(columns + 1);
+  const auto corners = [&](const std::vector<int>& a, const std::vector<int>& b,
+                           std::vector<int>& sums) {
+    for (std::size_t i = 0; i <= columns; ++i) sums[i] = a[i] + a[i + 1] + b[i] + b[i + 1];
+  };
+  pixels.brightness(within.x0 - 1, within.y0 - 1, under);
+  pixels.brightness(within.x0 - 1, within.y0, row);
+  corners(under, row, below);
+  for (int y = within.y0; y < within.y1; ++y) {
+    pixels.brightness(within.x0 - 1, y + 1, over);
+    corners(row, over, above);
+    std::uint8_t* out = &smoothed[4 * columns * static_cast<std::size_t>(y - within.y0)];
+    std::memcpy(out, pixels.at(within.x0, y), 4 * columns);
+    for (std::size_t i = 0; i < columns; ++i) {
+      const Around a = {below[i], below[i + 1], above[i], above[i + 1], 4 * row[i + 1]};
+      const int high = a.high(), contrast = high - a.low();
+      if (contrast < least_contrast || 10 * contrast < high) continue;
+      const Eigen::Array4f color = blurred(pixels, within.x0 + static_cast<int>(i), y, a);
+      for (std::size_t k = 0; k < 4; ++k)
+        out[4 * i + k] = static_cast<std::uint8_t>(color[static_cast<int>(k)] + 0.5f);
+    }
+    std::swap(row, over);
+    std::swap(below, above);
+  }
 }
 
 }  // namespace condyle

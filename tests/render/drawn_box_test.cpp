@@ -22,21 +22,20 @@ Image whole(SceneRenderer& renderer, const Camera& camera, const PictureSettings
   drawn.bind();
   renderer.draw(camera, settings);
   drawn.resolve_to(resolved.name());
-  if (!settings.smooth_edges) return resolved.read();
-  const Image plain = resolved.read();
-  GlTexture texture;
-  glBindTexture(GL_TEXTURE_2D, texture);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  resolved.bind();
-  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, w, h);
-  const Framebuffer target(w, h, 1);
-  target.bind();
-  EdgeSmoothing().draw(texture, w, h, {0, 0, w, h});
-  return target.read();
+  Image image = resolved.read();
+  if (!settings.smooth_edges) return image;
+  // As they are read from the card: rows from the bottom.
+  const auto turned_over = [&](const std::vector<std::uint8_t>& rgba) {
+    std::vector<std::uint8_t> rows;
+    const auto stride = std::ptrdiff_t{4} * w;
+    for (int y = h - 1; y >= 0; --y)
+      rows.insert(rows.end(), rgba.begin() + stride * y, rgba.begin() + stride * (y + 1));
+    return rows;
+  };
+  std::vector<std::uint8_t> smoothed;
+  smooth_edges(turned_over(image.rgba), w, h, {0, 0, w, h}, smoothed);
+  image.rgba = turned_over(smoothed);
+  return image;
 }
 
 void expect_whole(SceneRenderer& renderer, const Camera& camera, PictureSettings settings,
