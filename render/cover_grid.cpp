@@ -105,13 +105,14 @@ void CoverGrid::each_tile(const Eigen::Vector2f& low, const Eigen::Vector2f& hig
       visit(tiles_[static_cast<std::size_t>(y * columns_ + x)], x, y);
 }
 
-void CoverGrid::add(std::span<const Eigen::Vector3f> positions,
+void CoverGrid::add(std::span<const Eigen::Vector3f> positions, std::span<const int> corners,
                     std::span<const Eigen::Vector3i> triangles, const SurfaceEdges& edges,
                     const Eigen::Matrix4f& model, float depth_slope, float depth_units) {
   const Eigen::Matrix4f to_clip = view_projection_ * model;
   const Eigen::Vector2f half(0.5f * static_cast<float>(width_), 0.5f * static_cast<float>(height_));
   projected_.resize(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
+  for (const int corner : corners) {
+    const auto i = static_cast<std::size_t>(corner);
     const Eigen::Vector4f p = to_clip * positions[i].homogeneous();
     const float inverse = 1 / p.w();
     projected_[i] << (p.x() * inverse + 1) * half.x(), (p.y() * inverse + 1) * half.y(),

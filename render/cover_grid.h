@@ -35,9 +35,10 @@ class CoverGrid {
   /// Adds the front sides of a surface. It is given up as a whole when it comes near the eye.
   /// depth_slope, depth_units: by how much the card moves depths away, as of glPolygonOffset, with
   /// units in clip space.
-  void add(std::span<const Eigen::Vector3f> positions, std::span<const Eigen::Vector3i> triangles,
-           const SurfaceEdges& edges, const Eigen::Matrix4f& model, float depth_slope = 0,
-           float depth_units = 0);
+  /// corners: the positions that the triangles use.
+  void add(std::span<const Eigen::Vector3f> positions, std::span<const int> corners,
+           std::span<const Eigen::Vector3i> triangles, const SurfaceEdges& edges,
+           const Eigen::Matrix4f& model, float depth_slope = 0, float depth_units = 0);
 
   /// To be called before the questions.
   void finish();

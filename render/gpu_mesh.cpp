@@ -60,10 +60,18 @@ DirectionCone cone_of(std::span<const Eigen::Vector3f> positions,
 GpuMesh::Surface surface_of(std::span<const Eigen::Vector3f> positions,
                             std::span<const Eigen::Vector3i> triangles) {
   auto patches = cut_into_patches(positions, triangles, piece_triangles);
-  GpuMesh::Surface surface{std::move(patches.triangles), {}};
+  GpuMesh::Surface surface{std::move(patches.triangles), {}, {}};
   for (std::size_t i = 0; i + 1 < patches.first.size(); ++i)
     surface.pieces.push_back({patches.first[i], patches.first[i + 1] - patches.first[i], {}, {}});
   return surface;
+}
+
+void find_corners(GpuMesh::Surface& surface, std::size_t points) {
+  std::vector<char> used(points, 0);
+  for (const auto& t : surface.triangles)
+    for (const int v : t) used[static_cast<std::size_t>(v)] = 1;
+  for (std::size_t i = 0; i < points; ++i)
+    if (used[i]) surface.corners.push_back(static_cast<int>(i));
 }
 
 /// Finds the boxes and directions of the pieces.
@@ -109,6 +117,7 @@ GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
       }
       v = place;
     }
+  find_corners(fine_, order_.size());
   glBindVertexArray(array_);
   send(GL_ELEMENT_ARRAY_BUFFER, indices_, std::span<const Eigen::Vector3i>(fine_.triangles),
        GL_STATIC_DRAW);
@@ -126,6 +135,13 @@ void GpuMesh::add_coarse(std::span<const Eigen::Vector3f> positions,
   coarse_ = surface_of(positions, coarser(positions, triangles, few, coarse_error_mm));
   for (auto& t : coarse_.triangles)
     for (int& v : t) v = place_[static_cast<std::size_t>(v)];
+  find_corners(coarse_, order_.size());
+}
+
+const GpuMesh::Surface& GpuMesh::fine() const {
+  if (!fine_measured_) measure(fine_, points_);
+  fine_measured_ = true;
+  return fine_;
 }
 
 void GpuMesh::send_shape(std::span<const Eigen::Vector3f> positions,
@@ -133,7 +149,8 @@ void GpuMesh::send_shape(std::span<const Eigen::Vector3f> positions,
   points_ = ordered(positions);
   send(GL_ARRAY_BUFFER, positions_, std::span<const Eigen::Vector3f>(points_), usage_);
   send_ordered(normals_, normals, usage_);
-  for (Surface* surface : {&fine_, &coarse_}) measure(*surface, points_);
+  measure(coarse_, points_);
+  fine_measured_ = false;
 }
 
 void GpuMesh::send_colors(std::span<const Bytes> colors) { send_ordered(colors_, colors, usage_); }

@@ -36,6 +36,7 @@ class GpuMesh {
   struct Surface {
     std::vector<Eigen::Vector3i> triangles;
     std::vector<Piece> pieces;
+    std::vector<int> corners;  // the points that it uses, ascending
   };
 
   /// `moving`: positions and normals will be sent again each frame.
@@ -65,9 +66,9 @@ class GpuMesh {
 
   // As on the card:
   const std::vector<Eigen::Vector3f>& points() const { return points_; }
-  const Surface& fine() const { return fine_; }
+  const Surface& fine() const;
   /// What is good enough to throw a shadow.
-  const Surface& coarse() const { return coarse_.triangles.empty() ? fine_ : coarse_; }
+  const Surface& coarse() const { return coarse_.triangles.empty() ? fine() : coarse_; }
 
  private:
   template <class T>
@@ -78,7 +79,9 @@ class GpuMesh {
   GlVertexArray array_;
   GlBuffer positions_, normals_, colors_, extras_, values_, rest_, indices_, cover_, chosen_;
   GLsizei cover_count_ = 0;
-  Surface fine_, coarse_;  // coarse: none unless asked for
+  Surface coarse_;  // none unless asked for
+  mutable Surface fine_;
+  mutable bool fine_measured_ = false;  // put off: pictures in motion may not need it
   std::vector<Eigen::Vector3f> points_;
   std::vector<int> order_, place_;  // vertex on the card -> as given, and back; -1: not used
   GLenum usage_;

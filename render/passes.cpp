@@ -38,10 +38,8 @@ Sides sides_of(const DrawItem& item) {
   return item.drawable->closed && !item.cut() ? Sides::front : Sides::both;
 }
 
-/// What is drawn of a part. Values are shown where they are, on all of its triangles.
 const GpuMesh::Surface& surface_of(const DrawItem& item, const PictureView& view) {
-  const bool coarse = view.coarse && !item.drawable->mapped;
-  return coarse ? item.mesh().coarse() : item.mesh().fine();
+  return item.surface(view.coarse);
 }
 
 Viewpoint eye_of(const PictureView& view) {
@@ -153,8 +151,9 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
   cover_from_light_.start(shadow_side, shadow_side, light.view_projection);
   each_covering(items, [&](const DrawItem& item) {
     const auto& mesh = item.drawable->mesh;
-    cover_from_light_.add(mesh.points(), mesh.coarse().triangles, *item.drawable->coarse_edges,
-                          item.model, slope, 2 * units * unit_in_clip_space);
+    cover_from_light_.add(mesh.points(), mesh.coarse().corners, mesh.coarse().triangles,
+                          *item.drawable->coarse_edges, item.model, slope,
+                          2 * units * unit_in_clip_space);
   });
   cover_from_light_.finish();
   Eigen::AlignedBox3f enclosed;
@@ -272,9 +271,10 @@ void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
   if (view.may_cull)
     each_covering(items, [&](const DrawItem& item) {
       const auto& mesh = item.drawable->mesh;
-      const bool fine = &surface_of(item, view) == &mesh.fine();
-      cover_.add(mesh.points(), surface_of(item, view).triangles,
-                 fine ? *item.drawable->edges : *item.drawable->coarse_edges, item.model);
+      const auto& surface = surface_of(item, view);
+      const bool coarse = &surface == &mesh.coarse();
+      cover_.add(mesh.points(), surface.corners, surface.triangles,
+                 coarse ? *item.drawable->coarse_edges : *item.drawable->edges, item.model);
     });
   cover_.finish();
   // The face hides most of the rest: drawn first, it spares the shading of what lies under it.

@@ -29,6 +29,10 @@ struct DrawItem {
   Role role() const { return drawable->part->role; }
   bool opaque() const { return opacity >= 1; }
   const GpuMesh& mesh() const { return drawable->shown(); }
+  /// What is drawn of it. Values are shown where they are, on all of its triangles.
+  const GpuMesh::Surface& surface(bool coarse) const {
+    return coarse && !drawable->mapped ? mesh().coarse() : mesh().fine();
+  }
   /// Box of where it is now, mm.
   Eigen::AlignedBox3f box() const;
 };

@@ -262,7 +262,8 @@ DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& s
     }
   };
   for (const auto& item : items) {
-    for (const auto& piece : item.mesh().fine().pieces) add(piece.box, item.model);
+    const bool coarse = settings.coarse && settings.wireframe.empty();
+    for (const auto& piece : item.surface(coarse).pieces) add(piece.box, item.model);
     if (settings.ghost && s.leaves_ghost(item, *settings.ghost))
       add(item.drawable->box, Eigen::Matrix4f::Identity());
   }

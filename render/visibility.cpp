@@ -41,12 +41,15 @@ bool all_turned(const GpuMesh::Piece& piece, const Eigen::Vector4f& eye, float t
          sine * way.norm() + 0.5f * piece.box.diagonal().norm();
 }
 
-/// Places in pixels, with the depth in clip space and 1; the last is 0 before the near plane.
-void project(std::span<const Eigen::Vector3f> points, const Eigen::Matrix4f& to_clip, int width,
-             int height, std::vector<Eigen::Vector4f>& projected) {
+/// Places of the corners in pixels, with the depth in clip space and 1; the last is 0 before the
+/// near plane.
+void project(std::span<const Eigen::Vector3f> points, std::span<const int> corners,
+             const Eigen::Matrix4f& to_clip, int width, int height,
+             std::vector<Eigen::Vector4f>& projected) {
   const Eigen::Vector2f half(0.5f * static_cast<float>(width), 0.5f * static_cast<float>(height));
   projected.resize(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (const int corner : corners) {
+    const auto i = static_cast<std::size_t>(corner);
     const Eigen::Vector4f p = to_clip * points[i].homogeneous();
     const float inverse = 1 / p.w();
     const bool before = p.w() > 0 && p.z() > -p.w();
@@ -84,7 +87,7 @@ const std::vector<Eigen::Vector3i>& Visibility::choose(const GpuMesh& mesh,
   if (cover && cover->empty()) cover = nullptr;
   chosen_.clear();
   if (cover || sides != Sides::both)
-    project(mesh.points(), to_clip, from.width, from.height, projected_);
+    project(mesh.points(), surface.corners, to_clip, from.width, from.height, projected_);
   for (const auto& piece : surface.pieces) {
     if (frustum.misses(piece.box)) continue;
     if (sides != Sides::both && all_turned(piece, eye, sides == Sides::front ? -1.f : 1.f))

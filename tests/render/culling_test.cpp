@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <random>
 
 #include "render/cover_grid.h"
@@ -40,6 +41,11 @@ struct Sent {
     for (const auto& v : mesh.vertices) all.push_back(v.cast<float>());
     return all;
   }
+  std::vector<int> corners() const {
+    std::vector<int> all(positions.size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
   explicit Sent(const TriMesh& source)
       : positions(floats(source)),
         triangles(source.triangles),
@@ -71,7 +77,8 @@ struct Shell {
     eye << (camera.target + camera.distance_mm * camera.direction.normalized()).cast<float>(), 1;
     const Viewpoint from = {vp, eye, side, side};
     cover.start(side, side, vp);
-    cover.add(skin.positions, skin.triangles, skin.edges, Eigen::Matrix4f::Identity());
+    cover.add(skin.positions, skin.corners(), skin.triangles, skin.edges,
+              Eigen::Matrix4f::Identity());
     cover.finish();
     target.bind();
     glEnable(GL_DEPTH_TEST);
