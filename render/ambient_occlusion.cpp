@@ -13,7 +13,7 @@ namespace condyle {
 namespace {
 
 constexpr int layers = 4;
-constexpr int side = 256;  // cells of a depth map: about 1 mm on a head
+constexpr int map_side = 256;  // cells of a depth map: about 1 mm on a head
 constexpr float nothing = -std::numeric_limits<float>::infinity();
 
 /// Depth maps of all layers from one side; the larger depth is nearer to the sky.
@@ -33,9 +33,11 @@ Eigen::Vector3f spread(int i, int count) {
 void draw_triangle(std::vector<float>& depth, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
                    const Eigen::Vector3f& c) {
   const int u0 = std::max(0, static_cast<int>(std::ceil(std::min({a.x(), b.x(), c.x()}))));
-  const int u1 = std::min(side - 1, static_cast<int>(std::floor(std::max({a.x(), b.x(), c.x()}))));
+  const int u1 =
+      std::min(map_side - 1, static_cast<int>(std::floor(std::max({a.x(), b.x(), c.x()}))));
   const int v0 = std::max(0, static_cast<int>(std::ceil(std::min({a.y(), b.y(), c.y()}))));
-  const int v1 = std::min(side - 1, static_cast<int>(std::floor(std::max({a.y(), b.y(), c.y()}))));
+  const int v1 =
+      std::min(map_side - 1, static_cast<int>(std::floor(std::max({a.y(), b.y(), c.y()}))));
   if (u0 > u1 || v0 > v1) return;
   const float abx = b.x() - a.x(), aby = b.y() - a.y(), acx = c.x() - a.x(), acy = c.y() - a.y();
   const float area = abx * acy - aby * acx;
@@ -45,7 +47,7 @@ void draw_triangle(std::vector<float>& depth, const Eigen::Vector3f& a, const Ei
       const float px = static_cast<float>(u) - a.x(), py = static_cast<float>(v) - a.y();
       const float s = (px * acy - py * acx) / area, t = (abx * py - aby * px) / area;
       if (s < 0 || t < 0 || s + t > 1) continue;
-      float& cell = depth[static_cast<std::size_t>(v) * side + u];
+      float& cell = depth[static_cast<std::size_t>(v) * map_side + u];
       cell = std::max(cell, a.z() + s * (b.z() - a.z()) + t * (c.z() - a.z()));
     }
 }
@@ -53,23 +55,23 @@ void draw_triangle(std::vector<float>& depth, const Eigen::Vector3f& a, const Ei
 /// 0 in full shade to 1 in the open, for a point in map coordinates.
 float open_share(const std::vector<float>& depth, const Eigen::Vector3f& q, float bias) {
   const int u = static_cast<int>(std::floor(q.x())), v = static_cast<int>(std::floor(q.y()));
-  if (u < 0 || v < 0 || u + 1 >= side || v + 1 >= side) return 1;
+  if (u < 0 || v < 0 || u + 1 >= map_side || v + 1 >= map_side) return 1;
   const float fu = q.x() - static_cast<float>(u), fv = q.y() - static_cast<float>(v);
   const auto open = [&](int i, int j) {
-    return depth[static_cast<std::size_t>(v + j) * side + u + i] > q.z() + bias ? 0.f : 1.f;
+    return depth[static_cast<std::size_t>(v + j) * map_side + u + i] > q.z() + bias ? 0.f : 1.f;
   };
   return (1 - fv) * ((1 - fu) * open(0, 0) + fu * open(1, 0)) +
          fv * ((1 - fu) * open(0, 1) + fu * open(1, 1));
 }
 
 void draw_sky(Sky& sky, std::span<const OcclusionSurface> surfaces, const Eigen::Vector3f& centre) {
-  for (auto& map : sky.depth) map.assign(std::size_t{side} * side, nothing);
+  for (auto& map : sky.depth) map.assign(std::size_t{map_side} * map_side, nothing);
   std::vector<Eigen::Vector3f> placed;
   for (const auto& surface : surfaces) {
     placed.resize(surface.vertices.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
       placed[i] = sky.rows * (surface.vertices[i] - centre);
-      placed[i].head<2>().array() += 0.5f * side;
+      placed[i].head<2>().array() += 0.5f * map_side;
     }
     auto& map = sky.depth[surface.layer];
     for (const auto& t : surface.triangles)
@@ -104,7 +106,7 @@ std::vector<Occlusion> bake_occlusion(std::span<const OcclusionSurface> surfaces
   }
   if (box.isEmpty()) return result;
   const Eigen::Vector3f centre = box.center();
-  const float cell_mm = std::max(box.diagonal().norm(), 1e-3f) / (side - 4);
+  const float cell_mm = std::max(box.diagonal().norm(), 1e-3f) / (map_side - 4);
 
   // Runs of vertices, so that threads share the work evenly whatever the parts' sizes.
   struct Run {
@@ -142,7 +144,7 @@ std::vector<Occlusion> bake_occlusion(std::span<const OcclusionSurface> surfaces
           // Start off the surface, so that its own slope within a cell is no shade.
           Eigen::Vector3f q =
               sky.rows * (surface.vertices[i] + 1.2f * cell_mm * surface.normals[i] - centre);
-          q.head<2>().array() += 0.5f * side;
+          q.head<2>().array() += 0.5f * map_side;
           float open[layers];
           for (int layer = 0; layer < layers; ++layer)
             open[layer] = (surface.alone | surface.together) >> layer & 1u

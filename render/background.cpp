@@ -5,8 +5,7 @@
 
 namespace condyle {
 
-Background::Background()
-    : program_("background", background_shaders().vertex, background_shaders().fragment) {}
+Background::Background() : program_("background", background_shaders()) {}
 
 void Background::draw(int width, int height) {
   glDepthFunc(GL_LEQUAL);

@@ -13,7 +13,7 @@
 namespace condyle {
 namespace {
 
-constexpr int width = 1600, margin = 24, panel = 440, panel_height = 460, top = 108;
+constexpr int page_width = 1600, margin = 24, panel = 440, panel_height = 460, top = 108;
 constexpr int legend_left = margin + 3 * (panel + margin) + 4;
 constexpr int line_height = 26, text_height = 20;
 const Eigen::Vector3f grey = Eigen::Vector3f::Constant(0.35f);
@@ -51,9 +51,9 @@ class Sheet {
  public:
   Sheet(const ContactPlace& place, const ColourMap& map) : place_(place), map_(map) {
     for (const auto& line : place.lines)
-      for (auto& part : words_.lines(line, text_height, width - 2 * margin))
+      for (auto& part : words_.lines(line, text_height, page_width - 2 * margin))
         lines_.push_back(std::move(part));
-    image_.width = width;
+    image_.width = page_width;
     image_.height = top + panel_height + margin + line_height * static_cast<int>(lines_.size() + 1);
     image_.rgba.assign(4 * static_cast<std::size_t>(image_.width) * image_.height, 255);
   }

@@ -1,6 +1,7 @@
 #include "render/gl_objects.h"
 
 #include "engine/core/error.h"
+#include "render/shaders.h"
 
 namespace condyle {
 namespace {
@@ -24,11 +25,11 @@ GLuint compile(const char* what, GLenum kind, const std::string& source) {
 
 }  // namespace
 
-GlProgram::GlProgram(const char* what, const std::string& vertex, const std::string& fragment) {
-  const GLuint first = compile(what, GL_VERTEX_SHADER, vertex);
+GlProgram::GlProgram(const char* what, const ShaderSource& source) {
+  const GLuint first = compile(what, GL_VERTEX_SHADER, source.vertex);
   GLuint second = 0;
   try {
-    second = compile(what, GL_FRAGMENT_SHADER, fragment);
+    second = compile(what, GL_FRAGMENT_SHADER, source.fragment);
   } catch (...) {
     glDeleteShader(first);
     throw;

@@ -49,11 +49,13 @@ using GlTexture = GlName<gl::make_texture, gl::free_texture>;
 using GlFramebuffer = GlName<gl::make_framebuffer, gl::free_framebuffer>;
 using GlRenderbuffer = GlName<gl::make_renderbuffer, gl::free_renderbuffer>;
 
+struct ShaderSource;
+
 /// A linked pair of shaders. Setting a uniform that the compiler dropped does nothing.
 class GlProgram {
  public:
   /// throws: MachineError with the driver's words when the shaders do not compile or link.
-  GlProgram(const char* what, const std::string& vertex, const std::string& fragment);
+  GlProgram(const char* what, const ShaderSource& source);
   ~GlProgram();
   GlProgram(const GlProgram&) = delete;
   GlProgram& operator=(const GlProgram&) = delete;

@@ -10,10 +10,6 @@
 namespace condyle {
 namespace {
 
-GlProgram build(const char* what, const ShaderSource& source) {
-  return {what, source.vertex, source.fragment};
-}
-
 /// Later ones lie over earlier ones where solids share a place: teeth in bone, bone in flesh.
 int order_of_caps(Role role) {
   if (role == Role::face) return 0;
@@ -39,11 +35,11 @@ void blend_over() {
 }  // namespace
 
 OverlayPasses::OverlayPasses()
-    : cap_(build("cap", cap_shaders())),
-      tint_(build("tint", tint_shaders())),
-      depth_(build("depth", depth_shaders())),
-      line_(build("line", line_shaders())),
-      dot_(build("dot", marker_shaders())) {}
+    : cap_("cap", cap_shaders()),
+      tint_("tint", tint_shaders()),
+      depth_("depth", depth_shaders()),
+      line_("line", line_shaders()),
+      dot_("dot", marker_shaders()) {}
 
 void OverlayPasses::set_lines(const std::string& name, const LineSet& lines) {
   if (lines.empty()) {

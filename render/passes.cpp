@@ -20,10 +20,6 @@ constexpr std::size_t most_map_lines = 4;
 constexpr std::array<const char*, most_map_lines> map_line_names = {"map_lines[0]", "map_lines[1]",
                                                                     "map_lines[2]", "map_lines[3]"};
 
-GlProgram build(const char* what, const ShaderSource& source) {
-  return {what, source.vertex, source.fragment};
-}
-
 void cull_by_closure(const DrawItem& item) {
   if (item.drawable->closed && !item.cut()) {
     glEnable(GL_CULL_FACE);
@@ -88,8 +84,8 @@ Passes::Passes()
     : surfaces_("surface", surface_shaders),
       skins_("skin", skin_shaders),
       interiors_("interior", interior_shaders),
-      depth_(build("depth", depth_shaders())),
-      marker_(build("marker", marker_shaders())),
+      depth_("depth", depth_shaders()),
+      marker_("marker", marker_shaders()),
       shadow_map_(shadow_side) {
   const auto table = make_skin_table();
   glBindTexture(GL_TEXTURE_2D, skin_table_);
@@ -180,8 +176,7 @@ void Passes::background(const PictureView& view) { background_.draw(view.width, 
 GlProgram& Passes::Programs::of(const Shading& shading) {
   const auto found = built_.find(shading);
   if (found != built_.end()) return found->second;
-  const ShaderSource source = source_(shading);
-  return built_.try_emplace(shading, what_, source.vertex, source.fragment).first->second;
+  return built_.try_emplace(shading, what_, source_(shading)).first->second;
 }
 
 void Passes::begin(Programs& programs, const DrawItem& item, const PictureView& view) {

@@ -10,7 +10,7 @@
 namespace condyle {
 namespace {
 
-constexpr int side = SkinDetail::side;
+constexpr int detail_side = SkinDetail::side;
 
 /// 0 to 1 by a cell of a lattice that repeats after `cells`.
 float random_of(Eigen::Vector3i cell, int cells, int which) {
@@ -48,18 +48,20 @@ float cells_height(const Eigen::Vector3f& place, int cells) {
 SkinDetail make_skin_detail() {
   // Two sizes of cells, neither a multiple of the other.
   constexpr int large = 17, small = 26;
-  std::vector<float> height(std::size_t{side} * side * side);
+  std::vector<float> height(std::size_t{detail_side} * detail_side * detail_side);
   const auto at = [](int x, int y, int z) {
-    const auto wrap = [](int i) { return static_cast<std::size_t>((i + side) % side); };
-    return (wrap(z) * side + wrap(y)) * side + wrap(x);
+    const auto wrap = [](int i) {
+      return static_cast<std::size_t>((i + detail_side) % detail_side);
+    };
+    return (wrap(z) * detail_side + wrap(y)) * detail_side + wrap(x);
   };
   float mean = 0;
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) {
+  for (int z = 0; z < detail_side; ++z)
+    for (int y = 0; y < detail_side; ++y)
+      for (int x = 0; x < detail_side; ++x) {
         const Eigen::Vector3f place =
             Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) /
-            side;
+            detail_side;
         const float h =
             0.6f * cells_height(large * place, large) + 0.4f * cells_height(small * place, small);
         height[at(x, y, z)] = h;
@@ -70,9 +72,9 @@ SkinDetail make_skin_detail() {
   const auto byte = [](float value) {
     return static_cast<std::uint8_t>(std::lround(std::clamp(128 + 127 * value, 0.f, 255.f)));
   };
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) {
+  for (int z = 0; z < detail_side; ++z)
+    for (int y = 0; y < detail_side; ++y)
+      for (int x = 0; x < detail_side; ++x) {
         auto* texel = &detail.rgba[4 * at(x, y, z)];
         texel[0] = byte(height[at(x + 1, y, z)] - height[at(x - 1, y, z)]);
         texel[1] = byte(height[at(x, y + 1, z)] - height[at(x, y - 1, z)]);

@@ -15,13 +15,12 @@
 namespace condyle {
 namespace {
 
-using Json = nlohmann::json;
 constexpr const char* turntable = "spin";
 
 /// One view as a JSON object; `where`: what it is called in messages.
 class ViewReader {
  public:
-  ViewReader(const std::string& file, const Json& json, std::string where, bool has_time)
+  ViewReader(const std::string& file, const nlohmann::json& json, std::string where, bool has_time)
       : file_(file), json_(json), where_(std::move(where)) {
     if (!json.is_object()) throw InputError(file_, where_, "is not a JSON object");
     static const std::set<std::string> known = {"view", "target",      "direction",
@@ -78,13 +77,13 @@ class ViewReader {
   }
 
   const std::string& file_;
-  const Json& json_;
+  const nlohmann::json& json_;
   std::string where_;
 };
 
 CameraPath read_path(const std::string& file, const Eigen::Vector3d& low,
                      const Eigen::Vector3d& high, double aspect) {
-  const Json json = Json::parse(read_file(file, 1 << 20), nullptr, false);
+  const nlohmann::json json = nlohmann::json::parse(read_file(file, 1 << 20), nullptr, false);
   if (!json.is_object()) throw InputError(file, "", "is not a JSON object");
   CameraPath path;
   if (!json.contains("path")) {

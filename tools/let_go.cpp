@@ -15,6 +15,8 @@
 namespace condyle {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 std::size_t free_part(const Case& patient, const std::string& name, const char* option) {
   const auto free = free_parts(patient.parts);
   std::string known;
@@ -49,9 +51,7 @@ std::vector<Moved> moved_parts(const Case& patient, std::size_t pushed,
   return moved;
 }
 
-nlohmann::ordered_json report_of(const Case& patient, const std::vector<Moved>& moved,
-                                 const LetGo& settled) {
-  using Json = nlohmann::ordered_json;
+Json report_of(const Case& patient, const std::vector<Moved>& moved, const LetGo& settled) {
   const auto triple = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
   const auto name = [&](int part) { return patient.parts[static_cast<std::size_t>(part)].name; };
   Json json = {{"part", patient.parts[moved[0].part].name},

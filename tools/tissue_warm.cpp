@@ -38,9 +38,9 @@ WarmPlan plan_for(int nodes) {
 }
 
 /// The motion, frame by frame.
-class Motion {
+class FaceMotion {
  public:
-  Motion(const SyntheticSet& set, const WarmPlan& plan, int threads)
+  FaceMotion(const SyntheticSet& set, const WarmPlan& plan, int threads)
       : set_(set),
         plan_(plan),
         threads_(threads),
@@ -143,7 +143,7 @@ class Motion {
 
 nlohmann::ordered_json warm_frames(const SyntheticSet& set, int threads) {
   const WarmPlan plan = plan_for(set.net.node_count);
-  Motion motion(set, plan, threads);
+  FaceMotion motion(set, plan, threads);
   struct Sample {
     int frame;
     Nodes nodes;
@@ -154,10 +154,10 @@ nlohmann::ordered_json warm_frames(const SyntheticSet& set, int threads) {
   int cut_short = 0;
   double residual = 0;
   auto next_frame = std::chrono::steady_clock::now();
-  for (int frame = -Motion::lead; frame < plan.frames; ++frame) {
+  for (int frame = -FaceMotion::lead; frame < plan.frames; ++frame) {
     std::this_thread::sleep_until(next_frame);
     next_frame = std::max(next_frame + pace, std::chrono::steady_clock::now());
-    const Motion::Frame told = motion.step(frame);
+    const FaceMotion::Frame told = motion.step(frame);
     if (frame < 0) continue;
     wall.push_back(told.wall_ms);
     cpu.push_back(told.cpu_ms);
@@ -171,7 +171,7 @@ nlohmann::ordered_json warm_frames(const SyntheticSet& set, int threads) {
   }
   double worst_mm = 0, worst_energy = 0;
   for (const auto& [frame, nodes, reached] : samples) {
-    const Motion::Error error = motion.error(frame, nodes, reached);
+    const FaceMotion::Error error = motion.error(frame, nodes, reached);
     worst_mm = std::max(worst_mm, error.mm);
     worst_energy = std::max(worst_energy, error.energy);
   }

@@ -11,13 +11,13 @@
 namespace condyle {
 namespace {
 
-constexpr double rounding_mm = 1e-9;  // of poses and boxes
+constexpr double box_rounding_mm = 1e-9;  // of poses and boxes
 
 /// The body's box along the world's axes.
 Box box_at(const Box& box, const Pose& X) {
   const Eigen::Vector3d center = X * box.center();
   const Eigen::Vector3d half = X.R.toRotationMatrix().cwiseAbs() * (0.5 * box.size()) +
-                               Eigen::Vector3d::Constant(rounding_mm);
+                               Eigen::Vector3d::Constant(box_rounding_mm);
   return {center - half, center + half};
 }
 

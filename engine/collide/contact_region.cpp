@@ -11,11 +11,11 @@ namespace condyle {
 namespace {
 
 using Corners = std::array<Eigen::Vector3d, 3>;
-using Cell = std::array<int, 3>;
+using RegionCell = std::array<int, 3>;
 
 /// A small piece of B's surface that is in contact.
 struct Piece {
-  Cell cell;
+  RegionCell cell;
   double area = 0;
   Eigen::Vector3d centroid, normal;
   double least = 0;  // distance at its deepest corner
@@ -102,7 +102,7 @@ class Gatherer {
 
 /// Number of the connected group of cells (sharing a corner at least) for each piece.
 std::vector<int> group(const std::vector<Piece>& pieces, int& groups) {
-  std::map<Cell, int> cells;
+  std::map<RegionCell, int> cells;
   for (const auto& piece : pieces) cells.try_emplace(piece.cell, 0);
   int count = 0;
   for (auto& entry : cells) entry.second = count++;

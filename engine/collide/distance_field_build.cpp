@@ -7,6 +7,7 @@
 #include "engine/collide/distance_field.h"
 #include "engine/collide/field_face.h"
 #include "engine/collide/shells.h"
+#include "engine/core/infinity.h"
 #include "engine/core/parallel.h"
 #include "engine/mesh/triangle_tree.h"
 
@@ -16,8 +17,6 @@ namespace {
 using Eigen::Vector3d;
 
 using Points = std::array<Vector3d, 4>;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A cube of bricks with the faces that can be nearest to some point of it, grouped by shell.
 struct Cube {

@@ -13,8 +13,8 @@
 namespace condyle {
 namespace {
 
-constexpr int count = 16;
-constexpr int cells = DistanceField::cells, corners = DistanceField::corners;
+constexpr int at_once = 16;
+constexpr int cells = DistanceField::cells, row = DistanceField::corners;
 
 struct Lookup {
   const std::int32_t* whole;
@@ -27,13 +27,13 @@ struct Lookup {
 
 CONDYLE_FOR_EACH_PROCESSOR
 unsigned look_up(const Lookup& l, const DistanceField::Sixteen& points, float* distance) {
-  alignas(64) float a[count], b[count], c[count];
-  alignas(64) std::int32_t at[count], slot[count], within[count];
+  alignas(64) float a[at_once], b[at_once], c[at_once];
+  alignas(64) std::int32_t at[at_once], slot[at_once], within[at_once];
   const float end_x = static_cast<float>(cells * l.size[0]),
               end_y = static_cast<float>(cells * l.size[1]),
               end_z = static_cast<float>(cells * l.size[2]);
   const std::int32_t size_x = l.size[0], size_xy = l.size[0] * l.size[1];
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < at_once; ++i) {
     const float px = points.x[i], py = points.y[i], pz = points.z[i];
     const float x = l.middle[0] + (l.turn[0] * px + l.turn[1] * py + l.turn[2] * pz);
     const float y = l.middle[1] + (l.turn[3] * px + l.turn[4] * py + l.turn[5] * pz);
@@ -51,16 +51,16 @@ unsigned look_up(const Lookup& l, const DistanceField::Sixteen& points, float* d
     c[i] = z - static_cast<float>(iz);
     static_assert(cells == 8);
     slot[i] = (ix >> 3) + size_x * (iy >> 3) + size_xy * (iz >> 3);
-    at[i] = (ix & 7) + corners * ((iy & 7) + corners * (iz & 7));
+    at[i] = (ix & 7) + row * ((iy & 7) + row * (iz & 7));
   }
   unsigned known = 0;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < at_once; ++i) {
     const std::int32_t brick = l.whole[slot[i]];
     known |= static_cast<unsigned>(within[i] & (brick >= 0 ? 1 : 0)) << i;
     at[i] += std::max(brick, 0) * l.brick_floats;
   }
-  constexpr int dy = corners, dz = corners * corners;
-  for (int i = 0; i < count; ++i) {
+  constexpr int dy = row, dz = row * row;
+  for (int i = 0; i < at_once; ++i) {
     const float* const p = l.values + at[i];
     const float v00 = p[0] + a[i] * (p[1] - p[0]), v10 = p[dy] + a[i] * (p[dy + 1] - p[dy]),
                 v01 = p[dz] + a[i] * (p[dz + 1] - p[dz]),

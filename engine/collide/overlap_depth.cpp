@@ -1,19 +1,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <queue>
 #include <set>
 #include <vector>
 
 #include "engine/collide/solid.h"
 #include "engine/collide/triangle_distance.h"
+#include "engine/core/infinity.h"
 
 namespace condyle {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double rounding_mm = 1e-9;
+constexpr double reach_rounding_mm = 1e-9;
 constexpr double touching_mm2 = 1e-20;
 constexpr std::size_t most_inside = 500;  // faces to look at one by one
 
@@ -110,7 +109,7 @@ class DepthSearch {
     const TriangleTree& tree = shell(into).tree;
     double reach = infinity;  // a surface known to be near makes the query quick
     if (near.triangle >= 0)
-      reach = (nearest_point(p, tree.corners(near.triangle)) - p).norm() + rounding_mm;
+      reach = (nearest_point(p, tree.corners(near.triangle)) - p).norm() + reach_rounding_mm;
     const SurfacePoint found = tree.signed_nearest(p, reach);
     ++looks_;
     return {p, -found.distance, found.triangle};
@@ -145,9 +144,9 @@ class DepthSearch {
 
   /// A face with a point outside lies outside as a whole unless the shell crosses it.
   bool is_outside(Into into, const Triangle& t, const Place& middle) const {
-    if (middle.depth >= -rounding_mm) return false;
-    const Eigen::Vector3d low = t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() - rounding_mm,
-                          high = t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() + rounding_mm;
+    if (middle.depth >= -reach_rounding_mm) return false;
+    const Eigen::Vector3d low = t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() - reach_rounding_mm,
+                          high = t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() + reach_rounding_mm;
     return !shell(into).tree.any_near(low, high, [&](const Triangle& other) {
       const Eigen::Vector3d low_other = other[0].cwiseMin(other[1]).cwiseMin(other[2]),
                             high_other = other[0].cwiseMax(other[1]).cwiseMax(other[2]);
@@ -178,7 +177,8 @@ class DepthSearch {
       return;
     if (!shell(into).box.contains(middle, ball.radius)) return;
     if (crossing_known_ && ball.connected && !from.crosses(ball.first, ball.count) &&
-        look_at_point(into, from.X * from.surface.faces_[ball.first][0], near).depth < -rounding_mm)
+        look_at_point(into, from.X * from.surface.faces_[ball.first][0], near).depth <
+            -reach_rounding_mm)
       return;
     const Place place = look_at(into, middle, near);
     wait(place.depth + ball.radius, {into, index, {}, place});
@@ -209,7 +209,7 @@ class DepthSearch {
     if (near.triangle >= 0 && bound(into, face, near) <= enough()) return near;
     const Place middle = look_at_middle(into, face, near);
     if (bound(into, face, middle) <= enough()) return middle;
-    if (crossing_known_ && !from.crosses(index, 1) ? middle.depth < -rounding_mm
+    if (crossing_known_ && !from.crosses(index, 1) ? middle.depth < -reach_rounding_mm
                                                    : is_outside(into, face, middle))
       return middle;
     for (const auto& corner : face) look_at_point(into, corner, middle);
@@ -226,7 +226,7 @@ class DepthSearch {
         if (crosses[piece]) continue;
         const Eigen::Vector3d p = from.X * from.surface.faces_[from.surface.piece_face_[piece]][0];
         for (const auto& shell : from.solid.shells_)
-          if (shell.depth(p, 0, infinity) > -rounding_mm) return true;
+          if (shell.depth(p, 0, infinity) > -reach_rounding_mm) return true;
       }
     }
     return false;
@@ -242,7 +242,7 @@ class DepthSearch {
     const auto spread = [&](int face, const Place& near) {
       from.surface.each_neighbour(face, [&](int other) {
         if (from.crosses(other, 1) || !seen.insert(other).second) return;
-        if (look_at_point(into, face_of(from, other)[0], near).depth >= -rounding_mm)
+        if (look_at_point(into, face_of(from, other)[0], near).depth >= -reach_rounding_mm)
           inside.push_back(other);
       });
     };

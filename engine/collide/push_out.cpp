@@ -2,16 +2,16 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
+
+#include "engine/core/infinity.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int most_steps = 200;  // of one way; grazing ways are given up
 
 /// Evenly spread over the sphere.

@@ -5,12 +5,11 @@
 #include <limits>
 
 #include "engine/collide/shells.h"
+#include "engine/core/infinity.h"
 #include "engine/core/parallel.h"
 
 namespace condyle {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The closed shells, or the open ones, as one mesh.
 TriMesh shells(const TriMesh& mesh, bool closed) {

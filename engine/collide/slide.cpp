@@ -12,6 +12,7 @@
 #include "engine/collide/slide_nodes.h"
 #include "engine/collide/slide_probe.h"
 #include "engine/collide/slide_walk.h"
+#include "engine/core/infinity.h"
 #include "engine/core/parallel.h"
 
 namespace condyle {
@@ -19,7 +20,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int max_walks = 8;
 constexpr int most_rubs = 4;
 constexpr double rest_mm = 0.005;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/collide/near_samples.h"
+#include "engine/core/infinity.h"
 #include "engine/core/parallel.h"
 
 namespace condyle {
@@ -15,12 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double near_share = 0.5;    // of the band: gaps up to here are measured, not bounded
-constexpr double coarse_mm = 1.5;     // of a ball of which one sample tells the overlap
-constexpr double close_mm = 0.015;    // all samples as near as this count
-constexpr double straight = 0.01;     // off 1: of a slope where the cell has no edge in it
-constexpr double rounding_mm = 1e-4;  // of what is kept of a look
+constexpr double measured_share = 0.5;     // of the band: gaps up to here are measured, not bounded
+constexpr double coarse_mm = 1.5;          // of a ball of which one sample tells the overlap
+constexpr double close_mm = 0.015;         // all samples as near as this count
+constexpr double straight = 0.01;          // off 1: of a slope where the cell has no edge in it
+constexpr double look_rounding_mm = 1e-4;  // of what is kept of a look
 
 }  // namespace
 
@@ -58,7 +58,7 @@ struct SlideProbe::Search {
     const Vector3d center = in_field(here.center);
     Seen& last = seen[b];
     const double way = (center - Vector3d(last.x, last.y, last.z)).norm() +
-                       (turned - last.turned) * here.radius + rounding_mm;
+                       (turned - last.turned) * here.radius + look_rounding_mm;
     if (last.gap - way > within) return last.gap - way;
     double gap = -infinity;
     // A ball that moved by less than its size is as near as before: its parts know more.
@@ -100,7 +100,7 @@ struct SlideProbe::Search {
       }
       least = std::min(least, at_least - pair.gap_mm);
       gap[k] = static_cast<float>(here - pair.gap_mm - allowed);
-      near |= (gap[k] <= within + rounding_mm ? 1u : 0u) << k;
+      near |= (gap[k] <= within + look_rounding_mm ? 1u : 0u) << k;
     }
     bool turned_away = false;
     while (near != 0) {
@@ -247,7 +247,7 @@ bool SlideProbe::overlaps_at(const Pose& X, double depth_mm) {
 }
 
 double SlideProbe::clearance(const Pose& X) {
-  const double near = near_share * model_.band_mm_;
+  const double near = measured_share * model_.band_mm_;
   look_at(X, near);
   if (deepest_gap_ <= near) return deepest_gap_;
   double least = infinity;

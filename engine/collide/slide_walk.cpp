@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "engine/core/infinity.h"
 
 namespace condyle {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double step_share = 0.25;  // longest step, of the band
 // Beyond a step's length contacts may matter, with friction more of them.
 constexpr double margin_mm = 0.02, rubbing_margin_mm = 0.05;

@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "engine/collide/shells.h"
+#include "engine/core/infinity.h"
 #include "engine/mesh/topology.h"
 
 namespace condyle {
 namespace {
 
-constexpr int leaf_size = 4;
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int faces_a_leaf = 4;
 
 double distance_to(const Box& box, const Eigen::Vector3d& p) {
   return (p - p.cwiseMax(box.low).cwiseMin(box.high)).norm();
@@ -87,7 +86,7 @@ int Solid::build_balls(const TriMesh& mesh, std::vector<int>& order, int first, 
     for (const int v : mesh.triangles[order[i]])
       radius2 = std::max(radius2, (mesh.vertices[v] - balls_[index].center).squaredNorm());
   balls_[index].radius = std::sqrt(radius2);
-  if (last - first <= leaf_size) return index;
+  if (last - first <= faces_a_leaf) return index;
   Eigen::Index axis = 0;
   box.size().maxCoeff(&axis);
   const int middle = first + (last - first) / 2;

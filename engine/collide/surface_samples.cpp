@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int leaf_size = 16;  // what a field tells at once
+constexpr int samples_a_leaf = 16;  // what a field tells at once
 constexpr double hollow_slope =
     0.05;  // tangent of half the angle of an edge that counts as concave
 
@@ -28,7 +28,7 @@ int build_balls(SurfaceSamples& s, std::vector<int>& order, const std::vector<Ve
     radius2 = std::max(radius2, (points[order[i]] - center.cast<double>()).squaredNorm());
   s.balls.push_back({center, std::nextafter(static_cast<float>(std::sqrt(radius2)), 1e30f), first,
                      last - first, 0});
-  if (last - first <= leaf_size) return index;
+  if (last - first <= samples_a_leaf) return index;
   Eigen::Index axis = 0;
   box.size().maxCoeff(&axis);
   const int middle = first + (last - first) / 2;
@@ -47,7 +47,7 @@ void make_blocks(SurfaceSamples& s) {
     if (ball.right != 0) continue;
     ball.block = static_cast<int>(s.blocks.size());
     DistanceField::Sixteen& block = s.blocks.emplace_back();
-    for (int i = 0; i < leaf_size; ++i) {
+    for (int i = 0; i < samples_a_leaf; ++i) {
       const Vector3d& p = s.points[ball.first + std::min(i, ball.count - 1)];
       const Eigen::Vector3f from_center = (p - ball.center.cast<double>()).cast<float>();
       block.x[i] = from_center.x();

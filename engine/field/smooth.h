@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/smooth_step.h"
+
 namespace condyle {
 
 /// Smaller of two distances with the crease rounded where they differ by less than k (mm).
@@ -14,11 +16,5 @@ inline double smooth_min(double a, double b, double k) {
 }
 
 inline double smooth_max(double a, double b, double k) { return -smooth_min(-a, -b, k); }
-
-/// Cubic step: 0 at t <= 0, 1 at t >= 1, flat at both ends.
-inline double smooth_step(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 }  // namespace condyle

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "engine/core/infinity.h"
+
 namespace condyle {
 namespace {
 
@@ -14,7 +16,6 @@ using Eigen::Vector3d;
 
 constexpr int leaf_size = 4;
 constexpr int stack_size = 128;  // median splits: the depth is log2 of the count
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double square_distance(const Vector3d& low, const Vector3d& high, const Vector3d& p) {
   return (low - p).cwiseMax(p - high).cwiseMax(0.0).squaredNorm();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/core/units.h"
 #include "engine/rigid/joint_rows.h"
 #include "engine/rigid/rigid_world.h"
 #include "engine/rigid/row_solver.h"
@@ -13,7 +14,6 @@
 
 namespace condyle {
 
-constexpr double mm_per_m = 1000;  // 1 N = 1000 kg mm/s^2
 constexpr double most_force_N = 1e5;
 
 inline void require(bool good, const std::string& problem) {

@@ -135,7 +135,7 @@ void Panels::Drawing::progress() {
   if (input.can_cancel) {
     ImGui::SetCursorPos({wide - pad - button, pen.px(6)});
     if (word_button(pen, "cancel", "Cancel", {button, pen.px(24)}, false))
-      panels.wishes_.push_back(wish::Cancel{});
+      panels.wishes_.emplace_back(wish::Cancel{});
   }
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float left = place(x) + pad, full = wide - 2 * pad, top = place(y) + high - pen.px(9);

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <epoxy/gl.h>
-// GLFW after epoxy, which brings the GL header.
 #include <GLFW/glfw3.h>
+#include <epoxy/gl.h>
 
 #include <Eigen/Geometry>
 #include <chrono>

@@ -10,14 +10,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::string at(const Vector3d& p) {
+std::string place_of(const Vector3d& p) {
   return fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z());
 }
 
 void adopt(Case& patient, const std::string& name, const Vector3d& p, const std::string& how) {
   patient.landmarks.points[name] = p;
   patient.notes.push_back(
-      fmt::format("landmark {} was not given: estimated at {} from {}", name, at(p), how));
+      fmt::format("landmark {} was not given: estimated at {} from {}", name, place_of(p), how));
 }
 
 /// Middle of the box of the top 10 mm of the hind quarter of one side. `side` is 1 left, -1 right.

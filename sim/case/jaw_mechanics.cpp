@@ -10,12 +10,12 @@
 namespace condyle {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr const char* polyline_key = "polyline_posterior_superior_offsets_mm_from_tmj_marker";
-constexpr double heaviest_kg = 10, most_inertia = 1e5, farthest_mm = 1000, most_drag = 1e7;
+constexpr double heaviest_kg = 10, most_inertia = 1e5, farthest_center_mm = 1000, most_drag = 1e7;
 
 JsonItem list(const JsonItem& item, std::size_t size) {
   if (item.size() != size)
@@ -38,7 +38,7 @@ Matrix3d ball_inertia(double mass_kg) {
 BoneMechanics bone(const JsonItem& item) {
   BoneMechanics out;
   out.mass_kg = item.at("mass_kg").number(1e-4, heaviest_kg);
-  out.center = vector(item.at("com_mm"), farthest_mm);
+  out.center = vector(item.at("com_mm"), farthest_center_mm);
   out.inertia = ball_inertia(out.mass_kg);
   if (const auto rows = item.find("inertia_about_com_kg_mm2")) {
     list(*rows, 3);
@@ -69,10 +69,10 @@ CondylarPath guide(const JsonItem& points) {
   return path;
 }
 
-json values(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Json values(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-json to_json(const BoneMechanics& bone) {
-  json rows = json::array();
+Json to_json(const BoneMechanics& bone) {
+  Json rows = Json::array();
   for (int k = 0; k < 3; ++k) rows.push_back(values(bone.inertia.row(k).transpose()));
   return {{"mass_kg", bone.mass_kg},
           {"com_mm", values(bone.center)},
@@ -94,7 +94,7 @@ JawMechanics read_mechanics(const std::filesystem::path& file) {
 }
 
 std::string mechanics_json(const JawMechanics& mechanics) {
-  json root = {{"jaw", to_json(mechanics.mandible)}};
+  Json root = {{"jaw", to_json(mechanics.mandible)}};
   if (mechanics.hyoid) root["hyoid"] = to_json(*mechanics.hyoid);
   if (mechanics.guide)
     for (std::size_t i = 0; i < mechanics.guide->forward_mm.size(); ++i)

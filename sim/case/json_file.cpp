@@ -10,16 +10,14 @@
 namespace condyle {
 namespace {
 
-using nlohmann::json;
-
 /// The value as it may stand in a message.
-std::string shown(const json& value) {
-  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+std::string shown(const nlohmann::json& value) {
+  std::string text = value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
   return text.size() > 60 ? text.substr(0, 60) + "..." : text;
 }
 
 /// nlohmann's text without its "[json.exception...]" and position.
-std::string reason_of(const json::exception& error) {
+std::string reason_of(const nlohmann::json::exception& error) {
   const std::string what = error.what();
   const std::size_t end = what.find("; last read");
   const std::size_t start = what.find("] ") + 2;
@@ -90,14 +88,14 @@ JsonFile::JsonFile(const std::filesystem::path& file, std::string_view text) : f
   if (json_depth(text) > max_json_depth)
     throw InputError(file, "", "nests its lists deeper than a case or list of landmarks does");
   try {
-    value_ = json::parse(text.begin(), text.end());
-  } catch (const json::parse_error& error) {
+    value_ = nlohmann::json::parse(text.begin(), text.end());
+  } catch (const nlohmann::json::parse_error& error) {
     const auto at = std::min<std::size_t>(error.byte, text.size());
     const auto line =
         1 + std::count(text.begin(),
                        text.begin() + static_cast<std::ptrdiff_t>(at > 0 ? at - 1 : 0), '\n');
     throw InputError(file, fmt::format("line {}", line), "is not valid JSON: " + reason_of(error));
-  } catch (const json::exception& error) {
+  } catch (const nlohmann::json::exception& error) {
     throw InputError(file, "", "is not valid JSON: " + reason_of(error));
   }
 }

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t max_bytes = std::size_t{16} << 20;
+constexpr std::size_t most_landmark_bytes = std::size_t{16} << 20;
 constexpr std::size_t max_rows = 100'000;
 
 std::string trimmed(std::string_view text) {
@@ -38,7 +38,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-std::string shown(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "\"";
   for (const char c : text.substr(0, 40))
     result += std::isprint(static_cast<unsigned char>(c)) ? c : '?';
@@ -115,7 +115,7 @@ LandmarkTable read_csv(const fs::path& file, std::string_view text) {
           throw InputError(file, where,
                            fmt::format("the column \"{}\" is missing (found: {}); the header must "
                                        "have name,x_mm,y_mm,z_mm",
-                                       wanted[w], shown(line)));
+                                       wanted[w], in_quotes(line)));
       }
       continue;
     }
@@ -126,15 +126,15 @@ LandmarkTable read_csv(const fs::path& file, std::string_view text) {
                        fmt::format("has {} fields, the header has {}", fields.size(), columns));
     LandmarkRow row{fields[column[0]], {}, where};
     if (canonical_landmark(row.name).empty())
-      throw InputError(file, where, "the name " + shown(row.name) + " has no letter or digit");
+      throw InputError(file, where, "the name " + in_quotes(row.name) + " has no letter or digit");
     for (int k = 0; k < 3; ++k) {
       const auto& field = fields[column[static_cast<std::size_t>(k) + 1]];
       const auto value = number(field);
       if (!value || !(std::abs(*value) <= 1e9))
-        throw InputError(
-            file, where,
-            fmt::format("{} of {} is {}; it must be a finite number such as 12.5",
-                        wanted[static_cast<std::size_t>(k) + 1], shown(row.name), shown(field)));
+        throw InputError(file, where,
+                         fmt::format("{} of {} is {}; it must be a finite number such as 12.5",
+                                     wanted[static_cast<std::size_t>(k) + 1], in_quotes(row.name),
+                                     in_quotes(field)));
       row.point[k] = *value;
     }
     table.rows.push_back(std::move(row));
@@ -154,8 +154,9 @@ double sign_to_lps(const fs::path& file, const JsonItem& markup) {
                                : system->text();
   if (name == "LPS" || name == "1") return 1;
   if (name == "RAS" || name == "0") return -1;
-  throw InputError(file, system->name(),
-                   "the coordinate system " + shown(name) + " is unknown; LPS and RAS are read");
+  throw InputError(
+      file, system->name(),
+      "the coordinate system " + in_quotes(name) + " is unknown; LPS and RAS are read");
 }
 
 LandmarkTable read_markups(const fs::path& file, std::string_view text) {
@@ -168,7 +169,7 @@ LandmarkTable read_markups(const fs::path& file, std::string_view text) {
     const double sign = sign_to_lps(file, markup);
     if (const auto units = markup.find("coordinateUnits"); units && units->text() != "mm")
       throw InputError(file, units->name(),
-                       "is " + shown(units->text()) + "; save the points in mm");
+                       "is " + in_quotes(units->text()) + "; save the points in mm");
     const JsonItem points = markup.at("controlPoints");
     for (std::size_t i = 0; i < points.size(); ++i) {
       const JsonItem point = points.at(i);
@@ -179,7 +180,7 @@ LandmarkTable read_markups(const fs::path& file, std::string_view text) {
       row.where = point.name();
       if (canonical_landmark(row.name).empty())
         throw InputError(file, row.where,
-                         "the label " + shown(row.name) + " has no letter or digit");
+                         "the label " + in_quotes(row.name) + " has no letter or digit");
       const JsonItem position = point.at("position");
       if (position.size() != 3)
         throw InputError(file, position.name(),
@@ -202,7 +203,7 @@ LandmarkTable read_landmark_table(const fs::path& file) {
   if (extension != ".csv" && extension != ".json" && extension != ".txt" && extension != ".tsv")
     throw InputError(file, "",
                      "landmarks are read from .csv (name,x_mm,y_mm,z_mm) and .mrk.json files");
-  const std::string text = read_file(file, max_bytes);
+  const std::string text = read_file(file, most_landmark_bytes);
   LandmarkTable table = extension == ".json" ? read_markups(file, text) : read_csv(file, text);
   if (table.rows.empty()) throw InputError(file, "", "holds no landmarks");
   return table;
@@ -218,7 +219,7 @@ Landmarks name_landmarks(const fs::path& file, const LandmarkTable& table) {
       throw InputError(file, row.where,
                        fmt::format("{} is the landmark {} again, which {} has at another place; "
                                    "delete one of them",
-                                   shown(row.name), name, other->second->where));
+                                   in_quotes(row.name), name, other->second->where));
     landmarks.points[name] = row.point;
   }
   return landmarks;

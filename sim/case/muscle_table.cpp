@@ -15,7 +15,7 @@
 namespace condyle {
 namespace {
 
-constexpr std::size_t max_bytes = std::size_t{16} << 20;
+constexpr std::size_t most_muscle_bytes = std::size_t{16} << 20;
 constexpr std::size_t most_muscles = 1000;
 constexpr double farthest_mm = 1000, strongest_N = 2000;
 constexpr double usual_stretch = 1.3, usual_passive = 0.015;
@@ -155,7 +155,7 @@ std::optional<Muscle> read_muscle(const Row& row) {
 
 std::vector<Muscle> read_muscles(const std::filesystem::path& file,
                                  std::vector<std::string>& notes) {
-  const std::string content = read_file(file, max_bytes);
+  const std::string content = read_file(file, most_muscle_bytes);
   TextLines lines(content);
   if (!lines.next_filled()) throw InputError(file, "", "the file is empty");
   const auto columns = read_header(file, lines);

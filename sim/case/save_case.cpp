@@ -25,10 +25,10 @@ namespace condyle {
 namespace {
 
 namespace fs = std::filesystem;
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
-json to_json(const Part& part) {
-  json item = {{"name", part.name}, {"role", role_name(part.role)}, {"file", part.name + ".ply"}};
+Json to_json(const Part& part) {
+  Json item = {{"name", part.name}, {"role", role_name(part.role)}, {"file", part.name + ".ply"}};
   for (const auto& tooth : part.teeth)
     item["teeth"].push_back({{"fdi", tooth.fdi},
                              {"first_triangle", tooth.first_triangle},
@@ -37,20 +37,20 @@ json to_json(const Part& part) {
   return item;
 }
 
-json to_json(const PairRule& rule) {
-  json item = {{"a", rule.a}, {"b", rule.b}, {"policy", policy_name(rule.policy)}};
+Json to_json(const PairRule& rule) {
+  Json item = {{"a", rule.a}, {"b", rule.b}, {"policy", policy_name(rule.policy)}};
   if (rule.margin_mm) item["margin_mm"] = *rule.margin_mm;
   if (rule.gap_mm > 0) item["gap_mm"] = rule.gap_mm;
   return item;
 }
 
-json to_json(const Case& patient) {
-  json root = {{"format", case_format},
+Json to_json(const Case& patient) {
+  Json root = {{"format", case_format},
                {"version", case_version},
                {"name", patient.name},
                {"source_units", patient.source_units},
                {"source_frame", patient.source_frame},
-               {"parts", json::array()}};
+               {"parts", Json::array()}};
   for (const auto& part : patient.parts) root["parts"].push_back(to_json(part));
   if (!patient.landmarks.points.empty()) root["landmarks"] = "landmarks.csv";
   if (patient.condylar_path)
@@ -102,9 +102,9 @@ void check_replaceable(const fs::path& folder) {
   };
   const auto saved = [&] {
     try {
-      return json::parse(read_file(folder / "case.json", max_case_json_bytes));
+      return Json::parse(read_file(folder / "case.json", max_case_json_bytes));
     } catch (const std::exception&) {
-      return json();
+      return Json();
     }
   }();
   if (!saved.is_object() || !saved.contains("format") || saved["format"] != case_format)
@@ -183,7 +183,7 @@ void save_case(const Case& patient, const fs::path& given) {
     if (!patient.muscles.empty()) write_file(made / muscles_file, muscles_csv(patient.muscles));
     if (patient.mechanics) write_file(made / mechanics_file, mechanics_json(*patient.mechanics));
     write_file(made / "case.json",
-               to_json(patient).dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+               to_json(patient).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     put_in_place(made, folder);
   } catch (...) {
     fs::remove_all(made, error);

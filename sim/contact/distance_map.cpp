@@ -7,6 +7,7 @@
 
 #include "engine/collide/quick_distance.h"
 #include "engine/collide/shells.h"
+#include "engine/core/infinity.h"
 #include "engine/core/parallel.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/refine.h"
@@ -17,7 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding_mm = 1e-3;  // of single precision, with room
 constexpr int leaf_vertices = 12;
 constexpr int task_vertices = 600;  // run as one by a thread

@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double tooth_mm = 3;    // how near a tooth names a place
-constexpr double middle_mm = 12;  // to either side of the midline: neither left nor right
+constexpr double tooth_mm = 3;       // how near a tooth names a place
+constexpr double chin_half_mm = 12;  // to either side of the midline: neither left nor right
 
 double half_width(const Case& patient) {
   const auto left = patient.landmarks.find("left_condyle"),
@@ -147,7 +147,7 @@ std::string Places::by_shape(Role role, const Vector3d& p) const {
   }
   if (lower) {
     if (forward < 0.45) return side + " ramus";
-    return outward < middle_mm ? "chin" : side + " body of the mandible";
+    return outward < chin_half_mm ? "chin" : side + " body of the mandible";
   }
   if (forward > 0.1 && outward > 0.75 * half_width(patient_))
     return side + " zygomatic bone or arch";
@@ -155,8 +155,8 @@ std::string Places::by_shape(Role role, const Vector3d& p) const {
   const double high = 0.5 * (left->z() + right->z());
   const bool low = 2 * (high - p.z()) > high - incisor->z();
   if (forward > 0.45 || (low && forward > 0.15))
-    return outward < middle_mm ? "front of the upper jaw" : side + " half of the upper jaw";
-  return outward < middle_mm ? "skull base" : side + " half of the skull base";
+    return outward < chin_half_mm ? "front of the upper jaw" : side + " half of the upper jaw";
+  return outward < chin_half_mm ? "skull base" : side + " half of the skull base";
 }
 
 std::string Places::name(int part, const Vector3d& p_rest) const {

@@ -9,7 +9,7 @@
 namespace condyle {
 namespace {
 
-constexpr double deep_mm = 0.5;
+constexpr double least_depth_mm = 0.5;
 
 struct Bone {
   const Part* part;
@@ -21,7 +21,7 @@ struct Bone {
 /// The bone that it lies deepest in; none when it is in none.
 struct Inside {
   const Bone* bone = nullptr;
-  double depth_mm = deep_mm;
+  double depth_mm = least_depth_mm;
 };
 Inside deepest_bone(const Bone& own, const std::vector<Bone>& others) {
   Inside in;

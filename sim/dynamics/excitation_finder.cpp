@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/units.h"
+
 namespace condyle {
 namespace {
 
@@ -11,7 +13,6 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double mm_per_m = 1000;  // 1 N = 1000 kg mm/s^2
 constexpr int most_rounds = 200;
 constexpr double close_enough = 1e-6;  // of an excitation
 

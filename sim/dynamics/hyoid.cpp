@@ -3,14 +3,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "engine/core/units.h"
+
 namespace condyle {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-constexpr double mm_per_m = 1000;  // 1 N = 1000 kg mm/s^2
 
 Matrix3d cross_matrix(const Vector3d& v) {
   Matrix3d out;

@@ -1,6 +1,7 @@
 #include "sim/dynamics/jaw_world.h"
 
 #include "engine/core/error.h"
+#include "engine/core/units.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/topology.h"
 #include "sim/motion/condylar_path.h"
@@ -13,7 +14,6 @@ using Eigen::Vector3d;
 
 constexpr double bone_kg_mm3 = 1.9e-6;
 constexpr double box_share = 0.12;  // of its box that a mandible fills
-constexpr double mm_per_m = 1000;   // 1 N = 1000 kg mm/s^2
 constexpr double worn_band_mm = 2;
 constexpr double least_forward_mm = -0.5, guide_step_mm = 0.5;
 constexpr double farthest_turned_mm = 16;  // the jaw opens no farther with the condyles

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
+#include "engine/core/units.h"
 #include "sim/muscles/usual_muscles.h"
 
 namespace condyle {
@@ -11,8 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double mm_per_m = 1000;  // 1 N = 1000 kg mm/s^2
-constexpr double arm_mm = 50;      // of a jaw about its centre of mass
+constexpr double arm_mm = 50;  // of a jaw about its centre of mass
 // Damping of a bone's frame, as mechanics tell it, acts at the frame's origin, not at the centre of
 // mass: the same damping slows a turning jaw twice as much there.
 // Where the patient's coordinates begin elsewhere, it is taken at the centre.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "engine/math/smooth_step.h"
 #include "sim/motion/condylar_path.h"
 
 namespace condyle {
@@ -25,11 +26,6 @@ Vector3d needed(const Case& patient, const char* name) {
         fmt::format("{}: the built-in motions need the landmark {}; add it to the case's landmarks",
                     patient.name, name));
   return *point;
-}
-
-double smooth(double u) {
-  u = std::clamp(u, 0.0, 1.0);
-  return u * u * (3 - 2 * u);
 }
 
 }  // namespace
@@ -136,7 +132,7 @@ Pose JawJoints::pose(const JawInputs& in) const {
   // the working side makes good; the orbiting condyle is where it was told to be.
   const double dx = std::sqrt(std::max(width * width - dy * dy - dz * dz, 0.01 * width * width));
   const double ahead = in.left_mm - in.right_mm;
-  const double side = (ahead > 0 ? 1 : -1) * smooth(0.5 * std::abs(ahead));
+  const double side = (ahead > 0 ? 1 : -1) * smooth_step(0.5 * std::abs(ahead));
   const Vector3d now(dx, dy, dz);
   const Vector3d at(
       middle.x() + in.shift_mm + 0.5 * side * (across.x() - dx),

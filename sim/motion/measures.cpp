@@ -5,14 +5,14 @@
 namespace condyle {
 namespace {
 
-constexpr double degrees = 180 / 3.14159265358979323846;
+constexpr double deg_per_rad = 180 / 3.14159265358979323846;
 
 /// The axis of X, through the place nearest to `near`.
 HelicalAxis helical_axis(const Pose& X, const Eigen::Vector3d& near) {
   constexpr double least_deg = 1;
   HelicalAxis axis;
   const double angle = rotation_angle(X);
-  if (angle * degrees < least_deg) return axis;
+  if (angle * deg_per_rad < least_deg) return axis;
   axis.known = true;
   axis.direction = X.R.vec().normalized() * (X.R.w() < 0 ? -1 : 1);
   axis.slide_mm = axis.direction.dot(X.t);
@@ -47,7 +47,7 @@ Measures measure(const Case& patient, const Pose& X_CM) {
     out.right_condyle = X_CM * *right;
     out.right_condyle_travel_mm = (out.right_condyle - *right).norm();
   }
-  out.rotation_deg = rotation_angle(X_CM) * degrees;
+  out.rotation_deg = rotation_angle(X_CM) * deg_per_rad;
   out.helical_axis = helical_axis(
       X_CM, left && right ? Eigen::Vector3d(0.5 * (*left + *right)) : Eigen::Vector3d(X_CM.t));
   return out;

@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double farthest_mm = 1000;
-constexpr double gap_of_steps = 2.5;  // longer than so many usual steps is a gap
+constexpr double farthest_apart_mm = 2000;  // each is within a metre of its origin
+constexpr double gap_of_steps = 2.5;        // longer than so many usual steps is a gap
 
 struct Recording {
   std::vector<double> time_s;  // from 0, increasing
@@ -57,7 +57,7 @@ std::vector<Pose> in_case(const std::filesystem::path& file, const PoseSeries& s
                    .normalized();
       X_CM.t = axes * X.t + map.origin_mm - X_CM.R * map.origin_mm;
     }
-    if (!(X_CM.t.norm() <= 2 * farthest_mm))
+    if (!(X_CM.t.norm() <= farthest_apart_mm))
       throw InputError(file, fmt::format("{:.6g} s", series.time_s[out.size()]),
                        fmt::format("the mandible is carried {:.0f} mm off; check length_unit and "
                                    "origin_mm in {}.json",

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <optional>
 
-#include "engine/core/hash.h"
 #include "sim/phantom/cache.h"
+#include "sim/phantom/mix_hash.h"
 #include "sim/phantom/phantom.h"
 #include "sim/phantom/solid.h"
 
@@ -14,11 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int surface_version = 5;  // raise when surfaces or landmarks change but no solid does
-
-template <class T>
-void mix(std::uint64_t& hash, const T& value) {
-  hash = hash_values(std::span<const T>(&value, 1), hash);
-}
 
 /// What the recipes say at scattered points: another recipe, another key.
 std::uint64_t recipe_key() {

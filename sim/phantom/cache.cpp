@@ -7,19 +7,14 @@
 #include <optional>
 
 #include "engine/core/files.h"
-#include "engine/core/hash.h"
 #include "engine/mesh/measure.h"
 #include "sim/case/case_io.h"
+#include "sim/phantom/mix_hash.h"
 
 namespace condyle {
 namespace {
 
 namespace fs = std::filesystem;
-
-template <class T>
-void mix(std::uint64_t& hash, const T& value) {
-  hash = hash_values(std::span<const T>(&value, 1), hash);
-}
 
 std::uint64_t content_hash(const Case& patient) {
   std::uint64_t hash = hash_start;

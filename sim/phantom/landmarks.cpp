@@ -17,7 +17,7 @@ struct Named {
   double x, y, z;  // mm; x > 0: the left one of a pair
 };
 
-const std::vector<Named> table = {
+const std::vector<Named> named_points = {
     {"glabella", On::skull, 0, -93.5, 40.5},
     {"nasion", On::skull, 0, -90.6, 26},
     {"rhinion", On::skull, 0, -97.7, 10},
@@ -110,7 +110,7 @@ Vector3d onto_surface(const FieldRecipe& field, Vector3d p) {
 
 Landmarks phantom_landmarks(const PhantomSolid& solid) {
   Landmarks landmarks;
-  for (const auto& entry : table) {
+  for (const auto& entry : named_points) {
     Vector3d p(entry.x, entry.y, entry.z);
     if (entry.on == On::skull) p = onto_surface(solid.skull, p);
     if (entry.on == On::mandible) p = onto_surface(solid.mandible, p);

@@ -5,13 +5,12 @@
 
 #include "sim/report/check_page.h"
 #include "sim/report/clearance.h"
+#include "sim/report/point_json.h"
 
 namespace condyle {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json list(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
 Json json_of(const MotionTime& when) {
   return {{"frame", when.frame},

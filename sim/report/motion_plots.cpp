@@ -18,10 +18,10 @@ double anterior(const Vector3d& way) { return -way.y(); }
 double superior(const Vector3d& way) { return way.z(); }
 double to_left(const Vector3d& way) { return way.x(); }
 
-using Part = double (*)(const Vector3d&);
+using Coordinate = double (*)(const Vector3d&);
 
-Curve path(const char* name, const std::vector<Vector3d>& points, const Vector3d& rest, Part across,
-           Part up) {
+Curve path(const char* name, const std::vector<Vector3d>& points, const Vector3d& rest,
+           Coordinate across, Coordinate up) {
   Curve curve{name, {}, {}};
   for (const auto& p : points) {
     curve.x.push_back(across(p - rest));
@@ -42,7 +42,7 @@ PlotBand box(const char* name, double x0, double x1, double y0, double y1) {
 
 /// The border movements, where the motion has them, closed and dashed.
 void add_border(std::vector<Curve>& curves, std::vector<Vector3d> round, const Vector3d& rest,
-                Part across, Part up) {
+                Coordinate across, Coordinate up) {
   if (round.empty()) return;
   round.push_back(round.front());
   Curve border = path("border movements", round, rest, across, up);
@@ -54,8 +54,9 @@ void add_border(std::vector<Curve>& curves, std::vector<Vector3d> round, const V
 MotionPlot posselt(const MotionSeries& series) {
   const auto incisor = points_of(series, &Measures::incisor);
   const Vector3d rest = bite_place(series);
-  const auto panel = [&](const char* title, const char* x, const char* y, Part across, Part up,
-                         const std::vector<Vector3d>& border, std::vector<PlotBand> bands) {
+  const auto panel = [&](const char* title, const char* x, const char* y, Coordinate across,
+                         Coordinate up, const std::vector<Vector3d>& border,
+                         std::vector<PlotBand> bands) {
     PlotPanel made{{path("lower incisal point", incisor, rest, across, up)},
                    {.title = title,
                     .x_label = x,
@@ -101,8 +102,8 @@ PlotBand bennett_wedge(double side) {
 MotionPlot axiography(const MotionSeries& series) {
   const auto left = points_of(series, &Measures::left_condyle);
   const auto right = points_of(series, &Measures::right_condyle);
-  const auto panel = [&](const char* title, const char* x, const char* y, Part across, Part up,
-                         std::vector<PlotBand> bands) {
+  const auto panel = [&](const char* title, const char* x, const char* y, Coordinate across,
+                         Coordinate up, std::vector<PlotBand> bands) {
     return PlotPanel{{path("left condyle", left, series.rest.left_condyle, across, up),
                       path("right condyle", right, series.rest.right_condyle, across, up)},
                      {.title = title,

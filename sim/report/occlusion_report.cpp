@@ -8,13 +8,12 @@
 
 #include "engine/collide/signed_surface.h"
 #include "engine/mesh/refine.h"
+#include "sim/report/point_json.h"
 
 namespace condyle {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json list(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
 Json json_of(const Pose& pose) {
   return {{"t_mm", list(pose.t)}, {"q_wxyz", {pose.R.w(), pose.R.x(), pose.R.y(), pose.R.z()}}};

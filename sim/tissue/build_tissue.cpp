@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "engine/core/error.h"
+#include "engine/math/smooth_step.h"
 #include "engine/tissue/equilibrium.h"
 #include "engine/tissue/layered_net.h"
 #include "engine/tissue/net_weights.h"
@@ -33,14 +34,9 @@ constexpr double lip_margin_mm = 14;  // from the mouth's line
 constexpr double lip_edge_stiffness = 0.05;
 constexpr double lip_edge_mm = 6;
 
-double smoothstep(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
-
 /// How much the rim of a face that ends below the jaw goes with the mandible: fully at it, not at
 /// all from this far on.
-double rim_follows(double to_mandible_mm) { return 1 - smoothstep((to_mandible_mm - 15) / 65); }
+double rim_follows(double to_mandible_mm) { return 1 - smooth_step((to_mandible_mm - 15) / 65); }
 
 /// N/mm of a bone spring.
 double held_stiffness(double firm) {
@@ -48,11 +44,11 @@ double held_stiffness(double firm) {
 }
 
 /// The share of a lip's inner side: with its own jaw but near the corners.
-double lip_share(double share) { return smoothstep(smoothstep(share)); }
+double lip_share(double share) { return smooth_step(smooth_step(share)); }
 
 /// How much the displayed face evens out the motion of a column: the coarse net of neck and jaw
 /// folds more sharply than skin does; at the mouth it is fine enough.
-double evened(double to_mouth_mm) { return 0.6 * smoothstep((to_mouth_mm - 35) / 25); }
+double evened(double to_mouth_mm) { return 0.6 * smooth_step((to_mouth_mm - 35) / 25); }
 
 /// Solves a plain opening knot by knot, and keeps a factor at each: the tissue of the
 /// lower face turns with the jaw, and a factor made unturned asks for several times the iterations.

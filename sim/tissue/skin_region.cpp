@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "engine/math/smooth_step.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/topology.h"
 
@@ -13,11 +14,6 @@ namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
-
-double smoothstep(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 /// Keeps the triangles told of, and the vertices they use; `source` follows.
 TriMesh kept_part(const TriMesh& mesh, const std::vector<char>& keep, std::vector<int>& source) {
@@ -192,7 +188,7 @@ double RegionShape::inside(const Vector3d& p) const {
   // Above: below the eyes. Behind: before the ear, and below the ear lobe around to the neck's
   // side.
   const double top = 13 - height;
-  const double back_limit = anatomy.condyles.y() + 3 + 72 * smoothstep((-24 - height) / 40);
+  const double back_limit = anatomy.condyles.y() + 3 + 72 * smooth_step((-24 - height) / 40);
   // That border runs steeply: it is nearer than along y.
   constexpr double steepness = 0.45;
   const double back = steepness * (back_limit - p.y());

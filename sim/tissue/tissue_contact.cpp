@@ -22,14 +22,14 @@ constexpr double far_mm = 2;
 constexpr double kept_mm = 0.25;
 constexpr double slack_mm = 0.1;  // that at rest little presses when it is stirred
 constexpr double near_mouth_mm = 18;
-constexpr double lip_edge_mm = 7;  // of the points that may meet teeth from before
-constexpr double led_mm = 14;      // of the points that are led before the teeth
-constexpr double whole_mm = 7;     // of the lip that the other one meets
-constexpr double corner_mm = 5;    // nearer to a corner both lips are one
+constexpr double teeth_lip_edge_mm = 7;  // of the points that may meet teeth from before
+constexpr double led_mm = 14;            // of the points that are led before the teeth
+constexpr double whole_mm = 7;           // of the lip that the other one meets
+constexpr double corner_mm = 5;          // nearer to a corner both lips are one
 constexpr double deepest_lip_mm = 0.4;
-constexpr double apart_mm = 0.02;      // between the lips when their nodes have been moved apart
-constexpr double lip_stiffness = 0.5;  // N/mm; lips give way to each other themselves
-constexpr double swept_mm = 10;        // points come this far from where they rest, beside the jaw
+constexpr double apart_mm = 0.02;       // between the lips when their nodes have been moved apart
+constexpr double lips_stiffness = 0.5;  // N/mm; lips give way to each other themselves
+constexpr double swept_mm = 10;         // points come this far from where they rest, beside the jaw
 
 /// Columns along one lip's edge, from the right corner to the left, both with.
 std::vector<int> lip_edge(const ContactSource& from, int side) {
@@ -285,7 +285,7 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
   const int last = from.sheets - 1;
   const auto free = [&](int node) { return !from.held[node]; };
   for (std::size_t c = 0; c < from.columns.size(); ++c) {
-    const bool lip = from.columns[c].to_mouth < lip_edge_mm;
+    const bool lip = from.columns[c].to_mouth < teeth_lip_edge_mm;
     for (int s = lip ? 0 : last; s <= last; ++s)
       if (const int node = node_of(static_cast<int>(c), s, from.sheets); free(node))
         contact.points.push_back(NetPoint::of_node(node));
@@ -338,7 +338,7 @@ Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, in
     touch_obstacle(contact.points, of.allowance, *of.obstacle, X_CJ, x, {}, touches, of.shift);
     lead_lips(contact, of, X_CM, x, touches);
   };
-  const TouchSettings soft{.stiffness = lip_stiffness};
+  const TouchSettings soft{.stiffness = lips_stiffness};
   parallel_for(2, threads, [&](std::size_t i) {
     if (i == 0) {
       jaw(contact.cranium, Pose{}, looks[on_cranium]);

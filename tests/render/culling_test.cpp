@@ -5,6 +5,7 @@
 
 #include "render/cover_grid.h"
 #include "render/framebuffer.h"
+#include "render/shaders.h"
 #include "render/vertex_normals.h"
 #include "render/visibility.h"
 #include "tests/render/scene_fixture.h"
@@ -71,7 +72,7 @@ struct Shell {
 
   Image picture(const Camera& camera, int side, int samples, bool all, std::size_t* drawn) {
     const Framebuffer target(side, side, samples), resolved(side, side, 1);
-    GlProgram program("plain", plain_vertex, plain_fragment);
+    GlProgram program("plain", {plain_vertex, plain_fragment});
     const Eigen::Matrix4f vp = projection_matrix(camera, 1, 100, 1000) * view_matrix(camera);
     Eigen::Vector4f eye;
     eye << (camera.target + camera.distance_mm * camera.direction.normalized()).cast<float>(), 1;

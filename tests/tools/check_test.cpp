@@ -7,13 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/program.h"
+#include "tests/tools/pose_file.h"
 
 namespace condyle::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::string pose_header = "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n";
 
 std::map<std::string, std::string> files_of(const fs::path& folder) {
   std::map<std::string, std::string> all;

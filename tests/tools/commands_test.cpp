@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tests/support/program.h"
+#include "tests/tools/pose_file.h"
 
 namespace condyle::test {
 namespace {
@@ -58,8 +59,6 @@ std::map<std::string, std::string> pictures(const fs::path& folder) {
     all[entry.path().filename().string()] = read_text(entry.path());
   return all;
 }
-
-const std::string pose_header = "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n";
 
 }  // namespace
 

@@ -14,8 +14,7 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-Pose at(double x, double y, double z) { return {Quaterniond::Identity(), {x, y, z}}; }
+using test::shift;
 
 /// Deepest of many points of the surface, by the definition.
 double deepest_sample(const TriMesh& points, const TriMesh& solid, const Pose& X, int divisions) {
@@ -98,8 +97,8 @@ TEST(OverlapDepth, GrowsByNoMoreThanTheMotion) {
 
 TEST(OverlapDepth, SwappedBodiesHaveTheSameDepthAndTheOppositeNormal) {
   const Solid a(test::sphere(4, 20)), b(test::sphere(4, 10));
-  const OverlapDepth found = overlap_depth(a, {}, b, at(28, 0, 0)),
-                     swapped = overlap_depth(b, at(28, 0, 0), a, {});
+  const OverlapDepth found = overlap_depth(a, {}, b, shift(28, 0, 0)),
+                     swapped = overlap_depth(b, shift(28, 0, 0), a, {});
   EXPECT_NEAR(swapped.depth_mm, found.depth_mm, 2e-3);
   EXPECT_GT(found.normal.x(), 0.95);
   EXPECT_LT(swapped.normal.x(), -0.95);
@@ -119,7 +118,7 @@ void expect_overlap(const TriMesh& a, const TriMesh& b, const Pose& X_AB, double
   }
 }
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Overlap, OfSpheresIsTheirLens) {
   std::mt19937_64 random(22);
@@ -143,7 +142,7 @@ TEST(Overlap, OfBoxesFaceToFaceAndCornerToFace) {
       SCOPED_TRACE(testing::Message() << size << " mm, depth " << depth);
       const TriMesh floor = test::box(size * Vector3d(-4, -3, -2), size * Vector3d(4, 3, 0)),
                     cube = test::box(Vector3d::Zero(), Vector3d::Constant(size));
-      expect_overlap(floor, cube, at(-size, -0.3 * size, -depth), depth, size * size * depth,
+      expect_overlap(floor, cube, shift(-size, -0.3 * size, -depth), depth, size * size * depth,
                      random);
       const Pose on_corner{Quaterniond::FromTwoVectors(Vector3d::Ones(), Vector3d::UnitZ()),
                            {0, 0, -depth}};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "engine/mesh/refine.h"
@@ -17,7 +18,7 @@ using test::any_pose;
 using test::box;
 using test::sphere;
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 TEST(OverlapVolume, SpheresInAnyPoseGiveTheLens) {
   std::mt19937_64 random(11);

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "engine/collide/slide.h"
+#include "tests/engine/collide/slide_bodies.h"
 #include "tests/support/boxes.h"
 #include "tests/support/shapes.h"
 
@@ -12,18 +13,14 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+using test::body;
+using test::plate;
 
-std::shared_ptr<const SlideBody> body(const TriMesh& mesh) {
-  return std::make_shared<const SlideBody>(make_slide_body(mesh, {}, 2));
-}
-
-Pose at(const Vector3d& t) { return {Quaterniond::Identity(), t}; }
+Pose placed(const Vector3d& t) { return {Quaterniond::Identity(), t}; }
 
 Pose turned(const Vector3d& axis, double degrees) {
   return {Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis)), Vector3d::Zero()};
 }
-
-TriMesh plate() { return test::box({-20, -12, -4}, {20, 12, 0}); }
 
 /// Hardly turns, so that a pull at the middle is a pull at the contacts.
 SlideSettings rough(double friction) {
@@ -69,11 +66,11 @@ TEST(SlideFriction, AGrooveHoldsByFrictionOverTheSineOfItsHalfAngle) {
                                rough(friction));
     const double sine = std::sin(half * std::numbers::pi / 180);
     const Vector3d rest(0, 0, 5 / sine);
-    const Pose start = model.slide(at(rest + 0.3 * Vector3d::UnitZ()), at(rest)).X_FM;
+    const Pose start = model.slide(placed(rest + 0.3 * Vector3d::UnitZ()), placed(rest)).X_FM;
     const double holds = friction * press / sine;
     for (const double share : {0.5, 0.85, 1.2, 2.0}) {
       const double along = share * holds;
-      const SlideResult result = model.slide(start, at(start.t + Vector3d(0, along, -press)));
+      const SlideResult result = model.slide(start, placed(start.t + Vector3d(0, along, -press)));
       EXPECT_NEAR(result.X_FM.t.y() - start.t.y(), std::max(0.0, along - holds), 0.04)
           << half << " at " << share;
       EXPECT_NEAR(result.X_FM.t.x(), 0, 0.04);
@@ -91,9 +88,9 @@ TEST(SlideFriction, OnBumpsItNeitherTremblesNorCreepsWhileTheWantedPoseRests) {
     settings.friction = friction;
     const SlidingContact model({crown}, {other}, settings);
     for (const double sideways : {0.0, 0.1, 0.6}) {
-      const Pose wanted = at({0.5 + sideways, 0.3, 13.2});
+      const Pose wanted = placed({0.5 + sideways, 0.3, 13.2});
       SlideMemory memory;
-      Pose X = model.slide(at({0.5, 0.3, 16}), at({0.5, 0.3, 13.2}), &memory).X_FM;
+      Pose X = model.slide(placed({0.5, 0.3, 16}), placed({0.5, 0.3, 13.2}), &memory).X_FM;
       X = model.slide(X, wanted, &memory).X_FM;
       const auto way = [](const Pose& a, const Pose& b) {
         return (a.t - b.t).norm() + 5 * rotation_angle(a.inverse() * b);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "tests/engine/collide/slide_bodies.h"
 #include "tests/support/boxes.h"
 #include "tests/support/overlap_oracle.h"
 #include "tests/support/shapes.h"
@@ -16,19 +17,13 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-std::shared_ptr<const SlideBody> body(const TriMesh& mesh) {
-  return std::make_shared<const SlideBody>(make_slide_body(mesh, {}, 2));
-}
-
-Pose at(double x, double y, double z) { return {Quaterniond::Identity(), {x, y, z}}; }
+using test::body;
+using test::plate;
+using test::shift;
 
 Pose turned(const Vector3d& axis, double degrees, const Vector3d& t) {
   return {Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized())), t};
 }
-
-/// A flat plate whose top is the plane z = 0.
-TriMesh plate(double thickness = 4) { return test::box({-20, -12, -thickness}, {20, 12, 0}); }
 
 /// How far any point of a 10 mm body moves between two poses.
 double apart(const Pose& a, const Pose& b) {
@@ -38,7 +33,7 @@ double apart(const Pose& a, const Pose& b) {
 TEST(Slide, WhatIsFreeArrivesToTheBit) {
   const SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
   const Pose wanted = turned({1, 2, 3}, 20, {3, 1, 5.5});
-  const SlideResult result = model.slide(at(-8, 0, 12), wanted);
+  const SlideResult result = model.slide(shift(-8, 0, 12), wanted);
   EXPECT_EQ(result.X_FM.t, wanted.t);
   EXPECT_EQ(result.X_FM.R.coeffs(), wanted.R.coeffs());
   EXPECT_FALSE(result.touching);
@@ -48,7 +43,7 @@ TEST(Slide, WhatIsFreeArrivesToTheBit) {
 TEST(Slide, SphereSlidesAlongThePlane) {
   const SlidingContact model({body(plate())}, {body(test::sphere(5, 5))});
   for (const double deep : {0.1, 1.0, 3.0}) {
-    const SlideResult result = model.slide(at(-6, 2, 7), at(5, -3, 5 - deep));
+    const SlideResult result = model.slide(shift(-6, 2, 7), shift(5, -3, 5 - deep));
     EXPECT_TRUE(result.settled);
     EXPECT_TRUE(result.touching);
     EXPECT_NEAR(result.X_FM.t.z(), 5, 0.04);  // slop and facets
@@ -81,7 +76,7 @@ TEST(Slide, BoxSettlesInAGrooveAndRunsAlongIt) {
 TEST(Slide, ALongJumpDoesNotPassThroughAThinWall) {
   const SlidingContact model({body(plate(0.6))}, {body(test::sphere(4, 4))});
   for (const double x : {0.0, 3.3}) {
-    const SlideResult result = model.slide(at(x, 0, 25), at(x, 0, -20));
+    const SlideResult result = model.slide(shift(x, 0, 25), shift(x, 0, -20));
     EXPECT_NEAR(result.X_FM.t.z(), 4, 0.05);
     EXPECT_NEAR(result.X_FM.t.x(), x, 0.1);
     EXPECT_LE(result.depth_mm, 0.02);
@@ -102,7 +97,7 @@ TEST(Slide, EdgeStopsAtEdge) {
   for (int k = 0; k < 20; ++k) {
     const double x = offset(random), y = offset(random);
     const SlideResult result =
-        model.slide(at(x, y, 12), turned({0, 0, 1}, 10 * offset(random), {x, y, 7}));
+        model.slide(shift(x, y, 12), turned({0, 0, 1}, 10 * offset(random), {x, y, 7}));
     EXPECT_TRUE(result.settled);
     EXPECT_LE(deepest(fixed, moving, result.X_FM), 0.06);
     EXPECT_LT(result.X_FM.t.z(), 6 * std::sqrt(2.0) + 0.01);  // nor does it hover
@@ -114,10 +109,10 @@ TEST(Slide, FrictionHoldsBelowItsCoefficientAndLetsSlideAbove) {
   rough.friction = 0.3;
   const SlidingContact model({body(plate())}, {body(test::box({-3, -3, 0}, {3, 3, 4}))}, rough);
   const double press = 0.5;
-  const Pose start = model.slide(at(0, 0, 0.5), at(0, 0, -0.01)).X_FM;
+  const Pose start = model.slide(shift(0, 0, 0.5), shift(0, 0, -0.01)).X_FM;
   for (const double share : {0.5, 0.8, 1.3, 2.0}) {  // of what friction holds
     const double sideways = share * rough.friction * press;
-    const SlideResult result = model.slide(start, at(sideways, 0, -press));
+    const SlideResult result = model.slide(start, shift(sideways, 0, -press));
     const double slip = result.X_FM.t.x() - start.t.x();
     if (share < 1) {
       EXPECT_NEAR(slip, 0, 0.02) << share;
@@ -142,7 +137,7 @@ TEST(Slide, TurnedSceneGivesTheTurnedAnswer) {
     const Pose X = test::any_pose(random, 15);
     const SlidingContact turned_corner({body(test::moved(floor, X)), body(test::moved(wall, X))},
                                        {ball});
-    const Pose from = at(8, -3, 8);
+    const Pose from = shift(8, -3, 8);
     const SlideResult here = corner.slide(from, in_corner);
     EXPECT_TRUE(here.touching);
     const Pose there = X.inverse() * turned_corner.slide(X * from, X * in_corner).X_FM;
@@ -158,7 +153,7 @@ TEST(Slide, TurnedSceneGivesTheTurnedAnswer) {
     EXPECT_LT(corner.rotation_length_mm() * rotation_angle(here.X_FM.inverse() * there), 0.24);
     // On a hilltop directions are flat, and the place less certain than the nearness.
     const SlidingContact turned_hill({body(test::moved(bumpy, X))}, {ball});
-    const Pose above = at(0, 1, 16);
+    const Pose above = shift(0, 1, 16);
     const Pose first = hill.slide(above, on_hill).X_FM,
                second = X.inverse() * turned_hill.slide(X * above, X * on_hill).X_FM;
     EXPECT_NEAR((first.t - on_hill.t).norm(), (second.t - on_hill.t).norm(), 0.04);
@@ -172,9 +167,9 @@ TEST(Slide, EndsAtTheSamePlaceByDifferentWays) {
   const TriMesh wall =
       test::moved(test::box({-4, -15, -5}, {0, 15, 15}), turned({0, 1, 0}, 10, {0, 0, 0}));
   const SlidingContact model({body(floor), body(wall)}, {body(test::sphere(4, 4))});
-  const Pose wanted = at(3, 1, 2);
-  const Pose first = model.slide(at(8, -3, 8), wanted).X_FM;
-  for (const Pose& from : {at(12, 8, 5), at(6, 0, 12), at(9, 9, 9), at(5.5, -8, 4.5)}) {
+  const Pose wanted = shift(3, 1, 2);
+  const Pose first = model.slide(shift(8, -3, 8), wanted).X_FM;
+  for (const Pose& from : {shift(12, 8, 5), shift(6, 0, 12), shift(9, 9, 9), shift(5.5, -8, 4.5)}) {
     const SlideResult result = model.slide(from, wanted);
     EXPECT_TRUE(result.settled);
     EXPECT_LT(apart(result.X_FM, first), 0.05);
@@ -207,9 +202,9 @@ TEST(Slide, OverlapAtRestIsTheBaseline) {
   EXPECT_NEAR(model.depth({}), 0.4, 0.01);
   model.allow_overlap_at({});
   EXPECT_NEAR(model.depth({}), 0, 1e-6);
-  const SlideResult pressed = model.slide({}, at(0, 0, -1));
+  const SlideResult pressed = model.slide({}, shift(0, 0, -1));
   EXPECT_NEAR(pressed.X_FM.t.z(), 0, 0.03);
-  const SlideResult away = model.slide({}, at(1, 0, 3));
+  const SlideResult away = model.slide({}, shift(1, 0, 3));
   EXPECT_EQ(away.X_FM.t, Vector3d(1, 0, 3));
 }
 
@@ -218,21 +213,21 @@ TEST(Slide, PairsKeepTheirGap) {
   const auto ball = body(test::sphere(4, 5));
   for (const double gap : {0.0, 0.2, 0.5}) {
     const SlidingContact model({floor}, {ball}, {{0, 0, gap}});
-    const SlideResult result = model.slide(at(-6, 2, 7), at(5, -3, 4));
+    const SlideResult result = model.slide(shift(-6, 2, 7), shift(5, -3, 4));
     EXPECT_TRUE(result.settled);
     EXPECT_NEAR(result.X_FM.t.z(), 5 + gap, 0.04);
     EXPECT_NEAR(result.X_FM.t.x(), 5, 0.02);
-    EXPECT_NEAR(model.depth(at(0, 0, 4.8 + gap)), 0.2, 0.02);
+    EXPECT_NEAR(model.depth(shift(0, 0, 4.8 + gap)), 0.2, 0.02);
   }
   // A gap that is narrower at rest may stay so.
   SlidingContact rest({floor}, {ball}, {{0, 0, 0.4}});
-  rest.allow_overlap_at(at(0, 0, 5.1));
-  EXPECT_NEAR(rest.depth(at(0, 0, 5.1)), 0, 1e-6);
-  EXPECT_NEAR(rest.slide(at(0, 0, 5.1), at(0, 0, 4)).X_FM.t.z(), 5.1, 0.03);
+  rest.allow_overlap_at(shift(0, 0, 5.1));
+  EXPECT_NEAR(rest.depth(shift(0, 0, 5.1)), 0, 1e-6);
+  EXPECT_NEAR(rest.slide(shift(0, 0, 5.1), shift(0, 0, 4)).X_FM.t.z(), 5.1, 0.03);
   // Pairs that are not named pass through each other.
   const SlidingContact none({floor, body(test::box({-3, -3, 20}, {3, 3, 22}))}, {ball},
                             {{1, 0, 0}});
-  EXPECT_EQ(none.slide(at(0, 0, 8), at(0, 0, 1)).X_FM.t, Vector3d(0, 0, 1));
+  EXPECT_EQ(none.slide(shift(0, 0, 8), shift(0, 0, 1)).X_FM.t, Vector3d(0, 0, 1));
   EXPECT_THROW(SlidingContact({floor}, {ball}, {{0, 1, 0}}), std::invalid_argument);
   EXPECT_THROW(SlidingContact({floor}, {ball}, {{0, 0, 0.6}}), std::invalid_argument);
   EXPECT_THROW(SlidingContact({floor}, {ball}, {{0, 0, -0.1}}), std::invalid_argument);
@@ -248,7 +243,7 @@ TEST(Slide, SurfacesThatArePlacedElsewhereSlideThere) {
   const SlidingContact made({body(floor), body(test::moved(wall, X_wall))}, {ball},
                             {.rotation_length_mm = 3, .pivot = Vector3d(0, 0, 0)});
   for (const Vector3d& wanted : {Vector3d(1, 1, 2), Vector3d(0, -2, 3.5), Vector3d(6, 3, 9)}) {
-    const Pose there = turned({0, 0, 1}, 4, wanted), from = at(4, 0, 9);
+    const Pose there = turned({0, 0, 1}, 4, wanted), from = shift(4, 0, 9);
     const SlideResult a = placed.slide(from * X_ball.inverse(), there * X_ball.inverse()),
                       b = made.slide(from, there);
     EXPECT_EQ(a.touching, b.touching);
@@ -261,21 +256,21 @@ TEST(Slide, SurfacesThatArePlacedElsewhereSlideThere) {
   const Pose X = turned({1, 2, 3}, 50, {30, 5, 9});
   sunk.place({X}, {{}});
   EXPECT_NEAR(sunk.depth(X), 0, 1e-6);
-  EXPECT_LT(apart(sunk.slide(X, X * at(0, 0, -1)).X_FM, X), 0.05);
+  EXPECT_LT(apart(sunk.slide(X, X * shift(0, 0, -1)).X_FM, X), 0.05);
 }
 
 TEST(Slide, OverlapThatIsAllowedFadesAwayFromItsPlace) {
   SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
   const double deep = 0.4;
-  model.allow_overlap_at(at(0, 0, 5 - deep), 2.0);
-  EXPECT_NEAR(model.depth(at(0, 0, 5 - deep)), 0, 1e-6);
-  EXPECT_NEAR(model.depth(at(0, 4, 5 - deep)), deep, 0.03);
+  model.allow_overlap_at(shift(0, 0, 5 - deep), 2.0);
+  EXPECT_NEAR(model.depth(shift(0, 0, 5 - deep)), 0, 1e-6);
+  EXPECT_NEAR(model.depth(shift(0, 4, 5 - deep)), deep, 0.03);
   // Pressed down it stays; dragged along it comes out, and stays out.
-  EXPECT_NEAR(model.slide(at(0, 0, 5 - deep), at(0, 0, 4)).X_FM.t.z(), 5 - deep, 0.05);
+  EXPECT_NEAR(model.slide(shift(0, 0, 5 - deep), shift(0, 0, 4)).X_FM.t.z(), 5 - deep, 0.05);
   double last = 5 - deep - 0.02;
-  Pose X = at(0, 0, 5 - deep);
+  Pose X = shift(0, 0, 5 - deep);
   for (int k = 1; k <= 12; ++k) {
-    X = model.slide(X, at(0.25 * k, 0, 5 - deep)).X_FM;
+    X = model.slide(X, shift(0.25 * k, 0, 5 - deep)).X_FM;
     EXPECT_NEAR(X.t.x(), 0.25 * k, 0.1);
     EXPECT_GE(X.t.z(), last - 0.02);
     last = X.t.z();
@@ -285,27 +280,27 @@ TEST(Slide, OverlapThatIsAllowedFadesAwayFromItsPlace) {
 
 TEST(Slide, AStartThatOverlapsIsMovedOut) {
   const SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
-  const SlideResult result = model.slide(at(0, 0, 4.5), at(0, 0, 4.4));
+  const SlideResult result = model.slide(shift(0, 0, 4.5), shift(0, 0, 4.4));
   EXPECT_NEAR(result.X_FM.t.z(), 5, 0.05);
   EXPECT_LE(result.depth_mm, 0.02);
 }
 
 TEST(Slide, TellsWhetherItsWayPassesThroughNothing) {
   const SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
-  EXPECT_TRUE(model.slide(at(-6, 2, 7), at(5, -3, 4)).reached);      // along the plane
-  EXPECT_TRUE(model.slide(at(0, 0, 40), at(0, 0, -30)).reached);     // a long jump stopped
-  EXPECT_TRUE(model.slide(at(-8, 0, 12), at(3, 1, 5.5)).reached);    // all free
-  const SlideResult inside = model.slide(at(0, 0, 3), at(0, 0, 4));  // starts too deep
+  EXPECT_TRUE(model.slide(shift(-6, 2, 7), shift(5, -3, 4)).reached);      // along the plane
+  EXPECT_TRUE(model.slide(shift(0, 0, 40), shift(0, 0, -30)).reached);     // a long jump stopped
+  EXPECT_TRUE(model.slide(shift(-8, 0, 12), shift(3, 1, 5.5)).reached);    // all free
+  const SlideResult inside = model.slide(shift(0, 0, 3), shift(0, 0, 4));  // starts too deep
   EXPECT_FALSE(inside.reached);
 }
 
 TEST(Slide, PosesThatAreNotFiniteMoveNothing) {
   const SlidingContact model({body(plate())}, {body(test::sphere(2, 5))});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const SlideResult result = model.slide(at(1, 2, 9), at(nan, 0, 0));
+  const SlideResult result = model.slide(shift(1, 2, 9), shift(nan, 0, 0));
   EXPECT_FALSE(result.settled);
   EXPECT_EQ(result.X_FM.t, Vector3d(1, 2, 9));
-  EXPECT_FALSE(model.slide(at(0, nan, 9), at(0, 0, 8)).settled);
+  EXPECT_FALSE(model.slide(shift(0, nan, 9), shift(0, 0, 8)).settled);
 }
 
 /// Poses of a bumpy ball that grinds on another; depths of those that touch.
@@ -314,7 +309,7 @@ std::vector<Pose> grind(int frames, int threads, const TriMesh& a, const TriMesh
   const SlidingContact model({body(a)}, {body(b)});
   const test::OverlapOracle fixed(a), moving(b);
   SlideMemory memory;
-  Pose X = at(0, 0, 20);
+  Pose X = shift(0, 0, 20);
   std::vector<Pose> poses;
   for (int f = 0; f < frames; ++f) {
     const double s = 0.06 * f;
@@ -348,7 +343,7 @@ TEST(Slide, WhatWasRememberedChangesNoBit) {
   };
   constexpr int frames = 30;
   SlideMemory forward, backward;
-  const Pose from = at(0, 0, 15.5);
+  const Pose from = shift(0, 0, 15.5);
   for (int f = frames; f >= 0; --f) model.slide(from, wanted_at(f), &backward);
   int touching = 0;
   for (int f = 0; f <= frames; ++f) {

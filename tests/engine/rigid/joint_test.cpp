@@ -9,7 +9,7 @@ namespace {
 using Eigen::Vector3d;
 using Kind = RigidJoint::Kind;
 
-const TriMesh plank = test::box({-2, -3, -20}, {2, 3, 0});
+const TriMesh hanging_plank = test::box({-2, -3, -20}, {2, 3, 0});
 
 /// Largest error of the joints over a run, and the largest gain of energy.
 struct Swing {
@@ -32,7 +32,7 @@ Swing swing(RigidWorld& world, double seconds) {
 TEST(Joint, ABallPendulumStaysAtItsPointAndKeepsItsEnergy) {
   RigidWorld world;
   const int wall = world.add_body({});
-  const int id = world.add_body(test::ghost(plank, test::turned({1, 0, 0}, 80, {5, 0, 0})));
+  const int id = world.add_body(test::ghost(hanging_plank, test::turned({1, 0, 0}, 80, {5, 0, 0})));
   world.add_joint({.kind = Kind::ball, .a = wall, .b = id, .p_A = {5, 0, 0}});
   const double scale = world.mass(id).mass_kg * 9.81 * 10;
   const Swing s = swing(world, 3);
@@ -48,7 +48,7 @@ TEST(Joint, AChainOfPendulumsHolds) {
   Pose X = test::turned({1, 0, 0}, 40, {0, 0, 0});
   Vector3d hook = Vector3d::Zero();
   for (int k = 0; k < 4; ++k) {
-    const int id = world.add_body(test::ghost(plank, X));
+    const int id = world.add_body(test::ghost(hanging_plank, X));
     world.add_joint({.kind = Kind::ball, .a = last, .b = id, .p_A = hook});
     X.t = X * end;
     hook = end;
@@ -60,7 +60,7 @@ TEST(Joint, AChainOfPendulumsHolds) {
 TEST(Joint, AHingeTurnsAboutItsAxisOnly) {
   RigidWorld world;
   const int wall = world.add_body({});
-  const int id = world.add_body(test::ghost(plank, test::turned({1, 0, 0}, 60, {0, 0, 0})));
+  const int id = world.add_body(test::ghost(hanging_plank, test::turned({1, 0, 0}, 60, {0, 0, 0})));
   world.add_joint({.kind = Kind::hinge, .a = wall, .b = id});
   world.set_motion(id, {{3, 0, 0}, {0, 2, 2}});  // what the hinge does not allow
   EXPECT_LT(swing(world, 2).error_mm, 0.02);
@@ -73,9 +73,10 @@ TEST(Joint, AFixedJointMovesTwoBodiesAsOne) {
   RigidWorld world(test::weightless());
   const Pose X_WA = test::turned({1, 2, 0}, 30, {1, 2, 3}),
              X_AB = test::turned({0, 1, 1}, 40, {8, 0, 0});
-  RigidBody a = test::ghost(plank, X_WA);
+  RigidBody a = test::ghost(hanging_plank, X_WA);
   a.motion = {{20, 0, 0}, {3, 4, 5}};
-  const int first = world.add_body(a), second = world.add_body(test::ghost(plank, X_WA * X_AB));
+  const int first = world.add_body(a),
+            second = world.add_body(test::ghost(hanging_plank, X_WA * X_AB));
   world.add_joint({.kind = Kind::fixed, .a = first, .b = second, .X_AB = X_AB});
   const Vector3d p = world.momentum(), L = world.angular_momentum();
   double error = 0;
@@ -130,7 +131,7 @@ TEST(Joint, AMovedBodyCarriesWhatHangsOnIt) {
   RigidBody hand;
   hand.motion = {{10, 0, 0}, {0, 0, 1}};
   const int a = world.add_body(hand);
-  const int b = world.add_body(test::ghost(plank, test::at(6, 0, 0)));
+  const int b = world.add_body(test::ghost(hanging_plank, test::at(6, 0, 0)));
   world.add_joint({.kind = Kind::fixed, .a = a, .b = b, .X_AB = test::at(6, 0, 0)});
   double error = 0;
   for (int k = 0; k < 1000; ++k) error = std::max(error, world.step().joint_error_mm);
@@ -142,7 +143,7 @@ TEST(Joint, AMovedBodyCarriesWhatHangsOnIt) {
 TEST(Joint, ThatMakesNoSenseIsRefused) {
   RigidWorld world;
   const int a = world.add_body({}), b = world.add_body({});
-  const int c = world.add_body(test::ghost(plank));
+  const int c = world.add_body(test::ghost(hanging_plank));
   EXPECT_THROW(world.add_joint({.a = a, .b = b}), InputError);  // neither is free
   EXPECT_THROW(world.add_joint({.a = c, .b = c}), InputError);
   EXPECT_THROW(world.add_joint({.kind = Kind::guide, .a = a, .b = c}), InputError);

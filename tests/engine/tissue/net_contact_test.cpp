@@ -20,14 +20,14 @@ namespace {
 using Eigen::Vector3d;
 
 /// A flat slab of n x n columns, 3 mm apart; sheet 0 looks up.
-struct Slab {
+struct HeldSlab {
   static constexpr int sheets = 3;
   std::vector<Eigen::Vector3i> triangles;
   Nodes rest;
   SpringPrismNet net;
   std::vector<NetPoint> below;  // points of the lowest sheet
 
-  explicit Slab(int n, const Vector3d& corner) {
+  explicit HeldSlab(int n, const Vector3d& corner) {
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i)
         for (int s = 0; s < sheets; ++s) rest.push_back(corner + Vector3d(3 * i, 3 * j, -3 * s));
@@ -75,9 +75,9 @@ double deepest(const TriMesh& body, const std::vector<NetPoint>& points, const N
   return depth;
 }
 
-/// A factor made before anything presses holds none of the rows that will: along those directions it
-/// is wrong by contact's stiffness over the tissue's, and with it alone a draped slab takes some 500
-/// iterations, ten times as many as with one that is made anew on the way.
+/// A factor made before anything presses holds none of the rows that will: along those directions
+/// it is wrong by contact's stiffness over the tissue's, and with it alone a draped slab takes some
+/// 500 iterations, ten times as many as with one that is made anew on the way.
 TouchingResult settle(const SpringPrismNet& net, int sheets, NetLoads& loads,
                       const std::function<Looks(const Nodes&)>& look, Nodes& x,
                       double tolerance_mm = 1e-4) {
@@ -125,7 +125,7 @@ TEST(NetContact, ObstacleTellsTheDistanceOfABallAtAnyPose) {
 TEST(NetContact, ASlabDrapesOverABallItDoesNotEnter) {
   const TriMesh mesh = test::sphere(5, 15);
   const NetObstacle ball(mesh, wide_box(), {});
-  const Slab slab(15, Vector3d(-21, -21, 22));  // lowest sheet at 16 mm
+  const HeldSlab slab(15, Vector3d(-21, -21, 22));  // lowest sheet at 16 mm
   const std::vector<double> none(slab.below.size(), 0.0);
   const auto look = [&](const Nodes& x) {
     Looks looks(1);
@@ -135,9 +135,9 @@ TEST(NetContact, ASlabDrapesOverABallItDoesNotEnter) {
   NetLoads loads = slab.held_at({2, 0, -8});
   Nodes x = slab.rest, through = slab.rest;
   settle(
-      slab.net, Slab::sheets, loads, [](const Nodes&) { return Looks(1); }, through);
+      slab.net, HeldSlab::sheets, loads, [](const Nodes&) { return Looks(1); }, through);
   EXPECT_GT(deepest(mesh, slab.below, through), 3);  // it would go deep
-  const auto result = settle(slab.net, Slab::sheets, loads, look, x);
+  const auto result = settle(slab.net, HeldSlab::sheets, loads, look, x);
   EXPECT_LE(result.error_mm, 1e-3);
   EXPECT_LT(deepest(mesh, slab.below, x), 0.2);
 
@@ -164,7 +164,7 @@ TEST(NetContact, ASlabDrapesOverABallItDoesNotEnter) {
 TEST(NetContact, WhatOverlapsAtRestMayStayAndGoNoDeeper) {
   const TriMesh mesh = test::sphere(5, 15);
   const NetObstacle ball(mesh, wide_box(), {});
-  const Slab slab(15, Vector3d(-21, -21, 19.5));  // lowest sheet at 13.5 mm: 1.5 mm deep
+  const HeldSlab slab(15, Vector3d(-21, -21, 19.5));  // lowest sheet at 13.5 mm: 1.5 mm deep
   std::vector<double> allowance(slab.below.size(), 0.0);
   std::vector<Touch> at_rest;
   touch_obstacle(slab.below, allowance, ball, Pose{}, slab.rest, {}, at_rest);
@@ -177,17 +177,17 @@ TEST(NetContact, WhatOverlapsAtRestMayStayAndGoNoDeeper) {
   };
   Nodes x = slab.rest;
   NetLoads loads = slab.held_at(Vector3d::Zero());
-  settle(slab.net, Slab::sheets, loads, look, x);
+  settle(slab.net, HeldSlab::sheets, loads, look, x);
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - slab.rest[i]).norm(), 1e-6);
   loads = slab.held_at({0, 0, -6});
-  settle(slab.net, Slab::sheets, loads, look, x);
+  settle(slab.net, HeldSlab::sheets, loads, look, x);
   EXPECT_LT(deepest(mesh, slab.below, x), 1.5 + 0.2);
   EXPECT_GT(deepest(mesh, slab.below, x), 1.0);
 }
 
 // Two slabs of one net, one above the other, are pushed together.
 TEST(NetContact, TwoSurfacesOfOneNetPushEachOtherAlike) {
-  const Slab upper(9, Vector3d(0, 0, 8)), lower(9, Vector3d(0.7, 0.4, 0));
+  const HeldSlab upper(9, Vector3d(0, 0, 8)), lower(9, Vector3d(0.7, 0.4, 0));
   // One net of both: the upper's lowest sheet lies 2 mm above the lower's topmost.
   SpringPrismNet net = upper.net;
   Nodes rest = upper.rest;
@@ -222,7 +222,7 @@ TEST(NetContact, TwoSurfacesOfOneNetPushEachOtherAlike) {
   // Inner points only: those on the rim hang over the other's rim.
   std::vector<NetPoint> points;
   for (int j = 1; j < 8; ++j)
-    for (int i = 1; i < 8; ++i) points.push_back(NetPoint::of_node(Slab::lowest(j * 9 + i)));
+    for (int i = 1; i < 8; ++i) points.push_back(NetPoint::of_node(HeldSlab::lowest(j * 9 + i)));
   const std::vector<double> none(points.size(), 0.0);
   const auto look = [&](const Nodes& x) {
     Looks looks(1);
@@ -230,7 +230,7 @@ TEST(NetContact, TwoSurfacesOfOneNetPushEachOtherAlike) {
     return looks;
   };
   Nodes x = rest;
-  const auto result = settle(net, Slab::sheets, loads, look, x);
+  const auto result = settle(net, HeldSlab::sheets, loads, look, x);
   int pressed = 0;
   for (const auto& touch : result.looks[0]) {
     EXPECT_GT(touch.gap, -0.2);
@@ -241,7 +241,7 @@ TEST(NetContact, TwoSurfacesOfOneNetPushEachOtherAlike) {
   }
   EXPECT_GT(pressed, 10);
   // Both give way, alike, since they are alike.
-  const double sunk = rest[Slab::lowest(40)].z() - x[Slab::lowest(40)].z();
+  const double sunk = rest[HeldSlab::lowest(40)].z() - x[HeldSlab::lowest(40)].z();
   const double raised = x[shift + node_of(40, 0, 3)].z() - rest[shift + node_of(40, 0, 3)].z();
   EXPECT_NEAR(3 - sunk, 2 - raised, 0.3);
   EXPECT_GT(3 - sunk, 1);

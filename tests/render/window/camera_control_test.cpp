@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 constexpr double pi = std::numbers::pi;
-const ViewRect view{240, 46, 800, 600};
+const ViewRect window_view{240, 46, 800, 600};
 const ZoomLimits limits{.nearest_mm = 50, .farthest_mm = 3000};
 
 Camera any_camera(std::mt19937& generator) {
@@ -29,10 +29,11 @@ Camera any_camera(std::mt19937& generator) {
 /// Where a point of the case is in the window, pixels.
 Vector2d pixel_of(const Camera& camera, const Vector3d& point) {
   const Eigen::Vector4f clip =
-      projection_matrix(camera, view.width / view.height, 1, 10000) * view_matrix(camera) *
+      projection_matrix(camera, window_view.width / window_view.height, 1, 10000) *
+      view_matrix(camera) *
       Eigen::Vector4f(float(point.x()), float(point.y()), float(point.z()), 1);
-  return {view.x + view.width * (0.5 + 0.5 * clip.x() / clip.w()),
-          view.y + view.height * (0.5 - 0.5 * clip.y() / clip.w())};
+  return {window_view.x + window_view.width * (0.5 + 0.5 * clip.x() / clip.w()),
+          window_view.y + window_view.height * (0.5 - 0.5 * clip.y() / clip.w())};
 }
 
 TEST(CameraControl, ButtonsMeanWhatTheHelpSays) {
@@ -67,7 +68,7 @@ TEST(CameraControl, OrbitKeepsTargetDistanceAndRoll) {
   for (int i = 0; i < 200; ++i) {
     const Camera before = any_camera(generator);
     const Vector2d from(600, 300), to = from + Vector2d(pixel(generator), pixel(generator));
-    const Camera after = dragged(before, CameraDrag::orbit, from, to, view, limits);
+    const Camera after = dragged(before, CameraDrag::orbit, from, to, window_view, limits);
     EXPECT_EQ(after.distance_mm, before.distance_mm);
     EXPECT_EQ(after.target, before.target);
     EXPECT_NEAR(after.direction.norm(), 1, 1e-12);
@@ -87,7 +88,7 @@ TEST(CameraControl, UprightPictureStaysUpright) {
   std::uniform_real_distribution<double> pixel(-90, 90);
   for (int i = 0; i < 300; ++i) {
     const Vector2d from(500, 200), to = from + Vector2d(pixel(generator), pixel(generator));
-    camera = dragged(camera, CameraDrag::orbit, from, to, view, limits);
+    camera = dragged(camera, CameraDrag::orbit, from, to, window_view, limits);
     // The patient's left-right axis never tilts: the picture's right is level.
     EXPECT_NEAR(picture_axes(camera)(0, 2), 0, 1e-9);
     EXPECT_GE(camera.up.z(), -1e-9);
@@ -104,8 +105,8 @@ TEST(CameraControl, SurfaceFollowsTheMouseInOrbit) {
     before = with_angles(before, angles);
     const Vector3d nearest = before.target + 60 * before.direction;
     for (const Vector2d& move : {Vector2d(9, 0), Vector2d(0, 9), Vector2d(-6, 7)}) {
-      const Camera after =
-          dragged(before, CameraDrag::orbit, {600, 300}, Vector2d(600, 300) + move, view, limits);
+      const Camera after = dragged(before, CameraDrag::orbit, {600, 300}, Vector2d(600, 300) + move,
+                                   window_view, limits);
       const Vector2d went = pixel_of(after, nearest) - pixel_of(before, nearest);
       EXPECT_GT(went.normalized().dot(move.normalized()), 0.9);
       ++compared;
@@ -117,10 +118,10 @@ TEST(CameraControl, SurfaceFollowsTheMouseInOrbit) {
 TEST(CameraControl, OrbitStopsAtThePoles) {
   Camera camera = with_angles({}, {.azimuth = 1});
   for (int i = 0; i < 20; ++i)
-    camera = dragged(camera, CameraDrag::orbit, {600, 100}, {600, 250}, view, limits);
+    camera = dragged(camera, CameraDrag::orbit, {600, 100}, {600, 250}, window_view, limits);
   EXPECT_NEAR(camera.direction.z(), 1, 1e-9);
   // And comes down again on the side it went up.
-  camera = dragged(camera, CameraDrag::orbit, {600, 250}, {600, 100}, view, limits);
+  camera = dragged(camera, CameraDrag::orbit, {600, 250}, {600, 100}, window_view, limits);
   EXPECT_NEAR(camera_angles(camera).azimuth, 1, 1e-6);
 }
 
@@ -128,7 +129,8 @@ TEST(CameraControl, PanKeepsThePointUnderTheMouse) {
   std::mt19937 generator(13);
   for (int i = 0; i < 100; ++i) {
     const Camera before = any_camera(generator);
-    const Camera after = dragged(before, CameraDrag::pan, {400, 300}, {437, 279}, view, limits);
+    const Camera after =
+        dragged(before, CameraDrag::pan, {400, 300}, {437, 279}, window_view, limits);
     // In the plane of the picture, and exactly as far as the mouse went.
     EXPECT_NEAR((after.target - before.target).dot(before.direction), 0, 1e-9);
     EXPECT_EQ(after.distance_mm, before.distance_mm);
@@ -141,15 +143,16 @@ TEST(CameraControl, PanKeepsThePointUnderTheMouse) {
 TEST(CameraControl, ZoomIsBoundedAndChangesOnlyTheDistance) {
   std::mt19937 generator(17);
   const Camera before = any_camera(generator);
-  const Camera nearer = dragged(before, CameraDrag::zoom, {400, 300}, {400, 250}, view, limits);
+  const Camera nearer =
+      dragged(before, CameraDrag::zoom, {400, 300}, {400, 250}, window_view, limits);
   EXPECT_LT(nearer.distance_mm, before.distance_mm);
   EXPECT_EQ(nearer.target, before.target);
   EXPECT_EQ(nearer.direction, before.direction);
   Camera camera = before;
   for (int i = 0; i < 100; ++i)
-    camera = dragged(camera, CameraDrag::zoom, {400, 300}, {400, 0}, view, limits);
+    camera = dragged(camera, CameraDrag::zoom, {400, 300}, {400, 0}, window_view, limits);
   EXPECT_EQ(camera.distance_mm, limits.nearest_mm);
-  for (int i = 0; i < 100; ++i) camera = wheeled(camera, -3, {400, 300}, view, limits);
+  for (int i = 0; i < 100; ++i) camera = wheeled(camera, -3, {400, 300}, window_view, limits);
   EXPECT_EQ(camera.distance_mm, limits.farthest_mm);
 }
 
@@ -159,12 +162,13 @@ TEST(CameraControl, WheelKeepsThePointUnderTheMouse) {
     const Camera before = any_camera(generator);
     const Vector2d mouse(333, 222);
     const Eigen::Matrix3d axes = picture_axes(before);
-    const Vector2d offset = mouse - Vector2d(view.x + view.width / 2, view.y + view.height / 2);
+    const Vector2d offset = mouse - Vector2d(window_view.x + window_view.width / 2,
+                                             window_view.y + window_view.height / 2);
     const Vector3d under =
-        before.target +
-        pixel_mm(before, view) * (offset.x() * axes.row(0) - offset.y() * axes.row(1)).transpose();
+        before.target + pixel_mm(before, window_view) *
+                            (offset.x() * axes.row(0) - offset.y() * axes.row(1)).transpose();
     EXPECT_NEAR((pixel_of(before, under) - mouse).norm(), 0, 0.01);
-    const Camera after = wheeled(before, 2, mouse, view, limits);
+    const Camera after = wheeled(before, 2, mouse, window_view, limits);
     EXPECT_LT(after.distance_mm, before.distance_mm);
     EXPECT_NEAR((pixel_of(after, under) - mouse).norm(), 0, 0.01);
   }
@@ -172,12 +176,13 @@ TEST(CameraControl, WheelKeepsThePointUnderTheMouse) {
 
 TEST(CameraControl, RollTurnsThePictureWithTheMouse) {
   std::mt19937 generator(23);
-  const Vector2d centre(view.x + view.width / 2, view.y + view.height / 2);
+  const Vector2d centre(window_view.x + window_view.width / 2,
+                        window_view.y + window_view.height / 2);
   for (int i = 0; i < 100; ++i) {
     const Camera before = any_camera(generator);
     // A quarter of a turn from the right of the centre to below it: clockwise.
     const Camera after = dragged(before, CameraDrag::roll, centre + Vector2d(100, 0),
-                                 centre + Vector2d(0, 100), view, limits);
+                                 centre + Vector2d(0, 100), window_view, limits);
     EXPECT_LT((after.direction - before.direction).norm(), 1e-6);
     EXPECT_EQ(after.distance_mm, before.distance_mm);
     const Vector3d right_before = picture_axes(before).row(0);

@@ -13,19 +13,19 @@
 namespace condyle {
 namespace {
 
-bool within(const ViewRect& inner, const ViewRect& outer) {
+bool lies_within(const ViewRect& inner, const ViewRect& outer) {
   return inner.x >= outer.x - 0.5 && inner.y >= outer.y - 0.5 &&
          inner.x + inner.width <= outer.x + outer.width + 0.5 &&
          inner.y + inner.height <= outer.y + outer.height + 0.5;
 }
 
-struct Screen {
+struct LitScreen {
   int width, height;
   float scale;
   bool light;
 };
 
-class Instrument : public testing::TestWithParam<Screen> {
+class Instrument : public testing::TestWithParam<LitScreen> {
  protected:
   Instrument() {
     stage.set_light(GetParam().light);
@@ -119,7 +119,7 @@ TEST_P(Instrument, PlotsStandBelowThePictureAndFollowTheClock) {
   stage.click("plots-tool");
   stage.rest();
   const ViewRect plots = stage.item("plots").rect;
-  EXPECT_TRUE(within(stage.item("plot:Posselt, sagittal").rect, plots));
+  EXPECT_TRUE(lies_within(stage.item("plot:Posselt, sagittal").rect, plots));
   expect_tidy();
   keep("plots");
   stage.click("plot-tab:Opening");
@@ -267,8 +267,8 @@ TEST_P(Instrument, WhatIsPreparedShowsAboveThePictureAndCanBeEnded) {
   stage.progress = "Building the soft tissue";
   stage.can_cancel = true;
   stage.rest();
-  EXPECT_TRUE(within(stage.item("progress").rect,
-                     stage.panels->layout(GetParam().width, GetParam().height).view));
+  EXPECT_TRUE(lies_within(stage.item("progress").rect,
+                          stage.panels->layout(GetParam().width, GetParam().height).view));
   EXPECT_TRUE(stage.has("play")) << "the window stays usable";
   stage.click("cancel");
   const auto wishes = stage.panels->take_wishes();
@@ -277,8 +277,9 @@ TEST_P(Instrument, WhatIsPreparedShowsAboveThePictureAndCanBeEnded) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Screens, Instrument,
-                         testing::Values(Screen{1280, 720, 1, false}, Screen{1280, 720, 1, true},
-                                         Screen{3840, 2160, 2.5f, false}),
+                         testing::Values(LitScreen{1280, 720, 1, false},
+                                         LitScreen{1280, 720, 1, true},
+                                         LitScreen{3840, 2160, 2.5f, false}),
                          [](const auto& screen) {
                            return std::to_string(screen.param.height) +
                                   (screen.param.light ? "light" : "dark");

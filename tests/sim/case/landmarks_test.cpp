@@ -11,7 +11,7 @@ namespace {
 
 using test::TempFolder;
 
-std::string refusal(const std::filesystem::path& file) {
+std::string landmark_refusal(const std::filesystem::path& file) {
   try {
     read_landmarks(file);
   } catch (const InputError& error) {
@@ -94,9 +94,9 @@ TEST(Landmarks, SlicerMarkupsBecomeLps) {
   }
   for (const char* ras : {"\"RAS\"", "\"0\"", "0"})
     EXPECT_EQ(*read_landmarks(file(ras)).find("pronasale"), Eigen::Vector3d(4, -5.5, 6));
-  EXPECT_NE(
-      refusal(file("\"XYZ\"")).find("markups[0].coordinateSystem: the coordinate system \"XYZ\""),
-      std::string::npos);
+  EXPECT_NE(landmark_refusal(file("\"XYZ\""))
+                .find("markups[0].coordinateSystem: the coordinate system \"XYZ\""),
+            std::string::npos);
 }
 
 TEST(Landmarks, BadFilesAreRefusedWithTheirLine) {
@@ -133,12 +133,12 @@ TEST(Landmarks, BadFilesAreRefusedWithTheirLine) {
             R"({"markups":[{"controlPoints":[{"label":"a","position":[1,2,null]}]}]})",
             {"position[2]", "null"}},
            {"e.json", std::string(100'000, '['), {"deeper"}}}) {
-    const std::string message = refusal(folder.write(bad.name, bad.content));
+    const std::string message = landmark_refusal(folder.write(bad.name, bad.content));
     for (const char* word : bad.words)
       EXPECT_NE(message.find(word), std::string::npos) << message << " lacks " << word;
   }
-  EXPECT_NE(refusal(folder.path() / "none.csv").find("no such file"), std::string::npos);
-  EXPECT_NE(refusal(folder.path()).find("folder"), std::string::npos);
+  EXPECT_NE(landmark_refusal(folder.path() / "none.csv").find("no such file"), std::string::npos);
+  EXPECT_NE(landmark_refusal(folder.path()).find("folder"), std::string::npos);
 }
 
 TEST(SourceFrame, AllFortyEightFramesAreSignedAxisOrders) {

@@ -7,8 +7,8 @@
 
 #include "engine/mesh/measure.h"
 #include "sim/contact/contact.h"
-#include "sim/phantom/phantom.h"
 #include "tests/support/boxes.h"
+#include "tests/support/builtin.h"
 #include "tests/support/overlap_oracle.h"
 #include "tests/support/real_cases.h"
 #include "tests/support/shapes.h"
@@ -17,13 +17,9 @@ namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
+using test::builtin;
 using test::shift;
 using Wanted = ContactModel::Wanted;
-
-const Case& builtin() {
-  static const Case patient = builtin_patient();
-  return patient;
-}
 
 const ContactModel& builtin_model() {
   static const ContactModel model(builtin());

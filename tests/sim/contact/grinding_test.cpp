@@ -179,7 +179,7 @@ TEST(Grinding, CrownsRubWithFrictionWithoutOverlapAndRestWhereTheHandRests) {
 }
 
 /// Farthest that any point of the lower crowns lies apart at two poses.
-double apart(const TriMesh& lower, const Pose& a, const Pose& b) {
+double crowns_apart(const TriMesh& lower, const Pose& a, const Pose& b) {
   double most = 0;
   for (std::size_t i = 0; i < lower.vertices.size(); i += 37)
     most = std::max(most, (a * lower.vertices[i] - b * lower.vertices[i]).norm());
@@ -202,19 +202,19 @@ void expect_one_answer(const Case& patient) {
     if (!result.touching || f % 30 != 0) continue;
     ++compared;
     const Pose open{Eigen::Quaterniond::Identity(), {0, 0, -8}};
-    EXPECT_LE(apart(lower, model.slide(open, wanted, nullptr, 2).X_FM, X), 0.05) << f;
+    EXPECT_LE(crowns_apart(lower, model.slide(open, wanted, nullptr, 2).X_FM, X), 0.05) << f;
     for (const int steps : {10, 100}) {
       Pose side = wanted;
       side.t += Vector3d(1.5, 1, -5);
       Pose Y = side;
       for (int k = 1; k <= steps; ++k)
         Y = model.slide(Y, interpolate(side, wanted, static_cast<double>(k) / steps), &memory).X_FM;
-      EXPECT_LE(apart(lower, Y, X), 0.05) << f << " in " << steps;
+      EXPECT_LE(crowns_apart(lower, Y, X), 0.05) << f << " in " << steps;
     }
     Pose back = X;
     for (int k = 6; k >= 0; k -= 2)
       back = model.slide(back, wanted_at(static_cast<double>(f + k) / frames)).X_FM;
-    EXPECT_LE(apart(lower, back, X), 0.05) << f << " backwards";
+    EXPECT_LE(crowns_apart(lower, back, X), 0.05) << f << " backwards";
   }
   EXPECT_GE(compared, 8);
 }

@@ -6,8 +6,8 @@
 #include "engine/collide/collision_mesh.h"
 #include "engine/collide/slide.h"
 #include "engine/mesh/measure.h"
-#include "sim/phantom/phantom.h"
 #include "tests/support/boxes.h"
+#include "tests/support/builtin.h"
 #include "tests/support/overlap_oracle.h"
 #include "tests/support/shapes.h"
 
@@ -15,11 +15,7 @@ namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
-
-const Case& builtin() {
-  static const Case patient = builtin_patient();
-  return patient;
-}
+using test::builtin;
 
 /// Triangles whose centre lies in the box, with their vertices.
 TriMesh within(const TriMesh& mesh, const Box& box) {

@@ -5,17 +5,13 @@
 #include <cmath>
 #include <map>
 
-#include "sim/phantom/phantom.h"
+#include "tests/support/builtin.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
-
-const Case& patient() {
-  static const Case made = builtin_patient();
-  return made;
-}
+using test::builtin;
 
 std::vector<double> excite(const std::vector<Muscle>& muscles,
                            const std::map<std::string, double>& groups) {
@@ -30,7 +26,7 @@ std::vector<double> excite(const std::vector<Muscle>& muscles,
 TEST(MuscleJaw, BitesHarderTheMoreItsClosersAreExcitedAndStaysStill) {
   double before = 0;
   for (const double excitation : {0.05, 0.2}) {
-    MuscleJaw jaw(patient(), {});
+    MuscleJaw jaw(builtin(), {});
     const auto closing = excite(jaw.muscles(), {{"closer", excitation}});
     for (int k = 0; k < 500; ++k) ASSERT_TRUE(jaw.step(closing));
     const Pose rest = jaw.pose();
@@ -57,9 +53,9 @@ TEST(MuscleJaw, BitesHarderTheMoreItsClosersAreExcitedAndStaysStill) {
 }
 
 void chews_for_a_minute(MuscleJawSettings::HyoidMode hyoid, bool crowns) {
-  MuscleJaw jaw(patient(),
+  MuscleJaw jaw(builtin(),
                 {.bolus = {.side = BolusSettings::Side::left}, .hyoid = hyoid, .teeth = crowns});
-  const Vector3d incisor = *patient().landmarks.find("lower_incisal_point");
+  const Vector3d incisor = *builtin().landmarks.find("lower_incisal_point");
   std::vector<double> drops;  // of each cycle
   for (int k = 0; k < 60000; ++k) {
     const double phase = std::fmod(k / 700.0, 1.0);
@@ -93,7 +89,7 @@ TEST(MuscleJaw, AnySuddenExcitationStaysInBounds) {
   using Mode = MuscleJawSettings::HyoidMode;
   for (const Mode hyoid : {Mode::free, Mode::fixed})
     for (const MuscleLaw law : {MuscleLaw::peck, MuscleLaw::hill}) {
-      MuscleJaw jaw(patient(), {.law = {.law = law}, .hyoid = hyoid, .teeth = false});
+      MuscleJaw jaw(builtin(), {.law = {.law = law}, .hyoid = hyoid, .teeth = false});
       for (int k = 0; k < 1500; ++k) {
         std::vector<double> wild;
         for (std::size_t m = 0; m < jaw.muscles().size(); ++m)
@@ -106,7 +102,7 @@ TEST(MuscleJaw, AnySuddenExcitationStaysInBounds) {
 }
 
 TEST(MuscleJaw, TheSameBitsOnTwoThreads) {
-  MuscleJaw one(patient(), {}, 1), two(patient(), {}, 2);
+  MuscleJaw one(builtin(), {}, 1), two(builtin(), {}, 2);
   const auto open = excite(one.muscles(), {{"opener", 0.2}, {"protruder_opener", 0.1}});
   const auto close = excite(one.muscles(), {{"closer", 0.1}});
   for (int k = 0; k < 400; ++k) {

@@ -7,8 +7,8 @@
 #include "engine/core/error.h"
 #include "sim/dynamics/jaw_world.h"
 #include "sim/dynamics/let_go.h"
-#include "sim/phantom/phantom.h"
 #include "tests/support/boxes.h"
+#include "tests/support/builtin.h"
 #include "tests/support/overlap_oracle.h"
 #include "tests/support/real_cases.h"
 
@@ -16,11 +16,7 @@ namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
-
-const Case& patient() {
-  static const Case made = builtin_patient();
-  return made;
-}
+using test::builtin;
 
 /// How far points up to a radius from the origin (80 mm: of a jaw) move between two poses.
 double apart(const Pose& a, const Pose& b, double radius_mm = 80) {
@@ -70,8 +66,8 @@ Closed close(const Case& of) {
 }
 
 TEST(Jaw, ClosesUnderAForceIntoTheBuiltInBite) {
-  const Closed closed = close(patient());
-  const Vector3d incisor = *patient().landmarks.find("lower_incisal_point");
+  const Closed closed = close(builtin());
+  const Vector3d incisor = *builtin().landmarks.find("lower_incisal_point");
   EXPECT_LT((closed.X_CM * incisor - incisor).norm(), 1);
   EXPECT_LT(closed.deepest_mm, 0.06);
 }
@@ -87,7 +83,7 @@ TEST(Jaw, ClosesOnRealCrownsThatOverlapAtRest) {
 /// The built-in patient with a curved block above the rear of the body of its mandible, pressed
 /// against its outer side.
 Case with_graft(Pose& start) {
-  Case out = patient();
+  Case out = builtin();
   Part graft{"graft", Role::transplant, test::box({-9, -1.5, -4}, {9, 1.5, 4}), {}, Body::mandible};
   // Bent about the vertical, finer along its length.
   TriMesh bent;

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <memory>
+
+#include "engine/collide/slide.h"
+#include "tests/support/boxes.h"
+
+namespace condyle::test {
+
+inline std::shared_ptr<const SlideBody> body(const TriMesh& mesh) {
+  return std::make_shared<const SlideBody>(make_slide_body(mesh, {}, 2));
+}
+
+/// A flat plate whose top is the plane z = 0.
+inline TriMesh plate(double thickness = 4) { return box({-20, -12, -thickness}, {20, 12, 0}); }
+
+}  // namespace condyle::test
