@@ -1,7 +1,6 @@
 #include "tools/bench_window.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "render/window/picture_thread.h"
 #include "render/window/playback.h"
 #include "sim/simulator/live.h"
+#include "tools/passing_path.h"
 
 namespace condyle {
 namespace {
@@ -82,24 +82,6 @@ std::vector<BenchRow> play(const Scene& scene, const Motion& motion,
   return {pictures, steps};
 }
 
-/// A folder that goes with the object.
-class PassingFolder {
- public:
-  PassingFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              fmt::format("condyle-bench-{}", ::getpid())) {}
-  ~PassingFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  PassingFolder(const PassingFolder&) = delete;
-  PassingFolder& operator=(const PassingFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace
 
 std::vector<BenchRow> bench_window(const Scene& scene, const Motion& motion,
@@ -117,7 +99,7 @@ std::vector<BenchRow> bench_window(const Scene& scene, const Motion& motion,
 std::vector<BenchRow> bench_film(SceneRenderer& renderer, const std::vector<FrameState>& frames,
                                  const Camera& camera, const PictureSettings& picture) {
   constexpr int rounds = 5;
-  const PassingFolder folder;
+  const PassingPath folder("bench");
   const auto record = [&](bool film) {
     const auto start = Clock::now();
     Recorder recorder({.folder = folder.path(),

@@ -1,7 +1,6 @@
 #include "tools/view_motion.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include "engine/core/files.h"
 #include "sim/motion/measures.h"
 #include "sim/report/motion_plots.h"
+#include "tools/passing_path.h"
 
 namespace condyle {
 namespace {
@@ -69,26 +69,6 @@ const std::vector<MuscleGroup>& muscle_groups() {
   return groups;
 }
 
-/// A file that goes with the object.
-class PassingFile {
- public:
-  explicit PassingFile(const std::string& text)
-      : file_(std::filesystem::temp_directory_path() /
-              fmt::format("condyle-excitations-{}.csv", ::getpid())) {
-    write_file(file_, text);
-  }
-  ~PassingFile() {
-    std::error_code ignored;
-    std::filesystem::remove(file_, ignored);
-  }
-  PassingFile(const PassingFile&) = delete;
-  PassingFile& operator=(const PassingFile&) = delete;
-  const std::filesystem::path& path() const { return file_; }
-
- private:
-  std::filesystem::path file_;
-};
-
 double wanted_of(const MotionChoice& choice, const std::string& group, double usual) {
   const auto found = choice.excitations.find(group);
   return found == choice.excitations.end() ? usual : found->second;
@@ -133,7 +113,8 @@ std::string scaled_excitations(const Motion& base, const MotionChoice& choice) {
 Motion make(const MotionChoice& choice, const Scene& scene, const MotionOptions& options,
             int threads) {
   if (choice.spec == by_hand) {
-    const PassingFile file(held_excitations(choice));
+    const PassingPath file("excitations");
+    write_file(file.path(), held_excitations(choice));
     Motion motion = muscles_from_file(file.path(), scene.patient, options.muscles, threads);
     motion.name = "by muscles";
     return motion;
@@ -145,7 +126,8 @@ Motion make(const MotionChoice& choice, const Scene& scene, const MotionOptions&
   Motion motion =
       motion_of(choice.spec, scene.patient, scene.contacts, settings, options.muscles, threads);
   if (choice.excitations.empty() || !motion.muscles) return motion;
-  const PassingFile file(scaled_excitations(motion, choice));
+  const PassingPath file("excitations");
+  write_file(file.path(), scaled_excitations(motion, choice));
   Motion scaled = muscles_from_file(file.path(), scene.patient, options.muscles, threads);
   scaled.name = motion.name + ", muscles changed by hand";
   return scaled;
