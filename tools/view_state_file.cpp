@@ -44,6 +44,7 @@ nlohmann::json edits_of(const ViewState& view) {
           {"mark_contacts", view.mark_contacts},
           {"obey_contact", view.obey_contact},
           {"skin_opacity", view.skin_opacity},
+          {"opening_mm", view.opening_mm ? nlohmann::json(*view.opening_mm) : nullptr},
           {"parts", parts(view.parts)},
           {"muscles", parts(view.muscles)},
           {"layers", parts(view.layers)},

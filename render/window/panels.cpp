@@ -63,20 +63,28 @@ void Panels::say(const std::string& sentence) {
 
 bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
   const double step = scene.step_s, duration = scene.duration_s;
+  const auto take_jaw = [&] {  // from the hand to the motion
+    if (view.jaw_is_held()) remember(view);
+  };
   switch (command) {
     case Command::toggle_play:
+      take_jaw();
       toggle_playing(view, duration);
       return true;
     case Command::step_back:
+      take_jaw();
       step_clock(view, -step, duration);
       return true;
     case Command::step_forward:
+      take_jaw();
       step_clock(view, step, duration);
       return true;
     case Command::jump_back:
+      take_jaw();
       step_clock(view, -10 * step, duration);
       return true;
     case Command::jump_forward:
+      take_jaw();
       step_clock(view, 10 * step, duration);
       return true;
     case Command::toggle_skin:

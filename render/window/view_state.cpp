@@ -22,6 +22,7 @@ void ViewState::fit(const WindowScene& scene) {
 
 void ViewState::set_edits(Edits other) {
   static_cast<Edits&>(*this) = std::move(other);
+  if (jaw_is_held()) playing = false;
   if (landmark && *landmark >= landmarks.size()) landmark.reset();
 }
 

@@ -91,6 +91,7 @@ struct Edits {
   bool shadows = true;
   bool distances = false;                  // colour parts by their distance from what they may meet
   std::vector<PinnedPoint> measured = {};  // points that were clicked, in their order
+  std::optional<double> opening_mm = {};   // wanted while set, instead of the motion's
   Hands hands = {};                        // where bodies are wanted instead of where they would be
   std::vector<Landmark> landmarks = {};    // where the person has them; the scene's at first
   MotionChoice motion = {};                // wanted; the scene's at first
@@ -107,12 +108,10 @@ struct Edits {
 struct ViewState : Edits {
   bool playing = false;
   bool loop = true;
-  double speed = 1;   // times real time, 0.1 to 2
-  double time_s = 0;  // of the motion, 0 to duration
-  std::optional<double> opening_mm =
-      {};                  // while set, this opening is wanted instead of the motion's
-  Tool tool = Tool::look;  // what the left button does
-  std::size_t chosen = 0;  // the body that has the handles, of the scene's
+  double speed = 1;                          // times real time, 0.1 to 2
+  double time_s = 0;                         // of the motion, 0 to duration
+  Tool tool = Tool::look;                    // what the left button does
+  std::size_t chosen = 0;                    // the body that has the handles, of the scene's
   std::optional<std::size_t> landmark = {};  // the one that the next click places
   SideTab tab = SideTab::readings;
   LeftTab left_tab = LeftTab::parts;
@@ -120,7 +119,9 @@ struct ViewState : Edits {
   std::size_t plot_set = 0;  // the one that is shown
 
   const Edits& edits() const { return *this; }
-  /// What was set at another time; the rest stays.
+  /// Whether a hand has the jaw, not the motion.
+  bool jaw_is_held() const { return opening_mm || hands.mandible; }
+  /// What was set at another time; the rest stays, but the clock stops where a hand has the jaw.
   void set_edits(Edits other);
 
   /// Whether any face is visible: without one the loop may leave out the face and its tissue.

@@ -102,6 +102,22 @@ TEST_F(WindowSession, EverySettingOfThePictureIsUndoneAndRedone) {
   click_it("mark-contacts");
   click_it("obey-contact");
   set("key K", [&] { EXPECT_TRUE(press("k")); });
+
+  // The mouth opened by hand and let go, by its button or by the clock.
+  slide("opening", 0.7, 0.4);
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["edits"]["opening_mm"].is_number(); }));
+  const double held_mm = state()["edits"]["opening_mm"];
+  EXPECT_TRUE(wait_until([&](const Json& s) {
+    return std::abs(double(s["frame"]["opening_mm"]) - held_mm) < 0.2;
+  })) << state()["frame"].dump();
+  click_it("release");
+  slide("opening", 0.5, 0.2);
+  set("key Left", [&] { EXPECT_TRUE(press("Left")); });
+
+  // Numbers that shape the motion.
+  click("tab:Motion");
+  slide("parameter:opening", 0.5, 0.7);
+  slide("parameter:bennett", 0.2, 0.6);
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }
