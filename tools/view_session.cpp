@@ -22,15 +22,17 @@ void ViewSession::open_patient(const fs::path& folder) {
       [folder](const Progress& progress) {
         return folder.empty() ? builtin_patient(progress) : load_case(folder);
       },
-      folder);
+      folder, folder.empty() ? "loading the patient" : "loading " + folder.filename().string());
 }
 
-void ViewSession::load(std::function<Case(const Progress&)> read, fs::path folder) {
+void ViewSession::load(std::function<Case(const Progress&)> read, fs::path folder,
+                       std::string words) {
   retire(loading_);
+  renewing_.reset();
   loading_ = beside<PatientPtr>([read = std::move(read), folder = std::move(folder),
+                                 words = std::move(words),
                                  settings = settings_](const Progress& progress) {
-    report(progress,
-           folder.empty() ? "loading the patient" : "loading " + folder.filename().string(), 0);
+    report(progress, words, 0);
     return make_view_patient(read(progress), folder, settings, progress);
   });
 }
@@ -38,6 +40,7 @@ void ViewSession::load(std::function<Case(const Progress&)> read, fs::path folde
 void ViewSession::take_patient() {
   if (!loading_ || !loading_->done()) return;
   const auto loaded = std::move(loading_);
+  const auto renewed = std::exchange(renewing_, std::nullopt);
   std::optional<PatientPtr> made;
   guarded([&] { made = loaded->take(); });
   if (!made) return;
@@ -55,11 +58,26 @@ void ViewSession::take_patient() {
   const bool first = patient_ == nullptr;
   PatientPtr earlier = std::exchange(patient_, std::move(*made));
   retire(earlier);
-  if (!patient_->folder.empty()) recent_.add(patient_->folder);
-  // The command line's motion is for its own patient; another one opens first.
-  if (!first) asked_ = {.spec = "opening", .parameters = {}, .excitations = {}};
-  show_scene(true);
-  window_.show(patient_->at_rest);
+  if (renewed) {
+    WindowScene scene = scene_of_patient();
+    shown_.parts = scene.parts;
+    shown_.distance_remarks = std::move(scene.distance_remarks);
+    shown_.bodies = std::move(scene.bodies);
+    shown_.muscles = std::move(scene.muscles);
+    shown_.layers = std::move(scene.layers);
+    shown_.landmarks_in_use = *renewed;
+    shown_.motion = asked_ = window_.view().motion;
+    window_.renew_scene(shown_, patient_);
+  } else {
+    ++opened_;
+    if (!patient_->folder.empty()) recent_.add(patient_->folder);
+    // The command line's motion is for its own patient; another one opens first.
+    if (!first) asked_ = {.spec = "opening", .parameters = {}, .excitations = {}};
+    shown_ = scene_of_patient();
+    window_.set_scene(shown_, {}, patient_);
+    show_scene();
+    window_.show(patient_->at_rest);
+  }
   if (!patient_->trouble.empty()) window_.report_error(patient_->trouble);
   want_motion(asked_);
 }
@@ -68,21 +86,25 @@ bool ViewSession::obeys_contact() const {
   return options_.motion.respect_contact || !motion_ || !motion_->motion.recorded;
 }
 
-void ViewSession::show_scene(bool other_patient) {
-  const Scene& scene = patient_->scene;
+WindowScene ViewSession::scene_of_patient() const {
+  const Case& patient = patient_->scene.patient;
   const DistanceMapSettings map_settings{.pair_rules = settings_.contact.pair_rules};
-  if (other_patient) {
-    shown_ = {.parts = scene.patient.parts,
-              .case_name = scene.patient.name,
-              .distance_colours = distance_colours({.near_mm = map_settings.reach_mm}),
-              .distance_remarks = distance_remarks(scene.patient),
-              .bodies = movable_bodies(scene.patient.parts)};
-    shown_.case_folder = patient_->folder;
-    shown_.landmarks = patient_->landmarks;
-    shown_.motions = motion_names();
-    shown_.muscles = muscle_items(*patient_);
-    shown_.layers = layer_items(*patient_);
-  }
+  WindowScene scene{.parts = patient.parts,
+                    .case_name = patient.name,
+                    .distance_colours = distance_colours({.near_mm = map_settings.reach_mm}),
+                    .distance_remarks = distance_remarks(patient),
+                    .bodies = movable_bodies(patient.parts)};
+  scene.case_folder = patient_->folder;
+  scene.landmarks = scene.landmarks_in_use = patient_->landmarks;
+  scene.motions = motion_names();
+  scene.motion = asked_;
+  scene.muscles = muscle_items(*patient_);
+  scene.layers = layer_items(*patient_);
+  return scene;
+}
+
+void ViewSession::show_scene() {
+  const Scene& scene = patient_->scene;
   shown_.recent = recent_.list();
   shown_.notes = scene.patient.notes;
   const auto& contact_notes = scene.contacts.notes();
@@ -99,10 +121,7 @@ void ViewSession::show_scene(bool other_patient) {
     shown_.excitations = motion_->excitations;
     shown_.notes.insert(shown_.notes.end(), motion.notes.begin(), motion.notes.end());
   }
-  if (other_patient)
-    window_.set_scene(shown_, {}, patient_);
-  else
-    window_.update_scene(shown_);
+  window_.update_scene(shown_);
 }
 
 void ViewSession::want_motion(const MotionChoice& choice) {
@@ -133,7 +152,7 @@ void ViewSession::take_motion() {
   window_.show_plots({});
   const bool was_playing = window_.view().playing;
   motion_ = *made;
-  show_scene(false);
+  show_scene();
   retire(simulation_);
   simulation_ = std::make_shared<LiveSimulation>(patient_->scene, motion_->motion, settings_);
   moved_ = {};

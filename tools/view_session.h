@@ -38,7 +38,8 @@ class ViewSession {
   using PatientPtr = std::shared_ptr<const ViewPatient>;
   using MotionPtr = std::shared_ptr<const ViewMotion>;
 
-  void load(std::function<Case(const Progress&)> read, std::filesystem::path folder);
+  void load(std::function<Case(const Progress&)> read, std::filesystem::path folder,
+            std::string words);
   void take_patient();
   void want_motion(const MotionChoice& choice);
   void take_motion();
@@ -53,8 +54,10 @@ class ViewSession {
   void carry_out(const wish::Cancel& wanted);
   void carry_out(const wish::LetGo& wanted);
   void carry_out(const wish::SaveCase& wanted);
+  void carry_out(const wish::UseLandmarks& wanted);
   bool obeys_contact() const;
-  void show_scene(bool other_patient);
+  WindowScene scene_of_patient() const;
+  void show_scene();  // once more, with what is new
   void show_progress();
   void simulate(const ViewState& view);  // view_live.cpp
   void show(MotionPictures pictures);
@@ -109,6 +112,8 @@ class ViewSession {
   RecentFiles recent_;
 
   PatientPtr patient_;
+  int opened_ = 0;  // patients so far; one that is made anew is the same
+  std::optional<std::vector<Landmark>> renewing_;  // what is loading is this patient, with these
   MotionPtr motion_;
   MotionChoice asked_;  // the motion that is being made, or was made last
   WindowScene shown_;
@@ -121,7 +126,7 @@ class ViewSession {
   PatientPtr ready_for_;  // whose bones are, or are being made, ready to slide
 
   struct Saved {
-    PatientPtr patient;
+    int opened;
     std::vector<Landmark> landmarks;
     std::filesystem::path folder;
   };

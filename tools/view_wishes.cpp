@@ -32,7 +32,7 @@ void ViewSession::carry_out(const wish::Open& wanted) {
   std::error_code ignored;
   if (!fs::exists(one, ignored)) {
     recent_.forget(one);
-    if (patient_) show_scene(false);
+    if (patient_) show_scene();
     throw InputError(one, "", "is not there (any more)");
   }
   wish::Import surfaces;
@@ -63,12 +63,7 @@ void ViewSession::carry_out(const wish::Open& wanted) {
 }
 
 void ViewSession::carry_out(const wish::Import& wanted) {
-  load(
-      [wanted](const Progress& progress) {
-        report(progress, "reading the surfaces", 0.05);
-        return import_files(wanted);
-      },
-      {});
+  load([wanted](const Progress&) { return import_files(wanted); }, {}, "reading the surfaces");
 }
 
 void ViewSession::carry_out(const wish::Record& wanted) {
@@ -117,12 +112,22 @@ void ViewSession::carry_out(const wish::LetGo& wanted) {
 void ViewSession::carry_out(const wish::SaveCase& wanted) {
   if (!patient_) return;
   if (saving_) return window_.say("A patient is being saved; ask again when that is done");
-  saving_ = beside<Saved>([patient = patient_, landmarks = window_.view().landmarks,
-                           folder = wanted.folder](const Progress& progress) {
-    report(progress, "saving the patient", 0.5);
-    save_case(with_landmarks(patient->scene.patient, landmarks), folder);
-    return Saved{patient, landmarks, folder};
-  });
+  saving_ =
+      beside<Saved>([opened = opened_, patient = patient_, landmarks = window_.view().landmarks,
+                     folder = wanted.folder](const Progress& progress) {
+        report(progress, "saving the patient", 0.5);
+        save_case(with_landmarks(patient->scene.patient, landmarks), folder);
+        return Saved{opened, landmarks, folder};
+      });
+}
+
+void ViewSession::carry_out(const wish::UseLandmarks&) {
+  if (!patient_) return;
+  const auto landmarks = window_.view().landmarks;
+  load([patient = patient_,
+        landmarks](const Progress&) { return with_landmarks(patient->scene.patient, landmarks); },
+       patient_->folder, "making the patient with these landmarks");
+  renewing_ = landmarks;
 }
 
 void ViewSession::take_recording() {
@@ -164,7 +169,7 @@ void ViewSession::take_save() {
     const auto saved = finished->take();
     if (!saved) return;
     recent_.add(saved->folder);
-    if (saved->patient == patient_) {
+    if (saved->opened == opened_) {
       shown_.landmarks = saved->landmarks;
       shown_.case_folder = saved->folder;
     } else if (!shown_.case_folder.empty()) {

@@ -51,7 +51,7 @@ void Panels::Drawing::landmarks() {
        view.landmark ? "Click on the surface to place it."
                      : "Choose one, then click on the surface.");
   ImGui::PopTextWrapPos();
-  const float foot = 4 * button + pen.px(56);
+  const float foot = 5 * button + pen.px(61);
   ImGui::BeginChild("landmark-list",
                     {0, std::max(pen.px(40), ImGui::GetContentRegionAvail().y - foot)});
   for (std::size_t i = 0; i < view.landmarks.size(); ++i) {
@@ -95,6 +95,14 @@ void Panels::Drawing::landmarks() {
     drafts.landmark_words.clear();
   }
   ImGui::EndDisabled();
+  const bool fresh = view.landmarks != input.scene.landmarks_in_use;
+  ImGui::BeginDisabled(!fresh);
+  if (word_button(pen, "landmarks-use", "Use in the simulation", {whole, button}, fresh))
+    panels.wishes_.emplace_back(wish::UseLandmarks{});
+  ImGui::EndDisabled();
+  tooltip(pen,
+          "Jaw, muscles and tissue are made anew for these landmarks; meanwhile all goes on with "
+          "the earlier ones");
   if (drafts.case_folder.empty()) drafts.case_folder = input.scene.case_folder.string();
   text_field(pen, "case-folder", drafts.case_folder, whole, "case folder");
   ImGui::BeginDisabled(drafts.case_folder.empty());

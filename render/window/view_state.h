@@ -39,7 +39,8 @@ struct WindowScene {
   MotionChoice motion = {};                // what the motion was made from
   std::vector<MotionSetting> motion_settings = {};
   std::vector<ExcitationSetting> excitations = {};  // of a motion that muscles drive
-  std::vector<Landmark> landmarks = {};             // of the case
+  std::vector<Landmark> landmarks = {};             // of the case, as it was loaded or saved
+  std::vector<Landmark> landmarks_in_use = {};      // what is simulated was made with these
   std::vector<TreeItem> muscles = {};  // lines of action that can be shown, in the case's order
   std::vector<TreeItem> layers = {};   // sheets of the soft tissue, from the skin inward
   std::vector<std::filesystem::path> recent = {};  // opened before, the last one first

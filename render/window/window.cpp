@@ -165,6 +165,18 @@ void Window::show(FrameState frame, const LoopStatistics& loop, MapValues values
 
 void Window::draw() { state_->draw(false); }
 
+void Window::renew_scene(const WindowScene& scene, std::shared_ptr<const void> keeper) {
+  State& s = *state_;
+  s.order.parts = std::make_shared<DrawnParts>(
+      DrawnParts{scene.parts, scene.distance_colours, std::move(keeper)});
+  s.order.map.reset();
+  s.order.values.reset();
+  s.kept_values.reset();
+  s.held.reset();
+  s.scene_changed = true;
+  update_scene(scene);
+}
+
 void Window::update_scene(const WindowScene& scene) {
   State& s = *state_;
   const bool other_motion = !(scene.motion == s.scene.motion);

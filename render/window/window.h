@@ -68,6 +68,8 @@ class Window {
   /// Draws if anything has changed: when there is no new frame.
   void draw();
 
+  /// The same patient made anew: its surfaces, in other memory. View and edits stay.
+  void renew_scene(const WindowScene& scene, std::shared_ptr<const void> keeper = {});
   /// Another motion, other words or lists of the same case; its parts are the same.
   void update_scene(const WindowScene& scene);
   /// An edit that the person did not make by hand; with `remember` it can be undone.

@@ -73,9 +73,11 @@ struct LetGo {
 struct SaveCase {
   std::filesystem::path folder;
 };
+/// Makes what is simulated anew with the landmarks as the person has them.
+struct UseLandmarks {};
 }  // namespace wish
 
-using Wish =
-    std::variant<wish::Open, wish::Import, wish::Record, wish::Cancel, wish::LetGo, wish::SaveCase>;
+using Wish = std::variant<wish::Open, wish::Import, wish::Record, wish::Cancel, wish::LetGo,
+                          wish::SaveCase, wish::UseLandmarks>;
 
 }  // namespace condyle

@@ -1,4 +1,6 @@
 // Whatever a person sets in the window can be taken back; two patients are not mixed up.
+#include <sstream>
+
 #include "tests/support/file_drop.h"
 #include "window_session.h"
 
@@ -118,6 +120,75 @@ TEST_F(WindowSession, EverySettingOfThePictureIsUndoneAndRedone) {
   click("tab:Motion");
   slide("parameter:opening", 0.5, 0.7);
   slide("parameter:bennett", 0.2, 0.6);
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, LandmarksThatAreUsedMoveTheJawAsTheSavedCaseDoes) {
+  const std::string motion = "open 10 over 0.3; hold 0.2", boxes = box_case(folder_);
+  start({boxes, "--motion", motion});
+  ASSERT_TRUE(wait_until(idle));
+  const auto at_end = [](const Json& s) {
+    return idle(s) && s["playing"] == false && double(s["time_s"]) > 0.45 &&
+           double(s["frame"]["time_s"]) > 0.45;
+  };
+  const auto scrub = rect("scrub");
+  drag(scrub[0] + 0.1 * scrub[2], scrub[1] + scrub[3] / 2, scrub[0] + 0.999 * scrub[2],
+       scrub[1] + scrub[3] / 2);
+  ASSERT_TRUE(wait_until(at_end));
+  const auto place = [&] {
+    const Json t = state()["frame"]["mandible_mm"];
+    return std::array<double, 3>{t[0], t[1], t[2]};
+  };
+  const auto before = place();
+  EXPECT_TRUE(press("l"));
+  EXPECT_TRUE(press("b"));
+  click("landmark:left_condyle");
+  const Region view = view_region();
+  const Json marked = state()["landmark_mm"]["left_condyle"];
+  EXPECT_TRUE(xdotool(
+      {"mousemove", px(view.x + 0.5 * view.width), px(view.y + 0.45 * view.height), "click", "1"}));
+  ASSERT_TRUE(
+      wait_until([&](const Json& s) { return s["landmark_mm"]["left_condyle"] != marked; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_EQ(place(), before) << "until they are asked for, the earlier ones hold";
+  see("landmark-not-yet-used");
+
+  click("landmarks-use");
+  ASSERT_TRUE(wait_until([&](const Json& s) {
+    return at_end(s) && std::abs(double(s["frame"]["mandible_mm"][1]) - before[1]) > 0.1;
+  })) << state()["frame"].dump();
+  see("landmark-used");
+  const double time_s = state()["time_s"];
+  const auto used = place();
+  // The same case, saved and run.
+  write_into("case-folder", folder_ / "saved");
+  click("case-save");
+  ASSERT_TRUE(wait_until(
+      [&](const Json& s) { return idle(s) && fs::exists(folder_ / "saved/case.json"); }));
+  const auto run = condyle(
+      {"run", folder_ / "saved", "--motion", motion, "--frames", "2", "--out", folder_ / "run"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  std::istringstream trace(read_text(folder_ / "run/trace.csv"));
+  std::string last, cell;
+  for (std::string line; std::getline(trace, line);)
+    if (!line.empty()) last = line;
+  std::istringstream cells(last);
+  std::vector<double> row;
+  while (row.size() < 5 && std::getline(cells, cell, ',')) row.push_back(std::stod(cell));
+  ASSERT_EQ(row.size(), 5u) << last;
+  EXPECT_GE(row[1], time_s - 1e-9);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(used[k], row[2 + k], 0.01) << last;
+
+  // Taken back, it is to be used again; the jaw stays until then.
+  EXPECT_TRUE(press("ctrl+z"));
+  ASSERT_TRUE(
+      wait_until([&](const Json& s) { return s["landmark_mm"]["left_condyle"] == marked; }));
+  EXPECT_EQ(place(), used);
+  click("landmarks-use");
+  EXPECT_TRUE(wait_until([&](const Json& s) {
+    return at_end(s) && std::abs(double(s["frame"]["mandible_mm"][1]) - before[1]) < 1e-6;
+  })) << state()["frame"].dump();
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }
