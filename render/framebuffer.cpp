@@ -82,11 +82,22 @@ DepthMap::DepthMap(int side) : side_(side) {
   glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, lit);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glSamplerParameteri(plain_, filter, GL_NEAREST);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glSamplerParameteri(plain_, wrap, GL_CLAMP_TO_BORDER);
+  glSamplerParameterfv(plain_, GL_TEXTURE_BORDER_COLOR, lit);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_, 0);
   glDrawBuffer(GL_NONE);
   glReadBuffer(GL_NONE);
   require_complete(side, side);
+}
+
+void DepthMap::bind_depths(int unit) const {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, depth_);
+  glBindSampler(static_cast<GLuint>(unit), plain_);
 }
 
 void DepthMap::bind() const {

@@ -39,10 +39,13 @@ class DepthMap {
   void bind() const;
   int side() const { return side_; }
   GLuint texture() const { return depth_; }
+  /// Binds it to a texture unit as plain depths, without comparison.
+  void bind_depths(int unit) const;
 
  private:
   GlFramebuffer framebuffer_;
   GlTexture depth_;
+  GlSampler plain_;
   int side_;
 };
 

@@ -37,6 +37,8 @@ inline void make_array(GLuint& name) { glGenVertexArrays(1, &name); }
 inline void free_array(GLuint name) { glDeleteVertexArrays(1, &name); }
 inline void make_texture(GLuint& name) { glGenTextures(1, &name); }
 inline void free_texture(GLuint name) { glDeleteTextures(1, &name); }
+inline void make_sampler(GLuint& name) { glGenSamplers(1, &name); }
+inline void free_sampler(GLuint name) { glDeleteSamplers(1, &name); }
 inline void make_framebuffer(GLuint& name) { glGenFramebuffers(1, &name); }
 inline void free_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
 inline void make_renderbuffer(GLuint& name) { glGenRenderbuffers(1, &name); }
@@ -46,6 +48,7 @@ inline void free_renderbuffer(GLuint name) { glDeleteRenderbuffers(1, &name); }
 using GlBuffer = GlName<gl::make_buffer, gl::free_buffer>;
 using GlVertexArray = GlName<gl::make_array, gl::free_array>;
 using GlTexture = GlName<gl::make_texture, gl::free_texture>;
+using GlSampler = GlName<gl::make_sampler, gl::free_sampler>;
 using GlFramebuffer = GlName<gl::make_framebuffer, gl::free_framebuffer>;
 using GlRenderbuffer = GlName<gl::make_renderbuffer, gl::free_renderbuffer>;
 

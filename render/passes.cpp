@@ -193,6 +193,7 @@ void Passes::begin(Programs& programs, const DrawItem& item, const PictureView& 
   }
   glActiveTexture(GL_TEXTURE1);
   glBindTexture(GL_TEXTURE_2D, skin_table_);
+  shadow_map_.bind_depths(4);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, shadow_map_.texture());
   GlProgram& program = programs.of({.shadowed = view.shadows,
@@ -209,7 +210,8 @@ void Passes::begin(Programs& programs, const DrawItem& item, const PictureView& 
   program.set("shadow_map", 0);
   program.set("skin_table", 1);
   program.set("skin_detail", 3);
-  program.set("shadow_texel", 1.f / shadow_side);
+  program.set("shadow_depth", 4);
+  program.set("shadow_scale", Eigen::Vector3f(view.shadow.topLeftCorner<3, 3>().rowwise().norm()));
   program.set("two_sided", item.drawable->closed || role == Role::face ? 0.f : 1.f);
   program.set("opacity", static_cast<float>(item.opacity));
   program.set("roughness", material.roughness);

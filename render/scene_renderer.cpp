@@ -233,10 +233,12 @@ void SceneRenderer::color_part(const std::string& name, std::span<const float> v
     assert(values.empty() ||
            values.size() ==
                (drawable.finer ? drawable.finer_vertices : drawable.part->mesh.vertices.size()));
-    // Kept near the range, so that the way from a far vertex to a near one passes through it.
+    // Kept near the range, so that the way from a far vertex to a near one passes through it; not
+    // at its very end, where the edge of what is coloured would follow the triangles.
+    const float above = s.map_high + 1;
     std::vector<float> kept(values.begin(), values.end());
     for (float& value : kept)
-      value = std::isnan(value) ? s.map_high : std::clamp(value, s.map_low, s.map_high);
+      value = std::isnan(value) ? above : std::clamp(value, s.map_low, above);
     drawable.mapped = !kept.empty();
     (drawable.finer ? *drawable.finer : drawable.mesh).send_values(kept);
   }

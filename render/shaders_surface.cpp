@@ -62,19 +62,47 @@ uniform vec3 fill_direction, fill_color;
 uniform vec3 rim_direction, rim_color;
 uniform vec3 sky_direction, sky_color, ground_color, front_color;
 uniform sampler2DShadow shadow_map;
-uniform float shadow_texel;
+uniform sampler2D shadow_depth;  // the same, to be read as it is
+uniform mat4 shadow_matrix;
+uniform vec3 shadow_scale;       // of the shadow map's cube over mm
 uniform float opacity;
 out vec4 result;
 
-// Nine bilinear comparisons over about 3 mm.
-float key_visibility() {
-  if (!shadowed) return 1.0;
-  float r = 2.0 * shadow_texel;
+// From one point of a sunflower's spiral to the next: such points are spread evenly over a disc.
+const mat2 next_point = mat2(-0.737369, 0.675490, -0.675490, -0.737369);
+
+// The key light is a soft box: x is how much of it is seen, y the half width of the shadow's edge,
+// mm. The edge widens with the way from what throws the shadow; on skin it is never sharp.
+// source: Fernando, Percentage-Closer Soft Shadows, 2005
+vec2 key_visibility(vec3 n) {
+  const float box = 0.13;             // half width of the light over its distance
+  const float widest = 8.0, least = 1.3;  // mm
+  const int searched = 10, compared = 20;
+  if (!shadowed) return vec2(1.0, 0.0);
+  // Around a place its own surface goes on along its tangent plane, which must not shade it.
+  vec3 plane = mat3(shadow_matrix) * n / (shadow_scale * shadow_scale);
+  vec2 steepest = 4.0 * shadow_scale.z / shadow_scale.xy;
+  vec2 slope = plane.z < -1e-6 ? clamp(-plane.xy / plane.z, -steepest, steepest) : vec2(0.0);
+  float way = 0.0, blockers = 0.0;
+  vec2 point = vec2(1.0, 0.0);
+  for (int i = 0; i < searched; ++i) {
+    point = next_point * point;
+    vec2 off = widest * sqrt((float(i) + 0.5) / float(searched)) * point * shadow_scale.xy;
+    float gap = shadow_place.z + dot(slope, off) - texture(shadow_depth, shadow_place.xy + off).r;
+    if (gap > 0.0) {
+      way += gap;
+      blockers += 1.0;
+    }
+  }
+  if (blockers < 0.5) return vec2(1.0, 0.0);
+  float reach = clamp(box * way / (blockers * shadow_scale.z), least, widest);
   float sum = 0.0;
-  for (int j = -1; j <= 1; ++j)
-    for (int i = -1; i <= 1; ++i)
-      sum += texture(shadow_map, shadow_place + vec3(r * float(i), r * float(j), 0.0));
-  return sum * (1.0 / 9.0);
+  for (int i = 0; i < compared; ++i) {
+    point = next_point * point;
+    vec2 off = reach * sqrt((float(i) + 0.5) / float(compared)) * point * shadow_scale.xy;
+    sum += texture(shadow_map, shadow_place + vec3(off, dot(slope, off)));
+  }
+  return vec2(sum / float(compared), reach);
 }
 
 float wrapped(float cosine, float wrap) {
@@ -145,10 +173,12 @@ uniform float map_lines[4];
 // sRGB, to be shaded only a little: what is read off a legend must look as it does there.
 vec3 map_color() {
   float across = fwidth(mapped_value);
-  vec3 c = mapped_value >= map_range.y ? map_beyond
-         : texture(colour_table, vec2((mapped_value - map_range.x) / (map_range.y - map_range.x), 0.5)).rgb;
-  // No line where the value hardly changes: it would be a stain.
-  if (across > 1e-3)
+  float value = min(mapped_value, mapped_up_to - 1e-4);
+  vec3 c = value >= map_range.y ? map_beyond
+         : texture(colour_table, vec2((value - map_range.x) / (map_range.y - map_range.x), 0.5)).rgb;
+  // No line where the value hardly changes: it would be a stain. Nor where a pixel sees much of its
+  // range, as along an outline: it would be a row of dots.
+  if (across > 1e-3 && across < 0.04 * (map_range.y - map_range.x))
     for (int i = 0; i < 4; ++i)
       c *= mix(0.25, 1.0, smoothstep(0.6, 1.4, abs(mapped_value - map_lines[i]) / across));
   return c;
@@ -164,15 +194,22 @@ void main() {
   // An open surface is lit from whichever side is seen.
   if (!gl_FrontFacing) n = -n;
   float nv = clamp(dot(n, v), 0.0, 1.0);
-  if (mapped && mapped_value <= mapped_up_to) {
+  // How much of the pixel the map covers; 1 where all values are shown.
+  float covered = mapped
+      ? clamp(0.5 + (mapped_up_to - mapped_value) / max(fwidth(mapped_value), 1e-5), 0.0, 1.0) : 0.0;
+  vec4 colored = vec4(0.0);
+  if (covered > 0.0) {
     float shade = 0.55 * nv + 0.45 * wrapped(dot(n, key_direction), 0.5);
     float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
-    result = vec4(map_color() * mix(0.68, 1.0, clamp(1.25 * shade, 0.0, 1.0)), a);
-    return;
+    colored = vec4(map_color() * mix(0.68, 1.0, clamp(1.25 * shade, 0.0, 1.0)), a);
+    if (covered >= 1.0) {
+      result = colored;
+      return;
+    }
   }
   float ao = traits.x, depth = traits.w;
   float kn = dot(n, key_direction);
-  float lit = key_visibility() * depth;
+  float lit = key_visibility(n).x * depth;
   vec3 soft = vec3(wrapped(kn, wrap)) + scatter * (wrapped(kn, wrap + 0.45) - wrapped(kn, wrap));
   vec3 occlusion = colored_occlusion(ao * sqrt(ao), albedo);
   // In the mouth most light comes from its red walls.
@@ -192,7 +229,7 @@ void main() {
     c += coat * reflectance * (key_color * specular(n, v, key_direction, 0.16) * lit
        + fill_color * specular(n, v, fill_direction, 0.2) * open);
   float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
-  result = vec4(display(c), a);
+  result = mix(vec4(display(c), a), colored, covered);
 }
 )";
 
@@ -215,9 +252,11 @@ void main() {
   vec3 n = normalize(smooth_normal - (slope - smooth_normal * dot(slope, smooth_normal)));
   vec3 shine_normal = normalize(mix(smooth_normal, n, 1.6));
   float nv = clamp(dot(n, v), 0.0, 1.0);
-  float lit = key_visibility();
-  // Light that enters beside a shadow's edge comes out red inside it.
-  vec3 tinted = shadowed ? pow(vec3(lit), vec3(0.55, 1.0, 1.15)) : vec3(1.0);
+  vec2 seen = key_visibility(smooth_normal);
+  float lit = seen.x;
+  // Light that enters beside a shadow's edge comes out red inside it, some 2 mm on.
+  vec3 tint = mix(vec3(0.62, 1.0, 1.12), vec3(1.0), clamp(seen.y / 6.0, 0.0, 1.0));
+  vec3 tinted = shadowed ? pow(vec3(lit), tint) : vec3(1.0);
   vec3 through = texture(skin_table, vec2(0.5 + 0.5 * dot(n, key_direction), traits.y)).rgb;
   vec3 occlusion = colored_occlusion(ao, albedo);
   const vec3 bleed = vec3(0.42, 0.24, 0.16);
