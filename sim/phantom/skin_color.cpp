@@ -53,8 +53,8 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
   if (y < -76) {  // lips
     const double s = std::min(x / 25.6, 1.0);
     const double top = -50.6 + (7.6 - 1.6 * std::exp(-std::pow(x / 2.5, 2))) *
-                                   std::sqrt(std::max(1 - std::pow(s, 1.6), 0.0));
-    const double bottom = -50.9 - 9.4 * std::sqrt(1 - s * s);
+                                   std::pow(std::max(1 - std::pow(s, 1.6), 0.0), .55);
+    const double bottom = -50.9 - 9.4 * std::pow(1 - s * s, .6);
     const double inside = std::min(top - z, z - bottom);
     const double lip = smooth_step(inside / 1.6 + .5) * smooth_step((27 - x) / 2.5);
     mix({.74, .43, .40}, .85 * lip);
