@@ -70,6 +70,7 @@ TriMesh eyes_surface() {
     }
     eye.triangles.emplace_back(last, at(rings - 1, i + 1), at(rings - 1, i));
   }
+  add_lashes(eye);
   return with_mirror_image(eye);
 }
 

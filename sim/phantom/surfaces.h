@@ -24,8 +24,10 @@ Part teeth_part(const PhantomSolid& solid, bool upper);
 /// behind the lips with an open border. With colours.
 TriMesh face_surface();
 
-/// Both eyeballs, closed, with colours.
+/// Both eyeballs and the lashes before them, closed, with colours.
 TriMesh eyes_surface();
+/// To the left eye: lashes along both lids, each a closed strand.
+void add_lashes(TriMesh& eye);
 
 /// Named points of the head; those on a surface are moved onto it.
 Landmarks phantom_landmarks(const PhantomSolid& solid);
