@@ -9,4 +9,7 @@ namespace condyle {
 /// alone. source: ColorBrewer YlOrRd.
 ColourMap gap_colours(double paper_mm);
 
+/// The same up to where the paper is marked: patches of contact, and nothing else.
+ColourMap patch_colours(double paper_mm);
+
 }  // namespace condyle

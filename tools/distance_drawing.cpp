@@ -20,10 +20,9 @@ std::vector<std::string> distance_remarks(const Case& patient) {
 }
 
 DistanceDrawing::DistanceDrawing(const Case& patient, const DistanceMapSettings& settings,
-                                 int threads, SceneRenderer& renderer,
-                                 std::optional<ColourMap> colours)
+                                 int threads, SceneRenderer& renderer, ColourMap colours)
     : map_(patient, settings, threads),
-      colours_(colours.value_or(distance_colours({.near_mm = settings.reach_mm}))),
+      colours_(std::move(colours)),
       threads_(threads),
       remarks_(distance_remarks(patient)) {
   renderer.set_colour_map(colours_);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +13,9 @@ namespace condyle {
 /// How far parts are from what they may meet, as colours on them with a legend.
 class DistanceDrawing {
  public:
-  /// Gives the renderer, drawn by the patient's parts, the finer surfaces and the colours (those
-  /// of distances, unless others are given).
+  /// Gives the renderer, drawn by the patient's parts, the finer surfaces and the colours.
   DistanceDrawing(const Case& patient, const DistanceMapSettings& settings, int threads,
-                  SceneRenderer& renderer, std::optional<ColourMap> colours = {});
+                  SceneRenderer& renderer, ColourMap colours);
 
   void color(SceneRenderer& renderer, const FrameState& frame) const;
   void add_legend_to(Image& image) const { add_legend(image, words_, colours_, remarks_); }

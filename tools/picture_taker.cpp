@@ -52,13 +52,15 @@ PictureTaker::PictureTaker(const RecordOptions& options, const RecordingSubject&
   if (distance || plan_.patches)
     // Finer than a window has time for.
     distances_.emplace(patient,
-                       DistanceMapSettings{.reach_mm = distance ? wanted.distance_near_mm : 1,
+                       // Beyond what is coloured by an edge's length: its end is a smooth line.
+                       DistanceMapSettings{.reach_mm = distance ? wanted.distance_near_mm + 1 : 1,
                                            .teeth_edge_mm = 0.4,
                                            .bone_edge_mm = 1,
                                            .most_triangles = 400000,
                                            .pair_rules = subject.settings.contact.pair_rules},
                        subject.settings.threads, renderer_,
-                       distance ? std::nullopt : std::optional(gap_colours(0.1)));
+                       distance ? distance_colours({.near_mm = wanted.distance_near_mm})
+                                : patch_colours(*plan_.settings.mapped_up_to));
   if (plan_.map == SurfaceMap::displacement) displacement_.emplace(patient.parts);
   if (plan_.overlays.muscles) muscles_ = muscles_of(patient);
   if (subject.settings.face) carry_face(subject.scene, rest_, subject.settings.threads);

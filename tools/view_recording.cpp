@@ -46,10 +46,13 @@ class ViewDrawing {
     picture_.width = subject.wanted.width;
     picture_.height = subject.wanted.height;
     picture_.samples = 4;
-    if (subject.view.distances)
+    if (subject.view.distances) {
+      const DistanceBands bands;
       distances_.emplace(subject.patient->scene.patient,
-                         DistanceMapSettings{.pair_rules = settings.contact.pair_rules},
-                         settings.threads, renderer_);
+                         DistanceMapSettings{.reach_mm = bands.near_mm + 1,
+                                             .pair_rules = settings.contact.pair_rules},
+                         settings.threads, renderer_, distance_colours(bands));
+    }
     if (subject.view.look.displacement) displacement_.emplace(subject.patient->scene.patient.parts);
   }
 
