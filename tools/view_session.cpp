@@ -113,8 +113,7 @@ void ViewSession::show_scene() {
   if (motion_) {
     const Motion& motion = motion_->motion;
     shown_.motion = motion_->choice;
-    // A motion in words is called a sequence in files; here it is read beside the patient's name.
-    shown_.motion_name = motion.name == "sequence" ? "motion in words" : motion.name;
+    shown_.motion_name = motion.name;
     shown_.duration_s = motion.duration_s;
     shown_.max_opening_mm = std::max(motion_->widest_mm, 1.0);
     shown_.motion_settings = motion_->settings;

@@ -38,6 +38,25 @@ const std::vector<std::pair<std::string, std::string>>& builtin_scripts() {
   return scripts;
 }
 
+/// Words as they are read under a picture: lines parted by ";", and cut where there are many.
+std::string in_one_line(const std::string& words) {
+  constexpr std::size_t most = 60;
+  std::string line, gap;
+  for (const char c : words) {
+    if (c == '\n' || c == ';') {
+      gap = "; ";
+    } else if (std::isspace(static_cast<unsigned char>(c))) {
+      if (gap.empty()) gap = " ";
+    } else {
+      if (!line.empty()) line += gap;
+      gap.clear();
+      line += c;
+    }
+  }
+  if (line.size() > most) line = line.substr(0, line.find_last_of(' ', most)) + " ...";
+  return line;
+}
+
 std::string ending_of(const std::string& spec) {
   std::string ending = std::filesystem::path(spec).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
@@ -171,7 +190,7 @@ Motion make_motion(const std::string& spec, const Case& patient, const ContactMo
   }
   if (looks_like_a_script(spec)) {
     const MotionScript script = parse_motion_script(spec, "motion");
-    return move("sequence", &script, patient, contacts, settings);
+    return move(in_one_line(spec), &script, patient, contacts, settings);
   }
   throw InputError(fmt::format(
       "motion \"{}\" is not known: give one of {}, movements in words such as \"open 40; "
