@@ -3,6 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
 
 #include "engine/mesh/measure.h"
 
@@ -46,6 +49,15 @@ Touch make_touch(int index, const NetPoint& point, double distance, const Vector
   }
   touch.row.count = point.count;
   return touch;
+}
+
+/// Of any node; endless where nothing is known of before.
+double farthest_move(const Nodes& before, const Nodes& now) {
+  if (before.size() != now.size()) return std::numeric_limits<double>::infinity();
+  double square = 0;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    square = std::max(square, (now[i] - before[i]).squaredNorm());
+  return std::sqrt(square);
 }
 
 /// Which corners and edges of a surface lie on its rim.
@@ -129,33 +141,50 @@ Vector3d NetObstacle::way_out(const Vector3d& p) const {
 
 void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                     const NetObstacle& obstacle, const Pose& X_WO, const Nodes& x,
-                    const TouchSettings& settings, std::vector<Touch>& touches,
-                    const Nodes& shift) {
+                    const TouchSettings& settings, std::vector<Touch>& touches, const Nodes& shift,
+                    NearPoints* known) {
   const Pose X_OW = X_WO.inverse();
-  const bool shifted = !shift.empty();
-  NetObstacle::Near near;
-  std::array<Vector3d, most_of_run> p;
-  for (std::size_t first = 0, end = 0; first < points.size(); first = end) {
-    // Neighbours in the list mostly lie side by side: one look for all of them tells most of it.
-    double reach2 = 0;
-    for (; end < points.size() && end - first < most_of_run; ++end) {
-      Vector3d& here = p[end - first];
-      here = X_OW * points[end].at(x);
-      if (shifted) here += shift[end];
-      const double way2 = (here - p[0]).squaredNorm();
-      if (way2 > run_mm * run_mm) break;
-      reach2 = std::max(reach2, way2);
+  // Neighbours in the list mostly lie side by side: one look for all of them tells most of it.
+  // `use` is told of the runs that are not farther than `reach`.
+  const auto each_run = [&](std::span<const int> among, double reach, const auto& use) {
+    std::array<Vector3d, most_of_run> p;
+    for (std::size_t first = 0, end = 0; first < among.size(); first = end) {
+      double reach2 = 0;
+      for (; end < among.size() && end - first < most_of_run; ++end) {
+        Vector3d& here = p[end - first];
+        here = X_OW * points[among[end]].at(x);
+        if (!shift.empty()) here += shift[among[end]];
+        const double way2 = (here - p[0]).squaredNorm();
+        if (way2 > run_mm * run_mm) break;
+        reach2 = std::max(reach2, way2);
+      }
+      if (!obstacle.farther(p[0], reach + std::sqrt(reach2)))
+        use(among.subspan(first, end - first), p);
     }
-    if (obstacle.farther(p[0], settings.reach_mm + std::sqrt(reach2))) continue;
-    for (std::size_t i = first; i < end; ++i) {
-      if (!obstacle.near(p[i - first], settings.reach_mm, near)) continue;
-      touches.push_back(make_touch(static_cast<int>(i), points[i], near.distance,
-                                   X_WO.R * near.normal, allowance[i], settings.stiffness));
+  };
+  NearPoints all;
+  if (!known) known = &all;
+  if (farthest_move(known->x, x) > NearPoints::margin_mm) {
+    std::vector<int> every(points.size());
+    std::iota(every.begin(), every.end(), 0);
+    known->x = x;
+    known->index.clear();
+    each_run(every, settings.reach_mm + NearPoints::margin_mm, [&](auto run, const auto&) {
+      known->index.insert(known->index.end(), run.begin(), run.end());
+    });
+  }
+  NetObstacle::Near near;
+  each_run(known->index, settings.reach_mm, [&](auto run, const auto& p) {
+    for (std::size_t k = 0; k < run.size(); ++k) {
+      if (!obstacle.near(p[k], settings.reach_mm, near)) continue;
+      const int i = run[k];
+      touches.push_back(make_touch(i, points[i], near.distance, X_WO.R * near.normal, allowance[i],
+                                   settings.stiffness));
       Touch& touch = touches.back();
       touch.row.offset = touch.row.along(x) - touch.gap;
       touch.at = points[i].at(x);
     }
-  }
+  });
 }
 
 Vector3d led(const Vector3d& normal, const Vector3d& front, double least) {
@@ -342,8 +371,7 @@ TouchingResult solve_touching(const std::function<Looks(const Nodes&)>& look,
     const auto within = [&](double error_mm, double gap_mm) {
       return result.error_mm <= error_mm && result.gap_mm <= gap_mm;
     };
-    result.settled =
-        solved == Solved::at_minimum && within(settings.tolerance_mm, settings.gap_mm);
+    result.settled = solved == Solved::at_minimum && within(settings.tolerance_mm, settings.gap_mm);
     const bool as_good_as_may_be =
         solved == Solved::spent && within(settings.rough_mm, settings.rough_mm);
     if (result.settled || as_good_as_may_be || result.solves >= settings.most_looks) return result;

@@ -73,15 +73,23 @@ struct TouchSettings {
   double stiffness = 3.0;  // N/mm: a tenfold of the tissue's own; tissue presses with up to 4 N
 };
 
+/// The points that were near an obstacle at one look: while no node has moved farther than the
+/// margin since, and the obstacle rests, only these are looked at again.
+struct NearPoints {
+  static constexpr double margin_mm = 1;
+  Nodes x;                 // at that look; empty before the first
+  std::vector<int> index;  // rising
+};
+
 /// Appends the points that are near the obstacle at pose X_WO. `allowance` (mm, one per point) is
 /// how deep each may be: that of overlap at rest; negative where one keeps a distance. `shift`:
 /// where each is felt, from where it is, mm in the obstacle's coordinates; one per point, or none.
 /// A point deep inside at rest is better felt where its way out ends: from deep inside an edge more
-/// than one way leads out.
+/// than one way leads out. `known`: kept by the caller from look to look at one pose, or none.
 void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                     const NetObstacle& obstacle, const Pose& X_WO, const Nodes& x,
                     const TouchSettings& settings, std::vector<Touch>& touches,
-                    const Nodes& shift = {});
+                    const Nodes& shift = {}, NearPoints* known = nullptr);
 
 /// The same against another part of the net's own surface: triangles of nodes, counter-clockwise
 /// seen from outside. It may have a rim; what is nearest to a rim from behind counts as inside, so

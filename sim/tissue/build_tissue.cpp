@@ -25,13 +25,16 @@ constexpr double bone_stiffness = 2.0;       // N/mm, some 50 times a skin sprin
 constexpr double boundary_stiffness = 2.0;   // N/mm
 constexpr double cartilage_stiffness = 0.5;  // N/mm
 constexpr double neck_stiffness = 0.1;       // N/mm
-constexpr double loose_stiffness = 0.04;     // N/mm
+constexpr double loose_stiffness = 0.15;     // N/mm
+/// N/mm, of all that lies above the inner side: fat and platysma hang on jaw and neck through their
+/// whole depth. Without them the skin under the chin snaps from fold to fold as the mouth opens.
+constexpr double deep_neck_stiffness = 0.05, deep_stiffness = 0.02;
 /// N/mm: the muscles of a lip hold its inner side to its own jaw, so that it does not roll over the
 /// teeth's edges.
 constexpr double lip_stiffness = 0.3;
 constexpr double lip_margin_mm = 14;  // from the mouth's line
 /// N/mm: and, much less, the whole of its edge, which would buckle to and fro.
-constexpr double lip_edge_stiffness = 0.05;
+constexpr double lip_edge_stiffness = 0.15;
 constexpr double lip_edge_mm = 6;
 
 /// How much the rim of a face that ends below the jaw goes with the mandible: fully at it, not at
@@ -259,10 +262,16 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
            neck  ? neck_stiffness
            : lip ? lip_stiffness
                  : loose_stiffness);
-    if (neck || columns[c].to_mouth > lip_edge_mm) continue;
+    const bool edge = !neck && columns[c].to_mouth <= lip_edge_mm;
+    if (lip && !neck && !edge) continue;
     for (int s = 0; s + 1 < sheets; ++s) {
       const int node = node_of(c, s, sheets);
-      if (!held[node]) anchor(node, lip_share(model->node_share[node]), lip_edge_stiffness);
+      if (held[node]) continue;
+      const double own = model->node_share[node];
+      if (edge)
+        anchor(node, lip_share(own), lip_edge_stiffness);
+      else
+        anchor(node, own, neck ? deep_neck_stiffness : deep_stiffness);
     }
   }
 

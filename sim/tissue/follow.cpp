@@ -154,9 +154,10 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
                                           .tolerance_mm = 3 * budget.tolerance_mm,
                                           .gap_mm = 3 * budget.tolerance_mm,
                                           .rough_mm = well_touched_mm};
+  NearJaws known;
   TouchingResult touching = solve_touching(
-      [&](const Nodes& x) { return look_at(model.contact, X_CM, x, budget.threads); }, solve, loads,
-      state.nodes, contact_settings, before);
+      [&](const Nodes& x) { return look_at(model.contact, X_CM, x, budget.threads, &known); },
+      solve, loads, state.nodes, contact_settings, before);
   if (state.iterations > worth_making)
     factor.begin(model.net, loads, state.nodes, budget.threads, model.weak_from_this().lock());
   state.factor = std::make_shared<const RollingFactor>(std::move(factor));

@@ -330,22 +330,24 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
   return contact;
 }
 
-Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads) {
+Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads,
+              NearJaws* known) {
   Looks looks(4);
-  const auto jaw = [&](const TissueContact::Jaw& of, const Pose& X_CJ,
-                       std::vector<Touch>& touches) {
+  const auto jaw = [&](const TissueContact::Jaw& of, const Pose& X_CJ, std::vector<Touch>& touches,
+                       NearPoints* near) {
     if (!of.obstacle) return;
-    touch_obstacle(contact.points, of.allowance, *of.obstacle, X_CJ, x, {}, touches, of.shift);
+    touch_obstacle(contact.points, of.allowance, *of.obstacle, X_CJ, x, {}, touches, of.shift,
+                   near);
     lead_lips(contact, of, X_CM, x, touches);
   };
   const TouchSettings soft{.stiffness = lips_stiffness};
   parallel_for(2, threads, [&](std::size_t i) {
     if (i == 0) {
-      jaw(contact.cranium, Pose{}, looks[on_cranium]);
+      jaw(contact.cranium, Pose{}, looks[on_cranium], known ? &known->cranium : nullptr);
       touch_surface(contact.upper.points, contact.upper.allowance, contact.lower.whole, x, soft,
                     looks[upper_on_lower], X_CM.R * contact.lower.facing);
     } else {
-      jaw(contact.mandible, X_CM, looks[on_mandible]);
+      jaw(contact.mandible, X_CM, looks[on_mandible], known ? &known->mandible : nullptr);
       touch_surface(contact.lower.points, contact.lower.allowance, contact.upper.whole, x, soft,
                     looks[lower_on_upper], contact.upper.facing);
     }

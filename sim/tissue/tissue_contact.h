@@ -65,8 +65,14 @@ std::vector<std::array<int, 2>> lips_that_may_touch(const TissueContact& contact
 /// Order of the lists in what `look_at` returns.
 enum ContactList : std::size_t { on_cranium, on_mandible, upper_on_lower, lower_on_upper };
 
+/// What looks at one pose of the mandible learn for the next ones.
+struct NearJaws {
+  NearPoints cranium, mandible;
+};
+
 /// Everything the tissue touches at x, with the mandible at X_CM.
-Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads = 1);
+Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads = 1,
+              NearJaws* known = nullptr);
 
 /// How tissue lies on the jaws and on itself.
 struct ContactMeasure {
