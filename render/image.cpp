@@ -1,14 +1,10 @@
 #include "render/image.h"
 
-#include <libdeflate.h>
 #include <png.h>
 
 #include <algorithm>
 #include <csetjmp>
-#include <cstdint>
 #include <cstring>
-#include <memory>
-#include <vector>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -22,6 +18,10 @@ struct Bytes {
   const std::string& content;
   std::size_t at = 0;
 };
+
+void append(png_structp png, png_bytep data, png_size_t size) {
+  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(data), size);
+}
 
 void take(png_structp png, png_bytep data, png_size_t size) {
   auto& bytes = *static_cast<Bytes*>(png_get_io_ptr(png));
@@ -37,50 +37,24 @@ void keep_message(png_structp png, png_const_charp message) {
 
 void no_warning(png_structp, png_const_charp) {}
 
-void put_number(std::string& bytes, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 255);
+// The two functions that libpng leaves by longjmp hold no object with a destructor of their own.
+bool compress(png_structp png, png_infop info, const Image& image, bool opaque) {
+  if (setjmp(png_jmpbuf(png))) return false;
+  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width),
+               static_cast<png_uint_32>(image.height), 8,
+               opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_set_compression_level(png, 1);
+  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+  png_write_info(png, info);
+  if (opaque) png_set_filler(png, 0, PNG_FILLER_AFTER);  // leaves the alpha out
+  for (int row = 0; row < image.height; ++row)
+    png_write_row(png, image.rgba.data() + std::size_t{4} * image.width * row);
+  png_write_end(png, info);
+  return true;
 }
 
-/// A chunk of a PNG file: its length, name, content and checksum.
-void put_chunk(std::string& bytes, const char* name, const std::string& content) {
-  put_number(bytes, static_cast<std::uint32_t>(content.size()));
-  const std::size_t checked = bytes.size();
-  bytes.append(name, 4).append(content);
-  put_number(bytes, libdeflate_crc32(0, bytes.data() + checked, bytes.size() - checked));
-}
-
-/// Rows of RGB or RGBA as PNG compresses them: behind the filter's number each pixel less the one
-/// to its left.
-template <int channels>
-std::vector<std::uint8_t> filtered(const Image& image) {
-  constexpr std::uint8_t sub = 1;
-  const auto width = static_cast<std::size_t>(image.width);
-  std::vector<std::uint8_t> rows((channels * width + 1) * static_cast<std::size_t>(image.height));
-  std::uint8_t* out = rows.data();
-  const std::uint8_t* in = image.rgba.data();
-  for (int y = 0; y < image.height; ++y, in += 4 * width) {
-    *out++ = sub;
-    for (int k = 0; k < channels; ++k) *out++ = in[k];
-    for (std::size_t x = 4; x < 4 * width; x += 4)
-      for (std::size_t k = 0; k < channels; ++k)
-        *out++ = static_cast<std::uint8_t>(in[x + k] - in[x + k - 4]);
-  }
-  return rows;
-}
-
-/// Takes half of zlib's time for about the same size.
-std::string compressed(const std::vector<std::uint8_t>& rows) {
-  constexpr int fastest = 1;
-  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
-      libdeflate_alloc_compressor(fastest), libdeflate_free_compressor);
-  if (!compressor) throw MachineError("PNG: out of memory");
-  std::string bytes(libdeflate_zlib_compress_bound(compressor.get(), rows.size()), '\0');
-  bytes.resize(libdeflate_zlib_compress(compressor.get(), rows.data(), rows.size(), bytes.data(),
-                                        bytes.size()));
-  return bytes;
-}
-
-// What libpng leaves by longjmp holds no object with a destructor of its own.
 bool decompress(png_structp png, png_infop info, Image& image) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_user_limits(png, max_side, max_side);
@@ -132,18 +106,18 @@ std::string encode_png(const Image& image) {
     throw MachineError("a picture without its pixels cannot be written as PNG");
   bool opaque = true;
   for (std::size_t i = 3; opaque && i < image.rgba.size(); i += 4) opaque = image.rgba[i] == 255;
-  constexpr char bits = 8, rgb = 2, rgba = 6, perceptual = 0;
-  std::string header;
-  put_number(header, static_cast<std::uint32_t>(image.width));
-  put_number(header, static_cast<std::uint32_t>(image.height));
-  header += bits;
-  header += opaque ? rgb : rgba;
-  header.append(3, '\0');  // the usual compression and filters, not interlaced
-  std::string bytes = "\x89PNG\r\n\x1a\n";
-  put_chunk(bytes, "IHDR", header);
-  put_chunk(bytes, "sRGB", std::string(1, perceptual));
-  put_chunk(bytes, "IDAT", compressed(opaque ? filtered<3>(image) : filtered<4>(image)));
-  put_chunk(bytes, "IEND", {});
+  std::string bytes, message;
+  bytes.reserve(image.rgba.size() / 4);
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, keep_message, no_warning);
+  png_infop info = png ? png_create_info_struct(png) : nullptr;
+  bool done = false;
+  if (info) {
+    png_set_write_fn(png, &bytes, append, nullptr);
+    done = compress(png, info, image, opaque);
+  }
+  png_destroy_write_struct(&png, &info);
+  if (!done) throw MachineError("PNG: " + (message.empty() ? "out of memory" : message));
   return bytes;
 }
 

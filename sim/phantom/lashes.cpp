@@ -15,7 +15,7 @@ constexpr double root_radius = 0.085, tip_radius = 0.015;  // mm
 constexpr int sides = 4, pieces = 5;
 
 /// What tells the lashes of one lid from those of the other.
-struct Row {
+struct LashRow {
   int count;
   double first, last;  // place along the lid, 0 at the inner corner to 1 at the outer
   double length_mm;    // of the longest
@@ -82,7 +82,7 @@ void add_lash(TriMesh& mesh, const std::vector<Vector3d>& line, const Vector3d& 
   }
 }
 
-void add_row(TriMesh& mesh, const LidEdge& edge, const Row& row) {
+void add_row(TriMesh& mesh, const LidEdge& edge, const LashRow& row) {
   for (int i = 0; i < row.count; ++i) {
     const auto random = [&](int question) {
       return chance(i + (row.side > 0 ? 0 : 1000), question) - 0.5;
