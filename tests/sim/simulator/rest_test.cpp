@@ -2,11 +2,13 @@
 // weight pulls.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <random>
 
 #include "sim/phantom/phantom.h"
 #include "sim/tissue/lips.h"
+#include "sim/tissue/model.h"
 #include "sim/tissue/tissue.h"
 #include "tests/support/scan_case.h"
 
@@ -72,6 +74,29 @@ TEST(NothingMovesBeforeSurgery, OnARealFace) {
   expect_still(*patient, {{1, 0.9, oblique}}, 520);
   expect_still(*patient, {{1, 0.05, none}, {2, 0.3, upright}, {3, 0.6, lying}, {5, 0.9, oblique}},
                220);
+}
+
+TEST(NothingMovesBeforeSurgery, WhatStrainsCannotBalanceIsHeldByForcesThatTurnWithTheJaw) {
+  TissuePlan plan{.turgor = 0.1};
+  plan.layers = {{.share = 1.0}};
+  const auto model = build_tissue(builtin_patient(), {.plan = plan});
+  ASSERT_FALSE(model->held_force.empty());
+  Pose X_CM;
+  X_CM.R = Eigen::AngleAxisd(0.4, Vector3d::UnitX());
+  X_CM.t = Vector3d(0, -8, -4);
+  const NetLoads at_rest = loads_at(*model, Pose{}), opened = loads_at(*model, X_CM);
+  int with_jaw = 0, with_skull = 0;
+  for (std::size_t i = 0; i < model->rest.size(); ++i) {
+    const Vector3d& held = at_rest.node_force[i];
+    if (held.norm() < 1e-3) continue;
+    const double share = model->node_share[i];
+    const Vector3d wanted = share > 0.5 ? X_CM.R * held : held;
+    const double most = 2 * std::sin(rotation_angle(X_CM) / 2) * held.norm();  // a turn's way
+    EXPECT_LE((opened.node_force[i] - wanted).norm(), std::min(share, 1 - share) * most + 1e-9);
+    (share > 0.5 ? with_jaw : with_skull) += 1;
+  }
+  EXPECT_GT(with_jaw, 0);
+  EXPECT_GT(with_skull, 0);
 }
 
 TEST(NothingMovesBeforeSurgery, OnAScanOverScaledBones) {
