@@ -26,9 +26,9 @@ constexpr double boundary_stiffness = 2.0;   // N/mm
 constexpr double cartilage_stiffness = 0.5;  // N/mm
 constexpr double neck_stiffness = 0.1;       // N/mm
 constexpr double loose_stiffness = 0.15;     // N/mm
-/// N/mm, of all that lies above the inner side: fat and platysma hang on jaw and neck through their
-/// whole depth. Without them the skin under the chin snaps from fold to fold as the mouth opens.
-constexpr double deep_neck_stiffness = 0.05, deep_stiffness = 0.02;
+/// N/mm, of what lies above the inner side under the chin: fat and platysma hang on jaw and neck
+/// through their whole depth. Without them the skin snaps from fold to fold as the mouth opens.
+constexpr double platysma_stiffness = 0.05;
 /// N/mm: the muscles of a lip hold its inner side to its own jaw, so that it does not roll over the
 /// teeth's edges.
 constexpr double lip_stiffness = 0.3;
@@ -262,16 +262,15 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
            neck  ? neck_stiffness
            : lip ? lip_stiffness
                  : loose_stiffness);
-    const bool edge = !neck && columns[c].to_mouth <= lip_edge_mm;
-    if (lip && !neck && !edge) continue;
+    if (!neck && columns[c].to_mouth > lip_edge_mm) continue;
     for (int s = 0; s + 1 < sheets; ++s) {
       const int node = node_of(c, s, sheets);
       if (held[node]) continue;
       const double own = model->node_share[node];
-      if (edge)
-        anchor(node, lip_share(own), lip_edge_stiffness);
+      if (neck)
+        anchor(node, own, platysma_stiffness);
       else
-        anchor(node, own, neck ? deep_neck_stiffness : deep_stiffness);
+        anchor(node, lip_share(own), lip_edge_stiffness);
     }
   }
 
