@@ -115,11 +115,6 @@ TEST_F(WindowSession, EverySettingOfThePictureIsUndoneAndRedone) {
   click_it("release");
   slide("opening", 0.5, 0.2);
   set("key Left", [&] { EXPECT_TRUE(press("Left")); });
-
-  // Numbers that shape the motion.
-  click("tab:Motion");
-  slide("parameter:opening", 0.5, 0.7);
-  slide("parameter:bennett", 0.2, 0.6);
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }
