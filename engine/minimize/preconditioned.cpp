@@ -30,7 +30,13 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& precon
   constexpr double flat = 0.1;  // of the slope at the start of a step of full length, if it serves
   constexpr double unknown_share = 0.3, least_contraction = 0.95;
   double way = largest_norm(z), shortest = way;
-  if (way < unknown_share * settings.tolerance_mm) result.status = Status::converged;
+  // Where the preconditioner is stiffer than the objective, the way is longer than it says.
+  const auto stretch = [&] {
+    const auto curvature = objective.curvature(x, z);
+    return curvature.gauss_newton > 0 ? std::max(1.0, gz / curvature.gauss_newton) : 1.0;
+  };
+  const double first = unknown_share * settings.tolerance_mm;
+  if (way < first && way * stretch() < first) result.status = Status::converged;
   for (; !result.converged() && result.iterations < settings.max_iterations && !counted.spent();
        ++result.iterations) {
     double slope = dot(g, d);
@@ -96,7 +102,8 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& precon
     way = largest_norm(z);
     const double contraction = std::min(way / shortest, least_contraction);
     shortest = std::min(shortest, way);
-    if (way < settings.tolerance_mm * (1 - contraction)) {
+    const double enough = settings.tolerance_mm * (1 - contraction);
+    if (way < enough && way * stretch() < enough) {
       ++result.iterations;
       result.status = Status::converged;
       break;

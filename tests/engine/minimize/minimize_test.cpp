@@ -67,8 +67,15 @@ class Chain final : public Objective {
 
 class Unit final : public Preconditioner {
  public:
-  void solve(const Points& g, Points& z) const override { z = g; }
+  explicit Unit(double stiffness = 1) : stiffness_(stiffness) {}
+  void solve(const Points& g, Points& z) const override {
+    z = g;
+    for (auto& p : z) p /= stiffness_;
+  }
   std::size_t bytes() const override { return 0; }
+
+ private:
+  double stiffness_;
 };
 
 Points straight_chain(std::size_t n) {
@@ -166,6 +173,21 @@ TEST_P(EachMethod, RepeatsToTheBit) {
   minimize(GetParam().method, chain, {}, a, &unit);
   minimize(GetParam().method, chain, {}, b, &unit);
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i], b[i]);
+}
+
+TEST(Preconditioned, IsNotAtTheMinimumBecauseThePreconditionerIsTooStiff) {
+  Chain chain;
+  Points expected = straight_chain(12);
+  ASSERT_TRUE(minimize(Method::quasi_newton, chain, tight(), expected).converged());
+  MinimizeSettings settings;
+  for (double stiffness : {1.0, 50.0, 1000.0}) {
+    const Unit unit(stiffness);
+    Points x = expected;
+    for (auto& p : x) p.z() += 5 * settings.tolerance_mm;  // pulled back by 0.1 a point
+    EXPECT_TRUE(minimize(Method::preconditioned, chain, settings, x, &unit).converged());
+    for (std::size_t i = 0; i < x.size(); ++i)
+      EXPECT_LT((x[i] - expected[i]).norm(), settings.tolerance_mm) << stiffness;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Minimize, EachMethod,
