@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/collide/box_bound.h"
 #include "engine/collide/shells.h"
 #include "engine/collide/triangle_distance.h"
 
@@ -31,46 +32,22 @@ fcl::Transform3d transform(const Pose& X) {
   return T;
 }
 
-/// Box of a node, laid out for a quick bound. FCL's own (between its swept rectangles) is exact but
-/// five times slower, and most pairs of boxes need only be known to be far enough.
-struct Bound {
-  Eigen::Vector3d center, half;  // half: half lengths
-  Eigen::Matrix3d axes;          // columns
-  double radius = 0;             // of the ball around the box
-  int left = -1;                 // child, the right one follows; -1 in a leaf
-};
-
-/// No less than the gap between two boxes can be; `X` is the pose of b's body in a's. Each box is
-/// seen in the axes of the other, where the gaps along the three axes add up by Pythagoras.
-double gap_bound(const Bound& a, const Bound& b, const Eigen::Matrix3d& R, const Eigen::Vector3d& t,
-                 double enough) {
-  const Eigen::Vector3d between = R * b.center + t - a.center;
-  const double ball_gap = between.norm() - a.radius - b.radius;
-  if (ball_gap >= enough) return ball_gap;
-  const Eigen::Matrix3d axes_b = R * b.axes, C = a.axes.transpose() * axes_b, size = C.cwiseAbs();
-  const Eigen::Vector3d in_a = (a.axes.transpose() * between).cwiseAbs() - a.half - size * b.half;
-  const double gap_in_a = in_a.cwiseMax(0).norm();
-  if (gap_in_a >= enough) return gap_in_a;
-  const Eigen::Vector3d in_b =
-      (axes_b.transpose() * between).cwiseAbs() - b.half - size.transpose() * a.half;
-  return std::max(gap_in_a, in_b.cwiseMax(0).norm());
-}
-
 /// The tree is cut at this depth into regions of its surface.
 constexpr int region_depth = 6;
 constexpr int region_count = 1 << region_depth;
 
 struct Surface {
   Model model;
-  std::vector<Bound> bounds;  // one per node
-  std::vector<int> region;    // of each node; -1 above the cut
+  std::vector<BoxBound> bounds;  // one per node
+  double reach_mm = 0;           // no corner of a box is farther from the origin
+  std::vector<int> region;       // of each node; -1 above the cut
 };
 
 void describe_nodes(Surface& surface, int node, int depth, int region) {
   const auto& bv = surface.model.getBV(node);
   const auto& box = bv.bv.obb;
-  surface.bounds[node] = {box.To, box.extent, box.axis, box.extent.norm(),
-                          bv.isLeaf() ? -1 : bv.leftChild()};
+  surface.bounds[node] = {box.To, box.extent, box.axis, bv.isLeaf() ? -1 : bv.leftChild()};
+  surface.reach_mm = std::max(surface.reach_mm, box.To.norm() + box.extent.norm());
   surface.region[node] = depth >= region_depth ? region % region_count : -1;
   if (bv.isLeaf()) return;
   // The path from the root, written as bits, numbers the regions.
@@ -101,8 +78,7 @@ class NearestPair final : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<do
         bounds_a_(a.bounds),
         bounds_b_(b.bounds),
         X_(X),
-        R_(X.linear()),
-        t_(X.translation()),
+        turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm),
         start_(start) {
     best.squared_mm2 = bound_mm2;
     best_mm = std::sqrt(bound_mm2);
@@ -116,11 +92,11 @@ class NearestPair final : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<do
   void postprocess() override {}
 
   double BVTesting(int node_a, int node_b) const override {
-    return gap_bound(bounds_a_[node_a], bounds_b_[node_b], R_, t_, best_mm);
+    return gap_bound(bounds_a_[node_a], bounds_b_[node_b], turned_, best_mm);
   }
   bool firstOverSecond(int node_a, int node_b) const override {  // open the larger box
-    const Bound &a = bounds_a_[node_a], &b = bounds_b_[node_b];
-    return b.left < 0 || (a.left >= 0 && a.radius > b.radius);
+    const BoxBound &a = bounds_a_[node_a], &b = bounds_b_[node_b];
+    return b.left < 0 || (a.left >= 0 && a.squared_radius() > b.squared_radius());
   }
   bool isFirstNodeLeaf(int node) const override { return bounds_a_[node].left < 0; }
   bool isSecondNodeLeaf(int node) const override { return bounds_b_[node].left < 0; }
@@ -149,10 +125,9 @@ class NearestPair final : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<do
 
   const Model& a_;
   const Model& b_;
-  const std::vector<Bound>&bounds_a_, &bounds_b_;
+  const std::vector<BoxBound>&bounds_a_, &bounds_b_;
   fcl::Transform3d X_;  // of B in A
-  Eigen::Matrix3d R_;
-  Eigen::Vector3d t_;
+  BoxTurn turned_;
   TrianglePair start_;
   fcl::DistanceRequestd request_;
   fcl::DistanceResultd result_;
