@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int max_walks = 8;
-constexpr int most_rubs = 4;
+constexpr int most_rubs = 12;
 constexpr double rest_mm = 0.005;
 // Of the band: poses so near each other have nothing between them.
 constexpr double near_share = 0.5;
@@ -183,10 +183,14 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
   };
   if (settings_.friction > 0) {
     // What a walk had learnt of a crease may hold it back: it rests where a fresh one stays.
+    const auto rests = [&](const Pose& before, const SlideResult& after) {
+      return after.touching && here.way_of(here.between(before, after.X_FM)) <= rest_mm;
+    };
     SlideResult result = walk(from, wanted);
+    if (rests(from, result) && !here.overlaps_at(from, settings_.slop_mm)) result.X_FM = from;
     for (int again = 0; again < most_rubs && result.touching; ++again) {
       SlideResult more = walk(result.X_FM, wanted);
-      if (here.way_of(here.between(result.X_FM, more.X_FM)) <= rest_mm) break;
+      if (rests(result.X_FM, more)) break;
       more.steps += result.steps;
       more.reached &= result.reached;
       result = std::move(more);

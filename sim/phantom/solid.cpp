@@ -10,7 +10,7 @@
 namespace condyle {
 namespace {
 
-constexpr double contact_gap = 0.10;  // mm, between opposing teeth at rest
+constexpr double contact_gap = 0.085;  // mm, between opposing teeth at rest
 
 std::vector<ToothSolid> make_teeth() {
   std::vector<ToothSolid> teeth;
