@@ -32,6 +32,12 @@ std::shared_ptr<const TissueModel> dense_face(const Case& patient, const TissueS
   return build_tissue(dense, settings);
 }
 
+/// Of a rate the slow end matters.
+double fifth_percentile(std::vector<double> rates) {
+  for (double& rate : rates) rate = -rate;
+  return -summarise(std::move(rates)).p95;
+}
+
 }  // namespace
 
 int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
@@ -141,10 +147,15 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
   }
   for (const BenchRow& row : rows) {
     if (row.samples.empty()) continue;
+    const bool rate = row.unit.ends_with("/s");
     const auto measured = summarise(row.samples);
-    nlohmann::ordered_json one = {
-        {"name", row.name}, {"median", measured.median},     {"p95", measured.p95},
-        {"unit", row.unit}, {"samples", row.samples.size()}, {"threads", common.threads}};
+    nlohmann::ordered_json one = {{"name", row.name},
+                                  {"median", measured.median},
+                                  rate ? nlohmann::ordered_json{"p5", fifth_percentile(row.samples)}
+                                       : nlohmann::ordered_json{"p95", measured.p95},
+                                  {"unit", row.unit},
+                                  {"samples", row.samples.size()},
+                                  {"threads", common.threads}};
     for (const auto& [name, value] : row.parameters) one[name] = value;
     json["results"].push_back(std::move(one));
   }
@@ -158,11 +169,12 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
         "a picture of 1920x1080 with shadows, edges smoothed (fxaa) or sampled four times (msaa), "
         "on {}; frame.record_with_film: a recording with a film against one without; frame.window: "
         "pictures and steps a second while the motion plays in a window of that size\n",
-        "median and 95th percentile", nodes, bone_triangles, common.threads, face_triangles,
-        context.description());
+        "median and 95th percentile (of what is counted a second: 5th)", nodes, bone_triangles,
+        common.threads, face_triangles, context.description());
     for (const auto& result : json["results"])
       fmt::print(stderr, "  {:<28}{:>9.3f}{:>9.3f} {}\n", result["name"].get<std::string>(),
-                 result["median"].get<double>(), result["p95"].get<double>(),
+                 result["median"].get<double>(),
+                 result[result.contains("p5") ? "p5" : "p95"].get<double>(),
                  result["unit"].get<std::string>());
   }
   return 0;

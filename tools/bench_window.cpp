@@ -43,8 +43,8 @@ std::vector<BenchRow> play(const Scene& scene, const Motion& motion,
   double scale = 1;
   int counted = 0;
   // Time counts from the first picture on: before it all is uploaded.
-  bool begun = false;
-  Clock::time_point start = Clock::now(), last = start, span = start;
+  bool begun = false, due = false;  // due: a frame of which no picture was ordered
+  Clock::time_point start = Clock::now(), last = start, span = start, ordered{};
   while (!begun || seconds(start, Clock::now()) < settle_s + measure_s) {
     const auto now = Clock::now();
     advance_clock(view, seconds(last, now), motion.duration_s,
@@ -53,6 +53,12 @@ std::vector<BenchRow> play(const Scene& scene, const Motion& motion,
     simulation.request({.time_s = view.time_s});
     if (auto frame = simulation.take()) {
       order.frame = std::make_shared<FrameState>(std::move(*frame));
+      due = true;
+    }
+    governor.simulated(simulation.steps_per_second());
+    if (due && seconds(ordered, now) >= governor.least_interval_s()) {
+      due = false;
+      ordered = now;
       order.quality = governor.choose(true);
       ++order.number;
       painter.order(order);

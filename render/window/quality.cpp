@@ -25,6 +25,9 @@ constexpr std::array<Quality, 7> levels = {{
 constexpr int last = static_cast<int>(levels.size()) - 1;
 constexpr double standstill_ms = 1000.0 / 15;
 
+// Steps a second of a simulation that needs the pictures' time, and of one that no longer does.
+constexpr double few_steps = 60, many_steps = 90;
+
 }  // namespace
 
 Quality QualityGovernor::choose(bool moving) const {
@@ -50,6 +53,12 @@ void QualityGovernor::measured(bool moving, double picture_ms) {
     level_ = std::max(level_ - 1, 0);
     fast_ = 0;
   }
+}
+
+void QualityGovernor::simulated(double steps_per_second) {
+  if (steps_per_second <= 0) return;  // none yet
+  if (steps_per_second < few_steps) yields_ = true;
+  if (steps_per_second > many_steps) yields_ = false;
 }
 
 }  // namespace condyle

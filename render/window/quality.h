@@ -21,7 +21,16 @@ class QualityGovernor {
   /// Told how long the last picture took, ms.
   void measured(bool moving, double picture_ms);
 
+  /// Told how many steps a second the simulation can take.
+  void simulated(double steps_per_second);
+  /// From one picture of a playing motion to the next at least, s: more than none where the
+  /// simulation needs the time.
+  double least_interval_s() const { return yields_ ? yielding_interval_s : 0; }
+
+  static constexpr double yielding_interval_s = 1.0 / 16;
+
  private:
+  bool yields_ = false;
   int level_ = 0;            // of the moving picture; 0 is the best
   bool known_ = false;       // whether any picture was measured
   int slow_ = 0, fast_ = 0;  // pictures in a row

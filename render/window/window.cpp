@@ -150,6 +150,7 @@ void Window::show(FrameState frame, const LoopStatistics& loop, MapValues values
                     before->face.size() == frame.face.size();
   if (s.loop.message != loop.message) s.frames_due = std::max(s.frames_due, 1);
   s.loop = loop;
+  s.governor.simulated(loop.steps_per_second);
   if (s.order.values ? values != *s.order.values : !values.empty()) {
     s.order.values = values.empty() ? nullptr : std::make_shared<MapValues>(std::move(values));
     s.scene_changed = true;

@@ -207,6 +207,7 @@ void Window::State::order_picture() {
   if (overlays_due) order.overlays = std::make_shared<Overlays>(overlays);
   overlays_due = false;
   ++order.number;
+  last_order = Clock::now();
   painter->order(order);
   pictures.finished = false;
   ordered_look = view.look;
@@ -242,7 +243,9 @@ void Window::State::draw(bool always, Image* copy) {
     scene_changed = true;
     last_change = Clock::now();
   }
-  if (order.parts && (scene_changed || !(governor.choose(moving()) == order.quality)))
+  const bool yields = view.playing && drag == CameraDrag::none &&
+                      seconds_since(last_order) < governor.least_interval_s();
+  if (order.parts && !yields && (scene_changed || !(governor.choose(moving()) == order.quality)))
     order_picture();
   bool news = false;
   try {

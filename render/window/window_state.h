@@ -92,6 +92,7 @@ struct Window::State {
   bool save_window = false;
   int frames_due = 3;        // pictures of the panels still to draw
   int counted_pictures = 0;  // since counted_from
+  Clock::time_point last_order{};
   Clock::time_point last_poll = Clock::now(), last_look = last_poll, last_draw = last_poll,
                     last_change = last_poll, last_event = last_poll, counted_from = last_poll;
 

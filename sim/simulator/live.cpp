@@ -105,7 +105,7 @@ std::optional<FrameState> LiveSimulation::take() {
 
 double LiveSimulation::steps_per_second() const {
   const std::lock_guard lock(mutex_);
-  return steps_per_second_;
+  return step_seconds_ > 0 ? 1 / step_seconds_ : 0;
 }
 
 StepInput LiveSimulation::input(const LiveRequest& wanted, double time_s) const {
@@ -176,7 +176,7 @@ void LiveSimulation::work() {
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       const std::lock_guard lock(mutex_);
       if (shown) newest_ = now;
-      steps_per_second_ = 0.9 * steps_per_second_ + 0.1 / std::max(seconds, 1e-6);
+      step_seconds_ = step_seconds_ > 0 ? 0.9 * step_seconds_ + 0.1 * seconds : seconds;
     }
   } catch (...) {
     const std::lock_guard lock(mutex_);

@@ -43,6 +43,7 @@ class LiveSimulation {
   /// The newest frame when there is one that was not taken yet. Rethrows what stopped the thread.
   std::optional<FrameState> take();
 
+  /// How many it could take, of the time that the last ones took; 0 before the first.
   double steps_per_second() const;
 
  private:
@@ -61,7 +62,7 @@ class LiveSimulation {
   long grips_ = 0;                         // how often a hand moved
   std::optional<FrameState> newest_;
   std::exception_ptr failure_;
-  double steps_per_second_ = 0;
+  double step_seconds_ = 0;  // that a step took lately
   bool stop_ = false;
   std::thread thread_;
 };

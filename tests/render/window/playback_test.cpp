@@ -107,6 +107,20 @@ TEST(Quality, LosesMostPixelsOnlyWhereThePictureWouldStandStill) {
   EXPECT_EQ(governor.choose(false), Quality{});
 }
 
+TEST(Quality, PicturesLeaveTheirTimeToASimulationThatNeedsIt) {
+  QualityGovernor governor;
+  EXPECT_EQ(governor.least_interval_s(), 0);
+  governor.simulated(0);  // not a step yet
+  EXPECT_EQ(governor.least_interval_s(), 0);
+  governor.simulated(45);
+  EXPECT_GT(governor.least_interval_s(), 0.05);
+  EXPECT_LT(governor.least_interval_s(), 1.0 / 15);  // still 15 a second
+  governor.simulated(70);  // it would fall behind again
+  EXPECT_GT(governor.least_interval_s(), 0.05);
+  governor.simulated(200);
+  EXPECT_EQ(governor.least_interval_s(), 0);
+}
+
 TEST(Quality, OneSlowPictureIsForgiven) {
   QualityGovernor governor;
   const Quality before = governor.choose(true);
