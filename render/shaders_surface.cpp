@@ -88,13 +88,12 @@ vec2 key_visibility(vec3 n) {
   for (int i = 0; i < searched; ++i) {
     point = next_point * point;
     vec2 off = widest * sqrt((float(i) + 0.5) / float(searched)) * point * shadow_scale.xy;
-    float gap = shadow_place.z + dot(slope, off) - texture(shadow_depth, shadow_place.xy + off).r;
-    if (gap > 0.0) {
-      way += gap;
-      blockers += 1.0;
-    }
+    float z = shadow_place.z + dot(slope, off);
+    float hidden = 1.0 - texture(shadow_map, vec3(shadow_place.xy + off, z));
+    way += hidden * max(z - texture(shadow_depth, shadow_place.xy + off).r, 0.0);
+    blockers += hidden;
   }
-  if (blockers < 0.5) return vec2(1.0, 0.0);
+  if (blockers <= 0.0) return vec2(1.0, 0.0);
   float reach = clamp(box * way / (blockers * shadow_scale.z), least, widest);
   float sum = 0.0;
   for (int i = 0; i < compared; ++i) {
@@ -102,7 +101,8 @@ vec2 key_visibility(vec3 n) {
     vec2 off = reach * sqrt((float(i) + 0.5) / float(compared)) * point * shadow_scale.xy;
     sum += texture(shadow_map, shadow_place + vec3(off, dot(slope, off)));
   }
-  return vec2(sum / float(compared), reach);
+  // Where few are found the edge begins: it has no step.
+  return vec2(mix(1.0, sum / float(compared), min(0.25 * blockers, 1.0)), reach);
 }
 
 float wrapped(float cosine, float wrap) {
@@ -207,9 +207,11 @@ void main() {
       return;
     }
   }
-  float ao = traits.x, depth = traits.w;
+  float ao = max(traits.x, 0.0), depth = traits.w;  // between corners of none it may round below
   float kn = dot(n, key_direction);
-  float lit = key_visibility(n).x * depth;
+  // What the light grazes is shaded by its own facets or not, as it happens: it fades by its turn
+  // away from the light alone.
+  float lit = mix(1.0, key_visibility(n).x, smoothstep(-0.05, 0.3, kn)) * depth;
   vec3 soft = vec3(wrapped(kn, wrap)) + scatter * (wrapped(kn, wrap + 0.45) - wrapped(kn, wrap));
   vec3 occlusion = colored_occlusion(ao * sqrt(ao), albedo);
   // In the mouth most light comes from its red walls.

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <cstdlib>
 
 #include "tests/render/scene_fixture.h"
@@ -269,6 +270,35 @@ TEST_F(Scene, ShadowsDarkenOnlyWhatIsShaded) {
   EXPECT_GT(darker, 100);
   EXPECT_EQ(brighter, 0);
   EXPECT_LT(darker, ball_pixels / 3);  // no acne over the lit side
+}
+
+TEST_F(Scene, WhereTheSkyIsNoLongerSeenNoPixelIsLost) {
+  // What lies in the second ball, which is not drawn, sees no sky at all.
+  TriMesh askew = ball({0, 0, 0}, 30);
+  const Eigen::Quaterniond turned = Eigen::Quaterniond(0.8, 0.3, -0.4, 0.2).normalized();
+  for (auto& p : askew.vertices) p = turned * p;
+  const std::vector<Part> parts = {make_part("skull", Role::skull, askew),
+                                   make_part("maxilla", Role::maxilla, ball({9, -18, 6}, 20))};
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = settings.height = 700;
+  settings.part_opacity = {{"maxilla", 0}};
+  settings.shadows = false;
+  const Image image = renderer.picture(front_camera(70), settings);
+  const auto light = [&](int x, int y) {
+    const Pixel p = pixel(image, x, y);
+    return p.r + p.g + p.b;
+  };
+  int lost = 0, bone = 0;
+  for (int y = 2; y + 2 < image.height; ++y)
+    for (int x = 2; x + 2 < image.width; ++x) {
+      const int around =
+          std::min({light(x - 2, y), light(x + 2, y), light(x, y - 2), light(x, y + 2)});
+      lost += light(x, y) < 0.85 * around;
+      bone += pixel(image, x, y).r > pixel(image, x, y).b + 10;
+    }
+  EXPECT_EQ(lost, 0);
+  EXPECT_GT(bone, 100000);
 }
 
 TEST_F(Scene, APictureBeyondTheDriversLimitIsRefusedInWords) {
