@@ -138,7 +138,7 @@ OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contac
   const double largest = path.opening_mm(best->end);
   if (asked && largest < wanted - 1e-6)
     throw InputError(
-        fmt::format("opening {} mm: this jaw opens to {:.1f} mm when it turns by 45 "
+        fmt::format("opening {:.6g} mm: this jaw opens to {:.1f} mm when it turns by 45 "
                     "degrees; ask for less",
                     wanted, largest));
   double end = best->end;

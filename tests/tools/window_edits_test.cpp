@@ -119,6 +119,32 @@ TEST_F(WindowSession, EverySettingOfThePictureIsUndoneAndRedone) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
+TEST_F(WindowSession, NumbersThatShapeTheMotionAreUndoneAndRedoneAndQuittingWaitsForNone) {
+  start({"--motion", "opening"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  click("tab:Motion");
+  const auto number = [&](const std::string& item, double from, double to) {
+    SCOPED_TRACE(item);
+    ASSERT_TRUE(wait_for_item(item));
+    const Json before = state()["edits"];
+    const auto r = rect(item);
+    drag(r[0] + from * r[2], r[1] + r[3] / 2, r[0] + to * r[2], r[1] + r[3] / 2);
+    ASSERT_TRUE(wait_until([&](const Json& s) { return s["edits"] != before; }));
+    ASSERT_TRUE(wait_until(idle, 60));
+    const Json after = state()["edits"];
+    EXPECT_TRUE(press("ctrl+z"));
+    EXPECT_TRUE(wait_until([&](const Json& s) { return s["edits"] == before; }))
+        << Json::diff(before, state()["edits"]).dump();
+    EXPECT_TRUE(press("ctrl+y"));
+    EXPECT_TRUE(wait_until([&](const Json& s) { return s["edits"] == after; }))
+        << Json::diff(after, state()["edits"]).dump();
+  };
+  number("parameter:opening", 0.5, 0.4);
+  number("parameter:bennett", 0.2, 0.6);
+  EXPECT_TRUE(press("ctrl+q"));  // while the last motion is being made
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
 TEST_F(WindowSession, LandmarksThatAreUsedMoveTheJawAsTheSavedCaseDoes) {
   const std::string motion = "open 10 over 0.3; hold 0.2", boxes = box_case(folder_);
   start({boxes, "--motion", motion});
