@@ -187,7 +187,10 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
       return after.touching && here.way_of(here.between(before, after.X_FM)) <= rest_mm;
     };
     SlideResult result = walk(from, wanted);
-    if (rests(from, result) && !here.overlaps_at(from, settings_.slop_mm)) result.X_FM = from;
+    if (rests(from, result) && !here.overlaps_at(from, settings_.slop_mm)) {
+      result.X_FM = from;
+      return result;
+    }
     for (int again = 0; again < most_rubs && result.touching; ++again) {
       SlideResult more = walk(result.X_FM, wanted);
       if (rests(result.X_FM, more)) break;

@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <span>
 
+#include "engine/core/infinity.h"
 #include "engine/mesh/measure.h"
 
 namespace condyle {
@@ -53,7 +53,7 @@ Touch make_touch(int index, const NetPoint& point, double distance, const Vector
 
 /// Of any node; endless where nothing is known of before.
 double farthest_move(const Nodes& before, const Nodes& now) {
-  if (before.size() != now.size()) return std::numeric_limits<double>::infinity();
+  if (before.size() != now.size()) return infinity;
   double square = 0;
   for (std::size_t i = 0; i < now.size(); ++i)
     square = std::max(square, (now[i] - before[i]).squaredNorm());
