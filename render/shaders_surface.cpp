@@ -71,38 +71,55 @@ out vec4 result;
 // From one point of a sunflower's spiral to the next: such points are spread evenly over a disc.
 const mat2 next_point = mat2(-0.737369, 0.675490, -0.675490, -0.737369);
 
+// x: how much of the light is hidden by what the shadow map shows at `off` from here, 0 to 1; y: how
+// far before here that is, shares of the map's depth. Here goes on along `slope`, depth per place: a
+// surface must not shade itself.
+vec2 hidden_at(vec2 off, vec2 slope) {
+  const float edge = 0.5;  // mm
+  float before = shadow_place.z + dot(slope, off)
+               - textureLod(shadow_depth, shadow_place.xy + off, 0.0).r;
+  return vec2(clamp(before / (edge * shadow_scale.z), 0.0, 1.0), before);
+}
+
 // The key light is a soft box: x is how much of it is seen, y the half width of the shadow's edge,
 // mm. The edge widens with the way from what throws the shadow; on skin it is never sharp.
+// `wanted`: whether it matters, as where any light falls. Without a card a branch costs what it would spare; a loop of no turns does not.
 // source: Fernando, Percentage-Closer Soft Shadows, 2005
-vec2 key_visibility(vec3 n) {
-  const float box = 0.13;             // half width of the light over its distance
+vec2 key_visibility(vec3 n, bool wanted) {
+  const float box = 0.13;                 // half width of the light over its distance
   const float widest = 8.0, least = 1.3;  // mm
-  const int searched = 10, compared = 20;
+  const int looked = 6, searched = 6, compared = 12;
   if (!shadowed) return vec2(1.0, 0.0);
-  // Around a place its own surface goes on along its tangent plane, which must not shade it.
   vec3 plane = mat3(shadow_matrix) * n / (shadow_scale * shadow_scale);
   vec2 steepest = 4.0 * shadow_scale.z / shadow_scale.xy;
   vec2 slope = plane.z < -1e-6 ? clamp(-plane.xy / plane.z, -steepest, steepest) : vec2(0.0);
-  float way = 0.0, blockers = 0.0;
+  float blockers = 0.0, way = 0.0;
   vec2 point = vec2(1.0, 0.0);
-  for (int i = 0; i < searched; ++i) {
+  for (int i = 0; i < (wanted ? looked : 0); ++i) {
     point = next_point * point;
-    vec2 off = widest * sqrt((float(i) + 0.5) / float(searched)) * point * shadow_scale.xy;
-    float z = shadow_place.z + dot(slope, off);
-    float hidden = 1.0 - texture(shadow_map, vec3(shadow_place.xy + off, z));
-    way += hidden * max(z - texture(shadow_depth, shadow_place.xy + off).r, 0.0);
-    blockers += hidden;
+    float radius = widest * sqrt((float(i) + 0.5) / float(looked));
+    vec2 found = hidden_at(radius * point * shadow_scale.xy, slope);
+    blockers += found.x;
+    way += found.x * found.y;
   }
-  if (blockers <= 0.0) return vec2(1.0, 0.0);
-  float reach = clamp(box * way / (blockers * shadow_scale.z), least, widest);
+  bool shaded = blockers > 0.0;
+  // Where few are found the edge begins: it has no step.
+  float share = min(0.4 * blockers, 1.0);
+  for (int i = 0; i < (shaded ? searched : 0); ++i) {
+    point = next_point * point;
+    float radius = widest * sqrt((float(i) + 0.5) / float(searched));
+    vec2 found = hidden_at(radius * point * shadow_scale.xy, slope);
+    blockers += found.x;
+    way += found.x * found.y;
+  }
+  float reach = clamp(box * way / (max(blockers, 1e-6) * shadow_scale.z), least, widest);
   float sum = 0.0;
-  for (int i = 0; i < compared; ++i) {
+  for (int i = 0; i < (shaded ? compared : 0); ++i) {
     point = next_point * point;
     vec2 off = reach * sqrt((float(i) + 0.5) / float(compared)) * point * shadow_scale.xy;
-    sum += texture(shadow_map, shadow_place + vec3(off, dot(slope, off)));
+    sum += textureLod(shadow_map, shadow_place + vec3(off, dot(slope, off)), 0.0);
   }
-  // Where few are found the edge begins: it has no step.
-  return vec2(mix(1.0, sum / float(compared), min(0.25 * blockers, 1.0)), reach);
+  return vec2(mix(1.0, sum / float(compared), share), shaded ? reach : 0.0);
 }
 
 float wrapped(float cosine, float wrap) {
@@ -211,7 +228,8 @@ void main() {
   float kn = dot(n, key_direction);
   // What the light grazes is shaded by its own facets or not, as it happens: it fades by its turn
   // away from the light alone.
-  float lit = mix(1.0, key_visibility(n).x, smoothstep(-0.05, 0.3, kn)) * depth;
+  float grazed = smoothstep(-0.05, 0.3, kn);
+  float lit = mix(1.0, key_visibility(n, grazed > 0.0).x, grazed) * depth;
   vec3 soft = vec3(wrapped(kn, wrap)) + scatter * (wrapped(kn, wrap + 0.45) - wrapped(kn, wrap));
   vec3 occlusion = colored_occlusion(ao * sqrt(ao), albedo);
   // In the mouth most light comes from its red walls.
@@ -254,12 +272,13 @@ void main() {
   vec3 n = normalize(smooth_normal - (slope - smooth_normal * dot(slope, smooth_normal)));
   vec3 shine_normal = normalize(mix(smooth_normal, n, 1.6));
   float nv = clamp(dot(n, v), 0.0, 1.0);
-  vec2 seen = key_visibility(smooth_normal);
+  vec3 through = texture(skin_table, vec2(0.5 + 0.5 * dot(n, key_direction), traits.y)).rgb;
+  vec2 seen = key_visibility(smooth_normal,
+                             through.r > 0.01 || dot(shine_normal, key_direction) > 0.0);
   float lit = seen.x;
   // Light that enters beside a shadow's edge comes out red inside it, some 2 mm on.
   vec3 tint = mix(vec3(0.62, 1.0, 1.12), vec3(1.0), clamp(seen.y / 6.0, 0.0, 1.0));
   vec3 tinted = shadowed ? pow(vec3(lit), tint) : vec3(1.0);
-  vec3 through = texture(skin_table, vec2(0.5 + 0.5 * dot(n, key_direction), traits.y)).rgb;
   vec3 occlusion = colored_occlusion(ao, albedo);
   const vec3 bleed = vec3(0.42, 0.24, 0.16);
   float fn = dot(n, fill_direction), rn = dot(n, rim_direction);
