@@ -11,7 +11,8 @@ struct alignas(64) BoxBound {
   typedef float Four __attribute__((vector_size(16)));
 
   BoxBound() = default;
-  /// axes: columns; half: half lengths along them; left: child, the right one follows; -1 in a leaf.
+  /// axes: columns; half: half lengths along them; left: child, the right one follows; or what
+  /// `leaf` gives.
   BoxBound(const Eigen::Vector3d& center, const Eigen::Vector3d& half, const Eigen::Matrix3d& axes,
            int left);
 
@@ -19,6 +20,9 @@ struct alignas(64) BoxBound {
   float center[3] = {};
   int left = -1;
 
+  static int leaf(int triangle) { return -1 - triangle; }
+  bool is_leaf() const { return left < 0; }
+  int triangle() const { return -1 - left; }
   float squared_radius() const;  // of the ball around the box
 };
 

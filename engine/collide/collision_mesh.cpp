@@ -4,7 +4,6 @@
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
-#include <fcl/narrowphase/detail/traversal/distance/mesh_distance_traversal_node.h>
 #include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
@@ -46,7 +45,8 @@ struct Surface {
 void describe_nodes(Surface& surface, int node, int depth, int region) {
   const auto& bv = surface.model.getBV(node);
   const auto& box = bv.bv.obb;
-  surface.bounds[node] = {box.To, box.extent, box.axis, bv.isLeaf() ? -1 : bv.leftChild()};
+  surface.bounds[node] = {box.To, box.extent, box.axis,
+                          bv.isLeaf() ? BoxBound::leaf(bv.primitiveId()) : bv.leftChild()};
   surface.reach_mm = std::max(surface.reach_mm, box.To.norm() + box.extent.norm());
   surface.region[node] = depth >= region_depth ? region % region_count : -1;
   if (bv.isLeaf()) return;
@@ -66,55 +66,48 @@ Triangle corners(const Model& model, int triangle, const fcl::Transform3d& X) {
   return {X * model.vertices[t[0]], X * model.vertices[t[1]], X * model.vertices[t[2]]};
 }
 
-/// FCL walks the two trees and bounds the boxes; pairs of triangles are measured by our own exact
-/// distance, because FCL's loses digits, and at times the answer, where edges are parallel. All in
-/// A's coordinates.
-class NearestPair final : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<double> {
+/// Walks FCL's two trees as its own traversal does, without a virtual call for each question. Pairs
+/// of triangles are measured by our own exact distance, because FCL's loses digits, and at times
+/// the answer, where edges are parallel. All in A's coordinates.
+class NearestPair {
  public:
+  /// start: measured first, if there are such triangles. Only what is nearer than the bound counts.
   NearestPair(const Surface& a, const Surface& b, const fcl::Transform3d& X, TrianglePair start,
               double bound_mm2)
       : a_(a.model),
         b_(b.model),
-        bounds_a_(a.bounds),
-        bounds_b_(b.bounds),
+        bounds_a_(a.bounds.data()),
+        bounds_b_(b.bounds.data()),
         X_(X),
-        turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm),
-        start_(start) {
+        turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm) {
     best.squared_mm2 = bound_mm2;
     best_mm = std::sqrt(bound_mm2);
-    fcl::detail::initialize(*this, a_, fcl::Transform3d::Identity(), b_, X, request_, result_);
+    if (start.a >= 0 && start.a < a_.num_tris && start.b >= 0 && start.b < b_.num_tris)
+      measure(start);
+    open(0, 0);
   }
 
-  void preprocess() override {
-    if (start_.a >= 0 && start_.a < a_.num_tris && start_.b >= 0 && start_.b < b_.num_tris)
-      measure(start_);
-  }
-  void postprocess() override {}
-
-  double BVTesting(int node_a, int node_b) const override {
-    return gap_bound(bounds_a_[node_a], bounds_b_[node_b], turned_, best_mm);
-  }
-  bool firstOverSecond(int node_a, int node_b) const override {  // open the larger box
-    const BoxBound &a = bounds_a_[node_a], &b = bounds_b_[node_b];
-    return b.left < 0 || (a.left >= 0 && a.squared_radius() > b.squared_radius());
-  }
-  bool isFirstNodeLeaf(int node) const override { return bounds_a_[node].left < 0; }
-  bool isSecondNodeLeaf(int node) const override { return bounds_b_[node].left < 0; }
-  int getFirstLeftChild(int node) const override { return bounds_a_[node].left; }
-  int getFirstRightChild(int node) const override { return bounds_a_[node].left + 1; }
-  int getSecondLeftChild(int node) const override { return bounds_b_[node].left; }
-  int getSecondRightChild(int node) const override { return bounds_b_[node].left + 1; }
-  void leafTesting(int node_a, int node_b) const override {
-    measure({a_.getBV(node_a).primitiveId(), b_.getBV(node_b).primitiveId()});
-  }
-  bool canStop(double bound_mm) const override { return bound_mm >= best_mm; }
-
-  mutable TriangleGap best;
-  mutable double best_mm;
-  mutable TrianglePair triangles;
+  TriangleGap best;
+  double best_mm;
+  TrianglePair triangles;
 
  private:
-  void measure(TrianglePair pair) const {
+  double gap(int node_a, int node_b) const {
+    return gap_bound(bounds_a_[node_a], bounds_b_[node_b], turned_, best_mm);
+  }
+  void open(int node_a, int node_b) {
+    const BoxBound &a = bounds_a_[node_a], &b = bounds_b_[node_b];
+    if (a.is_leaf() && b.is_leaf()) return measure({a.triangle(), b.triangle()});
+    // The larger box is opened, and what lies in its nearer half looked at first.
+    const bool first = b.is_leaf() || (!a.is_leaf() && a.squared_radius() > b.squared_radius());
+    const int left = (first ? a : b).left;
+    const double gap_left = first ? gap(left, node_b) : gap(node_a, left);
+    const double gap_right = first ? gap(left + 1, node_b) : gap(node_a, left + 1);
+    for (const bool right : {gap_right < gap_left, gap_right >= gap_left})
+      if ((right ? gap_right : gap_left) < best_mm)
+        first ? open(left + right, node_b) : open(node_a, left + right);
+  }
+  void measure(TrianglePair pair) {
     const TriangleGap gap =
         triangle_distance(corners(a_, pair.a), corners(b_, pair.b, X_), best.squared_mm2);
     if (gap.squared_mm2 >= best.squared_mm2) return;
@@ -125,12 +118,9 @@ class NearestPair final : public fcl::detail::MeshDistanceTraversalNodeOBBRSS<do
 
   const Model& a_;
   const Model& b_;
-  const std::vector<BoxBound>&bounds_a_, &bounds_b_;
+  const BoxBound *bounds_a_, *bounds_b_;
   fcl::Transform3d X_;  // of B in A
   BoxTurn turned_;
-  TrianglePair start_;
-  fcl::DistanceRequestd request_;
-  fcl::DistanceResultd result_;
 };
 
 /// Collects crossing triangles, in each region of A at most `per_region`.
@@ -208,18 +198,16 @@ CollisionMesh& CollisionMesh::operator=(CollisionMesh&&) noexcept = default;
 MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
                       const Pose& X_WB, TrianglePair start) {
   if (start.a < 0 || start.b < 0) start = {0, 0};
-  NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
-                      std::numeric_limits<double>::infinity());
-  fcl::detail::distance(&nearest);
+  const NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
+                            std::numeric_limits<double>::infinity());
   return {nearest.best_mm, X_WA * nearest.best.p, X_WA * nearest.best.q, nearest.triangles};
 }
 
 std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh& a,
                                             const Pose& X_WA, const CollisionMesh& b,
                                             const Pose& X_WB, TrianglePair start) {
-  NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
-                      reach_mm * reach_mm);
-  fcl::detail::distance(&nearest);
+  const NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
+                            reach_mm * reach_mm);
   if (nearest.triangles.a < 0) return std::nullopt;
   return MeshDistance{nearest.best_mm, X_WA * nearest.best.p, X_WA * nearest.best.q,
                       nearest.triangles};
@@ -228,9 +216,8 @@ std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh
 bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
               TrianglePair start) {
   constexpr double just_above_touch_mm2 = 2e-24;
-  NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
-                      just_above_touch_mm2);
-  fcl::detail::distance(&nearest);
+  const NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
+                            just_above_touch_mm2);
   return nearest.best_mm == 0;
 }
 
