@@ -1,40 +1,38 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 namespace condyle {
 
-/// Box of a tree's node in one line of the cache, for a quick bound. FCL's own (between its swept
-/// rectangles) is exact but many times slower, and most pairs of boxes need only be known to be far
-/// enough. Single precision: what it loses is taken off the bound.
-struct alignas(64) BoxBound {
-  typedef float Four __attribute__((vector_size(16)));
+typedef float FourFloats __attribute__((vector_size(16)));
 
-  BoxBound() = default;
-  /// axes: columns; half: half lengths along them; left: child, the right one follows; or what
-  /// `leaf` gives.
-  BoxBound(const Eigen::Vector3d& center, const Eigen::Vector3d& half, const Eigen::Matrix3d& axes,
-           int left);
+/// Both children of a tree's node, for quick bounds of the gaps to those of another. FCL's own
+/// (between its swept rectangles) is exact but many times slower, and most pairs of boxes need only
+/// be known to be far enough. Single precision: what it loses is taken off the bound.
+struct alignas(64) BoxTwins {
+  typedef std::array<float, 2> Two;  // of each box one
 
-  Four axes[3] = {};  // each followed by the half length along it
-  float center[3] = {};
-  int left = -1;
+  /// axes: columns; half: half lengths along them; node: what the box holds, as the caller numbers.
+  void set(int which, const Eigen::Vector3d& center, const Eigen::Vector3d& half,
+           const Eigen::Matrix3d& axes, int node);
 
-  static int leaf(int triangle) { return -1 - triangle; }
-  bool is_leaf() const { return left < 0; }
-  int triangle() const { return -1 - left; }
-  float squared_radius() const;  // of the ball around the box
+  Two center[3] = {}, half[3] = {}, axes[3][3] = {};  // coordinates; of each axis
+  std::array<int, 2> node{};
+
+  float squared_radius(int which) const;  // of the ball around the box
 };
 
 /// The pose of b's body in a's, for many bounds. `reach_mm`: no farther are the boxes' corners from
 /// the origins of their bodies, both together.
 struct BoxTurn {
   BoxTurn(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double reach_mm);
-  BoxBound::Four columns[3], t;  // of R
-  float uncertain_mm;            // of gaps
+  FourFloats R[3][3], t[3];  // four times the same; row, column
+  float uncertain_mm;        // of gaps
 };
 
-/// No more than the gap between the two boxes; at least `enough` is as good as any more.
-double gap_bound(const BoxBound& a, const BoxBound& b, const BoxTurn& X, double enough);
+/// No more than the gaps between the boxes: a's first and b's first, a's first and b's second, a's
+/// second and b's first, both second.
+FourFloats gap_bounds(const BoxTwins& a, const BoxTwins& b, const BoxTurn& X);
 
 }  // namespace condyle

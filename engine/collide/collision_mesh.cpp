@@ -37,23 +37,33 @@ constexpr int region_count = 1 << region_depth;
 
 struct Surface {
   Model model;
-  std::vector<BoxBound> bounds;  // one per node
-  double reach_mm = 0;           // no corner of a box is farther from the origin
-  std::vector<int> region;       // of each node; -1 above the cut
+  std::vector<BoxTwins> twins;  // the root alone, then the children of each inner node
+  double reach_mm = 0;          // no corner of a box is farther from the origin
+  std::vector<int> region;      // of each node; -1 above the cut
 };
 
-void describe_nodes(Surface& surface, int node, int depth, int region) {
+/// What a twin holds: a triangle, or where the twins in it are.
+int holding_triangle(int triangle) { return -1 - triangle; }
+bool holds_triangle(int held) { return held < 0; }
+int held_triangle(int held) { return -1 - held; }
+
+void describe_nodes(Surface& surface, int node, int depth, int region, std::size_t twins,
+                    int which) {
   const auto& bv = surface.model.getBV(node);
   const auto& box = bv.bv.obb;
-  surface.bounds[node] = {box.To, box.extent, box.axis,
-                          bv.isLeaf() ? BoxBound::leaf(bv.primitiveId()) : bv.leftChild()};
+  const int held =
+      bv.isLeaf() ? holding_triangle(bv.primitiveId()) : static_cast<int>(surface.twins.size());
+  surface.twins[twins].set(which, box.To, box.extent, box.axis, held);
   surface.reach_mm = std::max(surface.reach_mm, box.To.norm() + box.extent.norm());
   surface.region[node] = depth >= region_depth ? region % region_count : -1;
   if (bv.isLeaf()) return;
   // The path from the root, written as bits, numbers the regions.
   const int next = depth < region_depth ? 2 * region : region;
-  describe_nodes(surface, bv.leftChild(), depth + 1, next);
-  describe_nodes(surface, bv.rightChild(), depth + 1, depth < region_depth ? next + 1 : next);
+  const std::size_t inner = surface.twins.size();
+  surface.twins.emplace_back();
+  describe_nodes(surface, bv.leftChild(), depth + 1, next, inner, 0);
+  describe_nodes(surface, bv.rightChild(), depth + 1, depth < region_depth ? next + 1 : next, inner,
+                 1);
 }
 
 Triangle corners(const Model& model, int triangle) {
@@ -66,9 +76,9 @@ Triangle corners(const Model& model, int triangle, const fcl::Transform3d& X) {
   return {X * model.vertices[t[0]], X * model.vertices[t[1]], X * model.vertices[t[2]]};
 }
 
-/// Walks FCL's two trees as its own traversal does, without a virtual call for each question. Pairs
-/// of triangles are measured by our own exact distance, because FCL's loses digits, and at times
-/// the answer, where edges are parallel. All in A's coordinates.
+/// Walks FCL's two trees, four pairs of boxes at once. Pairs of triangles are measured by our own
+/// exact distance, because FCL's loses digits, and at times the answer, where edges are parallel.
+/// All in A's coordinates.
 class NearestPair {
  public:
   /// start: measured first, if there are such triangles. Only what is nearer than the bound counts.
@@ -76,15 +86,15 @@ class NearestPair {
               double bound_mm2)
       : a_(a.model),
         b_(b.model),
-        bounds_a_(a.bounds.data()),
-        bounds_b_(b.bounds.data()),
+        twins_a_(a.twins.data()),
+        twins_b_(b.twins.data()),
         X_(X),
         turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm) {
     best.squared_mm2 = bound_mm2;
     best_mm = std::sqrt(bound_mm2);
     if (start.a >= 0 && start.a < a_.num_tris && start.b >= 0 && start.b < b_.num_tris)
       measure(start);
-    open(0, 0);
+    look({twins_a_, 0, 1}, {twins_b_, 0, 1});
   }
 
   TriangleGap best;
@@ -92,20 +102,41 @@ class NearestPair {
   TrianglePair triangles;
 
  private:
-  double gap(int node_a, int node_b) const {
-    return gap_bound(bounds_a_[node_a], bounds_b_[node_b], turned_, best_mm);
+  /// Some of a node's twins: from..to - 1.
+  struct Some {
+    const BoxTwins* twins;
+    int from, to;
+    int held(int k) const { return twins->node[static_cast<std::size_t>(k)]; }
+    Some one(int k) const { return {twins, k, k + 1}; }
+  };
+
+  void look(const Some& a, const Some& b) {
+    const FourFloats gaps = gap_bounds(*a.twins, *b.twins, turned_);
+    // The nearest first.
+    std::array<int, 4> lanes;
+    int count = 0;
+    for (int i = a.from; i < a.to; ++i)
+      for (int k = b.from; k < b.to; ++k) {
+        const int lane = 2 * i + k;
+        int at = count++;
+        for (; at > 0 && gaps[lane] < gaps[lanes[at - 1]]; --at) lanes[at] = lanes[at - 1];
+        lanes[at] = lane;
+      }
+    for (int n = 0; n < count && gaps[lanes[n]] < best_mm; ++n)
+      open(a.one(lanes[n] / 2), b.one(lanes[n] % 2));
   }
-  void open(int node_a, int node_b) {
-    const BoxBound &a = bounds_a_[node_a], &b = bounds_b_[node_b];
-    if (a.is_leaf() && b.is_leaf()) return measure({a.triangle(), b.triangle()});
-    // The larger box is opened, and what lies in its nearer half looked at first.
-    const bool first = b.is_leaf() || (!a.is_leaf() && a.squared_radius() > b.squared_radius());
-    const int left = (first ? a : b).left;
-    const double gap_left = first ? gap(left, node_b) : gap(node_a, left);
-    const double gap_right = first ? gap(left + 1, node_b) : gap(node_a, left + 1);
-    for (const bool right : {gap_right < gap_left, gap_right >= gap_left})
-      if ((right ? gap_right : gap_left) < best_mm)
-        first ? open(left + right, node_b) : open(node_a, left + right);
+  /// Of a pair of boxes both are opened, but for one that is much the smaller.
+  void open(const Some& a, const Some& b) {
+    constexpr float much = 4;
+    const int held_a = a.held(a.from), held_b = b.held(b.from);
+    if (holds_triangle(held_a) && holds_triangle(held_b))
+      return measure({held_triangle(held_a), held_triangle(held_b)});
+    const float size_a = a.twins->squared_radius(a.from), size_b = b.twins->squared_radius(b.from);
+    const bool open_a =
+        !holds_triangle(held_a) && (holds_triangle(held_b) || much * size_a > size_b);
+    const bool open_b =
+        !holds_triangle(held_b) && (holds_triangle(held_a) || much * size_b > size_a);
+    look(open_a ? Some{twins_a_ + held_a, 0, 2} : a, open_b ? Some{twins_b_ + held_b, 0, 2} : b);
   }
   void measure(TrianglePair pair) {
     const TriangleGap gap =
@@ -118,7 +149,7 @@ class NearestPair {
 
   const Model& a_;
   const Model& b_;
-  const BoxBound *bounds_a_, *bounds_b_;
+  const BoxTwins *twins_a_, *twins_b_;
   fcl::Transform3d X_;  // of B in A
   BoxTurn turned_;
 };
@@ -186,9 +217,10 @@ CollisionMesh::CollisionMesh(const TriMesh& mesh) : tree_(std::make_unique<Tree>
   model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices.size()));
   model.addSubModel(mesh.vertices, triangles);
   model.endModel();
-  tree_->bounds.resize(static_cast<std::size_t>(model.getNumBVs()));
-  tree_->region.resize(tree_->bounds.size());
-  describe_nodes(*tree_, 0, 0, 0);
+  tree_->region.resize(static_cast<std::size_t>(model.getNumBVs()));
+  tree_->twins.reserve(triangles.size());
+  tree_->twins.emplace_back();
+  describe_nodes(*tree_, 0, 0, 0, 0, 0);
 }
 
 CollisionMesh::~CollisionMesh() = default;
