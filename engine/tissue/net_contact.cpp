@@ -144,6 +144,7 @@ void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<doubl
                     const TouchSettings& settings, std::vector<Touch>& touches, const Nodes& shift,
                     NearPoints* known) {
   const Pose X_OW = X_WO.inverse();
+  const Eigen::Matrix3d R_OW = X_OW.R.toRotationMatrix(), R_WO = X_WO.R.toRotationMatrix();
   // Neighbours in the list mostly lie side by side: one look for all of them tells most of it.
   // `use` is told of the runs that are not farther than `reach`.
   const auto each_run = [&](std::span<const int> among, double reach, const auto& use) {
@@ -152,7 +153,7 @@ void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<doubl
       double reach2 = 0;
       for (; end < among.size() && end - first < most_of_run; ++end) {
         Vector3d& here = p[end - first];
-        here = X_OW * points[among[end]].at(x);
+        here = R_OW * points[among[end]].at(x) + X_OW.t;
         if (!shift.empty()) here += shift[among[end]];
         const double way2 = (here - p[0]).squaredNorm();
         if (way2 > run_mm * run_mm) break;
@@ -178,7 +179,7 @@ void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<doubl
     for (std::size_t k = 0; k < run.size(); ++k) {
       if (!obstacle.near(p[k], settings.reach_mm, near)) continue;
       const int i = run[k];
-      touches.push_back(make_touch(i, points[i], near.distance, X_WO.R * near.normal, allowance[i],
+      touches.push_back(make_touch(i, points[i], near.distance, R_WO * near.normal, allowance[i],
                                    settings.stiffness));
       Touch& touch = touches.back();
       touch.row.offset = touch.row.along(x) - touch.gap;
