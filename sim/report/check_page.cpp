@@ -83,8 +83,8 @@ class PageWriter {
     if (check_.pairs.empty()) return;
     html_ +=
         "<h2>All pairs in numbers</h2>\n<table>\n<tr><th>Pair</th><th>Rule</th><th>At rest</th>"
-        "<th>Nearest<br>(opening, rotation)</th><th>First contact</th>"
-        "<th>Deepest beyond rest</th><th>In contact,<br>share of frames</th>"
+        "<th>Nearest<br>(opening, rotation)</th><th>First touch</th>"
+        "<th>Deepest beyond rest</th><th>Touching,<br>share of frames</th>"
         "<th>Contact when worst</th><th>Verdict</th></tr>\n";
     for (const std::size_t i : worst_first(check_)) row(check_.pairs[i]);
     html_ += "</table>\n";
@@ -196,7 +196,10 @@ class PageWriter {
         "<li>Overlap that is there at rest (models of teeth often overlap) is the baseline: only "
         "deeper contact counts as a collision. What already breaks a rule at rest is told as "
         "that.</li>\n"
-        "<li>Contact area: surface inside the other bone or within 0.1 mm of it. Overlap volume "
+        "<li>Touching: the surfaces meet or overlap. Contact area, and what pictures mark as "
+        "contact: "
+        "surface inside the other bone or within 0.1 mm of it, which may be there before anything "
+        "touches. Overlap volume "
         "with the uncertainty of its sampling; unknown where a surface is open, for it has no "
         "inside.</li>\n"
         "<li>The motion is walked as it is wanted, without stopping at contacts.</li>\n";
