@@ -71,48 +71,42 @@ out vec4 result;
 // From one point of a sunflower's spiral to the next: such points are spread evenly over a disc.
 const mat2 next_point = mat2(-0.737369, 0.675490, -0.675490, -0.737369);
 
-// x: how much of the light is hidden by what the shadow map shows at `off` from here, 0 to 1; y: how
-// far before here that is, shares of the map's depth. Here goes on along `slope`, depth per place: a
-// surface must not shade itself.
-vec2 hidden_at(vec2 off, vec2 slope) {
+// Looks at some points of a disc (radius in mm) in the shadow map and adds to `found`: x, how much
+// of the light is hidden there, each 0 to 1; y, the same times how far before here the hiding is,
+// shares of the map's depth. Here goes on along `slope`, depth per place: a surface must not shade
+// itself. Without a card a branch costs what it would spare; a loop of no turns does not.
+const int looked = 6;
+void look_for_shade(bool wanted, float radius, vec2 slope, inout vec2 point, inout vec2 found) {
   const float edge = 0.5;  // mm
-  float before = shadow_place.z + dot(slope, off)
-               - textureLod(shadow_depth, shadow_place.xy + off, 0.0).r;
-  return vec2(clamp(before / (edge * shadow_scale.z), 0.0, 1.0), before);
+  for (int i = 0; i < (wanted ? looked : 0); ++i) {
+    point = next_point * point;
+    vec2 off = radius * sqrt((float(i) + 0.5) / float(looked)) * point * shadow_scale.xy;
+    float before = shadow_place.z + dot(slope, off)
+                 - textureLod(shadow_depth, shadow_place.xy + off, 0.0).r;
+    float hidden = clamp(before / (edge * shadow_scale.z), 0.0, 1.0);
+    found += vec2(hidden, hidden * before);
+  }
 }
 
 // The key light is a soft box: x is how much of it is seen, y the half width of the shadow's edge,
 // mm. The edge widens with the way from what throws the shadow; on skin it is never sharp.
-// `wanted`: whether it matters, as where any light falls. Without a card a branch costs what it would spare; a loop of no turns does not.
+// `wanted`: whether it matters, as where any light falls.
 // source: Fernando, Percentage-Closer Soft Shadows, 2005
 vec2 key_visibility(vec3 n, bool wanted) {
   const float box = 0.13;                 // half width of the light over its distance
   const float widest = 8.0, least = 1.3;  // mm
-  const int looked = 6, searched = 6, compared = 12;
+  const int compared = 12;
   if (!shadowed) return vec2(1.0, 0.0);
   vec3 plane = mat3(shadow_matrix) * n / (shadow_scale * shadow_scale);
   vec2 steepest = 4.0 * shadow_scale.z / shadow_scale.xy;
   vec2 slope = plane.z < -1e-6 ? clamp(-plane.xy / plane.z, -steepest, steepest) : vec2(0.0);
-  float blockers = 0.0, way = 0.0;
-  vec2 point = vec2(1.0, 0.0);
-  for (int i = 0; i < (wanted ? looked : 0); ++i) {
-    point = next_point * point;
-    float radius = widest * sqrt((float(i) + 0.5) / float(looked));
-    vec2 found = hidden_at(radius * point * shadow_scale.xy, slope);
-    blockers += found.x;
-    way += found.x * found.y;
-  }
-  bool shaded = blockers > 0.0;
-  // Where few are found the edge begins: it has no step.
-  float share = min(0.4 * blockers, 1.0);
-  for (int i = 0; i < (shaded ? searched : 0); ++i) {
-    point = next_point * point;
-    float radius = widest * sqrt((float(i) + 0.5) / float(searched));
-    vec2 found = hidden_at(radius * point * shadow_scale.xy, slope);
-    blockers += found.x;
-    way += found.x * found.y;
-  }
-  float reach = clamp(box * way / (max(blockers, 1e-6) * shadow_scale.z), least, widest);
+  vec2 point = vec2(1.0, 0.0), found = vec2(0.0);
+  look_for_shade(wanted, widest, slope, point, found);
+  // Where little is found the edge begins: it has no step.
+  float share = min(0.4 * found.x, 1.0);
+  bool shaded = found.x > 0.0;
+  look_for_shade(shaded, widest, slope, point, found);
+  float reach = clamp(box * found.y / (max(found.x, 1e-6) * shadow_scale.z), least, widest);
   float sum = 0.0;
   for (int i = 0; i < (shaded ? compared : 0); ++i) {
     point = next_point * point;
@@ -294,7 +288,8 @@ void main() {
              + open * (fill_color * specular(shine_normal, v, fill_direction, wide)
                      + rim_color * specular(shine_normal, v, rim_direction, wide));
   shine *= mix(pore * pore, 1.0, gloss);
-  vec3 c = albedo * mix(vec3(1.0), vec3(pore), vec3(0.05, 0.10, 0.12)) * light + mix(0.028, 0.05, gloss) * shine;
+  vec3 c = albedo * mix(vec3(1.0), vec3(pore), vec3(0.05, 0.10, 0.12)) * light
+         + mix(0.028, 0.05, gloss) * shine;
   c += 0.5 * ambient_light(reflect(-v, n), v) * fresnel(nv, 0.028) * (1.0 - wide) * open;
   float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
   result = vec4(display(c), a);
