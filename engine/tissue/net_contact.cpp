@@ -6,7 +6,6 @@
 #include <numeric>
 #include <span>
 
-#include "engine/core/infinity.h"
 #include "engine/mesh/measure.h"
 
 namespace condyle {
@@ -51,13 +50,11 @@ Touch make_touch(int index, const NetPoint& point, double distance, const Vector
   return touch;
 }
 
-/// Of any node; endless where nothing is known of before.
-double farthest_move(const Nodes& before, const Nodes& now) {
-  if (before.size() != now.size()) return infinity;
-  double square = 0;
+/// Whether no node has moved so far.
+bool within(double reach_mm, const Nodes& before, const Nodes& now) {
   for (std::size_t i = 0; i < now.size(); ++i)
-    square = std::max(square, (now[i] - before[i]).squaredNorm());
-  return std::sqrt(square);
+    if (!((now[i] - before[i]).squaredNorm() <= reach_mm * reach_mm)) return false;
+  return true;
 }
 
 /// Which corners and edges of a surface lie on its rim.
@@ -142,7 +139,7 @@ Vector3d NetObstacle::way_out(const Vector3d& p) const {
 void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                     const NetObstacle& obstacle, const Pose& X_WO, const Nodes& x,
                     const TouchSettings& settings, std::vector<Touch>& touches, const Nodes& shift,
-                    NearPoints* known) {
+                    std::shared_ptr<const NearPoints>* known) {
   const Pose X_OW = X_WO.inverse();
   const Eigen::Matrix3d R_OW = X_OW.R.toRotationMatrix(), R_WO = X_WO.R.toRotationMatrix();
   // Neighbours in the list mostly lie side by side: one look for all of them tells most of it.
@@ -163,19 +160,21 @@ void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<doubl
         use(among.subspan(first, end - first), p);
     }
   };
-  NearPoints all;
-  if (!known) known = &all;
-  if (farthest_move(known->x, x) > NearPoints::margin_mm) {
+  Nodes seen(x.size());  // from the obstacle
+  for (std::size_t i = 0; i < x.size(); ++i) seen[i] = R_OW * x[i] + X_OW.t;
+  std::shared_ptr<const NearPoints> found = known ? *known : nullptr;
+  if (!found || !within(NearPoints::margin_mm, found->x, seen)) {
+    NearPoints anew{std::move(seen), {}};
     std::vector<int> every(points.size());
     std::iota(every.begin(), every.end(), 0);
-    known->x = x;
-    known->index.clear();
     each_run(every, settings.reach_mm + NearPoints::margin_mm, [&](auto run, const auto&) {
-      known->index.insert(known->index.end(), run.begin(), run.end());
+      anew.index.insert(anew.index.end(), run.begin(), run.end());
     });
+    found = std::make_shared<const NearPoints>(std::move(anew));
+    if (known) *known = found;
   }
   NetObstacle::Near near;
-  each_run(known->index, settings.reach_mm, [&](auto run, const auto& p) {
+  each_run(found->index, settings.reach_mm, [&](auto run, const auto& p) {
     for (std::size_t k = 0; k < run.size(); ++k) {
       if (!obstacle.near(p[k], settings.reach_mm, near)) continue;
       const int i = run[k];

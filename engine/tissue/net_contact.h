@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "engine/collide/distance_field.h"
@@ -74,10 +75,10 @@ struct TouchSettings {
 };
 
 /// The points that were near an obstacle at one look: while no node has moved farther than the
-/// margin since, and the obstacle rests, only these are looked at again.
+/// margin since, as seen from the obstacle, only these are looked at again.
 struct NearPoints {
   static constexpr double margin_mm = 1;
-  Nodes x;                 // at that look; empty before the first
+  Nodes x;                 // at that look, in the obstacle's coordinates
   std::vector<int> index;  // rising
 };
 
@@ -85,11 +86,12 @@ struct NearPoints {
 /// how deep each may be: that of overlap at rest; negative where one keeps a distance. `shift`:
 /// where each is felt, from where it is, mm in the obstacle's coordinates; one per point, or none.
 /// A point deep inside at rest is better felt where its way out ends: from deep inside an edge more
-/// than one way leads out. `known`: kept by the caller from look to look at one pose, or none.
+/// than one way leads out. `known`: kept by the caller from look to
+/// look, null before the first; or none.
 void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                     const NetObstacle& obstacle, const Pose& X_WO, const Nodes& x,
                     const TouchSettings& settings, std::vector<Touch>& touches,
-                    const Nodes& shift = {}, NearPoints* known = nullptr);
+                    const Nodes& shift = {}, std::shared_ptr<const NearPoints>* known = nullptr);
 
 /// The same against another part of the net's own surface: triangles of nodes, counter-clockwise
 /// seen from outside. It may have a rim; what is nearest to a rim from behind counts as inside, so

@@ -8,6 +8,7 @@
 
 namespace condyle {
 
+struct NearJaws;
 class RollingFactor;
 struct Touch;
 
@@ -29,6 +30,8 @@ struct TissueState {
   std::shared_ptr<const RollingFactor> factor;
   /// What the tissue touches and how it presses: lists of things touched; or none.
   std::shared_ptr<const std::vector<std::vector<Touch>>> touches;
+  /// The few points that are near enough to touch bone and teeth, or none. Changes no answer.
+  std::shared_ptr<const NearJaws> near;
 };
 
 }  // namespace condyle

@@ -154,10 +154,10 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
                                           .tolerance_mm = 3 * budget.tolerance_mm,
                                           .gap_mm = 3 * budget.tolerance_mm,
                                           .rough_mm = well_touched_mm};
-  NearJaws known;
+  NearJaws near = previous.near ? *previous.near : NearJaws{};
   TouchingResult touching = solve_touching(
-      [&](const Nodes& x) { return look_at(model.contact, X_CM, x, budget.threads, &known); },
-      solve, loads, state.nodes, contact_settings, before);
+      [&](const Nodes& x) { return look_at(model.contact, X_CM, x, budget.threads, &near); }, solve,
+      loads, state.nodes, contact_settings, before);
   if (state.iterations > worth_making)
     factor.begin(model.net, loads, state.nodes, budget.threads, model.weak_from_this().lock());
   state.factor = std::make_shared<const RollingFactor>(std::move(factor));
@@ -165,6 +165,7 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
       measure_contact(model.contact, touching.looks, X_CM, model.rest, state.nodes);
   state.contact_error_mm = std::max(touching.error_mm, touching.gap_mm);
   state.converged = state.converged && state.contact_error_mm < well_touched_mm;
+  state.near = std::make_shared<const NearJaws>(std::move(near));
   state.touches = std::make_shared<const Looks>(std::move(touching.looks));
   state.penetration_mm = contact.penetration_mm;
   state.slip_mm = contact.slip_mm;

@@ -122,6 +122,43 @@ TEST(NetContact, ObstacleTellsTheDistanceOfABallAtAnyPose) {
 }
 
 // The rim of a slab is pulled past a ball: its lower side rests on the ball, and slides there.
+TEST(NetContact, WhatWasLearntOfPointsNearAnObstacleChangesNoAnswer) {
+  const NetObstacle ball(test::sphere(4, 20), wide_box(), {});
+  const HeldSlab slab(15, {-21, -21, 26});
+  const std::vector<double> allowance(slab.below.size(), 0.0);
+  std::mt19937 random{11};
+  std::uniform_real_distribution<double> some{-1, 1};
+  const auto vector = [&] { return Vector3d(some(random), some(random), some(random)); };
+  Nodes x = slab.rest;
+  Pose X_WO;
+  std::shared_ptr<const NearPoints> known;
+  int kept = 0, touched = 0;
+  for (int look = 0; look < 200; ++look) {
+    // Both wander about each other, at times far in one go.
+    const double leap = look % 20 == 0 ? 2 : 0.1;
+    X_WO =
+        Pose{Eigen::Quaterniond(Eigen::AngleAxisd(0.02 * leap * some(random), Vector3d::UnitX())),
+             leap * vector()} *
+        X_WO;
+    X_WO.t *= 0.97;
+    for (auto& p : x) p += 0.2 * leap * vector();
+    const auto before = known;
+    std::vector<Touch> with, without;
+    touch_obstacle(slab.below, allowance, ball, X_WO, x, {}, with, {}, &known);
+    touch_obstacle(slab.below, allowance, ball, X_WO, x, {}, without);
+    kept += known == before;
+    touched += !without.empty();
+    ASSERT_EQ(with.size(), without.size()) << look;
+    for (std::size_t i = 0; i < with.size(); ++i) {
+      EXPECT_EQ(with[i].point, without[i].point);
+      EXPECT_EQ(with[i].gap, without[i].gap);
+    }
+  }
+  EXPECT_GT(kept, 50);
+  EXPECT_LT(kept, 195);
+  EXPECT_GT(touched, 100);
+}
+
 TEST(NetContact, ASlabDrapesOverABallItDoesNotEnter) {
   const TriMesh mesh = test::sphere(5, 15);
   const NetObstacle ball(mesh, wide_box(), {});
