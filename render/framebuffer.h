@@ -32,7 +32,8 @@ class Framebuffer {
   int width_, height_, samples_;
 };
 
-/// A square depth picture for shadows, sampled with comparison.
+/// A square depth picture for shadows, sampled with comparison. Beyond it goes on as at its edge,
+/// where nothing should stand.
 class DepthMap {
  public:
   explicit DepthMap(int side);
