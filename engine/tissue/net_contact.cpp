@@ -50,8 +50,9 @@ Touch make_touch(int index, const NetPoint& point, double distance, const Vector
   return touch;
 }
 
-/// Whether no node has moved so far.
+/// Whether no node has moved farther; nodes of another net have.
 bool within(double reach_mm, const Nodes& before, const Nodes& now) {
+  if (before.size() != now.size()) return false;
   for (std::size_t i = 0; i < now.size(); ++i)
     if (!((now[i] - before[i]).squaredNorm() <= reach_mm * reach_mm)) return false;
   return true;

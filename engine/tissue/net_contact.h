@@ -86,8 +86,8 @@ struct NearPoints {
 /// how deep each may be: that of overlap at rest; negative where one keeps a distance. `shift`:
 /// where each is felt, from where it is, mm in the obstacle's coordinates; one per point, or none.
 /// A point deep inside at rest is better felt where its way out ends: from deep inside an edge more
-/// than one way leads out. `known`: kept by the caller from look to
-/// look, null before the first; or none.
+/// than one way leads out. `known`: kept by the caller from look to look,
+/// null before the first; or none.
 void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                     const NetObstacle& obstacle, const Pose& X_WO, const Nodes& x,
                     const TouchSettings& settings, std::vector<Touch>& touches,

@@ -197,9 +197,8 @@ class PageWriter {
         "deeper contact counts as a collision. What already breaks a rule at rest is told as "
         "that.</li>\n"
         "<li>Touching: the surfaces meet or overlap. Contact area, and what pictures mark as "
-        "contact: "
-        "surface inside the other bone or within 0.1 mm of it, which may be there before anything "
-        "touches. Overlap volume "
+        "contact: surface inside the other bone or within 0.1 mm of it, which may be there before "
+        "anything touches. Overlap volume "
         "with the uncertainty of its sampling; unknown where a surface is open, for it has no "
         "inside.</li>\n"
         "<li>The motion is walked as it is wanted, without stopping at contacts.</li>\n";

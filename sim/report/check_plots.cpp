@@ -133,7 +133,7 @@ std::string teeth_svg(const ClearanceCheck& check) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\" font-family=\"sans-serif\" font-size=\"13\">\n"
       "<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n"
-      "<text x=\"{2}\" y=\"24\" font-size=\"16\" fill=\"#222\">Teeth in contact, share of the "
+      "<text x=\"{2}\" y=\"24\" font-size=\"16\" fill=\"#222\">Teeth touching, share of the "
       "motion's frames</text>\n",
       width, height, left);
   for (const auto& tooth : check.teeth) {
