@@ -48,6 +48,14 @@ class PictureBounds {
     high_ = high_.max(at + pixels);
   }
 
+  /// A box of a part.
+  void add(const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& model) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3f at = box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner));
+      add(model.topLeftCorner<3, 3>() * at + model.topRightCorner<3, 1>(), 0);
+    }
+  }
+
   /// All that was added with `air` pixels around it, within the picture.
   DrawnBox box(int air) const {
     const DrawnBox all = {0, 0, width_, height_};

@@ -64,6 +64,9 @@ GLint GlProgram::place(const char* uniform) {
 
 void GlProgram::set(const char* uniform, int value) { glUniform1i(place(uniform), value); }
 void GlProgram::set(const char* uniform, float value) { glUniform1f(place(uniform), value); }
+void GlProgram::set(const char* uniform, const Eigen::Vector2i& value) {
+  glUniform2iv(place(uniform), 1, value.data());
+}
 void GlProgram::set(const char* uniform, const Eigen::Vector2f& value) {
   glUniform2fv(place(uniform), 1, value.data());
 }

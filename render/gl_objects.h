@@ -67,6 +67,7 @@ class GlProgram {
   // Of the program in use:
   void set(const char* uniform, int value);
   void set(const char* uniform, float value);
+  void set(const char* uniform, const Eigen::Vector2i& value);
   void set(const char* uniform, const Eigen::Vector2f& value);
   void set(const char* uniform, const Eigen::Vector3f& value);
   void set(const char* uniform, const Eigen::Vector4f& value);

@@ -60,7 +60,7 @@ DirectionCone cone_of(std::span<const Eigen::Vector3f> positions,
 GpuMesh::Surface surface_of(std::span<const Eigen::Vector3f> positions,
                             std::span<const Eigen::Vector3i> triangles) {
   auto patches = cut_into_patches(positions, triangles, piece_triangles);
-  GpuMesh::Surface surface{std::move(patches.triangles), {}, {}};
+  GpuMesh::Surface surface{std::move(patches.triangles), {}, {}, {}};
   for (std::size_t i = 0; i + 1 < patches.first.size(); ++i)
     surface.pieces.push_back({patches.first[i], patches.first[i + 1] - patches.first[i], {}, {}});
   return surface;
@@ -77,6 +77,7 @@ void find_corners(GpuMesh::Surface& surface, std::size_t points) {
 /// Finds the boxes and directions of the pieces.
 void measure(GpuMesh::Surface& surface, std::span<const Eigen::Vector3f> points) {
   const std::span<const Eigen::Vector3i> all = surface.triangles;
+  surface.box.setEmpty();
   for (auto& piece : surface.pieces) {
     const auto own = all.subspan(static_cast<std::size_t>(piece.first_triangle),
                                  static_cast<std::size_t>(piece.triangle_count));
@@ -84,6 +85,7 @@ void measure(GpuMesh::Surface& surface, std::span<const Eigen::Vector3f> points)
     for (const auto& t : own)
       for (const int v : t) piece.box.extend(points[static_cast<std::size_t>(v)]);
     piece.normals = cone_of(points, own);
+    surface.box.extend(piece.box);
   }
 }
 

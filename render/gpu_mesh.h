@@ -36,7 +36,8 @@ class GpuMesh {
   struct Surface {
     std::vector<Eigen::Vector3i> triangles;
     std::vector<Piece> pieces;
-    std::vector<int> corners;  // the points that it uses, ascending
+    std::vector<int> corners;      // the points that it uses, ascending
+    Eigen::AlignedBox3f box = {};  // around all pieces
   };
 
   /// `moving`: positions and normals will be sent again each frame.

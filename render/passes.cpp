@@ -71,6 +71,17 @@ void end_cut() {
   glDisable(GL_CLIP_DISTANCE1);
 }
 
+void PictureView::set_rays_in(GlProgram& program) const {
+  // Of pixel x, y: the place one before the eye is ray + x * ray_right + y * ray_up.
+  const Eigen::Matrix3f to_world = view.topLeftCorner<3, 3>().transpose();
+  const float right = 2 / (static_cast<float>(width) * projection(0, 0)),
+              up = 2 / (static_cast<float>(height) * projection(1, 1));
+  program.set("ray", Eigen::Vector3f(to_world * Eigen::Vector3f(-1 / projection(0, 0),
+                                                                -1 / projection(1, 1), -1)));
+  program.set("ray_right", Eigen::Vector3f(right * to_world.col(0)));
+  program.set("ray_up", Eigen::Vector3f(up * to_world.col(1)));
+}
+
 Eigen::AlignedBox3f DrawItem::box() const {
   Eigen::AlignedBox3f moved;
   for (int corner = 0; corner < 8; ++corner) {
@@ -84,8 +95,11 @@ Passes::Passes()
     : surfaces_("surface", surface_shaders),
       skins_("skin", skin_shaders),
       interiors_("interior", interior_shaders),
+      kept_("surface", keep_shaders),
       depth_("depth", depth_shaders()),
       marker_("marker", marker_shaders()),
+      carry_("carry", carry_shaders()),
+      place_("place", place_shaders()),
       shadow_map_(shadow_side) {
   const auto table = make_skin_table();
   glBindTexture(GL_TEXTURE_2D, skin_table_);
@@ -179,7 +193,22 @@ GlProgram& Passes::Programs::of(const Shading& shading) {
   return built_.try_emplace(shading, what_, source_(shading)).first->second;
 }
 
-void Passes::begin(Programs& programs, const DrawItem& item, const PictureView& view) {
+void Passes::place(GlProgram& program, const DrawItem& item, const PictureView& view) {
+  program.set("model", item.model);
+  program.set("view_projection", view.view_projection);
+  program.set("eye", view.eye);
+  // The face's own folds are followed as they open.
+  program.set("together", item.role() == Role::eyes   ? view.skin_opacity
+                          : item.role() == Role::face ? 1.f
+                                                      : view.at_rest);
+  const bool in_mouth =
+      view.opaque_face && item.role() != Role::eyes && body_of(item.role()) != Body::free;
+  program.set("cavity", Eigen::Vector2f(view.lips_y, in_mouth ? 1 / mouth_depth_mm : 0.f));
+  begin_cut(program, item, view);
+}
+
+GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const PictureView& view,
+                         bool deferred) {
   const auto& material = item.drawable->material;
   const auto role = item.role();
   const bool mapped = item.drawable->mapped;
@@ -200,16 +229,16 @@ void Passes::begin(Programs& programs, const DrawItem& item, const PictureView& 
                                     .mapped = mapped,
                                     .coated = material.coat > 0,
                                     .cuttable = item.cut(),
-                                    .seen_through = !item.opaque()});
+                                    .seen_through = !item.opaque(),
+                                    .skin = role == Role::face,
+                                    .deferred = deferred});
   program.use();
   view.lights.set_in(program);
-  program.set("model", item.model);
-  program.set("view_projection", view.view_projection);
   program.set("shadow_matrix", view.shadow);
-  program.set("eye", view.eye);
   program.set("shadow_map", 0);
   program.set("skin_table", 1);
   program.set("skin_detail", 3);
+  program.set("pixel_size", 1 / view.pixels_per_unit);
   program.set("shadow_depth", 4);
   program.set("shadow_scale", Eigen::Vector3f(view.shadow.topLeftCorner<3, 3>().rowwise().norm()));
   program.set("two_sided", item.drawable->closed || role == Role::face ? 0.f : 1.f);
@@ -219,10 +248,6 @@ void Passes::begin(Programs& programs, const DrawItem& item, const PictureView& 
   program.set("wrap", material.wrap);
   program.set("scatter", material.scatter);
   program.set("coat", material.coat);
-  // The face's own folds are followed as they open.
-  program.set("together", role == Role::eyes   ? view.skin_opacity
-                          : role == Role::face ? 1.f
-                                               : view.at_rest);
   program.set("open_mouth", 1 - view.at_rest);
   program.set("mapped_up_to", view.mapped_up_to);
   program.set("colour_table", 2);
@@ -233,34 +258,112 @@ void Passes::begin(Programs& programs, const DrawItem& item, const PictureView& 
       program.set(map_line_names[i],
                   i < colour_map_.lines.size() ? colour_map_.lines[i] : colour_map_.low() - 100);
   }
-  const bool in_mouth = view.opaque_face && role != Role::eyes && body_of(role) != Body::free;
-  program.set("cavity", Eigen::Vector2f(view.lips_y, in_mouth ? 1 / mouth_depth_mm : 0.f));
-  begin_cut(program, item, view);
+  place(program, item, view);
+  return program;
 }
 
-void Passes::shade(const DrawItem& item, const PictureView& view) {
-  const auto& drawable = *item.drawable;
+const std::vector<Eigen::Vector3i>& Passes::seen_of(const DrawItem& item, const PictureView& view) {
   const auto& mesh = item.mesh();
   const auto& surface = surface_of(item, view);
-  const Viewpoint eye = eye_of(view);
   if (item.role() != Role::face) {
     cull_by_closure(item);
-    begin(surfaces_, item, view);
-    mesh.draw(visibility_.choose(mesh, surface, item.model, eye, sides_of(item), &cover_));
-    end_cut();
-    return;
+    return visibility_.choose(mesh, surface, item.model, eye_of(view), sides_of(item), &cover_);
   }
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
-  begin(drawable.mapped ? surfaces_ : skins_, item, view);
-  mesh.draw(visibility_.choose(mesh, surface, item.model, eye, Sides::front));
+  return visibility_.choose(mesh, surface, item.model, eye_of(view), Sides::front);
+}
+
+void Passes::shade(const DrawItem& item, const PictureView& view) {
+  const bool skin = item.role() == Role::face && !item.drawable->mapped;
+  begin(skin ? skins_ : surfaces_, item, view, false);
+  item.mesh().draw(seen_of(item, view));
   end_cut();
+  if (item.role() == Role::face) shade_interior(item, view);
+}
+
+void Passes::shade_interior(const DrawItem& item, const PictureView& view) {
   glFlush();  // as after the shadow map
-  if (drawable.closed && !item.cut()) return;
+  if (item.drawable->closed && !item.cut()) return;
+  glEnable(GL_CULL_FACE);
   glCullFace(GL_FRONT);
-  begin(interiors_, item, view);
-  mesh.draw(visibility_.choose(mesh, surface, item.model, eye, Sides::back, &cover_));
+  begin(interiors_, item, view, false);
+  item.mesh().draw(visibility_.choose(item.mesh(), surface_of(item, view), item.model, eye_of(view),
+                                      Sides::back, &cover_));
   end_cut();
+}
+
+void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) {
+  GLint target = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+  // Edges look at a pixel's neighbours. Whole tiles are lit: Mesa's rasteriser has one program for
+  // them and another for parts, and they round differently.
+  constexpr int tile = 64;
+  const auto down = [](int x) { return x / tile * tile; };
+  const auto around_of = [&](const DrawnBox& box) {
+    return DrawnBox{down(std::max(0, box.x0 - 1)), down(std::max(0, box.y0 - 1)),
+                    down(box.x1 + tile), down(box.y1 + tile)}
+        .both({0, 0, view.width, view.height});
+  };
+  const DrawnBox around = around_of(view.box);
+  buffer_.fit(view.width, view.height);
+  buffer_.begin_surfaces(around);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    buffer_.number_surface(static_cast<int>(i) + 1);
+    GlProgram& program = kept_.of({.skin = items[i].role() == Role::face});
+    program.use();
+    place(program, items[i], view);
+    items[i].mesh().draw(seen_of(items[i], view));
+    end_cut();
+  }
+  glFlush();
+
+  const auto bind = [](GLenum unit, GLuint texture) {
+    glActiveTexture(unit);
+    glBindTexture(GL_TEXTURE_2D, texture);
+  };
+  const auto see = [&](GlProgram& program) {
+    bind(GL_TEXTURE5, buffer_.words());
+    bind(GL_TEXTURE6, buffer_.away());
+    program.set("kept_words", 5);
+    program.set("kept_away", 6);
+  };
+  buffer_.begin_light();
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    PictureBounds bounds(view.width, view.height, view.view_projection);
+    bounds.add(surface_of(items[i], view).box, items[i].model);
+    const DrawnBox box = around_of(bounds.box(1)).both(around);
+    if (box.empty()) continue;
+    GlProgram& program =
+        begin(items[i].role() == Role::face ? skins_ : surfaces_, items[i], view, true);
+    see(program);
+    view.set_rays_in(program);
+    glBindVertexArray(no_attributes_);
+    buffer_.light(static_cast<int>(i) + 1, box);
+  }
+  buffer_.end();
+
+  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
+  glScissor(view.box.x0, view.box.y0, view.box.width(), view.box.height());
+  GlProgram& last = view.one_sample ? place_ : carry_;
+  last.use();
+  see(last);
+  bind(GL_TEXTURE7, buffer_.lit());
+  last.set("lit", 7);
+  if (view.one_sample) {
+    last.set("depth_terms",
+             Eigen::Vector2f(0.5f - 0.5f * view.projection(2, 2), 0.5f * view.projection(2, 3)));
+    glBindVertexArray(no_attributes_);
+    glDisable(GL_CULL_FACE);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    return;
+  }
+  last.set("last_pixel", Eigen::Vector2i(view.width - 1, view.height - 1));
+  for (const auto& item : items) {
+    place(last, item, view);
+    item.mesh().draw(seen_of(item, view));
+    end_cut();
+  }
 }
 
 void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
@@ -275,9 +378,19 @@ void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
     });
   cover_.finish();
   // The face hides most of the rest: drawn first, it spares the shading of what lies under it.
+  std::vector<DrawItem> whole, others;
+  const bool fits = SurfaceBuffer::fits(view.width, view.height);
   for (const bool face : {true, false})
-    for (const auto& item : items)
-      if (item.opaque() && (item.role() == Role::face) == face) shade(item, view);
+    for (const auto& item : items) {
+      if (!item.opaque() || (item.role() == Role::face) != face) continue;
+      const bool kept = fits && !item.cut() && !item.drawable->mapped &&
+                        std::ssize(whole) < SurfaceBuffer::most_surfaces;
+      (kept ? whole : others).push_back(item);
+    }
+  if (!whole.empty()) deferred(whole, view);
+  for (const auto& item : whole)
+    if (item.role() == Role::face) shade_interior(item, view);
+  for (const auto& item : others) shade(item, view);
 }
 
 void Passes::depth_only(const DrawItem& item, const PictureView& view) {

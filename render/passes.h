@@ -13,6 +13,7 @@
 #include "render/framebuffer.h"
 #include "render/lights.h"
 #include "render/shaders.h"
+#include "render/surface_buffer.h"
 #include "render/visibility.h"
 
 namespace condyle {
@@ -42,6 +43,8 @@ struct PictureView {
   Eigen::Matrix4f view, projection, view_projection, shadow;
   Eigen::Vector3f eye;
   int width, height;  // pixels
+  DrawnBox box;       // of what is drawn
+  bool one_sample = true;
   Lights lights;
   float pixels_per_unit;  // of a length across the line of sight at distance 1
   bool shadows = true;
@@ -63,6 +66,8 @@ struct PictureView {
     const float distance = (place - eye).norm() - 2 * radius_mm;
     return 3 + pixels_per_unit * 1.5f * radius_mm / std::max(distance, 1.f);
   }
+  /// Tells a program how pixel and depth make a place.
+  void set_rays_in(GlProgram& program) const;
 };
 
 // A plane and a ball that cut nothing.
@@ -107,12 +112,22 @@ class Passes {
     std::map<Shading, GlProgram> built_;
   };
 
-  void begin(Programs& programs, const DrawItem& item, const PictureView& view);
+  /// Tells the program in use where things are, and what is cut of them.
+  void place(GlProgram& program, const DrawItem& item, const PictureView& view);
+  GlProgram& begin(Programs& programs, const DrawItem& item, const PictureView& view,
+                   bool deferred);
+  /// Its front, or both sides of what is open.
+  const std::vector<Eigen::Vector3i>& seen_of(const DrawItem& item, const PictureView& view);
   void shade(const DrawItem& item, const PictureView& view);
+  void shade_interior(const DrawItem& item, const PictureView& view);
+  /// All of these, each pixel that is seen lit once.
+  void deferred(std::span<const DrawItem> items, const PictureView& view);
   void depth_only(const DrawItem& item, const PictureView& view);
 
-  Programs surfaces_, skins_, interiors_;
-  GlProgram depth_, marker_;
+  Programs surfaces_, skins_, interiors_, kept_;
+  GlProgram depth_, marker_, carry_, place_;
+  GlVertexArray no_attributes_;
+  SurfaceBuffer buffer_;
   Background background_;
   GlTexture skin_table_, skin_detail_, colour_table_;
   ColourMap colour_map_;

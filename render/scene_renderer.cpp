@@ -257,17 +257,11 @@ DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& s
   const auto items = s.items(settings);
   const auto view = s.view(camera, settings, items);
   PictureBounds bounds(settings.width, settings.height, view.view_projection);
-  const auto add = [&](const Eigen::AlignedBox3f& box, const Eigen::Matrix4f& model) {
-    for (int corner = 0; corner < 8; ++corner) {
-      const auto at = static_cast<Eigen::AlignedBox3f::CornerType>(corner);
-      bounds.add((model * box.corner(at).homogeneous()).head<3>(), 0);
-    }
-  };
   for (const auto& item : items) {
     const bool coarse = settings.coarse && settings.wireframe.empty();
-    for (const auto& piece : item.surface(coarse).pieces) add(piece.box, item.model);
+    for (const auto& piece : item.surface(coarse).pieces) bounds.add(piece.box, item.model);
     if (settings.ghost && s.leaves_ghost(item, *settings.ghost))
-      add(item.drawable->box, Eigen::Matrix4f::Identity());
+      bounds.add(item.drawable->box, Eigen::Matrix4f::Identity());
   }
   if (settings.contacts) Passes::add_contacts(s.contact_points, bounds, view);
   s.overlays.add_bounds(bounds, view);
@@ -307,6 +301,10 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   };
   DrawnBox box = {column(settings.from_x), 0, column(settings.to_x), settings.height};
   if (within) box = box.both(*within);
+  view.box = box;
+  GLint sample_buffers = 0;
+  glGetIntegerv(GL_SAMPLE_BUFFERS, &sample_buffers);
+  view.one_sample = sample_buffers == 0;
   glEnable(GL_SCISSOR_TEST);
   glScissor(box.x0, box.y0, box.width(), box.height());
   glClearColor(0, 0, 0, 0);

@@ -1,62 +1,22 @@
+#include "render/shader_parts.h"
 #include "render/shaders.h"
 
 namespace condyle {
 namespace {
 
-// `invariant`: a translucent part is drawn twice and must fall on the same depth both times.
-const char* const vertex_source = R"(#version 330 core
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 2) in vec4 color;  // sRGB, occlusion with everything at rest
-layout(location = 3) in vec4 extra;  // occlusion by its own body, curvature, gloss
-layout(location = 4) in float value; // what a colour map shows
-layout(location = 5) in vec3 rest;   // place before anything moved; of skin
-uniform mat4 model;            // rigid
-uniform mat4 view_projection;
-uniform mat4 shadow_matrix;
-uniform vec3 eye, key_direction;
-uniform float two_sided;       // 1 when the surface is open
-uniform float together;        // 1 with everything as at rest, 0 far from it
-uniform vec2 cavity;           // y where the mouth's darkness starts, 1/length; 0 length = none
-uniform vec4 clip_plane;       // what is kept has dot(plane, place) > 0
-uniform vec4 cut_ball;         // centre and radius; what is kept lies outside
-out float gl_ClipDistance[2];
-invariant gl_Position;
-out vec3 to_eye;
-out vec3 world_normal;
-out vec3 albedo;               // linear
-out vec3 shadow_place;
-out vec4 traits;               // occlusion, curvature, gloss, depth in the mouth, counted at rest
-out float mapped_value;
-out vec3 rest_place;
-void main() {
-  mapped_value = value;
-  rest_place = rest;
-  vec4 world = model * vec4(position, 1.0);
-  gl_Position = view_projection * world;
-  gl_ClipDistance[0] = dot(clip_plane, world);
-  gl_ClipDistance[1] = distance(world.xyz, cut_ball.xyz) - cut_ball.w;
-  to_eye = eye - world.xyz;
-  world_normal = mat3(model) * normal;
-  albedo = pow(color.rgb, vec3(2.2));
-  // Moved off along the normal, the farther the more the light grazes, so that a surface does not
-  // shade itself; an open one off the side that is seen.
-  float cosine = dot(world_normal, key_direction);
-  float offset = 0.6 + 2.0 * (1.0 - abs(cosine));
-  if (two_sided > 0.5 && dot(world_normal, to_eye) < 0.0) offset = -offset;
-  vec4 s = shadow_matrix * vec4(world.xyz + offset * world_normal, 1.0);
-  shadow_place = s.xyz;
-  traits = vec4(mix(extra.x, color.a, together), extra.y, extra.z,
-                exp(-max(position.y - cavity.x, 0.0) * cavity.y));
-}
-)";
-
-const char* const lighting_source = R"(
+// What light depends on, of the triangle that is drawn.
+const char* const triangle_source = R"(
 in vec3 to_eye;
 in vec3 world_normal;
 in vec3 albedo;
 in vec3 shadow_place;
 in vec4 traits;
+in vec3 rest_place;
+in float mapped_value;
+void begin() {}
+)";
+
+const char* const lighting_source = R"(
 uniform vec3 key_direction, key_color;
 uniform vec3 fill_direction, fill_color;
 uniform vec3 rim_direction, rim_color;
@@ -174,7 +134,6 @@ uniform float roughness, reflectance, wrap;
 uniform vec3 scatter;  // colour of the light that comes through at grazing angles
 uniform float coat;    // strength of the second, sharp reflection of wet or enamelled surfaces
 uniform vec2 cavity;   // as in the vertex shader
-in float mapped_value;
 uniform float mapped_up_to;
 uniform sampler2D colour_table;
 uniform vec2 map_range;
@@ -196,6 +155,7 @@ vec3 map_color() {
 }
 
 void main() {
+  begin();
   vec3 v = normalize(to_eye);
   vec3 n = normalize(world_normal);
   if (cuttable && !gl_FrontFacing) {
@@ -251,8 +211,16 @@ const char* const skin_source = R"(
 uniform sampler2D skin_table;   // diffuse light by cosine and curvature
 uniform sampler3D skin_detail;  // slope of a rough surface, and its height
 uniform float open_mouth;       // 0 as at rest, 1 with the jaw well away
-in vec3 rest_place;
+uniform float pixel_size;       // of a pixel at distance 1
+
+// The field at a place, at the level that a pixel's size on the surface asks for.
+vec4 detail(vec3 place, float period, float pixel_mm) {
+  float level = log2(pixel_mm * float(detail_side) / period);
+  return textureLod(skin_detail, place * (1.0 / period), max(level, 0.0)) - 0.5;
+}
+
 void main() {
+  begin();
   vec3 v = normalize(to_eye);
   vec3 smooth_normal = normalize(world_normal);
   float gloss = traits.z;
@@ -260,8 +228,9 @@ void main() {
   float ao = max(traits.x, 0.42 * gloss * open_mouth);
   // Pores and fine creases, and the unevenness under them. Light inside the skin smooths them away:
   // they are in the shine more than in the rest.
-  vec4 fine = texture(skin_detail, rest_place * (1.0 / 21.0)) - 0.5;
-  vec4 coarse = texture(skin_detail, rest_place.zxy * (1.0 / 83.0)) - 0.5;
+  float pixel_mm = pixel_size * length(to_eye) / max(dot(smooth_normal, v), 0.05);
+  vec4 fine = detail(rest_place, fine_period, pixel_mm);
+  vec4 coarse = detail(rest_place.zxy, coarse_period, pixel_mm);
   vec3 slope = (0.27 * fine.xyz + 0.12 * coarse.xyz) * (1.0 - 0.5 * gloss);
   vec3 n = normalize(smooth_normal - (slope - smooth_normal * dot(slope, smooth_normal)));
   vec3 shine_normal = normalize(mix(smooth_normal, n, 1.6));
@@ -335,16 +304,11 @@ void main() {
 )";
 
 ShaderSource lit(const Shading& shading, const char* own) {
-  std::string fragment = "#version 330 core\n";
-  const auto fixed = [&](const char* name, bool value) {
-    fragment += std::string("const bool ") + name + " = " + (value ? "true" : "false") + ";\n";
-  };
-  fixed("shadowed", shading.shadowed);
-  fixed("mapped", shading.mapped);
-  fixed("coated", shading.coated);
-  fixed("cuttable", shading.cuttable);
-  fixed("seen_through", shading.seen_through);
-  return {vertex_source, fragment + lighting_source + own};
+  const std::string start = shading_constants(shading);
+  if (shading.deferred)
+    return {start + whole_picture_source, start + pixel_source + lighting_source +
+                                              shade_offset_source + begin_pixel_source + own};
+  return {surface_vertices(), start + triangle_source + lighting_source + own};
 }
 
 }  // namespace

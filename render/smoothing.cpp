@@ -29,19 +29,24 @@ struct Pixels {
     return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]),
             static_cast<float>(p[3])};
   }
-  /// Between the middles of pixels.
-  Eigen::Array4f between(float x, float y) const {
-    const float left = std::floor(x), low = std::floor(y), s = x - left, t = y - low;
-    const int i = static_cast<int>(left), j = static_cast<int>(low);
+  /// So far from the middle of a pixel, between middles. Where the picture begins plays no part in
+  /// the rounding.
+  Eigen::Array4f between(int x, int y, float right, float up) const {
+    const float left = std::floor(right), low = std::floor(up), s = right - left, t = up - low;
+    const int i = x + static_cast<int>(left), j = y + static_cast<int>(low);
     return (1 - t) * ((1 - s) * color(i, j) + s * color(i + 1, j)) +
            t * ((1 - s) * color(i, j + 1) + s * color(i + 1, j + 1));
   }
   /// Brightness of a row's pixels from the one at `x` on.
   void brightness(int x, int y, std::vector<int>& row) const {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::uint8_t* p = at(x + static_cast<int>(i), y);
-      row[i] = red * p[0] + green * p[1] + blue * p[2];
-    }
+    const int count = static_cast<int>(row.size());
+    const int first = std::clamp(-x, 0, count), end = std::clamp(width - x, first, count);
+    const auto of = [](const std::uint8_t* p) { return red * p[0] + green * p[1] + blue * p[2]; };
+    const std::uint8_t* p = at(x + first, y);
+    int* to = row.data();
+    for (int i = first; i < end; ++i) to[i] = of(p + 4 * (i - first));
+    for (int i = 0; i < first; ++i) to[i] = of(at(x + i, y));
+    for (int i = end; i < count; ++i) to[i] = of(at(x + i, y));
   }
 };
 
@@ -60,10 +65,7 @@ Eigen::Array4f blurred(const Pixels& pixels, int x, int y, const Around& a) {
   const float shorten =
       1 / (edge.abs().minCoeff() + std::max(0.03f * share(a.nw + a.ne + a.sw + a.se), 0.008f));
   edge = (edge * shorten).max(-6).min(6);
-  const auto at = [&](float way) {
-    return pixels.between(static_cast<float>(x) + way * edge.x(),
-                          static_cast<float>(y) + way * edge.y());
-  };
+  const auto at = [&](float way) { return pixels.between(x, y, way * edge.x(), way * edge.y()); };
   const Eigen::Array4f near = 0.5f * (at(-1.f / 6) + at(1.f / 6));
   const Eigen::Array4f far = 0.5f * near + 0.25f * (at(-0.5f) + at(0.5f));
   const float f = 4 * (red * far[0] + green * far[1] + blue * far[2]);
@@ -81,6 +83,7 @@ void smooth_edges(std::span<const std::uint8_t> rgba, int width, int height, con
   // Rows of pixels with one more to each side, and of the corners below and above them.
   std::vector<int> under(columns + 2), row(columns + 2), over(columns + 2);
   std::vector<int> below(columns + 1), above(columns + 1);
+  std::vector<std::uint8_t> edge(columns);
   const auto corners = [&](const std::vector<int>& a, const std::vector<int>& b,
                            std::vector<int>& sums) {
     for (std::size_t i = 0; i <= columns; ++i) sums[i] = a[i] + a[i + 1] + b[i] + b[i + 1];
@@ -93,10 +96,17 @@ void smooth_edges(std::span<const std::uint8_t> rgba, int width, int height, con
     corners(row, over, above);
     std::uint8_t* out = &smoothed[4 * columns * static_cast<std::size_t>(y - within.y0)];
     std::memcpy(out, pixels.at(within.x0, y), 4 * columns);
+    const auto around = [&](std::size_t i) {
+      return Around{below[i], below[i + 1], above[i], above[i + 1], 4 * row[i + 1]};
+    };
     for (std::size_t i = 0; i < columns; ++i) {
-      const Around a = {below[i], below[i + 1], above[i], above[i + 1], 4 * row[i + 1]};
+      const Around a = around(i);
       const int high = a.high(), contrast = high - a.low();
-      if (contrast < least_contrast || 10 * contrast < high) continue;
+      edge[i] = contrast >= least_contrast && 10 * contrast >= high;
+    }
+    for (std::size_t i = 0; i < columns; ++i) {
+      if (!edge[i]) continue;
+      const Around a = around(i);
       const Eigen::Array4f color = blurred(pixels, within.x0 + static_cast<int>(i), y, a);
       for (std::size_t k = 0; k < 4; ++k)
         out[4 * i + k] = static_cast<std::uint8_t>(color[static_cast<int>(k)] + 0.5f);

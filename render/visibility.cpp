@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace condyle {
 namespace {
@@ -41,24 +42,34 @@ bool all_turned(const GpuMesh::Piece& piece, const Eigen::Vector4f& eye, float t
          sine * way.norm() + 0.5f * piece.box.diagonal().norm();
 }
 
-/// Places of the corners in pixels, with the depth in clip space and 1; the last is 0 before the
-/// near plane.
-void project(std::span<const Eigen::Vector3f> points, std::span<const int> corners,
-             const Eigen::Matrix4f& to_clip, int width, int height,
-             std::vector<Eigen::Vector4f>& projected) {
-  const Eigen::Vector2f half(0.5f * static_cast<float>(width), 0.5f * static_cast<float>(height));
-  projected.resize(points.size());
-  for (const int corner : corners) {
-    const auto i = static_cast<std::size_t>(corner);
-    const Eigen::Vector4f p = to_clip * points[i].homogeneous();
+/// From a part to pixels, the depth in clip space and 1; the last is 0 before the near plane.
+struct Projection {
+  Eigen::Matrix4f to_clip;
+  Eigen::Vector2f half;  // of the picture, pixels
+
+  Eigen::Vector4f operator()(const Eigen::Vector3f& point) const {
+    const Eigen::Vector4f p = to_clip.leftCols<3>() * point + to_clip.col(3);
     const float inverse = 1 / p.w();
     const bool before = p.w() > 0 && p.z() > -p.w();
-    projected[i] << (p.x() * inverse + 1) * half.x(), (p.y() * inverse + 1) * half.y(),
-        p.z() * inverse, before ? 1.f : 0.f;
+    return {(p.x() * inverse + 1) * half.x(), (p.y() * inverse + 1) * half.y(), p.z() * inverse,
+            before ? 1.f : 0.f};
   }
+};
+
+/// Whether the whole box lies behind what covers.
+bool hidden(const Eigen::AlignedBox3f& box, const Projection& project, const CoverGrid& cover) {
+  Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::max()), high = -low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector4f p =
+        project(box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)));
+    if (p.w() < 1) return false;
+    low = low.min(p.head<3>().array());
+    high = high.max(p.head<3>().array());
+  }
+  return cover.hides(low.head<2>(), high.head<2>(), low.z());
 }
 
-/// Whether nothing of the triangle reaches the picture. Corners as by `project`.
+/// Whether nothing of the triangle reaches the picture. Corners as projected.
 bool unseen(const Eigen::Vector4f& a, const Eigen::Vector4f& b, const Eigen::Vector4f& c,
             Sides sides, const CoverGrid* cover) {
   constexpr float rounding = 1.f / 16;  // pixels; cards move corners by less
@@ -86,16 +97,26 @@ const std::vector<Eigen::Vector3i>& Visibility::choose(const GpuMesh& mesh,
   eye << turn * (from.eye.head<3>() - from.eye.w() * model.topRightCorner<3, 1>()), from.eye.w();
   if (cover && cover->empty()) cover = nullptr;
   chosen_.clear();
-  if (cover || sides != Sides::both)
-    project(mesh.points(), surface.corners, to_clip, from.width, from.height, projected_);
+  const Projection project = {
+      to_clip, {0.5f * static_cast<float>(from.width), 0.5f * static_cast<float>(from.height)}};
+  projected_.resize(std::max(projected_.size(), mesh.points().size()));
+  turn_of_.resize(projected_.size(), turn_);
+  ++turn_;
+  const auto place = [&](int corner) -> const Eigen::Vector4f& {
+    const auto i = static_cast<std::size_t>(corner);
+    if (turn_of_[i] != turn_) projected_[i] = project(mesh.points()[i]);
+    turn_of_[i] = turn_;
+    return projected_[i];
+  };
   for (const auto& piece : surface.pieces) {
     if (frustum.misses(piece.box)) continue;
     if (sides != Sides::both && all_turned(piece, eye, sides == Sides::front ? -1.f : 1.f))
       continue;
+    if (cover && hidden(piece.box, project, *cover)) continue;
     const auto first = surface.triangles.begin() + piece.first_triangle;
     for (auto t = first; t != first + piece.triangle_count; ++t)
       if ((!cover && sides == Sides::both) ||
-          !unseen(projected_[(*t)[0]], projected_[(*t)[1]], projected_[(*t)[2]], sides, cover))
+          !unseen(place((*t)[0]), place((*t)[1]), place((*t)[2]), sides, cover))
         chosen_.push_back(*t);
   }
   return chosen_;

@@ -30,6 +30,8 @@ class Visibility {
 
  private:
   std::vector<Eigen::Vector4f> projected_;  // pixels, depth and 1; 0 before the near plane
+  std::vector<int> turn_of_;                // in which call a corner was projected
+  int turn_ = 0;
   std::vector<Eigen::Vector3i> chosen_;
 };
 
