@@ -137,6 +137,26 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
   return drawables;
 }
 
+std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
+  std::vector<Drawable> drawables;
+  drawables.reserve(others.size());
+  for (const auto& other : others) {
+    const Part& part = *other.part;
+    std::vector<Eigen::Vector3f> positions, normals;
+    for (const auto& v : part.mesh.vertices) positions.push_back(v.cast<float>());
+    vertex_normals(positions, part.mesh.triangles, normals);
+    GpuMesh mesh = other.mesh.twin();
+    mesh.send_shape(positions, normals);
+    mesh.send_colors(other.colors);
+    mesh.send_extras(other.extras);
+    if (part.role == Role::face) mesh.send_rest(positions);
+    drawables.push_back({&part, other.material, other.closed, other.box, std::move(mesh),
+                         other.creases, other.colors, other.extras, other.edges,
+                         other.coarse_edges});
+  }
+  return drawables;
+}
+
 void Drawable::set_finer(const TriMesh& surface, std::span<const Eigen::Vector3f> normals) {
   std::vector<Eigen::Vector3f> positions;
   positions.reserve(surface.vertices.size());

@@ -49,5 +49,7 @@ struct Drawable {
 
 /// Uploads the parts with their normals, colours, baked ambient occlusion and curvature.
 std::vector<Drawable> make_drawables(std::span<const Part> parts);
+/// The same for another context, at rest.
+std::vector<Drawable> drawables_like(std::span<const Drawable> others);
 
 }  // namespace condyle

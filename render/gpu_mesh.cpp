@@ -120,6 +120,19 @@ GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
       v = place;
     }
   find_corners(fine_, order_.size());
+  describe();
+}
+
+GpuMesh GpuMesh::twin() const {
+  GpuMesh other(fine_, coarse_, usage_);
+  other.order_ = order_;
+  other.place_ = place_;
+  other.describe();
+  return other;
+}
+
+/// Tells the card what it is given.
+void GpuMesh::describe() {
   glBindVertexArray(array_);
   send(GL_ELEMENT_ARRAY_BUFFER, indices_, std::span<const Eigen::Vector3i>(fine_.triangles),
        GL_STATIC_DRAW);

@@ -44,6 +44,9 @@ class GpuMesh {
   GpuMesh(std::span<const Eigen::Vector3f> positions, std::span<const Eigen::Vector3i> triangles,
           bool moving);
 
+  /// The same triangles in another context; shape and colours are to be sent.
+  GpuMesh twin() const;
+
   /// Makes the coarse surface of what the mesh was made of; before the shape is sent.
   void add_coarse(std::span<const Eigen::Vector3f> positions,
                   std::span<const Eigen::Vector3i> triangles);
@@ -72,6 +75,10 @@ class GpuMesh {
   const Surface& coarse() const { return coarse_.triangles.empty() ? fine() : coarse_; }
 
  private:
+  GpuMesh(Surface fine, Surface coarse, GLenum usage)
+      : coarse_(std::move(coarse)), fine_(std::move(fine)), usage_(usage) {}
+  void describe();
+
   template <class T>
   std::vector<T> ordered(std::span<const T> values) const;
   template <class T>

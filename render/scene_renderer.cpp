@@ -64,8 +64,8 @@ struct SceneRenderer::State {
   PictureTarget target;
   float map_low = 0, map_high = 1;  // values are kept within
 
-  explicit State(std::span<const Part> all)
-      : parts(all), drawables(make_drawables(all)), mouth_y(front_of_mouth(drawables)) {
+  State(std::span<const Part> all, std::vector<Drawable> made)
+      : parts(all), drawables(std::move(made)), mouth_y(front_of_mouth(drawables)) {
     for (const auto& drawable : drawables) box.extend(drawable.box);
     if (box.isEmpty()) box = Eigen::AlignedBox3f(Eigen::Vector3f::Zero());
     place({});
@@ -183,7 +183,11 @@ PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettin
 }
 
 SceneRenderer::SceneRenderer(std::span<const Part> parts)
-    : state_(std::make_unique<State>(parts)) {}
+    : state_(std::make_unique<State>(parts, make_drawables(parts))) {}
+
+SceneRenderer::SceneRenderer(const SceneRenderer& other)
+    : state_(
+          std::make_unique<State>(other.state_->parts, drawables_like(other.state_->drawables))) {}
 
 SceneRenderer::~SceneRenderer() = default;
 

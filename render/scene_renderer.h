@@ -48,8 +48,10 @@ class SceneRenderer {
  public:
   /// Uploads every part once. The parts must outlive the renderer.
   explicit SceneRenderer(std::span<const Part> parts);
+  /// The same parts at rest for another context: what was computed of them is taken over. The other
+  /// must be as it was made, and idle.
+  explicit SceneRenderer(const SceneRenderer& other);
   ~SceneRenderer();
-  SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
   /// Box of everything that can be drawn, at rest, mm.

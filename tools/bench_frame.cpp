@@ -116,7 +116,7 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
     }
   }
   bar.show("recording", 1);
-  std::vector<BenchRow> rows = bench_film(renderer, of_film, camera, smoothed);
+  std::vector<BenchRow> rows = bench_film(scene.patient.parts, of_film, camera, smoothed);
   bar.show("playing as the window does", 1);
   for (BenchRow& row : bench_window(scene, motion, settings, camera))
     rows.push_back(std::move(row));

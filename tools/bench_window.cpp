@@ -5,9 +5,11 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <thread>
 
 #include "engine/core/error.h"
+#include "render/drawers.h"
 #include "render/recorder.h"
 #include "render/window/layout.h"
 #include "render/window/picture_thread.h"
@@ -102,10 +104,11 @@ std::vector<BenchRow> bench_window(const Scene& scene, const Motion& motion,
   return rows;
 }
 
-std::vector<BenchRow> bench_film(SceneRenderer& renderer, const std::vector<FrameState>& frames,
+std::vector<BenchRow> bench_film(std::span<const Part> parts, const std::vector<FrameState>& frames,
                                  const Camera& camera, const PictureSettings& picture) {
   constexpr int rounds = 5;
   const PassingPath folder("bench");
+  Drawers drawers(parts);
   const auto record = [&](bool film) {
     const auto start = Clock::now();
     Recorder recorder({.folder = folder.path(),
@@ -114,10 +117,13 @@ std::vector<BenchRow> bench_film(SceneRenderer& renderer, const std::vector<Fram
                        .frames = static_cast<int>(frames.size()),
                        .film = film,
                        .identity = {}});
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      renderer.update(frames[i]);
-      recorder.add(static_cast<int>(i), renderer.picture(camera, picture));
-    }
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      drawers.add([&, i](SceneRenderer& renderer, int) {
+        renderer.update(frames[i]);
+        const auto image = std::make_shared<Image>(renderer.picture(camera, picture));
+        return [&recorder, i, image] { recorder.add(static_cast<int>(i), std::move(*image)); };
+      });
+    drawers.finish();
     recorder.finish();
     return seconds(start, Clock::now()) / static_cast<double>(frames.size());
   };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ std::vector<BenchRow> bench_window(const Scene& scene, const Motion& motion,
                                    const SimulatorSettings& settings, const Camera& camera);
 
 /// How many times as long a recording takes with a film as without; empty without ffmpeg.
-std::vector<BenchRow> bench_film(SceneRenderer& renderer, const std::vector<FrameState>& frames,
+std::vector<BenchRow> bench_film(std::span<const Part> parts, const std::vector<FrameState>& frames,
                                  const Camera& camera, const PictureSettings& picture);
 
 }  // namespace condyle

@@ -44,24 +44,11 @@ PictureTaker::PictureTaker(const RecordOptions& options, const RecordingSubject&
     : subject_(subject),
       caption_(options.picture.caption),
       plan_(parse_pictures(options.picture, subject.scene.patient)),
-      renderer_(subject.scene.patient.parts),
       rest_(rest_frame(subject.scene)) {
   const auto& patient = subject.scene.patient;
   const auto& wanted = options.picture;
   const bool distance = plan_.map == SurfaceMap::distance;
-  if (distance || plan_.patches)
-    // Finer than a window has time for.
-    distances_.emplace(patient,
-                       // Beyond what is coloured by an edge's length: its end is a smooth line.
-                       DistanceMapSettings{.reach_mm = distance ? wanted.distance_near_mm + 1 : 1,
-                                           .teeth_edge_mm = 0.4,
-                                           .bone_edge_mm = 1,
-                                           .most_triangles = 400000,
-                                           .pair_rules = subject.settings.contact.pair_rules},
-                       subject.settings.threads, renderer_,
-                       distance ? distance_colours({.near_mm = wanted.distance_near_mm})
-                                : patch_colours(*plan_.settings.mapped_up_to));
-  if (plan_.map == SurfaceMap::displacement) displacement_.emplace(patient.parts);
+  near_mm_ = wanted.distance_near_mm;
   if (plan_.overlays.muscles) muscles_ = muscles_of(patient);
   if (subject.settings.face) carry_face(subject.scene, rest_, subject.settings.threads);
 
@@ -90,6 +77,34 @@ PictureTaker::PictureTaker(const RecordOptions& options, const RecordingSubject&
     kept_ += view.recorder->kept_frames();
     views_.push_back(std::move(view));
   }
+
+  // A map has its own threads to find its values.
+  const bool mapped = distance || plan_.patches || plan_.map == SurfaceMap::displacement;
+  drawers_.emplace(patient.parts, mapped ? 1 : 2);
+  for (int drawer = 0; drawer < drawers_->count(); ++drawer) desks_.emplace_back();
+  if (mapped)
+    drawers_->add([this](SceneRenderer& renderer, int drawer) {
+      prepare(renderer, desks_[static_cast<std::size_t>(drawer)]);
+      return [] {};
+    });
+}
+
+void PictureTaker::prepare(SceneRenderer& renderer, Desk& desk) const {
+  const auto& patient = subject_.scene.patient;
+  const bool distance = plan_.map == SurfaceMap::distance;
+  if (distance || plan_.patches)
+    // Finer than a window has time for.
+    desk.distances.emplace(patient,
+                           // Beyond what is coloured by an edge's length: its end is a smooth line.
+                           DistanceMapSettings{.reach_mm = distance ? near_mm_ + 1 : 1,
+                                               .teeth_edge_mm = 0.4,
+                                               .bone_edge_mm = 1,
+                                               .most_triangles = 400000,
+                                               .pair_rules = subject_.settings.contact.pair_rules},
+                           subject_.settings.threads, renderer,
+                           distance ? distance_colours({.near_mm = near_mm_})
+                                    : patch_colours(*plan_.settings.mapped_up_to));
+  if (plan_.map == SurfaceMap::displacement) desk.displacement.emplace(patient.parts);
 }
 
 bool PictureTaker::wanted(int frame) const {
@@ -98,18 +113,19 @@ bool PictureTaker::wanted(int frame) const {
   return false;
 }
 
-Image PictureTaker::drawn(const View& view, const Camera& camera, const FrameState& state,
-                          bool with_paths, bool with_map) {
-  renderer_.update(state);
-  if (distances_) distances_->color(renderer_, state);
-  if (displacement_) {
+Image PictureTaker::drawn(const View& view, const Camera& camera, const Shot& shot,
+                          bool with_map) const {
+  auto& [renderer, desk, state, overlays] = shot;
+  renderer.update(state);
+  if (desk.distances) desk.distances->color(renderer, state);
+  if (desk.displacement) {
     if (with_map)
-      displacement_->color(renderer_, state);
+      desk.displacement->color(renderer, state);
     else
-      displacement_->clear(renderer_);
+      desk.displacement->clear(renderer);
   }
-  overlays_.send(renderer_, overlays_of(state, with_paths));
-  return renderer_.picture(camera, view.settings);
+  desk.overlays.send(renderer, overlays);
+  return renderer.picture(camera, view.settings);
 }
 
 Overlays PictureTaker::overlays_of(const FrameState& state, bool with_paths) const {
@@ -125,49 +141,78 @@ Overlays PictureTaker::overlays_of(const FrameState& state, bool with_paths) con
   return all;
 }
 
-Image PictureTaker::picture(const View& view, const Camera& camera, const FrameState& state) {
-  Image image = drawn(view, camera, state, true, true);
-  if (plan_.wipe) image = wiped(drawn(view, camera, rest_, false, true), image, *plan_.wipe);
-  if (distances_) distances_->add_legend_to(image);
-  if (displacement_) displacement_->add_legend_to(image);
+Image PictureTaker::picture(const View& view, const Camera& camera, const Shot& shot) const {
+  Image image = drawn(view, camera, shot, true);
+  if (plan_.wipe) {
+    const Overlays still = overlays_of(rest_, false);
+    image = wiped(drawn(view, camera, {shot.renderer, shot.desk, rest_, still}, true), image,
+                  *plan_.wipe);
+  }
+  if (shot.desk.distances) shot.desk.distances->add_legend_to(image);
+  if (shot.desk.displacement) shot.desk.displacement->add_legend_to(image);
   return image;
 }
 
-Image PictureTaker::before_after(const View& view, const Camera& camera, const FrameState& state) {
+Image PictureTaker::before_after(const View& view, const Camera& camera, const Shot& shot) const {
   std::array<Image, 3> images;  // at rest, now, the way between
-  auto notes = plan_.annotations;
+  const Overlays still = overlays_of(rest_, false);
   for (std::size_t i = 0; i < images.size(); ++i) {
     const bool mapped = i == 2, moved = i > 0;
-    images[i] = drawn(view, camera, moved ? state : rest_, moved, mapped);
-    if (mapped) displacement_->add_legend_to(images[i]);
-    annotate(images[i], words_, camera, notes);
+    images[i] =
+        drawn(view, camera, moved ? shot : Shot{shot.renderer, shot.desk, rest_, still}, mapped);
+    if (mapped) shot.desk.displacement->add_legend_to(images[i]);
+    annotate(images[i], shot.desk.words, camera, plan_.annotations);
   }
   return beside(images);
 }
 
-void PictureTaker::take(int frame, FrameState& state) {
-  paths_.add(state.measures);
-  if (!wanted(frame)) return;
-  const StageTimer timer(state.times, Stage::render);
+Image PictureTaker::finished(const View& view, int frame, const Shot& shot) const {
   const double share = subject_.frames > 1 ? static_cast<double>(frame) / (subject_.frames - 1) : 0;
-  for (auto& view : views_) {
-    if (view.recorder->has(frame)) continue;
-    const Camera camera = view.camera.at(share, state);
-    auto notes = plan_.annotations;
-    notes.caption = caption_lines(caption_, frame, state, subject_.motion.name);
-    Image image;
-    if (plan_.before_after) {
-      image = before_after(view, camera, state);
-      notes = {.caption = notes.caption};
-    } else {
-      image = picture(view, camera, state);
-    }
-    annotate(image, words_, camera, notes);
-    view.recorder->add(frame, std::move(image));
+  const Camera camera = view.camera.at(share, shot.state);
+  auto notes = plan_.annotations;
+  notes.caption = caption_lines(caption_, frame, shot.state, subject_.motion.name);
+  Image image;
+  if (plan_.before_after) {
+    image = before_after(view, camera, shot);
+    notes = {.caption = notes.caption};
+  } else {
+    image = picture(view, camera, shot);
   }
+  annotate(image, shot.desk.words, camera, notes);
+  return image;
 }
 
+void PictureTaker::take(int frame, FrameState state, const Done& done) {
+  paths_.add(state.measures);
+  struct Work {
+    FrameState state;
+    Overlays overlays;
+    std::vector<std::pair<Recorder*, Image>> images;
+  };
+  const bool draw = wanted(frame);
+  const auto work = std::make_shared<Work>();
+  if (draw) work->overlays = overlays_of(state, true);
+  work->state = std::move(state);
+  drawers_->add([this, frame, draw, work, done](SceneRenderer& renderer, int drawer) {
+    if (draw) {
+      const StageTimer timer(work->state.times, Stage::render);
+      const Shot shot = {renderer, desks_[static_cast<std::size_t>(drawer)], work->state,
+                         work->overlays};
+      for (const auto& view : views_)
+        if (!view.recorder->has(frame))
+          work->images.emplace_back(view.recorder.get(), finished(view, frame, shot));
+    }
+    return [frame, work, done] {
+      for (auto& [recorder, image] : work->images) recorder->add(frame, std::move(image));
+      done(frame, work->state);
+    };
+  });
+}
+
+void PictureTaker::wait() { drawers_->finish(); }
+
 void PictureTaker::finish() {
+  wait();
   for (auto& view : views_) view.recorder->finish();
 }
 

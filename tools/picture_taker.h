@@ -1,11 +1,13 @@
 #pragma once
 
+#include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "render/displacement_drawing.h"
-#include "render/gl_context.h"
+#include "render/drawers.h"
 #include "render/recorder.h"
 #include "render/shown_overlays.h"
 #include "sim/case/muscle.h"
@@ -30,15 +32,19 @@ class PictureTaker {
  public:
   PictureTaker(const RecordOptions& options, const RecordingSubject& subject);
 
-  /// Whether any camera still wants the frame.
-  bool wanted(int frame) const;
   /// Pictures that were there already.
   int kept() const { return kept_; }
 
+  /// What is done with a frame once its pictures are drawn: in order, one at a time, on threads of
+  /// the drawing.
+  using Done = std::function<void(int frame, FrameState& state)>;
   /// All frames, in their order, are to be shown to it, wanted or not: paths grow with them.
-  void take(int frame, FrameState& state);
+  /// Returns when it is ready for the next. throws: MachineError of this frame or an earlier one.
+  void take(int frame, FrameState state, const Done& done);
+  /// Until all taken are drawn and done.
+  void wait();
+  /// Waits for the files and makes the films.
   void finish();
-  const std::string& driver() const { return context_.description(); }
 
  private:
   struct View {
@@ -46,26 +52,40 @@ class PictureTaker {
     PictureSettings settings;
     std::unique_ptr<Recorder> recorder;
   };
-  Image picture(const View& view, const Camera& camera, const FrameState& state);
-  Image before_after(const View& view, const Camera& camera, const FrameState& state);
-  Image drawn(const View& view, const Camera& camera, const FrameState& state, bool with_paths,
-              bool with_map);
+  /// What one drawing thread draws with.
+  struct Desk {
+    OverlaySender overlays;
+    Lettering words;
+    std::optional<DistanceDrawing> distances;
+    std::optional<DisplacementDrawing> displacement;
+  };
+  /// A frame with what is drawn around it.
+  struct Shot {
+    SceneRenderer& renderer;
+    Desk& desk;
+    const FrameState& state;
+    const Overlays& overlays;
+  };
+  void prepare(SceneRenderer& renderer, Desk& desk) const;
+  Image picture(const View& view, const Camera& camera, const Shot& shot) const;
+  Image before_after(const View& view, const Camera& camera, const Shot& shot) const;
+  Image drawn(const View& view, const Camera& camera, const Shot& shot, bool with_map) const;
+  Image finished(const View& view, int frame, const Shot& shot) const;
+  /// Whether any camera still wants the frame.
+  bool wanted(int frame) const;
   Overlays overlays_of(const FrameState& state, bool with_paths) const;
 
-  OffscreenContext context_;
   const RecordingSubject subject_;
   std::string caption_;
   PicturePlan plan_;
-  SceneRenderer renderer_;
   FrameState rest_;  // for wipes
   MotionPaths paths_;
   std::vector<Muscle> muscles_;  // that are drawn
-  OverlaySender overlays_;
-  Lettering words_;
-  std::optional<DistanceDrawing> distances_;
-  std::optional<DisplacementDrawing> displacement_;
+  double near_mm_ = 0;           // of the map of distances
   std::vector<View> views_;
   int kept_ = 0;
+  std::deque<Desk> desks_;
+  std::optional<Drawers> drawers_;  // ends first
 };
 
 }  // namespace condyle

@@ -105,7 +105,9 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   const Motion& motion = playback.motion();
   const FrameTimes times = frame_times(options, motion.duration_s);
 
-  std::optional<PictureTaker> pictures;
+  TraceWriter trace(options.out / "trace.csv", motion.muscle_names);
+  MotionReport report(scene, motion, settings);
+  std::optional<PictureTaker> pictures;  // ends first: it gives frames to the trace
   if (options.pictures)
     pictures.emplace(
         options,
@@ -121,15 +123,17 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
                                         hash_text(motion_hash(motion, times, settings.step_s))},
                          {"contact", contact_text(options.motion)},
                          {"tissue", tissue_text(options.motion, scene.patient)}}});
-  TraceWriter trace(options.out / "trace.csv", motion.muscle_names);
-  MotionReport report(scene, motion, settings);
   for (int i = 0; i < times.count; ++i) {
     FrameState frame = playback.at(times[i]);
-    if (pictures) pictures->take(i, frame);
-    trace.add(i, frame);
     report.add(frame);
+    if (pictures)
+      pictures->take(i, std::move(frame),
+                     [&](int number, FrameState& drawn) { trace.add(number, drawn); });
+    else
+      trace.add(i, frame);
     bar.show(fmt::format("frame {} of {}", i + 1, times.count), (i + 1.0) / times.count);
   }
+  if (pictures) pictures->wait();
   bar.clear();
   trace.finish();
   const std::string json = report.json();

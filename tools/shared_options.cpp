@@ -109,8 +109,9 @@ void add_tissue(CLI::App* command, MotionOptions& motion) {
       ->check(CLI::Range(100, 20000));
   TissueOptions& model = motion.tissue_model;
   command->add_option("--layers", model.layers, "Layers of soft tissue: 1, 2, 3 or 5 (3)");
-  command->add_option("--turgor", model.turgor,
-                      "Tension of the skin: its rest length over its length, above 0 to 1 (1: none)");
+  command->add_option(
+      "--turgor", model.turgor,
+      "Tension of the skin: its rest length over its length, above 0 to 1 (1: none)");
   command->add_option("--lambda", model.lambda,
                       "Weight of springs against volumes, 0.001 to 0.999 (0.5)");
   command
@@ -177,7 +178,8 @@ void add_pictures(CLI::App* command, PictureOptions& picture) {
       ->type_name("LANDMARK|X,Y,Z,RADIUS");
   command->add_option(
       "--overlay", picture.overlay,
-      "Also draw, by commas: springs prisms bone-springs layers (of the tissue) muscles (their lines "
+      "Also draw, by commas: springs prisms bone-springs layers (of the tissue) muscles (their "
+      "lines "
       "of action) axes paths (of condyles and incisal point) ghost (where all was at rest) "
       "wireframe[:PARTS] patches (of contact) scale letters (L R A P S I)");
   command

@@ -16,7 +16,7 @@ struct TissueTarget {
   Nodes converged = {};
   double converged_energy = 0;
   std::shared_ptr<const NetRuns> runs = {};  // of the net
-  Nodes begun = {};  // where solves start; at rest if empty
+  Nodes begun = {};                          // where solves start; at rest if empty
 
   const Nodes& start() const { return begun.empty() ? set.rest : begun; }
 };

@@ -10,7 +10,8 @@
 namespace condyle {
 
 /// What stands beside the parts in a view, of one frame: axes, paths of the motion, what the tissue
-/// is made of, lines of action of muscles. `paths`: where incisor and condyles go; none: not known yet.
+/// is made of, lines of action of muscles. `paths`: where incisor and condyles go; none: not known
+/// yet.
 Overlays view_overlays(const ViewPatient& patient, const Motion& motion, const FrameState& frame,
                        const ViewState& view, const std::shared_ptr<const LineSet>& paths);
 
