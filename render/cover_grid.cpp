@@ -80,7 +80,7 @@ void CoverGrid::start(int width, int height, const Eigen::Matrix4f& view_project
   view_projection_ = view_projection;
   any_ = false;
   tiles_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_),
-                {infinite, -infinite, -infinite, 0});
+                {infinite, -infinite, infinite, 0});
 }
 
 CoverGrid::Range CoverGrid::range(const Eigen::Vector2f& low, const Eigen::Vector2f& high) const {
@@ -107,7 +107,7 @@ void CoverGrid::each_tile(const Eigen::Vector2f& low, const Eigen::Vector2f& hig
 
 void CoverGrid::add(std::span<const Eigen::Vector3f> positions, std::span<const int> corners,
                     std::span<const Eigen::Vector3i> triangles, const SurfaceEdges& edges,
-                    const Eigen::Matrix4f& model, float depth_slope, float depth_units) {
+                    const Eigen::Matrix4f& model) {
   const Eigen::Matrix4f to_clip = view_projection_ * model;
   const Eigen::Vector2f half(0.5f * static_cast<float>(width_), 0.5f * static_cast<float>(height_));
   projected_.resize(positions.size());
@@ -140,17 +140,9 @@ void CoverGrid::add(std::span<const Eigen::Vector3f> positions, std::span<const 
     const Corners t(projected_, triangles[i]);
     const float nearest = std::min({t.a.z(), t.b.z(), t.c.z()});
     const float farthest = std::max({t.a.z(), t.b.z(), t.c.z()});
-    float moved = depth_units;
-    if (depth_slope > 0) {
-      const Eigen::Vector3f ab = t.b - t.a, ac = t.c - t.a;
-      const float dx = std::abs(ab.z() * ac.y() - ac.z() * ab.y()),
-                  dy = std::abs(ab.x() * ac.z() - ac.x() * ab.z());
-      moved += t.area > 0 ? depth_slope * 1.01f * std::max(dx, dy) / t.area : infinite;
-    }
     each_tile(t.low, t.high, [&](Tile& at, int x, int y) {
       if (nearest >= at.rim) return;
       at.farthest = std::max(at.farthest, farthest);
-      at.covered_to = std::max(at.covered_to, farthest + moved);
       at.layers +=
           t.around(tile * (static_cast<float>(x) + 0.5f), tile * (static_cast<float>(y) + 0.5f));
     });
@@ -163,7 +155,7 @@ void CoverGrid::finish() {
   // without them, unless a triangle reaches across the nearest rim's depth; and where the middle of
   // the tile is covered, so is all of it.
   for (auto& at : tiles_)
-    at.covered_to = at.layers > 0 && at.farthest < at.rim ? at.covered_to + depth_error : infinite;
+    at.covered_to = at.layers > 0 && at.farthest < at.rim ? at.farthest + depth_error : infinite;
 }
 
 }  // namespace condyle

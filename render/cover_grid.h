@@ -33,12 +33,10 @@ class CoverGrid {
   void start(int width, int height, const Eigen::Matrix4f& view_projection);
 
   /// Adds the front sides of a surface. It is given up as a whole when it comes near the eye.
-  /// depth_slope, depth_units: by how much the card moves depths away, as of glPolygonOffset, with
-  /// units in clip space.
   /// corners: the positions that the triangles use.
   void add(std::span<const Eigen::Vector3f> positions, std::span<const int> corners,
            std::span<const Eigen::Vector3i> triangles, const SurfaceEdges& edges,
-           const Eigen::Matrix4f& model, float depth_slope = 0, float depth_units = 0);
+           const Eigen::Matrix4f& model);
 
   /// To be called before the questions.
   void finish();
@@ -58,7 +56,7 @@ class CoverGrid {
   struct Tile {
     float rim;         // depth of the nearest rim, in clip space
     float farthest;    // of what reaches before the rim
-    float covered_to;  // the same as the card keeps it; finished: infinite where the tile is open
+    float covered_to;  // the same, once finished; infinite where the tile is open
     int layers;        // over its middle
   };
   struct Range {

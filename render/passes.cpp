@@ -149,7 +149,7 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
   const Viewpoint light = {to_clip * view.shadow,
                            (Eigen::Vector4f() << view.lights.key_direction, 0).finished(),
                            shadow_side, shadow_side};
-  constexpr float slope = 2, units = 4, unit_in_clip_space = 2.f / (1 << 24);
+  constexpr float slope = 2, units = 4;
   shadow_map_.bind();
   glClear(GL_DEPTH_BUFFER_BIT);
   glEnable(GL_POLYGON_OFFSET_FILL);
@@ -158,14 +158,6 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
   depth_.set("view_projection", light.view_projection);
   // What is seen through lets the light through; what an opaque face encloses casts no shadow that
   // the face does not cast already.
-  cover_from_light_.start(shadow_side, shadow_side, light.view_projection);
-  each_covering(items, [&](const DrawItem& item) {
-    const auto& mesh = item.drawable->mesh;
-    cover_from_light_.add(mesh.points(), mesh.coarse().corners, mesh.coarse().triangles,
-                          *item.drawable->coarse_edges, item.model, slope,
-                          2 * units * unit_in_clip_space);
-  });
-  cover_from_light_.finish();
   Eigen::AlignedBox3f enclosed;
   for (const auto& item : items)
     if (item.opaque() && !item.cut() && item.role() == Role::face) enclosed.extend(item.box());
@@ -177,8 +169,7 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
     begin_cut(depth_, item, view);
     depth_.set("model", item.model);
     const auto& mesh = item.drawable->mesh;
-    mesh.draw(visibility_.choose(mesh, mesh.coarse(), item.model, light, sides_of(item),
-                                 &cover_from_light_));
+    mesh.draw(visibility_.choose(mesh, mesh.coarse(), item.model, light, sides_of(item)));
     end_cut();
   }
   glDisable(GL_POLYGON_OFFSET_FILL);

@@ -133,7 +133,7 @@ class Passes {
   ColourMap colour_map_;
   DepthMap shadow_map_;
   Visibility visibility_;
-  CoverGrid cover_, cover_from_light_;  // by the opaque face
+  CoverGrid cover_;  // by the opaque face
 };
 
 }  // namespace condyle

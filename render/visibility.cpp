@@ -71,7 +71,7 @@ bool hidden(const Eigen::AlignedBox3f& box, const Projection& project, const Cov
 
 /// Whether nothing of the triangle reaches the picture. Corners as projected.
 bool unseen(const Eigen::Vector4f& a, const Eigen::Vector4f& b, const Eigen::Vector4f& c,
-            Sides sides, const CoverGrid* cover) {
+            Sides sides, const CoverGrid& cover) {
   constexpr float rounding = 1.f / 16;  // pixels; cards move corners by less
   if (a.w() + b.w() + c.w() < 3) return false;
   const Eigen::Vector4f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
@@ -80,7 +80,7 @@ bool unseen(const Eigen::Vector4f& a, const Eigen::Vector4f& b, const Eigen::Vec
     const float away = sides == Sides::front ? -area : area;
     if (away > rounding * (high - low).head<2>().sum()) return true;
   }
-  return cover && cover->hides(low.head<2>(), high.head<2>(), low.z());
+  return cover.hides(low.head<2>(), high.head<2>(), low.z());
 }
 
 }  // namespace
@@ -114,9 +114,12 @@ const std::vector<Eigen::Vector3i>& Visibility::choose(const GpuMesh& mesh,
       continue;
     if (cover && hidden(piece.box, project, *cover)) continue;
     const auto first = surface.triangles.begin() + piece.first_triangle;
+    if (!cover) {  // the card leaves out the other side
+      chosen_.insert(chosen_.end(), first, first + piece.triangle_count);
+      continue;
+    }
     for (auto t = first; t != first + piece.triangle_count; ++t)
-      if ((!cover && sides == Sides::both) ||
-          !unseen(place((*t)[0]), place((*t)[1]), place((*t)[2]), sides, cover))
+      if (!unseen(place((*t)[0]), place((*t)[1]), place((*t)[2]), sides, *cover))
         chosen_.push_back(*t);
   }
   return chosen_;
