@@ -17,7 +17,7 @@ struct Image {
 /// colours are multiplied by it already.
 Image averaged(const Image& image, int n);
 
-/// PNG bytes (libpng, level 1, SUB filter: fast, and the same bytes every time).
+/// PNG bytes (level 1, SUB filter: fast, and the same bytes every time).
 std::string encode_png(const Image& image);
 /// throws: MachineError when it cannot be written; the old file stays whole.
 void write_png(const std::filesystem::path& file, const Image& image);

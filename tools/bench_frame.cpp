@@ -116,7 +116,7 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
     }
   }
   bar.show("recording", 1);
-  std::vector<BenchRow> rows = bench_film(scene.patient.parts, of_film, camera, smoothed);
+  std::vector<BenchRow> rows = bench_film(scene.patient.parts, of_film, camera, smoothed, sampled);
   bar.show("playing as the window does", 1);
   for (BenchRow& row : bench_window(scene, motion, settings, camera))
     rows.push_back(std::move(row));
@@ -167,7 +167,9 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
         "{}; {} tissue nodes, largest bone {} triangles, {} threads; frame.total is motion + "
         "contact + tissue; frame.face_dense carries {} triangles of the face; frame.render is "
         "a picture of 1920x1080 with shadows, edges smoothed (fxaa) or sampled four times (msaa), "
-        "on {}; frame.record_with_film: a recording with a film against one without; frame.window: "
+        "on {}; frame.record: pictures drawn and written, of frames simulated before, with fxaa "
+        "and (record_msaa) with msaa; frame.record_with_film: a recording with a film against one "
+        "without; frame.window: "
         "pictures and steps a second while the motion plays in a window of that size\n",
         "median and 95th percentile (of what is counted a second: 5th)", nodes, bone_triangles,
         common.threads, face_triangles, context.description());

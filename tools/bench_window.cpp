@@ -105,11 +105,12 @@ std::vector<BenchRow> bench_window(const Scene& scene, const Motion& motion,
 }
 
 std::vector<BenchRow> bench_film(std::span<const Part> parts, const std::vector<FrameState>& frames,
-                                 const Camera& camera, const PictureSettings& picture) {
+                                 const Camera& camera, const PictureSettings& smoothed,
+                                 const PictureSettings& sampled) {
   constexpr int rounds = 5;
   const PassingPath folder("bench");
   Drawers drawers(parts);
-  const auto record = [&](bool film) {
+  const auto record = [&](const PictureSettings& picture, bool film) {
     const auto start = Clock::now();
     Recorder recorder({.folder = folder.path(),
                        .width = picture.width,
@@ -128,22 +129,23 @@ std::vector<BenchRow> bench_film(std::span<const Part> parts, const std::vector<
     return seconds(start, Clock::now()) / static_cast<double>(frames.size());
   };
   BenchRow ratio{"frame.record_with_film", "times as long", {}, {}},
-      plain{"frame.record", "pictures/s", {}, {}};
+      plain{"frame.record", "pictures/s", {}, {}}, fine{"frame.record_msaa", "pictures/s", {}, {}};
   try {
-    record(true);  // the first has all to prepare
+    record(smoothed, true);  // the first has all to prepare
     for (int i = 0; i < rounds; ++i) {
-      const double without = record(false);
+      const double without = record(smoothed, false);
       plain.samples.push_back(1 / without);
-      ratio.samples.push_back(record(true) / without);
+      ratio.samples.push_back(record(smoothed, true) / without);
+      fine.samples.push_back(1 / record(sampled, false));
     }
   } catch (const MachineError&) {
     return {};  // no ffmpeg, or no room
   }
-  for (BenchRow* row : {&plain, &ratio})
-    row->parameters = {{"width", picture.width},
-                       {"height", picture.height},
+  for (BenchRow* row : {&plain, &fine, &ratio})
+    row->parameters = {{"width", smoothed.width},
+                       {"height", smoothed.height},
                        {"pictures", static_cast<double>(frames.size())}};
-  return {plain, ratio};
+  return {plain, fine, ratio};
 }
 
 }  // namespace condyle

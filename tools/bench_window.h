@@ -25,8 +25,10 @@ struct BenchRow {
 std::vector<BenchRow> bench_window(const Scene& scene, const Motion& motion,
                                    const SimulatorSettings& settings, const Camera& camera);
 
-/// How many times as long a recording takes with a film as without; empty without ffmpeg.
+/// Recorded pictures a second, with edges smoothed and sampled, and how many times as long it takes
+/// with a film as without; empty without ffmpeg. Of the same size.
 std::vector<BenchRow> bench_film(std::span<const Part> parts, const std::vector<FrameState>& frames,
-                                 const Camera& camera, const PictureSettings& picture);
+                                 const Camera& camera, const PictureSettings& smoothed,
+                                 const PictureSettings& sampled);
 
 }  // namespace condyle
