@@ -299,12 +299,16 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
   const DrawnBox around = around_of(view.box);
   buffer_.fit(view.width, view.height);
   buffer_.begin_surfaces(around);
+  std::vector<char> seen(items.size(), 0);
   for (std::size_t i = 0; i < items.size(); ++i) {
+    const auto& chosen = seen_of(items[i], view);
+    seen[i] = !chosen.empty();
+    if (!seen[i]) continue;
     buffer_.number_surface(static_cast<int>(i) + 1);
     GlProgram& program = kept_.of({.skin = items[i].role() == Role::face});
     program.use();
     place(program, items[i], view);
-    items[i].mesh().draw(seen_of(items[i], view));
+    items[i].mesh().draw(chosen);
     end_cut();
   }
   glFlush();
@@ -324,7 +328,7 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
     PictureBounds bounds(view.width, view.height, view.view_projection);
     bounds.add(surface_of(items[i], view).box, items[i].model);
     const DrawnBox box = around_of(bounds.box(1)).both(around);
-    if (box.empty()) continue;
+    if (!seen[i] || box.empty()) continue;
     GlProgram& program =
         begin(items[i].role() == Role::face ? skins_ : surfaces_, items[i], view, true);
     see(program);
@@ -350,9 +354,10 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
     return;
   }
   last.set("last_pixel", Eigen::Vector2i(view.width - 1, view.height - 1));
-  for (const auto& item : items) {
-    place(last, item, view);
-    item.mesh().draw(seen_of(item, view));
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (!seen[i]) continue;
+    place(last, items[i], view);
+    items[i].mesh().draw(seen_of(items[i], view));
     end_cut();
   }
 }

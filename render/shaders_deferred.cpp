@@ -44,7 +44,8 @@ void begin() {
   vec3 place = vec3(words.z & 0xffffu, words.z >> 16u, words.w & 0xffffu) * (1.0 / 65535.0);
   rest_place = rest_period * place;
   traits = vec4(colored.a, last.zw, place.z);
-  to_eye = -texelFetch(kept_away, pixel, 0).r * (ray + gl_FragCoord.x * ray_right + gl_FragCoord.y * ray_up);
+  to_eye = -texelFetch(kept_away, pixel, 0).r
+         * (ray + gl_FragCoord.x * ray_right + gl_FragCoord.y * ray_up);
   shadow_place = (shadow_matrix * vec4(eye - to_eye + shade_offset(world_normal, key_direction,
                                                                    to_eye, two_sided), 1.0)).xyz;
 }
@@ -86,7 +87,8 @@ void main() {
 )";
 
 // What a picture with several samples shows of a surface that was lit pixel by pixel: where another
-// one covers the pixel's middle, the light of the neighbour that lies nearest in depth.
+// one covers the pixel's middle, the light of the neighbour that lies nearest in depth. A sliver that
+// covers no middle around is left out.
 const char* const carry_source = R"(
 uniform sampler2D kept_away, lit;
 uniform ivec2 last_pixel;
@@ -103,6 +105,7 @@ void main() {
       best = there;
     }
   }
+  if (off > 1e20) discard;
   result = texelFetch(lit, best, 0);
 }
 )";

@@ -7,7 +7,7 @@
 namespace condyle {
 namespace {
 
-constexpr std::int64_t most_pixels = 1 << 25;  // 24 bytes each
+constexpr std::int64_t most_pixels = 1 << 25;  // 28 bytes each
 
 void make_texture(GLuint texture, GLint kept_as, GLenum format, GLenum type, int width,
                   int height) {

@@ -301,6 +301,46 @@ TEST_F(Scene, WhereTheSkyIsNoLongerSeenNoPixelIsLost) {
   EXPECT_GT(bone, 100000);
 }
 
+/// Root of the mean squared difference of two pictures' colours, grey levels.
+double difference(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i)
+    if (i % 4 != 3) sum += std::pow(a.rgba[i] - b.rgba[i], 2);
+  return std::sqrt(sum / (0.75 * static_cast<double>(a.rgba.size())));
+}
+
+TEST_F(Scene, FourSamplesComeNearAPictureOfManyMorePixels) {
+  const std::vector<Part> parts = {make_part("face", Role::face, ball({4, 0, 9}, 30)),
+                                   make_part("mandible", Role::mandible, ball({-9, -25, -8}, 22))};
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = settings.height = 200;
+  const Image sampled = renderer.picture(front_camera(), settings);
+  settings.samples = 1;
+  const Image plain = renderer.picture(front_camera(), settings);
+  settings.supersampling = 4;
+  const Image best = renderer.picture(front_camera(), settings);
+  EXPECT_LT(difference(sampled, best), 0.5 * difference(plain, best));
+  EXPECT_LT(difference(sampled, best), 1.5);
+}
+
+TEST_F(Scene, WhatIsThinnerThanAPixelShowsNothingOfThePictureBefore) {
+  TriMesh needle = ball({0, 0, 0}, 30, 12);
+  for (auto& p : needle.vertices) p = {0.002 * p.x() + 0.1 * p.z(), 0.002 * p.y(), p.z()};
+  const std::vector<Part> parts = {make_part("mandible", Role::mandible, needle),
+                                   make_part("skull", Role::skull, ball({0, 0, 0}, 35))};
+  PictureSettings both, thin;
+  both.width = both.height = thin.width = thin.height = 200;
+  thin.part_opacity = {{"skull", 0}};
+  SceneRenderer used(parts), fresh(parts);
+  used.picture(front_camera(), both);
+  const Image after = used.picture(front_camera(), thin),
+              alone = fresh.picture(front_camera(), thin);
+  EXPECT_TRUE(after.rgba == alone.rgba);
+  thin.part_opacity["mandible"] = 0;
+  EXPECT_FALSE(fresh.picture(front_camera(), thin).rgba == alone.rgba);  // it is seen
+}
+
 TEST_F(Scene, APictureBeyondTheDriversLimitIsRefusedInWords) {
   const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30))};
   SceneRenderer renderer(parts);
