@@ -6,7 +6,6 @@
 #include "engine/core/error.h"
 
 namespace condyle {
-namespace {
 
 void require_complete(int width, int height) {
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE ||
@@ -14,8 +13,6 @@ void require_complete(int width, int height) {
     throw MachineError("the graphics driver cannot make a picture of " + std::to_string(width) +
                        "x" + std::to_string(height) + "; ask for a smaller one");
 }
-
-}  // namespace
 
 Framebuffer::Framebuffer(int width, int height, int samples)
     : width_(width), height_(height), samples_(samples) {

@@ -6,6 +6,9 @@
 
 namespace condyle {
 
+/// throws: MachineError when the framebuffer that is bound, just made, cannot be drawn into.
+void require_complete(int width, int height);
+
 /// Colour (RGBA, 8 bit), depth and stencil off the screen, with or without multisampling.
 class Framebuffer {
  public:

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "engine/core/error.h"
+#include "render/framebuffer.h"
 
 namespace condyle {
 namespace {
@@ -19,13 +19,6 @@ void make_texture(GLuint texture, GLint kept_as, GLenum format, GLenum type, int
 
 void attach(GLenum point, GLuint texture) {
   glFramebufferTexture2D(GL_FRAMEBUFFER, point, GL_TEXTURE_2D, texture, 0);
-}
-
-void require_complete(int width, int height) {
-  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE ||
-      glGetError() == GL_OUT_OF_MEMORY)
-    throw MachineError("the graphics driver cannot light a picture of " + std::to_string(width) +
-                       "x" + std::to_string(height) + "; ask for a smaller one");
 }
 
 }  // namespace
