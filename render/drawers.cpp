@@ -5,12 +5,15 @@
 #include <cstdint>
 #include <deque>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "engine/core/error.h"
 #include "render/gl_context.h"
 
 namespace condyle {
@@ -21,20 +24,22 @@ struct Drawers::State {
   std::condition_variable changed;
   std::deque<std::pair<std::int64_t, Draw>> waiting;  // numbered as they came
   std::int64_t asked = 0, delivered = 0;
-  int count = 0;  // known once the first is ready
+  int count = -1;  // known once the first is ready
   int ready = 0;
   bool ending = false;
+  int busy = 0;  // threads with a picture in hand
   std::exception_ptr trouble;
+  std::int64_t trouble_at = std::numeric_limits<std::int64_t>::max();  // the picture's number
   std::string driver;
   const SceneRenderer* first = nullptr;
   std::vector<std::thread> threads;
 
   explicit State(std::span<const Part> all) : parts(all) {}
 
-  void keep_trouble() {
-    const std::lock_guard lock(mutex);
-    if (!trouble) trouble = std::current_exception();
-    changed.notify_all();
+  /// Of several, that of the earliest picture.
+  void keep_trouble(std::int64_t number) {
+    if (!trouble || number < trouble_at) trouble = std::current_exception();
+    trouble_at = std::min(trouble_at, number);
   }
 
   void tell_ready(int wanted) {
@@ -45,65 +50,89 @@ struct Drawers::State {
   }
 
   void work(int drawer, int most) {
+    std::optional<OffscreenContext> context;
+    std::optional<SceneRenderer> renderer;
     try {
-      const OffscreenContext context;
-      std::optional<SceneRenderer> renderer;
-      if (drawer == 0) {
+      context.emplace();
+      if (drawer == 0)
         renderer.emplace(parts);
-        first = &*renderer;
-        driver = context.description();
-        // A card draws one picture at a time.
-        const bool card = driver.find("llvmpipe") == std::string::npos;
-        tell_ready(card || std::thread::hardware_concurrency() < 2 ? 1 : std::max(1, most));
-      } else {
+      else
         renderer.emplace(*first);
-        tell_ready(count);
-      }
-      draw_all(*renderer, drawer);
     } catch (...) {
-      keep_trouble();
+      const std::lock_guard lock(mutex);
+      if (drawer == 0) keep_trouble(-1);
+      count = drawer;  // the others do without it
+      changed.notify_all();
+      return;
     }
+    if (drawer == 0) {
+      first = &*renderer;
+      driver = context->description();
+      // A card draws one picture at a time.
+      const bool card = driver.find("llvmpipe") == std::string::npos;
+      tell_ready(card || std::thread::hardware_concurrency() < 2 ? 1 : std::max(1, most));
+    } else {
+      tell_ready(count);
+    }
+    draw_all(*renderer, drawer);
   }
 
   void draw_all(SceneRenderer& renderer, int drawer) {
     std::unique_lock lock(mutex);
     for (;;) {
       changed.wait(lock, [&] { return ending || trouble || (ready == count && !waiting.empty()); });
-      if (ending || trouble) return;
+      if (trouble || (ending && waiting.empty())) return;
       auto [number, draw] = std::move(waiting.front());
       waiting.pop_front();
+      ++busy;
       changed.notify_all();
       lock.unlock();
-      const Deliver deliver = draw(renderer, drawer);
-      lock.lock();
-      changed.wait(lock, [&] { return trouble || delivered == number; });
-      if (trouble) return;
-      lock.unlock();
-      deliver();
-      lock.lock();
-      ++delivered;
+      try {
+        const Deliver deliver = draw(renderer, drawer);
+        lock.lock();
+        changed.wait(lock, [&] { return delivered == number || trouble_at < number; });
+        if (delivered == number) {
+          lock.unlock();
+          deliver();
+          lock.lock();
+          ++delivered;
+        }
+      } catch (...) {
+        if (!lock.owns_lock()) lock.lock();
+        keep_trouble(number);
+      }
+      --busy;
       changed.notify_all();
     }
   }
 
-  void rethrow() const {
-    if (trouble) std::rethrow_exception(trouble);
+  /// Throws what an earlier picture threw, once nothing is in hand any more.
+  void rethrow(std::unique_lock<std::mutex>& lock) {
+    if (!trouble) return;
+    changed.wait(lock, [&] { return busy == 0; });
+    std::rethrow_exception(trouble);
   }
 };
 
 Drawers::Drawers(std::span<const Part> parts, int most) : state_(std::make_unique<State>(parts)) {
   auto& s = *state_;
   const auto start = [&](int drawer) {
-    s.threads.emplace_back([&s, drawer, most] { s.work(drawer, most); });
+    try {
+      s.threads.emplace_back([&s, drawer, most] { s.work(drawer, most); });
+    } catch (const std::system_error&) {
+      if (drawer == 0) throw MachineError("pictures cannot be drawn: no thread can be started");
+      const std::lock_guard lock(s.mutex);
+      s.count = drawer;
+    }
     std::unique_lock lock(s.mutex);
-    s.changed.wait(lock, [&] { return s.trouble || s.ready == drawer + 1; });
+    s.changed.wait(lock, [&] { return s.trouble || s.ready == drawer + 1 || s.count == drawer; });
     return !s.trouble;
   };
   for (int drawer = 0; start(drawer) && drawer + 1 < s.count; ++drawer) {
   }
   if (!s.trouble) return;
   for (auto& thread : s.threads) thread.join();
-  s.rethrow();
+  std::rethrow_exception(s.trouble);
 }
 
 Drawers::~Drawers() {
@@ -123,7 +152,7 @@ void Drawers::add(Draw draw) {
   auto& s = *state_;
   std::unique_lock lock(s.mutex);
   s.changed.wait(lock, [&] { return s.trouble || std::ssize(s.waiting) < s.count; });
-  s.rethrow();
+  s.rethrow(lock);
   s.waiting.emplace_back(s.asked++, std::move(draw));
   s.changed.notify_all();
 }
@@ -132,7 +161,7 @@ void Drawers::finish() {
   auto& s = *state_;
   std::unique_lock lock(s.mutex);
   s.changed.wait(lock, [&] { return s.trouble || s.delivered == s.asked; });
-  s.rethrow();
+  s.rethrow(lock);
 }
 
 }  // namespace condyle

@@ -22,7 +22,7 @@ class Drawers {
   /// The parts must outlive it. most: threads at most.
   /// throws: MachineError when there is nothing to draw with.
   explicit Drawers(std::span<const Part> parts, int most = 2);
-  /// Waits for what is being drawn; the rest is dropped.
+  /// Draws and delivers what it was given, unless one threw.
   ~Drawers();
   Drawers(const Drawers&) = delete;
   Drawers& operator=(const Drawers&) = delete;
@@ -31,7 +31,8 @@ class Drawers {
   /// GL_RENDERER and the EGL platform.
   const std::string& driver() const;
 
-  /// Waits while several others wait. throws: what an earlier picture threw.
+  /// Waits while several others wait. throws: what an earlier picture threw; then those before it
+  /// are delivered, none after it, and none is in hand.
   void add(Draw draw);
   /// Waits until all are drawn and delivered. throws: as `add`.
   void finish();

@@ -346,8 +346,8 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
   bind(GL_TEXTURE7, buffer_.lit());
   last.set("lit", 7);
   if (view.one_sample) {
-    last.set("depth_terms",
-             Eigen::Vector2f(0.5f - 0.5f * view.projection(2, 2), 0.5f * view.projection(2, 3)));
+    bind(GL_TEXTURE6, buffer_.depth());
+    last.set("kept_depth", 6);
     glBindVertexArray(no_attributes_);
     glDisable(GL_CULL_FACE);
     glDrawArrays(GL_TRIANGLES, 0, 3);

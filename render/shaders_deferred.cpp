@@ -87,8 +87,8 @@ void main() {
 )";
 
 // What a picture with several samples shows of a surface that was lit pixel by pixel: where another
-// one covers the pixel's middle, the light of the neighbour that lies nearest in depth. A sliver that
-// covers no middle around is left out.
+// one covers the pixel's middle, the light of the neighbour that lies nearest in depth. A sliver
+// that covers no middle around is left out.
 const char* const carry_source = R"(
 uniform sampler2D kept_away, lit;
 uniform ivec2 last_pixel;
@@ -112,12 +112,11 @@ void main() {
 
 // The same where each pixel has one sample: all surfaces at once.
 const char* const place_source = R"(
-uniform sampler2D kept_away, lit;
-uniform vec2 depth_terms;  // of the window's depth
+uniform sampler2D kept_depth, lit;
 out vec4 result;
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  gl_FragDepth = depth_terms.x + depth_terms.y / texelFetch(kept_away, pixel, 0).r;
+  gl_FragDepth = texelFetch(kept_depth, pixel, 0).r;
   result = texelFetch(lit, pixel, 0);
 }
 )";

@@ -7,7 +7,7 @@
 namespace condyle {
 namespace {
 
-constexpr std::int64_t most_pixels = 1 << 25;  // 28 bytes each
+constexpr std::int64_t most_pixels = 1 << 24;  // 28 bytes each
 
 void make_texture(GLuint texture, GLint kept_as, GLenum format, GLenum type, int width,
                   int height) {
@@ -33,14 +33,14 @@ bool SurfaceBuffer::fits(int width, int height) {
 void SurfaceBuffer::fit(int width, int height) {
   if (width == width_ && height == height_) return;
   width_ = height_ = 0;
+  while (glGetError() != GL_NO_ERROR) {
+  }
   make_texture(words_, GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, width, height);
   make_texture(away_, GL_R32F, GL_RED, GL_FLOAT, width, height);
   make_texture(lit_, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, width, height);
-  glBindRenderbuffer(GL_RENDERBUFFER, stencil_);
-  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, width, height);
-  const auto add_stencil = [&] {
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER,
-                              stencil_);
+  make_texture(depth_, GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, width, height);
+  const auto finish = [&] {
+    attach(GL_DEPTH_STENCIL_ATTACHMENT, depth_);
     require_complete(width, height);
   };
   glBindFramebuffer(GL_FRAMEBUFFER, surfaces_);
@@ -48,10 +48,10 @@ void SurfaceBuffer::fit(int width, int height) {
   attach(GL_COLOR_ATTACHMENT1, away_);
   const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
   glDrawBuffers(2, both);
-  add_stencil();
+  finish();
   glBindFramebuffer(GL_FRAMEBUFFER, light_);
   attach(GL_COLOR_ATTACHMENT0, lit_);
-  add_stencil();
+  finish();
   width_ = width;
   height_ = height;
 }

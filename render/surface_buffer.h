@@ -29,6 +29,7 @@ class SurfaceBuffer {
 
   GLuint words() const { return words_; }
   GLuint away() const { return away_; }
+  GLuint depth() const { return depth_; }
   GLuint lit() const { return lit_; }
 
  private:
@@ -36,7 +37,7 @@ class SurfaceBuffer {
   GlTexture words_;  // RGBA, 32 bit: see the shaders
   GlTexture away_;   // before the eye, mm; huge where nothing is
   GlTexture lit_;    // as displayed
-  GlRenderbuffer stencil_;
+  GlTexture depth_;  // of the window, with the numbers as stencil
   int width_ = 0, height_ = 0;
 };
 

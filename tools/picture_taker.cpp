@@ -80,7 +80,11 @@ PictureTaker::PictureTaker(const RecordOptions& options, const RecordingSubject&
 
   // A map has its own threads to find its values.
   const bool mapped = distance || plan_.patches || plan_.map == SurfaceMap::displacement;
-  drawers_.emplace(patient.parts, mapped ? 1 : 2);
+  // Large pictures would take the memory twice.
+  constexpr double most_pixels_for_two = 1.7e7;
+  const double pixels = static_cast<double>(plan_.settings.width) * plan_.settings.height *
+                        plan_.settings.supersampling * plan_.settings.supersampling;
+  drawers_.emplace(patient.parts, mapped || pixels > most_pixels_for_two ? 1 : 2);
   for (int drawer = 0; drawer < drawers_->count(); ++drawer) desks_.emplace_back();
   if (mapped)
     drawers_->add([this](SceneRenderer& renderer, int drawer) {

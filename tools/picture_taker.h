@@ -37,7 +37,7 @@ class PictureTaker {
 
   /// What is done with a frame once its pictures are drawn: in order, one at a time, on threads of
   /// the drawing.
-  using Done = std::function<void(int frame, FrameState& state)>;
+  using Done = std::function<void(int frame, const FrameState& state)>;
   /// All frames, in their order, are to be shown to it, wanted or not: paths grow with them.
   /// Returns when it is ready for the next. throws: MachineError of this frame or an earlier one.
   void take(int frame, FrameState state, const Done& done);

@@ -125,12 +125,14 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
                          {"tissue", tissue_text(options.motion, scene.patient)}}});
   for (int i = 0; i < times.count; ++i) {
     FrameState frame = playback.at(times[i]);
-    report.add(frame);
+    const auto done = [&](int number, const FrameState& drawn) {
+      trace.add(number, drawn);
+      report.add(drawn);
+    };
     if (pictures)
-      pictures->take(i, std::move(frame),
-                     [&](int number, FrameState& drawn) { trace.add(number, drawn); });
+      pictures->take(i, std::move(frame), done);
     else
-      trace.add(i, frame);
+      done(i, frame);
     bar.show(fmt::format("frame {} of {}", i + 1, times.count), (i + 1.0) / times.count);
   }
   if (pictures) pictures->wait();

@@ -73,6 +73,38 @@ TEST(Drawers, SlowAndQuickPicturesAreDeliveredInTheirOrder) {
   EXPECT_EQ(order, (std::vector<int>{0, 1, 2, 3, 4, 5}));
 }
 
+TEST(Drawers, DeliverWhatCameBeforeAPictureThatThrew) {
+  const auto parts = mandible_and_face();
+  Drawers drawers(parts);
+  std::vector<int> order;
+  const auto give = [&] {
+    for (int i = 0; i < 8; ++i)
+      drawers.add([&order, i](SceneRenderer&, int) -> Drawers::Deliver {
+        // The one before is slower.
+        if (i == 3) throw MachineError("the disk is full");
+        std::this_thread::sleep_for(std::chrono::milliseconds(i == 2 ? 200 : 0));
+        return [&order, i] { order.push_back(i); };
+      });
+    drawers.finish();
+  };
+  EXPECT_THROW(give(), MachineError);
+  EXPECT_EQ(order, (std::vector<int>{0, 1, 2}));
+}
+
+TEST(Drawers, EndOnlyWhenAllIsDelivered) {
+  const auto parts = mandible_and_face();
+  std::vector<int> order;
+  {
+    Drawers drawers(parts);
+    for (int i = 0; i < 4; ++i)
+      drawers.add([&order, i](SceneRenderer&, int) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        return [&order, i] { order.push_back(i); };
+      });
+  }
+  EXPECT_EQ(order, (std::vector<int>{0, 1, 2, 3}));
+}
+
 TEST(Drawers, TellWhatAPictureThrew) {
   const auto parts = mandible_and_face();
   for (const bool late : {false, true}) {

@@ -324,6 +324,30 @@ TEST_F(Scene, FourSamplesComeNearAPictureOfManyMorePixels) {
   EXPECT_LT(difference(sampled, best), 1.5);
 }
 
+TEST_F(Scene, WhatLiesOnASurfaceIsSeenFromFarOff) {
+  const std::vector<Part> parts = {make_part("mandible", Role::mandible, ball({0, 0, 0}, 30))};
+  SceneRenderer renderer(parts);
+  FrameState moved;
+  moved.X_CM.t = {0, 0, 0.01};
+  renderer.update(moved);
+  PictureSettings settings;
+  settings.width = settings.height = 300;
+  settings.samples = 1;
+  settings.shadows = false;
+  settings.wireframe = {"*"};
+  settings.ghost = Ghost{};
+  Camera camera = front_camera();
+  camera.distance_mm = 6000;
+  camera.field_of_view_deg *= 500.0 / 6000;
+  const Image kept = renderer.picture(camera, settings);
+  // What might be cut is lit as it is drawn.
+  settings.clip = {.point = {0, 0, 900}, .normal = {0, 0, 1}};
+  const Image direct = renderer.picture(camera, settings);
+  EXPECT_LT(difference(kept, direct), 1);
+  settings.wireframe.clear();
+  EXPECT_GT(difference(kept, renderer.picture(camera, settings)), 5);
+}
+
 TEST_F(Scene, WhatIsThinnerThanAPixelShowsNothingOfThePictureBefore) {
   TriMesh needle = ball({0, 0, 0}, 30, 12);
   for (auto& p : needle.vertices) p = {0.002 * p.x() + 0.1 * p.z(), 0.002 * p.y(), p.z()};
