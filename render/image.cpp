@@ -1,12 +1,11 @@
 #include "render/image.h"
 
-#include <libdeflate.h>
+#include <isa-l/igzip_lib.h>
 #include <png.h>
 
 #include <algorithm>
 #include <csetjmp>
 #include <cstring>
-#include <memory>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -39,30 +38,53 @@ void keep_message(png_structp png, png_const_charp message) {
 
 void no_warning(png_structp, png_const_charp) {}
 
-/// Rows as PNG wants them, each pixel less the one before it. Without alpha if opaque.
-std::vector<std::uint8_t> filtered(const Image& image, bool opaque) {
-  const std::size_t kept = opaque ? 3 : 4, columns = static_cast<std::size_t>(image.width);
-  std::vector<std::uint8_t> rows((1 + kept * columns) * static_cast<std::size_t>(image.height));
+/// a - b, byte by byte.
+std::uint32_t less(std::uint32_t a, std::uint32_t b) {
+  constexpr std::uint32_t high = 0x80808080;
+  return ((a | high) - (b & ~high)) ^ (~(a ^ b) & high);
+}
+
+/// Rows as PNG wants them, each pixel less the one before it. `kept`: bytes of a pixel, 3 or 4.
+template <std::size_t kept>
+std::vector<std::uint8_t> filtered(const Image& image) {
+  const auto columns = static_cast<std::size_t>(image.width);
+  const std::size_t size = (1 + kept * columns) * static_cast<std::size_t>(image.height);
+  std::vector<std::uint8_t> rows(size + 4 - kept);  // four bytes are written of each pixel
+  const std::uint8_t* from = image.rgba.data();
   std::uint8_t* to = rows.data();
   for (int row = 0; row < image.height; ++row) {
-    const std::uint8_t* from = &image.rgba[4 * columns * static_cast<std::size_t>(row)];
     *to++ = PNG_FILTER_VALUE_SUB;
-    to = std::copy_n(from, kept, to);
-    for (std::size_t x = 1; x < columns; ++x)
-      for (std::size_t k = 0; k < kept; ++k)
-        *to++ = static_cast<std::uint8_t>(from[4 * x + k] - from[4 * x + k - 4]);
+    std::uint32_t before = 0;
+    for (std::size_t x = 0; x < columns; ++x, from += 4, to += kept) {
+      std::uint32_t pixel;
+      std::memcpy(&pixel, from, 4);
+      const std::uint32_t change = less(pixel, before);
+      std::memcpy(to, &change, 4);
+      before = pixel;
+    }
   }
+  rows.resize(size);
   return rows;
 }
 
-/// By libdeflate: in half the time that libpng takes by itself.
-std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes) {
-  const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> compressor(
-      libdeflate_alloc_compressor(1), libdeflate_free_compressor);
-  if (!compressor) throw MachineError("PNG: out of memory");
-  std::vector<std::uint8_t> small(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()));
-  small.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), small.data(),
-                                        small.size()));
+/// By ISA-L: in a third of the time that libpng takes by itself.
+std::vector<std::uint8_t> deflated(std::vector<std::uint8_t> bytes) {
+  std::vector<std::uint8_t> work(ISAL_DEF_LVL1_DEFAULT);
+  std::vector<std::uint8_t> small(bytes.size() + bytes.size() / 8 + 1000);
+  isal_zstream stream;
+  isal_deflate_init(&stream);
+  stream.level = 1;
+  stream.level_buf = work.data();
+  stream.level_buf_size = static_cast<std::uint32_t>(work.size());
+  stream.gzip_flag = IGZIP_ZLIB;
+  stream.end_of_stream = 1;
+  stream.next_in = bytes.data();
+  stream.avail_in = static_cast<std::uint32_t>(bytes.size());
+  stream.next_out = small.data();
+  stream.avail_out = static_cast<std::uint32_t>(small.size());
+  if (isal_deflate(&stream) != COMP_OK || stream.internal_state.state != ZSTATE_END)
+    throw MachineError("PNG: the picture could not be packed");
+  small.resize(stream.total_out);
   return small;
 }
 
@@ -135,7 +157,7 @@ std::string encode_png(const Image& image) {
     throw MachineError("a picture without its pixels cannot be written as PNG");
   bool opaque = true;
   for (std::size_t i = 3; opaque && i < image.rgba.size(); i += 4) opaque = image.rgba[i] == 255;
-  const std::vector<std::uint8_t> pixels = deflated(filtered(image, opaque));
+  const std::vector<std::uint8_t> pixels = deflated(opaque ? filtered<3>(image) : filtered<4>(image));
   std::string bytes, message;
   bytes.reserve(pixels.size() + 1000);
   png_structp png =
