@@ -118,21 +118,20 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
                    to_byte(gloss), 0};
     }
     GpuMesh mesh(positions, part.mesh.triangles, moving);
-    mesh.add_coarse(positions, part.mesh.triangles);
+    mesh.add_details(positions, normals, colors, part.mesh.triangles);
     mesh.send_shape(positions, normals);
     mesh.send_colors(colors);
     mesh.send_extras(extras);
     if (part.role == Role::face) mesh.send_rest(positions);
     std::vector<Crease> creases;
     if (part.role == Role::face) creases = find_creases(positions, normals, occlusion[p].together);
-    std::optional<SurfaceEdges> edges, coarse_edges;
-    if (part.role == Role::face) {
-      edges.emplace(mesh.fine().triangles);
-      coarse_edges.emplace(mesh.coarse().triangles);
-    }
+    std::vector<SurfaceEdges> edges;
+    if (part.role == Role::face)
+      for (const Detail detail : {Detail::full, Detail::close, Detail::coarse})
+        edges.emplace_back(mesh.surface(detail).triangles);
     drawables.push_back({&part, material, is_closed_surface(part.mesh.triangles), box,
                          std::move(mesh), std::move(creases), std::move(colors), std::move(extras),
-                         std::move(edges), std::move(coarse_edges)});
+                         std::move(edges)});
   }
   return drawables;
 }
@@ -151,8 +150,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     mesh.send_extras(other.extras);
     if (part.role == Role::face) mesh.send_rest(positions);
     drawables.push_back({&part, other.material, other.closed, other.box, std::move(mesh),
-                         other.creases, other.colors, other.extras, other.edges,
-                         other.coarse_edges});
+                         other.creases, other.colors, other.extras, other.edges});
   }
   return drawables;
 }

@@ -32,6 +32,8 @@ constexpr int piece_triangles = 64;
 // A shadow's edge is some 3 mm wide, and begins farther off its surface than this.
 constexpr double coarse_error_mm = 0.2;
 constexpr int few_triangles = 4000;
+// A surface is made simpler as if what is white stood out so far from what is black.
+constexpr float relief_mm = 2;
 
 /// What a piece's triangles face. Those without area face nowhere: they are not drawn either.
 DirectionCone cone_of(std::span<const Eigen::Vector3f> positions,
@@ -106,11 +108,13 @@ void GpuMesh::send_ordered(GLuint buffer, std::span<const T> values, GLenum usag
 
 GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
                  std::span<const Eigen::Vector3i> triangles, bool moving)
-    : fine_(surface_of(positions, triangles)), usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
+    : usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
+  Surface& whole = levels_.front().surface;
+  whole = surface_of(positions, triangles);
   // Vertices in the order of their first use: without a card a few hundred neighbours are kept at a
   // time, and what falls out is computed again.
   place_.assign(positions.size(), -1);
-  for (auto& t : fine_.triangles)
+  for (auto& t : whole.triangles)
     for (int& v : t) {
       int& place = place_[static_cast<std::size_t>(v)];
       if (place < 0) {
@@ -119,12 +123,12 @@ GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
       }
       v = place;
     }
-  find_corners(fine_, order_.size());
+  find_corners(whole, order_.size());
   describe();
 }
 
 GpuMesh GpuMesh::twin() const {
-  GpuMesh other(fine_, coarse_, usage_);
+  GpuMesh other(levels_, usage_);
   other.order_ = order_;
   other.place_ = place_;
   other.describe();
@@ -134,7 +138,7 @@ GpuMesh GpuMesh::twin() const {
 /// Tells the card what it is given.
 void GpuMesh::describe() {
   glBindVertexArray(array_);
-  send(GL_ELEMENT_ARRAY_BUFFER, indices_, std::span<const Eigen::Vector3i>(fine_.triangles),
+  send(GL_ELEMENT_ARRAY_BUFFER, indices_, std::span<const Eigen::Vector3i>(levels_.front().surface.triangles),
        GL_STATIC_DRAW);
   floats(0, positions_);
   floats(1, normals_);
@@ -143,20 +147,35 @@ void GpuMesh::describe() {
   glBindVertexArray(0);
 }
 
-void GpuMesh::add_coarse(std::span<const Eigen::Vector3f> positions,
-                         std::span<const Eigen::Vector3i> triangles) {
-  const int few = std::max(few_triangles, static_cast<int>(triangles.size()) / 4);
-  if (static_cast<int>(triangles.size()) <= few) return;
-  coarse_ = surface_of(positions, coarser(positions, triangles, few, coarse_error_mm));
-  for (auto& t : coarse_.triangles)
-    for (int& v : t) v = place_[static_cast<std::size_t>(v)];
-  find_corners(coarse_, order_.size());
+void GpuMesh::add_details(std::span<const Eigen::Vector3f> positions,
+                          std::span<const Eigen::Vector3f> normals, std::span<const Bytes> colors,
+                          std::span<const Eigen::Vector3i> triangles) {
+  std::vector<Eigen::Vector3f> relief(positions.begin(), positions.end());
+  for (std::size_t i = 0; i < relief.size(); ++i) {
+    const Bytes& c = colors[i];
+    relief[i] += relief_mm * static_cast<float>(c[0] + c[1] + c[2]) / (3 * 255) * normals[i];
+  }
+  const int count = static_cast<int>(triangles.size());
+  const auto add = [&](Detail detail, int few, double error_mm) {
+    few = std::max(few_triangles, few);
+    if (count <= few) return;
+    Surface& surface = levels_[static_cast<std::size_t>(detail)].surface;
+    surface = surface_of(positions, coarser(relief, triangles, few, error_mm));
+    for (auto& t : surface.triangles)
+      for (int& v : t) v = place_[static_cast<std::size_t>(v)];
+    find_corners(surface, order_.size());
+  };
+  add(Detail::close, 0, close_error_mm);
+  add(Detail::coarse, count / 10, coarse_error_mm);
 }
 
-const GpuMesh::Surface& GpuMesh::fine() const {
-  if (!fine_measured_) measure(fine_, points_);
-  fine_measured_ = true;
-  return fine_;
+const GpuMesh::Surface& GpuMesh::surface(Detail detail) const {
+  auto level = static_cast<std::size_t>(detail);
+  while (level > 0 && levels_[level].surface.triangles.empty()) --level;
+  Level& found = levels_[level];
+  if (!found.measured) measure(found.surface, points_);
+  found.measured = true;
+  return found.surface;
 }
 
 void GpuMesh::send_shape(std::span<const Eigen::Vector3f> positions,
@@ -164,8 +183,7 @@ void GpuMesh::send_shape(std::span<const Eigen::Vector3f> positions,
   points_ = ordered(positions);
   send(GL_ARRAY_BUFFER, positions_, std::span<const Eigen::Vector3f>(points_), usage_);
   send_ordered(normals_, normals, usage_);
-  measure(coarse_, points_);
-  fine_measured_ = false;
+  for (Level& level : levels_) level.measured = false;
 }
 
 void GpuMesh::send_colors(std::span<const Bytes> colors) { send_ordered(colors_, colors, usage_); }
@@ -195,8 +213,8 @@ void GpuMesh::send_values(std::span<const float> values) {
 
 void GpuMesh::draw() const {
   glBindVertexArray(array_);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * fine_.triangles.size()), GL_UNSIGNED_INT,
-                 nullptr);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * levels_.front().surface.triangles.size()),
+                 GL_UNSIGNED_INT, nullptr);
 }
 
 void GpuMesh::draw(std::span<const Eigen::Vector3i> chosen) const {
