@@ -103,6 +103,7 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
     if (part.role == Role::face)
       curvature = vertex_curvature(positions, part.mesh.triangles, normals);
     std::vector<GpuMesh::Bytes> colors(positions.size()), extras(positions.size());
+    std::vector<float> brightness(positions.size());
     Eigen::AlignedBox3f box;
     for (std::size_t i = 0; i < positions.size(); ++i) {
       box.extend(positions[i]);
@@ -110,6 +111,7 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
       // Lips are redder than skin, and moister.
       const float redness = (color.x() - color.y()) / std::max(color.x(), 0.05f);
       const float gloss = own_colors ? std::clamp((redness - 0.30f) / 0.18f, 0.f, 1.f) : 0.f;
+      brightness[i] = color.mean();
       if (part.role == Role::face) color = mottled(color, positions[i]);
       colors[i] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()),
                    to_byte(occlusion[p].together[i])};
@@ -118,7 +120,7 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
                    to_byte(gloss), 0};
     }
     GpuMesh mesh(positions, part.mesh.triangles, moving);
-    mesh.add_details(positions, normals, colors, part.mesh.triangles);
+    mesh.add_details(positions, normals, brightness, part.mesh.triangles);
     mesh.send_shape(positions, normals);
     mesh.send_colors(colors);
     mesh.send_extras(extras);

@@ -32,8 +32,8 @@ constexpr int piece_triangles = 64;
 // A shadow's edge is some 3 mm wide, and begins farther off its surface than this.
 constexpr double coarse_error_mm = 0.2;
 constexpr int few_triangles = 4000;
-// A surface is made simpler as if what is white stood out so far from what is black.
-constexpr float relief_mm = 2;
+// Where it is to look the same, a surface is made simpler as if white stood out so far from black.
+constexpr float relief_mm = 6;
 
 /// What a piece's triangles face. Those without area face nowhere: they are not drawn either.
 DirectionCone cone_of(std::span<const Eigen::Vector3f> positions,
@@ -138,8 +138,8 @@ GpuMesh GpuMesh::twin() const {
 /// Tells the card what it is given.
 void GpuMesh::describe() {
   glBindVertexArray(array_);
-  send(GL_ELEMENT_ARRAY_BUFFER, indices_, std::span<const Eigen::Vector3i>(levels_.front().surface.triangles),
-       GL_STATIC_DRAW);
+  send(GL_ELEMENT_ARRAY_BUFFER, indices_,
+       std::span<const Eigen::Vector3i>(levels_.front().surface.triangles), GL_STATIC_DRAW);
   floats(0, positions_);
   floats(1, normals_);
   bytes(2, colors_);
@@ -148,25 +148,25 @@ void GpuMesh::describe() {
 }
 
 void GpuMesh::add_details(std::span<const Eigen::Vector3f> positions,
-                          std::span<const Eigen::Vector3f> normals, std::span<const Bytes> colors,
+                          std::span<const Eigen::Vector3f> normals,
+                          std::span<const float> brightness,
                           std::span<const Eigen::Vector3i> triangles) {
   std::vector<Eigen::Vector3f> relief(positions.begin(), positions.end());
-  for (std::size_t i = 0; i < relief.size(); ++i) {
-    const Bytes& c = colors[i];
-    relief[i] += relief_mm * static_cast<float>(c[0] + c[1] + c[2]) / (3 * 255) * normals[i];
-  }
+  for (std::size_t i = 0; i < relief.size(); ++i)
+    relief[i] += relief_mm * brightness[i] * normals[i];
   const int count = static_cast<int>(triangles.size());
-  const auto add = [&](Detail detail, int few, double error_mm) {
+  const auto add = [&](Detail detail, std::span<const Eigen::Vector3f> shape, int few,
+                       double error_mm) {
     few = std::max(few_triangles, few);
     if (count <= few) return;
     Surface& surface = levels_[static_cast<std::size_t>(detail)].surface;
-    surface = surface_of(positions, coarser(relief, triangles, few, error_mm));
+    surface = surface_of(positions, coarser(shape, triangles, few, error_mm));
     for (auto& t : surface.triangles)
       for (int& v : t) v = place_[static_cast<std::size_t>(v)];
     find_corners(surface, order_.size());
   };
-  add(Detail::close, 0, close_error_mm);
-  add(Detail::coarse, count / 10, coarse_error_mm);
+  add(Detail::close, relief, 0, close_error_mm);
+  add(Detail::coarse, positions, count / 10, coarse_error_mm);
 }
 
 const GpuMesh::Surface& GpuMesh::surface(Detail detail) const {

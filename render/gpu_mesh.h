@@ -17,11 +17,12 @@ struct DirectionCone {
   float sine = 2;  // of the angle; above 1: any direction
 };
 
-/// How near a surface is kept to its shape: with every triangle; within 0.04 mm, for what is seen
-/// from so far that nobody can tell; within 0.2 mm, for what moves.
+/// How near a surface is kept to its shape: with every triangle; within about 0.025 mm (0.3 at
+/// worst), colours too, for what is seen from so far that nobody can tell; within about 0.2 mm, for
+/// what moves and for shadows.
 enum class Detail { full, close, coarse };
 constexpr int details = 3;
-constexpr double close_error_mm = 0.04;
+constexpr double close_error_mm = 0.025;
 
 /// A triangle surface on the graphics card, in small pieces that lie close together and face nearly
 /// the same way, so that those not seen can be left out. Attributes: 0 position, 1 normal, 2 colour
@@ -53,10 +54,10 @@ class GpuMesh {
   /// The same triangles in another context; shape and colours are to be sent.
   GpuMesh twin() const;
 
-  /// Makes the surfaces of less detail; before the shape is sent. `colors`, one per position, in
-  /// linear light or not: triangles stay where these change, too.
+  /// Makes the surfaces of less detail; before the shape is sent. In a close one triangles stay
+  /// also where `brightness` changes: one per position, 0 black to 1 white.
   void add_details(std::span<const Eigen::Vector3f> positions,
-                   std::span<const Eigen::Vector3f> normals, std::span<const Bytes> colors,
+                   std::span<const Eigen::Vector3f> normals, std::span<const float> brightness,
                    std::span<const Eigen::Vector3i> triangles);
   /// Positions as many as at the start.
   void send_shape(std::span<const Eigen::Vector3f> positions,

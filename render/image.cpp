@@ -157,7 +157,8 @@ std::string encode_png(const Image& image) {
     throw MachineError("a picture without its pixels cannot be written as PNG");
   bool opaque = true;
   for (std::size_t i = 3; opaque && i < image.rgba.size(); i += 4) opaque = image.rgba[i] == 255;
-  const std::vector<std::uint8_t> pixels = deflated(opaque ? filtered<3>(image) : filtered<4>(image));
+  const std::vector<std::uint8_t> pixels =
+      deflated(opaque ? filtered<3>(image) : filtered<4>(image));
   std::string bytes, message;
   bytes.reserve(pixels.size() + 1000);
   png_structp png =

@@ -72,7 +72,7 @@ Detail PictureView::detail_of(const DrawItem& item) const {
   if (all_triangles || item.drawable->mapped) return Detail::full;
   if (coarse) return Detail::coarse;
   if (item.cut()) return Detail::full;
-  constexpr float unseen_px = 0.2f;
+  constexpr float unseen_px = 0.15f;
   const float pixel_mm = item.box().exteriorDistance(eye) / pixels_per_unit;
   return close_error_mm <= unseen_px * pixel_mm ? Detail::close : Detail::full;
 }
@@ -175,7 +175,8 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
     begin_cut(depth_, item, view);
     depth_.set("model", item.model);
     const auto& mesh = item.drawable->mesh;
-    mesh.draw(visibility_.choose(mesh, mesh.surface(Detail::coarse), item.model, light, sides_of(item)));
+    mesh.draw(
+        visibility_.choose(mesh, mesh.surface(Detail::coarse), item.model, light, sides_of(item)));
     end_cut();
   }
   glDisable(GL_POLYGON_OFFSET_FILL);

@@ -44,10 +44,10 @@ struct PictureView {
   Lights lights;
   float pixels_per_unit;  // of a length across the line of sight at distance 1
   bool shadows = true;
-  bool coarse = false;       // shapes, where they serve
+  bool coarse = false;         // shapes, where they serve
   bool all_triangles = false;  // their edges are shown
-  bool opaque_face = false;  // keeps the sky out of the mouth, and hides most of the rest
-  bool may_cull = true;      // the eye is outside of everything
+  bool opaque_face = false;    // keeps the sky out of the mouth, and hides most of the rest
+  bool may_cull = true;        // the eye is outside of everything
   float skin_opacity = 1;
   float at_rest = 1;                          // 1 with the jaw at rest, 0 when it is well away
   float lips_y = 0;                           // front of the teeth, mm

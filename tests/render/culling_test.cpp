@@ -95,7 +95,8 @@ struct Shell {
       glEnable(GL_CULL_FACE);
       glCullFace(sides == Sides::front ? GL_BACK : GL_FRONT);
       program.set("model", model);
-      const auto& chosen = visibility.choose(mesh, mesh.surface(Detail::full), model, from, sides, hidden);
+      const auto& chosen =
+          visibility.choose(mesh, mesh.surface(Detail::full), model, from, sides, hidden);
       *drawn += all ? mesh.surface(Detail::full).triangles.size() : chosen.size();
       if (all)
         mesh.draw();
@@ -168,9 +169,12 @@ TEST_F(Culling, AClosedSkinHidesAllBelowIt) {
   Visibility visibility;
   const Eigen::Matrix4f still = Eigen::Matrix4f::Identity();
   const GpuMesh& bone = shell.bone.mesh;
-  EXPECT_EQ(visibility.choose(bone, bone.surface(Detail::full), still, from, Sides::front, &shell.cover).size(),
-            0u);
-  EXPECT_GT(visibility.choose(bone, bone.surface(Detail::full), still, from, Sides::front).size(), 1000u);
+  EXPECT_EQ(
+      visibility.choose(bone, bone.surface(Detail::full), still, from, Sides::front, &shell.cover)
+          .size(),
+      0u);
+  EXPECT_GT(visibility.choose(bone, bone.surface(Detail::full), still, from, Sides::front).size(),
+            1000u);
 }
 
 TEST_F(Culling, AHoleOfOneTriangleIsSeenThrough) {
@@ -206,7 +210,8 @@ TEST_F(Culling, PiecesHoldEveryTriangleOnceInsideTheirBoxes) {
     next += piece.triangle_count;
   }
   EXPECT_EQ(next, static_cast<int>(source.triangles.size()));
-  EXPECT_LT(sum / static_cast<float>(mesh.surface(Detail::full).pieces.size()), 20);  // of a ball of 104 across
+  EXPECT_LT(sum / static_cast<float>(mesh.surface(Detail::full).pieces.size()),
+            20);  // of a ball of 104 across
 }
 
 }  // namespace
