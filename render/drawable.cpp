@@ -103,7 +103,6 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
     if (part.role == Role::face)
       curvature = vertex_curvature(positions, part.mesh.triangles, normals);
     std::vector<GpuMesh::Bytes> colors(positions.size()), extras(positions.size());
-    std::vector<float> brightness(positions.size());
     Eigen::AlignedBox3f box;
     for (std::size_t i = 0; i < positions.size(); ++i) {
       box.extend(positions[i]);
@@ -111,7 +110,6 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
       // Lips are redder than skin, and moister.
       const float redness = (color.x() - color.y()) / std::max(color.x(), 0.05f);
       const float gloss = own_colors ? std::clamp((redness - 0.30f) / 0.18f, 0.f, 1.f) : 0.f;
-      brightness[i] = color.mean();
       if (part.role == Role::face) color = mottled(color, positions[i]);
       colors[i] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()),
                    to_byte(occlusion[p].together[i])};
@@ -120,20 +118,21 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
                    to_byte(gloss), 0};
     }
     GpuMesh mesh(positions, part.mesh.triangles, moving);
-    mesh.add_details(positions, normals, brightness, part.mesh.triangles);
+    mesh.add_coarse(positions, part.mesh.triangles);
     mesh.send_shape(positions, normals);
     mesh.send_colors(colors);
     mesh.send_extras(extras);
     if (part.role == Role::face) mesh.send_rest(positions);
     std::vector<Crease> creases;
     if (part.role == Role::face) creases = find_creases(positions, normals, occlusion[p].together);
-    std::vector<SurfaceEdges> edges;
-    if (part.role == Role::face)
-      for (const Detail detail : {Detail::full, Detail::close, Detail::coarse})
-        edges.emplace_back(mesh.surface(detail).triangles);
+    std::optional<SurfaceEdges> edges, coarse_edges;
+    if (part.role == Role::face) {
+      edges.emplace(mesh.fine().triangles);
+      coarse_edges.emplace(mesh.coarse().triangles);
+    }
     drawables.push_back({&part, material, is_closed_surface(part.mesh.triangles), box,
                          std::move(mesh), std::move(creases), std::move(colors), std::move(extras),
-                         std::move(edges)});
+                         std::move(edges), std::move(coarse_edges)});
   }
   return drawables;
 }
@@ -152,7 +151,8 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     mesh.send_extras(other.extras);
     if (part.role == Role::face) mesh.send_rest(positions);
     drawables.push_back({&part, other.material, other.closed, other.box, std::move(mesh),
-                         other.creases, other.colors, other.extras, other.edges});
+                         other.creases, other.colors, other.extras, other.edges,
+                         other.coarse_edges});
   }
   return drawables;
 }

@@ -20,9 +20,9 @@ struct Drawable {
   bool closed;              // its back is never seen
   Eigen::AlignedBox3f box;  // at rest, mm
   GpuMesh mesh;
-  std::vector<Crease> creases;                 // of a face only
-  std::vector<GpuMesh::Bytes> colors, extras;  // at rest, one per vertex
-  std::vector<SurfaceEdges> edges;             // by Detail; of a face only, to tell what it hides
+  std::vector<Crease> creases;                      // of a face only
+  std::vector<GpuMesh::Bytes> colors, extras;       // at rest, one per vertex
+  std::optional<SurfaceEdges> edges, coarse_edges;  // of a face only, to tell what it hides
 
   bool mapped = false;                // coloured by its values
   std::optional<GpuMesh> finer = {};  // drawn instead while it is

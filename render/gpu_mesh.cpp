@@ -32,8 +32,6 @@ constexpr int piece_triangles = 64;
 // A shadow's edge is some 3 mm wide, and begins farther off its surface than this.
 constexpr double coarse_error_mm = 0.2;
 constexpr int few_triangles = 4000;
-// Where it is to look the same, a surface is made simpler as if white stood out so far from black.
-constexpr float relief_mm = 6;
 
 /// What a piece's triangles face. Those without area face nowhere: they are not drawn either.
 DirectionCone cone_of(std::span<const Eigen::Vector3f> positions,
@@ -108,13 +106,11 @@ void GpuMesh::send_ordered(GLuint buffer, std::span<const T> values, GLenum usag
 
 GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
                  std::span<const Eigen::Vector3i> triangles, bool moving)
-    : usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
-  Surface& whole = levels_.front().surface;
-  whole = surface_of(positions, triangles);
+    : fine_(surface_of(positions, triangles)), usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
   // Vertices in the order of their first use: without a card a few hundred neighbours are kept at a
   // time, and what falls out is computed again.
   place_.assign(positions.size(), -1);
-  for (auto& t : whole.triangles)
+  for (auto& t : fine_.triangles)
     for (int& v : t) {
       int& place = place_[static_cast<std::size_t>(v)];
       if (place < 0) {
@@ -123,12 +119,12 @@ GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
       }
       v = place;
     }
-  find_corners(whole, order_.size());
+  find_corners(fine_, order_.size());
   describe();
 }
 
 GpuMesh GpuMesh::twin() const {
-  GpuMesh other(levels_, usage_);
+  GpuMesh other(fine_, coarse_, usage_);
   other.order_ = order_;
   other.place_ = place_;
   other.describe();
@@ -138,8 +134,8 @@ GpuMesh GpuMesh::twin() const {
 /// Tells the card what it is given.
 void GpuMesh::describe() {
   glBindVertexArray(array_);
-  send(GL_ELEMENT_ARRAY_BUFFER, indices_,
-       std::span<const Eigen::Vector3i>(levels_.front().surface.triangles), GL_STATIC_DRAW);
+  send(GL_ELEMENT_ARRAY_BUFFER, indices_, std::span<const Eigen::Vector3i>(fine_.triangles),
+       GL_STATIC_DRAW);
   floats(0, positions_);
   floats(1, normals_);
   bytes(2, colors_);
@@ -147,35 +143,20 @@ void GpuMesh::describe() {
   glBindVertexArray(0);
 }
 
-void GpuMesh::add_details(std::span<const Eigen::Vector3f> positions,
-                          std::span<const Eigen::Vector3f> normals,
-                          std::span<const float> brightness,
-                          std::span<const Eigen::Vector3i> triangles) {
-  std::vector<Eigen::Vector3f> relief(positions.begin(), positions.end());
-  for (std::size_t i = 0; i < relief.size(); ++i)
-    relief[i] += relief_mm * brightness[i] * normals[i];
-  const int count = static_cast<int>(triangles.size());
-  const auto add = [&](Detail detail, std::span<const Eigen::Vector3f> shape, int few,
-                       double error_mm) {
-    few = std::max(few_triangles, few);
-    if (count <= few) return;
-    Surface& surface = levels_[static_cast<std::size_t>(detail)].surface;
-    surface = surface_of(positions, coarser(shape, triangles, few, error_mm));
-    for (auto& t : surface.triangles)
-      for (int& v : t) v = place_[static_cast<std::size_t>(v)];
-    find_corners(surface, order_.size());
-  };
-  add(Detail::close, relief, 0, close_error_mm);
-  add(Detail::coarse, positions, count / 10, coarse_error_mm);
+void GpuMesh::add_coarse(std::span<const Eigen::Vector3f> positions,
+                         std::span<const Eigen::Vector3i> triangles) {
+  const int few = std::max(few_triangles, static_cast<int>(triangles.size()) / 4);
+  if (static_cast<int>(triangles.size()) <= few) return;
+  coarse_ = surface_of(positions, coarser(positions, triangles, few, coarse_error_mm));
+  for (auto& t : coarse_.triangles)
+    for (int& v : t) v = place_[static_cast<std::size_t>(v)];
+  find_corners(coarse_, order_.size());
 }
 
-const GpuMesh::Surface& GpuMesh::surface(Detail detail) const {
-  auto level = static_cast<std::size_t>(detail);
-  while (level > 0 && levels_[level].surface.triangles.empty()) --level;
-  Level& found = levels_[level];
-  if (!found.measured) measure(found.surface, points_);
-  found.measured = true;
-  return found.surface;
+const GpuMesh::Surface& GpuMesh::fine() const {
+  if (!fine_measured_) measure(fine_, points_);
+  fine_measured_ = true;
+  return fine_;
 }
 
 void GpuMesh::send_shape(std::span<const Eigen::Vector3f> positions,
@@ -183,7 +164,8 @@ void GpuMesh::send_shape(std::span<const Eigen::Vector3f> positions,
   points_ = ordered(positions);
   send(GL_ARRAY_BUFFER, positions_, std::span<const Eigen::Vector3f>(points_), usage_);
   send_ordered(normals_, normals, usage_);
-  for (Level& level : levels_) level.measured = false;
+  measure(coarse_, points_);
+  fine_measured_ = false;
 }
 
 void GpuMesh::send_colors(std::span<const Bytes> colors) { send_ordered(colors_, colors, usage_); }
@@ -213,8 +195,8 @@ void GpuMesh::send_values(std::span<const float> values) {
 
 void GpuMesh::draw() const {
   glBindVertexArray(array_);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * levels_.front().surface.triangles.size()),
-                 GL_UNSIGNED_INT, nullptr);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * fine_.triangles.size()), GL_UNSIGNED_INT,
+                 nullptr);
 }
 
 void GpuMesh::draw(std::span<const Eigen::Vector3i> chosen) const {

@@ -17,13 +17,6 @@ struct DirectionCone {
   float sine = 2;  // of the angle; above 1: any direction
 };
 
-/// How near a surface is kept to its shape: with every triangle; within about 0.025 mm (0.3 at
-/// worst), colours too, for what is seen from so far that nobody can tell; within about 0.2 mm, for
-/// what moves and for shadows.
-enum class Detail { full, close, coarse };
-constexpr int details = 3;
-constexpr double close_error_mm = 0.025;
-
 /// A triangle surface on the graphics card, in small pieces that lie close together and face nearly
 /// the same way, so that those not seen can be left out. Attributes: 0 position, 1 normal, 2 colour
 /// with occlusion, 3 extra (see the surface shaders). What is given for vertices is given in the
@@ -54,11 +47,9 @@ class GpuMesh {
   /// The same triangles in another context; shape and colours are to be sent.
   GpuMesh twin() const;
 
-  /// Makes the surfaces of less detail; before the shape is sent. In a close one triangles stay
-  /// also where `brightness` changes: one per position, 0 black to 1 white.
-  void add_details(std::span<const Eigen::Vector3f> positions,
-                   std::span<const Eigen::Vector3f> normals, std::span<const float> brightness,
-                   std::span<const Eigen::Vector3i> triangles);
+  /// Makes the coarse surface of what the mesh was made of; before the shape is sent.
+  void add_coarse(std::span<const Eigen::Vector3f> positions,
+                  std::span<const Eigen::Vector3i> triangles);
   /// Positions as many as at the start.
   void send_shape(std::span<const Eigen::Vector3f> positions,
                   std::span<const Eigen::Vector3f> normals);
@@ -73,22 +64,19 @@ class GpuMesh {
   void send_cover(std::span<const Eigen::Vector3i> triangles);
 
   void draw() const;
-  /// Some of its triangles, of any detail.
+  /// Some of its triangles, fine or coarse.
   void draw(std::span<const Eigen::Vector3i> chosen) const;
   void draw_cover() const;
 
   // As on the card:
   const std::vector<Eigen::Vector3f>& points() const { return points_; }
-  /// The next with more triangles where it has none of that detail.
-  const Surface& surface(Detail detail) const;
+  const Surface& fine() const;
+  /// What is good enough to throw a shadow.
+  const Surface& coarse() const { return coarse_.triangles.empty() ? fine() : coarse_; }
 
  private:
-  struct Level {
-    Surface surface;        // no triangles: there is none
-    bool measured = false;  // put off until it is drawn
-  };
-  GpuMesh(const std::array<Level, details>& levels, GLenum usage)
-      : levels_(levels), usage_(usage) {}
+  GpuMesh(Surface fine, Surface coarse, GLenum usage)
+      : coarse_(std::move(coarse)), fine_(std::move(fine)), usage_(usage) {}
   void describe();
 
   template <class T>
@@ -99,7 +87,9 @@ class GpuMesh {
   GlVertexArray array_;
   GlBuffer positions_, normals_, colors_, extras_, values_, rest_, indices_, cover_, chosen_;
   GLsizei cover_count_ = 0;
-  mutable std::array<Level, details> levels_;  // by Detail
+  Surface coarse_;  // none unless asked for
+  mutable Surface fine_;
+  mutable bool fine_measured_ = false;  // put off: pictures in motion may not need it
   std::vector<Eigen::Vector3f> points_;
   std::vector<int> order_, place_;  // vertex on the card -> as given, and back; -1: not used
   GLenum usage_;

@@ -34,6 +34,10 @@ Sides sides_of(const DrawItem& item) {
   return item.drawable->closed && !item.cut() ? Sides::front : Sides::both;
 }
 
+const GpuMesh::Surface& surface_of(const DrawItem& item, const PictureView& view) {
+  return item.surface(view.coarse);
+}
+
 Viewpoint eye_of(const PictureView& view) {
   return {view.view_projection, view.eye.homogeneous(), view.width, view.height};
 }
@@ -65,16 +69,6 @@ void begin_cut(GlProgram& program, const DrawItem& item, const PictureView& view
 void end_cut() {
   glDisable(GL_CLIP_DISTANCE0);
   glDisable(GL_CLIP_DISTANCE1);
-}
-
-Detail PictureView::detail_of(const DrawItem& item) const {
-  // Values are shown where they are; cuts follow the triangles that were given.
-  if (all_triangles || item.drawable->mapped) return Detail::full;
-  if (coarse) return Detail::coarse;
-  if (item.cut()) return Detail::full;
-  constexpr float unseen_px = 0.15f;
-  const float pixel_mm = item.box().exteriorDistance(eye) / pixels_per_unit;
-  return close_error_mm <= unseen_px * pixel_mm ? Detail::close : Detail::full;
 }
 
 void PictureView::set_rays_in(GlProgram& program) const {
@@ -175,8 +169,7 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
     begin_cut(depth_, item, view);
     depth_.set("model", item.model);
     const auto& mesh = item.drawable->mesh;
-    mesh.draw(
-        visibility_.choose(mesh, mesh.surface(Detail::coarse), item.model, light, sides_of(item)));
+    mesh.draw(visibility_.choose(mesh, mesh.coarse(), item.model, light, sides_of(item)));
     end_cut();
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
@@ -262,7 +255,7 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
 
 const std::vector<Eigen::Vector3i>& Passes::seen_of(const DrawItem& item, const PictureView& view) {
   const auto& mesh = item.mesh();
-  const auto& surface = view.surface_of(item);
+  const auto& surface = surface_of(item, view);
   if (item.role() != Role::face) {
     cull_by_closure(item);
     return visibility_.choose(mesh, surface, item.model, eye_of(view), sides_of(item), &cover_);
@@ -286,7 +279,7 @@ void Passes::shade_interior(const DrawItem& item, const PictureView& view) {
   glEnable(GL_CULL_FACE);
   glCullFace(GL_FRONT);
   begin(interiors_, item, view, false);
-  item.mesh().draw(visibility_.choose(item.mesh(), view.surface_of(item), item.model, eye_of(view),
+  item.mesh().draw(visibility_.choose(item.mesh(), surface_of(item, view), item.model, eye_of(view),
                                       Sides::back, &cover_));
   end_cut();
 }
@@ -333,7 +326,7 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
   buffer_.begin_light();
   for (std::size_t i = 0; i < items.size(); ++i) {
     PictureBounds bounds(view.width, view.height, view.view_projection);
-    bounds.add(view.surface_of(items[i]).box, items[i].model);
+    bounds.add(surface_of(items[i], view).box, items[i].model);
     const DrawnBox box = around_of(bounds.box(1)).both(around);
     if (!seen[i] || box.empty()) continue;
     GlProgram& program =
@@ -374,10 +367,10 @@ void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
   if (view.may_cull)
     each_covering(items, [&](const DrawItem& item) {
       const auto& mesh = item.drawable->mesh;
-      const Detail detail = view.detail_of(item);
-      const auto& surface = mesh.surface(detail);
+      const auto& surface = surface_of(item, view);
+      const bool coarse = &surface == &mesh.coarse();
       cover_.add(mesh.points(), surface.corners, surface.triangles,
-                 item.drawable->edges[static_cast<std::size_t>(detail)], item.model);
+                 coarse ? *item.drawable->coarse_edges : *item.drawable->edges, item.model);
     });
   cover_.finish();
   // The face hides most of the rest: drawn first, it spares the shading of what lies under it.
@@ -403,7 +396,7 @@ void Passes::depth_only(const DrawItem& item, const PictureView& view) {
   begin_cut(depth_, item, view);
   depth_.set("model", item.model);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-  item.mesh().draw(visibility_.choose(item.mesh(), view.surface_of(item), item.model, eye_of(view),
+  item.mesh().draw(visibility_.choose(item.mesh(), surface_of(item, view), item.model, eye_of(view),
                                       sides_of(item), &cover_));
   end_cut();
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

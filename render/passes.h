@@ -30,6 +30,10 @@ struct DrawItem {
   Role role() const { return drawable->part->role; }
   bool opaque() const { return opacity >= 1; }
   const GpuMesh& mesh() const { return drawable->shown(); }
+  /// What is drawn of it. Values are shown where they are, on all of its triangles.
+  const GpuMesh::Surface& surface(bool coarse) const {
+    return coarse && !drawable->mapped ? mesh().coarse() : mesh().fine();
+  }
   /// Box of where it is now, mm.
   Eigen::AlignedBox3f box() const;
 };
@@ -44,10 +48,9 @@ struct PictureView {
   Lights lights;
   float pixels_per_unit;  // of a length across the line of sight at distance 1
   bool shadows = true;
-  bool coarse = false;         // shapes, where they serve
-  bool all_triangles = false;  // their edges are shown
-  bool opaque_face = false;    // keeps the sky out of the mouth, and hides most of the rest
-  bool may_cull = true;        // the eye is outside of everything
+  bool coarse = false;       // shapes, where they serve
+  bool opaque_face = false;  // keeps the sky out of the mouth, and hides most of the rest
+  bool may_cull = true;      // the eye is outside of everything
   float skin_opacity = 1;
   float at_rest = 1;                          // 1 with the jaw at rest, 0 when it is well away
   float lips_y = 0;                           // front of the teeth, mm
@@ -62,11 +65,6 @@ struct PictureView {
   float radius_px(const Eigen::Vector3f& place, float radius_mm) const {
     const float distance = (place - eye).norm() - 2 * radius_mm;
     return 3 + pixels_per_unit * 1.5f * radius_mm / std::max(distance, 1.f);
-  }
-  /// How closely a part must be drawn, so that nobody sees what is left out.
-  Detail detail_of(const DrawItem& item) const;
-  const GpuMesh::Surface& surface_of(const DrawItem& item) const {
-    return item.mesh().surface(detail_of(item));
   }
   /// Tells a program how pixel and depth make a place.
   void set_rays_in(GlProgram& program) const;

@@ -163,7 +163,6 @@ PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettin
       settings.height / 2.0 / std::tan(camera.field_of_view_deg * std::numbers::pi / 360));
   v.shadows = settings.shadows;
   v.coarse = settings.coarse;
-  v.all_triangles = !settings.wireframe.empty();
   v.may_cull = away > radius + 5;
   v.skin_opacity = static_cast<float>(std::clamp(settings.skin_opacity, 0.0, 1.0));
   v.at_rest = at_rest(items);
@@ -263,7 +262,8 @@ DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& s
   const auto view = s.view(camera, settings, items);
   PictureBounds bounds(settings.width, settings.height, view.view_projection);
   for (const auto& item : items) {
-    for (const auto& piece : view.surface_of(item).pieces) bounds.add(piece.box, item.model);
+    const bool coarse = settings.coarse && settings.wireframe.empty();
+    for (const auto& piece : item.surface(coarse).pieces) bounds.add(piece.box, item.model);
     if (settings.ghost && s.leaves_ghost(item, *settings.ghost))
       bounds.add(item.drawable->box, Eigen::Matrix4f::Identity());
   }

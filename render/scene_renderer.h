@@ -23,7 +23,7 @@ struct PictureSettings {
   int width = 1280, height = 720;
   int samples = 4;  // of multisampling; what the context cannot give is lowered
   bool shadows = true;
-  bool coarse = false;   // shapes within about 0.2 mm, for pictures that must come fast
+  bool coarse = false;   // shapes within 0.2 mm, for pictures that must come fast
   bool contacts = true;  // mark contact points
   bool transparent_background = false;
   double skin_opacity = 1.0;                   // 0 hides the face

@@ -15,8 +15,7 @@ void RollingFactor::begin(const SpringPrismNet& net, NetLoads loads, Nodes x, in
   next_ = std::async(threads > 1 ? std::launch::async : std::launch::deferred,
                      [like = now_, &net, loads = std::move(loads), x = std::move(x), threads,
                       owner = std::move(owner)]() -> std::shared_ptr<const HessianFactor> {
-                       auto made =
-                           std::make_shared<HessianFactor>(like->anew(net, loads, x, threads));
+                       auto made = std::make_shared<HessianFactor>(like->anew(net, loads, x));
                        made->set_threads(threads);
                        return made;
                      })

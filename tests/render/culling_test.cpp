@@ -95,9 +95,8 @@ struct Shell {
       glEnable(GL_CULL_FACE);
       glCullFace(sides == Sides::front ? GL_BACK : GL_FRONT);
       program.set("model", model);
-      const auto& chosen =
-          visibility.choose(mesh, mesh.surface(Detail::full), model, from, sides, hidden);
-      *drawn += all ? mesh.surface(Detail::full).triangles.size() : chosen.size();
+      const auto& chosen = visibility.choose(mesh, mesh.fine(), model, from, sides, hidden);
+      *drawn += all ? mesh.fine().triangles.size() : chosen.size();
       if (all)
         mesh.draw();
       else
@@ -169,12 +168,9 @@ TEST_F(Culling, AClosedSkinHidesAllBelowIt) {
   Visibility visibility;
   const Eigen::Matrix4f still = Eigen::Matrix4f::Identity();
   const GpuMesh& bone = shell.bone.mesh;
-  EXPECT_EQ(
-      visibility.choose(bone, bone.surface(Detail::full), still, from, Sides::front, &shell.cover)
-          .size(),
-      0u);
-  EXPECT_GT(visibility.choose(bone, bone.surface(Detail::full), still, from, Sides::front).size(),
-            1000u);
+  EXPECT_EQ(visibility.choose(bone, bone.fine(), still, from, Sides::front, &shell.cover).size(),
+            0u);
+  EXPECT_GT(visibility.choose(bone, bone.fine(), still, from, Sides::front).size(), 1000u);
 }
 
 TEST_F(Culling, AHoleOfOneTriangleIsSeenThrough) {
@@ -201,17 +197,16 @@ TEST_F(Culling, PiecesHoldEveryTriangleOnceInsideTheirBoxes) {
   const auto& mesh = sent.mesh;
   int next = 0;
   float sum = 0;
-  for (const auto& piece : mesh.surface(Detail::full).pieces) {
+  for (const auto& piece : mesh.fine().pieces) {
     EXPECT_EQ(piece.first_triangle, next);
     sum += piece.box.diagonal().norm();
     for (int t = 0; t < piece.triangle_count; ++t)
-      for (const int v : mesh.surface(Detail::full).triangles[next + t])
+      for (const int v : mesh.fine().triangles[next + t])
         EXPECT_TRUE(piece.box.contains(mesh.points()[v]));
     next += piece.triangle_count;
   }
   EXPECT_EQ(next, static_cast<int>(source.triangles.size()));
-  EXPECT_LT(sum / static_cast<float>(mesh.surface(Detail::full).pieces.size()),
-            20);  // of a ball of 104 across
+  EXPECT_LT(sum / static_cast<float>(mesh.fine().pieces.size()), 20);  // of a ball of 104 across
 }
 
 }  // namespace

@@ -20,27 +20,29 @@ struct Folder {
   ~Folder() { fs::remove_all(path); }
 };
 
-Image noise(int width, int height) {
+Image noise(int width, int height, bool opaque = false) {
   Image image{width, height, {}};
   std::mt19937 random(7);
   image.rgba.resize(std::size_t{4} * width * height);
   for (auto& byte : image.rgba) byte = static_cast<std::uint8_t>(random());
+  for (std::size_t i = 3; opaque && i < image.rgba.size(); i += 4) image.rgba[i] = 255;
   return image;
 }
 
 TEST(Png, WhatIsWrittenIsReadBack) {
   const Folder folder;
-  for (const auto& [w, h] : {std::pair{1, 1}, {37, 11}, {640, 480}}) {
-    const Image image = noise(w, h);
-    write_png(folder.path / "a.png", image);
-    const Image again = read_png(folder.path / "a.png");
-    EXPECT_EQ(again.width, w);
-    EXPECT_EQ(again.height, h);
-    EXPECT_EQ(again.rgba, image.rgba);
-    EXPECT_EQ(encode_png(image), encode_png(again));
-    EXPECT_TRUE(is_whole_png(folder.path / "a.png", w, h));
-    EXPECT_FALSE(is_whole_png(folder.path / "a.png", w + 1, h));
-  }
+  for (const bool opaque : {false, true})
+    for (const auto& [w, h] : {std::pair{1, 1}, {37, 11}, {640, 480}}) {
+      const Image image = noise(w, h, opaque);
+      write_png(folder.path / "a.png", image);
+      const Image again = read_png(folder.path / "a.png");
+      EXPECT_EQ(again.width, w);
+      EXPECT_EQ(again.height, h);
+      EXPECT_EQ(again.rgba, image.rgba);
+      EXPECT_EQ(encode_png(image), encode_png(again));
+      EXPECT_TRUE(is_whole_png(folder.path / "a.png", w, h));
+      EXPECT_FALSE(is_whole_png(folder.path / "a.png", w + 1, h));
+    }
 }
 
 TEST(Png, AnyCutAndAnyFlippedByteOfTheDataIsSeen) {
