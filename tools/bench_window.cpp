@@ -31,7 +31,7 @@ std::vector<BenchRow> play(const Scene& scene, const Motion& motion,
                            int height, const std::string& name) {
   constexpr double settle_s = 3, measure_s = 6, span_s = 0.5;
   constexpr std::chrono::milliseconds turn(4);
-  LiveSimulation simulation(scene, motion, settings);
+  LiveSimulation simulation(scene, motion, live_settings(settings));
   PictureThread painter([] {});
   QualityGovernor governor;
   PictureOrder order{.parts = std::make_shared<DrawnParts>(DrawnParts{scene.patient.parts, {}, {}}),

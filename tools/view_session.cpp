@@ -153,7 +153,8 @@ void ViewSession::take_motion() {
   motion_ = *made;
   show_scene();
   retire(simulation_);
-  simulation_ = std::make_shared<LiveSimulation>(patient_->scene, motion_->motion, settings_);
+  simulation_ = std::make_shared<LiveSimulation>(patient_->scene, motion_->motion,
+                                                 live_settings(settings_));
   moved_ = {};
   window_.change([&](ViewState& view) {
     view.obey_contact = obeys_contact();

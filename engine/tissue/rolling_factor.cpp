@@ -12,6 +12,7 @@ void RollingFactor::begin(const SpringPrismNet& net, NetLoads loads, Nodes x, in
                           std::shared_ptr<const void> owner) {
   if (next_.valid()) return;
   frames_left_ = lag;
+  served_ = 0;
   next_ = std::async(threads > 1 ? std::launch::async : std::launch::deferred,
                      [like = now_, &net, loads = std::move(loads), x = std::move(x), threads,
                       owner = std::move(owner)]() -> std::shared_ptr<const HessianFactor> {

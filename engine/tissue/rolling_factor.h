@@ -16,6 +16,9 @@ class RollingFactor {
   explicit RollingFactor(std::shared_ptr<const HessianFactor> first) : now_(std::move(first)) {}
 
   const HessianFactor& now() const { return *now_; }
+  /// Iterations since the newest one was begun, of frames told so far.
+  int served() const { return served_; }
+  void serve(int iterations) { served_ += iterations; }
   /// The next frame has begun.
   void advance();
   /// One made within the frame serves at once.
@@ -36,6 +39,7 @@ class RollingFactor {
   std::shared_ptr<const HessianFactor> now_;
   std::shared_future<std::shared_ptr<const HessianFactor>> next_;
   int frames_left_ = 0;
+  int served_ = 0;
 };
 
 }  // namespace condyle

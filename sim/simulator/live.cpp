@@ -14,6 +14,11 @@ namespace {
 /// A time farther ahead than this is a jump of the scrub bar, not time running on.
 constexpr double jump_s = 0.25;
 constexpr std::chrono::milliseconds picture_interval(33);
+constexpr double step_s = 1.0 / 60;
+constexpr int step_iterations = 4;
+/// After so long without a new request tissue settles, so far in each step, for so many at most.
+constexpr std::chrono::milliseconds calm(60);
+constexpr int settling_iterations = 30, most_settling = 60;
 
 /// Time of the way to full opening at which the motion opens by `opening_mm`. Bisection.
 double time_of_opening(const Case& patient, const Motion& motion, double opening_mm) {
@@ -37,6 +42,12 @@ double time_of_opening(const Case& patient, const Motion& motion, double opening
 }
 
 }  // namespace
+
+SimulatorSettings live_settings(SimulatorSettings settings) {
+  settings.step_s = step_s;
+  settings.tissue_budget.max_iterations = step_iterations;
+  return settings;
+}
 
 LiveSimulation::LiveSimulation(const Scene& scene, Motion motion, const SimulatorSettings& settings)
     : scene_(scene),
@@ -120,6 +131,7 @@ void LiveSimulation::work() {
   LiveRequest answered;
   bool caught_up = false;  // with it
   long answered_grips = 0;
+  int settling = 0;  // steps of it that are left
   const auto free = free_parts(scene_.patient.parts);
   std::vector<Pose> X_BF(free.size());  // where free parts are to be in their carriers' frames
   const auto carrier = [&](std::size_t f) {
@@ -133,9 +145,13 @@ void LiveSimulation::work() {
       long grips = 0;
       {
         std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] {
+        const auto asked = [&] {
           return stop_ || !caught_up || answered != wanted_ || answered_grips != grips_;
-        });
+        };
+        if (settling == 0)
+          changed_.wait(lock, asked);
+        else if (changed_.wait_for(lock, settling == most_settling ? calm : calm.zero(), asked))
+          settling = 0;
         if (stop_) return;
         wanted = wanted_;
         held = held_;
@@ -160,10 +176,16 @@ void LiveSimulation::work() {
       // Soft tissue that nobody sees waits; it follows from where it was left.
       SimulatorSettings seen = settings_;
       seen.tissue = seen.tissue && wanted.face;
+      int& iterations = seen.tissue_budget.max_iterations;
+      const bool settles = settling > 0, jumps = std::abs(time_s - now.time_s) >= jump_s;
+      if (settles) iterations = std::max(iterations, settling_iterations);
+      if (jumps) iterations = TissueBudget{}.max_iterations;
       now = step(scene_, now, step_input, seen);
       for (std::size_t f = 0; f < free.size(); ++f)
         if (held[1 + f]) X_BF[f] = carrier(f).inverse() * now.X_CF[f];
       now.times[Stage::motion] = motion_time[Stage::motion];
+      const bool settled = !seen.tissue || now.tissue.converged;
+      settling = settled ? 0 : settles ? settling - 1 : most_settling;
       caught_up = !runs_on;
       if (caught_up) {
         answered = wanted;
@@ -176,7 +198,8 @@ void LiveSimulation::work() {
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       const std::lock_guard lock(mutex_);
       if (shown) newest_ = now;
-      step_seconds_ = step_seconds_ > 0 ? 0.9 * step_seconds_ + 0.1 * seconds : seconds;
+      if (!settles)
+        step_seconds_ = step_seconds_ > 0 ? 0.9 * step_seconds_ + 0.1 * seconds : seconds;
     }
   } catch (...) {
     const std::lock_guard lock(mutex_);

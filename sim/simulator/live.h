@@ -20,8 +20,15 @@ struct LiveRequest {
   bool operator==(const LiveRequest&) const = default;
 };
 
+/// The settings of a simulation that has to keep up with a clock: longer steps, and a few iterations
+/// of the tissue in each. Over an opening of the built-in patient 99 of 100 points of the skin are
+/// within 0.03 mm of the converged answer in half of the steps (`bench frame`); where skin may fold
+/// one way or another it may fold otherwise.
+SimulatorSettings live_settings(SimulatorSettings settings);
+
 /// Steps a scene on a thread of its own toward the newest request: in fixed steps while the time
-/// runs on, in one step when it jumps. Pictures may be slow; the steps stay what they are.
+/// runs on, in one step when it jumps. Pictures may be slow; the steps stay what they are. When
+/// nothing is asked any more, tissue that has not converged goes on until it has.
 class LiveSimulation {
  public:
   /// The scene must outlive the simulation.

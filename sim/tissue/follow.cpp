@@ -44,8 +44,9 @@ namespace {
 /// Iterations after which a factor of the tissue as it is now is made at once, and after twice as
 /// many the next; later frames go on with it. It costs as much as some twenty of them.
 constexpr int first_patience = 30;
-/// Iterations of a frame above which one is made beside the loop.
-constexpr int worth_making = 8;
+/// Iterations of a frame above which one is made beside the loop; where frames end before they have
+/// converged, iterations of all frames that the last one served.
+constexpr int worth_making = 8, worth_making_of_all = 12;
 /// After so many iterations contact is looked at anew, at the minimum or not: where tissue buckles,
 /// planes laid before it gave way lead it astray (median of an opening 8 iterations either way,
 /// 95th percentile 36 for 49).
@@ -158,7 +159,9 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
   TouchingResult touching = solve_touching(
       [&](const Nodes& x) { return look_at(model.contact, X_CM, x, budget.threads, &near); }, solve,
       loads, state.nodes, contact_settings, before);
-  if (state.iterations > worth_making)
+  factor.serve(state.iterations);
+  if (state.iterations > worth_making ||
+      (!state.converged && factor.served() > worth_making_of_all))
     factor.begin(model.net, loads, state.nodes, budget.threads, model.weak_from_this().lock());
   state.factor = std::make_shared<const RollingFactor>(std::move(factor));
   const ContactMeasure contact =

@@ -22,6 +22,8 @@ struct TissueSettings {
 /// How far one frame's minimisation goes.
 struct TissueBudget {
   double tolerance_mm = 1e-2;  // stop when a step moves no node farther than this, estimated
+  /// A frame that has spent them ends as soon as what it touches is within 0.1 mm, says that it has
+  /// not converged, and leaves the rest to the next.
   int max_iterations = 2000;
   int threads = 1;  // the result has the same bits for any number
 };
