@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <span>
 
 #include "engine/mesh/measure.h"
 
@@ -28,8 +26,7 @@ constexpr double least_cosine = 0.5;
 /// Nearer than this the way to the nearest point says little about the surface's direction.
 constexpr double close_mm = 0.02;
 
-constexpr std::size_t most_of_run = 8;  // points that are looked at as one
-constexpr double run_mm = 4;            // as far as they are from the first of them
+constexpr double field_error_mm = 0.05;
 
 FieldSettings field_settings(const Box& region) {
   return {.spacing_mm = spacing_mm, .band_mm = band_mm, .region = region};
@@ -48,14 +45,6 @@ Touch make_touch(int index, const NetPoint& point, double distance, const Vector
   }
   touch.row.count = point.count;
   return touch;
-}
-
-/// Whether no node has moved farther; nodes of another net have.
-bool within(double reach_mm, const Nodes& before, const Nodes& now) {
-  if (before.size() != now.size()) return false;
-  for (std::size_t i = 0; i < now.size(); ++i)
-    if (!((now[i] - before[i]).squaredNorm() <= reach_mm * reach_mm)) return false;
-  return true;
 }
 
 /// Which corners and edges of a surface lie on its rim.
@@ -105,30 +94,29 @@ NetObstacle::NetObstacle(const TriMesh& mesh, const Box& region, const std::file
 
 bool NetObstacle::near(const Vector3d& p, double reach, Near& near) const {
   const DistanceField::Spot spot = field_.spot(p);
-  if (!spot.corner && spot.distance_mm > 0) return false;  // beyond the band, or the region
+  if (spot.known && spot.distance_mm > reach) {
+    near.distance = spot.distance_mm - field_error_mm;
+    return false;
+  }
   if (spot.known) {
-    if (spot.distance_mm > reach) return false;
     const Vector3d gradient = field_.gradient(spot);
     const double steep = gradient.norm();
     if (steep > 0.7) {  // not where two surfaces are equally near
       near = {spot.distance_mm, gradient / steep};
       return true;
     }
-  } else if (field_.lower_bound(p) > reach || surface_.empty()) {
-    return false;
+  } else {
+    near.distance = field_.lower_bound(p);
+    const bool beyond = !spot.corner && spot.distance_mm > 0;  // the band, or the region
+    if (beyond || near.distance > reach || surface_.empty()) return false;
   }
   const SurfacePoint found = surface_.signed_nearest(p, deepest_mm);
-  if (found.triangle < 0 || found.distance > reach) return false;
+  if (found.triangle < 0) return false;
   near.distance = found.distance;
+  if (near.distance > reach) return false;
   near.normal = std::abs(found.distance) > close_mm ? Vector3d((p - found.point) / found.distance)
                                                     : surface_.pseudonormal(found).normalized();
   return true;
-}
-
-bool NetObstacle::farther(const Vector3d& p, double reach) const {
-  const DistanceField::Spot spot = field_.spot(p);
-  if (spot.known) return spot.distance_mm > reach;
-  return field_.lower_bound(p) > reach;
 }
 
 Vector3d NetObstacle::way_out(const Vector3d& p) const {
@@ -140,52 +128,31 @@ Vector3d NetObstacle::way_out(const Vector3d& p) const {
 void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                     const NetObstacle& obstacle, const Pose& X_WO, const Nodes& x,
                     const TouchSettings& settings, std::vector<Touch>& touches, const Nodes& shift,
-                    std::shared_ptr<const NearPoints>* known) {
+                    NearPoints* known) {
   const Pose X_OW = X_WO.inverse();
   const Eigen::Matrix3d R_OW = X_OW.R.toRotationMatrix(), R_WO = X_WO.R.toRotationMatrix();
-  // Neighbours in the list mostly lie side by side: one look for all of them tells most of it.
-  // `use` is told of the runs that are not farther than `reach`.
-  const auto each_run = [&](std::span<const int> among, double reach, const auto& use) {
-    std::array<Vector3d, most_of_run> p;
-    for (std::size_t first = 0, end = 0; first < among.size(); first = end) {
-      double reach2 = 0;
-      for (; end < among.size() && end - first < most_of_run; ++end) {
-        Vector3d& here = p[end - first];
-        here = R_OW * points[among[end]].at(x) + X_OW.t;
-        if (!shift.empty()) here += shift[among[end]];
-        const double way2 = (here - p[0]).squaredNorm();
-        if (way2 > run_mm * run_mm) break;
-        reach2 = std::max(reach2, way2);
-      }
-      if (!obstacle.farther(p[0], reach + std::sqrt(reach2)))
-        use(among.subspan(first, end - first), p);
-    }
-  };
-  Nodes seen(x.size());  // from the obstacle
-  for (std::size_t i = 0; i < x.size(); ++i) seen[i] = R_OW * x[i] + X_OW.t;
-  std::shared_ptr<const NearPoints> found = known ? *known : nullptr;
-  if (!found || !within(NearPoints::margin_mm, found->x, seen)) {
-    NearPoints anew{std::move(seen), {}};
-    std::vector<int> every(points.size());
-    std::iota(every.begin(), every.end(), 0);
-    each_run(every, settings.reach_mm + NearPoints::margin_mm, [&](auto run, const auto&) {
-      anew.index.insert(anew.index.end(), run.begin(), run.end());
-    });
-    found = std::make_shared<const NearPoints>(std::move(anew));
-    if (known) *known = found;
-  }
   NetObstacle::Near near;
-  each_run(found->index, settings.reach_mm, [&](auto run, const auto& p) {
-    for (std::size_t k = 0; k < run.size(); ++k) {
-      if (!obstacle.near(p[k], settings.reach_mm, near)) continue;
-      const int i = run[k];
+  const auto look = [&](int i) {
+    const Vector3d at = points[i].at(x);
+    Vector3d here = R_OW * at + X_OW.t;
+    if (!shift.empty()) here += shift[i];
+    if (obstacle.near(here, settings.reach_mm, near)) {
       touches.push_back(make_touch(i, points[i], near.distance, R_WO * near.normal, allowance[i],
                                    settings.stiffness));
       Touch& touch = touches.back();
       touch.row.offset = touch.row.along(x) - touch.gap;
-      touch.at = points[i].at(x);
+      touch.at = at;
     }
-  });
+    return near.distance - field_error_mm;
+  };
+  if (!known) {
+    for (std::size_t i = 0; i < points.size(); ++i) look(static_cast<int>(i));
+    return;
+  }
+  Nodes seen(x.size());  // from the obstacle
+  for (std::size_t i = 0; i < x.size(); ++i) seen[i] = R_OW * x[i] + X_OW.t;
+  known->moved(points, std::move(seen));
+  known->each(settings.reach_mm, look);
 }
 
 Vector3d led(const Vector3d& normal, const Vector3d& front, double least) {

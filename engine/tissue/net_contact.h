@@ -11,22 +11,11 @@
 #include "engine/collide/distance_field.h"
 #include "engine/math/pose.h"
 #include "engine/mesh/triangle_tree.h"
+#include "engine/tissue/near_points.h"
+#include "engine/tissue/net_point.h"
 #include "engine/tissue/spring_prism.h"
 
 namespace condyle {
-
-/// A point of a net's surface: a node, or within a triangle of three that are neighbours.
-struct NetPoint {
-  std::array<int, 3> node{};
-  std::array<double, 3> weight{};  // sums to 1
-  int count = 0;
-
-  Eigen::Vector3d at(const Nodes& x) const;
-  static NetPoint of_node(int node) { return {{node}, {1.0}, 1}; }
-  static NetPoint centre(int a, int b, int c) {
-    return {{a, b, c}, {1.0 / 3, 1.0 / 3, 1.0 / 3}, 3};
-  }
-};
 
 /// A body that a net slides on and does not enter, in its own coordinates: a field near its surface
 /// within a region, exact triangles where the field says nothing.
@@ -41,10 +30,9 @@ class NetObstacle {
     double distance = 0;     // mm, negative inside
     Eigen::Vector3d normal;  // unit, away from the body
   };
-  /// Whether p is nearer than `reach` (mm, below 2), and how near. Nothing beyond the region.
+  /// Whether p is nearer than `reach` (mm, below 2), and how near. Nothing beyond the region. Where
+  /// it is not, it is no nearer than `near.distance`.
   bool near(const Eigen::Vector3d& p, double reach, Near& near) const;
-  /// Whether nothing of the body is within `reach` (mm) of p, as far as is easily told.
-  bool farther(const Eigen::Vector3d& p, double reach) const;
   /// The shortest way out for a point inside, mm; zero outside.
   Eigen::Vector3d way_out(const Eigen::Vector3d& p) const;
 
@@ -74,24 +62,16 @@ struct TouchSettings {
   double stiffness = 3.0;  // N/mm: a tenfold of the tissue's own; tissue presses with up to 4 N
 };
 
-/// The points that were near an obstacle at one look: while no node has moved farther than the
-/// margin since, as seen from the obstacle, only these are looked at again.
-struct NearPoints {
-  static constexpr double margin_mm = 1;
-  Nodes x;                 // at that look, in the obstacle's coordinates
-  std::vector<int> index;  // rising
-};
-
 /// Appends the points that are near the obstacle at pose X_WO. `allowance` (mm, one per point) is
 /// how deep each may be: that of overlap at rest; negative where one keeps a distance. `shift`:
 /// where each is felt, from where it is, mm in the obstacle's coordinates; one per point, or none.
 /// A point deep inside at rest is better felt where its way out ends: from deep inside an edge more
-/// than one way leads out. `known`: kept by the caller from look to look,
-/// null before the first; or none.
+/// than one way leads out. `known`: kept by the caller from look to look, of the same points,
+/// obstacle and shifts; or none.
 void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
                     const NetObstacle& obstacle, const Pose& X_WO, const Nodes& x,
                     const TouchSettings& settings, std::vector<Touch>& touches,
-                    const Nodes& shift = {}, std::shared_ptr<const NearPoints>* known = nullptr);
+                    const Nodes& shift = {}, NearPoints* known = nullptr);
 
 /// The same against another part of the net's own surface: triangles of nodes, counter-clockwise
 /// seen from outside. It may have a rim; what is nearest to a rim from behind counts as inside, so

@@ -15,7 +15,7 @@ namespace {
 constexpr double jump_s = 0.25;
 constexpr std::chrono::milliseconds picture_interval(33);
 constexpr double step_s = 1.0 / 60;
-constexpr int step_iterations = 4;
+constexpr int step_iterations = 3;
 /// After so long without a new request tissue settles, so far in each step, for so many at most.
 constexpr std::chrono::milliseconds calm(60);
 constexpr int settling_iterations = 30, most_settling = 60;

@@ -46,7 +46,7 @@ namespace {
 constexpr int first_patience = 30;
 /// Iterations of a frame above which one is made beside the loop; where frames end before they have
 /// converged, iterations of all frames that the last one served.
-constexpr int worth_making = 8, worth_making_of_all = 12;
+constexpr int worth_making = 8, worth_making_of_all = 24;
 /// After so many iterations contact is looked at anew, at the minimum or not: where tissue buckles,
 /// planes laid before it gave way lead it astray (median of an opening 8 iterations either way,
 /// 95th percentile 36 for 49).

@@ -334,7 +334,7 @@ Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, in
               NearJaws* known) {
   Looks looks(4);
   const auto jaw = [&](const TissueContact::Jaw& of, const Pose& X_CJ, std::vector<Touch>& touches,
-                       std::shared_ptr<const NearPoints>* near) {
+                       NearPoints* near) {
     if (!of.obstacle) return;
     touch_obstacle(contact.points, of.allowance, *of.obstacle, X_CJ, x, {}, touches, of.shift,
                    near);

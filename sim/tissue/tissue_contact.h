@@ -67,7 +67,7 @@ enum ContactList : std::size_t { on_cranium, on_mandible, upper_on_lower, lower_
 
 /// What looks at one pose of the mandible learn for the next ones.
 struct NearJaws {
-  std::shared_ptr<const NearPoints> cranium, mandible;
+  NearPoints cranium, mandible;
 };
 
 /// Everything the tissue touches at x, with the mandible at X_CM.

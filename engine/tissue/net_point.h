@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "engine/tissue/spring_prism.h"
+
+namespace condyle {
+
+/// A point of a net's surface: a node, or within a triangle of three that are neighbours.
+struct NetPoint {
+  std::array<int, 3> node{};
+  std::array<double, 3> weight{};  // sums to 1
+  int count = 0;
+
+  Eigen::Vector3d at(const Nodes& x) const;
+  static NetPoint of_node(int node) { return {{node}, {1.0}, 1}; }
+  static NetPoint centre(int a, int b, int c) {
+    return {{a, b, c}, {1.0 / 3, 1.0 / 3, 1.0 / 3}, 3};
+  }
+};
+
+}  // namespace condyle
