@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -8,6 +9,7 @@
 #include "render/gl_context.h"
 #include "render/scene_renderer.h"
 #include "sim/report/report.h"
+#include "sim/simulator/live.h"
 #include "tools/bench_window.h"
 #include "tools/common.h"
 
@@ -30,6 +32,21 @@ std::shared_ptr<const TissueModel> dense_face(const Case& patient, const TissueS
     triangles = part.mesh.triangles.size();
   }
   return build_tissue(dense, settings);
+}
+
+/// How far all nodes but a hundredth are from where they should be, mm.
+double usual_error(const TissueState& is, const TissueState& should) {
+  std::vector<double> distance;
+  for (std::size_t i = 0; i < is.nodes.size(); ++i)
+    distance.push_back((is.nodes[i] - should.nodes[i]).norm());
+  if (distance.empty()) return 0;
+  const auto place = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() * 99 / 100);
+  std::nth_element(distance.begin(), place, distance.end());
+  return *place;
+}
+
+double simulation_ms(const FrameState& frame) {
+  return frame.times[Stage::motion] + frame.times[Stage::contact] + frame.times[Stage::tissue];
 }
 
 /// Of a rate the slow end matters.
@@ -81,19 +98,26 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
   constexpr int film_frames = 16;
   std::vector<FrameState> of_film;
   std::map<std::string, std::vector<double>> samples;
+  const SimulatorSettings live = live_settings(settings);
+  BenchRow live_error{"frame.live_error", "mm", {}, {}};
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
-    Playback playback(scene, motion, settings);
+    Playback playback(scene, motion, settings), quick(scene, motion, live);
+    double next_quick_s = 0;
     for (int i = 0; i <= steps; ++i) {
       FrameState frame = playback.at(i * settings.step_s);
+      if (frame.time_s > next_quick_s - 1e-9) {
+        const FrameState as_shown = quick.at(next_quick_s);
+        next_quick_s += live.step_s;
+        samples["frame.live_step"].push_back(simulation_ms(as_shown));
+        if (scene.tissue) live_error.samples.push_back(usual_error(as_shown.tissue, frame.tissue));
+      }
       if (repeat == 0 && i % std::max(1, steps / film_frames) == 0 && of_film.size() < film_frames)
         of_film.push_back(frame);
-      const double simulation =
-          frame.times[Stage::motion] + frame.times[Stage::contact] + frame.times[Stage::tissue];
       samples["frame.motion"].push_back(frame.times[Stage::motion]);
       samples["frame.contact"].push_back(frame.times[Stage::contact]);
       samples["frame.tissue"].push_back(frame.times[Stage::tissue]);
       samples["frame.face"].push_back(frame.times[Stage::face]);
-      samples["frame.total"].push_back(simulation);
+      samples["frame.total"].push_back(simulation_ms(frame));
       if (dense) {
         StageTimes dense_times;
         {
@@ -117,6 +141,7 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
   }
   bar.show("recording", 1);
   std::vector<BenchRow> rows = bench_film(scene.patient.parts, of_film, camera, smoothed, sampled);
+  rows.push_back(std::move(live_error));
   bar.show("playing as the window does", 1);
   for (BenchRow& row : bench_window(scene, motion, settings, camera))
     rows.push_back(std::move(row));
@@ -131,9 +156,9 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
   json["machine"] = {{"processor", processor()},
                      {"cores", std::thread::hardware_concurrency()},
                      {"opengl", context.description()}};
-  for (const char* name :
-       {"frame.motion", "frame.contact", "frame.tissue", "frame.face", "frame.face_dense",
-        "frame.total", "frame.render_moving", "frame.render_fxaa", "frame.render_msaa"}) {
+  for (const char* name : {"frame.motion", "frame.contact", "frame.tissue", "frame.face",
+                           "frame.face_dense", "frame.total", "frame.live_step",
+                           "frame.render_moving", "frame.render_fxaa", "frame.render_msaa"}) {
     if (samples[name].empty()) continue;
     const auto times = summarise(samples[name]);
     json["results"].push_back({{"name", name},
@@ -165,14 +190,17 @@ int run_bench_frame(const BenchOptions& options, const CommonOptions& common) {
     fmt::print(
         stderr,
         "{}; {} tissue nodes, largest bone {} triangles, {} threads; frame.total is motion + "
-        "contact + tissue; frame.face_dense carries {} triangles of the face; frame.render is "
+        "contact + tissue; frame.live_step: the same as a playing window steps, in steps of {:.1f} "
+        "ms and few iterations, and frame.live_error how far all nodes but a hundredth then are "
+        "from the converged ones; frame.face_dense carries {} triangles of the face; frame.render "
+        "is "
         "a picture of 1920x1080 with shadows, edges smoothed (fxaa) or sampled four times (msaa), "
         "on {}; frame.record: pictures drawn and written, of frames simulated before, with fxaa "
         "and (record_msaa) with msaa; frame.record_with_film: a recording with a film against one "
         "without; frame.window: "
         "pictures and steps a second while the motion plays in a window of that size\n",
         "median and 95th percentile (of what is counted a second: 5th)", nodes, bone_triangles,
-        common.threads, face_triangles, context.description());
+        common.threads, 1000 * live.step_s, face_triangles, context.description());
     for (const auto& result : json["results"])
       fmt::print(stderr, "  {:<28}{:>9.3f}{:>9.3f} {}\n", result["name"].get<std::string>(),
                  result["median"].get<double>(),

@@ -16,8 +16,8 @@ class NearPoints {
   /// The nodes are at x now, in the obstacle's coordinates.
   void moved(const std::vector<NetPoint>& points, Nodes x);
 
-  /// Asks `look(i)`, which gives what the point is no nearer than (mm), for each point, rising, that
-  /// may be nearer than `reach`.
+  /// Asks `look(i)`, which gives what the point is no nearer than (mm), for each point, rising,
+  /// that may be nearer than `reach`.
   template <class Look>
   void each(double reach, const Look& look) {
     for (std::size_t r = 0; r < least_of_run_.size(); ++r) {
@@ -47,9 +47,9 @@ class NearPoints {
 
   std::shared_ptr<const Runs> runs_;
   Nodes last_;
-  std::vector<double> way_;         // of each node so far, mm
-  std::vector<double> way_then_;    // of each run's nodes, when its points were looked at
-  std::vector<double> least_;       // of each point: no nearer then
+  std::vector<double> way_;       // of each node so far, mm
+  std::vector<double> way_then_;  // of each run's nodes, when its points were looked at
+  std::vector<double> least_;     // of each point: no nearer then
   std::vector<double> least_of_run_;
 };
 

@@ -233,8 +233,11 @@ void Panels::Drawing::tissue() {
   const TissueState& state = input.frame->tissue;
   heading(pen, "Tissue", fmt::format("{} nodes", state.nodes.size()));
   reading(theme, "Iterations",
-          fmt::format("{}{}", state.iterations, state.converged ? "" : ", not converged"),
-          state.converged ? palette().text : palette().warning);
+          fmt::format("{}{}", state.iterations,
+                      state.converged ? ""
+                      : state.kept    ? ", failed: as before"
+                                      : ", settling"),
+          state.kept ? palette().warning : palette().text);
   // What few people look at stands in the second line only when there is something to say.
   reading(theme, state.inverted_prisms ? "Inverted prisms" : "Residual",
           state.inverted_prisms ? fmt::format("{}", state.inverted_prisms)

@@ -278,7 +278,8 @@ void ContactModel::prepare_sliding(const Progress& progress, int threads) const 
 }
 
 ContactModel::Slide ContactModel::slide(const BodyPoses& from, const Wanted& wanted,
-                                        const ContactSet* previous, int threads) const {
+                                        const ContactSet* previous, int threads,
+                                        bool bound_far) const {
   const State& state = *state_;
   std::vector<Pose> X_CB = state.body_poses(from);
   state.body_poses({wanted.X_CM, wanted.X_BF});  // refuses what is no pose
@@ -289,7 +290,7 @@ ContactModel::Slide ContactModel::slide(const BodyPoses& from, const Wanted& wan
   Slide result;
   const auto go = [&](int body, const Pose& to) {
     const Drive drive = make_drive(state, X_CB, body, to);
-    const Arrival arrival = slide_drive(state, drive, set, exact, threads);
+    const Arrival arrival = slide_drive(state, drive, set, exact, bound_far, threads);
     X_CB = drive.poses_at(arrival.X_CD);
     exact = true;
     result.stopped |= arrival.stopped;

@@ -71,9 +71,10 @@ class ContactModel {
   /// walls as thin as each other, far from where bodies were at rest) the body creeps from `from`
   /// in stretches of a millimetre, each proved by the exact surfaces, and goes no deeper than it
   /// was. Same bits for any number of threads; nothing that is remembered from call to call changes
-  /// an answer.
+  /// an answer. `bound_far`: surfaces that are sure to be apart by 5 mm need not be measured; then
+  /// PairContact::distance_is_bound.
   Slide slide(const BodyPoses& from, const Wanted& wanted, const ContactSet* previous,
-              int threads = 1) const;
+              int threads = 1, bool bound_far = false) const;
 
   /// Makes the distance fields that sliding needs, or reads them from the cache: slide() does so
   /// where it first meets something. Threads may share a model.

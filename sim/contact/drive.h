@@ -39,9 +39,10 @@ struct Arrival {
 Arrival stop(const ContactModel::State& state, const Drive& drive, ContactSet& set, bool exact,
              int threads);
 
-/// The same, sliding along what is in the way to the nearest pose allowed.
+/// The same, sliding along what is in the way to the nearest pose allowed. `bound_far`: see
+/// ContactModel::slide.
 Arrival slide_drive(const ContactModel::State& state, const Drive& drive, ContactSet& set,
-                    bool exact, int threads);
+                    bool exact, bool bound_far, int threads);
 
 /// Pairs and guards of which one side moves.
 std::vector<std::size_t> concerned_pairs(const ContactModel::State& state, const Drive& drive);

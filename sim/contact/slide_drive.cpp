@@ -19,14 +19,17 @@ constexpr int most_steps = 400;
 /// A drive on its way by sliding.
 class SlidingDrive {
  public:
-  SlidingDrive(const ContactModel::State& state, const Drive& drive, ContactSet& set, int threads)
+  /// `exact`: the set was taken where the drive begins.
+  SlidingDrive(const ContactModel::State& state, const Drive& drive, ContactSet& set, bool exact,
+               bool bound_far, int threads)
       : state_(state),
         drive_(drive),
+        exact_(exact),
         threads_(threads),
-        judge_(state, drive, set, threads),
+        judge_(state, drive, set, exact && bound_far, threads),
         set_(set) {}
 
-  Arrival run(bool exact);
+  Arrival run();
 
  private:
   std::vector<SlideResult> proposals() const;
@@ -43,6 +46,7 @@ class SlidingDrive {
 
   const ContactModel::State& state_;
   const Drive& drive_;
+  bool exact_;
   int threads_;
   SlideJudge judge_;
   ContactSet& set_;
@@ -112,7 +116,7 @@ std::vector<SlideResult> SlidingDrive::proposals() const {
   return found;
 }
 
-Arrival SlidingDrive::run(bool exact) {
+Arrival SlidingDrive::run() {
   const Pose &from = drive_.from(), &wanted = drive_.wanted;
   if (judge_.pairs().empty()) return {wanted, false};
   Found at_wanted;
@@ -133,7 +137,7 @@ Arrival SlidingDrive::run(bool exact) {
     }
   }
   Found found(judge_.pairs().size());
-  if (exact)
+  if (exact_)
     for (std::size_t k = 0; k < found.size(); ++k) found[k] = state_.slot(set_, judge_.pairs()[k]);
   else
     found = judge_.look(from);
@@ -145,8 +149,8 @@ Arrival SlidingDrive::run(bool exact) {
 }  // namespace
 
 Arrival slide_drive(const ContactModel::State& state, const Drive& drive, ContactSet& set,
-                    bool exact, int threads) {
-  return SlidingDrive(state, drive, set, threads).run(exact);
+                    bool exact, bool bound_far, int threads) {
+  return SlidingDrive(state, drive, set, exact, bound_far, threads).run();
 }
 
 }  // namespace condyle

@@ -14,14 +14,16 @@ using Eigen::Vector3d;
 
 constexpr int most_corrections = 6;  // of what fields have wrong
 constexpr double most_corrected_mm = 0.15;
+constexpr double far_mm = 5;  // what is nearer is measured at every pose
 
 }  // namespace
 
 SlideJudge::SlideJudge(const ContactModel::State& state, const Drive& drive, const ContactSet& set,
-                       int threads)
+                       bool bound_far, int threads)
     : state_(state),
       drive_(drive),
       set_(set),
+      bound_far_(bound_far),
       threads_(threads),
       pairs_(concerned_pairs(state, drive)) {
   for (const std::size_t i : pairs_) {
@@ -74,10 +76,10 @@ SlideJudge::Look SlideJudge::look_at(std::size_t k, const Pose& X_CD, bool rough
   return look;
 }
 
-SlideJudge::Found SlideJudge::look(const Pose& X_CD, bool rough) const {
+SlideJudge::Found SlideJudge::look(const Pose& X_CD) const {
   Found found(pairs_.size());
   parallel_for(pairs_.size(), threads_,
-               [&](std::size_t k) { found[k] = look_at(k, X_CD, rough).contact; });
+               [&](std::size_t k) { found[k] = look_at(k, X_CD, false).contact; });
   return found;
 }
 
@@ -91,6 +93,16 @@ bool SlideJudge::clear(const PairContact& at_wanted, std::size_t k) const {
   const Passage p = passage(k, drive_.from(), drive_.wanted);
   const double margin = p.margin(at_wanted);
   return p.length_mm < 1e-12 ? margin >= 0 : margin > p.length_mm;
+}
+
+std::optional<PairContact> SlideJudge::bounded(std::size_t k) const {
+  PairContact bound = state_.slot(set_, pairs_[k]);
+  if (!bound_far_ || bound.touching || kept_[k] > 0) return std::nullopt;
+  bound.distance_mm -= passage(k, drive_.from(), drive_.wanted).length_mm;
+  if (bound.distance_mm < far_mm) return std::nullopt;
+  bound.distance_is_bound = true;
+  bound.witness_a = bound.witness_b = Vector3d::Zero();
+  return bound;
 }
 
 bool SlideJudge::clear(Found& at_wanted) const {
@@ -110,7 +122,11 @@ bool SlideJudge::clear(Found& at_wanted) const {
   const bool near = before(likely).touching ||
                     before(likely).distance_mm - kept_[likely] < way(drive_.from(), drive_.wanted);
   if (near && !clear(look_at(likely, drive_.wanted, true).contact, likely)) return false;
-  at_wanted = look(drive_.wanted, true);
+  at_wanted.resize(pairs_.size());
+  parallel_for(pairs_.size(), threads_, [&](std::size_t k) {
+    const auto bound = bounded(k);
+    at_wanted[k] = bound ? *bound : look_at(k, drive_.wanted, true).contact;
+  });
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     if (!clear(at_wanted[k], k)) return false;
   return true;

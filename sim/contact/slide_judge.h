@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/collide/contact_twist.h"
@@ -14,14 +15,14 @@ class SlideJudge {
  public:
   using Found = std::vector<PairContact>;  // of each pair concerned
 
-  /// `set`: where the queries start; it must outlive the judge.
+  /// `set`: where the queries start; it must outlive the judge. `bound_far`: it was taken where the
+  /// drive begins, and what it tells to be far need not be measured.
   SlideJudge(const ContactModel::State& state, const Drive& drive, const ContactSet& set,
-             int threads);
+             bool bound_far, int threads);
 
   const std::vector<std::size_t>& pairs() const { return pairs_; }
 
-  /// `rough`: of pairs that were apart at rest the depth is left out.
-  Found look(const Pose& X_CD, bool rough = false) const;
+  Found look(const Pose& X_CD) const;
 
   /// Nothing is within reach of the whole way to the wanted pose; then `at_wanted` is what was
   /// found there.
@@ -55,7 +56,10 @@ class SlideJudge {
     OverlapDepth deepest;
   };
   Passage passage(std::size_t k, const Pose& from, const Pose& to) const;
+  /// `rough`: of pairs that were apart at rest the depth is left out.
   Look look_at(std::size_t k, const Pose& X_CD, bool rough) const;
+  /// What is sure of a far pair at the wanted pose.
+  std::optional<PairContact> bounded(std::size_t k) const;
   std::vector<Look> looks(const Pose& X_CD) const;
   bool clear(const PairContact& at_wanted, std::size_t k) const;
   bool allowed(const PairContact& contact, std::size_t k) const;
@@ -67,6 +71,7 @@ class SlideJudge {
   const ContactModel::State& state_;
   const Drive& drive_;
   const ContactSet& set_;
+  bool bound_far_;
   int threads_;
   std::vector<std::size_t> pairs_;
   std::vector<double> limit_, kept_;  // depth and distance that are allowed of each pair

@@ -19,6 +19,7 @@ struct StepInput {
   double time_s = 0;
   Pose X_CM_wanted;          // where the motion, or the hand, wants the mandible
   bool obey_contact = true;  // false plays a recording as it is
+  bool bound_far = false;    // obeying: nobody looks at the distances (ContactModel::slide)
   // Where the hand or a plan wants each free part, in its carrier's frame (none: as at rest).
   std::vector<Pose> X_BF_wanted = {};
 };

@@ -163,11 +163,14 @@ void LiveSimulation::work() {
           !wanted.opening_mm && ahead_s > 1.5 * settings_.step_s && ahead_s < jump_s;
       const double time_s = runs_on ? now.time_s + settings_.step_s : target_s;
       const auto start = Clock::now();
+      // Steps on the way are shown only as often as a screen wants pictures.
+      const bool shown = !runs_on || start - last_shown > picture_interval;
       StageTimes motion_time;
       StepInput step_input;
       {
         const StageTimer timer(motion_time, Stage::motion);
         step_input = input(wanted, time_s);
+        step_input.bound_far = !shown;
         if (held[0]) step_input.X_CM_wanted = *held[0];
         for (std::size_t f = 0; f < free.size(); ++f)
           if (held[1 + f]) X_BF[f] = *held[1 + f];
@@ -191,10 +194,8 @@ void LiveSimulation::work() {
         answered = wanted;
         answered_grips = grips;
       }
-      // Steps on the way are shown only as often as a screen wants pictures.
-      const bool shown = !runs_on || Clock::now() - last_shown > picture_interval;
       if (shown && wanted.face) carry_face(scene_, now, settings_.threads);
-      if (shown) last_shown = Clock::now();
+      if (shown) last_shown = start;
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
       const std::lock_guard lock(mutex_);
       if (shown) newest_ = now;

@@ -20,9 +20,9 @@ struct LiveRequest {
   bool operator==(const LiveRequest&) const = default;
 };
 
-/// The settings of a simulation that has to keep up with a clock: longer steps, and a few iterations
-/// of the tissue in each. Over an opening of the built-in patient 99 of 100 points of the skin are
-/// within 0.03 mm of the converged answer in half of the steps (`bench frame`); where skin may fold
+/// The settings of a simulation that has to keep up with a clock: longer steps, and a few
+/// iterations of the tissue in each. Over an opening of the built-in patient 99 of 100 nodes are
+/// within 0.1 mm of the converged answer in half of the steps (`bench frame`); where skin may fold
 /// one way or another it may fold otherwise.
 SimulatorSettings live_settings(SimulatorSettings settings);
 

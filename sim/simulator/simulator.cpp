@@ -42,8 +42,8 @@ FrameState step(const Scene& scene, const FrameState& previous, const StepInput&
     const ContactModel::Wanted wanted{input.X_CM_wanted, input.X_BF_wanted};
     BodyPoses at;
     if (input.obey_contact) {
-      auto slide =
-          scene.contacts.slide(previous.poses(), wanted, &previous.contacts, settings.threads);
+      auto slide = scene.contacts.slide(previous.poses(), wanted, &previous.contacts,
+                                        settings.threads, input.bound_far);
       at = std::move(slide.at);
       now.stopped = slide.stopped;
       now.contacts = std::move(slide.contacts);

@@ -45,6 +45,39 @@ TEST(Slide, AWantedPoseInTheWaySlidesAlong) {
   EXPECT_LT(held, 25);
 }
 
+TEST(Slide, FarSurfacesMayBeBoundedAndNothingElseChanges) {
+  const Case patient = ball_under_block();
+  const ContactModel model(patient);
+  Pose X;
+  ContactSet last = model.at_rest();
+  int bounds = 0, held = 0;
+  for (int k = 0; k <= 120; ++k) {  // far down and up again, until it is held
+    const Pose wanted = shift(0.1 * k, 0, 3 - 15 * std::sin(M_PI * k / 60));
+    const bool bound_far = k % 4 != 0;  // as a window, which shows some steps
+    const auto slide = model.slide(X, {wanted}, &last, 1, bound_far);
+    const auto measured = model.slide(X, {wanted}, &last);
+    EXPECT_EQ(slide.at.X_CM.t, measured.at.X_CM.t) << k;
+    EXPECT_EQ(slide.stopped, measured.stopped) << k;
+    for (std::size_t i = 0; i < slide.contacts.pairs.size(); ++i) {
+      const PairContact &pair = slide.contacts.pairs[i], &exact = measured.contacts.pairs[i];
+      EXPECT_FALSE(exact.distance_is_bound);
+      bounds += pair.distance_is_bound;
+      EXPECT_TRUE(bound_far || !pair.distance_is_bound);
+      if (!pair.distance_is_bound) {
+        EXPECT_EQ(pair.distance_mm, exact.distance_mm) << k;
+        continue;
+      }
+      EXPECT_GE(pair.distance_mm, 5);
+      EXPECT_LE(pair.distance_mm, exact.distance_mm + 1e-9) << k;
+    }
+    X = slide.at.X_CM;
+    last = slide.contacts;
+    held += slide.stopped;
+  }
+  EXPECT_GT(bounds, 20);
+  EXPECT_GT(held, 10);
+}
+
 TEST(Slide, WithoutContactThePoseIsTheWantedOneToTheBit) {
   const ContactModel model(ball_under_block());
   std::mt19937_64 random(3);

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
+#include "sim/motion/motion.h"
 #include "tests/support/boxes.h"
+#include "tests/support/builtin.h"
 
 namespace condyle::test {
 namespace {
@@ -52,6 +55,47 @@ TEST(Live, RunningTimeGivesTheStatesOfThePlayback) {
     const double time = i / 60.0;
     live.request({.time_s = time, .face = false});
     EXPECT_EQ(wait_for(live, time).state_hash, playback.at(time).state_hash) << i;
+  }
+}
+
+double distance_of_all_but_a_hundredth(const TissueState& a, const TissueState& b) {
+  std::vector<double> distance;
+  for (std::size_t i = 0; i < a.nodes.size(); ++i)
+    distance.push_back((a.nodes[i] - b.nodes[i]).norm());
+  const auto place = distance.begin() + static_cast<std::ptrdiff_t>(0.99 * distance.size());
+  std::nth_element(distance.begin(), place, distance.end());
+  return *place;
+}
+
+TEST(Live, APlayingFaceIsNearTheConvergedOneAndSettlesWhenNothingIsAsked) {
+  const Scene scene = make_scene(builtin());
+  const Motion motion = make_motion("opening", scene.patient, scene.contacts);
+  const SimulatorSettings settings = live_settings({});
+  constexpr double until_s = 0.5;  // about half open, the lips apart
+  Playback quick(scene, motion, settings), converged(scene, motion, {});
+  int iterations = 0, steps = 0, cut_short = 0;
+  TissueState goal;
+  for (double t = settings.step_s; t <= until_s + 1e-9; t += settings.step_s, ++steps) {
+    const TissueState state = quick.at(t).tissue;
+    goal = converged.at(t).tissue;
+    iterations += state.iterations;
+    cut_short += !state.converged;
+    EXPECT_FALSE(state.kept);
+    EXPECT_LT(state.penetration_mm, 0.1 + 1e-9) << t;
+    EXPECT_LT(distance_of_all_but_a_hundredth(state, goal), 0.5) << t;
+  }
+  EXPECT_LT(iterations, 6 * steps);
+  EXPECT_GT(cut_short, steps / 2);  // it is told
+
+  LiveSimulation live(scene, motion, settings);
+  for (const double t : {0.2, 0.4, until_s}) {  // each in many steps
+    live.request({.time_s = t});
+    TissueState last = wait_for(live, t).tissue;
+    EXPECT_FALSE(last.converged) << t;
+    while (!last.converged) last = wait_for(live, t).tissue;
+    if (t == until_s) {
+      EXPECT_LT(distance_of_all_but_a_hundredth(last, goal), 0.05);
+    }
   }
 }
 
