@@ -18,8 +18,8 @@ NearPoints::Runs::Runs(const std::vector<NetPoint>& points) : point{0}, first_no
 }
 
 void NearPoints::moved(const std::vector<NetPoint>& points, Nodes x) {
-  if (!runs_) runs_ = std::make_shared<const Runs>(points);
-  if (last_.size() != x.size()) {  // nothing is known
+  if (last_.size() != x.size()) {  // nothing is known of this net
+    runs_ = std::make_shared<const Runs>(points);
     way_.assign(x.size(), 0.0);
     way_then_.assign(runs_->node.size(), 0.0);
     least_.assign(points.size(), -far_mm);

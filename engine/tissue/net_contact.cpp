@@ -26,7 +26,7 @@ constexpr double least_cosine = 0.5;
 /// Nearer than this the way to the nearest point says little about the surface's direction.
 constexpr double close_mm = 0.02;
 
-constexpr double field_error_mm = 0.05;
+constexpr double field_error_mm = 0.05;  // at most, at edges
 
 FieldSettings field_settings(const Box& region) {
   return {.spacing_mm = spacing_mm, .band_mm = band_mm, .region = region};
@@ -80,12 +80,6 @@ class Rim {
 
 }  // namespace
 
-Vector3d NetPoint::at(const Nodes& x) const {
-  Vector3d sum = weight[0] * x[node[0]];
-  for (int k = 1; k < count; ++k) sum += weight[k] * x[node[k]];
-  return sum;
-}
-
 NetObstacle::NetObstacle(const TriMesh& mesh, const Box& region, const std::filesystem::path& cache,
                          int threads)
     : field_(cache.empty() ? DistanceField(mesh, field_settings(region), threads)
@@ -95,9 +89,10 @@ NetObstacle::NetObstacle(const TriMesh& mesh, const Box& region, const std::file
 bool NetObstacle::near(const Vector3d& p, double reach, Near& near) const {
   const DistanceField::Spot spot = field_.spot(p);
   if (spot.known && spot.distance_mm > reach) {
-    near.distance = spot.distance_mm - field_error_mm;
+    near.distance = spot.distance_mm;
     return false;
   }
+  near.distance = spot.known ? -deepest_mm : field_.lower_bound(p);
   if (spot.known) {
     const Vector3d gradient = field_.gradient(spot);
     const double steep = gradient.norm();
@@ -106,7 +101,6 @@ bool NetObstacle::near(const Vector3d& p, double reach, Near& near) const {
       return true;
     }
   } else {
-    near.distance = field_.lower_bound(p);
     const bool beyond = !spot.corner && spot.distance_mm > 0;  // the band, or the region
     if (beyond || near.distance > reach || surface_.empty()) return false;
   }
@@ -131,8 +125,8 @@ void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<doubl
                     NearPoints* known) {
   const Pose X_OW = X_WO.inverse();
   const Eigen::Matrix3d R_OW = X_OW.R.toRotationMatrix(), R_WO = X_WO.R.toRotationMatrix();
-  NetObstacle::Near near;
   const auto look = [&](int i) {
+    NetObstacle::Near near;
     const Vector3d at = points[i].at(x);
     Vector3d here = R_OW * at + X_OW.t;
     if (!shift.empty()) here += shift[i];
@@ -143,7 +137,7 @@ void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<doubl
       touch.row.offset = touch.row.along(x) - touch.gap;
       touch.at = at;
     }
-    return near.distance - field_error_mm;
+    return near.distance - 2 * field_error_mm;  // here, and where it is looked at again
   };
   if (!known) {
     for (std::size_t i = 0; i < points.size(); ++i) look(static_cast<int>(i));

@@ -5,7 +5,6 @@
 #include <array>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <vector>
 
 #include "engine/collide/distance_field.h"

@@ -13,7 +13,11 @@ struct NetPoint {
   std::array<double, 3> weight{};  // sums to 1
   int count = 0;
 
-  Eigen::Vector3d at(const Nodes& x) const;
+  Eigen::Vector3d at(const Nodes& x) const {
+    Eigen::Vector3d sum = weight[0] * x[node[0]];
+    for (int k = 1; k < count; ++k) sum += weight[k] * x[node[k]];
+    return sum;
+  }
   static NetPoint of_node(int node) { return {{node}, {1.0}, 1}; }
   static NetPoint centre(int a, int b, int c) {
     return {{a, b, c}, {1.0 / 3, 1.0 / 3, 1.0 / 3}, 3};

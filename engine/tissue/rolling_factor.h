@@ -16,13 +16,16 @@ class RollingFactor {
   explicit RollingFactor(std::shared_ptr<const HessianFactor> first) : now_(std::move(first)) {}
 
   const HessianFactor& now() const { return *now_; }
-  /// Iterations since the newest one was begun, of frames told so far.
+  /// Iterations since the newest one was begun or made, of frames told so far.
   int served() const { return served_; }
   void serve(int iterations) { served_ += iterations; }
   /// The next frame has begun.
   void advance();
   /// One made within the frame serves at once.
-  void replace(std::shared_ptr<const HessianFactor> by) { now_ = std::move(by); }
+  void replace(std::shared_ptr<const HessianFactor> by) {
+    now_ = std::move(by);
+    served_ = 0;
+  }
 
   static constexpr int lag = 1;  // frames
   /// Begins one of state x, to serve `lag` frames later; not while one is being made. With one

@@ -236,7 +236,7 @@ void Panels::Drawing::tissue() {
           fmt::format("{}{}", state.iterations,
                       state.converged ? ""
                       : state.kept    ? ", failed: as before"
-                                      : ", settling"),
+                                      : ", not settled"),
           state.kept ? palette().warning : palette().text);
   // What few people look at stands in the second line only when there is something to say.
   reading(theme, state.inverted_prisms ? "Inverted prisms" : "Residual",

@@ -191,6 +191,17 @@ ContactSet ContactModel::State::judge_all(const std::vector<Pose>& X_CB, const C
   return set;
 }
 
+void ContactModel::State::measure_bounds(const std::vector<Pose>& X_CB, ContactSet& set) const {
+  for (std::size_t i = 0; i < count(); ++i) {
+    PairContact& found = slot(set, i);
+    if (!found.distance_is_bound || found.distance_mm >= full_look(i).far_mm) continue;
+    const ColliderPair& pair = judged(i);
+    found = judge(pair, X_CB[static_cast<std::size_t>(pair.a->body)],
+                  X_CB[static_cast<std::size_t>(pair.b->body)],
+                  {found.triangle_a, found.triangle_b}, full_look(i));
+  }
+}
+
 ContactSet ContactModel::State::with_guards(ContactSet set) const {
   for (std::size_t g = 0; g < guards.size(); ++g) {
     if (!set.away_from_rest[g].touching) continue;
@@ -302,6 +313,7 @@ ContactModel::Slide ContactModel::slide(const BodyPoses& from, const Wanted& wan
     const int body = first_free_body + static_cast<int>(f);
     if (!same_bits(X_CB[static_cast<std::size_t>(body)], to)) go(body, to);
   }
+  if (!bound_far) state.measure_bounds(X_CB, set);
   result.at = state.as_poses(X_CB);
   set.X_CM = result.at.X_CM;
   set.X_CF = result.at.X_CF;

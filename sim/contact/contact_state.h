@@ -58,6 +58,8 @@ struct ContactModel::State {
 
   /// Pairs with a free part that the broadphase knows to be farther apart than asked for.
   std::vector<bool> far_pairs(const std::vector<Pose>& X_CB) const;
+  /// Measures what is only bounded there.
+  void measure_bounds(const std::vector<Pose>& X_CB, ContactSet& set) const;
   ContactSet judge_all(const std::vector<Pose>& X_CB, const ContactSet* previous,
                        int threads) const;
   /// Counts what the guards found into the depths of their pairs.

@@ -137,10 +137,12 @@ Arrival SlidingDrive::run() {
     }
   }
   Found found(judge_.pairs().size());
-  if (exact_)
-    for (std::size_t k = 0; k < found.size(); ++k) found[k] = state_.slot(set_, judge_.pairs()[k]);
-  else
-    found = judge_.look(from);
+  bool known = exact_;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    found[k] = state_.slot(set_, judge_.pairs()[k]);
+    known = known && !found[k].distance_is_bound;
+  }
+  if (!known) found = judge_.look(from);
   judge_.start_at(found);
   const Pose X = creep(found);
   return arrive(X, std::move(found));

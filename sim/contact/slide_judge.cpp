@@ -125,7 +125,7 @@ bool SlideJudge::clear(Found& at_wanted) const {
   at_wanted.resize(pairs_.size());
   parallel_for(pairs_.size(), threads_, [&](std::size_t k) {
     const auto bound = bounded(k);
-    at_wanted[k] = bound ? *bound : look_at(k, drive_.wanted, true).contact;
+    at_wanted[k] = bound && clear(*bound, k) ? *bound : look_at(k, drive_.wanted, true).contact;
   });
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     if (!clear(at_wanted[k], k)) return false;

@@ -21,7 +21,7 @@ struct PairContact {
   int part_a = 0, part_b = 0;
   bool touching = false;
   std::vector<ContactPoint> contacts;                   // capped
-  double distance_mm = 0;                               // exact minimum distance, 0 when touching
+  double distance_mm = 0;                               // exact least, 0 when touching; or a bound
   Eigen::Vector3d witness_a = Eigen::Vector3d::Zero();  // nearest points when apart
   Eigen::Vector3d witness_b = Eigen::Vector3d::Zero();
   int triangle_a = -1, triangle_b = -1;  // triangles of the witness points: the next query's start
@@ -30,7 +30,7 @@ struct PairContact {
   double depth_mm = 0;
   double rest_depth_mm = 0;  // the same at rest: the pair's baseline
   PairPolicy policy = PairPolicy::forbidden;
-  bool distance_is_bound = false;  // far apart: at least distance_mm, without witness points
+  bool distance_is_bound = false;  // at least distance_mm, without witness points
 
   double signed_distance_mm() const { return touching ? -depth_mm : distance_mm; }
 };

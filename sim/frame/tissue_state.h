@@ -30,7 +30,7 @@ struct TissueState {
   std::shared_ptr<const RollingFactor> factor;
   /// What the tissue touches and how it presses: lists of things touched; or none.
   std::shared_ptr<const std::vector<std::vector<Touch>>> touches;
-  /// The few points that are near enough to touch bone and teeth, or none. Changes no answer.
+  /// How near bone and teeth its points were at the last look, or none. Changes no answer.
   std::shared_ptr<const NearJaws> near;
 };
 

@@ -18,7 +18,9 @@ constexpr double step_s = 1.0 / 60;
 constexpr int step_iterations = 3;
 /// After so long without a new request tissue settles, so far in each step, for so many at most.
 constexpr std::chrono::milliseconds calm(60);
-constexpr int settling_iterations = 30, most_settling = 60;
+constexpr int settling_iterations = 30, most_settling = 20;
+/// A mandible that is wanted so far away is no step of a motion: its tissue gets what it needs.
+constexpr double leap_mm = 4, leap_rad = 0.05;
 
 /// Time of the way to full opening at which the motion opens by `opening_mm`. Bisection.
 double time_of_opening(const Case& patient, const Motion& motion, double opening_mm) {
@@ -39,6 +41,10 @@ double time_of_opening(const Case& patient, const Motion& motion, double opening
     (measure(patient, motion.wanted(middle)).opening_mm < opening_mm ? low : high) = middle;
   }
   return high;
+}
+
+bool leaps(const Pose& from, const Pose& to) {
+  return (to.t - from.t).norm() > leap_mm || rotation_angle(from.inverse() * to) > leap_rad;
 }
 
 }  // namespace
@@ -65,7 +71,9 @@ LiveSimulation::~LiveSimulation() {
   thread_.join();
 }
 
-void LiveSimulation::request(const LiveRequest& wanted) {
+void LiveSimulation::request(const LiveRequest& asked) {
+  LiveRequest wanted = asked;
+  wanted.time_s = std::round(asked.time_s / settings_.step_s) * settings_.step_s;
   {
     const std::lock_guard lock(mutex_);
     if (wanted == wanted_) return;
@@ -157,11 +165,10 @@ void LiveSimulation::work() {
         held = held_;
         grips = grips_;
       }
-      const double target_s = std::round(wanted.time_s / settings_.step_s) * settings_.step_s;
-      const double ahead_s = target_s - now.time_s;
+      const double ahead_s = wanted.time_s - now.time_s;
       const bool runs_on =
           !wanted.opening_mm && ahead_s > 1.5 * settings_.step_s && ahead_s < jump_s;
-      const double time_s = runs_on ? now.time_s + settings_.step_s : target_s;
+      const double time_s = runs_on ? now.time_s + settings_.step_s : wanted.time_s;
       const auto start = Clock::now();
       // Steps on the way are shown only as often as a screen wants pictures.
       const bool shown = !runs_on || start - last_shown > picture_interval;
@@ -180,14 +187,15 @@ void LiveSimulation::work() {
       SimulatorSettings seen = settings_;
       seen.tissue = seen.tissue && wanted.face;
       int& iterations = seen.tissue_budget.max_iterations;
-      const bool settles = settling > 0, jumps = std::abs(time_s - now.time_s) >= jump_s;
+      const bool settles = settling > 0;
       if (settles) iterations = std::max(iterations, settling_iterations);
-      if (jumps) iterations = TissueBudget{}.max_iterations;
+      if (now.tissue.kept || leaps(now.tissue.X_CM, step_input.X_CM_wanted))
+        iterations = TissueBudget{}.max_iterations;
       now = step(scene_, now, step_input, seen);
       for (std::size_t f = 0; f < free.size(); ++f)
         if (held[1 + f]) X_BF[f] = carrier(f).inverse() * now.X_CF[f];
       now.times[Stage::motion] = motion_time[Stage::motion];
-      const bool settled = !seen.tissue || now.tissue.converged;
+      const bool settled = !seen.tissue || now.tissue.converged || (settles && now.tissue.kept);
       settling = settled ? 0 : settles ? settling - 1 : most_settling;
       caught_up = !runs_on;
       if (caught_up) {

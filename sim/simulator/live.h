@@ -28,7 +28,8 @@ SimulatorSettings live_settings(SimulatorSettings settings);
 
 /// Steps a scene on a thread of its own toward the newest request: in fixed steps while the time
 /// runs on, in one step when it jumps. Pictures may be slow; the steps stay what they are. When
-/// nothing is asked any more, tissue that has not converged goes on until it has.
+/// nothing is asked any more, tissue that has not converged goes on, for some hundred iterations at
+/// most.
 class LiveSimulation {
  public:
   /// The scene must outlive the simulation.

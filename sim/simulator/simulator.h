@@ -12,7 +12,7 @@
 namespace condyle {
 
 struct SimulatorSettings {
-  double step_s = 1.0 / 120;  // fixed, whatever is recorded or shown
+  double step_s = 1.0 / 120;  // fixed, whatever is recorded
   int threads = 2;            // results have the same bits for any number
   bool tissue = true;         // let the soft tissue follow
   bool face = false;          // also carry the displayed face in every frame that is asked for

@@ -162,7 +162,6 @@ TEST(NetContact, WhatWasLearntOfPointsNearAnObstacleChangesNoAnswer) {
       EXPECT_EQ(with[i].gap, without[i].gap);
     }
   }
-  EXPECT_GT(looked, touched);
   EXPECT_LT(looked, 0.5 * 200 * static_cast<double>(slab.below.size()));  // most are passed over
   EXPECT_GT(touched, 100);
 }

@@ -1,6 +1,7 @@
 // Bodies that are wanted where others are slide to the nearest pose; judged by the exact surfaces.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -48,14 +49,14 @@ TEST(Slide, AWantedPoseInTheWaySlidesAlong) {
 TEST(Slide, FarSurfacesMayBeBoundedAndNothingElseChanges) {
   const Case patient = ball_under_block();
   const ContactModel model(patient);
-  Pose X;
-  ContactSet last = model.at_rest();
+  Pose X, X_measured;
+  ContactSet last = model.at_rest(), last_measured = model.at_rest();
   int bounds = 0, held = 0;
   for (int k = 0; k <= 120; ++k) {  // far down and up again, until it is held
     const Pose wanted = shift(0.1 * k, 0, 3 - 15 * std::sin(M_PI * k / 60));
     const bool bound_far = k % 4 != 0;  // as a window, which shows some steps
     const auto slide = model.slide(X, {wanted}, &last, 1, bound_far);
-    const auto measured = model.slide(X, {wanted}, &last);
+    const auto measured = model.slide(X_measured, {wanted}, &last_measured);
     EXPECT_EQ(slide.at.X_CM.t, measured.at.X_CM.t) << k;
     EXPECT_EQ(slide.stopped, measured.stopped) << k;
     for (std::size_t i = 0; i < slide.contacts.pairs.size(); ++i) {
@@ -72,10 +73,30 @@ TEST(Slide, FarSurfacesMayBeBoundedAndNothingElseChanges) {
     }
     X = slide.at.X_CM;
     last = slide.contacts;
+    X_measured = measured.at.X_CM;
+    last_measured = measured.contacts;
     held += slide.stopped;
   }
   EXPECT_GT(bounds, 20);
   EXPECT_GT(held, 10);
+}
+
+TEST(Slide, WhatWasBoundedIsMeasuredAgainWhereNothingMoves) {
+  Case patient = two_bones(test::box({-30, -30, 20}, {30, 30, 30}), test::sphere(3, 10));
+  patient.parts.push_back({"segment", Role::segment, test::box({-3, -3, 12}, {3, 3, 13}), {}});
+  const ContactModel model(patient);
+  const std::vector<Pose> wanted{shift(0.5, 0, 0)};
+  const auto moved = model.slide({Pose{}, {}}, {Pose{}, wanted}, &model.at_rest(), 1, true);
+  const auto bounds = [](const ContactSet& set) {
+    return std::count_if(set.pairs.begin(), set.pairs.end(),
+                         [](const PairContact& pair) { return pair.distance_is_bound; });
+  };
+  EXPECT_GT(bounds(moved.contacts), 0);
+  const auto still = model.slide(moved.at, {Pose{}, wanted}, &moved.contacts);
+  EXPECT_EQ(bounds(still.contacts), 0);
+  const ContactSet anew = model.find(moved.at, nullptr);
+  for (std::size_t i = 0; i < anew.pairs.size(); ++i)
+    EXPECT_EQ(still.contacts.pairs[i].distance_mm, anew.pairs[i].distance_mm);
 }
 
 TEST(Slide, WithoutContactThePoseIsTheWantedOneToTheBit) {

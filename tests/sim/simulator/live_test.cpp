@@ -91,7 +91,6 @@ TEST(Live, APlayingFaceIsNearTheConvergedOneAndSettlesWhenNothingIsAsked) {
   for (const double t : {0.2, 0.4, until_s}) {  // each in many steps
     live.request({.time_s = t});
     TissueState last = wait_for(live, t).tissue;
-    EXPECT_FALSE(last.converged) << t;
     while (!last.converged) last = wait_for(live, t).tissue;
     if (t == until_s) {
       EXPECT_LT(distance_of_all_but_a_hundredth(last, goal), 0.05);
