@@ -88,4 +88,32 @@ FourFloats gap_bounds(const BoxTwins& a, const BoxTwins& b, const BoxTurn& X) {
   return gaps - X.uncertain_mm;
 }
 
+BoxSight::BoxSight(const Eigen::Vector3d& direction, const Eigen::Matrix3d& R,
+                   const Eigen::Vector3d& t) {
+  const Eigen::Vector3d in_b = R.transpose() * direction;
+  for (int i = 0; i < 3; ++i) {
+    const auto u = static_cast<float>(direction[i]), v = static_cast<float>(in_b[i]);
+    n[i] = Four{u, u, v, v};
+  }
+  const auto along = static_cast<float>(direction.dot(t));
+  shift = Four{0, 0, along, along};
+}
+
+FourFloats gaps_along(const BoxTwins& a, const BoxTwins& b, const BoxSight& sight,
+                      float uncertain_mm) {
+  const auto both = [](const BoxTwins::Two& v, const BoxTwins::Two& w) {
+    return Four{v[0], v[1], w[0], w[1]};
+  };
+  Four middle = sight.shift, half = {};
+  for (int i = 0; i < 3; ++i) {
+    middle += sight.n[i] * both(a.center[i], b.center[i]);
+    Four seen = {};
+    for (int j = 0; j < 3; ++j) seen += sight.n[j] * both(a.axes[i][j], b.axes[i][j]);
+    half += absolute(seen) * both(a.half[i], b.half[i]);
+  }
+  const Four high = middle + half, low = middle - half;  // of a's the high, of b's the low count
+  return Four{low[2], low[3], low[2], low[3]} - Four{high[0], high[0], high[1], high[1]} -
+         uncertain_mm;
+}
+
 }  // namespace condyle

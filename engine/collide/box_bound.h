@@ -35,4 +35,18 @@ struct BoxTurn {
 /// second and b's first, both second.
 FourFloats gap_bounds(const BoxTwins& a, const BoxTwins& b, const BoxTurn& X);
 
+/// A direction of the world from a's body to b's, for many bounds.
+struct BoxSight {
+  BoxSight() = default;
+  /// `n`: unit, in a's body; the pose of b's as above.
+  BoxSight(const Eigen::Vector3d& n, const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
+  FourFloats n[3] = {};   // twice in a's body, twice in b's
+  FourFloats shift = {};  // along it, of b's body: twice 0, twice that
+};
+
+/// The same as gap_bounds, of gaps along the direction alone: weaker but where boxes face each
+/// other along it, and quick. `uncertain_mm`: of BoxTurn.
+FourFloats gaps_along(const BoxTwins& a, const BoxTwins& b, const BoxSight& sight,
+                      float uncertain_mm);
+
 }  // namespace condyle

@@ -76,6 +76,10 @@ Triangle corners(const Model& model, int triangle, const fcl::Transform3d& X) {
   return {X * model.vertices[t[0]], X * model.vertices[t[1]], X * model.vertices[t[2]]};
 }
 
+/// Surfaces farther apart than this face each other along one line; nearer ones (a condyle in its
+/// fossa, crowns) lie along each other.
+constexpr double facing_mm = 10;
+
 /// Walks FCL's two trees, four pairs of boxes at once. Pairs of triangles are measured by our own
 /// exact distance, because FCL's loses digits, and at times the answer, where edges are parallel.
 /// All in A's coordinates.
@@ -111,6 +115,16 @@ class NearestPair {
   };
 
   void look(const Some& a, const Some& b) {
+    const auto limit = static_cast<float>(best_mm);
+    const bool facing = best_mm > facing_mm;
+    FourFloats along;
+    if (facing) {
+      along = gaps_along(*a.twins, *b.twins, sight_, turned_.uncertain_mm);
+      bool any = false;
+      for (int i = a.from; i < a.to; ++i)
+        for (int k = b.from; k < b.to; ++k) any |= along[2 * i + k] < limit;
+      if (!any) return;
+    }
     const FourFloats gaps = gap_bounds(*a.twins, *b.twins, turned_);
     // The nearest first.
     std::array<int, 4> lanes;
@@ -118,6 +132,7 @@ class NearestPair {
     for (int i = a.from; i < a.to; ++i)
       for (int k = b.from; k < b.to; ++k) {
         const int lane = 2 * i + k;
+        if (facing && !(along[lane] < limit)) continue;
         int at = count++;
         for (; at > 0 && gaps[lane] < gaps[lanes[at - 1]]; --at) lanes[at] = lanes[at - 1];
         lanes[at] = lane;
@@ -139,12 +154,26 @@ class NearestPair {
     look(open_a ? Some{twins_a_ + held_a, 0, 2} : a, open_b ? Some{twins_b_ + held_b, 0, 2} : b);
   }
   void measure(TrianglePair pair) {
-    const TriangleGap gap =
-        triangle_distance(corners(a_, pair.a), corners(b_, pair.b, X_), best.squared_mm2);
+    const Triangle in_a = corners(a_, pair.a), in_b = corners(b_, pair.b, X_);
+    if (gap_along(in_a, in_b) > best_mm) return;
+    const TriangleGap gap = triangle_distance(in_a, in_b, best.squared_mm2);
     if (gap.squared_mm2 >= best.squared_mm2) return;
     best = gap;
     best_mm = std::sqrt(gap.squared_mm2);
     triangles = pair;
+    const Eigen::Vector3d between = gap.q - gap.p;
+    if (between.squaredNorm() <= 0) return;
+    across_ = between.normalized();
+    sight_ = BoxSight(across_, X_.linear(), X_.translation());
+  }
+  /// No more than the gap of two triangles.
+  double gap_along(const Triangle& a, const Triangle& b) const {
+    double high = across_.dot(a[0]), low = across_.dot(b[0]);
+    for (int k = 1; k < 3; ++k) {
+      high = std::max(high, across_.dot(a[k]));
+      low = std::min(low, across_.dot(b[k]));
+    }
+    return low - high - turned_.uncertain_mm;
   }
 
   const Model& a_;
@@ -152,6 +181,10 @@ class NearestPair {
   const BoxTwins *twins_a_, *twins_b_;
   fcl::Transform3d X_;  // of B in A
   BoxTurn turned_;
+  // From the surface of A to that of B, where they are nearest so far: most of what lies around is
+  // told to be farther by this alone.
+  Eigen::Vector3d across_ = Eigen::Vector3d::Zero();  // unit, or nothing yet
+  BoxSight sight_;
 };
 
 /// Collects crossing triangles, in each region of A at most `per_region`.

@@ -25,14 +25,15 @@ struct TurnedBox {
   double reach() const { return center.norm() + half.norm(); }
 };
 
+BoxTwins twins(const TurnedBox (&boxes)[2]) {
+  BoxTwins both;
+  for (int i = 0; i < 2; ++i) both.set(i, boxes[i].center, boxes[i].half, boxes[i].axes, i);
+  return both;
+}
+
 /// Bounds of the gaps between all of two and two boxes: of [i] and [k] at 2 i + k.
 FourFloats bounds(const TurnedBox (&a)[2], const TurnedBox (&b)[2], const BoxTurn& X) {
-  BoxTwins twins_a, twins_b;
-  for (int i = 0; i < 2; ++i) {
-    twins_a.set(i, a[i].center, a[i].half, a[i].axes, i);
-    twins_b.set(i, b[i].center, b[i].half, b[i].axes, i);
-  }
-  return gap_bounds(twins_a, twins_b, X);
+  return gap_bounds(twins(a), twins(b), X);
 }
 
 /// Boxes are convex: going to and fro between nearest points ends at the gap, from above.
@@ -74,10 +75,13 @@ TEST_P(BoxGap, IsNeverOverstated) {
     const BoxTurn X(R, t,
                     std::max(a[0].reach(), a[1].reach()) + std::max(b[0].reach(), b[1].reach()));
     const FourFloats found = bounds(a, b, X);
+    const BoxSight sight(vector().normalized(), R, t);
+    const FourFloats along = gaps_along(twins(a), twins(b), sight, X.uncertain_mm);
     for (int i = 0; i < 2; ++i)
       for (int k = 0; k < 2; ++k) {
         const double apart = gap(a[i], b[k], R, t);
         EXPECT_LE(found[2 * i + k], apart) << size;
+        EXPECT_LE(along[2 * i + k], apart) << size;
         near_it += found[2 * i + k] > 0.7 * apart - 1e-3 - 1e-5 * GetParam();
       }
   }
@@ -92,6 +96,9 @@ TEST_P(BoxGap, IsKnownBetweenFacesThatSeeEachOther) {
     const Vector3d t = away + Vector3d(6, 4, 1.5 + apart) - R * b.center;
     const BoxTurn X(R, t, a.reach() + b.reach());
     EXPECT_NEAR(bounds({a, a}, {b, b}, X)[0], apart, 1e-3 + 2e-5 * GetParam());
+    const BoxSight sight(Vector3d::UnitZ(), R, t);
+    EXPECT_NEAR(gaps_along(twins({a, a}), twins({b, b}), sight, X.uncertain_mm)[3], apart,
+                1e-3 + 2e-5 * GetParam());
   }
 }
 
