@@ -107,8 +107,45 @@ TriangleTree::TriangleTree(const TriMesh& mesh) {
     corners_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
     slot_[order[s]] = static_cast<int>(s);
   }
+  make_face_normals();
   make_pseudonormals(mesh);
   make_clusters();
+}
+
+TriangleTree TriangleTree::moved(const TriMesh& mesh) const {
+  TriangleTree tree;
+  tree.nodes_ = nodes_;
+  tree.triangle_ = triangle_;
+  tree.slot_ = slot_;
+  tree.corners_.reserve(corners_.size());
+  for (const int triangle : triangle_) {
+    const auto& t = mesh.triangles[triangle];
+    tree.corners_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+  }
+  for (std::size_t i = tree.nodes_.size(); i-- > 0;) {
+    Node& node = tree.nodes_[i];
+    if (node.count == 0) {
+      const Node &left = tree.nodes_[i + 1], &right = tree.nodes_[node.first];
+      node.low = left.low.cwiseMin(right.low);
+      node.high = left.high.cwiseMax(right.high);
+      continue;
+    }
+    node.low.setConstant(infinity);
+    node.high.setConstant(-infinity);
+    for (int s = node.first; s < node.first + node.count; ++s)
+      for (const Vector3d& corner : tree.corners_[s]) {
+        node.low = node.low.cwiseMin(corner);
+        node.high = node.high.cwiseMax(corner);
+      }
+  }
+  tree.make_face_normals();
+  return tree;
+}
+
+void TriangleTree::make_face_normals() {
+  face_normals_.reserve(corners_.size());
+  for (const auto& c : corners_)
+    face_normals_.push_back((c[1] - c[0]).cross(c[2] - c[0]).normalized());
 }
 
 int TriangleTree::build(std::vector<int>& order, const std::vector<Vector3d>& centers, int first,
@@ -163,10 +200,6 @@ void TriangleTree::make_pseudonormals(const TriMesh& mesh) {
   };
   std::vector<Side> sides;
   sides.reserve(3 * corners_.size());
-  for (std::size_t s = 0; s < corners_.size(); ++s) {
-    const auto& c = corners_[s];
-    face_normals_.push_back((c[1] - c[0]).cross(c[2] - c[0]).normalized());
-  }
   // In the mesh's own order, so that the sums do not depend on how the tree was split.
   for (std::size_t t = 0; t < slot_.size(); ++t) {
     if (slot_[t] < 0) continue;

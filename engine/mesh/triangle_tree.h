@@ -27,6 +27,10 @@ class TriangleTree {
   /// vertex.
   explicit TriangleTree(const TriMesh& mesh);
 
+  /// The tree of the same triangles elsewhere, as this one was split: made much sooner, and for
+  /// `nearest` alone. Those that have lost their area count as lines.
+  TriangleTree moved(const TriMesh& mesh) const;
+
   bool empty() const { return corners_.empty(); }
 
   /// Corners of a triangle that has area, such as every answer has.
@@ -84,6 +88,7 @@ class TriangleTree {
   double winding_number(const Eigen::Vector3d& p) const;
 
  private:
+  TriangleTree() = default;
   struct Node {
     Eigen::Vector3d low, high;
     int first = 0;  // of a leaf: its triangles; of an inner node: the right child (left is next)
@@ -97,6 +102,7 @@ class TriangleTree {
 
   int build(std::vector<int>& order, const std::vector<Eigen::Vector3d>& centers, int first,
             int last, const TriMesh& mesh);
+  void make_face_normals();
   void make_pseudonormals(const TriMesh& mesh);
   void make_clusters();
 

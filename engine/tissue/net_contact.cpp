@@ -47,37 +47,6 @@ Touch make_touch(int index, const NetPoint& point, double distance, const Vector
   return touch;
 }
 
-/// Which corners and edges of a surface lie on its rim.
-class Rim {
- public:
-  explicit Rim(const TriMesh& surface) : corner_(surface.vertices.size(), 0) {
-    for (const auto& t : surface.triangles)
-      for (int k = 0; k < 3; ++k) edges_.push_back(edge(t[k], t[(k + 1) % 3]));
-    std::sort(edges_.begin(), edges_.end());
-    std::vector<std::array<int, 2>> once;
-    for (std::size_t i = 0, next = 0; i < edges_.size(); i = next) {
-      while (next < edges_.size() && edges_[next] == edges_[i]) ++next;
-      if (next - i > 1) continue;
-      once.push_back(edges_[i]);
-      for (int end : edges_[i]) corner_[static_cast<std::size_t>(end)] = 1;
-    }
-    edges_ = std::move(once);
-  }
-  bool holds(const Eigen::Vector3i& corners, const Vector3d& barycentric) const {
-    std::array<int, 3> on{};
-    int count = 0;
-    for (int k = 0; k < 3; ++k)
-      if (barycentric[k] > 0) on[static_cast<std::size_t>(count++)] = corners[k];
-    if (count == 1) return corner_[static_cast<std::size_t>(on[0])] != 0;
-    return count == 2 && std::binary_search(edges_.begin(), edges_.end(), edge(on[0], on[1]));
-  }
-
- private:
-  static std::array<int, 2> edge(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
-  std::vector<std::array<int, 2>> edges_;
-  std::vector<char> corner_;
-};
-
 }  // namespace
 
 NetObstacle::NetObstacle(const TriMesh& mesh, const Box& region, const std::filesystem::path& cache,
@@ -158,39 +127,26 @@ Vector3d led(const Vector3d& normal, const Vector3d& front, double least) {
 }
 
 void touch_surface(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
-                   const std::vector<std::array<int, 3>>& triangles, const Nodes& x,
-                   const TouchSettings& settings, std::vector<Touch>& touches,
-                   const Vector3d& facing) {
+                   const NetSurface& surface, const Nodes& x, const TouchSettings& settings,
+                   std::vector<Touch>& touches, const Vector3d& facing) {
   constexpr double least_facing = 0.5;
+  const double reach = std::max(settings.reach_mm, deepest_of_surface_mm);
   Box box;
-  for (const auto& t : triangles)
-    for (int node : t) box.add(x[node]);
+  for (int node : surface.nodes()) box.add(x[node]);
   std::vector<std::size_t> candidates;
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (box.contains(points[i].at(x), std::max(settings.reach_mm, deepest_of_surface_mm)))
-      candidates.push_back(i);
+    if (box.contains(points[i].at(x), reach)) candidates.push_back(i);
   if (candidates.empty()) return;
 
-  // Joined at its nodes: there the normals are the means of the faces around.
-  TriMesh surface;  // some hundred triangles: a tree of them is made in no time
-  std::vector<int> use;
-  for (const auto& t : triangles) use.insert(use.end(), t.begin(), t.end());
-  std::sort(use.begin(), use.end());
-  use.erase(std::unique(use.begin(), use.end()), use.end());
-  const auto vertex_of = [&](int node) {
-    return static_cast<int>(std::lower_bound(use.begin(), use.end(), node) - use.begin());
-  };
-  for (int node : use) surface.vertices.push_back(x[node]);
-  for (const auto& t : triangles)
-    surface.triangles.emplace_back(vertex_of(t[0]), vertex_of(t[1]), vertex_of(t[2]));
-  const auto normals = vertex_normals(surface);
-  const TriangleTree tree(surface);
-  const Rim rim(surface);
+  const TriMesh placed = surface.placed(x);
+  const TriangleTree tree = surface.tree(placed);
+  std::vector<Vector3d> normals;  // at its nodes: the means of the faces around
   for (std::size_t i : candidates) {
     const Vector3d p = points[i].at(x);
-    const SurfacePoint found = tree.nearest(p, std::max(settings.reach_mm, deepest_of_surface_mm));
+    const SurfacePoint found = tree.nearest(p, reach);
     if (found.triangle < 0) continue;
-    const auto& corners = surface.triangles[found.triangle];
+    if (normals.empty()) normals = vertex_normals(placed);
+    const auto& corners = placed.triangles[found.triangle];
     Vector3d normal = Vector3d::Zero();
     for (int k = 0; k < 3; ++k) normal += found.barycentric[k] * normals[corners[k]];
     normal.normalize();
@@ -199,7 +155,7 @@ void touch_surface(const std::vector<NetPoint>& points, const std::vector<double
     const Vector3d beyond = p - found.point - distance * normal;
     const double beside = beyond.norm();
     if (distance > settings.reach_mm || beside > beside_mm) continue;
-    if (beside > 0 && rim.holds(corners, found.barycentric)) {
+    if (beside > 0 && surface.on_rim(found.triangle, found.barycentric)) {
       const Vector3d middle = found.point - round_mm * normal;
       const double far = std::hypot(distance + round_mm, beside);
       const double cosine = std::max((distance + round_mm) / far, least_cosine);
@@ -210,7 +166,7 @@ void touch_surface(const std::vector<NetPoint>& points, const std::vector<double
     touches.push_back(make_touch(static_cast<int>(i), points[i], distance, normal, allowance[i],
                                  settings.stiffness));
     Touch& touch = touches.back();
-    const auto& other = triangles[static_cast<std::size_t>(found.triangle)];
+    const auto& other = surface.triangles()[static_cast<std::size_t>(found.triangle)];
     for (int k = 0; k < 3; ++k) {
       if (found.barycentric[k] == 0) continue;
       touch.row.node[touch.row.count] = other[k];

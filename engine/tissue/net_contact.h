@@ -12,6 +12,7 @@
 #include "engine/mesh/triangle_tree.h"
 #include "engine/tissue/near_points.h"
 #include "engine/tissue/net_point.h"
+#include "engine/tissue/net_surface.h"
 #include "engine/tissue/spring_prism.h"
 
 namespace condyle {
@@ -72,14 +73,13 @@ void touch_obstacle(const std::vector<NetPoint>& points, const std::vector<doubl
                     const TouchSettings& settings, std::vector<Touch>& touches,
                     const Nodes& shift = {}, NearPoints* known = nullptr);
 
-/// The same against another part of the net's own surface: triangles of nodes, counter-clockwise
-/// seen from outside. It may have a rim; what is nearest to a rim from behind counts as inside, so
-/// the surface must reach beyond the points. Both sides feel the contact. `facing` (unit, or 0 for
-/// none): the surface counts as leaning no farther than 60 degrees away from it, so that none that
-/// curls up takes for its inside what is beside it.
+/// The same against another part of the net's own surface. It may have a rim; what is nearest to a
+/// rim from behind counts as inside, so the surface must reach beyond the points. Both sides feel
+/// the contact. `facing` (unit, or 0 for none): the surface counts as leaning no farther than 60
+/// degrees away from it, so that none that curls up takes for its inside what is beside it.
 void touch_surface(const std::vector<NetPoint>& points, const std::vector<double>& allowance,
-                   const std::vector<std::array<int, 3>>& triangles, const Nodes& x,
-                   const TouchSettings& settings, std::vector<Touch>& touches,
+                   const NetSurface& surface, const Nodes& x, const TouchSettings& settings,
+                   std::vector<Touch>& touches,
                    const Eigen::Vector3d& facing = Eigen::Vector3d::Zero());
 
 /// A unit normal, turned toward `front` (unit) until their cosine is at least `least`.

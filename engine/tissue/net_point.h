@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <vector>
 
 #include "engine/tissue/spring_prism.h"
 
@@ -23,5 +24,9 @@ struct NetPoint {
     return {{a, b, c}, {1.0 / 3, 1.0 / 3, 1.0 / 3}, 3};
   }
 };
+
+/// Appends points spread evenly over triangles of nodes, between their corners.
+void spread(const std::vector<Eigen::Vector3i>& triangles, const Nodes& rest, double spacing_mm,
+            std::vector<NetPoint>& points);
 
 }  // namespace condyle

@@ -53,6 +53,8 @@ double lip_share(double share) { return smooth_step(smooth_step(share)); }
 /// folds more sharply than skin does; at the mouth it is fine enough.
 double evened(double to_mouth_mm) { return 0.6 * smooth_step((to_mouth_mm - 35) / 25); }
 
+constexpr double widest_rad = 0.75;  // of the jaw's opening
+
 /// Solves a plain opening knot by knot, and keeps a factor at each: the tissue of the
 /// lower face turns with the jaw, and a factor made unturned asks for several times the iterations.
 void make_path(TissueModel& model, const Anatomy& anatomy) {
@@ -118,7 +120,7 @@ void tell_rest(TissueModel& model) {
                             " mm: turgor and weight could not be balanced everywhere");
   summary.lip_points_left_out = model.contact.lip_points_left_out;
   summary.rest_overlap_mm =
-      measure_contact(model.contact, Looks(4), Pose{}, model.rest, model.rest).rest_overlap_mm;
+      measure_contact(model.contact, Looks(contact_lists), Pose{}, model.rest, model.rest).rest_overlap_mm;
 }
 
 /// Columns under the whole sheet. Where the sheet itself folds too sharply for tissue of any depth
@@ -182,7 +184,8 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   model->slit = region.slit;
   model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, 30);
   const double parted =
-      part_closed_lips({skin, columns, model->handle_side, sheets, model->rest, {}}, model->rest);
+      part_closed_lips({skin, columns, model->handle_side, sheets, model->rest, {}, {}, {}},
+                       model->rest);
   if (parted > 0.5)
     summary.notes.push_back("the simulated lips overlapped: parted by up to " +
                             fmt::format("{:.1f} mm", parted));
@@ -279,8 +282,10 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
     if (!skin.rim[c] && columns[c].firm < 0.5) held[node_of(c, sheets - 1, sheets)] = 0;
 
   report(progress, "soft tissue: contact", 0.55);
+  model->path.condyles = anatomy.condyles;
   model->contact =
-      make_contact({skin, columns, model->handle_side, sheets, model->rest, held},
+      make_contact({skin, columns, model->handle_side, sheets, model->rest, held,
+                    model->node_share, model->path.pose(widest_rad)},
                    jaw_mesh(patient, Body::cranium), jaw_mesh(patient, Body::mandible));
   net.may_touch = lips_that_may_touch(model->contact, model->rest);
 

@@ -29,6 +29,7 @@ constexpr double corner_mm = 5;          // nearer to a corner both lips are one
 constexpr double deepest_lip_mm = 0.4;
 constexpr double apart_mm = 0.02;       // between the lips when their nodes have been moved apart
 constexpr double lips_stiffness = 0.5;  // N/mm; lips give way to each other themselves
+constexpr double skin_stiffness = 1;    // N/mm; as much as needs the fewest iterations
 constexpr double swept_mm = 10;         // points come this far from where they rest, beside the jaw
 
 /// Columns along one lip's edge, from the right corner to the left, both with.
@@ -82,7 +83,7 @@ TissueContact::Lip make_lip(const ContactSource& from, int side) {
   for (const auto& [a, b, c] : lip.edge)
     lip.facing += (from.rest[b] - from.rest[a]).cross(from.rest[c] - from.rest[a]);
   lip.facing.normalize();
-  lip.whole = whole_lip(from, side, lip.edge);
+  lip.surface = NetSurface(whole_lip(from, side, lip.edge), from.rest);
   const auto& vertices = from.skin.mesh.vertices;
   for (int c : lip_edge(from, side)) {
     const auto to = [&](int corner) { return (vertices[c] - vertices[corner]).norm(); };
@@ -93,26 +94,6 @@ TissueContact::Lip make_lip(const ContactSource& from, int side) {
   }
   lip.allowance.assign(lip.points.size(), 0.0);
   return lip;
-}
-
-/// Points spread evenly over triangles of nodes, between their corners.
-void spread(const std::vector<Eigen::Vector3i>& triangles, const Nodes& rest, double spacing_mm,
-            std::vector<NetPoint>& points) {
-  const auto parts_of = [&](int a, int b) {
-    return static_cast<int>(std::ceil((rest[a] - rest[b]).norm() / spacing_mm));
-  };
-  for (const auto& [a, b] : edges_of(triangles)) {
-    const int parts = parts_of(a, b);
-    const double part = 1.0 / parts;
-    for (int i = 1; i < parts; ++i) points.push_back({{a, b}, {1 - i * part, i * part}, 2});
-  }
-  for (const auto& t : triangles) {
-    const int parts = std::max({parts_of(t[0], t[1]), parts_of(t[1], t[2]), parts_of(t[2], t[0])});
-    const double part = 1.0 / parts;
-    for (int i = 1; i < parts; ++i)
-      for (int j = 1; i + j < parts; ++j)
-        points.push_back({{t[0], t[1], t[2]}, {1 - (i + j) * part, i * part, j * part}, 3});
-  }
 }
 
 /// Takes out points so deep in the other lip at rest that nothing tells which way is out. Returns
@@ -207,6 +188,7 @@ double part_closed_lips(const ContactSource& from, Nodes& rest) {
   constexpr int most_rounds = 60;
   constexpr double least_share = 0.4;  // of a prism's volume that must remain
   const TissueContact::Lip upper = make_lip(from, +1), lower = make_lip(from, -1);
+  const NetSurface upper_edge(upper.edge, rest), lower_edge(lower.edge, rest);
   const Nodes before = rest;
   const auto fraction = [&](int node) {
     const int outer = node - node % from.sheets, inner = outer + from.sheets - 1;
@@ -225,8 +207,8 @@ double part_closed_lips(const ContactSource& from, Nodes& rest) {
   };
   for (int round = 0; round < most_rounds; ++round) {
     std::vector<Touch> touches;
-    touch_surface(upper.points, upper.allowance, lower.edge, rest, {}, touches);
-    touch_surface(lower.points, lower.allowance, upper.edge, rest, {}, touches);
+    touch_surface(upper.points, upper.allowance, lower_edge, rest, {}, touches);
+    touch_surface(lower.points, lower.allowance, upper_edge, rest, {}, touches);
     ColumnWays ways(from.columns.size());
     bool any = false;
     for (const auto& touch : touches) {
@@ -321,18 +303,21 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
   for (const auto& [lip, other] :
        {std::pair{&contact.upper, &contact.lower}, std::pair{&contact.lower, &contact.upper}}) {
     std::vector<Touch> touches;
-    touch_surface(lip->points, lip->allowance, other->whole, from.rest, {}, touches, other->facing);
+    touch_surface(lip->points, lip->allowance, other->surface, from.rest, {}, touches,
+                  other->facing);
     contact.lip_points_left_out += leave_out_deep(touches, *lip);
     touches.clear();
-    touch_surface(lip->points, lip->allowance, other->whole, from.rest, {}, touches, other->facing);
+    touch_surface(lip->points, lip->allowance, other->surface, from.rest, {}, touches,
+                  other->facing);
     allow(touches, lip->allowance);
   }
+  contact.fold = find_fold(from);
   return contact;
 }
 
 Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads,
               NearJaws* known) {
-  Looks looks(4);
+  Looks looks(contact_lists);
   const auto jaw = [&](const TissueContact::Jaw& of, const Pose& X_CJ, std::vector<Touch>& touches,
                        NearPoints* near) {
     if (!of.obstacle) return;
@@ -340,16 +325,22 @@ Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, in
                    near);
     lead_lips(contact, of, X_CM, x, touches);
   };
-  const TouchSettings soft{.stiffness = lips_stiffness};
+  const auto flap = [&](const Flap& of, const Flap& on, double stiffness,
+                        std::vector<Touch>& touches, const Vector3d& facing = Vector3d::Zero()) {
+    touch_surface(of.points, of.allowance, on.surface, x, {.stiffness = stiffness}, touches,
+                  facing);
+  };
+  const auto& [upper, lower] = std::tie(contact.upper, contact.lower);
+  const auto& [chin, throat] = contact.fold;
   parallel_for(2, threads, [&](std::size_t i) {
     if (i == 0) {
       jaw(contact.cranium, Pose{}, looks[on_cranium], known ? &known->cranium : nullptr);
-      touch_surface(contact.upper.points, contact.upper.allowance, contact.lower.whole, x, soft,
-                    looks[upper_on_lower], X_CM.R * contact.lower.facing);
+      flap(upper, lower, lips_stiffness, looks[upper_on_lower], X_CM.R * lower.facing);
+      flap(chin, throat, skin_stiffness, looks[chin_on_throat]);
     } else {
       jaw(contact.mandible, X_CM, looks[on_mandible], known ? &known->mandible : nullptr);
-      touch_surface(contact.lower.points, contact.lower.allowance, contact.upper.whole, x, soft,
-                    looks[lower_on_upper], contact.upper.facing);
+      flap(lower, upper, lips_stiffness, looks[lower_on_upper], upper.facing);
+      flap(throat, chin, skin_stiffness, looks[throat_on_chin]);
     }
   });
   return looks;

@@ -5,12 +5,14 @@
 
 #include "engine/tissue/net_contact.h"
 #include "sim/tissue/columns.h"
+#include "sim/tissue/skin_fold.h"
 
 namespace condyle {
 
 struct TissueModel;
 
-/// What the tissue slides on where it is not attached: bone and teeth of both jaws, and lip on lip.
+/// What the tissue slides on where it is not attached: bone and teeth of both jaws, lip on lip, and
+/// the skin below the chin on that of the throat.
 struct TissueContact {
   /// Points that must not enter a jaw, and one jaw.
   struct Jaw {
@@ -29,15 +31,13 @@ struct TissueContact {
   std::vector<Eigen::Vector3d> front;
   std::vector<char> lower_lip;  // of each point: it turns with the mandible
 
-  /// Points of one lip, which must not enter the other.
-  struct Lip {
-    std::vector<NetPoint> points;
-    std::vector<std::array<int, 3>> edge;   // triangles of nodes, from the skin to the inner side
-    std::vector<std::array<int, 3>> whole;  // with the skin before and the inner side behind it
+  /// Its surface: the edge, the skin before and the inner side behind it.
+  struct Lip : Flap {
+    std::vector<std::array<int, 3>> edge;  // triangles of nodes, from the skin to the inner side
     Eigen::Vector3d facing = Eigen::Vector3d::Zero();  // the edge's mean way at rest; unit
-    std::vector<double> allowance;                     // of its points in the other lip
   };
   Lip upper, lower;
+  SkinFold fold;
   int lip_points_left_out = 0;  // too deep in the other lip at rest
 };
 
@@ -48,10 +48,12 @@ struct ContactSource {
   const std::vector<signed char>& side;  // of each column: +1 above the lip line
   int sheets = 0;
   const Nodes& rest;
-  const std::vector<char>& held;  // of each node: anchored firmly
+  const std::vector<char>& held;     // of each node: anchored firmly
+  const std::vector<double>& share;  // of each node, of the mandible's way
+  const Pose& wide_open;             // X_CM
 };
 /// Moves the nodes of closed lips apart where the coarse lips overlap, so that at rest neither is
-/// inside the other. Gives the farthest way, mm. `from.rest` and `from.held` are not used.
+/// inside the other. Gives the farthest way, mm. Of `from`, what is said of nodes is not used.
 double part_closed_lips(const ContactSource& from, Nodes& rest);
 
 /// Cranium and mandible with teeth, merged. Fields are kept in the cache of the user.
@@ -63,7 +65,15 @@ std::vector<std::array<int, 2>> lips_that_may_touch(const TissueContact& contact
                                                     const Nodes& rest);
 
 /// Order of the lists in what `look_at` returns.
-enum ContactList : std::size_t { on_cranium, on_mandible, upper_on_lower, lower_on_upper };
+enum ContactList : std::size_t {
+  on_cranium,
+  on_mandible,
+  upper_on_lower,
+  lower_on_upper,
+  chin_on_throat,
+  throat_on_chin,
+  contact_lists
+};
 
 /// What looks at one pose of the mandible learn for the next ones.
 struct NearJaws {
@@ -76,7 +86,7 @@ Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, in
 
 /// How tissue lies on the jaws and on itself.
 struct ContactMeasure {
-  double penetration_mm = 0;   // deepest point in bone, teeth or the other lip, beyond rest
+  double penetration_mm = 0;   // deepest point in bone, teeth or skin, beyond rest
   double slip_mm = 0;          // farthest way of a point along the jaw that it lay on at rest
   double rest_overlap_mm = 0;  // deepest that a point was allowed from the start
 };

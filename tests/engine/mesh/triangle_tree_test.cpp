@@ -61,6 +61,25 @@ TEST(TriangleTree, NearestEqualsBruteForce) {
   }
 }
 
+// Bent, turned and shifted, and with a triangle that has lost its area.
+TEST(TriangleTree, NearestIsRightWhenTheTrianglesHaveMoved) {
+  TriMesh mesh = test::joined(sphere(3, 10), cuboid({8, -3, -4}, {15, 20, 3}));
+  const TriangleTree before(mesh);
+  const auto pose = arbitrary_pose(5);
+  for (auto& v : mesh.vertices)
+    v = pose * Vector3d(1.5 * v.x() + 0.02 * v.y() * v.y(), v.y(), v.z());
+  mesh.vertices[static_cast<std::size_t>(mesh.triangles[7][1])] =
+      mesh.vertices[static_cast<std::size_t>(mesh.triangles[7][0])];
+  const TriangleTree tree = before.moved(mesh), fresh(mesh);
+  for (const auto& local : points_around(6, 500, 15)) {
+    const Vector3d p = pose * local;
+    const SurfacePoint found = tree.nearest(p), wanted = fresh.nearest(p);
+    ASSERT_NEAR(found.distance, wanted.distance, 1e-11);
+    ASSERT_LT((found.point - p).norm() - found.distance, 1e-11);
+    ASSERT_EQ(tree.nearest(p, 0.5 * wanted.distance).triangle, -1);
+  }
+}
+
 TEST(TriangleTree, ReachLimitsTheSearchAndChangesNoAnswerWithinIt) {
   const TriMesh mesh = sphere(3, 10);
   const TriangleTree tree(mesh);

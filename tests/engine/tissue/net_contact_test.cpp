@@ -268,9 +268,10 @@ TEST(NetContact, TwoSurfacesOfOneNetPushEachOtherAlike) {
   for (int j = 1; j < 8; ++j)
     for (int i = 1; i < 8; ++i) points.push_back(NetPoint::of_node(HeldSlab::lowest(j * 9 + i)));
   const std::vector<double> none(points.size(), 0.0);
+  const NetSurface surface(top, rest);
   const auto look = [&](const Nodes& x) {
     Looks looks(1);
-    touch_surface(points, none, top, x, {.reach_mm = 6, .stiffness = 1}, looks[0]);
+    touch_surface(points, none, surface, x, {.reach_mm = 6, .stiffness = 1}, looks[0]);
     return looks;
   };
   Nodes x = rest;

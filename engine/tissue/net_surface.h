@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "engine/mesh/triangle_tree.h"
+#include "engine/tissue/spring_prism.h"
+
+namespace condyle {
+
+/// A part of a net's surface, joined at its nodes. What does not change as they move is made once.
+class NetSurface {
+ public:
+  NetSurface() = default;
+  /// triangles: of nodes, counter-clockwise seen from outside. rest: places of all nodes.
+  NetSurface(std::vector<std::array<int, 3>> triangles, const Nodes& rest);
+
+  const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
+  bool empty() const { return triangles_.empty(); }
+
+  /// The surface with all nodes at x; triangles as above, of `nodes`.
+  TriMesh placed(const Nodes& x) const;
+  const std::vector<int>& nodes() const { return nodes_; }
+  TriangleTree tree(const TriMesh& placed) const { return tree_->moved(placed); }
+
+  /// Whether a point of the triangle lies on the surface's rim.
+  bool on_rim(int triangle, const Eigen::Vector3d& barycentric) const;
+
+ private:
+  std::vector<std::array<int, 3>> triangles_;
+  std::vector<int> nodes_;  // rising
+  std::vector<Eigen::Vector3i> corners_;
+  std::vector<char> rim_corner_;               // of each of its nodes
+  std::vector<std::array<int, 2>> rim_edges_;  // rising, and each
+  std::shared_ptr<const TriangleTree> tree_;   // at rest
+};
+
+}  // namespace condyle
