@@ -57,10 +57,9 @@ constexpr double widest_rad = 0.75;  // of the jaw's opening
 
 /// Solves a plain opening knot by knot, and keeps a factor at each: the tissue of the
 /// lower face turns with the jaw, and a factor made unturned asks for several times the iterations.
-void make_path(TissueModel& model, const Anatomy& anatomy) {
+void make_path(TissueModel& model) {
   constexpr int knots = 13;  // to 43 degrees
   model.runs = std::make_shared<const NetRuns>(model.net);
-  model.path.condyles = anatomy.condyles;
   model.factors.push_back(
       {0, std::make_shared<HessianFactor>(model.net, touching_loads(model, Pose{}, model.rest),
                                           model.sheets, model.rest)});
@@ -120,7 +119,8 @@ void tell_rest(TissueModel& model) {
                             " mm: turgor and weight could not be balanced everywhere");
   summary.lip_points_left_out = model.contact.lip_points_left_out;
   summary.rest_overlap_mm =
-      measure_contact(model.contact, Looks(contact_lists), Pose{}, model.rest, model.rest).rest_overlap_mm;
+      measure_contact(model.contact, Looks(contact_lists), Pose{}, model.rest, model.rest)
+          .rest_overlap_mm;
 }
 
 /// Columns under the whole sheet. Where the sheet itself folds too sharply for tissue of any depth
@@ -183,9 +183,8 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   model->rest = column_nodes(skin, columns, column_settings);
   model->slit = region.slit;
   model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, 30);
-  const double parted =
-      part_closed_lips({skin, columns, model->handle_side, sheets, model->rest, {}, {}, {}},
-                       model->rest);
+  const double parted = part_closed_lips(
+      {skin, columns, model->handle_side, sheets, model->rest, {}, {}, {}}, model->rest);
   if (parted > 0.5)
     summary.notes.push_back("the simulated lips overlapped: parted by up to " +
                             fmt::format("{:.1f} mm", parted));
@@ -284,8 +283,8 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   report(progress, "soft tissue: contact", 0.55);
   model->path.condyles = anatomy.condyles;
   model->contact =
-      make_contact({skin, columns, model->handle_side, sheets, model->rest, held,
-                    model->node_share, model->path.pose(widest_rad)},
+      make_contact({skin, columns, model->handle_side, sheets, model->rest, held, model->node_share,
+                    model->path.pose(widest_rad)},
                    jaw_mesh(patient, Body::cranium), jaw_mesh(patient, Body::mandible));
   net.may_touch = lips_that_may_touch(model->contact, model->rest);
 
@@ -294,7 +293,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   if (plan.down || plan.turgor.value_or(1) < 1) balance(*model);
 
   report(progress, "soft tissue: path of opening", 0.6);
-  make_path(*model, anatomy);
+  make_path(*model);
 
   report(progress, "soft tissue: displayed face", 0.8);
   model->region = region.shape;
