@@ -212,6 +212,7 @@ const GpuMesh& Drawable::rest_mesh() {
     at_rest->send_colors(colors);
     at_rest->send_extras(extras);
   }
+  at_rest->send_ways_to(mesh);
   return *at_rest;
 }
 

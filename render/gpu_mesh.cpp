@@ -1,6 +1,7 @@
 #include "render/gpu_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 
@@ -187,10 +188,24 @@ void GpuMesh::send_values(std::span<const float> values) {
     glDisableVertexAttribArray(4);
   } else {
     send_ordered(values_, values, GL_STREAM_DRAW);
-    glEnableVertexAttribArray(4);
-    glVertexAttribPointer(4, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
+    use_values();
   }
   glBindVertexArray(0);
+}
+
+void GpuMesh::send_ways_to(const GpuMesh& other) {
+  assert(order_ == other.order_);
+  std::vector<float> ways(points_.size());
+  for (std::size_t i = 0; i < ways.size(); ++i) ways[i] = (points_[i] - other.points_[i]).norm();
+  glBindVertexArray(array_);
+  send(GL_ARRAY_BUFFER, values_, std::span<const float>(ways), GL_STREAM_DRAW);
+  use_values();
+  glBindVertexArray(0);
+}
+
+void GpuMesh::use_values() {
+  glEnableVertexAttribArray(4);
+  glVertexAttribPointer(4, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
 }
 
 void GpuMesh::draw() const {

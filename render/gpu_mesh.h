@@ -59,6 +59,8 @@ class GpuMesh {
   void send_rest(std::span<const Eigen::Vector3f> positions);
   /// One number per vertex, attribute 4; none: taken as 0.
   void send_values(std::span<const float> values);
+  /// The same, how far each is from where a mesh of the same triangles has it, mm.
+  void send_ways_to(const GpuMesh& other);
 
   /// Triangles that only `draw_cover` draws.
   void send_cover(std::span<const Eigen::Vector3i> triangles);
@@ -81,6 +83,7 @@ class GpuMesh {
 
   template <class T>
   std::vector<T> ordered(std::span<const T> values) const;
+  void use_values();
   template <class T>
   void send_ordered(GLuint buffer, std::span<const T> values, GLenum usage);
 

@@ -154,6 +154,7 @@ void OverlayPasses::wireframe(const DrawItem& item, const PictureView& view) {
   begin_cut(tint_, item, view);
   tint_.set("tint", Eigen::Vector3f(0.004f, 0.006f, 0.010f));
   tint_.set("rim", 0.f);
+  tint_.set("moved", 0.f);
   tint_.set("opacity", 0.5f);
   if (item.drawable->closed && !item.cut()) {
     glEnable(GL_CULL_FACE);
@@ -197,7 +198,9 @@ void OverlayPasses::wireframe(const DrawItem& item, const PictureView& view) {
 }
 
 void OverlayPasses::ghost(const DrawItem& item, const Ghost& look, const PictureView& view) {
-  glass(item.drawable->rest_mesh(), look.color, static_cast<float>(look.opacity), view);
+  // Skin that has stayed would fight with its own ghost.
+  const float moved = item.role() == Role::face ? 1 : 0;
+  glass(item.drawable->rest_mesh(), look.color, static_cast<float>(look.opacity), view, moved);
 }
 
 void OverlayPasses::sheets(const PictureView& view) {
@@ -205,7 +208,7 @@ void OverlayPasses::sheets(const PictureView& view) {
 }
 
 void OverlayPasses::glass(const GpuMesh& mesh, const Eigen::Vector3f& color, float opacity,
-                          const PictureView& view) {
+                          const PictureView& view, float moved) {
   const Eigen::Matrix4f still = Eigen::Matrix4f::Identity();
   glDisable(GL_CULL_FACE);
   begin(depth_, view, still);
@@ -215,6 +218,7 @@ void OverlayPasses::glass(const GpuMesh& mesh, const Eigen::Vector3f& color, flo
   begin(tint_, view, still);
   tint_.set("tint", Eigen::Vector3f(color.array().pow(2.2f)));
   tint_.set("rim", 1.f);
+  tint_.set("moved", moved);
   tint_.set("opacity", opacity);
   blend_over();
   glDepthFunc(GL_EQUAL);

@@ -44,9 +44,9 @@ class OverlayPasses {
     float opacity;
     std::optional<GpuMesh> mesh;
   };
-  /// The nearest layer of a mesh, tinted, behind what is nearer.
+  /// The nearest layer of a mesh, tinted, behind what is nearer. `moved`: see the tint's shader.
   void glass(const GpuMesh& mesh, const Eigen::Vector3f& color, float opacity,
-             const PictureView& view);
+             const PictureView& view, float moved = 0);
   void begin(GlProgram& program, const PictureView& view, const Eigen::Matrix4f& model);
 
   GlProgram cap_, tint_, depth_, line_, dot_;

@@ -193,8 +193,9 @@ void Passes::place(GlProgram& program, const DrawItem& item, const PictureView& 
                           : item.role() == Role::face ? 1.f
                                                       : view.at_rest);
   const bool in_mouth =
-      view.opaque_face && item.role() != Role::eyes && body_of(item.role()) != Body::free;
+      view.dark_mouth && item.role() != Role::eyes && body_of(item.role()) != Body::free;
   program.set("cavity", Eigen::Vector2f(view.lips_y, in_mouth ? 1 / mouth_depth_mm : 0.f));
+  program.set("window_ball", view.window_ball);
   begin_cut(program, item, view);
 }
 
@@ -278,7 +279,7 @@ void Passes::shade_interior(const DrawItem& item, const PictureView& view) {
   if (item.drawable->closed && !item.cut()) return;
   glEnable(GL_CULL_FACE);
   glCullFace(GL_FRONT);
-  begin(interiors_, item, view, false);
+  begin(interiors_, item, view, false).set("capped", view.capped ? 1.f : 0.f);
   item.mesh().draw(visibility_.choose(item.mesh(), surface_of(item, view), item.model, eye_of(view),
                                       Sides::back, &cover_));
   end_cut();

@@ -49,7 +49,8 @@ struct PictureView {
   float pixels_per_unit;  // of a length across the line of sight at distance 1
   bool shadows = true;
   bool coarse = false;       // shapes, where they serve
-  bool opaque_face = false;  // keeps the sky out of the mouth, and hides most of the rest
+  bool dark_mouth = false;   // an opaque face keeps the sky out of it, but for its window
+  bool opaque_face = false;  // hides most of the rest
   bool may_cull = true;      // the eye is outside of everything
   float skin_opacity = 1;
   float at_rest = 1;                          // 1 with the jaw at rest, 0 when it is well away
@@ -59,6 +60,7 @@ struct PictureView {
   Eigen::Vector3f cut_normal = Eigen::Vector3f::UnitX();        // toward what is left out
   bool capped = false;                                          // cut solids get faces
   Eigen::Vector4f cut_ball = {0, 0, 0, -1};                     // centre, radius
+  Eigen::Vector4f window_ball = {0, 0, 0, -1};                  // the same, where it cuts skin
   float mapped_up_to = std::numeric_limits<float>::infinity();  // values beyond are not shown
 
   /// Of a dot at a place: at least so many pixels to each side.

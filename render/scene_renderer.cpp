@@ -282,6 +282,11 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   view.opaque_face = std::any_of(items.begin(), items.end(), [](const DrawItem& item) {
     return item.role() == Role::face && item.opaque() && !item.cut();
   });
+  for (const auto& item : items) {
+    if (item.role() != Role::face || !item.opaque() || item.clipped) continue;
+    view.dark_mouth = true;
+    if (item.holed) view.window_ball = view.cut_ball;
+  }
   if (settings.mapped_up_to)
     for (const auto& item : items)
       if (item.drawable->mapped && item.drawable->finer) item.drawable->dress_finer();

@@ -33,6 +33,7 @@ uniform float together;        // 1 with everything as at rest, 0 far from it
 uniform vec2 cavity;           // y where the mouth's darkness starts, 1/length; 0 length = none
 uniform vec4 clip_plane;       // what is kept has dot(plane, place) > 0
 uniform vec4 cut_ball;         // centre and radius; what is kept lies outside
+uniform vec4 window_ball;      // the same, of the skin: no darkness is seen through it
 out float gl_ClipDistance[2];
 invariant gl_Position;
 out vec3 to_eye;
@@ -54,8 +55,12 @@ void main() {
   albedo = pow(color.rgb, vec3(2.2));
   shadow_place = (shadow_matrix * vec4(world.xyz + shade_offset(world_normal, key_direction, to_eye,
                                                                 two_sided), 1.0)).xyz;
+  vec3 way = window_ball.xyz - eye;
+  float nearest = clamp(-dot(way, to_eye) / dot(to_eye, to_eye), 0.0, 1.0);
+  float beside_window = distance(way, -nearest * to_eye) - window_ball.w;
   traits = vec4(mix(extra.x, color.a, together), extra.y, extra.z,
-                exp(-max(position.y - cavity.x, 0.0) * cavity.y));
+                mix(1.0, exp(-max(position.y - cavity.x, 0.0) * cavity.y),
+                    smoothstep(-2.0, 0.0, beside_window)));
 }
 )";
 

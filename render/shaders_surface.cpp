@@ -265,10 +265,22 @@ void main() {
 }
 )";
 
-// The mucous side: dark, red and a little wet; no shadow map, the darkness is in the colour.
+// The mucous side: dark, red and a little wet; no shadow map, the darkness is in the colour. What is
+// seen through a cut, and not through the mouth, is flesh.
 const char* const interior_source = R"(
+uniform vec3 eye;
+uniform vec4 clip_plane;  // as in the vertex shader
+uniform vec4 cut_ball;
+uniform float capped;     // 1: where the plane cuts flesh a cap hides this
+bool seen_through_a_cut() {
+  vec3 way = cut_ball.xyz - eye;
+  float nearest = clamp(-dot(way, to_eye) / dot(to_eye, to_eye), 0.0, 1.0);
+  return distance(way, -nearest * to_eye) < cut_ball.w
+      || (capped == 0.0 && dot(clip_plane, vec4(eye, 1.0)) < 0.0);
+}
+
 void main() {
-  if (cuttable) {
+  if (cuttable && seen_through_a_cut()) {
     result = vec4(display(cut_face(cut)), opacity);
     return;
   }
@@ -295,11 +307,13 @@ void main() { result = vec4(display(cut_face(cut)), 1.0); }
 const char* const tint_source = R"(
 uniform vec3 tint;    // linear
 uniform float rim;    // 1: clear in the middle, as glass is
+uniform float moved;  // 1: only as far as it has moved (mapped_value, mm) is it there
 void main() {
   float nv = abs(dot(normalize(world_normal), normalize(to_eye)));
   float edge = 1.0 - nv;
   result = vec4(display(tint * mix(0.75 + 0.25 * nv, 1.0, 1.0 - rim)),
-                opacity * mix(1.0, 0.45 + 0.55 * edge, rim));
+                opacity * mix(1.0, 0.45 + 0.55 * edge, rim)
+                        * mix(1.0, smoothstep(0.5, 2.5, mapped_value), moved));
 }
 )";
 

@@ -146,6 +146,51 @@ TEST_F(Overlays, AGhostStandsWhereThePartWasAndGoesWhenItIsBack) {
   EXPECT_EQ(pixel(renderer.picture(front_camera(), settings), 100, 100).a, 0);
 }
 
+TEST_F(Overlays, SkinLeavesItsGhostOnlyWhereItHasMoved) {
+  const std::vector<Part> parts = {make_part("face", Role::face, ball({0, 0, 0}, 30))};
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = settings.height = 200;
+  settings.shadows = false;
+  FrameState frame;  // what is on the patient's left has come in by 4 mm
+  for (const auto& v : parts[0].mesh.vertices)
+    frame.face.push_back((v * (v.x() > 5 ? 26.0 / 30 : 1)).cast<float>());
+  renderer.update(frame);
+  const Image plain = renderer.picture(front_camera(), settings);
+  settings.ghost.emplace();
+  const Image ghost = renderer.picture(front_camera(), settings);
+  const auto changed = [&](int x, int y) {
+    const Pixel a = pixel(plain, x, y), b = pixel(ghost, x, y);
+    return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b);
+  };
+  for (int y = 60; y <= 140; y += 4) {
+    for (int x = 60; x <= 100; x += 4) EXPECT_EQ(changed(x, y), 0) << x << ' ' << y;
+    EXPECT_GT(changed(130, y), 10) << y;
+  }
+}
+
+// A head that is open in front, as at the mouth, with a round window in its side.
+TEST_F(Overlays, AWindowInTheSkinChangesNothingThatIsSeenThroughTheMouth) {
+  Part face = make_part("face", Role::face, ball({0, 0, 0}, 30));
+  std::erase_if(face.mesh.triangles, [&](const Eigen::Vector3i& t) {
+    const Eigen::Vector3d& v = face.mesh.vertices[static_cast<std::size_t>(t[0])];
+    return v.y() < 0 && std::hypot(v.x(), v.z()) < 10;
+  });
+  const std::vector<Part> parts = {face};
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = settings.height = 200;
+  settings.shadows = false;
+  const Image whole = renderer.picture(front_camera(), settings);
+  settings.cut_away = {.center = {20, -22, 0}, .radius_mm = 8};
+  const Image opened = renderer.picture(front_camera(), settings);
+  for (int y = 90; y <= 110; y += 4)
+    for (int x = 90; x <= 104; x += 2) EXPECT_EQ(pixel(opened, x, y).r, pixel(whole, x, y).r);
+  const Pixel flesh = pixel(opened, 142, 100), skin = pixel(whole, 142, 100);
+  EXPECT_GT(std::abs(flesh.g - skin.g), 8);
+  EXPECT_GT(flesh.r, 2 * pixel(opened, 100, 100).r);  // not the dark of a mouth
+}
+
 TEST_F(Overlays, WireframesDrawTheEdgesOfTheNamedPart) {
   const std::vector<Part> parts = {make_part("skull", Role::skull, ball({-20, 0, 0}, 15, 8)),
                                    make_part("maxilla", Role::maxilla, ball({20, 0, 0}, 15, 8))};
