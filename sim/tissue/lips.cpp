@@ -8,6 +8,7 @@
 
 #include "engine/mesh/topology.h"
 #include "sim/tissue/anatomy.h"
+#include "sim/tissue/lip_pocket.h"
 
 namespace condyle {
 namespace {
@@ -159,6 +160,14 @@ MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vecto
                           std::vector<std::string>& notes) {
   const auto line = find_lip_line(landmarks, incisors, notes);
   if (!line) return {};
+  auto bottom = pocket_bottom(face, line->right, line->middle, line->left);
+  if (!bottom.empty()) {
+    if (!faces_outward(face)) std::reverse(bottom.begin(), bottom.end());
+    cut_along(bottom, face);
+    notes.push_back(
+        "the lips were one surface: parted along the bottom of the pocket between them");
+    return find_mouth(face, landmarks, incisors);
+  }
   // Only the front of the face near the line: not the nape behind it.
   const auto near = [&](const Eigen::Vector3i& t) {
     for (int k = 0; k < 3; ++k) {

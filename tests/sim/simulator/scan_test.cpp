@@ -2,6 +2,7 @@
 // must be built on it and move.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim/tissue/lips.h"
@@ -24,6 +25,20 @@ TEST(FaceScan, OfAnotherPersonOverScaledBonesIsBuiltAndOpens) {
   EXPECT_NEAR(tip.z() - stomion.z(), 33, 4);
   EXPECT_LT(stomion.y(), patient.landmarks.find("upper_incisal_point")->y());
   part_lips(patient);
+  // One opening from corner to corner, though a deep pocket lies between the lips.
+  int openings = 0;
+  const TriMesh& face_mesh = patient.find(Role::face)->mesh;
+  for (const auto& loop : border_loops(face_mesh)) {
+    double right = 1e9, left = -1e9;
+    for (int v : loop) {
+      right = std::min(right, face_mesh.vertices[v].x());
+      left = std::max(left, face_mesh.vertices[v].x());
+    }
+    if ((face_mesh.vertices[loop[0]] - stomion).norm() > 40) continue;
+    ++openings;
+    EXPECT_NEAR(left - right, 50, 8);
+  }
+  EXPECT_EQ(openings, 1);
   const auto model = build_tissue(patient, {.surface_nodes = 220});
   const TissueSummary& made = summary(*model);
   EXPECT_TRUE(made.lips_cut);

@@ -1,0 +1,88 @@
+#include "sim/tissue/lip_pocket.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/tissue/lips.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A wall facing the front (-y), 80 x 40 mm, pressed in along its middle to a pocket of `depth` mm
+/// between x = -25 and 25 whose walls touch but for `gap`.
+TriMesh wall(double depth, double gap) {
+  constexpr int columns = 80, rows = 40;
+  TriMesh mesh;
+  for (int j = 0; j <= rows; ++j)
+    for (int i = 0; i <= columns; ++i) {
+      const double x = i - 40.0, z = j - 20.0;
+      const double across = std::clamp(1 - std::abs(z) / 10, 0.0, 1.0);
+      const double along = std::sqrt(std::max(0.0, 1 - x * x / 625));
+      const double in = across * along;
+      mesh.vertices.emplace_back(x, depth * in,
+                                 z * (1 - in) + gap *
+                                                    (z > 0   ? 1
+                                                     : z < 0 ? -1
+                                                             : 0) *
+                                                    in);
+    }
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const int a = j * (columns + 1) + i, b = a + 1, d = a + columns + 1, c = d + 1;
+      mesh.triangles.emplace_back(a, b, c);
+      mesh.triangles.emplace_back(a, c, d);
+    }
+  return mesh;
+}
+
+const Vector3d right(-25, 0, 0), middle(0, 0, 0), left(25, 0, 0);
+
+TEST(LipPocket, ItsBottomIsFoundFromCornerToCorner) {
+  const TriMesh face = wall(14, 0.2);
+  const auto run = pocket_bottom(face, right, middle, left);
+  ASSERT_GT(run.size(), 30u);
+  EXPECT_LT((face.vertices[run.front()] - right).norm(), 0.5);
+  EXPECT_LT((face.vertices[run.back()] - left).norm(), 0.5);
+  for (int v : run) {
+    const Vector3d& p = face.vertices[v];
+    EXPECT_GT(p.y(), 13.5 * std::sqrt(std::max(0.0, 1 - p.x() * p.x() / 625)) - 0.5);
+  }
+}
+
+TEST(LipPocket, AFaceWithoutOneHasNone) {
+  EXPECT_TRUE(pocket_bottom(wall(0, 0), right, middle, left).empty());
+  EXPECT_TRUE(pocket_bottom(wall(3, 0.2), right, middle, left).empty());
+}
+
+TEST(LipPocket, ACutAlongARunOfEdgesOpensItAndNothingElse) {
+  TriMesh face = wall(14, 0.2);
+  face.colors.assign(face.vertices.size(), Eigen::Vector3f(0.5f, 0.2f, 0.1f));
+  const TriMesh whole = face;
+  const auto run = pocket_bottom(face, right, middle, left);
+  cut_along(run, face);
+  EXPECT_EQ(face.vertices.size(), whole.vertices.size() + run.size() - 2);
+  EXPECT_EQ(face.colors.size(), face.vertices.size());
+  ASSERT_EQ(face.triangles.size(), whole.triangles.size());
+  for (std::size_t t = 0; t < face.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k)
+      EXPECT_EQ(face.vertices[face.triangles[t][k]], whole.vertices[whole.triangles[t][k]]);
+  auto loops = border_loops(face);
+  ASSERT_EQ(loops.size(), 2u);  // the wall's own, and the cut
+  const auto& cut = loops[0].size() < loops[1].size() ? loops[0] : loops[1];
+  EXPECT_EQ(cut.size(), 2 * (run.size() - 1));
+  // Twins belong to what lies to the right of the run: below it, seen from the front.
+  for (std::size_t t = 0; t < face.triangles.size(); ++t)
+    for (int v : face.triangles[t])
+      if (v >= static_cast<int>(whole.vertices.size())) {
+        double z = 0;
+        for (int corner : face.triangles[t]) z += face.vertices[corner].z();
+        EXPECT_LT(z, 1e-9);
+      }
+}
+
+}  // namespace
+}  // namespace condyle
