@@ -72,10 +72,10 @@ void draw_sign(ImDrawList& list, Sign sign, ImVec2 c, float r, ImU32 ink_colour)
 
 }  // namespace
 
-void Pen::mark(const std::string& name) {
+void Pen::mark(const std::string& name, const std::string& words) {
   if (!ImGui::IsItemVisible()) return;
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  items.push_back({name, panel, {low.x, low.y, high.x - low.x, high.y - low.y}});
+  items.push_back({name, panel, {low.x, low.y, high.x - low.x, high.y - low.y}, words});
 }
 
 void begin_panel(Pen& pen, const char* name, const ViewRect& rect) {
@@ -278,6 +278,17 @@ bool text_field(Pen& pen, const char* name, std::string& words, float width, con
   if (ImGui::IsItemActive()) pen.mark("writing");
   words = letters.data();
   return entered;
+}
+
+bool list_unfolded() {
+  const auto& open = ImGui::GetCurrentContext()->OpenPopupStack;
+  return !open.empty() && open.back().Window &&
+         (open.back().Window->Flags & ImGuiWindowFlags_Modal) == 0;
+}
+
+void fold_list() {
+  if (list_unfolded())
+    ImGui::ClosePopupToLevel(ImGui::GetCurrentContext()->OpenPopupStack.Size - 1, true);
 }
 
 bool tick_box(Pen& pen, const char* name, const char* label, bool& on) {

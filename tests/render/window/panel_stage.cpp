@@ -160,6 +160,21 @@ void PanelStage::slide(const std::string& name, double from, double to) {
   rest(2);
 }
 
+void PanelStage::enter(const std::string& name, const std::string& words, bool ctrl) {
+  constexpr int enter_key = 1;
+  ImGuiIO& io = ImGui::GetIO();
+  io.KeyMap[ImGuiKey_Enter] = enter_key;
+  io.KeyCtrl = ctrl;
+  click(name);
+  io.KeyCtrl = false;
+  io.AddInputCharactersUTF8(words.c_str());
+  rest(1);
+  io.KeysDown[enter_key] = true;
+  rest(1);
+  io.KeysDown[enter_key] = false;
+  rest(3);
+}
+
 bool PanelStage::has(const std::string& name) const {
   return std::any_of(panels->items().begin(), panels->items().end(),
                      [&](const DrawnItem& drawn) { return drawn.name == name; });
