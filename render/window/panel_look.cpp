@@ -75,7 +75,7 @@ void Panels::Drawing::look() {
       panels.run(Command::toggle_distances, input.scene, view);
     tooltip(pen,
             "Bones and teeth coloured by how far they are from what they may meet. Takes the skin "
-            "away: it would hide them. Key D");
+            "away, which would hide them, until they are off again. Key D");
     if (view.distances) {
       ImGui::SetCursorPosX(ImGui::GetCursorPosX() + pen.px(16));
       tick_box(pen, "patches", "only where they touch", look.patches);
@@ -86,6 +86,7 @@ void Panels::Drawing::look() {
   if (has_tissue && tick_box(pen, "displacement", "Way of the skin from rest", look.displacement) &&
       look.displacement) {
     view.distances = false;  // one scale of colours at a time
+    view.return_skin();
     if (view.skin_opacity < 0.5) view.skin_opacity = 1;
   }
   if (has_tissue) tooltip(pen, "The skin coloured by how far each point has come");

@@ -42,6 +42,8 @@ constexpr std::array bindings = {
     Binding{GLFW_KEY_F12, Command::picture, Command::window_picture},
     Binding{GLFW_KEY_F1, Command::help, Command::help},
     Binding{GLFW_KEY_ESCAPE, Command::close_dialog, Command::close_dialog},
+    Binding{GLFW_KEY_ENTER, Command::accept, Command::accept},
+    Binding{GLFW_KEY_KP_ENTER, Command::accept, Command::accept},
 };
 
 constexpr std::array mouse_lines = {

@@ -36,6 +36,7 @@ enum class Command {
   redo,
   help,
   close_dialog,
+  accept,  // what a box says: it closes
   quit
 };
 

@@ -63,7 +63,7 @@ void Window::State::on_key(int key, int scancode, int mods) {
   const auto command = command_of({.key = key,
                                    .shift = (mods & GLFW_MOD_SHIFT) != 0,
                                    .ctrl = (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0});
-  if (command) run(*command);
+  if (command && panels->takes(*command)) run(*command);
 }
 
 bool Window::State::over_view(double x, double y) const {

@@ -60,7 +60,9 @@ class RealWindow : public testing::Test {
                       .duration_s = 4,
                       .max_opening_mm = 50,
                       .distance_colours = distance_colours(),
-                      .bodies = movable_bodies(parts_)});
+                      .bodies = movable_bodies(parts_),
+                      .motions = motions_,
+                      .motion = {.spec = "opening", .parameters = {}, .excitations = {}}});
     // The lower teeth are told their height as a distance.
     const TriMesh& teeth = parts_[3].mesh;
     const std::vector<Eigen::Vector3f> normals(teeth.vertices.size(), {0, -1, 0});
@@ -182,6 +184,7 @@ class RealWindow : public testing::Test {
   std::filesystem::path folder_;
   WindowOptions options_;
   std::vector<Part> parts_ = box_patient();
+  std::vector<std::string> motions_ = {};
   bool closed_ = false;
   Image picture_;  // the last
 
@@ -488,6 +491,62 @@ TEST_F(RealWindow, APictureThatCannotBeSavedIsASentence) {
     EXPECT_TRUE(press("Escape"));
     EXPECT_TRUE(press("space"));
     EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.playing; }));
+  });
+}
+
+TEST_F(RealWindow, KeysDoNothingBehindABoxButCloseIt) {
+  options_.picture_folder = folder_ / "missing" / "folder";
+  const auto has = [](const char* name) {
+    return [=](const Seen& s) {
+      return std::any_of(s.items.begin(), s.items.end(),
+                         [&](const DrawnItem& item) { return item.name == name; });
+    };
+  };
+  run([&] {
+    const Camera before = settled_camera();
+    for (const char* closing : {"Return", "Escape", "KP_Enter"}) {
+      EXPECT_TRUE(press("F12"));
+      ASSERT_TRUE(wait_until(has("error")));
+      for (const char* key : {"l", "a", "n", "k", "d", "m", "g", "space", "F1", "ctrl+z", "Tab"})
+        EXPECT_TRUE(press(key));
+      EXPECT_TRUE(press(closing));
+      EXPECT_TRUE(wait_until([&](const Seen& s) { return !has("error")(s); })) << closing;
+      const Seen now = seen();
+      EXPECT_EQ(now.view.tool, Tool::look);
+      EXPECT_FALSE(now.view.playing || now.view.distances || now.view.plots);
+      EXPECT_EQ(now.view.skin_opacity, 1);
+      EXPECT_FALSE(has("help")(now));
+      EXPECT_EQ(turned_rad(settled_camera(), before), 0);
+    }
+    EXPECT_TRUE(press("n"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.tool == Tool::measure; }));
+    EXPECT_TRUE(press("F1"));
+    ASSERT_TRUE(wait_until(has("help")));
+    EXPECT_TRUE(press("b"));
+    EXPECT_TRUE(press("F1"));
+    EXPECT_TRUE(wait_until([&](const Seen& s) { return !has("help")(s); }));
+    EXPECT_EQ(seen().view.tool, Tool::measure);
+  });
+}
+
+TEST_F(RealWindow, EscapeFoldsAListThatIsUnfolded) {
+  motions_ = {"opening", "chewing-left"};
+  const auto unfolded = [](const Seen& s) {
+    return std::any_of(s.items.begin(), s.items.end(),
+                       [](const DrawnItem& item) { return item.name == "motion:chewing-left"; });
+  };
+  run([&] {
+    click("tab:Motion");
+    ASSERT_TRUE(wait_until([](const Seen& s) { return s.view.tab == SideTab::motion; }));
+    std::this_thread::sleep_for(milliseconds(150));
+    click("motion");
+    ASSERT_TRUE(wait_until(unfolded));
+    const ViewRect other = place("motion:chewing-left");
+    EXPECT_TRUE(press("Escape"));
+    EXPECT_TRUE(wait_until([&](const Seen& s) { return !unfolded(s); }));
+    EXPECT_TRUE(xdotool({"mousemove", px(other.x + 20), px(other.y + 5), "click", "1"}));
+    std::this_thread::sleep_for(milliseconds(300));
+    EXPECT_EQ(seen().view.motion.spec, "opening");
   });
 }
 
