@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <deque>
 #include <memory>
@@ -28,6 +29,7 @@ struct PanelInput {
   LoopStatistics loop = {};
   PictureStatistics pictures = {};
   Camera camera = {};
+  Eigen::AlignedBox3d box = {};  // of the scene at rest
   std::string progress = {};     // what is being prepared; empty when nothing is
   double progress_fraction = 0;  // 0 to 1
   bool can_cancel = false;       // whether what is prepared can be ended

@@ -62,7 +62,9 @@ struct SliderLook {
   bool logarithmic = false;
   bool filled = true;  // bar filled up to the handle
   bool held = false;   // handle in the warning colour: the hand overrides the motion
+  double typed = 1;    // the number that is typed, of a value of 1: 100 for a share in %
 };
+/// Ctrl+click opens a field for the number instead; Enter takes it, within the slider's ends.
 bool slider(Pen& pen, const char* name, double& value, const SliderLook& look);
 
 /// A line of text to write in, with a hint while it is empty. gives: true when Enter is pressed.

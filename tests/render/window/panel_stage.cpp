@@ -111,6 +111,7 @@ void PanelStage::step(double x, double y, bool down) {
                          .loop = {.steps_per_second = 60},
                          .pictures = {.pictures_per_second = 24, .picture_ms = 31},
                          .camera = camera,
+                         .box = {Eigen::Vector3d(-80, -95, -90), Eigen::Vector3d(80, 100, 130)},
                          .progress = progress,
                          .progress_fraction = 0.4,
                          .can_cancel = can_cancel,

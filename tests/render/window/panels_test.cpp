@@ -310,6 +310,13 @@ INSTANTIATE_TEST_SUITE_P(Screens, PanelsOn,
                                   std::to_string(static_cast<int>(screen.param.scale * 100));
                          });
 
+TEST(Theme, PanelsAreLargerOnFineScreensThatDoNotTellTheirScale) {
+  EXPECT_EQ(usual_scale(1, 3840), 1.5);
+  EXPECT_EQ(usual_scale(1, 5120), 1.5);
+  EXPECT_EQ(usual_scale(1, 2560), 1);
+  EXPECT_EQ(usual_scale(2, 3840), 1);
+}
+
 TEST(Theme, ScaleIsLoweredWherePanelsWouldNotFit) {
   EXPECT_FLOAT_EQ(fitting_scale(1, 1280, 720), 1);
   EXPECT_FLOAT_EQ(fitting_scale(2, 3840, 2160), 2);

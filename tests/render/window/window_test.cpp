@@ -550,6 +550,27 @@ TEST_F(RealWindow, EscapeFoldsAListThatIsUnfolded) {
   });
 }
 
+TEST_F(RealWindow, CtrlClickTypesASlidersNumberAndItsKeysAreNoCommands) {
+  run([&] {
+    const Camera before = settled_camera();
+    const ViewRect r = place("skin");
+    EXPECT_TRUE(xdotool({"keydown", "ctrl", "mousemove", px(r.x + r.width / 2),
+                         px(r.y + r.height / 2), "click", "1", "keyup", "ctrl"}));
+    ASSERT_TRUE(wait_until([](const Seen& s) {
+      return std::any_of(s.items.begin(), s.items.end(),
+                         [](const DrawnItem& item) { return item.name == "writing"; });
+    }));
+    EXPECT_EQ(seen().view.skin_opacity, 1) << "a click alone sets nothing";
+    EXPECT_TRUE(xdotool({"type", "al30"}));
+    EXPECT_TRUE(press("Return"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.skin_opacity == 0.3; }))
+        << seen().view.skin_opacity;
+    EXPECT_EQ(turned_rad(settled_camera(), before), 0);
+    EXPECT_TRUE(press("ctrl+z"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.skin_opacity == 1; }));
+  });
+}
+
 TEST_F(RealWindow, AnIdleWindowRests) {
   run([&] {
     const auto cpu_s = [] {
@@ -601,6 +622,36 @@ TEST_F(RealWindow, AScaledInterfaceStillFits) {
       EXPECT_LE(item.rect.x + item.rect.width, 1000.5) << item.name;
       EXPECT_LE(item.rect.y + item.rect.height, 600.5) << item.name;
     }
+  });
+}
+
+TEST_F(RealWindow, CtrlKeysAndButtonsScaleThePanels) {
+  options_.width = 1180;  // where a little more than 1 fits
+  options_.height = 720;
+  const auto wide = [&] { return place("left").width; };
+  const auto becomes = [&](double width) {
+    return wait_until([&](const Seen& s) {
+      return std::any_of(s.items.begin(), s.items.end(), [&](const DrawnItem& item) {
+        return item.name == "left" && std::abs(item.rect.width - width) < 1.5;
+      });
+    });
+  };
+  run([&] {
+    const double usual = wide();
+    EXPECT_TRUE(press("ctrl+minus"));
+    EXPECT_TRUE(becomes(0.9 * usual)) << wide();
+    EXPECT_TRUE(press("ctrl+minus"));
+    EXPECT_TRUE(becomes(0.8 * usual)) << wide();
+    EXPECT_TRUE(press("ctrl+equal"));
+    EXPECT_TRUE(becomes(0.9 * usual)) << wide();
+    EXPECT_TRUE(press("ctrl+0"));
+    EXPECT_TRUE(becomes(usual)) << wide();
+    // What does not fit leaves all as it is, and one step down is seen at once.
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(press("ctrl+equal"));
+    std::this_thread::sleep_for(milliseconds(300));
+    EXPECT_TRUE(becomes(usual)) << wide();
+    EXPECT_TRUE(press("ctrl+minus"));
+    EXPECT_TRUE(becomes(0.9 * usual)) << wide();
   });
 }
 
