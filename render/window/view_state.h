@@ -18,6 +18,7 @@ namespace condyle {
 /// What the tree lists beside the parts.
 struct TreeItem {
   std::string name, label;
+  std::string short_label = {};  // in the tree, where the label is long; empty: the label
 };
 
 /// What a window shows. Plain data; the parts must outlive the window or the next scene.
