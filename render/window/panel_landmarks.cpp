@@ -40,7 +40,7 @@ void Panels::Drawing::landmarks() {
   list.PopClipRect();
 
   const double wide = pen.px(236), margin = pen.px(12);
-  const float button = pen.px(26), foot = 5 * button + pen.px(61);
+  const float button = pen.px(26), foot = 5 * button + pen.px(34);
   // As high as the list is long, above the legend of colours where there is one.
   const double all_rows = ImGui::GetTextLineHeightWithSpacing() *
                           static_cast<double>(std::max<std::size_t>(view.landmarks.size(), 4));

@@ -72,7 +72,7 @@ std::vector<TreeGroup> groups_of(const PanelInput& input, ViewState& view) {
     const TreeItem& muscle = scene.muscles[i];
     groups[muscles].rows.push_back({"muscle:" + muscle.name,
                                     muscle.short_label.empty() ? muscle.label : muscle.short_label,
-                                    &view.muscles[i], true, std::move(tip), 40});
+                                    &view.muscles[i], true, std::move(tip), 34});
   }
   for (std::size_t i = 0; i < scene.layers.size(); ++i)
     groups[layers].rows.push_back(

@@ -124,9 +124,9 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
     metres += std::string("v ") + (i & 1 ? "0.05" : "-0.05") + (i & 2 ? " -0.01" : " -0.09") +
               (i & 4 ? " -0.05\n" : " -0.06\n");
   fs::create_directories(folder_ / "metres");
-  write_text(folder_ / "metres" / "mandible.obj",
+  write_text(folder_ / "metres/mandible.obj",
              metres + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
-  EXPECT_TRUE(drop_files("Condyle", {folder_ / "metres" / "mandible.obj"}));
+  EXPECT_TRUE(drop_files("Condyle", {folder_ / "metres/mandible.obj"}));
   click("import-go");
   told("choose as the unit of lengths m.");
   write_text(folder_ / "README.md", "# Notes\n");
