@@ -96,7 +96,7 @@ struct LetGoOptions {
 
 struct ViewOptions {
   MotionOptions motion;
-  double ui_scale = 1;
+  std::optional<double> ui_scale = {};  // none: by the screen
   bool light = false;
   std::string size = "1280x720";
   std::filesystem::path state_file;  // kept up to date with what the window shows; empty = none

@@ -33,11 +33,11 @@ constexpr std::array shown_parameters = {
     ShownParameter{"retrusion", "Retrusion", 0.3, 1.4, 0.7},
     ShownParameter{"freeway", "Freeway space at rest", 2, 3, 2.5},
     ShownParameter{"hinge", "Hinge before translation", 0, 20, 12},
-    ShownParameter{"inclination_left", "Condylar inclination, left", 26, 62},
-    ShownParameter{"inclination_right", "Condylar inclination, right", 26, 62},
+    ShownParameter{"inclination_left", "Condylar inclination, L", 26, 62},
+    ShownParameter{"inclination_right", "Condylar inclination, R", 26, 62},
     ShownParameter{"bennett", "Bennett angle", 5, 15, 7.5},
     ShownParameter{"side_shift", "Immediate side shift", 0, 0.75, 0.3},
-    ShownParameter{"disc_gap", "Condyle to fossa, seated", 0, 0},
+    ShownParameter{"disc_gap", "Condyle to fossa", 0, 0},
     ShownParameter{"speed", "Speed at the incisors", 0, 0, 40},
     ShownParameter{"chew_rate", "Chewing cycles a second", 1.2, 1.7, 1.4},
     ShownParameter{"chew_size", "Height of a chewing cycle", 0, 0, 15},
@@ -143,9 +143,10 @@ std::vector<MotionSetting> settings_of(const MotionChoice& choice, const Motion&
     MotionSetting one{
         .name = shown.name,
         .label = shown.label,
-        .unit = parameter->unit == "mm_s" ? "mm/s"
-                : parameter->unit == "hz" ? "Hz"
-                                          : parameter->unit,
+        .unit = parameter->unit == "mm_s"  ? "mm/s"
+                : parameter->unit == "hz"  ? "Hz"
+                : parameter->unit == "deg" ? "\u00b0"
+                                           : parameter->unit,
         .help = parameter->help,
         .low = parameter->low,
         .high = std::min(parameter->high, std::string_view(shown.name) == "speed" ? 200.0 : 80.0),
@@ -158,6 +159,8 @@ std::vector<MotionSetting> settings_of(const MotionChoice& choice, const Motion&
       one.known = true;
     };
     if (one.name == "opening" && choice.spec == "opening") say(widest_mm);
+    for (const MotionInput& found : motion.found)
+      if (found.name == one.name) one.patients = found.value;
     if (const auto& value = of_case.*(parameter->values.front())) say(*value);
     for (const MotionInput& input : motion.inputs)
       if (input.name == one.name) say(input.value);
@@ -201,7 +204,7 @@ class ClearanceCurves {
       order.emplace_back(*std::min_element(distance_[i].begin(), distance_[i].end()), i);
     std::sort(order.begin(), order.end());
     PlotPanel panel{
-        {}, {.title = "Clearance: signed distance, mm", .x_label = "time, s", .y_label = "mm"}};
+        {}, {.title = "Clearance (negative: overlap)", .x_label = "time, s", .y_label = "mm"}};
     panel.settings.levels = {{"contact", 0}};
     panel.settings.y_most = far_mm;
     for (std::size_t k = 0; k < std::min(order.size(), most_curves); ++k)

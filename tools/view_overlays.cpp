@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "sim/muscles/muscle_names.h"
 #include "sim/tissue/model.h"
 #include "tools/anatomy_drawing.h"
 #include "tools/overlay_drawing.h"
@@ -46,7 +47,8 @@ Overlays view_overlays(const ViewPatient& patient, const Motion& motion, const F
 
 std::vector<TreeItem> muscle_items(const ViewPatient& patient) {
   std::vector<TreeItem> items;
-  for (const Muscle& muscle : patient.muscles) items.push_back({muscle.name, sided(muscle)});
+  for (const Muscle& muscle : patient.muscles)
+    items.push_back({muscle.name, sided(muscle), short_name(muscle)});
   return items;
 }
 

@@ -18,6 +18,9 @@
 
 namespace condyle {
 
+/// An error's sentence with what the window offers in place of the command line's options.
+std::string in_window_words(std::string sentence);
+
 /// What goes on behind a window: loading, simulating, plotting, recording, each beside it, so that
 /// the window answers at all times.
 class ViewSession {
@@ -68,7 +71,7 @@ class ViewSession {
     try {
       work();
     } catch (const std::exception& error) {
-      window_.report_error(error.what());
+      window_.report_error(in_window_words(error.what()));
     }
   }
   template <class Result>

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <array>
+#include <string_view>
+
 #include "engine/core/error.h"
 #include "tools/view_recording.h"
 #include "tools/view_session.h"
@@ -25,6 +28,26 @@ Eigen::Vector3d push_toward_bone(const FrameState& frame, std::size_t part) {
 }
 
 }  // namespace
+
+std::string in_window_words(std::string sentence) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> words = {
+      {{"did you mean --units ", "choose as the unit of lengths "},
+       {"did you mean --frame ", "choose as the directions of the axes "},
+       {"--units", "the unit of lengths"},
+       {"--frame", "the directions of the axes"},
+       {"make a case from surfaces with: condyle import meshes --mandible FILE --maxilla FILE ... "
+        "--out FOLDER",
+        "open or drop its surfaces to make one"},
+       {"make one from surfaces with: condyle import meshes --mandible FILE --maxilla FILE ... "
+        "--out FOLDER",
+        "open or drop its surfaces to make one"}}};
+  for (const auto& [there, here] : words)
+    if (const auto at = sentence.find(there); at != std::string::npos) {
+      sentence.replace(at, there.size(), here);
+      if (here.starts_with("choose") && sentence.ends_with("?")) sentence.back() = '.';
+    }
+  return sentence;
+}
 
 void ViewSession::carry_out(const wish::Open& wanted) {
   if (wanted.files.empty()) return open_patient({});
@@ -57,8 +80,8 @@ void ViewSession::carry_out(const wish::Open& wanted) {
     }
     default:
       throw InputError(one, "",
-                       "is of no kind that can be opened: give a case folder, a motion (CSV, "
-                       ".motion, .mot, .sto, .trc) or a surface (STL, PLY, OBJ, glTF)");
+                       "cannot be opened: it is no case folder, no motion (CSV, .motion, .mot, "
+                       ".sto, .trc) and no surface (STL, PLY, OBJ, glTF)");
   }
 }
 

@@ -10,6 +10,7 @@ namespace condyle {
 struct MouseMoment {
   double x = -1e6, y = -1e6;
   std::array<bool, 3> down{};  // left, right, middle, as GLFW and ImGui number them
+  bool ctrl = false;           // held while this button went down
 };
 
 /// Presses and releases in their order, each with its own place. On a slow driver a click and the
@@ -26,10 +27,11 @@ class MouseQueue {
       moments_.push_back(now_);
     moved_last_ = true;
   }
-  void pressed(int button, bool down) {
+  void pressed(int button, bool down, bool ctrl = false) {
     if (button < 0 || button >= 3) return;
     now_.down[static_cast<std::size_t>(button)] = down;
     moments_.push_back(now_);
+    moments_.back().ctrl = down && ctrl;
     moved_last_ = false;
   }
   bool waiting() const { return !moments_.empty(); }

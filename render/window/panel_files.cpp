@@ -184,8 +184,11 @@ void Panels::Drawing::import_dialog() {
        "L left, R right, P back, A front, S up, I down: where x, y and z point. Scanners and 3D "
        "Slicer's files are mostly LPS or RAS");
   const bool any = std::any_of(import.files.begin(), import.files.end(), [](const FileRole& one) {
-    return !one.role.empty() && one.role != "landmarks";
+    return one.role == "skull" || one.role == "maxilla" || one.role == "mandible";
   });
+  if (!any)
+    text(theme.small, palette().text_dim,
+         "At least one surface must be the skull, the maxilla or the mandible");
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(8));
   const float button = pen.px(130);
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * button - pen.px(8));

@@ -7,6 +7,25 @@
 #include "render/window/panels_drawing.h"
 
 namespace condyle {
+namespace {
+
+/// A slider under its name and its number.
+void named_slider(Pen& pen, const char* item, const char* label, const std::string& number,
+                  double& value, const SliderLook& look) {
+  text(pen.theme.small, palette().text_dim, label);
+  ImGui::SameLine();
+  text_right(pen.theme.small, palette().text, number);
+  pen.mark(std::string("number:") + item, number);
+  slider(pen, item, value, look);
+}
+
+/// What is wide, from the side that is looked at or cut.
+double extent_mm(const Eigen::AlignedBox3d& box, char side) {
+  const Eigen::Vector3d size = box.sizes();
+  return side == 'L' || side == 'R' ? size.x() : side == 'A' || side == 'P' ? size.y() : size.z();
+}
+
+}  // namespace
 
 void Panels::Drawing::look() {
   Look& look = view.look;
@@ -32,8 +51,11 @@ void Panels::Drawing::look() {
         look.clip_from = side;
     }
     tooltip(pen, "The side that is taken away");
-    slider(pen, "clip-depth", look.clip_share, {.width = whole});
-    tooltip(pen, "How deep, of the patient's whole extent");
+    const double deep_mm = look.clip_share * extent_mm(input.box, look.clip_from);
+    named_slider(pen, "clip-depth", "Depth",
+                 fmt::format("{:.0f} mm, {:.0f} %", deep_mm, 100 * look.clip_share),
+                 look.clip_share, {.width = whole, .typed = 100});
+    tooltip(pen, "How deep from that side, and how much that is of the patient's whole extent");
     if (has_face) {
       ImGui::SetCursorPosX(ImGui::GetCursorPosX() + pen.px(16));
       tick_box(pen, "clip-skin", "only the skin", look.clip_skin);
@@ -53,8 +75,8 @@ void Panels::Drawing::look() {
                       look.cut_at == place))
         look.cut_at = place;
     }
-    slider(pen, "cut-radius", look.cut_radius_mm, {.low = 10, .high = 90, .width = whole});
-    tooltip(pen, fmt::format("Radius {:.0f} mm", look.cut_radius_mm).c_str());
+    named_slider(pen, "cut-radius", "Radius", fmt::format("{:.0f} mm", look.cut_radius_mm),
+                 look.cut_radius_mm, {.low = 10, .high = 90, .width = whole});
   }
 
   heading(pen, "Compare");
@@ -63,7 +85,9 @@ void Panels::Drawing::look() {
   tick_box(pen, "wipe", "Two states with a wipe", look.wipe);
   tooltip(pen, "At the left the kept state (at first: rest), at the right the present one");
   if (look.wipe) {
-    slider(pen, "wipe-at", look.wipe_at, {.width = whole, .filled = false});
+    named_slider(pen, "wipe-at", "Place, from the left",
+                 fmt::format("{:.0f} %", 100 * look.wipe_at), look.wipe_at,
+                 {.width = whole, .filled = false, .typed = 100});
     if (word_button(pen, "wipe-keep", "Keep the present state", {whole, high}, false))
       commands.push_back(Command::keep_state);
   }
@@ -75,7 +99,7 @@ void Panels::Drawing::look() {
       panels.run(Command::toggle_distances, input.scene, view);
     tooltip(pen,
             "Bones and teeth coloured by how far they are from what they may meet. Takes the skin "
-            "away: it would hide them. Key D");
+            "away, which would hide them, until they are off again. Key D");
     if (view.distances) {
       ImGui::SetCursorPosX(ImGui::GetCursorPosX() + pen.px(16));
       tick_box(pen, "patches", "only where they touch", look.patches);
@@ -86,6 +110,7 @@ void Panels::Drawing::look() {
   if (has_tissue && tick_box(pen, "displacement", "Way of the skin from rest", look.displacement) &&
       look.displacement) {
     view.distances = false;  // one scale of colours at a time
+    view.return_skin();
     if (view.skin_opacity < 0.5) view.skin_opacity = 1;
   }
   if (has_tissue) tooltip(pen, "The skin coloured by how far each point has come");
@@ -112,6 +137,18 @@ void Panels::Drawing::look() {
   tick_box(pen, "letters", "Orientation letters", look.letters);
   tooltip(pen, "L left, R right, A front, P back, S up, I down: the patient's");
   tick_box(pen, "shadows", "Shadows", view.shadows);
+
+  heading(pen, "Panels", fmt::format("{:.0f} %", 100 * pen.theme.scale));
+  constexpr std::array<std::pair<const char*, Command>, 3> sizes = {
+      {{"Smaller", Command::smaller_panels},
+       {"Usual", Command::usual_panels},
+       {"Larger", Command::larger_panels}}};
+  for (const auto& [label, command] : sizes) {
+    if (command != sizes.front().second) ImGui::SameLine(0, gap);
+    if (word_button(pen, (std::string("panels:") + label).c_str(), label, {share(3), high}, false))
+      commands.push_back(command);
+    tooltip(pen, "Size of panels and text. Ctrl+-, Ctrl+0, Ctrl+=");
+  }
   ImGui::PopStyleVar();
   ImGui::EndChild();
 }

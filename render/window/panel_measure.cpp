@@ -50,7 +50,9 @@ void Panels::Drawing::measuring() {
   const double wide = pen.px(224), high = pen.px(176), margin = pen.px(12);
   if (r.width < 2 * wide || r.height < high + 2 * margin) return;
   begin_panel(pen, "measure", {r.x + margin, r.y + margin, wide, high});
-  heading(pen, "Measure", places.empty() ? "" : std::to_string(places.size()) + " points");
+  const std::size_t count = places.size();
+  heading(pen, "Measure",
+          count == 0 ? "" : std::to_string(count) + (count == 1 ? " point" : " points"));
   if (places.size() < 2) {
     ImGui::PushTextWrapPos(0);
     text(theme.small, palette().text_dim,

@@ -2,6 +2,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "render/window/panels_drawing.h"
 
@@ -13,6 +14,7 @@ struct Setting {
   std::string item, label, unit, help;
   double low, high, usual_low = 0, usual_high = 0;
   bool known = true;
+  std::optional<double> patients = {};  // what holds while nothing is known
 };
 
 /// gives: true when the hand lets go of a changed value.
@@ -20,19 +22,36 @@ bool setting_slider(Pen& pen, const Setting& setting, std::map<std::string, doub
                     const std::string& name, double& value, bool set_by_hand) {
   const auto draft = drafts.find(name);
   const bool told = setting.known || draft != drafts.end();
-  // What the patient's own joints give stands in the middle of the slider's usual range, unfilled.
-  const double patients = setting.usual_low < setting.usual_high
-                              ? (setting.usual_low + setting.usual_high) / 2
-                              : setting.low;
-  double shown = draft != drafts.end() ? draft->second : told ? value : patients;
-  const bool unusual = told && setting.usual_low < setting.usual_high &&
+  // What the patient's own joints give stands unfilled; where it is not known, in the middle of the
+  // usual range.
+  const double middle = setting.usual_low < setting.usual_high
+                            ? (setting.usual_low + setting.usual_high) / 2
+                            : setting.low;
+  const double start = told ? value : setting.patients.value_or(middle);
+  double shown = draft != drafts.end() ? draft->second : start;
+  const bool has_number = told || setting.patients;
+  const bool unusual = has_number && setting.usual_low < setting.usual_high &&
                        (shown < setting.usual_low - 1e-9 || shown > setting.usual_high + 1e-9);
+  const std::string unit =
+      setting.unit == "\u00b0" || setting.unit.empty() ? setting.unit : " " + setting.unit;
+  const std::string number =
+      has_number ? fmt::format("{:.{}g}{}", shown, told ? 4 : 3, unit) : std::string();
   text(pen.theme.regular, set_by_hand ? palette().text : palette().text_dim, setting.label);
   ImGui::SameLine();
-  text_right(pen.theme.regular, unusual ? palette().warning : palette().text,
-             !told
-                 ? std::string("the patient's")
-                 : fmt::format("{:.4g}{}{}", shown, setting.unit.empty() ? "" : " ", setting.unit));
+  const float right = ImGui::GetWindowContentRegionMax().x;
+  if (!told) {
+    const std::string whose = has_number ? "patient's" : "the patient's";
+    const float number_width =
+        has_number ? text_width(pen.theme.regular, number) + pen.px(5) : 0.0f;
+    const float y = ImGui::GetCursorPosY();
+    ImGui::SetCursorPos({right - number_width - text_width(pen.theme.small, whose),
+                         y + (pen.theme.regular->FontSize - pen.theme.small->FontSize) * 0.7f});
+    text(pen.theme.small, palette().text_dim, whose);
+    ImGui::SameLine();
+    ImGui::SetCursorPosY(y);
+  }
+  text_right(pen.theme.regular, unusual ? palette().warning : palette().text, number);
+  pen.mark("number:" + name, number);
   const float width = ImGui::GetContentRegionAvail().x;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   if (setting.usual_low < setting.usual_high) {
@@ -52,8 +71,9 @@ bool setting_slider(Pen& pen, const Setting& setting, std::map<std::string, doub
   const bool let_go = ImGui::IsItemDeactivated();
   std::string help = setting.help;
   if (setting.usual_low < setting.usual_high)
-    help += fmt::format("\nPublished for adults: {:g} to {:g} {}", setting.usual_low,
-                        setting.usual_high, setting.unit);
+    help += fmt::format("\nPublished for adults: {:g} to {:g}{}", setting.usual_low,
+                        setting.usual_high, unit);
+  help += "\nCtrl+click to type a number";
   tooltip(pen, help.c_str());
   if (!let_go || !drafts.count(name)) return false;
   value = drafts[name];
@@ -149,7 +169,8 @@ void Panels::Drawing::motion() {
                           one.high,
                           one.usual_low,
                           one.usual_high,
-                          one.known || by_hand};
+                          one.known || by_hand,
+                          one.patients};
     if (setting_slider(pen, setting, drafts.parameters, one.name, value, by_hand)) {
       view.motion.parameters[one.name] = value;
     }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "render/window/handles.h"
 #include "render/window/panels_drawing.h"
@@ -19,22 +20,45 @@ constexpr std::array axis_letters = {"L", "P", "S"};
 constexpr std::array shift_names = {"Left", "Back", "Up"};
 constexpr std::array turn_names = {"Pitch", "Roll", "Yaw"};
 constexpr std::array turn_tips = {
-    "About the axis to the patient's left: positive lowers the chin's front, deg",
-    "About the axis to the back, deg", "About the upward axis: positive turns to the left, deg"};
+    "About the axis to the patient's left: positive lowers the chin's front",
+    "About the axis to the back", "About the upward axis: positive turns to the left"};
+// Of the table of numbers, at scale 1.
+constexpr float wanted_column = 58, wanted_width = 92;
 
 ImVec2 point(const Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
 
-/// A number with its name and unit in a column of its own. gives: true while it changes.
-bool number_field(Pen& pen, const std::string& name, const char* label, const char* format,
-                  double& value) {
+constexpr double held_mm = 0.05, held_deg = 0.05;  // farther from the wish: contact holds it
+
+/// "-1.25 mm"; what rounds to nothing has no sign.
+std::string number_words(double value, const char* unit) {
+  return fmt::format("{:.2f}{}", std::abs(value) < 5e-3 ? 0 : value, unit);
+}
+
+/// One row of the table: a name, the wish to be written in and what was reached. gives: true when
+/// another wish was entered.
+bool wish_row(Pen& pen, const std::string& name, const char* label, const char* unit,
+              double& wanted, double reached, double held_from) {
+  const std::string shown = number_words(wanted, unit);
+  ImGui::AlignTextToFramePadding();
   text(pen.theme.small, palette().text_dim, label);
-  ImGui::SetNextItemWidth(pen.px(92));
-  const bool changed =
-      ImGui::InputDouble(("##" + name).c_str(), &value, 0, 0, format,
-                         ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue |
-                             ImGuiInputTextFlags_CharsScientific);
-  pen.mark(name);
-  return changed;
+  ImGui::SameLine(pen.px(wanted_column));
+  ImGui::SetNextItemWidth(pen.px(wanted_width));
+  const double as_shown = std::stod(shown);
+  double entered = as_shown;
+  ImGui::InputDouble(("##" + name).c_str(), &entered, 0, 0, (std::string("%.2f") + unit).c_str(),
+                     ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue |
+                         ImGuiInputTextFlags_CharsScientific);
+  pen.mark(name, shown);
+  ImGui::SameLine();
+  ImGui::AlignTextToFramePadding();
+  const std::string words = number_words(reached, unit);
+  const bool held = std::abs(wanted - reached) > held_from;
+  text_right(pen.theme.regular, held ? palette().warning : palette().text, words);
+  pen.mark("reached:" + name, words);
+  // What was shown is rounded: to enter it as it stands, or no number, changes nothing.
+  if (entered == as_shown || !std::isfinite(entered)) return false;
+  wanted = entered;
+  return true;
 }
 
 }  // namespace
@@ -80,7 +104,7 @@ void Panels::Drawing::moving() {
 
   // Its place in numbers.
   const bool several = input.scene.bodies.size() > 1;
-  const double wide = pen.px(224), high = pen.px((several ? 270 : 258) + (body.free ? 34 : 0)),
+  const double wide = pen.px(252), high = pen.px((several ? 272 : 260) + (body.free ? 34 : 0)),
                margin = pen.px(12);
   if (r.width < 2 * wide || r.height < high + 2 * margin) return;
   begin_panel(pen, "move", {r.x + margin, r.y + margin, wide, high});
@@ -103,23 +127,31 @@ void Panels::Drawing::moving() {
   const Pose reached = carrier.inverse() * now;
   const std::optional<Pose> hand = view.hands.of(body);
   Placement wanted = placement_of(hand.value_or(reached), body.center);
-  // What rounds to nothing is shown without a sign.
-  for (auto* numbers : {&wanted.shift_mm, &wanted.turn_deg})
-    *numbers = (numbers->array().abs() < 5e-3).select(0, *numbers);
+  const Placement there = placement_of(reached, body.center);
+  const double short_mm = (wanted.shift_mm - there.shift_mm).norm();
+  const double short_deg = hand ? hand->R.angularDistance(reached.R) * 180 / std::numbers::pi : 0;
+  const bool short_of_shift = hand && short_mm > held_mm, short_of_turn = short_deg > held_deg;
   bool edited = false;
-  ImGui::Columns(2, "##fields", false);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, pen.px(8, 2));
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 3));
+  text(theme.small, palette().text_faint, "");
+  ImGui::SameLine(pen.px(wanted_column) + pen.px(8));
+  text(theme.small, palette().text_faint, "wanted");
+  ImGui::SameLine();
+  text_right(theme.small, palette().text_faint, "reached");
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    edited |= number_field(pen, fmt::format("shift:{}", axis_letters[k]), shift_names[k], "%.2f mm",
-                           wanted.shift_mm[i]);
-    ImGui::NextColumn();
-    edited |= number_field(pen, fmt::format("turn:{}", axis_letters[k]), turn_names[k],
-                           "%.2f\u00b0", wanted.turn_deg[i]);
-    tooltip(pen, turn_tips[k]);
-    ImGui::NextColumn();
+    edited |= wish_row(pen, fmt::format("shift:{}", axis_letters[k]), shift_names[k], " mm",
+                       wanted.shift_mm[i], there.shift_mm[i], held_mm);
   }
-  ImGui::Columns(1);
-  if (edited && wanted.shift_mm.allFinite() && wanted.turn_deg.allFinite()) {
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    edited |= wish_row(pen, fmt::format("turn:{}", axis_letters[k]), turn_names[k], "\u00b0",
+                       wanted.turn_deg[i], there.turn_deg[i], held_deg);
+    tooltip(pen, turn_tips[k]);
+  }
+  ImGui::PopStyleVar(2);
+  if (edited) {
     if (!body.free) {
       view.playing = false;
       view.opening_mm.reset();
@@ -128,16 +160,18 @@ void Panels::Drawing::moving() {
   }
   std::string state = body.free ? "as it was loaded" : "follows the motion";
   ImU32 tint = palette().text_dim;
-  if (hand) {
-    const double short_mm = (*hand * body.center - reached * body.center).norm();
-    constexpr double held_mm = 0.05;
-    state = short_mm > held_mm ? fmt::format("held by contact, {:.1f} mm short", short_mm)
-                               : std::string("where it is wanted");
-    tint = short_mm > held_mm ? palette().warning : palette().good;
+  if (short_of_shift || short_of_turn) {
+    state = short_of_turn ? fmt::format("held by contact, {:.1f} mm and {:.1f}\u00b0 short",
+                                        short_mm, short_deg)
+                          : fmt::format("held by contact, {:.1f} mm short", short_mm);
+    tint = palette().warning;
+  } else if (hand) {
+    state = "where it is wanted";
+    tint = palette().good;
   }
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(3));
   text(theme.small, tint, state);
-  pen.mark("move-state");
+  pen.mark("move-state", state);
 
   const float gap = pen.px(5);
   const ImVec2 size = {std::floor((ImGui::GetContentRegionAvail().x - 2 * gap) / 3), pen.px(26)};

@@ -44,7 +44,8 @@ void Panels::Drawing::part_list() {
   for (const Part& part : input.scene.parts) has_face |= part.role == Role::face;
   if (has_face) {
     heading(pen, "Skin", fmt::format("{:.0f} %", 100 * view.skin_opacity));
-    slider(pen, "skin", view.skin_opacity, {.width = ImGui::GetContentRegionAvail().x});
+    slider(pen, "skin", view.skin_opacity,
+           {.width = ImGui::GetContentRegionAvail().x, .typed = 100});
     tooltip(pen, "How dense the skin is. Key K turns it on and off");
     const float gap = pen.px(5);
     const float wide = std::floor((ImGui::GetContentRegionAvail().x - 2 * gap) / 3);

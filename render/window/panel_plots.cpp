@@ -55,10 +55,12 @@ void Panels::Drawing::plots() {
 
 /// Times of the stages of the last steps.
 PlotSet Panels::stage_plots() const {
-  PlotPanel panel{
-      {}, {.title = "Stage times of the last steps", .x_label = "steps ago", .y_label = "ms"}};
-  panel.settings.levels = {{"60 a second", 1000.0 / 60}};
-  panel.settings.title += ", ms";
+  PlotPanel panel{{},
+                  {.title = "Stage times of the last steps",
+                   .x_label = "steps ago",
+                   .y_label = "ms",
+                   .levels = {{"60 steps a second: 16.7 ms", 1000.0 / 60}},
+                   .x_goes_back = true}};
   const auto total = static_cast<double>(stage_ms_.size());
   for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
     if (static_cast<Stage>(stage) == Stage::render) continue;

@@ -216,11 +216,11 @@ void Panels::Drawing::contacts(float list_height) {
         part_name(input.scene, pair.part_a) + " / " + part_name(input.scene, pair.part_b);
     text(theme.regular, pair.touching ? palette().text : palette().text_dim,
          fitted(theme.regular, both, room));
-    tooltip(pen,
-            fmt::format(
-                "{}\nDistance {:.3f} mm, depth {:.3f} mm (at rest {:.3f} mm), {} contact points",
-                both, pair.distance_mm, pair.depth_mm, pair.rest_depth_mm, pair.contacts.size())
-                .c_str());
+    tooltip(pen, fmt::format(
+                     "{}\nDistance {:.3f} mm, depth {:.3f} mm (at rest {:.3f} mm), {} contact {}",
+                     both, pair.distance_mm, pair.depth_mm, pair.rest_depth_mm,
+                     pair.contacts.size(), pair.contacts.size() == 1 ? "point" : "points")
+                     .c_str());
     pen.mark(fmt::format("pair:{}", i));
     ImGui::SameLine();
     text_right(theme.regular, tint, value);
@@ -241,7 +241,7 @@ void Panels::Drawing::tissue() {
   // What few people look at stands in the second line only when there is something to say.
   reading(theme, state.inverted_prisms ? "Inverted prisms" : "Residual",
           state.inverted_prisms ? fmt::format("{}", state.inverted_prisms)
-                                : fmt::format("{:.1e}", state.residual),
+                                : fmt::format("{:.1e} N", state.residual),
           state.inverted_prisms ? palette().bad : palette().text);
 }
 

@@ -16,6 +16,7 @@ struct TreeRow {
   PartView* view;
   bool has_opacity = true;
   std::string tip = {};
+  float bar = 66;  // width of its opacity, at scale 1
 };
 
 struct TreeGroup {
@@ -68,8 +69,10 @@ std::vector<TreeGroup> groups_of(const PanelInput& input, ViewState& view) {
     if (states && states->size() == scene.muscles.size())
       tip += fmt::format(": excited {:.0f} %, {:.0f} N", 100 * (*states)[i].excitation,
                          (*states)[i].force_N);
-    groups[muscles].rows.push_back({"muscle:" + scene.muscles[i].name, scene.muscles[i].label,
-                                    &view.muscles[i], true, std::move(tip)});
+    const TreeItem& muscle = scene.muscles[i];
+    groups[muscles].rows.push_back({"muscle:" + muscle.name,
+                                    muscle.short_label.empty() ? muscle.label : muscle.short_label,
+                                    &view.muscles[i], true, std::move(tip), 34});
   }
   for (std::size_t i = 0; i < scene.layers.size(); ++i)
     groups[layers].rows.push_back(
@@ -109,7 +112,7 @@ int Panels::Drawing::tree_rows() const {
 
 void Panels::Drawing::tree() {
   const Theme& theme = panels.theme_;
-  const float indent = pen.px(15), bar = pen.px(66);
+  const float indent = pen.px(15);
   for (TreeGroup& group : groups_of(input, view)) {
     const bool open = panels.open_groups_.contains(group.name);
     if (fold(pen, std::string("group:") + group.name, open)) {
@@ -127,6 +130,7 @@ void Panels::Drawing::tree() {
     tooltip(pen, group.tip);
     if (!open) continue;
     for (TreeRow& row : group.rows) {
+      const float bar = pen.px(row.bar);
       ImGui::SetCursorPosX(ImGui::GetCursorPosX() + indent);
       const float end = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
       const float room =
@@ -134,13 +138,14 @@ void Panels::Drawing::tree() {
       const std::string label = fitted(theme.regular, row.label, room);
       const float y = ImGui::GetCursorPosY();
       tick_box(pen, ("show:" + row.name).c_str(), label.c_str(), row.view->shown);
+      pen.items.back().words = label;
       if (!row.tip.empty() || label.ends_with("..."))
         tooltip(pen, (row.tip.empty() ? row.label : row.tip).c_str());
       if (!row.has_opacity) continue;
       ImGui::SameLine();
       ImGui::SetCursorPos({end - bar, y});
       ImGui::BeginDisabled(!row.view->shown);
-      slider(pen, ("opacity:" + row.name).c_str(), row.view->opacity, {.width = bar});
+      slider(pen, ("opacity:" + row.name).c_str(), row.view->opacity, {.width = bar, .typed = 100});
       tooltip(pen, fmt::format("{:.0f} %", 100 * row.view->opacity).c_str());
       ImGui::EndDisabled();
     }

@@ -89,6 +89,7 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       return true;
     case Command::toggle_skin:
       remember(view);
+      view.skin_to_return.reset();
       if (view.skin_opacity > 0) {
         skin_before_ = view.skin_opacity;
         view.skin_opacity = 0;
@@ -101,10 +102,13 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       remember(view);
       view.distances = !view.distances;
       if (view.distances) view.look.displacement = false;  // one scale of colours at a time
-      // They are seen on bones and teeth alone. Key K brings the skin back.
+      // They are seen on bones and teeth alone: the skin goes, and comes back with them. Key K
+      // brings it back before.
       if (view.distances && view.skin_opacity > 0.5) {
-        skin_before_ = view.skin_opacity;
+        view.skin_to_return = skin_before_ = view.skin_opacity;
         view.skin_opacity = 0;
+      } else if (!view.distances) {
+        view.return_skin();
       }
       return true;
     case Command::toggle_move:
@@ -134,8 +138,18 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
     case Command::help:
       help_open_ = !help_open_;
       return true;
-    case Command::close_dialog:
+    case Command::accept:
+      // Boxes with fields have a button of their own for it.
       if (!errors_.empty()) {
+        errors_.pop_front();
+      } else if (help_open_ && !drafts_.import && !drafts_.files.open) {
+        help_open_ = false;
+      }
+      return true;
+    case Command::close_dialog:
+      if (list_unfolded()) {
+        fold_list_ = true;
+      } else if (!errors_.empty()) {
         errors_.pop_front();
       } else if (drafts_.import) {
         drafts_.import.reset();
@@ -147,6 +161,21 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       return true;
     default:
       return false;
+  }
+}
+
+bool Panels::takes(Command command) const {
+  switch (command) {
+    case Command::close_dialog:
+    case Command::accept:
+    case Command::picture:
+    case Command::window_picture:
+    case Command::quit:
+      return true;
+    case Command::help:
+      return !dialog_open() || (help_open_ && errors_.empty());
+    default:
+      return !dialog_open();
   }
 }
 
@@ -178,6 +207,7 @@ void Panels::remember_edits(const Edits& before, const ViewState& view) {
 std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, double width,
                                   double height) {
   items_.clear();
+  if (std::exchange(fold_list_, false)) fold_list();
   view.fit(input.scene);
   undone_ = false;
   const Edits before = view.edits();

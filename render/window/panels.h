@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <deque>
 #include <memory>
@@ -28,6 +29,7 @@ struct PanelInput {
   LoopStatistics loop = {};
   PictureStatistics pictures = {};
   Camera camera = {};
+  Eigen::AlignedBox3d box = {};  // of the scene at rest
   std::string progress = {};     // what is being prepared; empty when nothing is
   double progress_fraction = 0;  // 0 to 1
   bool can_cancel = false;       // whether what is prepared can be ended
@@ -44,8 +46,9 @@ struct PanelInput {
 /// "show:mandible", ...
 struct DrawnItem {
   std::string name;
-  std::string panel;  // the panel that holds it; empty for a panel itself
-  ViewRect rect;      // pixels from the top left
+  std::string panel;       // the panel that holds it; empty for a panel itself
+  ViewRect rect;           // pixels from the top left
+  std::string words = {};  // what stands there, of readings
 };
 
 /// Panels of the window, drawn into the current ImGui frame (between NewFrame and Render). They
@@ -61,6 +64,10 @@ class Panels {
 
   /// Carries out what concerns playing, panels and dialogs. gives: false for the window's commands.
   bool run(Command command, const WindowScene& scene, ViewState& view);
+
+  /// Whether a key may ask for it now: behind a dialog keys do nothing but close it, save pictures
+  /// and quit.
+  bool takes(Command command) const;
 
   /// An edit begins: what is wanted now comes back by undo.
   void remember(const ViewState& view) { history_.remember(view.edits()); }
@@ -109,8 +116,9 @@ class Panels {
   EditHistory<Edits> history_;
   bool undo(ViewState& view, bool back);
   void remember_edits(const Edits& before, const ViewState& view);
-  bool undone_ = false;   // in this pass
-  bool editing_ = false;  // something is held that has changed the view already
+  bool undone_ = false;     // in this pass
+  bool fold_list_ = false;  // the list that is unfolded: in the next pass
+  bool editing_ = false;    // something is held that has changed the view already
   Drafts drafts_;
   std::vector<Wish> wishes_;
   // The last steps' times, for the curves; of bounded length.

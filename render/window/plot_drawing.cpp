@@ -74,23 +74,56 @@ void find_ranges(const PlotPanel& panel, Axes& axes) {
   axes.y.grow_to(per_pixel * high);
 }
 
+constexpr float tick_room = 36;  // for the numbers of the axis that goes up, at scale 1
+
 /// "0.5" and never "-0".
 std::string number_text(double value, double step) {
   if (std::abs(value) < 1e-9 * step) value = 0;
   return fmt::format("{:g}", std::round(value / step * 1e6) / 1e6 * step);
 }
 
-void draw_axes(const Pen& pen, ImDrawList& list, const Axes& axes) {
+std::string replaced(std::string words, const std::string& what, const std::string& with) {
+  for (std::size_t at = 0; (at = words.find(what, at)) != std::string::npos; at += with.size())
+    words.replace(at, what.size(), with);
+  return words;
+}
+
+/// The words of an axis, "inferior  -  mm  -  superior", with shorter directions where they do not
+/// fit.
+std::string fitting_label(ImFont* font, std::string words, float room) {
+  constexpr std::array<std::pair<const char*, const char*>, 5> shorter = {{{"  ", " "},
+                                                                           {"inferior", "inf."},
+                                                                           {"superior", "sup."},
+                                                                           {"posterior", "post."},
+                                                                           {"anterior", "ant."}}};
+  for (const auto& [whole, few] : shorter)
+    if (text_width(font, words) > room) words = replaced(words, whole, few);
+  return fitted(font, words, room);
+}
+
+/// Words that run upward from this place, their tops to the left.
+void draw_upward(ImDrawList& list, ImFont* font, ImVec2 from, ImU32 ink, const std::string& words) {
+  const int first = list.VtxBuffer.Size;
+  list.PushClipRectFullScreen();  // ImGui leaves out letters that would be cut before they turn
+  list.AddText(font, font->FontSize, from, ink, words.c_str());
+  list.PopClipRect();
+  for (int i = first; i < list.VtxBuffer.Size; ++i) {
+    ImVec2& p = list.VtxBuffer[i].pos;
+    p = {from.x + (p.y - from.y), from.y - (p.x - from.x)};
+  }
+}
+
+void draw_axes(const Pen& pen, ImDrawList& list, const Axes& axes, const PlotSettings& settings) {
   ImFont* font = pen.theme.small;
   const float hair = std::max(1.0f, pen.px(1));
-  const double step_x =
-      tick_step(axes.x.span(), static_cast<int>((axes.right - axes.left) / pen.px(46)));
+  double step_x = tick_step(axes.x.span(), static_cast<int>((axes.right - axes.left) / pen.px(46)));
+  if (settings.x_goes_back) step_x = std::max(1.0, std::ceil(step_x));
   const double step_y =
       tick_step(axes.y.span(), static_cast<int>((axes.bottom - axes.top) / pen.px(24)));
   for (double v = std::ceil(axes.x.low / step_x) * step_x; v <= axes.x.high; v += step_x) {
     const float x = axes.at(v, axes.y.low).x;
     list.AddLine({x, axes.top}, {x, axes.bottom}, palette().panel_edge, hair);
-    const std::string words = number_text(v, step_x);
+    const std::string words = number_text(settings.x_goes_back ? -v : v, step_x);
     list.AddText(font, font->FontSize,
                  {std::round(x - text_width(font, words) / 2), std::round(axes.bottom + pen.px(3))},
                  palette().text_dim, words.c_str());
@@ -105,6 +138,18 @@ void draw_axes(const Pen& pen, ImDrawList& list, const Axes& axes) {
                  palette().text_dim, words.c_str());
   }
   list.AddRect({axes.left, axes.top}, {axes.right, axes.bottom}, palette().outline, 0, 0, hair);
+  const float high = axes.bottom - axes.top;
+  const float left = axes.left - tick_room * pen.theme.scale - font->FontSize;
+  const std::string across = fitting_label(font, settings.x_label, axes.right - left);
+  const float wide = text_width(font, across);
+  list.AddText(font, font->FontSize,
+               {std::round(std::min((axes.left + axes.right - wide) / 2, axes.right - wide)),
+                std::round(axes.bottom + font->FontSize + pen.px(4))},
+               palette().text_dim, across.c_str());
+  const std::string up = fitting_label(font, settings.y_label, high);
+  draw_upward(list, font,
+              {std::round(left), std::round((axes.top + axes.bottom + text_width(font, up)) / 2)},
+              palette().text_dim, up);
 }
 
 void draw_bands(const Pen& pen, ImDrawList& list, const PlotPanel& panel, const Axes& axes) {
@@ -242,7 +287,7 @@ void draw_plot(Pen& pen, const PlotPanel& panel, const std::vector<double>& time
   const float legend_high = draw_legend(pen, nullptr, panel, left, right, legend_top);
   Axes axes{{},
             {},
-            left + pen.px(36),
+            left + theme.small->FontSize + pen.px(tick_room),
             legend_top + legend_high + pen.px(3),
             right - pen.px(6),
             bottom - 2 * theme.small->FontSize - pen.px(8)};
@@ -250,13 +295,7 @@ void draw_plot(Pen& pen, const PlotPanel& panel, const std::vector<double>& time
   draw_legend(pen, &list, panel, left, right, legend_top);
   find_ranges(panel, axes);
   list.AddRectFilled({axes.left, axes.top}, {axes.right, axes.bottom}, palette().well);
-  draw_axes(pen, list, axes);
-  const std::string across = fitted(theme.small, panel.settings.x_label, right - left);
-  list.AddText(theme.small, theme.small->FontSize,
-               {std::round((axes.left + axes.right - text_width(theme.small, across)) / 2),
-                std::round(bottom - theme.small->FontSize - pen.px(1))},
-               palette().text_dim, across.c_str());
-
+  draw_axes(pen, list, axes, panel.settings);
   list.PushClipRect({axes.left, axes.top}, {axes.right, axes.bottom}, true);
   draw_bands(pen, list, panel, axes);
   for (std::size_t i = 0; i < panel.curves.size(); ++i)
@@ -294,7 +333,7 @@ void draw_plot(Pen& pen, const PlotPanel& panel, const std::vector<double>& time
       mark = p;
       words =
           fmt::format("{}\n{:.2f}, {:.2f}", curve.name.empty() ? panel.settings.title : curve.name,
-                      curve.x[i], curve.y[i]);
+                      panel.settings.x_goes_back ? -curve.x[i] : curve.x[i], curve.y[i]);
       if (curve.x.size() == time_s.size() && curve.x != time_s)
         words += fmt::format("\nat {:.2f} s", time_s[i]);
     }

@@ -42,6 +42,8 @@ constexpr std::array bindings = {
     Binding{GLFW_KEY_F12, Command::picture, Command::window_picture},
     Binding{GLFW_KEY_F1, Command::help, Command::help},
     Binding{GLFW_KEY_ESCAPE, Command::close_dialog, Command::close_dialog},
+    Binding{GLFW_KEY_ENTER, Command::accept, Command::accept},
+    Binding{GLFW_KEY_KP_ENTER, Command::accept, Command::accept},
 };
 
 constexpr std::array mouse_lines = {
@@ -49,6 +51,7 @@ constexpr std::array mouse_lines = {
     HelpLine{"middle drag, Shift+left", "move the picture"},
     HelpLine{"wheel, right drag", "nearer, farther"},
     HelpLine{"Ctrl+left", "roll the picture"},
+    HelpLine{"Ctrl+click a slider", "type its number"},
 };
 constexpr std::array view_lines = {
     HelpLine{"A P L R S I", "front, back, left, right, above, below"},
@@ -71,6 +74,7 @@ constexpr std::array window_lines = {
     HelpLine{"Ctrl+O", "open a patient or a motion"},
     HelpLine{"Tab", "panels on, off"},
     HelpLine{"T", "dark or light panels"},
+    HelpLine{"Ctrl+=  -  0", "larger, smaller, usual panels"},
     HelpLine{"F12", "save the picture as PNG"},
     HelpLine{"Shift+F12", "save the whole window"},
     HelpLine{"F1, Esc", "this help; close a dialog"},
@@ -95,6 +99,10 @@ std::optional<Command> command_of(const KeyPress& press) {
     if (press.key == GLFW_KEY_O) return Command::open_files;
     if (press.key == GLFW_KEY_Y || (press.key == GLFW_KEY_Z && press.shift)) return Command::redo;
     if (press.key == GLFW_KEY_Z) return Command::undo;
+    if (press.key == GLFW_KEY_EQUAL || press.key == GLFW_KEY_KP_ADD) return Command::larger_panels;
+    if (press.key == GLFW_KEY_MINUS || press.key == GLFW_KEY_KP_SUBTRACT)
+      return Command::smaller_panels;
+    if (press.key == GLFW_KEY_0 || press.key == GLFW_KEY_KP_0) return Command::usual_panels;
     return std::nullopt;
   }
   for (const Binding& binding : bindings)

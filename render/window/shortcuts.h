@@ -26,6 +26,9 @@ enum class Command {
   toggle_distances,
   toggle_panels,
   toggle_theme,
+  larger_panels,
+  smaller_panels,
+  usual_panels,
   toggle_move,
   toggle_measure,
   toggle_landmarks,
@@ -36,6 +39,7 @@ enum class Command {
   redo,
   help,
   close_dialog,
+  accept,  // what a box says: it closes
   quit
 };
 

@@ -68,6 +68,11 @@ void load_fonts(Theme& theme) {
 
 }  // namespace
 
+double usual_scale(double screen_scale, int framebuffer_width) {
+  constexpr int fine_width = 3840;
+  return screen_scale == 1 && framebuffer_width >= fine_width ? 1.5 : 1;
+}
+
 float fitting_scale(double wanted, int width, int height) {
   const double most = std::min(width / least_width, height / least_height);
   const double scale = std::floor(std::min(wanted, most) * 20 + 1e-6) / 20;

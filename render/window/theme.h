@@ -77,6 +77,9 @@ inline const Palette* in_use = &dark;
 }  // namespace colour
 inline const colour::Palette& palette() { return *colour::in_use; }
 
+/// The scale where nobody says one: larger on a 4K screen that does not tell its own.
+double usual_scale(double screen_scale, int framebuffer_width);
+
 /// The scale to use in a window of this size, pixels: the wanted one, or less where the panels
 /// would not fit; in steps of 0.05, so that resizing does not load fonts at every pixel.
 float fitting_scale(double wanted, int width, int height);

@@ -20,6 +20,11 @@ void ViewState::fit(const WindowScene& scene) {
   layers.resize(scene.layers.size(), layer);
 }
 
+void ViewState::return_skin() {
+  const auto before = std::exchange(skin_to_return, std::nullopt);
+  if (before && skin_opacity == 0) skin_opacity = *before;
+}
+
 void ViewState::set_edits(Edits other) {
   static_cast<Edits&>(*this) = std::move(other);
   if (jaw_is_held()) playing = false;

@@ -18,6 +18,7 @@ namespace condyle {
 /// What the tree lists beside the parts.
 struct TreeItem {
   std::string name, label;
+  std::string short_label = {};  // in the tree, where the label is long; empty: the label
 };
 
 /// What a window shows. Plain data; the parts must outlive the window or the next scene.
@@ -97,8 +98,9 @@ struct Edits {
   std::vector<Landmark> landmarks = {};    // where the person has them; the scene's at first
   MotionChoice motion = {};                // wanted; the scene's at first
   Look look = {};
-  double skin_opacity = 1;           // of parts with the role `face`, on top of their own
-  std::vector<PartView> parts = {};  // one per part of the scene, in its order
+  double skin_opacity = 1;                    // of parts with the role `face`, on top of their own
+  std::optional<double> skin_to_return = {};  // its opacity before distances took it away
+  std::vector<PartView> parts = {};           // one per part of the scene, in its order
   // The same of muscles and layers of tissue; not shown at first.
   std::vector<PartView> muscles = {}, layers = {};
   bool operator==(const Edits&) const = default;
@@ -122,6 +124,8 @@ struct ViewState : Edits {
   const Edits& edits() const { return *this; }
   /// Whether a hand has the jaw, not the motion.
   bool jaw_is_held() const { return opening_mm || hands.mandible; }
+  /// Distances are off: the skin is as it was before, unless the person has set it since.
+  void return_skin();
   /// What was set at another time; the rest stays, but the clock stops where a hand has the jaw.
   void set_edits(Edits other);
 

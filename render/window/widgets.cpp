@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 namespace condyle {
 namespace {
@@ -72,10 +74,10 @@ void draw_sign(ImDrawList& list, Sign sign, ImVec2 c, float r, ImU32 ink_colour)
 
 }  // namespace
 
-void Pen::mark(const std::string& name) {
+void Pen::mark(const std::string& name, const std::string& words) {
   if (!ImGui::IsItemVisible()) return;
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  items.push_back({name, panel, {low.x, low.y, high.x - low.x, high.y - low.y}});
+  items.push_back({name, panel, {low.x, low.y, high.x - low.x, high.y - low.y}, words});
 }
 
 void begin_panel(Pen& pen, const char* name, const ViewRect& rect) {
@@ -236,8 +238,48 @@ bool word_button(Pen& pen, const char* name, const char* label, ImVec2 size, boo
   return pressed;
 }
 
+namespace {
+
+/// Whether the slider is a field for its number now.
+bool typed_into(const char* name, const ImRect& rect) {
+  const ImGuiID id = ImGui::GetCurrentWindow()->GetID(name);
+  const ImGuiContext& now = *ImGui::GetCurrentContext();
+  if (ImGui::TempInputIsActive(id)) return true;
+  return now.IO.KeyCtrl && now.IO.MouseClicked[0] && now.HoveredWindow == now.CurrentWindow &&
+         (now.CurrentItemFlags & ImGuiItemFlags_Disabled) == 0 &&
+         ImGui::IsMouseHoveringRect(rect.Min, rect.Max);
+}
+
+bool typed_number(Pen& pen, const char* name, const ImRect& rect, double& value,
+                  const SliderLook& look) {
+  const ImGuiID id = ImGui::GetCurrentWindow()->GetID(name);
+  ImGui::ItemSize(rect.GetSize());
+  if (!ImGui::ItemAdd(rect, id)) return false;
+  ImGui::ItemHoverable(rect, id);
+  std::array<char, 64> digits{};
+  std::snprintf(digits.data(), digits.size(), "%.6g", value * look.typed);
+  const double shown = std::strtod(digits.data(), nullptr);
+  const bool entered =
+      ImGui::TempInputText(rect, id, name, digits.data(), static_cast<int>(digits.size()),
+                           ImGuiInputTextFlags_CharsScientific | ImGuiInputTextFlags_AutoSelectAll |
+                               ImGuiInputTextFlags_EnterReturnsTrue);
+  pen.mark(name);
+  if (ImGui::IsItemActive()) pen.mark("writing");
+  if (!entered) return false;
+  char* end = nullptr;
+  const double number = std::strtod(digits.data(), &end);
+  if (end == digits.data() || !std::isfinite(number) || number == shown) return false;
+  value = std::clamp(number / look.typed, look.low, look.high);
+  return true;
+}
+
+}  // namespace
+
 bool slider(Pen& pen, const char* name, double& value, const SliderLook& look) {
   const float height = ImGui::GetFrameHeight(), knob = pen.px(6.5f);
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImRect rect(corner, corner + ImVec2{look.width, height});
+  if (typed_into(name, rect)) return typed_number(pen, name, rect, value, look);
   ImGui::InvisibleButton(name, {look.width, height});
   pen.mark(name);
   const ImVec2 low = ImGui::GetItemRectMin();
@@ -278,6 +320,17 @@ bool text_field(Pen& pen, const char* name, std::string& words, float width, con
   if (ImGui::IsItemActive()) pen.mark("writing");
   words = letters.data();
   return entered;
+}
+
+bool list_unfolded() {
+  const auto& open = ImGui::GetCurrentContext()->OpenPopupStack;
+  return !open.empty() && open.back().Window &&
+         (open.back().Window->Flags & ImGuiWindowFlags_Modal) == 0;
+}
+
+void fold_list() {
+  if (list_unfolded())
+    ImGui::ClosePopupToLevel(ImGui::GetCurrentContext()->OpenPopupStack.Size - 1, true);
 }
 
 bool tick_box(Pen& pen, const char* name, const char* label, bool& on) {

@@ -18,7 +18,7 @@ struct Pen {
   float px(float units) const { return units * theme.scale; }
   ImVec2 px(float x, float y) const { return {x * theme.scale, y * theme.scale}; }
   /// Notes the last ImGui item, when any of it can be seen.
-  void mark(const std::string& name);
+  void mark(const std::string& name, const std::string& words = {});
 };
 
 /// A fixed panel: no title, no moving. Always pair with end_panel.
@@ -62,11 +62,17 @@ struct SliderLook {
   bool logarithmic = false;
   bool filled = true;  // bar filled up to the handle
   bool held = false;   // handle in the warning colour: the hand overrides the motion
+  double typed = 1;    // the number that is typed, of a value of 1: 100 for a share in %
 };
+/// Ctrl+click opens a field for the number instead; Enter takes it, within the slider's ends.
 bool slider(Pen& pen, const char* name, double& value, const SliderLook& look);
 
 /// A line of text to write in, with a hint while it is empty. gives: true when Enter is pressed.
 bool text_field(Pen& pen, const char* name, std::string& words, float width, const char* hint);
+
+/// Whether a list to choose from is unfolded, in front of any dialog; and folds it.
+bool list_unfolded();
+void fold_list();
 
 /// A box to tick with its label.
 bool tick_box(Pen& pen, const char* name, const char* label, bool& on);

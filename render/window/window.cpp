@@ -25,7 +25,7 @@ void ask_for_opengl() {
 
 }  // namespace
 
-Window::State::State(const WindowOptions& wanted) : options(wanted) {
+Window::State::State(const WindowOptions& wanted) : options(wanted), ui_scale(wanted.ui_scale) {
   ask_for_opengl();
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   glfwWindowHint(GLFW_SAMPLES, 0);  // the 3-D view has its own

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,8 +20,9 @@ namespace condyle {
 
 struct WindowOptions {
   std::string title = "Condyle";
-  int width = 1280, height = 720;              // screen coordinates, before the screen's own scale
-  double ui_scale = 1;                         // of panels and text, times the screen's own scale
+  int width = 1280, height = 720;  // screen coordinates, before the screen's own scale
+  // Of panels and text, times the screen's own scale; none: 1, more on screens with small pixels.
+  std::optional<double> ui_scale = {};
   bool light = false;                          // theme of the panels
   std::filesystem::path picture_folder = ".";  // where F12 and recordings go
 };

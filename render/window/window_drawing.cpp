@@ -93,16 +93,45 @@ bool Window::State::moving() const {
   return view.playing || held || drag != CameraDrag::none || seconds_since(last_change) < calm_s;
 }
 
-void Window::State::fit_scale() {
+double Window::State::screen_scale() const {
   float x = 1, y = 1;
   glfwGetWindowContentScale(window, &x, &y);
+  return std::max(x, y);
+}
+
+float Window::State::panel_scale() const {
   const auto [w, h] = size();
-  const float scale = fitting_scale(std::max(x, y) * options.ui_scale, w, h);
+  int pixels = 0, ignored = 0;
+  glfwGetFramebufferSize(window, &pixels, &ignored);
+  const double screen = screen_scale();
+  return fitting_scale(screen * ui_scale.value_or(usual_scale(screen, pixels)), w, h);
+}
+
+void Window::State::fit_scale() {
+  const float scale = panel_scale();
   if (scale == panels->theme().scale && options.light == panels->theme().light) return;
   panels->set_scale(scale);
   panels->set_light(options.light);
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+/// A tenth more or less than what is seen, so that each step but the last that fits shows.
+void Window::State::scale_panels(Command command) {
+  constexpr double step = 0.1, least = 0.5, most = 4;
+  const float before = panels->theme().scale;
+  const double steps = command == Command::larger_panels ? 1 : -1;
+  if (command == Command::usual_panels)
+    ui_scale = options.ui_scale;
+  else
+    ui_scale = std::clamp(step * std::round(before / step + steps), least, most) / screen_scale();
+  const float after = panel_scale();
+  if (command == Command::larger_panels && after <= before) ui_scale = before / screen_scale();
+  panels->say(fmt::format("Panels at {:.0f} %{}", 100 * panel_scale(),
+                          command == Command::larger_panels && after <= before
+                              ? ": no larger ones fit into this window"
+                              : ""));
+  noticed();
 }
 
 void Window::State::interface_frame() {
@@ -112,7 +141,8 @@ void Window::State::interface_frame() {
   // The backend only knows where the mouse is now; the queue knows each press and where it was;
   // so it is with keys. What was typed goes first: it is for a field that was clicked before, and a
   // click on a button beside the field must find it written.
-  if (keys.empty()) mouse_shown = mouse.take();
+  const bool look_at_mouse = keys.empty();
+  if (look_at_mouse) mouse_shown = mouse.take();
   const MouseMoment& moment = mouse_shown;
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(moment.x), static_cast<float>(moment.y)};
@@ -129,6 +159,8 @@ void Window::State::interface_frame() {
       io.KeyShift = (next.mods & GLFW_MOD_SHIFT) != 0;
     }
   }
+  const bool ctrl_of_keys = io.KeyCtrl;
+  if (look_at_mouse && moment.ctrl) io.KeyCtrl = true;
   ImGui::NewFrame();
   const auto [w, h] = size();
   const ViewRect r = view_rect();
@@ -145,6 +177,7 @@ void Window::State::interface_frame() {
                          .loop = loop,
                          .pictures = pictures,
                          .camera = camera,
+                         .box = box,
                          .progress = progress.empty() && order.parts && !drawn() && !cannot_draw
                                          ? std::string(preparing)
                                          : progress,
@@ -158,6 +191,7 @@ void Window::State::interface_frame() {
                          .picture_folder = options.picture_folder};
   const std::vector<Command> commands = panels->draw(input, view, w, h);
   ImGui::Render();
+  io.KeyCtrl = ctrl_of_keys;
   for (const Command command : commands) run(command);
 }
 

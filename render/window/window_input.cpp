@@ -60,10 +60,12 @@ void Window::State::on_key(int key, int scancode, int mods) {
   if (const char* name = glfwGetKeyName(key, scancode);
       name && name[0] >= 'a' && name[0] <= 'z' && name[1] == 0)
     key = GLFW_KEY_A + (name[0] - 'a');
+  else if (name && (name[0] == '+' || name[0] == '=' || name[0] == '-') && name[1] == 0)
+    key = name[0] == '-' ? GLFW_KEY_MINUS : GLFW_KEY_EQUAL;
   const auto command = command_of({.key = key,
                                    .shift = (mods & GLFW_MOD_SHIFT) != 0,
                                    .ctrl = (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0});
-  if (command) run(*command);
+  if (command && panels->takes(*command)) run(*command);
 }
 
 bool Window::State::over_view(double x, double y) const {
@@ -75,7 +77,7 @@ bool Window::State::over_view(double x, double y) const {
 }
 
 void Window::State::on_button(int button, bool down, int mods) {
-  mouse.pressed(button, down);
+  mouse.pressed(button, down, (mods & GLFW_MOD_CONTROL) != 0);
   const MouseMoment& now = mouse.now();
   if (down && button == GLFW_MOUSE_BUTTON_LEFT && mods == 0 && over_view(now.x, now.y) &&
       (grip_body({now.x, now.y}) || set_point({now.x, now.y})))
@@ -128,6 +130,11 @@ void Window::State::run(Command command) {
       break;
     case Command::toggle_theme:
       options.light = !options.light;
+      break;
+    case Command::larger_panels:
+    case Command::smaller_panels:
+    case Command::usual_panels:
+      scale_panels(command);
       break;
     case Command::window_picture:
       save_window = true;

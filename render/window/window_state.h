@@ -42,6 +42,7 @@ struct Window::State {
   std::optional<PictureThread> painter;
 
   WindowOptions options;
+  std::optional<double> ui_scale;  // in use; the option's at first
   WindowScene scene;
   ViewState view;
   Eigen::AlignedBox3d box;  // of the scene at rest
@@ -136,7 +137,10 @@ struct Window::State {
   void apply_look(PictureSettings& wanted) const;
   bool drawn() const;  // the picture on show is of this scene
   bool moving() const;
+  double screen_scale() const;
+  float panel_scale() const;
   void fit_scale();
+  void scale_panels(Command command);
   void interface_frame();
   std::string pointed() const;
   void order_picture();

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -30,6 +31,7 @@ struct MotionSetting {
   double usual_low = 0, usual_high = 0;  // published band of adults; none when equal
   double value = 0;                      // in use
   bool known = true;                     // false: what the patient's joints and teeth give
+  std::optional<double> patients = {};   // that
 };
 
 /// One group of muscles: 0 to 1 of what it can do, or a share of what the motion's file says.

@@ -35,6 +35,7 @@ struct PlotSettings {
   double y_most = 1e300;                  // curves are cut off above
   std::vector<PlotBand> bands = {};
   bool legend = true;
+  bool x_goes_back = false;  // what lies at -3 is told as 3 ago, in whole numbers
 };
 
 /// Curves and how to draw them: a plain value, for whoever draws.

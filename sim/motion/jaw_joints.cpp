@@ -115,6 +115,11 @@ double JawJoints::drop_mm(JawSide which, double forward_mm, double theta, double
                      : joint.path(std::max(forward_mm, 0.0));
 }
 
+double JawJoints::inclination_deg(JawSide which) const {
+  constexpr double secant_mm = 5;
+  return std::atan2(drop_mm(which, secant_mm), secant_mm) / radian_per_degree;
+}
+
 double JawJoints::bennett_shift_mm(double left_mm, double right_mm) const {
   const double ahead = left_mm - right_mm, s = std::abs(ahead);
   const double medial =

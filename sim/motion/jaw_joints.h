@@ -46,6 +46,10 @@ class JawJoints {
   /// Drop of the condyle centre, mm.
   double drop_mm(JawSide side, double forward_mm, double theta = 0, double shift_mm = 0) const;
 
+  /// Secant of the condyle's path over its first 5 mm forward to the horizontal, deg; positive down.
+  /// The jaw does not turn.
+  double inclination_deg(JawSide side) const;
+
   const Eigen::Vector3d& incisor() const { return incisor_; }  // lower incisal point at rest
   const Eigen::Vector3d& condyle(JawSide side) const {
     return side == JawSide::left ? left_ : right_;

@@ -114,6 +114,22 @@ void add_inputs(Motion& motion, const JawJoints& joints, const MotionParameters&
   motion.inputs.push_back({"balkwill_angle", "deg", joints.balkwill_deg()});
 }
 
+void add_found(Motion& motion, const JawJoints& joints, const OpeningLimits& limits) {
+  const double forward = limits.coupling.forward_mm(limits.widest_theta);
+  std::vector<MotionInput> found = {
+      {"opening", "mm", joints.opening_mm({limits.widest_theta, forward, forward, 0})},
+      {"inclination_left", "deg", joints.inclination_deg(JawSide::left)},
+      {"inclination_right", "deg", joints.inclination_deg(JawSide::right)}};
+  if (const auto& fossae = joints.surfaces())  // the mean of both
+    found.push_back(
+        {"disc_gap", "mm",
+         0.5 * (fossae->rest_gap_mm(JawSide::left) + fossae->rest_gap_mm(JawSide::right))});
+  for (const auto& one : found)
+    if (std::none_of(motion.inputs.begin(), motion.inputs.end(),
+                     [&](const auto& given) { return given.name == one.name; }))
+      motion.found.push_back(one);
+}
+
 /// `round`: ends in the case's own pose, where that is not its bite.
 Motion move(const std::string& name, const MotionScript* script, const Case& patient,
             const ContactModel& contacts, const MotionSettings& settings, bool round = false) {
@@ -144,6 +160,7 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
   Motion motion = movements.finish(name);
   motion.notes.insert(motion.notes.begin(), notes.begin(), notes.end());
   add_inputs(motion, *joints, parameters);
+  add_found(motion, *joints, limits);
   return stretched(std::move(motion), settings.duration_s);
 }
 

@@ -56,6 +56,7 @@ struct Motion {
 
   std::vector<MotionPhase> phases = {};  // of a built-in motion, in order
   std::vector<MotionInput> inputs = {};
+  std::vector<MotionInput> found = {};  // what nobody gave: as the patient's joints have it
   MotionBorders borders = {};  // of motions that are measured by them (chewing, posselt)
   // Of a motion driven by muscles: their names, and what each does at a time.
   std::vector<std::string> muscle_names = {};

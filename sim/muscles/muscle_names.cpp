@@ -1,7 +1,9 @@
 #include "sim/muscles/muscle_names.h"
 
+#include <array>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "engine/core/text_table.h"
 
@@ -64,6 +66,26 @@ std::vector<std::size_t> muscles_called(std::string_view called, std::span<const
   if (name.size() > 1 && (name[0] == 'l' || name[0] == 'r'))
     return of_kinds(name.substr(1), name[0], muscles);
   return {};
+}
+
+std::string short_name(const Muscle& muscle) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> shorter = {
+      {{"Anterior", "Ant."},
+       {"Posterior", "Post."},
+       {"Superior", "Sup."},
+       {"Inferior", "Inf."},
+       {"Medial", "Med."},
+       {"Lateral", "Lat."},
+       {"Superficial", "Superf."}}};
+  std::string words;
+  std::istringstream full(muscle.full_name.empty() ? muscle.name : muscle.full_name);
+  for (std::string word; full >> word;) {
+    for (const auto& [whole, few] : shorter)
+      if (word == whole) word = few;
+    words += (words.empty() ? "" : " ") + word;
+  }
+  const char side = muscle.name.empty() ? ' ' : muscle.name.front();
+  return (side == 'l' ? "L " : side == 'r' ? "R " : "") + words;
 }
 
 std::string known_muscle_names(std::span<const Muscle> muscles) {

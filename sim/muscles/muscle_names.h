@@ -15,6 +15,10 @@ namespace condyle {
 /// any name: both). None: the name is unknown.
 std::vector<std::size_t> muscles_called(std::string_view name, std::span<const Muscle> muscles);
 
+/// The full name in few letters, its side first: "L Ant. Temporal" for "Anterior Temporal" of the
+/// left, "L" and "R" being the patient's. Without a side: the name alone.
+std::string short_name(const Muscle& muscle);
+
 /// All names there are, for a message.
 std::string known_muscle_names(std::span<const Muscle> muscles);
 

@@ -86,7 +86,7 @@ MotionPlot posselt(const MotionSeries& series) {
 /// Accepted inclination over the first 5 mm, 26 to 62 degrees, as a wedge.
 PlotBand inclination_wedge() {
   constexpr double secant_mm = 5, slope_low = 0.48773, slope_high = 1.88073;  // tan 26, 62 deg
-  return {"26 to 62 deg over 5 mm",
+  return {"26 to 62\u00b0 over 5 mm",
           {0, secant_mm, secant_mm},
           {0, -secant_mm * slope_low, -secant_mm * slope_high}};
 }
@@ -94,7 +94,7 @@ PlotBand inclination_wedge() {
 /// Medial way of an orbiting condyle by a Bennett angle of 5 to 15 degrees.
 PlotBand bennett_wedge(double side) {
   constexpr double way_mm = 10, low = 0.08749, high = 0.26795;
-  return {side > 0 ? "Bennett 5 to 15 deg" : "",
+  return {side > 0 ? "Bennett 5 to 15\u00b0" : "",
           {0, -side * way_mm * low, -side * way_mm * high},
           {0, way_mm, way_mm}};
 }
@@ -147,7 +147,7 @@ MotionPlot opening(const MotionSeries& series) {
   PlotPanel down{{over_time("opening", series, of(&Measures::opening_mm)),
                   over_time("between incisors", series, of(&Measures::interincisal_mm))},
                  {.title = "Opening over time", .x_label = "time, s", .y_label = "mm"}};
-  add_if_reached(down, largest(down.curves[0]), 30, {"maximum opening 42 to 58", {}, {42, 58}});
+  add_if_reached(down, largest(down.curves[0]), 30, {"maximum opening 42 to 58 mm", {}, {42, 58}});
   PlotPanel aside{
       {over_time("protrusion (anterior)", series, of(&Measures::protrusion_mm)),
        over_time("laterotrusion (to the left)", series, of(&Measures::laterotrusion_mm)),
@@ -156,8 +156,8 @@ MotionPlot opening(const MotionSeries& series) {
        .x_label = "time, s",
        .y_label = "mm"}};
   const double reached = largest(aside.curves[1]);
-  add_if_reached(aside, reached, 5, {"laterotrusion left 7 to 12", {}, {7, 12}});
-  add_if_reached(aside, reached, 5, {"laterotrusion right 7 to 12", {}, {-12, -7}});
+  add_if_reached(aside, reached, 5, {"laterotrusion left 7 to 12 mm", {}, {7, 12}});
+  add_if_reached(aside, reached, 5, {"laterotrusion right 7 to 12 mm", {}, {-12, -7}});
   return {"opening", {std::move(down), std::move(aside)}};
 }
 
@@ -165,7 +165,8 @@ MotionPlot rotation(const MotionSeries& series) {
   PlotPanel turn{{over_time("rotation", series,
                             [&](std::size_t i) { return series.measures[i].rotation_deg; })},
                  {.title = "Rotation over time", .x_label = "time, s", .y_label = "degrees"}};
-  add_if_reached(turn, largest(turn.curves[0]), 22, {"at maximum opening 28 to 45", {}, {28, 45}});
+  add_if_reached(turn, largest(turn.curves[0]), 22,
+                 {"at max. opening 28 to 45\u00b0", {}, {28, 45}});
   PlotPanel travel{
       {over_time("left condyle", series,
                  [&](std::size_t i) { return series.measures[i].left_condyle_travel_mm; }),
@@ -173,14 +174,15 @@ MotionPlot rotation(const MotionSeries& series) {
                  [&](std::size_t i) { return series.measures[i].right_condyle_travel_mm; })},
       {.title = "Condylar displacement over time", .x_label = "time, s", .y_label = "mm"}};
   add_if_reached(travel, largest(travel.curves[0]), 9,
-                 {"at maximum opening 10 to 20", {}, {10, 20}});
+                 {"at max. opening 10 to 20 mm", {}, {10, 20}});
   PlotPanel speed{{over_time("incisal point", series,
                              [&](std::size_t i) { return series.incisor_speed_mm_s(i); })},
                   {.title = "Speed over time", .x_label = "time, s", .y_label = "mm/s"}};
   const bool chews = std::any_of(series.phases.begin(), series.phases.end(), [](const auto& phase) {
     return phase.name.starts_with("chewing");
   });
-  if (chews) speed.settings.bands.push_back({"middle third of chewing 40 to 80", {}, {40, 80}});
+  if (chews)
+    speed.settings.bands.push_back({"middle third of chewing 40 to 80 mm/s", {}, {40, 80}});
   return {"rotation", {std::move(turn), std::move(travel), std::move(speed)}};
 }
 

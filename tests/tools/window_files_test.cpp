@@ -103,10 +103,35 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
   })) << state().dump();
   fs::copy_file(folder_ / "maxilla.stl", folder_ / "face.stl");
   EXPECT_TRUE(drop_files("Condyle", {folder_ / "face.stl"}));
-  click("import-go");
-  ASSERT_TRUE(wait_for_item("error"));
+  click("import-go");  // it waits for a bone
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_TRUE(state()["items"].contains("import"));
+  EXPECT_FALSE(state()["items"].contains("error"));
   see("no-bone");
-  click("close-error");
+  click("import-close");
+  ASSERT_TRUE(wait_for_item("import", false));
+  // Troubles are told in words of the window, not of the command line.
+  const auto told = [&](const std::string& words) {
+    EXPECT_TRUE(wait_until([&](const Json& s) {
+      return s.value("trouble", "").find(words) != std::string::npos;
+    })) << state().value("trouble", "nothing was said");
+    EXPECT_EQ(state().value("trouble", "").find("--"), std::string::npos);
+    EXPECT_TRUE(press("Return"));
+    EXPECT_TRUE(wait_for_item("error", false));
+  };
+  std::string metres;
+  for (int i = 0; i < 8; ++i)
+    metres += std::string("v ") + (i & 1 ? "0.05" : "-0.05") + (i & 2 ? " -0.01" : " -0.09") +
+              (i & 4 ? " -0.05\n" : " -0.06\n");
+  fs::create_directories(folder_ / "metres");
+  write_text(folder_ / "metres/mandible.obj",
+             metres + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+  EXPECT_TRUE(drop_files("Condyle", {folder_ / "metres/mandible.obj"}));
+  click("import-go");
+  told("choose as the unit of lengths m.");
+  write_text(folder_ / "README.md", "# Notes\n");
+  EXPECT_TRUE(drop_files("Condyle", {folder_ / "README.md"}));
+  told("README.md: cannot be opened: it is no case folder");
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }

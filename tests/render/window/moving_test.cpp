@@ -161,5 +161,61 @@ TEST(MovePanel, ButtonsUndoAndPutBack) {
   EXPECT_FALSE(stage.view.hands.mandible);
 }
 
+/// A jaw that is wanted 12 mm up and turned, and is held by contact at rest.
+class HeldJaw : public testing::Test {
+ protected:
+  HeldJaw() {
+    stage.scene.bodies = movable_bodies(stage.parts);
+    stage.frame = box_frame(0, 0);
+    stage.view.hands.mandible =
+        pose_at({{0, 1.2345678, 12}, {3, 0, 0}}, stage.scene.bodies[0].center);
+    stage.view.tool = Tool::move;
+    stage.rest();
+  }
+  PanelStage stage{1280, 720, 1};
+};
+
+TEST_F(HeldJaw, ShowsWhatIsWantedBesideWhatIsReached) {
+  EXPECT_EQ(stage.item("shift:S").words, "12.00 mm");
+  EXPECT_EQ(stage.item("reached:shift:S").words, "0.00 mm");
+  EXPECT_EQ(stage.item("turn:L").words, "3.00\u00b0");
+  EXPECT_EQ(stage.item("reached:turn:L").words, "0.00\u00b0");
+  EXPECT_EQ(stage.item("move-state").words, "held by contact, 12.1 mm and 3.0\u00b0 short");
+  stage.frame.X_CM = pose_at({{0, 1.2345678, 7.5}, {3, 0, 0}}, stage.scene.bodies[0].center);
+  stage.rest();
+  EXPECT_EQ(stage.item("reached:shift:S").words, "7.50 mm");
+  EXPECT_EQ(stage.item("move-state").words, "held by contact, 4.5 mm short");
+  stage.frame.X_CM = *stage.view.hands.mandible;
+  stage.rest();
+  EXPECT_EQ(stage.item("reached:shift:S").words, "12.00 mm");
+  EXPECT_EQ(stage.item("move-state").words, "where it is wanted");
+  // Without a hand both are where the jaw is.
+  stage.view.hands.mandible.reset();
+  stage.frame = box_frame(1, 20);
+  stage.rest();
+  EXPECT_EQ(stage.item("shift:S").words, stage.item("reached:shift:S").words);
+  EXPECT_NE(stage.item("shift:S").words, "0.00 mm");
+}
+
+TEST_F(HeldJaw, OnlyAnotherNumberIsAnEdit) {
+  const Pose before = *stage.view.hands.mandible;
+  const auto as_before = [&] {
+    return stage.view.hands.mandible->t == before.t &&
+           stage.view.hands.mandible->R.coeffs() == before.R.coeffs();
+  };
+  for (const char* words : {"abc", "", "1.23", "1e999", "--"}) {
+    stage.enter("shift:P", words);
+    EXPECT_TRUE(as_before()) << words;
+    stage.panels->run(Command::undo, stage.scene, stage.view);
+    EXPECT_TRUE(as_before()) << "'" << words << "' was a step of undo";
+  }
+  stage.enter("shift:S", "4.5");
+  const Placement now = placement_of(*stage.view.hands.mandible, stage.scene.bodies[0].center);
+  EXPECT_NEAR(now.shift_mm.z(), 4.5, 1e-9);
+  EXPECT_NEAR(now.shift_mm.y(), 1.2345678, 1e-9) << "the others are not rounded";
+  stage.panels->run(Command::undo, stage.scene, stage.view);
+  EXPECT_TRUE(as_before());
+}
+
 }  // namespace
 }  // namespace condyle

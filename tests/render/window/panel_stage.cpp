@@ -111,6 +111,7 @@ void PanelStage::step(double x, double y, bool down) {
                          .loop = {.steps_per_second = 60},
                          .pictures = {.pictures_per_second = 24, .picture_ms = 31},
                          .camera = camera,
+                         .box = {Eigen::Vector3d(-80, -95, -90), Eigen::Vector3d(80, 100, 130)},
                          .progress = progress,
                          .progress_fraction = 0.4,
                          .can_cancel = can_cancel,
@@ -158,6 +159,21 @@ void PanelStage::slide(const std::string& name, double from, double to) {
   for (int i = 0; i <= 8; ++i) step(x(from + (to - from) * i / 8), y, true);
   step(x(to), y, false);
   rest(2);
+}
+
+void PanelStage::enter(const std::string& name, const std::string& words, bool ctrl) {
+  constexpr int enter_key = 1;
+  ImGuiIO& io = ImGui::GetIO();
+  io.KeyMap[ImGuiKey_Enter] = enter_key;
+  io.KeyCtrl = ctrl;
+  click(name);
+  io.KeyCtrl = false;
+  io.AddInputCharactersUTF8(words.c_str());
+  rest(1);
+  io.KeysDown[enter_key] = true;
+  rest(1);
+  io.KeysDown[enter_key] = false;
+  rest(3);
 }
 
 bool PanelStage::has(const std::string& name) const {

@@ -163,6 +163,32 @@ TEST_P(PanelsOn, DistancesBringTheirLegendAndTakeTheSkinAway) {
   EXPECT_FALSE(stage.has("legend"));
 }
 
+TEST_P(PanelsOn, TheSkinComesBackAsItWasWhenDistancesAreOffAgain) {
+  stage.scene.distance_colours = distance_colours();
+  const auto run = [&](Command command) { stage.panels->run(command, stage.scene, stage.view); };
+  stage.view.skin_opacity = 0.8;
+  for (int i = 0; i < 2; ++i) {
+    run(Command::toggle_distances);
+    EXPECT_EQ(stage.view.skin_opacity, 0);
+    run(Command::toggle_distances);
+    EXPECT_EQ(stage.view.skin_opacity, 0.8);
+    run(Command::undo);
+    EXPECT_TRUE(stage.view.distances);
+    EXPECT_EQ(stage.view.skin_opacity, 0);
+    run(Command::toggle_distances);
+    EXPECT_EQ(stage.view.skin_opacity, 0.8);
+  }
+  // What the person sets meanwhile stays: thin, or none.
+  run(Command::toggle_distances);
+  stage.view.skin_opacity = 0.3;
+  run(Command::toggle_distances);
+  EXPECT_EQ(stage.view.skin_opacity, 0.3);
+  run(Command::toggle_skin);
+  run(Command::toggle_distances);
+  run(Command::toggle_distances);
+  EXPECT_EQ(stage.view.skin_opacity, 0);
+}
+
 TEST_P(PanelsOn, SkinIsSetBySliderAndButtons) {
   ASSERT_TRUE(stage.view.shows_face(stage.scene));
   stage.slide("skin", 0.9, 0.25);
@@ -283,6 +309,13 @@ INSTANTIATE_TEST_SUITE_P(Screens, PanelsOn,
                                   std::to_string(screen.param.height) + "scale" +
                                   std::to_string(static_cast<int>(screen.param.scale * 100));
                          });
+
+TEST(Theme, PanelsAreLargerOnFineScreensThatDoNotTellTheirScale) {
+  EXPECT_EQ(usual_scale(1, 3840), 1.5);
+  EXPECT_EQ(usual_scale(1, 5120), 1.5);
+  EXPECT_EQ(usual_scale(1, 2560), 1);
+  EXPECT_EQ(usual_scale(2, 3840), 1);
+}
 
 TEST(Theme, ScaleIsLoweredWherePanelsWouldNotFit) {
   EXPECT_FLOAT_EQ(fitting_scale(1, 1280, 720), 1);

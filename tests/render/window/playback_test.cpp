@@ -115,7 +115,7 @@ TEST(Quality, PicturesLeaveTheirTimeToASimulationThatNeedsIt) {
   governor.simulated(45);
   EXPECT_GT(governor.least_interval_s(), 0.05);
   EXPECT_LT(governor.least_interval_s(), 1.0 / 15);  // still 15 a second
-  governor.simulated(70);  // it would fall behind again
+  governor.simulated(70);                            // it would fall behind again
   EXPECT_GT(governor.least_interval_s(), 0.05);
   governor.simulated(200);
   EXPECT_EQ(governor.least_interval_s(), 0);

@@ -60,7 +60,9 @@ class RealWindow : public testing::Test {
                       .duration_s = 4,
                       .max_opening_mm = 50,
                       .distance_colours = distance_colours(),
-                      .bodies = movable_bodies(parts_)});
+                      .bodies = movable_bodies(parts_),
+                      .motions = motions_,
+                      .motion = {.spec = "opening", .parameters = {}, .excitations = {}}});
     // The lower teeth are told their height as a distance.
     const TriMesh& teeth = parts_[3].mesh;
     const std::vector<Eigen::Vector3f> normals(teeth.vertices.size(), {0, -1, 0});
@@ -182,6 +184,7 @@ class RealWindow : public testing::Test {
   std::filesystem::path folder_;
   WindowOptions options_;
   std::vector<Part> parts_ = box_patient();
+  std::vector<std::string> motions_ = {};
   bool closed_ = false;
   Image picture_;  // the last
 
@@ -491,6 +494,83 @@ TEST_F(RealWindow, APictureThatCannotBeSavedIsASentence) {
   });
 }
 
+TEST_F(RealWindow, KeysDoNothingBehindABoxButCloseIt) {
+  options_.picture_folder = folder_ / "missing" / "folder";
+  const auto has = [](const char* name) {
+    return [=](const Seen& s) {
+      return std::any_of(s.items.begin(), s.items.end(),
+                         [&](const DrawnItem& item) { return item.name == name; });
+    };
+  };
+  run([&] {
+    const Camera before = settled_camera();
+    for (const char* closing : {"Return", "Escape", "KP_Enter"}) {
+      EXPECT_TRUE(press("F12"));
+      ASSERT_TRUE(wait_until(has("error")));
+      for (const char* key : {"l", "a", "n", "k", "d", "m", "g", "space", "F1", "ctrl+z", "Tab"})
+        EXPECT_TRUE(press(key));
+      EXPECT_TRUE(press(closing));
+      EXPECT_TRUE(wait_until([&](const Seen& s) { return !has("error")(s); })) << closing;
+      const Seen now = seen();
+      EXPECT_EQ(now.view.tool, Tool::look);
+      EXPECT_FALSE(now.view.playing || now.view.distances || now.view.plots);
+      EXPECT_EQ(now.view.skin_opacity, 1);
+      EXPECT_FALSE(has("help")(now));
+      EXPECT_EQ(turned_rad(settled_camera(), before), 0);
+    }
+    EXPECT_TRUE(press("n"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.tool == Tool::measure; }));
+    EXPECT_TRUE(press("F1"));
+    ASSERT_TRUE(wait_until(has("help")));
+    EXPECT_TRUE(press("b"));
+    EXPECT_TRUE(press("F1"));
+    EXPECT_TRUE(wait_until([&](const Seen& s) { return !has("help")(s); }));
+    EXPECT_EQ(seen().view.tool, Tool::measure);
+  });
+}
+
+TEST_F(RealWindow, EscapeFoldsAListThatIsUnfolded) {
+  motions_ = {"opening", "chewing-left"};
+  const auto unfolded = [](const Seen& s) {
+    return std::any_of(s.items.begin(), s.items.end(),
+                       [](const DrawnItem& item) { return item.name == "motion:chewing-left"; });
+  };
+  run([&] {
+    click("tab:Motion");
+    ASSERT_TRUE(wait_until([](const Seen& s) { return s.view.tab == SideTab::motion; }));
+    std::this_thread::sleep_for(milliseconds(150));
+    click("motion");
+    ASSERT_TRUE(wait_until(unfolded));
+    const ViewRect other = place("motion:chewing-left");
+    EXPECT_TRUE(press("Escape"));
+    EXPECT_TRUE(wait_until([&](const Seen& s) { return !unfolded(s); }));
+    EXPECT_TRUE(xdotool({"mousemove", px(other.x + 20), px(other.y + 5), "click", "1"}));
+    std::this_thread::sleep_for(milliseconds(300));
+    EXPECT_EQ(seen().view.motion.spec, "opening");
+  });
+}
+
+TEST_F(RealWindow, CtrlClickTypesASlidersNumberAndItsKeysAreNoCommands) {
+  run([&] {
+    const Camera before = settled_camera();
+    const ViewRect r = place("skin");
+    EXPECT_TRUE(xdotool({"keydown", "ctrl", "mousemove", px(r.x + r.width / 2),
+                         px(r.y + r.height / 2), "click", "1", "keyup", "ctrl"}));
+    ASSERT_TRUE(wait_until([](const Seen& s) {
+      return std::any_of(s.items.begin(), s.items.end(),
+                         [](const DrawnItem& item) { return item.name == "writing"; });
+    }));
+    EXPECT_EQ(seen().view.skin_opacity, 1) << "a click alone sets nothing";
+    EXPECT_TRUE(xdotool({"type", "al30"}));
+    EXPECT_TRUE(press("Return"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.skin_opacity == 0.3; }))
+        << seen().view.skin_opacity;
+    EXPECT_EQ(turned_rad(settled_camera(), before), 0);
+    EXPECT_TRUE(press("ctrl+z"));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.skin_opacity == 1; }));
+  });
+}
+
 TEST_F(RealWindow, AnIdleWindowRests) {
   run([&] {
     const auto cpu_s = [] {
@@ -542,6 +622,36 @@ TEST_F(RealWindow, AScaledInterfaceStillFits) {
       EXPECT_LE(item.rect.x + item.rect.width, 1000.5) << item.name;
       EXPECT_LE(item.rect.y + item.rect.height, 600.5) << item.name;
     }
+  });
+}
+
+TEST_F(RealWindow, CtrlKeysAndButtonsScaleThePanels) {
+  options_.width = 1180;  // where a little more than 1 fits
+  options_.height = 720;
+  const auto wide = [&] { return place("left").width; };
+  const auto becomes = [&](double width) {
+    return wait_until([&](const Seen& s) {
+      return std::any_of(s.items.begin(), s.items.end(), [&](const DrawnItem& item) {
+        return item.name == "left" && std::abs(item.rect.width - width) < 1.5;
+      });
+    });
+  };
+  run([&] {
+    const double usual = wide();
+    EXPECT_TRUE(press("ctrl+minus"));
+    EXPECT_TRUE(becomes(0.9 * usual)) << wide();
+    EXPECT_TRUE(press("ctrl+minus"));
+    EXPECT_TRUE(becomes(0.8 * usual)) << wide();
+    EXPECT_TRUE(press("ctrl+equal"));
+    EXPECT_TRUE(becomes(0.9 * usual)) << wide();
+    EXPECT_TRUE(press("ctrl+0"));
+    EXPECT_TRUE(becomes(usual)) << wide();
+    // What does not fit leaves all as it is, and one step down is seen at once.
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(press("ctrl+equal"));
+    std::this_thread::sleep_for(milliseconds(300));
+    EXPECT_TRUE(becomes(usual)) << wide();
+    EXPECT_TRUE(press("ctrl+minus"));
+    EXPECT_TRUE(becomes(0.9 * usual)) << wide();
   });
 }
 

@@ -79,8 +79,9 @@ TEST(JawJoints, GivenInclinationIsTheSecantOfFiveMillimetresOnEachSide) {
         jaw_in_fossae(),
         {.inclination_left_deg = 30, .inclination_right_deg = 52, .path_shape = shape},
         JointReach::straight, 1);
-    EXPECT_NEAR(std::atan2(joints.drop_mm(JawSide::left, 5), 5) / radian_per_degree, 30, 1e-6);
-    EXPECT_NEAR(std::atan2(joints.drop_mm(JawSide::right, 5), 5) / radian_per_degree, 52, 1e-6);
+    EXPECT_NEAR(joints.inclination_deg(JawSide::left), 30, 1e-6);
+    EXPECT_NEAR(joints.inclination_deg(JawSide::right), 52, 1e-6);
+    EXPECT_NEAR(joints.drop_mm(JawSide::left, 5), 5 * std::tan(30 * radian_per_degree), 1e-6);
   }
 }
 
