@@ -279,7 +279,7 @@ void Passes::shade_interior(const DrawItem& item, const PictureView& view) {
   if (item.drawable->closed && !item.cut()) return;
   glEnable(GL_CULL_FACE);
   glCullFace(GL_FRONT);
-  begin(interiors_, item, view, false).set("capped", view.capped ? 1.f : 0.f);
+  begin(interiors_, item, view, false).set("capped", view.capped && item.opaque() ? 1.f : 0.f);
   item.mesh().draw(visibility_.choose(item.mesh(), surface_of(item, view), item.model, eye_of(view),
                                       Sides::back, &cover_));
   end_cut();

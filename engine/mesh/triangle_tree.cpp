@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -113,6 +114,7 @@ TriangleTree::TriangleTree(const TriMesh& mesh) {
 }
 
 TriangleTree TriangleTree::moved(const TriMesh& mesh) const {
+  assert(mesh.triangles.size() == slot_.size());
   TriangleTree tree;
   tree.nodes_ = nodes_;
   tree.triangle_ = triangle_;
@@ -315,6 +317,7 @@ SurfacePoint TriangleTree::signed_nearest(const Vector3d& p, double reach) const
 }
 
 Vector3d TriangleTree::pseudonormal(const SurfacePoint& found) const {
+  assert(!corner_normals_.empty());
   const int s = slot_[found.triangle];
   const Vector3d& b = found.barycentric;
   const int zeros = (b[0] == 0) + (b[1] == 0) + (b[2] == 0);

@@ -28,7 +28,7 @@ class TriangleTree {
   explicit TriangleTree(const TriMesh& mesh);
 
   /// The tree of the same triangles elsewhere, as this one was split: made much sooner, and for
-  /// `nearest` alone. Those that have lost their area count as lines.
+  /// `nearest` alone. Those that have lost their area may be an answer or not.
   TriangleTree moved(const TriMesh& mesh) const;
 
   bool empty() const { return corners_.empty(); }

@@ -1,6 +1,7 @@
 #include "engine/tissue/net_surface.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace condyle {
 namespace {

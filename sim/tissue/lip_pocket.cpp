@@ -2,22 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <queue>
 #include <set>
 
 #include "engine/core/infinity.h"
+#include "engine/mesh/topology.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double deep_mm = 5;  // behind the line, in the middle of the mouth: a pocket
+constexpr double deep_mm = 10;  // behind the lips' fronts, in the middle of the mouth: a pocket
 constexpr double middle_mm = 8;
-constexpr double high_mm = 12, beside_mm = 3, back_mm = 30;  // about the line: where it may lie
-constexpr double steep_mm = 3;                               // so much deeper, a way costs a third
-constexpr double level_mm = 4;  // so far above or below the line, twice as much
+constexpr double high_mm = 12, back_mm = 30;  // about the line: where it may lie
+constexpr double corner_mm = 2.5;             // of a corner: where the foremost skin is it
+constexpr double steep_mm = 3;                // so much deeper, a way costs a third
+constexpr double level_mm = 4;                // so far above or below the line, twice as much
 
 }  // namespace
 
@@ -28,32 +31,46 @@ std::vector<int> pocket_bottom(const TriMesh& face, const Vector3d& right, const
     const Vector3d& b = p.x() < middle.x() ? middle : left;
     return p.z() - (a.z() + (p.x() - a.x()) / (b.x() - a.x()) * (b.z() - a.z()));
   };
-  const auto depth = [&](int v) { return face.vertices[v].y() - middle.y(); };
+  const auto in_zone = [&](int v) {
+    const Vector3d& p = face.vertices[v];
+    return p.x() > right.x() - corner_mm && p.x() < left.x() + corner_mm &&
+           std::abs(height(p)) < high_mm && p.y() < middle.y() + back_mm;
+  };
+  std::set<int> border;
+  for (const auto& edge : find_edges(face).edges)
+    if (edge.count != 2 && in_zone(edge.low)) border.insert({edge.low, edge.high});
   std::map<int, std::vector<int>> near;  // the vertices about the line and their neighbours
-  bool pocket = false;
+  double front = infinity;               // of the lips in the middle
   for (const auto& t : face.triangles) {
-    bool inside = true;
-    for (int v : t) {
-      const Vector3d& p = face.vertices[v];
-      inside = inside && p.x() > right.x() - beside_mm && p.x() < left.x() + beside_mm &&
-               std::abs(height(p)) < high_mm && depth(v) < back_mm;
-      pocket = pocket || (inside && std::abs(p.x() - middle.x()) < middle_mm &&
-                          depth(v) > deep_mm && std::abs(height(p)) < high_mm / 2);
-    }
-    if (!inside) continue;
+    if (!std::all_of(t.begin(), t.end(), in_zone)) continue;
     for (int k = 0; k < 3; ++k) {
-      near[t[k]].push_back(t[(k + 1) % 3]);
-      near[t[(k + 1) % 3]].push_back(t[k]);
+      const int a = t[k], b = t[(k + 1) % 3];
+      const Vector3d& p = face.vertices[a];
+      if (std::abs(p.x() - middle.x()) < middle_mm) front = std::min(front, p.y());
+      if (border.count(a) || border.count(b)) continue;
+      near[a].push_back(b);
+      near[b].push_back(a);
     }
   }
-  if (!pocket) return {};
-  const auto nearest = [&](const Vector3d& p) {
-    int best = near.begin()->first;
+  if (near.empty() || front == infinity) return {};
+  // The skin, not what may lie behind it.
+  const auto corner = [&](const Vector3d& at) {
+    const auto off = [&](int v) {
+      return std::hypot(face.vertices[v].x() - at.x(), face.vertices[v].z() - at.z());
+    };
+    double foremost = infinity;
     for (const auto& [v, _] : near)
-      if ((face.vertices[v] - p).squaredNorm() < (face.vertices[best] - p).squaredNorm()) best = v;
+      if (off(v) < corner_mm) foremost = std::min(foremost, face.vertices[v].y());
+    int best = -1;
+    for (const auto& [v, _] : near)
+      if (face.vertices[v].y() < foremost + corner_mm && off(v) < corner_mm &&
+          (best < 0 || off(v) < off(best)))
+        best = v;
     return best;
   };
-  const int from = nearest(right), to = nearest(left);
+  const int from = corner(right), to = corner(left);
+  if (from < 0 || to < 0) return {};
+  const double first_x = face.vertices[from].x(), last_x = face.vertices[to].x();
 
   std::map<int, double> cost{{from, 0.0}};
   std::map<int, int> before;
@@ -65,9 +82,12 @@ std::vector<int> pocket_bottom(const TriMesh& face, const Vector3d& right, const
     waiting.pop();
     if (so_far > cost[v]) continue;
     for (int n : near[v]) {
-      const double off = height(face.vertices[n]) / level_mm;
-      const double way = (face.vertices[n] - face.vertices[v]).norm() * (1 + off * off) *
-                         std::exp(-0.5 * (depth(v) + depth(n)) / steep_mm);
+      const Vector3d& p = face.vertices[n];
+      if (n != to && (p.x() <= first_x || p.x() >= last_x)) continue;  // the ends are the corners
+      const double off = height(p) / level_mm;
+      const double depth = 0.5 * (p.y() + face.vertices[v].y()) - middle.y();
+      const double way =
+          (p - face.vertices[v]).norm() * (1 + off * off) * std::exp(-depth / steep_mm);
       const auto known = cost.try_emplace(n, infinity).first;
       if (so_far + way >= known->second) continue;
       known->second = so_far + way;
@@ -79,7 +99,11 @@ std::vector<int> pocket_bottom(const TriMesh& face, const Vector3d& right, const
   std::vector<int> run{to};
   while (run.back() != from) run.push_back(before[run.back()]);
   std::reverse(run.begin(), run.end());
-  return run;
+  double shallowest = infinity;
+  for (int v : run)
+    if (std::abs(face.vertices[v].x() - middle.x()) < middle_mm)
+      shallowest = std::min(shallowest, face.vertices[v].y());
+  return shallowest > front + deep_mm && shallowest < infinity ? run : std::vector<int>{};
 }
 
 void cut_along(const std::vector<int>& run, TriMesh& surface) {

@@ -160,13 +160,16 @@ MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vecto
                           std::vector<std::string>& notes) {
   const auto line = find_lip_line(landmarks, incisors, notes);
   if (!line) return {};
-  auto bottom = pocket_bottom(face, line->right, line->middle, line->left);
-  if (!bottom.empty()) {
+  if (auto bottom = pocket_bottom(face, line->right, line->middle, line->left); !bottom.empty()) {
     if (!faces_outward(face)) std::reverse(bottom.begin(), bottom.end());
-    cut_along(bottom, face);
-    notes.push_back(
-        "the lips were one surface: parted along the bottom of the pocket between them");
-    return find_mouth(face, landmarks, incisors);
+    TriMesh parted = face;
+    cut_along(bottom, parted);
+    if (const MouthOutline mouth = find_mouth(parted, landmarks, incisors); mouth.found()) {
+      face = std::move(parted);
+      notes.push_back(
+          "the lips were one surface: parted along the bottom of the pocket between them");
+      return mouth;
+    }
   }
   // Only the front of the face near the line: not the nape behind it.
   const auto near = [&](const Eigen::Vector3i& t) {

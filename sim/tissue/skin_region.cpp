@@ -143,7 +143,7 @@ void separate_fans(TriMesh& mesh, std::vector<int>& source) {
 std::vector<char> find_lining(const TriMesh& mesh, const MouthOutline& opening,
                               const Anatomy& anatomy) {
   constexpr double least_facing = 0.25;
-  constexpr double reach_mm = 40;
+  constexpr double reach_mm = 80;  // down to the throat
   std::vector<char> lining(mesh.triangles.size(), 0);
   if (!opening.found()) return lining;
   std::vector<std::vector<int>> around(mesh.vertices.size());
@@ -179,6 +179,28 @@ std::vector<char> find_lining(const TriMesh& mesh, const MouthOutline& opening,
     lining[t] = inner[tri[0]] + inner[tri[1]] + inner[tri[2]] >= 2;
   }
   return lining;
+}
+
+/// Of a displayed face whose lips part at vertices of the same place: those that were joined take
+/// the side of what their triangles belong to.
+void tell_joined_sides(const TriMesh& face, const std::vector<char>& used,
+                       std::vector<signed char>& side) {
+  std::vector<int> votes(face.vertices.size(), 0);
+  for (int round = 0; round < 2; ++round) {  // the second for those among joined ones alone
+    const auto counts = [&](int v) { return used[v] || (round > 0 && votes[v] != 0); };
+    std::vector<int> more(face.vertices.size(), 0);
+    for (const auto& t : face.triangles) {
+      int sum = 0;
+      for (int v : t) sum += counts(v) ? side[v] : 0;
+      for (int v : t)
+        if (!used[v] && votes[v] == 0) more[v] += sum;
+    }
+    for (std::size_t v = 0; v < votes.size(); ++v) {
+      if (more[v] == 0) continue;
+      votes[v] = more[v];
+      side[v] = more[v] > 0 ? 1 : -1;
+    }
+  }
 }
 
 }  // namespace
@@ -267,10 +289,19 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
   MouthOutline edge = region.mouth;
   for (auto* run : {&edge.upper, &edge.lower})
     for (int& v : *run) v = kept_vertex[v];
-  const auto side = sides_of(mesh, edge, region.slit, 30);
+  std::vector<char> lines(mesh.vertices.size(), 0);
+  for (std::size_t t = 0; t < lining.size(); ++t)
+    if (lining[t])
+      for (int v : mesh.triangles[t]) lines[v] = 1;
+  const auto side = sides_of(mesh, edge, region.slit, 30, lines);
   region.face_side.assign(face.vertices.size(), 0);
   for (std::size_t v = 0; v < side.size(); ++v)
     if (source[v] >= 0) region.face_side[source[v]] = side[v];
+  std::vector<char> used(face.vertices.size(), 0);
+  for (const auto& t : mesh.triangles)
+    for (int v : t)
+      if (source[v] >= 0) used[source[v]] = 1;
+  tell_joined_sides(face, used, region.face_side);
   region.mesh = std::move(part);
   return region;
 }

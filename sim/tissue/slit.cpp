@@ -68,7 +68,8 @@ double LipSlit::distance(const Vector3d& p, int side_p, const Vector3d& q, int s
 }
 
 std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth,
-                                  const LipSlit& slit, double reach) {
+                                  const LipSlit& slit, double reach,
+                                  const std::vector<char>& lining) {
   std::vector<signed char> side(skin.vertices.size());
   for (std::size_t v = 0; v < side.size(); ++v)
     side[v] = static_cast<signed char>(slit.side(skin.vertices[v]));
@@ -95,7 +96,7 @@ std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth
     open.erase(open.begin());
     for (int n : ring[v]) {
       const double next = d + (skin.vertices[n] - skin.vertices[v]).norm();
-      if (next >= way[n] || next > reach) continue;
+      if (next >= way[n] || (next > reach && (lining.empty() || !lining[n]))) continue;
       open.erase({way[n], n});
       way[n] = next;
       side[n] = side[v];

@@ -29,8 +29,9 @@ class LipSlit {
 };
 
 /// Side of each vertex: that of the lip which is nearer along the surface, up to `reach` mm from
-/// the mouth; by height beyond.
+/// the mouth; by height beyond. `lining` (of each vertex; or none): belongs to a lip however far.
 std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth,
-                                  const LipSlit& slit, double reach);
+                                  const LipSlit& slit, double reach,
+                                  const std::vector<char>& lining = {});
 
 }  // namespace condyle

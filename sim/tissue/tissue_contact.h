@@ -53,7 +53,7 @@ struct ContactSource {
   const Pose& wide_open;             // X_CM
 };
 /// Moves the nodes of closed lips apart where the coarse lips overlap, so that at rest neither is
-/// inside the other. Gives the farthest way, mm. Of `from`, what is said of nodes is not used.
+/// inside the other. Gives the farthest way, mm. `from.held`, `share` and `wide_open` are not used.
 double part_closed_lips(const ContactSource& from, Nodes& rest);
 
 /// Cranium and mandible with teeth, merged. Fields are kept in the cache of the user.

@@ -67,6 +67,18 @@ TEST(FaceScan, OfAnotherPersonOverScaledBonesIsBuiltAndOpens) {
     most = std::max(most, (face[v].cast<double>() - scan[v]).norm());
   }
   EXPECT_GT(most, 25);
+  // No skin hangs between the lips: each goes with its own. Behind them the lining is stretched.
+  double stretched = 0;
+  const auto& corners = patient.find(Role::face)->mesh;
+  for (const auto& t : corners.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      if (std::max(corners.vertices[a].y(), corners.vertices[b].y()) > stomion.y() + 15) continue;
+      const double before = (corners.vertices[a] - corners.vertices[b]).norm();
+      stretched = std::max(stretched, static_cast<double>((face[a] - face[b]).norm()) - before);
+    }
+  std::printf("an edge of the face is longer by up to %.1f mm\n", stretched);
+  EXPECT_LT(stretched, 6);
   // Both lips go with their own jaw.
   const auto moved = [&](const char* name) {
     const Vector3d at = *patient.landmarks.find(name);

@@ -49,8 +49,32 @@ TEST(LipPocket, ItsBottomIsFoundFromCornerToCorner) {
   EXPECT_LT((face.vertices[run.back()] - left).norm(), 0.5);
   for (int v : run) {
     const Vector3d& p = face.vertices[v];
-    EXPECT_GT(p.y(), 13.5 * std::sqrt(std::max(0.0, 1 - p.x() * p.x() / 625)) - 0.5);
+    EXPECT_GT(p.y(), 13.5 * std::sqrt(std::max(0.0, 1 - p.x() * p.x() / 625)) - 1);
   }
+}
+
+// Such as the inside of a thick skin: it hangs together with the front only far away.
+TEST(LipPocket, AWallBehindTheFaceIsNone) {
+  TriMesh face = wall(3, 0.2);
+  const TriMesh front = face;
+  const int count = static_cast<int>(front.vertices.size());
+  for (const auto& v : front.vertices) face.vertices.push_back(v + Vector3d(0, 12, 0));
+  for (const auto& t : front.triangles)
+    face.triangles.emplace_back(t[0] + count, t[2] + count, t[1] + count);
+  EXPECT_TRUE(pocket_bottom(face, right, middle, left).empty());
+}
+
+TEST(LipPocket, AHoleInTheWayIsGoneRound) {
+  TriMesh face = wall(14, 0.2);
+  std::erase_if(face.triangles, [&](const Eigen::Vector3i& t) {
+    const Vector3d p = (face.vertices[t[0]] + face.vertices[t[1]] + face.vertices[t[2]]) / 3;
+    return std::abs(p.x()) < 3 && std::abs(p.z()) < 0.7 && p.y() > 5;
+  });
+  const std::size_t loops = border_loops(face).size();
+  const auto run = pocket_bottom(face, right, middle, left);
+  if (run.empty()) return;  // left to the plane
+  cut_along(run, face);
+  EXPECT_EQ(border_loops(face).size(), loops + 1);
 }
 
 TEST(LipPocket, AFaceWithoutOneHasNone) {
