@@ -24,17 +24,12 @@ constexpr double level_mm = 4;                // so far above or below the line,
 
 }  // namespace
 
-std::vector<int> pocket_bottom(const TriMesh& face, const Vector3d& right, const Vector3d& middle,
-                               const Vector3d& left) {
-  const auto height = [&](const Vector3d& p) {
-    const Vector3d& a = p.x() < middle.x() ? right : middle;
-    const Vector3d& b = p.x() < middle.x() ? middle : left;
-    return p.z() - (a.z() + (p.x() - a.x()) / (b.x() - a.x()) * (b.z() - a.z()));
-  };
+std::vector<int> pocket_bottom(const TriMesh& face, const LipLine& line) {
+  const auto& [right, middle, left] = line;
   const auto in_zone = [&](int v) {
     const Vector3d& p = face.vertices[v];
     return p.x() > right.x() - corner_mm && p.x() < left.x() + corner_mm &&
-           std::abs(height(p)) < high_mm && p.y() < middle.y() + back_mm;
+           std::abs(line.height(p)) < high_mm && p.y() < middle.y() + back_mm;
   };
   std::set<int> border;
   for (const auto& edge : find_edges(face).edges)
@@ -84,7 +79,7 @@ std::vector<int> pocket_bottom(const TriMesh& face, const Vector3d& right, const
     for (int n : near[v]) {
       const Vector3d& p = face.vertices[n];
       if (n != to && (p.x() <= first_x || p.x() >= last_x)) continue;  // the ends are the corners
-      const double off = height(p) / level_mm;
+      const double off = line.height(p) / level_mm;
       const double depth = 0.5 * (p.y() + face.vertices[v].y()) - middle.y();
       const double way =
           (p - face.vertices[v]).norm() * (1 + off * off) * std::exp(-depth / steep_mm);

@@ -7,14 +7,24 @@
 
 namespace condyle {
 
-/// Scans of closed mouths often have a pocket between the lips, whose walls belong to one lip or
-/// the other: they part along its bottom, not where a plane cuts the walls.
+/// Where the lips of a closed mouth meet, as seen from the front, mm: corners and middle.
+struct LipLine {
+  Eigen::Vector3d right, middle, left;
 
-/// Vertices along edges, from the right corner of the mouth to the left, where the pocket is
-/// deepest; empty where there is none, or where a hole is in the way. right, middle, left: of the
-/// line where the lips meet, mm. The face looks to -y.
-std::vector<int> pocket_bottom(const TriMesh& face, const Eigen::Vector3d& right,
-                               const Eigen::Vector3d& middle, const Eigen::Vector3d& left);
+  /// Height above the line.
+  double height(const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d& a = p.x() < middle.x() ? right : middle;
+    const Eigen::Vector3d& b = p.x() < middle.x() ? middle : left;
+    return p.z() - (a.z() + (p.x() - a.x()) / (b.x() - a.x()) * (b.z() - a.z()));
+  }
+  bool spans(double x) const { return x > right.x() && x < left.x(); }
+};
+
+/// Scans of closed mouths often have a pocket between the lips, whose walls belong to one lip or
+/// the other: they part along its bottom, not where a plane cuts the walls. Gives the vertices
+/// along edges, from the right corner of the mouth to the left, where the pocket is deepest; empty
+/// where there is none, or where a hole is in the way. The face looks to -y.
+std::vector<int> pocket_bottom(const TriMesh& face, const LipLine& line);
 
 /// Cuts a surface along a run of its edges, none at a border: all vertices but the ends get a twin
 /// (at the end of the list; colours too), which the triangles to the right of the run, seen from

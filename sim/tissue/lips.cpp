@@ -124,19 +124,6 @@ MouthOutline find_mouth(const TriMesh& face, const Landmarks& landmarks, const V
 
 namespace {
 
-/// Where the lips of a closed mouth meet, as seen from the front.
-struct LipLine {
-  Vector3d right, middle, left;
-
-  /// Height above the line.
-  double height(const Vector3d& p) const {
-    const Vector3d& a = p.x() < middle.x() ? right : middle;
-    const Vector3d& b = p.x() < middle.x() ? middle : left;
-    return p.z() - (a.z() + (p.x() - a.x()) / (b.x() - a.x()) * (b.z() - a.z()));
-  }
-  bool spans(double x) const { return x > right.x() && x < left.x(); }
-};
-
 std::optional<LipLine> find_lip_line(const Landmarks& landmarks, const Vector3d& incisors,
                                      std::vector<std::string>& notes) {
   LipLine line;
@@ -160,7 +147,7 @@ MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vecto
                           std::vector<std::string>& notes) {
   const auto line = find_lip_line(landmarks, incisors, notes);
   if (!line) return {};
-  if (auto bottom = pocket_bottom(face, line->right, line->middle, line->left); !bottom.empty()) {
+  if (auto bottom = pocket_bottom(face, *line); !bottom.empty()) {
     if (!faces_outward(face)) std::reverse(bottom.begin(), bottom.end());
     TriMesh parted = face;
     cut_along(bottom, parted);

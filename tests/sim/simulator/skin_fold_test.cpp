@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdio>
 
 #include "engine/collide/triangle_distance.h"
 #include "engine/tissue/layered_net.h"

@@ -39,14 +39,14 @@ TriMesh wall(double depth, double gap) {
   return mesh;
 }
 
-const Vector3d right(-25, 0, 0), middle(0, 0, 0), left(25, 0, 0);
+const LipLine line{{-25, 0, 0}, {0, 0, 0}, {25, 0, 0}};
 
 TEST(LipPocket, ItsBottomIsFoundFromCornerToCorner) {
   const TriMesh face = wall(14, 0.2);
-  const auto run = pocket_bottom(face, right, middle, left);
+  const auto run = pocket_bottom(face, line);
   ASSERT_GT(run.size(), 30u);
-  EXPECT_LT((face.vertices[run.front()] - right).norm(), 0.5);
-  EXPECT_LT((face.vertices[run.back()] - left).norm(), 0.5);
+  EXPECT_LT((face.vertices[run.front()] - line.right).norm(), 0.5);
+  EXPECT_LT((face.vertices[run.back()] - line.left).norm(), 0.5);
   for (int v : run) {
     const Vector3d& p = face.vertices[v];
     EXPECT_GT(p.y(), 13.5 * std::sqrt(std::max(0.0, 1 - p.x() * p.x() / 625)) - 1);
@@ -61,32 +61,39 @@ TEST(LipPocket, AWallBehindTheFaceIsNone) {
   for (const auto& v : front.vertices) face.vertices.push_back(v + Vector3d(0, 12, 0));
   for (const auto& t : front.triangles)
     face.triangles.emplace_back(t[0] + count, t[2] + count, t[1] + count);
-  EXPECT_TRUE(pocket_bottom(face, right, middle, left).empty());
+  EXPECT_TRUE(pocket_bottom(face, line).empty());
 }
 
-TEST(LipPocket, AHoleInTheWayIsGoneRound) {
+/// A wall with a pocket whose bottom is gone in the middle, from this depth on.
+TriMesh wall_with_hole(double from_mm) {
   TriMesh face = wall(14, 0.2);
   std::erase_if(face.triangles, [&](const Eigen::Vector3i& t) {
     const Vector3d p = (face.vertices[t[0]] + face.vertices[t[1]] + face.vertices[t[2]]) / 3;
-    return std::abs(p.x()) < 3 && std::abs(p.z()) < 0.7 && p.y() > 5;
+    return std::abs(p.x()) < 3 && p.y() > from_mm;
   });
+  return face;
+}
+
+TEST(LipPocket, AHoleInTheWayIsGoneRoundOrLeavesItToOthers) {
+  TriMesh face = wall_with_hole(13);
   const std::size_t loops = border_loops(face).size();
-  const auto run = pocket_bottom(face, right, middle, left);
-  if (run.empty()) return;  // left to the plane
+  const auto run = pocket_bottom(face, line);
+  ASSERT_FALSE(run.empty());
   cut_along(run, face);
   EXPECT_EQ(border_loops(face).size(), loops + 1);
+  EXPECT_TRUE(pocket_bottom(wall_with_hole(5), line).empty());  // what is left is not deep
 }
 
 TEST(LipPocket, AFaceWithoutOneHasNone) {
-  EXPECT_TRUE(pocket_bottom(wall(0, 0), right, middle, left).empty());
-  EXPECT_TRUE(pocket_bottom(wall(3, 0.2), right, middle, left).empty());
+  EXPECT_TRUE(pocket_bottom(wall(0, 0), line).empty());
+  EXPECT_TRUE(pocket_bottom(wall(3, 0.2), line).empty());
 }
 
 TEST(LipPocket, ACutAlongARunOfEdgesOpensItAndNothingElse) {
   TriMesh face = wall(14, 0.2);
   face.colors.assign(face.vertices.size(), Eigen::Vector3f(0.5f, 0.2f, 0.1f));
   const TriMesh whole = face;
-  const auto run = pocket_bottom(face, right, middle, left);
+  const auto run = pocket_bottom(face, line);
   cut_along(run, face);
   EXPECT_EQ(face.vertices.size(), whole.vertices.size() + run.size() - 2);
   EXPECT_EQ(face.colors.size(), face.vertices.size());
