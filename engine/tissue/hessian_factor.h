@@ -6,13 +6,9 @@
 
 #include "engine/minimize/objective.h"
 #include "engine/tissue/block_cholesky.h"
-#include "engine/tissue/spring_prism.h"
+#include "engine/tissue/hessian_assembly.h"
 
 namespace condyle {
-
-/// Which second derivatives: all; or without the parts that may be negative (of shortened springs,
-/// and of volumes under pressure), which is always positive definite.
-enum class Curvatures { gauss_newton, exact };
 
 /// Cholesky factor of a net's Hessian at one state: the preconditioner of the
 /// minimiser. Compressed springs keep only their stiffness along the spring and volumes the square
@@ -44,12 +40,10 @@ class HessianFactor final : public Preconditioner {
   std::size_t bytes() const override;
 
  private:
-  /// Where the net's springs and prisms go; made once.
-  struct Pattern;
-  HessianFactor(std::shared_ptr<const Pattern> pattern, BlockCholesky factor);
+  HessianFactor(std::shared_ptr<const HessianPattern> pattern, BlockCholesky factor);
 
   int threads_ = 1;
-  std::shared_ptr<const Pattern> pattern_;
+  std::shared_ptr<const HessianPattern> pattern_;
   BlockCholesky factor_;
 };
 

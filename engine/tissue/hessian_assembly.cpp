@@ -1,0 +1,297 @@
+#include "engine/tissue/hessian_assembly.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <utility>
+
+namespace condyle {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Spot = HessianPattern::Spot;
+
+std::shared_ptr<const FrontTree> make_tree(const SpringPrismNet& net, int nodes_per_column,
+                                           const Nodes& x) {
+  const int columns = net.node_count / nodes_per_column;
+  std::vector<std::vector<int>> ring(columns);
+  const auto couple = [&](int a, int b) {
+    a /= nodes_per_column;
+    b /= nodes_per_column;
+    if (a == b) return;
+    ring[a].push_back(b);
+    ring[b].push_back(a);
+  };
+  for (std::size_t s = 0; s < net.spring_a.size(); ++s) couple(net.spring_a[s], net.spring_b[s]);
+  for (const auto& prism : net.prisms)
+    for (int a = 0; a < 6; ++a)
+      for (int b = 0; b < a; ++b) couple(prism[a], prism[b]);
+  for (const auto& [a, b] : net.may_touch) couple(a, b);
+  for (auto& r : ring) {
+    std::sort(r.begin(), r.end());
+    r.erase(std::unique(r.begin(), r.end()), r.end());
+  }
+  std::vector<Vector3d> position;
+  for (int c = 0; c < columns; ++c) position.push_back(x[c * nodes_per_column]);
+  return std::make_shared<const FrontTree>(ring, elimination_order(ring, position),
+                                           3 * nodes_per_column);
+}
+
+typedef float Column __attribute__((vector_size(4 * sizeof(float))));
+inline Column column_of(const Vector3d& v) {
+  return Column{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
+}
+/// What stands below the column stays: the fourth number is 0.
+inline void add_column(float* to, const Column& column) {
+  Column sum;
+  std::memcpy(&sum, to, sizeof sum);
+  sum += column;
+  std::memcpy(to, &sum, sizeof sum);
+}
+inline Column cross(const Column& a, const Column& b) {
+  const Column a1 = __builtin_shufflevector(a, a, 1, 2, 0, 3),
+               b1 = __builtin_shufflevector(b, b, 1, 2, 0, 3);
+  const Column c = a * b1 - a1 * b;
+  return __builtin_shufflevector(c, c, 1, 2, 0, 3);
+}
+inline float dot(const Column& a, const Column& b) {
+  const Column c = a * b;
+  return c[0] + c[1] + c[2];
+}
+template <class Columns>
+inline void add_product(Columns& to, const Column& a, const Column& b) {  // += a b^T
+  for (int k = 0; k < 3; ++k) to[k] += b[k] * a;
+}
+
+/// As prism_volume_bend, times 12 * `scale`, of corners taken from corner 0.
+inline std::array<Column, HessianPattern::corner_pairs> volume_bend(const std::array<Column, 6>& c,
+                                                                    float scale) {
+  std::array<Column, HessianPattern::corner_pairs> bend;
+  const auto of = [&](int a, int b) -> Column& { return bend[a * (a - 1) / 2 + b]; };
+  of(2, 1) = -scale * (c[4] + c[5]);
+  of(3, 1) = scale * c[4];
+  of(4, 1) = scale * (c[2] + c[5] - c[3]);
+  of(5, 1) = scale * (c[2] - c[4]);
+  of(3, 2) = -scale * c[5];
+  of(4, 2) = scale * (c[5] - c[1]);
+  of(5, 2) = scale * (c[3] - c[1] - c[4]);
+  of(4, 3) = scale * (c[1] - 2 * c[5]);
+  of(5, 3) = scale * (2 * c[4] - c[2]);
+  of(5, 4) = scale * (c[1] + c[2] - 2 * c[3]);
+  of(1, 0) = of(2, 1) + of(3, 1) + of(4, 1) + of(5, 1);  // the rows sum to zero
+  of(2, 0) = of(3, 2) + of(4, 2) + of(5, 2) - of(2, 1);
+  of(3, 0) = of(4, 3) + of(5, 3) - of(3, 1) - of(3, 2);
+  of(4, 0) = of(5, 4) - of(4, 1) - of(4, 2) - of(4, 3);
+  of(5, 0) = -(of(5, 1) + of(5, 2) + of(5, 3) + of(5, 4));
+  return bend;
+}
+
+/// The corners of each pair, as HessianPattern::prism has them.
+constexpr std::array<std::pair<int, int>, HessianPattern::corner_pairs> corners_of = [] {
+  std::array<std::pair<int, int>, HessianPattern::corner_pairs> corners{};
+  for (int a = 0, pair = 0; a < 6; ++a)
+    for (int b = 0; b < a; ++b) corners[pair++] = {a, b};
+  return corners;
+}();
+
+}  // namespace
+
+HessianPattern::HessianPattern(const SpringPrismNet& net, int nodes, const Nodes& x)
+    : tree(make_tree(net, nodes, x)), nodes_per_column(nodes) {
+  for (int n = 0; n < net.node_count; ++n)
+    seats.push_back(tree->place[n / nodes] * nodes + n % nodes);
+  diagonal.resize(net.node_count);
+  for (int n = 0; n < net.node_count; ++n) diagonal[seats[n]] = spot(n, n);
+  const auto pair_part = [&](int a, int b) { return std::min(part_of(a), part_of(b)); };
+  for (std::size_t s = 0; s < net.spring_a.size(); ++s) {
+    const int a = net.spring_a[s], b = net.spring_b[s];
+    spring.push_back(spot(a, b));
+    elements[pair_part(a, b)].springs.push_back(static_cast<int>(s));
+  }
+  for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
+    elements[part_of(net.anchor_node[i])].anchors.push_back(static_cast<int>(i));
+  for (std::size_t p = 0; p < net.prisms.size(); ++p) {
+    const auto& corner = net.prisms[p];
+    std::map<int, std::uint16_t> pairs;
+    for (int corner_a = 0, bit = 0; corner_a < 6; ++corner_a)
+      for (int corner_b = 0; corner_b < corner_a; ++corner_b, ++bit) {
+        prism.push_back(spot(corner[corner_a], corner[corner_b]));
+        pairs[pair_part(corner[corner_a], corner[corner_b])] |=
+            static_cast<std::uint16_t>(1u << bit);
+      }
+    for (const auto& [part, bits] : pairs)
+      elements[part].prisms.push_back({static_cast<int>(p), bits, part == pairs.begin()->first});
+  }
+}
+
+Spot HessianPattern::spot(int a, int b) const {
+  const int row = seats[a] > seats[b] ? a : b, column = row == a ? b : a;
+  const int at_row = tree->place[row / nodes_per_column];
+  const int at_column = tree->place[column / nodes_per_column];
+  const std::ptrdiff_t block = tree->find(at_row, at_column);
+  const int stride = tree->height(tree->fronts[tree->front_of[at_column]]);
+  Spot spot;
+  spot.stride = static_cast<std::uint32_t>(stride);
+  if (block >= 0)
+    spot.at = static_cast<std::uint32_t>(
+        block + static_cast<std::ptrdiff_t>(3 * (column % nodes_per_column)) * stride +
+        3 * (row % nodes_per_column));
+  spot.swapped = row == b && a != b;
+  return spot;
+}
+
+HessianAssembly::HessianAssembly(const HessianPattern& pattern, const SpringPrismNet& net,
+                                 const NetLoads& loads, const Nodes& x, Curvatures curvatures)
+    : pattern_(pattern), net_(net), loads_(loads), x_(x), exact_(curvatures == Curvatures::exact) {
+  for (auto& own : own_) own.resize(pattern.diagonal.size(), Own{});
+  // Two surfaces that touch may couple columns that no spring does. Then each surface alone is
+  // taken (weights of one sign), which leaves the matrix positive definite.
+  for (std::size_t i = 0; i < loads.contacts.size(); ++i) {
+    const ContactRow& row = loads.contacts[i];
+    if (row.gap(x) >= 0) continue;
+    std::array<Spot, ContactRow::capacity * ContactRow::capacity> spots;
+    bool whole = true;
+    for (int a = 0; a < row.count; ++a)
+      for (int b = 0; b <= a; ++b) {
+        Spot& spot = spots[a * ContactRow::capacity + b];
+        spot = pattern.spot(row.node[a], row.node[b]);
+        whole = whole && spot.stored();
+      }
+    for (int a = 0; a < row.count; ++a)
+      for (int b = 0; b <= a; ++b) {
+        const double weight = row.weight[a] * row.weight[b];
+        const Spot& spot = spots[a * ContactRow::capacity + b];
+        if (!spot.stored() || !(whole || weight > 0)) continue;
+        const int part = std::min(pattern.part_of(row.node[a]), pattern.part_of(row.node[b]));
+        presses_[part].push_back({spot, static_cast<int>(i), weight});
+      }
+  }
+}
+
+void HessianAssembly::add(int part, float* panels) {
+  add_springs(part, panels);
+  add_anchors(part);
+  add_contacts(part, panels);
+  add_prisms(part, panels);
+  add_diagonal(part, panels);
+}
+
+void HessianAssembly::add_springs(int part, float* panels) {
+  auto& own = own_[part];
+  for (int s : pattern_.elements[part].springs) {
+    const int a = net_.spring_a[s], b = net_.spring_b[s];
+    const Vector3d d = x_[b] - x_[a];
+    const double length2 = d.squaredNorm();
+    const double strain = 1 - net_.rest_length[s] / std::sqrt(length2);
+    const double tension = exact_ ? strain : std::max(0.0, strain);
+    // At rest a spring may yet go either way; the stretched ones are those that matter.
+    const double k =
+        2 * net_.lambda * net_.stiffness[s] * (strain < -1e-9 ? net_.compression_share : 1.0);
+    const auto across = static_cast<float>(k * tension);
+    Own m{Column{across, 0, 0, 0}, Column{0, across, 0, 0}, Column{0, 0, across, 0}};
+    add_product(m, column_of(d), column_of((k * (1 - tension) / length2) * d));
+    const Spot& spot = pattern_.spring[s];
+    float* to = panels + spot.at;
+    Own &own_a = own[pattern_.seats[a]], &own_b = own[pattern_.seats[b]];
+    for (int j = 0; j < 3; ++j) {
+      add_column(to + j * spot.stride, -m[j]);
+      own_a[j] += m[j];
+      own_b[j] += m[j];
+    }
+  }
+}
+
+void HessianAssembly::add_anchors(int part) {
+  for (int i : pattern_.elements[part].anchors) {
+    Own& own = own_[part][pattern_.seats[net_.anchor_node[i]]];
+    for (int k = 0; k < 3; ++k)
+      own[k][k] += static_cast<float>(2 * net_.lambda * net_.anchor_stiffness[i]);
+  }
+}
+
+void HessianAssembly::add_contacts(int part, float* panels) const {
+  for (const auto& [spot, contact, weight] : presses_[part]) {
+    const ContactRow& row = loads_.contacts[contact];
+    const Matrix3d m = row.normal * row.normal.transpose() * (2 * net_.lambda * row.stiffness);
+    float* to = panels + spot.at;
+    for (int j = 0; j < 3; ++j) add_column(to + j * spot.stride, column_of(weight * m.col(j)));
+  }
+}
+
+void HessianAssembly::add_prisms(int part, float* panels) {
+  auto& own = own_[part];
+  const double lambda = net_.lambda;
+  for (const auto& [p, pairs, first] : pattern_.elements[part].prisms) {
+    const auto& prism = net_.prisms[p];
+    std::array<Column, 6> c, slope;  // corners, from corner 0; gradient of the volume
+    for (int k = 1; k < 6; ++k) c[k] = column_of(x_[prism[k]] - x_[prism[0]]);
+    // As in volume_gradient (spring_prism.cpp).
+    constexpr float scale = 1.0f / 12.0f;
+    const Column c45 = cross(c[4], c[5]), c12 = cross(c[1], c[2]);
+    const Column sum = c[4] + c[5], lean = c[1] + c[2] - 2 * c[3];
+    slope[1] = scale * (cross(c[3], c[4]) + cross(sum, c[2]) + c45);
+    slope[2] = scale * (cross(c[1], sum) + c45 + cross(c[5], c[3]));
+    slope[3] = scale * (cross(c[4], c[1]) + cross(c[2], c[5]) - 2 * c45);
+    slope[4] = scale * (cross(c[5], lean) + cross(c[1], c[3]) - c12);
+    slope[5] = scale * (cross(lean, c[4]) + cross(c[3], c[2]) - c12);
+    slope[0] = -(slope[1] + slope[2] + slope[3] + slope[4] + slope[5]);
+    float volume = 0;
+    for (int k = 1; k < 6; ++k) volume += dot(slope[k], c[k]);
+    const double j = static_cast<double>(volume) / 3 / net_.rest_volume[p];
+    const auto weight =
+        static_cast<float>((1 - lambda) * net_.volume_weight[p] *
+                           volume_stiffness(j, net_.barrier_share, net_.barrier_weight));
+    std::array<Column, 6> weighted;
+    for (int a = 0; a < 6; ++a) weighted[a] = weight * slope[a];
+    if (first)
+      for (int a = 0; a < 6; ++a) add_product(own[pattern_.seats[prism[a]]], slope[a], weighted[a]);
+
+    std::array<Column, HessianPattern::corner_pairs> bend;
+    if (exact_) {
+      const auto pressure =
+          scale * static_cast<float>((1 - lambda) * net_.volume_weight[p] * net_.rest_volume[p] *
+                                     volume_pressure(j, net_.barrier_share, net_.barrier_weight));
+      bend = volume_bend(c, pressure);
+    }
+    const Spot* spots = &pattern_.prism[static_cast<std::size_t>(p) * HessianPattern::corner_pairs];
+    for (unsigned left = pairs; left != 0; left &= left - 1) {
+      const int pair = std::countr_zero(left);
+      const Spot& spot = spots[pair];
+      const auto [a, b] = corners_of[pair];
+      float* to = panels + spot.at;
+      const Column &steep = slope[spot.swapped ? b : a], &along = weighted[spot.swapped ? a : b];
+      if (exact_) {
+        // The matrix whose product with v is u x v.
+        const Column u = spot.swapped ? -bend[pair] : bend[pair];
+        add_column(to, along[0] * steep + Column{0, u[2], -u[1], 0});
+        add_column(to + spot.stride, along[1] * steep + Column{-u[2], 0, u[0], 0});
+        add_column(to + 2 * spot.stride, along[2] * steep + Column{u[1], -u[0], 0, 0});
+      } else {
+        for (int k = 0; k < 3; ++k) add_column(to + k * spot.stride, along[k] * steep);
+      }
+    }
+  }
+}
+
+void HessianAssembly::add_diagonal(int part, float* panels) const {
+  const auto& order = pattern_.tree->order.part;
+  const int end = order[part + 1] * pattern_.nodes_per_column;
+  for (int seat = order[part] * pattern_.nodes_per_column; seat < end; ++seat) {
+    const Spot& spot = pattern_.diagonal[seat];
+    float* to = panels + spot.at;
+    Own own = own_[part][seat];
+    if (part == 2)
+      for (int k = 0; k < 3; ++k) own[k] += own_[0][seat][k] + own_[1][seat][k];
+    for (int k = 0; k < 3; ++k)
+      for (int row = k; row < 3; ++row) to[k * spot.stride + row] += own[k][row];
+    // A node that nothing holds in some direction must not get an endless step.
+    const float most = std::max({to[0], to[spot.stride + 1], to[2 * spot.stride + 2]});
+    for (int k = 0; k < 3; ++k) to[k * (spot.stride + 1)] += 1e-5f * most + 1e-12f;
+  }
+}
+
+}  // namespace condyle
