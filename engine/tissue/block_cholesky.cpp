@@ -85,9 +85,8 @@ int BlockCholesky::factorize_front(int index, float* panels, float* work, float 
                 : update +
                       static_cast<std::size_t>((seat[k] - front.pivots) * size + column) * left -
                       width;
-        for (int r = k; r < count;) {  // blocks that stand together in both
-          int end = r + 1;
-          while (end < count && seat[end] == seat[end - 1] + 1) ++end;
+        for (int r = k; r < count;) {
+          const int end = tree.run_end[child.rows_begin + r] - child.rows_begin;
           kernels.add(to + seat[r] * size, from + r * size, (end - r) * size);
           r = end;
         }

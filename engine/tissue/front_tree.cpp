@@ -142,6 +142,7 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
     fronts.push_back(std::move(front));
   }
   seat.resize(rows.size());
+  run_end.resize(rows.size());
   for (std::size_t f = 0; f < fronts.size(); ++f) {
     Front& front = fronts[f];
     if (front.rows_begin == front.rows_end) continue;
@@ -157,6 +158,8 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
                                                             rows.begin() + parent.rows_end, row) -
                                            (rows.begin() + parent.rows_begin));
     }
+    for (int r = front.rows_end - 1; r >= front.rows_begin; --r)
+      run_end[r] = r + 1 < front.rows_end && seat[r + 1] == seat[r] + 1 ? run_end[r + 1] : r + 1;
   }
   // The halves work at the same time and leave their updates to the last part: a shelf each.
   std::array<Shelf, 3> shelves;

@@ -38,6 +38,7 @@ struct FrontTree {
   std::vector<int> front_of;  // place -> front
   std::vector<int> rows;      // of all fronts
   std::vector<int> seat;      // of each entry of `rows`: its block in the parent's rows
+  std::vector<int> run_end;   // of each entry of `rows`: after those that stand together there, too
   std::size_t panel_floats = 0, work_floats = 0;
   int most_height = 0;  // of any front
 };

@@ -13,7 +13,10 @@ namespace {
 
 /// A time farther ahead than this is a jump of the scrub bar, not time running on.
 constexpr double jump_s = 0.25;
-constexpr std::chrono::milliseconds picture_interval(33);
+/// Steps on the way are shown only as often as a screen wants pictures; more rarely where steps
+/// take so much of the time that pictures give way to them.
+constexpr std::chrono::milliseconds picture_interval(33), sparing_interval(50);
+constexpr double sparing_step_s = 1.0 / 90;
 constexpr double step_s = 1.0 / 60;
 constexpr int step_iterations = 3;
 /// After so long without a new request tissue settles, so far in each step, for so many at most.
@@ -170,8 +173,8 @@ void LiveSimulation::work() {
           !wanted.opening_mm && ahead_s > 1.5 * settings_.step_s && ahead_s < jump_s;
       const double time_s = runs_on ? now.time_s + settings_.step_s : wanted.time_s;
       const auto start = Clock::now();
-      // Steps on the way are shown only as often as a screen wants pictures.
-      const bool shown = !runs_on || start - last_shown > picture_interval;
+      const auto interval = step_seconds_ > sparing_step_s ? sparing_interval : picture_interval;
+      const bool shown = !runs_on || start - last_shown >= interval;
       StageTimes motion_time;
       StepInput step_input;
       {
