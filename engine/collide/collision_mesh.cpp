@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/collide/box_bound.h"
 #include "engine/collide/shells.h"
@@ -76,6 +77,26 @@ Triangle corners(const Model& model, int triangle, const fcl::Transform3d& X) {
   return {X * model.vertices[t[0]], X * model.vertices[t[1]], X * model.vertices[t[2]]};
 }
 
+/// Some of a node's twins: from..to - 1.
+struct Some {
+  const BoxTwins* twins;
+  int from, to;
+  int held(int k) const { return twins->node[static_cast<std::size_t>(k)]; }
+  Some one(int k) const { return {twins, k, k + 1}; }
+};
+
+/// Of a pair of boxes that do not both hold triangles both are opened, but for one that is much the
+/// smaller. The twins: of the trees.
+std::pair<Some, Some> opened(const Some& a, const Some& b, const BoxTwins* twins_a,
+                             const BoxTwins* twins_b) {
+  constexpr float much = 4;
+  const int held_a = a.held(a.from), held_b = b.held(b.from);
+  const float size_a = a.twins->squared_radius(a.from), size_b = b.twins->squared_radius(b.from);
+  const bool open_a = !holds_triangle(held_a) && (holds_triangle(held_b) || much * size_a > size_b);
+  const bool open_b = !holds_triangle(held_b) && (holds_triangle(held_a) || much * size_b > size_a);
+  return {open_a ? Some{twins_a + held_a, 0, 2} : a, open_b ? Some{twins_b + held_b, 0, 2} : b};
+}
+
 /// Surfaces farther apart than this face each other along one line; nearer ones (a condyle in its
 /// fossa, crowns) lie along each other.
 constexpr double facing_mm = 10;
@@ -106,14 +127,6 @@ class NearestPair {
   TrianglePair triangles;
 
  private:
-  /// Some of a node's twins: from..to - 1.
-  struct Some {
-    const BoxTwins* twins;
-    int from, to;
-    int held(int k) const { return twins->node[static_cast<std::size_t>(k)]; }
-    Some one(int k) const { return {twins, k, k + 1}; }
-  };
-
   void look(const Some& a, const Some& b) {
     const auto limit = static_cast<float>(best_mm);
     const bool facing = best_mm > facing_mm;
@@ -140,18 +153,12 @@ class NearestPair {
     for (int n = 0; n < count && gaps[lanes[n]] < best_mm; ++n)
       open(a.one(lanes[n] / 2), b.one(lanes[n] % 2));
   }
-  /// Of a pair of boxes both are opened, but for one that is much the smaller.
   void open(const Some& a, const Some& b) {
-    constexpr float much = 4;
     const int held_a = a.held(a.from), held_b = b.held(b.from);
     if (holds_triangle(held_a) && holds_triangle(held_b))
       return measure({held_triangle(held_a), held_triangle(held_b)});
-    const float size_a = a.twins->squared_radius(a.from), size_b = b.twins->squared_radius(b.from);
-    const bool open_a =
-        !holds_triangle(held_a) && (holds_triangle(held_b) || much * size_a > size_b);
-    const bool open_b =
-        !holds_triangle(held_b) && (holds_triangle(held_a) || much * size_b > size_a);
-    look(open_a ? Some{twins_a_ + held_a, 0, 2} : a, open_b ? Some{twins_b_ + held_b, 0, 2} : b);
+    const auto [in_a, in_b] = opened(a, b, twins_a_, twins_b_);
+    look(in_a, in_b);
   }
   void measure(TrianglePair pair) {
     const Triangle in_a = corners(a_, pair.a), in_b = corners(b_, pair.b, X_);
@@ -185,6 +192,69 @@ class NearestPair {
   // told to be farther by this alone.
   Eigen::Vector3d across_ = Eigen::Vector3d::Zero();  // unit, or nothing yet
   BoxSight sight_;
+};
+
+/// Looks in the same way for a part of B that may have met A on its way. All in A's coordinates,
+/// but B's way.
+class MetOnWay {
+ public:
+  MetOnWay(const Surface& a, const Surface& b, const fcl::Transform3d& X, const BodyWay& way,
+           double kept_mm)
+      : a_(a.model),
+        b_(b.model),
+        twins_a_(a.twins.data()),
+        twins_b_(b.twins.data()),
+        X_(X),
+        turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm),
+        way_(way),
+        kept_mm_(kept_mm) {}
+
+  bool found() const { return look({twins_a_, 0, 1}, {twins_b_, 0, 1}); }
+  bool found_at(TrianglePair pair) const {
+    if (pair.a < 0 || pair.a >= a_.num_tris || pair.b < 0 || pair.b >= b_.num_tris) return false;
+    double longest = 0;
+    for (const Eigen::Vector3d& p : corners(b_, pair.b))
+      longest = std::max(longest, way_.length(p));
+    const double reach = longest + kept_mm_;
+    const double gap2 =
+        triangle_distance(corners(a_, pair.a), corners(b_, pair.b, X_), reach * reach).squared_mm2;
+    return gap2 < reach * reach;
+  }
+
+ private:
+  bool look(const Some& a, const Some& b) const {
+    const FourFloats gaps = gap_bounds(*a.twins, *b.twins, turned_);
+    for (int k = b.from; k < b.to; ++k) {
+      const double reach = longest(b, k) + kept_mm_;
+      for (int i = a.from; i < a.to; ++i)
+        if (!(static_cast<double>(gaps[2 * i + k]) > reach) && open(a.one(i), b.one(k)))
+          return true;
+    }
+    return false;
+  }
+  bool open(const Some& a, const Some& b) const {
+    const int held_a = a.held(a.from), held_b = b.held(b.from);
+    if (holds_triangle(held_a) && holds_triangle(held_b))
+      return found_at({held_triangle(held_a), held_triangle(held_b)});
+    const auto [in_a, in_b] = opened(a, b, twins_a_, twins_b_);
+    return look(in_a, in_b);
+  }
+  /// Way of any point of a box.
+  double longest(const Some& b, int k) const {
+    const auto which = static_cast<std::size_t>(k);
+    const auto& center = b.twins->center;
+    const double radius = std::sqrt(static_cast<double>(b.twins->squared_radius(k)));
+    return way_.length({center[0][which], center[1][which], center[2][which]}, radius) +
+           static_cast<double>(turned_.uncertain_mm);
+  }
+
+  const Model& a_;
+  const Model& b_;
+  const BoxTwins *twins_a_, *twins_b_;
+  fcl::Transform3d X_;  // of B in A
+  BoxTurn turned_;
+  const BodyWay& way_;
+  double kept_mm_;
 };
 
 /// Collects crossing triangles, in each region of A at most `per_region`.
@@ -284,6 +354,12 @@ bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, 
   const NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
                             just_above_touch_mm2);
   return nearest.best_mm == 0;
+}
+
+bool clear_on_way(const CollisionMesh& stays, const Pose& X_WS, const CollisionMesh& moves,
+                  const Pose& X_WM, const BodyWay& way, double kept_mm, TrianglePair start) {
+  const MetOnWay met(stays.tree(), moves.tree(), transform(X_WS.inverse() * X_WM), way, kept_mm);
+  return !met.found_at(start) && !met.found();
 }
 
 std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,

@@ -68,6 +68,28 @@ std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh
 bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
               TrianglePair start = {});
 
+/// A body's way to where it is now, at even speed: a pivot of its own coordinates goes straight,
+/// and the body turns about it. All in those coordinates as they are now.
+struct BodyWay {
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // of the pivot, mm
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();   // axis times angle, rad
+
+  /// On the way nothing within `radius` of p is farther than this from where it is now.
+  double length(const Eigen::Vector3d& p, double radius = 0) const {
+    const double angle = turn.norm();
+    // What the turn adds up along its arc, and how far the arc bends from that.
+    const Eigen::Vector3d along = turn.cross(p - pivot);
+    return (shift + along).norm() + angle * (0.5 * along.norm() + radius * (1 + 0.5 * angle));
+  }
+};
+
+/// Whether the moving surface was at least `kept_mm` from the other one on its whole way to X_WM,
+/// told from there: each part of it is farther than its own way is long. False does not tell that
+/// it was not. `start`: looked at first; triangles of the one that stays and of the one that moves.
+bool clear_on_way(const CollisionMesh& stays, const Pose& X_WS, const CollisionMesh& moves,
+                  const Pose& X_WM, const BodyWay& way, double kept_mm, TrianglePair start = {});
+
 /// Crossing triangles are many where bones grind: a report wants some, spread over the surface.
 struct ContactLimits {
   int total = 4096;

@@ -81,9 +81,9 @@ Arrival stop(const ContactModel::State& state, const Drive& drive, ContactSet& s
   parallel_for(reached.size(), threads, [&](std::size_t k) {
     Passage passage = passage_of(state, drive, state.judged(pairs[k]), drive.wanted);
     const PairContact& end = at_wanted[k];
-    if (passage.margin(end) > passage.length_mm) return;  // nothing within reach of the whole way
+    if (passage.clear(end)) return;
     if (passage.length_mm < 1e-12) {
-      if (passage.margin(end) < 0) reached[k] = 0;
+      reached[k] = 0;
       return;
     }
     const PairContact start =

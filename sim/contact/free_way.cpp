@@ -1,5 +1,6 @@
 #include "sim/contact/free_way.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace condyle {
@@ -82,6 +83,24 @@ PairContact Passage::judged(const Pose& X_CD, TrianglePair start, const Looking&
 double Passage::margin(const PairContact& contact) const {
   if (!contact.touching) return contact.distance_mm - kept_mm + std::max(limit_mm, 0.0);
   return limit_mm < 0 ? -1.0 : limit_mm - contact.depth_mm - kept_mm;
+}
+
+bool Passage::clear(const PairContact& at_end) const {
+  if (length_mm < 1e-12) return margin(at_end) >= 0;
+  if (margin(at_end) > length_mm) return true;
+  // What is near may go but a little way: a condyle turns where it is while the chin goes far.
+  if (at_end.touching || margin(at_end) <= 0) return false;
+  const Pose X_MD = X_DM ? X_DM->inverse() : Pose{};
+  const Eigen::AngleAxisd turn((from.R.conjugate() * to.R).normalized());
+  const BodyWay way{.pivot = X_MD * pivot_D,
+                    .shift = X_MD.R * (to.R.conjugate() * (to * pivot_D - from * pivot_D)),
+                    .turn = X_MD.R * (turn.angle() * turn.axis())};
+  const Pose X_CM = X_DM ? to * *X_DM : to;
+  const CollisionMesh &moves = (a_moves ? pair->a : pair->b)->surface,
+                      &stays = (a_moves ? pair->b : pair->a)->surface;
+  const TrianglePair start = a_moves ? TrianglePair{at_end.triangle_b, at_end.triangle_a}
+                                     : TrianglePair{at_end.triangle_a, at_end.triangle_b};
+  return clear_on_way(stays, X_CS, moves, X_CM, way, kept_mm, start);
 }
 
 double free_share(const Passage& passage, const PairContact& at_start, const PairContact& at_end,

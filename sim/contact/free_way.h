@@ -27,6 +27,9 @@ struct Passage {
   /// How far the pair may still come nearer, or deeper, before it is blocked: changes by at most a
   /// millimetre per millimetre of motion. Negative: blocked.
   double margin(const PairContact& contact) const;
+  /// Whether the whole way is free, told from where it ends: `at_end` is what was found there.
+  /// False does not tell that it is not.
+  bool clear(const PairContact& at_end) const;
 };
 
 /// Largest s up to which the way is free: exact, and nothing thicker than 0.1 mm is passed through.

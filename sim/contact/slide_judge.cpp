@@ -90,9 +90,7 @@ std::vector<SlideJudge::Look> SlideJudge::looks(const Pose& X_CD) const {
 }
 
 bool SlideJudge::clear(const PairContact& at_wanted, std::size_t k) const {
-  const Passage p = passage(k, drive_.from(), drive_.wanted);
-  const double margin = p.margin(at_wanted);
-  return p.length_mm < 1e-12 ? margin >= 0 : margin > p.length_mm;
+  return passage(k, drive_.from(), drive_.wanted).clear(at_wanted);
 }
 
 std::optional<PairContact> SlideJudge::bounded(std::size_t k) const {
@@ -121,15 +119,26 @@ bool SlideJudge::clear(Found& at_wanted) const {
   }
   const bool near = before(likely).touching ||
                     before(likely).distance_mm - kept_[likely] < way(drive_.from(), drive_.wanted);
-  if (near && !clear(look_at(likely, drive_.wanted, true).contact, likely)) return false;
   at_wanted.resize(pairs_.size());
+  std::vector<char> is_clear(pairs_.size(), 0);
+  const auto look_there = [&](std::size_t k) {
+    at_wanted[k] = look_at(k, drive_.wanted, true).contact;
+    is_clear[k] = clear(at_wanted[k], k);
+  };
+  if (near) {
+    look_there(likely);
+    if (!is_clear[likely]) return false;
+  }
   parallel_for(pairs_.size(), threads_, [&](std::size_t k) {
+    if (is_clear[k]) return;
     const auto bound = bounded(k);
-    at_wanted[k] = bound && clear(*bound, k) ? *bound : look_at(k, drive_.wanted, true).contact;
+    is_clear[k] = bound && clear(*bound, k);
+    if (is_clear[k])
+      at_wanted[k] = *bound;
+    else
+      look_there(k);
   });
-  for (std::size_t k = 0; k < pairs_.size(); ++k)
-    if (!clear(at_wanted[k], k)) return false;
-  return true;
+  return std::all_of(is_clear.begin(), is_clear.end(), [](char one) { return one != 0; });
 }
 
 double SlideJudge::way(const Pose& X, const Pose& to) const {
