@@ -74,7 +74,9 @@ void ViewSession::take_patient() {
     // The command line's motion is for its own patient; another one opens first.
     if (!first) asked_ = {.spec = "opening", .parameters = {}, .excitations = {}};
     shown_ = scene_of_patient();
-    window_.set_scene(shown_, {}, patient_);
+    ViewState start;
+    static_cast<PanelChoice&>(start) = window_.view();  // what is at hand stays so
+    window_.set_scene(shown_, start, patient_);
     show_scene();
     window_.show(patient_->at_rest);
   }
@@ -153,8 +155,8 @@ void ViewSession::take_motion() {
   motion_ = *made;
   show_scene();
   retire(simulation_);
-  simulation_ = std::make_shared<LiveSimulation>(patient_->scene, motion_->motion,
-                                                 live_settings(settings_));
+  simulation_ =
+      std::make_shared<LiveSimulation>(patient_->scene, motion_->motion, live_settings(settings_));
   moved_ = {};
   window_.change([&](ViewState& view) {
     view.obey_contact = obeys_contact();

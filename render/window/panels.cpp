@@ -246,6 +246,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
     drawing.side();
     drawing.timeline();
     drawing.plots();
+    drawing.edges();
   }
   if (view.tool == Tool::move && !preparing) drawing.moving();
   if (view.tool == Tool::measure && !preparing) drawing.measuring();

@@ -4,12 +4,12 @@
 #include <array>
 #include <deque>
 #include <memory>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "render/window/arrangement.h"
 #include "render/window/camera_control.h"
 #include "render/window/drafts.h"
 #include "render/window/edit_history.h"
@@ -99,7 +99,14 @@ class Panels {
   bool talking() const { return !said_.empty(); }
   bool shown() const { return shown_; }
   Layout layout(double width, double height, bool with_plots = false) const {
-    return lay_out(width, height, theme_.scale, shown_, with_plots);
+    return lay_out(width, height, theme_.scale, shown_, with_plots, sizes_);
+  }
+  /// Sizes that a person has drawn, and groups of the tree that are unfolded.
+  const PanelSizes& sizes() const { return sizes_; }
+  const std::vector<std::string>& open_groups() const { return open_groups_; }
+  void arrange(const PanelSizes& sizes, std::vector<std::string> open_groups) {
+    sizes_ = sizes;
+    open_groups_ = std::move(open_groups);
   }
   const std::vector<DrawnItem>& items() const { return items_; }
 
@@ -108,8 +115,10 @@ class Panels {
   PlotSet stage_plots() const;
   Theme theme_;
   bool shown_ = true, help_open_ = false;
-  double skin_before_ = 1;                                          // opacity to come back to
-  std::set<std::string> open_groups_ = {"bones", "teeth", "free"};  // of the tree
+  PanelSizes sizes_;
+  double gripped_size_ = 0;  // of what is being drawn larger, as it was gripped
+  double skin_before_ = 1;   // opacity to come back to
+  std::vector<std::string> open_groups_ = usual_groups();  // of the tree
   std::deque<std::string> errors_;
   std::string said_;
   double said_until_ = 0;

@@ -104,14 +104,15 @@ float Window::State::panel_scale() const {
   int pixels = 0, ignored = 0;
   glfwGetFramebufferSize(window, &pixels, &ignored);
   const double screen = screen_scale();
-  return fitting_scale(screen * ui_scale.value_or(usual_scale(screen, pixels)), w, h);
+  return fitting_scale(screen * arrangement.ui_scale.value_or(usual_scale(screen, pixels)), w, h);
 }
 
 void Window::State::fit_scale() {
   const float scale = panel_scale();
-  if (scale == panels->theme().scale && options.light == panels->theme().light) return;
+  const bool light = arrangement.light;
+  if (scale == panels->theme().scale && light == panels->theme().light) return;
   panels->set_scale(scale);
-  panels->set_light(options.light);
+  panels->set_light(light);
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
@@ -119,10 +120,11 @@ void Window::State::fit_scale() {
 /// A tenth more or less than what is seen, so that each step but the last that fits shows.
 void Window::State::scale_panels(Command command) {
   constexpr double step = 0.1, least = 0.5, most = 4;
+  std::optional<double>& ui_scale = arrangement.ui_scale;
   const float before = panels->theme().scale;
   const double steps = command == Command::larger_panels ? 1 : -1;
   if (command == Command::usual_panels)
-    ui_scale = options.ui_scale;
+    ui_scale = options.usual_scale;
   else
     ui_scale = std::clamp(step * std::round(before / step + steps), least, most) / screen_scale();
   const float after = panel_scale();

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "panel_stage.h"
+#include "render/window/kept_arrangement.h"
 #include "render/window/plot_drawing.h"
 #include "render/window/recent_files.h"
 
@@ -111,7 +112,8 @@ class Instrument : public testing::TestWithParam<LitScreen> {
       }
       for (const DrawnItem& b : stage.panels->items()) {
         const auto floats = [](const DrawnItem& item) {
-          return item.name == "open" || item.name == "import";  // above all panels
+          return item.name == "open" || item.name == "import" ||  // above all panels
+                 item.name.starts_with("edge:");                  // on their margins
         };
         if (&a == &b || a.panel != b.panel || floats(a) || floats(b)) continue;
         const bool apart = a.rect.x + a.rect.width <= b.rect.x + 0.5 ||
@@ -422,6 +424,84 @@ TEST(RecentFiles, AreKeptInOrderWithoutDoublesAndComeBack) {
   nowhere.add("/data/case-5");
   EXPECT_EQ(nowhere.list().size(), 1u);
   std::filesystem::remove_all(folder);
+}
+
+class ArrangementFile : public testing::Test {
+ protected:
+  ~ArrangementFile() override { std::filesystem::remove_all(folder_); }
+  /// Another run of the program, in which the window opens as `opened` and ends as `left`.
+  void run(const Arrangement& opened, const Arrangement& left) {
+    KeptArrangement kept(file_);
+    kept.begin(opened);
+    kept.update(left, true);
+  }
+  Arrangement kept() { return KeptArrangement(file_).arrangement(); }
+  void write(const std::string& text) {
+    std::filesystem::create_directories(file_.parent_path());
+    std::ofstream(file_) << text;
+  }
+  const std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
+                                        ("condyle-arrangement-" + std::to_string(::getpid()));
+  const std::filesystem::path file_ = folder_ / "deep" / "window.json";
+};
+
+TEST_F(ArrangementFile, WhatAPersonChangesComesBackAndNothingElse) {
+  EXPECT_TRUE(KeptArrangement(file_).trouble().empty()) << "none yet";
+  run({}, {});
+  EXPECT_FALSE(std::filesystem::exists(file_)) << "nothing was changed";
+  // Everything, each other than at first.
+  const Arrangement all{
+      .light = true,
+      .ui_scale = 1.25,
+      .width = 1600,
+      .height = 901,
+      .maximized = true,
+      .sizes = {.left = 300.5, .right = 333, .plots = 210},
+      .panels = {.tab = SideTab::record, .left_tab = LeftTab::look, .plots = true, .plot_set = 3},
+      .open_groups = {"muscles"}};
+  run({}, all);
+  EXPECT_EQ(kept(), all);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file_.parent_path()), {}), 1);
+  // A command line asked for dark panels and another size: it stays with its run, whatever else is
+  // changed in it.
+  Arrangement asked = all;
+  asked.light = false;
+  asked.width = 800;
+  Arrangement left = asked;
+  left.panels.tab = SideTab::motion;
+  run(asked, left);
+  Arrangement expected = all;
+  expected.panels.tab = SideTab::motion;
+  EXPECT_EQ(kept(), expected);
+  // Back to the usual scale.
+  left = expected;
+  left.ui_scale.reset();
+  run(expected, left);
+  EXPECT_EQ(kept().ui_scale, std::nullopt);
+  KeptArrangement nowhere("/proc/condyle/window.json");
+  nowhere.begin({});
+  nowhere.update(all, true);  // no error
+}
+
+TEST_F(ArrangementFile, ABrokenOrForeignFileIsOneSentenceAndAllIsAsAtFirst) {
+  for (const char* text :
+       {"", "{", "[1, 2]", "light = yes", "\xff\xfe{}", "{\"light\": 3}", "{\"width\": \"wide\"}",
+        "{\"light\": true, \"ui_scale\": 1e9}", "{\"height\": -5}", "{\"right_tab\": \"tab\"}",
+        "{\"left_tab\": 1}", "{\"open_groups\": [1]}", "{\"plot_set\": 1e300}"}) {
+    SCOPED_TRACE(text);
+    write(text);
+    KeptArrangement kept(file_);
+    EXPECT_EQ(kept.arrangement(), Arrangement{});
+    EXPECT_NE(kept.trouble().find(file_.string()), std::string::npos) << kept.trouble();
+    // It is told once: what can be read comes in its place.
+    kept.begin({});
+    kept.update({}, true);
+    EXPECT_TRUE(KeptArrangement(file_).trouble().empty()) << KeptArrangement(file_).trouble();
+  }
+  // A later version's file has more in it.
+  write("{\"light\": true, \"of_a_later_version\": {\"a\": [1]}}");
+  EXPECT_TRUE(KeptArrangement(file_).trouble().empty());
+  EXPECT_TRUE(kept().light);
 }
 
 }  // namespace
