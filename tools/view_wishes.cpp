@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -25,6 +26,24 @@ Eigen::Vector3d push_toward_bone(const FrameState& frame, std::size_t part) {
     way = first ? pair.witness_b - pair.witness_a : pair.witness_a - pair.witness_b;
   }
   return way.norm() > 1e-9 ? way.normalized() : -Eigen::Vector3d::UnitZ();
+}
+
+/// A folder that is no case stands for the surfaces and landmarks in it, if there are any.
+std::vector<fs::path> with_loose_surfaces(const std::vector<fs::path>& files) {
+  std::vector<fs::path> all;
+  for (const fs::path& file : files) {
+    std::error_code ignored;
+    std::vector<fs::path> inside;
+    if (fs::is_directory(file, ignored) && !fs::exists(file / "case.json", ignored))
+      for (const auto& one : fs::directory_iterator(file, ignored))
+        if (const FileKind kind = kind_of(one.path());
+            kind == FileKind::surface || kind == FileKind::landmarks)
+          inside.push_back(one.path());
+    std::sort(inside.begin(), inside.end());
+    if (inside.empty()) inside = {file};
+    all.insert(all.end(), inside.begin(), inside.end());
+  }
+  return all;
 }
 
 }  // namespace
@@ -59,12 +78,23 @@ void ViewSession::carry_out(const wish::Open& wanted) {
     throw InputError(one, "", "is not there (any more)");
   }
   wish::Import surfaces;
-  for (const fs::path& file : wanted.files) {
+  std::vector<std::string> others;
+  for (const fs::path& file : with_loose_surfaces(wanted.files)) {
     const FileKind kind = kind_of(file);
     if (kind == FileKind::surface || kind == FileKind::landmarks)
       surfaces.files.push_back({file, role_guess(file)});
+    else
+      others.push_back(file.filename().string());
   }
-  if (!surfaces.files.empty()) return window_.ask_roles(surfaces);
+  if (!surfaces.files.empty()) {
+    if (!others.empty())
+      window_.say(fmt::format("Left out: {}. Only surfaces and landmarks make a patient",
+                              fmt::join(others, ", ")));
+    return window_.ask_roles(surfaces);
+  }
+  if (wanted.files.size() > 1)
+    window_.say(fmt::format("Of {} files the first is opened: {}", wanted.files.size(),
+                            one.filename().string()));
   switch (kind_of(one)) {
     case FileKind::patient:
       return open_patient(fs::is_directory(one) ? one : one.parent_path());

@@ -125,6 +125,7 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       return true;
     case Command::open_files:
       drafts_.files.open = true;
+      drafts_.files.listed.clear();  // files may have come and gone
       return true;
     case Command::undo:
       if (!undo(view, true)) say("Nothing to undo");
@@ -142,7 +143,9 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       // Boxes with fields have a button of their own for it.
       if (!errors_.empty()) {
         errors_.pop_front();
-      } else if (help_open_ && !drafts_.import && !drafts_.files.open) {
+      } else if (drafts_.files.open && !drafts_.import) {
+        drafts_.files.accepted = !drafts_.files.chosen.empty();
+      } else if (help_open_ && !drafts_.import) {
         help_open_ = false;
       }
       return true;

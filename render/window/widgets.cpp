@@ -322,6 +322,14 @@ bool text_field(Pen& pen, const char* name, std::string& words, float width, con
   return entered;
 }
 
+bool select_row(const std::string& label, bool chosen) {
+  const ImU32 lit = chosen ? palette().accent_dark : palette().field_hovered;
+  ImGui::PushStyleColor(ImGuiCol_HeaderHovered, lit);
+  const bool pressed = ImGui::Selectable(label.c_str(), chosen, ImGuiSelectableFlags_SelectOnClick);
+  ImGui::PopStyleColor();
+  return pressed;
+}
+
 bool list_unfolded() {
   const auto& open = ImGui::GetCurrentContext()->OpenPopupStack;
   return !open.empty() && open.back().Window &&

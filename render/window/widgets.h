@@ -74,6 +74,10 @@ bool text_field(Pen& pen, const char* name, std::string& words, float width, con
 bool list_unfolded();
 void fold_list();
 
+/// A row of a list to choose from, filled while it is chosen. gives: true as the mouse goes down on
+/// it, when Ctrl and Shift are as they are meant.
+bool select_row(const std::string& label, bool chosen);
+
 /// A box to tick with its label.
 bool tick_box(Pen& pen, const char* name, const char* label, bool& on);
 

@@ -157,12 +157,18 @@ void Window::State::interface_frame() {
       io.AddInputCharacter(next.letter);
     } else {
       io.KeysDown[next.key] = next.down;
-      io.KeyCtrl = (next.mods & GLFW_MOD_CONTROL) != 0;
-      io.KeyShift = (next.mods & GLFW_MOD_SHIFT) != 0;
+      // What is held besides this key, and the key itself: a release still tells it as held.
+      const auto held_now = [&](int mod, int left_key, int right_key) {
+        const bool itself = next.key == left_key || next.key == right_key;
+        return itself ? next.down : (next.mods & mod) != 0;
+      };
+      io.KeyCtrl = held_now(GLFW_MOD_CONTROL, GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+      io.KeyShift = held_now(GLFW_MOD_SHIFT, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
     }
   }
-  const bool ctrl_of_keys = io.KeyCtrl;
+  const bool ctrl_of_keys = io.KeyCtrl, shift_of_keys = io.KeyShift;
   if (look_at_mouse && moment.ctrl) io.KeyCtrl = true;
+  if (look_at_mouse && moment.shift) io.KeyShift = true;
   ImGui::NewFrame();
   const auto [w, h] = size();
   const ViewRect r = view_rect();
@@ -194,6 +200,7 @@ void Window::State::interface_frame() {
   const std::vector<Command> commands = panels->draw(input, view, w, h);
   ImGui::Render();
   io.KeyCtrl = ctrl_of_keys;
+  io.KeyShift = shift_of_keys;
   for (const Command command : commands) run(command);
 }
 

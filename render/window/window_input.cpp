@@ -83,7 +83,7 @@ bool Window::State::over_view(double x, double y) const {
 }
 
 void Window::State::on_button(int button, bool down, int mods) {
-  mouse.pressed(button, down, (mods & GLFW_MOD_CONTROL) != 0);
+  mouse.pressed(button, down, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0);
   const MouseMoment& now = mouse.now();
   if (down && button == GLFW_MOUSE_BUTTON_LEFT && mods == 0 && over_view(now.x, now.y) &&
       (grip_body({now.x, now.y}) || set_point({now.x, now.y})))

@@ -136,6 +136,44 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
+TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
+  write_box_patient(folder_.path());
+  write_text(folder_ / "notes.txt", "nothing of a patient");
+  fs::copy_file(folder_ / "maxilla.stl", folder_ / "upper_teeth.stl");
+  start({"--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  EXPECT_TRUE(press("ctrl+o"));
+  write_into("open-path", folder_.path());  // no patient's folder: it is looked into
+  ASSERT_TRUE(wait_for_item("file:mandible.stl"));
+  const auto click_with = [&](const std::string& key, const std::string& item) {
+    EXPECT_TRUE(xdotool({"keydown", key}));
+    click(item);
+    EXPECT_TRUE(xdotool({"keyup", key}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));  // no double click
+  };
+  click("file:mandible.stl");
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  click_with("shift", "file:upper_teeth.stl");
+  click_with("ctrl", "file:upper_teeth.stl");
+  see("three-of-a-case");
+  EXPECT_TRUE(press("Return"));
+  ASSERT_TRUE(wait_for_item("import"));
+  see("roles-of-three");
+  EXPECT_TRUE(state()["items"].contains("import-role:2"));
+  EXPECT_FALSE(state()["items"].contains("import-role:3"));
+  click("import-go");
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    return idle(s) && s["edits"]["parts"].size() == 2 && s["landmark_mm"].contains("left_condyle");
+  })) << state().dump();
+  // Its folder, dropped, is the same but for what is no surface.
+  EXPECT_TRUE(drop_files("Condyle", {folder_.path()}));
+  EXPECT_TRUE(wait_for_item("import-role:3"));
+  EXPECT_FALSE(state()["items"].contains("import-role:4"));
+  click("import-close");
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
 TEST_F(WindowSession, ATransplantIsMovedLetGoAndTheDiskIsFull) {
   write_box_patient(folder_.path());
   std::string strut;

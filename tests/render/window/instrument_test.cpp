@@ -321,6 +321,83 @@ TEST_P(Instrument, FilesAreOpenedFromAListAndSurfacesAskForTheirRoles) {
   EXPECT_FALSE(stage.panels->dialog_open());
 }
 
+TEST_P(Instrument, SeveralFilesAreChosenAndOpenedAtOnce) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("condyle-open-" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  for (const char* name :
+       {"a.stl", "b.stl", "c.ply", "d.obj", "marks.csv", "points.mrk.json", "other.json", "x.doc"})
+    std::ofstream(folder / name) << "of no matter";
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder);
+  const auto open = [&] {
+    stage.click("open-files");
+    stage.rest(40);  // so that the next click makes no double one
+  };
+  const auto click = [&](const std::string& name, bool ctrl, bool shift) {
+    stage.hold(ctrl, shift);
+    stage.click("file:" + name);
+    stage.hold(false, false);
+    stage.rest(40);
+  };
+  const auto chosen = [&] {
+    std::set<std::string> names;
+    for (const DrawnItem& item : stage.panels->items())
+      if (item.words == "chosen") names.insert(item.name.substr(5));
+    return names;
+  };
+  const auto opened = [&] {
+    std::vector<std::string> names;
+    for (const Wish& one : stage.panels->take_wishes())
+      for (const auto& file : std::get<wish::Open>(one).files)
+        names.push_back(file.filename().string());
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  using NameSet = std::set<std::string>;
+  open();
+  EXPECT_TRUE(stage.has("file:points.mrk.json"));
+  EXPECT_FALSE(stage.has("file:other.json"));
+  EXPECT_FALSE(stage.has("file:x.doc"));
+  click("d.obj", false, false);
+  EXPECT_EQ(chosen(), NameSet{"d.obj"});
+  click("b.stl", false, true);
+  EXPECT_EQ(chosen(), (NameSet{"b.stl", "c.ply", "d.obj"}));
+  click("c.ply", true, false);
+  click("marks.csv", true, false);
+  EXPECT_EQ(chosen(), (NameSet{"b.stl", "d.obj", "marks.csv"}));
+  expect_tidy();
+  keep("open-several");
+  stage.click("open-go");
+  EXPECT_EQ(opened(), (Names{"b.stl", "d.obj", "marks.csv"}));
+  EXPECT_FALSE(stage.panels->dialog_open());
+
+  // Enter does the same; a double click opens one; a click alone forgets the others.
+  open();
+  EXPECT_EQ(chosen(), NameSet{});
+  click("a.stl", false, false);
+  click("c.ply", true, false);
+  stage.panels->run(Command::accept, stage.scene, stage.view);
+  stage.rest();
+  EXPECT_EQ(opened(), (Names{"a.stl", "c.ply"}));
+  open();
+  click("a.stl", true, false);
+  click("b.stl", false, false);
+  EXPECT_EQ(chosen(), NameSet{"b.stl"});
+  EXPECT_TRUE(opened().empty());
+  const ViewRect row = stage.item("file:b.stl").rect;
+  for (const bool down : {false, true, false, true, false})
+    stage.step(row.x + 20, row.y + row.height / 2, down);
+  EXPECT_EQ(opened(), Names{"b.stl"});
+  // What is typed is meant instead.
+  open();
+  click("a.stl", false, false);
+  stage.enter("open-path", "/data/case");
+  EXPECT_EQ(opened(), Names{"case"});
+  std::filesystem::current_path(before);
+  std::filesystem::remove_all(folder);
+}
+
 TEST_P(Instrument, LookTabSetsWhatThePictureShows) {
   stage.scene.distance_colours = distance_colours();
   stage.click("left-tab:Look");
