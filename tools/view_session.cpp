@@ -80,7 +80,7 @@ void ViewSession::take_patient() {
     show_scene();
     window_.show(patient_->at_rest);
   }
-  if (!patient_->trouble.empty()) window_.report_error(patient_->trouble);
+  if (!patient_->trouble.empty()) window_.report_error(in_window_words(patient_->trouble));
   want_motion(asked_);
 }
 
@@ -122,6 +122,7 @@ void ViewSession::show_scene() {
     shown_.excitations = motion_->excitations;
     shown_.notes.insert(shown_.notes.end(), motion.notes.begin(), motion.notes.end());
   }
+  for (std::string& note : shown_.notes) note = in_window_words(std::move(note));
   window_.update_scene(shown_);
 }
 

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 #include "engine/core/error.h"
 #include "tools/view_recording.h"
@@ -47,26 +45,6 @@ std::vector<fs::path> with_loose_surfaces(const std::vector<fs::path>& files) {
 }
 
 }  // namespace
-
-std::string in_window_words(std::string sentence) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> words = {
-      {{"did you mean --units ", "choose as the unit of lengths "},
-       {"did you mean --frame ", "choose as the directions of the axes "},
-       {"--units", "the unit of lengths"},
-       {"--frame", "the directions of the axes"},
-       {"make a case from surfaces with: condyle import meshes --mandible FILE --maxilla FILE ... "
-        "--out FOLDER",
-        "open or drop its surfaces to make one"},
-       {"make one from surfaces with: condyle import meshes --mandible FILE --maxilla FILE ... "
-        "--out FOLDER",
-        "open or drop its surfaces to make one"}}};
-  for (const auto& [there, here] : words)
-    if (const auto at = sentence.find(there); at != std::string::npos) {
-      sentence.replace(at, there.size(), here);
-      if (here.starts_with("choose") && sentence.ends_with("?")) sentence.back() = '.';
-    }
-  return sentence;
-}
 
 void ViewSession::carry_out(const wish::Open& wanted) {
   if (wanted.files.empty()) return open_patient({});

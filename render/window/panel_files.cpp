@@ -75,6 +75,34 @@ const char* role_words(const std::string& role) {
   return role.empty() ? "leave out" : role.c_str();
 }
 
+/// What is to be said of the roles, and whether no patient can be made of them yet.
+struct RoleRemark {
+  std::string words;
+  bool hinders = false;
+};
+RoleRemark remark_on(const wish::Import& import) {
+  const auto count = [&](const std::string& role) {
+    return std::count_if(import.files.begin(), import.files.end(),
+                         [&](const FileRole& one) { return one.role == role; });
+  };
+  if (count("skull") + count("maxilla") + count("mandible") == 0)
+    return {"No surface is a bone yet: choose skull, maxilla or mandible for at least one of them",
+            true};
+  for (const char* once : {"face", "landmarks"})
+    if (count(once) > 1)
+      return {fmt::format("{} files are said to be {}, but there can be only one: choose another "
+                          "role or \"leave out\" for the others",
+                          count(once), *once == 'f' ? "the face" : "landmarks"),
+              true};
+  for (const char* bone : {"mandible", "skull", "maxilla"})
+    if (count(bone) > 1)
+      return {
+          fmt::format("{} surfaces are said to be the {}. That is right for pieces of one bone; "
+                      "of the same bone twice, choose \"leave out\" for one",
+                      count(bone), bone)};
+  return {};
+}
+
 bool choice(Pen& pen, const std::string& name, float width, std::string& value,
             std::span<const char* const> choices) {
   bool changed = false;
@@ -235,19 +263,20 @@ void Panels::Drawing::import_dialog() {
   line("Directions of the axes", "import-frame", import.frame, frames,
        "L left, R right, P back, A front, S up, I down: where x, y and z point. Scanners and 3D "
        "Slicer's files are mostly LPS or RAS");
-  const bool any = std::any_of(import.files.begin(), import.files.end(), [](const FileRole& one) {
-    return one.role == "skull" || one.role == "maxilla" || one.role == "mandible";
-  });
-  if (!any)
-    text(theme.small, palette().text_dim,
-         "At least one surface must be the skull, the maxilla or the mandible");
+  const RoleRemark remark = remark_on(import);
+  if (!remark.words.empty()) {
+    ImGui::PushTextWrapPos(0);
+    text(theme.small, remark.hinders ? palette().warning : palette().text_dim, remark.words);
+    ImGui::PopTextWrapPos();
+    pen.mark("import-remark", remark.words);
+  }
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(8));
   const float button = pen.px(130);
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * button - pen.px(8));
   const bool close =
       word_button(pen, "import-close", "Leave them out", {button, pen.px(30)}, false);
   ImGui::SameLine(0, pen.px(8));
-  ImGui::BeginDisabled(!any);
+  ImGui::BeginDisabled(remark.hinders);
   const bool go = word_button(pen, "import-go", "Make a patient", {button, pen.px(30)}, true);
   ImGui::EndDisabled();
   if (go) panels.wishes_.push_back(import);

@@ -164,7 +164,7 @@ MotionPlot opening(const MotionSeries& series) {
 MotionPlot rotation(const MotionSeries& series) {
   PlotPanel turn{{over_time("rotation", series,
                             [&](std::size_t i) { return series.measures[i].rotation_deg; })},
-                 {.title = "Rotation over time", .x_label = "time, s", .y_label = "degrees"}};
+                 {.title = "Rotation over time", .x_label = "time, s", .y_label = "\u00b0"}};
   add_if_reached(turn, largest(turn.curves[0]), 22,
                  {"at max. opening 28 to 45\u00b0", {}, {28, 45}});
   PlotPanel travel{
