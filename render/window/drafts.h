@@ -19,7 +19,13 @@ struct Drafts {
     std::string folder;
     int height = 1080;
     double frames_per_second = 30;
-    bool film = true, turntable = false;
+    bool film = true, transparent = false;
+    int supersampling = 1;
+    std::set<std::string> cameras = {own_camera};
+    bool camera_from_file = false;
+    std::string camera_file, caption;
+    /// Those that are chosen, in the order of the list; a file without a name is none.
+    std::vector<std::string> wanted_cameras() const;
     bool running = false;  // a recording, in the pass before
   } record;
   std::string landmark_words, case_folder;

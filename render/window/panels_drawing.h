@@ -31,8 +31,10 @@ struct Panels::Drawing {
   void dialogs();     // panel_dialogs.cpp
 
  private:
-  void motion();         // panel_motion.cpp
-  void record();         // panel_record.cpp
+  void motion();  // panel_motion.cpp
+  void record();  // panel_record.cpp
+  float record_label(const char* words);
+  void record_cameras();
   void open_dialog();    // panel_files.cpp
   void import_dialog();  // panel_files.cpp
   void side_tabs();
