@@ -210,6 +210,7 @@ void Panels::remember_edits(const Edits& before, const ViewState& view) {
 std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, double width,
                                   double height) {
   items_.clear();
+  tooltip_.due = false;
   if (std::exchange(fold_list_, false)) fold_list();
   view.fit(input.scene);
   undone_ = false;
@@ -241,7 +242,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
       preparing ? lay_out(width, height, theme_.scale, false) : layout(width, height, view.plots),
       width,
       height,
-      Pen{theme_, items_, ""},
+      Pen{theme_, items_, tooltip_, ""},
       {}};
   if (shown_ && !preparing) {
     drawing.top_bar();

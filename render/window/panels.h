@@ -51,6 +51,15 @@ struct DrawnItem {
   std::string words = {};  // what stands there, of readings
 };
 
+/// What the mouse rests on, that a tooltip may follow.
+struct TooltipWait {
+  float x = -1, y = -1;  // corner of the item
+  double since_s = 0;
+  int last_pass = -2;     // over the panels, in which it was under the mouse
+  bool put_away = false;  // it was clicked: what that reveals must not be covered
+  bool due = false;       // a tooltip is still to come
+};
+
 /// Panels of the window, drawn into the current ImGui frame (between NewFrame and Render). They
 /// know neither GLFW nor GL, so tests draw them with scripted input.
 class Panels {
@@ -95,8 +104,8 @@ class Panels {
   bool dialog_open() const {
     return help_open_ || !errors_.empty() || drafts_.files.open || drafts_.import;
   }
-  /// Whether something said is still on show, so that it must be taken away in time.
-  bool talking() const { return !said_.empty(); }
+  /// Whether something will come or go by itself in time: a sentence, a tooltip.
+  bool talking() const { return !said_.empty() || tooltip_.due; }
   bool shown() const { return shown_; }
   Layout layout(double width, double height, bool with_plots = false) const {
     return lay_out(width, height, theme_.scale, shown_, with_plots, sizes_);
@@ -121,6 +130,7 @@ class Panels {
   std::vector<std::string> open_groups_ = usual_groups();  // of the tree
   std::deque<std::string> errors_;
   std::string said_;
+  TooltipWait tooltip_;
   double said_until_ = 0;
   EditHistory<Edits> history_;
   bool undo(ViewState& view, bool back);

@@ -398,6 +398,50 @@ TEST_P(Instrument, SeveralFilesAreChosenAndOpenedAtOnce) {
   std::filesystem::remove_all(folder);
 }
 
+TEST_P(Instrument, TooltipsWaitAndCoverNothingThatAClickReveals) {
+  stage.click("tab:Record");
+  const auto rest_on = [&](const std::string& item, int pictures) {
+    const ViewRect r = stage.item(item).rect;
+    for (int i = 0; i < pictures; ++i) stage.step(r.x + r.width / 2, r.y + r.height / 2, false);
+  };
+  constexpr int half_a_second = 32;
+  rest_on("record-cameras", 10);
+  EXPECT_FALSE(stage.has("tooltip"));
+  EXPECT_TRUE(stage.panels->talking()) << "one is to come, so the window draws on";
+  rest_on("record-cameras", half_a_second);
+  ASSERT_TRUE(stage.has("tooltip"));
+  EXPECT_FALSE(stage.panels->talking());
+  // Another item: another wait.
+  rest_on("record-caption", 10);
+  EXPECT_FALSE(stage.has("tooltip"));
+  rest_on("record-caption", half_a_second);
+  ASSERT_TRUE(stage.has("tooltip"));
+  EXPECT_NE(stage.item("tooltip").words.find("{interincisal}"), std::string::npos);
+  keep("tooltip");
+  EXPECT_TRUE(lies_within(stage.item("tooltip").rect,
+                          {0, 0, double(GetParam().width), double(GetParam().height)}));
+  // A click unfolds the list: nothing lies over it, however long the mouse rests.
+  const ViewRect list = stage.item("record-cameras").rect;
+  for (const bool down : {false, true, false})
+    stage.step(list.x + list.width / 2, list.y + list.height / 2, down);
+  rest_on("record-cameras", 2 * half_a_second);
+  ASSERT_TRUE(stage.has("camera:front"));
+  EXPECT_FALSE(stage.has("tooltip"));
+  keep("record-cameras");
+  stage.panels->run(Command::close_dialog, stage.scene, stage.view);
+  stage.rest();
+  // A button that was clicked is quiet until the mouse has left it.
+  rest_on("record-transparent", half_a_second);
+  EXPECT_TRUE(stage.has("tooltip"));
+  const ViewRect box = stage.item("record-transparent").rect;
+  stage.step(box.x + box.width / 2, box.y + box.height / 2, true);
+  rest_on("record-transparent", 2 * half_a_second);
+  EXPECT_FALSE(stage.has("tooltip"));
+  stage.rest();
+  rest_on("record-transparent", half_a_second);
+  EXPECT_TRUE(stage.has("tooltip"));
+}
+
 TEST_P(Instrument, LookTabSetsWhatThePictureShows) {
   stage.scene.distance_colours = distance_colours();
   stage.click("left-tab:Look");
