@@ -398,6 +398,27 @@ TEST_P(Instrument, SeveralFilesAreChosenAndOpenedAtOnce) {
   std::filesystem::remove_all(folder);
 }
 
+TEST_P(Instrument, DropAndInterincisalDistanceAreToldApart) {
+  stage.scene.landmarks.push_back(landmark_at("upper_incisal_point", {0, -80, -38}, stage.parts));
+  stage.frame = box_frame(1.2, 50);
+  stage.frame.measures.interincisal_mm = 61.7;
+  stage.rest();
+  EXPECT_EQ(stage.item("opening-number").words, "50.0");
+  EXPECT_EQ(stage.item("reading:Interincisal distance").words, "61.7 mm");
+  const auto explained = [&](const std::string& item) {
+    const ViewRect r = stage.item(item).rect;
+    stage.rest();
+    for (int i = 0; i < 32; ++i) stage.step(r.x + r.width / 2, r.y + r.height / 2, false);
+    return stage.item("tooltip").words;
+  };
+  EXPECT_NE(explained("opening-number").find("straight down"), std::string::npos);
+  EXPECT_NE(explained("reading:Interincisal distance").find("42 to 58 mm"), std::string::npos);
+  EXPECT_NE(explained("opening").find("drop of the lower incisal point"), std::string::npos);
+  stage.rest();
+  expect_tidy();
+  keep("openings");
+}
+
 TEST_P(Instrument, TooltipsWaitAndCoverNothingThatAClickReveals) {
   stage.click("tab:Record");
   const auto rest_on = [&](const std::string& item, int pictures) {
