@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "render/window/wishes.h"
 #include "tools/text_list.h"
 
 namespace condyle {
@@ -122,42 +123,54 @@ std::string view_text(const Camera& camera) {
 
 std::vector<std::string> split_cameras(const std::string& list) {
   std::vector<std::string> cameras = split_list(list);
+  check_cameras(cameras);
+  for (const auto& camera : cameras)  // there is no window here
+    if (camera == own_camera || camera == turning_camera) standard_camera(camera, {}, {}, 1);
+  return cameras;
+}
+
+void check_cameras(const std::vector<std::string>& cameras) {
   std::set<std::string> folders;
   for (const auto& camera : cameras) {
     const Eigen::Vector3d one = Eigen::Vector3d::Ones();
     if (camera.ends_with(".json"))
       read_path(camera, -one, one, 1);
-    else if (camera != turntable && !ArchView::names(camera))
+    else if (camera != turntable && camera != own_camera && camera != turning_camera &&
+             !ArchView::names(camera))
       standard_camera(camera, -one, one, 1);
     if (!folders.insert(std::filesystem::path(camera).stem().string()).second)
-      throw InputError("--camera " + list + ": two cameras have the name " +
-                       std::filesystem::path(camera).stem().string());
+      throw InputError(fmt::format("--camera {}: two cameras have the name {}",
+                                   fmt::join(cameras, ","),
+                                   std::filesystem::path(camera).stem().string()));
   }
-  return cameras;
 }
 
 RecordingCamera::RecordingCamera(const std::string& text, std::span<const Part> parts,
                                  const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                                  double aspect)
-    : name_(std::filesystem::path(text).stem().string()), spin_(text == turntable) {
+    : name_(std::filesystem::path(text).stem().string()),
+      turning_(text == turntable ? Turning::once : Turning::no) {
   if (ArchView::names(text)) {
     arch_.emplace(text, parts, aspect);
     path_.keys = {{0, arch_->at_rest()}};
   } else if (text.ends_with(".json")) {
     path_ = read_path(text, low, high, aspect);
   } else {
-    path_.keys = {{0, standard_camera(spin_ ? "front" : text, low, high, aspect)}};
+    path_.keys = {{0, standard_camera(text == turntable ? "front" : text, low, high, aspect)}};
   }
 }
+
+RecordingCamera::RecordingCamera(const std::string& name, const Camera& camera, Turning turning)
+    : name_(name), turning_(turning), path_{.keys = {{0, camera}}} {}
 
 Camera RecordingCamera::at(double share, const FrameState& frame) const {
   if (arch_) return arch_->at(frame);
   const Camera camera = path_.at(share);
-  return spin_ ? turned(camera, 2 * std::numbers::pi * share) : camera;
+  return turning_ == Turning::once ? turned(camera, 2 * std::numbers::pi * share) : camera;
 }
 
 std::string RecordingCamera::description() const {
-  std::string text = arch_ ? name_ + " " : spin_ ? "spin " : "";
+  std::string text = arch_ ? name_ + " " : turning_ == Turning::once ? "spin " : "";
   for (std::size_t i = 0; i < path_.keys.size(); ++i)
     text += fmt::format("{}{}{}", i ? "; " : "",
                         path_.keys.size() > 1 ? fmt::format("{}: ", path_.keys[i].at) : "",

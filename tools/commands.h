@@ -96,10 +96,10 @@ struct LetGoOptions {
 
 struct ViewOptions {
   MotionOptions motion;
-  std::optional<double> ui_scale = {};  // none: by the screen
-  bool light = false;
-  std::string size = "1280x720";
-  std::filesystem::path state_file;  // kept up to date with what the window shows; empty = none
+  std::optional<double> ui_scale = {};  // none: as the window was left, at first by the screen
+  std::optional<bool> light = {};       // none: as the window was left
+  std::string size = {};                // "1280x720"; empty: as the window was left
+  std::filesystem::path state_file;     // kept up to date with what the window shows; empty = none
 };
 
 struct ImportOptions {

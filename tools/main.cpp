@@ -68,13 +68,19 @@ int run_program(int argc, char** argv) {
   view_command
       ->add_option(
           "--ui-scale", view.ui_scale,
-          "Size of the panels (1; 1.5 in windows 3840 pixels wide where the screen tells none)")
+          "Size of the panels (as they were left; at first 1, and 1.5 in windows 3840 pixels wide "
+          "where the screen tells none)")
       ->check(within(0.5, 4.0));
-  view_command->add_option("--size", view.size, "Of the window (1280x720)");
+  view_command->add_option("--size", view.size,
+                           "Of the window (as it was left; at first 1280x720)");
   view_command->add_option("--state-file", view.state_file,
                            "Keep a JSON file up to date with what the window shows, for programs "
                            "that use the window");
-  view_command->add_flag("--light", view.light, "Light panels instead of dark ones (key T)");
+  view_command->add_flag_callback(
+      "--light", [&view] { view.light = true; },
+      "Light panels (as they were left; at first dark; key T)");
+  view_command->add_flag_callback(
+      "--dark", [&view] { view.light = false; }, "Dark panels");
 
   RecordOptions record;
   record.pictures = true;

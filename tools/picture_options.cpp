@@ -158,6 +158,9 @@ PicturePlan parse(const PictureOptions& options, const Case* patient) {
   settings.supersampling = options.supersample;
   settings.shadows = options.shadows;
   plan.wipe = options.wipe;
+  plan.near_mm = options.distance_near_mm;
+  plan.caption = options.caption;
+  plan.cameras = split_cameras(options.camera);
   if (options.before_after) {
     if (plan.map == SurfaceMap::distance || plan.patches || plan.wipe)
       throw InputError(
@@ -166,6 +169,11 @@ PicturePlan parse(const PictureOptions& options, const Case* patient) {
     plan.before_after = true;
     plan.map = SurfaceMap::displacement;
   }
+  plan.words = {{"show", options.show},
+                {"distances", plan.map == SurfaceMap::distance
+                                  ? fmt::format("up to {} mm", options.distance_near_mm)
+                                  : std::string("none")},
+                {"picture", describe(options)}};
   return plan;
 }
 
@@ -177,7 +185,6 @@ PicturePlan parse_pictures(const PictureOptions& options, const Case& patient) {
 
 void check_pictures(const PictureOptions& options) {
   parse(options, nullptr);
-  split_cameras(options.camera);
   caption_lines(options.caption, 0, {}, "");
 }
 
@@ -208,6 +215,7 @@ std::vector<std::string> caption_lines(const std::string& caption, int frame,
   const std::map<std::string, std::string> values = {
       {"time", number(state.time_s, 2)},
       {"opening", number(state.measures.opening_mm, 1)},
+      {"interincisal", number(state.measures.interincisal_mm, 1)},
       {"rotation", number(state.measures.rotation_deg, 1)},
       {"frame", std::to_string(frame)},
       {"motion", motion}};
@@ -221,8 +229,8 @@ std::vector<std::string> caption_lines(const std::string& caption, int frame,
       const auto value = values.find(name);
       if (end == std::string::npos || value == values.end())
         throw InputError("--caption " + caption + ": {" + name +
-                         "} is unknown; known are {time}, {opening}, {rotation}, {frame} and "
-                         "{motion}");
+                         "} is unknown; known are {time}, {opening}, {interincisal}, {rotation}, "
+                         "{frame} and {motion}");
       lines.back() += value->second;
       i = end;
     } else {

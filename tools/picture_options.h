@@ -1,13 +1,28 @@
 #pragma once
 
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "render/annotations.h"
+#include "render/recording_sheet.h"
 #include "render/scene_renderer.h"
+#include "render/shown_overlays.h"
 #include "sim/case/case.h"
 #include "tools/commands.h"
 #include "tools/common.h"
 #include "tools/overlay_drawing.h"
 
 namespace condyle {
+
+/// What a window that is recorded from has of its own.
+struct WindowPicture {
+  Camera camera = {};                                  // `own_camera` and `turning_camera`
+  std::shared_ptr<const FrameState> before = nullptr;  // left of a wipe; none: the patient at rest
+  std::function<Overlays(const FrameState&)> overlays = {};  // instead of those by name
+};
 
 /// What is drawn in each picture of a recording.
 struct PicturePlan {
@@ -18,6 +33,11 @@ struct PicturePlan {
   bool patches = false;
   std::optional<double> wipe = std::nullopt;
   bool before_after = false;
+  double near_mm = 2;  // end of the map of distances
+  std::string caption = {};
+  std::vector<std::string> cameras = {"three-quarter"};
+  std::optional<WindowPicture> window = std::nullopt;  // none: of a command line
+  RecordingSheet words = {};                           // what it says, for the recording's sheet
 };
 
 /// throws: InputError saying which option is wrong and what is known.

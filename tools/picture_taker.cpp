@@ -8,6 +8,7 @@
 #include "engine/mesh/measure.h"
 #include "render/gap_colours.h"
 #include "render/paint.h"
+#include "render/window/wishes.h"
 #include "sim/muscles/usual_muscles.h"
 #include "sim/tissue/model.h"
 #include "tools/anatomy_drawing.h"
@@ -25,6 +26,7 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const 
   for (const auto& part : patient.parts) {
     const auto opacity = picture.part_opacity.find(part.name);
     if (opacity != picture.part_opacity.end() && opacity->second <= 0) continue;
+    if (part.role == Role::face && picture.skin_opacity <= 0) continue;
     const Body body = body_of(part.role);
     const bool moves = (body == Body::free ? part.carrier : body) == Body::mandible;
     const std::size_t stride = part.mesh.vertices.size() > few ? 16 : 1;
@@ -40,39 +42,41 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const 
 
 }  // namespace
 
-PictureTaker::PictureTaker(const RecordOptions& options, const RecordingSubject& subject)
-    : subject_(subject),
-      caption_(options.picture.caption),
-      plan_(parse_pictures(options.picture, subject.scene.patient)),
-      rest_(rest_frame(subject.scene)) {
+RecordingCamera PictureTaker::camera_of(const std::string& text,
+                                        const Eigen::AlignedBox3d& box) const {
+  using Turning = RecordingCamera::Turning;
+  if (plan_.window && (text == own_camera || text == turning_camera))
+    return {text, plan_.window->camera, text == own_camera ? Turning::no : Turning::once};
+  const double aspect = static_cast<double>(plan_.settings.width) / plan_.settings.height;
+  return {text, subject_.scene.patient.parts, box.min(), box.max(), aspect};
+}
+
+PictureTaker::PictureTaker(const PicturePlan& plan, const RecordingFiles& files,
+                           const RecordingSubject& subject)
+    : subject_(subject), plan_(plan), rest_(rest_frame(subject.scene)) {
   const auto& patient = subject.scene.patient;
-  const auto& wanted = options.picture;
   const bool distance = plan_.map == SurfaceMap::distance;
-  near_mm_ = wanted.distance_near_mm;
   if (plan_.overlays.muscles) muscles_ = muscles_of(patient);
   if (subject.settings.face) carry_face(subject.scene, rest_, subject.settings.threads);
+  if (plan_.window && plan_.window->before) rest_ = *plan_.window->before;
 
-  const double aspect = static_cast<double>(plan_.settings.width) / plan_.settings.height;
   const auto [low, high] = view_box(patient, subject.motion, plan_.settings);
-  const auto cameras = split_cameras(wanted.camera);
-  for (const auto& text : cameras) {
-    View view{RecordingCamera(text, patient.parts, low, high, aspect), plan_.settings, nullptr};
+  const Eigen::AlignedBox3d box(low, high);
+  for (const auto& text : plan_.cameras) {
+    View view{camera_of(text, box), plan_.settings, nullptr};
     if (const auto* arch = view.camera.arch())
       for (const auto& [part, opacity] : arch->hidden()) view.settings.part_opacity[part] = opacity;
     auto identity = subject.identity;
     identity["camera"] = view.camera.description();
-    identity["show"] = wanted.show;
-    identity["distances"] =
-        distance ? fmt::format("up to {} mm", wanted.distance_near_mm) : std::string("none");
-    identity["picture"] = describe(wanted);
+    identity.insert(plan_.words.begin(), plan_.words.end());
     view.recorder = std::make_unique<Recorder>(RecorderSettings{
-        .folder = cameras.size() == 1 ? options.out : options.out / view.camera.name(),
+        .folder = plan_.cameras.size() == 1 ? files.out : files.out / view.camera.name(),
         .width = (plan_.before_after ? 3 : 1) * plan_.settings.width,
         .height = plan_.settings.height,
         .frames = subject.frames,
         .frames_per_second = subject.frames_per_second,
-        .film = options.film,
-        .resume = options.resume,
+        .film = files.film,
+        .resume = files.resume,
         .identity = std::move(identity)});
     kept_ += view.recorder->kept_frames();
     views_.push_back(std::move(view));
@@ -100,13 +104,13 @@ void PictureTaker::prepare(SceneRenderer& renderer, Desk& desk) const {
     // Finer than a window has time for.
     desk.distances.emplace(patient,
                            // Beyond what is coloured by an edge's length: its end is a smooth line.
-                           DistanceMapSettings{.reach_mm = distance ? near_mm_ + 1 : 1,
+                           DistanceMapSettings{.reach_mm = distance ? plan_.near_mm + 1 : 1,
                                                .teeth_edge_mm = 0.4,
                                                .bone_edge_mm = 1,
                                                .most_triangles = 400000,
                                                .pair_rules = subject_.settings.contact.pair_rules},
                            subject_.settings.threads, renderer,
-                           distance ? distance_colours({.near_mm = near_mm_})
+                           distance ? distance_colours({.near_mm = plan_.near_mm})
                                     : patch_colours(*plan_.settings.mapped_up_to));
   if (plan_.map == SurfaceMap::displacement) desk.displacement.emplace(patient.parts);
 }
@@ -133,6 +137,7 @@ Image PictureTaker::drawn(const View& view, const Camera& camera, const Shot& sh
 }
 
 Overlays PictureTaker::overlays_of(const FrameState& state, bool with_paths) const {
+  if (plan_.window) return plan_.window->overlays(state);
   Overlays all;
   all.lines = overlay_lines(subject_.scene, state, plan_.overlays);
   if (plan_.overlays.paths && with_paths) all.lines["paths"] = paths_.lines();
@@ -174,7 +179,7 @@ Image PictureTaker::finished(const View& view, int frame, const Shot& shot) cons
   const double share = subject_.frames > 1 ? static_cast<double>(frame) / (subject_.frames - 1) : 0;
   const Camera camera = view.camera.at(share, shot.state);
   auto notes = plan_.annotations;
-  notes.caption = caption_lines(caption_, frame, shot.state, subject_.motion.name);
+  notes.caption = caption_lines(plan_.caption, frame, shot.state, subject_.motion.name);
   Image image;
   if (plan_.before_after) {
     image = before_after(view, camera, shot);

@@ -27,10 +27,18 @@ struct RecordingSubject {
   RecordingSheet identity;  // of case, motion and tissue
 };
 
+/// Where the pictures go.
+struct RecordingFiles {
+  std::filesystem::path out;  // several cameras: a folder each in it
+  bool film = false;
+  bool resume = false;
+};
+
 /// Draws the frames of one recording, seen by one camera or several, and keeps them.
 class PictureTaker {
  public:
-  PictureTaker(const RecordOptions& options, const RecordingSubject& subject);
+  PictureTaker(const PicturePlan& plan, const RecordingFiles& files,
+               const RecordingSubject& subject);
 
   /// Pictures that were there already.
   int kept() const { return kept_; }
@@ -73,15 +81,14 @@ class PictureTaker {
   Image finished(const View& view, int frame, const Shot& shot) const;
   /// Whether any camera still wants the frame.
   bool wanted(int frame) const;
+  RecordingCamera camera_of(const std::string& text, const Eigen::AlignedBox3d& box) const;
   Overlays overlays_of(const FrameState& state, bool with_paths) const;
 
   const RecordingSubject subject_;
-  std::string caption_;
   PicturePlan plan_;
-  FrameState rest_;  // for wipes
+  FrameState rest_;  // left of a wipe
   MotionPaths paths_;
   std::vector<Muscle> muscles_;  // that are drawn
-  double near_mm_ = 0;           // of the map of distances
   std::vector<View> views_;
   int kept_ = 0;
   std::deque<Desk> desks_;

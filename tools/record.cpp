@@ -110,7 +110,8 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   std::optional<PictureTaker> pictures;  // ends first: it gives frames to the trace
   if (options.pictures)
     pictures.emplace(
-        options,
+        parse_pictures(options.picture, scene.patient),
+        RecordingFiles{.out = options.out, .film = options.film, .resume = options.resume},
         RecordingSubject{
             .scene = scene,
             .motion = motion,

@@ -189,9 +189,11 @@ void add_pictures(CLI::App* command, PictureOptions& picture) {
   command->add_flag("--before-after", picture.before_after,
                     "Three pictures of that size beside one another: at rest, as he is now, and "
                     "now with the skin coloured by its way from rest");
-  command->add_option("--caption", picture.caption,
-                      "Words under the picture; {time}, {opening}, {rotation}, {frame} and "
-                      "{motion} are filled in, | breaks the line");
+  command->add_option(
+      "--caption", picture.caption,
+      "Words under the picture; {time}, {opening} (drop of the lower incisal point), "
+      "{interincisal} (between the incisal edges), {rotation}, {frame} and {motion} "
+      "are filled in, | breaks the line");
   command->add_flag("--transparent", picture.transparent, "No background: PNG with alpha");
   command
       ->add_option("--edges", picture.edges,

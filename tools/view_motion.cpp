@@ -27,7 +27,7 @@ struct ShownParameter {
   std::optional<double> usual = std::nullopt;
 };
 constexpr std::array shown_parameters = {
-    ShownParameter{"opening", "Maximum opening", 42, 58},
+    ShownParameter{"opening", "Maximum opening (drop)", 0, 0},
     ShownParameter{"protrusion", "Protrusion", 6, 11, 8},
     ShownParameter{"laterotrusion", "Laterotrusion", 7, 12, 9},
     ShownParameter{"retrusion", "Retrusion", 0.3, 1.4, 0.7},

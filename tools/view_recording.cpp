@@ -4,17 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
-#include "render/annotations.h"
-#include "render/displacement_drawing.h"
-#include "render/gl_context.h"
-#include "render/paint.h"
-#include "render/recorder.h"
-#include "render/scene_renderer.h"
-#include "render/shown_overlays.h"
-#include "tools/distance_drawing.h"
+#include "render/colour_map.h"
+#include "tools/picture_taker.h"
 #include "tools/view_overlays.h"
 
 namespace condyle {
@@ -37,56 +30,35 @@ std::vector<Pose> free_poses(const ViewRecording& subject) {
   return poses;
 }
 
-/// Draws frames of one recording.
-class ViewDrawing {
- public:
-  ViewDrawing(const ViewRecording& subject, const SimulatorSettings& settings)
-      : subject_(subject), renderer_(subject.patient->scene.patient.parts) {
-    picture_ = subject.wanted.picture;
-    picture_.width = subject.wanted.width;
-    picture_.height = subject.wanted.height;
-    picture_.samples = 4;
-    if (subject.view.distances) {
-      const DistanceBands bands;
-      distances_.emplace(subject.patient->scene.patient,
-                         DistanceMapSettings{.reach_mm = bands.near_mm + 1,
-                                             .pair_rules = settings.contact.pair_rules},
-                         settings.threads, renderer_, distance_colours(bands));
-    }
-    if (subject.view.look.displacement) displacement_.emplace(subject.patient->scene.patient.parts);
-  }
-
-  Image picture(const FrameState& frame, const Camera& camera) {
-    Image image = drawn(frame, camera);
-    const Look& look = subject_.view.look;
-    if (look.wipe && subject_.wanted.kept)
-      image = wiped(drawn(*subject_.wanted.kept, camera), image, look.wipe_at);
-    if (distances_) distances_->add_legend_to(image);
-    if (displacement_) displacement_->add_legend_to(image);
-    annotate(image, words_, camera,
-             {.scale_bar = look.scale_bar, .letters = look.letters, .caption = {}});
-    return image;
-  }
-
- private:
-  Image drawn(const FrameState& frame, const Camera& camera) {
-    renderer_.update(frame);
-    if (distances_) distances_->color(renderer_, frame);
-    if (displacement_) displacement_->color(renderer_, frame);
-    overlays_.send(renderer_, view_overlays(*subject_.patient, subject_.motion->motion, frame,
-                                            subject_.view, subject_.paths));
-    return renderer_.picture(camera, picture_);
-  }
-
-  const ViewRecording& subject_;
-  OffscreenContext context_;
-  SceneRenderer renderer_;
-  OverlaySender overlays_;
-  std::optional<DistanceDrawing> distances_;
-  std::optional<DisplacementDrawing> displacement_;
-  Lettering words_;
-  PictureSettings picture_;
-};
+/// What a command line would say, from what the window shows and its panel asks for.
+PicturePlan plan_of(const ViewRecording& subject) {
+  const wish::Record& wanted = subject.wanted;
+  const Look& look = subject.view.look;
+  check_cameras(wanted.cameras);
+  caption_lines(wanted.caption, 0, {}, "");
+  PicturePlan plan;
+  plan.annotations = {.scale_bar = look.scale_bar, .letters = look.letters, .caption = {}};
+  plan.near_mm = DistanceBands{}.near_mm;
+  plan.caption = wanted.caption;
+  plan.cameras = wanted.cameras;
+  plan.window = WindowPicture{.camera = wanted.camera, .before = wanted.kept};
+  plan.window->overlays = [&subject](const FrameState& frame) {
+    return view_overlays(*subject.patient, subject.motion->motion, frame, subject.view,
+                         subject.paths);
+  };
+  if (look.wipe) plan.wipe = look.wipe_at;
+  if (subject.view.distances) plan.map = SurfaceMap::distance;
+  if (look.displacement) plan.map = SurfaceMap::displacement;
+  PictureSettings& settings = plan.settings;
+  settings = wanted.picture;
+  settings.width = wanted.width;
+  settings.height = wanted.height;
+  settings.samples = 4;
+  settings.supersampling = wanted.supersampling;
+  settings.transparent_background = wanted.transparent;
+  plan.words = {{"picture", "as in the window"}};
+  return plan;
+}
 
 }  // namespace
 
@@ -100,33 +72,28 @@ std::filesystem::path record_view(const ViewRecording& subject, const SimulatorS
   report(progress, "preparing the recording", 0);
   SimulatorSettings recorded = settings;
   recorded.face = true;
-  // The recorder first: a folder that cannot be written ends it at once.
-  Recorder recorder({.folder = wanted.folder,
-                     .width = wanted.width,
-                     .height = wanted.height,
-                     .frames = frames,
-                     .frames_per_second = wanted.frames_per_second,
-                     .film = wanted.film,
-                     .resume = false,
-                     .identity = {{"condyle", CONDYLE_VERSION},
-                                  {"case", scene.patient.name},
-                                  {"motion", motion.name},
-                                  {"camera", "the window's"}}});
-  ViewDrawing drawing(subject, settings);
+  // The pictures' folders first: one that cannot be written ends it at once.
+  PictureTaker pictures(
+      plan_of(subject), {.out = wanted.folder, .film = wanted.film},
+      {.scene = scene,
+       .motion = motion,
+       .settings = recorded,
+       .frames = frames,
+       .frames_per_second = wanted.frames_per_second,
+       .identity = {
+           {"condyle", CONDYLE_VERSION}, {"case", scene.patient.name}, {"motion", motion.name}}});
   Motion as_played = motion;
   as_played.recorded = !subject.view.obey_contact;  // then contact alters nothing
   Playback playback(scene, as_played, recorded, false, free_poses(subject));
   for (int i = 0; i < frames; ++i) {
     const double share = frames > 1 ? static_cast<double>(i) / (frames - 1) : 0;
     report(progress, fmt::format("picture {} of {}", i + 1, frames), share);
-    const FrameState frame = playback.at(motion.duration_s * share);
-    recorder.add(i, drawing.picture(frame, wanted.turntable
-                                               ? turned(wanted.camera, 2 * std::numbers::pi * share)
-                                               : wanted.camera));
+    pictures.take(i, playback.at(motion.duration_s * share), [](int, const FrameState&) {});
   }
   report(progress, wanted.film ? "making the film" : "writing the last pictures", 1);
-  recorder.finish();
-  return wanted.film ? recorder.film_file() : wanted.folder;
+  pictures.finish();
+  const bool one_film = wanted.film && wanted.cameras.size() == 1;
+  return one_film ? wanted.folder / "film.mp4" : wanted.folder;
 }
 
 }  // namespace condyle

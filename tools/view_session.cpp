@@ -74,11 +74,13 @@ void ViewSession::take_patient() {
     // The command line's motion is for its own patient; another one opens first.
     if (!first) asked_ = {.spec = "opening", .parameters = {}, .excitations = {}};
     shown_ = scene_of_patient();
-    window_.set_scene(shown_, {}, patient_);
+    ViewState start;
+    static_cast<PanelChoice&>(start) = window_.view();  // what is at hand stays so
+    window_.set_scene(shown_, start, patient_);
     show_scene();
     window_.show(patient_->at_rest);
   }
-  if (!patient_->trouble.empty()) window_.report_error(patient_->trouble);
+  if (!patient_->trouble.empty()) window_.report_error(in_window_words(patient_->trouble));
   want_motion(asked_);
 }
 
@@ -120,6 +122,7 @@ void ViewSession::show_scene() {
     shown_.excitations = motion_->excitations;
     shown_.notes.insert(shown_.notes.end(), motion.notes.begin(), motion.notes.end());
   }
+  for (std::string& note : shown_.notes) note = in_window_words(std::move(note));
   window_.update_scene(shown_);
 }
 
@@ -153,8 +156,8 @@ void ViewSession::take_motion() {
   motion_ = *made;
   show_scene();
   retire(simulation_);
-  simulation_ = std::make_shared<LiveSimulation>(patient_->scene, motion_->motion,
-                                                 live_settings(settings_));
+  simulation_ =
+      std::make_shared<LiveSimulation>(patient_->scene, motion_->motion, live_settings(settings_));
   moved_ = {};
   window_.change([&](ViewState& view) {
     view.obey_contact = obeys_contact();

@@ -15,11 +15,9 @@
 #include "tools/background.h"
 #include "tools/view_motion.h"
 #include "tools/view_overlays.h"
+#include "tools/window_words.h"
 
 namespace condyle {
-
-/// An error's sentence with what the window offers in place of the command line's options.
-std::string in_window_words(std::string sentence);
 
 /// What goes on behind a window: loading, simulating, plotting, recording, each beside it, so that
 /// the window answers at all times.

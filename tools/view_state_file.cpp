@@ -85,6 +85,7 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
   json["edits"] = edits_of(view);
   json["case"] = {{"name", window.scene().case_name},
                   {"folder", window.scene().case_folder.string()}};
+  json["notes"] = window.scene().notes;
   json["recent"] = nlohmann::json::array();
   for (const auto& path : window.scene().recent) json["recent"].push_back(path.string());
   if (const std::string trouble = window.trouble(); !trouble.empty()) json["trouble"] = trouble;

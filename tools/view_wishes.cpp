@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
-#include <array>
-#include <string_view>
+#include <algorithm>
 
 #include "engine/core/error.h"
 #include "tools/view_recording.h"
@@ -27,27 +26,25 @@ Eigen::Vector3d push_toward_bone(const FrameState& frame, std::size_t part) {
   return way.norm() > 1e-9 ? way.normalized() : -Eigen::Vector3d::UnitZ();
 }
 
-}  // namespace
-
-std::string in_window_words(std::string sentence) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> words = {
-      {{"did you mean --units ", "choose as the unit of lengths "},
-       {"did you mean --frame ", "choose as the directions of the axes "},
-       {"--units", "the unit of lengths"},
-       {"--frame", "the directions of the axes"},
-       {"make a case from surfaces with: condyle import meshes --mandible FILE --maxilla FILE ... "
-        "--out FOLDER",
-        "open or drop its surfaces to make one"},
-       {"make one from surfaces with: condyle import meshes --mandible FILE --maxilla FILE ... "
-        "--out FOLDER",
-        "open or drop its surfaces to make one"}}};
-  for (const auto& [there, here] : words)
-    if (const auto at = sentence.find(there); at != std::string::npos) {
-      sentence.replace(at, there.size(), here);
-      if (here.starts_with("choose") && sentence.ends_with("?")) sentence.back() = '.';
-    }
-  return sentence;
+/// A folder that is no case stands for the surfaces and landmarks in it, if there are any.
+std::vector<fs::path> with_loose_surfaces(const std::vector<fs::path>& files) {
+  std::vector<fs::path> all;
+  for (const fs::path& file : files) {
+    std::error_code ignored;
+    std::vector<fs::path> inside;
+    if (fs::is_directory(file, ignored) && !fs::exists(file / "case.json", ignored))
+      for (const auto& one : fs::directory_iterator(file, ignored))
+        if (const FileKind kind = kind_of(one.path());
+            kind == FileKind::surface || kind == FileKind::landmarks)
+          inside.push_back(one.path());
+    std::sort(inside.begin(), inside.end());
+    if (inside.empty()) inside = {file};
+    all.insert(all.end(), inside.begin(), inside.end());
+  }
+  return all;
 }
+
+}  // namespace
 
 void ViewSession::carry_out(const wish::Open& wanted) {
   if (wanted.files.empty()) return open_patient({});
@@ -59,12 +56,23 @@ void ViewSession::carry_out(const wish::Open& wanted) {
     throw InputError(one, "", "is not there (any more)");
   }
   wish::Import surfaces;
-  for (const fs::path& file : wanted.files) {
+  std::vector<std::string> others;
+  for (const fs::path& file : with_loose_surfaces(wanted.files)) {
     const FileKind kind = kind_of(file);
     if (kind == FileKind::surface || kind == FileKind::landmarks)
       surfaces.files.push_back({file, role_guess(file)});
+    else
+      others.push_back(file.filename().string());
   }
-  if (!surfaces.files.empty()) return window_.ask_roles(surfaces);
+  if (!surfaces.files.empty()) {
+    if (!others.empty())
+      window_.say(fmt::format("Left out: {}. Only surfaces and landmarks make a patient",
+                              fmt::join(others, ", ")));
+    return window_.ask_roles(surfaces);
+  }
+  if (wanted.files.size() > 1)
+    window_.say(fmt::format("Of {} files the first is opened: {}", wanted.files.size(),
+                            one.filename().string()));
   switch (kind_of(one)) {
     case FileKind::patient:
       return open_patient(fs::is_directory(one) ? one : one.parent_path());

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,13 @@ struct Drafts {
     std::string folder;
     int height = 1080;
     double frames_per_second = 30;
-    bool film = true, turntable = false;
+    bool film = true, transparent = false;
+    int supersampling = 1;
+    std::set<std::string> cameras = {own_camera};
+    bool camera_from_file = false;
+    std::string camera_file, caption;
+    /// Those that are chosen, in the order of the list; a file without a name is none.
+    std::vector<std::string> wanted_cameras() const;
     bool running = false;  // a recording, in the pass before
   } record;
   std::string landmark_words, case_folder;
@@ -27,6 +34,14 @@ struct Drafts {
     std::string path;
     std::filesystem::path folder, listed;  // looked into; and the one that is listed
     std::vector<std::filesystem::path> folders, files;
+    std::set<std::size_t> chosen;  // of the files
+    std::size_t anchor = 0;        // where Shift+click begins
+    bool accepted = false;         // Enter: what is chosen shall be opened
+
+    /// A click on a file: it alone, with Ctrl it too or not any more, with Shift all up to it.
+    void choose(std::size_t file, bool ctrl, bool shift);
+    /// Those that are chosen, in the order of the list.
+    std::vector<std::filesystem::path> chosen_files() const;
   } files;
   std::optional<wish::Import> import;  // surfaces that wait for their roles
 };

@@ -10,7 +10,16 @@ namespace condyle {
 struct Layout {
   ViewRect top, left, right, bottom, view, plots;
 };
-Layout lay_out(double width, double height, double scale, bool with_panels,
-               bool with_plots = false);
+
+/// Of what can be drawn wider or higher, pixels at scale 1. The columns are never narrower than at
+/// first: their words need that room.
+struct PanelSizes {
+  double left = 244, right = 286;
+  double plots = 0;  // height; 0: a share of the window's
+  bool operator==(const PanelSizes&) const = default;
+};
+
+Layout lay_out(double width, double height, double scale, bool with_panels, bool with_plots = false,
+               const PanelSizes& sizes = {});
 
 }  // namespace condyle

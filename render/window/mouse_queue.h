@@ -9,8 +9,8 @@ namespace condyle {
 /// Where the mouse is and which buttons are down.
 struct MouseMoment {
   double x = -1e6, y = -1e6;
-  std::array<bool, 3> down{};  // left, right, middle, as GLFW and ImGui number them
-  bool ctrl = false;           // held while this button went down
+  std::array<bool, 3> down{};        // left, right, middle, as GLFW and ImGui number them
+  bool ctrl = false, shift = false;  // held while this button went down
 };
 
 /// Presses and releases in their order, each with its own place. On a slow driver a click and the
@@ -27,11 +27,12 @@ class MouseQueue {
       moments_.push_back(now_);
     moved_last_ = true;
   }
-  void pressed(int button, bool down, bool ctrl = false) {
+  void pressed(int button, bool down, bool ctrl = false, bool shift = false) {
     if (button < 0 || button >= 3) return;
     now_.down[static_cast<std::size_t>(button)] = down;
     moments_.push_back(now_);
     moments_.back().ctrl = down && ctrl;
+    moments_.back().shift = down && shift;
     moved_last_ = false;
   }
   bool waiting() const { return !moments_.empty(); }

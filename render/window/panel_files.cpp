@@ -8,6 +8,24 @@
 
 namespace condyle {
 namespace fs = std::filesystem;
+
+void Drafts::OpenFields::choose(std::size_t file, bool ctrl, bool shift) {
+  path.clear();  // one or the other is opened
+  if (!ctrl) chosen.clear();
+  if (shift) {
+    for (std::size_t i = std::min(anchor, file); i <= std::max(anchor, file); ++i) chosen.insert(i);
+    return;
+  }
+  anchor = file;
+  if (!chosen.insert(file).second) chosen.erase(file);
+}
+
+std::vector<fs::path> Drafts::OpenFields::chosen_files() const {
+  std::vector<fs::path> all;
+  for (const std::size_t i : chosen) all.push_back(files.at(i));
+  return all;
+}
+
 namespace {
 
 /// Reads a folder: its folders, and its files that may be opened, each in order.
@@ -15,6 +33,8 @@ void list_folder(Drafts::OpenFields& fields) {
   fields.listed = fields.folder;
   fields.folders.clear();
   fields.files.clear();
+  fields.chosen.clear();
+  fields.anchor = 0;
   std::error_code error;
   for (auto it = fs::directory_iterator(fields.folder,
                                         fs::directory_options::skip_permission_denied, error);
@@ -30,8 +50,9 @@ void list_folder(Drafts::OpenFields& fields) {
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return std::tolower(c); });
     for (const char* known : {".stl", ".ply", ".obj", ".glb", ".gltf", ".csv", ".motion", ".mot",
-                              ".sto", ".trc", ".raw", ".txt"})
-      if (ending == known) fields.files.push_back(it->path());
+                              ".sto", ".trc", ".raw", ".txt", ".json"})
+      if (ending == known && (ending != ".json" || name.ends_with(".mrk.json")))
+        fields.files.push_back(it->path());
   }
   std::sort(fields.folders.begin(), fields.folders.end());
   std::sort(fields.files.begin(), fields.files.end());
@@ -42,11 +63,44 @@ bool is_case(const fs::path& folder) {
   return fs::is_regular_file(folder / "case.json", ignored);
 }
 
+fs::path typed_path(const std::string& words) {
+  const char* home = std::getenv("HOME");
+  return words.starts_with("~/") && home ? fs::path(home) / words.substr(2) : fs::path(words);
+}
+
 constexpr const char* roles[] = {
     "",     "skull",   "maxilla",    "mandible", "upper-teeth", "lower-teeth",
     "face", "segment", "transplant", "landmarks"};
 const char* role_words(const std::string& role) {
   return role.empty() ? "leave out" : role.c_str();
+}
+
+/// What is to be said of the roles, and whether no patient can be made of them yet.
+struct RoleRemark {
+  std::string words;
+  bool hinders = false;
+};
+RoleRemark remark_on(const wish::Import& import) {
+  const auto count = [&](const std::string& role) {
+    return std::count_if(import.files.begin(), import.files.end(),
+                         [&](const FileRole& one) { return one.role == role; });
+  };
+  if (count("skull") + count("maxilla") + count("mandible") == 0)
+    return {"No surface is a bone yet: choose skull, maxilla or mandible for at least one of them",
+            true};
+  for (const char* once : {"face", "landmarks"})
+    if (count(once) > 1)
+      return {fmt::format("{} files are said to be {}, but there can be only one: choose another "
+                          "role or \"leave out\" for the others",
+                          count(once), *once == 'f' ? "the face" : "landmarks"),
+              true};
+  for (const char* bone : {"mandible", "skull", "maxilla"})
+    if (count(bone) > 1)
+      return {
+          fmt::format("{} surfaces are said to be the {}. That is right for pieces of one bone; "
+                      "of the same bone twice, choose \"leave out\" for one",
+                      count(bone), bone)};
+  return {};
 }
 
 bool choice(Pen& pen, const std::string& name, float width, std::string& value,
@@ -72,7 +126,7 @@ bool choice(Pen& pen, const std::string& name, float width, std::string& value,
 void Panels::Drawing::open_dialog() {
   const Theme& theme = panels.theme_;
   Drafts::OpenFields& fields = panels.drafts_.files;
-  std::optional<fs::path> wanted;
+  std::vector<fs::path> wanted;
   bool builtin = false, close = false;
   text(theme.bold, palette().text, "Open");
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
@@ -88,7 +142,7 @@ void Panels::Drawing::open_dialog() {
   for (std::size_t i = 0; i < input.scene.recent.size(); ++i) {
     const fs::path& path = input.scene.recent[i];
     const std::string label = fitted(theme.regular, path.filename().string(), column - pen.px(32));
-    if (ImGui::Selectable((label + "##" + std::to_string(i)).c_str())) wanted = path;
+    if (ImGui::Selectable((label + "##" + std::to_string(i)).c_str())) wanted = {path};
     pen.mark(fmt::format("recent:{}", i));
     tooltip(pen, path.c_str());
   }
@@ -106,45 +160,71 @@ void Panels::Drawing::open_dialog() {
   ImGui::BeginChild("folder", {column, high}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
   if (fields.folder.has_parent_path() && ImGui::Selectable(".."))
     fields.folder = fields.folder.parent_path();
-  const auto row = [&](const fs::path& path, const std::string& end) {
+  const auto row = [&](const fs::path& path, const std::string& end, bool chosen = false) {
     const std::string label =
         fitted(theme.regular, path.filename().string() + end, column - pen.px(32));
-    const bool pressed = ImGui::Selectable((label + "##" + path.filename().string()).c_str());
-    pen.mark("file:" + path.filename().string());
+    const bool pressed = select_row(label + "##" + path.filename().string(), chosen);
+    pen.mark("file:" + path.filename().string(), chosen ? "chosen" : "");
+    if (label.ends_with("...")) tooltip(pen, path.filename().c_str());
     return pressed;
   };
   for (const fs::path& folder : fields.folders) {
     const bool patient = is_case(folder);
     if (!row(folder, patient ? "   (patient)" : "/")) continue;
     if (patient)
-      wanted = folder;
+      wanted = {folder};
     else
       fields.folder = folder;
   }
-  for (const fs::path& file : fields.files)
-    if (row(file, "")) wanted = file;
+  for (std::size_t i = 0; i < fields.files.size(); ++i) {
+    if (!row(fields.files[i], "", fields.chosen.contains(i))) continue;
+    const ImGuiIO& io = ImGui::GetIO();
+    fields.choose(i, io.KeyCtrl, io.KeyShift);
+    if (ImGui::IsMouseDoubleClicked(0) && !io.KeyCtrl && !io.KeyShift) wanted = {fields.files[i]};
+  }
   ImGui::EndChild();
   ImGui::PopStyleColor();
   ImGui::EndGroup();
 
   text(theme.small, palette().text_dim,
-       "A case folder, a motion (CSV, .motion, .mot, .trc ...) or surfaces (STL, PLY, OBJ, glTF); "
-       "all can also be dropped on the window");
+       "A patient's folder, a motion (CSV, .motion, .mot, .trc ...), or a patient's surfaces (STL, "
+       "PLY, OBJ, glTF) and");
+  text(theme.small, palette().text_dim,
+       "landmarks, several at once: Ctrl+click adds one, Shift+click all up to it. All can also be "
+       "dropped on the window");
   const float button = pen.px(96);
-  const bool entered = text_field(pen, "open-path", fields.path, whole - 2 * button - 2 * gap,
-                                  "path of a file or folder");
+  const std::vector<fs::path> chosen = fields.chosen_files();
+  const std::string hint = chosen.empty()       ? "path of a file or folder"
+                           : chosen.size() == 1 ? chosen.front().filename().string()
+                                                : fmt::format("{} files are chosen", chosen.size());
+  const bool entered =
+      text_field(pen, "open-path", fields.path, whole - 2 * button - 2 * gap, hint.c_str());
+  if (!fields.path.empty()) fields.chosen.clear();
   ImGui::SameLine(0, gap);
-  if ((word_button(pen, "open-go", "Open", {button, ImGui::GetFrameHeight()}, true) || entered) &&
-      !fields.path.empty())
-    wanted = fields.path.starts_with("~/") && std::getenv("HOME")
-                 ? fs::path(std::getenv("HOME")) / fields.path.substr(2)
-                 : fs::path(fields.path);
+  const bool go = word_button(
+      pen, "open-go", chosen.size() > 1 ? fmt::format("Open {}", chosen.size()).c_str() : "Open",
+      {button, ImGui::GetFrameHeight()}, true);
+  if (go || entered || std::exchange(fields.accepted, false)) {
+    const fs::path typed = typed_path(fields.path);
+    std::error_code ignored;
+    if (typed.empty()) {
+      wanted = chosen;
+    } else if (fs::is_directory(typed, ignored) && !is_case(typed)) {
+      fields.folder = typed;  // to look into
+      fields.path.clear();
+    } else {
+      wanted = {typed};
+    }
+  }
   ImGui::SameLine(0, gap);
   if (word_button(pen, "close-open", "Close", {button, ImGui::GetFrameHeight()}, false))
     close = true;
-  if (wanted) panels.wishes_.push_back(wish::Open{{*wanted}});
+  if (!wanted.empty()) panels.wishes_.push_back(wish::Open{wanted});
   if (builtin) panels.wishes_.push_back(wish::Open{});
-  if (wanted || builtin || close) fields.open = false;
+  if (!wanted.empty() || builtin || close) {
+    fields.open = false;
+    fields.chosen.clear();
+  }
 }
 
 void Panels::Drawing::import_dialog() {
@@ -183,19 +263,20 @@ void Panels::Drawing::import_dialog() {
   line("Directions of the axes", "import-frame", import.frame, frames,
        "L left, R right, P back, A front, S up, I down: where x, y and z point. Scanners and 3D "
        "Slicer's files are mostly LPS or RAS");
-  const bool any = std::any_of(import.files.begin(), import.files.end(), [](const FileRole& one) {
-    return one.role == "skull" || one.role == "maxilla" || one.role == "mandible";
-  });
-  if (!any)
-    text(theme.small, palette().text_dim,
-         "At least one surface must be the skull, the maxilla or the mandible");
+  const RoleRemark remark = remark_on(import);
+  if (!remark.words.empty()) {
+    ImGui::PushTextWrapPos(0);
+    text(theme.small, remark.hinders ? palette().warning : palette().text_dim, remark.words);
+    ImGui::PopTextWrapPos();
+    pen.mark("import-remark", remark.words);
+  }
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(8));
   const float button = pen.px(130);
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * button - pen.px(8));
   const bool close =
       word_button(pen, "import-close", "Leave them out", {button, pen.px(30)}, false);
   ImGui::SameLine(0, pen.px(8));
-  ImGui::BeginDisabled(!any);
+  ImGui::BeginDisabled(remark.hinders);
   const bool go = word_button(pen, "import-go", "Make a patient", {button, pen.px(30)}, true);
   ImGui::EndDisabled();
   if (go) panels.wishes_.push_back(import);

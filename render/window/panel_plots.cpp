@@ -13,14 +13,14 @@ void Panels::Drawing::plots() {
   const Theme& theme = panels.theme_;
   begin_panel(pen, "plots", layout.plots);
   const std::size_t sets = input.plots.size() + 1;  // and the stage times, which every frame brings
-  view.plot_set = std::min(view.plot_set, sets - 1);
+  // While the plots of a new motion are made there are fewer; the choice waits for them.
+  const std::size_t chosen = std::min(view.plot_set, sets - 1);
   const float gap = pen.px(4), high = pen.px(24);
   for (std::size_t i = 0; i < sets; ++i) {
     const std::string name = i < input.plots.size() ? input.plots[i].name : "Stage times";
     const float wide = text_width(theme.regular, name) + pen.px(18);
     if (i > 0) ImGui::SameLine(0, gap);
-    if (word_button(pen, ("plot-tab:" + name).c_str(), name.c_str(), {wide, high},
-                    i == view.plot_set))
+    if (word_button(pen, ("plot-tab:" + name).c_str(), name.c_str(), {wide, high}, i == chosen))
       view.plot_set = i;
   }
   ImGui::SameLine();
@@ -29,9 +29,9 @@ void Panels::Drawing::plots() {
     view.plots = false;
   tooltip(pen, "Put the plots away. Key G");
 
-  const PlotSet stage = view.plot_set < input.plots.size() ? PlotSet{} : panels.stage_plots();
-  const PlotSet& set = view.plot_set < input.plots.size() ? input.plots[view.plot_set] : stage;
-  const bool live = view.plot_set >= input.plots.size();
+  const bool live = chosen >= input.plots.size();
+  const PlotSet stage = live ? panels.stage_plots() : PlotSet{};
+  const PlotSet& set = live ? stage : input.plots[chosen];
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();
   if (set.panels.empty() || set.panels.front().curves.empty() ||

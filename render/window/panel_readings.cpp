@@ -13,8 +13,8 @@ namespace condyle {
 namespace {
 
 constexpr double step_budget_ms = 1000.0 / 60;
-constexpr double usual_low_mm = 42, usual_high_mm = 58;  // accepted band of the largest opening
-constexpr float bar_row = 16, curve_height = 22;         // at scale 1
+constexpr double usual_high_mm = 58;  // accepted for the largest distance between incisal edges
+constexpr float bar_row = 16, curve_height = 22;  // at scale 1
 constexpr double deeper_mm = 0.01;  // overlap beyond the one at rest that is called penetration
 
 // A line with a dim name at the left and a value at the right.
@@ -105,7 +105,12 @@ void Panels::Drawing::opening() {
   ImGui::SetCursorPos(
       {ImGui::GetStyle().WindowPadding.x + text_width(theme.large, number) + pen.px(6),
        top + (theme.large->FontSize - theme.regular->FontSize) * 0.78f});
-  text(theme.regular, palette().text_dim, "mm");
+  text(theme.regular, palette().text_dim, "mm drop");
+  pen.mark("opening-number", number);
+  tooltip(pen,
+          "How far the lower incisal point has dropped from rest, straight down. It goes back as "
+          "well, so between the incisal edges a ruler finds another length: the interincisal "
+          "distance below");
   if (held) {
     const float wide = pen.px(76), high = pen.px(26);
     ImGui::SetCursorPos({ImGui::GetWindowContentRegionMax().x - wide, top + pen.px(3)});
@@ -124,15 +129,15 @@ void Panels::Drawing::opening() {
     view.opening_mm = wanted;
     view.playing = false;
   }
-  tooltip(pen, "Drag to open the mouth by hand");
+  tooltip(
+      pen,
+      "Drag to open the mouth by hand, along the motion's way and as far as it goes: the drop of "
+      "the lower incisal point, mm. Ctrl+click to type a number");
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const auto x_of = [&](double mm) {
     return at.x + knob + (width - 2 * knob) * static_cast<float>(std::clamp(mm / most, 0.0, 1.0));
   };
   const float y = at.y + ImGui::GetFrameHeight() / 2 + pen.px(8);
-  if (most > usual_low_mm)
-    list.AddRectFilled({x_of(usual_low_mm), y}, {x_of(usual_high_mm), y + pen.px(3)},
-                       palette().good);
   const double step = most > 80 ? 20 : 10;
   for (double mm = 0; mm <= most + 1e-9; mm += step) {
     const std::string label = fmt::format("{:g}", mm);
@@ -155,18 +160,26 @@ void Panels::Drawing::opening() {
   const double left = (m.left_condyle - rest * m.left_condyle).norm();
   const double right = (m.right_condyle - rest * m.right_condyle).norm();
   const auto needs = [&](const char* name, std::initializer_list<const char*> marks,
-                         const std::string& value, const char* without) {
+                         const std::string& value, const char* with, const char* without,
+                         bool unusual = false) {
     const bool there = has_landmarks(input.scene, marks);
     reading(theme, name, there ? value : std::string("unknown"),
-            there ? palette().text : palette().text_faint);
-    if (!there) tooltip(pen, without);
+            !there    ? palette().text_faint
+            : unusual ? palette().warning
+                      : palette().text);
+    pen.mark(std::string("reading:") + name, there ? value : "unknown");
+    tooltip(pen, there ? with : without);
   };
-  needs("Between incisors", {"upper_incisal_point", "lower_incisal_point"},
+  needs("Interincisal distance", {"upper_incisal_point", "lower_incisal_point"},
         fmt::format("{:.1f} mm", m.interincisal_mm),
-        "Needs the landmarks upper incisal point and lower incisal point: key B");
+        "From the upper to the lower incisal edge, as a ruler measures it in the mouth. The widest "
+        "that adults open is 42 to 58 mm",
+        "Needs the landmarks upper incisal point and lower incisal point: key B",
+        m.interincisal_mm > usual_high_mm);
   reading(theme, "Rotation", fmt::format("{:.1f}\u00b0", m.rotation_deg));
   needs("Condyle travel", {"left_condyle", "right_condyle"},
         fmt::format("L {:.1f}   R {:.1f} mm", left, right),
+        "How far each condyle is from where it rests, straight",
         "Needs the landmarks left condyle and right condyle: key B");
 }
 

@@ -8,6 +8,79 @@
 #include "render/window/picture_files.h"
 
 namespace condyle {
+namespace {
+
+struct NamedCamera {
+  const char* name;
+  const char* label;
+};
+constexpr std::array<NamedCamera, 11> named_cameras = {{{own_camera, "This view"},
+                                                        {turning_camera, "This view, turning once"},
+                                                        {"front", "Front"},
+                                                        {"left", "Left"},
+                                                        {"right", "Right"},
+                                                        {"three-quarter", "Three-quarter"},
+                                                        {"back", "Back"},
+                                                        {"above", "Above"},
+                                                        {"below", "Below"},
+                                                        {"upper-arch", "Upper arch"},
+                                                        {"lower-arch", "Lower arch"}}};
+
+}  // namespace
+
+std::vector<std::string> Drafts::RecordFields::wanted_cameras() const {
+  std::vector<std::string> wanted;
+  for (const NamedCamera& one : named_cameras)
+    if (cameras.contains(one.name)) wanted.emplace_back(one.name);
+  if (camera_from_file && !camera_file.empty()) wanted.push_back(camera_file);
+  return wanted;
+}
+
+/// What the rest of the line is. gives: the room that is left for it.
+float Panels::Drawing::record_label(const char* words) {
+  const float left = ImGui::GetStyle().WindowPadding.x, wide = pen.px(66);
+  const float whole = ImGui::GetContentRegionAvail().x, y = ImGui::GetCursorPosY();
+  const float lower = (ImGui::GetFrameHeight() - pen.theme.small->FontSize) / 2;
+  ImGui::SetCursorPosY(y + lower);
+  text(pen.theme.small, palette().text_dim, words);
+  ImGui::SameLine();
+  ImGui::SetCursorPos({left + wide, y});
+  return whole - wide;
+}
+
+void Panels::Drawing::record_cameras() {
+  Drafts::RecordFields& fields = panels.drafts_.record;
+  std::string shown;
+  const auto add = [&](const char* words) {
+    shown += (shown.empty() ? "" : ", ") + std::string(words);
+  };
+  for (const NamedCamera& one : named_cameras)
+    if (fields.cameras.contains(one.name)) add(one.label);
+  if (fields.camera_from_file) add("a file");
+  if (shown.empty()) shown = "No camera";
+  const float room = record_label("Camera");
+  ImGui::SetNextItemWidth(room);
+  shown = fitted(pen.theme.regular, shown, room - 2 * ImGui::GetFrameHeight());
+  if (ImGui::BeginCombo("##record-cameras", shown.c_str(), ImGuiComboFlags_HeightLargest)) {
+    for (const NamedCamera& one : named_cameras) {
+      bool on = fields.cameras.contains(one.name);
+      if (!tick_box(pen, (std::string("camera:") + one.name).c_str(), one.label, on)) continue;
+      if (on)
+        fields.cameras.insert(one.name);
+      else
+        fields.cameras.erase(one.name);
+    }
+    tick_box(pen, "camera:file", "A view or a path from a file", fields.camera_from_file);
+    ImGui::EndCombo();
+  }
+  pen.mark("record-cameras", shown);
+  tooltip(pen, "Where the motion is seen from. Several cameras record at once, a folder for each");
+  if (!fields.camera_from_file) return;
+  text_field(pen, "record-camera-file", fields.camera_file, record_label("File"), "camera.json");
+  tooltip(pen,
+          "A JSON file with a view or a path of views, e.g. {\"path\": [{\"view\": \"front\"}, "
+          "{\"at\": 0.4, \"view\": \"left\", \"distance_mm\": 400}]}; README.md tells more");
+}
 
 void Panels::Drawing::record() {
   const Theme& theme = panels.theme_;
@@ -27,35 +100,54 @@ void Panels::Drawing::record() {
     commands.push_back(Command::window_picture);
   tooltip(pen, "Saves the window with its panels. Shift+F12");
 
-  heading(pen, "Recording", "the whole motion, from this view");
-  text(theme.small, palette().text_dim, "Height in pixels, 16:9");
-  constexpr std::array<std::pair<int, const char*>, 4> heights = {
-      {{720, "720"}, {1080, "1080"}, {1440, "1440"}, {2160, "4K"}}};
-  for (const auto& [pixels, label] : heights) {
-    if (pixels != heights.front().first) ImGui::SameLine(0, gap);
-    if (word_button(pen, fmt::format("record-height:{}", pixels).c_str(), label, {share(4), high},
-                    fields.height == pixels))
-      fields.height = pixels;
-  }
-  text(theme.small, palette().text_dim, "Pictures a second");
-  for (const int rate : {10, 24, 30, 60}) {
-    if (rate != 10) ImGui::SameLine(0, gap);
-    if (word_button(pen, fmt::format("record-rate:{}", rate).c_str(),
-                    fmt::format("{}", rate).c_str(), {share(4), high},
-                    fields.frames_per_second == rate))
-      fields.frames_per_second = rate;
-  }
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 5));
+  heading(pen, "Recording", "the whole motion");
+  // A row of choices behind its name.
+  const auto row = [&](const char* name, const char* item, auto& value, const auto& choices,
+                       const char* help) {
+    const float choice = std::floor((record_label(name) - 3 * gap) / 4);
+    bool first = true;
+    for (const auto& [number, words] : choices) {
+      if (!std::exchange(first, false)) ImGui::SameLine(0, gap);
+      if (word_button(pen, fmt::format("{}:{}", item, number).c_str(), words, {choice, pen.px(24)},
+                      value == number))
+        value = number;
+      tooltip(pen, help);
+    }
+  };
+  using Choices = std::array<std::pair<int, const char*>, 4>;
+  row("Height", "record-height", fields.height,
+      Choices{{{720, "720"}, {1080, "1080"}, {1440, "1440"}, {2160, "4K"}}},
+      "Of the pictures, in pixels; 16:9");
+  row("Per second", "record-rate", fields.frames_per_second,
+      Choices{{{10, "10"}, {24, "24"}, {30, "30"}, {60, "60"}}},
+      "Pictures for each second of the motion");
+  row("Finer", "record-finer", fields.supersampling,
+      Choices{{{1, "1x"}, {2, "2x"}, {3, "3x"}, {4, "4x"}}},
+      "Draws so many times as wide and high, then averages: the finest lines and edges, in more "
+      "time. 1x has smooth edges, too");
+  record_cameras();
+  text_field(pen, "record-caption", fields.caption, record_label("Caption"),
+             "Opening {opening} mm");
+  tooltip(
+      pen,
+      "Words under the picture. Filled in: {time} in s, {opening} in mm (how far the lower "
+      "incisal point has dropped), {interincisal} in mm (between the incisal edges), {rotation} "
+      "in \u00b0, {motion}, {frame}. A | begins a new line");
   const double duration = input.scene.duration_s;
   const long frames = std::lround(duration * fields.frames_per_second) + 1;
-  tick_box(pen, "record-film", "Film (MP4) beside the pictures", fields.film);
-  tooltip(pen, "Made by the program ffmpeg when the last picture is there");
-  tick_box(pen, "record-turntable", "Turn once around the patient", fields.turntable);
-  text(theme.small, palette().text_dim, "Folder");
+  tick_box(pen, "record-transparent", "No background", fields.transparent);
+  tooltip(pen,
+          "PNG pictures with a transparent background, to lay over others; in a film it is black");
+  ImGui::SameLine(std::floor(whole * 0.56f));
+  tick_box(pen, "record-film", "Film (MP4)", fields.film);
+  tooltip(pen, "Beside the pictures; made by the program ffmpeg when the last picture is there");
   // The next recording has a folder of its own, unless the person names one.
   if (fields.running && !input.recording) fields.folder.clear();
   fields.running = input.recording;
   if (fields.folder.empty()) fields.folder = next_recording_folder(input.picture_folder).string();
-  text_field(pen, "record-folder", fields.folder, whole, "where the pictures go");
+  text_field(pen, "record-folder", fields.folder, record_label("Folder"), "where the pictures go");
+  tooltip(pen, fields.folder.c_str());
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(6));
   if (input.recording) {
     const float done = static_cast<float>(input.recording_fraction);
@@ -70,25 +162,33 @@ void Panels::Drawing::record() {
       panels.wishes_.emplace_back(wish::Cancel{});
     tooltip(pen, "The pictures made so far stay in the folder");
   } else {
-    ImGui::BeginDisabled(duration <= 0 || fields.folder.empty());
+    const std::size_t cameras = fields.wanted_cameras().size();
+    ImGui::BeginDisabled(duration <= 0 || fields.folder.empty() || cameras == 0);
     if (word_button(pen, "record", "Record", {whole, pen.px(32)}, true)) {
       wish::Record wanted{.folder = fields.folder,
                           .width = static_cast<int>(std::lround(fields.height * 16 / 9.0)),
                           .height = fields.height,
                           .frames_per_second = fields.frames_per_second,
                           .film = fields.film,
-                          .turntable = fields.turntable,
+                          .cameras = fields.wanted_cameras(),
+                          .caption = fields.caption,
+                          .transparent = fields.transparent,
+                          .supersampling = fields.supersampling,
                           .camera = input.camera,
                           .picture = {}};
       panels.wishes_.push_back(std::move(wanted));
     }
     ImGui::EndDisabled();
     text(theme.small, palette().text_dim,
-         duration > 0 ? fmt::format("{} pictures of {:.2f} s", frames, duration)
-                      : std::string("There is no motion to record"));
+         duration > 0
+             ? fmt::format("{} pictures{} of {:.2f} s", frames,
+                           cameras > 1 ? fmt::format(" from each of {} cameras", cameras) : "",
+                           duration)
+             : std::string("There is no motion to record"));
   }
+  ImGui::PopStyleVar();
   ImGui::PushTextWrapPos(0);
-  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(8));
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
   text(theme.small, palette().text_dim,
        "Pictures are drawn in full quality beside the window, which stays usable. They show what "
        "the view shows now, bones moved by hand included.");

@@ -102,11 +102,15 @@ bool fold(Pen& pen, const std::string& name, bool open) {
 
 }  // namespace
 
+bool Panels::Drawing::unfolded(const std::string& group) const {
+  const auto& open = panels.open_groups_;
+  return std::find(open.begin(), open.end(), group) != open.end();
+}
+
 int Panels::Drawing::tree_rows() const {
   int rows = 0;
   for (const TreeGroup& group : groups_of(input, view))
-    rows +=
-        1 + (panels.open_groups_.contains(group.name) ? static_cast<int>(group.rows.size()) : 0);
+    rows += 1 + (unfolded(group.name) ? static_cast<int>(group.rows.size()) : 0);
   return rows;
 }
 
@@ -114,12 +118,12 @@ void Panels::Drawing::tree() {
   const Theme& theme = panels.theme_;
   const float indent = pen.px(15);
   for (TreeGroup& group : groups_of(input, view)) {
-    const bool open = panels.open_groups_.contains(group.name);
+    const bool open = unfolded(group.name);
     if (fold(pen, std::string("group:") + group.name, open)) {
       if (open)
-        panels.open_groups_.erase(group.name);
+        std::erase(panels.open_groups_, group.name);
       else
-        panels.open_groups_.insert(group.name);
+        panels.open_groups_.push_back(group.name);
     }
     tooltip(pen, open ? "Fold" : "Unfold");
     ImGui::SameLine(0, 0);

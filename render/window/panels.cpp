@@ -125,6 +125,7 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       return true;
     case Command::open_files:
       drafts_.files.open = true;
+      drafts_.files.listed.clear();  // files may have come and gone
       return true;
     case Command::undo:
       if (!undo(view, true)) say("Nothing to undo");
@@ -142,7 +143,9 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       // Boxes with fields have a button of their own for it.
       if (!errors_.empty()) {
         errors_.pop_front();
-      } else if (help_open_ && !drafts_.import && !drafts_.files.open) {
+      } else if (drafts_.files.open && !drafts_.import) {
+        drafts_.files.accepted = !drafts_.files.chosen.empty();
+      } else if (help_open_ && !drafts_.import) {
         help_open_ = false;
       }
       return true;
@@ -207,6 +210,7 @@ void Panels::remember_edits(const Edits& before, const ViewState& view) {
 std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, double width,
                                   double height) {
   items_.clear();
+  tooltip_.due = false;
   if (std::exchange(fold_list_, false)) fold_list();
   view.fit(input.scene);
   undone_ = false;
@@ -238,7 +242,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
       preparing ? lay_out(width, height, theme_.scale, false) : layout(width, height, view.plots),
       width,
       height,
-      Pen{theme_, items_, ""},
+      Pen{theme_, items_, tooltip_, ""},
       {}};
   if (shown_ && !preparing) {
     drawing.top_bar();
@@ -246,6 +250,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
     drawing.side();
     drawing.timeline();
     drawing.plots();
+    drawing.edges();
   }
   if (view.tool == Tool::move && !preparing) drawing.moving();
   if (view.tool == Tool::measure && !preparing) drawing.measuring();

@@ -4,12 +4,12 @@
 #include <array>
 #include <deque>
 #include <memory>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "render/window/arrangement.h"
 #include "render/window/camera_control.h"
 #include "render/window/drafts.h"
 #include "render/window/edit_history.h"
@@ -49,6 +49,15 @@ struct DrawnItem {
   std::string panel;       // the panel that holds it; empty for a panel itself
   ViewRect rect;           // pixels from the top left
   std::string words = {};  // what stands there, of readings
+};
+
+/// What the mouse rests on, that a tooltip may follow.
+struct TooltipWait {
+  float x = -1, y = -1;  // corner of the item
+  double since_s = 0;
+  int last_pass = -2;     // over the panels, in which it was under the mouse
+  bool put_away = false;  // it was clicked: what that reveals must not be covered
+  bool due = false;       // a tooltip is still to come
 };
 
 /// Panels of the window, drawn into the current ImGui frame (between NewFrame and Render). They
@@ -95,11 +104,18 @@ class Panels {
   bool dialog_open() const {
     return help_open_ || !errors_.empty() || drafts_.files.open || drafts_.import;
   }
-  /// Whether something said is still on show, so that it must be taken away in time.
-  bool talking() const { return !said_.empty(); }
+  /// Whether something will come or go by itself in time: a sentence, a tooltip.
+  bool talking() const { return !said_.empty() || tooltip_.due; }
   bool shown() const { return shown_; }
   Layout layout(double width, double height, bool with_plots = false) const {
-    return lay_out(width, height, theme_.scale, shown_, with_plots);
+    return lay_out(width, height, theme_.scale, shown_, with_plots, sizes_);
+  }
+  /// Sizes that a person has drawn, and groups of the tree that are unfolded.
+  const PanelSizes& sizes() const { return sizes_; }
+  const std::vector<std::string>& open_groups() const { return open_groups_; }
+  void arrange(const PanelSizes& sizes, std::vector<std::string> open_groups) {
+    sizes_ = sizes;
+    open_groups_ = std::move(open_groups);
   }
   const std::vector<DrawnItem>& items() const { return items_; }
 
@@ -108,10 +124,13 @@ class Panels {
   PlotSet stage_plots() const;
   Theme theme_;
   bool shown_ = true, help_open_ = false;
-  double skin_before_ = 1;                                          // opacity to come back to
-  std::set<std::string> open_groups_ = {"bones", "teeth", "free"};  // of the tree
+  PanelSizes sizes_;
+  double gripped_size_ = 0;  // of what is being drawn larger, as it was gripped
+  double skin_before_ = 1;   // opacity to come back to
+  std::vector<std::string> open_groups_ = usual_groups();  // of the tree
   std::deque<std::string> errors_;
   std::string said_;
+  TooltipWait tooltip_;
   double said_until_ = 0;
   EditHistory<Edits> history_;
   bool undo(ViewState& view, bool back);

@@ -26,18 +26,22 @@ struct Panels::Drawing {
   void measuring();   // panel_measure.cpp
   void landmarks();   // panel_landmarks.cpp
   void plots();       // panel_plots.cpp
+  void edges();       // panel_edges.cpp: between panels, to draw them wider or higher
   void view_signs();  // panel_view.cpp: letters at the edges, cube, progress
   void dialogs();     // panel_dialogs.cpp
 
  private:
-  void motion();         // panel_motion.cpp
-  void record();         // panel_record.cpp
+  void motion();  // panel_motion.cpp
+  void record();  // panel_record.cpp
+  float record_label(const char* words);
+  void record_cameras();
   void open_dialog();    // panel_files.cpp
   void import_dialog();  // panel_files.cpp
   void side_tabs();
   void part_list();
   void tree();  // panel_tree.cpp
   int tree_rows() const;
+  bool unfolded(const std::string& group) const;
   void look();  // panel_look.cpp
   void scale();
   void readings();
@@ -46,6 +50,8 @@ struct Panels::Drawing {
   void tissue();
   void times();
   void progress();
+  std::optional<double> edge(const char* name, const ViewRect& place, double size, double way,
+                             double usual);
   void cube();
   void legend();   // panel_legend.cpp
   void pointed();  // what the mouse is on

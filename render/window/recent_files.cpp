@@ -1,7 +1,6 @@
 #include "render/window/recent_files.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <sstream>
 
 #include "engine/core/error.h"
@@ -15,15 +14,6 @@ constexpr std::size_t most = 10;
 constexpr std::size_t largest_file = std::size_t{1} << 16;
 
 }  // namespace
-
-fs::path RecentFiles::usual_file() {
-  const char* config = std::getenv("XDG_CONFIG_HOME");
-  const char* home = std::getenv("HOME");
-  // The rule of the XDG directories: a relative path is passed over.
-  if (config && fs::path(config).is_absolute()) return fs::path(config) / "condyle" / "recent";
-  if (home && *home) return fs::path(home) / ".config" / "condyle" / "recent";
-  return {};
-}
 
 RecentFiles::RecentFiles(fs::path file) : file_(std::move(file)) {
   if (file_.empty()) return;

@@ -3,13 +3,15 @@
 #include <filesystem>
 #include <vector>
 
+#include "render/window/settings_file.h"
+
 namespace condyle {
 
 /// What was opened before, the last one first; kept in a file of the person's settings.
 class RecentFiles {
  public:
   /// `file`: a path a line. A missing or unreadable one is an empty list.
-  explicit RecentFiles(std::filesystem::path file = usual_file());
+  explicit RecentFiles(std::filesystem::path file = settings_file("recent"));
 
   const std::vector<std::filesystem::path>& list() const { return list_; }
   /// Puts it first and writes the list beside and renamed; ten are kept. A list that cannot be
@@ -17,9 +19,6 @@ class RecentFiles {
   void add(const std::filesystem::path& opened);
   /// What is not there any more.
   void forget(const std::filesystem::path& gone);
-
-  /// $XDG_CONFIG_HOME/condyle/recent, else ~/.config/condyle/recent; empty without a home.
-  static std::filesystem::path usual_file();
 
  private:
   void write() const;

@@ -122,6 +122,9 @@ Theme apply_theme(float scale, bool light) {
   set(ImGuiCol_CheckMark, palette().accent);
   set(ImGuiCol_SliderGrab, palette().accent);
   set(ImGuiCol_SliderGrabActive, palette().accent);
+  set(ImGuiCol_Header, palette().accent_dark);
+  set(ImGuiCol_HeaderHovered, palette().field_hovered);
+  set(ImGuiCol_HeaderActive, palette().accent_dark);
   set(ImGuiCol_Separator, palette().panel_edge);
   set(ImGuiCol_ScrollbarBg, colour::rgb(0, 0));
   set(ImGuiCol_ScrollbarGrab, palette().track);

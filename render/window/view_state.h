@@ -85,6 +85,15 @@ enum class LeftTab { parts, look };
 /// What the right column shows.
 enum class SideTab { readings, motion, record };
 
+/// Which panels are in use.
+struct PanelChoice {
+  SideTab tab = SideTab::readings;
+  LeftTab left_tab = LeftTab::parts;
+  bool plots = false;        // below the picture
+  std::size_t plot_set = 0;  // the one that is shown, while there are so many
+  bool operator==(const PanelChoice&) const = default;
+};
+
 /// What a person sets in a view and may take back: all but the clock, the camera and which panels
 /// and tools are in use.
 struct Edits {
@@ -108,7 +117,7 @@ struct Edits {
 
 /// What the person at the window asks for. The loop reads it and answers with a FrameState; nothing
 /// here steps the simulation.
-struct ViewState : Edits {
+struct ViewState : Edits, PanelChoice {
   bool playing = false;
   bool loop = true;
   double speed = 1;                          // times real time, 0.1 to 2
@@ -116,10 +125,6 @@ struct ViewState : Edits {
   Tool tool = Tool::look;                    // what the left button does
   std::size_t chosen = 0;                    // the body that has the handles, of the scene's
   std::optional<std::size_t> landmark = {};  // the one that the next click places
-  SideTab tab = SideTab::readings;
-  LeftTab left_tab = LeftTab::parts;
-  bool plots = false;        // below the picture
-  std::size_t plot_set = 0;  // the one that is shown
 
   const Edits& edits() const { return *this; }
   /// Whether a hand has the jaw, not the motion.

@@ -185,12 +185,26 @@ void heading(Pen& pen, const char* words, const std::string& right) {
 }
 
 void tooltip(Pen& pen, const char* words) {
-  if (!ImGui::IsItemHovered() || ImGui::GetCurrentContext() == nullptr) return;
+  if (!ImGui::IsItemHovered()) return;
+  constexpr double wait_s = 0.5;
+  TooltipWait& resting = pen.resting;
+  const ImVec2 corner = ImGui::GetItemRectMin();
+  const int pass = ImGui::GetFrameCount();
+  const double now_s = ImGui::GetTime();
+  if (corner.x != resting.x || corner.y != resting.y || pass > resting.last_pass + 1)
+    resting = {.x = corner.x, .y = corner.y, .since_s = now_s};
+  resting.last_pass = pass;
+  if (ImGui::IsAnyMouseDown()) resting.put_away = true;
+  if (resting.put_away) return;
+  resting.due = now_s - resting.since_s < wait_s;
+  if (resting.due) return;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, pen.px(10, 7));
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(pen.px(300));
   text(pen.theme.small, palette().text, words);
   ImGui::PopTextWrapPos();
+  const ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  pen.items.push_back({"tooltip", "", {low.x, low.y, size.x, size.y}, words});
   ImGui::EndTooltip();
   ImGui::PopStyleVar();
 }
@@ -320,6 +334,14 @@ bool text_field(Pen& pen, const char* name, std::string& words, float width, con
   if (ImGui::IsItemActive()) pen.mark("writing");
   words = letters.data();
   return entered;
+}
+
+bool select_row(const std::string& label, bool chosen) {
+  const ImU32 lit = chosen ? palette().accent_dark : palette().field_hovered;
+  ImGui::PushStyleColor(ImGuiCol_HeaderHovered, lit);
+  const bool pressed = ImGui::Selectable(label.c_str(), chosen, ImGuiSelectableFlags_SelectOnClick);
+  ImGui::PopStyleColor();
+  return pressed;
 }
 
 bool list_unfolded() {

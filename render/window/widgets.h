@@ -13,6 +13,7 @@ namespace condyle {
 struct Pen {
   const Theme& theme;
   std::vector<DrawnItem>& items;
+  TooltipWait& resting;
   std::string panel;  // the one being drawn
 
   float px(float units) const { return units * theme.scale; }
@@ -36,6 +37,8 @@ void text_right(ImFont* font, ImU32 colour, const std::string& words);
 std::string fitted(ImFont* font, const std::string& words, float width);
 float text_width(ImFont* font, const std::string& words);
 
+/// Words about the last item, once the mouse has rested on it for a moment; none after a click on
+/// it until the mouse has left it, and none over a list that is unfolded.
 void tooltip(Pen& pen, const char* words);
 
 /// Buttons with a drawn sign.
@@ -73,6 +76,10 @@ bool text_field(Pen& pen, const char* name, std::string& words, float width, con
 /// Whether a list to choose from is unfolded, in front of any dialog; and folds it.
 bool list_unfolded();
 void fold_list();
+
+/// A row of a list to choose from, filled while it is chosen. gives: true as the mouse goes down on
+/// it, when Ctrl and Shift are as they are meant.
+bool select_row(const std::string& label, bool chosen);
 
 /// A box to tick with its label.
 bool tick_box(Pen& pen, const char* name, const char* label, bool& on);

@@ -23,13 +23,29 @@ void ask_for_opengl() {
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
 }
 
+/// The screen may be a smaller one than the last time.
+void fit_to_screen(int& width, int& height) {
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  if (!monitor) return;
+  int x = 0, y = 0, wide = 0, high = 0;
+  glfwGetMonitorWorkarea(monitor, &x, &y, &wide, &high);
+  float scale_x = 1, scale_y = 1;
+  glfwGetMonitorContentScale(monitor, &scale_x, &scale_y);
+  if (wide > 0) width = std::min(width, static_cast<int>(static_cast<float>(wide) / scale_x));
+  if (high > 0) height = std::min(height, static_cast<int>(static_cast<float>(high) / scale_y));
+}
+
 }  // namespace
 
-Window::State::State(const WindowOptions& wanted) : options(wanted), ui_scale(wanted.ui_scale) {
+Window::State::State(const WindowOptions& wanted)
+    : options(wanted), arrangement(wanted.arrangement) {
+  static_cast<PanelChoice&>(view) = arrangement.panels;
+  if (options.fit_screen) fit_to_screen(arrangement.width, arrangement.height);
   ask_for_opengl();
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   glfwWindowHint(GLFW_SAMPLES, 0);  // the 3-D view has its own
-  window = glfwCreateWindow(std::max(1, options.width), std::max(1, options.height),
+  glfwWindowHint(GLFW_MAXIMIZED, arrangement.maximized ? GLFW_TRUE : GLFW_FALSE);
+  window = glfwCreateWindow(std::max(1, arrangement.width), std::max(1, arrangement.height),
                             options.title.c_str(), nullptr, nullptr);
   if (!window) {
     const std::string words = take_glfw_error();
@@ -47,7 +63,8 @@ Window::State::State(const WindowOptions& wanted) : options(wanted), ui_scale(wa
   imgui = ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // leave no files behind
   ImGui::GetIO().LogFilename = nullptr;
-  panels.emplace(1.0f, options.light);
+  panels.emplace(1.0f, arrangement.light);
+  panels->arrange(arrangement.sizes, arrangement.open_groups);
   texture.emplace();
   painter.emplace([] { Window::wake(); });
   ImGui_ImplGlfw_InitForOpenGL(window, true);  // calls our callbacks before its own
@@ -264,6 +281,15 @@ void Window::set_camera(const Camera& camera) {
 const PictureStatistics& Window::pictures() const { return state_->pictures; }
 const std::vector<DrawnItem>& Window::items() const { return state_->panels->items(); }
 ViewRect Window::view_rect() const { return state_->view_rect(); }
+
+Arrangement Window::arrangement() const {
+  const State& s = *state_;
+  Arrangement now = s.arrangement;
+  now.sizes = s.panels->sizes();
+  now.open_groups = s.panels->open_groups();
+  now.panels = s.view;
+  return now;
+}
 
 Image Window::picture() {
   Image image;

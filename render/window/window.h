@@ -10,6 +10,7 @@
 
 #include "render/camera.h"
 #include "render/image.h"
+#include "render/window/arrangement.h"
 #include "render/window/panels.h"
 #include "render/window/picture_order.h"
 #include "render/window/plot_set.h"
@@ -20,10 +21,11 @@ namespace condyle {
 
 struct WindowOptions {
   std::string title = "Condyle";
-  int width = 1280, height = 720;  // screen coordinates, before the screen's own scale
-  // Of panels and text, times the screen's own scale; none: 1, more on screens with small pixels.
-  std::optional<double> ui_scale = {};
-  bool light = false;                          // theme of the panels
+  Arrangement arrangement = {};
+  bool fit_screen = false;  // make the window no larger than the screen, which may be another one
+  // Of panels and text, times the screen's own scale, which Ctrl+0 comes back to; none: 1, more on
+  // screens with small pixels.
+  std::optional<double> usual_scale = {};
   std::filesystem::path picture_folder = ".";  // where F12 and recordings go
 };
 
@@ -106,6 +108,8 @@ class Window {
   const std::vector<DrawnItem>& items() const;
   /// Where the 3-D view is.
   ViewRect view_rect() const;
+  /// What a person has made of it.
+  Arrangement arrangement() const;
   /// Draws now, the finished 3-D picture with it, and gives the whole window.
   Image picture();
 

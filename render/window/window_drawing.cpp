@@ -104,14 +104,15 @@ float Window::State::panel_scale() const {
   int pixels = 0, ignored = 0;
   glfwGetFramebufferSize(window, &pixels, &ignored);
   const double screen = screen_scale();
-  return fitting_scale(screen * ui_scale.value_or(usual_scale(screen, pixels)), w, h);
+  return fitting_scale(screen * arrangement.ui_scale.value_or(usual_scale(screen, pixels)), w, h);
 }
 
 void Window::State::fit_scale() {
   const float scale = panel_scale();
-  if (scale == panels->theme().scale && options.light == panels->theme().light) return;
+  const bool light = arrangement.light;
+  if (scale == panels->theme().scale && light == panels->theme().light) return;
   panels->set_scale(scale);
-  panels->set_light(options.light);
+  panels->set_light(light);
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
@@ -119,10 +120,11 @@ void Window::State::fit_scale() {
 /// A tenth more or less than what is seen, so that each step but the last that fits shows.
 void Window::State::scale_panels(Command command) {
   constexpr double step = 0.1, least = 0.5, most = 4;
+  std::optional<double>& ui_scale = arrangement.ui_scale;
   const float before = panels->theme().scale;
   const double steps = command == Command::larger_panels ? 1 : -1;
   if (command == Command::usual_panels)
-    ui_scale = options.ui_scale;
+    ui_scale = options.usual_scale;
   else
     ui_scale = std::clamp(step * std::round(before / step + steps), least, most) / screen_scale();
   const float after = panel_scale();
@@ -155,12 +157,18 @@ void Window::State::interface_frame() {
       io.AddInputCharacter(next.letter);
     } else {
       io.KeysDown[next.key] = next.down;
-      io.KeyCtrl = (next.mods & GLFW_MOD_CONTROL) != 0;
-      io.KeyShift = (next.mods & GLFW_MOD_SHIFT) != 0;
+      // What is held besides this key, and the key itself: a release still tells it as held.
+      const auto held_now = [&](int mod, int left_key, int right_key) {
+        const bool itself = next.key == left_key || next.key == right_key;
+        return itself ? next.down : (next.mods & mod) != 0;
+      };
+      io.KeyCtrl = held_now(GLFW_MOD_CONTROL, GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+      io.KeyShift = held_now(GLFW_MOD_SHIFT, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
     }
   }
-  const bool ctrl_of_keys = io.KeyCtrl;
+  const bool ctrl_of_keys = io.KeyCtrl, shift_of_keys = io.KeyShift;
   if (look_at_mouse && moment.ctrl) io.KeyCtrl = true;
+  if (look_at_mouse && moment.shift) io.KeyShift = true;
   ImGui::NewFrame();
   const auto [w, h] = size();
   const ViewRect r = view_rect();
@@ -192,6 +200,7 @@ void Window::State::interface_frame() {
   const std::vector<Command> commands = panels->draw(input, view, w, h);
   ImGui::Render();
   io.KeyCtrl = ctrl_of_keys;
+  io.KeyShift = shift_of_keys;
   for (const Command command : commands) run(command);
 }
 

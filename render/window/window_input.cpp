@@ -1,6 +1,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/window/window_state.h"
 
@@ -23,8 +24,13 @@ void Window::State::install_callbacks() {
     guarded(w, [&](State& s) { s.on_wheel(clicks); });
   });
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) {
-    guarded(w, [](State& s) { s.scene_changed = true; });
+    guarded(w, [](State& s) {
+      s.scene_changed = true;
+      s.note_size();
+    });
   });
+  glfwSetWindowMaximizeCallback(
+      window, [](GLFWwindow* w, int) { guarded(w, [](State& s) { s.note_size(); }); });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
     guarded(w, [&](State& s) { s.dropped.insert(s.dropped.end(), paths, paths + count); });
   });
@@ -77,7 +83,7 @@ bool Window::State::over_view(double x, double y) const {
 }
 
 void Window::State::on_button(int button, bool down, int mods) {
-  mouse.pressed(button, down, (mods & GLFW_MOD_CONTROL) != 0);
+  mouse.pressed(button, down, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0);
   const MouseMoment& now = mouse.now();
   if (down && button == GLFW_MOUSE_BUTTON_LEFT && mods == 0 && over_view(now.x, now.y) &&
       (grip_body({now.x, now.y}) || set_point({now.x, now.y})))
@@ -129,7 +135,7 @@ void Window::State::run(Command command) {
       scene_changed = true;
       break;
     case Command::toggle_theme:
-      options.light = !options.light;
+      arrangement.light = !arrangement.light;
       break;
     case Command::larger_panels:
     case Command::smaller_panels:
@@ -146,6 +152,16 @@ void Window::State::run(Command command) {
     default:
       set_standard_view(camera_of(command));
   }
+}
+
+/// A maximized window keeps the size that it comes back to.
+void Window::State::note_size() {
+  arrangement.maximized = glfwGetWindowAttrib(window, GLFW_MAXIMIZED) == GLFW_TRUE;
+  if (arrangement.maximized || glfwGetWindowAttrib(window, GLFW_ICONIFIED) == GLFW_TRUE) return;
+  const auto [w, h] = size();
+  const double screen = screen_scale();  // GLFW makes a window by so much larger than it is told
+  arrangement.width = static_cast<int>(std::lround(w / screen));
+  arrangement.height = static_cast<int>(std::lround(h / screen));
 }
 
 void Window::State::set_standard_view(std::string_view name) {

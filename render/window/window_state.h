@@ -42,7 +42,7 @@ struct Window::State {
   std::optional<PictureThread> painter;
 
   WindowOptions options;
-  std::optional<double> ui_scale;  // in use; the option's at first
+  Arrangement arrangement;  // theme, scale and size: the rest is where it is used
   WindowScene scene;
   ViewState view;
   Eigen::AlignedBox3d box;  // of the scene at rest
@@ -110,6 +110,7 @@ struct Window::State {
   void move_body(const Eigen::Vector2d& at);
   std::optional<PointedPlace> surface_under(const Eigen::Vector2d& at, bool with_face) const;
   void run(Command command);
+  void note_size();
   void set_standard_view(std::string_view name);
   void wait_for_events();
   bool input_waits() const { return mouse.waiting() || !keys.empty(); }

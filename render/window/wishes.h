@@ -46,6 +46,10 @@ struct FileRole {
   std::string role;  // "mandible", "upper-teeth", ..., "landmarks", or empty: leave it out
 };
 
+/// Cameras of a recording: as the window looks, and so but turning once around the patient.
+inline constexpr const char* own_camera = "view";
+inline constexpr const char* turning_camera = "turning";
+
 /// What the person asks for once. Whoever runs the window does it.
 namespace wish {
 /// Whatever it is: a case folder, a motion; several may be surfaces. None: the built-in patient.
@@ -61,8 +65,13 @@ struct Record {
   std::filesystem::path folder;
   int width = 1920, height = 1080;
   double frames_per_second = 30;
-  bool film = true, turntable = false;
-  Camera camera;
+  bool film = true;
+  // Names as a command line has them, files of a view or a path of views, and the window's own two.
+  std::vector<std::string> cameras = {own_camera};
+  std::string caption = {};  // with braces to fill in
+  bool transparent = false;
+  int supersampling = 1;
+  Camera camera;  // the window's
   PictureSettings picture;
   std::shared_ptr<const FrameState> kept = {};  // left of the wipe, if there is one
 };

@@ -144,10 +144,11 @@ MotionPlot opening(const MotionSeries& series) {
   const auto of = [&](double Measures::*value) {
     return [&series, value](std::size_t i) { return series.measures[i].*value; };
   };
-  PlotPanel down{{over_time("opening", series, of(&Measures::opening_mm)),
-                  over_time("between incisors", series, of(&Measures::interincisal_mm))},
+  PlotPanel down{{over_time("drop of the lower incisal point", series, of(&Measures::opening_mm)),
+                  over_time("between incisal edges", series, of(&Measures::interincisal_mm))},
                  {.title = "Opening over time", .x_label = "time, s", .y_label = "mm"}};
-  add_if_reached(down, largest(down.curves[0]), 30, {"maximum opening 42 to 58 mm", {}, {42, 58}});
+  add_if_reached(down, largest(down.curves[1]), 30,
+                 {"widest between edges: 42 to 58 mm", {}, {42, 58}});
   PlotPanel aside{
       {over_time("protrusion (anterior)", series, of(&Measures::protrusion_mm)),
        over_time("laterotrusion (to the left)", series, of(&Measures::laterotrusion_mm)),
@@ -164,7 +165,7 @@ MotionPlot opening(const MotionSeries& series) {
 MotionPlot rotation(const MotionSeries& series) {
   PlotPanel turn{{over_time("rotation", series,
                             [&](std::size_t i) { return series.measures[i].rotation_deg; })},
-                 {.title = "Rotation over time", .x_label = "time, s", .y_label = "degrees"}};
+                 {.title = "Rotation over time", .x_label = "time, s", .y_label = "\u00b0"}};
   add_if_reached(turn, largest(turn.curves[0]), 22,
                  {"at max. opening 28 to 45\u00b0", {}, {28, 45}});
   PlotPanel travel{

@@ -3,6 +3,8 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+
 #include "tests/support/file_drop.h"
 #include "window_session.h"
 
@@ -136,6 +138,150 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
+TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
+  write_box_patient(folder_.path());
+  write_text(folder_ / "notes.txt", "nothing of a patient");
+  fs::copy_file(folder_ / "maxilla.stl", folder_ / "upper_teeth.stl");
+  start({"--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  EXPECT_TRUE(press("ctrl+o"));
+  write_into("open-path", folder_.path());  // no patient's folder: it is looked into
+  ASSERT_TRUE(wait_for_item("file:mandible.stl"));
+  const auto click_with = [&](const std::string& key, const std::string& item) {
+    EXPECT_TRUE(xdotool({"keydown", key}));
+    click(item);
+    EXPECT_TRUE(xdotool({"keyup", key}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));  // no double click
+  };
+  click("file:mandible.stl");
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  click_with("shift", "file:upper_teeth.stl");
+  click_with("ctrl", "file:upper_teeth.stl");
+  see("three-of-a-case");
+  EXPECT_TRUE(press("Return"));
+  ASSERT_TRUE(wait_for_item("import"));
+  see("roles-of-three");
+  EXPECT_TRUE(state()["items"].contains("import-role:2"));
+  EXPECT_FALSE(state()["items"].contains("import-role:3"));
+  click("import-go");
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    return idle(s) && s["edits"]["parts"].size() == 2 && s["landmark_mm"].contains("left_condyle");
+  })) << state().dump();
+  // Its folder, dropped, is the same but for what is no surface.
+  EXPECT_TRUE(drop_files("Condyle", {folder_.path()}));
+  EXPECT_TRUE(wait_for_item("import-role:3"));
+  EXPECT_FALSE(state()["items"].contains("import-role:4"));
+  click("import-close");
+  EXPECT_TRUE(wait_for_item("import", false));
+  // Notes have the signs of units that people read.
+  const std::string notes = state()["notes"].dump();
+  EXPECT_NE(notes.find("rotation 28.3\u00b0"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("358.8 cm\u00b3"), std::string::npos) << notes;
+  EXPECT_EQ(notes.find(" deg"), std::string::npos) << notes;
+  // Roles that cannot be are told before a patient is made, and what to do.
+  fs::create_directories(folder_ / "again");
+  for (const char* name : {"mandible.stl", "marks.csv"})
+    fs::copy_file(folder_ / name, fs::path(folder_ / "again") / name);
+  EXPECT_TRUE(drop_files("Condyle", {folder_ / "mandible.stl", folder_ / "again/mandible.stl"}));
+  ASSERT_TRUE(wait_for_item("import-remark"));
+  see("two-mandibles");
+  click("import-close");
+  ASSERT_TRUE(wait_for_item("import", false));
+  EXPECT_TRUE(drop_files(
+      "Condyle", {folder_ / "mandible.stl", folder_ / "marks.csv", folder_ / "again/marks.csv"}));
+  ASSERT_TRUE(wait_for_item("import-remark"));
+  click("import-go");
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_TRUE(state()["items"].contains("import")) << "it waits for one list of landmarks";
+  click("import-role:2");
+  click("import-role:2:");  // leave out
+  ASSERT_TRUE(wait_for_item("import-remark", false));
+  click("import-go");
+  EXPECT_TRUE(wait_until([](const Json& s) { return idle(s) && s["edits"]["parts"].size() == 1; }));
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, ARecordingFromThePanelHasTheBitsOfTheCommandWithTheSameChoices) {
+  const std::string boxes = box_case(folder_), motion = "open 5 over 0.2; close over 0.2";
+  write_text(folder_ / "around.json",
+             R"({"path": [{"view": "front"}, {"view": "left", "distance_mm": 300}]})");
+  start({boxes, "--motion", motion});
+  ASSERT_TRUE(wait_until(idle));
+  click("tab:Record");
+  click("record-height:720");
+  click("record-rate:10");
+  click("record-finer:2");
+  write_into("record-caption", "Opening {opening} mm|{interincisal}, {time} s");
+  click("record-transparent");
+  click("record-film");
+  // Several cameras: the list stays unfolded until it is folded.
+  click("record-cameras");
+  for (const char* camera : {"camera:view", "camera:front", "camera:upper-arch", "camera:file"})
+    click(camera);
+  see("cameras");
+  EXPECT_TRUE(press("Escape"));
+  ASSERT_TRUE(wait_for_item("camera:front", false));
+  write_into("record-camera-file", folder_ / "around.json");
+  write_into("record-folder", folder_ / "window");
+  see("panel");
+  click("record");
+  const std::array<std::string, 3> cameras = {"front", "upper-arch", "around"};
+  ASSERT_TRUE(wait_until(
+      [&](const Json& s) {
+        return idle(s) && std::all_of(cameras.begin(), cameras.end(), [&](const auto& camera) {
+                 return fs::exists(folder_ / ("window/" + camera + "/hashes.csv"));
+               });
+      },
+      90));
+  const auto command =
+      condyle({"record", boxes, "--motion", motion, "--fps", "10", "--size", "1280x720",
+               "--supersample", "2", "--camera", "front,upper-arch," + (folder_ / "around.json"),
+               "--transparent", "--caption", "Opening {opening} mm|{interincisal}, {time} s",
+               "--overlay", "scale,letters", "--out", folder_ / "command"});
+  ASSERT_EQ(command.code, 0) << command.err;
+  for (const auto& camera : cameras) {
+    const std::string hashes = read_text(folder_ / ("window/" + camera + "/hashes.csv"));
+    EXPECT_GT(std::count(hashes.begin(), hashes.end(), '\n'), 4) << camera;
+    EXPECT_EQ(hashes, read_text(folder_ / ("command/" + camera + "/hashes.csv"))) << camera;
+  }
+  EXPECT_NE(read_text(folder_ / "window/front/hashes.csv"),
+            read_text(folder_ / "window/around/hashes.csv"));
+  const Picture front(folder_ / "window/front/frames/000002.png");
+  EXPECT_EQ(front.rgba[3], 0) << "no background";
+
+  // What cannot be is a sentence: an unknown brace, a camera's file that is none.
+  const auto refused = [&](const std::string& words) {
+    click("record");
+    EXPECT_TRUE(wait_until([&](const Json& s) {
+      return s.value("trouble", "").find(words) != std::string::npos;
+    })) << state().value("trouble", "nothing was said");
+    EXPECT_EQ(state().value("trouble", "").find("--"), std::string::npos);
+    EXPECT_TRUE(press("Return"));
+    EXPECT_TRUE(wait_for_item("error", false));
+  };
+  write_into("record-caption", "{age}");
+  refused("{age} is unknown");
+  write_into("record-caption", "Once");
+  write_text(folder_ / "around.json", "[]");
+  refused("around.json: is not a JSON object");
+  // This view, turning: no picture is like another.
+  click("record-cameras");
+  for (const char* camera : {"camera:turning", "camera:front", "camera:upper-arch", "camera:file"})
+    click(camera);
+  EXPECT_TRUE(press("Escape"));
+  ASSERT_TRUE(wait_for_item("camera:front", false));
+  write_into("record-folder", folder_ / "turning");
+  click("record");
+  ASSERT_TRUE(wait_until(
+      [&](const Json& s) { return idle(s) && fs::exists(folder_ / "turning/hashes.csv"); }, 60));
+  EXPECT_GT(difference(Picture(folder_ / "turning/frames/000000.png"),
+                       Picture(folder_ / "turning/frames/000002.png")),
+            0.02);
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
 TEST_F(WindowSession, ATransplantIsMovedLetGoAndTheDiskIsFull) {
   write_box_patient(folder_.path());
   std::string strut;
@@ -152,6 +298,9 @@ TEST_F(WindowSession, ATransplantIsMovedLetGoAndTheDiskIsFull) {
   const SmallDisk disk(folder_ / "small");
   start({folder_ / "case", "--motion", "open 5 over 0.2; close over 0.2"});
   ASSERT_TRUE(wait_until(idle));
+  const std::string notes = state()["notes"].dump();
+  EXPECT_NE(notes.find("goes along with it"), std::string::npos) << notes;
+  EXPECT_EQ(notes.find("--"), std::string::npos) << "no options of the command line: " << notes;
 
   EXPECT_TRUE(press("a"));
   const Region view = view_region();  // farther off, so that the handles are within it

@@ -144,6 +144,88 @@ TEST_F(WindowSession, TroubleIsToldAsASentenceAndTheWindowStays) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
+TEST_F(WindowSession, ThemeScaleSizesAndTabsAreKeptBetweenRunsAndTheCommandLineWins) {
+  const std::string patient = box_case(folder_), kept = folder_ / "config/condyle/window.json";
+  const auto brightness = [&] {
+    const Picture picture = settled_picture();
+    const auto left = rect("left");
+    double sum = 0;
+    int count = 0;
+    for (int y = static_cast<int>(left[1]) + 250; y < left[1] + left[3]; ++y, ++count)
+      sum += picture.rgba[4 * (static_cast<std::size_t>(y) * picture.width + 3)];
+    return sum / count;
+  };
+  const auto quit = [&] {
+    EXPECT_TRUE(press("ctrl+q"));
+    EXPECT_EQ(wait_for_end(), 0);
+    fs::remove(folder_ / "state.json");
+  };
+  start({patient, "--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle));
+  EXPECT_LT(brightness(), 80);
+  EXPECT_FALSE(fs::exists(kept)) << "nothing was changed";
+  EXPECT_TRUE(press("t"));
+  const auto wide = [](const Json& s, const char* panel) { return double(s["items"][panel][2]); };
+  const auto edge = rect("edge:left");
+  drag(edge[0] + 2, edge[1] + 90, edge[0] + 62, edge[1] + 90);
+  ASSERT_TRUE(wait_until([&](const Json& s) { return std::abs(wide(s, "left") - 304) < 2; }));
+  click("tab:Motion");
+  EXPECT_TRUE(press("g"));
+  ASSERT_TRUE(wait_for_item("plots"));
+  // A person's window of another size.
+  EXPECT_TRUE(xdotool({"search", "--name", "Condyle", "windowsize", "--sync", "1200", "700"}));
+  ASSERT_TRUE(wait_until([&](const Json& s) { return std::abs(wide(s, "bottom") - 1200) < 2; }));
+  EXPECT_TRUE(press("ctrl+minus"));
+  ASSERT_TRUE(wait_until([&](const Json& s) { return std::abs(wide(s, "left") - 274) < 2; }));
+  see("arranged");
+  // What is kept is there while the window runs, too.
+  for (int i = 0; i < 100 && !fs::exists(kept); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_TRUE(fs::exists(kept));
+  quit();
+
+  start({patient, "--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle));
+  const auto as_left = [&](const Json& s) {
+    return std::abs(wide(s, "bottom") - 1200) < 2 && std::abs(wide(s, "left") - 274) < 2 &&
+           s["items"].contains("plots") && s["items"].contains("motion-words");
+  };
+  EXPECT_TRUE(wait_until(as_left)) << state().dump();
+  EXPECT_GT(brightness(), 190);
+  see("as-it-was-left");
+  // Another patient leaves the panels as they are.
+  EXPECT_TRUE(press("ctrl+o"));
+  click("open:builtin");
+  ASSERT_TRUE(wait_until(
+      [&](const Json& s) { return idle(s) && s["case"]["folder"] == "" && as_left(s); }, 120));
+  quit();
+
+  // The command line is for its own run.
+  const std::string before = read_text(kept);
+  start({patient, "--motion", "rest", "--dark", "--size", "1280x720", "--ui-scale", "1"});
+  ASSERT_TRUE(wait_until(idle));
+  EXPECT_TRUE(wait_until([&](const Json& s) {
+    return std::abs(wide(s, "bottom") - 1280) < 2 && std::abs(wide(s, "left") - 304) < 2;
+  }));
+  EXPECT_LT(brightness(), 80);
+  quit();
+  EXPECT_EQ(read_text(kept), before);
+
+  // A broken file: a sentence, and a window as at first.
+  write_text(kept, before.substr(0, before.size() / 2));
+  start({patient, "--motion", "rest"});
+  ASSERT_TRUE(wait_for_item("error"));
+  EXPECT_TRUE(wait_until([&](const Json& s) {
+    return s.value("trouble", "").find(kept) != std::string::npos;
+  })) << state().value("trouble", "nothing was said");
+  see("broken-settings");
+  EXPECT_TRUE(press("Return"));
+  ASSERT_TRUE(wait_until([&](const Json& s) {
+    return idle(s) && !s["items"].contains("error") && std::abs(wide(s, "left") - 244) < 2;
+  }));
+  quit();
+}
+
 TEST(OldOpenGl, IsToldWithWhatToDoInstead) {
   ASSERT_TRUE(has_program("Xvfb")) << "install xvfb";
   const TestDisplay display;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "panel_stage.h"
+#include "render/window/kept_arrangement.h"
 #include "render/window/plot_drawing.h"
 #include "render/window/recent_files.h"
 
@@ -111,7 +112,8 @@ class Instrument : public testing::TestWithParam<LitScreen> {
       }
       for (const DrawnItem& b : stage.panels->items()) {
         const auto floats = [](const DrawnItem& item) {
-          return item.name == "open" || item.name == "import";  // above all panels
+          return item.name == "open" || item.name == "import" ||  // above all panels
+                 item.name.starts_with("edge:");                  // on their margins
         };
         if (&a == &b || a.panel != b.panel || floats(a) || floats(b)) continue;
         const bool apart = a.rect.x + a.rect.width <= b.rect.x + 0.5 ||
@@ -319,6 +321,148 @@ TEST_P(Instrument, FilesAreOpenedFromAListAndSurfacesAskForTheirRoles) {
   EXPECT_FALSE(stage.panels->dialog_open());
 }
 
+TEST_P(Instrument, SeveralFilesAreChosenAndOpenedAtOnce) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("condyle-open-" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  for (const char* name :
+       {"a.stl", "b.stl", "c.ply", "d.obj", "marks.csv", "points.mrk.json", "other.json", "x.doc"})
+    std::ofstream(folder / name) << "of no matter";
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder);
+  const auto open = [&] {
+    stage.click("open-files");
+    stage.rest(40);  // so that the next click makes no double one
+  };
+  const auto click = [&](const std::string& name, bool ctrl, bool shift) {
+    stage.hold(ctrl, shift);
+    stage.click("file:" + name);
+    stage.hold(false, false);
+    stage.rest(40);
+  };
+  const auto chosen = [&] {
+    std::set<std::string> names;
+    for (const DrawnItem& item : stage.panels->items())
+      if (item.words == "chosen") names.insert(item.name.substr(5));
+    return names;
+  };
+  const auto opened = [&] {
+    std::vector<std::string> names;
+    for (const Wish& one : stage.panels->take_wishes())
+      for (const auto& file : std::get<wish::Open>(one).files)
+        names.push_back(file.filename().string());
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  using NameSet = std::set<std::string>;
+  open();
+  EXPECT_TRUE(stage.has("file:points.mrk.json"));
+  EXPECT_FALSE(stage.has("file:other.json"));
+  EXPECT_FALSE(stage.has("file:x.doc"));
+  click("d.obj", false, false);
+  EXPECT_EQ(chosen(), NameSet{"d.obj"});
+  click("b.stl", false, true);
+  EXPECT_EQ(chosen(), (NameSet{"b.stl", "c.ply", "d.obj"}));
+  click("c.ply", true, false);
+  click("marks.csv", true, false);
+  EXPECT_EQ(chosen(), (NameSet{"b.stl", "d.obj", "marks.csv"}));
+  expect_tidy();
+  keep("open-several");
+  stage.click("open-go");
+  EXPECT_EQ(opened(), (Names{"b.stl", "d.obj", "marks.csv"}));
+  EXPECT_FALSE(stage.panels->dialog_open());
+
+  // Enter does the same; a double click opens one; a click alone forgets the others.
+  open();
+  EXPECT_EQ(chosen(), NameSet{});
+  click("a.stl", false, false);
+  click("c.ply", true, false);
+  stage.panels->run(Command::accept, stage.scene, stage.view);
+  stage.rest();
+  EXPECT_EQ(opened(), (Names{"a.stl", "c.ply"}));
+  open();
+  click("a.stl", true, false);
+  click("b.stl", false, false);
+  EXPECT_EQ(chosen(), NameSet{"b.stl"});
+  EXPECT_TRUE(opened().empty());
+  const ViewRect row = stage.item("file:b.stl").rect;
+  for (const bool down : {false, true, false, true, false})
+    stage.step(row.x + 20, row.y + row.height / 2, down);
+  EXPECT_EQ(opened(), Names{"b.stl"});
+  // What is typed is meant instead.
+  open();
+  click("a.stl", false, false);
+  stage.enter("open-path", "/data/case");
+  EXPECT_EQ(opened(), Names{"case"});
+  std::filesystem::current_path(before);
+  std::filesystem::remove_all(folder);
+}
+
+TEST_P(Instrument, DropAndInterincisalDistanceAreToldApart) {
+  stage.scene.landmarks.push_back(landmark_at("upper_incisal_point", {0, -80, -38}, stage.parts));
+  stage.frame = box_frame(1.2, 50);
+  stage.frame.measures.interincisal_mm = 61.7;
+  stage.rest();
+  EXPECT_EQ(stage.item("opening-number").words, "50.0");
+  EXPECT_EQ(stage.item("reading:Interincisal distance").words, "61.7 mm");
+  const auto explained = [&](const std::string& item) {
+    const ViewRect r = stage.item(item).rect;
+    stage.rest();
+    for (int i = 0; i < 32; ++i) stage.step(r.x + r.width / 2, r.y + r.height / 2, false);
+    return stage.item("tooltip").words;
+  };
+  EXPECT_NE(explained("opening-number").find("straight down"), std::string::npos);
+  EXPECT_NE(explained("reading:Interincisal distance").find("42 to 58 mm"), std::string::npos);
+  EXPECT_NE(explained("opening").find("drop of the lower incisal point"), std::string::npos);
+  stage.rest();
+  expect_tidy();
+  keep("openings");
+}
+
+TEST_P(Instrument, TooltipsWaitAndCoverNothingThatAClickReveals) {
+  stage.click("tab:Record");
+  const auto rest_on = [&](const std::string& item, int pictures) {
+    const ViewRect r = stage.item(item).rect;
+    for (int i = 0; i < pictures; ++i) stage.step(r.x + r.width / 2, r.y + r.height / 2, false);
+  };
+  constexpr int half_a_second = 32;
+  rest_on("record-cameras", 10);
+  EXPECT_FALSE(stage.has("tooltip"));
+  EXPECT_TRUE(stage.panels->talking()) << "one is to come, so the window draws on";
+  rest_on("record-cameras", half_a_second);
+  ASSERT_TRUE(stage.has("tooltip"));
+  EXPECT_FALSE(stage.panels->talking());
+  // Another item: another wait.
+  rest_on("record-caption", 10);
+  EXPECT_FALSE(stage.has("tooltip"));
+  rest_on("record-caption", half_a_second);
+  ASSERT_TRUE(stage.has("tooltip"));
+  EXPECT_NE(stage.item("tooltip").words.find("{interincisal}"), std::string::npos);
+  keep("tooltip");
+  EXPECT_TRUE(lies_within(stage.item("tooltip").rect,
+                          {0, 0, double(GetParam().width), double(GetParam().height)}));
+  // A click unfolds the list: nothing lies over it, however long the mouse rests.
+  const ViewRect list = stage.item("record-cameras").rect;
+  for (const bool down : {false, true, false})
+    stage.step(list.x + list.width / 2, list.y + list.height / 2, down);
+  rest_on("record-cameras", 2 * half_a_second);
+  ASSERT_TRUE(stage.has("camera:front"));
+  EXPECT_FALSE(stage.has("tooltip"));
+  keep("record-cameras");
+  stage.panels->run(Command::close_dialog, stage.scene, stage.view);
+  stage.rest();
+  // A button that was clicked is quiet until the mouse has left it.
+  rest_on("record-transparent", half_a_second);
+  EXPECT_TRUE(stage.has("tooltip"));
+  const ViewRect box = stage.item("record-transparent").rect;
+  stage.step(box.x + box.width / 2, box.y + box.height / 2, true);
+  rest_on("record-transparent", 2 * half_a_second);
+  EXPECT_FALSE(stage.has("tooltip"));
+  stage.rest();
+  rest_on("record-transparent", half_a_second);
+  EXPECT_TRUE(stage.has("tooltip"));
+}
+
 TEST_P(Instrument, LookTabSetsWhatThePictureShows) {
   stage.scene.distance_colours = distance_colours();
   stage.click("left-tab:Look");
@@ -422,6 +566,84 @@ TEST(RecentFiles, AreKeptInOrderWithoutDoublesAndComeBack) {
   nowhere.add("/data/case-5");
   EXPECT_EQ(nowhere.list().size(), 1u);
   std::filesystem::remove_all(folder);
+}
+
+class ArrangementFile : public testing::Test {
+ protected:
+  ~ArrangementFile() override { std::filesystem::remove_all(folder_); }
+  /// Another run of the program, in which the window opens as `opened` and ends as `left`.
+  void run(const Arrangement& opened, const Arrangement& left) {
+    KeptArrangement kept(file_);
+    kept.begin(opened);
+    kept.update(left, true);
+  }
+  Arrangement kept() { return KeptArrangement(file_).arrangement(); }
+  void write(const std::string& text) {
+    std::filesystem::create_directories(file_.parent_path());
+    std::ofstream(file_) << text;
+  }
+  const std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
+                                        ("condyle-arrangement-" + std::to_string(::getpid()));
+  const std::filesystem::path file_ = folder_ / "deep" / "window.json";
+};
+
+TEST_F(ArrangementFile, WhatAPersonChangesComesBackAndNothingElse) {
+  EXPECT_TRUE(KeptArrangement(file_).trouble().empty()) << "none yet";
+  run({}, {});
+  EXPECT_FALSE(std::filesystem::exists(file_)) << "nothing was changed";
+  // Everything, each other than at first.
+  const Arrangement all{
+      .light = true,
+      .ui_scale = 1.25,
+      .width = 1600,
+      .height = 901,
+      .maximized = true,
+      .sizes = {.left = 300.5, .right = 333, .plots = 210},
+      .panels = {.tab = SideTab::record, .left_tab = LeftTab::look, .plots = true, .plot_set = 3},
+      .open_groups = {"muscles"}};
+  run({}, all);
+  EXPECT_EQ(kept(), all);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file_.parent_path()), {}), 1);
+  // A command line asked for dark panels and another size: it stays with its run, whatever else is
+  // changed in it.
+  Arrangement asked = all;
+  asked.light = false;
+  asked.width = 800;
+  Arrangement left = asked;
+  left.panels.tab = SideTab::motion;
+  run(asked, left);
+  Arrangement expected = all;
+  expected.panels.tab = SideTab::motion;
+  EXPECT_EQ(kept(), expected);
+  // Back to the usual scale.
+  left = expected;
+  left.ui_scale.reset();
+  run(expected, left);
+  EXPECT_EQ(kept().ui_scale, std::nullopt);
+  KeptArrangement nowhere("/proc/condyle/window.json");
+  nowhere.begin({});
+  nowhere.update(all, true);  // no error
+}
+
+TEST_F(ArrangementFile, ABrokenOrForeignFileIsOneSentenceAndAllIsAsAtFirst) {
+  for (const char* text :
+       {"", "{", "[1, 2]", "light = yes", "\xff\xfe{}", "{\"light\": 3}", "{\"width\": \"wide\"}",
+        "{\"light\": true, \"ui_scale\": 1e9}", "{\"height\": -5}", "{\"right_tab\": \"tab\"}",
+        "{\"left_tab\": 1}", "{\"open_groups\": [1]}", "{\"plot_set\": 1e300}"}) {
+    SCOPED_TRACE(text);
+    write(text);
+    KeptArrangement kept(file_);
+    EXPECT_EQ(kept.arrangement(), Arrangement{});
+    EXPECT_NE(kept.trouble().find(file_.string()), std::string::npos) << kept.trouble();
+    // It is told once: what can be read comes in its place.
+    kept.begin({});
+    kept.update({}, true);
+    EXPECT_TRUE(KeptArrangement(file_).trouble().empty()) << KeptArrangement(file_).trouble();
+  }
+  // A later version's file has more in it.
+  write("{\"light\": true, \"of_a_later_version\": {\"a\": [1]}}");
+  EXPECT_TRUE(KeptArrangement(file_).trouble().empty());
+  EXPECT_TRUE(kept().light);
 }
 
 }  // namespace

@@ -161,6 +161,11 @@ void PanelStage::slide(const std::string& name, double from, double to) {
   rest(2);
 }
 
+void PanelStage::hold(bool ctrl, bool shift) {
+  ImGui::GetIO().KeyCtrl = ctrl;
+  ImGui::GetIO().KeyShift = shift;
+}
+
 void PanelStage::enter(const std::string& name, const std::string& words, bool ctrl) {
   constexpr int enter_key = 1;
   ImGuiIO& io = ImGui::GetIO();

@@ -37,6 +37,8 @@ class PanelStage {
   /// Presses and releases the middle of an item; or slides from one part of its width to another.
   void click(const std::string& item);
   void slide(const std::string& item, double from, double to);
+  /// Keys that are held from now on.
+  void hold(bool ctrl, bool shift);
   /// Clicks the field, or with Ctrl the slider, and enters words there.
   void enter(const std::string& item, const std::string& words, bool ctrl = false);
 

@@ -53,11 +53,12 @@ TEST_P(PanelsOn, NothingOverlapsOrLeavesTheScreen) {
     for (const DrawnItem& b : items) {
       // Things are compared with their like: panels with panels, items with items.
       if (&a == &b || a.panel.empty() != b.panel.empty()) continue;
+      if (a.name.starts_with("edge:") != b.name.starts_with("edge:")) continue;  // lie on margins
       EXPECT_FALSE(overlap(a.rect, b.rect)) << a.name << " and " << b.name;
       ++pairs;
     }
   }
-  EXPECT_EQ(panels, 5);  // top, left, right, bottom, cube
+  EXPECT_EQ(panels, 7);  // top, left, right, bottom, cube, two edges to grip
   EXPECT_GT(pairs, 500);
   for (const char* name : {"play", "scrub", "speed", "loop", "opening", "release", "skin",
                            "show:mandible", "opacity:mandible", "obey-contact", "tab:Motion",
@@ -265,6 +266,49 @@ TEST_P(PanelsOn, ErrorsWaitInARowAndCloseByButtonOrKey) {
   EXPECT_TRUE(stage.view.playing);
 }
 
+TEST_P(PanelsOn, ColumnsAndPlotsAreDrawnWiderAndHigherAndComeBack) {
+  stage.view.plots = true;
+  stage.rest();
+  const auto pull = [&](const std::string& edge, double dx, double dy) {
+    const ViewRect r = stage.item(edge).rect;
+    const double x = r.x + r.width / 2, y = r.y + r.height / 2;
+    stage.step(x, y, false);
+    for (int i = 0; i <= 4; ++i) stage.step(x + dx * i / 4, y + dy * i / 4, true);
+    stage.step(x + dx, y + dy, false);
+    stage.rest(30);  // so that the next click makes no double one
+  };
+  const auto size = [&](const std::string& panel) { return stage.item(panel).rect; };
+  const double scale = GetParam().scale, by = std::round(40 * scale);
+  const ViewRect left = size("left"), right = size("right"), plots = size("plots");
+  pull("edge:left", by, 0);
+  pull("edge:right", -by, 0);
+  pull("edge:plots", 0, -by / 2);
+  EXPECT_NEAR(size("left").width, left.width + by, 1.01);
+  EXPECT_NEAR(size("right").width, right.width + by, 1.01);
+  EXPECT_NEAR(size("plots").height, plots.height + by / 2, 1.01);
+  EXPECT_NEAR(size("plots").width, plots.width - 2 * by, 2.01);
+  EXPECT_NEAR(stage.panels->sizes().left, left.width / scale + 40, 1);
+  // Words keep their room, and the picture its own.
+  pull("edge:left", -5 * by, 0);
+  EXPECT_NEAR(size("left").width, left.width, 1);
+  pull("edge:left", 1e4, 0);
+  pull("edge:plots", 0, -1e4);
+  const Layout drawn = stage.panels->layout(GetParam().width, GetParam().height, true);
+  EXPECT_GE(drawn.view.width, std::floor(300 * scale));
+  EXPECT_GE(drawn.view.height, std::floor(150 * scale));
+  EXPECT_NEAR(size("right").x + size("right").width, GetParam().width, 0.5);
+  EXPECT_LE(size("left").x + size("left").width, size("right").x);
+  // A double click brings each back.
+  for (const char* edge : {"edge:left", "edge:right", "edge:plots"}) {
+    const ViewRect r = stage.item(edge).rect;
+    for (const bool down : {false, true, false, true, false})
+      stage.step(r.x + r.width / 2, r.y + r.height / 2, down);
+    stage.rest(30);
+  }
+  EXPECT_EQ(stage.panels->sizes(), PanelSizes{});
+  EXPECT_NEAR(size("plots").height, plots.height, 0.01);
+}
+
 TEST_P(PanelsOn, PanelsCanBePutAway) {
   stage.panels->run(Command::toggle_panels, stage.scene, stage.view);
   stage.rest();
@@ -294,6 +338,7 @@ TEST_P(PanelsOn, AnEmptySceneAndLongNamesAreDrawn) {
   for (const DrawnItem& a : stage.panels->items()) {
     for (const DrawnItem& b : stage.panels->items()) {
       if (&a == &b || a.panel.empty() != b.panel.empty()) continue;
+      if (a.name.starts_with("edge:") != b.name.starts_with("edge:")) continue;  // lie on margins
       EXPECT_FALSE(overlap(a.rect, b.rect)) << a.name << " and " << b.name;
     }
   }

@@ -612,9 +612,9 @@ TEST_F(RealWindow, SurvivesAnySize) {
 }
 
 TEST_F(RealWindow, AScaledInterfaceStillFits) {
-  options_.ui_scale = 1.4;
-  options_.width = 1000;
-  options_.height = 600;
+  options_.arrangement.ui_scale = 1.4;
+  options_.arrangement.width = 1000;
+  options_.arrangement.height = 600;
   run([&] {
     const ViewRect view = seen().rect;
     EXPECT_GT(view.width, 300);
@@ -626,8 +626,8 @@ TEST_F(RealWindow, AScaledInterfaceStillFits) {
 }
 
 TEST_F(RealWindow, CtrlKeysAndButtonsScaleThePanels) {
-  options_.width = 1180;  // where a little more than 1 fits
-  options_.height = 720;
+  options_.arrangement.width = 1180;  // where a little more than 1 fits
+  options_.arrangement.height = 720;
   const auto wide = [&] { return place("left").width; };
   const auto becomes = [&](double width) {
     return wait_until([&](const Seen& s) {

@@ -189,7 +189,7 @@ TEST(MotionPlots, HaveAxesUnitsAndBandsAndKeepAllPointsInside) {
     for (const auto& panel : plot.panels) {
       EXPECT_FALSE(panel.settings.x_label.empty());
       const auto& unit = panel.settings.y_label;
-      EXPECT_TRUE(unit.find("mm") != std::string::npos || unit.find("deg") != std::string::npos);
+      EXPECT_TRUE(unit.find("mm") != std::string::npos || unit.find("\u00b0") != std::string::npos);
       banded |= !panel.settings.bands.empty();
     }
     EXPECT_TRUE(banded) << plot.name;

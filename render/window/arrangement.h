@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/window/layout.h"
+#include "render/window/view_state.h"
+
+namespace condyle {
+
+/// Groups of the tree that are unfolded at first.
+inline std::vector<std::string> usual_groups() { return {"bones", "free", "teeth"}; }
+
+/// How a person has arranged the window. It says nothing about the patient, so it is kept from one
+/// run to the next. Whether the panels are put away (Tab) is not in it: a window that opens without
+/// any would look broken.
+struct Arrangement {
+  bool light = false;                   // theme of the panels
+  std::optional<double> ui_scale = {};  // times the screen's own; none: the usual one
+  int width = 1280, height = 720;       // before the screen's own scale
+  bool maximized = false;               // then the size is the one to come back to
+  PanelSizes sizes = {};
+  PanelChoice panels = {};
+  std::vector<std::string> open_groups = usual_groups();  // of the tree
+  bool operator==(const Arrangement&) const = default;
+};
+
+}  // namespace condyle
