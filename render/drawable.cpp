@@ -195,9 +195,11 @@ void Drawable::dress_finer() {
   undressed.clear();
 }
 
-void Drawable::cover() {
+void Drawable::cover(std::span<const Eigen::Vector3i> closed_otherwise) {
   if (covered) return;
-  mesh.send_cover(cover_rims(part->mesh.triangles));
+  auto triangles = part->mesh.triangles;
+  triangles.insert(triangles.end(), closed_otherwise.begin(), closed_otherwise.end());
+  mesh.send_cover(cover_rims(triangles));
   covered = true;
 }
 

@@ -37,8 +37,9 @@ struct Drawable {
 
   /// Gives the finer mesh the colours and shade of the part.
   void dress_finer();
-  /// Makes ready to count how often the solid goes round a place (see cut_cover.h).
-  void cover();
+  /// Makes ready to count how often the solid goes round a place (see cut_cover.h). Rims that
+  /// something else closes are told by triangles that would close them, always the same.
+  void cover(std::span<const Eigen::Vector3i> closed_otherwise = {});
   /// The part as it was before anything moved.
   const GpuMesh& rest_mesh();
 

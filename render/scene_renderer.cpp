@@ -53,6 +53,7 @@ struct SceneRenderer::State {
   std::vector<Drawable> drawables;
   Eigen::AlignedBox3f box;  // of all parts at rest
   float mouth_y;
+  std::optional<HollowMouth> mouth;  // from the first section of the face on
   GpuPoints contacts;
   // Of the last frame:
   std::vector<Pose> poses;  // of each drawable
@@ -77,6 +78,7 @@ struct SceneRenderer::State {
   PictureView view(const Camera& camera, const PictureSettings& settings,
                    std::span<const DrawItem> items) const;
   float at_rest(std::span<const DrawItem> items) const;
+  std::optional<DrawItem> hollow_mouth(std::span<const DrawItem> items, const PictureView& view);
   bool leaves_ghost(const DrawItem& item, const Ghost& ghost) const;
 };
 
@@ -131,6 +133,21 @@ float SceneRenderer::State::at_rest(std::span<const DrawItem> items) const {
     return static_cast<float>(std::exp(-moved_mm * moved_mm / 20));
   }
   return 1;
+}
+
+/// What lines the mouth, where the picture shows a section of an opaque face.
+std::optional<DrawItem> SceneRenderer::State::hollow_mouth(std::span<const DrawItem> items,
+                                                           const PictureView& view) {
+  const auto face = std::find_if(items.begin(), items.end(), [](const DrawItem& item) {
+    return item.role() == Role::face && item.opaque() && item.clipped;
+  });
+  if (face == items.end() || !shows_caps(view)) return std::nullopt;
+  if (!mouth) mouth.emplace(parts);
+  if (!mouth->known()) return std::nullopt;
+  DrawItem item{&mouth->place(face->drawable->mesh, X_CM), 1, Eigen::Matrix4f::Identity()};
+  item.clipped = true;
+  item.holed = face->holed;
+  return item;
 }
 
 bool SceneRenderer::State::leaves_ghost(const DrawItem& item, const Ghost& ghost) const {
@@ -318,8 +335,12 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   glScissor(box.x0, box.y0, box.width(), box.height());
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  s.passes.opaque(items, view);
-  s.overlays.caps(items, view);
+  const auto mouth = s.hollow_mouth(items, view);
+  view.sectioned = mouth.has_value();
+  auto surfaces = items;
+  if (mouth) surfaces.push_back(*mouth);
+  s.passes.opaque(surfaces, view);
+  s.overlays.caps(items, view, mouth ? &*s.mouth : nullptr);
   if (!settings.transparent_background) s.passes.background(view);
   if (settings.contacts) s.passes.contacts(s.contacts, view, !view.opaque_face);
   for (const auto& item : items)
