@@ -72,6 +72,35 @@ TEST_F(Lashes, GoWithTheSkin) {
   EXPECT_EQ(lash(), 0);
 }
 
+// Between the lids and on the iris: within 29 degrees of the gaze, and 15 up or down.
+TEST_F(Lashes, DoNotHideALightThatTheEyeMirrorsFromTheFrontOrEitherSide) {
+  Part eye = make_part("eyes", Role::eyes, ball({0, 0, 0}, 12, 96));
+  eye.mesh.colors.assign(eye.mesh.vertices.size(), {0.25f, 0.18f, 0.1f});
+  const std::vector<Part> parts = {eye};
+  SceneRenderer renderer(parts);
+  auto settings = mask_settings();
+  settings.shadows = false;
+  for (const double turn : {-0.64, -0.35, 0.0, 0.35, 0.64}) {
+    Camera camera = front_camera(30);
+    camera.direction = {std::sin(turn), -std::cos(turn), 0};
+    const Image image = renderer.picture(camera, settings);
+    int brightest = 0, dark = 0, all = 0;
+    for (int y = 20; y < 180; ++y)
+      for (int x = 20; x < 180; ++x) {
+        const double right = (x - 99.5) / 80, up = (99.5 - y) / 80;
+        const double near = std::sqrt(std::max(0.0, 1 - right * right - up * up));
+        const double ahead = near * std::cos(turn) - right * std::sin(turn);
+        if (ahead < std::cos(0.5) || std::abs(up) > 0.26) continue;
+        const Pixel p = pixel(image, x, y);
+        brightest = std::max(brightest, std::min({p.r, p.g, p.b}));
+        dark += p.b < 90;
+        ++all;
+      }
+    EXPECT_GT(brightest, 180) << turn;
+    EXPECT_GT(dark, 0.7 * all) << turn;
+  }
+}
+
 TEST_F(Lashes, StayWhereThePatientHasNoSkin) {
   const std::vector<Part> parts = {make_part("eyes", Role::eyes, eye_with_lash())};
   SceneRenderer renderer(parts);
