@@ -61,10 +61,11 @@ class ViewDrawing {
     const Look& look = subject_.view.look;
     if (look.wipe && subject_.wanted.kept)
       image = wiped(drawn(*subject_.wanted.kept, camera), image, look.wipe_at);
-    if (distances_) distances_->add_legend_to(image);
-    if (displacement_) displacement_->add_legend_to(image);
-    annotate(image, words_, camera,
-             {.scale_bar = look.scale_bar, .letters = look.letters, .caption = {}});
+    Annotations notes = {.scale_bar = look.scale_bar, .letters = look.letters};
+    add_key(image, words_, key_);
+    if (distances_) keep_clear_of(notes, distances_->add_legend_to(image), image);
+    if (displacement_) keep_clear_of(notes, displacement_->add_legend_to(image), image);
+    annotate(image, words_, camera, notes);
     return image;
   }
 
@@ -73,8 +74,10 @@ class ViewDrawing {
     renderer_.update(frame);
     if (distances_) distances_->color(renderer_, frame);
     if (displacement_) displacement_->color(renderer_, frame);
-    overlays_.send(renderer_, view_overlays(*subject_.patient, subject_.motion->motion, frame,
-                                            subject_.view, subject_.paths));
+    const Overlays shown = view_overlays(*subject_.patient, subject_.motion->motion, frame,
+                                         subject_.view, subject_.paths);
+    overlays_.send(renderer_, shown);
+    key_ = shown.key;
     return renderer_.picture(camera, picture_);
   }
 
@@ -82,6 +85,7 @@ class ViewDrawing {
   OffscreenContext context_;
   SceneRenderer renderer_;
   OverlaySender overlays_;
+  std::vector<KeyEntry> key_;  // to them
   std::optional<DistanceDrawing> distances_;
   std::optional<DisplacementDrawing> displacement_;
   Lettering words_;
