@@ -36,20 +36,8 @@ void write_centred(Image& image, const Lettering& words, double x, double y, dou
   write(image, words, x - words.width(text, height) / 2, y, height, text);
 }
 
-/// A line of round dots, soft at the edge.
-void stroke(Image& image, const Vector2d& from, const Vector2d& to, double radius,
-            const Vector3f& color) {
-  const Vector2d along = to - from;
-  const Vector2d low = from.cwiseMin(to).array() - radius - 1;
-  const Vector2d high = from.cwiseMax(to).array() + radius + 1;
-  for (int y = std::max(0, static_cast<int>(low.y())); y <= high.y(); ++y)
-    for (int x = std::max(0, static_cast<int>(low.x())); x <= high.x(); ++x) {
-      const Vector2d p(x + 0.5, y + 0.5);
-      const double t = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
-      const double cover = std::clamp(radius + 0.5 - (p - from - t * along).norm(), 0.0, 1.0);
-      if (cover > 0) shade_box(image, {x, y, x + 1, y + 1}, color, static_cast<float>(cover));
-    }
-}
+/// Height of letters.
+double unit_of(const Image& image) { return std::max(10.0, image.height / 45.0); }
 
 void draw_bar(Image& image, const Lettering& words, const Camera& camera, double unit) {
   const ScaleBar bar = scale_bar(camera, image.height, image.width);
@@ -65,10 +53,11 @@ void draw_bar(Image& image, const Lettering& words, const Camera& camera, double
   write_centred(image, words, 0.5 * (left + right), low - tick - 0.6 * unit, unit, bar.text);
 }
 
-void draw_letters(Image& image, const Lettering& words, const Camera& camera, double unit) {
+void draw_letters(Image& image, const Lettering& words, const Camera& camera, double unit,
+                  int taken_left) {
   const auto [left, right, top, bottom] = edge_letters(camera);
   const double size = 1.5 * unit, middle = image.height / 2.0 + 0.35 * size;
-  write_centred(image, words, 1.6 * unit, middle, size, {left});
+  write_centred(image, words, std::max(1.6 * unit, taken_left + unit), middle, size, {left});
   write_centred(image, words, image.width - 1.6 * unit, middle, size, {right});
   write_centred(image, words, image.width / 2.0, 2.2 * unit, size, {top});
   write_centred(image, words, image.width / 2.0, image.height - 1.2 * unit, size, {bottom});
@@ -131,10 +120,16 @@ EdgeLetters edge_letters(const Camera& camera) {
   return {letter(-right), letter(right), letter(up), letter(-up)};
 }
 
+void keep_clear_of(Annotations& annotations, const PixelBox& pane, const Image& image) {
+  const double middle = image.height / 2.0, half = 1.2 * unit_of(image);
+  if (pane.x0 < 2.5 * unit_of(image) && pane.y0 < middle + half && pane.y1 > middle - half)
+    annotations.taken_left = std::max(annotations.taken_left, pane.x1);
+}
+
 void annotate(Image& image, const Lettering& words, const Camera& camera,
               const Annotations& annotations) {
-  const double unit = std::max(10.0, image.height / 45.0);  // height of letters
-  if (annotations.letters) draw_letters(image, words, camera, unit);
+  const double unit = unit_of(image);
+  if (annotations.letters) draw_letters(image, words, camera, unit, annotations.taken_left);
   if (annotations.scale_bar) draw_bar(image, words, camera, unit);
   const double below = annotations.letters ? 3.2 * unit : 1.6 * unit;
   const auto count = static_cast<double>(annotations.caption.size());

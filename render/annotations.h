@@ -8,6 +8,7 @@
 #include "render/camera.h"
 #include "render/image.h"
 #include "render/lettering.h"
+#include "render/paint.h"
 
 namespace condyle {
 
@@ -38,8 +39,12 @@ EdgeLetters edge_letters(const Camera& camera);
 struct Annotations {
   bool scale_bar = false;
   bool letters = false;  // at the edges, and a cross of axes in the upper right corner
+  int taken_left = 0;    // of the left edge's middle, pixels: the letter stands beside it
   std::vector<std::string> caption = {};  // lines at the bottom, in the middle
 };
+
+/// Keeps the letters clear of a pane at the left edge.
+void keep_clear_of(Annotations& annotations, const PixelBox& pane, const Image& image);
 
 /// Paints them, sized by the picture's height. Without a font of the system the bar and the cross
 /// alone.

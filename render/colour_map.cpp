@@ -62,7 +62,8 @@ ColourMap displacement_colours(double most_mm) {
   constexpr int last = 5;
   for (int i = 0; i <= last; ++i)
     map.stops.push_back({most * static_cast<float>(i) / last, rgb(codes[i])});
-  map.beyond = rgb(0xfde725);
+  // Of no place on the scale, with any kind of colour vision.
+  map.beyond = rgb(0x8c1a00);
   for (int i = 0; i <= last; ++i) map.ticks.push_back(most * static_cast<float>(i) / last);
   return map;
 }

@@ -44,7 +44,8 @@ struct DistanceBands {
 ColourMap distance_colours(const DistanceBands& bands = {});
 
 /// Length of a way, mm, from 0 to most_mm: dark blue to yellow, rising in lightness, so that it is
-/// read with every kind of colour vision and without colour. source: viridis.
+/// read with every kind of colour vision and without colour; dark red beyond. source:
+/// viridis.
 ColourMap displacement_colours(double most_mm);
 
 }  // namespace condyle

@@ -157,6 +157,31 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
   return drawables;
 }
 
+Drawable piece_of(const Drawable& whole, std::span<const Eigen::Vector3i> triangles) {
+  std::vector<Eigen::Vector3f> positions, normals;
+  for (const auto& v : whole.part->mesh.vertices) positions.push_back(v.cast<float>());
+  vertex_normals(positions, triangles, normals);
+  Eigen::AlignedBox3f box;
+  for (const auto& t : triangles)
+    for (const int v : t) box.extend(positions[static_cast<std::size_t>(v)]);
+  GpuMesh mesh(positions, triangles, false);
+  mesh.send_shape(positions, normals);
+  mesh.send_colors(whole.colors);
+  mesh.send_extras(whole.extras);
+  Drawable piece{whole.part,
+                 whole.material,
+                 is_closed_surface(triangles),
+                 box,
+                 std::move(mesh),
+                 {},
+                 whole.colors,
+                 whole.extras,
+                 {},
+                 {}};
+  piece.own.assign(triangles.begin(), triangles.end());
+  return piece;
+}
+
 void Drawable::set_finer(const TriMesh& surface, std::span<const Eigen::Vector3f> normals) {
   std::vector<Eigen::Vector3f> positions;
   positions.reserve(surface.vertices.size());
@@ -195,9 +220,11 @@ void Drawable::dress_finer() {
   undressed.clear();
 }
 
-void Drawable::cover() {
+void Drawable::cover(std::span<const Eigen::Vector3i> closed_otherwise) {
   if (covered) return;
-  mesh.send_cover(cover_rims(part->mesh.triangles));
+  auto triangles = own.empty() ? part->mesh.triangles : own;
+  triangles.insert(triangles.end(), closed_otherwise.begin(), closed_otherwise.end());
+  mesh.send_cover(cover_rims(triangles));
   covered = true;
 }
 

@@ -29,7 +29,8 @@ struct Drawable {
   std::size_t finer_vertices = 0;
   std::vector<Eigen::Vector3f> undressed = {};  // vertices of a finer mesh without colours as yet
   bool covered = false;
-  std::optional<GpuMesh> at_rest = {};  // of a part that deforms, for its ghost
+  std::vector<Eigen::Vector3i> own = {};  // triangles, where they are not all of the part's
+  std::optional<GpuMesh> at_rest = {};    // of a part that deforms, for its ghost
 
   const GpuMesh& shown() const { return mapped && finer ? *finer : mesh; }
   /// The same surface in smaller triangles, for maps.
@@ -37,8 +38,9 @@ struct Drawable {
 
   /// Gives the finer mesh the colours and shade of the part.
   void dress_finer();
-  /// Makes ready to count how often the solid goes round a place (see cut_cover.h).
-  void cover();
+  /// Makes ready to count how often the solid goes round a place (see cut_cover.h). Rims that
+  /// something else closes are told by triangles that would close them, always the same.
+  void cover(std::span<const Eigen::Vector3i> closed_otherwise = {});
   /// The part as it was before anything moved.
   const GpuMesh& rest_mesh();
 
@@ -49,6 +51,8 @@ struct Drawable {
 
 /// Uploads the parts with their normals, colours, baked ambient occlusion and curvature.
 std::vector<Drawable> make_drawables(std::span<const Part> parts);
+/// Some triangles of a part as a drawable of their own.
+Drawable piece_of(const Drawable& whole, std::span<const Eigen::Vector3i> triangles);
 /// The same for another context, at rest.
 std::vector<Drawable> drawables_like(std::span<const Drawable> others);
 

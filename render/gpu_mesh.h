@@ -73,6 +73,10 @@ class GpuMesh {
   // As on the card:
   const std::vector<Eigen::Vector3f>& points() const { return points_; }
   const Surface& fine() const;
+  /// Where a vertex is, numbered as given; of one that has a triangle.
+  const Eigen::Vector3f& point_of(int vertex) const {
+    return points_[static_cast<std::size_t>(place_[static_cast<std::size_t>(vertex)])];
+  }
   /// What is good enough to throw a shadow.
   const Surface& coarse() const { return coarse_.triangles.empty() ? fine() : coarse_; }
 

@@ -62,8 +62,8 @@ void draw_legend(Image& image, const Lettering& words, const ColourMap& map,
               fmt::format("more than {:g}", map.high()), place.ink);
 }
 
-void add_legend(Image& image, const Lettering& words, const ColourMap& map,
-                const std::vector<std::string>& remarks) {
+PixelBox add_legend(Image& image, const Lettering& words, const ColourMap& map,
+                    const std::vector<std::string>& remarks) {
   const double scale = std::clamp(std::min(image.width / 1280.0, image.height / 720.0), 0.4, 8.0);
   const auto px = [&](double units) { return static_cast<int>(std::lround(units * scale)); };
   LegendPlace place;
@@ -80,16 +80,16 @@ void add_legend(Image& image, const Lettering& words, const ColourMap& map,
   place.left = margin + pad;
   place.top = image.height - margin - pad - high;
   // Dark, so that the white of contact shows.
-  shade_box(
-      image,
-      {margin, place.top - pad, margin + 2 * pad + static_cast<int>(wide), image.height - margin},
-      Eigen::Vector3f(0.09f, 0.10f, 0.12f), 0.82f);
+  const PixelBox pane = {margin, place.top - pad, margin + 2 * pad + static_cast<int>(wide),
+                         image.height - margin};
+  shade_box(image, pane, Eigen::Vector3f(0.09f, 0.10f, 0.12f), 0.82f);
   draw_legend(image, words, map, place);
   double y = place.top + legend_height(place) + 0.9 * line;
   for (const auto& remark : remarks) {
     words.write(image, place.left, y, 0.85 * place.letters, remark, place.ink);
     y += line;
   }
+  return pane;
 }
 
 }  // namespace condyle

@@ -6,6 +6,7 @@
 #include "render/colour_map.h"
 #include "render/image.h"
 #include "render/lettering.h"
+#include "render/paint.h"
 
 namespace condyle {
 
@@ -25,8 +26,8 @@ void draw_legend(Image& image, const Lettering& words, const ColourMap& map,
                  const LegendPlace& place);
 
 /// The legend on a dark pane in the picture's lower left corner, sized by the picture, with remarks
-/// under it. Without a font of the system the bar alone.
-void add_legend(Image& image, const Lettering& words, const ColourMap& map,
-                const std::vector<std::string>& remarks = {});
+/// under it. Without a font of the system the bar alone. gives: the pane.
+PixelBox add_legend(Image& image, const Lettering& words, const ColourMap& map,
+                    const std::vector<std::string>& remarks = {});
 
 }  // namespace condyle

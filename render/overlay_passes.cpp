@@ -34,6 +34,11 @@ void blend_over() {
 
 }  // namespace
 
+bool shows_caps(const PictureView& view) {
+  // From the kept side the surfaces themselves hide the cut.
+  return view.capped && view.clip_plane.dot(view.eye.homogeneous()) < 0 && has_stencil();
+}
+
 OverlayPasses::OverlayPasses()
     : cap_("cap", cap_shaders()),
       tint_("tint", tint_shaders()),
@@ -87,13 +92,12 @@ void OverlayPasses::begin(GlProgram& program, const PictureView& view,
   program.set("cut_ball", no_ball);
 }
 
-void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& view) {
+void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& view,
+                         const HollowMouth* mouth) {
   std::vector<const DrawItem*> cut;
   for (const auto& item : items)
     if (item.clipped && item.opaque()) cut.push_back(&item);
-  // From the kept side the surfaces themselves hide the cut.
-  const bool seen = view.clip_plane.dot(view.eye.homogeneous()) < 0;
-  if (cut.empty() || !view.capped || !seen || !has_stencil()) return;
+  if (cut.empty() || !shows_caps(view)) return;
   std::stable_sort(cut.begin(), cut.end(), [](const DrawItem* a, const DrawItem* b) {
     return order_of_caps(a->role()) < order_of_caps(b->role());
   });
@@ -124,12 +128,14 @@ void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& vie
     glStencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_INCR_WRAP);
     glDisable(GL_DEPTH_TEST);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    item->drawable->cover();
+    const bool hollow = mouth && item->role() == Role::face;
+    item->drawable->cover(hollow ? mouth->fan() : std::vector<Eigen::Vector3i>());
     begin(depth_, view, item->model);
     depth_.set("clip_plane", view.clip_plane);
     glEnable(GL_CLIP_DISTANCE0);
     item->drawable->mesh.draw();
     item->drawable->mesh.draw_cover();
+    if (hollow) mouth->mesh().draw();
     glDisable(GL_CLIP_DISTANCE0);
 
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

@@ -6,10 +6,15 @@
 #include <string>
 
 #include "render/drawn_box.h"
+#include "render/hollow_mouth.h"
 #include "render/overlays.h"
 #include "render/passes.h"
 
 namespace condyle {
+
+/// Whether cut solids show closed faces to the eye: asked for, seen from the side that is left out,
+/// and with a stencil to find them.
+bool shows_caps(const PictureView& view);
 
 /// What is drawn beside the surfaces. The steps leave depth test on, blending off.
 class OverlayPasses {
@@ -19,9 +24,9 @@ class OverlayPasses {
   void set_lines(const std::string& name, const LineSet& lines);
   void set_sheet(const std::string& name, const GlassSheet& sheet);
 
-  /// Closes the opaque solids that the clipping plane cuts; needs a stencil, and does nothing
-  /// without one.
-  void caps(std::span<const DrawItem> items, const PictureView& view);
+  /// Closes the opaque solids that the clipping plane cuts, the face but for its mouth if that is
+  /// given, in its place.
+  void caps(std::span<const DrawItem> items, const PictureView& view, const HollowMouth* mouth);
   void wireframe(const DrawItem& item, const PictureView& view);
   /// The part as at rest: behind what is nearer, its nearest layer alone.
   void ghost(const DrawItem& item, const Ghost& look, const PictureView& view);

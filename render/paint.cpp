@@ -32,6 +32,21 @@ void paint_frame(Image& image, const PixelBox& b, const Eigen::Vector3f& color, 
   paint_box(image, {b.x1, b.y0, b.x1 + width, b.y1}, color);
 }
 
+void stroke(Image& image, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double radius,
+            const Eigen::Vector3f& color) {
+  const Eigen::Vector2d along = to - from;
+  const Eigen::Vector2d low = from.cwiseMin(to).array() - radius - 1;
+  const Eigen::Vector2d high = from.cwiseMax(to).array() + radius + 1;
+  for (int y = std::max(0, static_cast<int>(low.y())); y <= high.y(); ++y)
+    for (int x = std::max(0, static_cast<int>(low.x())); x <= high.x(); ++x) {
+      const Eigen::Vector2d p(x + 0.5, y + 0.5);
+      const double t =
+          std::clamp((p - from).dot(along) / std::max(along.squaredNorm(), 1e-9), 0.0, 1.0);
+      const double cover = std::clamp(radius + 0.5 - (p - from - t * along).norm(), 0.0, 1.0);
+      if (cover > 0) shade_box(image, {x, y, x + 1, y + 1}, color, static_cast<float>(cover));
+    }
+}
+
 Image wiped(const Image& left, const Image& right, double at) {
   Image image = right;
   const int border = static_cast<int>(std::lround(std::clamp(at, 0.0, 1.0) * image.width));

@@ -23,6 +23,11 @@ void shade_box(Image& image, const PixelBox& box, const Eigen::Vector3f& color, 
 /// A line of that width just outside of the box.
 void paint_frame(Image& image, const PixelBox& box, const Eigen::Vector3f& color, int width = 1);
 
+/// A line of round dots, soft at the edge; pixels from the top left. One dot from a place to
+/// itself.
+void stroke(Image& image, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double radius,
+            const Eigen::Vector3f& color);
+
 /// Left of `at` (share of the width) the one, right of it the other, with a light line between
 /// them. Both of one size.
 Image wiped(const Image& left, const Image& right, double at);

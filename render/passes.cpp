@@ -240,7 +240,7 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   program.set("wrap", material.wrap);
   program.set("scatter", material.scatter);
   program.set("coat", material.coat);
-  program.set("open_mouth", 1 - view.at_rest);
+  program.set("open_mouth", view.sectioned ? 1.f : 1 - view.at_rest);
   program.set("mapped_up_to", view.mapped_up_to);
   program.set("colour_table", 2);
   if (mapped) {

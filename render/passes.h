@@ -53,6 +53,7 @@ struct PictureView {
   bool opaque_face = false;  // hides most of the rest
   bool may_cull = true;      // the eye is outside of everything
   float skin_opacity = 1;
+  bool sectioned = false;                     // through an opaque face, its mouth open to the eye
   float at_rest = 1;                          // 1 with the jaw at rest, 0 when it is well away
   float lips_y = 0;                           // front of the teeth, mm
   float away = 600;                           // of the target from the eye, mm

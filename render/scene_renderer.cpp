@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "render/drawable.h"
+#include "render/lashes.h"
 #include "render/overlay_passes.h"
 #include "render/passes.h"
 #include "render/picture_target.h"
@@ -53,6 +54,13 @@ struct SceneRenderer::State {
   std::vector<Drawable> drawables;
   Eigen::AlignedBox3f box;  // of all parts at rest
   float mouth_y;
+  // Of the drawable of eyes with its number, once the skin was not whole: the balls, and the
+  // lashes, which go with the skin.
+  struct PartedEyes {
+    std::optional<Drawable> balls, lashes;
+  };
+  std::map<std::size_t, PartedEyes> parted_eyes;
+  std::optional<HollowMouth> mouth;  // from the first section of the face on
   GpuPoints contacts;
   // Of the last frame:
   std::vector<Pose> poses;  // of each drawable
@@ -74,9 +82,11 @@ struct SceneRenderer::State {
   void place(const BodyPoses& at);
 
   std::vector<DrawItem> items(const PictureSettings& settings);
+  void part_lashes_from(std::vector<DrawItem>& items);
   PictureView view(const Camera& camera, const PictureSettings& settings,
                    std::span<const DrawItem> items) const;
   float at_rest(std::span<const DrawItem> items) const;
+  std::optional<DrawItem> hollow_mouth(std::span<const DrawItem> items, const PictureView& view);
   bool leaves_ghost(const DrawItem& item, const Ghost& ghost) const;
 };
 
@@ -95,7 +105,47 @@ std::vector<DrawItem> SceneRenderer::State::items(const PictureSettings& setting
         settings.cut_away && names(settings.cut_away->parts, part.name, part.role == Role::face);
     found.push_back(item);
   }
+  part_lashes_from(found);
   return found;
+}
+
+/// Lashes are as opaque, and cut as much, as the skin that they grow from.
+void SceneRenderer::State::part_lashes_from(std::vector<DrawItem>& items) {
+  if (std::none_of(parts.begin(), parts.end(),
+                   [](const Part& part) { return part.role == Role::face; }))
+    return;
+  const auto skin = std::find_if(items.begin(), items.end(),
+                                 [](const DrawItem& item) { return item.role() == Role::face; });
+  const DrawItem* face = skin == items.end() ? nullptr : &*skin;
+  if (face && face->opaque() && !face->cut()) return;
+  std::vector<DrawItem> all;
+  for (const auto& item : items) {
+    if (item.role() != Role::eyes || item.drawable->mapped) {
+      all.push_back(item);
+      continue;
+    }
+    const auto number = static_cast<std::size_t>(item.drawable - drawables.data());
+    auto [eyes, fresh] = parted_eyes.try_emplace(number);
+    auto& [balls, lashes] = eyes->second;
+    if (fresh) {
+      const EyePieces pieces = part_lashes(item.drawable->part->mesh);
+      if (!pieces.eyes.empty()) balls.emplace(piece_of(*item.drawable, pieces.eyes));
+      if (!pieces.lashes.empty()) lashes.emplace(piece_of(*item.drawable, pieces.lashes));
+    }
+    if (!lashes) {
+      all.push_back(item);
+      continue;
+    }
+    if (balls) all.push_back(item), all.back().drawable = &*balls;
+    if (!face) continue;
+    DrawItem strands = item;
+    strands.drawable = &*lashes;
+    strands.opacity = std::min(item.opacity, face->opacity);
+    strands.clipped |= face->clipped;
+    strands.holed |= face->holed;
+    all.push_back(strands);
+  }
+  items = std::move(all);
 }
 
 void SceneRenderer::State::place(const BodyPoses& at) {
@@ -131,6 +181,21 @@ float SceneRenderer::State::at_rest(std::span<const DrawItem> items) const {
     return static_cast<float>(std::exp(-moved_mm * moved_mm / 20));
   }
   return 1;
+}
+
+/// What lines the mouth, where the picture shows a section of an opaque face.
+std::optional<DrawItem> SceneRenderer::State::hollow_mouth(std::span<const DrawItem> items,
+                                                           const PictureView& view) {
+  const auto face = std::find_if(items.begin(), items.end(), [](const DrawItem& item) {
+    return item.role() == Role::face && item.opaque() && item.clipped;
+  });
+  if (face == items.end() || !shows_caps(view)) return std::nullopt;
+  if (!mouth) mouth.emplace(parts);
+  if (!mouth->known()) return std::nullopt;
+  DrawItem item{&mouth->place(face->drawable->mesh, X_CM), 1, Eigen::Matrix4f::Identity()};
+  item.clipped = true;
+  item.holed = face->holed;
+  return item;
 }
 
 bool SceneRenderer::State::leaves_ghost(const DrawItem& item, const Ghost& ghost) const {
@@ -318,8 +383,12 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   glScissor(box.x0, box.y0, box.width(), box.height());
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  s.passes.opaque(items, view);
-  s.overlays.caps(items, view);
+  const auto mouth = s.hollow_mouth(items, view);
+  view.sectioned = mouth.has_value();
+  auto surfaces = items;
+  if (mouth) surfaces.push_back(*mouth);
+  s.passes.opaque(surfaces, view);
+  s.overlays.caps(items, view, mouth ? &*s.mouth : nullptr);
   if (!settings.transparent_background) s.passes.background(view);
   if (settings.contacts) s.passes.contacts(s.contacts, view, !view.opaque_face);
   for (const auto& item : items)

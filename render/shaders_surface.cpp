@@ -199,9 +199,14 @@ void main() {
   vec3 c = albedo * light + reflectance * shine;
   vec3 mirrored = reflect(-v, n);
   c += ambient_light(mirrored, v) * fresnel(nv, reflectance) * (1.0 - roughness) * open;
-  if (coated)
-    c += coat * reflectance * (key_color * specular(n, v, key_direction, 0.16) * lit
-       + fill_color * specular(n, v, fill_direction, 0.2) * open);
+  if (coated) {
+    // An eye mirrors a light lower than the key, which its lid would hide, and the fill as bright as
+    // a window: on the iris from the front and from either side.
+    bool eye = coat > 0.9;
+    vec3 mirrored_key = eye ? normalize(key_direction - 0.35 * sky_direction) : key_direction;
+    c += coat * reflectance * (key_color * specular(n, v, mirrored_key, 0.16) * (eye ? sqrt(lit) : lit)
+       + fill_color * (eye ? 3.0 : 1.0) * specular(n, v, fill_direction, 0.2) * open);
+  }
   float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
   result = mix(vec4(display(c), a), colored, covered);
 }
@@ -265,8 +270,8 @@ void main() {
 }
 )";
 
-// The mucous side: dark, red and a little wet; no shadow map, the darkness is in the colour. What is
-// seen through a cut, and not through the mouth, is flesh.
+// The mucous side: dark, red and a little wet; no shadow map, the darkness is in the colour. What
+// is seen through a cut, and not through the mouth, is flesh.
 const char* const interior_source = R"(
 uniform vec3 eye;
 uniform vec4 clip_plane;  // as in the vertex shader

@@ -3,7 +3,9 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "render/overlay_key.h"
 #include "render/overlays.h"
 
 namespace condyle {
@@ -14,6 +16,7 @@ class SceneRenderer;
 struct Overlays {
   std::map<std::string, LineSet> lines = {};
   std::map<std::string, GlassSheet> sheets = {};
+  std::vector<KeyEntry> key = {};  // to all of them
 };
 
 /// Keeps the overlays of one renderer as they are wanted.

@@ -17,10 +17,17 @@ using Eigen::Vector3f;
 const std::array<Vector3f, 4> layer_colors = {
     {{0.88f, 0.67f, 0.56f}, {0.94f, 0.83f, 0.45f}, {0.72f, 0.24f, 0.20f}, {0.62f, 0.68f, 0.74f}}};
 
-/// Lightness alone tells it.
+// Of a muscle; lightness alone tells it.
+const Vector3f idle(0.50f, 0.12f, 0.11f), excited(1.0f, 0.88f, 0.25f);
+
 Vector3f excited_color(double excitation) {
-  const Vector3f rest(0.50f, 0.12f, 0.11f), full(1.0f, 0.88f, 0.25f);
-  return rest + static_cast<float>(std::clamp(excitation, 0.0, 1.0)) * (full - rest);
+  return idle + static_cast<float>(std::clamp(excitation, 0.0, 1.0)) * (excited - idle);
+}
+
+Vector3f layer_color(const TissueModel& model, int sheet) {
+  const int layers = model.sheets - 1;
+  if (sheet >= layers) return layer_colors[3];
+  return layer_colors[static_cast<std::size_t>(layers == 1 ? 0 : 2 * sheet / (layers - 1))];
 }
 
 double excitation_of(const Muscle& muscle, const Motion& motion, const FrameState& frame) {
@@ -56,16 +63,29 @@ GlassSheet layer_sheet(const TissueModel& model, const TissueState& now, int she
                        double opacity) {
   GlassSheet made{.positions = {},
                   .triangles = model.triangles,
-                  .color = layer_colors[3],
+                  .color = layer_color(model, sheet),
                   .opacity = static_cast<float>(opacity)};
-  const int layers = model.sheets - 1;
-  if (sheet < layers)
-    made.color = layer_colors[static_cast<std::size_t>(layers == 1 ? 0 : 2 * sheet / (layers - 1))];
   made.positions.reserve(static_cast<std::size_t>(model.columns));
   for (int column = 0; column < model.columns; ++column)
     made.positions.push_back(
         now.nodes[static_cast<std::size_t>(node_of(column, sheet, model.sheets))].cast<float>());
   return made;
+}
+
+KeyEntry muscle_key() {
+  return {"Muscles, at rest to excited", {idle, excited}, KeyEntry::Mark::scale};
+}
+
+std::string layer_label(const TissueModel& model, int sheet) {
+  const int layers = model.sheets - 1;
+  constexpr std::array usual = {"Skin", "Fat", "Muscle layer"};
+  if (sheet == layers) return "Inner side";
+  return layers == static_cast<int>(usual.size()) ? usual[static_cast<std::size_t>(sheet)]
+                                                  : fmt::format("Layer {}", sheet + 1);
+}
+
+KeyEntry layer_key(const TissueModel& model, int sheet) {
+  return {layer_label(model, sheet), {layer_color(model, sheet)}, KeyEntry::Mark::sheet};
 }
 
 std::string layer_overlay_name(int sheet) { return fmt::format("layer {:03}", 999 - sheet); }

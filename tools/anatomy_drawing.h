@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "render/overlay_key.h"
 #include "render/overlays.h"
 #include "sim/case/muscle.h"
 #include "sim/frame/frame_state.h"
@@ -18,6 +19,11 @@ LineSet muscle_line(const Muscle& muscle, const Motion& motion, const FrameState
 /// The sheet below so many layers of soft tissue, where its nodes are now.
 GlassSheet layer_sheet(const TissueModel& model, const TissueState& now, int sheet,
                        double opacity = 0.5);
+/// What their colours mean.
+KeyEntry muscle_key();
+KeyEntry layer_key(const TissueModel& model, int sheet);
+/// "Fat", where there are the usual three.
+std::string layer_label(const TissueModel& model, int sheet);
 /// Of an overlay: in the order of their names inner sheets come first, outer ones lie over them.
 std::string layer_overlay_name(int sheet);
 

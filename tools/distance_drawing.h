@@ -18,7 +18,9 @@ class DistanceDrawing {
                   SceneRenderer& renderer, ColourMap colours);
 
   void color(SceneRenderer& renderer, const FrameState& frame) const;
-  void add_legend_to(Image& image) const { add_legend(image, words_, colours_, remarks_); }
+  PixelBox add_legend_to(Image& image) const {
+    return add_legend(image, words_, colours_, remarks_);
+  }
 
  private:
   DistanceMap map_;

@@ -13,11 +13,13 @@ using Eigen::Vector3f;
 
 // Okabe and Ito's, which are told apart with every kind of colour vision.
 const Vector3f vermilion(.84f, .37f, 0), blue(0, .45f, .70f), sky(.34f, .71f, .91f),
-    yellow(.94f, .89f, .26f), green(0, .62f, .45f), purple(.80f, .47f, .65f);
+    yellow(.94f, .89f, .26f), green(0, .62f, .45f), purple(.80f, .47f, .65f),
+    white(.95f, .95f, .95f);
 
-/// Blue to grey to red over half to one and a half times the rest length.
+// Of a spring at half, at the whole and at one and a half times its rest length.
+const Vector3f shortened(.13f, .40f, .67f), rest(.86f, .86f, .86f), stretched(.80f, .20f, .16f);
+
 Vector3f stretch_color(float stretch) {
-  const Vector3f shortened(.13f, .40f, .67f), rest(.86f, .86f, .86f), stretched(.80f, .20f, .16f);
   const float t = std::clamp((stretch - 1) / 0.5f, -1.f, 1.f);
   return t < 0 ? Vector3f(rest - t * (shortened - rest)) : Vector3f(rest + t * (stretched - rest));
 }
@@ -95,6 +97,28 @@ void extend(std::vector<Vector3f>& path, const Eigen::Vector3d& place) {
 
 }  // namespace
 
+std::vector<KeyEntry> overlay_key(const OverlayChoice& choice, bool has_tissue) {
+  using Mark = KeyEntry::Mark;
+  std::vector<KeyEntry> key;
+  const auto add = [&](bool wanted, std::initializer_list<KeyEntry> entries) {
+    if (wanted) key.insert(key.end(), entries);
+  };
+  add(choice.paths, {{"Path of the lower incisors", {yellow, white}, Mark::path},
+                     {"Path of the left condyle", {sky, white}, Mark::path},
+                     {"Path of the right condyle", {vermilion, white}, Mark::path}});
+  add(choice.axes, {{"Axis through both condyles", {yellow}},
+                    {"Axis of the turn from rest", {purple}},
+                    {"To the patient's left (L)", {vermilion}, Mark::arrow},
+                    {"To the back (P)", {green}, Mark::arrow},
+                    {"Up (S)", {sky}, Mark::arrow}});
+  add(choice.springs && has_tissue,
+      {{"Springs, 50 to 150 % long", {shortened, rest, stretched}, Mark::scale}});
+  add(choice.prisms && has_tissue, {{"Edges of the prisms", {green}}});
+  add(choice.bone_springs && has_tissue, {{"Springs to the mandible", {vermilion}, Mark::path},
+                                          {"Springs to the skull", {blue}, Mark::path}});
+  return key;
+}
+
 void MotionPaths::add(const Measures& measures) {
   extend(incisor_, measures.incisor);
   extend(left_, measures.left_condyle);
@@ -102,7 +126,7 @@ void MotionPaths::add(const Measures& measures) {
 }
 
 LineSet MotionPaths::lines() const {
-  LineSet set{.color = yellow, .width_px = 3, .dot_mm = 1.1f, .through = 0.7f};
+  LineSet set{.color = white, .width_px = 3, .dot_mm = 1.1f, .through = 0.7f};
   for (const auto& [path, color] :
        {std::pair{&incisor_, yellow}, std::pair{&left_, sky}, std::pair{&right_, vermilion}}) {
     add_run(set, *path);

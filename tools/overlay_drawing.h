@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "render/overlay_key.h"
 #include "render/overlays.h"
 #include "sim/frame/frame_state.h"
 #include "sim/simulator/simulator.h"
@@ -21,6 +22,9 @@ struct OverlayChoice {
   bool muscles = false;  // their lines of action
   bool layers = false;   // of the soft tissue, as see-through sheets
 };
+
+/// What the colours of `overlay_lines` and of paths mean.
+std::vector<KeyEntry> overlay_key(const OverlayChoice& choice, bool has_tissue);
 
 /// Where condyles and lower incisal point have been.
 class MotionPaths {

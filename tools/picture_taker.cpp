@@ -143,22 +143,29 @@ Overlays PictureTaker::overlays_of(const FrameState& state, bool with_paths) con
   if (plan_.overlays.paths && with_paths) all.lines["paths"] = paths_.lines();
   for (const Muscle& muscle : muscles_)
     all.lines["muscle " + muscle.name] = muscle_line(muscle, subject_.motion, state);
-  const TissueModel* tissue = subject_.scene.tissue.get();
-  if (plan_.overlays.layers && tissue && !state.tissue.nodes.empty())
-    for (int sheet = 0; sheet < tissue->sheets; ++sheet)
+  const TissueModel* tissue = state.tissue.nodes.empty() ? nullptr : subject_.scene.tissue.get();
+  all.key = overlay_key(plan_.overlays, tissue != nullptr);
+  if (!muscles_.empty()) all.key.push_back(muscle_key());
+  if (plan_.overlays.layers && tissue)
+    for (int sheet = 0; sheet < tissue->sheets; ++sheet) {
       all.sheets[layer_overlay_name(sheet)] = layer_sheet(*tissue, state.tissue, sheet);
+      all.key.push_back(layer_key(*tissue, sheet));
+    }
   return all;
 }
 
-Image PictureTaker::picture(const View& view, const Camera& camera, const Shot& shot) const {
+Image PictureTaker::picture(const View& view, const Camera& camera, const Shot& shot,
+                            Annotations& notes) const {
   Image image = drawn(view, camera, shot, true);
   if (plan_.wipe) {
     const Overlays still = overlays_of(rest_, false);
     image = wiped(drawn(view, camera, {shot.renderer, shot.desk, rest_, still}, true), image,
                   *plan_.wipe);
   }
-  if (shot.desk.distances) shot.desk.distances->add_legend_to(image);
-  if (shot.desk.displacement) shot.desk.displacement->add_legend_to(image);
+  add_key(image, shot.desk.words, shot.overlays.key);
+  if (shot.desk.distances) keep_clear_of(notes, shot.desk.distances->add_legend_to(image), image);
+  if (shot.desk.displacement)
+    keep_clear_of(notes, shot.desk.displacement->add_legend_to(image), image);
   return image;
 }
 
@@ -169,8 +176,10 @@ Image PictureTaker::before_after(const View& view, const Camera& camera, const S
     const bool mapped = i == 2, moved = i > 0;
     images[i] =
         drawn(view, camera, moved ? shot : Shot{shot.renderer, shot.desk, rest_, still}, mapped);
-    if (mapped) shot.desk.displacement->add_legend_to(images[i]);
-    annotate(images[i], shot.desk.words, camera, plan_.annotations);
+    auto notes = plan_.annotations;
+    if (i == 0) add_key(images[i], shot.desk.words, shot.overlays.key);
+    if (mapped) keep_clear_of(notes, shot.desk.displacement->add_legend_to(images[i]), images[i]);
+    annotate(images[i], shot.desk.words, camera, notes);
   }
   return beside(images);
 }
@@ -185,7 +194,7 @@ Image PictureTaker::finished(const View& view, int frame, const Shot& shot) cons
     image = before_after(view, camera, shot);
     notes = {.caption = notes.caption};
   } else {
-    image = picture(view, camera, shot);
+    image = picture(view, camera, shot, notes);
   }
   annotate(image, shot.desk.words, camera, notes);
   return image;

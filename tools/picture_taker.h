@@ -75,7 +75,8 @@ class PictureTaker {
     const Overlays& overlays;
   };
   void prepare(SceneRenderer& renderer, Desk& desk) const;
-  Image picture(const View& view, const Camera& camera, const Shot& shot) const;
+  /// With key and legend; tells the notes what room they leave.
+  Image picture(const View& view, const Camera& camera, const Shot& shot, Annotations& notes) const;
   Image before_after(const View& view, const Camera& camera, const Shot& shot) const;
   Image drawn(const View& view, const Camera& camera, const Shot& shot, bool with_map) const;
   Image finished(const View& view, int frame, const Shot& shot) const;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 
 #include "sim/muscles/muscle_names.h"
 #include "sim/tissue/model.h"
@@ -24,19 +24,25 @@ Overlays view_overlays(const ViewPatient& patient, const Motion& motion, const F
                        const ViewState& view, const std::shared_ptr<const LineSet>& paths) {
   Overlays shown;
   const Look& look = view.look;
-  shown.lines = overlay_lines(patient.scene, frame,
-                              {.springs = look.springs,
-                               .prisms = look.prisms,
-                               .bone_springs = look.bone_springs,
-                               .axes = look.axes});
+  const OverlayChoice choice = {.springs = look.springs,
+                                .prisms = look.prisms,
+                                .bone_springs = look.bone_springs,
+                                .axes = look.axes,
+                                .paths = look.paths && paths};
+  shown.lines = overlay_lines(patient.scene, frame, choice);
   if (look.paths && paths) shown.lines["paths"] = *paths;
-  const TissueModel* model = patient.scene.tissue.get();
-  if (model && !frame.tissue.nodes.empty())
+  const TissueModel* model = frame.tissue.nodes.empty() ? nullptr : patient.scene.tissue.get();
+  shown.key = overlay_key(choice, model != nullptr);
+  if (std::any_of(view.muscles.begin(), view.muscles.end(),
+                  [](const PartView& muscle) { return muscle.shown; }))
+    shown.key.push_back(muscle_key());
+  if (model)
     for (int sheet = 0; sheet < model->sheets; ++sheet) {
       const auto i = static_cast<std::size_t>(sheet);
-      if (i < view.layers.size() && view.layers[i].shown)
-        shown.sheets[layer_overlay_name(sheet)] =
-            layer_sheet(*model, frame.tissue, sheet, view.layers[i].opacity);
+      if (i >= view.layers.size() || !view.layers[i].shown) continue;
+      shown.sheets[layer_overlay_name(sheet)] =
+          layer_sheet(*model, frame.tissue, sheet, view.layers[i].opacity);
+      shown.key.push_back(layer_key(*model, sheet));
     }
   for (std::size_t m = 0; m < patient.muscles.size() && m < view.muscles.size(); ++m)
     if (view.muscles[m].shown)
@@ -56,14 +62,8 @@ std::vector<TreeItem> layer_items(const ViewPatient& patient) {
   const TissueModel* model = patient.scene.tissue.get();
   if (!model) return {};
   std::vector<TreeItem> items;
-  const int layers = model->sheets - 1;
-  constexpr std::array usual = {"Skin", "Fat", "Muscle layer"};
-  for (int sheet = 0; sheet < model->sheets; ++sheet) {
-    std::string label = fmt::format("Layer {}", sheet + 1);
-    if (layers == static_cast<int>(usual.size()) && sheet < layers)
-      label = usual[static_cast<std::size_t>(sheet)];
-    items.push_back({fmt::format("{}", sheet + 1), sheet == layers ? "Inner side" : label});
-  }
+  for (int sheet = 0; sheet < model->sheets; ++sheet)
+    items.push_back({fmt::format("{}", sheet + 1), layer_label(*model, sheet)});
   return items;
 }
 

@@ -14,12 +14,33 @@ ImU32 ink_of(const Eigen::Vector3f& c) {
   return ImGui::ColorConvertFloat4ToU32({c.x(), c.y(), c.z(), 1});
 }
 
+/// In a width, its left end's middle given.
+void key_mark(ImDrawList& list, const KeyEntry& entry, const ImVec2& from, float width, float px) {
+  const ImVec2 to = {from.x + width, from.y};
+  const ImU32 ink = ink_of(entry.colors.front());
+  if (entry.mark == KeyEntry::Mark::sheet || entry.mark == KeyEntry::Mark::scale) {
+    const int steps = static_cast<int>(width);
+    for (int i = 0; i < steps; ++i) {
+      const float x = from.x + static_cast<float>(i);
+      list.AddRectFilled({x, from.y - 5 * px}, {x + 1, from.y + 5 * px},
+                         ink_of(color_of(entry, (i + 0.5) / steps)));
+    }
+    return;
+  }
+  list.AddLine(from, to, ink, 2.4f * px);
+  if (entry.mark == KeyEntry::Mark::path)
+    list.AddCircleFilled({to.x - 3 * px, to.y}, 3 * px, ink_of(entry.colors.back()));
+  if (entry.mark == KeyEntry::Mark::arrow)
+    for (const float side : {-1.f, 1.f})
+      list.AddLine(to, {to.x - 6 * px, to.y + side * 3.5f * px}, ink, 2 * px);
+}
+
 }  // namespace
 
-/// In the lower left corner of the view while something is coloured by values.
-void Panels::Drawing::legend() {
+/// While something is coloured by values.
+ViewRect Panels::Drawing::legend() {
   const bool distances = view.distances && input.scene.distance_colours;
-  if (!distances && !view.look.displacement) return;
+  if (!distances && !view.look.displacement) return {};
   const Theme& theme = panels.theme_;
   const ColourMap map = distances ? *input.scene.distance_colours : displacement_map();
   const auto& remarks = distances ? input.scene.distance_remarks : displacement_remarks();
@@ -32,7 +53,7 @@ void Panels::Drawing::legend() {
   const float high =
       title + bar_height + pen.px(8) + line + line * static_cast<float>(remarks.size());
   const double pane_width = wide + 2 * pad, pane_height = high + 2 * pad;
-  if (r.width < 2.5 * pane_width || r.height < 1.4 * pane_height) return;  // no room
+  if (r.width < 2.5 * pane_width || r.height < 1.4 * pane_height) return {};  // no room
   const ViewRect pane = {r.x + pad, r.y + r.height - pad - pane_height, pane_width, pane_height};
   panels.items_.push_back({"legend", "", pane});
 
@@ -77,6 +98,51 @@ void Panels::Drawing::legend() {
         fmt::format("more than {:g}", map.high()));
   for (const auto& remark : remarks)
     words(theme.small, palette().text_dim, left, y += line, remark);
+  return pane;
+}
+
+/// Marks of overlays and what they are; in columns, down to the cube.
+ViewRect Panels::Drawing::key() {
+  if (input.key.empty()) return {};
+  const Theme& theme = panels.theme_;
+  const ViewRect& r = layout.view;
+  const float letters = theme.small->FontSize, pad = pen.px(10), row = letters + pen.px(5);
+  const float mark = pen.px(24), gap = pen.px(8), between = pen.px(14);
+  const auto most = static_cast<int>((r.height - pen.px(92 + 20 + 10) - 2 * pad) / row);
+  if (most < 1) return {};
+  const auto n = static_cast<int>(input.key.size());
+  const int rows = (n + (n + most - 1) / most - 1) / ((n + most - 1) / most);
+  std::vector<float> widths;  // of the words
+  float wide = 2 * pad - between;
+  for (int first = 0; first < n; first += rows) {
+    widths.push_back(0);
+    for (int i = first; i < std::min(n, first + rows); ++i)
+      widths.back() = std::max(
+          widths.back(), text_width(theme.small, input.key[static_cast<std::size_t>(i)].words));
+    wide += mark + gap + widths.back() + between;
+  }
+  const double margin = std::round(pen.px(10));
+  const ViewRect pane = {r.x + r.width - margin - wide, r.y + margin, wide,
+                         2.0 * pad + rows * row - pen.px(5)};
+  if (pane.width > 0.5 * r.width) return {};  // no room
+  panels.items_.push_back({"key", "", pane});
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ImVec2 low = {static_cast<float>(pane.x), static_cast<float>(pane.y)};
+  // Dark in both themes: its colours are made for the picture's dark ground.
+  list.AddRectFilled(
+      low, {low.x + static_cast<float>(pane.width), low.y + static_cast<float>(pane.height)},
+      colour::dark.floating, pen.px(4));
+  float left = low.x + pad;
+  for (int i = 0; i < n; ++i) {
+    if (i > 0 && i % rows == 0)
+      left += mark + gap + widths[static_cast<std::size_t>(i / rows - 1)] + between;
+    const KeyEntry& entry = input.key[static_cast<std::size_t>(i)];
+    const float top = low.y + pad + static_cast<float>(i % rows) * row;
+    key_mark(list, entry, {left, top + letters / 2}, mark, pen.px(1));
+    list.AddText(theme.small, letters, {std::round(left + mark + gap), std::round(top)},
+                 colour::dark.text, entry.words.c_str());
+  }
+  return pane;
 }
 
 void Panels::Drawing::pointed() {

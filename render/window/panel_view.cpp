@@ -73,15 +73,22 @@ void Panels::Drawing::view_signs() {
     return;
   }
 
-  // Where the patient's sides are, at the edges of the view.
+  const ViewRect legend_pane = legend(), key_pane = key();
+  // Where the patient's sides are, at the edges of the view; beside what stands there.
   const Eigen::Matrix3d axes = picture_axes(input.camera);
   const Vector3d right = axes.row(0), up = axes.row(1);
   const float margin = pen.px(12);
   const auto letter = [&](const Vector3d& direction, float ax, float ay) {
     const std::string words = direction_letters(direction);
     const ImVec2 size = theme.bold->CalcTextSizeA(theme.bold->FontSize, 1e6f, 0, words.c_str());
-    const float x =
-        centre.x + ax * (static_cast<float>(r.width) / 2 - margin - size.x / 2) - size.x / 2;
+    float x = centre.x + ax * (static_cast<float>(r.width) / 2 - margin - size.x / 2) - size.x / 2;
+    const auto in_way = [&](const ViewRect& pane) {
+      return pane.width > 0 && ay == 0 && pane.y < centre.y + size.y &&
+             pane.y + pane.height > centre.y - size.y;
+    };
+    if (ax < 0 && in_way(legend_pane))
+      x = static_cast<float>(legend_pane.x + legend_pane.width) + margin;
+    if (ax > 0 && in_way(key_pane)) x = static_cast<float>(key_pane.x) - margin - size.x;
     const float y =
         centre.y + ay * (static_cast<float>(r.height) / 2 - margin - size.y / 2) - size.y / 2;
     // A dark edge keeps them readable over bone and skin.
@@ -108,7 +115,6 @@ void Panels::Drawing::view_signs() {
                  colour::rgb(0xf0e442), words);
   }
   cube();
-  legend();
   pointed();
 }
 

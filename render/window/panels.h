@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/overlay_key.h"
 #include "render/window/arrangement.h"
 #include "render/window/camera_control.h"
 #include "render/window/drafts.h"
@@ -29,11 +30,12 @@ struct PanelInput {
   LoopStatistics loop = {};
   PictureStatistics pictures = {};
   Camera camera = {};
-  Eigen::AlignedBox3d box = {};  // of the scene at rest
-  std::string progress = {};     // what is being prepared; empty when nothing is
-  double progress_fraction = 0;  // 0 to 1
-  bool can_cancel = false;       // whether what is prepared can be ended
-  std::string pointed = {};      // what is said beside the mouse; empty for nothing
+  Eigen::AlignedBox3d box = {};        // of the scene at rest
+  std::string progress = {};           // what is being prepared; empty when nothing is
+  double progress_fraction = 0;        // 0 to 1
+  bool can_cancel = false;             // whether what is prepared can be ended
+  std::span<const KeyEntry> key = {};  // to overlays
+  std::string pointed = {};            // what is said beside the mouse; empty for nothing
   std::span<const PlotSet> plots = {};
   bool recording = false;  // a recording is being made
   std::string recording_what = {};
@@ -42,7 +44,7 @@ struct PanelInput {
 };
 
 /// A panel, or a thing in it that can be used, as last drawn. Names: panels "top", "left", "right",
-/// "bottom", "cube", "legend", "help", "error"; items "play", "scrub", "opening", "speed",
+/// "bottom", "cube", "legend", "key", "help", "error"; items "play", "scrub", "opening", "speed",
 /// "show:mandible", ...
 struct DrawnItem {
   std::string name;

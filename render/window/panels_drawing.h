@@ -53,7 +53,9 @@ struct Panels::Drawing {
   std::optional<double> edge(const char* name, const ViewRect& place, double size, double way,
                              double usual);
   void cube();
-  void legend();   // panel_legend.cpp
+  // panel_legend.cpp; each gives its pane, empty without one:
+  ViewRect legend();  // of a map, in the lower left corner of the view
+  ViewRect key();     // to overlays, in its upper right corner
   void pointed();  // what the mouse is on
 };
 

@@ -191,6 +191,7 @@ void Window::State::interface_frame() {
                                          : progress,
                          .progress_fraction = progress_fraction,
                          .can_cancel = can_cancel,
+                         .key = overlays.key,
                          .pointed = pointed(),
                          .plots = plots,
                          .recording = !recording.empty(),

@@ -57,32 +57,53 @@ Eigen::Vector3f lab_of(const Eigen::Vector3f& linear) {
   return {116 * f(xyz.y()) - 16, 500 * (f(xyz.x()) - f(xyz.y())), 200 * (f(xyz.y()) - f(xyz.z()))};
 }
 
+struct Sight {
+  const char* name;
+  Eigen::Matrix3f matrix;  // linear RGB as it is seen
+};
+/// source: Machado, Oliveira and Fernandes 2009, severity 1
+std::vector<Sight> sights() {
+  return {{"usual", Eigen::Matrix3f::Identity()},
+          {"protanopia", Eigen::Matrix3f{{0.152286f, 1.052583f, -0.204868f},
+                                         {0.114503f, 0.786281f, 0.099216f},
+                                         {-0.003882f, -0.048116f, 1.051998f}}},
+          {"deuteranopia", Eigen::Matrix3f{{0.367322f, 0.860646f, -0.227968f},
+                                           {0.280085f, 0.672501f, 0.047413f},
+                                           {-0.011820f, 0.042940f, 0.968881f}}},
+          {"tritanopia", Eigen::Matrix3f{{1.255528f, -0.076749f, -0.178779f},
+                                         {-0.078411f, 0.930809f, 0.147602f},
+                                         {0.004733f, 0.691367f, 0.303900f}}}};
+}
+
+Eigen::Vector3f lab_as_seen(const Eigen::Vector3f& color, const Eigen::Matrix3f& sight) {
+  const Eigen::Vector3f linear = color.unaryExpr(
+      [](float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); });
+  return lab_of((sight * linear).cwiseMax(0.f).cwiseMin(1.f));
+}
+
+TEST(ColourMap, WhatLiesBeyondADisplacementsRangeIsOfNoPlaceOnItsScale) {
+  const auto map = displacement_colours(75);
+  EXPECT_EQ(color_of(map, 75), map.beyond);
+  float least = 1000;
+  for (const auto& [name, sight] : sights())
+    for (float way = 0; way < 75; way += 0.5f) {
+      const float difference =
+          (lab_as_seen(color_of(map, way), sight) - lab_as_seen(map.beyond, sight)).norm();
+      least = std::min(least, difference);
+      EXPECT_GT(difference, 25) << name << ": " << way << " mm";
+    }
+  EXPECT_LT(least, 100);  // they were compared
+}
+
 TEST(ColourMap, BandsStayApartWithEveryKindOfColourVision) {
-  // source: Machado, Oliveira and Fernandes 2009, severity 1: linear RGB as it is seen.
-  const Eigen::Matrix3f protanopia{{0.152286f, 1.052583f, -0.204868f},
-                                   {0.114503f, 0.786281f, 0.099216f},
-                                   {-0.003882f, -0.048116f, 1.051998f}},
-      deuteranopia{{0.367322f, 0.860646f, -0.227968f},
-                   {0.280085f, 0.672501f, 0.047413f},
-                   {-0.011820f, 0.042940f, 0.968881f}},
-      tritanopia{{1.255528f, -0.076749f, -0.178779f},
-                 {-0.078411f, 0.930809f, 0.147602f},
-                 {0.004733f, 0.691367f, 0.303900f}};
-  const std::pair<const char*, Eigen::Matrix3f> sights[] = {{"usual", Eigen::Matrix3f::Identity()},
-                                                            {"protanopia", protanopia},
-                                                            {"deuteranopia", deuteranopia},
-                                                            {"tritanopia", tritanopia}};
   constexpr float apart = 14;  // a difference of 2 to 3 is just seen, 10 at a glance
   const auto map = distance_colours();
   const std::vector<std::vector<float>> bands = {
       {-1, -0.7f, -0.4f, -0.2f}, {0}, {0.2f, 0.35f, 0.5f}, {0.6f, 1.2f, 1.9f}, {3}};
   float least = 1000;
-  for (const auto& [name, matrix] : sights) {
+  for (const auto& [name, matrix] : sights()) {
     const auto seen = [&, &sight = matrix](float value) {
-      const Eigen::Vector3f c = color_of(map, value).unaryExpr([](float v) {
-        return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-      });
-      return lab_of((sight * c).cwiseMax(0.f).cwiseMin(1.f));
+      return lab_as_seen(color_of(map, value), sight);
     };
     for (std::size_t i = 0; i < bands.size(); ++i)
       for (std::size_t k = 0; k < i; ++k)

@@ -79,7 +79,9 @@ TEST(ClearOnWay, WhatTurnsInPlaceMayBeNearWhileItsFarEndSwings) {
   EXPECT_FALSE(clear_on_way(wall, {}, lever, to, way, 1.001));
   // The same told of a pivot far away, as a jaw's is of its condyles: turn and shift cancel there.
   const Vector3d middle(60, 0, 0);
-  EXPECT_TRUE(clear_on_way(wall, {}, lever, to, way_between(from, to, middle), 0.3));
+  const Pose half{Eigen::Quaterniond(Eigen::AngleAxisd(3 * degree, Vector3d::UnitY())),
+                  Vector3d::Zero()};
+  EXPECT_TRUE(clear_on_way(wall, {}, lever, to, way_between(half, to, middle), 0.3));
   // A wall beside the long end was passed through.
   const CollisionMesh beside(test::box({80, -50, 4}, {90, 50, 5}));
   EXPECT_GT(distance(beside, {}, lever, to).distance_mm, 1.9);

@@ -115,6 +115,7 @@ void PanelStage::step(double x, double y, bool down) {
                          .progress = progress,
                          .progress_fraction = 0.4,
                          .can_cancel = can_cancel,
+                         .key = key,
                          .plots = plots,
                          .recording = !recording.empty(),
                          .recording_what = recording,

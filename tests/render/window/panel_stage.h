@@ -55,6 +55,7 @@ class PanelStage {
   Camera camera;
   std::vector<Command> commands;  // all so far
   std::string progress, recording;
+  std::vector<KeyEntry> key;
   bool can_cancel = false;
   std::vector<PlotSet> plots;
   std::unique_ptr<Panels> panels;

@@ -124,6 +124,34 @@ TEST_P(PanelsOn, TickBoxHidesAPart) {
   EXPECT_NEAR(stage.view.parts[0].opacity, 0.5, 0.02);
 }
 
+TEST_P(PanelsOn, TheKeyToOverlaysStandsClearOfLegendAndPanels) {
+  stage.scene.distance_colours = distance_colours();
+  stage.view.distances = true;
+  stage.rest();
+  EXPECT_FALSE(stage.has("key"));
+  for (int i = 0; i < 17; ++i)
+    stage.key.push_back({"Path of the left condyle",
+                         {{0.94f, 0.89f, 0.26f}},
+                         i % 2 ? KeyEntry::Mark::path : KeyEntry::Mark::arrow});
+  stage.rest();
+  ASSERT_TRUE(stage.has("key"));
+  const ViewRect key = stage.item("key").rect;
+  EXPECT_TRUE(within(key, stage.panels->layout(GetParam().width, GetParam().height).view));
+  for (const DrawnItem& item : stage.panels->items())
+    if (item.panel.empty() && item.name != "key") {
+      EXPECT_FALSE(overlap(key, item.rect)) << item.name;
+    }
+  const Image image = stage.image();
+  int yellow = 0;
+  for (int y = static_cast<int>(key.y); y < key.y + key.height; ++y)
+    for (int x = static_cast<int>(key.x); x < key.x + key.width; ++x) {
+      const auto* p = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + x)];
+      yellow += p[0] > p[2] + 100 && p[1] > p[2] + 100;
+    }
+  EXPECT_GT(yellow, 17 * 20);
+  keep("key");
+}
+
 TEST_P(PanelsOn, DistancesBringTheirLegendAndTakeTheSkinAway) {
   stage.click("left-tab:Look");
   EXPECT_FALSE(stage.has("distances"));  // this loop cannot tell them

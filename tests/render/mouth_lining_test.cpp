@@ -1,0 +1,117 @@
+// A section through the mouth is hollow where the face has a rim between the lips.
+#include "render/mouth_lining.h"
+
+#include <Eigen/Geometry>
+
+#include "render/vertex_normals.h"
+#include "tests/render/scene_fixture.h"
+
+namespace condyle {
+namespace {
+
+using MouthSection = WithContext;
+
+/// A round head with a mouth 36 mm wide cut into it, and a small ball for the teeth of each jaw.
+std::vector<Part> head_with_mouth(bool open = true) {
+  TriMesh face = ball({0, 0, 0}, 60, 64);
+  if (open)
+    std::erase_if(face.triangles, [&](const Eigen::Vector3i& t) {
+      const Eigen::Vector3d p =
+          (face.vertices[t[0]] + face.vertices[t[1]] + face.vertices[t[2]]) / 3;
+      return p.y() < 0 && std::hypot(p.x() / 18, p.z() / 7) < 1;
+    });
+  return {make_part("face", Role::face, face),
+          make_part("upper_teeth", Role::upper_teeth, ball({0, -38, 6}, 16, 16)),
+          make_part("lower_teeth", Role::lower_teeth, ball({0, -38, -6}, 16, 16))};
+}
+
+TEST(MouthLining, ClosesTheFaceAtTheRimAndNowhereElse) {
+  const auto parts = head_with_mouth();
+  const auto lining = line_mouth(parts);
+  ASSERT_TRUE(lining);
+  ASSERT_GT(lining->rim.size(), 20u);
+  ASSERT_FALSE(is_closed_surface(parts[0].mesh.triangles));
+  // Together, the lining's first vertices being those of the rim.
+  auto all = parts[0].mesh.triangles;
+  const int n = static_cast<int>(lining->rim.size()),
+            own = static_cast<int>(parts[0].mesh.vertices.size());
+  for (Eigen::Vector3i t : lining->triangles) {
+    for (int& v : t) v = v < n ? lining->rim[static_cast<std::size_t>(v)] : own + v;
+    all.push_back(t);
+  }
+  EXPECT_TRUE(is_closed_surface(all));
+  auto fanned = parts[0].mesh.triangles;
+  const auto fan = rim_fan(*lining);
+  fanned.insert(fanned.end(), fan.begin(), fan.end());
+  EXPECT_TRUE(is_closed_surface(fanned));
+}
+
+TEST(MouthLining, GoesWithTheLipsInFrontAndWithItsJawBehindThem) {
+  const auto parts = head_with_mouth();
+  const auto lining = line_mouth(parts);
+  ASSERT_TRUE(lining);
+  std::vector<Eigen::Vector3f> rim(lining->rest.begin(),
+                                   lining->rest.begin() + std::ssize(lining->rim));
+  const auto still = places_now(*lining, rim, {});
+  for (std::size_t v = 0; v < still.size(); ++v)
+    EXPECT_NEAR((still[v] - lining->rest[v]).norm(), 0, 1e-4f) << v;
+
+  Pose X_CM;
+  X_CM.t = {0, 0, -25};
+  for (auto& p : rim) p.y() -= 4;
+  const auto now = places_now(*lining, rim, X_CM);
+  for (std::size_t v = 0; v < rim.size(); ++v) EXPECT_EQ(now[v], rim[v]);
+  const std::size_t back = lining->rest.size() - 1 - lining->rim.size();
+  int with_skull = 0, with_jaw = 0;
+  for (std::size_t v = back; v + 1 < now.size(); ++v) {
+    const Eigen::Vector3f way = now[v] - lining->rest[v];
+    EXPECT_NEAR(way.z(), -25 * lining->jaw[v], 1e-3f);
+    EXPECT_NEAR(way.y(), 0, 1e-3f);
+    with_skull += way.z() > -0.5f;
+    with_jaw += way.z() < -24.5f;
+    EXPECT_EQ(lining->rest[v].z() > lining->mid_z + 0.5f, lining->jaw[v] < 0.46f) << v;
+  }
+  EXPECT_GT(with_skull, 5);
+  EXPECT_GT(with_jaw, 5);
+}
+
+TEST(MouthLining, IsNotKnownWithoutARimOrWithoutTeeth) {
+  EXPECT_FALSE(line_mouth(head_with_mouth(false)));
+  auto parts = head_with_mouth();
+  parts.pop_back();
+  EXPECT_FALSE(line_mouth(parts));
+}
+
+TEST_F(MouthSection, IsFleshRoundAboutAndHollowInside) {
+  const auto parts = head_with_mouth();
+  SceneRenderer renderer(parts);
+  auto settings = mask_settings(300);
+  settings.shadows = false;
+  settings.part_opacity = {{"upper_teeth", 0}, {"lower_teeth", 0}};
+  settings.clip = {.point = {0.3, 0, 0}, .normal = {1, 0, 0}};
+  Camera side = front_camera(150);
+  side.direction = {1, 0, 0};  // the face looks to the left of the picture
+  const auto at = [&](const Image& image, double y, double z) {
+    return pixel(image, static_cast<int>(150 + 2 * y), static_cast<int>(150 - 2 * z));
+  };
+  const Image section = renderer.picture(side, settings);
+  const Pixel flesh = at(section, 30, 0);
+  const auto is_flesh = [&](double y, double z) {
+    const Pixel p = at(section, y, z);
+    return std::abs(p.r - flesh.r) + std::abs(p.g - flesh.g) + std::abs(p.b - flesh.b) < 6;
+  };
+  for (const double z : {-40.0, -25.0, 25.0, 40.0}) EXPECT_TRUE(is_flesh(-30, z)) << z;
+  for (const double y : {5.0, 40.0}) EXPECT_TRUE(is_flesh(y, 0)) << y;
+  for (const double y : {-52.0, -40.0, -30.0, -20.0}) {
+    EXPECT_FALSE(is_flesh(y, 0)) << y;
+    EXPECT_EQ(at(section, y, 0).a, 255) << y;  // the far cheek's lining stands behind
+  }
+  // Seen from the kept side, and without a section, nothing knows of it.
+  side.direction = {-1, 0, 0};
+  const Image kept = renderer.picture(side, settings);
+  settings.clip->capped = false;
+  EXPECT_EQ(kept.rgba, renderer.picture(side, settings).rgba);
+}
+
+}  // namespace
+}  // namespace condyle
