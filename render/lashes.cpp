@@ -8,7 +8,8 @@
 namespace condyle {
 namespace {
 
-constexpr double hair_mm = 0.5;  // thick, at most
+constexpr double hair_mm = 0.5;       // thick, at most
+constexpr double most_hair_mm2 = 50;  // a lash of 12 mm has a fifth of it
 
 /// A strand of radius r has the volume r/2 times its surface.
 bool is_strand(const TriMesh& mesh, const std::vector<Eigen::Vector3i>& piece) {
@@ -21,7 +22,7 @@ bool is_strand(const TriMesh& mesh, const std::vector<Eigen::Vector3i>& piece) {
     area += (b - a).cross(c - a).norm() / 2;
     volume += a.dot(b.cross(c)) / 6;
   }
-  return std::abs(volume) < hair_mm / 4 * area && is_closed_surface(piece);
+  return area < most_hair_mm2 && std::abs(volume) < hair_mm / 4 * area && is_closed_surface(piece);
 }
 
 }  // namespace

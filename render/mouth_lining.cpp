@@ -110,12 +110,16 @@ class Ceiling {
         (Eigen::Matrix2d() << (b - a).head<2>(), (c - a).head<2>()).finished();
     if (std::abs(sides.determinant()) < 1e-9) return;
     const Eigen::Matrix2d to_shares = sides.inverse();
+    const auto within = [&](double cell, int k) {
+      return static_cast<int>(
+          std::clamp(cell, -1.0, static_cast<double>(k == 0 ? columns_ : rows_)));
+    };
     const auto first = [&](double v, int k) {
-      return std::max(0, static_cast<int>(std::ceil((v - low_[k]) / cell_mm)));
+      return std::max(0, within(std::ceil((v - low_[k]) / cell_mm), k));
     };
     const auto last = [&](double v, int k) {
       return std::min((k == 0 ? columns_ : rows_) - 1,
-                      static_cast<int>(std::floor((v - low_[k]) / cell_mm)));
+                      within(std::floor((v - low_[k]) / cell_mm), k));
     };
     for (int r = first(std::min({a.y(), b.y(), c.y()}), 1);
          r <= last(std::max({a.y(), b.y(), c.y()}), 1); ++r)
@@ -242,6 +246,8 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
                                  [](const Part& part) { return part.role == Role::face; });
   if (upper.isEmpty() || lower.isEmpty() || face == parts.end()) return std::nullopt;
   const auto teeth = upper.merged(lower);
+  constexpr double widest_mouth_mm = 300;  // what is larger has stray vertices
+  if (teeth.sizes().maxCoeff() > widest_mouth_mm) return std::nullopt;
   MouthLining lining;
   lining.rim = mouth_rim(face->mesh, teeth);
   if (lining.rim.empty()) return std::nullopt;

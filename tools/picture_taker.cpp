@@ -17,9 +17,8 @@ namespace condyle {
 namespace {
 
 /// The box of what is shown, grown by where the motion takes the mandible: what the camera keeps in
-/// view.
-std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const Motion& motion,
-                                                     const PictureSettings& picture) {
+/// view. Empty if there is nothing to draw.
+Box drawn_box(const Case& patient, const Motion& motion, const PictureSettings& picture) {
   constexpr int samples = 24;
   constexpr std::size_t few = 1000;  // of more a part of them tells the extent
   Box box;
@@ -36,6 +35,14 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const 
         box.add(X_CM * part.mesh.vertices[v]);
     }
   }
+  return box;
+}
+
+std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const Motion& motion,
+                                                     const PicturePlan& plan) {
+  Box box = drawn_box(patient, motion, plan.settings);
+  // A window may show overlays alone.
+  if (box.empty() && plan.window) box = drawn_box(patient, motion, {});
   if (box.empty()) throw InputError("--show: nothing is left to draw");
   return {box.low, box.high};
 }
@@ -60,7 +67,7 @@ PictureTaker::PictureTaker(const PicturePlan& plan, const RecordingFiles& files,
   if (subject.settings.face) carry_face(subject.scene, rest_, subject.settings.threads);
   if (plan_.window && plan_.window->before) rest_ = *plan_.window->before;
 
-  const auto [low, high] = view_box(patient, subject.motion, plan_.settings);
+  const auto [low, high] = view_box(patient, subject.motion, plan_);
   const Eigen::AlignedBox3d box(low, high);
   for (const auto& text : plan_.cameras) {
     View view{camera_of(text, box), plan_.settings, nullptr};

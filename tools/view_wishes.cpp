@@ -33,10 +33,11 @@ std::vector<fs::path> with_loose_surfaces(const std::vector<fs::path>& files) {
     std::error_code ignored;
     std::vector<fs::path> inside;
     if (fs::is_directory(file, ignored) && !fs::exists(file / "case.json", ignored))
-      for (const auto& one : fs::directory_iterator(file, ignored))
-        if (const FileKind kind = kind_of(one.path());
+      for (fs::directory_iterator one(file, ignored), end; !ignored && one != end;
+           one.increment(ignored))
+        if (const FileKind kind = kind_of(one->path());
             kind == FileKind::surface || kind == FileKind::landmarks)
-          inside.push_back(one.path());
+          inside.push_back(one->path());
     std::sort(inside.begin(), inside.end());
     if (inside.empty()) inside = {file};
     all.insert(all.end(), inside.begin(), inside.end());

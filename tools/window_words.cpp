@@ -44,9 +44,9 @@ std::string in_window_words(std::string sentence) {
   static const std::regex carrier("; --carrier-of \\S+ would change that");
   sentence = std::regex_replace(sentence, carrier, "");
   // What is left of options is told by its name alone; in a path two hyphens follow no space.
-  static const std::regex option("(^|[ (])--([a-z])");
+  static const std::regex option("(^|[ (])--([a-z][a-z-]*)(?=[ ,;:)]|\\.( |$)|$)");
   sentence = std::regex_replace(sentence, option, "$1$2");
-  static const std::regex degrees("([0-9]) deg(rees?)?\\b");
+  static const std::regex degrees("([0-9]) deg(rees?)?(?=[ ,;:)]|\\.( |$)|$)");
   sentence = std::regex_replace(sentence, degrees, "$1\u00b0");
   static const std::regex volume("\\bcm3\\b");
   return std::regex_replace(sentence, volume, "cm\u00b3");

@@ -230,7 +230,8 @@ void BlockCholesky::solve(std::vector<float>& b, int threads) const {
 std::size_t BlockCholesky::bytes() const {
   const std::size_t order = tree_->order.at.size() * tree_->block;
   return memory_->values.length() * sizeof(ShortFloat) + 2 * order * sizeof(float) +
-         (tree_->rows.capacity() + tree_->seat.capacity()) * sizeof(int);
+         (tree_->rows.capacity() + tree_->seat.capacity() + tree_->run_end.capacity()) *
+             sizeof(int);
 }
 
 }  // namespace condyle

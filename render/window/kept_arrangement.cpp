@@ -54,7 +54,7 @@ class FieldReader {
     if (!field) return;
     const double number = field->is_number() ? field->get<double>() : most + 1;
     if (!(number >= least && number <= most))
-      throw InputError(file_, name, "is " + field->dump() + ", which it cannot be");
+      throw InputError(file_, name, "is " + told(*field) + ", which it cannot be");
     value = static_cast<Number>(number);
   }
   template <class Choice, std::size_t n>
@@ -66,19 +66,26 @@ class FieldReader {
         value = static_cast<Choice>(i);
         return;
       }
-    throw InputError(file_, name, "is " + field->dump() + ", which is unknown");
+    throw InputError(file_, name, "is " + told(*field) + ", which is unknown");
   }
   void read(const char* name, std::vector<std::string>& names) const {
     const json* field = find(name);
     if (!field) return;
     names.clear();
+    const auto is_name = [](const json& one) { return one.is_string(); };
+    if (!field->is_array() || !std::all_of(field->begin(), field->end(), is_name))
+      throw InputError(file_, name, "is no list of names");
     for (const json& one : *field) {
-      if (!one.is_string()) throw InputError(file_, name, "is no list of names");
       names.push_back(one.get<std::string>());
     }
   }
 
  private:
+  static std::string told(const json& field) {
+    constexpr std::size_t longest = 60;
+    const std::string all = field.dump(-1, ' ', false, json::error_handler_t::replace);
+    return all.size() > longest ? all.substr(0, longest) + "..." : all;
+  }
   const json* find(const char* name) const {
     const auto found = all_.find(name);
     return found == all_.end() || found->is_null() ? nullptr : &*found;
@@ -87,8 +94,8 @@ class FieldReader {
   const json& all_;
 };
 
-Arrangement arrangement_in(const fs::path& file) {
-  const json all = json::parse(read_file(file, largest_file), nullptr, false);
+Arrangement arrangement_in(const fs::path& file, const std::string& text) {
+  const json all = json::parse(text, nullptr, false);
   const FieldReader fields(file, all);
   Arrangement a;
   fields.read("light", a.light);
@@ -96,8 +103,8 @@ Arrangement arrangement_in(const fs::path& file) {
     a.ui_scale = 1;
     fields.read("ui_scale", *a.ui_scale, 0.05, 8);
   }
-  fields.read("width", a.width, 320, 16384);
-  fields.read("height", a.height, 200, 16384);
+  fields.read("width", a.width, 1, 16384);
+  fields.read("height", a.height, 1, 16384);
   fields.read("maximized", a.maximized);
   fields.read("left_column", a.sizes.left, 0, 4096);
   fields.read("right_column", a.sizes.right, 0, 4096);
@@ -130,13 +137,20 @@ void merge(Arrangement& kept, const Arrangement& before, const Arrangement& now)
 KeptArrangement::KeptArrangement(fs::path file) : file_(std::move(file)) {
   std::error_code ignored;
   if (file_.empty() || !fs::exists(file_, ignored)) return;
+  bool is_read = false;
   try {
-    kept_ = arrangement_in(file_);
+    const std::string text = read_file(file_, largest_file);
+    is_read = true;
+    kept_ = arrangement_in(file_, text);
   } catch (const std::exception& error) {
     trouble_ =
         std::string("The settings of the window could not be read, so it opens as at first: ") +
         error.what();
-    due_ = true;  // what can be read comes in place of it
+    // What can be read comes in place of what is wrong, but not of what is only out of reach.
+    if (is_read)
+      due_ = true;
+    else
+      file_.clear();
   }
 }
 

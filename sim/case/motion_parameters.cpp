@@ -5,7 +5,12 @@ namespace condyle {
 std::span<const MotionParameterName> motion_parameter_names() {
   using P = MotionParameters;
   static const std::vector<MotionParameterName> names = {
-      {"opening", "mm", 1, 80, "Maximum opening: how far the lower incisal point drops", {&P::opening_mm}},
+      {"opening",
+       "mm",
+       1,
+       80,
+       "Maximum opening: how far the lower incisal point drops",
+       {&P::opening_mm}},
       {"protrusion", "mm", 0.5, 20, "Farthest protrusion at the incisors (8)", {&P::protrusion_mm}},
       {"retrusion", "mm", 0, 3, "Farthest retrusion of the condyles (0.7)", {&P::retrusion_mm}},
       {"laterotrusion",

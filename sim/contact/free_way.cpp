@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace condyle {
 namespace {
@@ -89,7 +90,7 @@ bool Passage::clear(const PairContact& at_end) const {
   if (length_mm < 1e-12) return margin(at_end) >= 0;
   if (margin(at_end) > length_mm) return true;
   // What is near may go but a little way: a condyle turns where it is while the chin goes far.
-  if (at_end.touching || margin(at_end) <= 0) return false;
+  if (at_end.touching || !(margin(at_end) > 0) || !std::isfinite(length_mm)) return false;
   const Pose X_MD = X_DM ? X_DM->inverse() : Pose{};
   const Eigen::AngleAxisd turn((from.R.conjugate() * to.R).normalized());
   const BodyWay way{.pivot = X_MD * pivot_D,

@@ -131,12 +131,12 @@ bool SlideJudge::clear(Found& at_wanted) const {
   }
   parallel_for(pairs_.size(), threads_, [&](std::size_t k) {
     if (is_clear[k]) return;
-    const auto bound = bounded(k);
-    is_clear[k] = bound && clear(*bound, k);
-    if (is_clear[k])
+    if (const auto bound = bounded(k); bound && clear(*bound, k)) {
       at_wanted[k] = *bound;
-    else
+      is_clear[k] = 1;
+    } else {
       look_there(k);
+    }
   });
   return std::all_of(is_clear.begin(), is_clear.end(), [](char one) { return one != 0; });
 }

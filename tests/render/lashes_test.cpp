@@ -41,6 +41,14 @@ TEST(LashPieces, AreTheClosedStrandsAloneWhateverElseIsThin) {
   mesh.triangles.emplace_back(first, first + 2, first + 3);
   EXPECT_EQ(part_lashes(mesh).lashes.size(), strand);
   EXPECT_EQ(part_lashes(mesh).eyes.size(), eye + 2);
+  // A cornea may be closed and as thin, but it is wide.
+  const TriMesh cornea = ball({0, 0, 0}, 1, 8);
+  const int next = static_cast<int>(mesh.vertices.size());
+  for (const auto& v : cornea.vertices)
+    mesh.vertices.push_back({6 * v.x(), -45 + 0.1 * v.y(), 6 * v.z()});
+  for (const auto& t : cornea.triangles) mesh.triangles.push_back(t.array() + next);
+  EXPECT_EQ(part_lashes(mesh).lashes.size(), strand);
+  EXPECT_EQ(part_lashes(mesh).eyes.size(), eye + 2 + cornea.triangles.size());
 }
 
 TEST_F(Lashes, GoWithTheSkin) {

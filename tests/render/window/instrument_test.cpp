@@ -615,6 +615,12 @@ TEST_F(ArrangementFile, WhatAPersonChangesComesBackAndNothingElse) {
   Arrangement expected = all;
   expected.panels.tab = SideTab::motion;
   EXPECT_EQ(kept(), expected);
+  // A window as small as a screen with small pixels, or one that tiles windows, may make it.
+  left = expected;
+  left.width = 256;
+  left.height = 160;
+  run(expected, left);
+  EXPECT_EQ(kept(), left);
   // Back to the usual scale.
   left = expected;
   left.ui_scale.reset();
@@ -629,7 +635,8 @@ TEST_F(ArrangementFile, ABrokenOrForeignFileIsOneSentenceAndAllIsAsAtFirst) {
   for (const char* text :
        {"", "{", "[1, 2]", "light = yes", "\xff\xfe{}", "{\"light\": 3}", "{\"width\": \"wide\"}",
         "{\"light\": true, \"ui_scale\": 1e9}", "{\"height\": -5}", "{\"right_tab\": \"tab\"}",
-        "{\"left_tab\": 1}", "{\"open_groups\": [1]}", "{\"plot_set\": 1e300}"}) {
+        "{\"left_tab\": 1}", "{\"open_groups\": [1]}", "{\"open_groups\": \"bones\"}",
+        "{\"plot_set\": 1e300}"}) {
     SCOPED_TRACE(text);
     write(text);
     KeptArrangement kept(file_);
@@ -640,6 +647,15 @@ TEST_F(ArrangementFile, ABrokenOrForeignFileIsOneSentenceAndAllIsAsAtFirst) {
     kept.update({}, true);
     EXPECT_TRUE(KeptArrangement(file_).trouble().empty()) << KeptArrangement(file_).trouble();
   }
+  // What is out of reach is left as it is.
+  std::filesystem::remove(file_);
+  std::filesystem::create_directory(file_);
+  KeptArrangement out_of_reach(file_);
+  EXPECT_NE(out_of_reach.trouble(), "");
+  out_of_reach.begin({});
+  out_of_reach.update({.light = true}, true);
+  EXPECT_TRUE(std::filesystem::is_directory(file_));
+  std::filesystem::remove(file_);
   // A later version's file has more in it.
   write("{\"light\": true, \"of_a_later_version\": {\"a\": [1]}}");
   EXPECT_TRUE(KeptArrangement(file_).trouble().empty());

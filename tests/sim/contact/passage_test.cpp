@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "sim/contact/free_way.h"
+#include "tests/support/boxes.h"
+#include "tests/support/shapes.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A row of small boxes: parts of it have ways of their own.
+TriMesh rod() {
+  TriMesh rod;
+  for (double x = -30; x < 30; x += 2)
+    rod = test::joined(rod, test::box({x, -4, -4}, {x + 2, 4, 4}));
+  return rod;
+}
+
+TEST(Passage, ToldClearFromItsEndItIsClearOnTheWholeWayWhicheverSideMoves) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto direction = [&] { return Vector3d(any(random), any(random), any(random)); };
+  const TriMesh bumpy = test::sphere(2, 20, {0, 0, 0}, 0.05), long_one = rod();
+  const Collider ball{0, 0, cranium_body, false, CollisionMesh(bumpy), Solid(bumpy)};
+  const Collider lever{1, 1, mandible_body, false, CollisionMesh(long_one), Solid(long_one)};
+  int clear = 0, not_clear = 0, clear_by_parts = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    ColliderPair pair;
+    const bool a_moves = trial % 2 == 1;
+    pair.a = a_moves ? &lever : &ball;
+    pair.b = a_moves ? &ball : &lever;
+    Passage p;
+    p.pair = &pair;
+    p.a_moves = a_moves;
+    p.X_CS = test::any_pose(random, 10);
+    if (trial % 4 > 1) p.X_DM = test::any_pose(random, 20);
+    const Pose X_CM = p.X_CS * test::any_pose(random, 40);
+    p.to = p.X_DM ? X_CM * p.X_DM->inverse() : X_CM;
+    const Eigen::AngleAxisd turn(0.2 * any(random), direction().normalized());
+    p.from = {p.to.R * turn, p.to.t + 4 * direction()};
+    p.pivot_D = 30 * direction();
+    p.kept_mm = trial % 3;
+    p.measure();
+    const PairContact at_end = p.judged(p.to, {}, {});
+    if (at_end.touching) continue;
+    const bool told = p.clear(at_end);
+    ++(told ? clear : not_clear);
+    clear_by_parts += told && p.margin(at_end) <= p.length_mm;
+    for (int k = 0; told && k < 25; ++k) {
+      const PairContact on_way = p.judged(interpolate(p.from, p.to, k / 25.0, p.pivot_D), {}, {});
+      EXPECT_FALSE(on_way.touching) << trial;
+      EXPECT_GE(on_way.distance_mm, p.kept_mm) << trial;
+    }
+  }
+  EXPECT_GT(clear, 50);
+  EXPECT_GT(not_clear, 50);
+  EXPECT_GT(clear_by_parts, 15);
+}
+
+TEST(Passage, WithValuesThatAreNoNumbersIsNotToldClear) {
+  const TriMesh mesh = test::box({-1, -1, -1}, {1, 1, 1});
+  const Collider one{0, 0, cranium_body, false, CollisionMesh(mesh), Solid(mesh)};
+  const Collider other{1, 1, mandible_body, false, CollisionMesh(mesh), Solid(mesh)};
+  ColliderPair pair;
+  pair.a = &one;
+  pair.b = &other;
+  Passage p;
+  p.pair = &pair;
+  p.pivot_D = Vector3d::Zero();
+  p.to.t = {5, 0, 0};
+  const PairContact at_end = p.judged(p.to, {}, {});
+  p.measure();
+  EXPECT_FALSE(p.clear(at_end));  // it came out of the other
+  p.from.t = {9, 0, 0};
+  p.measure();
+  EXPECT_FALSE(p.clear(at_end));  // its way is longer than it is far
+  p.from.t = {6, 0, 0};
+  p.measure();
+  EXPECT_TRUE(p.clear(at_end));
+  p.from.t = {std::nan(""), 0, 0};
+  p.measure();
+  EXPECT_FALSE(p.clear(at_end));
+}
+
+}  // namespace
+}  // namespace condyle
