@@ -46,7 +46,7 @@ std::string in_window_words(std::string sentence) {
   // What is left of options is told by its name alone; in a path two hyphens follow no space.
   static const std::regex option("(^|[ (])--([a-z][a-z-]*)(?=[ ,;:)]|\\.( |$)|$)");
   sentence = std::regex_replace(sentence, option, "$1$2");
-  static const std::regex degrees("([0-9]) deg(rees?)?(?=[ ,;:)]|\\.( |$)|$)");
+  static const std::regex degrees("([0-9]) deg(rees?)?(?=[ ,;:)]|/mm|\\.( |$)|$)");
   sentence = std::regex_replace(sentence, degrees, "$1\u00b0");
   static const std::regex volume("\\bcm3\\b");
   return std::regex_replace(sentence, volume, "cm\u00b3");
