@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "engine/tissue/prism_forms.h"
+
 namespace condyle {
 namespace {
 
@@ -65,29 +67,6 @@ inline float dot(const Column& a, const Column& b) {
 template <class Columns>
 inline void add_product(Columns& to, const Column& a, const Column& b) {  // += a b^T
   for (int k = 0; k < 3; ++k) to[k] += b[k] * a;
-}
-
-/// As prism_volume_bend, times 12 * `scale`, of corners taken from corner 0.
-inline std::array<Column, HessianPattern::corner_pairs> volume_bend(const std::array<Column, 6>& c,
-                                                                    float scale) {
-  std::array<Column, HessianPattern::corner_pairs> bend;
-  const auto of = [&](int a, int b) -> Column& { return bend[a * (a - 1) / 2 + b]; };
-  of(2, 1) = -scale * (c[4] + c[5]);
-  of(3, 1) = scale * c[4];
-  of(4, 1) = scale * (c[2] + c[5] - c[3]);
-  of(5, 1) = scale * (c[2] - c[4]);
-  of(3, 2) = -scale * c[5];
-  of(4, 2) = scale * (c[5] - c[1]);
-  of(5, 2) = scale * (c[3] - c[1] - c[4]);
-  of(4, 3) = scale * (c[1] - 2 * c[5]);
-  of(5, 3) = scale * (2 * c[4] - c[2]);
-  of(5, 4) = scale * (c[1] + c[2] - 2 * c[3]);
-  of(1, 0) = of(2, 1) + of(3, 1) + of(4, 1) + of(5, 1);  // the rows sum to zero
-  of(2, 0) = of(3, 2) + of(4, 2) + of(5, 2) - of(2, 1);
-  of(3, 0) = of(4, 3) + of(5, 3) - of(3, 1) - of(3, 2);
-  of(4, 0) = of(5, 4) - of(4, 1) - of(4, 2) - of(4, 3);
-  of(5, 0) = -(of(5, 1) + of(5, 2) + of(5, 3) + of(5, 4));
-  return bend;
 }
 
 /// The corners of each pair, as HessianPattern::prism has them.
@@ -229,16 +208,8 @@ void HessianAssembly::add_prisms(int part, float* panels) {
     const auto& prism = net_.prisms[p];
     std::array<Column, 6> c, slope;  // corners, from corner 0; gradient of the volume
     for (int k = 1; k < 6; ++k) c[k] = column_of(x_[prism[k]] - x_[prism[0]]);
-    // As in volume_gradient (spring_prism.cpp).
-    constexpr float scale = 1.0f / 12.0f;
-    const Column c45 = cross(c[4], c[5]), c12 = cross(c[1], c[2]);
-    const Column sum = c[4] + c[5], lean = c[1] + c[2] - 2 * c[3];
-    slope[1] = scale * (cross(c[3], c[4]) + cross(sum, c[2]) + c45);
-    slope[2] = scale * (cross(c[1], sum) + c45 + cross(c[5], c[3]));
-    slope[3] = scale * (cross(c[4], c[1]) + cross(c[2], c[5]) - 2 * c45);
-    slope[4] = scale * (cross(c[5], lean) + cross(c[1], c[3]) - c12);
-    slope[5] = scale * (cross(lean, c[4]) + cross(c[3], c[2]) - c12);
-    slope[0] = -(slope[1] + slope[2] + slope[3] + slope[4] + slope[5]);
+    prism_volume_slopes(
+        c, [](const Column& u, const Column& v) { return cross(u, v); }, slope);
     float volume = 0;
     for (int k = 1; k < 6; ++k) volume += dot(slope[k], c[k]);
     const double j = static_cast<double>(volume) / 3 / net_.rest_volume[p];
@@ -252,10 +223,11 @@ void HessianAssembly::add_prisms(int part, float* panels) {
 
     std::array<Column, HessianPattern::corner_pairs> bend;
     if (exact_) {
+      constexpr float scale = 1.0f / 12.0f;
       const auto pressure =
           scale * static_cast<float>((1 - lambda) * net_.volume_weight[p] * net_.rest_volume[p] *
                                      volume_pressure(j, net_.barrier_share, net_.barrier_weight));
-      bend = volume_bend(c, pressure);
+      bend = prism_volume_bends(c, pressure);
     }
     const Spot* spots = &pattern_.prism[static_cast<std::size_t>(p) * HessianPattern::corner_pairs];
     for (unsigned left = pairs; left != 0; left &= left - 1) {

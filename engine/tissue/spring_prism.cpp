@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/core/parallel.h"
+#include "engine/tissue/prism_forms.h"
 
 namespace condyle {
 namespace {
@@ -22,18 +23,9 @@ Corners relative_corners(const Nodes& x, const std::array<int, 6>& prism) {
   return c;
 }
 
-/// Gradient of the volume. Twelve times the volume is, with (pqr) for a determinant,
-/// (134) + (214) + (245) + (215) + (145) + (253) - 2 (345): floor, then both splits of each side.
 void volume_gradient(const Corners& c, Corners& g) {
-  const Vector3d c45 = c[4].cross(c[5]), c12 = c[1].cross(c[2]);
-  const Vector3d sum = c[4] + c[5], lean = c[1] + c[2] - 2 * c[3];
-  constexpr double scale = 1.0 / 12.0;
-  g[1] = scale * (c[3].cross(c[4]) + sum.cross(c[2]) + c45);
-  g[2] = scale * (c[1].cross(sum) + c45 + c[5].cross(c[3]));
-  g[3] = scale * (c[4].cross(c[1]) + c[2].cross(c[5]) - 2 * c45);
-  g[4] = scale * (c[5].cross(lean) + c[1].cross(c[3]) - c12);
-  g[5] = scale * (lean.cross(c[4]) + c[3].cross(c[2]) - c12);
-  g[0] = -(g[1] + g[2] + g[3] + g[4] + g[5]);
+  prism_volume_slopes(
+      c, [](const Vector3d& p, const Vector3d& q) -> Vector3d { return p.cross(q); }, g);
 }
 
 double contract(const Corners& a, const Corners& b) {
@@ -80,30 +72,7 @@ double prism_volume_gradient(const Nodes& nodes, const std::array<int, 6>& prism
 }
 
 std::array<Vector3d, 15> prism_volume_bend(const Nodes& nodes, const std::array<int, 6>& prism) {
-  // From volume_gradient: the derivative of u x v is -(v x) by u and (u x) by v.
-  const Corners c = relative_corners(nodes, prism);
-  constexpr double scale = 1.0 / 12.0;
-  std::array<Vector3d, 15> cross;
-  const auto of = [&](int a, int b) -> Vector3d& { return cross[a * (a - 1) / 2 + b]; };
-  of(2, 1) = -scale * (c[4] + c[5]);
-  of(3, 1) = scale * c[4];
-  of(4, 1) = scale * (c[2] + c[5] - c[3]);
-  of(5, 1) = scale * (c[2] - c[4]);
-  of(3, 2) = -scale * c[5];
-  of(4, 2) = scale * (c[5] - c[1]);
-  of(5, 2) = scale * (c[3] - c[1] - c[4]);
-  of(4, 3) = scale * (c[1] - 2 * c[5]);
-  of(5, 3) = scale * (2 * c[4] - c[2]);
-  of(5, 4) = scale * (c[1] + c[2] - 2 * c[3]);
-  for (int a = 1; a < 6; ++a) {  // the rows sum to zero
-    of(a, 0).setZero();
-    for (int b = 1; b < 6; ++b)
-      if (b < a)
-        of(a, 0) -= of(a, b);
-      else if (b > a)
-        of(a, 0) += of(b, a);
-  }
-  return cross;
+  return prism_volume_bends(relative_corners(nodes, prism), 1.0 / 12.0);
 }
 
 double volume_pressure(double share_of_rest, double barrier_share, double barrier_weight) {
