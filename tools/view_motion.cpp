@@ -27,7 +27,8 @@ struct ShownParameter {
   std::optional<double> usual = std::nullopt;
 };
 constexpr std::array shown_parameters = {
-    ShownParameter{"opening", "Maximum opening (drop)", 0, 0},
+    // The drop of an incisal point that goes 42 to 58 mm, forward and down as in Posselt's diagram.
+    ShownParameter{"opening", "Maximum opening (drop)", 38, 52},
     ShownParameter{"protrusion", "Protrusion", 6, 11, 8},
     ShownParameter{"laterotrusion", "Laterotrusion", 7, 12, 9},
     ShownParameter{"retrusion", "Retrusion", 0.3, 1.4, 0.7},

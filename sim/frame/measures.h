@@ -18,6 +18,7 @@ struct Measures {
   Eigen::Vector3d left_condyle = Eigen::Vector3d::Zero();
   Eigen::Vector3d right_condyle = Eigen::Vector3d::Zero();
   double opening_mm = 0;              // drop of the lower incisal point along -z from rest
+  double incisal_way_mm = 0;          // of the lower incisal point from rest, straight
   double interincisal_mm = 0;         // between upper and lower incisal points
   double rotation_deg = 0;            // of the mandible from rest
   double protrusion_mm = 0;           // of the lower incisal point from rest, forward

@@ -9,7 +9,6 @@ namespace condyle {
 namespace {
 
 constexpr double usual_retrusion_mm = 0.7;
-constexpr double usual_border_opening_mm = 51.2;  // of the incisal point from the bite; Woelfel
 
 }  // namespace
 
@@ -50,27 +49,11 @@ Coupling Movements::hinge_border() const {
   return hinge;
 }
 
-/// Rotation at maximum opening: the one asked for, or the usual one of adults if this jaw opens so
-/// far.
-double Movements::border_theta() const {
-  if (parameters_.opening_mm) return limits_.widest_theta;
-  const auto way = [&](double theta) {
-    return (joints_->incisor(opened(theta)) - joints_->incisor()).norm();
-  };
-  double low = 0, high = limits_.widest_theta;
-  if (way(high) <= usual_border_opening_mm) return high;
-  for (int i = 0; i < 50; ++i) {
-    const double middle = 0.5 * (low + high);
-    (way(middle) < usual_border_opening_mm ? low : high) = middle;
-  }
-  return low;
-}
-
 /// From the teeth (0) to maximum opening (1): the orbiting condyle stays forward, the other one
 /// follows as the jaw opens.
 JawInputs Movements::lateral_border(bool to_left, double forward_mm, double bite,
                                     double progress) const {
-  const double widest = border_theta(), theta = bite + (widest - bite) * progress;
+  const double widest = limits_.widest_theta, theta = bite + (widest - bite) * progress;
   const double behind = limits_.coupling.forward_mm(std::max(theta, 0.0));
   const double open = limits_.coupling.forward_mm(widest);
   const double ahead = std::max(forward_mm + (open - forward_mm) * progress, behind);
@@ -100,7 +83,7 @@ double Movements::free_aside(bool to_left, double forward_mm, bool whole_border)
 std::vector<std::pair<std::string, Movements::Leg>> Movements::border_legs() {
   const double back = retruded_mm();
   const double front = forward_for(parameters_.protrusion_mm.value_or(8), "protrusion", false);
-  const double widest = border_theta();
+  const double widest = limits_.widest_theta;
   const double open = limits_.coupling.forward_mm(widest);
   const double aside_mm = parameters_.laterotrusion_mm.value_or(9);
   const auto inputs = [joints = joints_](double theta, double left, double right) {

@@ -31,6 +31,7 @@ Measures measure(const Case& patient, const Pose& X_CM) {
   if (const auto p = landmarks.find("lower_incisal_point")) {
     out.incisor = X_CM * *p;
     out.opening_mm = p->z() - out.incisor.z();
+    out.incisal_way_mm = (out.incisor - *p).norm();
     out.protrusion_mm = p->y() - out.incisor.y();
     out.laterotrusion_mm = out.incisor.x() - p->x();
     if (const auto upper = landmarks.find("upper_incisal_point")) {

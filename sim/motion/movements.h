@@ -82,7 +82,6 @@ class Movements {
                    const std::string& what, bool asked);
   double free_aside(bool to_left, double forward_mm, bool whole_border);
   JawInputs lateral_border(bool to_left, double forward_mm, double bite, double progress) const;
-  double border_theta() const;
   double retruded_mm();
   Coupling hinge_border() const;
   /// The legs of the border movements: sagittal, then frontal.

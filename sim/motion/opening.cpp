@@ -13,11 +13,19 @@
 namespace condyle {
 namespace {
 
-constexpr double known_joint_opening_mm = 50;  // adults open 49 to 51 mm
-constexpr double imported_opening_mm = 45;     // a joint that was only guessed is asked for less
+constexpr double known_joint_way_mm = 51.2;  // mean of adults, Woelfel
+constexpr double imported_way_mm = 46.6;     // a joint that was only guessed is asked for less
 constexpr double largest_rotation = 45 * radian_per_degree;
 constexpr double give_way_mm = 0.5;     // opening given up where bone is met, so that it is not
 constexpr double least_opening_mm = 5;  // of a jaw; met earlier, contact shall show where
+
+/// How far the lower incisal point shall go: the drop that was asked for, else an adult's way.
+struct Wanted {
+  bool drop;
+  double mm;
+
+  const char* word() const { return drop ? "drop" : "way"; }
+};
 
 /// A symmetric opening, by rotation.
 struct OpeningPath {
@@ -28,15 +36,21 @@ struct OpeningPath {
     const double forward = coupling.forward_mm(theta);
     return {theta, forward, forward, 0};
   }
-  double opening_mm(double theta) const { return joints.opening_mm(inputs(theta)); }
+  double drop_mm(double theta) const { return joints.opening_mm(inputs(theta)); }
+  double way_mm(double theta) const {
+    return (joints.incisor(inputs(theta)) - joints.incisor()).norm();
+  }
+  double gone_mm(double theta, const Wanted& wanted) const {
+    return wanted.drop ? drop_mm(theta) : way_mm(theta);
+  }
 
-  /// Rotation at which the incisal point has dropped by `wanted_mm`; at most the largest rotation.
-  double theta_for(double wanted_mm) const {
-    if (opening_mm(largest_rotation) <= wanted_mm) return largest_rotation;
+  /// Rotation at which the incisal point has gone as far as wanted; at most the largest rotation.
+  double theta_for(const Wanted& wanted) const {
+    if (gone_mm(largest_rotation, wanted) <= wanted.mm) return largest_rotation;
     double low = 0, high = largest_rotation;
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (low + high);
-      (opening_mm(middle) < wanted_mm ? low : high) = middle;
+      (gone_mm(middle, wanted) < wanted.mm ? low : high) = middle;
     }
     return 0.5 * (low + high);
   }
@@ -115,46 +129,49 @@ bool bones_free(const Case& patient, const ContactModel& contacts, const Pose& X
 OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contacts,
                              const MotionParameters& parameters, std::vector<std::string>& notes) {
   const auto& asked = parameters.opening_mm;
-  const double wanted =
-      asked.value_or(joints.well_known() ? known_joint_opening_mm : imported_opening_mm);
+  const Wanted wanted =
+      asked ? Wanted{true, *asked}
+            : Wanted{false, joints.well_known() ? known_joint_way_mm : imported_way_mm};
   // A gap that thins along the way is meant to.
   const double least_gap = joints.well_known() ? 0.3 : 0.7;
   // The first coupling that reaches the wanted opening freely, else the one that opens farthest.
   struct Choice {
     Coupling coupling;
-    double end = 0, free_end = 0;
+    double end = 0, free_end = 0, free_mm = 0;
   };
   std::optional<Choice> best;
   for (const Coupling& coupling : couplings_to_try(parameters)) {
     const OpeningPath path{joints, coupling};
-    Choice choice{coupling, path.theta_for(wanted), 0};
+    Choice choice{coupling, path.theta_for(wanted)};
     choice.free_end = free_rotation(path, choice.end, least_gap, contacts);
-    if (!best || path.opening_mm(choice.free_end) >
-                     OpeningPath{joints, best->coupling}.opening_mm(best->free_end) + 1e-9)
-      best = choice;
-    if (choice.free_end == choice.end && path.opening_mm(choice.end) > wanted - 1e-6) break;
+    choice.free_mm = path.gone_mm(choice.free_end, wanted);
+    if (!best || choice.free_mm > best->free_mm + 1e-9) best = choice;
+    if (choice.free_end == choice.end && choice.free_mm > wanted.mm - 1e-6) break;
   }
   const OpeningPath path{joints, best->coupling};
-  const double largest = path.opening_mm(best->end);
-  if (asked && largest < wanted - 1e-6)
+  const double largest = path.gone_mm(best->end, wanted);
+  if (asked && largest < wanted.mm - 1e-6)
     throw InputError(
         fmt::format("opening {:.6g} mm: this jaw opens to {:.1f} mm when it turns by 45 "
                     "degrees; ask for less",
-                    wanted, largest));
+                    wanted.mm, largest));
   double end = best->end;
   if (best->free_end < best->end) {
-    const double free_mm = path.opening_mm(best->free_end);
-    const bool keeps_clear = !asked && free_mm > least_opening_mm;
-    notes.push_back(
-        fmt::format("bone meets bone at an opening of {:.1f} mm of the {:.1f} mm wanted{}", free_mm,
-                    wanted, keeps_clear ? "" : ", which is tried all the same"));
-    if (keeps_clear) end = path.theta_for(std::max(free_mm - give_way_mm, 0.0));
+    const bool keeps_clear = !asked && best->free_mm > least_opening_mm;
+    notes.push_back(fmt::format(
+        "bone meets bone where the incisal point has gone {:.1f} mm ({}) of the {:.1f} mm "
+        "wanted{}",
+        best->free_mm, wanted.word(), wanted.mm,
+        keeps_clear ? "" : ", which is tried all the same"));
+    if (keeps_clear)
+      end = path.theta_for({wanted.drop, std::max(best->free_mm - give_way_mm, 0.0)});
   }
   const double forward = best->coupling.forward_mm(end);
   notes.push_back(fmt::format(
-      "maximum opening {:.1f} mm: rotation {:.1f} deg, condyles {:.1f} mm forward and {:.1f} mm "
-      "down, early translation {:.2f}, {:.2f} deg/mm; {}",
-      path.opening_mm(end), end / radian_per_degree, forward,
+      "maximum opening: the incisal point drops by {:.1f} mm and goes {:.1f} mm; rotation {:.1f} "
+      "deg, condyles {:.1f} mm forward and {:.1f} mm down, early translation {:.2f}, {:.2f} "
+      "deg/mm; {}",
+      path.drop_mm(end), path.way_mm(end), end / radian_per_degree, forward,
       joints.drop_mm(JawSide::left, forward, end), best->coupling.early,
       best->coupling.rad_per_mm / radian_per_degree, joints.guide()));
   return {best->coupling, end};

@@ -77,7 +77,7 @@ class Judge {
         fmt::format("{:.1f} mm of drop ask for {:.1f} deg here: condyle to incisor is {:.0f} mm",
                     at(widest).opening_mm, at(widest).rotation_deg,
                     (series_.rest.incisor - series_.rest.left_condyle).norm());
-    add({"maximum opening", "mm", at(widest).opening_mm, 42, 58,
+    add({"maximum opening", "mm", (at(widest).incisor - bite_).norm(), 42, 58,
          "51.2 (Woelfel), 48.8 (Zawawi 2003)", built_in(), why});
     add({"rotation at maximum opening", "deg", at(widest).rotation_deg, 28, 45,
          "39.1 +- 5.9 men, 36.3 +- 4.3 women (Muto 1996), 34.1 (Leader 2003)", false, why});

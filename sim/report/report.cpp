@@ -210,7 +210,8 @@ std::string MotionReport::json() const {
   json["frames"] = frames_;
   json["step_s"] = settings_.step_s;
   const auto& w = widest_.measures;
-  json["opening"] = {{"max_opening_mm", banded(w.opening_mm, 42, 58)},
+  json["opening"] = {{"max_opening_mm", w.opening_mm},
+                     {"incisal_way_mm", banded(w.incisal_way_mm, 42, 58)},
                      {"frame", widest_frame_},
                      {"time_s", widest_.time_s},
                      {"interincisal_mm", w.interincisal_mm},
@@ -311,9 +312,10 @@ std::string MotionReport::json() const {
 std::string MotionReport::text() const {
   const auto& m = widest_.measures;
   std::string text = fmt::format(
-      "{} frames; widest opening {:.1f} mm (between incisors {:.1f} mm) at {:.2f} s, rotation "
-      "{:.1f} deg, condyles travel {:.1f} mm left, {:.1f} mm right\n",
-      frames_, m.opening_mm, m.interincisal_mm, widest_.time_s, max_rotation_deg_, left_travel_mm_,
+      "{} frames; widest opening {:.1f} mm between incisors ({:.1f} mm drop of the lower incisal "
+      "point, {:.1f} mm way) at {:.2f} s, rotation {:.1f} deg, condyles travel {:.1f} mm left, "
+      "{:.1f} mm right\n",
+      frames_, m.interincisal_mm, m.opening_mm, m.incisal_way_mm, widest_.time_s, max_rotation_deg_, left_travel_mm_,
       right_travel_mm_);
   int emergent = 0, within = 0;
   std::string outside;
