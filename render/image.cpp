@@ -1,11 +1,12 @@
 #include "render/image.h"
 
-#include <isa-l/igzip_lib.h>
+#include <libdeflate.h>
 #include <png.h>
 
 #include <algorithm>
 #include <csetjmp>
 #include <cstring>
+#include <memory>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -67,24 +68,17 @@ std::vector<std::uint8_t> filtered(const Image& image) {
   return rows;
 }
 
-/// By ISA-L: in a third of the time that libpng takes by itself.
-std::vector<std::uint8_t> deflated(std::vector<std::uint8_t> bytes) {
-  std::vector<std::uint8_t> work(ISAL_DEF_LVL1_DEFAULT);
-  std::vector<std::uint8_t> small(bytes.size() + bytes.size() / 8 + 1000);
-  isal_zstream stream;
-  isal_deflate_init(&stream);
-  stream.level = 1;
-  stream.level_buf = work.data();
-  stream.level_buf_size = static_cast<std::uint32_t>(work.size());
-  stream.gzip_flag = IGZIP_ZLIB;
-  stream.end_of_stream = 1;
-  stream.next_in = bytes.data();
-  stream.avail_in = static_cast<std::uint32_t>(bytes.size());
-  stream.next_out = small.data();
-  stream.avail_out = static_cast<std::uint32_t>(small.size());
-  if (isal_deflate(&stream) != COMP_OK || stream.internal_state.state != ZSTATE_END)
-    throw MachineError("PNG: the picture could not be packed");
-  small.resize(stream.total_out);
+/// By libdeflate: in a third of the time that libpng takes by itself, and always to the same bits.
+std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes) {
+  constexpr int fastest = 1;
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> packer(
+      libdeflate_alloc_compressor(fastest), libdeflate_free_compressor);
+  if (!packer) throw MachineError("PNG: out of memory");
+  std::vector<std::uint8_t> small(libdeflate_zlib_compress_bound(packer.get(), bytes.size()));
+  const std::size_t size = libdeflate_zlib_compress(packer.get(), bytes.data(), bytes.size(),
+                                                    small.data(), small.size());
+  if (size == 0) throw MachineError("PNG: the picture could not be packed");
+  small.resize(size);
   return small;
 }
 

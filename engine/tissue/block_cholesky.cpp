@@ -68,31 +68,33 @@ int BlockCholesky::factorize_front(int index, float* panels, float* work, float 
   float* panel = panels + front.panel;
   float* update = work + front.update;
   const FloatKernels& kernels = float_kernels();
-  std::fill_n(update, static_cast<std::size_t>(left) * left, 0.0f);
-
-  for (int c : front.children) {  // their updates
-    const FrontTree::Front& child = tree.fronts[c];
-    const int count = child.rows_end - child.rows_begin, from_height = tree.update_height(child);
-    const int* seat = &tree.seat[child.rows_begin];
-    for (int k = 0; k < count; ++k) {
-      const bool is_pivot = seat[k] < front.pivots;
-      for (int column = 0; column < size; ++column) {
-        const float* from =
-            work + child.update + static_cast<std::size_t>(k * size + column) * from_height;
-        float* to =
-            is_pivot
-                ? panel + static_cast<std::size_t>(seat[k] * size + column) * height
-                : update +
-                      static_cast<std::size_t>((seat[k] - front.pivots) * size + column) * left -
-                      width;
-        for (int r = k; r < count;) {
-          const int end = tree.run_end[child.rows_begin + r] - child.rows_begin;
-          kernels.add(to + seat[r] * size, from + r * size, (end - r) * size);
-          r = end;
+  /// What the children leave for the pivots, or for the rows below.
+  const auto add_children = [&](bool for_pivots) {
+    for (int c : front.children) {
+      const FrontTree::Front& child = tree.fronts[c];
+      const int count = child.rows_end - child.rows_begin, from_height = tree.update_height(child);
+      const int* seat = &tree.seat[child.rows_begin];  // rising
+      const int others =
+          static_cast<int>(std::lower_bound(seat, seat + count, front.pivots) - seat);
+      for (int k = for_pivots ? 0 : others; k < (for_pivots ? others : count); ++k)
+        for (int column = 0; column < size; ++column) {
+          const float* from =
+              work + child.update + static_cast<std::size_t>(k * size + column) * from_height;
+          float* to =
+              for_pivots
+                  ? panel + static_cast<std::size_t>(seat[k] * size + column) * height
+                  : update +
+                        static_cast<std::size_t>((seat[k] - front.pivots) * size + column) * left -
+                        width;
+          for (int r = k; r < count;) {
+            const int end = tree.run_end[child.rows_begin + r] - child.rows_begin;
+            kernels.add(to + seat[r] * size, from + r * size, (end - r) * size);
+            r = end;
+          }
         }
-      }
     }
-  }
+  };
+  add_children(true);
 
   int raised = 0;
   const int group = 8 * size;  // columns
@@ -108,10 +110,9 @@ int BlockCholesky::factorize_front(int index, float* panels, float* work, float 
       for (int i = 0; i < size; ++i) negative[j * size + i] = -diagonal[j * height + i];
       float* column = diagonal + j * height + size;
       std::memcpy(&copy[static_cast<std::size_t>(j) * below], column, below * sizeof(float));
-      std::fill_n(column, below, 0.0f);
     }
     subtract_product({diagonal + size, copy.data(), negative.data(), below, size, size, height,
-                      below, size, false},
+                      below, size, false, true},
                      threads);
     // The columns that are yet to be factored here: those near by at once, the others together.
     const int done = c + size, group_end = std::min(group + c / group * group, width);
@@ -128,8 +129,9 @@ int BlockCholesky::factorize_front(int index, float* panels, float* work, float 
   }
   if (left > 0)
     subtract_product(
-        {update, panel + width, panel + width, left, left, width, left, height, height, true},
+        {update, panel + width, panel + width, left, left, width, left, height, height, true, true},
         threads);
+  add_children(false);
   kernels.narrow(panel, static_cast<std::size_t>(height) * width, values_.get() + front.panel);
   return raised;
 }

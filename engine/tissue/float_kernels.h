@@ -26,13 +26,14 @@ inline float float_of(ShortFloat v) {
 /// the same bits. Up to 15 numbers after the last column of a matrix are read.
 struct FloatKernels {
   /// C -= A B^T: C is rows x columns (stride ldc), A rows x depth (lda), B columns x depth (ldb).
-  /// With `lower`, entries above the diagonal of C may hold anything afterwards.
+  /// With `lower`, entries above the diagonal of C may hold anything afterwards. With `anew`, C is
+  /// -A B^T, whatever it held.
   struct Product {
     float* C;
     const float *A, *B;
     int rows, columns, depth;
     int ldc, lda, ldb;
-    bool lower;
+    bool lower, anew = false;
   };
   void (*subtract_product)(const Product& product);
   /// y -= A x; A is rows x columns (stride lda). What stands in the 15 places after y's last may

@@ -175,7 +175,7 @@ TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
   EXPECT_TRUE(wait_for_item("import", false));
   // Notes have the signs of units that people read.
   const std::string notes = state()["notes"].dump();
-  EXPECT_NE(notes.find("rotation 28.3\u00b0"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("rotation 28.1\u00b0"), std::string::npos) << notes;
   EXPECT_NE(notes.find("358.8 cm\u00b3"), std::string::npos) << notes;
   EXPECT_EQ(notes.find(" deg"), std::string::npos) << notes;
   // Roles that cannot be are told before a patient is made, and what to do.
