@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 
 #include "engine/minimize/objective.h"
@@ -24,6 +25,8 @@ struct MethodFacts {
 };
 std::span<const MethodFacts> all_methods();
 
+struct MinimizeResult;
+
 struct MinimizeSettings {
   /// preconditioned: estimated distance left to the minimum, of the worst point, from the
   /// preconditioned gradient and how fast iterations shorten it. The others: the largest way of any
@@ -38,6 +41,9 @@ struct MinimizeSettings {
   /// preconditioned: the preconditioner was made at the start, so that its first step is tried at
   /// full length without a look at the curvature along it.
   bool fresh = false;
+  /// preconditioned: asked after each iteration but the last with what has been done; another
+  /// preconditioner for those that follow, or null.
+  std::function<const Preconditioner*(const Points& x, const MinimizeResult& done)> renew = {};
   double line_tolerance = 0.1;  // of the line searches of the first three: width over position
 };
 

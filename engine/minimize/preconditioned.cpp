@@ -5,38 +5,45 @@ namespace condyle::minimizers {
 // Preconditioned Polak-Ribiere with a parabolic line search: where every squared length is
 // quadratic along a direction and every volume cubic, one step with the exact slope and curvature
 // is nearly always taken as it is. The first step of a fresh preconditioner is of full length, if
-// that leaves the line nearly flat; else the line goes on where its slopes say.
-MinimizeResult preconditioned(Objective& objective, const Preconditioner& preconditioner,
+// that leaves the line nearly flat; else the line goes on where its slopes say. A renewed
+// preconditioner begins anew, downhill.
+MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
                               const MinimizeSettings& settings, Points& x) {
   using Status = MinimizeResult::Status;
   MinimizeResult result;
   Counted counted(objective, settings, result);
   Points g, g_new, z, z_new, d, trial(x.size());
 
-  double f = counted.value_and_gradient(x, g);
-  preconditioner.solve(g, z);
-  double gz = dot(g, z);
-  if (!std::isfinite(f) || !std::isfinite(gz)) {
-    result.status = Status::bad_start;
-    result.energy = f;
-    result.residual = largest_norm(g);
-    return result;
-  }
-  d.resize(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
-
   // The way that is left, by the preconditioner. Iterations that shorten it by a factor each leave
   // the sum of a geometric series; before the first nothing is known of that factor.
   constexpr double flat = 0.1;  // of the slope at the start of a step of full length, if it serves
   constexpr double unknown_share = 0.3, least_contraction = 0.95;
-  double way = largest_norm(z), shortest = way;
+  const Preconditioner* preconditioner = &given;
+  double gz = 0, way = 0, shortest = 0;
   // Where the preconditioner is stiffer than the objective, the way is longer than it says.
   const auto stretch = [&] {
     const auto curvature = objective.curvature(x, z);
     return curvature.gauss_newton > 0 ? std::max(1.0, gz / curvature.gauss_newton) : 1.0;
   };
-  const double first = unknown_share * settings.tolerance_mm;
-  if (way < first && way * stretch() < first) result.status = Status::converged;
+  const auto begin = [&] {
+    preconditioner->solve(g, z);
+    gz = dot(g, z);
+    if (!std::isfinite(gz)) return false;
+    d.resize(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
+    way = shortest = largest_norm(z);
+    const double enough = unknown_share * settings.tolerance_mm;
+    if (way < enough && way * stretch() < enough) result.status = Status::converged;
+    return true;
+  };
+
+  double f = counted.value_and_gradient(x, g);
+  if (!std::isfinite(f) || !begin()) {
+    result.status = Status::bad_start;
+    result.energy = f;
+    result.residual = largest_norm(g);
+    return result;
+  }
   for (; !result.converged() && result.iterations < settings.max_iterations && !counted.spent();
        ++result.iterations) {
     double slope = dot(g, d);
@@ -91,7 +98,18 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& precon
 
     x.swap(trial);
     f = f_new;
-    preconditioner.solve(g_new, z_new);
+    if (settings.renew && result.iterations + 1 < settings.max_iterations) {
+      MinimizeResult done = result;
+      ++done.iterations;
+      if (const Preconditioner* other = settings.renew(x, done)) {
+        preconditioner = other;
+        g.swap(g_new);
+        if (begin()) continue;
+        result.status = Status::stalled;
+        break;
+      }
+    }
+    preconditioner->solve(g_new, z_new);
     double change = 0;
     for (std::size_t i = 0; i < x.size(); ++i) change += z_new[i].dot(g_new[i] - g[i]);
     const double beta = std::max(0.0, change / gz);
@@ -111,7 +129,7 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& precon
   }
   result.energy = f;
   result.residual = largest_norm(g);
-  result.bytes = bytes_of(g, g_new, z, z_new, d, trial) + preconditioner.bytes();
+  result.bytes = bytes_of(g, g_new, z, z_new, d, trial) + given.bytes();
   return result;
 }
 

@@ -49,7 +49,8 @@ struct FloatKernels {
   void (*narrow)(const float* from, std::size_t count, ShortFloat* to);
   /// Replaces the lower half of a positive definite block by the inverse of its Cholesky factor,
   /// with zeros above: solving is then only products. Pivots that are not above `least` times the
-  /// largest diagonal entry are raised to it; gives how many were.
+  /// largest diagonal entry are raised to it; gives how many were. Up to 15 numbers after its last
+  /// column are read.
   int (*invert_diagonal)(float* block, int stride, int size, float least);
 };
 constexpr int largest_block = 18;  // of invert_diagonal

@@ -177,7 +177,7 @@ TEST(FloatKernels, ABlockTimesItsInverseFactorsIsOne) {
     for (auto& v : root.reshaped()) v = entry(random);
     const Eigen::MatrixXf block = root * root.transpose();
     const int stride = size + 5;
-    std::vector<float> given(static_cast<std::size_t>(stride) * size, 7.0f);
+    std::vector<float> given(static_cast<std::size_t>(stride) * size + 15, 7.0f);
     for (int j = 0; j < size; ++j)
       for (int i = j; i < size; ++i) given[j * stride + i] = block(i, j);
     EXPECT_EQ(float_kernels().invert_diagonal(given.data(), stride, size, 1e-6f), 0);
@@ -234,6 +234,28 @@ TEST(FloatKernels, GiveTheBitsOfPlainLoops) {
           for (int i = 0; i < half; ++i) part[i] += part[i + half];
         EXPECT_EQ(z[k], z_expected[k] - part[0]);
       }
+    }
+}
+
+TEST(FloatKernels, AProductAnewIsThatOfZeros) {
+  for (const auto& [rows, columns, depth] : {std::array{7, 5, 12}, {31, 31, 12}, {250, 131, 250}})
+    for (const bool lower : {false, true}) {
+      const std::vector<float> A = right_hand_side(static_cast<std::size_t>(rows) * depth + 16);
+      const auto filled = [&](float with) {
+        return std::vector<float>(static_cast<std::size_t>(rows) * columns + 16, with);
+      };
+      std::vector<float> from_zeros = filled(0),
+                         anew = filled(std::numeric_limits<float>::quiet_NaN());
+      const auto product = [&, rows = rows, columns = columns, depth = depth](auto& C, bool fresh) {
+        float_kernels().subtract_product(
+            {C.data(), A.data(), A.data(), rows, columns, depth, rows, rows, rows, lower, fresh});
+      };
+      product(from_zeros, false);
+      product(anew, true);
+      for (int j = 0; j < columns; ++j)
+        for (int i = lower ? j : 0; i < rows; ++i)
+          EXPECT_EQ(anew[j * rows + i], from_zeros[j * rows + i]);
+      EXPECT_TRUE(std::isnan(anew[static_cast<std::size_t>(rows) * columns]));
     }
 }
 
