@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/mesh/topology.h"
+#include "render/lips_inside.h"
 
 namespace condyle {
 namespace {
@@ -251,6 +252,14 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
   MouthLining lining;
   lining.rim = mouth_rim(face->mesh, teeth);
   if (lining.rim.empty()) return std::nullopt;
+  TriMesh shown{
+      face->mesh.vertices, without_deep_inside(face->mesh, lining.rim, teeth.center().x()), {}};
+  if (auto rim = mouth_rim(shown, teeth); !rim.empty()) {
+    lining.rim = std::move(rim);
+    lining.face = std::move(shown.triangles);
+  } else {
+    lining.face = face->mesh.triangles;
+  }
   const auto places = rim_places(face->mesh, lining.rim);
   const auto n = lining.rim.size();
   double corners = 0, found = 0;

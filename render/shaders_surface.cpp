@@ -192,6 +192,8 @@ void main() {
              + (fill_color * wrapped(dot(n, fill_direction), wrap + 0.2)
              + rim_color * wrapped(dot(n, rim_direction), 0.0)) * depth * occlusion
              + ambient_light(n, v) * occlusion * depth;
+  // Where they do not reach it goes to and fro between those walls.
+  if (cavity.y > 0.0) light += vec3(0.115, 0.042, 0.037) * (1.0 - depth) * (0.55 + 0.45 * nv);
   float open = ao * ao * depth;
   vec3 shine = key_color * specular(n, v, key_direction, roughness) * lit
              + fill_color * specular(n, v, fill_direction, roughness) * open
