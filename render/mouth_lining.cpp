@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/mesh/slit_seam.h"
 #include "engine/mesh/topology.h"
-#include "render/lips_inside.h"
 
 namespace condyle {
 namespace {
@@ -252,8 +252,10 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
   MouthLining lining;
   lining.rim = mouth_rim(face->mesh, teeth);
   if (lining.rim.empty()) return std::nullopt;
-  TriMesh shown{
-      face->mesh.vertices, without_deep_inside(face->mesh, lining.rim, teeth.center().x()), {}};
+  constexpr double beside_mm = 45;  // of the teeth's middle
+  TriMesh shown{face->mesh.vertices,
+                without_deep_inside(face->mesh, lining.rim, teeth.center(), beside_mm),
+                {}};
   if (auto rim = mouth_rim(shown, teeth); !rim.empty()) {
     lining.rim = std::move(rim);
     lining.face = std::move(shown.triangles);

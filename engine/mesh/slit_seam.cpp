@@ -1,4 +1,4 @@
-#include "render/lips_inside.h"
+#include "engine/mesh/slit_seam.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -13,9 +13,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double beside_mm = 15;              // of the rim: where the inside lies
-constexpr double corner_mm = 1, lip_mm = 14;  // what stays of the inside
-constexpr double to_corner_mm = 20;           // over which it goes from one to the other
+constexpr double at_ends_mm = 1, at_sides_mm = 14;  // what stays of the inside
+constexpr double to_end_mm = 20;                    // over which it goes from one to the other
 
 /// Triangles at each vertex.
 class Around {
@@ -40,15 +39,15 @@ class Around {
   std::vector<int> triangles_;
 };
 
-/// How far to the front the face reaches, over a part of the front view, mm.
+/// How far to the front the surface reaches, over a part of the front view, mm.
 class FrontView {
  public:
-  FrontView(const TriMesh& face, const Eigen::AlignedBox3d& region) : low_(view(region.min())) {
+  FrontView(const TriMesh& surface, const Eigen::AlignedBox3d& region) : low_(view(region.min())) {
     const Vector2d size = view(region.max()) - low_;
     columns_ = static_cast<int>(size.x() / cell_mm) + 1;
     rows_ = static_cast<int>(size.y() / cell_mm) + 1;
     nearest_.assign(static_cast<std::size_t>(columns_ * rows_), infinity);
-    for (const auto& t : face.triangles) draw(face, t);
+    for (const auto& t : surface.triangles) draw(surface, t);
   }
   bool hides(const Vector3d& p) const {
     const Vector2d at = (view(p) - low_) / cell_mm;
@@ -62,10 +61,10 @@ class FrontView {
   static constexpr double cell_mm = 0.3, clear_mm = 0.8;
   static Vector2d view(const Vector3d& p) { return {p.x(), p.z()}; }
 
-  void draw(const TriMesh& face, const Eigen::Vector3i& t) {
-    const Vector3d &p = face.vertices[static_cast<std::size_t>(t[0])],
-                   &q = face.vertices[static_cast<std::size_t>(t[1])],
-                   &r = face.vertices[static_cast<std::size_t>(t[2])];
+  void draw(const TriMesh& surface, const Eigen::Vector3i& t) {
+    const Vector3d &p = surface.vertices[static_cast<std::size_t>(t[0])],
+                   &q = surface.vertices[static_cast<std::size_t>(t[1])],
+                   &r = surface.vertices[static_cast<std::size_t>(t[2])];
     const Vector2d a = (view(p) - low_) / cell_mm, b = (view(q) - low_) / cell_mm,
                    c = (view(r) - low_) / cell_mm;
     const Vector2d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
@@ -88,33 +87,38 @@ class FrontView {
   std::vector<double> nearest_;
 };
 
-/// From the rim on, all that the lips hide in the front view: how far it is from what they do not,
-/// along edges, mm; below 0 where nothing hides it.
-std::vector<double> ways_inside(const TriMesh& face, const Around& around,
-                                std::span<const int> rim) {
-  Eigen::AlignedBox3d region;
-  for (const int v : rim) region.extend(face.vertices[static_cast<std::size_t>(v)]);
-  region.min().array() -= beside_mm;
-  region.max().array() += beside_mm;
-  const FrontView front_view(face, region);
-  std::vector<double> way(face.vertices.size(), -1);
-  std::vector<char> seen(face.vertices.size(), 0);
-  std::vector<int> front(rim.begin(), rim.end()), edge;
-  for (const int v : rim) seen[static_cast<std::size_t>(v)] = 1;
+struct Inside {
+  std::vector<double>
+      way;  // of each vertex from what is not hidden, along edges; below 0: it is not
+  double right = infinity, left = -infinity;  // ends of the slit
+};
+
+/// What hangs together with these vertices and is hidden in the front view.
+Inside find_inside(const TriMesh& surface, const Around& around, std::span<const int> from,
+                   const FrontView& front_view) {
+  std::vector<double> way(surface.vertices.size(), -1);
+  std::vector<char> seen(surface.vertices.size(), 0);
+  std::vector<int> front(from.begin(), from.end()), edge;
+  for (const int v : from) seen[static_cast<std::size_t>(v)] = 1;
   while (!front.empty()) {
     const int v = front.back();
     front.pop_back();
-    if (!front_view.hides(face.vertices[static_cast<std::size_t>(v)])) {
+    if (!front_view.hides(surface.vertices[static_cast<std::size_t>(v)])) {
       edge.push_back(v);
       continue;
     }
     way[static_cast<std::size_t>(v)] = infinity;
     for (const int t : around[v])
-      for (const int n : face.triangles[static_cast<std::size_t>(t)])
+      for (const int n : surface.triangles[static_cast<std::size_t>(t)])
         if (!seen[static_cast<std::size_t>(n)]) {
           seen[static_cast<std::size_t>(n)] = 1;
           front.push_back(n);
         }
+  }
+  Inside found;
+  for (const int v : edge) {
+    found.right = std::min(found.right, surface.vertices[static_cast<std::size_t>(v)].x());
+    found.left = std::max(found.left, surface.vertices[static_cast<std::size_t>(v)].x());
   }
   using Waiting = std::pair<double, int>;
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> waiting;
@@ -124,44 +128,45 @@ std::vector<double> ways_inside(const TriMesh& face, const Around& around,
     waiting.pop();
     if (so_far > way[static_cast<std::size_t>(v)] && so_far > 0) continue;
     for (const int t : around[v])
-      for (const int n : face.triangles[static_cast<std::size_t>(t)]) {
+      for (const int n : surface.triangles[static_cast<std::size_t>(t)]) {
         double& known = way[static_cast<std::size_t>(n)];
-        const double next = so_far + (face.vertices[static_cast<std::size_t>(n)] -
-                                      face.vertices[static_cast<std::size_t>(v)])
+        const double next = so_far + (surface.vertices[static_cast<std::size_t>(n)] -
+                                      surface.vertices[static_cast<std::size_t>(v)])
                                          .norm();
         if (next >= known) continue;
         known = next;
         waiting.push({next, n});
       }
   }
-  return way;
+  found.way = std::move(way);
+  return found;
 }
 
 }  // namespace
 
-std::vector<Eigen::Vector3i> without_deep_inside(const TriMesh& face, std::span<const int> rim,
-                                                 double middle_x) {
-  const Around around(face);
-  const auto way = ways_inside(face, around, rim);
-  double corner = 0;  // half width between the corners
-  for (const int v : rim)
-    corner = std::max(corner, std::abs(face.vertices[static_cast<std::size_t>(v)].x() - middle_x));
+std::vector<Eigen::Vector3i> without_deep_inside(const TriMesh& surface,
+                                                 std::span<const int> inside,
+                                                 const Vector3d& middle, double beside_mm) {
+  const Around around(surface);
+  const Vector3d beside = Vector3d::Constant(beside_mm);
+  const auto found =
+      find_inside(surface, around, inside, FrontView(surface, {middle - beside, middle + beside}));
   const auto deep = [&](int v) {
-    const double from_corner =
-        corner - std::abs(face.vertices[static_cast<std::size_t>(v)].x() - middle_x);
-    const double t = std::clamp(from_corner / to_corner_mm, 0.0, 1.0);
-    return way[static_cast<std::size_t>(v)] >
-           corner_mm + (lip_mm - corner_mm) * t * t * t;
+    const double x = surface.vertices[static_cast<std::size_t>(v)].x();
+    const double from_end = std::min(x - found.right, found.left - x);
+    const double t = std::clamp(from_end / to_end_mm, 0.0, 1.0);
+    return found.way[static_cast<std::size_t>(v)] >
+           at_ends_mm + (at_sides_mm - at_ends_mm) * t * t * t;
   };
-  std::vector<char> dropped(face.triangles.size(), 0), seen(face.vertices.size(), 0);
+  std::vector<char> dropped(surface.triangles.size(), 0), seen(surface.vertices.size(), 0);
   std::vector<int> front;
-  for (const int v : rim)
+  for (const int v : inside)
     if (deep(v)) front.push_back(v), seen[static_cast<std::size_t>(v)] = 1;
   while (!front.empty()) {
     const int v = front.back();
     front.pop_back();
     for (const int t : around[v]) {
-      const auto& corners = face.triangles[static_cast<std::size_t>(t)];
+      const auto& corners = surface.triangles[static_cast<std::size_t>(t)];
       if (!std::all_of(corners.begin(), corners.end(), deep)) continue;
       dropped[static_cast<std::size_t>(t)] = 1;
       for (const int n : corners)
@@ -173,7 +178,7 @@ std::vector<Eigen::Vector3i> without_deep_inside(const TriMesh& face, std::span<
   }
   std::vector<Eigen::Vector3i> kept;
   for (std::size_t t = 0; t < dropped.size(); ++t)
-    if (!dropped[t]) kept.push_back(face.triangles[t]);
+    if (!dropped[t]) kept.push_back(surface.triangles[t]);
   return kept;
 }
 
