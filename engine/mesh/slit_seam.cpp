@@ -13,8 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double at_ends_mm = 1, at_sides_mm = 14;  // what stays of the inside
-constexpr double to_end_mm = 20;                    // over which it goes from one to the other
+constexpr double to_end_mm = 20;  // from a seam's full breadth to its end
 
 /// Triangles at each vertex.
 class Around {
@@ -146,7 +145,8 @@ Inside find_inside(const TriMesh& surface, const Around& around, std::span<const
 
 std::vector<Eigen::Vector3i> without_deep_inside(const TriMesh& surface,
                                                  std::span<const int> inside,
-                                                 const Vector3d& middle, double beside_mm) {
+                                                 const Vector3d& middle, double beside_mm,
+                                                 const SlitSeam& seam) {
   const Around around(surface);
   const Vector3d beside = Vector3d::Constant(beside_mm);
   const auto found =
@@ -156,7 +156,7 @@ std::vector<Eigen::Vector3i> without_deep_inside(const TriMesh& surface,
     const double from_end = std::min(x - found.right, found.left - x);
     const double t = std::clamp(from_end / to_end_mm, 0.0, 1.0);
     return found.way[static_cast<std::size_t>(v)] >
-           at_ends_mm + (at_sides_mm - at_ends_mm) * t * t * t;
+           seam.at_ends_mm + (seam.at_sides_mm - seam.at_ends_mm) * t * t * t;
   };
   std::vector<char> dropped(surface.triangles.size(), 0), seen(surface.vertices.size(), 0);
   std::vector<int> front;

@@ -105,7 +105,9 @@ std::vector<int> pocket_bottom(const TriMesh& face, const LipLine& line) {
 bool open_pouch(TriMesh& face, const LipLine& line, const std::vector<int>& bottom) {
   constexpr double beside_mm = 70, behind_mm = 100;  // of the lips' middle: where it may lie
   constexpr double least_height_mm = 8;              // or it is but a gap
-  auto kept = without_deep_inside(face, bottom, line.middle, beside_mm);
+  // The tissue ends at the lips' edge; broader seams, which touch one another, fold in it.
+  constexpr SlitSeam seam{.at_ends_mm = 0.5, .at_sides_mm = 10};
+  auto kept = without_deep_inside(face, bottom, line.middle, beside_mm, seam);
   if (kept.size() == face.triangles.size()) return false;
   // Both lists are in one order.
   double low = infinity, high = -infinity;
