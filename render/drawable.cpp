@@ -78,7 +78,8 @@ struct Prepared {
 
 }  // namespace
 
-std::vector<Drawable> make_drawables(std::span<const Part> parts) {
+std::vector<Drawable> make_drawables(std::span<const Part> parts,
+                                     std::span<const Eigen::Vector3i> face) {
   std::vector<Prepared> prepared(parts.size());
   std::vector<OcclusionSurface> surfaces(parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -95,13 +96,16 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
   drawables.reserve(parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const auto& part = parts[p];
-    const auto& [positions, normals] = prepared[p];
+    auto& [positions, normals] = prepared[p];
+    std::vector<Eigen::Vector3i> own;
+    if (part.role == Role::face && !face.empty()) own.assign(face.begin(), face.end());
+    const auto& triangles = own.empty() ? part.mesh.triangles : own;
+    if (!own.empty()) vertex_normals(positions, triangles, normals);
     const bool moving = body_of(part.role) == Body::tissue;
     const bool own_colors = part.mesh.colors.size() == positions.size();
     const auto material = material_of(part.role);
     std::vector<float> curvature;
-    if (part.role == Role::face)
-      curvature = vertex_curvature(positions, part.mesh.triangles, normals);
+    if (part.role == Role::face) curvature = vertex_curvature(positions, triangles, normals);
     std::vector<GpuMesh::Bytes> colors(positions.size()), extras(positions.size());
     Eigen::AlignedBox3f box;
     for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -117,8 +121,8 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
                    to_byte(curvature.empty() ? 0.f : curvature[i] / SkinTable::max_curvature),
                    to_byte(gloss), 0};
     }
-    GpuMesh mesh(positions, part.mesh.triangles, moving);
-    mesh.add_coarse(positions, part.mesh.triangles);
+    GpuMesh mesh(positions, triangles, moving);
+    mesh.add_coarse(positions, triangles);
     mesh.send_shape(positions, normals);
     mesh.send_colors(colors);
     mesh.send_extras(extras);
@@ -130,9 +134,10 @@ std::vector<Drawable> make_drawables(std::span<const Part> parts) {
       edges.emplace(mesh.fine().triangles);
       coarse_edges.emplace(mesh.coarse().triangles);
     }
-    drawables.push_back({&part, material, is_closed_surface(part.mesh.triangles), box,
-                         std::move(mesh), std::move(creases), std::move(colors), std::move(extras),
-                         std::move(edges), std::move(coarse_edges)});
+    drawables.push_back({&part, material, is_closed_surface(triangles), box, std::move(mesh),
+                         std::move(creases), std::move(colors), std::move(extras), std::move(edges),
+                         std::move(coarse_edges)});
+    drawables.back().own = std::move(own);
   }
   return drawables;
 }
@@ -144,7 +149,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     const Part& part = *other.part;
     std::vector<Eigen::Vector3f> positions, normals;
     for (const auto& v : part.mesh.vertices) positions.push_back(v.cast<float>());
-    vertex_normals(positions, part.mesh.triangles, normals);
+    vertex_normals(positions, other.triangles(), normals);
     GpuMesh mesh = other.mesh.twin();
     mesh.send_shape(positions, normals);
     mesh.send_colors(other.colors);
@@ -153,6 +158,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     drawables.push_back({&part, other.material, other.closed, other.box, std::move(mesh),
                          other.creases, other.colors, other.extras, other.edges,
                          other.coarse_edges});
+    drawables.back().own = other.own;
   }
   return drawables;
 }
@@ -222,9 +228,9 @@ void Drawable::dress_finer() {
 
 void Drawable::cover(std::span<const Eigen::Vector3i> closed_otherwise) {
   if (covered) return;
-  auto triangles = own.empty() ? part->mesh.triangles : own;
-  triangles.insert(triangles.end(), closed_otherwise.begin(), closed_otherwise.end());
-  mesh.send_cover(cover_rims(triangles));
+  std::vector<Eigen::Vector3i> all(triangles().begin(), triangles().end());
+  all.insert(all.end(), closed_otherwise.begin(), closed_otherwise.end());
+  mesh.send_cover(cover_rims(all));
   covered = true;
 }
 
@@ -233,8 +239,8 @@ const GpuMesh& Drawable::rest_mesh() {
   if (!at_rest) {
     std::vector<Eigen::Vector3f> positions, normals;
     for (const auto& v : part->mesh.vertices) positions.push_back(v.cast<float>());
-    vertex_normals(positions, part->mesh.triangles, normals);
-    at_rest.emplace(positions, part->mesh.triangles, false);
+    vertex_normals(positions, triangles(), normals);
+    at_rest.emplace(positions, triangles(), false);
     at_rest->send_shape(positions, normals);
     at_rest->send_colors(colors);
     at_rest->send_extras(extras);
@@ -245,7 +251,7 @@ const GpuMesh& Drawable::rest_mesh() {
 
 void Drawable::move_face(std::span<const Eigen::Vector3f> positions,
                          std::vector<Eigen::Vector3f>& normals_scratch) {
-  vertex_normals(positions, part->mesh.triangles, normals_scratch);
+  vertex_normals(positions, triangles(), normals_scratch);
   mesh.send_shape(positions, normals_scratch);
   if (creases.empty()) return;
   auto now = colors;

@@ -30,7 +30,10 @@ struct Drawable {
   std::vector<Eigen::Vector3f> undressed = {};  // vertices of a finer mesh without colours as yet
   bool covered = false;
   std::vector<Eigen::Vector3i> own = {};  // triangles, where they are not all of the part's
-  std::optional<GpuMesh> at_rest = {};    // of a part that deforms, for its ghost
+  std::span<const Eigen::Vector3i> triangles() const {
+    return own.empty() ? part->mesh.triangles : own;
+  }
+  std::optional<GpuMesh> at_rest = {};  // of a part that deforms, for its ghost
 
   const GpuMesh& shown() const { return mapped && finer ? *finer : mesh; }
   /// The same surface in smaller triangles, for maps.
@@ -50,7 +53,9 @@ struct Drawable {
 };
 
 /// Uploads the parts with their normals, colours, baked ambient occlusion and curvature.
-std::vector<Drawable> make_drawables(std::span<const Part> parts);
+/// `face`: triangles of the face, where not all of them are drawn.
+std::vector<Drawable> make_drawables(std::span<const Part> parts,
+                                     std::span<const Eigen::Vector3i> face = {});
 /// Some triangles of a part as a drawable of their own.
 Drawable piece_of(const Drawable& whole, std::span<const Eigen::Vector3i> triangles);
 /// The same for another context, at rest.

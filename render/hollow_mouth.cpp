@@ -14,10 +14,9 @@ std::uint8_t to_byte(float value) {
 
 }  // namespace
 
-HollowMouth::HollowMouth(std::span<const Part> parts) : lining_(line_mouth(parts)) {
-  if (!lining_) return;
+HollowMouth::HollowMouth(const MouthLining& lining) : lining_(lining) {
   part_ = {"mouth lining", Role::upper_gums, {}, {}};
-  const std::size_t count = lining_->rest.size(), around = lining_->rim.size();
+  const std::size_t count = lining_.rest.size(), around = lining_.rim.size();
   std::vector<GpuMesh::Bytes> colors(count), extras(count);
   for (std::size_t v = 0; v < count; ++v) {
     // As red as what lines the lips, paler on the cheeks; the throat sees little of the sky.
@@ -29,9 +28,9 @@ HollowMouth::HollowMouth(std::span<const Part> parts) : lining_(line_mouth(parts
     colors[v] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()), sky};
     extras[v] = {sky, 0, 255, 0};
   }
-  GpuMesh mesh(lining_->rest, lining_->triangles, true);
+  GpuMesh mesh(lining_.rest, lining_.triangles, true);
   Eigen::AlignedBox3f box;
-  for (const auto& place : lining_->rest) box.extend(place);
+  for (const auto& place : lining_.rest) box.extend(place);
   drawable_.emplace(Drawable{&part_,
                              material_of(part_.role),
                              false,
@@ -48,9 +47,9 @@ HollowMouth::HollowMouth(std::span<const Part> parts) : lining_(line_mouth(parts
 
 Drawable& HollowMouth::place(const GpuMesh& face, const Pose& X_CM) {
   std::vector<Eigen::Vector3f> rim, normals;
-  for (const int v : lining_->rim) rim.push_back(face.point_of(v));
-  const auto now = places_now(*lining_, rim, X_CM);
-  vertex_normals(now, lining_->triangles, normals);
+  for (const int v : lining_.rim) rim.push_back(face.point_of(v));
+  const auto now = places_now(lining_, rim, X_CM);
+  vertex_normals(now, lining_.triangles, normals);
   drawable_->mesh.send_shape(now, normals);
   return *drawable_;
 }

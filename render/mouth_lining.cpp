@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/mesh/slit_seam.h"
 #include "engine/mesh/topology.h"
 
 namespace condyle {
@@ -251,6 +252,16 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
   MouthLining lining;
   lining.rim = mouth_rim(face->mesh, teeth);
   if (lining.rim.empty()) return std::nullopt;
+  constexpr double beside_mm = 45;  // of the teeth's middle
+  TriMesh shown{face->mesh.vertices,
+                without_deep_inside(face->mesh, lining.rim, teeth.center(), beside_mm),
+                {}};
+  if (auto rim = mouth_rim(shown, teeth); !rim.empty()) {
+    lining.rim = std::move(rim);
+    lining.face = std::move(shown.triangles);
+  } else {
+    lining.face = face->mesh.triangles;
+  }
   const auto places = rim_places(face->mesh, lining.rim);
   const auto n = lining.rim.size();
   double corners = 0, found = 0;

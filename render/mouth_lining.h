@@ -19,6 +19,7 @@ struct MouthLining {
   std::vector<float> jaw;             // how far each goes with the mandible, 0 to 1
   std::vector<float> lip;             // and with what the rim does beside that, 0 to 1
   std::vector<Eigen::Vector3i> triangles;  // of `rest`; their front looks into the mouth
+  std::vector<Eigen::Vector3i> face;       // what is drawn of the face with it: as far as the rim
   float mid_z = 0;                         // height of the closed lips
 };
 

@@ -60,7 +60,8 @@ struct SceneRenderer::State {
     std::optional<Drawable> balls, lashes;
   };
   std::map<std::size_t, PartedEyes> parted_eyes;
-  std::optional<HollowMouth> mouth;  // from the first section of the face on
+  std::optional<MouthLining> lining;
+  std::optional<HollowMouth> mouth;  // from the first picture of an opaque face on
   GpuPoints contacts;
   // Of the last frame:
   std::vector<Pose> poses;  // of each drawable
@@ -72,8 +73,11 @@ struct SceneRenderer::State {
   PictureTarget target;
   float map_low = 0, map_high = 1;  // values are kept within
 
-  State(std::span<const Part> all, std::vector<Drawable> made)
-      : parts(all), drawables(std::move(made)), mouth_y(front_of_mouth(drawables)) {
+  State(std::span<const Part> all, std::optional<MouthLining> lined, std::vector<Drawable> made)
+      : parts(all),
+        drawables(std::move(made)),
+        mouth_y(front_of_mouth(drawables)),
+        lining(std::move(lined)) {
     for (const auto& drawable : drawables) box.extend(drawable.box);
     if (box.isEmpty()) box = Eigen::AlignedBox3f(Eigen::Vector3f::Zero());
     place({});
@@ -187,13 +191,13 @@ float SceneRenderer::State::at_rest(std::span<const DrawItem> items) const {
 std::optional<DrawItem> SceneRenderer::State::hollow_mouth(std::span<const DrawItem> items,
                                                            const PictureView& view) {
   const auto face = std::find_if(items.begin(), items.end(), [](const DrawItem& item) {
-    return item.role() == Role::face && item.opaque() && item.clipped;
+    return item.role() == Role::face && item.opaque();
   });
-  if (face == items.end() || !shows_caps(view)) return std::nullopt;
-  if (!mouth) mouth.emplace(parts);
-  if (!mouth->known()) return std::nullopt;
+  if (face == items.end() || (face->clipped && !shows_caps(view))) return std::nullopt;
+  if (!lining) return std::nullopt;
+  if (!mouth) mouth.emplace(*lining);
   DrawItem item{&mouth->place(face->drawable->mesh, X_CM), 1, Eigen::Matrix4f::Identity()};
-  item.clipped = true;
+  item.clipped = face->clipped;
   item.holed = face->holed;
   return item;
 }
@@ -247,12 +251,15 @@ PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettin
   return v;
 }
 
-SceneRenderer::SceneRenderer(std::span<const Part> parts)
-    : state_(std::make_unique<State>(parts, make_drawables(parts))) {}
+SceneRenderer::SceneRenderer(std::span<const Part> parts) {
+  auto lining = line_mouth(parts);
+  auto drawables = make_drawables(parts, lining ? lining->face : std::vector<Eigen::Vector3i>());
+  state_ = std::make_unique<State>(parts, std::move(lining), std::move(drawables));
+}
 
 SceneRenderer::SceneRenderer(const SceneRenderer& other)
-    : state_(
-          std::make_unique<State>(other.state_->parts, drawables_like(other.state_->drawables))) {}
+    : state_(std::make_unique<State>(other.state_->parts, other.state_->lining,
+                                     drawables_like(other.state_->drawables))) {}
 
 SceneRenderer::~SceneRenderer() = default;
 
@@ -384,7 +391,7 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   const auto mouth = s.hollow_mouth(items, view);
-  view.sectioned = mouth.has_value();
+  view.sectioned = mouth && mouth->clipped;
   auto surfaces = items;
   if (mouth) surfaces.push_back(*mouth);
   s.passes.opaque(surfaces, view);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/core/infinity.h"
+#include "engine/mesh/slit_seam.h"
 #include "engine/mesh/topology.h"
 
 namespace condyle {
@@ -99,6 +100,34 @@ std::vector<int> pocket_bottom(const TriMesh& face, const LipLine& line) {
     if (std::abs(face.vertices[v].x() - middle.x()) < middle_mm)
       shallowest = std::min(shallowest, face.vertices[v].y());
   return shallowest > front + deep_mm && shallowest < infinity ? run : std::vector<int>{};
+}
+
+bool open_pouch(TriMesh& face, const LipLine& line, const std::vector<int>& bottom) {
+  constexpr double beside_mm = 70, behind_mm = 100;  // of the lips' middle: where it may lie
+  constexpr double least_height_mm = 8;              // or it is but a gap
+  // The tissue ends at the lips' edge; broader seams, which touch one another, fold in it.
+  constexpr SlitSeam seam{.at_ends_mm = 0.5, .at_sides_mm = 10};
+  auto kept = without_deep_inside(face, bottom, line.middle, beside_mm, seam);
+  if (kept.size() == face.triangles.size()) return false;
+  // Both lists are in one order.
+  double low = infinity, high = -infinity;
+  std::size_t next = 0;
+  for (const auto& t : face.triangles) {
+    if (next < kept.size() && kept[next] == t) {
+      ++next;
+      continue;
+    }
+    for (const int v : t) {
+      const Vector3d& p = face.vertices[v];
+      if (p.y() > line.middle.y() + behind_mm) return false;
+      if (std::abs(p.x() - line.middle.x()) > middle_mm) continue;
+      low = std::min(low, p.z());
+      high = std::max(high, p.z());
+    }
+  }
+  if (high - low < least_height_mm) return false;
+  face.triangles = std::move(kept);
+  return true;
 }
 
 void cut_along(const std::vector<int>& run, TriMesh& surface) {

@@ -26,6 +26,11 @@ struct LipLine {
 /// where there is none, or where a hole is in the way. The face looks to -y.
 std::vector<int> pocket_bottom(const TriMesh& face, const LipLine& line);
 
+/// Faces made by hand often have a whole mouth behind the lips, a pouch: they are open there, and
+/// its corners are the mouth's. Leaves of it the lips' inner seam. `bottom`: vertices deep in it.
+/// False, and nothing is changed, where the lips hide no pouch.
+bool open_pouch(TriMesh& face, const LipLine& line, const std::vector<int>& bottom);
+
 /// Cuts a surface along a run of its edges, none at a border: all vertices but the ends get a twin
 /// (at the end of the list; colours too), which the triangles to the right of the run, seen from
 /// outside, use.

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "engine/mesh/repair.h"
 #include "engine/mesh/topology.h"
 #include "sim/tissue/anatomy.h"
 #include "sim/tissue/lip_pocket.h"
@@ -148,8 +149,17 @@ MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vecto
   const auto line = find_lip_line(landmarks, incisors, notes);
   if (!line) return {};
   if (auto bottom = pocket_bottom(face, *line); !bottom.empty()) {
-    if (!faces_outward(face)) std::reverse(bottom.begin(), bottom.end());
     TriMesh parted = face;
+    if (open_pouch(parted, *line, bottom)) {
+      if (const MouthOutline mouth = find_mouth(parted, landmarks, incisors); mouth.found()) {
+        face = std::move(parted);
+        notes.push_back(
+            "the face has a mouth behind its lips: opened, and left out but for a seam");
+        return mouth;
+      }
+      parted = face;
+    }
+    if (!faces_outward(face)) std::reverse(bottom.begin(), bottom.end());
     cut_along(bottom, parted);
     if (const MouthOutline mouth = find_mouth(parted, landmarks, incisors); mouth.found()) {
       face = std::move(parted);
@@ -288,6 +298,7 @@ void part_lips(Case& patient) {
     const Vector3d incisors = read_anatomy(patient, patient.notes).incisors;
     if (find_mouth(part.mesh, patient.landmarks, incisors).found()) continue;
     cut_lip_line(part.mesh, patient.landmarks, incisors, patient.notes);
+    drop_unreferenced(part.mesh);
   }
 }
 

@@ -1,4 +1,4 @@
-// A section through the mouth is hollow where the face has a rim between the lips.
+// The mouth is lined, and a section through it hollow, where the face has a rim between the lips.
 #include "render/mouth_lining.h"
 
 #include <Eigen/Geometry>
@@ -111,6 +111,27 @@ TEST_F(MouthSection, IsFleshRoundAboutAndHollowInside) {
   const Image kept = renderer.picture(side, settings);
   settings.clip->capped = false;
   EXPECT_EQ(kept.rgba, renderer.picture(side, settings).rgba);
+}
+
+TEST_F(MouthSection, WithoutOneTheOpenMouthIsDarkRedAndNothingIsSeenThroughIt) {
+  auto parts = head_with_mouth();
+  std::erase_if(parts[0].mesh.triangles, [&](const Eigen::Vector3i& t) {
+    return parts[0].mesh.vertices[t[0]].y() > 30;  // no nape
+  });
+  SceneRenderer renderer(parts);
+  auto settings = mask_settings(300);
+  settings.part_opacity = {{"upper_teeth", 0}, {"lower_teeth", 0}};
+  const auto inside = [&](double skin) {
+    settings.skin_opacity = skin;
+    return pixel(renderer.picture(front_camera(150), settings), 150, 150);
+  };
+  const Pixel lined = inside(1);
+  EXPECT_EQ(lined.a, 255);
+  EXPECT_GT(lined.r, 15);
+  EXPECT_LT(lined.r, 110);
+  EXPECT_GT(lined.r, 1.5 * lined.g);
+  EXPECT_GT(lined.r, 1.5 * lined.b);
+  EXPECT_EQ(inside(0.5).a, 0);  // a face that is seen through shows what is behind it
 }
 
 }  // namespace

@@ -19,13 +19,12 @@ TEST(FaceScan, OfAnotherPersonOverScaledBonesIsBuiltAndOpens) {
   if (!built) GTEST_SKIP() << "real anatomy absent";
   Case patient = *built;
   const Vector3d tip = test::nose_tip(patient.find(Role::face)->mesh);
-  const std::vector<Vector3d> scan = patient.find(Role::face)->mesh.vertices;
   // The lips meet as far below the tip of the nose as in the built-in face, about.
   const Vector3d stomion = *patient.landmarks.find("stomion");
   EXPECT_NEAR(tip.z() - stomion.z(), 33, 4);
   EXPECT_LT(stomion.y(), patient.landmarks.find("upper_incisal_point")->y());
   part_lips(patient);
-  // One opening from corner to corner, though a deep pocket lies between the lips.
+  // One opening from corner to corner, though a whole mouth lies behind the lips.
   int openings = 0;
   const TriMesh& face_mesh = patient.find(Role::face)->mesh;
   for (const auto& loop : border_loops(face_mesh)) {
@@ -36,9 +35,14 @@ TEST(FaceScan, OfAnotherPersonOverScaledBonesIsBuiltAndOpens) {
     }
     if ((face_mesh.vertices[loop[0]] - stomion).norm() > 40) continue;
     ++openings;
-    EXPECT_NEAR(left - right, 50, 8);
+    EXPECT_NEAR(left - right, 38, 2);  // the skin's corners, 43 apart, stay whole
   }
   EXPECT_EQ(openings, 1);
+  for (const auto& t : face_mesh.triangles) {
+    const Vector3d p = face_mesh.vertices[t[0]];
+    const Vector3d off = p - stomion;
+    EXPECT_FALSE(off.y() > 16 && off.y() < 50 && std::hypot(off.x(), off.z()) < 25) << p;
+  }
   const auto model = build_tissue(patient, {.surface_nodes = 220});
   const TissueSummary& made = summary(*model);
   EXPECT_TRUE(made.lips_cut);
@@ -64,10 +68,10 @@ TEST(FaceScan, OfAnotherPersonOverScaledBonesIsBuiltAndOpens) {
   double most = 0;
   for (std::size_t v = 0; v < face.size(); ++v) {
     ASSERT_TRUE(face[v].allFinite());
-    most = std::max(most, (face[v].cast<double>() - scan[v]).norm());
+    most = std::max(most, (face[v].cast<double>() - face_mesh.vertices[v]).norm());
   }
   EXPECT_GT(most, 25);
-  // No skin hangs between the lips: each goes with its own. Behind them the lining is stretched.
+  // No skin hangs between the lips: each goes with its own; beside them skin is stretched most.
   double stretched = 0;
   const auto& corners = patient.find(Role::face)->mesh;
   for (const auto& t : corners.triangles)
@@ -78,7 +82,7 @@ TEST(FaceScan, OfAnotherPersonOverScaledBonesIsBuiltAndOpens) {
       stretched = std::max(stretched, static_cast<double>((face[a] - face[b]).norm()) - before);
     }
   std::printf("an edge of the face is longer by up to %.1f mm\n", stretched);
-  EXPECT_LT(stretched, 6);
+  EXPECT_LT(stretched, 7);
   // Both lips go with their own jaw.
   const auto moved = [&](const char* name) {
     const Vector3d at = *patient.landmarks.find(name);

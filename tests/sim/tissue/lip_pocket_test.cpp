@@ -84,6 +84,55 @@ TEST(LipPocket, AHoleInTheWayIsGoneRoundOrLeavesItToOthers) {
   EXPECT_TRUE(pocket_bottom(wall_with_hole(5), line).empty());  // what is left is not deep
 }
 
+/// A wall with a slit between lips 3 mm thick, and behind them a mouth 30 mm deep, closed behind.
+TriMesh wall_with_mouth() {
+  constexpr int around = 96, outside = 30, deep = 60;
+  TriMesh mesh;
+  for (int ring = 0; ring <= outside + deep; ++ring)
+    for (int i = 0; i < around; ++i) {
+      const double angle = 2 * M_PI * i / around, in = 0.5 * std::max(0, ring - outside);
+      const double wider = std::max(0, outside - ring) + std::clamp(2 * (in - 3), 0.0, 15.0);
+      mesh.vertices.emplace_back((22 + wider) * std::cos(angle), in,
+                                 (0.05 + wider) * std::sin(angle));
+    }
+  const auto at = [](int ring, int i) { return ring * around + i % around; };
+  for (int ring = 0; ring < outside + deep; ++ring)
+    for (int i = 0; i < around; ++i) {
+      mesh.triangles.emplace_back(at(ring, i), at(ring, i + 1), at(ring + 1, i + 1));
+      mesh.triangles.emplace_back(at(ring, i), at(ring + 1, i + 1), at(ring + 1, i));
+    }
+  for (int i = 1; i + 1 < around; ++i)
+    mesh.triangles.emplace_back(at(outside + deep, 0), at(outside + deep, i),
+                                at(outside + deep, i + 1));
+  return mesh;
+}
+
+TEST(LipPocket, AMouthBehindTheLipsIsOpenedAtItsOwnCorners) {
+  TriMesh face = wall_with_mouth();
+  ASSERT_EQ(border_loops(face).size(), 1u);
+  const int deep = static_cast<int>(face.vertices.size()) - 1;
+  ASSERT_TRUE(open_pouch(face, line, {deep}));
+  const auto loops = border_loops(face);
+  ASSERT_EQ(loops.size(), 2u);
+  const auto& mouth = face.vertices[loops[0][0]].y() > 0 ? loops[0] : loops[1];
+  double right = 0, left = 0, back = 0;
+  for (int v : mouth) {
+    right = std::min(right, face.vertices[v].x());
+    left = std::max(left, face.vertices[v].x());
+    back = std::max(back, face.vertices[v].y());
+  }
+  EXPECT_NEAR(right, -22, 1.5);  // and not the line's 25
+  EXPECT_NEAR(left, 22, 1.5);
+  EXPECT_LT(back, 16);
+}
+
+TEST(LipPocket, AGapBetweenLipsIsNoMouth) {
+  TriMesh face = wall(14, 0.2);
+  const auto whole = face.triangles;
+  EXPECT_FALSE(open_pouch(face, line, pocket_bottom(face, line)));
+  EXPECT_EQ(face.triangles, whole);
+}
+
 TEST(LipPocket, AFaceWithoutOneHasNone) {
   EXPECT_TRUE(pocket_bottom(wall(0, 0), line).empty());
   EXPECT_TRUE(pocket_bottom(wall(3, 0.2), line).empty());
