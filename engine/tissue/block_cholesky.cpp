@@ -177,11 +177,13 @@ void BlockCholesky::forward(int index, float* b, float* rest, std::vector<float>
                            solved.data());
   }
   const int shared = tree.order.part[2];
-  for (int r = front.rows_begin, i = width; r < front.rows_end; ++r) {
-    const int row = tree.rows[r];
+  for (int r = front.rows_begin, i = width; r < front.rows_end;) {
+    const int row = tree.rows[r], count = (tree.row_end[r] - r) * size;
     float* to = row < shared ? b + static_cast<std::size_t>(row) * size
                              : rest + static_cast<std::size_t>(row - shared) * size;
-    for (int k = 0; k < size; ++k) to[k] += rows[i++];
+    kernels.add(to, &rows[i], count);
+    i += count;
+    r = tree.row_end[r];
   }
 }
 
@@ -192,8 +194,12 @@ void BlockCholesky::backward(int index, float* b, std::vector<float>& rows) cons
   const int size = tree.block, height = tree.height(front), width = front.pivots * size;
   const ShortFloat* panel = values_.get() + front.panel;
   float* pivot = b + static_cast<std::size_t>(front.first) * size;
-  for (int r = front.rows_begin, i = width; r < front.rows_end; ++r, i += size)
-    std::copy_n(b + static_cast<std::size_t>(tree.rows[r]) * size, size, &rows[i]);
+  for (int r = front.rows_begin, i = width; r < front.rows_end;) {
+    const int count = (tree.row_end[r] - r) * size;
+    std::copy_n(b + static_cast<std::size_t>(tree.rows[r]) * size, count, &rows[i]);
+    i += count;
+    r = tree.row_end[r];
+  }
   std::fill_n(rows.begin() + height, FrontTree::beyond, 0.0f);
   for (int c = width - size; c >= 0; c -= size) {
     const ShortFloat* diagonal = panel + static_cast<std::size_t>(c) * height + c;
@@ -232,7 +238,8 @@ void BlockCholesky::solve(std::vector<float>& b, int threads) const {
 std::size_t BlockCholesky::bytes() const {
   const std::size_t order = tree_->order.at.size() * tree_->block;
   return memory_->values.length() * sizeof(ShortFloat) + 2 * order * sizeof(float) +
-         (tree_->rows.capacity() + tree_->seat.capacity() + tree_->run_end.capacity()) *
+         (tree_->rows.capacity() + tree_->seat.capacity() + tree_->run_end.capacity() +
+          tree_->row_end.capacity()) *
              sizeof(int);
 }
 

@@ -143,9 +143,15 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
   }
   seat.resize(rows.size());
   run_end.resize(rows.size());
+  row_end.resize(rows.size());
   for (std::size_t f = 0; f < fronts.size(); ++f) {
     Front& front = fronts[f];
     if (front.rows_begin == front.rows_end) continue;
+    for (int r = front.rows_end - 1; r >= front.rows_begin; --r)
+      row_end[r] =
+          r + 1 < front.rows_end && rows[r + 1] == rows[r] + 1 && rows[r + 1] != order.part[2]
+              ? row_end[r + 1]
+              : r + 1;
     front.parent = front_of[rows[front.rows_begin]];
     Front& parent = fronts[front.parent];
     parent.children.push_back(static_cast<int>(f));

@@ -39,6 +39,7 @@ struct FrontTree {
   std::vector<int> rows;      // of all fronts
   std::vector<int> seat;      // of each entry of `rows`: its block in the parent's rows
   std::vector<int> run_end;   // of each entry of `rows`: after those that stand together there, too
+  std::vector<int> row_end;   // of each entry of `rows`: after those whose places follow each other
   std::size_t panel_floats = 0, work_floats = 0;
   int most_height = 0;  // of any front
 };
