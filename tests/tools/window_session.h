@@ -12,6 +12,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 
 #include "tests/support/display.h"
 #include "tests/support/program.h"
@@ -131,20 +132,30 @@ class WindowSession : public testing::Test {
   }
   /// Keeps the picture of a step (SESSION-NUMBER-STEP.png), also of one that fails. gives: the
   /// share of the 3-D view that differs from the step before; 1 for the first.
-  double see(const std::string& step) {
-    Picture now = settled_picture();
+  double see(const std::string& step) { return keep(step, settled_picture()); }
+  /// The same of what moves.
+  double see_now(const std::string& step) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));  // until it is on the screen
+    return keep(step, display_->picture());
+  }
+  Region region_of(const std::string& item) {
+    const auto r = rect(item);
+    return {r[0], r[1], r[2], r[3]};
+  }
+
+  Folder folder_;
+  Picture seen_, seen_before_;  // at the last step and at the one before
+
+ private:
+  double keep(const std::string& step, Picture now) {
     now.save(kept_pictures() /
              (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "-" +
               std::to_string(10 + steps_++) + "-" + step + ".png"));
     const double changed = difference(now, seen_, view_region());
-    seen_ = std::move(now);
+    seen_before_ = std::exchange(seen_, std::move(now));
     return changed;
   }
 
-  Folder folder_;
-  Picture seen_;  // at the last step
-
- private:
   int steps_ = 0;
   std::unique_ptr<TestDisplay> display_;
   pid_t program_ = -1;

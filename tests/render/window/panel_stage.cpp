@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <numbers>
 
 #include "engine/core/hash.h"
@@ -192,11 +191,6 @@ DrawnItem PanelStage::item(const std::string& name) const {
     if (drawn.name == name) return drawn;
   ADD_FAILURE() << "no item '" << name << "' was drawn";
   return {};
-}
-
-std::filesystem::path kept_picture(const std::string& name) {
-  const char* folder = std::getenv("CONDYLE_KEEP_PICTURES");
-  return folder && *folder ? std::filesystem::path(folder) / name : std::filesystem::path();
 }
 
 }  // namespace condyle

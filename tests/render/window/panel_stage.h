@@ -2,7 +2,6 @@
 
 #include <imgui.h>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "render/gl_context.h"
 #include "render/image.h"
 #include "render/window/panels.h"
+#include "tests/support/picture.h"
 
 namespace condyle {
 
@@ -66,8 +66,5 @@ class PanelStage {
   int width_, height_;
   Framebuffer picture_;
 };
-
-/// Where looked-at pictures go when CONDYLE_KEEP_PICTURES names a folder; empty otherwise.
-std::filesystem::path kept_picture(const std::string& name);
 
 }  // namespace condyle
