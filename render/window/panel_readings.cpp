@@ -333,11 +333,13 @@ void Panels::Drawing::times() {
   if (input.pictures.render_scale < 1 || input.pictures.samples < 4) {
     ImGui::SameLine();
     const bool for_good = input.pictures.finished;
-    text_right(theme.small, palette().text_faint,
-               for_good ? "no finer picture"
-               : input.pictures.render_scale < 1
-                   ? fmt::format("picture at {:.0f} %", 100 * input.pictures.render_scale)
-                   : "faster picture");
+    const std::string words =
+        for_good ? "no finer picture"
+        : input.pictures.render_scale < 1
+            ? fmt::format("picture at {:.0f} %", 100 * input.pictures.render_scale)
+            : "faster picture";
+    text_right(theme.small, palette().text_faint, words);
+    pen.mark("quality", words);
     tooltip(pen,
             for_good
                 ? "The graphics driver gives too few samples a pixel to make edges quite smooth"

@@ -445,6 +445,19 @@ TEST_P(Instrument, AnOpeningThatHasNoWayIsGreyAndSaysWhy) {
   keep("no-opening");
 }
 
+TEST_P(Instrument, APictureThatGetsNoFinerIsToldFromOneThatWill) {
+  stage.drawing.samples = 1;
+  stage.rest();
+  EXPECT_EQ(stage.item("quality").words, "faster picture");
+  stage.drawing.finished = true;
+  stage.rest();
+  EXPECT_EQ(stage.item("quality").words, "no finer picture");
+  expect_tidy();
+  stage.drawing.samples = 4;
+  stage.rest();
+  EXPECT_FALSE(stage.has("quality"));
+}
+
 TEST_P(Instrument, WhatWasMeasuredStaysInThePictureUntilItIsCleared) {
   constexpr unsigned yellow = 0xf0e442;
   const auto drawn = [&] {

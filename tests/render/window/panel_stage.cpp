@@ -108,7 +108,7 @@ void PanelStage::step(double x, double y, bool down) {
   const PanelInput input{.scene = scene,
                          .frame = &frame,
                          .loop = {.steps_per_second = 60},
-                         .pictures = {.pictures_per_second = 24, .picture_ms = 31},
+                         .pictures = drawing,
                          .camera = camera,
                          .box = {Eigen::Vector3d(-80, -95, -90), Eigen::Vector3d(80, 100, 130)},
                          .progress = progress,

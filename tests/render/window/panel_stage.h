@@ -54,6 +54,7 @@ class PanelStage {
   FrameState frame = box_frame(1.2, 23.4);
   Camera camera;
   std::vector<Command> commands;  // all so far
+  PictureStatistics drawing = {.pictures_per_second = 24, .picture_ms = 31};
   std::string progress, recording;
   std::vector<KeyEntry> key;
   bool can_cancel = false;
