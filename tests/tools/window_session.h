@@ -30,6 +30,8 @@ class WindowSession : public testing::Test {
     display_ = std::make_unique<TestDisplay>();
     ASSERT_TRUE(display_->running());
     setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
+    for (const auto& entry : fs::directory_iterator(kept_pictures()))  // of an earlier run
+      if (entry.path().filename().string().starts_with(test_name() + "-")) fs::remove(entry.path());
   }
   void TearDown() override {
     if (program_ > 0) {
@@ -143,14 +145,17 @@ class WindowSession : public testing::Test {
     return {r[0], r[1], r[2], r[3]};
   }
 
+  static std::string test_name() {
+    return testing::UnitTest::GetInstance()->current_test_info()->name();
+  }
+
   Folder folder_;
   Picture seen_, seen_before_;  // at the last step and at the one before
 
  private:
   double keep(const std::string& step, Picture now) {
     now.save(kept_pictures() /
-             (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "-" +
-              std::to_string(10 + steps_++) + "-" + step + ".png"));
+             (test_name() + "-" + std::to_string(10 + steps_++) + "-" + step + ".png"));
     const double changed = difference(now, seen_, view_region());
     seen_before_ = std::exchange(seen_, std::move(now));
     return changed;
