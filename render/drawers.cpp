@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "render/framebuffer.h"
 #include "render/gl_context.h"
 
 namespace condyle {
@@ -31,6 +32,7 @@ struct Drawers::State {
   std::exception_ptr trouble;
   std::int64_t trouble_at = std::numeric_limits<std::int64_t>::max();  // the picture's number
   std::string driver;
+  int most_samples = 1;
   const SceneRenderer* first = nullptr;
   std::vector<std::thread> threads;
 
@@ -68,6 +70,7 @@ struct Drawers::State {
     if (drawer == 0) {
       first = &*renderer;
       driver = context->description();
+      most_samples = condyle::most_samples();
       // A card draws one picture at a time.
       const bool card = driver.find("llvmpipe") == std::string::npos;
       tell_ready(card || std::thread::hardware_concurrency() < 2 ? 1 : std::max(1, most));
@@ -147,6 +150,7 @@ Drawers::~Drawers() {
 
 int Drawers::count() const { return state_->count; }
 const std::string& Drawers::driver() const { return state_->driver; }
+int Drawers::most_samples() const { return state_->most_samples; }
 
 void Drawers::add(Draw draw) {
   auto& s = *state_;

@@ -30,6 +30,8 @@ class Drawers {
   int count() const;
   /// GL_RENDERER and the EGL platform.
   const std::string& driver() const;
+  /// Samples a pixel that the driver gives at most.
+  int most_samples() const;
 
   /// Waits while several others wait. throws: what an earlier picture threw; then those before it
   /// are delivered, none after it, and none is in hand.

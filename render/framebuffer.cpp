@@ -14,16 +14,22 @@ void require_complete(int width, int height) {
                        "x" + std::to_string(height) + "; ask for a smaller one");
 }
 
+int most_samples() {
+  GLint most = 1;
+  glGetIntegerv(GL_MAX_SAMPLES, &most);
+  return std::max(1, most);
+}
+
 Framebuffer::Framebuffer(int width, int height, int samples)
     : width_(width), height_(height), samples_(samples) {
-  GLint most_samples = 1, most_side = 0;
-  glGetIntegerv(GL_MAX_SAMPLES, &most_samples);
+  GLint most_side = 0;
   glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most_side);
   if (width < 1 || height < 1 || width > most_side || height > most_side)
     throw MachineError("a picture of " + std::to_string(width) + "x" + std::to_string(height) +
                        " cannot be drawn; the graphics driver allows 1 to " +
                        std::to_string(most_side) + " pixels a side");
-  samples_ = samples <= 1 ? 0 : std::min<int>(samples, most_samples);
+  samples = std::min(samples, most_samples());
+  samples_ = samples <= 1 ? 0 : samples;
   while (glGetError() != GL_NO_ERROR) {
   }
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);

@@ -9,10 +9,13 @@ namespace condyle {
 /// throws: MachineError when the framebuffer that is bound, just made, cannot be drawn into.
 void require_complete(int width, int height);
 
+/// Of multisampling, that the context gives at most; 1: none.
+int most_samples();
+
 /// Colour (RGBA, 8 bit), depth and stencil off the screen, with or without multisampling.
 class Framebuffer {
  public:
-  /// `samples` is lowered to what the context gives.
+  /// `samples` is lowered to most_samples().
   /// throws: MachineError when the size is beyond the driver's limit or memory.
   Framebuffer(int width, int height, int samples);
 

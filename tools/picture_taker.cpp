@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "engine/core/error.h"
@@ -48,6 +49,14 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const 
 }
 
 }  // namespace
+
+std::string PictureFacts::shortfall() const {
+  if (samples >= samples_asked) return {};
+  return fmt::format(
+      "asked for {} samples a pixel, the graphics driver ({}) gives {}: edges in the pictures are "
+      "less smooth",
+      samples_asked, driver, samples);
+}
 
 RecordingCamera PictureTaker::camera_of(const std::string& text,
                                         const Eigen::AlignedBox3d& box) const {
@@ -102,6 +111,11 @@ PictureTaker::PictureTaker(const PicturePlan& plan, const RecordingFiles& files,
       prepare(renderer, desks_[static_cast<std::size_t>(drawer)]);
       return [] {};
     });
+}
+
+PictureFacts PictureTaker::facts() const {
+  const int asked = plan_.settings.samples;
+  return {drawers_->driver(), asked, std::min(asked, drawers_->most_samples())};
 }
 
 void PictureTaker::prepare(SceneRenderer& renderer, Desk& desk) const {

@@ -34,6 +34,15 @@ struct RecordingFiles {
   bool resume = false;
 };
 
+/// What pictures are drawn with.
+struct PictureFacts {
+  std::string driver;
+  int samples_asked = 1, samples = 1;  // a pixel
+
+  /// What they lack for want of the driver, in words; empty for nothing.
+  std::string shortfall() const;
+};
+
 /// Draws the frames of one recording, seen by one camera or several, and keeps them.
 class PictureTaker {
  public:
@@ -42,6 +51,7 @@ class PictureTaker {
 
   /// Pictures that were there already.
   int kept() const { return kept_; }
+  PictureFacts facts() const;
 
   /// What is done with a frame once its pictures are drawn: in order, one at a time, on threads of
   /// the drawing.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "engine/core/error.h"
@@ -83,6 +84,14 @@ std::string tissue_text(const MotionOptions& options, const Case& patient) {
   return fmt::format("{} {}", options.surface_nodes, tissue_plan_json(plan).dump());
 }
 
+/// The report, with what its pictures were drawn with.
+std::string with_pictures(const std::string& report, const PictureFacts& facts) {
+  auto json = nlohmann::ordered_json::parse(report);
+  json["pictures"] = {
+      {"driver", facts.driver}, {"samples_asked", facts.samples_asked}, {"samples", facts.samples}};
+  return json.dump(2) + "\n";
+}
+
 /// Fails before the long work when the command line is wrong in a way that needs no patient.
 void check_early(const RecordOptions& options) {
   if (options.pictures) check_pictures(options.picture);
@@ -139,7 +148,8 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   if (pictures) pictures->wait();
   bar.clear();
   trace.finish();
-  const std::string json = report.json();
+  std::string json = report.json();
+  if (pictures) json = with_pictures(json, pictures->facts());
   write_file(options.out / "report.json", json);
   if (motion.muscles) write_file(options.out / "excitations.csv", excitations_csv(motion));
   if (options.plots) {
@@ -150,6 +160,8 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   if (common.json) fmt::print("{}", json);
   if (!common.quiet) {
     for (const auto& note : motion.notes) fmt::print(stderr, "note: {}\n", note);
+    if (const auto lacks = pictures ? pictures->facts().shortfall() : ""; !lacks.empty())
+      fmt::print(stderr, "note: {}; --edges fxaa or --supersample 2 smooth them\n", lacks);
     fmt::print(stderr, "{}", report.text());
     if (pictures && pictures->kept() > 0)
       fmt::print(stderr, "{} frames were there already and were kept\n", pictures->kept());

@@ -196,8 +196,10 @@ void add_pictures(CLI::App* command, PictureOptions& picture) {
       "are filled in, | breaks the line");
   command->add_flag("--transparent", picture.transparent, "No background: PNG with alpha");
   command
-      ->add_option("--edges", picture.edges,
-                   "How edges are made smooth: msaa4, fxaa (twice as fast) or none (msaa4)")
+      ->add_option(
+          "--edges", picture.edges,
+          "How edges are made smooth: msaa4 (a driver that gives fewer samples is told of), "
+          "fxaa (twice as fast) or none (msaa4)")
       ->check(CLI::IsMember({"msaa4", "fxaa", "none"}));
   command
       ->add_option("--supersample", picture.supersample,

@@ -134,6 +134,18 @@ Motion make(const MotionChoice& choice, const Scene& scene, const MotionOptions&
   return scaled;
 }
 
+/// A recording's own way; else the patient's, whatever the motion does.
+Motion opening_of(const MotionChoice& choice, const Motion& motion, const Scene& scene,
+                  const MotionOptions& options, int threads) {
+  if (choice.spec == "opening" || motion.recording) return motion;
+  try {
+    return make({.spec = "opening", .parameters = choice.parameters, .excitations = {}}, scene,
+                options, threads);
+  } catch (const InputError&) {
+    return motion;  // landmarks are missing
+  }
+}
+
 std::vector<MotionSetting> settings_of(const MotionChoice& choice, const Motion& motion,
                                        const MotionParameters& of_case, double widest_mm) {
   if (motion.recorded) return {};
@@ -266,14 +278,17 @@ ViewMotion make_view_motion(const MotionChoice& choice, const ViewPatient& patie
   const Case& of = patient.scene.patient;
   ViewMotion made{.choice = choice,
                   .motion = make(choice, patient.scene, options, threads),
+                  .opening = {},
                   .widest_mm = 0,
                   .settings = {},
                   .excitations = {}};
   const Motion& motion = made.motion;
+  made.opening = opening_of(choice, motion, patient.scene, options, threads);
   constexpr int samples = 200;
-  for (int i = 0; i <= samples; ++i)
-    made.widest_mm = std::max(
-        made.widest_mm, measure(of, motion.wanted(motion.duration_s * i / samples)).opening_mm);
+  for (int i = 0; i <= samples; ++i) {
+    const Pose X_CM = made.opening.wanted(made.opening.duration_s * i / samples);
+    made.widest_mm = std::max(made.widest_mm, measure(of, X_CM).opening_mm);
+  }
   made.settings = settings_of(choice, motion, of.motion, made.widest_mm);
   if (!motion.muscles) return made;
   const bool free = choice.spec == by_hand;

@@ -17,7 +17,8 @@ namespace condyle {
 struct ViewMotion {
   MotionChoice choice;
   Motion motion;
-  double widest_mm = 0;  // opening
+  Motion opening;        // what a hand opens the mouth along
+  double widest_mm = 0;  // of it
   std::vector<MotionSetting> settings;
   std::vector<ExcitationSetting> excitations;
 };

@@ -62,8 +62,8 @@ PicturePlan plan_of(const ViewRecording& subject) {
 
 }  // namespace
 
-std::filesystem::path record_view(const ViewRecording& subject, const SimulatorSettings& settings,
-                                  const Progress& progress) {
+std::string record_view(const ViewRecording& subject, const SimulatorSettings& settings,
+                        const Progress& progress) {
   const wish::Record& wanted = subject.wanted;
   const Scene& scene = subject.patient->scene;
   const Motion motion = seen_motion(subject);
@@ -93,7 +93,9 @@ std::filesystem::path record_view(const ViewRecording& subject, const SimulatorS
   report(progress, wanted.film ? "making the film" : "writing the last pictures", 1);
   pictures.finish();
   const bool one_film = wanted.film && wanted.cameras.size() == 1;
-  return one_film ? wanted.folder / "film.mp4" : wanted.folder;
+  const auto made = one_film ? wanted.folder / "film.mp4" : wanted.folder;
+  const std::string lacks = pictures.facts().shortfall();
+  return "Recorded " + made.string() + (lacks.empty() ? "" : " (" + lacks + ")");
 }
 
 }  // namespace condyle

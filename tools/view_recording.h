@@ -23,8 +23,8 @@ struct ViewRecording {
 
 /// Records the motion as the window shows it: its parts, overlays, colours, wipe, scale and
 /// letters; bones stay where hands have put them, and slide on contact if it is obeyed. gives: what
-/// was made. throws: MachineError.
-std::filesystem::path record_view(const ViewRecording& subject, const SimulatorSettings& settings,
-                                  const Progress& progress);
+/// was made, as a sentence. throws: MachineError.
+std::string record_view(const ViewRecording& subject, const SimulatorSettings& settings,
+                        const Progress& progress);
 
 }  // namespace condyle

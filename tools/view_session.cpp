@@ -117,7 +117,7 @@ void ViewSession::show_scene() {
     shown_.motion = motion_->choice;
     shown_.motion_name = motion.name;
     shown_.duration_s = motion.duration_s;
-    shown_.max_opening_mm = std::max(motion_->widest_mm, 1.0);
+    shown_.max_opening_mm = motion_->widest_mm;
     shown_.motion_settings = motion_->settings;
     shown_.excitations = motion_->excitations;
     shown_.notes.insert(shown_.notes.end(), motion.notes.begin(), motion.notes.end());
@@ -156,8 +156,8 @@ void ViewSession::take_motion() {
   motion_ = *made;
   show_scene();
   retire(simulation_);
-  simulation_ =
-      std::make_shared<LiveSimulation>(patient_->scene, motion_->motion, live_settings(settings_));
+  simulation_ = std::make_shared<LiveSimulation>(patient_->scene, motion_->motion,
+                                                 live_settings(settings_), motion_->opening);
   moved_ = {};
   window_.change([&](ViewState& view) {
     view.obey_contact = obeys_contact();

@@ -151,7 +151,7 @@ class ViewSession {
   std::unique_ptr<Background<MotionPtr>> moving_;
   std::unique_ptr<Background<bool>> readying_;  // bones to slide
   std::unique_ptr<Background<MotionPictures>> plotting_;
-  std::unique_ptr<Background<std::filesystem::path>> recording_;
+  std::unique_ptr<Background<std::string>> recording_;
   std::unique_ptr<Background<LetGoResult>> letting_go_;
   std::unique_ptr<Background<Saved>> saving_;
 };

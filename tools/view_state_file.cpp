@@ -51,7 +51,9 @@ nlohmann::json edits_of(const ViewState& view) {
           {"parts", parts(view.parts)},
           {"muscles", parts(view.muscles)},
           {"layers", parts(view.layers)},
-          {"parameters", view.motion.parameters}};
+          {"motion", view.motion.spec},
+          {"parameters", view.motion.parameters},
+          {"excitations", view.motion.excitations}};
 }
 
 }  // namespace

@@ -102,14 +102,14 @@ void ViewSession::carry_out(const wish::Record& wanted) {
   if (recording_ || !motion_) return;
   std::optional<Pose> held_jaw = window_.view().hands.mandible;
   if (!held_jaw && window_.view().opening_mm && newest_) held_jaw = newest_->X_CM_wanted;
-  recording_ = beside<fs::path>([subject = ViewRecording{.wanted = wanted,
-                                                         .view = window_.view(),
-                                                         .bodies = shown_.bodies,
-                                                         .held_jaw = held_jaw,
-                                                         .patient = patient_,
-                                                         .motion = motion_,
-                                                         .paths = paths_},
-                                 settings = settings_](const Progress& progress) {
+  recording_ = beside<std::string>([subject = ViewRecording{.wanted = wanted,
+                                                            .view = window_.view(),
+                                                            .bodies = shown_.bodies,
+                                                            .held_jaw = held_jaw,
+                                                            .patient = patient_,
+                                                            .motion = motion_,
+                                                            .paths = paths_},
+                                    settings = settings_](const Progress& progress) {
     return record_view(subject, settings, progress);
   });
 }
@@ -173,7 +173,7 @@ void ViewSession::take_recording() {
   window_.show_recording("", 0);
   guarded([&] {
     if (const auto made = finished->take())
-      window_.say("Recorded " + made->string());
+      window_.say(*made);
     else
       window_.say("The recording was stopped; its pictures stay in the folder");
   });

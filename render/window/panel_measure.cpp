@@ -8,7 +8,8 @@
 namespace condyle {
 
 void Panels::Drawing::measuring() {
-  if (!input.frame) return;
+  const bool in_use = view.tool == Tool::measure;
+  if (!input.frame || (!in_use && view.measured.empty())) return;
   const Theme& theme = panels.theme_;
   std::vector<Eigen::Vector3d> places;
   for (const auto& point : view.measured)
@@ -47,6 +48,7 @@ void Panels::Drawing::measuring() {
   }
   list.PopClipRect();
 
+  if (!in_use) return;
   const double wide = pen.px(224), high = pen.px(176), margin = pen.px(12);
   if (r.width < 2 * wide || r.height < high + 2 * margin) return;
   begin_panel(pen, "measure", {r.x + margin, r.y + margin, wide, high});
@@ -57,7 +59,7 @@ void Panels::Drawing::measuring() {
     ImGui::PushTextWrapPos(0);
     text(theme.small, palette().text_dim,
          "Click two points for a distance, three for an angle and an area, more for a way and an "
-         "area. They stay on their bone or skin.");
+         "area. They stay on their bone or skin until they are cleared.");
     ImGui::PopTextWrapPos();
   } else {
     constexpr std::array names = {"Length", "Angle", "Area"};

@@ -2,12 +2,16 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "render/window/panels_drawing.h"
 
 namespace condyle {
 namespace {
+
+/// Percent are set and shown to a tenth.
+double tenths(double percent) { return std::round(10 * percent) / 10; }
 
 /// A named number with its unit, and what was published of it as a bar under the slider.
 struct Setting {
@@ -34,8 +38,10 @@ bool setting_slider(Pen& pen, const Setting& setting, std::map<std::string, doub
                        (shown < setting.usual_low - 1e-9 || shown > setting.usual_high + 1e-9);
   const std::string unit =
       setting.unit == "\u00b0" || setting.unit.empty() ? setting.unit : " " + setting.unit;
-  const std::string number =
-      has_number ? fmt::format("{:.{}g}{}", shown, told ? 4 : 3, unit) : std::string();
+  const std::string number = !has_number ? std::string()
+                             : setting.unit == "%"
+                                 ? fmt::format("{:g}{}", tenths(shown), unit)
+                                 : fmt::format("{:.{}g}{}", shown, told ? 4 : 3, unit);
   text(pen.theme.regular, set_by_hand ? palette().text : palette().text_dim, setting.label);
   ImGui::SameLine();
   const float right = ImGui::GetWindowContentRegionMax().x;
@@ -144,7 +150,7 @@ void Panels::Drawing::motion() {
                             100 * muscle.high};
       if (setting_slider(pen, setting, drafts.excitations, muscle.name, percent,
                          mine != view.motion.excitations.end())) {
-        view.motion.excitations[muscle.name] = percent / 100;
+        view.motion.excitations[muscle.name] = tenths(percent) / 100;
       }
     }
     ImGui::EndChild();

@@ -120,19 +120,25 @@ void Panels::Drawing::opening() {
   ImGui::SetCursorPosY(after);
 
   // Slider with ticks; a mark shows where the jaw really is while the hand holds it.
-  const double most = std::max(1.0, input.scene.max_opening_mm);
+  constexpr double least_mm = 1;  // of a way that a hand can follow
+  const bool opens = input.scene.max_opening_mm >= least_mm;
+  const double most = std::max(least_mm, input.scene.max_opening_mm);
   const float width = ImGui::GetContentRegionAvail().x, knob = pen.px(6.5f);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   double wanted = held ? *view.opening_mm : std::clamp(live, 0.0, most);
+  ImGui::BeginDisabled(!opens);
   if (slider(pen, "opening", wanted, {.high = most, .width = width, .held = held})) {
     view.hands.mandible.reset();
     view.opening_mm = wanted;
     view.playing = false;
   }
-  tooltip(
-      pen,
-      "Drag to open the mouth by hand, along the motion's way and as far as it goes: the drop of "
-      "the lower incisal point, mm. Ctrl+click to type a number");
+  ImGui::EndDisabled();
+  tooltip(pen, opens
+                   ? "Drag to open the mouth by hand, as the patient opens it (as recorded, where "
+                     "the motion is a recording) and as far: the drop of the lower incisal "
+                     "point, mm. Ctrl+click to type a number"
+                   : "Nothing to open along: the recorded motion keeps the mouth shut, or the "
+                     "patient has no landmarks of condyles and lower incisal point");
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const auto x_of = [&](double mm) {
     return at.x + knob + (width - 2 * knob) * static_cast<float>(std::clamp(mm / most, 0.0, 1.0));
@@ -326,12 +332,19 @@ void Panels::Drawing::times() {
   pen.mark("rates");
   if (input.pictures.render_scale < 1 || input.pictures.samples < 4) {
     ImGui::SameLine();
-    text_right(theme.small, palette().text_faint,
-               input.pictures.render_scale < 1
-                   ? fmt::format("picture at {:.0f} %", 100 * input.pictures.render_scale)
-                   : "faster picture");
+    const bool for_good = input.pictures.finished;
+    const std::string words =
+        for_good ? "no finer picture"
+        : input.pictures.render_scale < 1
+            ? fmt::format("picture at {:.0f} %", 100 * input.pictures.render_scale)
+            : "faster picture";
+    text_right(theme.small, palette().text_faint, words);
+    pen.mark("quality", words);
     tooltip(pen,
-            "While things move on a slow machine the picture is coarser. It is full again at rest");
+            for_good
+                ? "The graphics driver gives too few samples a pixel to make edges quite smooth"
+                : "While things move on a slow machine the picture is coarser. It is full again at "
+                  "rest");
   }
 }
 

@@ -253,7 +253,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
     drawing.edges();
   }
   if (view.tool == Tool::move && !preparing) drawing.moving();
-  if (view.tool == Tool::measure && !preparing) drawing.measuring();
+  if (!preparing) drawing.measuring();
   if (view.tool == Tool::landmarks && !preparing) drawing.landmarks();
   drawing.view_signs();
   drawing.dialogs();

@@ -23,7 +23,7 @@ struct Panels::Drawing {
   void parts();       // panel_parts.cpp
   void side();        // panel_readings.cpp
   void moving();      // panel_move.cpp: handles, and the chosen body's place in numbers
-  void measuring();   // panel_measure.cpp
+  void measuring();   // panel_measure.cpp: points and lines until they are cleared; its tool
   void landmarks();   // panel_landmarks.cpp
   void plots();       // panel_plots.cpp
   void edges();       // panel_edges.cpp: between panels, to draw them wider or higher
@@ -56,7 +56,7 @@ struct Panels::Drawing {
   // panel_legend.cpp; each gives its pane, empty without one:
   ViewRect legend();  // of a map, in the lower left corner of the view
   ViewRect key();     // to overlays, in its upper right corner
-  void pointed();  // what the mouse is on
+  void pointed();     // what the mouse is on
 };
 
 /// Stands in the window at all times.

@@ -28,7 +28,7 @@ struct WindowScene {
   std::string motion_name = {};
   double duration_s = 0;                // of the motion; 0 when there is none
   double step_s = 1.0 / 30;             // what one press of an arrow key moves
-  double max_opening_mm = 50;           // end of the opening slider
+  double max_opening_mm = 50;           // end of the opening slider; below 1: it has no way to go
   std::vector<std::string> notes = {};  // sentences about this case, e.g. overlap at rest
   // Colours for distances, where the loop behind the window can tell them; beside them in the
   // legend stand the remarks.

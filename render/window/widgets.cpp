@@ -185,7 +185,7 @@ void heading(Pen& pen, const char* words, const std::string& right) {
 }
 
 void tooltip(Pen& pen, const char* words) {
-  if (!ImGui::IsItemHovered()) return;
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   constexpr double wait_s = 0.5;
   TooltipWait& resting = pen.resting;
   const ImVec2 corner = ImGui::GetItemRectMin();
@@ -254,14 +254,17 @@ bool word_button(Pen& pen, const char* name, const char* label, ImVec2 size, boo
 
 namespace {
 
+bool is_disabled() {
+  return (ImGui::GetCurrentContext()->CurrentItemFlags & ImGuiItemFlags_Disabled) != 0;
+}
+
 /// Whether the slider is a field for its number now.
 bool typed_into(const char* name, const ImRect& rect) {
   const ImGuiID id = ImGui::GetCurrentWindow()->GetID(name);
   const ImGuiContext& now = *ImGui::GetCurrentContext();
   if (ImGui::TempInputIsActive(id)) return true;
   return now.IO.KeyCtrl && now.IO.MouseClicked[0] && now.HoveredWindow == now.CurrentWindow &&
-         (now.CurrentItemFlags & ImGuiItemFlags_Disabled) == 0 &&
-         ImGui::IsMouseHoveringRect(rect.Min, rect.Max);
+         !is_disabled() && ImGui::IsMouseHoveringRect(rect.Min, rect.Max);
 }
 
 bool typed_number(Pen& pen, const char* name, const ImRect& rect, double& value,
@@ -316,7 +319,9 @@ bool slider(Pen& pen, const char* name, double& value, const SliderLook& look) {
   const float y = low.y + height / 2, x = low.x + knob + span * fraction_of(value);
   const float thick = pen.px(2);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImU32 tint = look.held ? palette().warning : palette().accent;
+  const ImU32 tint = is_disabled() ? palette().text_faint
+                     : look.held   ? palette().warning
+                                   : palette().accent;
   list.AddRectFilled({low.x, y - thick}, {low.x + look.width, y + thick}, palette().track, thick);
   if (look.filled) list.AddRectFilled({low.x, y - thick}, {x, y + thick}, tint, thick);
   list.AddCircleFilled({x, y}, lit ? knob : knob * 0.85f, lit ? palette().bright : tint, 24);

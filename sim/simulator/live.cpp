@@ -58,9 +58,11 @@ SimulatorSettings live_settings(SimulatorSettings settings) {
   return settings;
 }
 
-LiveSimulation::LiveSimulation(const Scene& scene, Motion motion, const SimulatorSettings& settings)
+LiveSimulation::LiveSimulation(const Scene& scene, Motion motion, const SimulatorSettings& settings,
+                               std::optional<Motion> opening)
     : scene_(scene),
       motion_(std::move(motion)),
+      opening_(std::move(opening)),
       settings_(settings),
       held_(1 + free_parts(scene.patient.parts).size()),
       thread_([this] { work(); }) {}
@@ -131,9 +133,10 @@ double LiveSimulation::steps_per_second() const {
 }
 
 StepInput LiveSimulation::input(const LiveRequest& wanted, double time_s) const {
+  const Motion& way = wanted.opening_mm && opening_ ? *opening_ : motion_;
   const double t =
-      wanted.opening_mm ? time_of_opening(scene_.patient, motion_, *wanted.opening_mm) : time_s;
-  return {.time_s = time_s, .X_CM_wanted = motion_.wanted(t), .obey_contact = wanted.obey_contact};
+      wanted.opening_mm ? time_of_opening(scene_.patient, way, *wanted.opening_mm) : time_s;
+  return {.time_s = time_s, .X_CM_wanted = way.wanted(t), .obey_contact = wanted.obey_contact};
 }
 
 void LiveSimulation::work() {

@@ -32,8 +32,10 @@ SimulatorSettings live_settings(SimulatorSettings settings);
 /// most.
 class LiveSimulation {
  public:
-  /// The scene must outlive the simulation.
-  LiveSimulation(const Scene& scene, Motion motion, const SimulatorSettings& settings);
+  /// The scene must outlive the simulation. A wanted opening is found along a motion of its own;
+  /// none: along the motion.
+  LiveSimulation(const Scene& scene, Motion motion, const SimulatorSettings& settings,
+                 std::optional<Motion> opening = std::nullopt);
   ~LiveSimulation();
   LiveSimulation(const LiveSimulation&) = delete;
   LiveSimulation& operator=(const LiveSimulation&) = delete;
@@ -61,6 +63,7 @@ class LiveSimulation {
 
   const Scene& scene_;
   Motion motion_;
+  std::optional<Motion> opening_;
   SimulatorSettings settings_;
 
   mutable std::mutex mutex_;

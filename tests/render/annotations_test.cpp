@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/paint.h"
+#include "tests/support/picture.h"
 
 namespace condyle {
 namespace {
@@ -88,7 +89,7 @@ TEST(Annotations, ArePaintedWhereTheyBelongAndOnlyWhenWanted) {
   const Lettering words;
   const Camera camera = seen({0, -1, 0});
   annotate(image, words, camera, {});
-  EXPECT_EQ(image.rgba, before.rgba);
+  EXPECT_TRUE(test::same_bytes(image, before));
   annotate(image, words, camera, {.scale_bar = true});
   const auto differs = [&](int x0, int y0, int x1, int y1) {
     int count = 0;

@@ -55,8 +55,8 @@ TEST(Drawers, GiveThePicturesOfOneRendererInTheirOrder) {
     ASSERT_EQ(expected.size(), pictures);
     ASSERT_EQ(found.size(), pictures);
     for (int i = 0; i < pictures; ++i)
-      EXPECT_TRUE(found[i].rgba == expected[i].rgba) << i << ", " << samples << " samples";
-    EXPECT_FALSE(expected[0].rgba == expected[1].rgba);
+      EXPECT_TRUE(test::same_bytes(found[i], expected[i])) << i << ", " << samples << " samples";
+    EXPECT_TRUE(test::unlike(expected[0], expected[1], 0));
   }
 }
 

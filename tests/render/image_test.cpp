@@ -9,6 +9,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "render/recording_sheet.h"
+#include "tests/support/picture.h"
 
 namespace condyle {
 namespace {
@@ -38,7 +39,7 @@ TEST(Png, WhatIsWrittenIsReadBack) {
       const Image again = read_png(folder.path / "a.png");
       EXPECT_EQ(again.width, w);
       EXPECT_EQ(again.height, h);
-      EXPECT_EQ(again.rgba, image.rgba);
+      EXPECT_TRUE(test::same_bytes(again, image));
       EXPECT_EQ(encode_png(image), encode_png(again));
       EXPECT_TRUE(is_whole_png(folder.path / "a.png", w, h));
       EXPECT_FALSE(is_whole_png(folder.path / "a.png", w + 1, h));

@@ -7,6 +7,7 @@
 
 #include "render/annotations.h"
 #include "render/legend.h"
+#include "tests/support/picture.h"
 
 namespace condyle {
 namespace {
@@ -97,8 +98,8 @@ TEST(Key, IsLeftAwayWhereThereIsNothingToTellOrNoRoom) {
   Image image = grey(1280, 720), small = grey(64, 48);
   EXPECT_EQ(add_key(image, words, {}).x1, 0);
   EXPECT_EQ(add_key(small, words, key_of(20)).x1, 0);
-  EXPECT_EQ(image.rgba, grey(1280, 720).rgba);
-  EXPECT_EQ(small.rgba, grey(64, 48).rgba);
+  EXPECT_TRUE(test::same_bytes(image, grey(1280, 720)));
+  EXPECT_TRUE(test::same_bytes(small, grey(64, 48)));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "engine/core/error.h"
 #include "render/gl_context.h"
 #include "render/scene_renderer.h"
+#include "tests/support/picture.h"
 
 namespace condyle {
 

@@ -59,8 +59,8 @@ TEST_F(Scene, TheSamePictureTwiceHasTheSameBytes) {
   settings.width = 64;
   first.picture(front_camera(), settings);  // another size in between changes nothing
   settings.width = 320;
-  EXPECT_EQ(a.rgba, first.picture(front_camera(), settings).rgba);
-  EXPECT_EQ(a.rgba, second.picture(front_camera(), settings).rgba);
+  EXPECT_TRUE(test::same_bytes(a, first.picture(front_camera(), settings)));
+  EXPECT_TRUE(test::same_bytes(a, second.picture(front_camera(), settings)));
 }
 
 TEST_F(Scene, OpacityZeroEqualsAbsence) {
@@ -78,9 +78,9 @@ TEST_F(Scene, OpacityZeroEqualsAbsence) {
   settings.part_opacity["face"] = 0;
   const Image part_hidden = with.picture(front_camera(), settings);
   const Image absent = without.picture(front_camera(), settings);
-  EXPECT_NE(whole.rgba, skin_hidden.rgba);
-  EXPECT_EQ(skin_hidden.rgba, part_hidden.rgba);
-  EXPECT_EQ(skin_hidden.rgba, absent.rgba);
+  EXPECT_TRUE(test::unlike(whole, skin_hidden, 0));
+  EXPECT_TRUE(test::same_bytes(skin_hidden, part_hidden));
+  EXPECT_TRUE(test::same_bytes(skin_hidden, absent));
 }
 
 TEST_F(Scene, HalfOpaqueSkinShowsWhatLiesUnderItBetweenBothPictures) {
@@ -170,8 +170,8 @@ TEST_F(Scene, FreePartsLeaveNoBakedShadeBehind) {
   both.update(frame);
   auto settings = mask_settings();
   settings.shadows = false;  // their map is laid around everything
-  EXPECT_EQ(both.picture(front_camera(), settings).rgba,
-            bare.picture(front_camera(), settings).rgba);
+  EXPECT_TRUE(test::same_bytes(both.picture(front_camera(), settings),
+                               bare.picture(front_camera(), settings)));
 }
 
 TEST_F(Scene, TheFaceFollowsTheFrame) {
@@ -301,14 +301,6 @@ TEST_F(Scene, WhereTheSkyIsNoLongerSeenNoPixelIsLost) {
   EXPECT_GT(bone, 100000);
 }
 
-/// Root of the mean squared difference of two pictures' colours, grey levels.
-double difference(const Image& a, const Image& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i)
-    if (i % 4 != 3) sum += std::pow(a.rgba[i] - b.rgba[i], 2);
-  return std::sqrt(sum / (0.75 * static_cast<double>(a.rgba.size())));
-}
-
 TEST_F(Scene, FourSamplesComeNearAPictureOfManyMorePixels) {
   const std::vector<Part> parts = {make_part("face", Role::face, ball({4, 0, 9}, 30)),
                                    make_part("mandible", Role::mandible, ball({-9, -25, -8}, 22))};
@@ -320,8 +312,9 @@ TEST_F(Scene, FourSamplesComeNearAPictureOfManyMorePixels) {
   const Image plain = renderer.picture(front_camera(), settings);
   settings.supersampling = 4;
   const Image best = renderer.picture(front_camera(), settings);
-  EXPECT_LT(difference(sampled, best), 0.5 * difference(plain, best));
-  EXPECT_LT(difference(sampled, best), 1.5);
+  const double unsampled = difference(test::Picture(plain), test::Picture(best));
+  EXPECT_TRUE(test::alike(sampled, best, 0.5 * unsampled));
+  EXPECT_TRUE(test::alike(plain, best, 0.01));
 }
 
 TEST_F(Scene, WhatLiesOnASurfaceIsSeenFromFarOff) {
@@ -343,9 +336,10 @@ TEST_F(Scene, WhatLiesOnASurfaceIsSeenFromFarOff) {
   // What might be cut is lit as it is drawn.
   settings.clip = {.point = {0, 0, 900}, .normal = {0, 0, 1}};
   const Image direct = renderer.picture(camera, settings);
-  EXPECT_LT(difference(kept, direct), 1);
+  EXPECT_TRUE(test::alike(kept, direct, 0.01));
   settings.wireframe.clear();
-  EXPECT_GT(difference(kept, renderer.picture(camera, settings)), 5);
+  const Image bare = renderer.picture(camera, settings);
+  EXPECT_TRUE(test::unlike(kept, bare, 0.05));
 }
 
 TEST_F(Scene, WhatIsThinnerThanAPixelShowsNothingOfThePictureBefore) {
@@ -360,9 +354,9 @@ TEST_F(Scene, WhatIsThinnerThanAPixelShowsNothingOfThePictureBefore) {
   used.picture(front_camera(), both);
   const Image after = used.picture(front_camera(), thin),
               alone = fresh.picture(front_camera(), thin);
-  EXPECT_TRUE(after.rgba == alone.rgba);
+  EXPECT_TRUE(test::same_bytes(after, alone));
   thin.part_opacity["mandible"] = 0;
-  EXPECT_FALSE(fresh.picture(front_camera(), thin).rgba == alone.rgba);  // it is seen
+  EXPECT_TRUE(test::unlike(fresh.picture(front_camera(), thin), alone, 0));  // it is seen
 }
 
 TEST_F(Scene, APictureBeyondTheDriversLimitIsRefusedInWords) {

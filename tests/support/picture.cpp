@@ -4,8 +4,50 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <string>
 
 namespace condyle::test {
+namespace {
+
+/// Both pictures as files called by the test and a number.
+testing::AssertionResult failed(const Picture& a, const Picture& b, const char* b_is,
+                                const std::string& words) {
+  static int number = 0;
+  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+  std::string name = info ? std::string(info->test_suite_name()) + "." + info->name() : "picture";
+  std::replace(name.begin(), name.end(), '/', '-');
+  const auto folder = kept_pictures() / "failed";
+  std::filesystem::create_directories(folder);
+  const auto keep = [&](const Picture& picture, const std::string& is) {
+    const auto file = folder / (name + "-" + std::to_string(number) + "-" + is + ".png");
+    if (!picture.empty()) picture.save(file);
+    return picture.empty() ? "(no picture)" : file.string();
+  };
+  ++number;
+  const std::string seen = keep(a, "seen");
+  return testing::AssertionFailure() << words << ": " << seen << ", " << keep(b, b_is);
+}
+
+constexpr int most_alike = 12;  // levels of a channel
+
+/// Of the pixels of a region, told by the place of their first channel.
+template <class Is>
+double share(const Picture& picture, const Region& region, const Is& is) {
+  const int left = std::max(0, static_cast<int>(region.x)),
+            top = std::max(0, static_cast<int>(region.y)),
+            right = static_cast<int>(std::min<double>(picture.width, region.x + region.width)),
+            bottom = static_cast<int>(std::min<double>(picture.height, region.y + region.height));
+  long counted = 0, all = 0;
+  for (int y = top; y < bottom; ++y)
+    for (int x = left; x < right; ++x, ++all)
+      counted += is(4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                         static_cast<std::size_t>(x)));
+  return all ? static_cast<double>(counted) / static_cast<double>(all) : 0;
+}
+
+std::string percent(double share) { return std::to_string(100 * share) + " %"; }
+
+}  // namespace
 
 Picture::Picture(const std::string& file) {
   png_image head{};
@@ -30,22 +72,42 @@ void Picture::save(const std::filesystem::path& file) const {
 
 double difference(const Picture& a, const Picture& b, const Region& region) {
   if (a.empty() || a.width != b.width || a.height != b.height) return 1;
-  const int left = std::max(0, static_cast<int>(region.x)),
-            top = std::max(0, static_cast<int>(region.y)),
-            right = static_cast<int>(std::min<double>(a.width, region.x + region.width)),
-            bottom = static_cast<int>(std::min<double>(a.height, region.y + region.height));
-  long differing = 0, all = 0;
-  for (int y = top; y < bottom; ++y)
-    for (int x = left; x < right; ++x) {
-      const auto i = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width) +
-                          static_cast<std::size_t>(x));
-      int most = 0;
-      for (std::size_t k = i; k < i + 4; ++k)
-        most = std::max(most, std::abs(a.rgba[k] - b.rgba[k]));
-      differing += most > 12;
-      ++all;
-    }
-  return all ? static_cast<double>(differing) / static_cast<double>(all) : 0;
+  return share(a, region, [&](std::size_t pixel) {
+    for (std::size_t k = pixel; k < pixel + 4; ++k)
+      if (std::abs(a.rgba[k] - b.rgba[k]) > most_alike) return true;
+    return false;
+  });
+}
+
+double share_of_colour(const Picture& picture, unsigned rgb, const Region& region) {
+  return share(picture, region, [&](std::size_t pixel) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (std::abs(picture.rgba[pixel + k] - int(rgb >> (16 - 8 * k) & 0xff)) > most_alike)
+        return false;
+    return true;
+  });
+}
+
+testing::AssertionResult alike(const Picture& seen, const Picture& expected, double most,
+                               const Region& region) {
+  const double share = difference(seen, expected, region);
+  if (share <= most) return testing::AssertionSuccess();
+  return failed(seen, expected, "expected",
+                percent(share) + " of the pixels differ, of " + percent(most) + " allowed");
+}
+
+testing::AssertionResult unlike(const Picture& seen, const Picture& before, double least,
+                                const Region& region) {
+  const double share = difference(seen, before, region);
+  if (share > least) return testing::AssertionSuccess();
+  return failed(seen, before, "before",
+                percent(share) + " of the pixels differ, not more than " + percent(least));
+}
+
+testing::AssertionResult same_bytes(const Picture& seen, const Picture& expected) {
+  if (seen.width == expected.width && seen.rgba == expected.rgba)
+    return testing::AssertionSuccess();
+  return failed(seen, expected, "expected", "the pictures are not the same to the byte");
 }
 
 std::filesystem::path kept_pictures() {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -16,6 +18,11 @@ struct Picture {
   Picture() = default;
   /// Of a PNG file; empty when it cannot be read.
   explicit Picture(const std::string& file);
+  /// Of anything with such pixels.
+  template <class Image>
+  requires requires(const Image& image) { image.rgba; }
+  explicit Picture(const Image& image)
+      : width(image.width), height(image.height), rgba(image.rgba) {}
   bool empty() const { return rgba.empty(); }
   /// The pixel at shares of width and height.
   const std::uint8_t* at(double x, double y) const {
@@ -34,6 +41,34 @@ struct Region {
 /// The measure of how far two pictures differ: the share of the pixels of which any channel differs
 /// by more than 12 of 255 (what antialiasing and rounding never do). 1 for pictures of two sizes.
 double difference(const Picture& a, const Picture& b, const Region& region = {});
+
+/// Share of the pixels whose colour is no farther than that 12 from 0xRRGGBB.
+double share_of_colour(const Picture& picture, unsigned rgb, const Region& region = {});
+
+// Expectations by that measure: EXPECT_TRUE(alike(seen, expected, 0.003)). One that is not met
+// keeps both pictures in kept_pictures()/failed and names them.
+
+/// No more than this share of the pixels differs.
+testing::AssertionResult alike(const Picture& seen, const Picture& expected, double most,
+                               const Region& region = {});
+/// More than this share of the pixels differs.
+testing::AssertionResult unlike(const Picture& seen, const Picture& before, double least,
+                                const Region& region = {});
+/// The same to the byte.
+testing::AssertionResult same_bytes(const Picture& seen, const Picture& expected);
+
+template <class Image>
+testing::AssertionResult alike(const Image& seen, const Image& expected, double most) {
+  return alike(Picture(seen), Picture(expected), most);
+}
+template <class Image>
+testing::AssertionResult unlike(const Image& seen, const Image& before, double least) {
+  return unlike(Picture(seen), Picture(before), least);
+}
+template <class Image>
+testing::AssertionResult same_bytes(const Image& seen, const Image& expected) {
+  return same_bytes(Picture(seen), Picture(expected));
+}
 
 /// Where tests keep pictures for people: build/test-results/pictures.
 std::filesystem::path kept_pictures();

@@ -18,6 +18,7 @@ TEST(Record, ColoursTheSkinByItsWayFromRest) {
   const Picture rest(folder / "out/frames/000000.png"), open(folder / "out/frames/000001.png");
   ASSERT_FALSE(rest.empty());
   ASSERT_FALSE(open.empty());
+  open.save(kept_pictures() / "ColoursTheSkinByItsWayFromRest.png");
   // Nothing has moved: all is of the colour for 0, dark violet. Opened, the chin is green, the
   // forehead is as it was.
   const auto violet = [](const std::uint8_t* p) { return p[2] > p[1] + 20 && p[1] < 60; };

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "tests/support/picture.h"
@@ -38,7 +39,7 @@ class PictureOptions : public testing::Test {
 TEST_F(PictureOptions, EachOfThemChangesThePicture) {
   const Picture plain = opened("plain", {});
   ASSERT_FALSE(plain.empty());
-  EXPECT_EQ(difference(plain, opened("again", {})), 0);
+  EXPECT_TRUE(same_bytes(plain, opened("again", {})));
   int number = 0;
   for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
            {"--clip", "left:5"},
@@ -56,14 +57,14 @@ TEST_F(PictureOptions, EachOfThemChangesThePicture) {
            {"--transparent"}}) {
     std::string words;
     for (const auto& word : more) words += word + " ";
-    EXPECT_GT(difference(plain, opened("other" + std::to_string(number++), more)), 1e-4) << words;
+    EXPECT_TRUE(unlike(opened("other" + std::to_string(number++), more), plain, 1e-4)) << words;
   }
   // Other ways to smooth edges: nearly the same picture.
   for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
            {"--edges", "fxaa"}, {"--edges", "none", "--supersample", "2"}}) {
-    const double differs = difference(plain, opened("smooth" + std::to_string(number++), more));
-    EXPECT_GT(differs, 0) << more[1];
-    EXPECT_LT(differs, 0.06) << more[1];
+    const Picture smooth = opened("smooth" + std::to_string(number++), more);
+    EXPECT_TRUE(unlike(smooth, plain, 0)) << more[1];
+    EXPECT_TRUE(alike(smooth, plain, 0.06)) << more[1];
   }
 }
 
@@ -76,11 +77,11 @@ TEST_F(PictureOptions, SeveralCamerasAndAPathAreRecordedAtOnce) {
   const auto frame = [&](const std::string& camera, const std::string& number) {
     return Picture(folder_ / ("many/" + camera + "/frames/00000" + number + ".png"));
   };
-  EXPECT_EQ(difference(frame("front", "0"), frame("around", "0")), 0);
-  EXPECT_GT(difference(frame("left", "1"), frame("around", "1")), 0.01);  // nearer
-  EXPECT_GT(difference(frame("front", "1"), frame("around", "1")), 0.01);
+  EXPECT_TRUE(alike(frame("around", "0"), frame("front", "0"), 0));
+  EXPECT_TRUE(unlike(frame("around", "1"), frame("left", "1"), 0.01));  // nearer
+  EXPECT_TRUE(unlike(frame("around", "1"), frame("front", "1"), 0.01));
   // One camera alone gives the same bits.
-  EXPECT_EQ(difference(frame("left", "1"), opened("left", {"--camera", "left"})), 0);
+  EXPECT_TRUE(same_bytes(opened("left", {"--camera", "left"}), frame("left", "1")));
   EXPECT_EQ(read_text(folder_ / "many/left/hashes.csv"), read_text(folder_ / "left/hashes.csv"));
 }
 
@@ -120,6 +121,67 @@ TEST_F(PictureOptions, WhatTheDriverCannotDrawIsSaidInASentence) {
   ::unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
   EXPECT_EQ(none.code, 1);
   EXPECT_NE(none.err.find("install libegl1"), std::string::npos) << none.err;
+}
+
+/// `condyle` with Mesa's plain software driver, whatever card there is.
+Outcome condyle_with_softpipe(const std::vector<std::string>& arguments) {
+  const std::map<std::string, std::string> forced = {
+      {"__EGL_VENDOR_LIBRARY_FILENAMES", "/usr/share/glvnd/egl_vendor.d/50_mesa.json"},
+      {"LIBGL_ALWAYS_SOFTWARE", "1"},
+      {"GALLIUM_DRIVER", "softpipe"}};
+  for (const auto& [name, value] : forced) ::setenv(name.c_str(), value.c_str(), 1);
+  auto outcome = condyle(arguments);
+  for (const auto& [name, value] : forced) ::unsetenv(name.c_str());
+  return outcome;
+}
+
+nlohmann::json drawn_with(const std::string& folder) {
+  return nlohmann::json::parse(read_text(folder + "/report.json"))["pictures"];
+}
+
+TEST(Drivers, TwoDrawThePatientAlike) {
+  // The usual one (a card's, if there is one) and another: bones, teeth, glassy skin, shadows.
+  const Folder folder;
+  const auto record = [&](const std::string& out) {
+    return std::vector<std::string>{"record",
+                                    "--motion",
+                                    "open 25 over 0.1",
+                                    "--frames",
+                                    "2",
+                                    "--size",
+                                    "480x480",
+                                    "--edges",
+                                    "fxaa",
+                                    "--show",
+                                    "skin:0.4,bones,teeth",
+                                    "--no-tissue",
+                                    "--out",
+                                    folder / out};
+  };
+  const auto usual = condyle(record("usual")), other = condyle_with_softpipe(record("other"));
+  ASSERT_EQ(usual.code, 0) << usual.err;
+  ASSERT_EQ(other.code, 0) << other.err;
+  EXPECT_NE(drawn_with(folder / "other")["driver"].dump().find("softpipe"), std::string::npos);
+  EXPECT_EQ(drawn_with(folder / "usual")["driver"].dump().find("softpipe"), std::string::npos);
+  for (const std::string frame : {"/frames/000000.png", "/frames/000001.png"})
+    EXPECT_TRUE(
+        alike(Picture(folder / ("usual" + frame)), Picture(folder / ("other" + frame)), 0.0005));
+  EXPECT_TRUE(unlike(Picture(folder / "usual/frames/000000.png"),
+                     Picture(folder / "usual/frames/000001.png"), 0.01));
+}
+
+TEST_F(PictureOptions, SamplesThatTheDriverDoesNotGiveAreTold) {
+  const auto sampled = condyle_with_softpipe(command("sampled", {}));
+  ASSERT_EQ(sampled.code, 0) << sampled.err;
+  EXPECT_NE(sampled.err.find("asked for 4 samples a pixel, the graphics driver (softpipe"),
+            std::string::npos)
+      << sampled.err;
+  EXPECT_EQ(drawn_with(folder_ / "sampled")["samples"], 1);
+  const auto smoothed = condyle_with_softpipe(command("smoothed", {"--edges", "fxaa"}));
+  EXPECT_EQ(smoothed.err.find("samples a pixel"), std::string::npos) << smoothed.err;
+  const auto usual = condyle(command("usual", {}));
+  EXPECT_EQ(usual.err.find("samples a pixel"), std::string::npos) << usual.err;
+  EXPECT_EQ(drawn_with(folder_ / "usual")["samples"], 4);
 }
 
 }  // namespace

@@ -141,7 +141,73 @@ TEST_F(WindowSession, NumbersThatShapeTheMotionAreUndoneAndRedoneAndQuittingWait
   };
   number("parameter:opening", 0.5, 0.4);
   number("parameter:bennett", 0.2, 0.6);
+  // A motion by muscles, and how much they are excited.
+  click("motion");
+  click("motion:by-muscles");
+  ASSERT_TRUE(wait_until(
+      [](const Json& s) {
+        return idle(s) && s["edits"]["motion"] == "by-muscles" &&
+               s["items"].contains("excitation:lt");
+      },
+      60));
+  number("excitation:lt", 0.3, 0.6);
+  EXPECT_NEAR(double(state()["edits"]["excitations"]["lt"]), 0.6, 0.03);
   EXPECT_TRUE(press("ctrl+q"));  // while the last motion is being made
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, TheMouthIsOpenedByHandThoughTheMotionRests) {
+  start({box_case(folder_), "--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle));
+  ASSERT_TRUE(wait_for_item("opening"));
+  const auto r = rect("opening");
+  const double y = r[1] + r[3] / 2;
+  see("at-rest");
+  drag(r[0] + 0.05 * r[2], y, r[0] + 0.7 * r[2], y);
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    return s["edits"]["opening_mm"].is_number() && double(s["frame"]["opening_mm"]) > 20;
+  })) << state()["frame"].dump();
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return std::abs(double(s["frame"]["opening_mm"]) - double(s["edits"]["opening_mm"])) < 0.2;
+  })) << state()["frame"].dump();
+  EXPECT_EQ(state()["motion"], "rest");
+  EXPECT_GT(see("opened-by-hand"), 0.02);
+  click("release");
+  EXPECT_TRUE(wait_until([](const Json& s) { return double(s["frame"]["opening_mm"]) < 3; }));
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, APatientWhoseLoadingIsCancelledLeavesTheOtherAsHeWas) {
+  const std::string boxes = box_case(folder_);
+  start({boxes, "--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle));
+  EXPECT_TRUE(press("a"));
+  see("before");
+  const Picture at_first = seen_;
+  const Json before = state();
+  const auto open_builtin = [&] {
+    EXPECT_TRUE(press("ctrl+o"));
+    click("open:builtin");
+    ASSERT_TRUE(wait_for_item("cancel"));
+  };
+  open_builtin();
+  EXPECT_GT(see_now("loading"), 0.001) << "its progress is in the picture";
+  click("cancel");
+  ASSERT_TRUE(wait_until(idle, 10));
+  EXPECT_TRUE(wait_for_item("cancel", false));
+  std::this_thread::sleep_for(std::chrono::seconds(3));  // it does not come later, either
+  EXPECT_EQ(state()["case"], before["case"]);
+  EXPECT_EQ(state()["edits"], before["edits"]);
+  EXPECT_FALSE(state()["items"].contains("error"));
+  see("cancelled");
+  EXPECT_TRUE(alike(seen_, at_first, 0.001, view_region()));
+  EXPECT_TRUE(press("l"));
+  EXPECT_TRUE(wait_until([](const Json& s) { return double(s["camera_direction"][0]) > 0.99; }));
+  // Asked for again, it comes.
+  open_builtin();
+  ASSERT_TRUE(wait_until([](const Json& s) { return idle(s) && s["case"]["folder"] == ""; }, 120));
+  EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }
 

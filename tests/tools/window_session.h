@@ -12,6 +12,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 
 #include "tests/support/display.h"
 #include "tests/support/program.h"
@@ -29,6 +30,8 @@ class WindowSession : public testing::Test {
     display_ = std::make_unique<TestDisplay>();
     ASSERT_TRUE(display_->running());
     setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
+    for (const auto& entry : fs::directory_iterator(kept_pictures()))  // of an earlier run
+      if (entry.path().filename().string().starts_with(test_name() + "-")) fs::remove(entry.path());
   }
   void TearDown() override {
     if (program_ > 0) {
@@ -131,20 +134,33 @@ class WindowSession : public testing::Test {
   }
   /// Keeps the picture of a step (SESSION-NUMBER-STEP.png), also of one that fails. gives: the
   /// share of the 3-D view that differs from the step before; 1 for the first.
-  double see(const std::string& step) {
-    Picture now = settled_picture();
-    now.save(kept_pictures() /
-             (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "-" +
-              std::to_string(10 + steps_++) + "-" + step + ".png"));
-    const double changed = difference(now, seen_, view_region());
-    seen_ = std::move(now);
-    return changed;
+  double see(const std::string& step) { return keep(step, settled_picture()); }
+  /// The same of what moves.
+  double see_now(const std::string& step) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));  // until it is on the screen
+    return keep(step, display_->picture());
+  }
+  Region region_of(const std::string& item) {
+    const auto r = rect(item);
+    return {r[0], r[1], r[2], r[3]};
+  }
+
+  static std::string test_name() {
+    return testing::UnitTest::GetInstance()->current_test_info()->name();
   }
 
   Folder folder_;
-  Picture seen_;  // at the last step
+  Picture seen_, seen_before_;  // at the last step and at the one before
 
  private:
+  double keep(const std::string& step, Picture now) {
+    now.save(kept_pictures() /
+             (test_name() + "-" + std::to_string(10 + steps_++) + "-" + step + ".png"));
+    const double changed = difference(now, seen_, view_region());
+    seen_before_ = std::exchange(seen_, std::move(now));
+    return changed;
+  }
+
   int steps_ = 0;
   std::unique_ptr<TestDisplay> display_;
   pid_t program_ = -1;

@@ -1,4 +1,5 @@
 // Plots, motions, recordings, landmarks, files and what the picture shows, through the panels.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -94,9 +95,9 @@ class Instrument : public testing::TestWithParam<LitScreen> {
     stage.rest();
   }
   void keep(const std::string& what) {
-    const auto file = kept_picture(what + "-" + std::to_string(GetParam().height) +
-                                   (GetParam().light ? "-light" : "-dark") + ".png");
-    if (!file.empty()) write_png(file, stage.image());
+    const auto file = test::kept_pictures() / (what + "-" + std::to_string(GetParam().height) +
+                                               (GetParam().light ? "-light" : "-dark") + ".png");
+    test::Picture(stage.image()).save(file);
   }
   /// Everything that is drawn lies in its panel, and panels lie beside each other.
   void expect_tidy() {
@@ -238,6 +239,9 @@ TEST_P(Instrument, SlidersShapeTheMotionWhenTheyAreLetGo) {
   EXPECT_FALSE(stage.view.motion.parameters.count("opening"));
   stage.slide("excitation:lm", 0.2, 0.75);
   EXPECT_NEAR(stage.view.motion.excitations["lm"], 0.75, 0.03);
+  const std::string shown = stage.item("number:lm").words;
+  EXPECT_TRUE(shown.ends_with(" %") && shown.size() <= 6) << shown << ", to a tenth at most";
+  EXPECT_EQ(fmt::format("{:g} %", 100 * stage.view.motion.excitations["lm"]), shown);
   stage.panels->run(Command::undo, stage.scene, stage.view);
   EXPECT_TRUE(stage.view.motion.excitations.empty());
   stage.panels->run(Command::redo, stage.scene, stage.view);
@@ -417,6 +421,64 @@ TEST_P(Instrument, DropAndInterincisalDistanceAreToldApart) {
   stage.rest();
   expect_tidy();
   keep("openings");
+}
+
+TEST_P(Instrument, AnOpeningThatHasNoWayIsGreyAndSaysWhy) {
+  stage.slide("opening", 0.2, 0.5);
+  ASSERT_TRUE(stage.view.opening_mm);
+  stage.click("release");
+  const auto [x, y, width, height] = stage.item("opening").rect;
+  const auto coloured = [&] {
+    const ImU32 c = palette().accent;
+    return share_of_colour(test::Picture(stage.image()),
+                           (c & 0xff) << 16 | (c & 0xff00) | (c >> 16 & 0xff),
+                           {x, y, width, height});
+  };
+  EXPECT_GT(coloured(), 0.02);
+  stage.scene.max_opening_mm = 0.3;
+  stage.rest();
+  EXPECT_EQ(coloured(), 0);
+  stage.slide("opening", 0.2, 0.5);
+  EXPECT_FALSE(stage.view.opening_mm);
+  for (int i = 0; i < 32; ++i) stage.step(x + width / 2, y + height / 2, false);
+  EXPECT_TRUE(stage.item("tooltip").words.starts_with("Nothing to open along"));
+  keep("no-opening");
+}
+
+TEST_P(Instrument, APictureThatGetsNoFinerIsToldFromOneThatWill) {
+  stage.drawing.samples = 1;
+  stage.rest();
+  EXPECT_EQ(stage.item("quality").words, "faster picture");
+  stage.drawing.finished = true;
+  stage.rest();
+  EXPECT_EQ(stage.item("quality").words, "no finer picture");
+  expect_tidy();
+  stage.drawing.samples = 4;
+  stage.rest();
+  EXPECT_FALSE(stage.has("quality"));
+}
+
+TEST_P(Instrument, WhatWasMeasuredStaysInThePictureUntilItIsCleared) {
+  constexpr unsigned yellow = 0xf0e442;
+  const auto drawn = [&] {
+    stage.rest();
+    return share_of_colour(test::Picture(stage.image()), yellow) > 0;
+  };
+  EXPECT_FALSE(drawn());
+  stage.view.tool = Tool::measure;
+  for (const int corner : {0, 1})  // of the face's front
+    stage.view.measured.push_back(
+        {.part = 5, .triangle = {0, 1, 4}, .shares = Eigen::Vector3d::Unit(corner)});
+  EXPECT_TRUE(drawn());
+  EXPECT_TRUE(stage.has("measure-clear"));
+  stage.view.tool = Tool::look;
+  EXPECT_TRUE(drawn());
+  EXPECT_FALSE(stage.has("measure-clear"));
+  keep("measured");
+  stage.view.tool = Tool::measure;
+  stage.rest();
+  stage.click("measure-clear");
+  EXPECT_FALSE(drawn());
 }
 
 TEST_P(Instrument, TooltipsWaitAndCoverNothingThatAClickReveals) {

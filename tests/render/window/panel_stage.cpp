@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <numbers>
 
 #include "engine/core/hash.h"
@@ -109,7 +108,7 @@ void PanelStage::step(double x, double y, bool down) {
   const PanelInput input{.scene = scene,
                          .frame = &frame,
                          .loop = {.steps_per_second = 60},
-                         .pictures = {.pictures_per_second = 24, .picture_ms = 31},
+                         .pictures = drawing,
                          .camera = camera,
                          .box = {Eigen::Vector3d(-80, -95, -90), Eigen::Vector3d(80, 100, 130)},
                          .progress = progress,
@@ -192,11 +191,6 @@ DrawnItem PanelStage::item(const std::string& name) const {
     if (drawn.name == name) return drawn;
   ADD_FAILURE() << "no item '" << name << "' was drawn";
   return {};
-}
-
-std::filesystem::path kept_picture(const std::string& name) {
-  const char* folder = std::getenv("CONDYLE_KEEP_PICTURES");
-  return folder && *folder ? std::filesystem::path(folder) / name : std::filesystem::path();
 }
 
 }  // namespace condyle

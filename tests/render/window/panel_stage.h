@@ -2,7 +2,6 @@
 
 #include <imgui.h>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "render/gl_context.h"
 #include "render/image.h"
 #include "render/window/panels.h"
+#include "tests/support/picture.h"
 
 namespace condyle {
 
@@ -54,6 +54,7 @@ class PanelStage {
   FrameState frame = box_frame(1.2, 23.4);
   Camera camera;
   std::vector<Command> commands;  // all so far
+  PictureStatistics drawing = {.pictures_per_second = 24, .picture_ms = 31};
   std::string progress, recording;
   std::vector<KeyEntry> key;
   bool can_cancel = false;
@@ -66,8 +67,5 @@ class PanelStage {
   int width_, height_;
   Framebuffer picture_;
 };
-
-/// Where looked-at pictures go when CONDYLE_KEEP_PICTURES names a folder; empty otherwise.
-std::filesystem::path kept_picture(const std::string& name);
 
 }  // namespace condyle

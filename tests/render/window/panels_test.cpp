@@ -20,10 +20,10 @@ class PanelsOn : public testing::TestWithParam<Screen> {
 
   void keep(const std::string& what) {
     const auto file =
-        kept_picture("panels-" + what + "-" + std::to_string(GetParam().width) + "x" +
-                     std::to_string(GetParam().height) + "-" +
-                     std::to_string(static_cast<int>(GetParam().scale * 100)) + ".png");
-    if (!file.empty()) write_png(file, stage.image());
+        test::kept_pictures() / ("panels-" + what + "-" + std::to_string(GetParam().width) + "x" +
+                                 std::to_string(GetParam().height) + "-" +
+                                 std::to_string(static_cast<int>(GetParam().scale * 100)) + ".png");
+    test::Picture(stage.image()).save(file);
   }
 };
 

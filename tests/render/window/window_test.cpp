@@ -94,8 +94,7 @@ class RealWindow : public testing::Test {
     }
     closed_ = !window.open();
     picture_ = window.picture();
-    if (const auto file = kept_picture("window-" + name() + ".png"); !file.empty())
-      write_png(file, picture_);
+    test::Picture(picture_).save(test::kept_pictures() / ("window-" + name() + ".png"));
     person.join();
   }
 

@@ -100,6 +100,38 @@ void expect_mirror_symmetry() {
   }
 }
 
+/// A living face is not its own mirror image, but by no more than is hardly seen.
+void expect_a_slightly_uneven_face() {
+  const TriMesh& face = mesh_of(Role::face);
+  const TriangleTree tree(face);
+  std::vector<double> off;
+  for (std::size_t i = 0; i < face.vertices.size(); i += 7) {
+    const Vector3d& p = face.vertices[i];
+    off.push_back(tree.nearest({-p.x(), p.y(), p.z()}).distance);
+  }
+  std::sort(off.begin(), off.end());
+  EXPECT_GT(off[off.size() * 95 / 100], 0.2);
+  EXPECT_GT(off.back(), 1);
+  EXPECT_LT(off.back(), 3);
+  // How far the middle of a region is on the left: both halves had the same vertices.
+  const auto leans = [&](double half_width, double behind, double low, double high) {
+    double sum = 0;
+    int count = 0;
+    for (const auto& p : face.vertices)
+      if (std::abs(p.x()) < half_width && p.y() < behind && p.z() > low && p.z() < high) {
+        sum += p.x();
+        ++count;
+      }
+    EXPECT_GT(count, 100);
+    return sum / count;
+  };
+  const double nose = leans(22, -108, -30, 0), chin = leans(30, -85, -100, -80),
+               lips = leans(30, -85, -60, -44);
+  EXPECT_GT(nose, 0.3);
+  EXPECT_LT(chin, -0.3);
+  EXPECT_LT(std::abs(lips), 0.15);
+}
+
 void expect_lips_that_part() {
   const TriMesh& face = mesh_of(Role::face);
   const auto topology = inspect(face);
@@ -173,6 +205,7 @@ TEST(Phantom, IsAWholePatient) {
   expect_bones_closed();
   expect_separate_teeth();
   expect_mirror_symmetry();
+  expect_a_slightly_uneven_face();
   expect_lips_that_part();
   expect_landmarks_on_surfaces();
   ASSERT_TRUE(patient().condylar_path);

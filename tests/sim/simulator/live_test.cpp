@@ -47,6 +47,16 @@ TEST(Live, AnswersJumpsAndRunningTimeAndHeldOpenings) {
   EXPECT_GT(live.steps_per_second(), 0);
 }
 
+TEST(Live, AHeldOpeningGoesItsOwnWayWhateverTheMotionDoes) {
+  const Scene scene = make_scene(box_patient());
+  const Motion resting = {"rest", 1.0, false, [](double) { return Pose{}; }, {}};
+  LiveSimulation live(scene, resting, {}, dropping());
+  live.request({.time_s = 0.5, .opening_mm = 7.5});
+  EXPECT_NEAR(wait_for(live, 0.5).measures.opening_mm, 7.5, 1e-6);
+  live.request({.time_s = 0.4});
+  EXPECT_NEAR(wait_for(live, 0.4).measures.opening_mm, 0, 1e-9);
+}
+
 TEST(Live, RunningTimeGivesTheStatesOfThePlayback) {
   const Scene scene = make_scene(box_patient());
   LiveSimulation live(scene, dropping(), {});
