@@ -53,6 +53,8 @@ double lip_share(double share) { return smooth_step(smooth_step(share)); }
 /// folds more sharply than skin does; at the mouth it is fine enough.
 double evened(double to_mouth_mm) { return 0.6 * smooth_step((to_mouth_mm - 35) / 25); }
 
+constexpr double side_reach_mm = 30;  // along the skin from the mouth's line
+
 constexpr double widest_rad = 0.75;  // of the jaw's opening
 
 /// Solves a plain opening knot by knot, and keeps a factor at each: the tissue of the
@@ -127,7 +129,8 @@ void tell_rest(TissueModel& model) {
 /// it is smoothed; the displayed face keeps its shape.
 std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Anatomy& anatomy,
                                  const ColumnSettings& settings, const Landmarks& landmarks,
-                                 const TissuePlan& plan, std::vector<std::string>& notes) {
+                                 const TissuePlan& plan, const std::vector<signed char>& side,
+                                 std::vector<std::string>& notes) {
   constexpr int most_rounds = 20;
   std::vector<Column> columns;
   ShapedColumns shaped;
@@ -135,7 +138,7 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
   for (;; ++rounds) {
     columns = march_columns(skin, bones, settings);
     hold_columns(skin, anatomy, columns);
-    hold_as_planned(plan, landmarks, skin, columns);
+    hold_as_planned(plan, landmarks, skin, side, columns);
     shaped = shape_columns(skin, settings, columns);
     if (shaped.sound() || rounds == most_rounds) break;
     relax_folds(skin, shaped.folded);
@@ -174,7 +177,8 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   ColumnSettings column_settings;
   column_settings.layer_share = layers.share;
   const auto columns =
-      make_columns(skin, bones, anatomy, column_settings, patient.landmarks, plan, summary.notes);
+      make_columns(skin, bones, anatomy, column_settings, patient.landmarks, plan,
+                   sides_of(skin.mesh, skin.mouth, region.slit, side_reach_mm), summary.notes);
   check_placement(skin, bones, columns, column_settings, summary.notes);
   const int sheets = static_cast<int>(layers.share.size()) + 1;
   model->columns = static_cast<int>(columns.size());
@@ -182,7 +186,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   model->triangles = skin.mesh.triangles;
   model->rest = column_nodes(skin, columns, column_settings);
   model->slit = region.slit;
-  model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, 30);
+  model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, side_reach_mm);
   const double parted = part_closed_lips(
       {skin, columns, model->handle_side, sheets, model->rest, {}, {}, {}}, model->rest);
   if (parted > 0.5)
