@@ -8,7 +8,15 @@
 namespace condyle {
 namespace {
 
-constexpr double lip_mm = 14;  // from the mouth's line
+/// Not beside a corner, where both lips are one.
+bool on_lip(const CoarseSkin& skin, std::size_t v, const Column& column) {
+  constexpr double lip_mm = 14;  // from the mouth's line
+  const auto to = [&](int corner) {
+    return (skin.mesh.vertices[corner] - skin.mesh.vertices[v]).norm();
+  };
+  return column.to_mouth < lip_mm &&
+         column.to_mouth < std::min(to(skin.mouth.right_corner), to(skin.mouth.left_corner));
+}
 
 }  // namespace
 
@@ -58,7 +66,7 @@ void hold_as_planned(const TissuePlan& plan, const Landmarks& landmarks, const C
       // A lip that overlaps the other jaw's teeth at rest still goes with its own jaw.
       const Ground own = side[v] < 0 ? Ground::mandible : Ground::cranium;
       if (c.hold == Hold::free && c.ground != Ground::none)
-        c.hold = hold_of(c.to_mouth < lip_mm ? own : c.ground);
+        c.hold = hold_of(on_lip(skin, v, c) ? own : c.ground);
       c.firm = 1;
     }
   for (const auto& region : plan.attachments) {
