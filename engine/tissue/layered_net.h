@@ -23,6 +23,7 @@ double bulk_modulus_of_prisms(const LayerMaterial& layer);
 struct LayerStack {
   std::vector<double> share;
   std::vector<LayerMaterial> material;
+  std::vector<int> cut_from = {};  // see split_layers; empty: none is cut
 };
 
 /// 1, 2, 3 or 5 layers of facial soft tissue. source: skin and cheek 30 to 40 kPa in vivo, deeper
@@ -30,8 +31,8 @@ struct LayerStack {
 LayerStack usual_layers(int count);
 
 /// The same layers, each cut into equal ones until none is thicker than 1.2 edges: springs cannot
-/// resist evenly in taller prisms (spring_map.h). Masses are shared out. depth_mm: of the whole
-/// stack; edge_mm: of the mesh along it.
+/// resist evenly in taller prisms (spring_map.h). Masses are shared out; cut_from tells the layer of
+/// `layers` that each is of. depth_mm: of the whole stack; edge_mm: of the mesh along it.
 LayerStack split_layers(const LayerStack& layers, double depth_mm, double edge_mm);
 
 /// Node `sheet` (0 outermost) of column `column`.

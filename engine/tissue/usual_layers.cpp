@@ -31,6 +31,7 @@ LayerStack split_layers(const LayerStack& layers, double depth_mm, double edge_m
     material.mass_kg /= pieces;
     split.share.insert(split.share.end(), pieces, layers.share[i] / pieces);
     split.material.insert(split.material.end(), pieces, material);
+    split.cut_from.insert(split.cut_from.end(), pieces, static_cast<int>(i));
   }
   return split;
 }

@@ -6,6 +6,19 @@
 #include "engine/core/error.h"
 
 namespace condyle {
+namespace {
+
+/// Not beside a corner, where both lips are one.
+bool on_lip(const CoarseSkin& skin, std::size_t v, const Column& column) {
+  constexpr double lip_mm = 14;  // from the mouth's line
+  const auto to = [&](int corner) {
+    return (skin.mesh.vertices[corner] - skin.mesh.vertices[v]).norm();
+  };
+  return column.to_mouth < lip_mm &&
+         column.to_mouth < std::min(to(skin.mouth.right_corner), to(skin.mouth.left_corner));
+}
+
+}  // namespace
 
 void hold_columns(const CoarseSkin& skin, const Anatomy& anatomy, std::vector<Column>& columns) {
   constexpr double lip_margin_mm = 9;
@@ -43,13 +56,17 @@ void hold_columns(const CoarseSkin& skin, const Anatomy& anatomy, std::vector<Co
 }
 
 void hold_as_planned(const TissuePlan& plan, const Landmarks& landmarks, const CoarseSkin& skin,
-                     std::vector<Column>& columns) {
+                     const std::vector<signed char>& side, std::vector<Column>& columns) {
   const auto hold_of = [](Ground ground) {
     return ground == Ground::mandible ? Hold::mandible : Hold::cranium;
   };
   if (plan.bond == TissueBond::glued)
-    for (auto& c : columns) {
-      if (c.hold == Hold::free && c.ground != Ground::none) c.hold = hold_of(c.ground);
+    for (std::size_t v = 0; v < columns.size(); ++v) {
+      Column& c = columns[v];
+      // A lip that overlaps the other jaw's teeth at rest still goes with its own jaw.
+      const Ground own = side[v] < 0 ? Ground::mandible : Ground::cranium;
+      if (c.hold == Hold::free && c.ground != Ground::none)
+        c.hold = hold_of(on_lip(skin, v, c) ? own : c.ground);
       c.firm = 1;
     }
   for (const auto& region : plan.attachments) {

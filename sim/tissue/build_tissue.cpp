@@ -21,6 +21,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+// Of each node of the usual net; see `tissue_of_columns` for others.
 constexpr double bone_stiffness = 2.0;       // N/mm, some 50 times a skin spring
 constexpr double boundary_stiffness = 2.0;   // N/mm
 constexpr double cartilage_stiffness = 0.5;  // N/mm
@@ -53,7 +54,33 @@ double lip_share(double share) { return smooth_step(smooth_step(share)); }
 /// folds more sharply than skin does; at the mouth it is fine enough.
 double evened(double to_mouth_mm) { return 0.6 * smooth_step((to_mouth_mm - 35) / 25); }
 
+const int usual_surface_nodes = TissueSettings{}.surface_nodes;
+constexpr double side_reach_mm = 30;  // along the skin from the mouth's line
+
 constexpr double widest_rad = 0.75;  // of the jaw's opening
+
+/// The lower quartile: edges are shorter about the mouth, where most moves.
+double short_edge(const TriMesh& mesh) {
+  std::vector<double> length;
+  for (const auto& [a, b] : edges_of(mesh.triangles))
+    length.push_back((mesh.vertices[b] - mesh.vertices[a]).norm());
+  const auto quartile = length.begin() + static_cast<std::ptrdiff_t>(length.size() / 4);
+  std::nth_element(length.begin(), quartile, length.end());
+  return *quartile;
+}
+
+/// How much tissue each column stands for, as a share of what it does in the usual net: of an area,
+/// on a border of a length. On the mouth's line, where the usual net gives each the springs of a
+/// whole area and it has half of one, the other half is the line's.
+std::vector<double> tissue_of_columns(const CoarseSkin& skin, double finer) {
+  const double by_area = 1 / finer, by_length = std::sqrt(by_area);
+  std::vector<double> share(skin.mesh.vertices.size(), by_area);
+  for (std::size_t c = 0; c < share.size(); ++c)
+    if (skin.rim[c] || skin.border[c]) share[c] = by_length;
+  for (const auto* lip : {&skin.mouth.upper, &skin.mouth.lower})
+    for (int c : *lip) share[c] = 0.5 * (by_area + by_length);
+  return share;
+}
 
 /// Solves a plain opening knot by knot, and keeps a factor at each: the tissue of the
 /// lower face turns with the jaw, and a factor made unturned asks for several times the iterations.
@@ -127,7 +154,8 @@ void tell_rest(TissueModel& model) {
 /// it is smoothed; the displayed face keeps its shape.
 std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Anatomy& anatomy,
                                  const ColumnSettings& settings, const Landmarks& landmarks,
-                                 const TissuePlan& plan, std::vector<std::string>& notes) {
+                                 const TissuePlan& plan, const std::vector<signed char>& side,
+                                 std::vector<std::string>& notes) {
   constexpr int most_rounds = 20;
   std::vector<Column> columns;
   ShapedColumns shaped;
@@ -135,7 +163,7 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
   for (;; ++rounds) {
     columns = march_columns(skin, bones, settings);
     hold_columns(skin, anatomy, columns);
-    hold_as_planned(plan, landmarks, skin, columns);
+    hold_as_planned(plan, landmarks, skin, side, columns);
     shaped = shape_columns(skin, settings, columns);
     if (shaped.sound() || rounds == most_rounds) break;
     relax_folds(skin, shaped.folded);
@@ -160,7 +188,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
                      std::to_string(settings.surface_nodes));
   check_plan(settings.plan, "soft tissue: ");
   const TissuePlan plan = overlaid(patient.tissue, settings.plan);
-  const LayerStack layers = layers_of(plan);
+  const LayerStack asked_layers = layers_of(plan);
   auto model = std::make_shared<TissueModel>();
   TissueSummary& summary = model->summary;
 
@@ -172,9 +200,19 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
 
   report(progress, "soft tissue: layers", 0.5);
   ColumnSettings column_settings;
+  column_settings.finer = settings.surface_nodes / static_cast<double>(usual_surface_nodes);
+  const LayerStack layers =
+      column_settings.finer > 1
+          ? split_layers(asked_layers, column_settings.default_depth_mm, short_edge(skin.mesh))
+          : asked_layers;
+  if (layers.share.size() > asked_layers.share.size())
+    summary.notes.push_back(fmt::format(
+        "layers are cut, {} into {}: springs of a net this fine would not fill them evenly",
+        asked_layers.share.size(), layers.share.size()));
   column_settings.layer_share = layers.share;
   const auto columns =
-      make_columns(skin, bones, anatomy, column_settings, patient.landmarks, plan, summary.notes);
+      make_columns(skin, bones, anatomy, column_settings, patient.landmarks, plan,
+                   sides_of(skin.mesh, skin.mouth, region.slit, side_reach_mm), summary.notes);
   check_placement(skin, bones, columns, column_settings, summary.notes);
   const int sheets = static_cast<int>(layers.share.size()) + 1;
   model->columns = static_cast<int>(columns.size());
@@ -182,7 +220,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   model->triangles = skin.mesh.triangles;
   model->rest = column_nodes(skin, columns, column_settings);
   model->slit = region.slit;
-  model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, 30);
+  model->handle_side = sides_of(skin.mesh, skin.mouth, model->slit, side_reach_mm);
   const double parted = part_closed_lips(
       {skin, columns, model->handle_side, sheets, model->rest, {}, {}, {}}, model->rest);
   if (parted > 0.5)
@@ -201,7 +239,12 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   // Bone springs.
   std::vector<int> given;
   std::vector<double> given_share;
+  const auto tissue_share = tissue_of_columns(skin, column_settings.finer);
+  const double depth_share =
+      static_cast<double>(asked_layers.share.size()) / static_cast<double>(layers.share.size());
   const auto anchor = [&](int node, double share, double stiffness) {
+    const bool inner = node % sheets == sheets - 1;
+    stiffness *= tissue_share[node / sheets] * (inner ? 1 : depth_share);
     net.anchor_node.push_back(node);
     net.anchor_stiffness.push_back(stiffness);
     model->anchor_share.push_back(share);
@@ -312,7 +355,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   summary.nodes = net.node_count;
   summary.springs = static_cast<int>(net.spring_a.size() + net.anchor_node.size());
   summary.prisms = static_cast<int>(net.prisms.size());
-  summary.layers = sheets - 1;
+  summary.layers = static_cast<int>(asked_layers.share.size());
   summary.lips_cut = region.mouth.found();
   tell_rest(*model);
   report(progress, "soft tissue", 1.0);

@@ -25,7 +25,7 @@ std::vector<std::vector<int>> rings_of(const TriMesh& mesh) {
 /// Inward directions: mean normals, averaged over the rings several times. The mouth's border takes
 /// its direction from the skin around it, since the lip's own normal turns into the mouth.
 std::vector<Vector3d> smooth_inward(const CoarseSkin& skin,
-                                    const std::vector<std::vector<int>>& ring) {
+                                    const std::vector<std::vector<int>>& ring, int rounds) {
   const auto normals = vertex_normals(skin.mesh);
   std::vector<Vector3d> inward(normals.size());
   for (std::size_t v = 0; v < normals.size(); ++v) inward[v] = -normals[v];
@@ -35,7 +35,7 @@ std::vector<Vector3d> smooth_inward(const CoarseSkin& skin,
     for (int v : skin.mouth.lower) lip[v] = 1;
     lip[skin.mouth.left_corner] = lip[skin.mouth.right_corner] = 1;
   }
-  for (int round = 0; round < 8; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     std::vector<Vector3d> next = inward;
     for (std::size_t v = 0; v < inward.size(); ++v) {
       Vector3d sum = lip[v] ? Vector3d(0.2 * inward[v]) : inward[v];
@@ -86,14 +86,15 @@ void smooth_depths(const std::vector<std::vector<int>>& ring, const ColumnSettin
     depth[v] = std::clamp(met, settings.least_depth_mm, greatest);
     limit[v] = std::clamp(met, settings.least_depth_mm, greatest);
   }
-  for (int round = 0; round < 40; ++round)  // fill
+  for (int round = 0; round < settings.rounds(40); ++round)  // fill
     for (std::size_t v = 0; v < count; ++v) {
       if (columns[v].ground != Ground::none) continue;
-      double sum = settings.default_depth_mm;  // and drift to the default far from bone
+      const double drift = 1 / settings.finer;  // to the default far from bone
+      double sum = drift * settings.default_depth_mm;
       for (int n : ring[v]) sum += depth[n];
-      depth[v] = sum / (1.0 + static_cast<double>(ring[v].size()));
+      depth[v] = sum / (drift + static_cast<double>(ring[v].size()));
     }
-  for (int round = 0; round < 4; ++round) {
+  for (int round = 0; round < settings.rounds(4); ++round) {
     std::vector<double> next(count);
     for (std::size_t v = 0; v < count; ++v) {
       double sum = 0;
@@ -127,7 +128,7 @@ std::vector<Column> march_columns(const CoarseSkin& skin, const Bones& bones,
                                   const ColumnSettings& settings) {
   const auto ring = rings_of(skin.mesh);
   std::vector<Column> columns(skin.mesh.vertices.size());
-  const auto inward = smooth_inward(skin, ring);
+  const auto inward = smooth_inward(skin, ring, settings.rounds(8));
   for (std::size_t v = 0; v < columns.size(); ++v) {
     columns[v].inward = inward[v];
     march(skin, bones, settings, v, columns[v]);

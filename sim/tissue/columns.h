@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -44,6 +46,10 @@ struct ColumnSettings {
   double greatest_free_depth_mm = 13;  // of what grows on no bone: cheeks, lips, throat
   double default_depth_mm = 12;        // where there is no bone in reach
   double march_mm = 25;
+  double finer = 1;  // columns over the usual number of them: smoothing reaches as far at any
+  int rounds(double usual) const {
+    return std::max(1, static_cast<int>(std::lround(usual * finer)));
+  }
 };
 
 /// Marches from the skin to the bone along smoothed normals.

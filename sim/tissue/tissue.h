@@ -15,8 +15,10 @@ namespace condyle {
 struct TissueModel;
 
 struct TissueSettings {
-  int surface_nodes = 520;  // of one sheet, about
-  TissuePlan plan = {};     // counts before the case's own
+  /// Of one sheet, about. More are the same tissue, finer: bones hold an area as firmly, and layers
+  /// are cut until springs fill them evenly (split_layers).
+  int surface_nodes = 520;
+  TissuePlan plan = {};  // counts before the case's own
 };
 
 /// How far one frame's minimisation goes.
@@ -30,7 +32,8 @@ struct TissueBudget {
 
 /// What the builder made, and what it had to leave out, for reports and people.
 struct TissueSummary {
-  int nodes = 0, springs = 0, prisms = 0, layers = 0;
+  int nodes = 0, springs = 0, prisms = 0;
+  int layers = 0;  // as asked for; a fine net cuts them
   int attached_to_cranium = 0, attached_to_mandible = 0, boundary = 0;
   bool lips_cut = false;
   int lip_points_left_out = 0;  // so deep in the other lip at rest that nothing keeps them out

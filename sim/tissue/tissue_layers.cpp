@@ -28,9 +28,10 @@ SpringPrismNet net_of(const TissuePlan& plan, const LayerStack& layers,
   if (plan.down) {
     auto material = layers.material;
     for (std::size_t layer = 0; layer < material.size(); ++layer) {
-      if (layer < plan.layers.size() && plan.layers[layer].mass_kg) continue;
+      const std::size_t whole = layers.cut_from.empty() ? layer : layers.cut_from[layer];
+      if (whole < plan.layers.size() && plan.layers[whole].mass_kg) continue;
       for (std::size_t t = 0; t < triangles.size(); ++t)
-        material[layer].mass_kg += kg_per_mm3 * net.rest_volume[layer * triangles.size() + t];
+        material[layer].mass_kg += kg_per_mm3 * net.rest_volume[t * material.size() + layer];
     }
     net = layered_net(triangles, sheets, rest, material);
   }

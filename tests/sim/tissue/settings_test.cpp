@@ -70,6 +70,48 @@ TEST(TissueSettings, LayersHaveTheirOwnShareStiffnessAndMass) {
   EXPECT_GT(all, outer_weight);
 }
 
+TEST(TissueSettings, LayersAreCutWhereTheNetIsFineAndWeighAndHoldAsMuch) {
+  Case patient = plain_patient();
+  part_lips(patient);
+  TissuePlan plan;
+  plan.layers = {{.share = 0.2, .modulus_MPa = 0.08, .mass_kg = 0.05}, {.share = 0.8}};
+  plan.down = Vector3d(0, 0, -1);
+  const auto weight = [](const TissueModel& model) {
+    double sum = 0;
+    for (const auto& f : model.node_force) sum -= f.z();
+    return sum;
+  };
+  const auto usual = build_tissue(patient, {.plan = plan});
+  const auto fine = build_tissue(patient, {.surface_nodes = 700, .plan = plan});
+  EXPECT_EQ(usual->sheets, 3);
+  EXPECT_GT(fine->sheets, 3);
+  EXPECT_EQ(summary(*fine).layers, 2);
+  bool told = false;
+  for (const auto& note : summary(*fine).notes)
+    told = told || note.find("layers are cut, 2 into") != std::string::npos;
+  EXPECT_TRUE(told);
+  // A kilogramme a litre where the plan does not say.
+  const auto due = [](const TissueModel& model) {
+    double volume = 0;  // of the deeper layer
+    for (const auto& prism : model.net.prisms)
+      if (prism[0] % model.sheets > 0) volume += prism_volume(model.rest, prism);
+    return 9.81 * (0.05 + 1e-6 * volume);
+  };
+  EXPECT_NEAR(weight(*usual), due(*usual), 1e-6);
+  EXPECT_NEAR(weight(*fine), due(*fine), 1e-6);
+  EXPECT_NEAR(weight(*fine), weight(*usual), 0.02 * weight(*usual));
+  // Of what holds the tissue the finer net has as much, spread over more nodes.
+  const auto held = [](const TissueModel& model) {
+    double sum = 0;
+    for (std::size_t i = 0; i < model.net.anchor_node.size(); ++i)
+      if (model.net.anchor_node[i] % model.sheets == model.sheets - 1)
+        sum += model.net.anchor_stiffness[i];
+    return sum;
+  };
+  EXPECT_GT(fine->net.anchor_node.size(), 1.2 * usual->net.anchor_node.size());
+  EXPECT_NEAR(held(*fine), held(*usual), 0.15 * held(*usual));
+}
+
 TEST(TissueSettings, AttachmentsAreChosenByLandmarkOrPlaceAndBone) {
   const auto usual = plain_model({});
   TissuePlan loose;

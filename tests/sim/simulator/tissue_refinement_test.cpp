@@ -1,0 +1,82 @@
+// The same layers are the same tissue at any number of nodes, on a real patient.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "sim/tissue/lips.h"
+#include "sim/tissue/tissue.h"
+#include "tests/support/scan_case.h"
+
+namespace condyle::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The face with the mouth opened by 4 degrees: the incisors go down by some 6 mm.
+std::vector<Eigen::Vector3f> opened_face(const Case& patient, int surface_nodes, TissueBond bond,
+                                         int wanted_nodes) {
+  const auto model =
+      build_tissue(patient, {.surface_nodes = surface_nodes, .plan = {.bond = bond}});
+  EXPECT_NEAR(summary(*model).nodes, wanted_nodes, 0.05 * wanted_nodes);
+  const Vector3d condyles =
+      0.5 * (*patient.landmarks.find("left_condyle") + *patient.landmarks.find("right_condyle"));
+  TissueState state = rest_tissue(*model);
+  for (int degrees = 1; degrees <= 4; ++degrees) {
+    const double slide = 0.35 * degrees;
+    Pose X_CM;
+    X_CM.R =
+        Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vector3d::UnitX()));
+    X_CM.t = condyles - X_CM.R * condyles + Vector3d(0, -slide, -0.4 * slide);
+    state = follow(*model, state, X_CM);
+    EXPECT_TRUE(state.converged);
+  }
+  std::vector<Eigen::Vector3f> face;
+  deform_face(*model, state, face);
+  return face;
+}
+
+void expect_same_tissue(TissueBond bond) {
+  auto patient = case_badin_with_face();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  part_lips(*patient);
+  const auto coarse = opened_face(*patient, 520, bond, 2080);
+  const auto fine = opened_face(*patient, 1400, bond, 8400);
+  // Over the face's area, and over its vertices, which crowd at lips and nostrils.
+  const TriMesh& face = patient->find(Role::face)->mesh;
+  double difference = 0, whole = 0, plain_difference = 0, plain_whole = 0, farthest = 0;
+  std::vector<double> area(face.vertices.size(), 0.0);
+  for (const auto& t : face.triangles) {
+    const Vector3d &a = face.vertices[t[0]], &b = face.vertices[t[1]], &c = face.vertices[t[2]];
+    for (int v : t) area[v] += (b - a).cross(c - a).norm() / 6;
+  }
+  for (std::size_t v = 0; v < area.size(); ++v) {
+    const double apart = (coarse[v] - fine[v]).squaredNorm();
+    const double way = (fine[v] - face.vertices[v].cast<float>()).squaredNorm();
+    difference += area[v] * apart;
+    whole += area[v] * way;
+    plain_difference += apart;
+    plain_whole += way;
+    farthest = std::max(farthest, std::sqrt(way));
+  }
+  std::printf(
+      "refined from 2,080 to 8,400 nodes: %.1f %% of the displacement by area, %.1f %% by "
+      "vertex\n",
+      100 * std::sqrt(difference / whole), 100 * std::sqrt(plain_difference / plain_whole));
+  EXPECT_GT(farthest, 5);
+  EXPECT_LT(std::sqrt(difference / whole), 0.05);
+  EXPECT_LT(std::sqrt(plain_difference / plain_whole), 0.05);
+}
+
+TEST(TissueRefinement, FromTwoToEightThousandNodesSlidingMovesARealFaceByLessThanFivePercent) {
+  expect_same_tissue(TissueBond::sliding);
+}
+
+TEST(TissueRefinement, FromTwoToEightThousandNodesGluedMovesARealFaceByLessThanFivePercent) {
+  expect_same_tissue(TissueBond::glued);
+}
+
+}  // namespace
+}  // namespace condyle::test
