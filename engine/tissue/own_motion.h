@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 #include "engine/minimize/objective.h"
 
 namespace condyle {
@@ -15,24 +13,24 @@ class OwnMotion {
   void frame_ended(const Points& reached, const Points& carried) {
     before_.swap(last_);
     last_.resize(reached.size());
-    double change2 = 0;
-    for (std::size_t i = 0; i < reached.size(); ++i) {
-      last_[i] = reached[i] - carried[i];
-      if (!before_.empty()) change2 = std::max(change2, (last_[i] - before_[i]).squaredNorm());
-    }
-    steady_ = !before_.empty() && change2 < steady_mm * steady_mm;
+    for (std::size_t i = 0; i < reached.size(); ++i) last_[i] = reached[i] - carried[i];
   }
-  /// Adds the next frame's own motion to nodes that bones have carried; nothing where the tissue
-  /// has just snapped over, after which its last motion foretells nothing.
+  /// Adds the next frame's own motion to nodes that bones have carried. A node that snapped over in
+  /// one of the last two frames goes on as in the other one.
   void foretell(Points& carried) const {
-    if (!steady_) return;
-    for (std::size_t i = 0; i < carried.size(); ++i) carried[i] += 2 * last_[i] - before_[i];
+    if (before_.size() != carried.size()) return;
+    for (std::size_t i = 0; i < carried.size(); ++i) {
+      const Eigen::Vector3d change = last_[i] - before_[i];
+      if (change.squaredNorm() < steady_mm * steady_mm)
+        carried[i] += last_[i] + change;
+      else
+        carried[i] += last_[i].squaredNorm() < before_[i].squaredNorm() ? last_[i] : before_[i];
+    }
   }
 
  private:
-  static constexpr double steady_mm = 0.3;  // most that a node's own motion changes
+  static constexpr double steady_mm = 0.1;  // most that a node's own motion changes
   Points last_, before_;                    // mm
-  bool steady_ = false;
 };
 
 }  // namespace condyle
