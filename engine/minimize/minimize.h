@@ -41,8 +41,8 @@ struct MinimizeSettings {
   /// preconditioned: the preconditioner was made at the start, so that its first step is tried at
   /// full length without a look at the curvature along it.
   bool fresh = false;
-  /// preconditioned: asked after each iteration but the last with what has been done; another
-  /// preconditioner for those that follow, or null.
+  /// preconditioned: asked with what has been done after each iteration that more may follow,
+  /// before it is known whether they must; another preconditioner for them, or null.
   std::function<const Preconditioner*(const Points& x, const MinimizeResult& done)> renew = {};
   double line_tolerance = 0.1;  // of the line searches of the first three: width over position
 };

@@ -98,13 +98,14 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
 
     x.swap(trial);
     f = f_new;
-    if (settings.renew && result.iterations + 1 < settings.max_iterations) {
+    if (settings.renew && result.iterations + 1 < settings.max_iterations && !counted.spent()) {
       MinimizeResult done = result;
       ++done.iterations;
       if (const Preconditioner* other = settings.renew(x, done)) {
         preconditioner = other;
         g.swap(g_new);
         if (begin()) continue;
+        result = done;
         result.status = Status::stalled;
         break;
       }

@@ -14,12 +14,14 @@ using BlockBuffer = std::array<float, largest_block * largest_block>;
 /// Numbers of a block's rows, with room for what kernels read and write beyond them.
 using PaddedBlock = std::array<float, 2 * largest_block>;
 
-/// subtract_product, its columns shared among threads where that is worth it.
+/// subtract_product, its columns shared among threads where that is worth it. Where shares have
+/// other bits than the whole, they are taken on one thread, too.
 void subtract_product(const FloatKernels::Product& p, int threads) {
   constexpr int width = 48;
   constexpr double worth = 2e6;  // products
   const double size = static_cast<double>(p.rows) * p.columns * p.depth;
-  if (threads < 2 || size < worth) return float_kernels().subtract_product(p);
+  if (size < worth || (threads < 2 && p.depth <= FloatKernels::most_whole_depth))
+    return float_kernels().subtract_product(p);
   parallel_for((p.columns + width - 1) / width, threads, [&](std::size_t chunk) {
     FloatKernels::Product part = p;
     const int first = static_cast<int>(chunk) * width;

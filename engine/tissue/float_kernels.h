@@ -35,6 +35,8 @@ struct FloatKernels {
     int ldc, lda, ldb;
     bool lower, anew = false;
   };
+  /// Products no deeper than this have the same bits in parts of their columns as whole.
+  static constexpr int most_whole_depth = 240;
   void (*subtract_product)(const Product& product);
   /// y -= A x; A is rows x columns (stride lda). What stands in the 15 places after y's last may
   /// hold anything afterwards.

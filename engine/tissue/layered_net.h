@@ -31,8 +31,8 @@ struct LayerStack {
 LayerStack usual_layers(int count);
 
 /// The same layers, each cut into equal ones until none is thicker than 1.2 edges: springs cannot
-/// resist evenly in taller prisms (spring_map.h). Masses are shared out; cut_from tells the layer of
-/// `layers` that each is of. depth_mm: of the whole stack; edge_mm: of the mesh along it.
+/// resist evenly in taller prisms (spring_map.h). Masses are shared out; cut_from tells the layer
+/// of `layers` that each is of. depth_mm: of the whole stack; edge_mm: of the mesh along it.
 LayerStack split_layers(const LayerStack& layers, double depth_mm, double edge_mm);
 
 /// Node `sheet` (0 outermost) of column `column`.

@@ -211,13 +211,14 @@ std::string MotionReport::json() const {
   json["step_s"] = settings_.step_s;
   const auto& w = widest_.measures;
   json["opening"] = {{"max_opening_mm", w.opening_mm},
-                     {"incisal_way_mm", banded(w.incisal_way_mm, 42, 58)},
                      {"frame", widest_frame_},
                      {"time_s", widest_.time_s},
                      {"interincisal_mm", w.interincisal_mm},
                      {"max_rotation_deg", banded(max_rotation_deg_, 28, 45)},
                      {"left_condylar_travel_mm", banded(left_travel_mm_, 10, 20)},
                      {"right_condylar_travel_mm", banded(right_travel_mm_, 10, 20)}};
+  if (scene_.patient.landmarks.find("lower_incisal_point"))
+    json["opening"]["incisal_way_mm"] = banded(w.incisal_way_mm, 42, 58);
   if (w.helical_axis.known) json["opening"]["helical_axis"] = told(w.helical_axis);
 
   if (series_.known_landmarks) json["measures"] = told(extremes(series_));
@@ -311,12 +312,18 @@ std::string MotionReport::json() const {
 
 std::string MotionReport::text() const {
   const auto& m = widest_.measures;
-  std::string text = fmt::format(
-      "{} frames; widest opening {:.1f} mm between incisors ({:.1f} mm drop of the lower incisal "
-      "point, {:.1f} mm way) at {:.2f} s, rotation {:.1f} deg, condyles travel {:.1f} mm left, "
-      "{:.1f} mm right\n",
-      frames_, m.interincisal_mm, m.opening_mm, m.incisal_way_mm, widest_.time_s, max_rotation_deg_, left_travel_mm_,
-      right_travel_mm_);
+  const Landmarks& landmarks = scene_.patient.landmarks;
+  std::string text = fmt::format("{} frames; ", frames_);
+  if (landmarks.find("lower_incisal_point")) {
+    text +=
+        fmt::format("widest opening {:.1f} mm (drop of the lower incisal point; its way {:.1f} mm",
+                    m.opening_mm, m.incisal_way_mm);
+    if (landmarks.find("upper_incisal_point"))
+      text += fmt::format("; between incisors {:.1f} mm", m.interincisal_mm);
+    text += fmt::format(") at {:.2f} s, ", widest_.time_s);
+  }
+  text += fmt::format("rotation {:.1f} deg, condyles travel {:.1f} mm left, {:.1f} mm right\n",
+                      max_rotation_deg_, left_travel_mm_, right_travel_mm_);
   int emergent = 0, within = 0;
   std::string outside;
   for (const auto& finding : findings(scene_, motion_, series_)) {

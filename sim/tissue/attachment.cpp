@@ -78,10 +78,12 @@ void hold_as_planned(const TissuePlan& plan, const Landmarks& landmarks, const C
                          "\" to attach tissue around");
       centre = *mark;
     }
+    const Ground bone = region.bone == Body::mandible ? Ground::mandible : Ground::cranium;
     for (std::size_t v = 0; v < columns.size(); ++v) {
       Column& c = columns[v];
-      if (c.ground != (region.bone == Body::mandible ? Ground::mandible : Ground::cranium))
-        continue;
+      // A lip may lie on another jaw than holds it.
+      const bool by_ground = region.attached || c.hold == Hold::free;
+      if (by_ground ? c.ground != bone : c.hold != hold_of(bone)) continue;
       const Eigen::Vector3d met = skin.mesh.vertices[v] + c.met_depth * c.inward;
       if ((met - centre).norm() > region.radius_mm) continue;
       c.hold = region.attached ? hold_of(c.ground) : Hold::free;

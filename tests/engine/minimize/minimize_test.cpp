@@ -213,6 +213,41 @@ TEST(LineSearch, BothFindTheMinimumOfACurveFromAnyFirstStep) {
   }
 }
 
+TEST(Minimize, APreconditionerIsRenewedOnTheWay) {
+  Chain chain;
+  const Unit unit, stiffer(2);
+  Points expected = straight_chain(12), x = expected;
+  ASSERT_TRUE(minimize(Method::quasi_newton, chain, tight(), expected).converged());
+  MinimizeSettings settings = tight();
+  std::vector<int> asked;
+  settings.renew = [&](const Points& now, const MinimizeResult& done) -> const Preconditioner* {
+    asked.push_back(done.iterations);
+    EXPECT_EQ(now.size(), x.size());
+    return done.iterations == 3 ? &stiffer : nullptr;
+  };
+  const auto result = minimize(Method::preconditioned, chain, settings, x, &unit);
+  EXPECT_TRUE(result.converged());
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - expected[i]).norm(), 1e-4);
+  ASSERT_EQ(asked.size(), static_cast<std::size_t>(result.iterations));
+  for (std::size_t i = 0; i < asked.size(); ++i) EXPECT_EQ(asked[i], static_cast<int>(i) + 1);
+}
+
+TEST(Minimize, ARenewedPreconditionerThatIsNoneEndsWithWhatWasReached) {
+  Chain chain;
+  const Unit unit, none(0);
+  Points x = straight_chain(12);
+  const double start = chain.value(x);
+  MinimizeSettings settings = tight();
+  settings.renew = [&](const Points&, const MinimizeResult& done) -> const Preconditioner* {
+    return done.iterations == 3 ? &none : nullptr;
+  };
+  const auto result = minimize(Method::preconditioned, chain, settings, x, &unit);
+  EXPECT_EQ(result.status, MinimizeResult::Status::stalled);
+  EXPECT_EQ(result.iterations, 3);
+  EXPECT_LT(result.energy, start);
+  EXPECT_EQ(result.energy, chain.value(x));
+}
+
 TEST(LineSearch, ParabolasLookToBothSidesAndTurnBackBeforeAWall) {
   LineSettings settings;
   settings.both_sides = true;

@@ -259,6 +259,19 @@ TEST(FloatKernels, AProductAnewIsThatOfZeros) {
     }
 }
 
+TEST(FloatKernels, ProductsThatAreNotTooDeepHaveTheSameBitsInParts) {
+  constexpr int rows = 200, columns = 200, depth = FloatKernels::most_whole_depth, width = 48;
+  const std::vector<float> A = right_hand_side(static_cast<std::size_t>(rows) * depth + 16);
+  std::vector<float> whole(static_cast<std::size_t>(rows) * columns + 16, 0.0f), parts = whole;
+  float_kernels().subtract_product(
+      {whole.data(), A.data(), A.data(), rows, columns, depth, rows, rows, rows, false});
+  for (int j = 0; j < columns; j += width)
+    float_kernels().subtract_product({parts.data() + j * rows, A.data(), A.data() + j, rows,
+                                      std::min(width, columns - j), depth, rows, rows, rows,
+                                      false});
+  EXPECT_EQ(whole, parts);
+}
+
 TEST(FloatKernels, LargeProductsAreThoseOfPlainLoops) {
   for (const bool lower : {false, true}) {
     const int columns = 131, rows = lower ? columns : 250, depth = 250;

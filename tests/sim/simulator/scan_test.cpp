@@ -82,7 +82,7 @@ TEST(FaceScan, OfAnotherPersonOverScaledBonesIsBuiltAndOpens) {
       stretched = std::max(stretched, static_cast<double>((face[a] - face[b]).norm()) - before);
     }
   std::printf("an edge of the face is longer by up to %.1f mm\n", stretched);
-  EXPECT_LT(stretched, 7);
+  EXPECT_LT(stretched, 7);  // 6.5 measured
   // Both lips go with their own jaw.
   const auto moved = [&](const char* name) {
     const Vector3d at = *patient.landmarks.find(name);

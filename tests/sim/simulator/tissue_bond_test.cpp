@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 
 #include "sim/tissue/lips.h"
 #include "sim/tissue/tissue.h"
@@ -70,6 +71,22 @@ void expect_both_follow(Case patient) {
   std::printf("lips apart by %.2f mm; slip %.2f sliding, %.2f mm glued\n", apart, sliding.slip_mm,
               glued.slip_mm);
   EXPECT_GT(apart, 0.5);
+}
+
+TEST(TissueBond, WhatIsDetachedFromABoneIsLetGoByThatBone) {
+  Case patient = builtin();
+  part_lips(patient);
+  const auto detached_from = [&](std::optional<Body> bone) {
+    TissuePlan plan{.bond = TissueBond::glued};
+    if (bone) plan.attachments = {{*bone, false, "stomion", Vector3d::Zero(), 25}};
+    return summary(*build_tissue(patient, {.plan = plan}));
+  };
+  const TissueSummary whole = detached_from({}), no_jaw = detached_from(Body::mandible),
+                      no_skull = detached_from(Body::cranium);
+  EXPECT_LT(no_jaw.attached_to_mandible, whole.attached_to_mandible);
+  EXPECT_EQ(no_jaw.attached_to_cranium, whole.attached_to_cranium);
+  EXPECT_LT(no_skull.attached_to_cranium, whole.attached_to_cranium);
+  EXPECT_EQ(no_skull.attached_to_mandible, whole.attached_to_mandible);
 }
 
 // The lower lip of a closed mouth lies on the upper teeth too, and does not stay with them.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/mesh/slit_seam.h"
+#include "engine/mesh/topology.h"
 #include "sim/tissue/lips.h"
 
 namespace condyle {
@@ -84,14 +86,16 @@ TEST(LipPocket, AHoleInTheWayIsGoneRoundOrLeavesItToOthers) {
   EXPECT_TRUE(pocket_bottom(wall_with_hole(5), line).empty());  // what is left is not deep
 }
 
-/// A wall with a slit between lips 3 mm thick, and behind them a mouth 30 mm deep, closed behind.
-TriMesh wall_with_mouth() {
-  constexpr int around = 96, outside = 30, deep = 60;
+/// A wall with a slit between lips 3 mm thick, and behind them a mouth, closed behind.
+TriMesh wall_with_mouth(double height_mm = 30, int depth_mm = 30) {
+  constexpr int around = 96, outside = 30;
+  const int deep = 2 * depth_mm;
   TriMesh mesh;
   for (int ring = 0; ring <= outside + deep; ++ring)
     for (int i = 0; i < around; ++i) {
       const double angle = 2 * M_PI * i / around, in = 0.5 * std::max(0, ring - outside);
-      const double wider = std::max(0, outside - ring) + std::clamp(2 * (in - 3), 0.0, 15.0);
+      const double wider =
+          std::max(0, outside - ring) + std::clamp(2 * (in - 3), 0.0, 0.5 * height_mm);
       mesh.vertices.emplace_back((22 + wider) * std::cos(angle), in,
                                  (0.05 + wider) * std::sin(angle));
     }
@@ -126,11 +130,14 @@ TEST(LipPocket, AMouthBehindTheLipsIsOpenedAtItsOwnCorners) {
   EXPECT_LT(back, 16);
 }
 
-TEST(LipPocket, AGapBetweenLipsIsNoMouth) {
-  TriMesh face = wall(14, 0.2);
-  const auto whole = face.triangles;
-  EXPECT_FALSE(open_pouch(face, line, pocket_bottom(face, line)));
-  EXPECT_EQ(face.triangles, whole);
+TEST(LipPocket, AGapBetweenLipsOrAWayThroughTheHeadIsNoMouth) {
+  for (TriMesh face : {wall_with_mouth(5), wall_with_mouth(30, 120)}) {
+    const auto whole = face.triangles;
+    const std::vector<int> deep = {static_cast<int>(face.vertices.size()) - 1};
+    EXPECT_LT(without_deep_inside(face, deep, line.middle, 70, {}).size(), whole.size());
+    EXPECT_FALSE(open_pouch(face, line, deep));
+    EXPECT_EQ(face.triangles, whole);
+  }
 }
 
 TEST(LipPocket, AFaceWithoutOneHasNone) {
