@@ -21,6 +21,8 @@ constexpr double behind_teeth_mm = 1.6;     // from teeth to the cheek
 constexpr double throat_mm = 18;            // from the last tooth on
 constexpr double throat_narrower = 0.5;     // by this share of the width
 constexpr double within_mm = 1.5;           // what is seen stands before the lining by so much
+constexpr double within_crowns_mm = 5;      // of a bone that has them, with their cusps and pits
+constexpr double gum_mm = 1;                // of a palate without gums of its own
 constexpr double palate_mm = 32;            // above the line of the lips, at most
 constexpr double palate_share = 0.8;        // of the mouth's half width
 constexpr double soft_palate_slope = 0.85;  // down over back, behind the bone
@@ -30,11 +32,17 @@ double smooth(double t) {
   return t * t * (3 - 2 * t);
 }
 
-Eigen::AlignedBox3d box_of(std::span<const Part> parts, Role role) {
-  Eigen::AlignedBox3d box;
+std::vector<Vector3d> vertices_of(std::span<const Part> parts, Role role) {
+  std::vector<Vector3d> all;
   for (const auto& part : parts)
     if (part.role == role)
-      for (const auto& v : part.mesh.vertices) box.extend(v);
+      all.insert(all.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
+  return all;
+}
+
+Eigen::AlignedBox3d box_of(std::span<const Vector3d> places) {
+  Eigen::AlignedBox3d box;
+  for (const auto& p : places) box.extend(p);
   return box;
 }
 
@@ -75,6 +83,41 @@ std::vector<int> mouth_rim(const TriMesh& face, const Eigen::AlignedBox3d& teeth
       return std::move(rim);
   }
   return {};
+}
+
+/// Of a jaw's bone what stands where its teeth would: in front, near the level of the lips.
+std::vector<Vector3d> front_of(std::vector<Vector3d> bone, double lips_z, double middle_x) {
+  constexpr double near_lips_mm = 12, beside_mm = 36, arch_mm = 45;
+  std::erase_if(bone, [&](const Vector3d& v) {
+    return std::abs(v.z() - lips_z) > near_lips_mm || std::abs(v.x() - middle_x) > beside_mm;
+  });
+  const double back = box_of(bone).min().y() + arch_mm;
+  std::erase_if(bone, [&](const Vector3d& v) { return v.y() > back; });
+  return bone;
+}
+
+/// Vertices of both dental arches, or of the jaws' fronts where teeth are no parts of their own;
+/// none if either is missing.
+std::vector<Vector3d> find_arches(std::span<const Part> parts, const TriMesh& face) {
+  auto upper = vertices_of(parts, Role::upper_teeth), lower = vertices_of(parts, Role::lower_teeth);
+  if (upper.empty() || lower.empty()) {
+    const auto mandible = vertices_of(parts, Role::mandible);
+    if (mandible.empty()) return {};
+    const auto jaw = box_of(mandible);
+    const auto rim = mouth_rim(face, jaw);
+    if (rim.empty()) return {};
+    Eigen::AlignedBox3d lips;
+    for (const int v : rim) lips.extend(face.vertices[static_cast<std::size_t>(v)]);
+    const auto front = [&](std::vector<Vector3d> bone) {
+      return front_of(std::move(bone), lips.center().z(), jaw.center().x());
+    };
+    if (upper.empty()) upper = front(vertices_of(parts, Role::maxilla));
+    if (upper.empty()) upper = front(vertices_of(parts, Role::skull));
+    if (lower.empty()) lower = front(mandible);
+    if (upper.empty() || lower.empty()) return {};
+  }
+  upper.insert(upper.end(), lower.begin(), lower.end());
+  return upper;
 }
 
 /// Height of the lowest surface above a level, seen from below, on a grid in plan.
@@ -141,6 +184,26 @@ class Ceiling {
   std::vector<double> heights_;
 };
 
+/// From the lowest surface above up to the lining: it lies within gums and crowns, but covers a
+/// palate that is bare bone.
+class Above {
+ public:
+  Above(std::span<const Part> parts, double mid)
+      : bare_(std::none_of(parts.begin(), parts.end(),
+                           [](const Part& part) { return part.role == Role::upper_gums; })),
+        mid_(mid) {}
+  double at(double surface_z) const {
+    constexpr double crowns_mm = 7, to_palate_mm = 3;  // above the line of the lips
+    if (!bare_) return within_mm;
+    const double palate = smooth((surface_z - mid_ - crowns_mm) / to_palate_mm);
+    return within_crowns_mm - palate * (within_crowns_mm + gum_mm);
+  }
+
+ private:
+  bool bare_;
+  double mid_;
+};
+
 /// The soft palate goes on where the bone ends, down to the throat.
 struct SoftPalate {
   double begin_y, begin_z, lowest_z;
@@ -149,7 +212,8 @@ struct SoftPalate {
   }
 };
 
-SoftPalate soft_palate(const Ceiling& bone, const Eigen::AlignedBox3d& teeth, double mid) {
+SoftPalate soft_palate(const Ceiling& bone, const Above& above, const Eigen::AlignedBox3d& teeth,
+                       double mid) {
   SoftPalate soft = {teeth.max().y(), mid + fornix_up_mm, mid + 4};
   bool found = false;
   for (double y = teeth.min().y(); y < teeth.max().y() + throat_mm; y += 0.5) {
@@ -158,7 +222,7 @@ SoftPalate soft_palate(const Ceiling& bone, const Eigen::AlignedBox3d& teeth, do
     const bool steps_up = found && y > teeth.max().y() && z > soft.begin_z;
     if (z < mid + palate_mm && !steps_up) {
       soft.begin_y = y;
-      soft.begin_z = z + within_mm;
+      soft.begin_z = z + above.at(z);
       found = true;
     } else if (found) {
       break;
@@ -170,14 +234,13 @@ SoftPalate soft_palate(const Ceiling& bone, const Eigen::AlignedBox3d& teeth, do
 /// Half the mouth's width by the way back, from the teeth: it never narrows.
 class Width {
  public:
-  Width(std::span<const Part> parts, const Eigen::AlignedBox3d& teeth) : front_(teeth.min().y()) {
+  Width(std::span<const Vector3d> arches, const Eigen::AlignedBox3d& teeth)
+      : front_(teeth.min().y()) {
     half_.assign(static_cast<std::size_t>(teeth.sizes().y()) + 1, 0);
-    for (const auto& part : parts)
-      if (is_teeth(part.role))
-        for (const auto& v : part.mesh.vertices) {
-          double& half = half_[static_cast<std::size_t>(v.y() - front_)];
-          half = std::max(half, std::abs(v.x() - teeth.center().x()));
-        }
+    for (const auto& v : arches) {
+      double& half = half_[static_cast<std::size_t>(v.y() - front_)];
+      half = std::max(half, std::abs(v.x() - teeth.center().x()));
+    }
     for (std::size_t i = 1; i < half_.size(); ++i) half_[i] = std::max(half_[i], half_[i - 1]);
   }
   double at(double y) const {
@@ -242,11 +305,12 @@ void add_triangles(MouthLining& lining) {
 }  // namespace
 
 std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
-  const auto upper = box_of(parts, Role::upper_teeth), lower = box_of(parts, Role::lower_teeth);
   const auto face = std::find_if(parts.begin(), parts.end(),
                                  [](const Part& part) { return part.role == Role::face; });
-  if (upper.isEmpty() || lower.isEmpty() || face == parts.end()) return std::nullopt;
-  const auto teeth = upper.merged(lower);
+  if (face == parts.end()) return std::nullopt;
+  const auto arches = find_arches(parts, face->mesh);
+  if (arches.empty()) return std::nullopt;
+  const auto teeth = box_of(arches);
   constexpr double widest_mouth_mm = 300;  // what is larger has stray vertices
   if (teeth.sizes().maxCoeff() > widest_mouth_mm) return std::nullopt;
   MouthLining lining;
@@ -262,6 +326,8 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
   } else {
     lining.face = face->mesh.triangles;
   }
+  // A lip that ends at its edge is thin: the lining leaves it to the back before it turns aside.
+  const double turned = lining.face.size() == face->mesh.triangles.size() ? 0 : 0.35;
   const auto places = rim_places(face->mesh, lining.rim);
   const auto n = lining.rim.size();
   double corners = 0, found = 0;
@@ -276,8 +342,9 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
   region.extend(teeth.max() + Vector3d(5, throat_mm + 5, 0));
   region.extend(teeth.min() - Vector3d(5, 10, 0));
   const Ceiling bone(parts, region, mid + 1);
-  const Width width(parts, teeth);
-  const SoftPalate soft = soft_palate(bone, teeth, mid);
+  const Above above(parts, mid);
+  const Width width(arches, teeth);
+  const SoftPalate soft = soft_palate(bone, above, teeth, mid);
   const double throat = teeth.max().y() + throat_mm;
 
   lining.rest.resize((rings + 1) * n + 1);
@@ -303,17 +370,17 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
       if (is_upper) {
         const double hit = bone.at(x, y);
         if (hit < fornix) behind_teeth = true;
-        z = std::min(fornix, hit + within_mm);
+        z = std::min(fornix, hit + above.at(hit));
         if (behind_teeth && std::abs(across) < palate_share) {
           if (hit < mid + palate_mm && (y < soft.begin_y || hit < bone_z + 4)) {
-            bone_z = hit + within_mm;
+            bone_z = hit + above.at(hit);
             bone_y = y;
           }
           z = bone_z + smooth((y - bone_y) / 6) * (soft.at(y) - bone_z);
         }
       }
       z = mid + turn * (z - mid);
-      const double in = ring == 0 ? 0 : smooth(0.35 + 10 * t);
+      const double in = ring == 0 ? 0 : smooth(turned + 10 * t);
       lining.rest[v] = Vector3d(x, y, start.z() + in * (z - start.z())).cast<float>();
       lining.jaw[v] = static_cast<float>(is_upper ? 0.5 - 0.5 * turn : 0.5 + 0.5 * turn);
       lining.lip[v] = static_cast<float>(1 - smooth(t / 0.35));

@@ -23,7 +23,8 @@ struct MouthLining {
   float mid_z = 0;                         // height of the closed lips
 };
 
-/// None for a face without such a rim, and for a patient without teeth in both jaws.
+/// None for a face without such a rim. The jaws' fronts stand in for teeth that are no parts of
+/// their own; none for a patient who has neither.
 std::optional<MouthLining> line_mouth(std::span<const Part> parts);
 
 /// Where it is with the rim's vertices and the mandible where they are now.

@@ -75,11 +75,77 @@ TEST(MouthLining, GoesWithTheLipsInFrontAndWithItsJawBehindThem) {
   EXPECT_GT(with_jaw, 5);
 }
 
-TEST(MouthLining, IsNotKnownWithoutARimOrWithoutTeeth) {
-  EXPECT_FALSE(line_mouth(head_with_mouth(false)));
+/// The same with crowns that are part of the jaws, which reach further than the teeth do.
+std::vector<Part> head_with_jaws(Role upper) {
   auto parts = head_with_mouth();
-  parts.pop_back();
-  EXPECT_FALSE(line_mouth(parts));
+  parts[1] = make_part("upper", upper, parts[1].mesh);
+  parts[2] = make_part("mandible", Role::mandible, parts[2].mesh);
+  const auto high = ball({0, 0, 40}, 15, 16), ramus = ball({0, 30, 0}, 25, 16);
+  for (const auto& [part, more] : {std::pair(&parts[1], &high), std::pair(&parts[2], &ramus)}) {
+    auto& mesh = part->mesh;
+    const int own = static_cast<int>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), more->vertices.begin(), more->vertices.end());
+    for (const auto& t : more->triangles) mesh.triangles.push_back(t.array() + own);
+  }
+  return parts;
+}
+
+TEST(MouthLining, IsFoundFromTheFrontsOfTheJawsWhereTeethAreNoPartsOfTheirOwn) {
+  const auto teeth = line_mouth(head_with_mouth());
+  ASSERT_TRUE(teeth);
+  for (const Role upper : {Role::maxilla, Role::skull}) {
+    const auto jaws = line_mouth(head_with_jaws(upper));
+    ASSERT_TRUE(jaws);
+    EXPECT_EQ(jaws->rim, teeth->rim);
+    EXPECT_EQ(jaws->mid_z, teeth->mid_z);
+    ASSERT_EQ(jaws->rest.size(), teeth->rest.size());
+    Eigen::AlignedBox3f box, with_teeth;
+    for (const auto& v : jaws->rest) box.extend(v);
+    for (const auto& v : teeth->rest) with_teeth.extend(v);
+    // The fronts are the teeth's balls near the lips: nothing of what is far behind or above.
+    EXPECT_NEAR(box.min().x(), with_teeth.min().x(), 1);
+    EXPECT_NEAR(box.max().x(), with_teeth.max().x(), 1);
+    EXPECT_NEAR(box.min().y(), with_teeth.min().y(), 0.1);
+    EXPECT_LT(box.max().y(), 20);
+    EXPECT_GT(box.max().y(), with_teeth.max().y() - 1);
+  }
+}
+
+TEST(MouthLining, LeavesAThinLipToTheBackBeforeItTurnsAside) {
+  const auto lining = line_mouth(head_with_jaws(Role::maxilla));
+  ASSERT_TRUE(lining);
+  const std::size_t n = lining->rim.size();
+  for (std::size_t v = n; v < 2 * n; ++v) {
+    const Eigen::Vector3f way = lining->rest[v] - lining->rest[v - n];
+    EXPECT_GT(way.y(), std::abs(way.z())) << v;
+  }
+}
+
+TEST(MouthLining, CoversAPalateWithoutGumsButLiesWithinThem) {
+  // A flat palate 15 mm above the line of the lips.
+  TriMesh palate;
+  palate.vertices = {{-30, -35, 15}, {30, -35, 15}, {30, 5, 15}, {-30, 5, 15}};
+  palate.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const auto highest_below = [&](Role role) {
+    auto parts = head_with_jaws(Role::maxilla);
+    parts.push_back(make_part("palate", role, palate));
+    const auto lining = line_mouth(parts);
+    float highest = 0;
+    for (const auto& v : lining.value().rest)
+      if (std::abs(v.x()) < 15 && v.y() > -20 && v.y() < 0) highest = std::max(highest, v.z());
+    return highest;
+  };
+  EXPECT_NEAR(highest_below(Role::maxilla), 14, 0.1);
+  EXPECT_NEAR(highest_below(Role::upper_gums), 16.5, 0.1);
+}
+
+TEST(MouthLining, IsNotKnownWithoutARimOrWithoutEitherJaw) {
+  EXPECT_FALSE(line_mouth(head_with_mouth(false)));
+  for (const std::size_t missing : {1u, 2u})
+    for (auto parts : {head_with_mouth(), head_with_jaws(Role::maxilla)}) {
+      parts.erase(parts.begin() + static_cast<std::ptrdiff_t>(missing));
+      EXPECT_FALSE(line_mouth(parts)) << missing;
+    }
 }
 
 TEST_F(MouthSection, IsFleshRoundAboutAndHollowInside) {
