@@ -15,21 +15,18 @@ class OwnMotion {
     last_.resize(reached.size());
     for (std::size_t i = 0; i < reached.size(); ++i) last_[i] = reached[i] - carried[i];
   }
-  /// Adds the next frame's own motion to nodes that bones have carried. A node that snapped over in
-  /// one of the last two frames goes on as in the other one.
+  /// Adds the next frame's own motion to nodes that bones have carried; nothing to those that have
+  /// just snapped over, after which their last motion foretells nothing.
   void foretell(Points& carried) const {
     if (before_.size() != carried.size()) return;
     for (std::size_t i = 0; i < carried.size(); ++i) {
       const Eigen::Vector3d change = last_[i] - before_[i];
-      if (change.squaredNorm() < steady_mm * steady_mm)
-        carried[i] += last_[i] + change;
-      else
-        carried[i] += last_[i].squaredNorm() < before_[i].squaredNorm() ? last_[i] : before_[i];
+      if (change.squaredNorm() < steady_mm * steady_mm) carried[i] += last_[i] + change;
     }
   }
 
  private:
-  static constexpr double steady_mm = 0.1;  // most that a node's own motion changes
+  static constexpr double steady_mm = 0.3;  // most that a node's own motion changes
   Points last_, before_;                    // mm
 };
 
