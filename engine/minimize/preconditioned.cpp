@@ -25,6 +25,11 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
     const auto curvature = objective.curvature(x, z);
     return curvature.gauss_newton > 0 ? std::max(1.0, gz / curvature.gauss_newton) : 1.0;
   };
+  // A fresh one is not five times too stiff: far below, no look is needed.
+  const double far_below = settings.fresh ? 0.2 : 0.0;
+  const auto arrived = [&](double enough) {
+    return way < far_below * enough || (way < enough && way * stretch() < enough);
+  };
   const auto begin = [&] {
     preconditioner->solve(g, z);
     gz = dot(g, z);
@@ -32,8 +37,7 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
     d.resize(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
     way = shortest = largest_norm(z);
-    const double enough = unknown_share * settings.tolerance_mm;
-    if (way < enough && way * stretch() < enough) result.status = Status::converged;
+    if (arrived(unknown_share * settings.tolerance_mm)) result.status = Status::converged;
     return true;
   };
 
@@ -121,8 +125,7 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
     way = largest_norm(z);
     const double contraction = std::min(way / shortest, least_contraction);
     shortest = std::min(shortest, way);
-    const double enough = settings.tolerance_mm * (1 - contraction);
-    if (way < enough && way * stretch() < enough) {
+    if (arrived(settings.tolerance_mm * (1 - contraction))) {
       ++result.iterations;
       result.status = Status::converged;
       break;

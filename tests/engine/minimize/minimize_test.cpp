@@ -43,6 +43,7 @@ class Chain final : public Objective {
     return sum;
   }
   Curvature curvature(const Points& x, const Points& d) override {
+    ++looks;
     Points up = x, down = x, g_up, g_down;
     double sum = 0, size = 0;
     for (const auto& v : d) size = std::max(size, v.norm());
@@ -62,6 +63,7 @@ class Chain final : public Objective {
   }
 
   double floor = -1;
+  int looks = 0;  // along ways
   std::size_t most_memory = 0;
 };
 
@@ -188,6 +190,26 @@ TEST(Preconditioned, IsNotAtTheMinimumBecauseThePreconditionerIsTooStiff) {
     for (std::size_t i = 0; i < x.size(); ++i)
       EXPECT_LT((x[i] - expected[i]).norm(), settings.tolerance_mm) << stiffness;
   }
+}
+
+TEST(Preconditioned, LooksAlongAWayOnlyWhereItNeedsTo) {
+  Chain chain;
+  Points expected = straight_chain(12);
+  ASSERT_TRUE(minimize(Method::quasi_newton, chain, tight(), expected).converged());
+  constexpr double pull = 0.1;  // of a point that the whole chain has left its line by
+  MinimizeSettings settings;
+  for (double too_stiff : {1.0, 2.0, 4.0})
+    for (bool fresh : {false, true}) {
+      const Unit unit(pull * too_stiff);
+      Points x = expected;
+      for (auto& p : x) p.z() += 5 * settings.tolerance_mm;
+      settings.fresh = fresh;
+      chain.looks = 0;
+      EXPECT_TRUE(minimize(Method::preconditioned, chain, settings, x, &unit).converged());
+      for (std::size_t i = 0; i < x.size(); ++i)
+        EXPECT_LT((x[i] - expected[i]).norm(), settings.tolerance_mm) << too_stiff << fresh;
+      EXPECT_EQ(chain.looks == 0, fresh) << too_stiff;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Minimize, EachMethod,
