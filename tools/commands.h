@@ -123,7 +123,7 @@ int run_import(const ImportOptions& options, const CommonOptions& common);
 int run_info(const std::filesystem::path& what, const CommonOptions& common);
 int run_phantom(const std::filesystem::path& out, const CommonOptions& common);
 int run_bench_frame(const BenchOptions& options, const CommonOptions& common);
-int run_bench_table1(const CommonOptions& common);
+int run_bench_table1(const BenchOptions& options, const CommonOptions& common);
 int run_bench_table2(const CommonOptions& common);
 int run_bench_tissue(const BenchOptions& options, const CommonOptions& common);
 int run_bench_collide(const BenchOptions& options, const CommonOptions& common);

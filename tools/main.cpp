@@ -228,6 +228,9 @@ int run_program(int argc, char** argv) {
   auto* bench_table1 =
       add_command(*bench_command, "table1", "Minimisers compared, beside the published table",
                   "condyle bench table1 --json");
+  bench_table1->add_option("CASE", bench.patient,
+                           "Case folder whose tissue goes forward in one step and in ten (default: "
+                           "the built-in patient)");
   auto* bench_table2 =
       add_command(*bench_command, "table2", "Time of a prediction, beside the published one",
                   "condyle bench table2 --json");
@@ -267,7 +270,7 @@ int run_program(int argc, char** argv) {
   if (info_command->parsed()) return run_info(what, common);
   if (phantom_command->parsed()) return run_phantom(phantom_out, common);
   if (bench_frame->parsed()) return run_bench_frame(bench, common);
-  if (bench_table1->parsed()) return run_bench_table1(common);
+  if (bench_table1->parsed()) return run_bench_table1(bench, common);
   if (bench_table2->parsed()) return run_bench_table2(common);
   if (bench_tissue->parsed()) return run_bench_tissue(bench, common);
   if (bench_collide->parsed()) return run_bench_collide(bench, common);

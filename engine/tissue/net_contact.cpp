@@ -26,6 +26,13 @@ constexpr double least_cosine = 0.5;
 /// Nearer than this the way to the nearest point says little about the surface's direction.
 constexpr double close_mm = 0.02;
 
+/// What presses is no point: it feels the mean of the body's directions this far around it. Tissue
+/// slides without friction, so it would come to rest in the pits that cells and triangles make, and
+/// where it came from would decide in which of them.
+constexpr double patch_mm = 0.5;
+/// Beyond this from the surface nothing presses.
+constexpr double pressing_mm = 0.5;
+
 constexpr double field_error_mm = 0.05;  // at most, at edges
 
 FieldSettings field_settings(const Box& region) {
@@ -67,6 +74,7 @@ bool NetObstacle::near(const Vector3d& p, double reach, Near& near) const {
     const double steep = gradient.norm();
     if (steep > 0.7) {  // not where two surfaces are equally near
       near = {spot.distance_mm, gradient / steep};
+      if (std::abs(near.distance) < pressing_mm) near.normal = patch_normal(p, near.normal);
       return true;
     }
   } else {
@@ -80,6 +88,18 @@ bool NetObstacle::near(const Vector3d& p, double reach, Near& near) const {
   near.normal = std::abs(found.distance) > close_mm ? Vector3d((p - found.point) / found.distance)
                                                     : surface_.pseudonormal(found).normalized();
   return true;
+}
+
+Vector3d NetObstacle::patch_normal(const Vector3d& p, const Vector3d& own) const {
+  constexpr double least = 0.3;  // of the sum where all around point one way
+  Vector3d sum = Vector3d::Zero();
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3d way(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    const DistanceField::Spot spot = field_.spot(p + patch_mm * way);
+    if (!spot.known) return own;
+    sum += spot.distance_mm * way;
+  }
+  return sum.norm() > least * 8 * patch_mm ? Vector3d(sum.normalized()) : own;
 }
 
 Vector3d NetObstacle::way_out(const Vector3d& p) const {
@@ -224,7 +244,8 @@ std::vector<Touch> carried_on(const std::vector<Touch>& used, std::vector<Touch>
     for (; i < used.size() && used[i].point == both[at].point; ++i) {
       const double cosine = used[i].row.normal.dot(both[at].row.normal);
       if (cosine >= same_face) {
-        both[at].push = std::max(both[at].push, cosine * used[i].pressed(x));
+        const double force = cosine * used[i].row.stiffness * used[i].pressed(x);
+        both[at].push = std::max(both[at].push, force / both[at].row.stiffness);
         if (share > 0) lean(used[i].row.normal, share, both[at], x);
       } else if ((used[i].at - both[at].at).norm() < stale_mm &&
                  used[i].row.gap(x) - cosine * both[at].gap > 0) {  // a groove, not an edge

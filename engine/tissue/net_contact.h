@@ -28,7 +28,7 @@ class NetObstacle {
 
   struct Near {
     double distance = 0;     // mm, negative inside
-    Eigen::Vector3d normal;  // unit, away from the body
+    Eigen::Vector3d normal;  // unit, away from the body; near its surface the mean of a patch
   };
   /// Whether p is nearer than `reach` (mm, below 2), and how near. Nothing beyond the region. Where
   /// it is not, it is no nearer than `near.distance`.
@@ -37,6 +37,10 @@ class NetObstacle {
   Eigen::Vector3d way_out(const Eigen::Vector3d& p) const;
 
  private:
+  /// The mean direction about p, which goes over from place to place without a jump; `own` where
+  /// none can be told.
+  Eigen::Vector3d patch_normal(const Eigen::Vector3d& p, const Eigen::Vector3d& own) const;
+
   DistanceField field_;
   TriangleTree surface_;
 };
@@ -93,9 +97,10 @@ void allow(const std::vector<Touch>& touches, std::vector<double>& allowance);
 /// at x. Of several planes of a point the nearest counts.
 double plane_error(const std::vector<Touch>& used, const std::vector<Touch>& now, const Nodes& x);
 
-/// `now`, with what `used` presses with at x, and with those planes of it that stood for another
-/// face nearby: in a groove a point that saw one side and then the other must obey both, or it goes
-/// to and fro for ever. The planes of `now` are turned by `share` (0 to 1) toward those of `used`.
+/// `now`, with the forces that `used` presses with at x, and with those planes of it that stood for
+/// another face nearby: in a groove a point that saw one side and then the other must obey both, or
+/// it goes to and fro for ever. The planes of `now` are turned by `share` (0 to 1) toward those of
+/// `used`.
 std::vector<Touch> carried_on(const std::vector<Touch>& used, std::vector<Touch> now,
                               const Nodes& x, double share = 0);
 

@@ -137,8 +137,7 @@ void tell_rest(TissueModel& model) {
   TissueBudget budget;
   budget.tolerance_mm = 1e-6;
   const TissueState still = follow(model, rest_tissue(model), Pose{}, budget);
-  for (std::size_t i = 0; i < still.nodes.size(); ++i)
-    summary.rest_move_mm = std::max(summary.rest_move_mm, (still.nodes[i] - model.rest[i]).norm());
+  summary.rest_move_mm = largest_way(model.rest, still.nodes);
   if (still.kept || !still.converged)
     summary.notes.push_back("the unmoved tissue could not be solved: it may move by itself");
   else if (summary.rest_move_mm > 1e-4)

@@ -157,8 +157,10 @@ TissueState follow(const TissueModel& model, const TissueState& previous, const 
                                           .rough_mm = well_touched_mm};
   NearJaws near = previous.near ? *previous.near : NearJaws{};
   TouchingResult touching = solve_touching(
-      [&](const Nodes& x) { return look_at(model.contact, X_CM, x, budget.threads, &near); }, solve,
-      loads, state.nodes, contact_settings, before);
+      [&](const Nodes& x) {
+        return look_at(model.contact, X_CM, x, budget.threads, &near, budget.contact_firmness);
+      },
+      solve, loads, state.nodes, contact_settings, before);
   factor.serve(state.iterations);
   if (state.iterations > worth_making ||
       (!state.converged && factor.served() > worth_making_of_all))

@@ -60,6 +60,9 @@ NetLoads loads_at(const TissueModel& model, const Pose& X_CM);
 /// The same, with what the tissue touches when its nodes are at x.
 NetLoads touching_loads(const TissueModel& model, const Pose& X_CM, const Nodes& x);
 
+/// Farthest way of any node, mm.
+double largest_way(const Nodes& from, const Nodes& to);
+
 /// How the face's point p with its side (0 = unknown) is carried.
 CarriedPoint carry_face_point(const TissueModel& model, const Eigen::Vector3d& p, int side);
 

@@ -27,6 +27,9 @@ struct TissueBudget {
   /// A frame that has spent them ends as soon as what it touches is within 0.1 mm, says that it has
   /// not converged, and leaves the rest to the next.
   int max_iterations = 2000;
+  /// Of what the tissue touches, over the usual. Firmer contact needs fewer looks at what is
+  /// touched to be told to the end, and more iterations for each.
+  double contact_firmness = 1;
   int threads = 1;  // the result has the same bits for any number
 };
 
@@ -55,6 +58,14 @@ TissueState rest_tissue(const TissueModel& model);
 /// The tissue of minimum energy with the mandible at X_CM, warm-started from `previous`.
 TissueState follow(const TissueModel& model, const TissueState& previous, const Pose& X_CM,
                    const TissueBudget& budget = {});
+
+/// The tissue of `state` at its pose where it came from no longer matters: followed on until all
+/// further solving would take no node farther than the tolerance (mm), estimated. A frame stops
+/// when what touches is told to 0.03 mm of its spring, which soft tissue that slides can turn into
+/// tenths. `converged` tells whether that was reached; iterations are of all rounds.
+constexpr double settled_mm = 1e-3;
+TissueState settle(const TissueModel& model, const TissueState& state,
+                   double tolerance_mm = settled_mm, int threads = 1);
 
 /// Vertices of the displayed face (the case's face part, in its order), carried by the tissue.
 /// Same bits for any number of threads.

@@ -317,19 +317,20 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
 }
 
 Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads,
-              NearJaws* known) {
+              NearJaws* known, double firmness) {
+  const TouchSettings on_jaw{.stiffness = firmness * TouchSettings{}.stiffness};
   Looks looks(contact_lists);
   const auto jaw = [&](const TissueContact::Jaw& of, const Pose& X_CJ, std::vector<Touch>& touches,
                        NearPoints* near) {
     if (!of.obstacle) return;
-    touch_obstacle(contact.points, of.allowance, *of.obstacle, X_CJ, x, {}, touches, of.shift,
+    touch_obstacle(contact.points, of.allowance, *of.obstacle, X_CJ, x, on_jaw, touches, of.shift,
                    near);
     lead_lips(contact, of, X_CM, x, touches);
   };
   const auto flap = [&](const Flap& of, const Flap& on, double stiffness,
                         std::vector<Touch>& touches, const Vector3d& facing = Vector3d::Zero()) {
-    touch_surface(of.points, of.allowance, on.surface, x, {.stiffness = stiffness}, touches,
-                  facing);
+    touch_surface(of.points, of.allowance, on.surface, x, {.stiffness = firmness * stiffness},
+                  touches, facing);
   };
   const auto& [upper, lower] = std::tie(contact.upper, contact.lower);
   const auto& [chin, throat] = contact.fold;

@@ -80,9 +80,9 @@ struct NearJaws {
   NearPoints cranium, mandible;
 };
 
-/// Everything the tissue touches at x, with the mandible at X_CM.
+/// Everything the tissue touches at x, with the mandible at X_CM. `firmness`: over the usual.
 Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads = 1,
-              NearJaws* known = nullptr);
+              NearJaws* known = nullptr, double firmness = 1);
 
 /// How tissue lies on the jaws and on itself.
 struct ContactMeasure {

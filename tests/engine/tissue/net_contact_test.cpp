@@ -90,7 +90,30 @@ TouchingResult settle(const SpringPrismNet& net, int sheets, NetLoads& loads,
                           EXPECT_TRUE(result.converged());
                           return Solved::at_minimum;
                         },
-                        loads, x, {.most_looks = 12, .tolerance_mm = 1e-3});
+                        loads, x, {.most_looks = 12, .tolerance_mm = 1e-3, .gap_mm = 0.02});
+}
+
+// Without friction a point would come to rest wherever the direction jumps.
+TEST(NetContact, DirectionOfAnObstacleTurnsWithoutJumpsAlongItsSurface) {
+  constexpr double radius = 15, step_mm = 0.01;
+  const NetObstacle ball(test::sphere(3, radius), wide_box(), {});
+  std::mt19937_64 random(9);
+  double most = 0, whole = 0;
+  for (int run = 0; run < 20; ++run) {
+    const Eigen::Matrix3d turn = test::any_pose(random, 0).R.toRotationMatrix();
+    Vector3d before = Vector3d::Zero();
+    for (int i = 0; i < 1000; ++i) {
+      const double angle = i * step_mm / radius;
+      const Vector3d out = turn * Vector3d(std::cos(angle), std::sin(angle), 0);
+      NetObstacle::Near near;
+      ASSERT_TRUE(ball.near(radius * out, 1.5, near));
+      if (i > 0) most = std::max(most, (near.normal - before).norm());
+      if (i > 0) whole += (near.normal - before).norm() / 20;
+      before = near.normal;
+    }
+  }
+  EXPECT_GT(whole, 0.5);                   // it goes round by 0.67
+  EXPECT_LT(most, 10 * step_mm / radius);  // facets meet at angles of 0.1 and more
 }
 
 TEST(NetContact, ObstacleTellsTheDistanceOfABallAtAnyPose) {
@@ -203,6 +226,25 @@ TEST(NetContact, ASlabDrapesOverABallItDoesNotEnter) {
   }
   for (const auto& f : force) EXPECT_LT(f.norm(), 0.02 * most);
   EXPECT_GT(pressed, 10);
+}
+
+TEST(NetContact, FirmerContactGoesOnWithTheForcesOfTheSofter) {
+  const NetObstacle ball(test::sphere(5, 15), wide_box(), {});
+  const Nodes x = {Vector3d(0, 0, 14.8), Vector3d(15.1, 0, 0)};
+  const std::vector<NetPoint> points = {NetPoint::of_node(0), NetPoint::of_node(1)};
+  const auto look = [&](double stiffness) {
+    std::vector<Touch> touches;
+    touch_obstacle(points, {0.0, 0.0}, ball, Pose{}, x, {.stiffness = stiffness}, touches);
+    return touches;
+  };
+  std::vector<Touch> before = look(1);
+  ASSERT_EQ(before.size(), 2u);
+  before[0].push = 0.5;
+  const auto firm = carried_on(before, look(8), x);
+  ASSERT_EQ(firm.size(), 2u);
+  EXPECT_NEAR(8 * firm[0].push, before[0].pressed(x), 1e-9);
+  EXPECT_GT(before[0].pressed(x), 0.6);
+  EXPECT_EQ(firm[1].push, 0);
 }
 
 TEST(NetContact, WhatOverlapsAtRestMayStayAndGoNoDeeper) {
