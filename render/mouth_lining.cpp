@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/mesh/rims.h"
 #include "engine/mesh/slit_seam.h"
-#include "engine/mesh/topology.h"
 
 namespace condyle {
 namespace {
@@ -46,34 +46,11 @@ Eigen::AlignedBox3d box_of(std::span<const Vector3d> places) {
   return box;
 }
 
-/// Rims of an open surface, each as its missing triangles would run.
-std::vector<std::vector<int>> rims_of(const TriMesh& mesh) {
-  const EdgeList list = find_edges(mesh);
-  std::vector<int> next(mesh.vertices.size(), -1);
-  for (const auto& edge : list.edges) {
-    if (edge.count != 1) continue;
-    const bool forward = list.sides[static_cast<std::size_t>(edge.first)].forward;
-    next[static_cast<std::size_t>(forward ? edge.high : edge.low)] = forward ? edge.low : edge.high;
-  }
-  std::vector<std::vector<int>> rims;
-  std::vector<char> seen(next.size(), 0);
-  for (int start = 0; start < static_cast<int>(next.size()); ++start) {
-    std::vector<int> walk;
-    int at = start;
-    for (; at >= 0 && !seen[static_cast<std::size_t>(at)];
-         at = next[static_cast<std::size_t>(at)]) {
-      seen[static_cast<std::size_t>(at)] = 1;
-      if (next[static_cast<std::size_t>(at)] >= 0) walk.push_back(at);
-    }
-    if (at == start && walk.size() > 8) rims.push_back(std::move(walk));
-  }
-  return rims;
-}
-
 /// The rim between the lips: it stands about the front of the teeth.
 std::vector<int> mouth_rim(const TriMesh& face, const Eigen::AlignedBox3d& teeth) {
   constexpr double near_mm = 15, narrowest_mm = 20;
   for (auto& rim : rims_of(face)) {
+    if (rim.size() <= 8) continue;
     Eigen::AlignedBox3d box;
     for (const int v : rim) box.extend(face.vertices[static_cast<std::size_t>(v)]);
     const Vector3d middle = box.center();
@@ -185,23 +162,45 @@ class Ceiling {
 };
 
 /// From the lowest surface above up to the lining: it lies within gums and crowns, but covers a
-/// palate that is bare bone.
+/// palate that is bare bone. Crowns are what is hardly above the lowest of its row: the arch rises
+/// to the back.
 class Above {
  public:
-  Above(std::span<const Part> parts, double mid)
+  Above(std::span<const Part> parts, const Ceiling& bone, const Eigen::AlignedBox3d& region,
+        double mid)
       : bare_(std::none_of(parts.begin(), parts.end(),
                            [](const Part& part) { return part.role == Role::upper_gums; })),
-        mid_(mid) {}
-  double at(double surface_z) const {
-    constexpr double crowns_mm = 7, to_palate_mm = 3;  // above the line of the lips
+        front_(region.min().y()) {
+    constexpr double arch_mm = 9;  // above the line of the lips, at most
+    const auto rows = static_cast<std::size_t>(region.sizes().y() / row_mm) + 1;
+    std::vector<double> lowest(rows, Ceiling::none);
+    for (std::size_t r = 0; r < rows; ++r)
+      for (double x = region.min().x(); x < region.max().x(); x += 0.5)
+        lowest[r] = std::min(lowest[r], bone.at(x, front_ + static_cast<double>(r) * row_mm));
+    constexpr std::size_t gap = 3;  // rows: between two teeth
+    for (std::size_t r = 0; r < rows; ++r) {
+      const auto first = lowest.begin() + static_cast<std::ptrdiff_t>(r - std::min(r, gap));
+      const auto last = lowest.begin() + static_cast<std::ptrdiff_t>(std::min(r + gap + 1, rows));
+      const double z = *std::min_element(first, last);
+      lowest_.push_back(z < mid + arch_mm ? z : -Ceiling::none);
+    }
+  }
+  bool bare() const { return bare_; }
+  double at(double y, double surface_z) const {
+    constexpr double crowns_mm = 2.5, to_palate_mm = 2.5;
     if (!bare_) return within_mm;
-    const double palate = smooth((surface_z - mid_ - crowns_mm) / to_palate_mm);
+    const double row =
+        std::clamp((y - front_) / row_mm, 0.0, static_cast<double>(lowest_.size() - 1));
+    const double palate =
+        smooth((surface_z - lowest_[static_cast<std::size_t>(row)] - crowns_mm) / to_palate_mm);
     return within_crowns_mm - palate * (within_crowns_mm + gum_mm);
   }
 
  private:
+  static constexpr double row_mm = 1;
   bool bare_;
-  double mid_;
+  double front_;
+  std::vector<double> lowest_;
 };
 
 /// The soft palate goes on where the bone ends, down to the throat.
@@ -222,7 +221,7 @@ SoftPalate soft_palate(const Ceiling& bone, const Above& above, const Eigen::Ali
     const bool steps_up = found && y > teeth.max().y() && z > soft.begin_z;
     if (z < mid + palate_mm && !steps_up) {
       soft.begin_y = y;
-      soft.begin_z = z + above.at(z);
+      soft.begin_z = z + above.at(y, z);
       found = true;
     } else if (found) {
       break;
@@ -302,6 +301,25 @@ void add_triangles(MouthLining& lining) {
   }
 }
 
+/// Heights of neighbouring rings and columns drawn together, but at the lips and the throat: mucosa
+/// leaves crowns along an even line.
+void even_out(std::vector<Vector3f>& places, std::size_t around) {
+  constexpr int rounds = 6;
+  constexpr std::size_t from = 3;  // rings from the lips on
+  for (int round = 0; round < rounds; ++round) {
+    const auto before = places;
+    for (std::size_t ring = from; ring < rings; ++ring)
+      for (std::size_t i = 0; i < around; ++i) {
+        const auto z = [&](std::size_t r, std::size_t k) {
+          return before[r * around + k % around].z();
+        };
+        places[ring * around + i].z() =
+            0.5f * z(ring, i) +
+            0.125f * (z(ring - 1, i) + z(ring + 1, i) + z(ring, i + 1) + z(ring, i + around - 1));
+      }
+  }
+}
+
 }  // namespace
 
 std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
@@ -342,7 +360,7 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
   region.extend(teeth.max() + Vector3d(5, throat_mm + 5, 0));
   region.extend(teeth.min() - Vector3d(5, 10, 0));
   const Ceiling bone(parts, region, mid + 1);
-  const Above above(parts, mid);
+  const Above above(parts, bone, region, mid);
   const Width width(arches, teeth);
   const SoftPalate soft = soft_palate(bone, above, teeth, mid);
   const double throat = teeth.max().y() + throat_mm;
@@ -370,10 +388,10 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
       if (is_upper) {
         const double hit = bone.at(x, y);
         if (hit < fornix) behind_teeth = true;
-        z = std::min(fornix, hit + above.at(hit));
+        z = std::min(fornix, hit + above.at(y, hit));
         if (behind_teeth && std::abs(across) < palate_share) {
           if (hit < mid + palate_mm && (y < soft.begin_y || hit < bone_z + 4)) {
-            bone_z = hit + above.at(hit);
+            bone_z = hit + above.at(y, hit);
             bone_y = y;
           }
           z = bone_z + smooth((y - bone_y) / 6) * (soft.at(y) - bone_z);
@@ -387,6 +405,7 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
       if (ring == rings) middle += lining.rest[v].cast<double>() / static_cast<double>(n);
     }
   }
+  if (above.bare()) even_out(lining.rest, n);
   lining.rest.back() = middle.cast<float>();
   lining.jaw.back() = 0.5f;
   add_triangles(lining);

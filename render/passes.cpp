@@ -318,6 +318,8 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
     glActiveTexture(unit);
     glBindTexture(GL_TEXTURE_2D, texture);
   };
+  // Lit pixels keep the number of their surface where others have their opacity.
+  const auto number_of = [](std::size_t i) { return static_cast<float>(i + 1) / 255; };
   const auto see = [&](GlProgram& program) {
     bind(GL_TEXTURE5, buffer_.words());
     bind(GL_TEXTURE6, buffer_.away());
@@ -333,6 +335,7 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
     GlProgram& program =
         begin(items[i].role() == Role::face ? skins_ : surfaces_, items[i], view, true);
     see(program);
+    program.set("opacity", number_of(i));
     view.set_rays_in(program);
     glBindVertexArray(no_attributes_);
     buffer_.light(static_cast<int>(i) + 1, box);
@@ -358,6 +361,7 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (!seen[i]) continue;
     place(last, items[i], view);
+    last.set("number", number_of(i));
     items[i].mesh().draw(seen_of(items[i], view));
     end_cut();
   }

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "render/drawable.h"
+#include "render/drawn_face.h"
 #include "render/lashes.h"
 #include "render/overlay_passes.h"
 #include "render/passes.h"
@@ -48,6 +49,7 @@ float front_of_mouth(std::span<const Drawable> drawables) {
 }  // namespace
 
 struct SceneRenderer::State {
+  std::shared_ptr<const DrawnParts> patient;
   std::span<const Part> parts;
   Passes passes;
   OverlayPasses overlays;
@@ -73,8 +75,10 @@ struct SceneRenderer::State {
   PictureTarget target;
   float map_low = 0, map_high = 1;  // values are kept within
 
-  State(std::span<const Part> all, std::optional<MouthLining> lined, std::vector<Drawable> made)
-      : parts(all),
+  State(std::shared_ptr<const DrawnParts> all, std::optional<MouthLining> lined,
+        std::vector<Drawable> made)
+      : patient(std::move(all)),
+        parts(patient->parts()),
         drawables(std::move(made)),
         mouth_y(front_of_mouth(drawables)),
         lining(std::move(lined)) {
@@ -251,14 +255,16 @@ PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettin
   return v;
 }
 
-SceneRenderer::SceneRenderer(std::span<const Part> parts) {
+SceneRenderer::SceneRenderer(std::span<const Part> patient) {
+  auto drawn = std::make_shared<const DrawnParts>(patient);
+  const auto parts = drawn->parts();
   auto lining = line_mouth(parts);
   auto drawables = make_drawables(parts, lining ? lining->face : std::vector<Eigen::Vector3i>());
-  state_ = std::make_unique<State>(parts, std::move(lining), std::move(drawables));
+  state_ = std::make_unique<State>(std::move(drawn), std::move(lining), std::move(drawables));
 }
 
 SceneRenderer::SceneRenderer(const SceneRenderer& other)
-    : state_(std::make_unique<State>(other.state_->parts, other.state_->lining,
+    : state_(std::make_unique<State>(other.state_->patient, other.state_->lining,
                                      drawables_like(other.state_->drawables))) {}
 
 SceneRenderer::~SceneRenderer() = default;
@@ -273,14 +279,18 @@ void SceneRenderer::update(const FrameState& frame) {
   for (auto& drawable : s.drawables) {
     if (drawable.part->role != Role::face) continue;
     const auto& rest = drawable.part->mesh.vertices;
-    if (frame.face.size() == rest.size()) {
+    const auto& other = s.patient->face();
+    const bool moved = frame.face.size() == (other ? other->given() : rest.size());
+    if (moved && other) {
+      drawable.move_face(other->places(frame.face), s.normals);
+    } else if (moved) {
       drawable.move_face(frame.face, s.normals);
     } else if (s.face_moved) {
       std::vector<Eigen::Vector3f> positions;
       for (const auto& v : rest) positions.push_back(v.cast<float>());
       drawable.move_face(positions, s.normals);
     }
-    s.face_moved = frame.face.size() == rest.size();
+    s.face_moved = moved;
     break;
   }
   s.contact_points.clear();
@@ -306,13 +316,14 @@ void SceneRenderer::color_part(const std::string& name, std::span<const float> v
   auto& s = *state_;
   for (auto& drawable : s.drawables) {
     if (drawable.part->name != name) continue;
-    assert(values.empty() ||
-           values.size() ==
-               (drawable.finer ? drawable.finer_vertices : drawable.part->mesh.vertices.size()));
+    std::vector<float> kept(values.begin(), values.end());
+    if (drawable.part->role == Role::face && s.patient->face() && !kept.empty())
+      kept = s.patient->face()->values(kept);
+    assert(kept.empty() || kept.size() == (drawable.finer ? drawable.finer_vertices
+                                                          : drawable.part->mesh.vertices.size()));
     // Kept near the range, so that the way from a far vertex to a near one passes through it; not
     // at its very end, where the edge of what is coloured would follow the triangles.
     const float above = s.map_high + 1;
-    std::vector<float> kept(values.begin(), values.end());
     for (float& value : kept)
       value = std::isnan(value) ? above : std::clamp(value, s.map_low, above);
     drawable.mapped = !kept.empty();

@@ -47,7 +47,7 @@ struct PictureSettings {
 class SceneRenderer {
  public:
   /// Uploads every part once. The parts must outlive the renderer.
-  explicit SceneRenderer(std::span<const Part> parts);
+  explicit SceneRenderer(std::span<const Part> patient);
   /// The same parts at rest for another context: what was computed of them is taken over. The other
   /// must be as it was made, and idle.
   explicit SceneRenderer(const SceneRenderer& other);

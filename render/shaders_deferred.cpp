@@ -87,26 +87,34 @@ void main() {
 )";
 
 // What a picture with several samples shows of a surface that was lit pixel by pixel: where another
-// one covers the pixel's middle, the light of the neighbour that lies nearest in depth. A sliver
-// that covers no middle around is left out.
+// one covers the pixel's middle, the light of the neighbour of its own that lies nearest in depth,
+// else of any. Surfaces that touch are told apart by their numbers alone. A sliver that covers no
+// middle around is left out.
 const char* const carry_source = R"(
 uniform sampler2D kept_away, lit;
 uniform ivec2 last_pixel;
+uniform float number;  // of this surface, over 255
 out vec4 result;
 void main() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy), best = pixel;
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
   float own = 1.0 / gl_FragCoord.w, off = abs(texelFetch(kept_away, pixel, 0).r - own);
-  bool other = off > fwidth(own) + 0.02;
+  vec4 light = texelFetch(lit, pixel, 0);
+  const float foreign = 1e10;  // farther than any of the same surface
+  bool same = abs(light.a - number) < 0.001;
+  bool other = !same || off > fwidth(own) + 0.02;
+  if (!same) off += foreign;
   for (int i = 0; i < (other ? 9 : 0); ++i) {
     ivec2 there = clamp(pixel + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last_pixel);
-    float d = abs(texelFetch(kept_away, there, 0).r - own);
+    vec4 found = texelFetch(lit, there, 0);
+    float d = abs(texelFetch(kept_away, there, 0).r - own)
+            + (abs(found.a - number) < 0.001 ? 0.0 : foreign);
     if (d < off) {
       off = d;
-      best = there;
+      light = found;
     }
   }
   if (off > 1e20) discard;
-  result = texelFetch(lit, best, 0);
+  result = vec4(light.rgb, 1.0);
 }
 )";
 
@@ -117,7 +125,7 @@ out vec4 result;
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   gl_FragDepth = texelFetch(kept_depth, pixel, 0).r;
-  result = texelFetch(lit, pixel, 0);
+  result = vec4(texelFetch(lit, pixel, 0).rgb, 1.0);
 }
 )";
 

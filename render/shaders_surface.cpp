@@ -214,7 +214,7 @@ void main() {
     c += coat * reflectance * (key_color * specular(n, v, mirrored_key, 0.16) * (eye ? sqrt(lit) : lit)
        + fill_color * (eye ? 3.0 : 1.0) * specular(n, v, fill_direction, 0.2) * open);
   }
-  float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
+  float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : opacity;
   result = mix(vec4(display(c), a), colored, covered);
 }
 )";
@@ -272,7 +272,7 @@ void main() {
   vec3 c = albedo * mix(vec3(1.0), vec3(pore), vec3(0.05, 0.10, 0.12)) * light
          + mix(0.028, 0.05, gloss) * shine;
   c += 0.5 * ambient_light(reflect(-v, n), v) * fresnel(nv, 0.028) * (1.0 - wide) * open;
-  float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
+  float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : opacity;
   result = vec4(display(c), a);
 }
 )";

@@ -36,7 +36,7 @@ class SurfaceBuffer {
   GlFramebuffer surfaces_, light_;
   GlTexture words_;  // RGBA, 32 bit: see the shaders
   GlTexture away_;   // before the eye, mm; huge where nothing is
-  GlTexture lit_;    // as displayed
+  GlTexture lit_;    // as displayed, and the surface's number
   GlTexture depth_;  // of the window, with the numbers as stencil
   int width_ = 0, height_ = 0;
 };

@@ -139,6 +139,32 @@ TEST(MouthLining, CoversAPalateWithoutGumsButLiesWithinThem) {
   EXPECT_NEAR(highest_below(Role::upper_gums), 16.5, 0.1);
 }
 
+TEST(MouthLining, CoversABarePalateThatIsLowToo) {
+  // Hardly above the lips, but well above the crowns beside it.
+  TriMesh arch;
+  const auto plate = [&](double from_x, double to_x, double z) {
+    const int first = static_cast<int>(arch.vertices.size());
+    for (const auto& [x, y] : {std::pair(from_x, -35.), {to_x, -35.}, {to_x, 5.}, {from_x, 5.}})
+      arch.vertices.emplace_back(x, y, z);
+    arch.triangles.insert(arch.triangles.end(),
+                          {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+  };
+  plate(-13, 13, 7);
+  plate(-18, -13, 1.5);
+  plate(13, 18, 1.5);
+  auto parts = head_with_jaws(Role::maxilla);
+  parts.push_back(make_part("arch", Role::maxilla, arch));
+  const auto lining = line_mouth(parts);
+  ASSERT_TRUE(lining);
+  int palate = 0;
+  for (const auto& v : lining->rest)
+    if (std::abs(v.x()) < 8 && v.y() > -20 && v.y() < -6 && v.z() > 0.5f) {
+      EXPECT_LT(v.z(), 7) << v.transpose();
+      ++palate;
+    }
+  EXPECT_GT(palate, 10);
+}
+
 TEST(MouthLining, IsNotKnownWithoutARimOrWithoutEitherJaw) {
   EXPECT_FALSE(line_mouth(head_with_mouth(false)));
   for (const std::size_t missing : {1u, 2u})

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace condyle {
+
+/// Vertices as weighted sums of others: of vertex v, the shares first[v] up to first[v + 1], which
+/// add up to 1.
+struct VertexSums {
+  struct Share {
+    int of;
+    float weight;
+  };
+  std::vector<int> first = {0};
+  std::vector<Share> shares;
+
+  std::size_t size() const { return first.size() - 1; }
+  void add(std::span<const Share> sum);
+
+  /// Of the first `count` vertices.
+  template <class T>
+  std::vector<T> of(std::span<const T> values, std::size_t count) const {
+    std::vector<T> sums(count);
+    for (std::size_t v = 0; v < sums.size(); ++v) {
+      auto at = static_cast<std::size_t>(first[v]);
+      const auto end = static_cast<std::size_t>(first[v + 1]);
+      T sum = shares[at].weight * values[static_cast<std::size_t>(shares[at].of)];
+      while (++at < end) sum += shares[at].weight * values[static_cast<std::size_t>(shares[at].of)];
+      sums[v] = sum;
+    }
+    return sums;
+  }
+  template <class T>
+  std::vector<T> of(std::span<const T> values) const {
+    return of(values, size());
+  }
+};
+
+/// The same as sums of what the inner ones are sums of.
+VertexSums composed(const VertexSums& outer, const VertexSums& inner);
+
+/// Each triangle as four, and where their vertices are for the surface to be smooth: those there
+/// were first, then one for each edge. Rims are smooth curves of their own.
+/// source: Loop, Smooth Subdivision Surfaces Based on Triangles, 1987
+struct Subdivision {
+  std::vector<Eigen::Vector3i> triangles;
+  VertexSums vertices;
+};
+Subdivision subdivide(int vertex_count, std::span<const Eigen::Vector3i> triangles);
+
+}  // namespace condyle

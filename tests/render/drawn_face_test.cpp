@@ -1,0 +1,149 @@
+// Openings that a segmentation leaves in a face are not seen through, and a coarse face is smooth.
+#include "render/drawn_face.h"
+
+#include <Eigen/Geometry>
+#include <filesystem>
+
+#include "engine/mesh/topology.h"
+#include "engine/mesh/triangle_tree.h"
+#include "engine/mesh_io/mesh_files.h"
+#include "render/face_openings.h"
+#include "tests/render/scene_fixture.h"
+
+namespace condyle {
+namespace {
+
+using DrawnFacePicture = WithContext;
+
+const Eigen::Vector3d eye_at = {32, 0, 35}, nostril_at = {8, 0, -8};
+
+/// A head of a ball with a nose, and holes in it for an eye and a nostril of each side, unless its
+/// rims are elsewhere by `off`.
+TriMesh head_with_openings(const Eigen::Vector3d& off = {0, 0, 0}, int rings = 100) {
+  TriMesh face = ball({0, 0, 20}, 75, rings);
+  // The nose: what is near the middle is drawn forward, more so above, where it ends below.
+  for (auto& p : face.vertices)
+    if (p.y() < 0) {
+      const double side = std::exp(-std::pow(p.x() / 14, 2));
+      const double height =
+          p.z() > 0 ? std::exp(-std::pow(p.z() / 25, 2)) : std::exp(-std::pow(p.z() / 9, 2));
+      p.y() -= 22 * side * height;
+    }
+  std::erase_if(face.triangles, [&](const Eigen::Vector3i& t) {
+    const Eigen::Vector3d p =
+        (face.vertices[t[0]] + face.vertices[t[1]] + face.vertices[t[2]]) / 3 - off;
+    const auto within = [&](const Eigen::Vector3d& middle, double wide, double high) {
+      return std::hypot((std::abs(p.x()) - middle.x()) / wide, (p.z() - middle.z()) / high) < 1;
+    };
+    return p.y() < 0 && (within(eye_at, 15, 9) || within(nostril_at, 5, 4));
+  });
+  return face;
+}
+
+int count(const std::vector<FaceOpening>& openings, FaceOpening::Kind kind) {
+  return static_cast<int>(
+      std::count_if(openings.begin(), openings.end(),
+                    [&](const FaceOpening& opening) { return opening.kind == kind; }));
+}
+
+TEST(FaceOpenings, AreToldByWhereTheyAreAndHowTheyLook) {
+  const auto openings = find_openings(head_with_openings());
+  EXPECT_EQ(openings.size(), 4u);
+  EXPECT_EQ(count(openings, FaceOpening::Kind::eye), 2);
+  EXPECT_EQ(count(openings, FaceOpening::Kind::nostril), 2);
+  for (const auto& opening : openings) {
+    EXPECT_NEAR(opening.outward.norm(), 1, 1e-9);
+    EXPECT_LT(opening.outward.y(), 0);
+  }
+  // Holes in the forehead or the cheeks are what they are.
+  for (const double up : {45.0, -70.0})
+    EXPECT_TRUE(find_openings(head_with_openings({0, 0, up})).empty()) << up;
+}
+
+TEST(DrawnFace, ClosesEyesAndNostrilsAndGoesWithTheirRims) {
+  const TriMesh face = head_with_openings();
+  ASSERT_EQ(inspect(face).boundary.size(), 4u);
+  const DrawnFace drawn(face, EyesBehind::none, {.8f, .6f, .5f});
+  ASSERT_TRUE(drawn.changed());
+  EXPECT_TRUE(inspect(drawn.mesh()).closed());
+  ASSERT_EQ(drawn.mesh().colors.size(), drawn.mesh().vertices.size());
+  const DrawnFace seeing(face, EyesBehind::eyes, {.8f, .6f, .5f});
+  EXPECT_EQ(inspect(seeing.mesh()).boundary.size(), 2u);
+
+  std::vector<Eigen::Vector3f> there;
+  const Eigen::Vector3f way(1, -2, 3);
+  for (const auto& v : face.vertices) there.push_back(v.cast<float>() + way);
+  const auto moved = drawn.places(there);
+  ASSERT_EQ(moved.size(), drawn.mesh().vertices.size());
+  for (std::size_t v = 0; v < moved.size(); ++v)
+    EXPECT_NEAR((moved[v] - drawn.mesh().vertices[v].cast<float>() - way).norm(), 0, 1e-3f) << v;
+  for (const float value : drawn.values(std::vector<float>(face.vertices.size(), 7.f)))
+    EXPECT_NEAR(value, 7, 1e-3f);
+}
+
+TEST(DrawnFace, IsTheFaceItselfWhereThatIsFineAndWhole) {
+  const TriMesh fine = ball({0, 0, 0}, 60, 120);
+  EXPECT_FALSE(DrawnFace(fine, EyesBehind::none, {1, 1, 1}).changed());
+  const std::vector<Part> parts = {make_part("face", Role::face, fine)};
+  EXPECT_EQ(DrawnParts(parts).parts().data(), parts.data());
+}
+
+TEST(DrawnFace, OfACoarseOneIsSmoothAndNearIt) {
+  const TriMesh coarse = ball({0, 0, 0}, 60, 24);
+  const DrawnFace drawn(coarse, EyesBehind::none, {1, 1, 1});
+  ASSERT_GT(drawn.mesh().triangles.size(), 10 * coarse.triangles.size());
+  EXPECT_TRUE(inspect(drawn.mesh()).closed());
+  EXPECT_TRUE(drawn.mesh().colors.empty());
+  for (const auto& p : drawn.mesh().vertices) EXPECT_NEAR(p.norm(), 59.7, 0.3);
+}
+
+TEST(DrawnFace, OfARealHeadHasNoHolesAndLiesNearIt) {
+  const auto file = std::filesystem::path(CONDYLE_SOURCE_DIR) / ".." / "shared" / "data" /
+                    "case-badin" / "face_skin.ply";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "real anatomy absent";
+  const TriMesh face = read_mesh(file);
+  EXPECT_EQ(find_openings(face).size(), 4u);
+  const DrawnFace drawn(face, EyesBehind::none, {.8f, .6f, .5f});
+  // The mouth and the outer edge stay.
+  EXPECT_EQ(inspect(face).boundary.size(), 6u);
+  EXPECT_EQ(inspect(drawn.mesh()).boundary.size(), 2u);
+  const TriangleTree tree(drawn.mesh());
+  std::vector<double> off;
+  for (const auto& v : face.vertices) off.push_back((tree.nearest(v).point - v).norm());
+  std::sort(off.begin(), off.end());
+  // Far apart only where the measured surface itself has corners: at the edges of the mask.
+  EXPECT_LT(off[off.size() / 2], 0.2);
+  EXPECT_LT(off[off.size() * 9 / 10], 0.5);
+}
+
+TEST_F(DrawnFacePicture, IsNotSeenThroughAtEyesAndNostrils) {
+  const std::vector<Part> parts = {make_part("face", Role::face, head_with_openings())};
+  SceneRenderer renderer(parts);
+  FrameState frame;
+  for (const auto& v : parts[0].mesh.vertices) frame.face.push_back(v.cast<float>());
+  const auto settings = mask_settings(300);
+  for (const bool moved : {false, true}) {
+    if (moved) renderer.update(frame);
+    const Image image = renderer.picture(front_camera(150), settings);
+    for (const double side : {-1.0, 1.0}) {
+      const Pixel lid = pixel(image, static_cast<int>(150 + 2 * side * eye_at.x()),
+                              static_cast<int>(150 - 2 * eye_at.z()));
+      const Pixel cheek = pixel(image, static_cast<int>(150 + 2 * side * eye_at.x()), 160);
+      EXPECT_EQ(lid.a, 255);
+      // Skin in the light.
+      EXPECT_GT(lid.r, 0.6 * cheek.r);
+      EXPECT_LT(lid.r, 1.4 * cheek.r);
+    }
+  }
+  // A nostril is dark; nothing is behind it either.
+  const Image image = renderer.picture(front_camera(150), settings);
+  for (const double side : {-1.0, 1.0}) {
+    const Pixel hole = pixel(image, static_cast<int>(150 + 2 * side * nostril_at.x()),
+                             static_cast<int>(150 - 2 * nostril_at.z()));
+    EXPECT_EQ(hole.a, 255);
+    EXPECT_LT(hole.r, 90);
+  }
+}
+
+}  // namespace
+}  // namespace condyle
