@@ -298,6 +298,24 @@ ViewMotion make_view_motion(const MotionChoice& choice, const ViewPatient& patie
   return made;
 }
 
+std::map<std::string, double> excitations_at(const ViewMotion& motion, double time_s) {
+  constexpr double held_at_s = 0.35;  // held_excitations
+  std::map<std::string, double> excitations;
+  if (!motion.motion.muscles) return excitations;
+  const MuscleStates states =
+      motion.motion.muscles(motion.choice.spec == by_hand ? held_at_s : time_s);
+  for (std::size_t m = 0; m < std::min(states.size(), motion.motion.muscle_names.size()); ++m)
+    excitations[motion.motion.muscle_names[m]] = states[m].excitation;
+  return excitations;
+}
+
+Pose rest_position(const MotionChoice& choice, const ViewPatient& patient,
+                   const MotionOptions& options, int threads) {
+  const Motion rest = make({.spec = "rest", .parameters = choice.parameters, .excitations = {}},
+                           patient.scene, options, threads);
+  return rest.wanted(rest.duration_s);
+}
+
 MotionPictures motion_pictures(const ViewPatient& patient, const Motion& motion,
                                SimulatorSettings settings, bool obey_contact,
                                const std::function<void(MotionPictures)>& partly,

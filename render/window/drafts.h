@@ -29,6 +29,7 @@ struct Drafts {
     bool running = false;  // a recording, in the pass before
   } record;
   std::string landmark_words, case_folder;
+  std::optional<double> placement;  // a number of the body that is moved
   struct OpenFields {
     bool open = false;
     std::string path;
