@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "render/window/handles.h"
 #include "render/window/panels_drawing.h"
@@ -36,8 +35,7 @@ std::string number_words(double value, const char* unit) {
 }
 
 /// One row of the table: a name, the wish to be written in and what was reached. `draft`: what is
-/// written and not entered yet; Enter, Tab and a click elsewhere enter it. gives: true when another
-/// wish was entered.
+/// written and not entered yet. gives: true when another wish was entered.
 bool wish_row(Pen& pen, std::optional<double>& draft, const std::string& name, const char* label,
               const char* unit, double& wanted, double reached, double held_from) {
   const std::string shown = number_words(wanted, unit);
@@ -45,26 +43,18 @@ bool wish_row(Pen& pen, std::optional<double>& draft, const std::string& name, c
   text(pen.theme.small, palette().text_dim, label);
   ImGui::SameLine(pen.px(wanted_column));
   ImGui::SetNextItemWidth(pen.px(wanted_width));
-  const double as_shown = std::stod(shown);
-  double entered = as_shown;
-  if (ImGui::InputDouble(("##" + name).c_str(), &entered, 0, 0,
-                         (std::string("%.2f") + unit).c_str(),
-                         ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CharsScientific))
-    draft = entered;
-  entered = as_shown;
-  if (ImGui::IsItemDeactivated()) entered = std::exchange(draft, std::nullopt).value_or(as_shown);
-  pen.mark(name, shown);
-  if (ImGui::IsItemActive()) pen.mark("writing");
+  // What is shown is rounded: to enter it as it stands changes nothing.
+  double entered = std::stod(shown);
+  const bool another =
+      number_field(pen, name.c_str(), entered, (std::string("%.2f") + unit).c_str(), draft);
   ImGui::SameLine();
   ImGui::AlignTextToFramePadding();
   const std::string words = number_words(reached, unit);
   const bool held = std::abs(wanted - reached) > held_from;
   text_right(pen.theme.regular, held ? palette().warning : palette().text, words);
   pen.mark("reached:" + name, words);
-  // What was shown is rounded: to enter it as it stands, or no number, changes nothing.
-  if (entered == as_shown || !std::isfinite(entered)) return false;
-  wanted = entered;
-  return true;
+  if (another) wanted = entered;
+  return another;
 }
 
 }  // namespace
@@ -151,12 +141,12 @@ void Panels::Drawing::moving() {
   text_right(theme.small, palette().text_faint, "reached");
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    edited |= wish_row(pen, panels.drafts_.placement, fmt::format("shift:{}", axis_letters[k]),
+    edited |= wish_row(pen, panels.drafts_.number, fmt::format("shift:{}", axis_letters[k]),
                        shift_names[k], " mm", wanted.shift_mm[i], there.shift_mm[i], held_mm);
   }
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    edited |= wish_row(pen, panels.drafts_.placement, fmt::format("turn:{}", axis_letters[k]),
+    edited |= wish_row(pen, panels.drafts_.number, fmt::format("turn:{}", axis_letters[k]),
                        turn_names[k], "\u00b0", wanted.turn_deg[i], there.turn_deg[i], held_deg);
     tooltip(pen, turn_tips[k]);
   }

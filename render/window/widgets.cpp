@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 namespace condyle {
 namespace {
@@ -291,6 +292,24 @@ bool typed_number(Pen& pen, const char* name, const ImRect& rect, double& value,
 }
 
 }  // namespace
+
+bool number_field(Pen& pen, const char* name, double& value, const char* format,
+                  std::optional<double>& draft) {
+  double written = value;
+  if (ImGui::InputDouble(("##" + std::string(name)).c_str(), &written, 0, 0, format,
+                         ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CharsScientific))
+    draft = written;
+  const bool left = ImGui::IsItemDeactivated();
+  std::array<char, 64> shown{};
+  std::snprintf(shown.data(), shown.size(), format, value);
+  pen.mark(name, shown.data());
+  if (ImGui::IsItemActive()) pen.mark("writing");
+  if (!left) return false;
+  const double entered = std::exchange(draft, std::nullopt).value_or(value);
+  if (entered == value || !std::isfinite(entered)) return false;
+  value = entered;
+  return true;
+}
 
 bool slider(Pen& pen, const char* name, double& value, const SliderLook& look) {
   const float height = ImGui::GetFrameHeight(), knob = pen.px(6.5f);
