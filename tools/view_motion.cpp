@@ -28,7 +28,7 @@ struct ShownParameter {
 };
 constexpr std::array shown_parameters = {
     // The drop of an incisal point that goes 42 to 58 mm, forward and down as in Posselt's diagram.
-    ShownParameter{"opening", "Maximum opening (drop)", 38, 52},
+    ShownParameter{"opening", "Max. opening (drop)", 38, 52},
     ShownParameter{"protrusion", "Protrusion", 6, 11, 8},
     ShownParameter{"laterotrusion", "Laterotrusion", 7, 12, 9},
     ShownParameter{"retrusion", "Retrusion", 0.3, 1.4, 0.7},

@@ -153,7 +153,7 @@ void Panels::Drawing::record() {
       "edges, in more time. 1x has smooth edges, too");
   int edges = static_cast<int>(choice.edges);
   row("Edges", "record-edges", edges,
-      std::array<std::pair<int, const char*>, 3>{{{0, "4 samples"}, {1, "FXAA"}, {2, "hard"}}},
+      std::array<std::pair<int, const char*>, 3>{{{0, "MSAA"}, {1, "FXAA"}, {2, "Hard"}}},
       "Smooth by four samples a pixel (best; a driver that gives fewer is told of), by a filter "
       "over the finished picture (quick), or not at all");
   choice.edges = static_cast<RecordEdges>(edges);

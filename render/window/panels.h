@@ -59,7 +59,8 @@ struct TooltipWait {
   double since_s = 0;
   int last_pass = -2;     // over the panels, in which it was under the mouse
   bool put_away = false;  // it was clicked: what that reveals must not be covered
-  bool due = false;       // a tooltip is still to come
+  int passes = 0;         // that have drawn a tooltip
+  bool due = false;       // a tooltip is still to come, or to be seen
 };
 
 /// Panels of the window, drawn into the current ImGui frame (between NewFrame and Render). They

@@ -197,8 +197,12 @@ void tooltip(Pen& pen, const char* words) {
   resting.last_pass = pass;
   if (ImGui::IsAnyMouseDown()) resting.put_away = true;
   if (resting.put_away) return;
-  resting.due = now_s - resting.since_s < wait_s;
-  if (resting.due) return;
+  const bool waits = now_s - resting.since_s < wait_s;
+  // ImGui finds the size of a tooltip in passes that do not show it yet.
+  constexpr int unseen_passes = 3;
+  if (!waits) resting.passes = std::min(resting.passes + 1, unseen_passes);
+  resting.due = resting.passes < unseen_passes;
+  if (waits) return;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, pen.px(10, 7));
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(pen.px(300));
