@@ -134,16 +134,27 @@ Motion make(const MotionChoice& choice, const Scene& scene, const MotionOptions&
   return scaled;
 }
 
-/// A recording's own way; else the patient's, whatever the motion does.
+/// A recording's own way; else the patient's, whatever the motion does. One that cannot be is told
+/// in the notes: the patient opens as far as he does unasked, or, if there is no way for him at
+/// all, along the motion.
 Motion opening_of(const MotionChoice& choice, const Motion& motion, const Scene& scene,
-                  const MotionOptions& options, int threads) {
+                  MotionOptions options, int threads, std::vector<std::string>& notes) {
   if (choice.spec == "opening" || motion.recording) return motion;
-  try {
-    return make({.spec = "opening", .parameters = choice.parameters, .excitations = {}}, scene,
-                options, threads);
-  } catch (const InputError&) {
-    return motion;  // landmarks are missing
+  MotionChoice opening{.spec = "opening", .parameters = choice.parameters, .excitations = {}};
+  for (const bool asked : {true, false}) {
+    if (!asked) {
+      const bool was_asked = opening.parameters.erase("opening") > 0 ||
+                             options.settings.parameters.opening_mm.has_value();
+      options.settings.parameters.opening_mm.reset();
+      if (!was_asked) break;
+    }
+    try {
+      return make(opening, scene, options, threads);
+    } catch (const InputError& error) {
+      notes.push_back(fmt::format("the opening slider cannot go as asked: {}", error.what()));
+    }
   }
+  return motion;
 }
 
 std::vector<MotionSetting> settings_of(const MotionChoice& choice, const Motion& motion,
@@ -283,7 +294,7 @@ ViewMotion make_view_motion(const MotionChoice& choice, const ViewPatient& patie
                   .settings = {},
                   .excitations = {}};
   const Motion& motion = made.motion;
-  made.opening = opening_of(choice, motion, patient.scene, options, threads);
+  made.opening = opening_of(choice, motion, patient.scene, options, threads, made.motion.notes);
   constexpr int samples = 200;
   for (int i = 0; i <= samples; ++i) {
     const Pose X_CM = made.opening.wanted(made.opening.duration_s * i / samples);
