@@ -80,6 +80,14 @@ Camera standard_camera(const std::string& name, const Eigen::Vector3d& low,
   return camera;
 }
 
+Camera told_in(const Pose& X_BA, const Camera& camera) {
+  Camera told = camera;
+  told.target = X_BA * camera.target;
+  told.direction = X_BA.R * camera.direction;
+  told.up = X_BA.R * camera.up;
+  return told;
+}
+
 Camera turned(const Camera& camera, double angle_rad) {
   const Eigen::AngleAxisd turn(angle_rad, Eigen::Vector3d::UnitZ());
   Camera result = camera;

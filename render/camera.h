@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/math/pose.h"
+
 namespace condyle {
 
 /// Perspective camera that looks at a point of the case, mm, LPS.
@@ -24,6 +26,9 @@ const std::vector<std::string>& camera_names();
 /// throws: InputError for an unknown name, listing the known ones.
 Camera standard_camera(const std::string& name, const Eigen::Vector3d& low,
                        const Eigen::Vector3d& high, double aspect);
+
+/// The same camera told in frame B; it stands in frame A.
+Camera told_in(const Pose& X_BA, const Camera& camera);
 
 /// Turned about the vertical axis through the target.
 Camera turned(const Camera& camera, double angle_rad);

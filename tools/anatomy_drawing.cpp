@@ -24,10 +24,28 @@ Vector3f excited_color(double excitation) {
   return idle + static_cast<float>(std::clamp(excitation, 0.0, 1.0)) * (excited - idle);
 }
 
+/// What lies below a sheet: a layer as it was asked for, or a piece of one.
+struct LayerPiece {
+  int layer = 0, layers = 1, piece = 0, pieces = 1;
+};
+LayerPiece below(const TissueModel& model, int sheet) {
+  if (model.cut_from.empty()) return {.layer = sheet, .layers = model.sheets - 1};
+  LayerPiece here{.layer = model.cut_from[static_cast<std::size_t>(sheet)],
+                  .layers = model.cut_from.back() + 1,
+                  .pieces = 0};
+  for (int other = 0; other + 1 < model.sheets; ++other) {
+    if (model.cut_from[static_cast<std::size_t>(other)] != here.layer) continue;
+    ++here.pieces;
+    here.piece += other < sheet;
+  }
+  return here;
+}
+
 Vector3f layer_color(const TissueModel& model, int sheet) {
-  const int layers = model.sheets - 1;
-  if (sheet >= layers) return layer_colors[3];
-  return layer_colors[static_cast<std::size_t>(layers == 1 ? 0 : 2 * sheet / (layers - 1))];
+  if (sheet + 1 >= model.sheets) return layer_colors[3];
+  const LayerPiece here = below(model, sheet);
+  return layer_colors[static_cast<std::size_t>(
+      here.layers == 1 ? 0 : 2 * here.layer / (here.layers - 1))];
 }
 
 double excitation_of(const Muscle& muscle, const Motion& motion, const FrameState& frame) {
@@ -77,11 +95,13 @@ KeyEntry muscle_key() {
 }
 
 std::string layer_label(const TissueModel& model, int sheet) {
-  const int layers = model.sheets - 1;
   constexpr std::array usual = {"Skin", "Fat", "Muscle layer"};
-  if (sheet == layers) return "Inner side";
-  return layers == static_cast<int>(usual.size()) ? usual[static_cast<std::size_t>(sheet)]
-                                                  : fmt::format("Layer {}", sheet + 1);
+  if (sheet + 1 == model.sheets) return "Inner side";
+  const LayerPiece here = below(model, sheet);
+  const std::string name = here.layers == static_cast<int>(usual.size())
+                               ? usual[static_cast<std::size_t>(here.layer)]
+                               : fmt::format("Layer {}", here.layer + 1);
+  return here.pieces == 1 ? name : fmt::format("{}, {} of {}", name, here.piece + 1, here.pieces);
 }
 
 KeyEntry layer_key(const TissueModel& model, int sheet) {

@@ -22,7 +22,7 @@ GlassSheet layer_sheet(const TissueModel& model, const TissueState& now, int she
 /// What their colours mean.
 KeyEntry muscle_key();
 KeyEntry layer_key(const TissueModel& model, int sheet);
-/// "Fat", where there are the usual three.
+/// "Fat", where there are the usual three; "Fat, 2 of 2" where a fine net has cut it.
 std::string layer_label(const TissueModel& model, int sheet);
 /// Of an overlay: in the order of their names inner sheets come first, outer ones lie over them.
 std::string layer_overlay_name(int sheet);

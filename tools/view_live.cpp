@@ -28,12 +28,11 @@ bool shows_tissue(const ViewState& view) {
 void hand_over(const Hands& now, const Hands& before, std::span<const MovableBody> bodies,
                LiveSimulation& simulation) {
   for (const auto& body : bodies) {
-    Hands one, other;
-    one.of(body) = now.of(body);
-    other.of(body) = before.of(body);
-    if (one == other) continue;
-    if (now.of(body) || body.free)
-      simulation.drag(body.part, now.of(body).value_or(Pose{}));
+    if (body.skull) continue;  // all is told against it
+    const auto wanted = now.of(body);
+    if (same(wanted, before.of(body))) continue;
+    if (wanted || body.free)
+      simulation.drag(body.part, wanted.value_or(Pose{}));
     else
       simulation.release(body.part);
   }
@@ -57,8 +56,7 @@ void ViewSession::simulate(const ViewState& view) {
   const bool news = frame.has_value();
   if (news) {
     newest_ = std::move(frame);
-    const bool follows_motion = !view.hands.mandible && !view.opening_mm;
-    if (motion_->motion.muscles && follows_motion)
+    if (motion_->motion.muscles && !view.jaw_is_held())
       newest_->muscles = motion_->motion.muscles(newest_->time_s);
   }
   if (!newest_) return window_.draw();

@@ -28,7 +28,7 @@ struct ShownParameter {
 };
 constexpr std::array shown_parameters = {
     // The drop of an incisal point that goes 42 to 58 mm, forward and down as in Posselt's diagram.
-    ShownParameter{"opening", "Maximum opening (drop)", 38, 52},
+    ShownParameter{"opening", "Max. opening (drop)", 38, 52},
     ShownParameter{"protrusion", "Protrusion", 6, 11, 8},
     ShownParameter{"laterotrusion", "Laterotrusion", 7, 12, 9},
     ShownParameter{"retrusion", "Retrusion", 0.3, 1.4, 0.7},
@@ -134,16 +134,27 @@ Motion make(const MotionChoice& choice, const Scene& scene, const MotionOptions&
   return scaled;
 }
 
-/// A recording's own way; else the patient's, whatever the motion does.
+/// A recording's own way; else the patient's, whatever the motion does. One that cannot be is told
+/// in the notes: the patient opens as far as he does unasked, or, if there is no way for him at
+/// all, along the motion.
 Motion opening_of(const MotionChoice& choice, const Motion& motion, const Scene& scene,
-                  const MotionOptions& options, int threads) {
+                  MotionOptions options, int threads, std::vector<std::string>& notes) {
   if (choice.spec == "opening" || motion.recording) return motion;
-  try {
-    return make({.spec = "opening", .parameters = choice.parameters, .excitations = {}}, scene,
-                options, threads);
-  } catch (const InputError&) {
-    return motion;  // landmarks are missing
+  MotionChoice opening{.spec = "opening", .parameters = choice.parameters, .excitations = {}};
+  for (const bool asked : {true, false}) {
+    if (!asked) {
+      const bool was_asked = opening.parameters.erase("opening") > 0 ||
+                             options.settings.parameters.opening_mm.has_value();
+      options.settings.parameters.opening_mm.reset();
+      if (!was_asked) break;
+    }
+    try {
+      return make(opening, scene, options, threads);
+    } catch (const InputError& error) {
+      notes.push_back(fmt::format("the opening slider cannot go as asked: {}", error.what()));
+    }
   }
+  return motion;
 }
 
 std::vector<MotionSetting> settings_of(const MotionChoice& choice, const Motion& motion,
@@ -283,7 +294,7 @@ ViewMotion make_view_motion(const MotionChoice& choice, const ViewPatient& patie
                   .settings = {},
                   .excitations = {}};
   const Motion& motion = made.motion;
-  made.opening = opening_of(choice, motion, patient.scene, options, threads);
+  made.opening = opening_of(choice, motion, patient.scene, options, threads, made.motion.notes);
   constexpr int samples = 200;
   for (int i = 0; i <= samples; ++i) {
     const Pose X_CM = made.opening.wanted(made.opening.duration_s * i / samples);
@@ -296,6 +307,24 @@ ViewMotion make_view_motion(const MotionChoice& choice, const ViewPatient& patie
     made.excitations.push_back({group.name, group.label, free ? 1.0 : 2.0,
                                 wanted_of(choice, group.name, free ? group.usual : 1)});
   return made;
+}
+
+std::map<std::string, double> excitations_at(const ViewMotion& motion, double time_s) {
+  constexpr double held_at_s = 0.35;  // held_excitations
+  std::map<std::string, double> excitations;
+  if (!motion.motion.muscles) return excitations;
+  const MuscleStates states =
+      motion.motion.muscles(motion.choice.spec == by_hand ? held_at_s : time_s);
+  for (std::size_t m = 0; m < std::min(states.size(), motion.motion.muscle_names.size()); ++m)
+    excitations[motion.motion.muscle_names[m]] = states[m].excitation;
+  return excitations;
+}
+
+Pose rest_position(const MotionChoice& choice, const ViewPatient& patient,
+                   const MotionOptions& options, int threads) {
+  const Motion rest = make({.spec = "rest", .parameters = choice.parameters, .excitations = {}},
+                           patient.scene, options, threads);
+  return rest.wanted(rest.duration_s);
 }
 
 MotionPictures motion_pictures(const ViewPatient& patient, const Motion& motion,

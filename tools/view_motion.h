@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,6 +30,14 @@ std::vector<std::string> motion_names();
 /// Makes the motion that was chosen. throws: InputError.
 ViewMotion make_view_motion(const MotionChoice& choice, const ViewPatient& patient,
                             const MotionOptions& options, int threads);
+
+/// Excitations by muscle that a motion by muscles has at a time, or holds where they are set by
+/// hand; none for another motion.
+std::map<std::string, double> excitations_at(const ViewMotion& motion, double time_s);
+
+/// The rest position of the mandible with the parameters that were chosen. throws: InputError.
+Pose rest_position(const MotionChoice& choice, const ViewPatient& patient,
+                   const MotionOptions& options, int threads);
 
 /// What is plotted of a motion, and where the incisal point and the condyles go in space.
 struct MotionPictures {

@@ -53,7 +53,8 @@ PicturePlan plan_of(const ViewRecording& subject) {
   settings = wanted.picture;
   settings.width = wanted.width;
   settings.height = wanted.height;
-  settings.samples = 4;
+  settings.samples = wanted.edges == RecordEdges::msaa ? 4 : 1;
+  settings.smooth_edges = wanted.edges == RecordEdges::fxaa;
   settings.supersampling = wanted.supersampling;
   settings.transparent_background = wanted.transparent;
   plan.words = {{"picture", "as in the window"}};

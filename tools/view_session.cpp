@@ -55,6 +55,7 @@ void ViewSession::take_patient() {
   overlaid_.reset();
   motion_.reset();
   newest_.reset();
+  falling_.reset();
   const bool first = patient_ == nullptr;
   PatientPtr earlier = std::exchange(patient_, std::move(*made));
   retire(earlier);
@@ -240,6 +241,7 @@ void ViewSession::turn() {
   take_plots();
   take_recording();
   take_let_go();
+  let_fall();
   take_save();
   show_progress();
   if (simulation_)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -10,6 +11,7 @@
 #include "render/window/recent_files.h"
 #include "render/window/window.h"
 #include "sim/contact/live_distances.h"
+#include "sim/dynamics/jaw_let_go.h"
 #include "sim/dynamics/let_go.h"
 #include "sim/simulator/live.h"
 #include "tools/background.h"
@@ -48,6 +50,8 @@ class ViewSession {
   // view_wishes.cpp:
   void take_recording();
   void take_let_go();
+  void let_jaw_go(std::size_t body);
+  void let_fall();
   void take_save();
   void carry_out(const wish::Open& wanted);
   void carry_out(const wish::Import& wanted);
@@ -106,6 +110,20 @@ class ViewSession {
     ending_.push_back([work] { return work->done(); });
   }
 
+  struct LetGoResult {
+    std::size_t body;
+    Pose in_carrier;  // of a free part, at rest
+    std::string words;
+    JawLetGo jaw;  // its course, of a jaw
+    Hands hands;   // as they were left with it; others: a hand has it again
+  };
+  /// A jaw that was let go and is on its way, as time runs.
+  struct Falling {
+    LetGoResult of;
+    std::vector<double> shown_s;  // of each of its poses
+    std::chrono::steady_clock::time_point start;
+  };
+
   Window& window_;
   ViewOptions options_;
   CommonOptions common_;
@@ -120,6 +138,7 @@ class ViewSession {
   WindowScene shown_;
   std::optional<FrameState> newest_;
   Hands moved_;
+  std::optional<Falling> falling_;
   std::string busy_with_;
   std::shared_ptr<const LineSet> paths_;  // of the motion, as far as they are known
   std::optional<OverlayWish> overlaid_;   // what the window's overlays were made for
@@ -130,11 +149,6 @@ class ViewSession {
     int opened;
     std::vector<Landmark> landmarks;
     std::filesystem::path folder;
-  };
-  struct LetGoResult {
-    std::size_t body;
-    Pose in_carrier;
-    std::string words;
   };
   /// Plots as far as they are, from the thread that makes them.
   struct PlotPost {

@@ -91,7 +91,8 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
   json["recent"] = nlohmann::json::array();
   for (const auto& path : window.scene().recent) json["recent"].push_back(path.string());
   if (const std::string trouble = window.trouble(); !trouble.empty()) json["trouble"] = trouble;
-  if (view.hands.mandible) json["hand_mm"] = list(view.hands.mandible->t);
+  if (const auto hand = view.hands.X_CM_wanted()) json["hand_mm"] = list(hand->t);
+  if (view.hands.skull) json["skull_mm"] = list(view.hands.skull->t);
   for (const Landmark& landmark : view.landmarks)
     json["landmark_mm"][landmark.name] = list(landmark.at_rest);
   if (frame) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
+#include "sim/motion/measures.h"
 #include "tools/view_recording.h"
 #include "tools/view_session.h"
 
@@ -100,7 +101,7 @@ void ViewSession::carry_out(const wish::Import& wanted) {
 
 void ViewSession::carry_out(const wish::Record& wanted) {
   if (recording_ || !motion_) return;
-  std::optional<Pose> held_jaw = window_.view().hands.mandible;
+  std::optional<Pose> held_jaw = window_.view().hands.X_CM_wanted();
   if (!held_jaw && window_.view().opening_mm && newest_) held_jaw = newest_->X_CM_wanted;
   recording_ = beside<std::string>([subject = ViewRecording{.wanted = wanted,
                                                             .view = window_.view(),
@@ -122,7 +123,8 @@ void ViewSession::carry_out(const wish::Cancel&) {
 void ViewSession::carry_out(const wish::LetGo& wanted) {
   if (letting_go_ || !newest_ || wanted.body >= shown_.bodies.size()) return;
   const MovableBody& body = shown_.bodies[wanted.body];
-  if (!body.free) return;
+  falling_.reset();
+  if (!body.free) return let_jaw_go(wanted.body);
   letting_go_ =
       beside<LetGoResult>([patient = patient_, body, number = wanted.body, frame = *newest_,
                            threads = common_.threads](const Progress& progress) {
@@ -135,9 +137,12 @@ void ViewSession::carry_out(const wish::LetGo& wanted) {
           throw InputError(of.parts[body.part].name +
                            ": did not come to rest; move it nearer to the bone");
         const Pose now = pose_of(of.parts, body.part, settled.poses);
-        return LetGoResult{number, carrier_pose(body, frame.X_CM).inverse() * now,
+        return LetGoResult{number,
+                           carrier_pose(body, frame.X_CM).inverse() * now,
                            fmt::format("Lies still after {:.2f} s on {} places",
-                                       settled.rest.seconds, settled.contacts.size())};
+                                       settled.rest.seconds, settled.contacts.size()),
+                           {},
+                           {}};
       });
 }
 
@@ -179,19 +184,89 @@ void ViewSession::take_recording() {
   });
 }
 
+/// The jaw is caught where it is, and falls from there.
+void ViewSession::let_jaw_go(std::size_t number) {
+  if (!motion_) return;
+  const MovableBody& body = shown_.bodies[number];
+  const Pose X_CM = newest_->X_CM;
+  const double time_s = window_.view().time_s;
+  window_.change(
+      [&](ViewState& view) {
+        view.playing = false;
+        view.opening_mm.reset();
+        view.hands.move(body, body.skull ? view.hands.X_RC(X_CM) : X_CM, X_CM);
+      },
+      true);
+  letting_go_ = beside<LetGoResult>([patient = patient_, motion = motion_, number, time_s, X_CM,
+                                     caught = window_.view().hands, options = options_.motion,
+                                     threads = common_.threads](const Progress& progress) {
+    report(progress, "letting go", 0.5);
+    const Case& of = patient->scene.patient;
+    JawLetGoSettings settings{.muscles = options.muscles,
+                              .excitations = excitations_at(*motion, time_s)};
+    const bool by_tone = settings.excitations.empty();
+    if (by_tone) settings.X_CM_rest = rest_position(motion->choice, *patient, options, threads);
+    JawLetGo jaw = let_go_jaw(of, X_CM, settings, threads);
+    std::string words = jaw.bite_N > 0 ? fmt::format("lies on its teeth with {:.1f} N", jaw.bite_N)
+                                       : fmt::format("hangs {:.1f} mm open",
+                                                     measure(of, jaw.X_CM.back()).opening_mm);
+    words = fmt::format("{} the jaw {} after {:.2f} s{}",
+                        by_tone ? "At its muscles' resting tone" : "Moved by its muscles", words,
+                        jaw.rest.seconds, jaw.rest.reached ? "" : ", not still yet");
+    return LetGoResult{number, {}, std::move(words), std::move(jaw), caught};
+  });
+}
+
 void ViewSession::take_let_go() {
   if (!letting_go_ || !letting_go_->done()) return;
   const auto finished = std::move(letting_go_);
   guarded([&] {
-    const auto result = finished->take();
+    auto result = finished->take();
     if (!result) return;
-    window_.change(
-        [&](ViewState& view) {
-          view.hands.of(shown_.bodies.at(result->body)) = result->in_carrier;
-        },
-        true);
-    window_.say(result->words);
+    const MovableBody& body = shown_.bodies.at(result->body);
+    if (body.free) {
+      window_.change(
+          [&](ViewState& view) { view.hands.move(body, result->in_carrier, newest_->X_CM); }, true);
+      return window_.say(result->words);
+    }
+    // What joints draw in at once is shown so that it can be followed.
+    constexpr double fastest_mm_s = 250, arm_mm = 80;
+    const JawLetGo& jaw = result->jaw;
+    std::vector<double> shown_s = {0};
+    for (std::size_t k = 1; k < jaw.X_CM.size(); ++k) {
+      const Pose step = jaw.X_CM[k - 1].inverse() * jaw.X_CM[k];
+      const double mm = (step * body.center - body.center).norm() + arm_mm * rotation_angle(step);
+      shown_s.push_back(shown_s.back() + std::max(jaw.step_s, mm / fastest_mm_s));
+    }
+    falling_ = Falling{.of = std::move(*result),
+                       .shown_s = std::move(shown_s),
+                       .start = std::chrono::steady_clock::now()};
   });
+}
+
+/// The jaw that was let go, where it is by now; a hand that takes it ends its way.
+void ViewSession::let_fall() {
+  if (!falling_) return;
+  const ViewState& view = window_.view();
+  if (!(view.hands == falling_->of.hands) || view.opening_mm || view.playing)
+    return falling_.reset();
+  const double now_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - falling_->start).count();
+  const auto& times = falling_->shown_s;
+  const auto after = std::upper_bound(times.begin(), times.end(), now_s);
+  const bool there = after == times.end();
+  const auto at = static_cast<std::size_t>(after - times.begin()) - 1;
+  const Pose X_CM = falling_->of.jaw.X_CM[at];
+  const MovableBody& body = shown_.bodies.at(falling_->of.body);
+  window_.change([&](ViewState& wanted) {
+    // The skull goes to the jaw, or the jaw to the skull.
+    Hands& hands = wanted.hands;
+    hands.move(body, body.skull ? *hands.X_RM * X_CM.inverse() : X_CM, X_CM);
+  });
+  falling_->of.hands = window_.view().hands;
+  if (!there) return;
+  window_.say(falling_->of.words);
+  falling_.reset();
 }
 
 void ViewSession::take_save() {

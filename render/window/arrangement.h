@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/window/layout.h"
+#include "render/window/record_choice.h"
 #include "render/window/view_state.h"
 
 namespace condyle {
@@ -23,6 +24,7 @@ struct Arrangement {
   PanelSizes sizes = {};
   PanelChoice panels = {};
   std::vector<std::string> open_groups = usual_groups();  // of the tree
+  RecordChoice record = {};
   bool operator==(const Arrangement&) const = default;
 };
 

@@ -17,18 +17,10 @@ struct Drafts {
   std::map<std::string, double> parameters, excitations;  // under the mouse
   struct RecordFields {
     std::string folder;
-    int height = 1080;
-    double frames_per_second = 30;
-    bool film = true, transparent = false;
-    int supersampling = 1;
-    std::set<std::string> cameras = {own_camera};
-    bool camera_from_file = false;
-    std::string camera_file, caption;
-    /// Those that are chosen, in the order of the list; a file without a name is none.
-    std::vector<std::string> wanted_cameras() const;
     bool running = false;  // a recording, in the pass before
   } record;
   std::string landmark_words, case_folder;
+  std::optional<double> number;  // in the number_field that is written in
   struct OpenFields {
     bool open = false;
     std::string path;

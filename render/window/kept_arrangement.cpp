@@ -16,7 +16,22 @@ constexpr std::size_t largest_file = std::size_t{1} << 16;
 constexpr std::chrono::milliseconds calm{500};
 
 constexpr std::array left_tabs = {"parts", "look"};
+constexpr std::array edges = {"msaa", "fxaa", "none"};
 constexpr std::array side_tabs = {"readings", "motion", "record"};
+
+json json_of(const RecordChoice& r) {
+  return {{"width", r.width},
+          {"height", r.height},
+          {"frames_per_second", r.frames_per_second},
+          {"supersampling", r.supersampling},
+          {"edges", edges.at(static_cast<std::size_t>(r.edges))},
+          {"film", r.film},
+          {"transparent", r.transparent},
+          {"cameras", r.cameras},
+          {"camera_from_file", r.camera_from_file},
+          {"camera_file", r.camera_file},
+          {"caption", r.caption}};
+}
 
 json json_of(const Arrangement& a) {
   const PanelChoice& panels = a.panels;
@@ -32,7 +47,8 @@ json json_of(const Arrangement& a) {
           {"right_tab", side_tabs.at(static_cast<std::size_t>(panels.tab))},
           {"plots", panels.plots},
           {"plot_set", panels.plot_set},
-          {"open_groups", a.open_groups}};
+          {"open_groups", a.open_groups},
+          {"recording", json_of(a.record)}};
 }
 
 /// Fields of the file; one that is missing leaves the value as it is.
@@ -47,6 +63,12 @@ class FieldReader {
     if (!field) return;
     if (!field->is_boolean()) throw InputError(file_, name, "is neither true nor false");
     value = field->get<bool>();
+  }
+  void read(const char* name, std::string& words) const {
+    const json* field = find(name);
+    if (!field) return;
+    if (!field->is_string()) throw InputError(file_, name, "is no text");
+    words = field->get<std::string>();
   }
   template <class Number>
   void read(const char* name, Number& value, double least, double most) const {
@@ -94,6 +116,25 @@ class FieldReader {
   const json& all_;
 };
 
+RecordChoice record_in(const fs::path& file, const json& all) {
+  const FieldReader fields(file, all);
+  RecordChoice r;
+  fields.read("width", r.width, least_picture_px, most_picture_px);
+  fields.read("height", r.height, least_picture_px, most_picture_px);
+  fields.read("frames_per_second", r.frames_per_second, 1, 240);
+  fields.read("supersampling", r.supersampling, 1, 4);
+  fields.read("edges", r.edges, edges);
+  fields.read("film", r.film);
+  fields.read("transparent", r.transparent);
+  std::vector<std::string> cameras(r.cameras.begin(), r.cameras.end());
+  fields.read("cameras", cameras);
+  r.cameras = {cameras.begin(), cameras.end()};
+  fields.read("camera_from_file", r.camera_from_file);
+  fields.read("camera_file", r.camera_file);
+  fields.read("caption", r.caption);
+  return r;
+}
+
 Arrangement arrangement_in(const fs::path& file, const std::string& text) {
   const json all = json::parse(text, nullptr, false);
   const FieldReader fields(file, all);
@@ -114,6 +155,7 @@ Arrangement arrangement_in(const fs::path& file, const std::string& text) {
   fields.read("plots", a.panels.plots);
   fields.read("plot_set", a.panels.plot_set, 0, 100);
   fields.read("open_groups", a.open_groups);
+  if (all.contains("recording")) a.record = record_in(file, all["recording"]);
   return a;
 }
 
@@ -129,6 +171,7 @@ void merge(Arrangement& kept, const Arrangement& before, const Arrangement& now)
   take(kept.maximized, before.maximized, now.maximized);
   take(kept.sizes, before.sizes, now.sizes);
   take(kept.panels, before.panels, now.panels);
+  take(kept.record, before.record, now.record);
   take(kept.open_groups, before.open_groups, now.open_groups);
 }
 

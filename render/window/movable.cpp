@@ -11,9 +11,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-bool same(const std::optional<Pose>& a, const std::optional<Pose>& b) {
-  if (!a || !b) return a.has_value() == b.has_value();
-  return a->t == b->t && a->R.coeffs() == b->R.coeffs();
+/// The first of skull, maxilla and upper teeth that is there.
+std::optional<std::size_t> part_that_names_skull(std::span<const Part> parts) {
+  for (const Role role : {Role::skull, Role::maxilla, Role::upper_teeth})
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (parts[i].role == role) return i;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -31,6 +34,11 @@ std::vector<MovableBody> movable_bodies(std::span<const Part> parts) {
                       .free = std::nullopt,
                       .carrier = Body::cranium,
                       .center = box.center()});
+    if (const auto skull = part_that_names_skull(parts))
+      bodies.push_back({.part = *skull,
+                        .free = std::nullopt,
+                        .skull = true,
+                        .center = bounding_box(parts[*skull].mesh).center()});
   }
   const auto free = free_parts(parts);
   for (std::size_t f = 0; f < free.size(); ++f)
@@ -45,21 +53,60 @@ std::optional<std::size_t> movable_body_of(std::span<const MovableBody> bodies,
                                            std::span<const Part> parts, std::size_t part) {
   if (part >= parts.size()) return std::nullopt;
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (bodies[i].free ? bodies[i].part == part : body_of(parts[part].role) == Body::mandible)
+    if (bodies[i].free
+            ? bodies[i].part == part
+            : body_of(parts[part].role) == (bodies[i].skull ? Body::cranium : Body::mandible))
       return i;
   return std::nullopt;
 }
 
-std::optional<Pose>& Hands::of(const MovableBody& body) {
-  if (!body.free) return mandible;
-  if (free.size() <= *body.free) free.resize(*body.free + 1);
-  return free[*body.free];
+bool same(const std::optional<Pose>& a, const std::optional<Pose>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return a->t == b->t && a->R.coeffs() == b->R.coeffs();
 }
 
-const std::optional<Pose>& Hands::of(const MovableBody& body) const {
-  static const std::optional<Pose> none;
-  if (!body.free) return mandible;
-  return *body.free < free.size() ? free[*body.free] : none;
+std::optional<Pose> Hands::X_CM_wanted() const {
+  return X_RM ? skull.value_or(Pose{}).inverse() * *X_RM : mandible;
+}
+
+Pose Hands::X_RC(const Pose& X_CM) const {
+  return X_RM ? *X_RM * X_CM.inverse() : skull.value_or(Pose{});
+}
+
+std::optional<Pose> Hands::of(const MovableBody& body) const {
+  if (body.skull) return skull;
+  if (!body.free) return X_CM_wanted();
+  return *body.free < free.size() ? free[*body.free] : std::nullopt;
+}
+
+void Hands::move(const MovableBody& body, const Pose& wanted, const Pose& X_CM) {
+  if (body.skull) {
+    if (!X_RM) X_RM = X_RC(X_CM) * X_CM;
+    skull = wanted;
+  } else if (body.free) {
+    if (free.size() <= *body.free) free.resize(*body.free + 1);
+    free[*body.free] = wanted;
+  } else {
+    if (X_RM) skull = X_RC(X_CM);
+    X_RM.reset();
+    mandible = wanted;
+  }
+}
+
+void Hands::put_back(const MovableBody& body) {
+  if (body.skull) {
+    skull.reset();
+    X_RM.reset();
+  } else if (!body.free) {
+    release_jaw();
+  } else if (*body.free < free.size()) {
+    free[*body.free].reset();
+  }
+}
+
+void Hands::release_jaw() {
+  mandible.reset();
+  X_RM.reset();
 }
 
 bool Hands::operator==(const Hands& other) const {
@@ -69,7 +116,7 @@ bool Hands::operator==(const Hands& other) const {
   };
   for (std::size_t i = 0; i < count; ++i)
     if (!same(at(*this, i), at(other, i))) return false;
-  return same(mandible, other.mandible);
+  return same(mandible, other.mandible) && same(skull, other.skull) && same(X_RM, other.X_RM);
 }
 
 Placement placement_of(const Pose& pose, const Vector3d& center) {

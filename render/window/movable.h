@@ -12,30 +12,44 @@
 
 namespace condyle {
 
-/// A body that a hand can move: the mandible with all it carries, a segment or a transplant.
+/// A body that a hand can move: the mandible or the skull with all they carry, a segment or a
+/// transplant.
 struct MovableBody {
   std::size_t part = 0;             // that names it
-  std::optional<std::size_t> free;  // its number among the free parts; none: the mandible
-  Body carrier = Body::cranium;     // in whose frame it is moved
+  std::optional<std::size_t> free;  // its number among the free parts; none: a jaw
+  bool skull = false;               // it is moved in the room, where the jaw stays meanwhile
+  Body carrier = Body::cranium;     // in whose frame another body is moved
   Eigen::Vector3d center =
       Eigen::Vector3d::Zero();  // of its box at rest; it turns about this point
 };
 
-/// The mandible first, then free parts in their order.
+/// The mandible first, then the skull, then free parts in their order.
 std::vector<MovableBody> movable_bodies(std::span<const Part> parts);
 
 /// Number of the body that the part belongs to; none when it cannot be moved.
 std::optional<std::size_t> movable_body_of(std::span<const MovableBody> bodies,
                                            std::span<const Part> parts, std::size_t part);
 
-/// Where the hand wants bodies, rest to now in their carriers' frames. None: the mandible follows
-/// the motion, a free part stays as at rest.
+/// Where the hand wants bodies, rest to now. Coordinate frames: the room R, in which the window's
+/// camera stands; the cranium C, in which all else is told; the mandible M.
 struct Hands {
-  std::optional<Pose> mandible;
-  std::vector<std::optional<Pose>> free;
+  std::optional<Pose> mandible;           // X_CM; none: it follows the motion
+  std::optional<Pose> skull;              // X_RC; none: the room is the cranium's frame
+  std::optional<Pose> X_RM;               // set: the jaw stays there, against the skull that moves
+  std::vector<std::optional<Pose>> free;  // in their carriers' frames; none: as at rest
 
-  std::optional<Pose>& of(const MovableBody& body);
-  const std::optional<Pose>& of(const MovableBody& body) const;
+  /// Of a jaw that a hand has.
+  std::optional<Pose> X_CM_wanted() const;
+  /// Of the skull with the jaw where it is: what contact keeps from the jaw is the skull if it was
+  /// moved last.
+  Pose X_RC(const Pose& X_CM) const;
+
+  /// What is wanted of a body as its numbers tell it; none: no hand has it.
+  std::optional<Pose> of(const MovableBody& body) const;
+  /// An edit; the jaw is at X_CM.
+  void move(const MovableBody& body, const Pose& wanted, const Pose& X_CM);
+  void put_back(const MovableBody& body);
+  void release_jaw();
   bool operator==(const Hands& other) const;
 };
 
@@ -48,7 +62,11 @@ struct Placement {
 Placement placement_of(const Pose& pose, const Eigen::Vector3d& center);
 Pose pose_at(const Placement& placement, const Eigen::Vector3d& center);
 
-/// Where the body's carrier is; a body's pose in the cranium's frame is carrier * pose.
+/// Whether both are the same to the bit, or none.
+bool same(const std::optional<Pose>& a, const std::optional<Pose>& b);
+
+/// Where the carrier of a body other than the skull is: its pose in the cranium's frame is carrier
+/// * pose.
 Pose carrier_pose(const MovableBody& body, const Pose& X_CM);
 
 }  // namespace condyle

@@ -34,31 +34,27 @@ std::string number_words(double value, const char* unit) {
   return fmt::format("{:.2f}{}", std::abs(value) < 5e-3 ? 0 : value, unit);
 }
 
-/// One row of the table: a name, the wish to be written in and what was reached. gives: true when
-/// another wish was entered.
-bool wish_row(Pen& pen, const std::string& name, const char* label, const char* unit,
-              double& wanted, double reached, double held_from) {
+/// One row of the table: a name, the wish to be written in and what was reached. `draft`: what is
+/// written and not entered yet. gives: true when another wish was entered.
+bool wish_row(Pen& pen, std::optional<double>& draft, const std::string& name, const char* label,
+              const char* unit, double& wanted, double reached, double held_from) {
   const std::string shown = number_words(wanted, unit);
   ImGui::AlignTextToFramePadding();
   text(pen.theme.small, palette().text_dim, label);
   ImGui::SameLine(pen.px(wanted_column));
   ImGui::SetNextItemWidth(pen.px(wanted_width));
-  const double as_shown = std::stod(shown);
-  double entered = as_shown;
-  ImGui::InputDouble(("##" + name).c_str(), &entered, 0, 0, (std::string("%.2f") + unit).c_str(),
-                     ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue |
-                         ImGuiInputTextFlags_CharsScientific);
-  pen.mark(name, shown);
+  // What is shown is rounded: to enter it as it stands changes nothing.
+  double entered = std::stod(shown);
+  const bool another =
+      number_field(pen, name.c_str(), entered, (std::string("%.2f") + unit).c_str(), draft);
   ImGui::SameLine();
   ImGui::AlignTextToFramePadding();
   const std::string words = number_words(reached, unit);
   const bool held = std::abs(wanted - reached) > held_from;
   text_right(pen.theme.regular, held ? palette().warning : palette().text, words);
   pen.mark("reached:" + name, words);
-  // What was shown is rounded: to enter it as it stands, or no number, changes nothing.
-  if (entered == as_shown || !std::isfinite(entered)) return false;
-  wanted = entered;
-  return true;
+  if (another) wanted = entered;
+  return another;
 }
 
 }  // namespace
@@ -104,8 +100,7 @@ void Panels::Drawing::moving() {
 
   // Its place in numbers.
   const bool several = input.scene.bodies.size() > 1;
-  const double wide = pen.px(252), high = pen.px((several ? 272 : 260) + (body.free ? 34 : 0)),
-               margin = pen.px(12);
+  const double wide = pen.px(252), high = pen.px(several ? 306 : 294), margin = pen.px(12);
   if (r.width < 2 * wide || r.height < high + 2 * margin) return;
   begin_panel(pen, "move", {r.x + margin, r.y + margin, wide, high});
   heading(pen, "Move", "slides on contact");
@@ -120,11 +115,16 @@ void Panels::Drawing::moving() {
       ImGui::EndCombo();
     }
     pen.mark("body");
+    tooltip(pen,
+            "What the handles and numbers move; in the picture, press on a jaw or a free part to "
+            "take it. The skull with the upper jaw moves by its handles while it is chosen here: "
+            "the lower jaw stays where it is in the picture");
   } else {
     text(theme.regular, palette().text, display_name(input.scene.parts[body.part].name));
   }
-  const Pose carrier = carrier_pose(body, input.frame->X_CM);
-  const Pose reached = carrier.inverse() * now;
+  const Pose& X_CM = input.frame->X_CM;
+  const Pose reached =
+      body.skull ? view.hands.X_RC(X_CM) : carrier_pose(body, X_CM).inverse() * now;
   const std::optional<Pose> hand = view.hands.of(body);
   Placement wanted = placement_of(hand.value_or(reached), body.center);
   const Placement there = placement_of(reached, body.center);
@@ -141,13 +141,13 @@ void Panels::Drawing::moving() {
   text_right(theme.small, palette().text_faint, "reached");
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    edited |= wish_row(pen, fmt::format("shift:{}", axis_letters[k]), shift_names[k], " mm",
-                       wanted.shift_mm[i], there.shift_mm[i], held_mm);
+    edited |= wish_row(pen, panels.drafts_.number, fmt::format("shift:{}", axis_letters[k]),
+                       shift_names[k], " mm", wanted.shift_mm[i], there.shift_mm[i], held_mm);
   }
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    edited |= wish_row(pen, fmt::format("turn:{}", axis_letters[k]), turn_names[k], "\u00b0",
-                       wanted.turn_deg[i], there.turn_deg[i], held_deg);
+    edited |= wish_row(pen, panels.drafts_.number, fmt::format("turn:{}", axis_letters[k]),
+                       turn_names[k], "\u00b0", wanted.turn_deg[i], there.turn_deg[i], held_deg);
     tooltip(pen, turn_tips[k]);
   }
   ImGui::PopStyleVar(2);
@@ -156,9 +156,11 @@ void Panels::Drawing::moving() {
       view.playing = false;
       view.opening_mm.reset();
     }
-    view.hands.of(body) = pose_at(wanted, body.center);
+    view.hands.move(body, pose_at(wanted, body.center), X_CM);
   }
-  std::string state = body.free ? "as it was loaded" : "follows the motion";
+  std::string state = body.free    ? "as it was loaded"
+                      : body.skull ? "in its place"
+                                   : "follows the motion";
   ImU32 tint = palette().text_dim;
   if (short_of_shift || short_of_turn) {
     state = short_of_turn ? fmt::format("held by contact, {:.1f} mm and {:.1f}\u00b0 short",
@@ -185,16 +187,23 @@ void Panels::Drawing::moving() {
   ImGui::SameLine(0, gap);
   ImGui::BeginDisabled(!hand);
   if (word_button(pen, "put-back", "Put back", size, false)) {
-    view.hands.of(body).reset();
+    view.hands.put_back(body);
   }
   ImGui::EndDisabled();
-  tooltip(pen, body.free ? "To where it was loaded" : "The jaw follows the motion again");
-  if (body.free) {
-    if (word_button(pen, "let-go", "Let go onto the bone",
-                    {ImGui::GetContentRegionAvail().x, size.y}, false))
-      panels.wishes_.push_back(wish::LetGo{view.chosen});
-    tooltip(pen, "It is pushed gently to the nearest bone, slides and turns until it lies still");
-  }
+  tooltip(pen, body.free    ? "To where it was loaded"
+               : body.skull ? "To where it was loaded; the jaw is as before the skull was moved"
+                            : "The jaw follows the motion again");
+  if (word_button(pen, "let-go", body.free ? "Let go onto the bone" : "Let go to the muscles",
+                  {ImGui::GetContentRegionAvail().x, size.y}, false))
+    panels.wishes_.push_back(wish::LetGo{view.chosen});
+  tooltip(pen,
+          body.free
+              ? "It is pushed gently to the nearest bone, slides and turns until it lies still"
+          : body.skull
+              ? "The jaw stays: joints and muscles draw the skull to it until all lies still"
+              : "Joints draw the condyles in; weight and muscles (their tone at rest, or what a "
+                "motion by muscles does at this moment) move the jaw until it hangs still or lies "
+                "on its teeth");
   end_panel();
 }
 

@@ -95,7 +95,7 @@ void Panels::Drawing::opening() {
   const Theme& theme = panels.theme_;
   const bool held = view.opening_mm.has_value();
   const double live = input.frame ? input.frame->measures.opening_mm : 0;
-  heading(pen, "Opening", held || view.hands.mandible ? "held by hand" : "from the motion");
+  heading(pen, "Opening", held || view.jaw_is_held() ? "held by hand" : "from the motion");
 
   const float top = ImGui::GetCursorPosY();
   const bool known = input.frame && has_landmarks(input.scene, {"lower_incisal_point"});
@@ -128,7 +128,7 @@ void Panels::Drawing::opening() {
   double wanted = held ? *view.opening_mm : std::clamp(live, 0.0, most);
   ImGui::BeginDisabled(!opens);
   if (slider(pen, "opening", wanted, {.high = most, .width = width, .held = held})) {
-    view.hands.mandible.reset();
+    view.hands.release_jaw();
     view.opening_mm = wanted;
     view.playing = false;
   }

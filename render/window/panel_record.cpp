@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -28,7 +29,7 @@ constexpr std::array<NamedCamera, 11> named_cameras = {{{own_camera, "This view"
 
 }  // namespace
 
-std::vector<std::string> Drafts::RecordFields::wanted_cameras() const {
+std::vector<std::string> RecordChoice::wanted_cameras() const {
   std::vector<std::string> wanted;
   for (const NamedCamera& one : named_cameras)
     if (cameras.contains(one.name)) wanted.emplace_back(one.name);
@@ -49,7 +50,7 @@ float Panels::Drawing::record_label(const char* words) {
 }
 
 void Panels::Drawing::record_cameras() {
-  Drafts::RecordFields& fields = panels.drafts_.record;
+  RecordChoice& fields = panels.record_;
   std::string shown;
   const auto add = [&](const char* words) {
     shown += (shown.empty() ? "" : ", ") + std::string(words);
@@ -84,6 +85,7 @@ void Panels::Drawing::record_cameras() {
 
 void Panels::Drawing::record() {
   const Theme& theme = panels.theme_;
+  RecordChoice& choice = panels.record_;
   Drafts::RecordFields& fields = panels.drafts_.record;
   const float gap = pen.px(5), high = pen.px(28);
   const float whole = ImGui::GetContentRegionAvail().x;
@@ -105,29 +107,58 @@ void Panels::Drawing::record() {
   // A row of choices behind its name.
   const auto row = [&](const char* name, const char* item, auto& value, const auto& choices,
                        const char* help) {
-    const float choice = std::floor((record_label(name) - 3 * gap) / 4);
+    const auto count = static_cast<float>(choices.size());
+    const float wide = std::floor((record_label(name) - (count - 1) * gap) / count);
     bool first = true;
     for (const auto& [number, words] : choices) {
       if (!std::exchange(first, false)) ImGui::SameLine(0, gap);
-      if (word_button(pen, fmt::format("{}:{}", item, number).c_str(), words, {choice, pen.px(24)},
+      if (word_button(pen, fmt::format("{}:{}", item, number).c_str(), words, {wide, pen.px(24)},
                       value == number))
         value = number;
       tooltip(pen, help);
     }
   };
   using Choices = std::array<std::pair<int, const char*>, 4>;
-  row("Height", "record-height", fields.height,
+  // Usual sizes by their height, and any other in numbers.
+  const auto width_of = [](int height) { return static_cast<int>(std::lround(height * 16 / 9.0)); };
+  int usual = choice.width == width_of(choice.height) ? choice.height : 0;
+  row("Height", "record-height", usual,
       Choices{{{720, "720"}, {1080, "1080"}, {1440, "1440"}, {2160, "4K"}}},
-      "Of the pictures, in pixels; 16:9");
-  row("Per second", "record-rate", fields.frames_per_second,
+      "Of the pictures, in pixels, as wide as a screen: 16:9");
+  if (usual != 0 && usual != choice.height) {
+    choice.height = usual;
+    choice.width = width_of(usual);
+  }
+  const float side = std::floor((record_label("Pixels") - pen.px(18)) / 2);
+  const auto pixels = [&](const char* name, int& value) {
+    double number = value;
+    ImGui::SetNextItemWidth(side);
+    if (number_field(pen, name, number, "%.0f", panels.drafts_.number))
+      value = std::clamp(static_cast<int>(std::lround(std::clamp(number, 0.0, 1e6))),
+                         least_picture_px, most_picture_px);
+    tooltip(pen, "Any width and height, 16 to 8192 pixels");
+  };
+  pixels("record-width", choice.width);
+  ImGui::SameLine(0, pen.px(5));
+  ImGui::AlignTextToFramePadding();
+  text(theme.small, palette().text_dim, "\u00d7");
+  ImGui::SameLine(0, pen.px(5));
+  pixels("record-tall", choice.height);
+  row("Per second", "record-rate", choice.frames_per_second,
       Choices{{{10, "10"}, {24, "24"}, {30, "30"}, {60, "60"}}},
       "Pictures for each second of the motion");
-  row("Finer", "record-finer", fields.supersampling,
+  row("Finer", "record-finer", choice.supersampling,
       Choices{{{1, "1x"}, {2, "2x"}, {3, "3x"}, {4, "4x"}}},
-      "Draws so many times as wide and high, then averages: the finest lines and edges, in more "
-      "time. 1x has smooth edges, too");
+      "Supersampling: draws so many times as wide and high, then averages. The finest lines and "
+      "edges, in more time. 1x has smooth edges, too");
+  int edges = static_cast<int>(choice.edges);
+  row("Edges", "record-edges", edges,
+      std::array<std::pair<int, const char*>, 3>{{{0, "MSAA"}, {1, "FXAA"}, {2, "Hard"}}},
+      "Smooth by four samples a pixel (best; a driver that gives fewer is told of), by a filter "
+      "over the finished picture (quick), or not at all");
+  choice.edges = static_cast<RecordEdges>(edges);
   record_cameras();
-  text_field(pen, "record-caption", fields.caption, record_label("Caption"),
+  text_field(pen, "record-caption", choice.caption, record_label("Caption"),
              "Opening {opening} mm");
   tooltip(
       pen,
@@ -135,12 +166,12 @@ void Panels::Drawing::record() {
       "incisal point has dropped), {interincisal} in mm (between the incisal edges), {rotation} "
       "in \u00b0, {motion}, {frame}. A | begins a new line");
   const double duration = input.scene.duration_s;
-  const long frames = std::lround(duration * fields.frames_per_second) + 1;
-  tick_box(pen, "record-transparent", "No background", fields.transparent);
+  const long frames = std::lround(duration * choice.frames_per_second) + 1;
+  tick_box(pen, "record-transparent", "No background", choice.transparent);
   tooltip(pen,
           "PNG pictures with a transparent background, to lay over others; in a film it is black");
   ImGui::SameLine(std::floor(whole * 0.56f));
-  tick_box(pen, "record-film", "Film (MP4)", fields.film);
+  tick_box(pen, "record-film", "Film (MP4)", choice.film);
   tooltip(pen, "Beside the pictures; made by the program ffmpeg when the last picture is there");
   // The next recording has a folder of its own, unless the person names one.
   if (fields.running && !input.recording) fields.folder.clear();
@@ -162,18 +193,19 @@ void Panels::Drawing::record() {
       panels.wishes_.emplace_back(wish::Cancel{});
     tooltip(pen, "The pictures made so far stay in the folder");
   } else {
-    const std::size_t cameras = fields.wanted_cameras().size();
+    const std::size_t cameras = choice.wanted_cameras().size();
     ImGui::BeginDisabled(duration <= 0 || fields.folder.empty() || cameras == 0);
     if (word_button(pen, "record", "Record", {whole, pen.px(32)}, true)) {
       wish::Record wanted{.folder = fields.folder,
-                          .width = static_cast<int>(std::lround(fields.height * 16 / 9.0)),
-                          .height = fields.height,
-                          .frames_per_second = fields.frames_per_second,
-                          .film = fields.film,
-                          .cameras = fields.wanted_cameras(),
-                          .caption = fields.caption,
-                          .transparent = fields.transparent,
-                          .supersampling = fields.supersampling,
+                          .width = choice.width,
+                          .height = choice.height,
+                          .frames_per_second = choice.frames_per_second,
+                          .film = choice.film,
+                          .cameras = choice.wanted_cameras(),
+                          .caption = choice.caption,
+                          .transparent = choice.transparent,
+                          .supersampling = choice.supersampling,
+                          .edges = choice.edges,
                           .camera = input.camera,
                           .picture = {}};
       panels.wishes_.push_back(std::move(wanted));

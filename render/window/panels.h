@@ -59,7 +59,8 @@ struct TooltipWait {
   double since_s = 0;
   int last_pass = -2;     // over the panels, in which it was under the mouse
   bool put_away = false;  // it was clicked: what that reveals must not be covered
-  bool due = false;       // a tooltip is still to come
+  int passes = 0;         // that have drawn a tooltip
+  bool due = false;       // a tooltip is still to come, or to be seen
 };
 
 /// Panels of the window, drawn into the current ImGui frame (between NewFrame and Render). They
@@ -115,7 +116,10 @@ class Panels {
   /// Sizes that a person has drawn, and groups of the tree that are unfolded.
   const PanelSizes& sizes() const { return sizes_; }
   const std::vector<std::string>& open_groups() const { return open_groups_; }
-  void arrange(const PanelSizes& sizes, std::vector<std::string> open_groups) {
+  const RecordChoice& record_choice() const { return record_; }
+  void arrange(const PanelSizes& sizes, std::vector<std::string> open_groups,
+               RecordChoice record = {}) {
+    record_ = std::move(record);
     sizes_ = sizes;
     open_groups_ = std::move(open_groups);
   }
@@ -141,6 +145,7 @@ class Panels {
   bool fold_list_ = false;  // the list that is unfolded: in the next pass
   bool editing_ = false;    // something is held that has changed the view already
   Drafts drafts_;
+  RecordChoice record_;
   std::vector<Wish> wishes_;
   // The last steps' times, for the curves; of bounded length.
   std::vector<float> step_ms_;

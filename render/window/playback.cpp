@@ -29,7 +29,7 @@ void toggle_playing(ViewState& view, double duration_s) {
   view.playing = !view.playing;
   if (!view.playing) return;
   view.opening_mm.reset();
-  view.hands.mandible.reset();
+  view.hands.release_jaw();
   if (view.time_s >= duration_s) view.time_s = 0;
 }
 
@@ -40,7 +40,7 @@ void step_clock(ViewState& view, double delta_s, double duration_s) {
 
 void seek(ViewState& view, double time_s, double duration_s) {
   view.opening_mm.reset();
-  view.hands.mandible.reset();
+  view.hands.release_jaw();
   view.time_s = std::clamp(time_s, 0.0, std::max(0.0, duration_s));
 }
 

@@ -68,6 +68,7 @@ constexpr std::array move_lines = {
     HelpLine{"M", "move bones, on and off"},
     HelpLine{"drag a bone", "it goes along, and slides on contact"},
     HelpLine{"drag an arrow, a ring", "along or about one axis"},
+    HelpLine{"Let go, in its panel", "joints and muscles, or bone, take it"},
 };
 constexpr std::array window_lines = {
     HelpLine{"Ctrl+Z, Ctrl+Y", "undo, redo: settings and moves"},

@@ -128,7 +128,7 @@ struct ViewState : Edits, PanelChoice {
 
   const Edits& edits() const { return *this; }
   /// Whether a hand has the jaw, not the motion.
-  bool jaw_is_held() const { return opening_mm || hands.mandible; }
+  bool jaw_is_held() const { return opening_mm || hands.X_CM_wanted(); }
   /// Distances are off: the skin is as it was before, unless the person has set it since.
   void return_skin();
   /// What was set at another time; the rest stays, but the clock stops where a hand has the jaw.

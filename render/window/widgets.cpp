@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 namespace condyle {
 namespace {
@@ -196,8 +197,12 @@ void tooltip(Pen& pen, const char* words) {
   resting.last_pass = pass;
   if (ImGui::IsAnyMouseDown()) resting.put_away = true;
   if (resting.put_away) return;
-  resting.due = now_s - resting.since_s < wait_s;
-  if (resting.due) return;
+  const bool waits = now_s - resting.since_s < wait_s;
+  // ImGui finds the size of a tooltip in passes that do not show it yet.
+  constexpr int unseen_passes = 3;
+  if (!waits) resting.passes = std::min(resting.passes + 1, unseen_passes);
+  resting.due = resting.passes < unseen_passes;
+  if (waits) return;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, pen.px(10, 7));
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(pen.px(300));
@@ -291,6 +296,24 @@ bool typed_number(Pen& pen, const char* name, const ImRect& rect, double& value,
 }
 
 }  // namespace
+
+bool number_field(Pen& pen, const char* name, double& value, const char* format,
+                  std::optional<double>& draft) {
+  double written = value;
+  if (ImGui::InputDouble(("##" + std::string(name)).c_str(), &written, 0, 0, format,
+                         ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CharsScientific))
+    draft = written;
+  const bool left = ImGui::IsItemDeactivated();
+  std::array<char, 64> shown{};
+  std::snprintf(shown.data(), shown.size(), format, value);
+  pen.mark(name, shown.data());
+  if (ImGui::IsItemActive()) pen.mark("writing");
+  if (!left) return false;
+  const double entered = std::exchange(draft, std::nullopt).value_or(value);
+  if (entered == value || !std::isfinite(entered)) return false;
+  value = entered;
+  return true;
+}
 
 bool slider(Pen& pen, const char* name, double& value, const SliderLook& look) {
   const float height = ImGui::GetFrameHeight(), knob = pen.px(6.5f);

@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,12 @@ struct SliderLook {
   double typed = 1;    // the number that is typed, of a value of 1: 100 for a share in %
 };
 /// Ctrl+click opens a field for the number instead; Enter takes it, within the slider's ends.
+/// A field for a number of the width that was set for the next item, shown in a printf format. What
+/// is written stands in `draft` until Enter, Tab or a click elsewhere enters it. gives: true when
+/// another number was entered.
+bool number_field(Pen& pen, const char* name, double& value, const char* format,
+                  std::optional<double>& draft);
+
 bool slider(Pen& pen, const char* name, double& value, const SliderLook& look);
 
 /// A line of text to write in, with a hint while it is empty. gives: true when Enter is pressed.

@@ -64,7 +64,7 @@ Window::State::State(const WindowOptions& wanted)
   ImGui::GetIO().IniFilename = nullptr;  // leave no files behind
   ImGui::GetIO().LogFilename = nullptr;
   panels.emplace(1.0f, arrangement.light);
-  panels->arrange(arrangement.sizes, arrangement.open_groups);
+  panels->arrange(arrangement.sizes, arrangement.open_groups, arrangement.record);
   texture.emplace();
   painter.emplace([] { Window::wake(); });
   ImGui_ImplGlfw_InitForOpenGL(window, true);  // calls our callbacks before its own
@@ -287,6 +287,7 @@ Arrangement Window::arrangement() const {
   Arrangement now = s.arrangement;
   now.sizes = s.panels->sizes();
   now.open_groups = s.panels->open_groups();
+  now.record = s.panels->record_choice();
   now.panels = s.view;
   return now;
 }

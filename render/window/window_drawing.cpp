@@ -22,7 +22,11 @@ constexpr double calm_s = 0.25;  // nothing has moved for so long: full quality
 
 constexpr double clock_interval_s = 0.05;  // the time line's while pictures come slower
 
-/// Whether two settings give the same picture.
+/// Whether they give the same picture.
+bool same(const Camera& a, const Camera& b) {
+  return a.target == b.target && a.direction == b.direction && a.up == b.up &&
+         a.distance_mm == b.distance_mm;
+}
 bool same(const PictureSettings& a, const PictureSettings& b) {
   return a.width == b.width && a.height == b.height && a.shadows == b.shadows &&
          a.contacts == b.contacts && a.skin_opacity == b.skin_opacity &&
@@ -40,6 +44,11 @@ std::pair<int, int> Window::State::size() const {
 ViewRect Window::State::view_rect() const {
   const auto [w, h] = size();
   return panels->layout(w, h, view.plots).view;
+}
+
+/// The camera in the cranium's frame, in which all that is drawn is told.
+Camera Window::State::seen() const {
+  return told_in(view.hands.X_RC(frame() ? frame()->X_CM : Pose{}).inverse(), camera);
 }
 
 PictureSettings Window::State::settings() const {
@@ -184,7 +193,7 @@ void Window::State::interface_frame() {
                          .frame = frame(),
                          .loop = loop,
                          .pictures = pictures,
-                         .camera = camera,
+                         .camera = seen(),
                          .box = box,
                          .progress = progress.empty() && order.parts && !drawn() && !cannot_draw
                                          ? std::string(preparing)
@@ -225,7 +234,7 @@ std::string Window::State::pointed() const {
         {finer[i].mesh, pose_of(scene.parts, part, frame()->poses()), (*order.values)[i]});
     parts.push_back(part);
   }
-  const auto found = pointed_value(camera, view_rect(), {now.x, now.y}, surfaces);
+  const auto found = pointed_value(seen(), view_rect(), {now.x, now.y}, surfaces);
   if (!found) return {};
   const std::string name = display_name(scene.parts[parts[found->surface]].name);
   const ColourMap& map = *scene.distance_colours;
@@ -240,7 +249,7 @@ bool Window::State::drawn() const { return order.parts && texture->parts() == or
 /// Asks for the picture as everything is now.
 void Window::State::order_picture() {
   if (!order.parts) return;
-  order.camera = camera;
+  order.camera = seen();
   order.settings = settings();
   order.moving = moving();
   order.quality = governor.choose(order.moving);
@@ -283,7 +292,8 @@ bool Window::State::take_picture() {
 }
 
 void Window::State::draw(bool always, Image* copy) {
-  if (order.parts && (!(view.look == ordered_look) || !same(settings(), order.settings))) {
+  if (order.parts && (!(view.look == ordered_look) || !same(settings(), order.settings) ||
+                      !same(seen(), order.camera))) {
     scene_changed = true;
     last_change = Clock::now();
   }

@@ -31,7 +31,7 @@ std::optional<PointedPlace> Window::State::surface_under(const Eigen::Vector2d& 
     }
     parts.push_back(i);
   }
-  auto found = pointed_place(camera, view_rect(), at, surfaces);
+  auto found = pointed_place(seen(), view_rect(), at, surfaces);
   if (found) found->surface = parts[found->surface];
   return found;
 }
@@ -62,17 +62,19 @@ bool Window::State::grip_body(const Eigen::Vector2d& at) {
     return pose_of(scene.parts, body.part, frame()->poses());
   };
   const MovableBody& chosen = scene.bodies[view.chosen];
-  HandleView handle_view{camera, view_rect(), pose(chosen) * chosen.center};
+  HandleView handle_view{seen(), view_rect(), pose(chosen) * chosen.center};
   handle_view.arrow_px *= panels->theme().scale;
   handle_view.ring_px *= panels->theme().scale;
   const auto grip = grip_at(handle_view, at, reach_px * panels->theme().scale);
   if (grip) {
-    held = {*grip, view.chosen, handle_view, pose(chosen), at};
+    held = {*grip, view.chosen, handle_view,
+            chosen.skull ? view.hands.X_RC(frame()->X_CM) : pose(chosen), at};
   } else {
     const auto found = surface_under(at, false);
     if (!found) return false;
     const auto body = movable_body_of(scene.bodies, scene.parts, found->surface);
-    if (!body) return false;
+    // The skull fills the picture: it goes along only where it is chosen, else the view turns.
+    if (!body || scene.bodies[*body].skull) return false;
     handle_view.center = found->place;
     view.chosen = *body;
     held = {Grip::body, *body, handle_view, pose(scene.bodies[*body]), at};
@@ -87,8 +89,12 @@ void Window::State::move_body(const Eigen::Vector2d& at) {
     view.playing = false;
     view.opening_mm.reset();
   }
-  const Pose wanted = gripped(held->view, held->grip, held->start, held->from, at);
-  view.hands.of(body) = carrier_pose(body, frame()->X_CM).inverse() * wanted;
+  const Pose& X_CM = frame()->X_CM;
+  // The skull's handles are told in its own frame, as it was gripped.
+  const Pose wanted = body.skull ? held->start * gripped(held->view, held->grip, {}, held->from, at)
+                                 : carrier_pose(body, X_CM).inverse() *
+                                       gripped(held->view, held->grip, held->start, held->from, at);
+  view.hands.move(body, wanted, X_CM);
   last_change = Clock::now();
   frames_due = 3;
 }

@@ -54,7 +54,7 @@ struct Window::State {
   bool looked = false;       // at mouse and keyboard, at least once
   bool cannot_draw = false;  // the last picture failed
   LoopStatistics loop;
-  Camera camera;
+  Camera camera;  // in the room, in which a hand may have moved the skull
   ZoomLimits zoom;
   std::string progress, recording;
   double progress_fraction = 0, recording_fraction = 0;
@@ -82,7 +82,7 @@ struct Window::State {
     Grip grip;
     std::size_t body;
     HandleView view;
-    Pose start;  // in the cranium's frame
+    Pose start;  // in the cranium's frame; of the skull in the room
     Eigen::Vector2d from;
   };
   std::optional<Held> held;
@@ -134,6 +134,7 @@ struct Window::State {
   // window_drawing.cpp
   std::pair<int, int> size() const;
   ViewRect view_rect() const;
+  Camera seen() const;
   PictureSettings settings() const;
   void apply_look(PictureSettings& wanted) const;
   bool drawn() const;  // the picture on show is of this scene

@@ -11,6 +11,7 @@
 
 #include "render/camera.h"
 #include "render/scene_renderer.h"
+#include "render/window/record_choice.h"
 #include "sim/frame/frame_state.h"
 #include "sim/frame/part.h"
 
@@ -46,10 +47,6 @@ struct FileRole {
   std::string role;  // "mandible", "upper-teeth", ..., "landmarks", or empty: leave it out
 };
 
-/// Cameras of a recording: as the window looks, and so but turning once around the patient.
-inline constexpr const char* own_camera = "view";
-inline constexpr const char* turning_camera = "turning";
-
 /// What the person asks for once. Whoever runs the window does it.
 namespace wish {
 /// Whatever it is: a case folder, a motion; several may be surfaces. None: the built-in patient.
@@ -71,6 +68,7 @@ struct Record {
   std::string caption = {};  // with braces to fill in
   bool transparent = false;
   int supersampling = 1;
+  RecordEdges edges = RecordEdges::msaa;
   Camera camera;  // the window's
   PictureSettings picture;
   std::shared_ptr<const FrameState> kept = {};  // left of the wipe, if there is one

@@ -30,6 +30,7 @@ const BoneMechanics usual_hyoid = {.mass_kg = 0.01,
 
 JawWorldSettings world_settings(const Case& patient, const MuscleJawSettings& settings) {
   JawWorldSettings world;
+  world.X_CM = settings.X_CM;
   world.bite_force_N.setZero();
   world.friction = settings.friction;
   world.teeth = settings.teeth;

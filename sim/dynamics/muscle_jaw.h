@@ -19,6 +19,7 @@ namespace condyle {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 struct MuscleJawSettings {
+  Pose X_CM = {};  // where the mandible starts
   MuscleLawSettings law = {};
   BolusSettings bolus = {};
   enum class HyoidMode { free, fixed, prescribed } hyoid = HyoidMode::free;

@@ -85,20 +85,6 @@ std::function<Vector3d(double)> read_way(const std::filesystem::path& file) {
   return [curves](double t) { return Vector3d(curves[0](t), curves[1](t), curves[2](t)); };
 }
 
-MuscleJawSettings jaw_settings(const MuscleMotionSettings& settings) {
-  using Mode = MuscleJawSettings::HyoidMode;
-  MuscleJawSettings jaw{.law = settings.law, .bolus = settings.bolus, .teeth = settings.teeth};
-  if (settings.hyoid == "free") {
-    jaw.hyoid = Mode::free;
-  } else if (settings.hyoid == "fixed") {
-    jaw.hyoid = Mode::fixed;
-  } else {
-    jaw.hyoid = Mode::prescribed;
-    jaw.hyoid_way = read_way(settings.hyoid);
-  }
-  return jaw;
-}
-
 std::vector<std::string> notes_of(const Case& patient, const MuscleJaw& jaw,
                                   const MuscleMotionSettings& settings) {
   std::vector<std::string> notes;
@@ -156,6 +142,20 @@ Motion simulate(const std::string& name, double duration_s, MuscleJaw& jaw, int 
 }
 
 }  // namespace
+
+MuscleJawSettings jaw_settings(const MuscleMotionSettings& settings) {
+  using Mode = MuscleJawSettings::HyoidMode;
+  MuscleJawSettings jaw{.law = settings.law, .bolus = settings.bolus, .teeth = settings.teeth};
+  if (settings.hyoid == "free") {
+    jaw.hyoid = Mode::free;
+  } else if (settings.hyoid == "fixed") {
+    jaw.hyoid = Mode::fixed;
+  } else {
+    jaw.hyoid = Mode::prescribed;
+    jaw.hyoid_way = read_way(settings.hyoid);
+  }
+  return jaw;
+}
 
 Motion muscles_from_file(const std::filesystem::path& file, const Case& patient,
                          const MuscleMotionSettings& settings, int threads) {

@@ -17,6 +17,9 @@ struct MuscleMotionSettings {
   ExcitationFinderSettings finder = {};
 };
 
+/// Of the jaw that such muscles pull. throws: InputError for a bad file of the hyoid's way.
+MuscleJawSettings jaw_settings(const MuscleMotionSettings& settings);
+
 /// The mandible pulled by muscles that are excited as a file tells (sim/muscles/excitations.h):
 /// simulated whole, once, from rest. throws: InputError for bad files, or where the excitations
 /// tear the jaw off.

@@ -130,6 +130,15 @@ void add_found(Motion& motion, const JawJoints& joints, const OpeningLimits& lim
       motion.found.push_back(one);
 }
 
+/// The farthest opening that movements in words ask for; 0: none says how far.
+double farthest_opening_mm(const MotionScript* script) {
+  double farthest = 0;
+  if (script)
+    for (const Statement& statement : script->statements)
+      if (statement.verb == Verb::open) farthest = std::max(farthest, statement.amount.value_or(0));
+  return farthest;
+}
+
 /// `round`: ends in the case's own pose, where that is not its bite.
 Motion move(const std::string& name, const MotionScript* script, const Case& patient,
             const ContactModel& contacts, const MotionSettings& settings, bool round = false) {
@@ -140,8 +149,20 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
       patient, parameters, aside ? JointReach::aside : JointReach::straight, threads);
   std::vector<std::string> notes;
   const OpeningLimits limits = opening_limits(*joints, contacts, parameters, notes);
+  // "open 50" tries as much as "set opening 50" does, where no opening was set.
+  OpeningLimits reach = limits;
+  const double forward = limits.coupling.forward_mm(limits.widest_theta);
+  const double most = joints->opening_mm({limits.widest_theta, forward, forward, 0});
+  if (const double asked = farthest_opening_mm(script);
+      !parameters.opening_mm && asked > most + 1e-6) {
+    MotionParameters farther = parameters;
+    farther.opening_mm = asked;
+    notes = {
+        fmt::format("open {:.6g} is asked for; unasked this jaw opens to {:.1f} mm", asked, most)};
+    reach = opening_limits(*joints, contacts, farther, notes);
+  }
   const auto guide = std::make_shared<BiteGuide>(patient, *joints, parameters);
-  Movements movements(joints, guide, limits, parameters,
+  Movements movements(joints, guide, reach, parameters,
                       [&](const Pose& X_CM) { return bones_free(patient, contacts, X_CM); });
   if (script) {
     for (const auto& statement : script->statements) movements.add(statement);

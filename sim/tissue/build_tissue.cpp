@@ -214,6 +214,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
                    sides_of(skin.mesh, skin.mouth, region.slit, side_reach_mm), summary.notes);
   check_placement(skin, bones, columns, column_settings, summary.notes);
   const int sheets = static_cast<int>(layers.share.size()) + 1;
+  model->cut_from = layers.cut_from;
   model->columns = static_cast<int>(columns.size());
   model->sheets = sheets;
   model->triangles = skin.mesh.triangles;

@@ -18,6 +18,8 @@ namespace condyle {
 /// See tissue.h. Nodes in `node_of` order (layered_net.h), mm, at rest in the cranium's frame.
 struct TissueModel : std::enable_shared_from_this<TissueModel> {
   int columns = 0, sheets = 0;
+  std::vector<int>
+      cut_from;  // for each layer of the net, the number of the layer asked for; empty: its own
   std::vector<Eigen::Vector3i> triangles;  // of the columns, seen from outside
   Nodes rest;
   SpringPrismNet net;

@@ -309,9 +309,8 @@ TEST_F(WindowSession, ATransplantIsMovedLetGoAndTheDiskIsFull) {
   ASSERT_TRUE(wait_for_item("body"));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   click("body");
-  ASSERT_TRUE(
-      wait_until([&](const Json&) { return !item_called("body:", "body:mandible").empty(); }));
-  click(item_called("body:", "body:mandible"));
+  ASSERT_TRUE(wait_for_item("body:transplant"));
+  click("body:transplant");
   ASSERT_TRUE(wait_for_item("let-go"));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   const auto tip = rect("handle:S");

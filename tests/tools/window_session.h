@@ -100,19 +100,12 @@ class WindowSession : public testing::Test {
     return -1;
   }
 
-  /// The first item whose name begins so.
-  std::string item_called(const std::string& beginning, const std::string& but = "?") {
-    const Json now = state();
-    for (const auto& [name, place] : now["items"].items())
-      if (name.starts_with(beginning) && name != but) return name;
-    return {};
-  }
   /// Writes words into a field instead of what it held.
   void write_into(const std::string& field, const std::string& words) {
     click(field);
     ASSERT_TRUE(wait_for_item("writing"));
     EXPECT_TRUE(press("ctrl+a"));
-    EXPECT_TRUE(xdotool({"type", words}));
+    EXPECT_TRUE(xdotool({"type", "--", words}));
     EXPECT_TRUE(press("Return"));
   }
   /// What the screen shows once it has come to rest.

@@ -107,6 +107,26 @@ TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
+TEST_F(WindowSession, ATooltipIsSeenThoughNothingElseMoves) {
+  start({box_case(folder_), "--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle));
+  see("without");
+  for (const std::string item : {"play", "obey-contact", "picture"}) {
+    const auto r = rect(item);
+    EXPECT_TRUE(xdotool({"mousemove", px(r[0] + r[2] / 2), px(r[1] + r[3] / 2)}));
+    ASSERT_TRUE(wait_for_item("tooltip"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    const Region place = region_of("tooltip");
+    see_now("tooltip-of-" + item);
+    EXPECT_TRUE(unlike(seen_, seen_before_, 0.1, place)) << item;
+    EXPECT_TRUE(xdotool({"mousemove", "640", "690"}));
+    ASSERT_TRUE(wait_for_item("tooltip", false));
+    see("away");
+  }
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
 TEST_F(WindowSession, TroubleIsToldAsASentenceAndTheWindowStays) {
   const std::string patient = box_case(folder_);
   write_text(folder_ / "bad.csv", "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n0,nothing,0,0,1,0,0,0\n");

@@ -255,6 +255,27 @@ TEST_P(Instrument, SlidersShapeTheMotionWhenTheyAreLetGo) {
   EXPECT_EQ(stage.view.motion.spec, "posselt");
 }
 
+TEST_P(Instrument, ARecordingHasAnySizeWithinBounds) {
+  stage.click("tab:Record");
+  stage.rest();
+  const auto sized = [&] {
+    stage.click("record");
+    return std::get<wish::Record>(stage.panels->take_wishes().at(0));
+  };
+  stage.enter("record-width", "1000");
+  stage.enter("record-tall", "1300.4");
+  EXPECT_EQ(sized().width, 1000);
+  EXPECT_EQ(sized().height, 1300);
+  stage.enter("record-width", "1e9");
+  stage.enter("record-tall", "-5");
+  EXPECT_EQ(sized().width, 8192);
+  EXPECT_EQ(sized().height, 16);
+  stage.click("record-height:1440");
+  EXPECT_EQ(sized().width, 2560);
+  EXPECT_EQ(sized().height, 1440);
+  EXPECT_EQ(stage.panels->record_choice().width, 2560) << "what is kept for the next run";
+}
+
 TEST_P(Instrument, ARecordingIsAskedForAsItIsSet) {
   stage.click("tab:Record");
   stage.rest();
@@ -262,6 +283,8 @@ TEST_P(Instrument, ARecordingIsAskedForAsItIsSet) {
   keep("record");
   stage.click("record-height:720");
   stage.click("record-rate:24");
+  stage.click("record-finer:2");
+  stage.click("record-edges:1");
   stage.click("record-film");
   stage.click("record");
   const auto wishes = stage.panels->take_wishes();
@@ -271,6 +294,8 @@ TEST_P(Instrument, ARecordingIsAskedForAsItIsSet) {
   EXPECT_EQ(record->width, 1280);
   EXPECT_EQ(record->height, 720);
   EXPECT_EQ(record->frames_per_second, 24);
+  EXPECT_EQ(record->supersampling, 2);
+  EXPECT_EQ(record->edges, RecordEdges::fxaa);
   EXPECT_FALSE(record->film);
   EXPECT_FALSE(record->folder.empty());
   stage.recording = "picture 3 of 97";
@@ -662,7 +687,18 @@ TEST_F(ArrangementFile, WhatAPersonChangesComesBackAndNothingElse) {
       .maximized = true,
       .sizes = {.left = 300.5, .right = 333, .plots = 210},
       .panels = {.tab = SideTab::record, .left_tab = LeftTab::look, .plots = true, .plot_set = 3},
-      .open_groups = {"muscles"}};
+      .open_groups = {"muscles"},
+      .record = {.width = 1000,
+                 .height = 1300,
+                 .frames_per_second = 24,
+                 .supersampling = 3,
+                 .edges = RecordEdges::fxaa,
+                 .film = false,
+                 .transparent = true,
+                 .cameras = {"front", "left"},
+                 .camera_from_file = true,
+                 .camera_file = "path.json",
+                 .caption = "Opening {opening} mm"}};
   run({}, all);
   EXPECT_EQ(kept(), all);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file_.parent_path()), {}), 1);
@@ -697,8 +733,8 @@ TEST_F(ArrangementFile, ABrokenOrForeignFileIsOneSentenceAndAllIsAsAtFirst) {
   for (const char* text :
        {"", "{", "[1, 2]", "light = yes", "\xff\xfe{}", "{\"light\": 3}", "{\"width\": \"wide\"}",
         "{\"light\": true, \"ui_scale\": 1e9}", "{\"height\": -5}", "{\"right_tab\": \"tab\"}",
-        "{\"left_tab\": 1}", "{\"open_groups\": [1]}", "{\"open_groups\": \"bones\"}",
-        "{\"plot_set\": 1e300}"}) {
+        "{\"recording\": 1}", "{\"recording\": {\"width\": 9}}", "{\"left_tab\": 1}",
+        "{\"open_groups\": [1]}", "{\"open_groups\": \"bones\"}", "{\"plot_set\": 1e300}"}) {
     SCOPED_TRACE(text);
     write(text);
     KeptArrangement kept(file_);

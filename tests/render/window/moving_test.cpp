@@ -24,21 +24,25 @@ HandleView front_view() {
   return view;
 }
 
-TEST(Movable, AreTheJawAndFreeParts) {
+TEST(Movable, AreTheJawTheSkullAndFreeParts) {
   std::vector<Part> parts = box_patient();
   parts.push_back(box_part("segment", Role::segment, {0, 0, 0}, {10, 20, 30}));
   parts.back().carrier = Body::mandible;
   const auto bodies = movable_bodies(parts);
-  ASSERT_EQ(bodies.size(), 2u);
+  ASSERT_EQ(bodies.size(), 3u);
   EXPECT_EQ(parts[bodies[0].part].name, "mandible");
   EXPECT_FALSE(bodies[0].free);
-  EXPECT_EQ(bodies[1].free, 0u);
-  EXPECT_EQ(bodies[1].center, Vector3d(5, 10, 15));
+  EXPECT_FALSE(bodies[0].skull);
+  EXPECT_EQ(parts[bodies[1].part].name, "skull");
+  EXPECT_TRUE(bodies[1].skull);
+  EXPECT_EQ(bodies[2].free, 0u);
+  EXPECT_EQ(bodies[2].center, Vector3d(5, 10, 15));
   const auto of = [&](std::size_t part) { return movable_body_of(bodies, parts, part); };
   EXPECT_EQ(of(3), 0u) << "lower teeth go with the jaw";
   EXPECT_EQ(of(4), 0u);
-  EXPECT_EQ(of(6), 1u);
-  EXPECT_FALSE(of(0));
+  EXPECT_EQ(of(6), 2u);
+  EXPECT_EQ(of(0), 1u);
+  EXPECT_EQ(of(1), 1u) << "the maxilla goes with the skull";
   EXPECT_FALSE(of(5)) << "the face deforms";
 }
 
@@ -50,6 +54,42 @@ TEST(Movable, PlacementIsThePoseInNumbers) {
   EXPECT_LT((read.turn_deg - wanted.turn_deg).norm(), 1e-10);
   // Turning alone leaves the centre where it is.
   EXPECT_LT((pose_at({Vector3d::Zero(), {0, 0, 30}}, center) * center - center).norm(), 1e-12);
+}
+
+bool near(const Pose& a, const Pose& b) {
+  return (a.t - b.t).norm() < 1e-9 && a.R.angularDistance(b.R) < 1e-9;
+}
+
+TEST(Movable, TheSkullMovesInTheRoomAgainstAJawThatStaysThere) {
+  const auto bodies = movable_bodies(box_patient());
+  const MovableBody &jaw = bodies[0], &skull = bodies[1];
+  const Pose opened = pose_at({{0, -4, -9}, {12, 0, 3}}, jaw.center);
+  const Pose up = pose_at({{2, 0, 15}, {0, 20, 0}}, skull.center);
+  Hands hands;
+  hands.move(jaw, opened, Pose{});
+  const Hands before = hands;
+  hands.move(skull, up, opened);
+  ASSERT_TRUE(hands.X_CM_wanted());
+  // Where the jaw gets there, both are as wanted, and the jaw has not moved in the room.
+  EXPECT_TRUE(near(up * *hands.X_CM_wanted(), opened));
+  EXPECT_TRUE(near(hands.X_RC(*hands.X_CM_wanted()), up));
+  // Where contact holds them apart, it is the skull that is short of where it is wanted.
+  const Pose held = pose_at({{0, -4, -12}, {12, 0, 3}}, jaw.center);
+  EXPECT_TRUE(near(hands.X_RC(held) * held, opened));
+  EXPECT_FALSE(near(hands.X_RC(held), up));
+  // A hand that takes the jaw now leaves the skull where it is.
+  Hands further = hands;
+  further.move(jaw, held, held);
+  EXPECT_TRUE(near(further.X_RC(held), hands.X_RC(held)));
+  EXPECT_TRUE(near(further.X_RC(Pose{}), hands.X_RC(held)));
+  EXPECT_TRUE(near(*further.X_CM_wanted(), held));
+  // So does the motion; and to put the skull back takes back that it was moved.
+  further = hands;
+  further.release_jaw();
+  EXPECT_FALSE(further.X_CM_wanted());
+  EXPECT_TRUE(near(further.X_RC(Pose{}), up));
+  hands.put_back(skull);
+  EXPECT_TRUE(hands == before);
 }
 
 TEST(Handles, BodyFollowsTheMouseInThePlaneOfThePicture) {
@@ -161,6 +201,51 @@ TEST(MovePanel, ButtonsUndoAndPutBack) {
   EXPECT_FALSE(stage.view.hands.mandible);
 }
 
+TEST(MovePanel, OffersToLetGoOfEveryBodyAndSaysHow) {
+  PanelStage stage(1280, 720, 1);
+  stage.parts.push_back(box_part("graft", Role::transplant, {0, 0, 0}, {10, 20, 30}));
+  stage.scene.parts = stage.parts;
+  stage.scene.bodies = movable_bodies(stage.parts);
+  stage.view.fit(stage.scene);
+  stage.view.tool = Tool::move;
+  for (std::size_t body = 0; body < 3; ++body) {
+    stage.view.chosen = body;
+    stage.rest();
+    stage.click("let-go");
+    const auto wishes = stage.panels->take_wishes();
+    ASSERT_EQ(wishes.size(), 1u);
+    EXPECT_EQ(std::get<wish::LetGo>(wishes[0]).body, body);
+  }
+}
+
+TEST(MovePanel, NumbersMoveTheSkullAndPutItBack) {
+  PanelStage stage(1280, 720, 1);
+  stage.scene.bodies = movable_bodies(stage.parts);
+  stage.view.tool = Tool::move;
+  stage.rest();
+  stage.click("body");
+  stage.rest();
+  stage.click("body:skull");
+  stage.rest();
+  EXPECT_EQ(stage.item("move-state").words, "in its place");
+  stage.enter("shift:S", "7");
+  ASSERT_TRUE(stage.view.hands.skull);
+  EXPECT_NEAR(
+      (*stage.view.hands.skull * stage.scene.bodies[1].center - stage.scene.bodies[1].center).z(),
+      7, 1e-9);
+  ASSERT_TRUE(stage.view.hands.X_CM_wanted());
+  EXPECT_EQ(stage.item("move-state").words, "held by contact, 7.0 mm short");
+  stage.frame.X_CM = *stage.view.hands.X_CM_wanted();
+  stage.rest();
+  EXPECT_EQ(stage.item("move-state").words, "where it is wanted");
+  EXPECT_EQ(stage.item("reached:shift:S").words, "7.00 mm");
+  stage.click("put-back");
+  EXPECT_FALSE(stage.view.hands.skull);
+  EXPECT_FALSE(stage.view.jaw_is_held());
+  stage.panels->run(Command::undo, stage.scene, stage.view);
+  EXPECT_TRUE(stage.view.hands.skull);
+}
+
 /// A jaw that is wanted 12 mm up and turned, and is held by contact at rest.
 class HeldJaw : public testing::Test {
  protected:
@@ -215,6 +300,21 @@ TEST_F(HeldJaw, OnlyAnotherNumberIsAnEdit) {
   EXPECT_NEAR(now.shift_mm.y(), 1.2345678, 1e-9) << "the others are not rounded";
   stage.panels->run(Command::undo, stage.scene, stage.view);
   EXPECT_TRUE(as_before());
+}
+
+TEST_F(HeldJaw, ANumberIsEnteredByAClickElsewhereToo) {
+  stage.click("shift:S");
+  stage.rest();
+  ImGui::GetIO().AddInputCharactersUTF8("4.5");
+  stage.rest();
+  const auto up_mm = [&] {
+    return placement_of(*stage.view.hands.mandible, stage.scene.bodies[0].center).shift_mm.z();
+  };
+  EXPECT_NEAR(up_mm(), 12, 1e-9) << "not while it is written";
+  stage.click("turn:S");
+  stage.rest();
+  EXPECT_NEAR(up_mm(), 4.5, 1e-9);
+  EXPECT_EQ(stage.item("turn:S").words, "0.00\u00b0") << "the next field has nothing of it";
 }
 
 }  // namespace

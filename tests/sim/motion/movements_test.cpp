@@ -122,6 +122,28 @@ TEST(Movements, RefuseWhatThisJawCannotReachAndSayWhatItCan) {
   expect_refused(jaw_with_teeth(), "set opening 20; chew left 2 size 30", "higher");
 }
 
+TEST(Movements, OpenAsFarAsTheyAskForAsIfThatWereSetFirst) {
+  // Unasked this jaw opens by some 45 mm.
+  const Moved unasked(free_jaw(), "open over 1; close"), asked(free_jaw(), "open 50 over 1; close"),
+      set(free_jaw(), "set opening 50; open 50 over 1; close");
+  EXPECT_LT(-unasked.incisor(1).z(), 49);
+  EXPECT_NEAR(-asked.incisor(1).z(), 50, 1e-3);
+  EXPECT_EQ(asked.incisor(1), set.incisor(1));
+  const auto& notes = asked.motion.notes;
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+    return note.find("unasked this jaw opens to 4") != std::string::npos;
+  }));
+  // What the patient's own opening is stays what it is; one that was set is kept to.
+  const auto own = [](const Moved& moved) {
+    for (const MotionInput& found : moved.motion.found)
+      if (found.name == "opening") return found.value;
+    return 0.0;
+  };
+  EXPECT_GT(own(unasked), 40);
+  EXPECT_EQ(own(asked), own(unasked));
+  expect_refused(free_jaw(), "set opening 30; open 50", "opens to 30.0 mm");
+}
+
 TEST(Chewing, CyclesAreRoundsOfTheRightSizeAndSideWithAPause) {
   for (const bool left : {true, false}) {
     const Moved moved(jaw_with_teeth(), left ? "chew left 3 rate 1.25 size 14 width 5"

@@ -1,0 +1,110 @@
+#include "sim/dynamics/jaw_let_go.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/error.h"
+#include "sim/dynamics/excitation_finder.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double radius_mm = 50;  // of a jaw
+
+[[noreturn]] void torn_off(const Case& patient) {
+  throw InputError(patient.name +
+                   ": the muscles would tear the jaw off; let it go nearer to its joints, or "
+                   "excite less");
+}
+
+bool has_teeth(const Case& patient) {
+  const Part *upper = patient.find(Role::upper_teeth), *lower = patient.find(Role::lower_teeth);
+  return upper && lower && !upper->mesh.empty() && !lower->mesh.empty();
+}
+
+/// Excitations that hold the mandible still at a pose, as well as muscles can.
+std::vector<double> holding_tone(const Case& patient, const Pose& X_CM,
+                                 const MuscleJawSettings& settings, int threads) {
+  constexpr double found_after_s = 0.4, mean_of_s = 0.1;
+  MuscleJawSettings there = settings;
+  there.X_CM = X_CM;
+  MuscleJaw jaw(patient, there, threads);
+  const ExcitationFinderSettings finding;
+  ExcitationFinder finder(patient, jaw, finding);
+  const long steps = std::lround(finding.hold_s / jaw.step_s()),
+             holds = std::lround(found_after_s / finding.hold_s),
+             counted = std::lround(mean_of_s / finding.hold_s);
+  std::vector<double> tone(jaw.muscles().size(), 0.0);
+  for (long hold = 0; hold < holds; ++hold) {
+    const std::vector<double> now = finder.find(jaw, X_CM, X_CM);
+    for (long k = 0; k < steps; ++k)
+      if (!jaw.step(now, threads)) torn_off(patient);
+    if (hold < holds - counted) continue;
+    for (std::size_t m = 0; m < tone.size(); ++m) tone[m] += now[m] / static_cast<double>(counted);
+  }
+  return tone;
+}
+
+/// How far the condyles are from where they may be: the places they have on their paths.
+double out_of_joint_mm(const Case& patient, const Pose& X_CM) {
+  constexpr double path_mm = 20;  // that condyles go to and fro
+  double farthest = 0;
+  for (const char* name : {"left_condyle", "right_condyle"})
+    if (const auto seat = patient.landmarks.find(name)) {
+      const Vector3d off = X_CM * *seat - *seat;
+      farthest = std::max(farthest, (off - Vector3d(0, std::clamp(off.y(), -path_mm, 0.0),
+                                                    std::clamp(off.z(), -path_mm, 0.0)))
+                                        .norm());
+    }
+  return farthest;
+}
+
+}  // namespace
+
+JawLetGo let_go_jaw(const Case& patient, const Pose& from, const JawLetGoSettings& settings,
+                    int threads) {
+  if (const double off = out_of_joint_mm(patient, from); off > settings.reach_mm)
+    throw InputError(
+        fmt::format("{}: a condyle is {:.0f} mm out of its joint, farther than ligaments reach "
+                    "({:.0f} mm); bring it nearer before letting it go",
+                    patient.name, off, settings.reach_mm));
+  MuscleMotionSettings muscles = settings.muscles;
+  muscles.bolus = {};
+  muscles.hyoid = "fixed";
+  muscles.teeth = muscles.teeth && has_teeth(patient);
+  MuscleJawSettings how = jaw_settings(muscles);
+  std::vector<double> excitations;
+  if (settings.excitations.empty())
+    excitations = holding_tone(patient, settings.X_CM_rest, how, threads);
+  how.X_CM = from;
+  MuscleJaw jaw(patient, how, threads);
+  if (excitations.empty())
+    for (const Muscle& muscle : jaw.muscles()) {
+      const auto told = settings.excitations.find(muscle.name);
+      excitations.push_back(told == settings.excitations.end() ? 0 : told->second);
+    }
+
+  JawLetGo out{.step_s = jaw.step_s(), .X_CM = {from}, .rest = {}};
+  double still_s = 0;
+  while (out.rest.seconds < settings.rest.longest_s && still_s < settings.rest.still_for_s) {
+    if (!jaw.step(excitations, threads)) torn_off(patient);
+    out.rest.seconds += jaw.step_s();
+    out.X_CM.push_back(jaw.pose());
+    const RigidMotion& motion = jaw.motion();
+    const bool still =
+        motion.velocity.norm() + radius_mm * motion.spin.norm() < settings.rest.still_mm_s;
+    still_s = still ? still_s + jaw.step_s() : 0;
+  }
+  out.rest.reached = still_s >= settings.rest.still_for_s;
+  for (const RigidContact& contact : jaw.world().contacts()) {
+    out.bite_N += contact.push_N;
+    out.rest.depth_mm = std::max(out.rest.depth_mm, -contact.gap_mm);
+  }
+  return out;
+}
+
+}  // namespace condyle

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/dynamics/muscle_motion.h"
+#include "sim/dynamics/rest.h"
+
+namespace condyle {
+
+struct JawLetGoSettings {
+  MuscleMotionSettings muscles = {};  // of these the law, and whether crowns or a flat bite meet
+  // By muscle, held all the time, others 0; empty: the tone that holds the jaw at X_CM_rest.
+  std::map<std::string, double> excitations = {};
+  Pose X_CM_rest = {};
+  double reach_mm = 25;  // of what holds a condyle in its joint
+  RestSettings rest = {.longest_s = 4, .still_mm_s = 0.5};
+};
+
+struct JawLetGo {
+  double step_s = 0;
+  std::vector<Pose> X_CM;  // at each step, from where it was let go
+  Rest rest;               // its teeth need not touch
+  double bite_N = 0;       // between the teeth in the end
+};
+
+/// Lets the mandible go from where a hand has it: its joints draw the condyles onto their paths,
+/// muscles and weight move it until it hangs still or lies on its teeth. The hyoid is fixed.
+/// Without teeth of their own both jaws meet in a flat bite. Same bits for any thread count.
+/// throws: InputError when landmarks or muscles do not do, when a condyle is beyond the reach of
+/// its joint, and where the muscles tear the jaw off.
+JawLetGo let_go_jaw(const Case& patient, const Pose& from, const JawLetGoSettings& settings,
+                    int threads = 1);
+
+}  // namespace condyle

@@ -1,0 +1,114 @@
+// A jaw that a hand lets go hangs in its joints and muscles, or lies on its teeth.
+#include "sim/dynamics/jaw_let_go.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "engine/core/error.h"
+#include "sim/motion/measures.h"
+#include "tests/support/builtin.h"
+#include "tests/support/real_cases.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+using test::builtin;
+
+/// Turned open about the condyles and to the side, then moved as a hand does.
+Pose in_hand(const Case& of, double open_deg, double aside_deg, const Vector3d& shift) {
+  const Vector3d hinge =
+      0.5 * (*of.landmarks.find("left_condyle") + *of.landmarks.find("right_condyle"));
+  Pose X;
+  X.R = Eigen::AngleAxisd(aside_deg * std::numbers::pi / 180, Vector3d::UnitZ()) *
+        Eigen::AngleAxisd(open_deg * std::numbers::pi / 180, Vector3d::UnitX());
+  X.t = hinge - X.R * hinge + shift;
+  return X;
+}
+
+Pose rest_position(const Case& of) {
+  static const ContactModel contacts(of, {});
+  const Motion rest = make_motion("rest", of, contacts);
+  return rest.wanted(rest.duration_s);
+}
+
+TEST(JawLetGo, FallsBackToItsRestPositionFromWhereverAHandHadIt) {
+  const Pose X_rest = rest_position(builtin());
+  const double freeway_mm = measure(builtin(), X_rest).opening_mm;
+  ASSERT_GT(freeway_mm, 1);
+  for (const Pose& from :
+       {Pose{}, in_hand(builtin(), 30, 0, {0, 0, 0}), in_hand(builtin(), 20, 0, {0, -10, -5}),
+        in_hand(builtin(), 0, 0, {0, 0, -20}), in_hand(builtin(), 10, 8, {8, 0, -5})}) {
+    const JawLetGo jaw = let_go_jaw(builtin(), from, {.X_CM_rest = X_rest}, 2);
+    ASSERT_TRUE(jaw.rest.reached);
+    EXPECT_EQ(jaw.X_CM.front().t, from.t);
+    EXPECT_GT(
+        (jaw.X_CM.front() * Vector3d(0, -90, -50) - jaw.X_CM.back() * Vector3d(0, -90, -50)).norm(),
+        2);
+    const Measures there = measure(builtin(), jaw.X_CM.back());
+    EXPECT_NEAR(there.opening_mm, freeway_mm, 0.3);
+    EXPECT_NEAR(there.incisor.x(), 0, 0.3);
+    EXPECT_EQ(jaw.bite_N, 0) << "teeth are apart at rest";
+    for (const double seated : {there.left_condyle.x() + there.right_condyle.x(),
+                                there.left_condyle.z() - there.right_condyle.z()})
+      EXPECT_NEAR(seated, 0, 0.1);
+  }
+}
+
+TEST(JawLetGo, ClosersThatAreExcitedSetItOnItsTeethAndNoneLetItHang) {
+  const Pose from = in_hand(builtin(), 15, 0, {0, 0, 0});
+  const auto with = [&](double excitation) {
+    std::map<std::string, double> excitations;
+    for (const char* name : {"lat", "rat", "lsm", "rsm", "ldm", "rdm", "lmp", "rmp"})
+      excitations[name] = excitation;
+    return let_go_jaw(builtin(), from, {.excitations = excitations}, 2);
+  };
+  const JawLetGo bites = with(0.05), hangs = with(0);
+  ASSERT_TRUE(bites.rest.reached && hangs.rest.reached);
+  EXPECT_GT(bites.bite_N, 10);
+  EXPECT_LT(bites.rest.depth_mm, 0.1);
+  EXPECT_NEAR(measure(builtin(), bites.X_CM.back()).opening_mm, 0, 0.5);
+  EXPECT_EQ(hangs.bite_N, 0);
+  EXPECT_GT(measure(builtin(), hangs.X_CM.back()).opening_mm, 3);
+}
+
+TEST(JawLetGo, HasTheSameBitsForAnyThreadCount) {
+  const Pose from = in_hand(builtin(), 12, 5, {3, 0, -4});
+  const JawLetGo one = let_go_jaw(builtin(), from, {}, 1), two = let_go_jaw(builtin(), from, {}, 2);
+  ASSERT_EQ(one.X_CM.size(), two.X_CM.size());
+  ASSERT_GT(one.X_CM.size(), 100u);
+  for (std::size_t k = 0; k < one.X_CM.size(); ++k) {
+    ASSERT_EQ(one.X_CM[k].t, two.X_CM[k].t) << k;
+    ASSERT_EQ(one.X_CM[k].R.coeffs(), two.X_CM[k].R.coeffs()) << k;
+  }
+}
+
+TEST(JawLetGo, RefusesACondyleThatNoLigamentWouldHold) {
+  for (const Pose& from :
+       {in_hand(builtin(), 10, 0, {60, -80, -40}), in_hand(builtin(), 10, 120, {0, 0, 0})})
+    try {
+      let_go_jaw(builtin(), from, {}, 2);
+      ADD_FAILURE() << "it flew";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("out of its joint"), std::string::npos);
+    }
+}
+
+TEST(JawLetGo, MeasuredPatientsHangToo) {
+  const auto ubc = test::case_ubc(test::Driven::by_muscles), badin = test::case_badin();
+  if (!ubc || !badin) GTEST_SKIP() << "no real anatomy here";
+  for (const Case* of : {&*ubc, &*badin}) {
+    SCOPED_TRACE(of->name);
+    const JawLetGo jaw = let_go_jaw(*of, in_hand(*of, 15, 4, {2, -3, -3}),
+                                    {.X_CM_rest = in_hand(*of, 1.5, 0, {0, 0, 0})}, 2);
+    EXPECT_TRUE(jaw.rest.reached);
+    const Measures there = measure(*of, jaw.X_CM.back());
+    EXPECT_GT(there.opening_mm, -0.5);
+    EXPECT_LT(there.opening_mm, 8);
+    EXPECT_NEAR(there.incisor.x(), of->landmarks.find("lower_incisal_point")->x(), 2);
+  }
+}
+
+}  // namespace
+}  // namespace condyle

@@ -1,0 +1,111 @@
+// Bones that a hand moves in the window, and lets go of.
+#include "window_session.h"
+
+namespace condyle::test {
+namespace {
+
+double opening_mm(const Json& s) { return s["frame"]["opening_mm"]; }
+
+TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
+  start({"--motion", "open 20 over 0.3; close"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  click("skin:off");
+  EXPECT_TRUE(press("m"));
+  write_into("shift:S", "-30");
+  ASSERT_TRUE(wait_until([](const Json& s) { return opening_mm(s) > 29.9; }));
+  write_into("shift:L", "6");
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["frame"]["mandible_mm"][0]) > 5.9; }));
+  see("in-the-hand");
+  const double held_mm = opening_mm(state());
+  click("let-go");
+  EXPECT_TRUE(wait_until([&](const Json& s) {
+    return opening_mm(s) < held_mm - 4 && opening_mm(s) > 3;
+  })) << "it is seen on its way";
+  // The rest position: 2.5 mm of freeway space, in the middle.
+  const auto hangs = [](const Json& s) {
+    return idle(s) && std::abs(opening_mm(s) - 2.5) < 0.3 &&
+           std::abs(double(s["frame"]["mandible_mm"][0])) < 0.3;
+  };
+  ASSERT_TRUE(wait_until(hangs)) << state()["frame"].dump();
+  EXPECT_GT(see("hangs"), 0.02);
+  EXPECT_TRUE(press("ctrl+z"));
+  EXPECT_TRUE(wait_until([&](const Json& s) { return std::abs(opening_mm(s) - held_mm) < 1e-6; }));
+  EXPECT_TRUE(press("ctrl+y"));
+  EXPECT_TRUE(wait_until(hangs)) << state()["frame"].dump();
+
+  // A hand that takes it on its way has it from there on.
+  EXPECT_TRUE(press("ctrl+z"));
+  ASSERT_TRUE(wait_until([&](const Json& s) { return std::abs(opening_mm(s) - held_mm) < 1e-6; }));
+  click("let-go");
+  ASSERT_TRUE(wait_until([&](const Json& s) { return opening_mm(s) < held_mm - 2; }));
+  write_into("shift:S", "-25");
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  EXPECT_GT(opening_mm(state()), 15);
+
+  // So far from its joints nothing would hold it.
+  write_into("shift:P", "-60");
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["frame"]["mandible_mm"][1]) < -50; }));
+  click("let-go");
+  ASSERT_TRUE(wait_for_item("error"));
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return s.value("trouble", "").find("out of its joint") != std::string::npos;
+  })) << state().value("trouble", "nothing was said");
+  click("close-error");
+  EXPECT_LT(double(state()["frame"]["mandible_mm"][1]), -50) << "it stays in the hand";
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsLetGo) {
+  start({"--motion", "open 20 over 0.3; hold 0.2"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  click("skin:off");
+  const auto scrub = rect("scrub");
+  drag(scrub[0] + 0.1 * scrub[2], scrub[1] + scrub[3] / 2, scrub[0] + 0.99 * scrub[2],
+       scrub[1] + scrub[3] / 2);
+  ASSERT_TRUE(wait_until([](const Json& s) { return opening_mm(s) > 19; }));
+  EXPECT_TRUE(press("a"));
+  EXPECT_TRUE(press("m"));
+  click("body");
+  click("body:skull");
+  see("opened");
+  const double opened_mm = opening_mm(state());
+  // Up by its number: the jaw stays in the picture, and is by so much farther away.
+  write_into("shift:S", "10");
+  ASSERT_TRUE(wait_until([&](const Json& s) {
+    return std::abs(opening_mm(s) - opened_mm - 10) < 1e-6 && double(s["skull_mm"][2]) == 10;
+  })) << state()["frame"].dump();
+  EXPECT_GT(see("skull-up"), 0.02);
+  const Region view = view_region();
+  const Region chin{view.x + 0.45 * view.width, view.y + 0.72 * view.height, 0.1 * view.width,
+                    0.1 * view.height};
+  EXPECT_TRUE(alike(seen_, seen_before_, 0.01, chin)) << "the jaw has not moved in the room";
+  // By its handle, and back.
+  const auto tip = rect("handle:L");
+  drag(tip[0] + 3, tip[1] + 3, tip[0] + 43, tip[1] + 3);
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["skull_mm"][0]) > 5; }));
+  EXPECT_TRUE(press("ctrl+z"));
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["skull_mm"][0]) == 0; }));
+  // Down onto the jaw: contact keeps it up.
+  write_into("shift:S", "-60");
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    return s["frame"]["stopped"] == true && double(s["frame"]["penetration_mm"]) < 0.1 &&
+           double(s["skull_mm"][2]) == -60;
+  })) << state()["frame"].dump();
+  see("skull-on-the-jaw");
+  // Let go, joints and muscles bring both together; the motion has the jaw when it plays.
+  click("let-go");
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return idle(s) && std::abs(opening_mm(s) - 2.5) < 0.3;
+  })) << state()["frame"].dump();
+  see("let-go");
+  click("put-back");
+  EXPECT_TRUE(wait_until([](const Json& s) { return !s.contains("skull_mm"); }));
+  EXPECT_TRUE(wait_until([&](const Json& s) { return std::abs(opening_mm(s) - opened_mm) < 0.01; }))
+      << state()["frame"].dump();
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+}  // namespace
+}  // namespace condyle::test
