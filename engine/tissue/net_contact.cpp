@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/mesh/measure.h"
@@ -30,8 +31,8 @@ constexpr double close_mm = 0.02;
 /// slides without friction, so it would come to rest in the pits that cells and triangles make, and
 /// where it came from would decide in which of them.
 constexpr double patch_mm = 0.5;
-/// Beyond this from the surface nothing presses.
-constexpr double pressing_mm = 0.5;
+/// Farther out nothing presses; over the last of it the own direction takes over.
+constexpr double pressing_mm = 0.5, going_over_mm = 0.1;
 
 constexpr double field_error_mm = 0.05;  // at most, at edges
 
@@ -74,7 +75,7 @@ bool NetObstacle::near(const Vector3d& p, double reach, Near& near) const {
     const double steep = gradient.norm();
     if (steep > 0.7) {  // not where two surfaces are equally near
       near = {spot.distance_mm, gradient / steep};
-      if (std::abs(near.distance) < pressing_mm) near.normal = patch_normal(p, near.normal);
+      feel_patch(p, near);
       return true;
     }
   } else {
@@ -87,19 +88,28 @@ bool NetObstacle::near(const Vector3d& p, double reach, Near& near) const {
   if (near.distance > reach) return false;
   near.normal = std::abs(found.distance) > close_mm ? Vector3d((p - found.point) / found.distance)
                                                     : surface_.pseudonormal(found).normalized();
+  feel_patch(p, near);
   return true;
+}
+
+void NetObstacle::feel_patch(const Vector3d& p, Near& near) const {
+  if (near.distance >= pressing_mm) return;
+  const double share = std::min(1.0, (pressing_mm - near.distance) / going_over_mm);
+  near.normal += share * (patch_normal(p, near.normal) - near.normal);
+  near.normal.normalize();
 }
 
 Vector3d NetObstacle::patch_normal(const Vector3d& p, const Vector3d& own) const {
   constexpr double least = 0.3;  // of the sum where all around point one way
+  static const std::array<Vector3d, 4> tetrahedron{
+      {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
   Vector3d sum = Vector3d::Zero();
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vector3d way(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+  for (const Vector3d& way : tetrahedron) {
     const DistanceField::Spot spot = field_.spot(p + patch_mm * way);
     if (!spot.known) return own;
     sum += spot.distance_mm * way;
   }
-  return sum.norm() > least * 8 * patch_mm ? Vector3d(sum.normalized()) : own;
+  return sum.norm() > least * 4 * patch_mm ? Vector3d(sum.normalized()) : own;
 }
 
 Vector3d NetObstacle::way_out(const Vector3d& p) const {

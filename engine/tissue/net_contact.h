@@ -37,6 +37,8 @@ class NetObstacle {
   Eigen::Vector3d way_out(const Eigen::Vector3d& p) const;
 
  private:
+  /// Turns what was found at p to the mean direction there, where something may press.
+  void feel_patch(const Eigen::Vector3d& p, Near& near) const;
   /// The mean direction about p, which goes over from place to place without a jump; `own` where
   /// none can be told.
   Eigen::Vector3d patch_normal(const Eigen::Vector3d& p, const Eigen::Vector3d& own) const;

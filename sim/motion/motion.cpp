@@ -130,12 +130,14 @@ void add_found(Motion& motion, const JawJoints& joints, const OpeningLimits& lim
       motion.found.push_back(one);
 }
 
-/// The farthest opening that movements in words ask for; 0: none says how far.
-double farthest_opening_mm(const MotionScript* script) {
-  double farthest = 0;
+/// The one of movements in words that asks to open farthest; null: none says how far.
+const Statement* farthest_opening(const MotionScript* script) {
+  const Statement* farthest = nullptr;
   if (script)
     for (const Statement& statement : script->statements)
-      if (statement.verb == Verb::open) farthest = std::max(farthest, statement.amount.value_or(0));
+      if (statement.verb == Verb::open && statement.amount &&
+          (!farthest || *statement.amount > *farthest->amount))
+        farthest = &statement;
   return farthest;
 }
 
@@ -149,23 +151,33 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
       patient, parameters, aside ? JointReach::aside : JointReach::straight, threads);
   std::vector<std::string> notes;
   const OpeningLimits limits = opening_limits(*joints, contacts, parameters, notes);
-  // "open 50" tries as much as "set opening 50" does, where no opening was set.
+  // "open 50" tries as much as "set opening 50" does, where no opening was set; a plain "open" goes
+  // no farther for it.
   OpeningLimits reach = limits;
+  std::optional<double> plain_opening;
   const double forward = limits.coupling.forward_mm(limits.widest_theta);
   const double most = joints->opening_mm({limits.widest_theta, forward, forward, 0});
-  if (const double asked = farthest_opening_mm(script);
-      !parameters.opening_mm && asked > most + 1e-6) {
+  if (const Statement* open = farthest_opening(script);
+      open && !parameters.opening_mm && *open->amount > most + 1e-6) {
     MotionParameters farther = parameters;
-    farther.opening_mm = asked;
-    notes = {
-        fmt::format("open {:.6g} is asked for; unasked this jaw opens to {:.1f} mm", asked, most)};
-    reach = opening_limits(*joints, contacts, farther, notes);
+    farther.opening_mm = open->amount;
+    notes = {fmt::format("open {:.6g} is asked for; unasked this jaw opens to {:.1f} mm",
+                         *open->amount, most)};
+    try {
+      reach = opening_limits(*joints, contacts, farther, notes);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", open->where, error.what()));
+    }
+    plain_opening = most;
   }
   const auto guide = std::make_shared<BiteGuide>(patient, *joints, parameters);
   Movements movements(joints, guide, reach, parameters,
                       [&](const Pose& X_CM) { return bones_free(patient, contacts, X_CM); });
   if (script) {
-    for (const auto& statement : script->statements) movements.add(statement);
+    for (Statement statement : script->statements) {
+      if (statement.verb == Verb::open && !statement.amount) statement.amount = plain_opening;
+      movements.add(statement);
+    }
     if (round && guide->bite_theta() != 0) movements.back("back to the start", {});
   } else {
     // The same share of time to open and to close, a pause between them.

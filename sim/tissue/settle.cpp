@@ -35,7 +35,8 @@ TissueState settle(const TissueModel& model, const TissueState& state, double to
     next.evaluations += settled.evaluations;
     settled = std::move(next);
     before = way;
-    settled.converged = way <= tolerance_mm * (1 - std::max(contraction, last));
+    settled.converged =
+        settled.converged && way <= tolerance_mm * (1 - std::max(contraction, last));
     if (settled.converged) break;
   }
   return settled;

@@ -119,6 +119,7 @@ TEST(Movements, TakeTheTimeTheyAreGiven) {
 TEST(Movements, RefuseWhatThisJawCannotReachAndSayWhatItCan) {
   expect_refused(jaw_with_teeth(), "left 19", "reaches");
   expect_refused(jaw_with_teeth(), "open 70", "opens to");
+  expect_refused(jaw_with_teeth(), "close\nopen 75", "line 2");
   expect_refused(jaw_with_teeth(), "set opening 20; chew left 2 size 30", "higher");
 }
 
@@ -133,6 +134,10 @@ TEST(Movements, OpenAsFarAsTheyAskForAsIfThatWereSetFirst) {
   EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
     return note.find("unasked this jaw opens to 4") != std::string::npos;
   }));
+  // A plain opening goes no farther for another that asks for more.
+  const Moved both(free_jaw(), "open over 1; close over 1; open 50 over 1; close");
+  EXPECT_NEAR(both.incisor(1).z(), unasked.incisor(1).z(), 0.01);
+  EXPECT_NEAR(-both.incisor(3).z(), 50, 1e-3);
   // What the patient's own opening is stays what it is; one that was set is kept to.
   const auto own = [](const Moved& moved) {
     for (const MotionInput& found : moved.motion.found)

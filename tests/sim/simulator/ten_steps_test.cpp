@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "sim/tissue/lips.h"
+#include "sim/tissue/model.h"
 #include "tests/support/builtin.h"
 #include "tests/support/scan_case.h"
 
@@ -44,17 +45,21 @@ TEST(TenSteps, SettlingEndsAtOnePlaceFromAnyStart) {
   const TissueState hasty = follow(*model, at_rest, X_CM, {.max_iterations = 3});
   const TissueState whole = follow(*model, at_rest, X_CM);
   const TissueState from_hasty = settle(*model, hasty), from_whole = settle(*model, whole);
-  const auto apart = [](const TissueState& a, const TissueState& b) {
-    double most = 0;
-    for (std::size_t i = 0; i < a.nodes.size(); ++i)
-      most = std::max(most, (a.nodes[i] - b.nodes[i]).norm());
-    return most;
-  };
-  EXPECT_GT(apart(hasty, whole), 0.05);
+  EXPECT_GT(largest_way(hasty.nodes, whole.nodes), 0.05);
   EXPECT_TRUE(from_hasty.converged && from_whole.converged);
-  EXPECT_LT(apart(from_hasty, from_whole), 3 * settled_mm);
+  EXPECT_LT(largest_way(from_hasty.nodes, from_whole.nodes), 3 * settled_mm);
   const TissueState again = settle(*model, from_whole);
-  EXPECT_LT(apart(again, from_whole), settled_mm);
+  EXPECT_LT(largest_way(again.nodes, from_whole.nodes), settled_mm);
+  EXPECT_EQ(settle(*model, hasty, settled_mm, 2).nodes, from_hasty.nodes);
+}
+
+TEST(TenSteps, SettlingSaysWhenItHasNotEnded) {
+  const auto model = build_tissue(builtin(), {.surface_nodes = 150});
+  Pose X_CM;
+  X_CM.t = {0, -0.5, -1};
+  const TissueState state = follow(*model, rest_tissue(*model), X_CM);
+  EXPECT_TRUE(settle(*model, state).converged);
+  EXPECT_FALSE(settle(*model, state, 1e-16).converged);
 }
 
 }  // namespace
