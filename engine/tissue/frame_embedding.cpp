@@ -84,7 +84,8 @@ HandleMotion handle_motion(const HandleSet& handles, const Nodes& rest, const No
   return motion;
 }
 
-CarriedPoint carry(const std::vector<int>& candidates, const BodyDistance& distance) {
+CarriedPoint carry(const std::vector<int>& candidates, const BodyDistance& distance,
+                   double reach_share) {
   std::vector<std::pair<double, int>> order;
   order.reserve(candidates.size());
   for (int h : candidates) order.emplace_back(distance(h), h);
@@ -93,7 +94,7 @@ CarriedPoint carry(const std::vector<int>& candidates, const BodyDistance& dista
   std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(reach + 1),
                     order.end());
   const double radius =
-      order.size() > kept ? order[reach].first : order[reach].first * 1.0001 + 1e-9;
+      reach_share * (order.size() > kept ? order[reach].first : order[reach].first * 1.0001 + 1e-9);
   CarriedPoint point;
   double sum = 0;
   std::array<double, CarriedPoint::capacity> weight{};

@@ -41,8 +41,10 @@ HandleMotion handle_motion(const HandleSet& handles, const Nodes& rest, const No
 /// Distance between a point and handle i in the body, mm.
 using BodyDistance = std::function<double(int handle)>;
 
-/// Weights that fall smoothly to zero at the distance of the 12th nearest handle.
-CarriedPoint carry(const std::vector<int>& candidates, const BodyDistance& distance);
+/// Weights that fall smoothly to zero at the distance of the 12th nearest handle, or at this share
+/// of it, above 0.
+CarriedPoint carry(const std::vector<int>& candidates, const BodyDistance& distance,
+                   double reach_share = 1);
 
 /// The point at rest position X, moved. `rest` are the net's nodes at rest.
 inline Eigen::Vector3d carried(const CarriedPoint& c, const HandleSet& handles, const Nodes& rest,

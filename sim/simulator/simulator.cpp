@@ -17,7 +17,9 @@ Scene make_scene(Case patient, const SimulatorSettings& settings, const Progress
   if (settings.tissue) {
     part_lips(patient);
     report(progress, "building the soft tissue", 0.3);
-    tissue = build_tissue(patient, settings.tissue_model, progress);
+    TissueSettings of_tissue = settings.tissue_model;
+    of_tissue.threads = settings.threads;
+    tissue = build_tissue(patient, of_tissue, progress);
   }
   report(progress, "building the soft tissue", 1.0);
   return {std::move(patient), std::move(contacts), std::move(tissue)};

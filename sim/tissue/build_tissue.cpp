@@ -84,17 +84,18 @@ std::vector<double> tissue_of_columns(const CoarseSkin& skin, double finer) {
 
 /// Solves a plain opening knot by knot, and keeps a factor at each: the tissue of the
 /// lower face turns with the jaw, and a factor made unturned asks for several times the iterations.
-void make_path(TissueModel& model) {
+void make_path(TissueModel& model, int threads) {
   constexpr int knots = 13;  // to 43 degrees
   model.runs = std::make_shared<const NetRuns>(model.net);
   model.factors.push_back(
       {0, std::make_shared<HessianFactor>(model.net, touching_loads(model, Pose{}, model.rest),
-                                          model.sheets, model.rest)});
+                                          model.sheets, model.rest, threads)});
   TissueState state = rest_tissue(model);
   std::vector<Nodes> nodes{model.rest};
   TissueBudget budget;
   budget.tolerance_mm = 2e-3;
   budget.max_iterations = 300;
+  budget.threads = threads;
   for (int i = 1; i < knots; ++i) {
     const double angle = i * model.path.step_rad;
     state = follow(model, state, model.path.pose(angle), budget);
@@ -103,7 +104,7 @@ void make_path(TissueModel& model) {
     model.factors.push_back(
         {angle - model.path.step_rad / 2,
          std::make_shared<HessianFactor>(model.net, touching_loads(model, state.X_CM, state.nodes),
-                                         model.sheets, state.nodes)});
+                                         model.sheets, state.nodes, threads)});
   }
   model.path.nodes = std::move(nodes);
 }
@@ -128,7 +129,7 @@ void balance(TissueModel& model) {
 }
 
 /// How still the unmoved model stands, and how it lies on the bones.
-void tell_rest(TissueModel& model) {
+void tell_rest(TissueModel& model, int threads) {
   TissueSummary& summary = model.summary;
   Nodes force;
   NetLoads loads = touching_loads(model, Pose{}, model.rest);
@@ -136,6 +137,7 @@ void tell_rest(TissueModel& model) {
   for (const auto& f : force) summary.rest_force_N = std::max(summary.rest_force_N, f.norm());
   TissueBudget budget;
   budget.tolerance_mm = 1e-6;
+  budget.threads = threads;
   const TissueState still = follow(model, rest_tissue(model), Pose{}, budget);
   summary.rest_move_mm = largest_way(model.rest, still.nodes);
   if (still.kept || !still.converged)
@@ -325,10 +327,10 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
 
   report(progress, "soft tissue: contact", 0.55);
   model->path.condyles = anatomy.condyles;
-  model->contact =
-      make_contact({skin, columns, model->handle_side, sheets, model->rest, held, model->node_share,
-                    model->path.pose(widest_rad)},
-                   jaw_mesh(patient, Body::cranium), jaw_mesh(patient, Body::mandible));
+  model->contact = make_contact({skin, columns, model->handle_side, sheets, model->rest, held,
+                                 model->node_share, model->path.pose(widest_rad)},
+                                jaw_mesh(patient, Body::cranium), jaw_mesh(patient, Body::mandible),
+                                settings.threads);
   net.may_touch = lips_that_may_touch(model->contact, model->rest);
 
   // Nothing moves before surgery: strains that carry turgor and weight.
@@ -336,7 +338,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   if (plan.down || plan.turgor.value_or(1) < 1) balance(*model);
 
   report(progress, "soft tissue: path of opening", 0.6);
-  make_path(*model);
+  make_path(*model, settings.threads);
 
   report(progress, "soft tissue: displayed face", 0.8);
   model->region = region.shape;
@@ -357,7 +359,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   summary.prisms = static_cast<int>(net.prisms.size());
   summary.layers = static_cast<int>(asked_layers.share.size());
   summary.lips_cut = region.mouth.found();
-  tell_rest(*model);
+  tell_rest(*model, settings.threads);
   report(progress, "soft tissue", 1.0);
   return model;
 }

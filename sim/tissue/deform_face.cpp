@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "engine/core/parallel.h"
+#include "engine/math/smooth_step.h"
 #include "engine/tissue/layered_net.h"
 #include "sim/tissue/model.h"
 
@@ -56,9 +57,13 @@ CarriedPoint carry_face_point(const TissueModel& model, const Vector3d& p, int s
   const int own = side != 0 ? side : model.slit.side(p);
   std::vector<int> all(model.handles.node.size());
   std::iota(all.begin(), all.end(), 0);
-  point = carry(all, [&](int h) {
+  const auto to = [&](int h) {
     return model.slit.distance(p, own, model.rest[model.handles.node[h]], model.handle_side[h]);
-  });
+  };
+  // Motion bends sharply about the mouth, where a wide reach would even it out; farther away a
+  // narrow one would show the net.
+  const double about_mouth = 1 - smooth_step((model.slit.distance_from(p) - 20) / 30);
+  point = carry(all, to, 1 - 0.2 * about_mouth);
   const double t = std::min(1.0, inside / 12);  // toward the rim all motion fades out
   point.fade = static_cast<float>(t * t * (3 - 2 * t));
   return point;

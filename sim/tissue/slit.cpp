@@ -55,6 +55,13 @@ double LipSlit::height(const Vector3d& p) const {
   return p.z() - (z_[i] + (clamped - static_cast<double>(i)) * (z_[i + 1] - z_[i]));
 }
 
+double LipSlit::distance_from(const Vector3d& p) const {
+  if (!found()) return std::numeric_limits<double>::infinity();
+  const Vector3d line = left_ - right_;
+  const double along = std::clamp((p - right_).dot(line) / line.squaredNorm(), 0.0, 1.0);
+  return (p - right_ - along * line).norm();
+}
+
 double LipSlit::distance(const Vector3d& p, int side_p, const Vector3d& q, int side_q) const {
   const double straight = (p - q).norm();
   if (!found() || side_p == side_q) return straight;

@@ -19,6 +19,8 @@ class LipSlit {
   /// Height above the slit, mm; level beyond the corners.
   double height(const Eigen::Vector3d& p) const;
   int side(const Eigen::Vector3d& p) const { return height(p) >= 0 ? 1 : -1; }
+  /// From the line between the corners, mm; infinite without a slit.
+  double distance_from(const Eigen::Vector3d& p) const;
   /// Length of the way from p to q that does not cross the slit; sides as given, +1 above, -1
   /// below.
   double distance(const Eigen::Vector3d& p, int side_p, const Eigen::Vector3d& q, int side_q) const;

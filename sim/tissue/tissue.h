@@ -19,6 +19,7 @@ struct TissueSettings {
   /// are cut until springs fill them evenly (split_layers).
   int surface_nodes = 520;
   TissuePlan plan = {};  // counts before the case's own
+  int threads = 2;       // of the builder; the model has the same bits for any number
 };
 
 /// How far one frame's minimisation goes.

@@ -31,6 +31,19 @@ TEST(Tissue, NoFaceNoTissue) {
   EXPECT_EQ(build_tissue(patient), nullptr);
 }
 
+TEST(Tissue, IsTheSameToTheBitForAnyNumberOfBuildingThreads) {
+  Case patient = plain_patient();
+  part_lips(patient);
+  const auto one = build_tissue(patient, {.threads = 1}),
+             two = build_tissue(patient, {.threads = 2});
+  const Pose X_CM = opening(patient, 12);
+  const TissueState first = follow(*one, rest_tissue(*one), X_CM);
+  const TissueState second = follow(*two, rest_tissue(*two), X_CM);
+  EXPECT_GT(first.iterations, 0);
+  EXPECT_EQ(first.iterations, second.iterations);
+  EXPECT_EQ(first.nodes, second.nodes);
+}
+
 TEST(Tissue, RestIsAnEquilibriumAndGivesTheFaceBack) {
   Case patient = plain_patient();
   part_lips(patient);
