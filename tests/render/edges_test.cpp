@@ -70,7 +70,6 @@ TEST_F(Edges, OfShadowsHaveNoGrain) {
       ++edge;
     }
   ASSERT_GT(edge, 500);
-  std::printf("grain %.3f of %d, %d pixels\n", grain / edge, deepest, edge);
   EXPECT_LT(grain / edge, 0.05 * deepest);
 }
 
