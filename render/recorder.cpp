@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -23,6 +24,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t waiting_most = 3;  // pictures held for the writer: 25 MB at 1080p
+
+// Of the sheet: told, but no other recording where it differs.
+constexpr const char* driver_entry = "driver";
 
 bool is_frame_name(const std::string& name) {
   return name.size() >= 10 && name.ends_with(".png") &&
@@ -67,6 +71,8 @@ struct Recorder::State {
   RecordingSheet sheet;
   std::vector<char> present;
   bool begun = false;  // the folder is this recording's
+  std::string driver;  // of frames that are added
+  bool sheet_due = false;
 
   std::mutex mutex;
   std::condition_variable changed;
@@ -104,6 +110,25 @@ struct Recorder::State {
     if (fs::is_directory(frames())) remove_files(frames(), is_frame_name);
   }
 
+  /// A frame of this driver comes.
+  void note_driver() {
+    std::string& drivers = sheet[driver_entry];
+    if (driver.empty() || ("; " + drivers + "; ").find("; " + driver + "; ") != std::string::npos)
+      return;
+    drivers += (drivers.empty() ? "" : "; ") + driver;
+    sheet_due = true;
+  }
+  /// What the sheet has come to since it was written.
+  void renew_sheet() {
+    RecordingSheet now;
+    {
+      const std::lock_guard lock(mutex);
+      if (!std::exchange(sheet_due, false)) return;
+      now = sheet;
+    }
+    write_recording_sheet(sheet_file(), now);
+  }
+
   /// Sets the recording that is there aside until this one is whole. What lies there unfinished on
   /// top of one set aside before is dropped.
   void begin() {
@@ -119,7 +144,11 @@ struct Recorder::State {
       remove_results();
     }
     make_folder(frames());
-    write_recording_sheet(sheet_file(), sheet);
+    {
+      const std::lock_guard lock(mutex);
+      sheet_due = true;
+    }
+    renew_sheet();
     begun = true;
   }
 
@@ -208,6 +237,7 @@ struct Recorder::State {
       try {
         const std::string bytes = encode_png(next.second);
         begin();
+        renew_sheet();
         write_file(frame_file(next.first), bytes);
         hashes[next.first] = hash_bytes(bytes.data(), bytes.size());
         feed_film(next.first, &next.second);
@@ -244,8 +274,10 @@ Recorder::Recorder(const RecorderSettings& settings) : state_(std::make_unique<S
   make_folder(s.settings.folder);
   if (::access(s.settings.folder.c_str(), W_OK | X_OK) != 0)
     throw MachineError(s.settings.folder.string() + ": the folder cannot be written");
-  const auto before = settings.resume ? read_recording_sheet(s.sheet_file()) : std::nullopt;
+  std::string earlier_driver = "a driver that was not noted";
+  auto before = settings.resume ? read_recording_sheet(s.sheet_file()) : std::nullopt;
   if (before) {
+    if (const auto noted = before->extract(driver_entry)) earlier_driver = noted.mapped();
     const std::string differs = difference(*before, s.sheet);
     if (!differs.empty())
       throw InputError(s.sheet_file(), "",
@@ -255,6 +287,7 @@ Recorder::Recorder(const RecorderSettings& settings) : state_(std::make_unique<S
   s.clean();
   if (before) {
     s.begun = true;
+    s.sheet[driver_entry] = earlier_driver;
     make_folder(s.frames());
     for (int frame = 0; frame < settings.frames; ++frame)
       s.present[static_cast<std::size_t>(frame)] =
@@ -294,6 +327,7 @@ void Recorder::add(int frame, Image picture) {
   std::unique_lock lock(s.mutex);
   s.changed.wait(lock, [&] { return s.trouble || s.waiting.size() < waiting_most; });
   s.rethrow();
+  s.note_driver();
   s.waiting.emplace_back(frame, std::move(picture));
   s.changed.notify_all();
 }
@@ -313,6 +347,17 @@ void Recorder::finish() {
   if (s.settings.film) s.finish_film();
   std::error_code error;
   fs::remove_all(s.earlier(), error);
+}
+
+void Recorder::set_driver(const std::string& driver) {
+  const std::lock_guard lock(state_->mutex);
+  state_->driver = driver;
+}
+
+std::string Recorder::drivers() const {
+  const std::lock_guard lock(state_->mutex);
+  const auto noted = state_->sheet.find(driver_entry);
+  return noted == state_->sheet.end() ? "" : noted->second;
 }
 
 std::filesystem::path Recorder::frame_file(int frame) const { return state_->frame_file(frame); }

@@ -39,6 +39,12 @@ class Recorder {
   bool has(int frame) const;
   int kept_frames() const;
 
+  /// What draws the frames that are added from now on.
+  void set_driver(const std::string& driver);
+  /// What has drawn the frames that are there, also those of the run that is resumed: each driver
+  /// once, in their order, parted by "; ".
+  std::string drivers() const;
+
   /// Takes a picture of the wanted size; frames in any order.
   /// throws: MachineError of this or an earlier frame that could not be written.
   void add(int frame, Image picture);

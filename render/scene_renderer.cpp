@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "render/beneath_skin.h"
 #include "render/drawable.h"
 #include "render/drawn_face.h"
 #include "render/lashes.h"
@@ -62,6 +63,9 @@ struct SceneRenderer::State {
     std::optional<Drawable> balls, lashes;
   };
   std::map<std::size_t, PartedEyes> parted_eyes;
+  // Of drawables of the cranium with their numbers, once the skin was whole: without what stands
+  // out of it a little; none where nothing does.
+  std::map<std::size_t, std::optional<Drawable>> beneath;
   std::optional<MouthLining> lining;
   std::optional<HollowMouth> mouth;  // from the first picture of an opaque face on
   GpuPoints contacts;
@@ -91,6 +95,7 @@ struct SceneRenderer::State {
 
   std::vector<DrawItem> items(const PictureSettings& settings);
   void part_lashes_from(std::vector<DrawItem>& items);
+  void keep_beneath_skin(std::vector<DrawItem>& items);
   PictureView view(const Camera& camera, const PictureSettings& settings,
                    std::span<const DrawItem> items) const;
   float at_rest(std::span<const DrawItem> items) const;
@@ -114,7 +119,26 @@ std::vector<DrawItem> SceneRenderer::State::items(const PictureSettings& setting
     found.push_back(item);
   }
   part_lashes_from(found);
+  keep_beneath_skin(found);
   return found;
+}
+
+void SceneRenderer::State::keep_beneath_skin(std::vector<DrawItem>& items) {
+  const auto face = std::find_if(items.begin(), items.end(), [](const DrawItem& item) {
+    return item.role() == Role::face && item.opaque() && !item.cut();
+  });
+  if (face == items.end()) return;
+  for (auto& item : items) {
+    const bool bone = item.role() == Role::skull || item.role() == Role::maxilla;
+    if (!bone || item.drawable->mapped || !item.opaque() || item.cut()) continue;
+    const auto number = static_cast<std::size_t>(item.drawable - drawables.data());
+    auto [found, fresh] = beneath.try_emplace(number);
+    if (fresh) {
+      const auto kept = beneath_skin(item.drawable->part->mesh, face->drawable->part->mesh);
+      if (!kept.empty()) found->second.emplace(piece_of(*item.drawable, kept));
+    }
+    if (found->second) item.drawable = &*found->second;
+  }
 }
 
 /// Lashes are as opaque, and cut as much, as the skin that they grow from.

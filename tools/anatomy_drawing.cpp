@@ -54,6 +54,15 @@ double excitation_of(const Muscle& muscle, const Motion& motion, const FrameStat
   return 0;
 }
 
+std::string label_of(const TissueModel& model, int sheet, const std::array<const char*, 3>& usual) {
+  if (sheet + 1 == model.sheets) return "Inner side";
+  const LayerPiece here = below(model, sheet);
+  const std::string name = here.layers == static_cast<int>(usual.size())
+                               ? usual[static_cast<std::size_t>(here.layer)]
+                               : fmt::format("Layer {}", here.layer + 1);
+  return here.pieces == 1 ? name : fmt::format("{}, {} of {}", name, here.piece + 1, here.pieces);
+}
+
 }  // namespace
 
 LineSet muscle_line(const Muscle& muscle, const Motion& motion, const FrameState& frame,
@@ -95,13 +104,10 @@ KeyEntry muscle_key() {
 }
 
 std::string layer_label(const TissueModel& model, int sheet) {
-  constexpr std::array usual = {"Skin", "Fat", "Muscle layer"};
-  if (sheet + 1 == model.sheets) return "Inner side";
-  const LayerPiece here = below(model, sheet);
-  const std::string name = here.layers == static_cast<int>(usual.size())
-                               ? usual[static_cast<std::size_t>(here.layer)]
-                               : fmt::format("Layer {}", here.layer + 1);
-  return here.pieces == 1 ? name : fmt::format("{}, {} of {}", name, here.piece + 1, here.pieces);
+  return label_of(model, sheet, {"Skin", "Fat", "Muscle layer"});
+}
+std::string layer_short_label(const TissueModel& model, int sheet) {
+  return label_of(model, sheet, {"Skin", "Fat", "Muscle"});
 }
 
 KeyEntry layer_key(const TissueModel& model, int sheet) {

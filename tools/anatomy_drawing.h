@@ -24,6 +24,8 @@ KeyEntry muscle_key();
 KeyEntry layer_key(const TissueModel& model, int sheet);
 /// "Fat", where there are the usual three; "Fat, 2 of 2" where a fine net has cut it.
 std::string layer_label(const TissueModel& model, int sheet);
+/// For a narrow list.
+std::string layer_short_label(const TissueModel& model, int sheet);
 /// Of an overlay: in the order of their names inner sheets come first, outer ones lie over them.
 std::string layer_overlay_name(int sheet);
 

@@ -11,6 +11,7 @@
 #include "render/gl_context.h"
 #include "sim/report/check_page.h"
 #include "tools/common.h"
+#include "tools/picture_facts.h"
 #include "tools/staged_files.h"
 
 namespace condyle {
@@ -69,6 +70,9 @@ std::vector<std::string> write_pictures(StagedFiles& files, const Scene& scene,
     return names;
   }
   const auto shown = pairs_to_show(check);
+  if (const auto lacks = usual_picture_facts(*context).shortfall();
+      !shown.empty() && !lacks.empty())
+    notes.push_back(lacks);
   for (std::size_t k = 0; k < shown.size(); ++k) {
     const auto& pair = check.pairs[shown[k]];
     report(progress, "drawing", static_cast<double>(k) / static_cast<double>(shown.size()));

@@ -15,6 +15,7 @@
 #include "sim/motion/recording.h"
 #include "sim/report/occlusion_report.h"
 #include "tools/common.h"
+#include "tools/picture_facts.h"
 
 namespace condyle {
 namespace {
@@ -105,6 +106,8 @@ std::string write_picture(const std::filesystem::path& folder, const Case& patie
   std::filesystem::remove(folder / picture_name, none);  // one of an earlier bite
   try {
     const OffscreenContext context;
+    if (const auto lacks = usual_picture_facts(context).shortfall(); !lacks.empty())
+      notes.push_back(lacks);
     write_png(folder / picture_name, picture_of(patient, bite, paper_mm, threads));
   } catch (const MachineError& error) {
     notes.push_back(fmt::format("the picture is left out: {}", error.what()));

@@ -50,14 +50,6 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const 
 
 }  // namespace
 
-std::string PictureFacts::shortfall() const {
-  if (samples >= samples_asked) return {};
-  return fmt::format(
-      "asked for {} samples a pixel, the graphics driver ({}) gives {}: edges in the pictures are "
-      "less smooth",
-      samples_asked, driver, samples);
-}
-
 RecordingCamera PictureTaker::camera_of(const std::string& text,
                                         const Eigen::AlignedBox3d& box) const {
   using Turning = RecordingCamera::Turning;
@@ -106,6 +98,7 @@ PictureTaker::PictureTaker(const PicturePlan& plan, const RecordingFiles& files,
                         plan_.settings.supersampling * plan_.settings.supersampling;
   drawers_.emplace(patient.parts, mapped || pixels > most_pixels_for_two ? 1 : 2);
   for (int drawer = 0; drawer < drawers_->count(); ++drawer) desks_.emplace_back();
+  for (auto& view : views_) view.recorder->set_driver(drawers_->driver());
   if (mapped)
     drawers_->add([this](SceneRenderer& renderer, int drawer) {
       prepare(renderer, desks_[static_cast<std::size_t>(drawer)]);
@@ -115,7 +108,9 @@ PictureTaker::PictureTaker(const PicturePlan& plan, const RecordingFiles& files,
 
 PictureFacts PictureTaker::facts() const {
   const int asked = plan_.settings.samples;
-  return {drawers_->driver(), asked, std::min(asked, drawers_->most_samples())};
+  const std::string drivers = views_.empty() ? "" : views_.front().recorder->drivers();
+  return {drivers.empty() ? drawers_->driver() : drivers, asked,
+          std::min(asked, drawers_->most_samples())};
 }
 
 void PictureTaker::prepare(SceneRenderer& renderer, Desk& desk) const {

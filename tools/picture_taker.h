@@ -13,6 +13,7 @@
 #include "sim/case/muscle.h"
 #include "tools/camera_options.h"
 #include "tools/distance_drawing.h"
+#include "tools/picture_facts.h"
 #include "tools/picture_options.h"
 
 namespace condyle {
@@ -32,15 +33,6 @@ struct RecordingFiles {
   std::filesystem::path out;  // several cameras: a folder each in it
   bool film = false;
   bool resume = false;
-};
-
-/// What pictures are drawn with.
-struct PictureFacts {
-  std::string driver;
-  int samples_asked = 1, samples = 1;  // a pixel
-
-  /// What they lack for want of the driver, in words; empty for nothing.
-  std::string shortfall() const;
 };
 
 /// Draws the frames of one recording, seen by one camera or several, and keeps them.

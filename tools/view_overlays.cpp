@@ -63,7 +63,8 @@ std::vector<TreeItem> layer_items(const ViewPatient& patient) {
   if (!model) return {};
   std::vector<TreeItem> items;
   for (int sheet = 0; sheet < model->sheets; ++sheet)
-    items.push_back({fmt::format("{}", sheet + 1), layer_label(*model, sheet)});
+    items.push_back({fmt::format("{}", sheet + 1), layer_label(*model, sheet),
+                     layer_short_label(*model, sheet)});
   return items;
 }
 

@@ -87,12 +87,6 @@ bool setting_slider(Pen& pen, const Setting& setting, std::map<std::string, doub
   return true;
 }
 
-/// "chewing-left" as "Chewing left".
-std::string motion_label(std::string name) {
-  std::replace(name.begin(), name.end(), '-', '_');
-  return display_name(name);
-}
-
 }  // namespace
 
 void Panels::Drawing::motion() {
@@ -103,10 +97,10 @@ void Panels::Drawing::motion() {
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
   const bool named = std::find(input.scene.motions.begin(), input.scene.motions.end(), now) !=
                      input.scene.motions.end();
-  if (ImGui::BeginCombo("##motion", named ? motion_label(now).c_str() : "In words or from a file",
+  if (ImGui::BeginCombo("##motion", named ? display_name(now).c_str() : "In words or from a file",
                         ImGuiComboFlags_HeightLarge)) {
     for (const std::string& name : input.scene.motions) {
-      if (ImGui::Selectable(motion_label(name).c_str(), name == now)) {
+      if (ImGui::Selectable(display_name(name).c_str(), name == now)) {
         view.motion = {.spec = name, .parameters = view.motion.parameters, .excitations = {}};
         drafts.motion_words.clear();
       }

@@ -103,7 +103,7 @@ void Panels::Drawing::moving() {
   const double wide = pen.px(252), high = pen.px(several ? 306 : 294), margin = pen.px(12);
   if (r.width < 2 * wide || r.height < high + 2 * margin) return;
   begin_panel(pen, "move", {r.x + margin, r.y + margin, wide, high});
-  heading(pen, "Move", "slides on contact");
+  heading(pen, "Move", view.obey_contact ? "slides on contact" : "Stop at contact is off");
   if (several) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
     if (ImGui::BeginCombo("##body", display_name(input.scene.parts[body.part].name).c_str())) {

@@ -36,7 +36,7 @@ std::string display_name(const std::string& part_name) {
   if (name == "ans") return "ANS";
   if (name == "pns") return "PNS";
   for (char& c : name)
-    if (c == '_') c = ' ';
+    if (c == '_' || c == '-') c = ' ';
   if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   return name;
 }

@@ -158,6 +158,7 @@ void draw_bands(const Pen& pen, ImDrawList& list, const PlotPanel& panel, const 
   for (const PlotBand& band : panel.settings.bands) {
     if (band.y.empty()) continue;
     ImVec2 words_at;
+    const float wide = text_width(font, band.name);
     if (band.x.empty()) {
       const auto [low, high] = std::minmax_element(band.y.begin(), band.y.end());
       const ImVec2 a = axes.at(axes.x.low, *high), b = axes.at(axes.x.high, *low);
@@ -175,12 +176,21 @@ void draw_bands(const Pen& pen, ImDrawList& list, const PlotPanel& panel, const 
       }
       if (area < 0) std::reverse(corners.begin(), corners.end());
       list.AddConvexPolyFilled(corners.data(), static_cast<int>(corners.size()), fill);
-      words_at = corners.front();
-      for (const ImVec2& p : corners)
-        words_at = {std::min(words_at.x, p.x), std::min(words_at.y, p.y)};
-      words_at.x += pen.px(2);
+      ImVec2 low = corners.front(), high = low;
+      for (const ImVec2& p : corners) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+      }
+      // Beside it where there is room: curves go through bands.
+      const float gap = pen.px(3);
+      const bool fits_right =
+          high.x + gap + wide<axes.right - pen.px(2), fits_left = low.x - gap - wide> axes.left +
+          pen.px(2);
+      words_at = {fits_right  ? high.x + gap
+                  : fits_left ? low.x - gap - wide
+                              : low.x + pen.px(2),
+                  low.y};
     }
-    const float wide = text_width(font, band.name);
     words_at.x = std::clamp(words_at.x, axes.left + pen.px(2),
                             std::max(axes.left + pen.px(2), axes.right - wide - pen.px(2)));
     list.AddText(font, font->FontSize, {std::round(words_at.x), std::round(words_at.y)},

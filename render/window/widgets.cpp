@@ -176,11 +176,14 @@ void heading(Pen& pen, const char* words, const std::string& right) {
     ImGui::SetCursorPosY(top + pen.px(17));
   }
   text(pen.theme.bold, palette().text, words);
+  pen.mark(std::string("heading:") + words);
   if (!right.empty()) {
     ImGui::SameLine();
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() +
                          (pen.theme.bold->FontSize - pen.theme.small->FontSize) * 0.7f);
-    text_right(pen.theme.small, palette().text_dim, right);
+    text_right(pen.theme.small, palette().text_dim,
+               fitted(pen.theme.small, right, ImGui::GetContentRegionAvail().x - pen.px(6)));
+    pen.mark(std::string("beside-heading:") + words);
   }
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(2));
 }

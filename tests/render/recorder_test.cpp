@@ -95,6 +95,25 @@ TEST_F(Recording, AKilledOneIsCompletedToTheSameBits) {
   EXPECT_EQ(content(top / "killed"), content(top / "whole"));
 }
 
+TEST_F(Recording, TellsEveryDriverThatDrewItsFrames) {
+  const auto draw = [&](const std::string& driver, bool resume, int from, int to) {
+    auto s = settings("a");
+    s.resume = resume;
+    Recorder recorder(s);
+    recorder.set_driver(driver);
+    for (int i = from; i < to; ++i)
+      if (!recorder.has(i)) recorder.add(i, frame(s, i));
+    if (to == s.frames) recorder.finish();
+    return recorder.drivers();
+  };
+  EXPECT_EQ(draw("card", false, 0, 4), "card");
+  EXPECT_EQ(draw("other", true, 0, 0), "card") << "it has drawn nothing";
+  EXPECT_EQ(draw("other", true, 0, 8), "card; other");
+  EXPECT_EQ(draw("card", true, 0, 12), "card; other");
+  EXPECT_EQ(draw("third", true, 0, 12), "card; other") << "all was there";
+  EXPECT_EQ(draw("third", false, 0, 12), "third") << "a new recording";
+}
+
 TEST_F(Recording, ResumingAnotherRecordingIsRefusedWithWhatDiffers) {
   record(settings("a"));
   const auto before = content(top / "a");

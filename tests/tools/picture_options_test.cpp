@@ -170,6 +170,19 @@ TEST(Drivers, TwoDrawThePatientAlike) {
                      Picture(folder / "usual/frames/000001.png"), 0.01));
 }
 
+TEST_F(PictureOptions, ResumedWithAnotherDriverTheReportTellsBoth) {
+  ASSERT_EQ(condyle_with_softpipe(command("resumed", {"--edges", "fxaa"})).code, 0);
+  const std::string before = drawn_with(folder_ / "resumed")["driver"];
+  ASSERT_NE(before.find("softpipe"), std::string::npos);
+  // All pictures are there: today's driver has none of them.
+  ASSERT_EQ(condyle(command("resumed", {"--edges", "fxaa", "--resume"})).code, 0);
+  EXPECT_EQ(drawn_with(folder_ / "resumed")["driver"], before);
+  std::filesystem::remove(folder_ / "resumed/frames/000000.png");
+  ASSERT_EQ(condyle(command("resumed", {"--edges", "fxaa", "--resume"})).code, 0);
+  const std::string both = drawn_with(folder_ / "resumed")["driver"];
+  EXPECT_TRUE(both.starts_with(before + "; ")) << both;
+}
+
 TEST_F(PictureOptions, SamplesThatTheDriverDoesNotGiveAreTold) {
   const auto sampled = condyle_with_softpipe(command("sampled", {}));
   ASSERT_EQ(sampled.code, 0) << sampled.err;
@@ -182,6 +195,11 @@ TEST_F(PictureOptions, SamplesThatTheDriverDoesNotGiveAreTold) {
   const auto usual = condyle(command("usual", {}));
   EXPECT_EQ(usual.err.find("samples a pixel"), std::string::npos) << usual.err;
   EXPECT_EQ(drawn_with(folder_ / "usual")["samples"], 4);
+  // Of what check draws, too.
+  const std::vector<std::string> check = {
+      "check", box_case(folder_), "--motion", "rest", "--margin", "5", "--out", folder_ / "check"};
+  EXPECT_NE(condyle_with_softpipe(check).err.find("asked for 4 samples"), std::string::npos);
+  EXPECT_EQ(condyle(check).err.find("samples"), std::string::npos);
 }
 
 }  // namespace

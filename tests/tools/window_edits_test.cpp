@@ -178,6 +178,22 @@ TEST_F(WindowSession, TheMouthIsOpenedByHandThoughTheMotionRests) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
+TEST_F(WindowSession, AnOpeningThatCannotBeIsToldBesideMusclesAndTheSliderOpensAsThePatientDoes) {
+  start({"--motion", "by-muscles", "--opening", "75"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  const std::string notes = state()["notes"].dump();
+  EXPECT_NE(notes.find("the opening slider cannot go as asked: opening 75 mm"), std::string::npos)
+      << notes;
+  const auto r = rect("opening");
+  drag(r[0] + 0.02 * r[2], r[1] + r[3] / 2, r[0] + 0.99 * r[2], r[1] + r[3] / 2);
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    const double opened = s["frame"]["opening_mm"];
+    return opened > 40 && opened < 50;
+  })) << state()["frame"].dump();
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
 TEST_F(WindowSession, APatientWhoseLoadingIsCancelledLeavesTheOtherAsHeWas) {
   const std::string boxes = box_case(folder_);
   start({boxes, "--motion", "rest"});

@@ -255,6 +255,17 @@ TEST_P(Instrument, SlidersShapeTheMotionWhenTheyAreLetGo) {
   EXPECT_EQ(stage.view.motion.spec, "posselt");
 }
 
+TEST_P(Instrument, ALongMotionInWordsIsCutBesideItsHeading) {
+  stage.scene.motion_name = "open 50; close; left 8; right 8; protrude 6; retrude 1; rest; hold 2";
+  stage.click("tab:Motion");
+  stage.rest();
+  expect_tidy();
+  const ViewRect heading = stage.item("heading:Motion").rect,
+                 beside = stage.item("beside-heading:Motion").rect;
+  EXPECT_GT(beside.width, heading.width);
+  EXPECT_GE(beside.x, heading.x + heading.width);
+}
+
 TEST_P(Instrument, ARecordingHasAnySizeWithinBounds) {
   stage.click("tab:Record");
   stage.rest();
