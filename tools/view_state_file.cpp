@@ -104,7 +104,7 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
   for (const Landmark& landmark : view.landmarks)
     json["landmark_mm"][landmark.name] = list(landmark.at_rest);
   if (frame) {
-    for (const Pose& pose : frame->X_CF) json["free_mm"].push_back(list(pose.t));
+    for (const Pose& X_CF : frame->X_CF) json["free_mm"].push_back(list(X_CF.t));
     json["frame"] = {{"time_s", frame->time_s},
                      {"mandible_mm", list(frame->X_CM.t)},
                      {"stopped", frame->stopped},
