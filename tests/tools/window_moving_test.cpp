@@ -107,9 +107,8 @@ TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsLetGo) {
   EXPECT_NEAR(double(state()["X_RC"]["mm"][2]), stopped_mm, 0.05);
   see_now("plays");
   EXPECT_TRUE(press("space"));
-  ASSERT_TRUE(wait_until([](const Json& s) {
-    return s["playing"] == false && s["frame"]["time_s"] == s["time_s"];
-  }));
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["playing"] == false; }));
+  settled_picture();
   EXPECT_NEAR(double(state()["X_RC"]["mm"][2]), stopped_mm, 0.05);
   const double motion_mm = opening_mm(state());
   EXPECT_TRUE(press("ctrl+z"));
