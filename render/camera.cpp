@@ -88,8 +88,8 @@ Camera told_in(const Pose& X_BA, const Camera& camera) {
   return told;
 }
 
-Camera turned(const Camera& camera, double angle_rad) {
-  const Eigen::AngleAxisd turn(angle_rad, Eigen::Vector3d::UnitZ());
+Camera turned(const Camera& camera, double angle_rad, const Eigen::Vector3d& axis) {
+  const Eigen::AngleAxisd turn(angle_rad, axis);
   Camera result = camera;
   result.direction = turn * camera.direction;
   result.up = turn * camera.up;

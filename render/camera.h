@@ -30,8 +30,9 @@ Camera standard_camera(const std::string& name, const Eigen::Vector3d& low,
 /// The same camera told in frame B; it stands in frame A.
 Camera told_in(const Pose& X_BA, const Camera& camera);
 
-/// Turned about the vertical axis through the target.
-Camera turned(const Camera& camera, double angle_rad);
+/// Turned about the vertical axis through the target, or another.
+Camera turned(const Camera& camera, double angle_rad,
+              const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ());
 
 Eigen::Matrix4f view_matrix(const Camera& camera);
 Eigen::Matrix4f projection_matrix(const Camera& camera, double aspect, double near_mm,

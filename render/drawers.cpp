@@ -32,7 +32,7 @@ struct Drawers::State {
   std::exception_ptr trouble;
   std::int64_t trouble_at = std::numeric_limits<std::int64_t>::max();  // the picture's number
   std::string driver;
-  int most_samples = 1;
+  int most_samples = 1, most_side = 1;
   const SceneRenderer* first = nullptr;
   std::vector<std::thread> threads;
 
@@ -71,6 +71,7 @@ struct Drawers::State {
       first = &*renderer;
       driver = context->description();
       most_samples = condyle::most_samples();
+      most_side = condyle::most_side();
       // A card draws one picture at a time.
       const bool card = driver.find("llvmpipe") == std::string::npos;
       tell_ready(card || std::thread::hardware_concurrency() < 2 ? 1 : std::max(1, most));
@@ -151,6 +152,7 @@ Drawers::~Drawers() {
 int Drawers::count() const { return state_->count; }
 const std::string& Drawers::driver() const { return state_->driver; }
 int Drawers::most_samples() const { return state_->most_samples; }
+int Drawers::most_side() const { return state_->most_side; }
 
 void Drawers::add(Draw draw) {
   auto& s = *state_;

@@ -32,6 +32,8 @@ class Drawers {
   const std::string& driver() const;
   /// Samples a pixel that the driver gives at most.
   int most_samples() const;
+  /// Pixels a side of the largest picture that it draws, supersampling included.
+  int most_side() const;
 
   /// Waits while several others wait. throws: what an earlier picture threw; then those before it
   /// are delivered, none after it, and none is in hand.

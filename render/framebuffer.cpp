@@ -20,14 +20,19 @@ int most_samples() {
   return std::max(1, most);
 }
 
+int most_side() {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
+  return most;
+}
+
 Framebuffer::Framebuffer(int width, int height, int samples)
     : width_(width), height_(height), samples_(samples) {
-  GLint most_side = 0;
-  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most_side);
-  if (width < 1 || height < 1 || width > most_side || height > most_side)
+  const int most = most_side();
+  if (width < 1 || height < 1 || width > most || height > most)
     throw MachineError("a picture of " + std::to_string(width) + "x" + std::to_string(height) +
-                       " cannot be drawn; the graphics driver allows 1 to " +
-                       std::to_string(most_side) + " pixels a side");
+                       " cannot be drawn; the graphics driver allows 1 to " + std::to_string(most) +
+                       " pixels a side");
   samples = std::min(samples, most_samples());
   samples_ = samples <= 1 ? 0 : samples;
   while (glGetError() != GL_NO_ERROR) {

@@ -11,6 +11,8 @@ void require_complete(int width, int height);
 
 /// Of multisampling, that the context gives at most; 1: none.
 int most_samples();
+/// Pixels a side that the driver of the current context draws at most.
+int most_side();
 
 /// Colour (RGBA, 8 bit), depth and stencil off the screen, with or without multisampling.
 class Framebuffer {

@@ -160,13 +160,15 @@ RecordingCamera::RecordingCamera(const std::string& text, std::span<const Part> 
   }
 }
 
-RecordingCamera::RecordingCamera(const std::string& name, const Camera& camera, Turning turning)
-    : name_(name), turning_(turning), path_{.keys = {{0, camera}}} {}
+RecordingCamera::RecordingCamera(const std::string& name, const Camera& camera, Turning turning,
+                                 const Eigen::Vector3d& upright)
+    : name_(name), turning_(turning), upright_(upright), path_{.keys = {{0, camera}}} {}
 
 Camera RecordingCamera::at(double share, const FrameState& frame) const {
   if (arch_) return arch_->at(frame);
   const Camera camera = path_.at(share);
-  return turning_ == Turning::once ? turned(camera, 2 * std::numbers::pi * share) : camera;
+  return turning_ == Turning::once ? turned(camera, 2 * std::numbers::pi * share, upright_)
+                                   : camera;
 }
 
 std::string RecordingCamera::description() const {

@@ -27,7 +27,8 @@ class RecordingCamera {
   RecordingCamera(const std::string& text, std::span<const Part> parts, const Eigen::Vector3d& low,
                   const Eigen::Vector3d& high, double aspect);
   /// Of a window as it looks now; turning: once about the upright axis over the recording.
-  RecordingCamera(const std::string& name, const Camera& camera, Turning turning);
+  RecordingCamera(const std::string& name, const Camera& camera, Turning turning,
+                  const Eigen::Vector3d& upright);
 
   /// `share`: of the recording, 0 to 1.
   Camera at(double share, const FrameState& frame) const;
@@ -41,6 +42,7 @@ class RecordingCamera {
  private:
   std::string name_;
   Turning turning_ = Turning::no;
+  Eigen::Vector3d upright_ = {0, 0, 1};
   CameraPath path_;
   std::optional<ArchView> arch_;
 };

@@ -20,6 +20,7 @@ namespace condyle {
 /// What a window that is recorded from has of its own.
 struct WindowPicture {
   Camera camera = {};                                  // `own_camera` and `turning_camera`
+  Eigen::Vector3d upright = {0, 0, 1};                 // what the latter turns about
   std::shared_ptr<const FrameState> before = nullptr;  // left of a wipe; none: the patient at rest
   std::function<Overlays(const FrameState&)> overlays = {};  // instead of those by name
 };

@@ -54,7 +54,8 @@ RecordingCamera PictureTaker::camera_of(const std::string& text,
                                         const Eigen::AlignedBox3d& box) const {
   using Turning = RecordingCamera::Turning;
   if (plan_.window && (text == own_camera || text == turning_camera))
-    return {text, plan_.window->camera, text == own_camera ? Turning::no : Turning::once};
+    return {text, plan_.window->camera, text == own_camera ? Turning::no : Turning::once,
+            plan_.window->upright};
   const double aspect = static_cast<double>(plan_.settings.width) / plan_.settings.height;
   return {text, subject_.scene.patient.parts, box.min(), box.max(), aspect};
 }
@@ -97,6 +98,13 @@ PictureTaker::PictureTaker(const PicturePlan& plan, const RecordingFiles& files,
   const double pixels = static_cast<double>(plan_.settings.width) * plan_.settings.height *
                         plan_.settings.supersampling * plan_.settings.supersampling;
   drawers_.emplace(patient.parts, mapped || pixels > most_pixels_for_two ? 1 : 2);
+  const PictureSettings& size = plan_.settings;
+  if (const int most = drawers_->most_side() / size.supersampling;
+      size.width > most || size.height > most)
+    throw InputError(fmt::format(
+        "pictures of {}x{} are too large for the graphics driver: at most {} pixels a side{}",
+        size.width, size.height, most,
+        size.supersampling > 1 ? fmt::format(" when drawn {}x finer", size.supersampling) : ""));
   for (int drawer = 0; drawer < drawers_->count(); ++drawer) desks_.emplace_back();
   for (auto& view : views_) view.recorder->set_driver(drawers_->driver());
   if (mapped)

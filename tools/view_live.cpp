@@ -45,9 +45,11 @@ void ViewSession::simulate(const ViewState& view) {
                         .opening_mm = view.opening_mm,
                         .obey_contact = view.obey_contact,
                         .face = view.shows_face(shown_) || shows_tissue(view)});
-  if (!(view.hands == moved_)) {
-    guarded([&] { hand_over(view.hands, moved_, shown_.bodies, *simulation_); });
-    moved_ = view.hands;
+  Hands hands = view.hands;
+  if (falling_) hands.hold_jaw(falling_->X_CM);
+  if (!(hands == moved_)) {
+    guarded([&] { hand_over(hands, moved_, shown_.bodies, *simulation_); });
+    moved_ = std::move(hands);
   }
   LoopStatistics loop{.steps_per_second = simulation_->steps_per_second(),
                       .message = view.distances && !map_sent_ ? "Measuring distances" : ""};

@@ -75,7 +75,8 @@ double wanted_of(const MotionChoice& choice, const std::string& group, double us
   return found == choice.excitations.end() ? usual : found->second;
 }
 
-/// Every group rises in a tenth of a second, holds for half a second and lets go.
+/// Every group rises, holds and lets go, s.
+constexpr double rise_s = 0.1, held_until_s = 0.6, end_s = 1.2;
 std::string held_excitations(const MotionChoice& choice) {
   std::string head = "time_s", none, full;
   for (const auto& group : muscle_groups()) {
@@ -83,8 +84,8 @@ std::string held_excitations(const MotionChoice& choice) {
     none += ",0";
     full += fmt::format(",{:.4f}", wanted_of(choice, group.name, group.usual));
   }
-  return head + "\n0" + none + "\n0.1" + full + "\n0.6" + full + "\n0.7" + none + "\n1.2" + none +
-         "\n";
+  return fmt::format("{}\n0{}\n{}{}\n{}{}\n{}{}\n{}{}\n", head, none, rise_s, full, held_until_s,
+                     full, held_until_s + rise_s, none, end_s, none);
 }
 
 /// What the muscles of a motion were excited by, times the share of each group.
@@ -310,7 +311,7 @@ ViewMotion make_view_motion(const MotionChoice& choice, const ViewPatient& patie
 }
 
 std::map<std::string, double> excitations_at(const ViewMotion& motion, double time_s) {
-  constexpr double held_at_s = 0.35;  // held_excitations
+  constexpr double held_at_s = (rise_s + held_until_s) / 2;
   std::map<std::string, double> excitations;
   if (!motion.motion.muscles) return excitations;
   const MuscleStates states =

@@ -41,7 +41,8 @@ PicturePlan plan_of(const ViewRecording& subject) {
   plan.near_mm = DistanceBands{}.near_mm;
   plan.caption = wanted.caption;
   plan.cameras = wanted.cameras;
-  plan.window = WindowPicture{.camera = wanted.camera, .before = wanted.kept};
+  plan.window =
+      WindowPicture{.camera = wanted.camera, .upright = wanted.upright, .before = wanted.kept};
   plan.window->overlays = [&subject](const FrameState& frame) {
     return view_overlays(*subject.patient, subject.motion->motion, frame, subject.view,
                          subject.paths);

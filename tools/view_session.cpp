@@ -55,7 +55,7 @@ void ViewSession::take_patient() {
   overlaid_.reset();
   motion_.reset();
   newest_.reset();
-  falling_.reset();
+  end_fall();
   const bool first = patient_ == nullptr;
   PatientPtr earlier = std::exchange(patient_, std::move(*made));
   retire(earlier);

@@ -52,6 +52,8 @@ class ViewSession {
   void take_let_go();
   void let_jaw_go(std::size_t body);
   void let_fall();
+  void end_fall();
+  bool in_the_same_hands(const Hands& then) const;
   void take_save();
   void carry_out(const wish::Open& wanted);
   void carry_out(const wish::Import& wanted);
@@ -114,14 +116,15 @@ class ViewSession {
     std::size_t body;
     Pose in_carrier;  // of a free part, at rest
     std::string words;
-    JawLetGo jaw;  // its course, of a jaw
-    Hands hands;   // as they were left with it; others: a hand has it again
+    JawLetGo course;  // of a jaw
+    Hands hands;      // as they were left with it; others: a hand has it again
   };
   /// A jaw that was let go and is on its way, as time runs.
   struct Falling {
     LetGoResult of;
     std::vector<double> shown_s;  // of each of its poses
     std::chrono::steady_clock::time_point start;
+    Pose X_CM;  // by now
   };
 
   Window& window_;

@@ -62,6 +62,11 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
                            const std::string& busy_with) {
   if (file_.empty()) return;
   const auto list = [](const Eigen::Vector3d& v) { return nlohmann::json{v.x(), v.y(), v.z()}; };
+  // Named by frames: the room R, the cranium C, the mandible M.
+  const auto pose = [&](const Pose& X) {
+    return nlohmann::json{{"mm", list(X.t)},
+                          {"quaternion_wxyz", {X.R.w(), X.R.x(), X.R.y(), X.R.z()}}};
+  };
   const auto shown = [](const std::vector<PartView>& parts) {
     return std::count_if(parts.begin(), parts.end(), [](const PartView& p) { return p.shown; });
   };
@@ -91,12 +96,15 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
   json["recent"] = nlohmann::json::array();
   for (const auto& path : window.scene().recent) json["recent"].push_back(path.string());
   if (const std::string trouble = window.trouble(); !trouble.empty()) json["trouble"] = trouble;
-  if (const auto hand = view.hands.X_CM_wanted()) json["hand_mm"] = list(hand->t);
-  if (view.hands.skull) json["skull_mm"] = list(view.hands.skull->t);
+  if (const auto hand = view.hands.X_CM_wanted()) json["X_CM_wanted"] = pose(*hand);
+  if (view.hands.skull) {
+    json["X_RC_wanted"] = pose(*view.hands.skull);
+    json["X_RC"] = pose(view.hands.X_RC(frame ? frame->X_CM : Pose{}));
+  }
   for (const Landmark& landmark : view.landmarks)
     json["landmark_mm"][landmark.name] = list(landmark.at_rest);
   if (frame) {
-    for (const Pose& pose : frame->X_CF) json["free_mm"].push_back(list(pose.t));
+    for (const Pose& X_CF : frame->X_CF) json["free_mm"].push_back(list(X_CF.t));
     json["frame"] = {{"time_s", frame->time_s},
                      {"mandible_mm", list(frame->X_CM.t)},
                      {"stopped", frame->stopped},

@@ -123,7 +123,6 @@ void ViewSession::carry_out(const wish::Cancel&) {
 void ViewSession::carry_out(const wish::LetGo& wanted) {
   if (letting_go_ || !newest_ || wanted.body >= shown_.bodies.size()) return;
   const MovableBody& body = shown_.bodies[wanted.body];
-  falling_.reset();
   if (!body.free) return let_jaw_go(wanted.body);
   letting_go_ =
       beside<LetGoResult>([patient = patient_, body, number = wanted.body, frame = *newest_,
@@ -189,13 +188,10 @@ void ViewSession::let_jaw_go(std::size_t number) {
   if (!motion_) return;
   const MovableBody& body = shown_.bodies[number];
   const Pose X_CM = newest_->X_CM;
+  end_fall();
   const double time_s = window_.view().time_s;
   window_.change(
-      [&](ViewState& view) {
-        view.playing = false;
-        view.opening_mm.reset();
-        view.hands.move(body, body.skull ? view.hands.X_RC(X_CM) : X_CM, X_CM);
-      },
+      [&](ViewState& view) { view.move(body, body.skull ? view.hands.X_RC(X_CM) : X_CM, X_CM); },
       true);
   letting_go_ = beside<LetGoResult>([patient = patient_, motion = motion_, number, time_s, X_CM,
                                      caught = window_.view().hands, options = options_.motion,
@@ -206,14 +202,16 @@ void ViewSession::let_jaw_go(std::size_t number) {
                               .excitations = excitations_at(*motion, time_s)};
     const bool by_tone = settings.excitations.empty();
     if (by_tone) settings.X_CM_rest = rest_position(motion->choice, *patient, options, threads);
-    JawLetGo jaw = let_go_jaw(of, X_CM, settings, threads);
-    std::string words = jaw.bite_N > 0 ? fmt::format("lies on its teeth with {:.1f} N", jaw.bite_N)
-                                       : fmt::format("hangs {:.1f} mm open",
-                                                     measure(of, jaw.X_CM.back()).opening_mm);
+    JawLetGo course = let_go_jaw(of, X_CM, settings, threads);
+    std::string words =
+        course.bite_N > 0
+            ? fmt::format("lies on {} with {:.1f} N", course.on_teeth ? "its teeth" : "a flat bite",
+                          course.bite_N)
+            : fmt::format("hangs {:.1f} mm open", measure(of, course.X_CM.back()).opening_mm);
     words = fmt::format("{} the jaw {} after {:.2f} s{}",
                         by_tone ? "At its muscles' resting tone" : "Moved by its muscles", words,
-                        jaw.rest.seconds, jaw.rest.reached ? "" : ", not still yet");
-    return LetGoResult{number, {}, std::move(words), std::move(jaw), caught};
+                        course.rest.seconds, course.rest.reached ? "" : ", not still yet");
+    return LetGoResult{number, {}, std::move(words), std::move(course), caught};
   });
 }
 
@@ -225,48 +223,58 @@ void ViewSession::take_let_go() {
     if (!result) return;
     const MovableBody& body = shown_.bodies.at(result->body);
     if (body.free) {
-      window_.change(
-          [&](ViewState& view) { view.hands.move(body, result->in_carrier, newest_->X_CM); }, true);
+      window_.change([&](ViewState& view) { view.move(body, result->in_carrier, newest_->X_CM); },
+                     true);
       return window_.say(result->words);
     }
+    if (!in_the_same_hands(result->hands)) return;
     // What joints draw in at once is shown so that it can be followed.
     constexpr double fastest_mm_s = 250, arm_mm = 80;
-    const JawLetGo& jaw = result->jaw;
+    const JawLetGo& course = result->course;
     std::vector<double> shown_s = {0};
-    for (std::size_t k = 1; k < jaw.X_CM.size(); ++k) {
-      const Pose step = jaw.X_CM[k - 1].inverse() * jaw.X_CM[k];
+    for (std::size_t k = 1; k < course.X_CM.size(); ++k) {
+      const Pose step = course.X_CM[k - 1].inverse() * course.X_CM[k];
       const double mm = (step * body.center - body.center).norm() + arm_mm * rotation_angle(step);
-      shown_s.push_back(shown_s.back() + std::max(jaw.step_s, mm / fastest_mm_s));
+      shown_s.push_back(shown_s.back() + std::max(course.step_s, mm / fastest_mm_s));
     }
+    // Wanted is where it comes to rest: what is edited meanwhile has nothing of its way.
+    const Pose start = course.X_CM.front(), end = course.X_CM.back();
+    window_.change([&](ViewState& view) {
+      view.hands.move(body, body.skull ? *view.hands.X_RM * end.inverse() : end, end);
+      view.falling = true;
+    });
+    result->hands = window_.view().hands;
     falling_ = Falling{.of = std::move(*result),
                        .shown_s = std::move(shown_s),
-                       .start = std::chrono::steady_clock::now()};
+                       .start = std::chrono::steady_clock::now(),
+                       .X_CM = start};
   });
 }
 
 /// The jaw that was let go, where it is by now; a hand that takes it ends its way.
 void ViewSession::let_fall() {
   if (!falling_) return;
-  const ViewState& view = window_.view();
-  if (!(view.hands == falling_->of.hands) || view.opening_mm || view.playing)
-    return falling_.reset();
+  if (!in_the_same_hands(falling_->of.hands)) return end_fall();
   const double now_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - falling_->start).count();
   const auto& times = falling_->shown_s;
   const auto after = std::upper_bound(times.begin(), times.end(), now_s);
-  const bool there = after == times.end();
-  const auto at = static_cast<std::size_t>(after - times.begin()) - 1;
-  const Pose X_CM = falling_->of.jaw.X_CM[at];
-  const MovableBody& body = shown_.bodies.at(falling_->of.body);
-  window_.change([&](ViewState& wanted) {
-    // The skull goes to the jaw, or the jaw to the skull.
-    Hands& hands = wanted.hands;
-    hands.move(body, body.skull ? *hands.X_RM * X_CM.inverse() : X_CM, X_CM);
-  });
-  falling_->of.hands = window_.view().hands;
-  if (!there) return;
-  window_.say(falling_->of.words);
+  if (after == times.end()) {
+    window_.say(falling_->of.words);
+    return end_fall();
+  }
+  falling_->X_CM = falling_->of.course.X_CM[static_cast<std::size_t>(after - times.begin()) - 1];
+}
+
+void ViewSession::end_fall() {
+  if (falling_) window_.change([](ViewState& view) { view.falling = false; });
   falling_.reset();
+}
+
+/// Whether nobody has taken the jaw or the skull since.
+bool ViewSession::in_the_same_hands(const Hands& then) const {
+  const ViewState& view = window_.view();
+  return view.hands.same_jaws(then) && !view.opening_mm && !view.playing;
 }
 
 void ViewSession::take_save() {

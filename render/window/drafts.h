@@ -11,6 +11,12 @@
 
 namespace condyle {
 
+/// In the number_field that is written in.
+struct NumberDraft {
+  std::string field;
+  double number = 0;
+};
+
 /// What stands in fields and is not asked for yet. Only for this room.
 struct Drafts {
   std::string motion_words;
@@ -20,7 +26,7 @@ struct Drafts {
     bool running = false;  // a recording, in the pass before
   } record;
   std::string landmark_words, case_folder;
-  std::optional<double> number;  // in the number_field that is written in
+  std::optional<NumberDraft> number;
   struct OpenFields {
     bool open = false;
     std::string path;

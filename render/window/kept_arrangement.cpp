@@ -27,10 +27,7 @@ json json_of(const RecordChoice& r) {
           {"edges", edges.at(static_cast<std::size_t>(r.edges))},
           {"film", r.film},
           {"transparent", r.transparent},
-          {"cameras", r.cameras},
-          {"camera_from_file", r.camera_from_file},
-          {"camera_file", r.camera_file},
-          {"caption", r.caption}};
+          {"cameras", r.cameras}};
 }
 
 json json_of(const Arrangement& a) {
@@ -63,12 +60,6 @@ class FieldReader {
     if (!field) return;
     if (!field->is_boolean()) throw InputError(file_, name, "is neither true nor false");
     value = field->get<bool>();
-  }
-  void read(const char* name, std::string& words) const {
-    const json* field = find(name);
-    if (!field) return;
-    if (!field->is_string()) throw InputError(file_, name, "is no text");
-    words = field->get<std::string>();
   }
   template <class Number>
   void read(const char* name, Number& value, double least, double most) const {
@@ -129,9 +120,6 @@ RecordChoice record_in(const fs::path& file, const json& all) {
   std::vector<std::string> cameras(r.cameras.begin(), r.cameras.end());
   fields.read("cameras", cameras);
   r.cameras = {cameras.begin(), cameras.end()};
-  fields.read("camera_from_file", r.camera_from_file);
-  fields.read("camera_file", r.camera_file);
-  fields.read("caption", r.caption);
   return r;
 }
 

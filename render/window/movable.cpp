@@ -87,26 +87,35 @@ void Hands::move(const MovableBody& body, const Pose& wanted, const Pose& X_CM) 
     if (free.size() <= *body.free) free.resize(*body.free + 1);
     free[*body.free] = wanted;
   } else {
-    if (X_RM) skull = X_RC(X_CM);
-    X_RM.reset();
+    release_jaw(X_CM);
     mandible = wanted;
   }
 }
 
-void Hands::put_back(const MovableBody& body) {
+void Hands::hold_jaw(const Pose& X_CM) {
+  X_RM.reset();
+  mandible = X_CM;
+}
+
+void Hands::put_back(const MovableBody& body, const Pose& X_CM) {
   if (body.skull) {
     skull.reset();
     X_RM.reset();
   } else if (!body.free) {
-    release_jaw();
+    release_jaw(X_CM);
   } else if (*body.free < free.size()) {
     free[*body.free].reset();
   }
 }
 
-void Hands::release_jaw() {
+void Hands::release_jaw(const Pose& X_CM) {
+  if (X_RM) skull = X_RC(X_CM);
   mandible.reset();
   X_RM.reset();
+}
+
+bool Hands::same_jaws(const Hands& other) const {
+  return same(mandible, other.mandible) && same(skull, other.skull) && same(X_RM, other.X_RM);
 }
 
 bool Hands::operator==(const Hands& other) const {
@@ -116,7 +125,7 @@ bool Hands::operator==(const Hands& other) const {
   };
   for (std::size_t i = 0; i < count; ++i)
     if (!same(at(*this, i), at(other, i))) return false;
-  return same(mandible, other.mandible) && same(skull, other.skull) && same(X_RM, other.X_RM);
+  return same_jaws(other);
 }
 
 Placement placement_of(const Pose& pose, const Vector3d& center) {

@@ -48,8 +48,13 @@ struct Hands {
   std::optional<Pose> of(const MovableBody& body) const;
   /// An edit; the jaw is at X_CM.
   void move(const MovableBody& body, const Pose& wanted, const Pose& X_CM);
-  void put_back(const MovableBody& body);
-  void release_jaw();
+  void put_back(const MovableBody& body, const Pose& X_CM);
+  /// The jaw is wanted at X_CM, whatever was wanted of the skull.
+  void hold_jaw(const Pose& X_CM);
+  /// Of the hand that has it; the skull stays where it has come to.
+  void release_jaw(const Pose& X_CM);
+  /// Both jaws are wanted where the others want them.
+  bool same_jaws(const Hands& other) const;
   bool operator==(const Hands& other) const;
 };
 

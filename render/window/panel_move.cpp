@@ -36,8 +36,9 @@ std::string number_words(double value, const char* unit) {
 
 /// One row of the table: a name, the wish to be written in and what was reached. `draft`: what is
 /// written and not entered yet. gives: true when another wish was entered.
-bool wish_row(Pen& pen, std::optional<double>& draft, const std::string& name, const char* label,
-              const char* unit, double& wanted, double reached, double held_from) {
+bool wish_row(Pen& pen, std::optional<NumberDraft>& draft, const std::string& name,
+              const char* label, const char* unit, double& wanted, double reached,
+              double held_from) {
   const std::string shown = number_words(wanted, unit);
   ImGui::AlignTextToFramePadding();
   text(pen.theme.small, palette().text_dim, label);
@@ -151,18 +152,14 @@ void Panels::Drawing::moving() {
     tooltip(pen, turn_tips[k]);
   }
   ImGui::PopStyleVar(2);
-  if (edited) {
-    if (!body.free) {
-      view.playing = false;
-      view.opening_mm.reset();
-    }
-    view.hands.move(body, pose_at(wanted, body.center), X_CM);
-  }
+  if (edited) view.move(body, pose_at(wanted, body.center), X_CM);
   std::string state = body.free    ? "as it was loaded"
                       : body.skull ? "in its place"
                                    : "follows the motion";
   ImU32 tint = palette().text_dim;
-  if (short_of_shift || short_of_turn) {
+  if (view.falling && !body.free) {
+    state = "on its way";
+  } else if (short_of_shift || short_of_turn) {
     state = short_of_turn ? fmt::format("held by contact, {:.1f} mm and {:.1f}\u00b0 short",
                                         short_mm, short_deg)
                           : fmt::format("held by contact, {:.1f} mm short", short_mm);
@@ -187,12 +184,14 @@ void Panels::Drawing::moving() {
   ImGui::SameLine(0, gap);
   ImGui::BeginDisabled(!hand);
   if (word_button(pen, "put-back", "Put back", size, false)) {
-    view.hands.put_back(body);
+    view.hands.put_back(body, X_CM);
   }
   ImGui::EndDisabled();
-  tooltip(pen, body.free    ? "To where it was loaded"
-               : body.skull ? "To where it was loaded; the jaw is as before the skull was moved"
-                            : "The jaw follows the motion again");
+  tooltip(pen, body.free ? "To where it was loaded"
+               : body.skull
+                   ? "To where it was loaded; a jaw that stayed in the picture is as before the "
+                     "skull was moved"
+                   : "The jaw follows the motion again");
   if (word_button(pen, "let-go", body.free ? "Let go onto the bone" : "Let go to the muscles",
                   {ImGui::GetContentRegionAvail().x, size.y}, false))
     panels.wishes_.push_back(wish::LetGo{view.chosen});

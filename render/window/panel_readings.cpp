@@ -128,7 +128,7 @@ void Panels::Drawing::opening() {
   double wanted = held ? *view.opening_mm : std::clamp(live, 0.0, most);
   ImGui::BeginDisabled(!opens);
   if (slider(pen, "opening", wanted, {.high = most, .width = width, .held = held})) {
-    view.hands.release_jaw();
+    view.hands.release_jaw(panels.X_CM_);
     view.opening_mm = wanted;
     view.playing = false;
   }

@@ -75,7 +75,11 @@ void Panels::Drawing::record_cameras() {
     ImGui::EndCombo();
   }
   pen.mark("record-cameras", shown);
-  tooltip(pen, "Where the motion is seen from. Several cameras record at once, a folder for each");
+  tooltip(
+      pen,
+      "Where the motion is seen from. Several cameras record at once, a folder for each. Front, "
+      "Left, arches and the like look along the skull's own axes; only This view shows a skull "
+      "that was moved as it stands in the picture");
   if (!fields.camera_from_file) return;
   text_field(pen, "record-camera-file", fields.camera_file, record_label("File"), "camera.json");
   tooltip(pen,
@@ -136,7 +140,9 @@ void Panels::Drawing::record() {
     if (number_field(pen, name, number, "%.0f", panels.drafts_.number))
       value = std::clamp(static_cast<int>(std::lround(std::clamp(number, 0.0, 1e6))),
                          least_picture_px, most_picture_px);
-    tooltip(pen, "Any width and height, 16 to 8192 pixels");
+    tooltip(pen,
+            "Any width and height, 16 to 8192 pixels; times Finer, as far as the graphics driver "
+            "draws: Record tells of too many");
   };
   pixels("record-width", choice.width);
   ImGui::SameLine(0, pen.px(5));
@@ -150,7 +156,7 @@ void Panels::Drawing::record() {
   row("Finer", "record-finer", choice.supersampling,
       Choices{{{1, "1x"}, {2, "2x"}, {3, "3x"}, {4, "4x"}}},
       "Supersampling: draws so many times as wide and high, then averages. The finest lines and "
-      "edges, in more time. 1x has smooth edges, too");
+      "edges, in more time. At 1x edges are as chosen below");
   int edges = static_cast<int>(choice.edges);
   row("Edges", "record-edges", edges,
       std::array<std::pair<int, const char*>, 3>{{{0, "MSAA"}, {1, "FXAA"}, {2, "Hard"}}},

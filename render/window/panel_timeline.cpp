@@ -41,7 +41,7 @@ void Panels::Drawing::timeline() {
   ImGui::BeginDisabled(duration <= 0);
   ImGui::SetCursorPos({pen.px(14), row});
   if (sign_button(pen, "to-start", Sign::to_start, {side, side}, palette().field))
-    seek(view, 0, duration);
+    seek(view, 0, duration, panels.X_CM_);
   tooltip(pen, "To the beginning");
   ImGui::SameLine(0, gap);
   if (sign_button(pen, "step-back", Sign::step_back, {side, side}, palette().field))
@@ -50,7 +50,7 @@ void Panels::Drawing::timeline() {
   ImGui::SameLine(0, gap);
   if (sign_button(pen, "play", view.playing ? Sign::pause : Sign::play, {side * 1.5f, side},
                   palette().accent_dark))
-    toggle_playing(view, duration);
+    toggle_playing(view, duration, panels.X_CM_);
   tooltip(pen, view.playing ? "Pause. Space" : "Play. Space");
   ImGui::SameLine(0, gap);
   if (sign_button(pen, "step-forward", Sign::step_forward, {side, side}, palette().field))
@@ -84,7 +84,7 @@ void Panels::Drawing::timeline() {
   double time = view.time_s;
   if (slider(pen, "scrub", time, {.high = std::max(duration, 1e-9), .width = scrub_width})) {
     view.playing = false;
-    seek(view, time, duration);
+    seek(view, time, duration, panels.X_CM_);
   }
   draw_ticks(pen, scrub_at, scrub_width, scrub_at.y + ImGui::GetFrameHeight() / 2 + pen.px(9),
              duration);

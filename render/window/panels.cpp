@@ -69,23 +69,23 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
   switch (command) {
     case Command::toggle_play:
       take_jaw();
-      toggle_playing(view, duration);
+      toggle_playing(view, duration, X_CM_);
       return true;
     case Command::step_back:
       take_jaw();
-      step_clock(view, -step, duration);
+      step_clock(view, -step, duration, X_CM_);
       return true;
     case Command::step_forward:
       take_jaw();
-      step_clock(view, step, duration);
+      step_clock(view, step, duration, X_CM_);
       return true;
     case Command::jump_back:
       take_jaw();
-      step_clock(view, -10 * step, duration);
+      step_clock(view, -10 * step, duration, X_CM_);
       return true;
     case Command::jump_forward:
       take_jaw();
-      step_clock(view, 10 * step, duration);
+      step_clock(view, 10 * step, duration, X_CM_);
       return true;
     case Command::toggle_skin:
       remember(view);
@@ -190,6 +190,10 @@ void Panels::forget_patient() {
   drafts_.landmark_words.clear();
   drafts_.parameters.clear();
   drafts_.excitations.clear();
+  drafts_.number.reset();
+  record_.caption.clear();
+  record_.camera_file.clear();
+  record_.camera_from_file = false;
 }
 
 bool Panels::undo(ViewState& view, bool back) {
@@ -217,6 +221,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
   const Edits before = view.edits();
   if (said_until_ < 0) said_until_ = ImGui::GetTime() + said_for_s;
   if (ImGui::GetTime() > said_until_) said_.clear();
+  X_CM_ = input.frame ? input.frame->X_CM : Pose{};
   if (input.frame) {
     const std::uint64_t step =
         input.frame->state_hash ^ std::bit_cast<std::uint64_t>(input.frame->time_s);

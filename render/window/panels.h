@@ -151,6 +151,7 @@ class Panels {
   std::vector<float> step_ms_;
   std::vector<std::array<double, stage_names.size()>> stage_ms_;
   std::uint64_t last_step_ = 0;
+  Pose X_CM_;  // of the frame as last drawn
   std::vector<DrawnItem> items_;
 };
 

@@ -24,23 +24,23 @@ void advance_clock(ViewState& view, double elapsed_s, double duration_s, double 
   }
 }
 
-void toggle_playing(ViewState& view, double duration_s) {
+void toggle_playing(ViewState& view, double duration_s, const Pose& X_CM) {
   if (duration_s <= 0) return;
   view.playing = !view.playing;
   if (!view.playing) return;
   view.opening_mm.reset();
-  view.hands.release_jaw();
+  view.hands.release_jaw(X_CM);
   if (view.time_s >= duration_s) view.time_s = 0;
 }
 
-void step_clock(ViewState& view, double delta_s, double duration_s) {
+void step_clock(ViewState& view, double delta_s, double duration_s, const Pose& X_CM) {
   view.playing = false;
-  seek(view, view.time_s + delta_s, duration_s);
+  seek(view, view.time_s + delta_s, duration_s, X_CM);
 }
 
-void seek(ViewState& view, double time_s, double duration_s) {
+void seek(ViewState& view, double time_s, double duration_s, const Pose& X_CM) {
   view.opening_mm.reset();
-  view.hands.release_jaw();
+  view.hands.release_jaw(X_CM);
   view.time_s = std::clamp(time_s, 0.0, std::max(0.0, duration_s));
 }
 

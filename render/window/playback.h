@@ -15,13 +15,13 @@ double allowed_lead_s(double loop_s);
 void advance_clock(ViewState& view, double elapsed_s, double duration_s, double shown_s);
 
 /// Starts or stops playing; starting at the end begins anew, and lets go of a held
-/// opening or jaw.
-void toggle_playing(ViewState& view, double duration_s);
+/// opening or jaw, which is at X_CM.
+void toggle_playing(ViewState& view, double duration_s, const Pose& X_CM);
 
 /// Moves the stopped clock by `delta_s`, within the motion.
-void step_clock(ViewState& view, double delta_s, double duration_s);
+void step_clock(ViewState& view, double delta_s, double duration_s, const Pose& X_CM);
 
 /// Puts the clock at a time of the motion, and lets go of a held opening or jaw.
-void seek(ViewState& view, double time_s, double duration_s);
+void seek(ViewState& view, double time_s, double duration_s, const Pose& X_CM);
 
 }  // namespace condyle

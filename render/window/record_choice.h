@@ -15,8 +15,8 @@ enum class RecordEdges { msaa, fxaa, none };
 
 constexpr int least_picture_px = 16, most_picture_px = 8192;  // a side
 
-/// How a person wants recordings. It says nothing about the patient, so it is kept from one run to
-/// the next.
+/// How a person wants recordings; what says nothing about the patient is kept from one run to the
+/// next.
 struct RecordChoice {
   int width = 1920, height = 1080;  // pixels
   double frames_per_second = 30;
@@ -24,6 +24,7 @@ struct RecordChoice {
   RecordEdges edges = RecordEdges::msaa;
   bool film = true, transparent = false;
   std::set<std::string> cameras = {own_camera};
+  // Of this patient alone:
   bool camera_from_file = false;
   std::string camera_file = {}, caption = {};
 

@@ -20,6 +20,15 @@ void ViewState::fit(const WindowScene& scene) {
   layers.resize(scene.layers.size(), layer);
 }
 
+void ViewState::move(const MovableBody& body, const Pose& wanted, const Pose& X_CM) {
+  if (!body.free) {
+    if (body.skull && opening_mm) hands.mandible = X_CM;
+    opening_mm.reset();
+    playing = false;
+  }
+  hands.move(body, wanted, X_CM);
+}
+
 void ViewState::return_skin() {
   const auto before = std::exchange(skin_to_return, std::nullopt);
   if (before && skin_opacity == 0) skin_opacity = *before;

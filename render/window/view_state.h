@@ -119,6 +119,7 @@ struct Edits {
 /// here steps the simulation.
 struct ViewState : Edits, PanelChoice {
   bool playing = false;
+  bool falling = false;  // a jaw that was let go is on its way to where it is wanted
   bool loop = true;
   double speed = 1;                          // times real time, 0.1 to 2
   double time_s = 0;                         // of the motion, 0 to duration
@@ -129,6 +130,9 @@ struct ViewState : Edits, PanelChoice {
   const Edits& edits() const { return *this; }
   /// Whether a hand has the jaw, not the motion.
   bool jaw_is_held() const { return opening_mm || hands.X_CM_wanted(); }
+  /// A hand moves a body; the jaw is at X_CM. A jaw or skull that is moved ends the motion; a mouth
+  /// that the slider held open stays so once the skull is put back.
+  void move(const MovableBody& body, const Pose& wanted, const Pose& X_CM);
   /// Distances are off: the skin is as it was before, unless the person has set it since.
   void return_skin();
   /// What was set at another time; the rest stays, but the clock stops where a hand has the jaw.

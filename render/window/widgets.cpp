@@ -301,18 +301,23 @@ bool typed_number(Pen& pen, const char* name, const ImRect& rect, double& value,
 }  // namespace
 
 bool number_field(Pen& pen, const char* name, double& value, const char* format,
-                  std::optional<double>& draft) {
+                  std::optional<NumberDraft>& draft) {
   double written = value;
-  if (ImGui::InputDouble(("##" + std::string(name)).c_str(), &written, 0, 0, format,
-                         ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CharsScientific))
-    draft = written;
+  const bool changed =
+      ImGui::InputDouble(("##" + std::string(name)).c_str(), &written, 0, 0, format,
+                         ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CharsScientific);
+  const auto is_mine = [&] { return draft && draft->field == name; };
+  // It may have gone while it was written in; another one's may still be entered in this pass.
+  if (ImGui::IsItemActivated() && is_mine()) draft.reset();
+  if (changed) draft = NumberDraft{name, written};
   const bool left = ImGui::IsItemDeactivated();
   std::array<char, 64> shown{};
   std::snprintf(shown.data(), shown.size(), format, value);
   pen.mark(name, shown.data());
   if (ImGui::IsItemActive()) pen.mark("writing");
-  if (!left) return false;
-  const double entered = std::exchange(draft, std::nullopt).value_or(value);
+  if (!left || !is_mine()) return false;
+  const double entered = draft->number;
+  draft.reset();
   if (entered == value || !std::isfinite(entered)) return false;
   value = entered;
   return true;

@@ -59,7 +59,6 @@ bool sign_button(Pen& pen, const char* name, Sign sign, ImVec2 size, ImU32 backg
 /// A button with a word or a letter; `on` fills it with the accent.
 bool word_button(Pen& pen, const char* name, const char* label, ImVec2 size, bool on);
 
-/// A flat slider: a thin bar with a round handle over `width`. gives: true while it changes.
 struct SliderLook {
   double low = 0, high = 1;
   float width = 100;  // pixels
@@ -68,13 +67,14 @@ struct SliderLook {
   bool held = false;   // handle in the warning colour: the hand overrides the motion
   double typed = 1;    // the number that is typed, of a value of 1: 100 for a share in %
 };
-/// Ctrl+click opens a field for the number instead; Enter takes it, within the slider's ends.
 /// A field for a number of the width that was set for the next item, shown in a printf format. What
 /// is written stands in `draft` until Enter, Tab or a click elsewhere enters it. gives: true when
 /// another number was entered.
 bool number_field(Pen& pen, const char* name, double& value, const char* format,
-                  std::optional<double>& draft);
+                  std::optional<NumberDraft>& draft);
 
+/// A flat slider: a thin bar with a round handle over `width`. gives: true while it changes.
+/// Ctrl+click opens a field for the number instead; Enter takes it, within the slider's ends.
 bool slider(Pen& pen, const char* name, double& value, const SliderLook& look);
 
 /// A line of text to write in, with a hint while it is empty. gives: true when Enter is pressed.

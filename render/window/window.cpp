@@ -218,6 +218,8 @@ std::vector<Wish> Window::take_wishes() {
   for (Wish& one : wishes)
     if (auto* record = std::get_if<wish::Record>(&one)) {
       record->picture = s.settings();
+      const Pose X_RC = s.view.hands.X_RC(s.frame() ? s.frame()->X_CM : Pose{});
+      record->upright = X_RC.R.conjugate() * Eigen::Vector3d::UnitZ();
       if (s.view.look.wipe) record->kept = s.kept;
     }
   if (!s.dropped.empty()) wishes.push_back(wish::Open{std::exchange(s.dropped, {})});

@@ -99,7 +99,8 @@ void Window::State::apply_look(PictureSettings& wanted) const {
 }
 
 bool Window::State::moving() const {
-  return view.playing || held || drag != CameraDrag::none || seconds_since(last_change) < calm_s;
+  return view.playing || view.falling || held || drag != CameraDrag::none ||
+         seconds_since(last_change) < calm_s;
 }
 
 double Window::State::screen_scale() const {

@@ -167,7 +167,13 @@ void Window::State::note_size() {
 void Window::State::set_standard_view(std::string_view name) {
   if (!order.parts || name.empty()) return;
   const ViewRect rect = view_rect();
-  const Eigen::Vector3d low = box.min(), high = box.max();
+  Eigen::AlignedBox3d in_room = box;
+  if (view.hands.skull) {
+    const Pose X_RC = view.hands.X_RC(frame() ? frame()->X_CM : Pose{});
+    for (int corner = 0; corner < 8; ++corner)
+      in_room.extend(X_RC * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
+  }
+  const Eigen::Vector3d low = in_room.min(), high = in_room.max();
   camera = standard_camera(std::string(name), low, high, rect.width / rect.height);
   const double size = std::max(1.0, (high - low).norm());
   zoom = {.nearest_mm = 0.05 * size, .farthest_mm = 12 * size};

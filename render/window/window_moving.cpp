@@ -85,16 +85,12 @@ bool Window::State::grip_body(const Eigen::Vector2d& at) {
 
 void Window::State::move_body(const Eigen::Vector2d& at) {
   const MovableBody& body = scene.bodies[held->body];
-  if (!body.free) {
-    view.playing = false;
-    view.opening_mm.reset();
-  }
   const Pose& X_CM = frame()->X_CM;
   // The skull's handles are told in its own frame, as it was gripped.
   const Pose wanted = body.skull ? held->start * gripped(held->view, held->grip, {}, held->from, at)
                                  : carrier_pose(body, X_CM).inverse() *
                                        gripped(held->view, held->grip, held->start, held->from, at);
-  view.hands.move(body, wanted, X_CM);
+  view.move(body, wanted, X_CM);
   last_change = Clock::now();
   frames_due = 3;
 }

@@ -69,7 +69,8 @@ struct Record {
   bool transparent = false;
   int supersampling = 1;
   RecordEdges edges = RecordEdges::msaa;
-  Camera camera;  // the window's
+  Camera camera;                        // the window's, in the cranium's frame
+  Eigen::Vector3d upright = {0, 0, 1};  // what it turns about: the room's, in the cranium's frame
   PictureSettings picture;
   std::shared_ptr<const FrameState> kept = {};  // left of the wipe, if there is one
 };

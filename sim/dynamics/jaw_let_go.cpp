@@ -88,23 +88,23 @@ JawLetGo let_go_jaw(const Case& patient, const Pose& from, const JawLetGoSetting
       excitations.push_back(told == settings.excitations.end() ? 0 : told->second);
     }
 
-  JawLetGo out{.step_s = jaw.step_s(), .X_CM = {from}, .rest = {}};
+  JawLetGo course{.step_s = jaw.step_s(), .X_CM = {from}, .rest = {}, .on_teeth = muscles.teeth};
   double still_s = 0;
-  while (out.rest.seconds < settings.rest.longest_s && still_s < settings.rest.still_for_s) {
+  while (course.rest.seconds < settings.rest.longest_s && still_s < settings.rest.still_for_s) {
     if (!jaw.step(excitations, threads)) torn_off(patient);
-    out.rest.seconds += jaw.step_s();
-    out.X_CM.push_back(jaw.pose());
+    course.rest.seconds += jaw.step_s();
+    course.X_CM.push_back(jaw.pose());
     const RigidMotion& motion = jaw.motion();
     const bool still =
         motion.velocity.norm() + radius_mm * motion.spin.norm() < settings.rest.still_mm_s;
     still_s = still ? still_s + jaw.step_s() : 0;
   }
-  out.rest.reached = still_s >= settings.rest.still_for_s;
+  course.rest.reached = still_s >= settings.rest.still_for_s;
   for (const RigidContact& contact : jaw.world().contacts()) {
-    out.bite_N += contact.push_N;
-    out.rest.depth_mm = std::max(out.rest.depth_mm, -contact.gap_mm);
+    course.bite_N += contact.push_N;
+    course.rest.depth_mm = std::max(course.rest.depth_mm, -contact.gap_mm);
   }
-  return out;
+  return course;
 }
 
 }  // namespace condyle

@@ -18,11 +18,13 @@ struct JawLetGoSettings {
   RestSettings rest = {.longest_s = 4, .still_mm_s = 0.5};
 };
 
+/// Its course.
 struct JawLetGo {
   double step_s = 0;
   std::vector<Pose> X_CM;  // at each step, from where it was let go
   Rest rest;               // its teeth need not touch
-  double bite_N = 0;       // between the teeth in the end
+  double bite_N = 0;       // between the jaws in the end
+  bool on_teeth = true;    // they meet in their teeth; else in a flat bite
 };
 
 /// Lets the mandible go from where a hand has it: its joints draw the condyles onto their paths,

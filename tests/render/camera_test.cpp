@@ -74,6 +74,12 @@ TEST(Camera, AFullTurnComesBackAndAQuarterShowsTheSide) {
   EXPECT_TRUE(turned(front, 2 * M_PI).direction.isApprox(front.direction, 1e-12));
   EXPECT_TRUE(turned(front, M_PI / 2).direction.isApprox(Eigen::Vector3d(1, 0, 0), 1e-12));
   EXPECT_DOUBLE_EQ(turned(front, 1).distance_mm, front.distance_mm);
+  // Told in another frame it turns about the same axis.
+  const Pose X{Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized())),
+               Eigen::Vector3d(5, 6, 7)};
+  const Camera there = turned(told_in(X, front), 1, X.R * Eigen::Vector3d::UnitZ());
+  EXPECT_TRUE(there.direction.isApprox(told_in(X, turned(front, 1)).direction, 1e-12));
+  EXPECT_TRUE(there.up.isApprox(told_in(X, turned(front, 1)).up, 1e-12));
 }
 
 TEST(Camera, LookingAlongUpStillGivesAView) {

@@ -101,7 +101,7 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
   const auto tip = rect("handle:S");
   drag(tip[0] + 3, tip[1] + 3, tip[0] + 3, tip[1] - 27);
   EXPECT_TRUE(wait_until([](const Json& s) {
-    return s.contains("hand_mm") && double(s["frame"]["mandible_mm"][2]) > 3;
+    return s.contains("X_CM_wanted") && double(s["frame"]["mandible_mm"][2]) > 3;
   })) << state().dump();
   fs::copy_file(folder_ / "maxilla.stl", folder_ / "face.stl");
   EXPECT_TRUE(drop_files("Condyle", {folder_ / "face.stl"}));
@@ -260,6 +260,11 @@ TEST_F(WindowSession, ARecordingFromThePanelHasTheBitsOfTheCommandWithTheSameCho
     EXPECT_TRUE(press("Return"));
     EXPECT_TRUE(wait_for_item("error", false));
   };
+  write_into("record-width", "8192");
+  click("record-finer:4");
+  refused("at most 4096 pixels a side when drawn 4x finer");
+  click("record-finer:2");
+  click("record-height:720");
   write_into("record-caption", "{age}");
   refused("{age} is unknown");
   write_into("record-caption", "Once");

@@ -21,6 +21,7 @@ TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   EXPECT_TRUE(wait_until([&](const Json& s) {
     return opening_mm(s) < held_mm - 4 && opening_mm(s) > 3;
   })) << "it is seen on its way";
+  EXPECT_TRUE(press("k"));  // an edit meanwhile
   // The rest position: 2.5 mm of freeway space, in the middle.
   const auto hangs = [](const Json& s) {
     return idle(s) && std::abs(opening_mm(s) - 2.5) < 0.3 &&
@@ -28,6 +29,10 @@ TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   };
   ASSERT_TRUE(wait_until(hangs)) << state()["frame"].dump();
   EXPECT_GT(see("hangs"), 0.02);
+  EXPECT_TRUE(press("ctrl+z"));
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["skin_opacity"] == 0; }));
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  EXPECT_TRUE(hangs(state())) << "the edit alone is undone: " << state()["frame"].dump();
   EXPECT_TRUE(press("ctrl+z"));
   EXPECT_TRUE(wait_until([&](const Json& s) { return std::abs(opening_mm(s) - held_mm) < 1e-6; }));
   EXPECT_TRUE(press("ctrl+y"));
@@ -73,7 +78,8 @@ TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsLetGo) {
   // Up by its number: the jaw stays in the picture, and is by so much farther away.
   write_into("shift:S", "10");
   ASSERT_TRUE(wait_until([&](const Json& s) {
-    return std::abs(opening_mm(s) - opened_mm - 10) < 1e-6 && double(s["skull_mm"][2]) == 10;
+    return std::abs(opening_mm(s) - opened_mm - 10) < 1e-6 &&
+           double(s["X_RC_wanted"]["mm"][2]) == 10;
   })) << state()["frame"].dump();
   EXPECT_GT(see("skull-up"), 0.02);
   const Region view = view_region();
@@ -83,16 +89,30 @@ TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsLetGo) {
   // By its handle, and back.
   const auto tip = rect("handle:L");
   drag(tip[0] + 3, tip[1] + 3, tip[0] + 43, tip[1] + 3);
-  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["skull_mm"][0]) > 5; }));
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["X_RC_wanted"]["mm"][0]) > 5; }));
   EXPECT_TRUE(press("ctrl+z"));
-  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["skull_mm"][0]) == 0; }));
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["X_RC_wanted"]["mm"][0]) == 0; }));
   // Down onto the jaw: contact keeps it up.
   write_into("shift:S", "-60");
   ASSERT_TRUE(wait_until([](const Json& s) {
     return s["frame"]["stopped"] == true && double(s["frame"]["penetration_mm"]) < 0.1 &&
-           double(s["skull_mm"][2]) == -60;
+           double(s["X_RC_wanted"]["mm"][2]) == -60;
   })) << state()["frame"].dump();
   see("skull-on-the-jaw");
+  // Play takes the jaw alone: the skull stays where contact stopped it.
+  const double stopped_mm = state()["X_RC"]["mm"][2];
+  EXPECT_GT(stopped_mm, -55);
+  EXPECT_TRUE(press("space"));
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["playing"] == true; }));
+  EXPECT_NEAR(double(state()["X_RC"]["mm"][2]), stopped_mm, 0.05);
+  see_now("plays");
+  EXPECT_TRUE(press("space"));
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["playing"] == false; }));
+  settled_picture();
+  EXPECT_NEAR(double(state()["X_RC"]["mm"][2]), stopped_mm, 0.05);
+  const double motion_mm = opening_mm(state());
+  EXPECT_TRUE(press("ctrl+z"));
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["X_RC_wanted"]["mm"][2]) == -60; }));
   // Let go, joints and muscles bring both together; the motion has the jaw when it plays.
   click("let-go");
   EXPECT_TRUE(wait_until([](const Json& s) {
@@ -100,8 +120,8 @@ TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsLetGo) {
   })) << state()["frame"].dump();
   see("let-go");
   click("put-back");
-  EXPECT_TRUE(wait_until([](const Json& s) { return !s.contains("skull_mm"); }));
-  EXPECT_TRUE(wait_until([&](const Json& s) { return std::abs(opening_mm(s) - opened_mm) < 0.01; }))
+  EXPECT_TRUE(wait_until([](const Json& s) { return !s.contains("X_RC_wanted"); }));
+  EXPECT_TRUE(wait_until([&](const Json& s) { return std::abs(opening_mm(s) - motion_mm) < 0.01; }))
       << state()["frame"].dump();
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);

@@ -87,7 +87,7 @@ TEST_F(WindowSession, ThePatientIsUsedFromOpeningToQuitting) {
   EXPECT_GT(see("pulled-down"), 0.005);
   pull("handle:S", 0, -110);
   ASSERT_TRUE(wait_until([](const Json& s) {
-    return s["frame"]["stopped"] == true && double(s["hand_mm"][2]) > 5 &&
+    return s["frame"]["stopped"] == true && double(s["X_CM_wanted"]["mm"][2]) > 5 &&
            std::abs(double(s["frame"]["mandible_mm"][2])) < 2 &&
            double(s["frame"]["penetration_mm"]) < 0.1;
   })) << state()["frame"].dump();
@@ -104,7 +104,7 @@ TEST_F(WindowSession, ThePatientIsUsedFromOpeningToQuitting) {
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(wait_until([](const Json& s) {
     // Home within what contact leaves open: the teeth touch there.
-    return !s.contains("hand_mm") && std::abs(double(s["frame"]["mandible_mm"][2])) < 1e-3;
+    return !s.contains("X_CM_wanted") && std::abs(double(s["frame"]["mandible_mm"][2])) < 1e-3;
   }));
   see("undone");
   EXPECT_TRUE(alike(seen_, at_rest, 0.003, view_region()));

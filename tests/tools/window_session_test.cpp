@@ -54,7 +54,8 @@ TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
   auto tip = rect("handle:S");
   drag(tip[0] + 3, tip[1] + 3, tip[0] + 3, tip[1] - 57);
   ASSERT_TRUE(wait_until([](const Json& s) {
-    return s.contains("hand_mm") && double(s["hand_mm"][2]) > 5 && s["frame"]["stopped"] == true;
+    return s.contains("X_CM_wanted") && double(s["X_CM_wanted"]["mm"][2]) > 5 &&
+           s["frame"]["stopped"] == true;
   }));
   ASSERT_TRUE(wait_until([](const Json& s) {
     return std::abs(double(s["frame"]["mandible_mm"][2]) - 1) < 0.2;
@@ -72,7 +73,7 @@ TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
   EXPECT_TRUE(press("ctrl+z"));
   EXPECT_TRUE(press("ctrl+z"));
   EXPECT_TRUE(wait_until([](const Json& s) {
-    return !s.contains("hand_mm") && std::abs(double(s["frame"]["mandible_mm"][2])) < 1e-6;
+    return !s.contains("X_CM_wanted") && std::abs(double(s["frame"]["mandible_mm"][2])) < 1e-6;
   }));
 
   // Measure between two places of the bone in front.

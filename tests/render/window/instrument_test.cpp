@@ -266,6 +266,22 @@ TEST_P(Instrument, ALongMotionInWordsIsCutBesideItsHeading) {
   EXPECT_GE(beside.x, heading.x + heading.width);
 }
 
+TEST_P(Instrument, AnotherPatientsRecordingHasNothingOfThisOnesCaption) {
+  stage.click("tab:Record");
+  stage.rest();
+  stage.enter("record-caption", "Anna");
+  stage.click("record-height:720");
+  const auto recorded = [&] {
+    stage.click("record");
+    return std::get<wish::Record>(stage.panels->take_wishes().at(0));
+  };
+  EXPECT_EQ(recorded().caption, "Anna");
+  stage.panels->forget_patient();
+  stage.rest();
+  EXPECT_EQ(recorded().caption, "");
+  EXPECT_EQ(recorded().height, 720);
+}
+
 TEST_P(Instrument, ARecordingHasAnySizeWithinBounds) {
   stage.click("tab:Record");
   stage.rest();
@@ -706,11 +722,13 @@ TEST_F(ArrangementFile, WhatAPersonChangesComesBackAndNothingElse) {
                  .edges = RecordEdges::fxaa,
                  .film = false,
                  .transparent = true,
-                 .cameras = {"front", "left"},
-                 .camera_from_file = true,
-                 .camera_file = "path.json",
-                 .caption = "Opening {opening} mm"}};
-  run({}, all);
+                 .cameras = {"front", "left"}}};
+  // What was meant for one patient is not kept.
+  Arrangement of_a_patient = all;
+  of_a_patient.record.camera_from_file = true;
+  of_a_patient.record.camera_file = "path.json";
+  of_a_patient.record.caption = "Anna, opening {opening} mm";
+  run({}, of_a_patient);
   EXPECT_EQ(kept(), all);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file_.parent_path()), {}), 1);
   // A command line asked for dark panels and another size: it stays with its run, whatever else is

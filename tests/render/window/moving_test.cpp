@@ -85,11 +85,26 @@ TEST(Movable, TheSkullMovesInTheRoomAgainstAJawThatStaysThere) {
   EXPECT_TRUE(near(*further.X_CM_wanted(), held));
   // So does the motion; and to put the skull back takes back that it was moved.
   further = hands;
-  further.release_jaw();
+  further.release_jaw(held);
   EXPECT_FALSE(further.X_CM_wanted());
-  EXPECT_TRUE(near(further.X_RC(Pose{}), up));
-  hands.put_back(skull);
+  EXPECT_TRUE(near(further.X_RC(Pose{}), hands.X_RC(held)));
+  hands.put_back(skull, held);
   EXPECT_TRUE(hands == before);
+}
+
+TEST(Movable, AFreePartThatIsMovedLeavesTheJawsInTheSameHands) {
+  std::vector<Part> parts = box_patient();
+  parts.push_back(box_part("graft", Role::transplant, {0, 0, 0}, {10, 20, 30}));
+  const auto bodies = movable_bodies(parts);
+  const Pose opened = pose_at({{0, -4, -9}, {12, 0, 3}}, bodies[0].center);
+  Hands hands;
+  hands.move(bodies[0], opened, Pose{});
+  const Hands before = hands;
+  hands.move(bodies[2], opened, opened);
+  EXPECT_TRUE(hands.same_jaws(before));
+  EXPECT_FALSE(hands == before);
+  hands.move(bodies[1], Pose{}, opened);
+  EXPECT_FALSE(hands.same_jaws(before));
 }
 
 TEST(Handles, BodyFollowsTheMouseInThePlaneOfThePicture) {
@@ -199,6 +214,54 @@ TEST(MovePanel, ButtonsUndoAndPutBack) {
   // Playing takes the jaw from the hand.
   stage.click("play");
   EXPECT_FALSE(stage.view.hands.mandible);
+}
+
+TEST(MovePanel, PlayStepsAndTheSliderLeaveASkullThatContactHolds) {
+  const auto start = [](PanelStage& stage) {
+    stage.scene.bodies = movable_bodies(stage.parts);
+    stage.view.tool = Tool::move;
+    stage.frame.X_CM = Pose{Eigen::Quaterniond::Identity(), {0, -4, -20}};
+    const Pose down{Eigen::Quaterniond::Identity(), {0, 0, -60}};
+    stage.view.move(stage.scene.bodies[1], down, stage.frame.X_CM);
+    stage.frame.X_CM = Pose{Eigen::Quaterniond::Identity(), {0, -4, 20}};
+    stage.rest();
+    return stage.view.hands.X_RC(stage.frame.X_CM);
+  };
+  using Way = void (*)(PanelStage&);
+  const Way ways[] = {
+      [](PanelStage& stage) { stage.click("play"); },
+      [](PanelStage& stage) { stage.panels->run(Command::step_forward, stage.scene, stage.view); },
+      [](PanelStage& stage) { stage.click("scrub"); },
+      [](PanelStage& stage) { stage.click("opening"); }};
+  for (const Way take_jaw : ways) {
+    PanelStage stage(1280, 720, 1);
+    const Pose held = start(stage);
+    EXPECT_NEAR(held.t.z(), -40, 1e-9);
+    take_jaw(stage);
+    EXPECT_FALSE(stage.view.hands.X_CM_wanted());
+    EXPECT_TRUE(near(stage.view.hands.X_RC(stage.frame.X_CM), held));
+    EXPECT_TRUE(near(stage.view.hands.X_RC(Pose{}), held));
+  }
+}
+
+TEST(MovePanel, TheSkullIsPutBackToAMouthThatTheSliderHeldOpen) {
+  PanelStage stage(1280, 720, 1);
+  stage.scene.bodies = movable_bodies(stage.parts);
+  stage.view.tool = Tool::move;
+  stage.view.chosen = 1;
+  stage.view.opening_mm = 20;
+  stage.frame = box_frame(1, 20);
+  const Pose opened = stage.frame.X_CM;
+  stage.rest();
+  stage.enter("shift:S", "1");
+  EXPECT_FALSE(stage.view.opening_mm);
+  stage.frame.X_CM = *stage.view.hands.X_CM_wanted();
+  EXPECT_FALSE(near(stage.frame.X_CM, opened));
+  stage.rest();
+  stage.click("put-back");
+  ASSERT_TRUE(stage.view.hands.X_CM_wanted());
+  EXPECT_TRUE(near(*stage.view.hands.X_CM_wanted(), opened));
+  EXPECT_TRUE(near(stage.view.hands.X_RC(opened), Pose{}));
 }
 
 TEST(MovePanel, OffersToLetGoOfEveryBodyAndSaysHow) {
@@ -315,6 +378,37 @@ TEST_F(HeldJaw, ANumberIsEnteredByAClickElsewhereToo) {
   stage.rest();
   EXPECT_NEAR(up_mm(), 4.5, 1e-9);
   EXPECT_EQ(stage.item("turn:S").words, "0.00\u00b0") << "the next field has nothing of it";
+}
+
+TEST_F(HeldJaw, AFieldAboveIsClickedWhileOneIsWrittenIn) {
+  stage.click("turn:S");
+  stage.rest();
+  ImGui::GetIO().AddInputCharactersUTF8("4.5");
+  stage.rest();
+  stage.click("shift:S");
+  stage.rest();
+  const Placement now = placement_of(*stage.view.hands.mandible, stage.scene.bodies[0].center);
+  EXPECT_NEAR(now.turn_deg.z(), 4.5, 1e-9);
+  EXPECT_NEAR(now.shift_mm.z(), 12, 1e-9);
+}
+
+TEST_F(HeldJaw, WhatStoodInAFieldThatWentIsNobodysNumber) {
+  const Hands before = stage.view.hands;
+  for (const char* next : {"turn:L", "shift:S"}) {
+    stage.click("shift:S");
+    stage.rest();
+    ImGui::GetIO().AddInputCharactersUTF8("4.5");
+    stage.rest();
+    stage.view.tool = Tool::look;
+    stage.rest();
+    stage.view.tool = Tool::move;
+    stage.rest();
+    stage.click(next);
+    stage.rest();
+    stage.click("shift:L");
+    stage.rest();
+    EXPECT_TRUE(stage.view.hands == before) << next;
+  }
 }
 
 }  // namespace

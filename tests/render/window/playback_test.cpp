@@ -55,7 +55,7 @@ TEST(Playback, LoopsOrStopsAtTheEnd) {
   advance_clock(view, 0.05, 4, 3.99);
   EXPECT_FALSE(view.playing);
   EXPECT_EQ(view.time_s, 4);
-  toggle_playing(view, 4);  // from the end it begins anew
+  toggle_playing(view, 4, {});  // from the end it begins anew
   EXPECT_TRUE(view.playing);
   EXPECT_EQ(view.time_s, 0);
 }
@@ -63,17 +63,17 @@ TEST(Playback, LoopsOrStopsAtTheEnd) {
 TEST(Playback, TimeStaysInTheMotionAndTheHandLetsGo) {
   ViewState view;
   view.opening_mm = 12;
-  step_clock(view, -1, 4);
+  step_clock(view, -1, 4, {});
   EXPECT_EQ(view.time_s, 0);
   EXPECT_FALSE(view.opening_mm.has_value());
-  seek(view, 99, 4);
+  seek(view, 99, 4, {});
   EXPECT_EQ(view.time_s, 4);
   view.opening_mm = 3;
   view.time_s = 1;
-  toggle_playing(view, 4);
+  toggle_playing(view, 4, {});
   EXPECT_FALSE(view.opening_mm.has_value());
   ViewState still;
-  toggle_playing(still, 0);  // no motion: nothing to play
+  toggle_playing(still, 0, {});  // no motion: nothing to play
   EXPECT_FALSE(still.playing);
 }
 

@@ -40,16 +40,17 @@ TEST(JawLetGo, FallsBackToItsRestPositionFromWhereverAHandHadIt) {
   for (const Pose& from :
        {Pose{}, in_hand(builtin(), 30, 0, {0, 0, 0}), in_hand(builtin(), 20, 0, {0, -10, -5}),
         in_hand(builtin(), 0, 0, {0, 0, -20}), in_hand(builtin(), 10, 8, {8, 0, -5})}) {
-    const JawLetGo jaw = let_go_jaw(builtin(), from, {.X_CM_rest = X_rest}, 2);
-    ASSERT_TRUE(jaw.rest.reached);
-    EXPECT_EQ(jaw.X_CM.front().t, from.t);
+    const JawLetGo course = let_go_jaw(builtin(), from, {.X_CM_rest = X_rest}, 2);
+    ASSERT_TRUE(course.rest.reached);
+    EXPECT_EQ(course.X_CM.front().t, from.t);
     EXPECT_GT(
-        (jaw.X_CM.front() * Vector3d(0, -90, -50) - jaw.X_CM.back() * Vector3d(0, -90, -50)).norm(),
+        (course.X_CM.front() * Vector3d(0, -90, -50) - course.X_CM.back() * Vector3d(0, -90, -50))
+            .norm(),
         2);
-    const Measures there = measure(builtin(), jaw.X_CM.back());
+    const Measures there = measure(builtin(), course.X_CM.back());
     EXPECT_NEAR(there.opening_mm, freeway_mm, 0.3);
     EXPECT_NEAR(there.incisor.x(), 0, 0.3);
-    EXPECT_EQ(jaw.bite_N, 0) << "teeth are apart at rest";
+    EXPECT_EQ(course.bite_N, 0) << "teeth are apart at rest";
     for (const double seated : {there.left_condyle.x() + there.right_condyle.x(),
                                 there.left_condyle.z() - there.right_condyle.z()})
       EXPECT_NEAR(seated, 0, 0.1);
@@ -67,6 +68,7 @@ TEST(JawLetGo, ClosersThatAreExcitedSetItOnItsTeethAndNoneLetItHang) {
   const JawLetGo bites = with(0.05), hangs = with(0);
   ASSERT_TRUE(bites.rest.reached && hangs.rest.reached);
   EXPECT_GT(bites.bite_N, 10);
+  EXPECT_TRUE(bites.on_teeth);
   EXPECT_LT(bites.rest.depth_mm, 0.1);
   EXPECT_NEAR(measure(builtin(), bites.X_CM.back()).opening_mm, 0, 0.5);
   EXPECT_EQ(hangs.bite_N, 0);
@@ -100,10 +102,11 @@ TEST(JawLetGo, MeasuredPatientsHangToo) {
   if (!ubc || !badin) GTEST_SKIP() << "no real anatomy here";
   for (const Case* of : {&*ubc, &*badin}) {
     SCOPED_TRACE(of->name);
-    const JawLetGo jaw = let_go_jaw(*of, in_hand(*of, 15, 4, {2, -3, -3}),
-                                    {.X_CM_rest = in_hand(*of, 1.5, 0, {0, 0, 0})}, 2);
-    EXPECT_TRUE(jaw.rest.reached);
-    const Measures there = measure(*of, jaw.X_CM.back());
+    const JawLetGo course = let_go_jaw(*of, in_hand(*of, 15, 4, {2, -3, -3}),
+                                       {.X_CM_rest = in_hand(*of, 1.5, 0, {0, 0, 0})}, 2);
+    EXPECT_TRUE(course.rest.reached);
+    EXPECT_LT(course.rest.depth_mm, 0.1);
+    const Measures there = measure(*of, course.X_CM.back());
     EXPECT_GT(there.opening_mm, -0.5);
     EXPECT_LT(there.opening_mm, 8);
     EXPECT_NEAR(there.incisor.x(), of->landmarks.find("lower_incisal_point")->x(), 2);
