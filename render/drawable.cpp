@@ -78,27 +78,30 @@ struct Prepared {
 
 }  // namespace
 
-std::vector<Drawable> make_drawables(std::span<const Part> parts,
+std::vector<Drawable> make_drawables(std::span<const Part* const> parts,
                                      std::span<const Eigen::Vector3i> face) {
   std::vector<Prepared> prepared(parts.size());
   std::vector<OcclusionSurface> surfaces(parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
     auto& [positions, normals] = prepared[p];
-    positions.reserve(parts[p].mesh.vertices.size());
-    for (const auto& v : parts[p].mesh.vertices) positions.push_back(v.cast<float>());
-    vertex_normals(positions, parts[p].mesh.triangles, normals);
-    surfaces[p] = {positions, normals, parts[p].mesh.triangles};
-    set_layers(parts[p].role, surfaces[p]);
+    positions.reserve(parts[p]->mesh.vertices.size());
+    for (const auto& v : parts[p]->mesh.vertices) positions.push_back(v.cast<float>());
+    vertex_normals(positions, parts[p]->mesh.triangles, normals);
+    surfaces[p] = {positions, normals, parts[p]->mesh.triangles};
+    set_layers(parts[p]->role, surfaces[p]);
   }
   const auto occlusion = bake_occlusion(surfaces, occlusion_directions, bake_threads);
 
   std::vector<Drawable> drawables;
   drawables.reserve(parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    const auto& part = parts[p];
+    const Part& part = *parts[p];
     auto& [positions, normals] = prepared[p];
     std::vector<Eigen::Vector3i> own;
-    if (part.role == Role::face && !face.empty()) own.assign(face.begin(), face.end());
+    if (part.role == Role::face) {
+      own.assign(face.begin(), face.end());
+      face = {};
+    }
     const auto& triangles = own.empty() ? part.mesh.triangles : own;
     if (!own.empty()) vertex_normals(positions, triangles, normals);
     const bool moving = body_of(part.role) == Body::tissue;

@@ -53,8 +53,8 @@ struct Drawable {
 };
 
 /// Uploads the parts with their normals, colours, baked ambient occlusion and curvature.
-/// `face`: triangles of the face, where not all of them are drawn.
-std::vector<Drawable> make_drawables(std::span<const Part> parts,
+/// `face`: triangles of the first face, where not all of them are drawn.
+std::vector<Drawable> make_drawables(std::span<const Part* const> parts,
                                      std::span<const Eigen::Vector3i> face = {});
 /// Some triangles of a part as a drawable of their own.
 Drawable piece_of(const Drawable& whole, std::span<const Eigen::Vector3i> triangles);

@@ -16,27 +16,41 @@ constexpr int rings = 6;                       // from a rim to the middle
 constexpr double coarse_mm = 2;                // of a mean edge that is still divided
 constexpr std::size_t most_triangles = 30000;  // that are
 
-/// What closes an opening: rings of as many vertices as the rim has, which is the first, and the
-/// middle. The rim's own are numbered first.
+/// What closes an opening: rings within the rim, and the middle. Those follow the rim at no more
+/// than so many places.
+constexpr int most_knots = 64;
+
 struct Cover {
-  std::vector<Eigen::Vector3i> triangles;
-  Eigen::MatrixXd of_rim;        // a row a vertex: shares of the rim's
+  std::vector<int> knots;                  // where in the rim
+  std::vector<Eigen::Vector3i> triangles;  // of the rim, then of what is within
+  // Of what is within, ring by ring, as many as knots in each:
+  Eigen::MatrixXd of_knots;      // a row a vertex: shares
   std::vector<Vector3d> offset;  // mm
   std::vector<Vector3f> color;   // as a share of the skin's
 };
 
-Cover rings_within(int n) {
+Cover rings_within(int rim) {
   Cover cover;
-  const auto at = [&](int ring, int i) { return ring * n + (ring < rings ? i % n : 0); };
+  const int n = std::min(rim, most_knots), count = (rings - 1) * n + 1;
+  for (int i = 0; i < n; ++i)
+    cover.knots.push_back(static_cast<int>(static_cast<long long>(i) * rim / n));
+  const auto knot = [&](int i) { return i < n ? cover.knots[static_cast<std::size_t>(i)] : rim; };
+  const auto at = [&](int ring, int i) {
+    if (ring == 0) return knot(i) % rim;
+    return rim + (ring - 1) * n + (ring < rings ? i % n : 0);
+  };
   for (int i = 0; i < n; ++i)
     for (int ring = 0; ring < rings; ++ring) {
-      cover.triangles.emplace_back(at(ring, i), at(ring, i + 1), at(ring + 1, i));
+      if (ring == 0) {
+        for (int k = knot(i); k < knot(i + 1); ++k)
+          cover.triangles.emplace_back(k, (k + 1) % rim, at(1, i));
+      } else {
+        cover.triangles.emplace_back(at(ring, i), at(ring, i + 1), at(ring + 1, i));
+      }
       if (ring + 1 < rings)
         cover.triangles.emplace_back(at(ring, i + 1), at(ring + 1, i + 1), at(ring + 1, i));
     }
-  const int count = rings * n + 1;
-  cover.of_rim = Eigen::MatrixXd::Zero(count, n);
-  cover.of_rim.topRows(n).setIdentity();
+  cover.of_knots = Eigen::MatrixXd::Zero(count, n);
   cover.offset.assign(static_cast<std::size_t>(count), Vector3d::Zero());
   cover.color.assign(static_cast<std::size_t>(count), Vector3f::Ones());
   return cover;
@@ -45,23 +59,23 @@ Cover rings_within(int n) {
 /// A closed lid: stretched over the rim, and raised as by a ball behind it.
 Cover lid(const FaceOpening& opening) {
   constexpr double height_mm = 5.5;
-  const int n = static_cast<int>(opening.rim.size());
-  Cover cover = rings_within(n);
-  const auto count = cover.of_rim.rows(), inside = count - n;
+  Cover cover = rings_within(static_cast<int>(opening.rim.size()));
+  const int n = static_cast<int>(cover.knots.size());
+  const auto inside = cover.of_knots.rows(), count = n + inside;
   // Each vertex is the mean of its neighbours; under even pressure it stands off that.
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(count, count);
-  for (const auto& t : cover.triangles)
+  for (const auto& t : rings_within(n).triangles)
     for (int k = 0; k < 3; ++k) {
       const int a = t[k], b = t[(k + 1) % 3];
       stiffness(a, b) = stiffness(b, a) = -1;
     }
   for (Eigen::Index v = 0; v < count; ++v) stiffness(v, v) = -stiffness.row(v).sum();
   const Eigen::LDLT<Eigen::MatrixXd> solve(stiffness.bottomRightCorner(inside, inside));
-  cover.of_rim.bottomRows(inside) = solve.solve(-stiffness.bottomLeftCorner(inside, n));
+  cover.of_knots = solve.solve(-stiffness.bottomLeftCorner(inside, n));
   const Eigen::VectorXd raised = solve.solve(Eigen::VectorXd::Ones(inside));
   for (Eigen::Index v = 0; v < inside; ++v) {
     const double up = raised[v] / raised.maxCoeff();
-    cover.offset[static_cast<std::size_t>(n + v)] = height_mm * up * (2 - up) * opening.outward;
+    cover.offset[static_cast<std::size_t>(v)] = height_mm * up * (2 - up) * opening.outward;
   }
   return cover;
 }
@@ -73,13 +87,13 @@ Cover vestibule(const FaceOpening& opening) {
   Vector3d in = -opening.outward;
   in.x() *= aside;
   in.normalize();
-  const int n = static_cast<int>(opening.rim.size());
-  Cover cover = rings_within(n);
-  for (int v = n; v <= rings * n; ++v) {
-    const double deep = static_cast<double>(v / n) / rings;
-    const double width = v == rings * n ? 0 : 1 - deep * (1 - narrowest);
-    cover.of_rim.row(v).setConstant((1 - width) / n);
-    if (v < rings * n) cover.of_rim(v, v % n) += width;
+  Cover cover = rings_within(static_cast<int>(opening.rim.size()));
+  const int n = static_cast<int>(cover.knots.size()), last = (rings - 1) * n;
+  for (int v = 0; v <= last; ++v) {
+    const double deep = static_cast<double>(1 + v / n) / rings;
+    const double width = v == last ? 0 : 1 - deep * (1 - narrowest);
+    cover.of_knots.row(v).setConstant((1 - width) / n);
+    if (v < last) cover.of_knots(v, v % n) += width;
     cover.offset[static_cast<std::size_t>(v)] = deep * depth_mm * in;
     cover.color[static_cast<std::size_t>(v)] +=
         static_cast<float>(std::min(1.0, 1.5 * deep)) * (dark - Vector3f::Ones());
@@ -107,12 +121,9 @@ std::vector<Vector3f> to_float(std::span<const Vector3d> places) {
 
 }  // namespace
 
-DrawnFace::DrawnFace(const TriMesh& face, EyesBehind behind, const Vector3f& color)
+DrawnFace::DrawnFace(const TriMesh& face, std::span<const Vector3d> eyes, const Vector3f& color)
     : given_(face.vertices.size()), mesh_(face) {
-  for (int v = 0; v < static_cast<int>(face.vertices.size()); ++v)
-    closed_.add(std::vector<VertexSums::Share>{{v, 1.f}});
-  offsets_.assign(face.vertices.size(), Vector3f::Zero());
-  close_openings(face, behind, color);
+  close_openings(eyes, color);
   if (changed_) place(face);
   while (mean_edge(mesh_) > coarse_mm && mesh_.triangles.size() < most_triangles) {
     divide();
@@ -120,26 +131,32 @@ DrawnFace::DrawnFace(const TriMesh& face, EyesBehind behind, const Vector3f& col
   }
 }
 
-void DrawnFace::close_openings(const TriMesh& face, EyesBehind behind, const Vector3f& color) {
-  for (const auto& opening : find_openings(face)) {
-    if (opening.kind == FaceOpening::Kind::eye && behind == EyesBehind::eyes) continue;
+void DrawnFace::close_openings(std::span<const Vector3d> eyes, const Vector3f& color) {
+  constexpr double near_mm = 20;
+  const auto has_eye = [&](const FaceOpening& opening) {
+    return std::any_of(eyes.begin(), eyes.end(),
+                       [&](const Vector3d& p) { return (p - opening.middle).norm() < near_mm; });
+  };
+  for (const auto& opening : find_openings(mesh_)) {
+    const bool eye = opening.kind == FaceOpening::Kind::eye;
+    if (eye && has_eye(opening)) continue;
     changed_ = true;
     if (mesh_.colors.empty()) mesh_.colors.assign(mesh_.vertices.size(), color);
-    const Cover cover = opening.kind == FaceOpening::Kind::eye ? lid(opening) : vestibule(opening);
+    const Cover cover = eye ? lid(opening) : vestibule(opening);
     const int n = static_cast<int>(opening.rim.size());
     const int own = static_cast<int>(mesh_.vertices.size()) - n;
     std::vector<VertexSums::Share> sum;
-    for (Eigen::Index v = n; v < cover.of_rim.rows(); ++v) {
+    for (Eigen::Index v = 0; v < cover.of_knots.rows(); ++v) {
       sum.clear();
       Vector3f skin = Vector3f::Zero();
-      for (int i = 0; i < n; ++i) {
-        const float share = static_cast<float>(cover.of_rim(v, i));
+      for (std::size_t i = 0; i < cover.knots.size(); ++i) {
+        const float share = static_cast<float>(cover.of_knots(v, static_cast<Eigen::Index>(i)));
         if (share == 0) continue;
-        const int of = opening.rim[static_cast<std::size_t>(i)];
+        const int of = opening.rim[static_cast<std::size_t>(cover.knots[i])];
         sum.push_back({of, share});
         skin += share * mesh_.colors[static_cast<std::size_t>(of)];
       }
-      closed_.add(sum);
+      covers_.add(sum);
       offsets_.push_back(cover.offset[static_cast<std::size_t>(v)].cast<float>());
       mesh_.vertices.emplace_back(Vector3d::Zero());
       mesh_.colors.push_back(skin.cwiseProduct(cover.color[static_cast<std::size_t>(v)]));
@@ -165,28 +182,31 @@ void DrawnFace::place(const TriMesh& face) {
 }
 
 std::vector<Vector3f> DrawnFace::places(std::span<const Vector3f> face) const {
-  auto closed = closed_.of(face);
-  for (std::size_t v = 0; v < closed.size(); ++v) closed[v] += offsets_[v];
+  std::vector<Vector3f> closed(face.begin(), face.end());
+  const auto covers = covers_.of(face);
+  for (std::size_t v = 0; v < covers.size(); ++v) closed.push_back(covers[v] + offsets_[v]);
   return divided_ ? smooth_.of<Vector3f>(closed) : closed;
 }
 
 std::vector<float> DrawnFace::values(std::span<const float> face) const {
-  const auto closed = closed_.of(face);
+  std::vector<float> closed(face.begin(), face.end());
+  const auto covers = covers_.of(face);
+  closed.insert(closed.end(), covers.begin(), covers.end());
   return divided_ ? smooth_.of<float>(closed) : closed;
 }
 
-DrawnParts::DrawnParts(std::span<const Part> patient) : shown_(patient) {
+PreparedParts::PreparedParts(std::span<const Part> patient) : patient_(patient) {
   const auto face = std::find_if(patient.begin(), patient.end(),
                                  [](const Part& part) { return part.role == Role::face; });
   if (face == patient.end()) return;
-  const bool eyes = std::any_of(patient.begin(), patient.end(),
-                                [](const Part& part) { return part.role == Role::eyes; });
-  DrawnFace drawn(face->mesh, eyes ? EyesBehind::eyes : EyesBehind::none,
-                  material_of(Role::face).color);
+  std::vector<Vector3d> eyes;
+  for (const auto& part : patient)
+    if (part.role == Role::eyes)
+      eyes.insert(eyes.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
+  DrawnFace drawn(face->mesh, eyes, material_of(Role::face).color);
   if (!drawn.changed()) return;
-  own_.assign(patient.begin(), patient.end());
-  own_[static_cast<std::size_t>(face - patient.begin())].mesh = drawn.mesh();
-  shown_ = own_;
+  replaced_ = &*face;
+  own_ = {face->name, face->role, drawn.mesh(), {}, face->carrier};
   face_ = std::move(drawn);
 }
 

@@ -11,16 +11,14 @@
 
 namespace condyle {
 
-/// What stands behind the eyes' openings of a face.
-enum class EyesBehind { none, eyes };
-
 /// A face as it is drawn. A coarse one gets smaller triangles on a smooth surface. Openings that a
-/// segmentation left are not seen through: those of eyes without eyes are closed as by plain lids,
-/// nostrils go on into the dark.
+/// segmentation left are not seen through: those of eyes are closed as by
+/// plain lids where no eye is near, nostrils go on into the dark.
 class DrawnFace {
  public:
-  /// color: of a mesh without colours, sRGB.
-  DrawnFace(const TriMesh& face, EyesBehind behind, const Eigen::Vector3f& color);
+  /// eyes: vertices of theirs. color: of a mesh without colours, sRGB.
+  DrawnFace(const TriMesh& face, std::span<const Eigen::Vector3d> eyes,
+            const Eigen::Vector3f& color);
 
   /// Whether it differs from the face that it was made of.
   bool changed() const { return changed_; }
@@ -33,32 +31,34 @@ class DrawnFace {
   std::vector<float> values(std::span<const float> face) const;
 
  private:
-  void close_openings(const TriMesh& face, EyesBehind behind, const Eigen::Vector3f& color);
+  void close_openings(std::span<const Eigen::Vector3d> eyes, const Eigen::Vector3f& color);
   void divide();
   void place(const TriMesh& face);
 
   std::size_t given_;
   TriMesh mesh_;
-  VertexSums closed_;                     // of the face's vertices
+  VertexSums covers_;                     // of openings, of the face's vertices
   std::vector<Eigen::Vector3f> offsets_;  // and from there, mm
-  VertexSums smooth_;                     // of those
+  VertexSums smooth_;                     // of the face's vertices and those
   bool changed_ = false, divided_ = false;
 };
 
-/// A patient's parts as they are drawn: the face may be another.
-class DrawnParts {
+/// A patient's parts, which must outlive it, as they are drawn: the first face may be another.
+class PreparedParts {
  public:
-  explicit DrawnParts(std::span<const Part> patient);
-  DrawnParts(const DrawnParts&) = delete;
-  DrawnParts& operator=(const DrawnParts&) = delete;
+  explicit PreparedParts(std::span<const Part> patient);
+  PreparedParts(const PreparedParts&) = delete;
+  PreparedParts& operator=(const PreparedParts&) = delete;
 
-  std::span<const Part> parts() const { return shown_; }
-  /// None if it is drawn as it is.
-  const std::optional<DrawnFace>& face() const { return face_; }
+  std::span<const Part> patient() const { return patient_; }
+  const Part& drawn(const Part& part) const { return &part == replaced_ ? own_ : part; }
+  /// Of a part that is drawn; null if it is the patient's.
+  const DrawnFace* face_of(const Part& drawn) const { return &drawn == &own_ ? &*face_ : nullptr; }
 
  private:
-  std::span<const Part> shown_;
-  std::vector<Part> own_;
+  std::span<const Part> patient_;
+  const Part* replaced_ = nullptr;
+  Part own_;
   std::optional<DrawnFace> face_;
 };
 

@@ -322,36 +322,36 @@ void even_out(std::vector<Vector3f>& places, std::size_t around) {
 
 }  // namespace
 
-std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
-  const auto face = std::find_if(parts.begin(), parts.end(),
-                                 [](const Part& part) { return part.role == Role::face; });
-  if (face == parts.end()) return std::nullopt;
-  const auto arches = find_arches(parts, face->mesh);
+std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh* drawn) {
+  const auto part =
+      std::find_if(parts.begin(), parts.end(), [](const Part& p) { return p.role == Role::face; });
+  if (part == parts.end()) return std::nullopt;
+  const TriMesh& face = drawn ? *drawn : part->mesh;
+  const auto arches = find_arches(parts, face);
   if (arches.empty()) return std::nullopt;
   const auto teeth = box_of(arches);
   constexpr double widest_mouth_mm = 300;  // what is larger has stray vertices
   if (teeth.sizes().maxCoeff() > widest_mouth_mm) return std::nullopt;
   MouthLining lining;
-  lining.rim = mouth_rim(face->mesh, teeth);
+  lining.rim = mouth_rim(face, teeth);
   if (lining.rim.empty()) return std::nullopt;
   constexpr double beside_mm = 45;  // of the teeth's middle
-  TriMesh shown{face->mesh.vertices,
-                without_deep_inside(face->mesh, lining.rim, teeth.center(), beside_mm),
-                {}};
+  TriMesh shown{
+      face.vertices, without_deep_inside(face, lining.rim, teeth.center(), beside_mm), {}};
   if (auto rim = mouth_rim(shown, teeth); !rim.empty()) {
     lining.rim = std::move(rim);
     lining.face = std::move(shown.triangles);
   } else {
-    lining.face = face->mesh.triangles;
+    lining.face = face.triangles;
   }
   // A lip that ends at its edge is thin: the lining leaves it to the back before it turns aside.
-  const double turned = lining.face.size() == face->mesh.triangles.size() ? 0 : 0.35;
-  const auto places = rim_places(face->mesh, lining.rim);
+  const double turned = lining.face.size() == face.triangles.size() ? 0 : 0.35;
+  const auto places = rim_places(face, lining.rim);
   const auto n = lining.rim.size();
   double corners = 0, found = 0;
   for (std::size_t i = 0; i < n; ++i)
     if (std::abs(places[i].across) > 0.7) {
-      corners += face->mesh.vertices[static_cast<std::size_t>(lining.rim[i])].z();
+      corners += face.vertices[static_cast<std::size_t>(lining.rim[i])].z();
       ++found;
     }
   const double mid = found > 0 ? corners / found : teeth.center().z();
@@ -370,7 +370,7 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts) {
   lining.lip.resize(lining.rest.size());
   Vector3d middle = Vector3d::Zero();
   for (std::size_t i = 0; i < n; ++i) {
-    const Vector3d start = face->mesh.vertices[static_cast<std::size_t>(lining.rim[i])];
+    const Vector3d start = face.vertices[static_cast<std::size_t>(lining.rim[i])];
     const auto [across, is_upper] = places[i];
     // Round at the sides, as far as the rim is not.
     const double turn = std::sqrt(std::max(0.0, 1 - std::pow(across, 6)));

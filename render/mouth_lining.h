@@ -24,8 +24,8 @@ struct MouthLining {
 };
 
 /// None for a face without such a rim. The jaws' fronts stand in for teeth that are no parts of
-/// their own; none for a patient who has neither.
-std::optional<MouthLining> line_mouth(std::span<const Part> parts);
+/// their own; none for a patient who has neither. drawn: in place of the face's mesh.
+std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh* drawn = nullptr);
 
 /// Where it is with the rim's vertices and the mandible where they are now.
 std::vector<Eigen::Vector3f> places_now(const MouthLining& lining,

@@ -50,7 +50,7 @@ float front_of_mouth(std::span<const Drawable> drawables) {
 }  // namespace
 
 struct SceneRenderer::State {
-  std::shared_ptr<const DrawnParts> patient;
+  std::shared_ptr<const PreparedParts> patient;
   std::span<const Part> parts;
   Passes passes;
   OverlayPasses overlays;
@@ -79,10 +79,10 @@ struct SceneRenderer::State {
   PictureTarget target;
   float map_low = 0, map_high = 1;  // values are kept within
 
-  State(std::shared_ptr<const DrawnParts> all, std::optional<MouthLining> lined,
+  State(std::shared_ptr<const PreparedParts> all, std::optional<MouthLining> lined,
         std::vector<Drawable> made)
       : patient(std::move(all)),
-        parts(patient->parts()),
+        parts(patient->patient()),
         drawables(std::move(made)),
         mouth_y(front_of_mouth(drawables)),
         lining(std::move(lined)) {
@@ -280,11 +280,14 @@ PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettin
 }
 
 SceneRenderer::SceneRenderer(std::span<const Part> patient) {
-  auto drawn = std::make_shared<const DrawnParts>(patient);
-  const auto parts = drawn->parts();
-  auto lining = line_mouth(parts);
-  auto drawables = make_drawables(parts, lining ? lining->face : std::vector<Eigen::Vector3i>());
-  state_ = std::make_unique<State>(std::move(drawn), std::move(lining), std::move(drawables));
+  auto prepared = std::make_shared<const PreparedParts>(patient);
+  std::vector<const Part*> drawn;
+  for (const auto& part : patient) drawn.push_back(&prepared->drawn(part));
+  const auto face = std::find_if(drawn.begin(), drawn.end(),
+                                 [](const Part* part) { return part->role == Role::face; });
+  auto lining = line_mouth(patient, face == drawn.end() ? nullptr : &(*face)->mesh);
+  auto drawables = make_drawables(drawn, lining ? lining->face : std::vector<Eigen::Vector3i>());
+  state_ = std::make_unique<State>(std::move(prepared), std::move(lining), std::move(drawables));
 }
 
 SceneRenderer::SceneRenderer(const SceneRenderer& other)
@@ -303,7 +306,7 @@ void SceneRenderer::update(const FrameState& frame) {
   for (auto& drawable : s.drawables) {
     if (drawable.part->role != Role::face) continue;
     const auto& rest = drawable.part->mesh.vertices;
-    const auto& other = s.patient->face();
+    const DrawnFace* other = s.patient->face_of(*drawable.part);
     const bool moved = frame.face.size() == (other ? other->given() : rest.size());
     if (moved && other) {
       drawable.move_face(other->places(frame.face), s.normals);
@@ -341,15 +344,15 @@ void SceneRenderer::color_part(const std::string& name, std::span<const float> v
   for (auto& drawable : s.drawables) {
     if (drawable.part->name != name) continue;
     std::vector<float> kept(values.begin(), values.end());
-    if (drawable.part->role == Role::face && s.patient->face() && !kept.empty())
-      kept = s.patient->face()->values(kept);
-    assert(kept.empty() || kept.size() == (drawable.finer ? drawable.finer_vertices
-                                                          : drawable.part->mesh.vertices.size()));
     // Kept near the range, so that the way from a far vertex to a near one passes through it; not
     // at its very end, where the edge of what is coloured would follow the triangles.
     const float above = s.map_high + 1;
     for (float& value : kept)
       value = std::isnan(value) ? above : std::clamp(value, s.map_low, above);
+    if (const auto* face = s.patient->face_of(*drawable.part); face && !kept.empty())
+      kept = face->values(kept);
+    assert(kept.empty() || kept.size() == (drawable.finer ? drawable.finer_vertices
+                                                          : drawable.part->mesh.vertices.size()));
     drawable.mapped = !kept.empty();
     (drawable.finer ? *drawable.finer : drawable.mesh).send_values(kept);
   }

@@ -99,21 +99,30 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   float own = 1.0 / gl_FragCoord.w, off = abs(texelFetch(kept_away, pixel, 0).r - own);
   vec4 light = texelFetch(lit, pixel, 0);
-  const float foreign = 1e10;  // farther than any of the same surface
+  const float none = 1e30;
   bool same = abs(light.a - number) < 0.001;
   bool other = !same || off > fwidth(own) + 0.02;
-  if (!same) off += foreign;
+  float foreign = same ? none : off;
+  if (!same) off = none;
+  vec4 foreign_light = light;
   for (int i = 0; i < (other ? 9 : 0); ++i) {
     ivec2 there = clamp(pixel + ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last_pixel);
     vec4 found = texelFetch(lit, there, 0);
-    float d = abs(texelFetch(kept_away, there, 0).r - own)
-            + (abs(found.a - number) < 0.001 ? 0.0 : foreign);
-    if (d < off) {
-      off = d;
-      light = found;
+    float d = abs(texelFetch(kept_away, there, 0).r - own);
+    if (abs(found.a - number) < 0.001) {
+      if (d < off) {
+        off = d;
+        light = found;
+      }
+    } else if (d < foreign) {
+      foreign = d;
+      foreign_light = found;
     }
   }
-  if (off > 1e20) discard;
+  if (off > 1e20) {
+    if (foreign > 1e20) discard;
+    light = foreign_light;
+  }
   result = vec4(light.rgb, 1.0);
 }
 )";

@@ -1,29 +1,42 @@
 #include "engine/mesh/rims.h"
 
+#include <algorithm>
+
 #include "engine/mesh/topology.h"
 
 namespace condyle {
 
 std::vector<std::vector<int>> rims_of(const TriMesh& mesh) {
   const EdgeList list = find_edges(mesh);
-  std::vector<int> next(mesh.vertices.size(), -1);
+  std::vector<std::vector<int>> next(mesh.vertices.size());
   for (const auto& edge : list.edges) {
     if (edge.count != 1) continue;
     const bool forward = list.sides[static_cast<std::size_t>(edge.first)].forward;
-    next[static_cast<std::size_t>(forward ? edge.high : edge.low)] = forward ? edge.low : edge.high;
+    next[static_cast<std::size_t>(forward ? edge.high : edge.low)].push_back(forward ? edge.low
+                                                                                     : edge.high);
   }
   std::vector<std::vector<int>> rims;
-  std::vector<char> seen(next.size(), 0);
-  for (int start = 0; start < static_cast<int>(next.size()); ++start) {
-    std::vector<int> walk;
-    int at = start;
-    for (; at >= 0 && !seen[static_cast<std::size_t>(at)];
-         at = next[static_cast<std::size_t>(at)]) {
-      seen[static_cast<std::size_t>(at)] = 1;
-      if (next[static_cast<std::size_t>(at)] >= 0) walk.push_back(at);
+  std::vector<int> walk;
+  std::vector<char> on_walk(next.size(), 0);
+  for (int start = 0; start < static_cast<int>(next.size()); ++start)
+    while (!next[static_cast<std::size_t>(start)].empty()) {
+      walk = {start};
+      on_walk[static_cast<std::size_t>(start)] = 1;
+      for (auto* ways = &next[static_cast<std::size_t>(start)]; !ways->empty();
+           ways = &next[static_cast<std::size_t>(walk.back())]) {
+        const int to = ways->back();
+        ways->pop_back();
+        if (on_walk[static_cast<std::size_t>(to)]) {
+          const auto first = std::find(walk.begin(), walk.end(), to);
+          if (walk.end() - first > 2) rims.emplace_back(first, walk.end());
+          for (auto v = first; v != walk.end(); ++v) on_walk[static_cast<std::size_t>(*v)] = 0;
+          walk.erase(first, walk.end());
+        }
+        walk.push_back(to);
+        on_walk[static_cast<std::size_t>(to)] = 1;
+      }
+      for (const int v : walk) on_walk[static_cast<std::size_t>(v)] = 0;
     }
-    if (at == start && walk.size() > 2) rims.push_back(std::move(walk));
-  }
   return rims;
 }
 

@@ -7,7 +7,7 @@
 namespace condyle {
 
 /// Rims of an open surface, each its vertices one after the other as the missing triangles would
-/// run. A walk that does not come back to its start is none.
+/// run; those that share a vertex are told apart. A walk that does not come back is none.
 std::vector<std::vector<int>> rims_of(const TriMesh& mesh);
 
 }  // namespace condyle

@@ -7,6 +7,7 @@
 #include "engine/mesh/topology.h"
 #include "engine/mesh/triangle_tree.h"
 #include "engine/mesh_io/mesh_files.h"
+#include "render/colour_map.h"
 #include "render/face_openings.h"
 #include "tests/render/scene_fixture.h"
 
@@ -15,7 +16,7 @@ namespace {
 
 using DrawnFacePicture = WithContext;
 
-const Eigen::Vector3d eye_at = {32, 0, 35}, nostril_at = {8, 0, -8};
+const Eigen::Vector3d eye_at = {32, 0, 35}, nostril_at = {8, 0, -8}, lips_at = {0, 0, -23};
 
 /// A head of a ball with a nose, and holes in it for an eye and a nostril of each side, unless its
 /// rims are elsewhere by `off`.
@@ -60,15 +61,55 @@ TEST(FaceOpenings, AreToldByWhereTheyAreAndHowTheyLook) {
     EXPECT_TRUE(find_openings(head_with_openings({0, 0, up})).empty()) << up;
 }
 
+TEST(FaceOpenings, OfANoseAreNotAChildsMouth) {
+  TriMesh face = head_with_openings();
+  std::erase_if(face.triangles, [&](const Eigen::Vector3i& t) {
+    const Eigen::Vector3d p =
+        (face.vertices[t[0]] + face.vertices[t[1]] + face.vertices[t[2]]) / 3 - lips_at;
+    return p.y() < 0 && std::hypot(p.x() / 17, p.z() / 1.5) < 1;
+  });
+  ASSERT_EQ(inspect(face).boundary.size(), 5u);
+  const auto openings = find_openings(face);
+  EXPECT_EQ(openings.size(), 4u);
+  for (const auto& opening : openings)
+    EXPECT_GT((opening.middle - lips_at).cwiseProduct(Eigen::Vector3d(1, 0, 1)).norm(), 10);
+}
+
+TEST(FaceOpenings, AreFoundWhateverStandsBeforeTheNose) {
+  const auto found = [](const TriMesh& face) { return find_openings(face).size(); };
+  TriMesh chin = head_with_openings();
+  for (auto& p : chin.vertices)
+    if (p.y() < 0)
+      p.y() -= 70 * std::exp(-std::pow(p.x() / 20, 2) - std::pow((p.z() + 50) / 10, 2));
+  EXPECT_EQ(found(chin), 4u);
+  // One vertex of noise, also one that is of no triangle.
+  TriMesh noise = head_with_openings();
+  const auto near = std::min_element(
+      noise.vertices.begin(), noise.vertices.end(), [](const auto& a, const auto& b) {
+        return (a - Eigen::Vector3d(20, -70, 0)).norm() < (b - Eigen::Vector3d(20, -70, 0)).norm();
+      });
+  near->y() -= 90;
+  EXPECT_EQ(found(noise), 4u);
+  TriMesh stray = head_with_openings();
+  stray.vertices.emplace_back(60, -300, 90);
+  EXPECT_EQ(found(stray), 4u);
+}
+
 TEST(DrawnFace, ClosesEyesAndNostrilsAndGoesWithTheirRims) {
   const TriMesh face = head_with_openings();
   ASSERT_EQ(inspect(face).boundary.size(), 4u);
-  const DrawnFace drawn(face, EyesBehind::none, {.8f, .6f, .5f});
+  const DrawnFace drawn(face, {}, {.8f, .6f, .5f});
   ASSERT_TRUE(drawn.changed());
   EXPECT_TRUE(inspect(drawn.mesh()).closed());
   ASSERT_EQ(drawn.mesh().colors.size(), drawn.mesh().vertices.size());
-  const DrawnFace seeing(face, EyesBehind::eyes, {.8f, .6f, .5f});
-  EXPECT_EQ(inspect(seeing.mesh()).boundary.size(), 2u);
+  const auto open = [&](const std::vector<Eigen::Vector3d>& eyes) {
+    return inspect(DrawnFace(face, eyes, {.8f, .6f, .5f}).mesh()).boundary.size();
+  };
+  // Of a head of radius 75 about (0, 0, 20).
+  const Eigen::Vector3d left(32, -60, 35), right(-32, -60, 35);
+  EXPECT_EQ(open({left, right}), 2u);
+  EXPECT_EQ(open({left}), 1u);
+  EXPECT_EQ(open({{0, 80, 35}}), 0u);
 
   std::vector<Eigen::Vector3f> there;
   const Eigen::Vector3f way(1, -2, 3);
@@ -81,16 +122,26 @@ TEST(DrawnFace, ClosesEyesAndNostrilsAndGoesWithTheirRims) {
     EXPECT_NEAR(value, 7, 1e-3f);
 }
 
+TEST(DrawnFace, ClosesFineRimsByFewVertices) {
+  const TriMesh face = head_with_openings({0, 0, 0}, 400);
+  for (const auto& opening : find_openings(face)) ASSERT_GT(opening.rim.size(), 64u);
+  const DrawnFace drawn(face, {}, {.8f, .6f, .5f});
+  EXPECT_TRUE(inspect(drawn.mesh()).closed());
+  EXPECT_LE(drawn.mesh().vertices.size() - face.vertices.size(), 4u * (5 * 64 + 1));
+}
+
 TEST(DrawnFace, IsTheFaceItselfWhereThatIsFineAndWhole) {
   const TriMesh fine = ball({0, 0, 0}, 60, 120);
-  EXPECT_FALSE(DrawnFace(fine, EyesBehind::none, {1, 1, 1}).changed());
+  EXPECT_FALSE(DrawnFace(fine, {}, {1, 1, 1}).changed());
   const std::vector<Part> parts = {make_part("face", Role::face, fine)};
-  EXPECT_EQ(DrawnParts(parts).parts().data(), parts.data());
+  const PreparedParts prepared(parts);
+  EXPECT_EQ(&prepared.drawn(parts[0]), &parts[0]);
+  EXPECT_EQ(prepared.face_of(parts[0]), nullptr);
 }
 
 TEST(DrawnFace, OfACoarseOneIsSmoothAndNearIt) {
   const TriMesh coarse = ball({0, 0, 0}, 60, 24);
-  const DrawnFace drawn(coarse, EyesBehind::none, {1, 1, 1});
+  const DrawnFace drawn(coarse, {}, {1, 1, 1});
   ASSERT_GT(drawn.mesh().triangles.size(), 10 * coarse.triangles.size());
   EXPECT_TRUE(inspect(drawn.mesh()).closed());
   EXPECT_TRUE(drawn.mesh().colors.empty());
@@ -103,7 +154,7 @@ TEST(DrawnFace, OfARealHeadHasNoHolesAndLiesNearIt) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "real anatomy absent";
   const TriMesh face = read_mesh(file);
   EXPECT_EQ(find_openings(face).size(), 4u);
-  const DrawnFace drawn(face, EyesBehind::none, {.8f, .6f, .5f});
+  const DrawnFace drawn(face, {}, {.8f, .6f, .5f});
   // The mouth and the outer edge stay.
   EXPECT_EQ(inspect(face).boundary.size(), 6u);
   EXPECT_EQ(inspect(drawn.mesh()).boundary.size(), 2u);
@@ -114,6 +165,7 @@ TEST(DrawnFace, OfARealHeadHasNoHolesAndLiesNearIt) {
   // Far apart only where the measured surface itself has corners: at the edges of the mask.
   EXPECT_LT(off[off.size() / 2], 0.2);
   EXPECT_LT(off[off.size() * 9 / 10], 0.5);
+  EXPECT_LT(off.back(), 2.7);
 }
 
 TEST_F(DrawnFacePicture, IsNotSeenThroughAtEyesAndNostrils) {
@@ -143,6 +195,42 @@ TEST_F(DrawnFacePicture, IsNotSeenThroughAtEyesAndNostrils) {
     EXPECT_EQ(hole.a, 255);
     EXPECT_LT(hole.r, 90);
   }
+}
+
+TEST_F(DrawnFacePicture, OneUnknownValueIsOneBeyondTheMap) {
+  const std::vector<Part> parts = {make_part("face", Role::face, ball({0, 0, 0}, 40, 16))};
+  SceneRenderer renderer(parts);
+  const ColourMap map = distance_colours({.near_mm = 5, .deepest_mm = 2});
+  renderer.set_colour_map(map);
+  std::vector<float> values(parts[0].mesh.vertices.size(), 1.f);
+  const auto front = std::min_element(parts[0].mesh.vertices.begin(), parts[0].mesh.vertices.end(),
+                                      [](const auto& a, const auto& b) { return a.y() < b.y(); });
+  const auto picture = [&](float value) {
+    values[static_cast<std::size_t>(front - parts[0].mesh.vertices.begin())] = value;
+    renderer.color_part("face", values);
+    return renderer.picture(front_camera(), mask_settings()).rgba;
+  };
+  const auto beyond = picture(static_cast<float>(map.high()) + 2);
+  EXPECT_NE(beyond, picture(1));
+  EXPECT_EQ(beyond, picture(std::nanf("")));
+  EXPECT_EQ(beyond, picture(1e30f));
+}
+
+TEST_F(DrawnFacePicture, OfTwoFacesEachHasItsOwnValues) {
+  const TriMesh other = ball({0, -60, -90}, 20, 8);
+  const std::vector<Part> parts = {make_part("face", Role::face, head_with_openings()),
+                                   make_part("other", Role::face, other)};
+  const PreparedParts prepared(parts);
+  EXPECT_NE(prepared.face_of(prepared.drawn(parts[0])), nullptr);
+  EXPECT_EQ(prepared.face_of(prepared.drawn(parts[1])), nullptr);
+  SceneRenderer renderer(parts);
+  renderer.set_colour_map(distance_colours({.near_mm = 5, .deepest_mm = 2}));
+  const auto picture = [&] { return renderer.picture(front_camera(250), mask_settings()).rgba; };
+  const auto plain = picture();
+  renderer.color_part("other", std::vector<float>(other.vertices.size(), 1.f));
+  EXPECT_NE(picture(), plain);
+  renderer.color_part("other", {});
+  EXPECT_EQ(picture(), plain);
 }
 
 }  // namespace

@@ -43,6 +43,27 @@ TEST_F(Edges, AreSmoothWherePartsShareARim) {
   EXPECT_GT(between(4), 60);
 }
 
+TEST_F(Edges, OfASliverHaveTheLightOfWhatLiesNearestBehind) {
+  // Right before a tooth's edge, far before gums; it covers no pixel's middle.
+  std::vector<Part> parts = {
+      make_part("tooth", Role::upper_teeth,
+                quad({-40, 0, -40}, {0, 0, -40}, {0, 0, 40}, {-40, 0, 40})),
+      make_part("gums", Role::upper_gums,
+                quad({0, 40, -45}, {45, 40, -45}, {45, 40, 45}, {0, 40, 45}))};
+  auto settings = mask_settings(200);
+  settings.shadows = false;
+  const auto picture = [&] { return SceneRenderer(parts).picture(front_camera(), settings); };
+  const Image bare = picture();
+  parts.push_back(make_part("sliver", Role::skull,
+                            quad({.03, -1, -40}, {.1, -1, -40}, {.1, -1, 40}, {.03, -1, 40})));
+  const Image image = picture();
+  const auto green = [](const Image& of, int x, int y) { return pixel(of, x, y).g; };
+  for (int y = 40; y < 160; ++y)
+    EXPECT_GT(green(image, 100, y),
+              green(bare, 100, y) + (green(bare, 90, y) - green(bare, 100, y)) / 8)
+        << y;
+}
+
 TEST_F(Edges, OfShadowsHaveNoGrain) {
   // A ball before a wall, both of bone: across its shadow's edge light grows steadily.
   const std::vector<Part> parts = {
