@@ -16,7 +16,7 @@ namespace {
 
 using DrawnFacePicture = WithContext;
 
-const Eigen::Vector3d eye_at = {32, 0, 35}, nostril_at = {8, 0, -8}, lips_at = {0, 0, -23};
+const Eigen::Vector3d eye_at = {32, 0, 35}, nostril_at = {8, 0, -8}, lips_at = {0, 0, -19};
 
 /// A head of a ball with a nose, and holes in it for an eye and a nostril of each side, unless its
 /// rims are elsewhere by `off`.
@@ -66,7 +66,7 @@ TEST(FaceOpenings, OfANoseAreNotAChildsMouth) {
   std::erase_if(face.triangles, [&](const Eigen::Vector3i& t) {
     const Eigen::Vector3d p =
         (face.vertices[t[0]] + face.vertices[t[1]] + face.vertices[t[2]]) / 3 - lips_at;
-    return p.y() < 0 && std::hypot(p.x() / 17, p.z() / 1.5) < 1;
+    return p.y() < 0 && std::hypot(p.x() / 14, p.z() / 1.5) < 1;
   });
   ASSERT_EQ(inspect(face).boundary.size(), 5u);
   const auto openings = find_openings(face);
