@@ -101,7 +101,7 @@ PictureTaker::PictureTaker(const PicturePlan& plan, const RecordingFiles& files,
   const PictureSettings& size = plan_.settings;
   if (const int most = drawers_->most_side() / size.supersampling;
       size.width > most || size.height > most)
-    throw InputError(fmt::format(
+    throw MachineError(fmt::format(
         "pictures of {}x{} are too large for the graphics driver: at most {} pixels a side{}",
         size.width, size.height, most,
         size.supersampling > 1 ? fmt::format(" when drawn {}x finer", size.supersampling) : ""));
