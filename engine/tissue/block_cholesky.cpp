@@ -11,8 +11,6 @@ namespace condyle {
 namespace {
 
 using BlockBuffer = std::array<float, largest_block * largest_block>;
-/// Numbers of a block's rows, with room for what kernels read and write beyond them.
-using PaddedBlock = std::array<float, 2 * largest_block>;
 
 /// subtract_product, its columns shared among threads where that is worth it. Where shares have
 /// other bits than the whole, they are taken on one thread, too.
@@ -35,13 +33,36 @@ void subtract_product(const FloatKernels::Product& p, int threads) {
   });
 }
 
+/// Numbers of a front's rows, in whole tiles.
+struct alignas(64) RowTile {
+  float row[16];
+};
+
+using Quarter = float __attribute__((vector_size(4 * sizeof(float))));
+void copy(const float* from, int count, float* to) {
+  int i = 0;
+  for (; i + 4 <= count; i += 4) std::memcpy(to + i, from + i, sizeof(Quarter));
+  for (; i < count; ++i) to[i] = from[i];
+}
+void add(const float* from, int count, float* to) {
+  int i = 0;
+  for (; i + 4 <= count; i += 4) {
+    Quarter a, b;
+    std::memcpy(&a, to + i, sizeof a);
+    std::memcpy(&b, from + i, sizeof b);
+    a += b;
+    std::memcpy(to + i, &a, sizeof a);
+  }
+  for (; i < count; ++i) to[i] += from[i];
+}
+
 }  // namespace
 
 /// Factors are made anew from frame to frame.
 struct BlockCholesky::Memory {
   explicit Memory(const FrontTree& tree)
-      : values(tree.panel_floats), panels(tree.panel_floats), work(tree.work_floats) {}
-  BufferPool<ShortFloat> values;
+      : values(tree.tiles), panels(tree.panel_floats), work(tree.work_floats) {}
+  BufferPool<PairTile> values;
   BufferPool<float> panels, work;
 };
 
@@ -134,7 +155,7 @@ int BlockCholesky::factorize_front(int index, float* panels, float* work, float 
         {update, panel + width, panel + width, left, left, width, left, height, height, true, true},
         threads);
   add_children(false);
-  kernels.narrow(panel, static_cast<std::size_t>(height) * width, values_.get() + front.panel);
+  front_kernels(size).pack(panel, front.pivots, height, &values_[front.tiles]);
   return raised;
 }
 
@@ -160,86 +181,68 @@ int BlockCholesky::factorize(const std::function<void(int part, float* values)>&
   return raised[0] + raised[1] + raised[2];
 }
 
-void BlockCholesky::forward(int index, float* b, float* rest, std::vector<float>& rows) const {
+void BlockCholesky::forward(int index, float* b, float* rest, float* y) const {
   const FrontTree& tree = *tree_;
   const FrontTree::Front& front = tree.fronts[index];
-  const FloatKernels& kernels = float_kernels();
-  const int size = tree.block, height = tree.height(front), width = front.pivots * size;
-  const ShortFloat* panel = values_.get() + front.panel;
-  float* pivot = b + static_cast<std::size_t>(front.first) * size;
-  std::copy_n(pivot, width, rows.begin());
-  std::fill_n(rows.begin() + width, height - width, 0.0f);
-  for (int c = 0; c < width; c += size) {
-    const ShortFloat* diagonal = panel + static_cast<std::size_t>(c) * height + c;
-    PaddedBlock solved{};
-    for (int i = 0; i < size; ++i) rows[c + i] = -rows[c + i];
-    kernels.subtract_times(solved.data(), diagonal, height, size, size, &rows[c]);
-    std::copy_n(solved.begin(), size, pivot + c);
-    kernels.subtract_times(&rows[c + size], diagonal + size, height, height - c - size, size,
-                           solved.data());
-  }
+  const int width = front.pivots * tree.block;
+  float* pivots = b + static_cast<std::size_t>(front.first) * tree.block;
+  copy(pivots, width, y);
+  front_kernels(tree.block).forward(&values_[front.tiles], front.pivots, tree.height(front), y);
+  copy(y, width, pivots);
   const int shared = tree.order.part[2];
-  for (int r = front.rows_begin, i = width; r < front.rows_end;) {
-    const int row = tree.rows[r], count = (tree.row_end[r] - r) * size;
-    float* to = row < shared ? b + static_cast<std::size_t>(row) * size
-                             : rest + static_cast<std::size_t>(row - shared) * size;
-    kernels.add(to, &rows[i], count);
-    i += count;
-    r = tree.row_end[r];
+  y += width;
+  for (int r = front.rows_begin; r < front.rows_end; r = tree.row_end[r]) {
+    const int row = tree.rows[r], count = (tree.row_end[r] - r) * tree.block;
+    add(y, count,
+        row < shared ? b + static_cast<std::size_t>(row) * tree.block
+                     : rest + static_cast<std::size_t>(row - shared) * tree.block);
+    y += count;
   }
 }
 
-void BlockCholesky::backward(int index, float* b, std::vector<float>& rows) const {
+void BlockCholesky::backward(int index, float* b, float* y) const {
   const FrontTree& tree = *tree_;
   const FrontTree::Front& front = tree.fronts[index];
-  const FloatKernels& kernels = float_kernels();
-  const int size = tree.block, height = tree.height(front), width = front.pivots * size;
-  const ShortFloat* panel = values_.get() + front.panel;
-  float* pivot = b + static_cast<std::size_t>(front.first) * size;
-  for (int r = front.rows_begin, i = width; r < front.rows_end;) {
-    const int count = (tree.row_end[r] - r) * size;
-    std::copy_n(b + static_cast<std::size_t>(tree.rows[r]) * size, count, &rows[i]);
-    i += count;
-    r = tree.row_end[r];
+  const int width = front.pivots * tree.block;
+  float* pivots = b + static_cast<std::size_t>(front.first) * tree.block;
+  copy(pivots, width, y);
+  float* to = y + width;
+  for (int r = front.rows_begin; r < front.rows_end; r = tree.row_end[r]) {
+    const int count = (tree.row_end[r] - r) * tree.block;
+    copy(b + static_cast<std::size_t>(tree.rows[r]) * tree.block, count, to);
+    to += count;
   }
-  std::fill_n(rows.begin() + height, FrontTree::beyond, 0.0f);
-  for (int c = width - size; c >= 0; c -= size) {
-    const ShortFloat* diagonal = panel + static_cast<std::size_t>(c) * height + c;
-    kernels.subtract_transposed(pivot + c, diagonal + size, height, height - c - size, size,
-                                &rows[c + size]);
-    PaddedBlock negative{}, solved{};
-    for (int i = 0; i < size; ++i) negative[i] = -pivot[c + i];
-    kernels.subtract_transposed(solved.data(), diagonal, height, size, size, negative.data());
-    std::copy_n(solved.begin(), size, pivot + c);
-    std::copy_n(solved.begin(), size, &rows[c]);
-  }
+  for (float* end = y + (to - y + 15) / 16 * 16; to < end; ++to) *to = 0;
+  front_kernels(tree.block).backward(&values_[front.tiles], front.pivots, tree.height(front), y);
+  copy(y, width, pivots);
 }
 
 void BlockCholesky::solve(std::vector<float>& b, int threads) const {
   const FrontTree& tree = *tree_;
   const std::size_t shared = static_cast<std::size_t>(tree.order.part[2]) * tree.block;
-  const std::size_t longest = tree.most_height + FrontTree::beyond;
-  std::array<std::vector<float>, 2> rest;  // what each half takes from the last part
+  const std::size_t longest = tree.most_height / 16 + 1;  // tiles
+  std::array<std::vector<float>, 2> rest;                 // what each half takes from the last part
   parallel_for(2, threads, [&](std::size_t half) {
     rest[half].assign(b.size() - shared, 0.0f);
-    std::vector<float> rows(longest);
+    std::vector<RowTile> rows(longest);
     for (int f = tree.part[half]; f < tree.part[half + 1]; ++f)
-      forward(f, b.data(), rest[half].data(), rows);
+      forward(f, b.data(), rest[half].data(), rows[0].row);
   });
   for (std::size_t i = shared; i < b.size(); ++i) b[i] += rest[0][i - shared] + rest[1][i - shared];
-  std::vector<float> rows(longest);
-  for (int f = tree.part[2]; f < tree.part[3]; ++f) forward(f, b.data(), b.data() + shared, rows);
-  for (int f = tree.part[3] - 1; f >= tree.part[2]; --f) backward(f, b.data(), rows);
+  std::vector<RowTile> rows(longest);
+  for (int f = tree.part[2]; f < tree.part[3]; ++f)
+    forward(f, b.data(), b.data() + shared, rows[0].row);
+  for (int f = tree.part[3] - 1; f >= tree.part[2]; --f) backward(f, b.data(), rows[0].row);
   parallel_for(2, threads, [&](std::size_t half) {
-    std::vector<float> own_rows(longest);
+    std::vector<RowTile> own_rows(longest);
     for (int f = tree.part[half + 1] - 1; f >= tree.part[half]; --f)
-      backward(f, b.data(), own_rows);
+      backward(f, b.data(), own_rows[0].row);
   });
 }
 
 std::size_t BlockCholesky::bytes() const {
   const std::size_t order = tree_->order.at.size() * tree_->block;
-  return memory_->values.length() * sizeof(ShortFloat) + 2 * order * sizeof(float) +
+  return memory_->values.length() * sizeof(PairTile) + 2 * order * sizeof(float) +
          (tree_->rows.capacity() + tree_->seat.capacity() + tree_->run_end.capacity() +
           tree_->row_end.capacity()) *
              sizeof(int);

@@ -43,12 +43,12 @@ class BlockCholesky {
   struct Memory;
   BlockCholesky(std::shared_ptr<const FrontTree> tree, std::shared_ptr<const Memory> memory);
   int factorize_front(int front, float* panels, float* work, float least, int threads);
-  void forward(int front, float* b, float* rest, std::vector<float>& rows) const;
-  void backward(int front, float* b, std::vector<float>& rows) const;
+  void forward(int front, float* b, float* rest, float* y) const;
+  void backward(int front, float* b, float* y) const;
 
   std::shared_ptr<const FrontTree> tree_;
   std::shared_ptr<const Memory> memory_;  // of all factors of the tree
-  BufferPool<ShortFloat>::Buffer values_;
+  BufferPool<PairTile>::Buffer values_;
 };
 
 }  // namespace condyle

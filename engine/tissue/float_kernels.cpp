@@ -18,17 +18,30 @@ namespace {
 constexpr int tile_rows = 16;
 
 #define CONDYLE_INLINE inline __attribute__((always_inline))
-#define CONDYLE_UNROLL _Pragma("GCC unroll 8")  // sums stay in registers
+#define CONDYLE_UNROLL _Pragma("GCC unroll 32")  // sums stay in registers
 
 typedef float Quarter __attribute__((vector_size(4 * sizeof(float))));
 
-namespace any_processor {
-constexpr int W = 4;
-typedef float Vector __attribute__((vector_size(W * sizeof(float))));
-CONDYLE_INLINE Vector widened(const ShortFloat* from) {
-  return Vector{float_of(from[0]), float_of(from[1]), float_of(from[2]), float_of(from[3])};
+/// The four sums of four quarters.
+CONDYLE_INLINE Quarter sums_of(const Quarter& a, const Quarter& b, const Quarter& c,
+                               const Quarter& d) {
+  const Quarter ab = __builtin_shufflevector(a, b, 0, 1, 4, 5) +
+                     __builtin_shufflevector(a, b, 2, 3, 6, 7),
+                cd = __builtin_shufflevector(c, d, 0, 1, 4, 5) +
+                     __builtin_shufflevector(c, d, 2, 3, 6, 7);
+  return __builtin_shufflevector(ab, cd, 0, 2, 4, 6) + __builtin_shufflevector(ab, cd, 1, 3, 5, 7);
 }
-CONDYLE_INLINE Quarter folded(const Vector* sum) { return (sum[0] + sum[2]) + (sum[1] + sum[3]); }
+
+namespace any_processor {
+constexpr int W = 4, tile_vectors = tile_rows / W;
+typedef float Vector __attribute__((vector_size(W * sizeof(float))));
+template <int N>
+CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
+  for (int j = 0; j < N; ++j) {
+    const Quarter q = (sum[j][0] + sum[j][2]) + (sum[j][1] + sum[j][3]);
+    to[j] = (q[0] + q[2]) + (q[1] + q[3]);
+  }
+}
 #include "engine/tissue/float_kernels.inc"
 }  // namespace any_processor
 
@@ -38,30 +51,52 @@ CONDYLE_INLINE Quarter folded(const Vector* sum) { return (sum[0] + sum[2]) + (s
 #pragma GCC optimize("fp-contract=fast")
 #pragma GCC target("avx2,fma")
 namespace avx2 {
-constexpr int W = 8;
+constexpr int W = 8, tile_vectors = tile_rows / W;
 typedef __m256 Vector;
-CONDYLE_INLINE Vector widened(const ShortFloat* from) {
-  const __m128i shorts = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
-  return _mm256_castsi256_ps(_mm256_slli_epi32(_mm256_cvtepu16_epi32(shorts), 16));
-}
-CONDYLE_INLINE Quarter folded(const Vector* sum) {
-  const Vector half = sum[0] + sum[1];
-  return _mm256_castps256_ps128(half) + _mm256_extractf128_ps(half, 1);
+template <int N>
+CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
+  Quarter q[(N + 3) / 4 * 4]{};
+  CONDYLE_UNROLL for (int j = 0; j < N; ++j) {
+    const Vector half = sum[j][0] + sum[j][1];
+    q[j] = _mm256_castps256_ps128(half) + _mm256_extractf128_ps(half, 1);
+  }
+  CONDYLE_UNROLL for (int j = 0; j < N; j += 4) {
+    const Quarter four = sums_of(q[j], q[j + 1], q[j + 2], q[j + 3]);
+    std::memcpy(to + j, &four, sizeof four);
+  }
 }
 #include "engine/tissue/float_kernels.inc"
 }  // namespace avx2
 #pragma GCC target("avx512f,avx512bw,avx512vl")
 namespace avx512 {
-constexpr int W = 16;
+constexpr int W = 16, tile_vectors = tile_rows / W;
 typedef __m512 Vector;
-CONDYLE_INLINE Vector widened(const ShortFloat* from) {
-  const __m256i shorts = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
-  return _mm512_castsi512_ps(_mm512_slli_epi32(_mm512_cvtepu16_epi32(shorts), 16));
+/// Both halves of two vectors, added up.
+CONDYLE_INLINE Vector halves(const Vector& a, const Vector& b) {
+  return _mm512_shuffle_f32x4(a, b, 0x44) + _mm512_shuffle_f32x4(a, b, 0xee);
 }
-CONDYLE_INLINE Quarter folded(const Vector* sum) {
-  const __m256 upper = _mm256_castpd_ps(_mm512_extractf64x4_pd(_mm512_castps_pd(*sum), 1));
-  const __m256 half = _mm512_castps512_ps256(*sum) + upper;
-  return _mm256_castps256_ps128(half) + _mm256_extractf128_ps(half, 1);
+/// The same of halves: the quarters of two vectors each.
+CONDYLE_INLINE Vector quarters(const Vector& ab, const Vector& cd) {
+  return _mm512_shuffle_f32x4(ab, cd, 0x88) + _mm512_shuffle_f32x4(ab, cd, 0xdd);
+}
+template <int N>
+CONDYLE_INLINE void totals(const Vector (&sum)[N][1], float* to) {
+  static_assert(N <= 12);
+  Vector four[4]{};  // the quarters of four columns each
+  CONDYLE_UNROLL for (int j = 0; j < N; j += 4) {
+    const Vector ab = halves(sum[j][0], sum[j + 1][0]);
+    constexpr int last = N - 2;  // N is even
+    const int next = j < last ? j + 2 : j;
+    four[j / 4] = quarters(ab, halves(sum[next][0], sum[next + 1][0]));
+  }
+  const Vector P = _mm512_shuffle_ps(four[0], four[1], 0x44) +
+                   _mm512_shuffle_ps(four[0], four[1], 0xee),
+               Q = _mm512_shuffle_ps(four[2], four[2], 0x44) +
+                   _mm512_shuffle_ps(four[2], four[2], 0xee);
+  const Vector all = _mm512_shuffle_ps(P, Q, 0x88) + _mm512_shuffle_ps(P, Q, 0xdd);
+  const __m512i order = _mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
+  const Vector sums = _mm512_permutexvar_ps(order, all);
+  std::memcpy(to, &sums, sizeof sums);
 }
 #include "engine/tissue/float_kernels.inc"
 }  // namespace avx512

@@ -6,22 +6,34 @@
 
 namespace condyle {
 
-/// The upper half of a float (bfloat16): its range, and 8 bits of its digits.
-using ShortFloat = std::uint16_t;
-inline ShortFloat short_float(float v) {  // the nearest; on a tie the even one
-  std::uint32_t bits;
-  std::memcpy(&bits, &v, sizeof bits);
-  return static_cast<ShortFloat>((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);
-}
-inline float float_of(ShortFloat v) {
-  const std::uint32_t bits = static_cast<std::uint32_t>(v) << 16;
-  float value;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
+/// Sixteen rows of two columns of a factor, in half precision (bfloat16: the range of floats and 8
+/// bits of their digits). The first column's are the lower halves of the words. The second's are
+/// the whole words, read as floats: the upper halves are chosen so that they are the nearest,
+/// whatever stands below. So neither has to be unpacked by more than a shift.
+struct alignas(64) PairTile {
+  std::uint32_t word[16];
+};
+/// Tiles of a block of `size` columns of a front that begins at `row` of `height`. They begin at
+/// multiples of sixteen rows.
+inline std::ptrdiff_t front_tiles(int row, int height, int size) {
+  return static_cast<std::ptrdiff_t>((height + 15) / 16 - row / 16) * ((size + 1) / 2);
 }
 
-/// Products of dense matrices of floats, column by column in memory, as a factorisation and its
-/// solves need them. They use the widest vectors that the processor has; each sum is taken in an
+/// A front's factor as its solves read it, for blocks of one size. Each block of columns holds
+/// -D^-1 in its own rows and L D^-1 below; L is the factor and D its diagonal block. `height` are
+/// the rows of the front, of which the first `pivots` blocks are eliminated. y has room for whole
+/// tiles.
+struct FrontKernels {
+  /// From a panel whose diagonal blocks hold D^-1. Up to 15 numbers after it are read.
+  void (*pack)(const float* panel, int pivots, int height, PairTile* to);
+  /// y's pivots = D^-1 (y - what is above); all other rows: what to add to them.
+  void (*forward)(const PairTile* A, int pivots, int height, float* y);
+  /// y's pivots = D^-T (y - what is below); y is followed by zeros.
+  void (*backward)(const PairTile* A, int pivots, int height, float* y);
+};
+
+/// Products of dense matrices of floats, column by column in memory, as a factorisation
+/// needs them. They use the widest vectors that the processor has; each sum is taken in an
 /// order that does not depend on it, so that every processor that can fuse products and sums gives
 /// the same bits. Up to 15 numbers after the last column of a matrix are read.
 struct FloatKernels {
@@ -38,26 +50,22 @@ struct FloatKernels {
   /// Products no deeper than this have the same bits in parts of their columns as whole.
   static constexpr int most_whole_depth = 240;
   void (*subtract_product)(const Product& product);
-  /// y -= A x; A is rows x columns (stride lda). What stands in the 15 places after y's last may
-  /// hold anything afterwards.
-  void (*subtract_times)(float* y, const ShortFloat* A, int lda, int rows, int columns,
-                         const float* x);
-  /// y -= A^T x; y has `columns` entries, x is followed by 15 zeros.
-  void (*subtract_transposed)(float* y, const ShortFloat* A, int lda, int rows, int columns,
-                              const float* x);
   /// to += from
   void (*add)(float* to, const float* from, int count);
-  /// to = from, rounded.
-  void (*narrow)(const float* from, std::size_t count, ShortFloat* to);
   /// Replaces the lower half of a positive definite block by the inverse of its Cholesky factor,
   /// with zeros above: solving is then only products. Pivots that are not above `least` times the
   /// largest diagonal entry are raised to it; gives how many were. Up to 15 numbers after its last
   /// column are read.
   int (*invert_diagonal)(float* block, int stride, int size, float least);
+  /// For blocks of 3, 6, 9, 12, 15 and 18.
+  const FrontKernels* fronts;
 };
-constexpr int largest_block = 18;  // of invert_diagonal
+constexpr int largest_block = 18;  // of invert_diagonal and fronts
 
 /// Those for this processor.
 const FloatKernels& float_kernels();
+inline const FrontKernels& front_kernels(int block) {
+  return float_kernels().fronts[block / 3 - 1];
+}
 
 }  // namespace condyle

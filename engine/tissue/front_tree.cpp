@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "engine/tissue/float_kernels.h"
+
 namespace condyle {
 namespace {
 
@@ -138,6 +140,8 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
     front.panel = panel_floats;
     most_height = std::max(most_height, height(front));
     panel_floats += static_cast<std::size_t>(height(front)) * front.pivots * block;
+    front.tiles = tiles;
+    for (int p = 0; p < front.pivots; ++p) tiles += front_tiles(p * block, height(front), block);
     for (int j = range.first; j <= range.last; ++j) front_of[j] = static_cast<int>(fronts.size());
     fronts.push_back(std::move(front));
   }

@@ -19,6 +19,7 @@ struct FrontTree {
     int rows_begin = 0, rows_end = 0;  // the places below, in `rows`, rising
     int parent = -1;                   // front, or -1
     std::size_t panel = 0;             // first float; (pivots + rows) * block of each column
+    std::size_t tiles = 0;             // first tile (see FrontKernels)
     std::size_t update = 0;            // first float of what is left for the parent, in work space
     std::vector<int> children;
   };
@@ -40,7 +41,7 @@ struct FrontTree {
   std::vector<int> seat;      // of each entry of `rows`: its block in the parent's rows
   std::vector<int> run_end;   // of each entry of `rows`: after those that stand together there, too
   std::vector<int> row_end;   // of each entry of `rows`: after those whose places follow each other
-  std::size_t panel_floats = 0, work_floats = 0;
+  std::size_t panel_floats = 0, work_floats = 0, tiles = 0;
   int most_height = 0;  // of any front
 };
 

@@ -1,6 +1,17 @@
 #include "engine/tissue/hessian_factor.h"
 
 namespace condyle {
+namespace {
+
+/// Numbers of another precision.
+template <class To, class From>
+void convert(const From* from, Eigen::Index count, To* to) {
+  using Eigen::Dynamic, Eigen::Map, Eigen::Vector;
+  Map<Vector<To, Dynamic>>(to, count) =
+      Map<const Vector<From, Dynamic>>(from, count).template cast<To>();
+}
+
+}  // namespace
 
 HessianFactor::HessianFactor(std::shared_ptr<const HessianPattern> pattern, BlockCholesky factor)
     : pattern_(std::move(pattern)), factor_(std::move(factor)) {}
@@ -32,18 +43,12 @@ HessianFactor HessianFactor::anew(const SpringPrismNet& net, const NetLoads& loa
 
 void HessianFactor::solve(const Nodes& g, Nodes& z) const {
   const auto& at = pattern_->tree->order.at;
-  const int nodes = pattern_->nodes_per_column;
+  const std::size_t nodes = pattern_->nodes_per_column, size = 3 * nodes;
   std::vector<float> b(g.size() * 3);
-  std::size_t i = 0;
-  for (int column : at)
-    for (int n = column * nodes; n < (column + 1) * nodes; ++n)
-      for (int k = 0; k < 3; ++k) b[i++] = static_cast<float>(g[n][k]);
+  for (std::size_t i = 0; i < at.size(); ++i) convert(g[at[i] * nodes].data(), size, &b[i * size]);
   factor_.solve(b, threads_);
   z.resize(g.size());
-  i = 0;
-  for (int column : at)
-    for (int n = column * nodes; n < (column + 1) * nodes; ++n)
-      for (int k = 0; k < 3; ++k) z[n][k] = static_cast<double>(b[i++]);
+  for (std::size_t i = 0; i < at.size(); ++i) convert(&b[i * size], size, z[at[i] * nodes].data());
 }
 
 std::size_t HessianFactor::bytes() const { return factor_.bytes(); }

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <random>
 
@@ -77,12 +78,6 @@ int factorize(const Sparse& s, BlockCholesky& factor, int threads) {
           }
       },
       1e-6f, threads);
-}
-
-std::vector<ShortFloat> shortened(const std::vector<float>& values) {
-  std::vector<ShortFloat> shorts(values.size());
-  float_kernels().narrow(values.data(), values.size(), shorts.data());
-  return shorts;
 }
 
 std::vector<float> right_hand_side(std::size_t size) {
@@ -158,15 +153,119 @@ float fused(float a, float b, float c) {
 #endif
 }
 
-TEST(FloatKernels, ShortFloatsAreTheNearest) {
-  for (float v : right_hand_side(1000)) {
-    const float near = float_of(short_float(v));
-    EXPECT_LE(std::abs(near - v), std::ldexp(std::abs(v), -8));
-    EXPECT_EQ(short_float(near), shortened({v})[0]);
-    EXPECT_EQ(shortened(std::vector<float>(16, v))[5], short_float(v));
+/// A front of random numbers as BlockCholesky leaves it: D^-1 in its diagonal blocks, L below.
+struct RandomFront {
+  RandomFront(int block, int blocks_eliminated, int blocks_below)
+      : size(block), pivots(blocks_eliminated), height((pivots + blocks_below) * size) {
+    panel = right_hand_side(static_cast<std::size_t>(pivots * size) * height + 16);
+    for (int c = 0; c < pivots * size; ++c)
+      for (int r = c / size * size; r < c; ++r) panel[c * height + r] = 0;
+    std::ptrdiff_t tiles = 0;
+    for (int p = 0; p < pivots; ++p) tiles += front_tiles(p * size, height, size);
+    A.resize(tiles);
+    front_kernels(size).pack(panel.data(), pivots, height, A.data());
   }
-  EXPECT_EQ(float_of(short_float(-1.5f)), -1.5f);
-  EXPECT_TRUE(std::isinf(float_of(short_float(std::numeric_limits<float>::infinity()))));
+  float panel_at(int row, int column) const { return panel[column * height + row]; }
+  /// What the tiles should hold.
+  double wanted(int row, int column) const {
+    const int block = column / size * size;
+    if (row < block) return 0;
+    if (row < block + size) return -panel_at(row, column);
+    double sum = 0;
+    for (int k = column; k < block + size; ++k)
+      sum += static_cast<double>(panel_at(row, k)) * panel_at(k, column);
+    return sum;
+  }
+  /// What they hold.
+  float held(int row, int column) const {
+    const int block = column / size * size, in_block = column - block, pairs = (size + 1) / 2;
+    std::ptrdiff_t at = 0;
+    for (int c = 0; c < block; c += size) at += front_tiles(c, height, size);
+    at += static_cast<std::ptrdiff_t>(row / 16 - block / 16) * pairs + in_block / 2;
+    std::uint32_t word = A[at].word[row % 16];
+    if (in_block % 2 == 0) word <<= 16;
+    float value;
+    std::memcpy(&value, &word, sizeof value);
+    return value;
+  }
+  int size, pivots, height;
+  std::vector<float> panel;
+  std::vector<PairTile> A;
+};
+
+TEST(FrontKernels, KeepEachNumberToEightBits) {
+  for (int size : {3, 6, 9, 12, 15, 18}) {
+    const RandomFront front(size, 3, 4);
+    for (int c = 0; c < front.pivots * size; ++c)
+      for (int r = c / size * size / 16 * 16; r < front.height; ++r) {
+        const double wanted = front.wanted(r, c);
+        EXPECT_NEAR(front.held(r, c), wanted, std::ldexp(std::abs(wanted), -8) + 1e-6)
+            << size << ' ' << r << ' ' << c;
+        if (wanted == 0) {
+          EXPECT_LE(std::abs(front.held(r, c)), std::ldexp(1.0, -94));
+        }
+      }
+  }
+}
+
+TEST(FrontKernels, HugeAndTinyNumbersStayFinite) {
+  RandomFront front(6, 1, 1);
+  int k = 0;
+  for (auto& v : front.panel) v = std::ldexp(v, k++ % 2 ? 60 : -120);
+  front_kernels(6).pack(front.panel.data(), 1, front.height, front.A.data());
+  for (int c = 0; c < 6; ++c)
+    for (int r = 0; r < front.height; ++r) {
+      EXPECT_TRUE(std::isfinite(front.held(r, c)));
+      if (std::abs(front.wanted(r, c)) > 1) {
+        EXPECT_NEAR(front.held(r, c) / front.wanted(r, c), 1, 1.0 / 256);
+      }
+    }
+}
+
+TEST(FrontKernels, GiveTheBitsOfPlainLoops) {
+  for (int size : {3, 6, 9, 12, 15, 18})
+    for (const auto& [pivots, below] : {std::pair{1, 0}, {1, 4}, {2, 3}, {5, 7}}) {
+      const RandomFront front(size, pivots, below);
+      const int width = pivots * size, height = front.height, tiles = (height + 15) / 16;
+      struct alignas(64) Tile {
+        float row[16];
+      };
+      std::vector<Tile> room(tiles);
+      float* y = room[0].row;
+      const std::vector<float> given = right_hand_side(height);
+      std::copy_n(given.begin(), width, y);
+      std::vector<float> expected(given.begin(), given.end());
+      std::fill(expected.begin() + width, expected.end(), 0.0f);
+      for (int c = 0; c < width; c += size) {
+        const std::vector<float> x(&expected[c], &expected[c] + size);
+        std::fill_n(&expected[c], size, 0.0f);
+        for (int r = c / 16 * 16; r < height; ++r) {
+          std::array<float, 2> sum{};
+          for (int j = 0; j < size; ++j) sum[j % 2] = fused(front.held(r, c + j), x[j], sum[j % 2]);
+          expected[r] -= sum[0] + sum[1];
+        }
+      }
+      front_kernels(size).forward(front.A.data(), pivots, height, y);
+      for (int r = 0; r < height; ++r) EXPECT_EQ(y[r], expected[r]) << size << ' ' << r;
+
+      std::copy(given.begin(), given.end(), y);
+      std::fill(y + height, y + tiles * 16, 0.0f);
+      expected = given;
+      for (int c = width - size; c >= 0; c -= size) {
+        std::vector<float> x(size);
+        for (int j = 0; j < size; ++j) {
+          std::array<float, 16> part{};
+          for (int r = c / 16 * 16; r < height; ++r)
+            part[r % 16] = fused(front.held(r, c + j), expected[r], part[r % 16]);
+          for (int half = 8; half > 0; half /= 2)
+            for (int i = 0; i < half; ++i) part[i] += part[i + half];
+          x[j] = -part[0];
+        }
+        std::copy(x.begin(), x.end(), &expected[c]);
+      }
+      front_kernels(size).backward(front.A.data(), pivots, height, y);
+      for (int r = 0; r < height; ++r) EXPECT_EQ(y[r], expected[r]) << size << ' ' << r;
+    }
 }
 
 TEST(FloatKernels, ABlockTimesItsInverseFactorsIsOne) {
@@ -211,29 +310,6 @@ TEST(FloatKernels, GiveTheBitsOfPlainLoops) {
           expected[j * rows + i] -= sum;
         }
       EXPECT_EQ(C, expected);
-
-      std::vector<float> y = right_hand_side(rows + 16), y_expected = y;
-      const std::vector<float> x = right_hand_side(depth);
-      const std::vector<ShortFloat> A_short = shortened(A);
-      kernels.subtract_times(y.data(), A_short.data(), rows, rows, depth, x.data());
-      for (int i = 0; i < rows; ++i) {
-        float sum = 0;
-        for (int k = 0; k < depth; ++k) sum = fused(float_of(A_short[k * rows + i]), x[k], sum);
-        EXPECT_EQ(y[i], y_expected[i] - sum);
-      }
-
-      std::vector<float> padded = right_hand_side(rows);
-      padded.resize(rows + 16, 0.0f);
-      std::vector<float> z = right_hand_side(depth), z_expected = z;
-      kernels.subtract_transposed(z.data(), A_short.data(), rows, rows, depth, padded.data());
-      for (int k = 0; k < depth; ++k) {
-        std::array<float, 16> part{};
-        for (int i = 0; i < rows; ++i)
-          part[i % 16] = fused(float_of(A_short[k * rows + i]), padded[i], part[i % 16]);
-        for (int half = 8; half > 0; half /= 2)
-          for (int i = 0; i < half; ++i) part[i] += part[i + half];
-        EXPECT_EQ(z[k], z_expected[k] - part[0]);
-      }
     }
 }
 
