@@ -20,15 +20,16 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
   constexpr double unknown_share = 0.3, least_contraction = 0.95;
   const Preconditioner* preconditioner = &given;
   double gz = 0, way = 0, shortest = 0;
-  // Where the preconditioner is stiffer than the objective, the way is longer than it says.
-  const auto stretch = [&] {
+  // The way along z is longer than it says where the preconditioner is stiffer than the objective,
+  // and shorter where it is softer: at most by `softest`, as other parts may be as stiff.
+  const auto stretch = [&](double softest) {
     const auto curvature = objective.curvature(x, z);
-    return curvature.gauss_newton > 0 ? std::max(1.0, gz / curvature.gauss_newton) : 1.0;
+    return curvature.gauss_newton > 0 ? std::max(softest, gz / curvature.gauss_newton) : 1.0;
   };
   // A fresh one is not five times too stiff: far below, no look is needed.
   const double far_below = settings.fresh ? 0.2 : 0.0;
-  const auto arrived = [&](double enough) {
-    return way < far_below * enough || (way < enough && way * stretch() < enough);
+  const auto arrived = [&](double enough, double softest) {
+    return way < far_below * enough || (way * softest < enough && way * stretch(softest) < enough);
   };
   const auto begin = [&] {
     preconditioner->solve(g, z);
@@ -37,7 +38,7 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
     d.resize(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
     way = shortest = largest_norm(z);
-    if (arrived(unknown_share * settings.tolerance_mm)) result.status = Status::converged;
+    if (arrived(unknown_share * settings.tolerance_mm, 1)) result.status = Status::converged;
     return true;
   };
 
@@ -125,7 +126,8 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
     way = largest_norm(z);
     const double contraction = std::min(way / shortest, least_contraction);
     shortest = std::min(shortest, way);
-    if (arrived(settings.tolerance_mm * (1 - contraction))) {
+    constexpr double softest = 0.4;
+    if (arrived(settings.tolerance_mm * (1 - contraction), softest)) {
       ++result.iterations;
       result.status = Status::converged;
       break;
