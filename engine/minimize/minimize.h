@@ -38,9 +38,10 @@ struct MinimizeSettings {
   int max_iterations = 2000;
   int max_evaluations = 1000000000;
   double max_step_mm = 4.0;  // of any point in one iteration; not for powell
-  /// preconditioned: the preconditioner was made at the start, so that its first step is tried at
-  /// full length without a look at the curvature along it, nor is one taken at the end where the
-  /// way left is a fifth of what would do.
+  /// preconditioned: the preconditioner was made at the start. So its first step is tried at full
+  /// length without a look at the curvature along it, nor is one taken at the end where the way left
+  /// is a fifth of what would do; and where the objective has become stiffer, a look tells that the
+  /// way is shorter than the preconditioner says.
   bool fresh = false;
   /// preconditioned: asked with what has been done after each iteration that more may follow,
   /// before it is known whether they must; another preconditioner for them, or null.

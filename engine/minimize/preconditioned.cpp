@@ -21,15 +21,15 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
   const Preconditioner* preconditioner = &given;
   double gz = 0, way = 0, shortest = 0;
   // The way along z is longer than it says where the preconditioner is stiffer than the objective,
-  // and shorter where it is softer: at most by `softest`, as other parts may be as stiff.
-  const auto stretch = [&](double softest) {
+  // and shorter where it is softer: at most to `least`, as other parts may be as stiff.
+  const auto stretch = [&](double least) {
     const auto curvature = objective.curvature(x, z);
-    return curvature.gauss_newton > 0 ? std::max(softest, gz / curvature.gauss_newton) : 1.0;
+    return curvature.gauss_newton > 0 ? std::max(least, gz / curvature.gauss_newton) : 1.0;
   };
   // A fresh one is not five times too stiff: far below, no look is needed.
-  const double far_below = settings.fresh ? 0.2 : 0.0;
-  const auto arrived = [&](double enough, double softest) {
-    return way < far_below * enough || (way * softest < enough && way * stretch(softest) < enough);
+  const double far_below = settings.fresh ? 0.2 : 0.0, softest = settings.fresh ? 0.5 : 1.0;
+  const auto arrived = [&](double enough, double least) {
+    return way < far_below * enough || (way * least < enough && way * stretch(least) < enough);
   };
   const auto begin = [&] {
     preconditioner->solve(g, z);
@@ -126,7 +126,6 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
     way = largest_norm(z);
     const double contraction = std::min(way / shortest, least_contraction);
     shortest = std::min(shortest, way);
-    constexpr double softest = 0.4;
     if (arrived(settings.tolerance_mm * (1 - contraction), softest)) {
       ++result.iterations;
       result.status = Status::converged;

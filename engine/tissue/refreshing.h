@@ -15,10 +15,13 @@ struct RefreshSchedule {
   int each_far = 4;  // with each of them
   int later = 9;     // with each of the next two; then three more for each further two
   int most = 16;
+  /// Whether an exact factor has to confirm the end: a plateau on which tissue is about to buckle
+  /// looks like one to any other.
+  bool confirm = false;
 };
 /// For nets of ten thousand nodes and more.
 constexpr RefreshSchedule sparing_refreshes{
-    .first = 1, .far = 2, .each_far = 1, .later = 8, .most = 20};
+    .first = 1, .far = 2, .each_far = 1, .later = 8, .most = 20, .confirm = true};
 
 /// The preconditioned method for a long way from where its factor was made: springs that have begun
 /// to push and tissue that has turned ask for a factor of the state on the way.

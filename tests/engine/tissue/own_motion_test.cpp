@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "engine/minimize/minimize.h"
 #include "engine/tissue/refreshing.h"
 #include "engine/tissue/synthetic_set.h"
@@ -36,9 +38,10 @@ struct Opening {
   SyntheticSet set = make_synthetic_set(patient2_size());
   static Pose pose(int frame) { return synthetic_pose(0.0087 * (20 + frame), {0, 0, 0}); }
 
-  /// Iterations of the last of `frames` frames, its factor made `ahead` at where it begins, or at
-  /// where the frame before ended.
-  int iterations(int frames, bool ahead) const {
+  /// Iterations of most of the last frames, their factors made `ahead` at where they begin, or at
+  /// where the frames before ended.
+  int iterations(bool ahead) const {
+    constexpr int frames = 13, last = 9;
     NetLoads loads = synthetic_loads(set, pose(-1));
     SpringPrismEnergy energy(set.net, loads, 2);
     MinimizeSettings settings;
@@ -47,7 +50,7 @@ struct Opening {
     HessianFactor factor(set.net, loads, set.sheets, x, 2);
     minimize_refreshing(set.net, loads, energy, factor, settings, x);
     OwnMotion own;
-    int used = 0;
+    std::vector<int> used;
     for (int frame = 0; frame < frames; ++frame) {
       loads = synthetic_loads(set, pose(frame));
       const Nodes taken = carried(set, x, pose(frame - 1), pose(frame));
@@ -57,18 +60,19 @@ struct Opening {
       settings.fresh = ahead;
       const auto result = minimize(Method::preconditioned, energy, settings, next, &factor);
       EXPECT_TRUE(result.converged());
-      used = result.iterations;
+      used.push_back(result.iterations);
       own.frame_ended(next, taken);
       x = next;
     }
-    return used;
+    std::nth_element(used.end() - last, used.end() - last / 2 - 1, used.end());
+    return used[frames - last / 2 - 1];
   }
 };
 
 TEST(OwnMotion, AFactorOfWhereTheFrameBeginsNeedsOneStep) {
   const Opening opening;
-  EXPECT_EQ(opening.iterations(12, true), 1);
-  EXPECT_GE(opening.iterations(12, false), 2);
+  EXPECT_EQ(opening.iterations(true), 1);
+  EXPECT_GE(opening.iterations(false), 2);
 }
 
 }  // namespace
