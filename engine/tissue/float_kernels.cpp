@@ -23,8 +23,8 @@ constexpr int tile_rows = 16;
 typedef float Quarter __attribute__((vector_size(4 * sizeof(float))));
 
 /// The four sums of four quarters.
-CONDYLE_INLINE Quarter sums_of(const Quarter& a, const Quarter& b, const Quarter& c,
-                               const Quarter& d) {
+CONDYLE_INLINE Quarter four_sums(const Quarter& a, const Quarter& b, const Quarter& c,
+                                 const Quarter& d) {
   const Quarter ab = __builtin_shufflevector(a, b, 0, 1, 4, 5) +
                      __builtin_shufflevector(a, b, 2, 3, 6, 7),
                 cd = __builtin_shufflevector(c, d, 0, 1, 4, 5) +
@@ -61,7 +61,7 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
     q[j] = _mm256_castps256_ps128(half) + _mm256_extractf128_ps(half, 1);
   }
   CONDYLE_UNROLL for (int j = 0; j < N; j += 4) {
-    const Quarter four = sums_of(q[j], q[j + 1], q[j + 2], q[j + 3]);
+    const Quarter four = four_sums(q[j], q[j + 1], q[j + 2], q[j + 3]);
     std::memcpy(to + j, &four, sizeof four);
   }
 }

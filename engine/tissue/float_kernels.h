@@ -32,8 +32,8 @@ struct FrontKernels {
   void (*backward)(const PairTile* A, int pivots, int height, float* y);
 };
 
-/// Products of dense matrices of floats, column by column in memory, as a factorisation
-/// needs them. They use the widest vectors that the processor has; each sum is taken in an
+/// Products of dense matrices of floats, column by column in memory, as a factorisation needs them,
+/// and its solves. They use the widest vectors that the processor has; each sum is taken in an
 /// order that does not depend on it, so that every processor that can fuse products and sums gives
 /// the same bits. Up to 15 numbers after the last column of a matrix are read.
 struct FloatKernels {
