@@ -34,6 +34,7 @@ CONDYLE_INLINE Quarter four_sums(const Quarter& a, const Quarter& b, const Quart
 
 namespace any_processor {
 constexpr int W = 4, tile_vectors = tile_rows / W;
+constexpr bool fused = false;
 typedef float Vector __attribute__((vector_size(W * sizeof(float))));
 template <int N>
 CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
@@ -52,6 +53,7 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
 #pragma GCC target("avx2,fma")
 namespace avx2 {
 constexpr int W = 8, tile_vectors = tile_rows / W;
+constexpr bool fused = true;
 typedef __m256 Vector;
 template <int N>
 CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
@@ -70,6 +72,7 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
 #pragma GCC target("avx512f,avx512bw,avx512vl")
 namespace avx512 {
 constexpr int W = 16, tile_vectors = tile_rows / W;
+constexpr bool fused = true;
 typedef __m512 Vector;
 /// Both halves of two vectors, added up.
 CONDYLE_INLINE Vector halves(const Vector& a, const Vector& b) {
@@ -108,16 +111,24 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][1], float* to) {
 
 }  // namespace
 
-const FloatKernels& float_kernels() {
+const std::vector<const FloatKernels*>& usable_float_kernels() {
+  static const std::vector<const FloatKernels*> usable = [] {
+    std::vector<const FloatKernels*> those;
 #ifdef __x86_64__
-  static const FloatKernels& best =
-      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") ? avx512::kernels
-      : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")        ? avx2::kernels
-                                                                        : any_processor::kernels;
-  return best;
-#else
-  return any_processor::kernels;
+    if (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+      those.push_back(&avx512::kernels);
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+      those.push_back(&avx2::kernels);
 #endif
+    those.push_back(&any_processor::kernels);
+    return those;
+  }();
+  return usable;
+}
+
+const FloatKernels& float_kernels() {
+  static const FloatKernels& fastest = *usable_float_kernels().front();
+  return fastest;
 }
 
 }  // namespace condyle

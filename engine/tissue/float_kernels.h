@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+#include <vector>
 
 namespace condyle {
 
@@ -59,11 +59,13 @@ struct FloatKernels {
   int (*invert_diagonal)(float* block, int stride, int size, float least);
   /// For blocks of 3, 6, 9, 12, 15 and 18.
   const FrontKernels* fronts;
+  bool fused;  // whether a product and a sum are rounded together
 };
 constexpr int largest_block = 18;  // of invert_diagonal and fronts
 
-/// Those for this processor.
-const FloatKernels& float_kernels();
+/// Those that this processor has, the fastest first.
+const std::vector<const FloatKernels*>& usable_float_kernels();
+const FloatKernels& float_kernels();  // the fastest
 inline const FrontKernels& front_kernels(int block) {
   return float_kernels().fronts[block / 3 - 1];
 }
