@@ -5,6 +5,8 @@
 
 #include "render/face_openings.h"
 #include "render/material.h"
+#include "render/mouth_lining.h"
+#include "render/skin_tint.h"
 
 namespace condyle {
 namespace {
@@ -176,6 +178,12 @@ void DrawnFace::divide() {
   divided_ = changed_ = true;
 }
 
+void DrawnFace::tint(std::span<const int> rim, const Vector3f& skin) {
+  if (mesh_.colors.empty()) mesh_.colors.assign(mesh_.vertices.size(), skin);
+  tint_skin(mesh_, rim, mesh_.colors);
+  changed_ = true;
+}
+
 void DrawnFace::place(const TriMesh& face) {
   mesh_.vertices.clear();
   for (const auto& p : places(to_float(face.vertices))) mesh_.vertices.push_back(p.cast<double>());
@@ -203,7 +211,13 @@ PreparedParts::PreparedParts(std::span<const Part> patient) : patient_(patient) 
   for (const auto& part : patient)
     if (part.role == Role::eyes)
       eyes.insert(eyes.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
-  DrawnFace drawn(face->mesh, eyes, material_of(Role::face).color);
+  const Vector3f skin = material_of(Role::face).color;
+  DrawnFace drawn(face->mesh, eyes, skin);
+  if (face->mesh.colors.empty()) {
+    const auto lining = line_mouth(patient, &drawn.mesh());
+    // Where the lips have an inside, the rim is not where they end.
+    if (lining && !lining->cut) drawn.tint(lining->rim, skin);
+  }
   if (!drawn.changed()) return;
   replaced_ = &*face;
   own_ = {face->name, face->role, drawn.mesh(), {}, face->carrier};

@@ -20,6 +20,9 @@ class DrawnFace {
   DrawnFace(const TriMesh& face, std::span<const Eigen::Vector3d> eyes,
             const Eigen::Vector3f& color);
 
+  /// Gives it the colours of lips and cheeks; rim: of its mouth (see skin_tint.h).
+  void tint(std::span<const int> rim, const Eigen::Vector3f& skin);
+
   /// Whether it differs from the face that it was made of.
   bool changed() const { return changed_; }
   const TriMesh& mesh() const { return mesh_; }
