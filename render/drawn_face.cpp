@@ -127,10 +127,14 @@ DrawnFace::DrawnFace(const TriMesh& face, std::span<const Vector3d> eyes, const 
     : given_(face.vertices.size()), mesh_(face) {
   close_openings(eyes, color);
   if (changed_) place(face);
-  while (mean_edge(mesh_) > coarse_mm && mesh_.triangles.size() < most_triangles) {
+  while (smooths(mesh_)) {
     divide();
     place(face);
   }
+}
+
+bool DrawnFace::smooths(const TriMesh& face) {
+  return face.triangles.size() < most_triangles && mean_edge(face) > coarse_mm;
 }
 
 void DrawnFace::close_openings(std::span<const Vector3d> eyes, const Vector3f& color) {
@@ -189,11 +193,21 @@ void DrawnFace::place(const TriMesh& face) {
   for (const auto& p : places(to_float(face.vertices))) mesh_.vertices.push_back(p.cast<double>());
 }
 
-std::vector<Vector3f> DrawnFace::places(std::span<const Vector3f> face) const {
-  std::vector<Vector3f> closed(face.begin(), face.end());
+std::vector<Vector3f> DrawnFace::closed(std::span<const Vector3f> face) const {
+  std::vector<Vector3f> all(face.begin(), face.end());
   const auto covers = covers_.of(face);
-  for (std::size_t v = 0; v < covers.size(); ++v) closed.push_back(covers[v] + offsets_[v]);
-  return divided_ ? smooth_.of<Vector3f>(closed) : closed;
+  for (std::size_t v = 0; v < covers.size(); ++v) all.push_back(covers[v] + offsets_[v]);
+  return all;
+}
+
+std::vector<Vector3f> DrawnFace::places(std::span<const Vector3f> face) const {
+  auto all = closed(face);
+  return divided_ ? smooth_.of<Vector3f>(all) : all;
+}
+
+std::vector<Vector3f> DrawnFace::places_of_given(std::span<const Vector3f> face) const {
+  return divided_ ? smooth_.of<Vector3f>(closed(face), given_)
+                  : std::vector<Vector3f>(face.begin(), face.end());
 }
 
 std::vector<float> DrawnFace::values(std::span<const float> face) const {
