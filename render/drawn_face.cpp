@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 #include "render/face_openings.h"
 #include "render/material.h"
@@ -131,6 +132,7 @@ DrawnFace::DrawnFace(const TriMesh& face, std::span<const Vector3d> eyes, const 
     divide();
     place(face);
   }
+  draw_lashes();
 }
 
 bool DrawnFace::smooths(const TriMesh& face) {
@@ -149,6 +151,19 @@ void DrawnFace::close_openings(std::span<const Vector3d> eyes, const Vector3f& c
     changed_ = true;
     if (mesh_.colors.empty()) mesh_.colors.assign(mesh_.vertices.size(), color);
     const Cover cover = eye ? lid(opening) : vestibule(opening);
+    if (eye) {
+      constexpr double lower_share = 0.5;  // of the way down to the rim
+      const auto place = [&](int v) -> const Vector3d& {
+        return mesh_.vertices[static_cast<std::size_t>(v)];
+      };
+      const auto [right, left] =
+          std::minmax_element(opening.rim.begin(), opening.rim.end(),
+                              [&](int a, int b) { return place(a).x() < place(b).x(); });
+      double low = place(*right).z();
+      for (const int v : opening.rim) low = std::min(low, place(v).z());
+      const double line = (place(*right).z() + place(*left).z()) / 2;
+      closed_eyes_.push_back({place(*right), place(*left), lower_share * (line - low)});
+    }
     const int n = static_cast<int>(opening.rim.size());
     const int own = static_cast<int>(mesh_.vertices.size()) - n;
     std::vector<VertexSums::Share> sum;
@@ -170,6 +185,24 @@ void DrawnFace::close_openings(std::span<const Vector3d> eyes, const Vector3f& c
     for (Eigen::Vector3i t : cover.triangles) {
       for (int& v : t) v = v < n ? opening.rim[static_cast<std::size_t>(v)] : own + v;
       mesh_.triangles.push_back(t);
+    }
+  }
+}
+
+/// Where the lids meet it is dark, with lashes.
+void DrawnFace::draw_lashes() {
+  constexpr double half_mm = 0.8, deep_mm = 15;
+  const Vector3f dark(.42f, .33f, .31f);
+  for (const auto& eye : closed_eyes_) {
+    const Vector3d along = eye.left - eye.right;
+    for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+      const Vector3d p = mesh_.vertices[v] - eye.right;
+      const double u = p.x() / along.x();
+      if (u < 0 || u > 1 || p.y() > u * along.y() + deep_mm) continue;
+      const double off = p.z() - u * along.z() + 4 * u * (1 - u) * eye.below_mm;
+      const double share = std::exp(-std::pow(off / half_mm, 2)) * std::min(1.0, 8 * u * (1 - u));
+      mesh_.colors[v] = mesh_.colors[v].cwiseProduct(
+          Vector3f::Ones() + static_cast<float>(share) * (dark - Vector3f::Ones()));
     }
   }
 }

@@ -42,13 +42,21 @@ class DrawnFace {
   std::vector<Eigen::Vector3f> closed(std::span<const Eigen::Vector3f> face) const;
   void close_openings(std::span<const Eigen::Vector3d> eyes, const Eigen::Vector3f& color);
   void divide();
+  void draw_lashes();
   void place(const TriMesh& face);
+
+  /// A closed eye at rest: its corners, and how far below the line between them its lids meet.
+  struct ClosedEye {
+    Eigen::Vector3d right, left;
+    double below_mm;
+  };
 
   std::size_t given_;
   TriMesh mesh_;
   VertexSums covers_;                     // of openings, of the face's vertices
   std::vector<Eigen::Vector3f> offsets_;  // and from there, mm
   VertexSums smooth_;                     // of the face's vertices and those
+  std::vector<ClosedEye> closed_eyes_;
   bool changed_ = false, divided_ = false;
 };
 
