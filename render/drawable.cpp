@@ -78,8 +78,7 @@ struct Prepared {
 
 }  // namespace
 
-std::vector<Drawable> make_drawables(std::span<const Part* const> parts,
-                                     std::span<const Eigen::Vector3i> face) {
+std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const MouthLining* mouth) {
   std::vector<Prepared> prepared(parts.size());
   std::vector<OcclusionSurface> surfaces(parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -98,10 +97,13 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts,
     const Part& part = *parts[p];
     auto& [positions, normals] = prepared[p];
     std::vector<Eigen::Vector3i> own;
-    if (part.role == Role::face) {
-      own.assign(face.begin(), face.end());
-      face = {};
+    std::vector<int> uneven;
+    if (part.role == Role::face && mouth) {
+      own = mouth->face;
+      if (mouth->cut) uneven = mouth->rim;
+      mouth = nullptr;
     }
+    even_rim(positions, uneven);
     const auto& triangles = own.empty() ? part.mesh.triangles : own;
     if (!own.empty()) vertex_normals(positions, triangles, normals);
     const bool moving = body_of(part.role) == Body::tissue;
@@ -141,6 +143,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts,
                          std::move(creases), std::move(colors), std::move(extras), std::move(edges),
                          std::move(coarse_edges)});
     drawables.back().own = std::move(own);
+    drawables.back().uneven = std::move(uneven);
   }
   return drawables;
 }
@@ -152,6 +155,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     const Part& part = *other.part;
     std::vector<Eigen::Vector3f> positions, normals;
     for (const auto& v : part.mesh.vertices) positions.push_back(v.cast<float>());
+    even_rim(positions, other.uneven);
     vertex_normals(positions, other.triangles(), normals);
     GpuMesh mesh = other.mesh.twin();
     mesh.send_shape(positions, normals);
@@ -162,6 +166,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
                          other.creases, other.colors, other.extras, other.edges,
                          other.coarse_edges});
     drawables.back().own = other.own;
+    drawables.back().uneven = other.uneven;
   }
   return drawables;
 }
@@ -242,6 +247,7 @@ const GpuMesh& Drawable::rest_mesh() {
   if (!at_rest) {
     std::vector<Eigen::Vector3f> positions, normals;
     for (const auto& v : part->mesh.vertices) positions.push_back(v.cast<float>());
+    even_rim(positions, uneven);
     vertex_normals(positions, triangles(), normals);
     at_rest.emplace(positions, triangles(), false);
     at_rest->send_shape(positions, normals);
@@ -252,8 +258,9 @@ const GpuMesh& Drawable::rest_mesh() {
   return *at_rest;
 }
 
-void Drawable::move_face(std::span<const Eigen::Vector3f> positions,
+void Drawable::move_face(std::vector<Eigen::Vector3f> positions,
                          std::vector<Eigen::Vector3f>& normals_scratch) {
+  even_rim(positions, uneven);
   vertex_normals(positions, triangles(), normals_scratch);
   mesh.send_shape(positions, normals_scratch);
   if (creases.empty()) return;

@@ -9,6 +9,7 @@
 #include "render/creases.h"
 #include "render/gpu_mesh.h"
 #include "render/material.h"
+#include "render/mouth_lining.h"
 #include "sim/frame/part.h"
 
 namespace condyle {
@@ -30,6 +31,7 @@ struct Drawable {
   std::vector<Eigen::Vector3f> undressed = {};  // vertices of a finer mesh without colours as yet
   bool covered = false;
   std::vector<Eigen::Vector3i> own = {};  // triangles, where they are not all of the part's
+  std::vector<int> uneven = {};           // a rim of theirs, drawn even
   std::span<const Eigen::Vector3i> triangles() const {
     return own.empty() ? part->mesh.triangles : own;
   }
@@ -48,14 +50,14 @@ struct Drawable {
   const GpuMesh& rest_mesh();
 
   /// Sends a moved face, its normals and the shade of its folds.
-  void move_face(std::span<const Eigen::Vector3f> positions,
+  void move_face(std::vector<Eigen::Vector3f> positions,
                  std::vector<Eigen::Vector3f>& normals_scratch);
 };
 
 /// Uploads the parts with their normals, colours, baked ambient occlusion and curvature.
-/// `face`: triangles of the first face, where not all of them are drawn.
+/// mouth: of the first face; null where it has none.
 std::vector<Drawable> make_drawables(std::span<const Part* const> parts,
-                                     std::span<const Eigen::Vector3i> face = {});
+                                     const MouthLining* mouth = nullptr);
 /// Some triangles of a part as a drawable of their own.
 Drawable piece_of(const Drawable& whole, std::span<const Eigen::Vector3i> triangles);
 /// The same for another context, at rest.

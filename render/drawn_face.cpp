@@ -2,9 +2,12 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 #include "render/face_openings.h"
 #include "render/material.h"
+#include "render/mouth_lining.h"
+#include "render/skin_tint.h"
 
 namespace condyle {
 namespace {
@@ -125,10 +128,15 @@ DrawnFace::DrawnFace(const TriMesh& face, std::span<const Vector3d> eyes, const 
     : given_(face.vertices.size()), mesh_(face) {
   close_openings(eyes, color);
   if (changed_) place(face);
-  while (mean_edge(mesh_) > coarse_mm && mesh_.triangles.size() < most_triangles) {
+  while (smooths(mesh_)) {
     divide();
     place(face);
   }
+  draw_lashes();
+}
+
+bool DrawnFace::smooths(const TriMesh& face) {
+  return face.triangles.size() < most_triangles && mean_edge(face) > coarse_mm;
 }
 
 void DrawnFace::close_openings(std::span<const Vector3d> eyes, const Vector3f& color) {
@@ -143,6 +151,19 @@ void DrawnFace::close_openings(std::span<const Vector3d> eyes, const Vector3f& c
     changed_ = true;
     if (mesh_.colors.empty()) mesh_.colors.assign(mesh_.vertices.size(), color);
     const Cover cover = eye ? lid(opening) : vestibule(opening);
+    if (eye) {
+      constexpr double lower_share = 0.5;  // of the way down to the rim
+      const auto place = [&](int v) -> const Vector3d& {
+        return mesh_.vertices[static_cast<std::size_t>(v)];
+      };
+      const auto [right, left] =
+          std::minmax_element(opening.rim.begin(), opening.rim.end(),
+                              [&](int a, int b) { return place(a).x() < place(b).x(); });
+      double low = place(*right).z();
+      for (const int v : opening.rim) low = std::min(low, place(v).z());
+      const double line = (place(*right).z() + place(*left).z()) / 2;
+      closed_eyes_.push_back({place(*right), place(*left), lower_share * (line - low)});
+    }
     const int n = static_cast<int>(opening.rim.size());
     const int own = static_cast<int>(mesh_.vertices.size()) - n;
     std::vector<VertexSums::Share> sum;
@@ -168,6 +189,24 @@ void DrawnFace::close_openings(std::span<const Vector3d> eyes, const Vector3f& c
   }
 }
 
+/// Where the lids meet it is dark, with lashes.
+void DrawnFace::draw_lashes() {
+  constexpr double half_mm = 0.8, deep_mm = 15;
+  const Vector3f dark(.42f, .33f, .31f);
+  for (const auto& eye : closed_eyes_) {
+    const Vector3d along = eye.left - eye.right;
+    for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+      const Vector3d p = mesh_.vertices[v] - eye.right;
+      const double u = p.x() / along.x();
+      if (u < 0 || u > 1 || p.y() > u * along.y() + deep_mm) continue;
+      const double off = p.z() - u * along.z() + 4 * u * (1 - u) * eye.below_mm;
+      const double share = std::exp(-std::pow(off / half_mm, 2)) * std::min(1.0, 8 * u * (1 - u));
+      mesh_.colors[v] = mesh_.colors[v].cwiseProduct(
+          Vector3f::Ones() + static_cast<float>(share) * (dark - Vector3f::Ones()));
+    }
+  }
+}
+
 void DrawnFace::divide() {
   auto finer = subdivide(static_cast<int>(mesh_.vertices.size()), mesh_.triangles);
   mesh_.triangles = std::move(finer.triangles);
@@ -176,16 +215,32 @@ void DrawnFace::divide() {
   divided_ = changed_ = true;
 }
 
+void DrawnFace::tint(std::span<const int> rim, const Vector3f& skin) {
+  if (mesh_.colors.empty()) mesh_.colors.assign(mesh_.vertices.size(), skin);
+  tint_skin(mesh_, rim, mesh_.colors);
+  changed_ = true;
+}
+
 void DrawnFace::place(const TriMesh& face) {
   mesh_.vertices.clear();
   for (const auto& p : places(to_float(face.vertices))) mesh_.vertices.push_back(p.cast<double>());
 }
 
-std::vector<Vector3f> DrawnFace::places(std::span<const Vector3f> face) const {
-  std::vector<Vector3f> closed(face.begin(), face.end());
+std::vector<Vector3f> DrawnFace::closed(std::span<const Vector3f> face) const {
+  std::vector<Vector3f> all(face.begin(), face.end());
   const auto covers = covers_.of(face);
-  for (std::size_t v = 0; v < covers.size(); ++v) closed.push_back(covers[v] + offsets_[v]);
-  return divided_ ? smooth_.of<Vector3f>(closed) : closed;
+  for (std::size_t v = 0; v < covers.size(); ++v) all.push_back(covers[v] + offsets_[v]);
+  return all;
+}
+
+std::vector<Vector3f> DrawnFace::places(std::span<const Vector3f> face) const {
+  auto all = closed(face);
+  return divided_ ? smooth_.of<Vector3f>(all) : all;
+}
+
+std::vector<Vector3f> DrawnFace::places_of_given(std::span<const Vector3f> face) const {
+  return divided_ ? smooth_.of<Vector3f>(closed(face), given_)
+                  : std::vector<Vector3f>(face.begin(), face.end());
 }
 
 std::vector<float> DrawnFace::values(std::span<const float> face) const {
@@ -203,7 +258,13 @@ PreparedParts::PreparedParts(std::span<const Part> patient) : patient_(patient) 
   for (const auto& part : patient)
     if (part.role == Role::eyes)
       eyes.insert(eyes.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
-  DrawnFace drawn(face->mesh, eyes, material_of(Role::face).color);
+  const Vector3f skin = material_of(Role::face).color;
+  DrawnFace drawn(face->mesh, eyes, skin);
+  if (face->mesh.colors.empty()) {
+    const auto lining = line_mouth(patient, &drawn.mesh());
+    // Where the lips have an inside, the rim is not where they end.
+    if (lining && !lining->cut) drawn.tint(lining->rim, skin);
+  }
   if (!drawn.changed()) return;
   replaced_ = &*face;
   own_ = {face->name, face->role, drawn.mesh(), {}, face->carrier};

@@ -20,6 +20,12 @@ class DrawnFace {
   DrawnFace(const TriMesh& face, std::span<const Eigen::Vector3d> eyes,
             const Eigen::Vector3f& color);
 
+  /// Whether a face is drawn smooth, elsewhere than its vertices are.
+  static bool smooths(const TriMesh& face);
+
+  /// Gives it the colours of lips and cheeks; rim: of its mouth (see skin_tint.h).
+  void tint(std::span<const int> rim, const Eigen::Vector3f& skin);
+
   /// Whether it differs from the face that it was made of.
   bool changed() const { return changed_; }
   const TriMesh& mesh() const { return mesh_; }
@@ -27,19 +33,30 @@ class DrawnFace {
   std::size_t given() const { return given_; }
   /// Where its vertices are with the face's where these are now.
   std::vector<Eigen::Vector3f> places(std::span<const Eigen::Vector3f> face) const;
+  /// Where it has the face's own vertices.
+  std::vector<Eigen::Vector3f> places_of_given(std::span<const Eigen::Vector3f> face) const;
   /// What is known of the face's vertices, of its own.
   std::vector<float> values(std::span<const float> face) const;
 
  private:
+  std::vector<Eigen::Vector3f> closed(std::span<const Eigen::Vector3f> face) const;
   void close_openings(std::span<const Eigen::Vector3d> eyes, const Eigen::Vector3f& color);
   void divide();
+  void draw_lashes();
   void place(const TriMesh& face);
+
+  /// A closed eye at rest: its corners, and how far below the line between them its lids meet.
+  struct ClosedEye {
+    Eigen::Vector3d right, left;
+    double below_mm;
+  };
 
   std::size_t given_;
   TriMesh mesh_;
   VertexSums covers_;                     // of openings, of the face's vertices
   std::vector<Eigen::Vector3f> offsets_;  // and from there, mm
   VertexSums smooth_;                     // of the face's vertices and those
+  std::vector<ClosedEye> closed_eyes_;
   bool changed_ = false, divided_ = false;
 };
 

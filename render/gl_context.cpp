@@ -2,6 +2,7 @@
 
 #include <epoxy/egl.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <vector>
 
@@ -32,6 +33,12 @@ bool client_extension(const char* name) {
   return all && std::strstr(all, name);
 }
 
+/// Whether Mesa was asked to leave cards alone. It draws on one that is chosen as a device anyhow.
+bool no_card_wanted() {
+  const char* value = std::getenv("LIBGL_ALWAYS_SOFTWARE");
+  return value && *value && !std::strchr("0nNfF", *value);
+}
+
 /// Hardware devices, then the surfaceless platform, then software devices.
 std::vector<Candidate> candidates() {
   std::vector<Candidate> hardware, software;
@@ -41,11 +48,13 @@ std::vector<Candidate> candidates() {
     EGLint count = 0;
     if (eglQueryDevicesEXT(16, devices, &count))
       for (EGLint i = 0; i < count; ++i) {
-        const char* about = client_extension("EGL_EXT_device_query")
-                                ? eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS)
-                                : nullptr;
+        const char* about =
+            client_extension("EGL_EXT_device_query") || client_extension("EGL_EXT_device_base")
+                ? eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS)
+                : nullptr;
         const bool soft = about && std::strstr(about, "EGL_MESA_device_software");
         auto& list = soft ? software : hardware;
+        if (!soft && no_card_wanted()) continue;
         list.push_back({EGL_PLATFORM_DEVICE_EXT, devices[i],
                         std::string(soft ? "software" : "hardware") + " device"});
       }
@@ -116,6 +125,7 @@ OffscreenContext::OffscreenContext() : state_(std::make_unique<State>()) {
       const std::string refusal = state_->start(candidate);
       if (refusal.empty()) {
         state_->description = renderer_name() + ", EGL " + candidate.name;
+        if (!refusals.empty()) state_->description += "; not " + refusals;
         return;
       }
       refusals += (refusals.empty() ? "" : "; ") + candidate.name + ": " + refusal;

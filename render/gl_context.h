@@ -5,8 +5,9 @@
 
 namespace condyle {
 
-/// An OpenGL 3.3 core context with no window and no display, through EGL: the surfaceless platform,
-/// then the device platform (a hardware device first). Current on the thread that made it.
+/// An OpenGL 3.3 core context with no window and no display, through EGL: hardware devices first
+/// (none where LIBGL_ALWAYS_SOFTWARE is set), then the surfaceless platform, then software devices.
+/// Current on the thread that made it.
 class OffscreenContext {
  public:
   /// throws: MachineError saying what EGL refused and which package to install.
@@ -15,7 +16,7 @@ class OffscreenContext {
   OffscreenContext(const OffscreenContext&) = delete;
   OffscreenContext& operator=(const OffscreenContext&) = delete;
 
-  /// GL_RENDERER and the EGL platform, for reports.
+  /// GL_RENDERER and the EGL platform, for reports; what was tried before it, and why it would not.
   const std::string& description() const;
 
  private:

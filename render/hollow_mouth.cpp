@@ -1,7 +1,10 @@
 #include "render/hollow_mouth.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "render/vertex_normals.h"
 
@@ -12,21 +15,57 @@ std::uint8_t to_byte(float value) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.f, 1.f)));
 }
 
+constexpr float of_lip_mm = 7;  // from the rim on the lining still has something of the lip
+
+/// Unit normals of the rim's vertices, of the face alone.
+std::vector<Eigen::Vector3f> rim_normals(std::span<const int> rim,
+                                         std::span<const Eigen::Vector3i> beside,
+                                         const GpuMesh& face) {
+  std::unordered_map<int, Eigen::Vector3f> sums;
+  for (const int v : rim) sums.emplace(v, Eigen::Vector3f::Zero());
+  for (const auto& t : beside) {
+    const Eigen::Vector3f &a = face.point_of(t[0]), &b = face.point_of(t[1]),
+                          &c = face.point_of(t[2]);
+    const Eigen::Vector3f area = (b - a).cross(c - a);
+    for (const int v : t)
+      if (const auto sum = sums.find(v); sum != sums.end()) sum->second += area;
+  }
+  std::vector<Eigen::Vector3f> normals;
+  normals.reserve(rim.size());
+  for (const int v : rim) normals.push_back(sums.at(v).normalized());
+  return normals;
+}
+
 }  // namespace
 
-HollowMouth::HollowMouth(const MouthLining& lining) : lining_(lining) {
+HollowMouth::HollowMouth(const MouthLining& lining, const Drawable& face) : lining_(lining) {
   part_ = {"mouth lining", Role::upper_gums, {}, {}};
+  const std::unordered_set<int> rim(lining_.rim.begin(), lining_.rim.end());
+  for (const auto& t : lining_.face)
+    if (std::any_of(t.begin(), t.end(), [&](int v) { return rim.contains(v); }))
+      beside_rim_.push_back(t);
   const std::size_t count = lining_.rest.size(), around = lining_.rim.size();
   std::vector<GpuMesh::Bytes> colors(count), extras(count);
   for (std::size_t v = 0; v < count; ++v) {
     // As red as what lines the lips, paler on the cheeks; the throat sees little of the sky.
     const float deep = static_cast<float>(v / around) / static_cast<float>(count / around);
-    const Eigen::Vector3f color(0.52f + 0.12f * std::min(1.f, 3 * deep),
-                                0.24f + 0.10f * std::min(1.f, 3 * deep),
-                                0.23f + 0.09f * std::min(1.f, 3 * deep));
-    const std::uint8_t sky = to_byte(0.8f - 0.35f * deep);
-    colors[v] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()), sky};
-    extras[v] = {sky, 0, 255, 0};
+    Eigen::Vector3f color(0.52f + 0.12f * std::min(1.f, 3 * deep),
+                          0.24f + 0.10f * std::min(1.f, 3 * deep),
+                          0.23f + 0.09f * std::min(1.f, 3 * deep));
+    float sky = 0.8f - 0.35f * deep;
+    const float way = (lining_.rest[v] - lining_.rest[v % around]).norm() / of_lip_mm;
+    const float lip = way < 1 ? (1 - way) * (1 - way) * (1 + 2 * way) : 0.f;
+    if (lip > 0) {
+      const auto of = static_cast<std::size_t>(lining_.rim[v % around]);
+      const auto& skin = face.colors[of];
+      const auto& more = face.extras[of];
+      color += lip * (Eigen::Vector3f(skin[0], skin[1], skin[2]) / 255 - color);
+      // What the skin's shader leaves to lips that have opened.
+      sky += lip * (std::max(more[0], static_cast<std::uint8_t>(0.42f * more[2])) / 255.f - sky);
+    }
+    const std::uint8_t seen = to_byte(sky);
+    colors[v] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()), seen};
+    extras[v] = {seen, 0, 255, to_byte(lip)};
   }
   GpuMesh mesh(lining_.rest, lining_.triangles, true);
   Eigen::AlignedBox3f box;
@@ -50,6 +89,7 @@ Drawable& HollowMouth::place(const GpuMesh& face, const Pose& X_CM) {
   for (const int v : lining_.rim) rim.push_back(face.point_of(v));
   const auto now = places_now(lining_, rim, X_CM);
   vertex_normals(now, lining_.triangles, normals);
+  std::ranges::copy(rim_normals(lining_.rim, beside_rim_, face), normals.begin());
   drawable_->mesh.send_shape(now, normals);
   return *drawable_;
 }

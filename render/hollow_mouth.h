@@ -13,7 +13,8 @@ namespace condyle {
 /// The lining of the mouth, to be drawn within an opaque face.
 class HollowMouth {
  public:
-  explicit HollowMouth(const MouthLining& lining);
+  /// face: what the lining was made for, as it is drawn. At their rim both look alike.
+  HollowMouth(const MouthLining& lining, const Drawable& face);
 
   /// What is drawn, with face and mandible where they are now.
   Drawable& place(const GpuMesh& face, const Pose& X_CM);
@@ -23,6 +24,7 @@ class HollowMouth {
 
  private:
   MouthLining lining_;
+  std::vector<Eigen::Vector3i> beside_rim_;  // the face's triangles there
   Part part_;
   std::optional<Drawable> drawable_;
 };

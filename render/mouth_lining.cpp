@@ -320,6 +320,17 @@ void even_out(std::vector<Vector3f>& places, std::size_t around) {
   }
 }
 
+/// Neighbours round a rim.
+void draw_together(std::vector<Vector3f>& places) {
+  constexpr int rounds = 12;
+  const std::size_t n = places.size();
+  for (int round = 0; round < rounds; ++round) {
+    const auto before = places;
+    for (std::size_t i = 0; i < n; ++i)
+      places[i] = 0.5f * before[i] + 0.25f * (before[(i + 1) % n] + before[(i + n - 1) % n]);
+  }
+}
+
 }  // namespace
 
 std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh* drawn) {
@@ -338,14 +349,16 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh
   constexpr double beside_mm = 45;  // of the teeth's middle
   TriMesh shown{
       face.vertices, without_deep_inside(face, lining.rim, teeth.center(), beside_mm), {}};
-  if (auto rim = mouth_rim(shown, teeth); !rim.empty()) {
+  auto rim = mouth_rim(shown, teeth);
+  lining.cut = !rim.empty() && shown.triangles.size() < face.triangles.size();
+  if (lining.cut) {
     lining.rim = std::move(rim);
     lining.face = std::move(shown.triangles);
   } else {
     lining.face = face.triangles;
   }
   // A lip that ends at its edge is thin: the lining leaves it to the back before it turns aside.
-  const double turned = lining.face.size() == face.triangles.size() ? 0 : 0.35;
+  const double turned = lining.cut ? 0.35 : 0;
   const auto places = rim_places(face, lining.rim);
   const auto n = lining.rim.size();
   double corners = 0, found = 0;
@@ -368,12 +381,24 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh
   lining.rest.resize((rings + 1) * n + 1);
   lining.jaw.resize(lining.rest.size());
   lining.lip.resize(lining.rest.size());
+  std::vector<Vector3f> starts;
+  for (const int v : lining.rim)
+    starts.push_back(face.vertices[static_cast<std::size_t>(v)].cast<float>());
+  if (lining.cut) draw_together(starts);
   Vector3d middle = Vector3d::Zero();
   for (std::size_t i = 0; i < n; ++i) {
-    const Vector3d start = face.vertices[static_cast<std::size_t>(lining.rim[i])];
+    const Vector3d start = starts[i].cast<double>();
     const auto [across, is_upper] = places[i];
     // Round at the sides, as far as the rim is not.
-    const double turn = std::sqrt(std::max(0.0, 1 - std::pow(across, 6)));
+    const double turn = std::sqrt(std::max(0.0, 1 - std::pow(across, 20)));
+    const double fornix = mid + (is_upper ? fornix_up_mm : -fornix_down_mm);
+    // It rises before the first crown, however near that stands, and leaves the lip there.
+    double rises_mm = 0.1 * (throat - start.y()), leaves_mm = 0.35 * (throat - start.y());
+    for (double way = 0; is_upper && way < rises_mm; way += 0.5)
+      if (bone.at(start.x(), start.y() + way) < fornix) {
+        rises_mm = std::max(1.0, way - within_mm);
+        leaves_mm = 2 * rises_mm;
+      }
     bool behind_teeth = false;
     double bone_z = 0, bone_y = 0;  // where bone was last above
     for (int ring = 0; ring <= rings; ++ring) {
@@ -383,7 +408,6 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh
       const double half =
           width.at(y) * (1 - throat_narrower * smooth((y - teeth.max().y() + 3) / 12));
       const double x = start.x() + smooth(4 * t) * (teeth.center().x() + across * half - start.x());
-      const double fornix = mid + (is_upper ? fornix_up_mm : -fornix_down_mm);
       double z = fornix;
       if (is_upper) {
         const double hit = bone.at(x, y);
@@ -398,10 +422,10 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh
         }
       }
       z = mid + turn * (z - mid);
-      const double in = ring == 0 ? 0 : smooth(turned + 10 * t);
+      const double in = ring == 0 ? 0 : smooth(turned + (y - start.y()) / rises_mm);
       lining.rest[v] = Vector3d(x, y, start.z() + in * (z - start.z())).cast<float>();
       lining.jaw[v] = static_cast<float>(is_upper ? 0.5 - 0.5 * turn : 0.5 + 0.5 * turn);
-      lining.lip[v] = static_cast<float>(1 - smooth(t / 0.35));
+      lining.lip[v] = static_cast<float>(1 - smooth((y - start.y()) / leaves_mm));
       if (ring == rings) middle += lining.rest[v].cast<double>() / static_cast<double>(n);
     }
   }
@@ -410,6 +434,14 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh
   lining.jaw.back() = 0.5f;
   add_triangles(lining);
   return lining;
+}
+
+void even_rim(std::vector<Vector3f>& places, std::span<const int> rim) {
+  std::vector<Vector3f> own;
+  own.reserve(rim.size());
+  for (const int v : rim) own.push_back(places[static_cast<std::size_t>(v)]);
+  draw_together(own);
+  for (std::size_t i = 0; i < rim.size(); ++i) places[static_cast<std::size_t>(rim[i])] = own[i];
 }
 
 std::vector<Vector3f> places_now(const MouthLining& lining, std::span<const Vector3f> rim,

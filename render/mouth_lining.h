@@ -15,6 +15,7 @@ namespace condyle {
 /// rest. Where bone, gums or tongue are, it lies within them: they are what is seen there.
 struct MouthLining {
   std::vector<int> rim;               // vertices of the face, one after the other round the mouth
+  bool cut = false;                   // the rim is where triangles were left out: see even_rim
   std::vector<Eigen::Vector3f> rest;  // rings of as many, the first in the rim; then the throat
   std::vector<float> jaw;             // how far each goes with the mandible, 0 to 1
   std::vector<float> lip;             // and with what the rim does beside that, 0 to 1
@@ -26,6 +27,10 @@ struct MouthLining {
 /// None for a face without such a rim. The jaws' fronts stand in for teeth that are no parts of
 /// their own; none for a patient who has neither. drawn: in place of the face's mesh.
 std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh* drawn = nullptr);
+
+/// Draws the places of a rim's vertices together to an even line: where triangles were left out it
+/// is ragged.
+void even_rim(std::vector<Eigen::Vector3f>& places, std::span<const int> rim);
 
 /// Where it is with the rim's vertices and the mandible where they are now.
 std::vector<Eigen::Vector3f> places_now(const MouthLining& lining,

@@ -223,7 +223,7 @@ std::optional<DrawItem> SceneRenderer::State::hollow_mouth(std::span<const DrawI
   });
   if (face == items.end() || (face->clipped && !shows_caps(view))) return std::nullopt;
   if (!lining) return std::nullopt;
-  if (!mouth) mouth.emplace(*lining);
+  if (!mouth) mouth.emplace(*lining, *face->drawable);
   DrawItem item{&mouth->place(face->drawable->mesh, X_CM), 1, Eigen::Matrix4f::Identity()};
   item.clipped = face->clipped;
   item.holed = face->holed;
@@ -286,7 +286,7 @@ SceneRenderer::SceneRenderer(std::span<const Part> patient) {
   const auto face = std::find_if(drawn.begin(), drawn.end(),
                                  [](const Part* part) { return part->role == Role::face; });
   auto lining = line_mouth(patient, face == drawn.end() ? nullptr : &(*face)->mesh);
-  auto drawables = make_drawables(drawn, lining ? lining->face : std::vector<Eigen::Vector3i>());
+  auto drawables = make_drawables(drawn, lining ? &*lining : nullptr);
   state_ = std::make_unique<State>(std::move(prepared), std::move(lining), std::move(drawables));
 }
 
@@ -315,7 +315,7 @@ void SceneRenderer::update(const FrameState& frame) {
     } else if (s.face_moved) {
       std::vector<Eigen::Vector3f> positions;
       for (const auto& v : rest) positions.push_back(v.cast<float>());
-      drawable.move_face(positions, s.normals);
+      drawable.move_face(std::move(positions), s.normals);
     }
     s.face_moved = moved;
     break;

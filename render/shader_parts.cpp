@@ -21,7 +21,7 @@ const char* const vertex_source = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 color;  // sRGB, occlusion with everything at rest
-layout(location = 3) in vec4 extra;  // occlusion by its own body, curvature, gloss
+layout(location = 3) in vec4 extra;  // occlusion by its own body, curvature, gloss, share of lip
 layout(location = 4) in float value; // what a colour map shows
 layout(location = 5) in vec3 rest;   // place before anything moved; of skin
 uniform mat4 model;            // rigid
@@ -60,7 +60,7 @@ void main() {
   float beside_window = distance(way, -nearest * to_eye) - window_ball.w;
   traits = vec4(mix(extra.x, color.a, together), extra.y, extra.z,
                 mix(1.0, exp(-max(position.y - cavity.x, 0.0) * cavity.y),
-                    smoothstep(-2.0, 0.0, beside_window)));
+                    smoothstep(-2.0, 0.0, beside_window) * (1.0 - extra.w)));
 }
 )";
 

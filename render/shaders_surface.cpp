@@ -215,6 +215,8 @@ void main() {
              + rim_color * specular(n, v, rim_direction, roughness) * open;
   vec3 c = albedo * light + reflectance * shine;
   vec3 mirrored = reflect(-v, n);
+  // In the mouth a grazing look is thrown on into the dark.
+  if (cavity.y > 0.0) open *= smoothstep(-1.0, 0.4, dot(mirrored, v));
   c += ambient_light(mirrored, v) * fresnel(nv, reflectance) * (1.0 - roughness) * open;
   if (coated) {
     // An eye mirrors a light lower than the key, which its lid would hide, and the fill as bright as

@@ -53,14 +53,19 @@ Landmark landmark_on(const std::string& name, const PinnedPoint& point,
 }
 
 Vector3d place_of(const Landmark& landmark, std::span<const Part> parts, const FrameState& frame) {
+  return place_of(landmark, parts, frame, frame.face);
+}
+
+Vector3d place_of(const Landmark& landmark, std::span<const Part> parts, const FrameState& frame,
+                  std::span<const Eigen::Vector3f> face) {
+  if (face.empty()) face = frame.face;
   if (landmark.part >= parts.size()) return landmark.at_rest;
   const Part& part = parts[landmark.part];
   if (part.role != Role::face)
     return pose_of(parts, landmark.part, frame.poses()) * landmark.at_rest;
   const auto v = static_cast<std::size_t>(landmark.vertex);
-  if (frame.face.size() != part.mesh.vertices.size() || v >= frame.face.size())
-    return landmark.at_rest;
-  return landmark.at_rest + frame.face[v].cast<double>() - part.mesh.vertices[v];
+  if (face.size() != part.mesh.vertices.size() || v >= face.size()) return landmark.at_rest;
+  return landmark.at_rest + face[v].cast<double>() - part.mesh.vertices[v];
 }
 
 std::string landmark_name(const std::string& words) {

@@ -31,6 +31,9 @@ Landmark landmark_on(const std::string& name, const PinnedPoint& point,
 /// Where it is now, in the cranium's frame, mm.
 Eigen::Vector3d place_of(const Landmark& landmark, std::span<const Part> parts,
                          const FrameState& frame);
+/// The same with the face's vertices elsewhere (see SeenFace), where there are any.
+Eigen::Vector3d place_of(const Landmark& landmark, std::span<const Part> parts,
+                         const FrameState& frame, std::span<const Eigen::Vector3f> face);
 
 /// "lower incisal point" as "lower_incisal_point"; empty when no letter or digit is left.
 std::string landmark_name(const std::string& words);

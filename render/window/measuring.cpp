@@ -13,12 +13,18 @@ namespace condyle {
 using Eigen::Vector3d;
 
 Vector3d place_of(const PinnedPoint& point, std::span<const Part> parts, const FrameState& frame) {
+  return place_of(point, parts, frame, frame.face);
+}
+
+Vector3d place_of(const PinnedPoint& point, std::span<const Part> parts, const FrameState& frame,
+                  std::span<const Eigen::Vector3f> face) {
+  if (face.empty()) face = frame.face;
   const Part& part = parts[point.part];
-  const bool deformed = part.role == Role::face && frame.face.size() == part.mesh.vertices.size();
+  const bool deformed = part.role == Role::face && face.size() == part.mesh.vertices.size();
   Vector3d p = Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
     const auto v = static_cast<std::size_t>(point.triangle[k]);
-    p += point.shares[k] * (deformed ? frame.face[v].cast<double>() : part.mesh.vertices[v]);
+    p += point.shares[k] * (deformed ? face[v].cast<double>() : part.mesh.vertices[v]);
   }
   return deformed ? p : pose_of(parts, point.part, frame.poses()) * p;
 }

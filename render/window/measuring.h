@@ -22,6 +22,9 @@ struct PinnedPoint {
 /// Where it is now, in the cranium's frame, mm.
 Eigen::Vector3d place_of(const PinnedPoint& point, std::span<const Part> parts,
                          const FrameState& frame);
+/// The same with the face's vertices elsewhere (see SeenFace), where there are any.
+Eigen::Vector3d place_of(const PinnedPoint& point, std::span<const Part> parts,
+                         const FrameState& frame, std::span<const Eigen::Vector3f> face);
 
 /// What points in a row say. Angle: at the second of three. Area: of the polygon through three or
 /// more, as seen along its own normal.

@@ -23,7 +23,8 @@ void Panels::Drawing::landmarks() {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   for (std::size_t i = 0; i < view.landmarks.size(); ++i) {
     const auto at =
-        screen_place(input.camera, r, place_of(view.landmarks[i], input.scene.parts, *input.frame));
+        screen_place(input.camera, r,
+                     place_of(view.landmarks[i], input.scene.parts, *input.frame, input.seen_face));
     const ImVec2 p = {static_cast<float>(at.x()), static_cast<float>(at.y())};
     const bool chosen = view.landmark == i;
     const bool named = chosen || std::hypot(p.x - mouse.x, p.y - mouse.y) < pen.px(9);

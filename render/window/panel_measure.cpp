@@ -11,9 +11,11 @@ void Panels::Drawing::measuring() {
   const bool in_use = view.tool == Tool::measure;
   if (!input.frame || (!in_use && view.measured.empty())) return;
   const Theme& theme = panels.theme_;
-  std::vector<Eigen::Vector3d> places;
-  for (const auto& point : view.measured)
+  std::vector<Eigen::Vector3d> places, seen;
+  for (const auto& point : view.measured) {
     places.push_back(place_of(point, input.scene.parts, *input.frame));
+    seen.push_back(place_of(point, input.scene.parts, *input.frame, input.seen_face));
+  }
   const Measured result = measured(places);
 
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
@@ -22,7 +24,7 @@ void Panels::Drawing::measuring() {
                     {static_cast<float>(r.x + r.width), static_cast<float>(r.y + r.height)});
   constexpr ImU32 tint = colour::rgb(0xf0e442), edge = colour::rgb(0x0f1215, 200);
   std::vector<ImVec2> line;
-  for (const auto& p : places) {
+  for (const auto& p : seen) {
     const auto at = screen_place(input.camera, r, p);
     line.push_back({static_cast<float>(at.x()), static_cast<float>(at.y())});
   }

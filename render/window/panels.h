@@ -26,7 +26,8 @@ namespace condyle {
 /// What the panels show. Everything is read only.
 struct PanelInput {
   const WindowScene& scene;
-  const FrameState* frame = nullptr;  // none until the first is simulated
+  const FrameState* frame = nullptr;                // none until the first is simulated
+  std::span<const Eigen::Vector3f> seen_face = {};  // its face's vertices, where seen elsewhere
   LoopStatistics loop = {};
   PictureStatistics pictures = {};
   Camera camera = {};

@@ -110,6 +110,7 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
                        std::shared_ptr<const void> keeper) {
   State& s = *state_;
   s.scene = scene;
+  s.seen_face = SeenFace(scene.parts);
   s.view = start;
   s.view.fit(scene);
   s.order = {.number = s.order.number};
@@ -192,6 +193,7 @@ void Window::renew_scene(const WindowScene& scene, std::shared_ptr<const void> k
   s.kept_values.reset();
   s.held.reset();
   s.scene_changed = true;
+  s.seen_face = SeenFace(scene.parts);
   update_scene(scene);
 }
 

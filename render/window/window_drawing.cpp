@@ -190,8 +190,10 @@ void Window::State::interface_frame() {
         reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture->name())), low, high,
         {0, 1}, {1, 0});
   }
+  const auto seen_places = frame() ? seen_face.places(*frame()) : std::vector<Eigen::Vector3f>();
   const PanelInput input{.scene = scene,
                          .frame = frame(),
+                         .seen_face = seen_places,
                          .loop = loop,
                          .pictures = pictures,
                          .camera = seen(),

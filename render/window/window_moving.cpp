@@ -17,13 +17,15 @@ std::optional<PointedPlace> Window::State::surface_under(const Eigen::Vector2d& 
   std::vector<PointedSurface> surfaces;
   std::vector<std::size_t> parts;
   TriMesh face;
+  const auto elsewhere = seen_face.places(*frame());
+  const auto& places = elsewhere.empty() ? frame()->face : elsewhere;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const Part& part = scene.parts[i];
     const bool seen =
         i < view.parts.size() && view.parts[i].shown && view.parts[i].opacity > seen_through;
     if (!seen || (part.role == Role::face && !skinned)) continue;
-    if (part.role == Role::face && frame()->face.size() == part.mesh.vertices.size()) {
-      for (const auto& p : frame()->face) face.vertices.push_back(p.cast<double>());
+    if (part.role == Role::face && places.size() == part.mesh.vertices.size()) {
+      for (const auto& p : places) face.vertices.push_back(p.cast<double>());
       face.triangles = part.mesh.triangles;
       surfaces.push_back({&face, Pose{}});
     } else {

@@ -19,6 +19,7 @@
 #include "render/window/picture_thread.h"
 #include "render/window/pointing.h"
 #include "render/window/quality.h"
+#include "render/window/seen_face.h"
 #include "render/window/window.h"
 
 struct ImGuiContext;
@@ -44,6 +45,7 @@ struct Window::State {
   WindowOptions options;
   Arrangement arrangement;  // theme, scale and size: the rest is where it is used
   WindowScene scene;
+  SeenFace seen_face{scene.parts};
   ViewState view;
   Eigen::AlignedBox3d box;  // of the scene at rest
   PictureOrder order;       // the newest picture that is wanted

@@ -148,6 +148,34 @@ TEST(DrawnFace, OfACoarseOneIsSmoothAndNearIt) {
   for (const auto& p : drawn.mesh().vertices) EXPECT_NEAR(p.norm(), 59.7, 0.3);
 }
 
+TEST(DrawnFace, LidsMeetInADarkLineFromCornerToCorner) {
+  const TriMesh face = head_with_openings();
+  const Eigen::Vector3f skin(.8f, .6f, .5f);
+  const TriMesh drawn = DrawnFace(face, {}, skin).mesh();
+  const auto eyes = find_openings(face);
+  for (const double from_middle : {-0.5, 0.0, 0.5})
+    for (const auto& eye : eyes) {
+      if (eye.kind != FaceOpening::Kind::eye) continue;
+      // Down across the eye: skin, the line below its middle, skin.
+      double darkest = 1, at = 0, above = 0, below = 0;
+      for (std::size_t v = 0; v < drawn.vertices.size(); ++v) {
+        const Eigen::Vector3d p = drawn.vertices[v] - eye.middle;
+        if (p.y() > 20 || std::abs(p.x() - from_middle * eye_at.x() * 0.45) > 2 ||
+            std::abs(p.z()) > 15)
+          continue;
+        const double light = drawn.colors[v].x() / skin.x();
+        if (light < darkest) darkest = light, at = p.z();
+        if (p.z() > 2) above = std::max(above, light);
+        if (p.z() < -8) below = std::max(below, light);
+      }
+      EXPECT_LT(darkest, 0.65) << from_middle;
+      EXPECT_LT(at, -0.5);
+      EXPECT_GT(at, -8);
+      EXPECT_NEAR(above, 1, 0.02);
+      EXPECT_NEAR(below, 1, 0.02);
+    }
+}
+
 TEST(DrawnFace, OfARealHeadHasNoHolesAndLiesNearIt) {
   const auto file = std::filesystem::path(CONDYLE_SOURCE_DIR) / ".." / "shared" / "data" /
                     "case-badin" / "face_skin.ply";

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include "render/hollow_mouth.h"
 #include "render/vertex_normals.h"
 #include "tests/render/scene_fixture.h"
 
@@ -163,6 +164,59 @@ TEST(MouthLining, CoversABarePalateThatIsLowToo) {
       ++palate;
     }
   EXPECT_GT(palate, 10);
+}
+
+TEST(MouthLining, RisesBeforeCrownsHoweverNearTheLipTheyStand) {
+  const double radius_mm = 4;
+  auto parts = head_with_jaws(Role::maxilla);
+  for (const double x : {-13, 13})
+    parts.push_back(make_part("canine", Role::maxilla, ball({x, -53, 7}, radius_mm, 16)));
+  const auto lining = line_mouth(parts);
+  ASSERT_TRUE(lining);
+  int at_crowns = 0;
+  for (std::size_t v = 0; v < lining->rest.size(); ++v) {
+    const auto& p = lining->rest[v];
+    const double away = std::hypot(std::abs(p.x()) - 13, p.y() + 53);
+    if (away > 0.8 * radius_mm || lining->jaw[v] > 0.4f || p.z() < 0) continue;
+    EXPECT_GT(p.z(), 7 - std::sqrt(radius_mm * radius_mm - away * away)) << p.transpose();
+    EXPECT_LT(lining->lip[v], 0.5f);
+    ++at_crowns;
+  }
+  EXPECT_GT(at_crowns, 12);
+}
+
+TEST(MouthLining, RaggedRimsAreDrawnEven) {
+  std::vector<Eigen::Vector3f> places = {{0, 0, 9}};
+  std::vector<int> rim;
+  for (int i = 0; i < 120; ++i) {
+    const float a = static_cast<float>(2 * M_PI * i / 120), r = i % 4 < 2 ? 21.f : 19.f;
+    rim.push_back(static_cast<int>(places.size()));
+    places.emplace_back(r * std::cos(a), 0, r * std::sin(a));
+  }
+  even_rim(places, rim);
+  for (const int v : rim) EXPECT_NEAR(places[static_cast<std::size_t>(v)].norm(), 20, 0.25);
+  EXPECT_EQ(places[0], Eigen::Vector3f(0, 0, 9));
+}
+
+TEST_F(MouthSection, IsAtItsRimOfTheFacesColour) {
+  auto parts = head_with_mouth();
+  for (const auto& v : parts[0].mesh.vertices)
+    parts[0].mesh.colors.emplace_back(v.z() > 0 ? 0.8f : 0.3f, 0.5f, 0.4f);
+  const auto lining = line_mouth(parts);
+  ASSERT_TRUE(lining);
+  const std::vector<const Part*> drawn = {&parts[0]};
+  const auto faces = make_drawables(drawn, &*lining);
+  HollowMouth mouth(*lining, faces[0]);
+  const auto& inside = mouth.place(faces[0].mesh, {});
+  const std::size_t n = lining->rim.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto& skin = faces[0].colors[static_cast<std::size_t>(lining->rim[i])];
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(inside.colors[i][k], skin[k], 1);
+    EXPECT_EQ(inside.extras[i][3], 255);
+    // Far behind it is of one red, and has nothing of the lip.
+    EXPECT_EQ(inside.colors[20 * n + i], inside.colors[20 * n]);
+    EXPECT_EQ(inside.extras[20 * n + i][3], 0);
+  }
 }
 
 TEST(MouthLining, IsNotKnownWithoutARimOrWithoutEitherJaw) {

@@ -123,12 +123,13 @@ TEST_F(PictureOptions, WhatTheDriverCannotDrawIsSaidInASentence) {
   EXPECT_NE(none.err.find("install libegl1"), std::string::npos) << none.err;
 }
 
-/// `condyle` with Mesa's plain software driver, whatever card there is.
-Outcome condyle_with_softpipe(const std::vector<std::string>& arguments) {
+/// `condyle` with one of Mesa's software drivers, whatever card there is: softpipe, or zink, which
+/// goes through Vulkan as a card's would.
+Outcome condyle_with(const std::string& driver, const std::vector<std::string>& arguments) {
   const std::map<std::string, std::string> forced = {
       {"__EGL_VENDOR_LIBRARY_FILENAMES", "/usr/share/glvnd/egl_vendor.d/50_mesa.json"},
       {"LIBGL_ALWAYS_SOFTWARE", "1"},
-      {"GALLIUM_DRIVER", "softpipe"}};
+      {driver == "zink" ? "MESA_LOADER_DRIVER_OVERRIDE" : "GALLIUM_DRIVER", driver}};
   for (const auto& [name, value] : forced) ::setenv(name.c_str(), value.c_str(), 1);
   auto outcome = condyle(arguments);
   for (const auto& [name, value] : forced) ::unsetenv(name.c_str());
@@ -139,8 +140,8 @@ nlohmann::json drawn_with(const std::string& folder) {
   return nlohmann::json::parse(read_text(folder + "/report.json"))["pictures"];
 }
 
-TEST(Drivers, TwoDrawThePatientAlike) {
-  // The usual one (a card's, if there is one) and another: bones, teeth, glassy skin, shadows.
+TEST(Drivers, ThreeDrawThePatientAlike) {
+  // The usual one (a card's, if there is one) and two others: bones, teeth, glassy skin, shadows.
   const Folder folder;
   const auto record = [&](const std::string& out) {
     return std::vector<std::string>{"record",
@@ -158,20 +159,24 @@ TEST(Drivers, TwoDrawThePatientAlike) {
                                     "--out",
                                     folder / out};
   };
-  const auto usual = condyle(record("usual")), other = condyle_with_softpipe(record("other"));
+  const auto usual = condyle(record("usual"));
   ASSERT_EQ(usual.code, 0) << usual.err;
-  ASSERT_EQ(other.code, 0) << other.err;
-  EXPECT_NE(drawn_with(folder / "other")["driver"].dump().find("softpipe"), std::string::npos);
-  EXPECT_EQ(drawn_with(folder / "usual")["driver"].dump().find("softpipe"), std::string::npos);
-  for (const std::string frame : {"/frames/000000.png", "/frames/000001.png"})
-    EXPECT_TRUE(
-        alike(Picture(folder / ("usual" + frame)), Picture(folder / ("other" + frame)), 0.0005));
+  for (const std::string driver : {"softpipe", "zink"}) {
+    const auto other = condyle_with(driver, record(driver));
+    ASSERT_EQ(other.code, 0) << other.err;
+    EXPECT_NE(drawn_with(folder / driver)["driver"].dump().find(driver), std::string::npos);
+    EXPECT_EQ(drawn_with(folder / "usual")["driver"].dump().find(driver), std::string::npos);
+    for (const std::string frame : {"/frames/000000.png", "/frames/000001.png"})
+      EXPECT_TRUE(
+          alike(Picture(folder / ("usual" + frame)), Picture(folder / (driver + frame)), 0.0005))
+          << driver;
+  }
   EXPECT_TRUE(unlike(Picture(folder / "usual/frames/000000.png"),
                      Picture(folder / "usual/frames/000001.png"), 0.01));
 }
 
 TEST_F(PictureOptions, ResumedWithAnotherDriverTheReportTellsBoth) {
-  ASSERT_EQ(condyle_with_softpipe(command("resumed", {"--edges", "fxaa"})).code, 0);
+  ASSERT_EQ(condyle_with("softpipe", command("resumed", {"--edges", "fxaa"})).code, 0);
   const std::string before = drawn_with(folder_ / "resumed")["driver"];
   ASSERT_NE(before.find("softpipe"), std::string::npos);
   // All pictures are there: today's driver has none of them.
@@ -184,13 +189,13 @@ TEST_F(PictureOptions, ResumedWithAnotherDriverTheReportTellsBoth) {
 }
 
 TEST_F(PictureOptions, SamplesThatTheDriverDoesNotGiveAreTold) {
-  const auto sampled = condyle_with_softpipe(command("sampled", {}));
+  const auto sampled = condyle_with("softpipe", command("sampled", {}));
   ASSERT_EQ(sampled.code, 0) << sampled.err;
   EXPECT_NE(sampled.err.find("asked for 4 samples a pixel, the graphics driver (softpipe"),
             std::string::npos)
       << sampled.err;
   EXPECT_EQ(drawn_with(folder_ / "sampled")["samples"], 1);
-  const auto smoothed = condyle_with_softpipe(command("smoothed", {"--edges", "fxaa"}));
+  const auto smoothed = condyle_with("softpipe", command("smoothed", {"--edges", "fxaa"}));
   EXPECT_EQ(smoothed.err.find("samples a pixel"), std::string::npos) << smoothed.err;
   const auto usual = condyle(command("usual", {}));
   EXPECT_EQ(usual.err.find("samples a pixel"), std::string::npos) << usual.err;
@@ -198,7 +203,7 @@ TEST_F(PictureOptions, SamplesThatTheDriverDoesNotGiveAreTold) {
   // Of what check draws, too.
   const std::vector<std::string> check = {
       "check", box_case(folder_), "--motion", "rest", "--margin", "5", "--out", folder_ / "check"};
-  EXPECT_NE(condyle_with_softpipe(check).err.find("asked for 4 samples"), std::string::npos);
+  EXPECT_NE(condyle_with("softpipe", check).err.find("asked for 4 samples"), std::string::npos);
   EXPECT_EQ(condyle(check).err.find("samples"), std::string::npos);
 }
 

@@ -2,10 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "engine/mesh/triangle_tree.h"
+#include "engine/mesh_io/mesh_files.h"
 #include "panel_stage.h"
+#include "render/window/landmark_list.h"
+#include "render/window/seen_face.h"
 #include "sim/frame/body_poses.h"
+#include "tests/render/scene_fixture.h"
 
 namespace condyle {
 namespace {
@@ -45,6 +52,54 @@ TEST(Measuring, PointsGoAlongWithTheirBoneAndTheDeformingFace) {
              Vector3d(0, 0, -7))
                 .norm(),
             1e-5);
+}
+
+TEST(Measuring, OnACoarseFaceMarksLieOnWhatIsSeen) {
+  TriMesh mesh = ball({0, 0, 0}, 70, 24);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)  // as rough as a segmented one
+    mesh.vertices[v] *= 1 + 0.03 * std::sin(7.0 * static_cast<double>(v));
+  std::vector<Part> parts = {make_part("face", Role::face, mesh)};
+  ASSERT_TRUE(DrawnFace::smooths(mesh));
+  FrameState frame;
+  const Vector3d way(3, -2, -9);
+  for (const auto& v : mesh.vertices) frame.face.push_back((v + way).cast<float>());
+  const auto seen = SeenFace(parts).places(frame);
+  ASSERT_EQ(seen.size(), mesh.vertices.size());
+  const TriangleTree tree(DrawnFace(mesh, {}, Eigen::Vector3f::Ones()).mesh());
+  double measured_off = 0, seen_off = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+    const PinnedPoint point{0, mesh.triangles[t], {1, 0, 0}};
+    const Landmark landmark = landmark_on("pronasale", point, parts);
+    const Vector3d mark = place_of(point, parts, frame, seen) - way;
+    EXPECT_LT((place_of(landmark, parts, frame, seen) - way - mark).norm(), 1e-4);
+    const Vector3d vertex = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][0])];
+    EXPECT_LT((place_of(point, parts, frame) - way - vertex).norm(), 1e-4);
+    measured_off = std::max(measured_off, tree.nearest(vertex).distance);
+    seen_off = std::max(seen_off, tree.nearest(mark).distance);
+  }
+  EXPECT_GT(measured_off, 1);
+  EXPECT_LT(seen_off, 0.4 * measured_off);
+  // A fine one is seen as it is.
+  parts[0].mesh = ball({0, 0, 0}, 70, 120);
+  EXPECT_TRUE(SeenFace(parts).places(frame).empty());
+}
+
+TEST(Measuring, MarksLieOnARealFaceBetweenItsVerticesToo) {
+  const auto file = std::filesystem::path(CONDYLE_SOURCE_DIR) / ".." / "shared" / "data" /
+                    "case-badin" / "face_skin.ply";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "real anatomy absent";
+  const std::vector<Part> parts = {make_part("face", Role::face, read_mesh(file))};
+  const TriMesh& mesh = parts[0].mesh;
+  const auto seen = SeenFace(parts).places({});
+  ASSERT_EQ(seen.size(), mesh.vertices.size());
+  const TriangleTree tree(DrawnFace(mesh, {}, Eigen::Vector3f::Ones()).mesh());
+  double between = 0, at_vertices = 0;
+  for (const auto& t : mesh.triangles)
+    for (const Vector3d& shares : {Vector3d(1. / 3, 1. / 3, 1. / 3), Vector3d(0, .5, .5)})
+      between = std::max(between, tree.nearest(place_of({0, t, shares}, parts, {}, seen)).distance);
+  for (const auto& v : mesh.vertices) at_vertices = std::max(at_vertices, tree.nearest(v).distance);
+  EXPECT_LT(between, 0.8);
+  EXPECT_GT(at_vertices, 2 * between);  // of what is measured
 }
 
 }  // namespace
