@@ -196,7 +196,7 @@ void Panels::Drawing::record() {
     pen.mark("record-progress");
     text(theme.small, palette().text, fitted(theme.small, input.recording_what, whole));
     if (word_button(pen, "record-cancel", "Stop recording", {whole, pen.px(32)}, false))
-      panels.wishes_.emplace_back(wish::Cancel{});
+      panels.wishes_.emplace_back(wish::StopRecording{});
     tooltip(pen, "The pictures made so far stay in the folder");
   } else {
     const std::size_t cameras = choice.wanted_cameras().size();

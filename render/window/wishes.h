@@ -74,7 +74,8 @@ struct Record {
   PictureSettings picture;
   std::shared_ptr<const FrameState> kept = {};  // left of the wipe, if there is one
 };
-/// Ends what runs beside and can be ended.
+struct StopRecording {};
+/// Ends what runs beside, other than a recording.
 struct Cancel {};
 /// Lets the dynamics take a free body from where the hand has it.
 struct LetGo {
@@ -87,7 +88,7 @@ struct SaveCase {
 struct UseLandmarks {};
 }  // namespace wish
 
-using Wish = std::variant<wish::Open, wish::Import, wish::Record, wish::Cancel, wish::LetGo,
-                          wish::SaveCase, wish::UseLandmarks>;
+using Wish = std::variant<wish::Open, wish::Import, wish::Record, wish::StopRecording, wish::Cancel,
+                          wish::LetGo, wish::SaveCase, wish::UseLandmarks>;
 
 }  // namespace condyle

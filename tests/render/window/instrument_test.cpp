@@ -332,7 +332,7 @@ TEST_P(Instrument, ARecordingIsAskedForAsItIsSet) {
   stage.click("record-cancel");
   const auto stopped = stage.panels->take_wishes();
   ASSERT_EQ(stopped.size(), 1u);
-  EXPECT_TRUE(std::holds_alternative<wish::Cancel>(stopped.front()));
+  EXPECT_TRUE(std::holds_alternative<wish::StopRecording>(stopped.front()));
 }
 
 TEST_P(Instrument, LandmarksAreChosenDeletedAndSaved) {
