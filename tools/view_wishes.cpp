@@ -129,7 +129,8 @@ void ViewSession::carry_out(const wish::Cancel&) {
 void ViewSession::carry_out(const wish::LetGo& wanted) {
   if (letting_go_ || !newest_ || wanted.body >= shown_.bodies.size()) return;
   const MovableBody& body = shown_.bodies[wanted.body];
-  loosed_ = Loosed{body.free.has_value(), patient_->scene.patient.parts[body.part].name, window_.view().hands};
+  loosed_ = Loosed{body.free.has_value(), patient_->scene.patient.parts[body.part].name,
+                   window_.view().hands};
   if (!body.free) return let_jaw_go(wanted.body);
   letting_go_ =
       beside<LetGoResult>([patient = patient_, body, number = wanted.body, frame = *newest_,
