@@ -33,12 +33,11 @@ std::vector<fs::path> with_loose_surfaces(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     std::error_code ignored;
     std::vector<fs::path> inside;
-    if (fs::is_directory(file, ignored) && !fs::exists(file / "case.json", ignored))
+    if (fs::is_directory(file, ignored) &&
+        (!fs::exists(file / "case.json", ignored) || has_foreign_case_file(file)))
       for (fs::directory_iterator one(file, ignored), end; !ignored && one != end;
            one.increment(ignored))
-        if (const FileKind kind = kind_of(one->path());
-            kind == FileKind::surface || kind == FileKind::landmarks)
-          inside.push_back(one->path());
+        if (makes_patient(kind_of(one->path()))) inside.push_back(one->path());
     std::sort(inside.begin(), inside.end());
     if (inside.empty()) inside = {file};
     all.insert(all.end(), inside.begin(), inside.end());
@@ -60,15 +59,14 @@ void ViewSession::carry_out(const wish::Open& wanted) {
   wish::Import surfaces;
   std::vector<std::string> others;
   for (const fs::path& file : with_loose_surfaces(wanted.files)) {
-    const FileKind kind = kind_of(file);
-    if (kind == FileKind::surface || kind == FileKind::landmarks)
+    if (makes_patient(kind_of(file)))
       surfaces.files.push_back({file, role_guess(file)});
     else
       others.push_back(file.filename().string());
   }
   if (!surfaces.files.empty()) {
     if (!others.empty())
-      window_.say(fmt::format("Left out: {}. Only surfaces and landmarks make a patient",
+      window_.say(fmt::format("Left out: {}. Only surfaces, landmarks and muscles make a patient",
                               fmt::join(others, ", ")));
     return window_.ask_roles(surfaces);
   }

@@ -41,10 +41,10 @@ struct ExcitationSetting {
   double high = 1, value = 0;
 };
 
-/// A surface, or a list of landmarks, that shall become part of a patient.
+/// A surface, a list of landmarks or a table of muscles that shall become part of a patient.
 struct FileRole {
   std::filesystem::path file;
-  std::string role;  // "mandible", "upper-teeth", ..., "landmarks", or empty: leave it out
+  std::string role;  // "mandible", "upper-teeth", ..., "landmarks", "muscles", or empty: leave it out
 };
 
 /// What the person asks for once. Whoever runs the window does it.
