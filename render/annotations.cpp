@@ -15,31 +15,36 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-const Vector3f ink = Vector3f::Constant(0.96f), dark = Vector3f::Constant(0.05f);
+/// Letters with a border are read on skin and on the background.
+struct Inks {
+  Vector3f letters, border;
+};
+const Inks on_dark = {Vector3f::Constant(0.96f), Vector3f::Constant(0.05f)},
+           on_light = {Vector3f::Constant(0.10f), Vector3f::Constant(0.97f)};
 
 Eigen::Matrix3d rows_of(const Camera& camera) {
   return view_matrix(camera).topLeftCorner<3, 3>().cast<double>();
 }
 
-/// Light letters with a dark border are read on skin and on the background.
-void write(Image& image, const Lettering& words, double x, double y, double height,
-           const std::string& text) {
+void write(Image& image, const Lettering& words, const Inks& inks, double x, double y,
+           double height, const std::string& text) {
   const double off = std::max(1.0, height / 14);
   for (const double dx : {-off, 0.0, off})
     for (const double dy : {-off, 0.0, off})
-      if (dx != 0 || dy != 0) words.write(image, x + dx, y + dy, height, text, dark);
-  words.write(image, x, y, height, text, ink);
+      if (dx != 0 || dy != 0) words.write(image, x + dx, y + dy, height, text, inks.border);
+  words.write(image, x, y, height, text, inks.letters);
 }
 
-void write_centred(Image& image, const Lettering& words, double x, double y, double height,
-                   const std::string& text) {
-  write(image, words, x - words.width(text, height) / 2, y, height, text);
+void write_centred(Image& image, const Lettering& words, const Inks& inks, double x, double y,
+                   double height, const std::string& text) {
+  write(image, words, inks, x - words.width(text, height) / 2, y, height, text);
 }
 
 /// Height of letters.
 double unit_of(const Image& image) { return std::max(10.0, image.height / 45.0); }
 
-void draw_bar(Image& image, const Lettering& words, const Camera& camera, double unit) {
+void draw_bar(Image& image, const Lettering& words, const Inks& inks, const Camera& camera,
+              double unit) {
   const ScaleBar bar = scale_bar(camera, image.height, image.width);
   const int right = static_cast<int>(image.width - 2.2 * unit);
   const int left = right - static_cast<int>(std::lround(bar.pixels));
@@ -48,19 +53,19 @@ void draw_bar(Image& image, const Lettering& words, const Camera& camera, double
   for (const PixelBox& box : {PixelBox{left, low - thick, right, low},
                               PixelBox{left, low - tick - thick, left + thick, low},
                               PixelBox{right - thick, low - tick - thick, right, low}})
-    paint_frame(image, box, dark), paint_box(image, box, ink);
-  paint_box(image, {left, low - thick, right, low}, ink);
-  write_centred(image, words, 0.5 * (left + right), low - tick - 0.6 * unit, unit, bar.text);
+    paint_frame(image, box, inks.border), paint_box(image, box, inks.letters);
+  paint_box(image, {left, low - thick, right, low}, inks.letters);
+  write_centred(image, words, inks, 0.5 * (left + right), low - tick - 0.6 * unit, unit, bar.text);
 }
 
-void draw_letters(Image& image, const Lettering& words, const Camera& camera, double unit,
-                  int taken_left) {
+void draw_letters(Image& image, const Lettering& words, const Inks& inks, const Camera& camera,
+                  double unit, int taken_left) {
   const auto [left, right, top, bottom] = edge_letters(camera);
   const double size = 1.5 * unit, middle = image.height / 2.0 + 0.35 * size;
-  write_centred(image, words, std::max(1.6 * unit, taken_left + unit), middle, size, {left});
-  write_centred(image, words, image.width - 1.6 * unit, middle, size, {right});
-  write_centred(image, words, image.width / 2.0, 2.2 * unit, size, {top});
-  write_centred(image, words, image.width / 2.0, image.height - 1.2 * unit, size, {bottom});
+  write_centred(image, words, inks, std::max(1.6 * unit, taken_left + unit), middle, size, {left});
+  write_centred(image, words, inks, image.width - 1.6 * unit, middle, size, {right});
+  write_centred(image, words, inks, image.width / 2.0, 2.2 * unit, size, {top});
+  write_centred(image, words, inks, image.width / 2.0, image.height - 1.2 * unit, size, {bottom});
 
   // Okabe-Ito vermilion, bluish green and sky blue; the letters say what colours cannot.
   const double reach = 3.2 * unit;
@@ -74,7 +79,8 @@ void draw_letters(Image& image, const Lettering& words, const Camera& camera, do
     if (positive) stroke(image, cross, end, std::max(1.0, unit / 9), color);
     const double faint = axis.toward_eye < -0.9 ? 0 : positive ? 0.95 : 0.6;
     if (faint > 0)
-      write_centred(image, words, end.x(), end.y() + 0.35 * unit, unit * faint, {axis.letter});
+      write_centred(image, words, inks, end.x(), end.y() + 0.35 * unit, unit * faint,
+                    {axis.letter});
   }
 }
 
@@ -129,12 +135,13 @@ void keep_clear_of(Annotations& annotations, const PixelBox& pane, const Image& 
 void annotate(Image& image, const Lettering& words, const Camera& camera,
               const Annotations& annotations) {
   const double unit = unit_of(image);
-  if (annotations.letters) draw_letters(image, words, camera, unit, annotations.taken_left);
-  if (annotations.scale_bar) draw_bar(image, words, camera, unit);
+  const Inks& inks = annotations.on_light ? on_light : on_dark;
+  if (annotations.letters) draw_letters(image, words, inks, camera, unit, annotations.taken_left);
+  if (annotations.scale_bar) draw_bar(image, words, inks, camera, unit);
   const double below = annotations.letters ? 3.2 * unit : 1.6 * unit;
   const auto count = static_cast<double>(annotations.caption.size());
   for (std::size_t i = 0; i < annotations.caption.size(); ++i)
-    write_centred(image, words, image.width / 2.0,
+    write_centred(image, words, inks, image.width / 2.0,
                   image.height - below - 1.4 * unit * (count - 1 - static_cast<double>(i)),
                   1.1 * unit, annotations.caption[i]);
 }

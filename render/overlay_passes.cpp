@@ -10,6 +10,9 @@
 namespace condyle {
 namespace {
 
+// On a light backdrop: lines this wide get a border, of this share of their width.
+constexpr float least_bordered_px = 1.5f, border_share = 0.35f;
+
 /// Later ones lie over earlier ones where solids share a place: teeth in bone, bone in flesh.
 int order_of_caps(Role role) {
   if (role == Role::face) return 0;
@@ -262,7 +265,9 @@ void OverlayPasses::lines(const PictureView& view, int width, int height) {
                                                   0.5f * static_cast<float>(height)));
         // Thinner than a pixel, a line is fainter instead.
         const float line_width = set.width_px * static_cast<float>(height) / 1080;
+        const bool bordered = view.light && set.width_px >= least_bordered_px;
         line_.set("half_width", std::max(0.5f, 0.5f * line_width));
+        line_.set("border", bordered ? std::max(0.8f, border_share * line_width) : 0);
         line_.set("near", 1.f);
         line_.set("nearer", 0.8f / view.away);
         line_.set("opacity", opacity * std::min(1.f, line_width));

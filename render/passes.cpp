@@ -176,7 +176,9 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
   glFlush();  // without a card it is drawn beside what follows
 }
 
-void Passes::background(const PictureView& view) { background_.draw(view.width, view.height); }
+void Passes::background(const PictureView& view, Backdrop shade) {
+  background_.draw(view.width, view.height, shade);
+}
 
 GlProgram& Passes::Programs::of(const Shading& shading) {
   const auto found = built_.find(shading);

@@ -48,6 +48,7 @@ struct PictureView {
   Lights lights;
   float pixels_per_unit;  // of a length across the line of sight at distance 1
   bool shadows = true;
+  bool light = false;        // the backdrop: bright lines get a dark border
   bool coarse = false;       // shapes, where they serve
   bool dark_mouth = false;   // an opaque face keeps the sky out of it, but for its window
   bool opaque_face = false;  // hides most of the rest
@@ -91,7 +92,7 @@ class Passes {
   void set_colour_map(const ColourMap& map);
 
   void shadow_map(std::span<const DrawItem> items, const PictureView& view);
-  void background(const PictureView& view);
+  void background(const PictureView& view, Backdrop shade);
   void opaque(std::span<const DrawItem> items, const PictureView& view);
   /// Where they fall.
   static void add_contacts(std::span<const Eigen::Vector3f> points, PictureBounds& bounds,

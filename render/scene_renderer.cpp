@@ -259,6 +259,7 @@ PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettin
   v.pixels_per_unit = static_cast<float>(
       settings.height / 2.0 / std::tan(camera.field_of_view_deg * std::numbers::pi / 360));
   v.shadows = settings.shadows;
+  v.light = settings.backdrop == Backdrop::light;
   v.coarse = settings.coarse;
   v.may_cull = away > radius + 5;
   v.skin_opacity = static_cast<float>(std::clamp(settings.skin_opacity, 0.0, 1.0));
@@ -434,7 +435,7 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   if (mouth) surfaces.push_back(*mouth);
   s.passes.opaque(surfaces, view);
   s.overlays.caps(items, view, mouth ? &*s.mouth : nullptr);
-  if (!settings.transparent_background) s.passes.background(view);
+  if (settings.backdrop != Backdrop::none) s.passes.background(view, settings.backdrop);
   if (settings.contacts) s.passes.contacts(s.contacts, view, !view.opaque_face);
   for (const auto& item : items)
     if (settings.ghost && item.role() != Role::face && s.leaves_ghost(item, *settings.ghost))
@@ -473,10 +474,10 @@ Image SceneRenderer::picture(const Camera& camera, const PictureSettings& settin
   s.target.drawn().bind();
   draw(camera, drawn, box);
   Image image{drawn.width, drawn.height, {}};
-  s.target.read(box, settings.transparent_background, true, image.rgba);
+  s.target.read(box, settings.backdrop, true, image.rgba);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
   if (finer > 1) image = averaged(image, finer);
-  if (!settings.transparent_background) return image;
+  if (settings.backdrop != Backdrop::none) return image;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     const auto alpha = image.rgba[i + 3];
     if (alpha == 0 || alpha == 255) continue;

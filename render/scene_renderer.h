@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "render/backdrop.h"
 #include "render/camera.h"
 #include "render/colour_map.h"
 #include "render/drawn_box.h"
@@ -25,7 +26,7 @@ struct PictureSettings {
   bool shadows = true;
   bool coarse = false;   // shapes within 0.2 mm, for pictures that must come fast
   bool contacts = true;  // mark contact points
-  bool transparent_background = false;
+  Backdrop backdrop = Backdrop::dark;
   double skin_opacity = 1.0;                   // 0 hides the face
   std::map<std::string, double> part_opacity;  // by part name; missing = 1; 0 hides
   std::optional<ClippingPlane> clip = {};

@@ -35,12 +35,15 @@ void main() {
 
 const char* const background_fragment = R"(#version 330 core
 uniform vec2 pixel;  // 1 / size of the picture
+uniform int light;
 out vec4 result;
 void main() {
   vec2 place = gl_FragCoord.xy * pixel;  // of the whole pixel, however it is sampled
   // A pool of light behind the head; half a grey level of ordered noise hides the bands.
   float pool = exp(-2.2 * dot(place - vec2(0.5, 0.48), place - vec2(0.5, 0.48)));
   vec3 c = mix(vec3(0.085, 0.090, 0.100), vec3(0.295, 0.305, 0.325), pool * (0.55 + 0.45 * place.y));
+  if (light == 1)
+    c = mix(vec3(0.740, 0.765, 0.790), vec3(0.905, 0.915, 0.925), pool * (0.55 + 0.45 * place.y));
   ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
   int rank = ((cell.x ^ cell.y) & 1) * 8 + (cell.y & 1) * 4
            + (((cell.x ^ cell.y) >> 1) & 1) * 2 + ((cell.y >> 1) & 1);
@@ -88,6 +91,7 @@ uniform mat4 view;
 uniform mat4 projection;
 uniform vec2 half_picture;  // pixels
 uniform float half_width;   // pixels
+uniform float border;       // pixels, around the line
 uniform float near;         // mm before the eye
 uniform float nearer;       // share of the way to the eye, so that a line on a surface is not swallowed
 out vec3 line_color;
@@ -102,7 +106,7 @@ void main() {
   along = length(along) > 1e-4 ? normalize(along) : vec2(1.0, 0.0);
   vec4 end = (gl_VertexID & 1) == 0 ? p : q;
   float side = (gl_VertexID & 2) == 0 ? -1.0 : 1.0;
-  float w = half_width + 0.7;  // room for a soft edge
+  float w = half_width + border + 0.7;  // room for a soft edge
   vec2 shift = side * w * vec2(-along.y, along.x) / half_picture;
   end.xy += shift * end.w;
   if (a.z > -near && b.z > -near) end = vec4(2.0, 2.0, 2.0, 1.0);
@@ -115,11 +119,15 @@ void main() {
 const char* const line_fragment = R"(#version 330 core
 in vec3 line_color;
 in float across;
-uniform float opacity, half_width;
+uniform float opacity, half_width, border;
 out vec4 result;
 void main() {
   float cover = clamp(half_width + 0.5 - abs(across), 0.0, 1.0);
   result = vec4(pow(line_color, vec3(1.0 / 2.2)), opacity * cover);
+  if (border > 0.0) {
+    float around = clamp(half_width + border + 0.5 - abs(across), 0.0, 1.0);
+    result = vec4(mix(vec3(0.10, 0.11, 0.13), result.rgb, cover), opacity * around);
+  }
 }
 )";
 

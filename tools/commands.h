@@ -38,7 +38,7 @@ struct PictureOptions {
   std::optional<double> wipe = std::nullopt;
   bool before_after = false;
   std::string caption = {};
-  bool transparent = false;
+  bool transparent = false, light = false;
   std::string edges = "msaa4";
   int supersample = 1;
   bool shadows = true;

@@ -78,9 +78,9 @@ int run_program(int argc, char** argv) {
                            "that use the window");
   view_command->add_flag_callback(
       "--light", [&view] { view.light = true; },
-      "Light panels (as they were left; at first dark; key T)");
+      "Light panels and view (as they were left; at first dark; key T)");
   view_command->add_flag_callback(
-      "--dark", [&view] { view.light = false; }, "Dark panels");
+      "--dark", [&view] { view.light = false; }, "Dark panels and view");
 
   RecordOptions record;
   record.pictures = true;

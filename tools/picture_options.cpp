@@ -152,7 +152,9 @@ PicturePlan parse(const PictureOptions& options, const Case* patient) {
       throw InputError("--overlay patches: shows less than --show distance does; leave one out");
     settings.mapped_up_to = patch_mm;
   }
-  settings.transparent_background = options.transparent;
+  if (options.light) settings.backdrop = Backdrop::light;
+  plan.annotations.on_light = options.light;
+  if (options.transparent) settings.backdrop = Backdrop::none;
   settings.samples = options.edges == "msaa4" ? 4 : 1;
   settings.smooth_edges = options.edges == "fxaa";
   settings.supersampling = options.supersample;
@@ -199,6 +201,7 @@ std::string describe(const PictureOptions& o) {
   if (o.before_after) text += "; before and after";
   if (o.wipe) text += fmt::format("; wipe {}", *o.wipe);
   if (!o.caption.empty()) text += "; caption " + o.caption;
+  if (o.light) text += "; light";
   if (o.transparent) text += "; transparent";
   return text;
 }

@@ -216,7 +216,7 @@ Image PictureTaker::finished(const View& view, int frame, const Shot& shot) cons
   Image image;
   if (plan_.before_after) {
     image = before_after(view, camera, shot);
-    notes = {.caption = notes.caption};
+    notes = {.on_light = notes.on_light, .caption = notes.caption};
   } else {
     image = picture(view, camera, shot, notes);
   }

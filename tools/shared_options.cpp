@@ -196,6 +196,7 @@ void add_pictures(CLI::App* command, PictureOptions& picture) {
       "Words under the picture; {time}, {opening} (drop of the lower incisal point), "
       "{interincisal} (between the incisal edges), {rotation}, {frame} and {motion} "
       "are filled in, | breaks the line");
+  command->add_flag("--light", picture.light, "A light background in place of the dark one");
   command->add_flag("--transparent", picture.transparent, "No background: PNG with alpha");
   command
       ->add_option(

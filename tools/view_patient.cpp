@@ -71,6 +71,7 @@ FileKind kind_of(const fs::path& path) {
   if (lower_case(path.string()).ends_with(".mrk.json")) return FileKind::landmarks;
   if (ending == ".csv") {
     const std::string header = first_line(path);
+    if (header.find("max_force_n") != std::string::npos) return FileKind::muscles;
     if (header.starts_with("name") || header.find("x_mm") == 0) return FileKind::landmarks;
     const bool has_place = header.find('x') != std::string::npos;
     return header.starts_with("time_s") && !has_place ? FileKind::excitations : FileKind::motion;
@@ -81,6 +82,8 @@ FileKind kind_of(const fs::path& path) {
 }
 
 std::string role_guess(const fs::path& file) {
+  if (const FileKind kind = kind_of(file); kind != FileKind::surface)
+    return kind == FileKind::landmarks ? "landmarks" : kind == FileKind::muscles ? "muscles" : "";
   const std::string name = lower_case(file.stem().string());
   const auto has = [&](std::initializer_list<const char*> words) {
     return std::any_of(words.begin(), words.end(),
@@ -95,7 +98,6 @@ std::string role_guess(const fs::path& file) {
   if (has({"face", "skin", "soft"})) return "face";
   if (has({"transplant", "graft", "fibula"})) return "transplant";
   if (has({"segment"})) return "segment";
-  if (kind_of(file) == FileKind::landmarks) return "landmarks";
   return {};
 }
 
@@ -105,6 +107,8 @@ Case import_files(const wish::Import& wanted) {
   for (const FileRole& one : wanted.files) {
     if (one.role == "landmarks")
       request.landmarks = one.file;
+    else if (one.role == "muscles")
+      request.muscles = one.file;
     else if (const auto role = role_named(one.role))
       request.files.push_back({*role, one.file});
   }

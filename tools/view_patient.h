@@ -30,8 +30,12 @@ std::shared_ptr<const ViewPatient> make_view_patient(Case patient, std::filesyst
 Case with_landmarks(Case patient, const std::vector<Landmark>& landmarks);
 
 /// What a dropped or opened file is.
-enum class FileKind { patient, motion, excitations, surface, landmarks, unknown };
+enum class FileKind { patient, motion, excitations, surface, landmarks, muscles, unknown };
 FileKind kind_of(const std::filesystem::path& path);
+/// What a patient is made of, with others of its kind.
+constexpr bool makes_patient(FileKind kind) {
+  return kind == FileKind::surface || kind == FileKind::landmarks || kind == FileKind::muscles;
+}
 /// A guess from the file's name: "mandible" for Lower_Jaw.stl; empty when there is none.
 std::string role_guess(const std::filesystem::path& file);
 /// throws: InputError.

@@ -57,7 +57,8 @@ PicturePlan plan_of(const ViewRecording& subject) {
   settings.samples = wanted.edges == RecordEdges::msaa ? 4 : 1;
   settings.smooth_edges = wanted.edges == RecordEdges::fxaa;
   settings.supersampling = wanted.supersampling;
-  settings.transparent_background = wanted.transparent;
+  plan.annotations.on_light = settings.backdrop == Backdrop::light;
+  if (wanted.transparent) settings.backdrop = Backdrop::none;
   plan.words = {{"picture", "as in the window"}};
   return plan;
 }

@@ -223,7 +223,7 @@ void ViewSession::show_progress() {
     busy_with_ = std::move(words);
     return true;
   };
-  if (show(loading_, patient_ != nullptr) || show(moving_, false) || show(letting_go_, false) ||
+  if (show(loading_, patient_ != nullptr) || show(moving_, false) || show(letting_go_, true) ||
       show(saving_, false) || show(readying_, false))
     return;
   window_.show_progress("", 1);

@@ -53,11 +53,13 @@ class ViewSession {
   void let_jaw_go(std::size_t body);
   void let_fall();
   void end_fall();
+  void drop_overtaken_let_go();
   bool in_the_same_hands(const Hands& then) const;
   void take_save();
   void carry_out(const wish::Open& wanted);
   void carry_out(const wish::Import& wanted);
   void carry_out(const wish::Record& wanted);
+  void carry_out(const wish::StopRecording& wanted);
   void carry_out(const wish::Cancel& wanted);
   void carry_out(const wish::LetGo& wanted);
   void carry_out(const wish::SaveCase& wanted);
@@ -116,8 +118,14 @@ class ViewSession {
     std::size_t body;
     Pose in_carrier;  // of a free part, at rest
     std::string words;
-    JawLetGo course;  // of a jaw
-    Hands hands;      // as they were left with it; others: a hand has it again
+    JawLetGo course;   // of a jaw
+    Hands hands = {};  // as they are left with it; others: a hand has it again
+  };
+  /// What was let go, and what the hands wanted then.
+  struct Loosed {
+    bool free_part = false;
+    std::string name;
+    Hands hands;
   };
   /// A jaw that was let go and is on its way, as time runs.
   struct Falling {
@@ -170,6 +178,7 @@ class ViewSession {
   std::unique_ptr<Background<MotionPictures>> plotting_;
   std::unique_ptr<Background<std::string>> recording_;
   std::unique_ptr<Background<LetGoResult>> letting_go_;
+  Loosed loosed_;  // while it is being let go
   std::unique_ptr<Background<Saved>> saving_;
 };
 

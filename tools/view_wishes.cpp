@@ -33,12 +33,11 @@ std::vector<fs::path> with_loose_surfaces(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     std::error_code ignored;
     std::vector<fs::path> inside;
-    if (fs::is_directory(file, ignored) && !fs::exists(file / "case.json", ignored))
+    if (fs::is_directory(file, ignored) &&
+        (!fs::exists(file / "case.json", ignored) || has_foreign_case_file(file)))
       for (fs::directory_iterator one(file, ignored), end; !ignored && one != end;
            one.increment(ignored))
-        if (const FileKind kind = kind_of(one->path());
-            kind == FileKind::surface || kind == FileKind::landmarks)
-          inside.push_back(one->path());
+        if (makes_patient(kind_of(one->path()))) inside.push_back(one->path());
     std::sort(inside.begin(), inside.end());
     if (inside.empty()) inside = {file};
     all.insert(all.end(), inside.begin(), inside.end());
@@ -60,15 +59,14 @@ void ViewSession::carry_out(const wish::Open& wanted) {
   wish::Import surfaces;
   std::vector<std::string> others;
   for (const fs::path& file : with_loose_surfaces(wanted.files)) {
-    const FileKind kind = kind_of(file);
-    if (kind == FileKind::surface || kind == FileKind::landmarks)
+    if (makes_patient(kind_of(file)))
       surfaces.files.push_back({file, role_guess(file)});
     else
       others.push_back(file.filename().string());
   }
   if (!surfaces.files.empty()) {
     if (!others.empty())
-      window_.say(fmt::format("Left out: {}. Only surfaces and landmarks make a patient",
+      window_.say(fmt::format("Left out: {}. Only surfaces, landmarks and muscles make a patient",
                               fmt::join(others, ", ")));
     return window_.ask_roles(surfaces);
   }
@@ -115,23 +113,30 @@ void ViewSession::carry_out(const wish::Record& wanted) {
   });
 }
 
+void ViewSession::carry_out(const wish::StopRecording&) {
+  if (recording_) recording_->cancel();
+}
+
 void ViewSession::carry_out(const wish::Cancel&) {
-  if (recording_) return recording_->cancel();
   if (loading_) return retire(loading_);
+  if (!letting_go_) return;
+  retire(letting_go_);
+  window_.say(fmt::format("The {} stays where it was taken hold of", loosed_.name));
 }
 
 void ViewSession::carry_out(const wish::LetGo& wanted) {
   if (letting_go_ || !newest_ || wanted.body >= shown_.bodies.size()) return;
   const MovableBody& body = shown_.bodies[wanted.body];
+  loosed_ = Loosed{body.free.has_value(), patient_->scene.patient.parts[body.part].name,
+                   window_.view().hands};
   if (!body.free) return let_jaw_go(wanted.body);
   letting_go_ =
       beside<LetGoResult>([patient = patient_, body, number = wanted.body, frame = *newest_,
                            threads = common_.threads](const Progress& progress) {
-        report(progress, "letting go", 0.5);
         const Case& of = patient->scene.patient;
         LetGoSettings settings;
         settings.push_N = push_toward_bone(frame, body.part);
-        const LetGo settled = let_go(of, body.part, frame.poses(), settings, threads);
+        const LetGo settled = let_go(of, body.part, frame.poses(), settings, threads, progress);
         if (!settled.rest.reached)
           throw InputError(of.parts[body.part].name +
                            ": did not come to rest; move it nearer to the bone");
@@ -140,7 +145,6 @@ void ViewSession::carry_out(const wish::LetGo& wanted) {
                            carrier_pose(body, frame.X_CM).inverse() * now,
                            fmt::format("Lies still after {:.2f} s on {} places",
                                        settled.rest.seconds, settled.contacts.size()),
-                           {},
                            {}};
       });
 }
@@ -187,22 +191,24 @@ void ViewSession::take_recording() {
 void ViewSession::let_jaw_go(std::size_t number) {
   if (!motion_) return;
   const MovableBody& body = shown_.bodies[number];
-  const Pose X_CM = newest_->X_CM;
+  const BodyPoses from = newest_->poses();
+  const Pose& X_CM = from.X_CM;
   end_fall();
   const double time_s = window_.view().time_s;
   window_.change(
       [&](ViewState& view) { view.move(body, body.skull ? view.hands.X_RC(X_CM) : X_CM, X_CM); },
       true);
-  letting_go_ = beside<LetGoResult>([patient = patient_, motion = motion_, number, time_s, X_CM,
-                                     caught = window_.view().hands, options = options_.motion,
+  loosed_.hands = window_.view().hands;
+  letting_go_ = beside<LetGoResult>([patient = patient_, motion = motion_, number, time_s, from,
+                                     options = options_.motion,
                                      threads = common_.threads](const Progress& progress) {
-    report(progress, "letting go", 0.5);
+    report(progress, "letting go", 0);
     const Case& of = patient->scene.patient;
     JawLetGoSettings settings{.muscles = options.muscles,
                               .excitations = excitations_at(*motion, time_s)};
     const bool by_tone = settings.excitations.empty();
     if (by_tone) settings.X_CM_rest = rest_position(motion->choice, *patient, options, threads);
-    JawLetGo course = let_go_jaw(of, X_CM, settings, threads);
+    JawLetGo course = let_go_jaw(of, patient->scene.contacts, from, settings, threads, progress);
     std::string words =
         course.bite_N > 0
             ? fmt::format("lies on {} with {:.1f} N", course.on_teeth ? "its teeth" : "a flat bite",
@@ -210,12 +216,27 @@ void ViewSession::let_jaw_go(std::size_t number) {
             : fmt::format("hangs {:.1f} mm open", measure(of, course.X_CM.back()).opening_mm);
     words = fmt::format("{} the jaw {} after {:.2f} s{}",
                         by_tone ? "At its muscles' resting tone" : "Moved by its muscles", words,
-                        course.rest.seconds, course.rest.reached ? "" : ", not still yet");
-    return LetGoResult{number, {}, std::move(words), std::move(course), caught};
+                        course.rest.seconds,
+                        course.rest.reached ? ""
+                        : course.rest.depth_mm > jaw_rest_depth_mm
+                            ? fmt::format(", {:.2f} mm deep in bone", course.rest.depth_mm)
+                            : ", not still yet");
+    return LetGoResult{number, {}, std::move(words), std::move(course)};
   });
 }
 
+/// What is edited meanwhile counts: the answer would be of what was wanted before.
+void ViewSession::drop_overtaken_let_go() {
+  if (!letting_go_) return;
+  const ViewState& view = window_.view();
+  if (loosed_.free_part ? view.hands == loosed_.hands : in_the_same_hands(loosed_.hands)) return;
+  retire(letting_go_);
+  window_.say(
+      fmt::format("The {} was moved before it had come to rest, and is not let go", loosed_.name));
+}
+
 void ViewSession::take_let_go() {
+  drop_overtaken_let_go();
   if (!letting_go_ || !letting_go_->done()) return;
   const auto finished = std::move(letting_go_);
   guarded([&] {
@@ -227,7 +248,6 @@ void ViewSession::take_let_go() {
                      true);
       return window_.say(result->words);
     }
-    if (!in_the_same_hands(result->hands)) return;
     // What joints draw in at once is shown so that it can be followed.
     constexpr double fastest_mm_s = 250, arm_mm = 80;
     const JawLetGo& course = result->course;

@@ -160,10 +160,10 @@ int RigidWorld::add_pair(const RigidPair& pair) {
   return static_cast<int>(s.pairs.size()) - 1;
 }
 
-void RigidWorld::allow_overlap(int pair) {
+void RigidWorld::allow_overlap(int pair, double around_mm) {
   require(pair >= 0 && pair < static_cast<int>(state_->pairs.size()),
           "there is no pair " + std::to_string(pair));
-  state_->finder.allow_overlap(pair, state_->poses);
+  state_->finder.allow_overlap(pair, state_->poses, around_mm);
 }
 
 void RigidWorld::set_force(int force, const Vector3d& force_N) {

@@ -112,8 +112,9 @@ class RigidWorld {
   int add_joint(const RigidJoint& joint);
   int add_pair(const RigidPair& pair);
 
-  /// Overlap at the present poses is allowed to this pair from now on, sample by sample.
-  void allow_overlap(int pair);
+  /// Overlap at the present poses is allowed to this pair from now on, sample by sample. Samples
+  /// within `around_mm` of one that overlaps now are no longer felt at all.
+  void allow_overlap(int pair, double around_mm = 0);
 
   void set_force(int force, const Eigen::Vector3d& force_N);
   void set_pose(int body, const Pose& X_WB);  // a jump; its motion stays

@@ -136,7 +136,8 @@ void TouchFinder::add_pair(int a, int b, std::span<const Surface> of_a,
     }
 }
 
-void TouchFinder::allow_overlap(int pair, std::span<const Pose> X_WB) {
+void TouchFinder::allow_overlap(int pair, std::span<const Pose> X_WB, double around_mm) {
+  constexpr float anywhere = -std::numeric_limits<float>::infinity();
   for (std::size_t l = 0; l < looks_.size(); ++l) {
     Look& look = looks_[l];
     if (look.pair != pair) continue;
@@ -149,10 +150,19 @@ void TouchFinder::allow_overlap(int pair, std::span<const Pose> X_WB) {
     for (const NearSample& n : near) {
       const FieldSample here = look.field->field.at(X_FS * samples.points[n.sample]);
       if (!here.known)
-        look.allowed[n.sample] = -std::numeric_limits<float>::infinity();
+        look.allowed[n.sample] = anywhere;
       else if (here.distance_mm < look.gap_mm)
         look.allowed[n.sample] = static_cast<float>(here.distance_mm - look.gap_mm);
     }
+    if (!(around_mm > 0)) continue;
+    std::vector<Vector3d> overlapping;
+    for (std::size_t i = 0; i < samples.points.size(); ++i)
+      if (look.allowed[i] < 0) overlapping.push_back(samples.points[i]);
+    for (std::size_t i = 0; i < samples.points.size(); ++i)
+      if (std::any_of(overlapping.begin(), overlapping.end(), [&](const Vector3d& p) {
+            return (samples.points[i] - p).squaredNorm() < around_mm * around_mm;
+          }))
+        look.allowed[i] = anywhere;
   }
 }
 

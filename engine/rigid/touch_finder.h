@@ -33,8 +33,9 @@ class TouchFinder {
   void add_pair(int a, int b, std::span<const Surface> of_a, std::span<const Surface> of_b,
                 double gap_mm);
 
-  /// From now on each sample of the pair may go as deep as it is at these poses of the bodies.
-  void allow_overlap(int pair, std::span<const Pose> X_WB);
+  /// From now on each sample of the pair may go as deep as it is at these poses of the bodies;
+  /// those within `around_mm` of one that overlaps there may go anywhere.
+  void allow_overlap(int pair, std::span<const Pose> X_WB, double around_mm);
 
   /// Searches near samples anew where bodies have moved too far since. Before find and way.
   void locate(std::span<const Pose> X_WB);

@@ -69,8 +69,8 @@ fs::path typed_path(const std::string& words) {
 }
 
 constexpr const char* roles[] = {
-    "",     "skull",   "maxilla",    "mandible", "upper-teeth", "lower-teeth",
-    "face", "segment", "transplant", "landmarks"};
+    "",     "skull",   "maxilla",    "mandible",  "upper-teeth", "lower-teeth",
+    "face", "segment", "transplant", "landmarks", "muscles"};
 const char* role_words(const std::string& role) {
   return role.empty() ? "leave out" : role.c_str();
 }
@@ -88,11 +88,11 @@ RoleRemark remark_on(const wish::Import& import) {
   if (count("skull") + count("maxilla") + count("mandible") == 0)
     return {"No surface is a bone yet: choose skull, maxilla or mandible for at least one of them",
             true};
-  for (const char* once : {"face", "landmarks"})
+  for (const std::string once : {"face", "landmarks", "muscles"})
     if (count(once) > 1)
       return {fmt::format("{} files are said to be {}, but there can be only one: choose another "
                           "role or \"leave out\" for the others",
-                          count(once), *once == 'f' ? "the face" : "landmarks"),
+                          count(once), once == "face" ? "the face" : once),
               true};
   for (const char* bone : {"mandible", "skull", "maxilla"})
     if (count(bone) > 1)

@@ -91,7 +91,7 @@ bool setting_slider(Pen& pen, const Setting& setting, std::map<std::string, doub
 
 void Panels::Drawing::motion() {
   Drafts& drafts = panels.drafts_;
-  heading(pen, "Motion", input.scene.motion_name);
+  heading(pen, "Motion", motion_title(input.scene));
 
   const std::string now = view.motion.spec;
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);

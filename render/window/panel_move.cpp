@@ -202,7 +202,7 @@ void Panels::Drawing::moving() {
               ? "The jaw stays: joints and muscles draw the skull to it until all lies still"
               : "Joints draw the condyles in; weight and muscles (their tone at rest, or what a "
                 "motion by muscles does at this moment) move the jaw until it hangs still or lies "
-                "on its teeth");
+                "on its teeth or other bone. An edit meanwhile ends it");
   end_panel();
 }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double step_budget_ms = 1000.0 / 60;
 constexpr double usual_high_mm = 58;  // accepted for the largest distance between incisal edges
 constexpr float bar_row = 16, curve_height = 22;  // at scale 1
-constexpr double deeper_mm = 0.01;  // overlap beyond the one at rest that is called penetration
+constexpr double deeper_mm = 0.02;  // overlap beyond the one at rest, more than contact lets be
 
 // A line with a dim name at the left and a value at the right.
 void reading(const Theme& theme, const std::string& name, const std::string& value,
@@ -99,7 +99,7 @@ void Panels::Drawing::opening() {
 
   const float top = ImGui::GetCursorPosY();
   const bool known = input.frame && has_landmarks(input.scene, {"lower_incisal_point"});
-  const std::string number = known ? fmt::format("{:.1f}", live) : "-";
+  const std::string number = known ? fmt::format("{:.1f}", std::abs(live) < 0.05 ? 0 : live) : "-";
   text(theme.large, palette().text, number);
   const float after = ImGui::GetCursorPosY();
   ImGui::SetCursorPos(

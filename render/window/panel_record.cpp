@@ -100,7 +100,10 @@ void Panels::Drawing::record() {
   heading(pen, "Picture", "PNG");
   if (word_button(pen, "save-picture", "The view", {share(2), high}, false))
     commands.push_back(Command::picture);
-  tooltip(pen, "Saves the 3-D picture in full quality. F12");
+  tooltip(
+      pen,
+      "Saves the 3-D picture in full quality, on the background that it has here: light or dark as "
+      "the panels (T). F12");
   ImGui::SameLine(0, gap);
   if (word_button(pen, "save-window", "The window", {share(2), high}, false))
     commands.push_back(Command::window_picture);
@@ -196,7 +199,7 @@ void Panels::Drawing::record() {
     pen.mark("record-progress");
     text(theme.small, palette().text, fitted(theme.small, input.recording_what, whole));
     if (word_button(pen, "record-cancel", "Stop recording", {whole, pen.px(32)}, false))
-      panels.wishes_.emplace_back(wish::Cancel{});
+      panels.wishes_.emplace_back(wish::StopRecording{});
     tooltip(pen, "The pictures made so far stay in the folder");
   } else {
     const std::size_t cameras = choice.wanted_cameras().size();
@@ -229,7 +232,7 @@ void Panels::Drawing::record() {
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
   text(theme.small, palette().text_dim,
        "Pictures are drawn in full quality beside the window, which stays usable. They show what "
-       "the view shows now, bones moved by hand included.");
+       "the view shows now, bones moved by hand and its light or dark background (T) included.");
   ImGui::PopTextWrapPos();
 }
 

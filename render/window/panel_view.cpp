@@ -91,12 +91,12 @@ void Panels::Drawing::view_signs() {
     if (ax > 0 && in_way(key_pane)) x = static_cast<float>(key_pane.x) - margin - size.x;
     const float y =
         centre.y + ay * (static_cast<float>(r.height) / 2 - margin - size.y / 2) - size.y / 2;
-    // A dark edge keeps them readable over bone and skin.
+    // An edge keeps them readable over bone and skin.
     const float d = std::max(1.0f, pen.px(1));
     for (const auto& [dx, dy] : {std::pair{-d, 0.f}, {d, 0.f}, {0.f, -d}, {0.f, d}})
-      list.AddText(theme.bold, theme.bold->FontSize, {x + dx, y + dy}, colour::rgb(0x0f1215, 200),
+      list.AddText(theme.bold, theme.bold->FontSize, {x + dx, y + dy}, palette().letter_edge,
                    words.c_str());
-    list.AddText(theme.bold, theme.bold->FontSize, {x, y}, colour::rgb(0xc4ccd4), words.c_str());
+    list.AddText(theme.bold, theme.bold->FontSize, {x, y}, palette().letter, words.c_str());
   };
   if (view.look.letters) {
     letter(right, 1, 0);
@@ -108,11 +108,11 @@ void Panels::Drawing::view_signs() {
   if (view.look.wipe) {
     const float x = static_cast<float>(r.x + r.width * view.look.wipe_at);
     const float top = static_cast<float>(r.y), bottom = top + static_cast<float>(r.height);
-    list.AddLine({x, top}, {x, bottom}, colour::rgb(0xf0e442), std::max(1.0f, pen.px(1.5f)));
+    list.AddLine({x, top}, {x, bottom}, palette().divider, std::max(1.0f, pen.px(1.5f)));
     const char* words = "kept  |  now";
     const float before = text_width(theme.small, "kept  ");
     list.AddText(theme.small, theme.small->FontSize, {x - before, top + pen.px(34)},
-                 colour::rgb(0xf0e442), words);
+                 palette().divider, words);
   }
   cube();
   pointed();
@@ -162,7 +162,7 @@ void Panels::Drawing::scale() {
   const float right = static_cast<float>(r.x + r.width) - pen.px(120);
   const float y = static_cast<float>(r.y + r.height) - pen.px(16);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  constexpr ImU32 edge = colour::rgb(0x0f1215, 200), tint = colour::rgb(0xc4ccd4);
+  const ImU32 edge = palette().letter_edge, tint = palette().letter;
   for (const auto& [ink, thick] : {std::pair{edge, pen.px(4)}, {tint, pen.px(1.6f)}}) {
     list.AddLine({right - wide, y}, {right, y}, ink, thick);
     for (const float x : {right - wide, right})

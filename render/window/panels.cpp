@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cctype>
@@ -39,6 +40,13 @@ std::string display_name(const std::string& part_name) {
     if (c == '_' || c == '-') c = ' ';
   if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   return name;
+}
+
+std::string motion_title(const WindowScene& scene) {
+  const std::string title = display_name(scene.motion_name);
+  const bool built_in = std::any_of(scene.motions.begin(), scene.motions.end(),
+                                    [&](const auto& name) { return display_name(name) == title; });
+  return built_in ? title : scene.motion_name;
 }
 
 Panels::Panels(float scale, bool light) : theme_(apply_theme(scale, light)) {}
@@ -317,7 +325,8 @@ void Panels::Drawing::top_bar() {
     const float used = text_width(theme.bold, name) + pen.px(14);
     ImGui::SameLine(0, pen.px(14));
     text(theme.regular, palette().text_dim,
-         fitted(theme.regular, input.scene.motion_name, room - used));
+         fitted(theme.regular, motion_title(input.scene), room - used));
+    pen.mark("motion-title", motion_title(input.scene));
   }
 
   ImGui::SetCursorPos({right - buttons, y});

@@ -94,6 +94,7 @@ class Panels {
   std::string trouble() const { return errors_.empty() ? std::string() : errors_.front(); }
   /// Shows a sentence at the foot of the window for a few seconds.
   void say(const std::string& sentence);
+  const std::string& said() const { return said_; }
 
   /// Loads fonts and sizes for another scale; the renderer's font texture must be made anew.
   void set_scale(float scale);

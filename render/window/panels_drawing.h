@@ -67,5 +67,7 @@ bool begin_dialog(Pen& pen, const char* name, float dialog_width, double width, 
 
 /// "upper_teeth" as "Upper teeth".
 std::string display_name(const std::string& part_name);
+/// The motion of a scene for people: "Chewing right"; words and files as they are.
+std::string motion_title(const WindowScene& scene);
 
 }  // namespace condyle

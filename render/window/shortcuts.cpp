@@ -74,7 +74,7 @@ constexpr std::array window_lines = {
     HelpLine{"Ctrl+Z, Ctrl+Y", "undo, redo: settings and moves"},
     HelpLine{"Ctrl+O", "open a patient or a motion"},
     HelpLine{"Tab", "panels on, off"},
-    HelpLine{"T", "dark or light panels"},
+    HelpLine{"T", "dark or light panels and view"},
     HelpLine{"Ctrl+=  -  0", "larger, smaller, usual panels"},
     HelpLine{"F12", "save the picture as PNG"},
     HelpLine{"Shift+F12", "save the whole window"},

@@ -29,6 +29,7 @@ struct Palette {
   std::uint32_t field, field_hovered, well, track, outline;
   std::uint32_t text, text_dim, text_faint, bright;  // bright: what the mouse is on
   std::uint32_t accent, accent_dark, good, warning, bad;
+  std::uint32_t letter, letter_edge, divider;  // on the view
 };
 inline constexpr Palette dark = {
     .window = rgb(0x0f1215),
@@ -50,6 +51,9 @@ inline constexpr Palette dark = {
     .good = rgb(0x2fbf93),
     .warning = rgb(0xe69f00),
     .bad = rgb(0xe8713a),
+    .letter = rgb(0xc4ccd4),
+    .letter_edge = rgb(0x0f1215, 200),
+    .divider = rgb(0xf0e442),
 };
 inline constexpr Palette light = {
     .window = rgb(0xccd3da),
@@ -71,6 +75,9 @@ inline constexpr Palette light = {
     .good = rgb(0x007a5a),
     .warning = rgb(0x946200),
     .bad = rgb(0xb8400a),
+    .letter = rgb(0x2b3640),
+    .letter_edge = rgb(0xf3f5f7, 215),
+    .divider = rgb(0x005b8f),
 };
 /// Chosen by apply_theme; one window is open at a time.
 inline const Palette* in_use = &dark;

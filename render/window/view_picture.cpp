@@ -78,7 +78,7 @@ std::optional<DrawnPicture> ViewPicture::draw(SceneRenderer& renderer, const Pic
                        .samples = std::max(1, target.drawn().samples()),
                        .moving = order.moving,
                        .number = order.number};
-  target.read(box, settings.transparent_background, false, picture.rgba);
+  target.read(box, settings.backdrop, false, picture.rgba);
   picture.ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return picture;

@@ -276,6 +276,7 @@ void Window::wake() { glfwPostEmptyEvent(); }
 
 const ViewState& Window::view() const { return state_->view; }
 const WindowScene& Window::scene() const { return state_->scene; }
+const std::string& Window::said() const { return state_->panels->said(); }
 std::string Window::trouble() const { return state_->panels->trouble(); }
 const Camera& Window::camera() const { return state_->camera; }
 void Window::set_camera(const Camera& camera) {

@@ -101,6 +101,8 @@ class Window {
   const WindowScene& scene() const;
   /// The sentence of the dialog that is open; empty without one.
   std::string trouble() const;
+  /// What is said at the foot now; empty for nothing.
+  const std::string& said() const;
   const Camera& camera() const;
   void set_camera(const Camera& camera);
   const PictureStatistics& pictures() const;

@@ -29,7 +29,7 @@ bool same(const Camera& a, const Camera& b) {
 }
 bool same(const PictureSettings& a, const PictureSettings& b) {
   return a.width == b.width && a.height == b.height && a.shadows == b.shadows &&
-         a.contacts == b.contacts && a.skin_opacity == b.skin_opacity &&
+         a.contacts == b.contacts && a.backdrop == b.backdrop && a.skin_opacity == b.skin_opacity &&
          a.part_opacity == b.part_opacity;
 }
 
@@ -61,6 +61,7 @@ PictureSettings Window::State::settings() const {
   wanted.height = std::max(1, static_cast<int>(std::lround(rect.height * density)));
   wanted.shadows = view.shadows;
   wanted.contacts = view.mark_contacts;
+  wanted.backdrop = arrangement.light ? Backdrop::light : Backdrop::dark;
   wanted.skin_opacity = view.skin_opacity;
   wanted.part_opacity = part_opacities(scene, view);
   if (order.parts) apply_look(wanted);

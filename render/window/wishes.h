@@ -41,10 +41,11 @@ struct ExcitationSetting {
   double high = 1, value = 0;
 };
 
-/// A surface, or a list of landmarks, that shall become part of a patient.
+/// A surface, a list of landmarks or a table of muscles that shall become part of a patient.
 struct FileRole {
   std::filesystem::path file;
-  std::string role;  // "mandible", "upper-teeth", ..., "landmarks", or empty: leave it out
+  std::string
+      role;  // "mandible", "upper-teeth", ..., "landmarks", "muscles", or empty: leave it out
 };
 
 /// What the person asks for once. Whoever runs the window does it.
@@ -74,7 +75,8 @@ struct Record {
   PictureSettings picture;
   std::shared_ptr<const FrameState> kept = {};  // left of the wipe, if there is one
 };
-/// Ends what runs beside and can be ended.
+struct StopRecording {};
+/// Ends what runs beside, other than a recording.
 struct Cancel {};
 /// Lets the dynamics take a free body from where the hand has it.
 struct LetGo {
@@ -87,7 +89,7 @@ struct SaveCase {
 struct UseLandmarks {};
 }  // namespace wish
 
-using Wish = std::variant<wish::Open, wish::Import, wish::Record, wish::Cancel, wish::LetGo,
-                          wish::SaveCase, wish::UseLandmarks>;
+using Wish = std::variant<wish::Open, wish::Import, wish::Record, wish::StopRecording, wish::Cancel,
+                          wish::LetGo, wish::SaveCase, wish::UseLandmarks>;
 
 }  // namespace condyle

@@ -38,6 +38,10 @@ Case import_meshes(const ImportRequest& request);
 /// Landmarks file (CSV `name,x_mm,y_mm,z_mm`, or 3D Slicer .mrk.json), names made canonical.
 Landmarks read_landmarks(const std::filesystem::path& file);
 
+/// Whether the case.json in a folder is of another program: JSON that does not call itself a case of
+/// this one. Without such a file, or where it cannot be read, false.
+bool has_foreign_case_file(const std::filesystem::path& folder);
+
 /// A case folder: case.json, one binary PLY per part, landmarks.csv. Files inside the folder only.
 /// Loading gives the bits that were saved. throws: InputError.
 Case load_case(const std::filesystem::path& folder);

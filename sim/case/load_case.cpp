@@ -136,12 +136,15 @@ MotionParameters load_motion(const JsonItem& item) {
   return parameters;
 }
 
+bool calls_itself_a_case(const nlohmann::json& root) {
+  return root.is_object() && root.contains("format") && root["format"] == case_format;
+}
+
 void check_format(const fs::path& file, const JsonItem& root) {
   const std::string how =
       "; make a case from surfaces with: condyle import meshes --mandible FILE --maxilla FILE ... "
       "--out FOLDER";
-  if (!root.value().is_object() || !root.value().contains("format") ||
-      root.value()["format"] != case_format)
+  if (!calls_itself_a_case(root.value()))
     throw InputError(
         file, "",
         std::string("is not a Condyle case (no \"format\": \"") + case_format + "\")" + how);
@@ -153,6 +156,18 @@ void check_format(const fs::path& file, const JsonItem& root) {
 }
 
 }  // namespace
+
+bool has_foreign_case_file(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(folder / "case.json", ignored)) return false;
+  try {
+    const std::string text = read_file(folder / "case.json", max_case_json_bytes);
+    const auto root = nlohmann::json::parse(text, nullptr, false);
+    return !root.is_discarded() && !calls_itself_a_case(root);
+  } catch (const InputError&) {
+    return false;
+  }
+}
 
 Case load_case(const fs::path& given) {
   const fs::path folder = given.filename() == "case.json" ? given.parent_path() / "." : given;

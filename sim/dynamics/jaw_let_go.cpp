@@ -13,7 +13,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double radius_mm = 50;  // of a jaw
+constexpr double radius_mm = 50;        // of a jaw
+constexpr std::size_t told_steps = 25;  // from one report of progress to the next
+constexpr double tone_share = 0.3;      // of the work, that the tone takes to find
 
 [[noreturn]] void torn_off(const Case& patient) {
   throw InputError(patient.name +
@@ -28,7 +30,8 @@ bool has_teeth(const Case& patient) {
 
 /// Excitations that hold the mandible still at a pose, as well as muscles can.
 std::vector<double> holding_tone(const Case& patient, const Pose& X_CM,
-                                 const MuscleJawSettings& settings, int threads) {
+                                 const MuscleJawSettings& settings, int threads,
+                                 const Progress& progress) {
   constexpr double found_after_s = 0.4, mean_of_s = 0.1;
   MuscleJawSettings there = settings;
   there.X_CM = X_CM;
@@ -40,6 +43,8 @@ std::vector<double> holding_tone(const Case& patient, const Pose& X_CM,
              counted = std::lround(mean_of_s / finding.hold_s);
   std::vector<double> tone(jaw.muscles().size(), 0.0);
   for (long hold = 0; hold < holds; ++hold) {
+    report(progress, "letting go",
+           tone_share * static_cast<double>(hold) / static_cast<double>(holds));
     const std::vector<double> now = finder.find(jaw, X_CM, X_CM);
     for (long k = 0; k < steps; ++k)
       if (!jaw.step(now, threads)) torn_off(patient);
@@ -63,11 +68,23 @@ double out_of_joint_mm(const Case& patient, const Pose& X_CM) {
   return farthest;
 }
 
+/// Where the jaw with what it carries gets to from a pose without lying in bone.
+ContactModel::Slide slid_out(const Case& patient, const ContactModel& contacts,
+                             const BodyPoses& from, int threads) {
+  ContactModel::Wanted wanted{.X_CM = from.X_CM, .X_BF = {}};
+  for (const std::size_t part : free_parts(patient.parts)) {
+    const bool carried = patient.parts[part].carrier == Body::mandible;
+    wanted.X_BF.push_back((carried ? from.X_CM : Pose{}).inverse() *
+                          pose_of(patient.parts, part, from));
+  }
+  return contacts.slide(from, wanted, nullptr, threads);
+}
+
 }  // namespace
 
-JawLetGo let_go_jaw(const Case& patient, const Pose& from, const JawLetGoSettings& settings,
-                    int threads) {
-  if (const double off = out_of_joint_mm(patient, from); off > settings.reach_mm)
+JawLetGo let_go_jaw(const Case& patient, const ContactModel& contacts, const BodyPoses& from,
+                    const JawLetGoSettings& settings, int threads, const Progress& progress) {
+  if (const double off = out_of_joint_mm(patient, from.X_CM); off > settings.reach_mm)
     throw InputError(
         fmt::format("{}: a condyle is {:.0f} mm out of its joint, farther than ligaments reach "
                     "({:.0f} mm); bring it nearer before letting it go",
@@ -79,8 +96,9 @@ JawLetGo let_go_jaw(const Case& patient, const Pose& from, const JawLetGoSetting
   MuscleJawSettings how = jaw_settings(muscles);
   std::vector<double> excitations;
   if (settings.excitations.empty())
-    excitations = holding_tone(patient, settings.X_CM_rest, how, threads);
-  how.X_CM = from;
+    excitations = holding_tone(patient, settings.X_CM_rest, how, threads, progress);
+  how.X_CM = from.X_CM;
+  how.bones = from;
   MuscleJaw jaw(patient, how, threads);
   if (excitations.empty())
     for (const Muscle& muscle : jaw.muscles()) {
@@ -88,9 +106,13 @@ JawLetGo let_go_jaw(const Case& patient, const Pose& from, const JawLetGoSetting
       excitations.push_back(told == settings.excitations.end() ? 0 : told->second);
     }
 
-  JawLetGo course{.step_s = jaw.step_s(), .X_CM = {from}, .rest = {}, .on_teeth = muscles.teeth};
+  JawLetGo course{
+      .step_s = jaw.step_s(), .X_CM = {from.X_CM}, .rest = {}, .on_teeth = muscles.teeth};
   double still_s = 0;
   while (course.rest.seconds < settings.rest.longest_s && still_s < settings.rest.still_for_s) {
+    if (course.X_CM.size() % told_steps == 1)
+      report(progress, "letting go",
+             tone_share + (1 - tone_share) * course.rest.seconds / settings.rest.longest_s);
     if (!jaw.step(excitations, threads)) torn_off(patient);
     course.rest.seconds += jaw.step_s();
     course.X_CM.push_back(jaw.pose());
@@ -100,10 +122,24 @@ JawLetGo let_go_jaw(const Case& patient, const Pose& from, const JawLetGoSetting
     still_s = still ? still_s + jaw.step_s() : 0;
   }
   course.rest.reached = still_s >= settings.rest.still_for_s;
-  for (const RigidContact& contact : jaw.world().contacts()) {
-    course.bite_N += contact.push_N;
-    course.rest.depth_mm = std::max(course.rest.depth_mm, -contact.gap_mm);
+  for (const RigidContact& contact : jaw.world().contacts())
+    if (contact.pair == jaw.jaw().bite) course.bite_N += contact.push_N;
+  BodyPoses end = from;
+  end.X_CM = jaw.pose();
+  for (std::size_t part = 0, place = 0; part < patient.parts.size(); ++part)
+    if (body_of(patient.parts[part].role) == Body::free && place < end.X_CF.size()) {
+      if (patient.parts[part].carrier == Body::mandible)
+        end.X_CF[place] = end.X_CM * from.X_CM.inverse() * end.X_CF[place];
+      ++place;
+    }
+  const auto depth = [](const ContactSet& set) { return set.max_penetration_mm(); };
+  course.rest.depth_mm = depth(contacts.find(end, nullptr, threads));
+  if (course.rest.depth_mm > jaw_rest_depth_mm) {
+    const ContactModel::Slide out = slid_out(patient, contacts, end, threads);
+    course.X_CM.push_back(out.at.X_CM);
+    course.rest.depth_mm = depth(out.contacts);
   }
+  course.rest.reached &= course.rest.depth_mm <= jaw_rest_depth_mm;
   return course;
 }
 

@@ -9,6 +9,10 @@
 
 namespace condyle {
 
+/// A jaw at rest is not deeper in bone, beyond any overlap that was there at rest: what contact
+/// allows, and rounding.
+constexpr double jaw_rest_depth_mm = 0.025;
+
 struct JawLetGoSettings {
   MuscleMotionSettings muscles = {};  // of these the law, and whether crowns or a flat bite meet
   // By muscle, held all the time, others 0; empty: the tone that holds the jaw at X_CM_rest.
@@ -22,17 +26,20 @@ struct JawLetGoSettings {
 struct JawLetGo {
   double step_s = 0;
   std::vector<Pose> X_CM;  // at each step, from where it was let go
-  Rest rest;               // its teeth need not touch
-  double bite_N = 0;       // between the jaws in the end
-  bool on_teeth = true;    // they meet in their teeth; else in a flat bite
+  Rest rest;             // its teeth need not touch; deeper than contact allows, it is not at rest
+  double bite_N = 0;     // between the jaws in the end
+  bool on_teeth = true;  // they meet in their teeth; else in a flat bite
 };
 
 /// Lets the mandible go from where a hand has it: its joints draw the condyles onto their paths,
-/// muscles and weight move it until it hangs still or lies on its teeth. The hyoid is fixed.
-/// Without teeth of their own both jaws meet in a flat bite. Same bits for any thread count.
+/// muscles and weight move it until it hangs still or lies on its teeth or on other bone. Free
+/// parts stay with what carries them. Where its joints would leave it in bone it slides out in the
+/// end. The hyoid is fixed. Without teeth of their own both jaws meet in a flat bite. Same bits for
+/// any thread count. Throwing from the progress gives up.
 /// throws: InputError when landmarks or muscles do not do, when a condyle is beyond the reach of
 /// its joint, and where the muscles tear the jaw off.
-JawLetGo let_go_jaw(const Case& patient, const Pose& from, const JawLetGoSettings& settings,
-                    int threads = 1);
+JawLetGo let_go_jaw(const Case& patient, const ContactModel& contacts, const BodyPoses& from,
+                    const JawLetGoSettings& settings, int threads = 1,
+                    const Progress& progress = {});
 
 }  // namespace condyle

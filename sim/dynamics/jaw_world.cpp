@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 constexpr double bone_kg_mm3 = 1.9e-6;
 constexpr double box_share = 0.12;  // of its box that a mandible fills
 constexpr double worn_band_mm = 2;
+constexpr double around_overlap_mm = 10;
 constexpr double least_forward_mm = -0.5, guide_step_mm = 0.5;
 constexpr double farthest_turned_mm = 16;  // the jaw opens no farther with the condyles
 
@@ -65,6 +66,44 @@ double rest_depth(const SlideBody& a, const SlideBody& b) {
       if (here.known) depth = std::max(depth, -here.distance_mm);
     }
   return depth;
+}
+
+using Surfaces = std::vector<std::shared_ptr<const SlideBody>>;
+
+/// Bone and crowns of the cranium and of the mandible beside those that bite, as the poses have the
+/// free parts, in the coordinates of what carries them.
+std::array<Surfaces, 2> make_bones(const Case& patient, const BodyPoses& at, int threads) {
+  constexpr double spacing_mm = 0.5, sample_mm = 0.6, reach_mm = 20;
+  const bool bites = patient.find(Role::upper_teeth) && patient.find(Role::lower_teeth);
+  std::array<std::vector<TriMesh>, 2> meshes;
+  std::array<Box, 2> boxes;
+  for (std::size_t i = 0; i < patient.parts.size(); ++i) {
+    const Part& part = patient.parts[i];
+    if (!collides(part.role) || part.mesh.empty() || (bites && is_teeth(part.role))) continue;
+    const bool is_free = body_of(part.role) == Body::free;
+    const bool moves = (is_free ? part.carrier : body_of(part.role)) == Body::mandible;
+    TriMesh mesh = part.mesh;
+    if (is_free) {
+      const Pose X = (moves ? at.X_CM : Pose{}).inverse() * pose_of(patient.parts, i, at);
+      for (Vector3d& v : mesh.vertices) v = X * v;
+    }
+    boxes[moves].add(bounding_box(mesh));
+    meshes[moves].push_back(std::move(mesh));
+  }
+  std::array<Surfaces, 2> made;
+  for (std::size_t side = 0; side < 2; ++side)
+    for (const TriMesh& mesh : meshes[side]) {
+      SlideBodySettings how;
+      how.field.spacing_mm = spacing_mm;
+      how.samples.spacing_mm = sample_mm;
+      how.cache = field_cache_folder();
+      Box& region = how.field.region.emplace(boxes[1 - side]);
+      if (region.empty()) continue;
+      region.low.array() -= reach_mm;
+      region.high.array() += reach_mm;
+      made[side].push_back(std::make_shared<const SlideBody>(make_slide_body(mesh, how, threads)));
+    }
+  return made;
 }
 
 /// Drop of the condyles by their forward travel; on a fossa as the jaw turns when it opens.
@@ -124,9 +163,14 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
     mandible.surfaces = {surface(lower)};
     if (settings.worn_crowns) jaw.worn_mm = rest_depth(*cranium.surfaces[0], *mandible.surfaces[0]);
   }
+  Surfaces skull;
+  if (settings.bones) {
+    auto [fixed_bones, moving_bones] = make_bones(patient, *settings.bones, threads);
+    skull = std::move(fixed_bones);
+    mandible.surfaces.insert(mandible.surfaces.end(), moving_bones.begin(), moving_bones.end());
+  }
   const int fixed = jaw.world.add_body(cranium);
 
-  mandible.X_WB = settings.X_CM;
   mandible.mass = jaw_mass(patient);
   const double per_step = settings.lost_in_step / world_settings.step_s;
   mandible.drag_N_s_mm = settings.drag_kg_s.value_or(per_step * mandible.mass.mass_kg) / mm_per_m;
@@ -135,8 +179,15 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
   mandible.drag_at = settings.drag_at;
   jaw.mandible = jaw.world.add_body(mandible);
   if (settings.teeth)
-    jaw.world.add_pair(
+    jaw.bite = jaw.world.add_pair(
         {.a = fixed, .b = jaw.mandible, .friction = settings.friction, .gap_mm = -jaw.worn_mm});
+  if (!skull.empty()) {
+    const int bones = jaw.world.add_body({.surfaces = std::move(skull)});
+    jaw.bones = jaw.world.add_pair({.a = bones, .b = jaw.mandible, .friction = 0});
+    // At rest, where they are so far. Bone that crowns are drawn on is held by the bite.
+    jaw.world.allow_overlap(*jaw.bones, around_overlap_mm);
+  }
+  jaw.world.set_pose(jaw.mandible, settings.X_CM);
 
   const double first_mm = settings.stops ? 0 : least_forward_mm;
   for (std::size_t side = 0; side < 2; ++side) {

@@ -9,6 +9,7 @@
 #include "engine/rigid/rigid_world.h"
 #include "sim/case/case.h"
 #include "sim/dynamics/rest.h"
+#include "sim/frame/body_poses.h"
 
 namespace condyle {
 
@@ -27,6 +28,9 @@ struct JawWorldSettings {
   bool worn_crowns = false;
   bool stops = false;  // condyles go neither behind their seats nor apart sideways
   bool fossa = false;  // condyles keep their disc's gap to the fossa, where there is one
+  // The mandible meets the rest of the skull, too, away from where they overlap at rest. Free parts
+  // are where they are here, and go along with what carries them.
+  std::optional<BodyPoses> bones = {};
 };
 
 /// The mandible as a free body: lower on upper teeth, its condyles led on their paths.
@@ -34,10 +38,11 @@ struct JawWorld {
   RigidWorld world;
   int mandible = 0;
   int bite_force = 0;
-  double worn_mm = 0;                       // off the crowns
-  std::array<Eigen::Vector3d, 2> condyles;  // left, right, seated
-  std::array<Pchip, 2> drop_mm;             // of each condyle by its forward travel
-  std::string guide;                        // where these come from, for people
+  std::optional<int> bite = {}, bones = {};  // pairs of the world
+  double worn_mm = 0;                        // off the crowns
+  std::array<Eigen::Vector3d, 2> condyles;   // left, right, seated
+  std::array<Pchip, 2> drop_mm;              // of each condyle by its forward travel
+  std::string guide;                         // where these come from, for people
 };
 
 /// Condyles follow the guide of the case's mechanics; else their fossa, where that is asked for;

@@ -100,7 +100,8 @@ Deepest deepest_of(const Case& patient, const std::vector<PairParts>& pairs,
 }  // namespace
 
 LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
-             const LetGoSettings& settings, int threads) {
+             const LetGoSettings& settings, int threads, const Progress& progress) {
+  report(progress, "letting go", 0);
   const std::vector<std::size_t> free = free_parts(patient.parts);
   std::vector<std::size_t> parts = {part};
   parts.insert(parts.end(), settings.yielding.begin(), settings.yielding.end());
@@ -174,7 +175,7 @@ LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
   }
 
   LetGo out;
-  out.rest = run_to_rest(world, bodies, settings.rest, threads);
+  out.rest = run_to_rest(world, bodies, settings.rest, threads, progress);
   // Farther away bone is not looked at.
   for (std::size_t m = 0; m < parts.size(); ++m) {
     const Vector3d& center = world.mass(bodies[m]).center;

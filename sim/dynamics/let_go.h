@@ -39,9 +39,10 @@ struct LetGo {
 /// stays where it is. The hand that pushes has inertia and yields slowly, as does the soft tissue
 /// about what is pushed along, so that they settle without a bump. Same bits for any thread count.
 /// What is more than 0.1 mm deep in bone in the end, by the exact surfaces, is not at rest.
+/// Throwing from the progress gives up.
 /// throws: InputError when a part is not free, starts more than 1 mm deep in bone, nothing lies
 /// within reach, or the push is zero or not finite.
 LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
-             const LetGoSettings& settings, int threads = 1);
+             const LetGoSettings& settings, int threads = 1, const Progress& progress = {});
 
 }  // namespace condyle

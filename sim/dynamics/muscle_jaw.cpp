@@ -36,6 +36,7 @@ JawWorldSettings world_settings(const Case& patient, const MuscleJawSettings& se
   world.teeth = settings.teeth;
   world.worn_crowns = world.stops = true;
   world.fossa = settings.fossa;
+  world.bones = settings.bones;
   const bool known = patient.mechanics && patient.mechanics->mandible.drag_kg_s > 0;
   world.drag_kg_s = known ? patient.mechanics->mandible.drag_kg_s : usual_drag_kg_s;
   world.turning_drag_kg_mm2_s =

@@ -27,6 +27,7 @@ struct MuscleJawSettings {
   bool teeth = true;      // false: the bite is flat, at the back teeth as they meet at rest
   double friction = 0.1;  // of wet teeth
   std::optional<Eigen::Vector3d> damped_at = {};  // of the mandible, in place of its frame's origin
+  std::optional<BodyPoses> bones = {};            // as of a JawWorld
   bool fossa = true;  // condyles on the fossa, where there is one and no measured guide
   std::vector<std::string> without = {};  // names of muscles that are taken out
 };
@@ -54,6 +55,7 @@ class MuscleJaw {
   /// What leads the condyles, for people.
   const std::string& guide() const { return jaw_.guide; }
   double bolus_push_N() const { return bolus_push_N_; }
+  const JawWorld& jaw() const { return jaw_; }
   const RigidWorld& world() const { return jaw_.world; }
 
   /// What a muscle would do at full activation, and does without any, as things stand now: on the

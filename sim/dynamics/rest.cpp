@@ -5,11 +5,15 @@
 namespace condyle {
 
 Rest run_to_rest(RigidWorld& world, std::span<const int> bodies, const RestSettings& settings,
-                 int threads) {
+                 int threads, const Progress& progress) {
   constexpr double radius_mm = 50;  // of a jaw; smaller pieces are stiller than asked for
   Rest rest;
+  constexpr int told_steps = 25;  // from one report of progress to the next
+  int steps = 0;
   double still_s = 0;
   while (rest.seconds < settings.longest_s && still_s < settings.still_for_s) {
+    if (steps++ % told_steps == 0)
+      report(progress, "letting go", rest.seconds / settings.longest_s);
     const auto step = world.step(threads);
     if (!step.taken) return rest;
     rest.seconds += world.settings().step_s;

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "engine/core/progress.h"
 #include "engine/rigid/rigid_world.h"
 
 namespace condyle {
@@ -18,9 +19,9 @@ struct Rest {
   double depth_mm = 0;  // of the contacts at rest
 };
 
-/// Steps until bodies lie still on what they touch.
+/// Steps until bodies lie still on what they touch. Throwing from the progress gives up.
 Rest run_to_rest(RigidWorld& world, std::span<const int> bodies, const RestSettings& settings = {},
-                 int threads = 1);
+                 int threads = 1, const Progress& progress = {});
 Rest run_to_rest(RigidWorld& world, int body, const RestSettings& settings = {}, int threads = 1);
 
 }  // namespace condyle

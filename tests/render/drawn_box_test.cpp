@@ -101,7 +101,7 @@ TEST_F(DrawnBoxes, AreEmptyWithNothingToDraw) {
   settings.height = 48;
   EXPECT_TRUE(renderer.drawn_box(front_camera(), settings).empty());
   const Image image = renderer.picture(front_camera(), settings);
-  const auto background = Background().picture(64, 48);
+  const auto background = Background().picture(64, 48, Backdrop::dark);
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x)
       EXPECT_EQ(pixel(image, x, y).g, background[4 * ((47 - y) * 64 + x) + 1]);

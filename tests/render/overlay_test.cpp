@@ -250,6 +250,29 @@ TEST_F(Overlays, LinesHaveTheirWidthWhereverTheyAreAndShowThroughFaintly) {
   EXPECT_NEAR(far_rows, 6, 1);
 }
 
+TEST_F(Overlays, BrightLinesHaveADarkBorderOnALightBackground) {
+  const std::vector<Part> parts = {skull_ball()};
+  SceneRenderer renderer(parts);
+  LineSet lines{.color = {0.94f, 0.89f, 0.26f}, .width_px = 4 * 1080 / 200.0f};
+  lines.ends = {{-45, 0, 40}, {45, 0, 40}};
+  renderer.set_lines("test", lines);
+  auto settings = mask_settings();
+  const auto darkest = [&](Backdrop backdrop) {
+    settings.backdrop = backdrop;
+    const Image image = renderer.picture(front_camera(), settings);
+    int yellow = 0, least = 255;
+    for (int y = 10; y < 30; ++y) {
+      const Pixel p = pixel(image, 100, y);
+      yellow += p.r > 220 && p.b < 90;
+      least = std::min(least, p.g);
+    }
+    EXPECT_NEAR(yellow, 4, 1);
+    return least;
+  };
+  EXPECT_LT(darkest(Backdrop::light), 90);
+  EXPECT_GT(darkest(Backdrop::dark), 45) << "no darker than the background";
+}
+
 TEST_F(Overlays, PatchesColourOnlyWhereTheValueIsSmall) {
   const std::vector<Part> parts = {skull_ball()};
   SceneRenderer renderer(parts);

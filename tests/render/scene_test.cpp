@@ -47,6 +47,27 @@ TEST_F(Scene, BoneIsWarmAndLightAndTheBackgroundAQuietGrey) {
   }
 }
 
+TEST_F(Scene, TheBackgroundAloneIsLightWhereThatIsAskedFor) {
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30))};
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = settings.height = 200;
+  const Image dark = renderer.picture(front_camera(), settings);
+  settings.backdrop = Backdrop::light;
+  const Image light = renderer.picture(front_camera(), settings);
+  for (const auto& [x, y] :
+       {std::pair{2, 2}, {197, 2}, {2, 197}, {197, 197}, {100, 5}, {100, 30}}) {
+    const Pixel p = pixel(light, x, y);
+    EXPECT_EQ(p.a, 255);
+    EXPECT_GT(std::min({p.r, p.g, p.b}), 180);
+    EXPECT_LT(std::max({p.r, p.g, p.b}) - std::min({p.r, p.g, p.b}), 20);
+  }
+  for (int y = 60; y < 140; ++y)
+    for (int x = 60; x < 140; ++x) ASSERT_EQ(pixel(light, x, y).r, pixel(dark, x, y).r);
+  settings.backdrop = Backdrop::dark;
+  EXPECT_TRUE(test::same_bytes(dark, renderer.picture(front_camera(), settings)));
+}
+
 TEST_F(Scene, TheSamePictureTwiceHasTheSameBytes) {
   const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30)),
                                    make_part("face", Role::face, ball({0, -5, 0}, 33))};

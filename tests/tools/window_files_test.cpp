@@ -173,6 +173,20 @@ TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
   EXPECT_FALSE(state()["items"].contains("import-role:4"));
   click("import-close");
   EXPECT_TRUE(wait_for_item("import", false));
+  // So is one with a case.json that another program wrote; a table of muscles is known as such.
+  write_text(folder_ / "case.json", R"({"name": "somebody", "parts": 3})");
+  write_text(folder_ / "face_muscles.csv",
+             "name,origin_body,insertion_body,ox_mm,oy_mm,oz_mm,ix_mm,iy_mm,iz_mm,max_force_N\n"
+             "left_masseter,skull,mandible,40,-40,0,40,-30,-40,80\n"
+             "right_masseter,skull,mandible,-40,-40,0,-40,-30,-40,80\n");
+  EXPECT_TRUE(drop_files("Condyle", {folder_.path()}));
+  ASSERT_TRUE(wait_for_item("import-role:4")) << state().value("trouble", "");
+  see("roles-with-muscles");
+  click("import-go");
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return idle(s) && s["notes"].dump().find("2 from face_muscles.csv") != std::string::npos;
+  })) << state()["notes"].dump()
+      << state().value("trouble", "");
   // Notes have the signs of units that people read.
   const std::string notes = state()["notes"].dump();
   EXPECT_NE(notes.find("rotation 28.1\u00b0"), std::string::npos) << notes;

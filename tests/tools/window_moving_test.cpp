@@ -61,6 +61,49 @@ TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
+TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
+  start({"--motion", "open 20 over 0.3; close"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  EXPECT_TRUE(press("m"));
+  write_into("shift:S", "-30");
+  ASSERT_TRUE(wait_until([](const Json& s) { return opening_mm(s) > 29.9; }));
+  const auto computes = [](const Json& s) { return s["busy_with"] == "Letting go"; };
+  const auto told = [](const Json& s) {
+    return s["busy_with"] == "" &&
+           s.value("said", "").find("moved before it had come to rest") != std::string::npos;
+  };
+  // A number that is entered.
+  click("shift:S");
+  ASSERT_TRUE(wait_for_item("writing"));
+  EXPECT_TRUE(press("Escape"));
+  click("let-go");
+  ASSERT_TRUE(wait_until(computes));
+  write_into("shift:S", "-12");
+  EXPECT_TRUE(wait_until(told)) << state().value("said", "nothing was said");
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  EXPECT_NEAR(opening_mm(state()), 12, 0.1) << "where the number has it";
+  see("entered-meanwhile");
+
+  // What is taken back.
+  click("let-go");
+  ASSERT_TRUE(wait_until(computes));
+  EXPECT_TRUE(press("ctrl+z"));
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["busy_with"] == ""; }));
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  EXPECT_NEAR(opening_mm(state()), 30, 0.1) << "as it was before the number";
+
+  // And what is cancelled.
+  click("let-go");
+  click("cancel");
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return s["busy_with"] == "" &&
+           s.value("said", "").find("stays where it was taken hold of") != std::string::npos;
+  }));
+  EXPECT_NEAR(opening_mm(state()), 30, 0.1);
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
 TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsLetGo) {
   start({"--motion", "open 20 over 0.3; hold 0.2"});
   ASSERT_TRUE(wait_until(idle, 120));

@@ -184,8 +184,15 @@ TEST_F(WindowSession, ThemeScaleSizesAndTabsAreKeptBetweenRunsAndTheCommandLineW
   start({patient, "--motion", "rest"});
   ASSERT_TRUE(wait_until(idle));
   EXPECT_LT(brightness(), 80);
+  const auto corner_of_view = [&] {
+    const Picture screen = settled_picture();
+    const Region view = view_region();
+    return int{screen.at((view.x + 6) / screen.width, (view.y + 6) / screen.height)[1]};
+  };
+  EXPECT_LT(corner_of_view(), 80);
   EXPECT_FALSE(fs::exists(kept)) << "nothing was changed";
   EXPECT_TRUE(press("t"));
+  EXPECT_GT(corner_of_view(), 170) << "the view goes with its panels";
   const auto wide = [](const Json& s, const char* panel) { return double(s["items"][panel][2]); };
   const auto edge = rect("edge:left");
   drag(edge[0] + 2, edge[1] + 90, edge[0] + 62, edge[1] + 90);

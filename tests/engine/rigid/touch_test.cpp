@@ -217,6 +217,26 @@ TEST(Touch, OverlapThatIsAllowedIsLetBeButNoDeeper) {
   EXPECT_NEAR(total_push(world), world.mass(block).mass_kg * 9.81, 1e-6);
 }
 
+TEST(Touch, AroundAllowedOverlapNothingIsFeltFartherOffAllIs) {
+  for (const double around_mm : {3.0, 0.0}) {
+    RigidWorld world;
+    const int floor = world.add_body(test::fixed(plate(24)));
+    RigidBody two = test::solid(test::box({-20, -2, -0.4}, {-16, 2, 4}), test::at(0, 0, 0));
+    two.surfaces.push_back(
+        test::solid(test::box({16, -2, 0.5}, {20, 2, 4}), test::at(0, 0, 0)).surfaces[0]);
+    const int block = world.add_body(two);
+    world.allow_overlap(world.add_pair({.a = floor, .b = block, .friction = 0}), around_mm);
+    for (int k = 0; k < 20; ++k) ASSERT_TRUE(world.step().taken);
+    const double left = (world.pose(block) * Eigen::Vector3d(-18, 0, -0.4)).z(),
+                 right = (world.pose(block) * Eigen::Vector3d(18, 0, 0.5)).z();
+    if (around_mm > 0)
+      EXPECT_LT(left, -0.6) << "it sinks in where it overlapped";
+    else
+      EXPECT_NEAR(left, -0.4, 0.03);
+    EXPECT_GT(right, -0.03) << around_mm;
+  }
+}
+
 TEST(Touch, AGapIsKept) {
   RigidWorld world;
   const int floor = world.add_body(test::fixed(plate()));

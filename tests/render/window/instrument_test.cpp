@@ -255,6 +255,16 @@ TEST_P(Instrument, SlidersShapeTheMotionWhenTheyAreLetGo) {
   EXPECT_EQ(stage.view.motion.spec, "posselt");
 }
 
+TEST_P(Instrument, TheMotionIsNamedAsInItsList) {
+  for (const auto& [name, words] : {std::pair{"chewing-left", "Chewing left"},
+                                    {"chewing left", "Chewing left"},
+                                    {"open-wide.csv", "open-wide.csv"}}) {
+    stage.scene.motion_name = name;
+    stage.rest();
+    EXPECT_EQ(stage.item("motion-title").words, words);
+  }
+}
+
 TEST_P(Instrument, ALongMotionInWordsIsCutBesideItsHeading) {
   stage.scene.motion_name = "open 50; close; left 8; right 8; protrude 6; retrude 1; rest; hold 2";
   stage.click("tab:Motion");
@@ -332,7 +342,7 @@ TEST_P(Instrument, ARecordingIsAskedForAsItIsSet) {
   stage.click("record-cancel");
   const auto stopped = stage.panels->take_wishes();
   ASSERT_EQ(stopped.size(), 1u);
-  EXPECT_TRUE(std::holds_alternative<wish::Cancel>(stopped.front()));
+  EXPECT_TRUE(std::holds_alternative<wish::StopRecording>(stopped.front()));
 }
 
 TEST_P(Instrument, LandmarksAreChosenDeletedAndSaved) {

@@ -31,6 +31,15 @@ TEST(Theme, WordsCanBeReadInBothThemes) {
     for (const auto ink : {p->text_dim, p->good, p->warning, p->bad, p->accent})
       EXPECT_GE(contrast(ink, p->panel), 4.5);
   }
+  // On the view: its backgrounds' corners and middles.
+  for (const auto ground : {colour::rgb(0x16171a), colour::rgb(0x4b4e53)}) {
+    EXPECT_GE(contrast(colour::dark.letter, ground), 4.5);
+    EXPECT_GE(contrast(colour::dark.divider, ground), 4.5);
+  }
+  for (const auto ground : {colour::rgb(0xbdc3c9), colour::rgb(0xe7e9ec)}) {
+    EXPECT_GE(contrast(colour::light.letter, ground), 4.5);
+    EXPECT_GE(contrast(colour::light.divider, ground), 3.5);
+  }
 }
 
 TEST(Theme, PanelsTurnLightAndDark) {

@@ -27,9 +27,13 @@ Pose in_hand(const Case& of, double open_deg, double aside_deg, const Vector3d& 
   return X;
 }
 
+const ContactModel& bones() {
+  static const ContactModel contacts(builtin(), {});
+  return contacts;
+}
+
 Pose rest_position(const Case& of) {
-  static const ContactModel contacts(of, {});
-  const Motion rest = make_motion("rest", of, contacts);
+  const Motion rest = make_motion("rest", of, bones());
   return rest.wanted(rest.duration_s);
 }
 
@@ -40,7 +44,7 @@ TEST(JawLetGo, FallsBackToItsRestPositionFromWhereverAHandHadIt) {
   for (const Pose& from :
        {Pose{}, in_hand(builtin(), 30, 0, {0, 0, 0}), in_hand(builtin(), 20, 0, {0, -10, -5}),
         in_hand(builtin(), 0, 0, {0, 0, -20}), in_hand(builtin(), 10, 8, {8, 0, -5})}) {
-    const JawLetGo course = let_go_jaw(builtin(), from, {.X_CM_rest = X_rest}, 2);
+    const JawLetGo course = let_go_jaw(builtin(), bones(), from, {.X_CM_rest = X_rest}, 2);
     ASSERT_TRUE(course.rest.reached);
     EXPECT_EQ(course.X_CM.front().t, from.t);
     EXPECT_GT(
@@ -63,7 +67,7 @@ TEST(JawLetGo, ClosersThatAreExcitedSetItOnItsTeethAndNoneLetItHang) {
     std::map<std::string, double> excitations;
     for (const char* name : {"lat", "rat", "lsm", "rsm", "ldm", "rdm", "lmp", "rmp"})
       excitations[name] = excitation;
-    return let_go_jaw(builtin(), from, {.excitations = excitations}, 2);
+    return let_go_jaw(builtin(), bones(), from, {.excitations = excitations}, 2);
   };
   const JawLetGo bites = with(0.05), hangs = with(0);
   ASSERT_TRUE(bites.rest.reached && hangs.rest.reached);
@@ -77,7 +81,8 @@ TEST(JawLetGo, ClosersThatAreExcitedSetItOnItsTeethAndNoneLetItHang) {
 
 TEST(JawLetGo, HasTheSameBitsForAnyThreadCount) {
   const Pose from = in_hand(builtin(), 12, 5, {3, 0, -4});
-  const JawLetGo one = let_go_jaw(builtin(), from, {}, 1), two = let_go_jaw(builtin(), from, {}, 2);
+  const JawLetGo one = let_go_jaw(builtin(), bones(), from, {}, 1),
+                 two = let_go_jaw(builtin(), bones(), from, {}, 2);
   ASSERT_EQ(one.X_CM.size(), two.X_CM.size());
   ASSERT_GT(one.X_CM.size(), 100u);
   for (std::size_t k = 0; k < one.X_CM.size(); ++k) {
@@ -90,11 +95,52 @@ TEST(JawLetGo, RefusesACondyleThatNoLigamentWouldHold) {
   for (const Pose& from :
        {in_hand(builtin(), 10, 0, {60, -80, -40}), in_hand(builtin(), 10, 120, {0, 0, 0})})
     try {
-      let_go_jaw(builtin(), from, {}, 2);
+      let_go_jaw(builtin(), bones(), from, {}, 2);
       ADD_FAILURE() << "it flew";
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("out of its joint"), std::string::npos);
     }
+}
+
+/// What it is deepest in on its way, and where it ends.
+struct Depths {
+  double way_mm = 0, end_mm = 0;
+};
+Depths depths_of(const JawLetGo& course, const ContactModel& contacts) {
+  Depths depths;
+  for (std::size_t k = 0; k < course.X_CM.size(); k += 10)
+    depths.way_mm =
+        std::max(depths.way_mm, contacts.find(course.X_CM[k], nullptr, 2).max_penetration_mm());
+  depths.end_mm = contacts.find(course.X_CM.back(), nullptr, 2).max_penetration_mm();
+  return depths;
+}
+
+TEST(JawLetGo, TheRestOfTheSkullIsInItsWay) {
+  // Far aside, where a hand got it to beside the skull: the joints would draw it through bone.
+  const Pose aside = in_hand(builtin(), 10, 8, {12, 0, -5});
+  const Pose from = bones().slide({}, {.X_CM = aside}, nullptr, 2).at.X_CM;
+  ASSERT_LT(bones().find(from, nullptr, 2).max_penetration_mm(), 0.03);
+  const JawLetGo course = let_go_jaw(builtin(), bones(), from, {.X_CM_rest = Pose{}}, 2);
+  const Depths depths = depths_of(course, bones());
+  EXPECT_LT(depths.way_mm, 0.2);
+  EXPECT_LT(depths.end_mm, jaw_rest_depth_mm);
+  EXPECT_TRUE(course.rest.reached);
+}
+
+TEST(JawLetGo, AMeasuredJawThatBitesEndsInNoBone) {
+  const auto ubc = test::case_ubc(test::Driven::by_muscles);
+  if (!ubc) GTEST_SKIP() << "no real anatomy here";
+  const ContactModel contacts(*ubc, {});
+  std::map<std::string, double> closers;
+  for (const char* name : {"lat", "rat", "lsm", "rsm", "ldm", "rdm", "lmp", "rmp"})
+    closers[name] = 0.05;
+  for (const Vector3d& shift : {Vector3d(0, 0, -20), Vector3d(-6, 0, -6)}) {
+    const Pose from = contacts.slide({}, {.X_CM = in_hand(*ubc, 0, 0, shift)}, nullptr, 2).at.X_CM;
+    const JawLetGo course = let_go_jaw(*ubc, contacts, from, {.excitations = closers}, 2);
+    EXPECT_TRUE(course.rest.reached);
+    EXPECT_GT(course.bite_N, 10);
+    EXPECT_LT(depths_of(course, contacts).end_mm, jaw_rest_depth_mm);
+  }
 }
 
 TEST(JawLetGo, MeasuredPatientsHangToo) {
@@ -102,7 +148,7 @@ TEST(JawLetGo, MeasuredPatientsHangToo) {
   if (!ubc || !badin) GTEST_SKIP() << "no real anatomy here";
   for (const Case* of : {&*ubc, &*badin}) {
     SCOPED_TRACE(of->name);
-    const JawLetGo course = let_go_jaw(*of, in_hand(*of, 15, 4, {2, -3, -3}),
+    const JawLetGo course = let_go_jaw(*of, ContactModel(*of, {}), in_hand(*of, 15, 4, {2, -3, -3}),
                                        {.X_CM_rest = in_hand(*of, 1.5, 0, {0, 0, 0})}, 2);
     EXPECT_TRUE(course.rest.reached);
     EXPECT_LT(course.rest.depth_mm, 0.1);
