@@ -33,6 +33,8 @@ CONDYLE_INLINE Quarter sums_of(const Quarter& a, const Quarter& b, const Quarter
 }
 
 namespace any_processor {
+constexpr const char* name = "any_processor";
+constexpr bool fused = false;
 constexpr int W = 4, tile_vectors = tile_rows / W;
 typedef float Vector __attribute__((vector_size(W * sizeof(float))));
 template <int N>
@@ -51,6 +53,8 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
 #pragma GCC optimize("fp-contract=fast")
 #pragma GCC target("avx2,fma")
 namespace avx2 {
+constexpr const char* name = "avx2";
+constexpr bool fused = true;
 constexpr int W = 8, tile_vectors = tile_rows / W;
 typedef __m256 Vector;
 template <int N>
@@ -69,6 +73,8 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
 }  // namespace avx2
 #pragma GCC target("avx512f,avx512bw,avx512vl")
 namespace avx512 {
+constexpr const char* name = "avx512";
+constexpr bool fused = true;
 constexpr int W = 16, tile_vectors = tile_rows / W;
 typedef __m512 Vector;
 /// Both halves of two vectors, added up.
@@ -108,16 +114,25 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][1], float* to) {
 
 }  // namespace
 
-const FloatKernels& float_kernels() {
+std::span<const FloatKernels* const> runnable_float_kernels() {
+  static const std::vector<const FloatKernels*> runnable = [] {
+    std::vector<const FloatKernels*> all;
 #ifdef __x86_64__
-  static const FloatKernels& best =
-      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") ? avx512::kernels
-      : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")        ? avx2::kernels
-                                                                        : any_processor::kernels;
-  return best;
-#else
-  return any_processor::kernels;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+      if (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+        all.push_back(&avx512::kernels);
+      all.push_back(&avx2::kernels);
+    }
 #endif
+    all.push_back(&any_processor::kernels);
+    return all;
+  }();
+  return runnable;
+}
+
+const FloatKernels& float_kernels() {
+  static const FloatKernels& best = *runnable_float_kernels().front();
+  return best;
 }
 
 }  // namespace condyle

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 namespace condyle {
 
@@ -37,6 +38,8 @@ struct FrontKernels {
 /// order that does not depend on it, so that every processor that can fuse products and sums gives
 /// the same bits. Up to 15 numbers after the last column of a matrix are read.
 struct FloatKernels {
+  const char* name;
+  bool fused;  // products and sums are rounded once
   /// C -= A B^T: C is rows x columns (stride ldc), A rows x depth (lda), B columns x depth (ldb).
   /// With `lower`, entries above the diagonal of C may hold anything afterwards. With `anew`, C is
   /// -A B^T, whatever it held.
@@ -62,7 +65,9 @@ struct FloatKernels {
 };
 constexpr int largest_block = 18;  // of invert_diagonal and fronts
 
-/// Those for this processor.
+/// All that this processor can run, the widest vectors first.
+std::span<const FloatKernels* const> runnable_float_kernels();
+/// The fastest of them.
 const FloatKernels& float_kernels();
 inline const FrontKernels& front_kernels(int block) {
   return float_kernels().fronts[block / 3 - 1];

@@ -143,19 +143,24 @@ TEST(EliminationOrder, HalvesTouchOnlyThroughTheLastPart) {
   }
 }
 
-/// a b + c, rounded once where the processor can.
-float fused(float a, float b, float c) {
-#ifdef __x86_64__
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return a * b + c;
-  return std::fma(a, b, c);
-#else
-  return a * b + c;
-#endif
-}
+/// Not only those that this processor would choose.
+class EachKernels : public testing::TestWithParam<const FloatKernels*> {
+ protected:
+  const FloatKernels& kernels = *GetParam();
+  const FrontKernels& of_fronts(int block) const { return kernels.fronts[block / 3 - 1]; }
+  /// a b + c, rounded as the kernels do.
+  float fused(float a, float b, float c) const {
+    return kernels.fused ? std::fma(a, b, c) : a * b + c;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(FloatKernels, EachKernels,
+                         testing::ValuesIn(runnable_float_kernels().begin(),
+                                           runnable_float_kernels().end()),
+                         [](const auto& row) { return row.param->name; });
 
 /// A front of random numbers as BlockCholesky leaves it: D^-1 in its diagonal blocks, L below.
 struct RandomFront {
-  RandomFront(int block, int blocks_eliminated, int blocks_below)
+  RandomFront(const FrontKernels& kernels, int block, int blocks_eliminated, int blocks_below)
       : size(block), pivots(blocks_eliminated), height((pivots + blocks_below) * size) {
     panel = right_hand_side(static_cast<std::size_t>(pivots * size) * height + 16);
     for (int c = 0; c < pivots * size; ++c)
@@ -163,7 +168,7 @@ struct RandomFront {
     std::ptrdiff_t tiles = 0;
     for (int p = 0; p < pivots; ++p) tiles += front_tiles(p * size, height, size);
     A.resize(tiles);
-    front_kernels(size).pack(panel.data(), pivots, height, A.data());
+    kernels.pack(panel.data(), pivots, height, A.data());
   }
   float panel_at(int row, int column) const { return panel[column * height + row]; }
   /// What the tiles should hold.
@@ -193,9 +198,9 @@ struct RandomFront {
   std::vector<PairTile> A;
 };
 
-TEST(FrontKernels, KeepEachNumberToEightBits) {
+TEST_P(EachKernels, KeepEachNumberToEightBits) {
   for (int size : {3, 6, 9, 12, 15, 18}) {
-    const RandomFront front(size, 3, 4);
+    const RandomFront front(of_fronts(size), size, 3, 4);
     for (int c = 0; c < front.pivots * size; ++c)
       for (int r = c / size * size / 16 * 16; r < front.height; ++r) {
         const double wanted = front.wanted(r, c);
@@ -208,11 +213,11 @@ TEST(FrontKernels, KeepEachNumberToEightBits) {
   }
 }
 
-TEST(FrontKernels, HugeAndTinyNumbersStayFinite) {
-  RandomFront front(6, 1, 1);
+TEST_P(EachKernels, HugeAndTinyNumbersStayFinite) {
+  RandomFront front(of_fronts(6), 6, 1, 1);
   int k = 0;
   for (auto& v : front.panel) v = std::ldexp(v, k++ % 2 ? 60 : -120);
-  front_kernels(6).pack(front.panel.data(), 1, front.height, front.A.data());
+  of_fronts(6).pack(front.panel.data(), 1, front.height, front.A.data());
   for (int c = 0; c < 6; ++c)
     for (int r = 0; r < front.height; ++r) {
       EXPECT_TRUE(std::isfinite(front.held(r, c)));
@@ -222,10 +227,10 @@ TEST(FrontKernels, HugeAndTinyNumbersStayFinite) {
     }
 }
 
-TEST(FrontKernels, GiveTheBitsOfPlainLoops) {
+TEST_P(EachKernels, FrontsHaveTheBitsOfPlainLoops) {
   for (int size : {3, 6, 9, 12, 15, 18})
     for (const auto& [pivots, below] : {std::pair{1, 0}, {1, 4}, {2, 3}, {5, 7}}) {
-      const RandomFront front(size, pivots, below);
+      const RandomFront front(of_fronts(size), size, pivots, below);
       const int width = pivots * size, height = front.height, tiles = (height + 15) / 16;
       struct alignas(64) Tile {
         float row[16];
@@ -245,7 +250,7 @@ TEST(FrontKernels, GiveTheBitsOfPlainLoops) {
           expected[r] -= sum[0] + sum[1];
         }
       }
-      front_kernels(size).forward(front.A.data(), pivots, height, y);
+      of_fronts(size).forward(front.A.data(), pivots, height, y);
       for (int r = 0; r < height; ++r) EXPECT_EQ(y[r], expected[r]) << size << ' ' << r;
 
       std::copy(given.begin(), given.end(), y);
@@ -263,12 +268,12 @@ TEST(FrontKernels, GiveTheBitsOfPlainLoops) {
         }
         std::copy(x.begin(), x.end(), &expected[c]);
       }
-      front_kernels(size).backward(front.A.data(), pivots, height, y);
+      of_fronts(size).backward(front.A.data(), pivots, height, y);
       for (int r = 0; r < height; ++r) EXPECT_EQ(y[r], expected[r]) << size << ' ' << r;
     }
 }
 
-TEST(FloatKernels, ABlockTimesItsInverseFactorsIsOne) {
+TEST_P(EachKernels, ABlockTimesItsInverseFactorsIsOne) {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> entry(-1, 1);
   for (int size : {3, 6, 12, 15, 18}) {
@@ -279,7 +284,7 @@ TEST(FloatKernels, ABlockTimesItsInverseFactorsIsOne) {
     std::vector<float> given(static_cast<std::size_t>(stride) * size + 15, 7.0f);
     for (int j = 0; j < size; ++j)
       for (int i = j; i < size; ++i) given[j * stride + i] = block(i, j);
-    EXPECT_EQ(float_kernels().invert_diagonal(given.data(), stride, size, 1e-6f), 0);
+    EXPECT_EQ(kernels.invert_diagonal(given.data(), stride, size, 1e-6f), 0);
     Eigen::MatrixXf inverse(size, size);
     for (int j = 0; j < size; ++j)
       for (int i = 0; i < size; ++i) inverse(i, j) = given[j * stride + i];
@@ -292,8 +297,7 @@ TEST(FloatKernels, ABlockTimesItsInverseFactorsIsOne) {
   }
 }
 
-TEST(FloatKernels, GiveTheBitsOfPlainLoops) {
-  const FloatKernels& kernels = float_kernels();
+TEST_P(EachKernels, ProductsHaveTheBitsOfPlainLoops) {
   for (int rows : {1, 12, 16, 37, 64})
     for (int columns : {1, 5, 6, 12, 18}) {
       const int depth = columns + 3;
@@ -313,7 +317,7 @@ TEST(FloatKernels, GiveTheBitsOfPlainLoops) {
     }
 }
 
-TEST(FloatKernels, AProductAnewIsThatOfZeros) {
+TEST_P(EachKernels, AProductAnewIsThatOfZeros) {
   for (const auto& [rows, columns, depth] : {std::array{7, 5, 12}, {31, 31, 12}, {250, 131, 250}})
     for (const bool lower : {false, true}) {
       const std::vector<float> A = right_hand_side(static_cast<std::size_t>(rows) * depth + 16);
@@ -323,7 +327,7 @@ TEST(FloatKernels, AProductAnewIsThatOfZeros) {
       std::vector<float> from_zeros = filled(0),
                          anew = filled(std::numeric_limits<float>::quiet_NaN());
       const auto product = [&, rows = rows, columns = columns, depth = depth](auto& C, bool fresh) {
-        float_kernels().subtract_product(
+        kernels.subtract_product(
             {C.data(), A.data(), A.data(), rows, columns, depth, rows, rows, rows, lower, fresh});
       };
       product(from_zeros, false);
@@ -335,20 +339,19 @@ TEST(FloatKernels, AProductAnewIsThatOfZeros) {
     }
 }
 
-TEST(FloatKernels, ProductsThatAreNotTooDeepHaveTheSameBitsInParts) {
+TEST_P(EachKernels, ProductsThatAreNotTooDeepHaveTheSameBitsInParts) {
   constexpr int rows = 200, columns = 200, depth = FloatKernels::most_whole_depth, width = 48;
   const std::vector<float> A = right_hand_side(static_cast<std::size_t>(rows) * depth + 16);
   std::vector<float> whole(static_cast<std::size_t>(rows) * columns + 16, 0.0f), parts = whole;
-  float_kernels().subtract_product(
+  kernels.subtract_product(
       {whole.data(), A.data(), A.data(), rows, columns, depth, rows, rows, rows, false});
   for (int j = 0; j < columns; j += width)
-    float_kernels().subtract_product({parts.data() + j * rows, A.data(), A.data() + j, rows,
-                                      std::min(width, columns - j), depth, rows, rows, rows,
-                                      false});
+    kernels.subtract_product({parts.data() + j * rows, A.data(), A.data() + j, rows,
+                              std::min(width, columns - j), depth, rows, rows, rows, false});
   EXPECT_EQ(whole, parts);
 }
 
-TEST(FloatKernels, LargeProductsAreThoseOfPlainLoops) {
+TEST_P(EachKernels, LargeProductsAreThoseOfPlainLoops) {
   for (const bool lower : {false, true}) {
     const int columns = 131, rows = lower ? columns : 250, depth = 250;
     const auto size = [](int r, int c) { return static_cast<std::size_t>(r) * c + 16; };
@@ -356,7 +359,7 @@ TEST(FloatKernels, LargeProductsAreThoseOfPlainLoops) {
     std::vector<float> C = right_hand_side(size(rows, columns));
     const std::vector<float> before = C;
     const int ld = rows;
-    float_kernels().subtract_product(
+    kernels.subtract_product(
         {C.data(), A.data(), A.data(), rows, columns, depth, rows, ld, ld, lower});
     double error = 0, most = 0;
     for (int j = 0; j < columns; ++j)
@@ -372,6 +375,41 @@ TEST(FloatKernels, LargeProductsAreThoseOfPlainLoops) {
     EXPECT_GT(most, 10);
     for (std::size_t i = static_cast<std::size_t>(rows) * columns; i < C.size(); ++i)
       EXPECT_EQ(C[i], before[i]);  // nothing is written beyond
+  }
+}
+
+TEST(FloatKernels, ThoseThatFuseGiveTheSameBits) {
+  constexpr int pivots = 5, below = 7;
+  const FloatKernels& widest = float_kernels();
+  for (const FloatKernels* other : runnable_float_kernels()) {
+    if (other == &widest || !other->fused) continue;
+    for (int size : {3, 6, 9, 12, 15, 18}) {
+      const auto words = [&](const FloatKernels& kernels) {
+        const RandomFront front(kernels.fronts[size / 3 - 1], size, pivots, below);
+        std::vector<std::uint32_t> all;
+        for (const PairTile& tile : front.A) all.insert(all.end(), tile.word, tile.word + 16);
+        return all;
+      };
+      EXPECT_EQ(words(*other), words(widest)) << other->name << ' ' << size;
+      const auto inverse = [&](const FloatKernels& kernels) {
+        std::vector<float> block = right_hand_side(static_cast<std::size_t>(size) * size + 15);
+        for (int i = 0; i < size; ++i) block[i * size + i] += 9;
+        kernels.invert_diagonal(block.data(), size, size, 1e-6f);
+        return block;
+      };
+      EXPECT_EQ(inverse(*other), inverse(widest)) << other->name << ' ' << size;
+    }
+    for (const auto& [rows, columns, depth] : {std::array{37, 18, 18}, {250, 131, 250}}) {
+      const auto product = [&, rows = rows, columns = columns,
+                            depth = depth](const FloatKernels& kernels) {
+        const std::vector<float> A = right_hand_side(static_cast<std::size_t>(rows) * depth + 16);
+        std::vector<float> C(static_cast<std::size_t>(rows) * columns + 16, 0.0f);
+        kernels.subtract_product(
+            {C.data(), A.data(), A.data(), rows, columns, depth, rows, rows, rows, false});
+        return C;
+      };
+      EXPECT_EQ(product(*other), product(widest)) << other->name << ' ' << rows;
+    }
   }
 }
 
