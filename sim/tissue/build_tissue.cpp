@@ -157,7 +157,7 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
                                  const ColumnSettings& settings, const Landmarks& landmarks,
                                  const TissuePlan& plan, const std::vector<signed char>& side,
                                  std::vector<std::string>& notes) {
-  constexpr int most_rounds = 20;
+  constexpr int before_ears = 20, most_rounds = 25;  // where all before did not do
   std::vector<Column> columns;
   ShapedColumns shaped;
   int rounds = 0;
@@ -167,6 +167,7 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
     hold_as_planned(plan, landmarks, skin, side, columns);
     shaped = shape_columns(skin, settings, columns);
     if (shaped.sound() || rounds == most_rounds) break;
+    if (rounds >= before_ears) unfold_ears(skin, shaped.folded);
     relax_folds(skin, shaped.folded);
   }
   if (shaped.thinned > 0)
