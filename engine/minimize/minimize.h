@@ -38,10 +38,10 @@ struct MinimizeSettings {
   int max_iterations = 2000;
   int max_evaluations = 1000000000;
   double max_step_mm = 4.0;  // of any point in one iteration; not for powell
-  /// preconditioned: the preconditioner was made at the start. So its first step is tried at full
-  /// length without a look at the curvature along it, nor is one taken at the end where the way left
-  /// is a fifth of what would do; and where the objective has become stiffer, a look tells that the
-  /// way is shorter than the preconditioner says.
+  /// preconditioned: the preconditioner was made of the start, and fits there. The first step is
+  /// tried at full length, without a look at the curvature along it. At the end no look is taken
+  /// where the way left is below a fifth of what would do; and where one shows that the objective is
+  /// stiffer than the preconditioner, the way left counts as so much shorter, down to half.
   bool fresh = false;
   /// preconditioned: asked with what has been done after each iteration that more may follow,
   /// before it is known whether they must; another preconditioner for them, or null.

@@ -74,7 +74,9 @@ MinimizeResult minimize_refreshing(const SpringPrismNet& net, const NetLoads& lo
   constexpr int most_rounds = 20;
   bool confirmed = !schedule.confirm;
   for (int round = 0; result.converged() && !confirmed && round < most_rounds; ++round) {
-    const MinimizeResult more = go_on_exactly(net, loads, energy, factor, settings, fresh, x);
+    MinimizeSettings rest = settings;
+    rest.max_iterations -= result.iterations;
+    const MinimizeResult more = go_on_exactly(net, loads, energy, factor, rest, fresh, x);
     confirmed = more.converged() && more.iterations == 0;
     add_to(result, more);
   }

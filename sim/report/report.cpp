@@ -377,9 +377,10 @@ std::string MotionReport::text() const {
                       kept_frames_);
     if (unconverged_frames_ > kept_frames_)
       text += fmt::format(
-          "it had not settled in {} more frames (tissue_converged 0 in trace.csv), on what it "
+          "it had not settled in {}{} frames (tissue_converged 0 in trace.csv), on what it "
           "touches by up to {:.2f} mm\n",
-          unconverged_frames_ - kept_frames_, tissue_contact_error_mm_);
+          unconverged_frames_ - kept_frames_, kept_frames_ > 0 ? " more" : "",
+          tissue_contact_error_mm_);
   }
   return text;
 }

@@ -149,6 +149,12 @@ void tell_rest(TissueModel& model, int threads) {
   summary.rest_overlap_mm =
       measure_contact(model.contact, Looks(contact_lists), Pose{}, model.rest, model.rest)
           .rest_overlap_mm;
+  constexpr double usual_mm = 4;  // real faces in their places: up to 2.8
+  if (summary.rest_overlap_mm > usual_mm)
+    summary.notes.push_back(fmt::format(
+        "tissue lies up to {:.1f} mm deep in bone, teeth or the other lip at rest, and may stay "
+        "there: are face and bones of the same patient, and in the same place?",
+        summary.rest_overlap_mm));
 }
 
 /// Columns under the whole sheet. Where the sheet itself folds too sharply for tissue of any depth
@@ -157,7 +163,7 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
                                  const ColumnSettings& settings, const Landmarks& landmarks,
                                  const TissuePlan& plan, const std::vector<signed char>& side,
                                  std::vector<std::string>& notes) {
-  constexpr int most_rounds = 20;
+  constexpr int before_ears = 20, most_rounds = 25;  // where all before did not do
   std::vector<Column> columns;
   ShapedColumns shaped;
   int rounds = 0;
@@ -167,6 +173,7 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
     hold_as_planned(plan, landmarks, skin, side, columns);
     shaped = shape_columns(skin, settings, columns);
     if (shaped.sound() || rounds == most_rounds) break;
+    if (rounds >= before_ears) unfold_ears(skin, shaped.folded);
     relax_folds(skin, shaped.folded);
   }
   if (shaped.thinned > 0)

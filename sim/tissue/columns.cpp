@@ -222,4 +222,26 @@ void relax_folds(CoarseSkin& skin, const std::vector<char>& folded) {
   }
 }
 
+void unfold_ears(CoarseSkin& skin, const std::vector<char>& folded) {
+  constexpr double least_height = 0.3;  // over the edge's length
+  const TriMesh& mesh = skin.mesh;
+  std::vector<int> uses(folded.size(), 0);
+  for (const auto& t : mesh.triangles)
+    for (int v : t) ++uses[v];
+  for (const auto& ear : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const int tip = ear[k], a = ear[(k + 1) % 3], b = ear[(k + 2) % 3];
+      if (uses[tip] != 1 || !folded[tip]) continue;
+      for (const auto& t : mesh.triangles)
+        for (int i = 0; i < 3; ++i) {
+          if (t[i] != b || t[(i + 1) % 3] != a) continue;
+          const Vector3d &pa = mesh.vertices[a], &pb = mesh.vertices[b];
+          const Vector3d edge = pb - pa, across = mesh.vertices[t[(i + 2) % 3]] - pa;
+          const Vector3d away =
+              (edge.dot(across) / edge.squaredNorm() * edge - across).normalized();
+          skin.mesh.vertices[tip] = 0.5 * (pa + pb) + least_height * edge.norm() * away;
+        }
+    }
+}
+
 }  // namespace condyle

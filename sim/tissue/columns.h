@@ -71,6 +71,10 @@ ShapedColumns shape_columns(const CoarseSkin& skin, const ColumnSettings& settin
 /// Smooths the sheet around folded columns; its borders stay.
 void relax_folds(CoarseSkin& skin, const std::vector<char>& folded);
 
+/// Lays folded triangles that hang on the sheet by one edge alone, as at the corners of a mouth,
+/// flat beside the triangle across that edge.
+void unfold_ears(CoarseSkin& skin, const std::vector<char>& folded);
+
 /// Nodes of the columns in `node_of` order.
 Nodes column_nodes(const CoarseSkin& skin, const std::vector<Column>& columns,
                    const ColumnSettings& settings);

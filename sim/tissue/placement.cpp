@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double thin_mm = 0.5;     // skin nearer to bone than this has no tissue below it
 constexpr double outward_mm = 120;  // through a whole skull
-constexpr double most_of = 0.5;
+constexpr double most_of = 0.5, few_of = 0.1;
 
 std::string percent(double share) {
   return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
@@ -48,7 +48,7 @@ void check_placement(const CoarseSkin& skin, const Bones& bones, const std::vect
                      " of the skin lies on the bone (below " +
                      std::to_string(thin_mm).substr(0, 3) +
                      " mm), so the soft tissue has no thickness; is the face a bone's surface?");
-  if (behind > most_of * count)
+  if (behind > most_of * count || (behind > few_of * count && behind > met))
     throw InputError(
         "face: " + percent(behind / count) +
         " of the skin around the jaw has bone outside it, so the face lies inside the "
@@ -64,7 +64,7 @@ void check_placement(const CoarseSkin& skin, const Bones& bones, const std::vect
                     " tissue columns reach into bone at rest, since at least " +
                     std::to_string(std::lround(settings.least_depth_mm)) +
                     " mm of tissue are needed: they may stay as deep, and go no deeper");
-  if (met < 0.1 * count)
+  if (met < few_of * count)
     notes.push_back("only " + percent(met / count) +
                     " of the skin around the jaw has bone below it: little holds the tissue");
 }

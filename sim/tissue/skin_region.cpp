@@ -270,7 +270,9 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
     region.mouth = find_mouth(part, landmarks, anatomy.incisors);
     if (!region.mouth.found())
       throw InputError(
-          "face: the mouth lies outside the region around the jaw; check the landmarks");
+          faces_outward(mesh)
+              ? "face: the mouth lies outside the region around the jaw; check the landmarks"
+              : "face: its triangles seem to be turned inside out; turn them and import it again");
     is_mouth[region.mouth.right_corner] = is_mouth[region.mouth.left_corner] = 1;
     for (int v : region.mouth.upper) is_mouth[v] = 1;
     for (int v : region.mouth.lower) is_mouth[v] = 1;

@@ -252,5 +252,40 @@ TEST_P(FloatKernelsTest, LargeProductsAreThoseOfPlainLoops) {
   }
 }
 
+TEST(FloatKernels, ThoseThatFuseGiveTheSameBits) {
+  constexpr int pivots = 5, below = 7;
+  const FloatKernels& widest = float_kernels();
+  for (const FloatKernels* other : usable_float_kernels()) {
+    if (other == &widest || !other->fused) continue;
+    for (int size : {3, 6, 9, 12, 15, 18}) {
+      const auto words = [&](const FloatKernels& kernels) {
+        const RandomFront front(kernels.fronts[size / 3 - 1], size, pivots, below);
+        std::vector<std::uint32_t> all;
+        for (const PairTile& tile : front.A) all.insert(all.end(), tile.word, tile.word + 16);
+        return all;
+      };
+      EXPECT_EQ(words(*other), words(widest)) << size;
+      const auto inverse = [&](const FloatKernels& kernels) {
+        std::vector<float> block = random_numbers(static_cast<std::size_t>(size) * size + 15);
+        for (int i = 0; i < size; ++i) block[i * size + i] += 9;
+        kernels.invert_diagonal(block.data(), size, size, 1e-6f);
+        return block;
+      };
+      EXPECT_EQ(inverse(*other), inverse(widest)) << size;
+    }
+    for (const auto& [rows, columns, depth] : {std::array{37, 18, 18}, {250, 131, 250}}) {
+      const auto product = [&, rows = rows, columns = columns,
+                            depth = depth](const FloatKernels& kernels) {
+        const std::vector<float> A = random_numbers(static_cast<std::size_t>(rows) * depth + 16);
+        std::vector<float> C(static_cast<std::size_t>(rows) * columns + 16, 0.0f);
+        kernels.subtract_product(
+            {C.data(), A.data(), A.data(), rows, columns, depth, rows, rows, rows, false});
+        return C;
+      };
+      EXPECT_EQ(product(*other), product(widest)) << rows;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace condyle

@@ -38,8 +38,8 @@ struct Opening {
   SyntheticSet set = make_synthetic_set(patient2_size());
   static Pose pose(int frame) { return synthetic_pose(0.0087 * (20 + frame), {0, 0, 0}); }
 
-  /// Iterations of most of the last frames, their factors made `ahead` at where they begin, or at
-  /// where the frames before ended.
+  /// Median of the iterations of the last frames, their factors made `ahead` at where they begin,
+  /// or at where the frames before ended.
   int iterations(bool ahead) const {
     constexpr int frames = 13, last = 9;
     NetLoads loads = synthetic_loads(set, pose(-1));

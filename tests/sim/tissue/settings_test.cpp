@@ -4,11 +4,13 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "sim/tissue/lips.h"
 #include "sim/tissue/model.h"
 #include "tests/sim/tissue/plain_patient.h"
+#include "tests/support/scan_case.h"
 
 namespace condyle::test {
 namespace {
@@ -193,6 +195,46 @@ INSTANTIATE_TEST_SUITE_P(All, MisplacedFace,
                                          Misplaced{"Far", {0, -140, 0}, 1, "face: "},
                                          Misplaced{"Elsewhere", {0, 0, 900}, 1, "face: "}),
                          [](const auto& row) { return row.param.name; });
+
+void expect_inside_out_is_told(Case patient) {
+  for (auto& part : patient.parts)
+    if (part.role == Role::face)
+      for (auto& t : part.mesh.triangles) std::swap(t[1], t[2]);
+  part_lips(patient);
+  try {
+    build_tissue(patient, {.surface_nodes = 220});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("inside out"), std::string::npos) << error.what();
+  }
+}
+
+TEST(FaceInsideOut, WithClosedLipsIsRefusedWithTheReason) {
+  expect_inside_out_is_told(plain_patient());
+}
+
+TEST(FaceInsideOut, WithOpenLipsIsRefusedWithTheReason) {
+  const auto patient = case_badin_with_face();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  expect_inside_out_is_told(*patient);
+}
+
+TEST(MisplacedFaceAside, IsBuiltAndTold) {
+  const auto told = [](double aside_mm) -> testing::AssertionResult {
+    auto patient = case_badin_with_face();
+    for (auto& part : patient->parts)
+      if (part.role == Role::face)
+        for (auto& v : part.mesh.vertices) v.x() += aside_mm;
+    const auto model = build_tissue(*patient, {.surface_nodes = 220});
+    for (const auto& note : model->summary.notes)
+      if (note.find("in the same place?") != std::string::npos)
+        return testing::AssertionSuccess() << note;
+    return testing::AssertionFailure();
+  };
+  if (!case_badin_with_face()) GTEST_SKIP() << "real anatomy absent";
+  EXPECT_TRUE(told(15));
+  EXPECT_FALSE(told(0));
+}
 
 TEST(MisplacedFaceOnBone, HasNoThickness) {
   Case patient = plain_patient();
