@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/engine/tissue/random_numbers.h"
+
 namespace condyle {
 namespace {
 
@@ -76,20 +78,12 @@ int factorize(const Sparse& s, BlockCholesky& factor, int threads) {
       1e-6f, threads);
 }
 
-std::vector<float> right_hand_side(std::size_t size) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> entry(-1, 1);
-  std::vector<float> b(size);
-  for (auto& v : b) v = entry(random);
-  return b;
-}
-
 TEST(BlockCholesky, SolvesAsADenseFactorDoes) {
   for (int block : {3, 6, 9, 12, 15, 18}) {
     const Sparse s = make_sparse(13, 9, block);
     BlockCholesky factor(tree_of(s));
     EXPECT_EQ(factorize(s, factor, 1), 0);
-    std::vector<float> b = right_hand_side(s.dense.rows());
+    std::vector<float> b = random_numbers(s.dense.rows());
     Eigen::VectorXd expected(b.size());
     const auto& at = factor.tree().order.at;
     for (std::size_t i = 0; i < b.size(); ++i)
@@ -110,7 +104,7 @@ TEST(BlockCholesky, SameBitsForAnyNumberOfThreads) {
   BlockCholesky one(tree_of(s)), two(tree_of(s));
   factorize(s, one, 1);
   factorize(s, two, 2);
-  std::vector<float> a = right_hand_side(s.dense.rows()), b = a;
+  std::vector<float> a = random_numbers(s.dense.rows()), b = a;
   one.solve(a, 1);
   two.solve(b, 2);
   EXPECT_EQ(a, b);
@@ -121,7 +115,7 @@ TEST(BlockCholesky, TellsWhatIsNotPositiveDefinite) {
   s.dense.block<6, 6>(48, 48) *= -1;
   BlockCholesky factor(tree_of(s));
   EXPECT_GT(factorize(s, factor, 1), 0);
-  std::vector<float> b = right_hand_side(s.dense.rows());
+  std::vector<float> b = random_numbers(s.dense.rows());
   factor.solve(b, 1);
   for (float v : b) EXPECT_TRUE(std::isfinite(v));
 }

@@ -10,16 +10,10 @@
 #include <limits>
 #include <random>
 
+#include "tests/engine/tissue/random_numbers.h"
+
 namespace condyle {
 namespace {
-
-std::vector<float> random_numbers(std::size_t size) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> entry(-1, 1);
-  std::vector<float> numbers(size);
-  for (auto& v : numbers) v = entry(random);
-  return numbers;
-}
 
 /// Each kind that this processor has: those that fuse give the same bits.
 class FloatKernelsTest : public testing::TestWithParam<const FloatKernels*> {
