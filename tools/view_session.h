@@ -121,11 +121,12 @@ class ViewSession {
     JawLetGo course;   // of a jaw
     Hands hands = {};  // as they are left with it; others: a hand has it again
   };
-  /// What was let go, and what the hands wanted then.
+  /// What was let go, and what the hands and the person wanted then.
   struct Loosed {
     bool free_part = false;
     std::string name;
     Hands hands;
+    MotionChoice motion;
   };
   /// A jaw that was let go and is on its way, as time runs.
   struct Falling {

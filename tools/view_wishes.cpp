@@ -27,7 +27,21 @@ Eigen::Vector3d push_toward_bone(const FrameState& frame, std::size_t part) {
   return way.norm() > 1e-9 ? way.normalized() : -Eigen::Vector3d::UnitZ();
 }
 
-/// A folder that is no case stands for the surfaces and landmarks in it, if there are any.
+std::string end_of(const JawLetGo& course, double opening_mm) {
+  switch (course.lies_on) {
+    case JawLetGo::On::teeth:
+      return fmt::format("lies on its teeth with {:.1f} N", course.bite_N);
+    case JawLetGo::On::flat_bite:
+      return "lies on a flat bite";
+    case JawLetGo::On::bone:
+      return fmt::format("lies on bone, {:.1f} mm open,", opening_mm);
+    case JawLetGo::On::nothing:
+      break;
+  }
+  return fmt::format("hangs {:.1f} mm open", opening_mm);
+}
+
+/// A folder that is no case stands for the surfaces, landmarks and muscles in it, if there are any.
 std::vector<fs::path> with_loose_surfaces(const std::vector<fs::path>& files) {
   std::vector<fs::path> all;
   for (const fs::path& file : files) {
@@ -121,14 +135,14 @@ void ViewSession::carry_out(const wish::Cancel&) {
   if (loading_) return retire(loading_);
   if (!letting_go_) return;
   retire(letting_go_);
-  window_.say(fmt::format("The {} stays where it was taken hold of", loosed_.name));
+  window_.say(fmt::format("The {} is not let go: it stays where it is", loosed_.name));
 }
 
 void ViewSession::carry_out(const wish::LetGo& wanted) {
   if (letting_go_ || !newest_ || wanted.body >= shown_.bodies.size()) return;
   const MovableBody& body = shown_.bodies[wanted.body];
   loosed_ = Loosed{body.free.has_value(), patient_->scene.patient.parts[body.part].name,
-                   window_.view().hands};
+                   window_.view().hands, window_.view().motion};
   if (!body.free) return let_jaw_go(wanted.body);
   letting_go_ =
       beside<LetGoResult>([patient = patient_, body, number = wanted.body, frame = *newest_,
@@ -210,17 +224,13 @@ void ViewSession::let_jaw_go(std::size_t number) {
     if (by_tone) settings.X_CM_rest = rest_position(motion->choice, *patient, options, threads);
     JawLetGo course = let_go_jaw(of, patient->scene.contacts, from, settings, threads, progress);
     std::string words =
-        course.bite_N > 0
-            ? fmt::format("lies on {} with {:.1f} N", course.on_teeth ? "its teeth" : "a flat bite",
-                          course.bite_N)
-            : fmt::format("hangs {:.1f} mm open", measure(of, course.X_CM.back()).opening_mm);
-    words = fmt::format("{} the jaw {} after {:.2f} s{}",
-                        by_tone ? "At its muscles' resting tone" : "Moved by its muscles", words,
-                        course.rest.seconds,
-                        course.rest.reached ? ""
-                        : course.rest.depth_mm > jaw_rest_depth_mm
-                            ? fmt::format(", {:.2f} mm deep in bone", course.rest.depth_mm)
-                            : ", not still yet");
+        fmt::format("{} the jaw {} after {:.2f} s{}",
+                    by_tone ? "At its muscles' resting tone" : "Moved by its muscles",
+                    end_of(course, measure(of, course.X_CM.back()).opening_mm), course.rest.seconds,
+                    course.rest.reached ? ""
+                    : course.rest.depth_mm > jaw_rest_depth_mm
+                        ? fmt::format(", {:.2f} mm deep in bone", course.rest.depth_mm)
+                        : ", not still yet");
     return LetGoResult{number, {}, std::move(words), std::move(course)};
   });
 }
@@ -229,10 +239,12 @@ void ViewSession::let_jaw_go(std::size_t number) {
 void ViewSession::drop_overtaken_let_go() {
   if (!letting_go_) return;
   const ViewState& view = window_.view();
-  if (loosed_.free_part ? view.hands == loosed_.hands : in_the_same_hands(loosed_.hands)) return;
+  if (loosed_.free_part ? view.hands == loosed_.hands
+                        : in_the_same_hands(loosed_.hands) && view.motion == loosed_.motion)
+    return;
   retire(letting_go_);
-  window_.say(
-      fmt::format("The {} was moved before it had come to rest, and is not let go", loosed_.name));
+  window_.say(fmt::format("The {} is not let go: something was changed before it had come to rest",
+                          loosed_.name));
 }
 
 void ViewSession::take_let_go() {

@@ -195,14 +195,14 @@ void Panels::Drawing::moving() {
   if (word_button(pen, "let-go", body.free ? "Let go onto the bone" : "Let go to the muscles",
                   {ImGui::GetContentRegionAvail().x, size.y}, false))
     panels.wishes_.push_back(wish::LetGo{view.chosen});
-  tooltip(pen,
-          body.free
-              ? "It is pushed gently to the nearest bone, slides and turns until it lies still"
-          : body.skull
-              ? "The jaw stays: joints and muscles draw the skull to it until all lies still"
-              : "Joints draw the condyles in; weight and muscles (their tone at rest, or what a "
-                "motion by muscles does at this moment) move the jaw until it hangs still or lies "
-                "on its teeth or other bone. An edit meanwhile ends it");
+  tooltip(
+      pen,
+      body.free ? "It is pushed gently to the nearest bone, slides and turns until it lies still"
+      : body.skull
+          ? "The jaw stays: joints and muscles draw the skull to it until all lies still"
+          : "Joints draw the condyles in; weight and muscles (their tone at rest, or what a "
+            "motion by muscles does at this moment) move the jaw until it hangs still or lies "
+            "on its teeth or other bone. Moving it meanwhile, playing or another motion end this");
   end_panel();
 }
 

@@ -44,8 +44,8 @@ struct ExcitationSetting {
 /// A surface, a list of landmarks or a table of muscles that shall become part of a patient.
 struct FileRole {
   std::filesystem::path file;
-  std::string
-      role;  // "mandible", "upper-teeth", ..., "landmarks", "muscles", or empty: leave it out
+  // "mandible", "upper-teeth", ..., "landmarks", "muscles", or empty: leave it out
+  std::string role;
 };
 
 /// What the person asks for once. Whoever runs the window does it.

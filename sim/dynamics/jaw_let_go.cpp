@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "sim/dynamics/bite_plane.h"
 #include "sim/dynamics/excitation_finder.h"
 
 namespace condyle {
@@ -68,6 +69,22 @@ double out_of_joint_mm(const Case& patient, const Pose& X_CM) {
   return farthest;
 }
 
+/// Where all is when the jaw has taken along what it carries.
+BodyPoses carried_along(const Case& patient, const BodyPoses& from, const Pose& X_CM) {
+  BodyPoses now{X_CM, from.X_CF};
+  const auto free = free_parts(patient.parts);
+  for (std::size_t f = 0; f < now.X_CF.size(); ++f)
+    if (patient.parts[free[f]].carrier == Body::mandible)
+      now.X_CF[f] = X_CM * from.X_CM.inverse() * from.X_CF[f];
+  return now;
+}
+
+bool lies_on_flat_bite(const BitePlane& bite, const Pose& X_CM) {
+  constexpr double seated_mm = 0.05;
+  return std::min((X_CM * bite.left - bite.left).dot(bite.normal),
+                  (X_CM * bite.right - bite.right).dot(bite.normal)) < seated_mm;
+}
+
 /// Where the jaw with what it carries gets to from a pose without lying in bone.
 ContactModel::Slide slid_out(const Case& patient, const ContactModel& contacts,
                              const BodyPoses& from, int threads) {
@@ -106,8 +123,7 @@ JawLetGo let_go_jaw(const Case& patient, const ContactModel& contacts, const Bod
       excitations.push_back(told == settings.excitations.end() ? 0 : told->second);
     }
 
-  JawLetGo course{
-      .step_s = jaw.step_s(), .X_CM = {from.X_CM}, .rest = {}, .on_teeth = muscles.teeth};
+  JawLetGo course{.step_s = jaw.step_s(), .X_CM = {from.X_CM}, .rest = {}};
   double still_s = 0;
   while (course.rest.seconds < settings.rest.longest_s && still_s < settings.rest.still_for_s) {
     if (course.X_CM.size() % told_steps == 1)
@@ -122,21 +138,21 @@ JawLetGo let_go_jaw(const Case& patient, const ContactModel& contacts, const Bod
     still_s = still ? still_s + jaw.step_s() : 0;
   }
   course.rest.reached = still_s >= settings.rest.still_for_s;
+  if (!muscles.teeth && lies_on_flat_bite(bite_plane(patient), jaw.pose()))
+    course.lies_on = JawLetGo::On::flat_bite;
   for (const RigidContact& contact : jaw.world().contacts())
-    if (contact.pair == jaw.jaw().bite) course.bite_N += contact.push_N;
-  BodyPoses end = from;
-  end.X_CM = jaw.pose();
-  for (std::size_t part = 0, place = 0; part < patient.parts.size(); ++part)
-    if (body_of(patient.parts[part].role) == Body::free && place < end.X_CF.size()) {
-      if (patient.parts[part].carrier == Body::mandible)
-        end.X_CF[place] = end.X_CM * from.X_CM.inverse() * end.X_CF[place];
-      ++place;
-    }
+    if (contact.pair == jaw.jaw().bite)
+      course.bite_N += contact.push_N;
+    else if (course.lies_on == JawLetGo::On::nothing && contact.push_N > 0)
+      course.lies_on = JawLetGo::On::bone;
+  if (course.bite_N > 0) course.lies_on = JawLetGo::On::teeth;
+  const BodyPoses end = carried_along(patient, from, jaw.pose());
   const auto depth = [](const ContactSet& set) { return set.max_penetration_mm(); };
   course.rest.depth_mm = depth(contacts.find(end, nullptr, threads));
   if (course.rest.depth_mm > jaw_rest_depth_mm) {
     const ContactModel::Slide out = slid_out(patient, contacts, end, threads);
     course.X_CM.push_back(out.at.X_CM);
+    if (course.lies_on == JawLetGo::On::nothing) course.lies_on = JawLetGo::On::bone;
     course.rest.depth_mm = depth(out.contacts);
   }
   course.rest.reached &= course.rest.depth_mm <= jaw_rest_depth_mm;

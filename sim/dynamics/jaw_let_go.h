@@ -24,11 +24,12 @@ struct JawLetGoSettings {
 
 /// Its course.
 struct JawLetGo {
+  enum class On { nothing, teeth, flat_bite, bone };
   double step_s = 0;
   std::vector<Pose> X_CM;  // at each step, from where it was let go
-  Rest rest;             // its teeth need not touch; deeper than contact allows, it is not at rest
-  double bite_N = 0;     // between the jaws in the end
-  bool on_teeth = true;  // they meet in their teeth; else in a flat bite
+  Rest rest;          // its teeth need not touch; deeper than contact allows, it is not at rest
+  double bite_N = 0;  // between the teeth in the end
+  On lies_on = On::nothing;
 };
 
 /// Lets the mandible go from where a hand has it: its joints draw the condyles onto their paths,

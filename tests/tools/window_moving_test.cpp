@@ -70,7 +70,7 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   const auto computes = [](const Json& s) { return s["busy_with"] == "Letting go"; };
   const auto told = [](const Json& s) {
     return s["busy_with"] == "" &&
-           s.value("said", "").find("moved before it had come to rest") != std::string::npos;
+           s.value("said", "").find("changed before it had come to rest") != std::string::npos;
   };
   // A number that is entered.
   click("shift:S");
@@ -97,9 +97,22 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   click("cancel");
   EXPECT_TRUE(wait_until([](const Json& s) {
     return s["busy_with"] == "" &&
-           s.value("said", "").find("stays where it was taken hold of") != std::string::npos;
+           s.value("said", "").find("it stays where it is") != std::string::npos;
   }));
   EXPECT_NEAR(opening_mm(state()), 30, 0.1);
+
+  // Another motion has other muscles.
+  click("tab:Motion");
+  click("motion");
+  ASSERT_TRUE(wait_for_item("motion:protrusion"));
+  EXPECT_TRUE(press("Escape"));
+  click("let-go");
+  ASSERT_TRUE(wait_until(computes));
+  click("motion");
+  click("motion:protrusion");
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return s.value("said", "").find("changed before it had come to rest") != std::string::npos;
+  })) << state().value("said", "nothing was said");
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "engine/core/error.h"
 #include "sim/motion/measures.h"
+#include "tests/support/boxes.h"
 #include "tests/support/builtin.h"
 #include "tests/support/real_cases.h"
 
@@ -55,6 +58,7 @@ TEST(JawLetGo, FallsBackToItsRestPositionFromWhereverAHandHadIt) {
     EXPECT_NEAR(there.opening_mm, freeway_mm, 0.3);
     EXPECT_NEAR(there.incisor.x(), 0, 0.3);
     EXPECT_EQ(course.bite_N, 0) << "teeth are apart at rest";
+    EXPECT_EQ(course.lies_on, JawLetGo::On::nothing);
     for (const double seated : {there.left_condyle.x() + there.right_condyle.x(),
                                 there.left_condyle.z() - there.right_condyle.z()})
       EXPECT_NEAR(seated, 0, 0.1);
@@ -63,19 +67,22 @@ TEST(JawLetGo, FallsBackToItsRestPositionFromWhereverAHandHadIt) {
 
 TEST(JawLetGo, ClosersThatAreExcitedSetItOnItsTeethAndNoneLetItHang) {
   const Pose from = in_hand(builtin(), 15, 0, {0, 0, 0});
-  const auto with = [&](double excitation) {
+  const auto with = [&](double excitation, bool teeth = true) {
     std::map<std::string, double> excitations;
     for (const char* name : {"lat", "rat", "lsm", "rsm", "ldm", "rdm", "lmp", "rmp"})
       excitations[name] = excitation;
-    return let_go_jaw(builtin(), bones(), from, {.excitations = excitations}, 2);
+    return let_go_jaw(builtin(), bones(), from,
+                      {.muscles = {.teeth = teeth}, .excitations = excitations}, 2);
   };
   const JawLetGo bites = with(0.05), hangs = with(0);
   ASSERT_TRUE(bites.rest.reached && hangs.rest.reached);
   EXPECT_GT(bites.bite_N, 10);
-  EXPECT_TRUE(bites.on_teeth);
+  EXPECT_EQ(bites.lies_on, JawLetGo::On::teeth);
   EXPECT_LT(bites.rest.depth_mm, 0.1);
   EXPECT_NEAR(measure(builtin(), bites.X_CM.back()).opening_mm, 0, 0.5);
   EXPECT_EQ(hangs.bite_N, 0);
+  EXPECT_EQ(hangs.lies_on, JawLetGo::On::nothing);
+  EXPECT_EQ(with(0.05, false).lies_on, JawLetGo::On::flat_bite);
   EXPECT_GT(measure(builtin(), hangs.X_CM.back()).opening_mm, 3);
 }
 
@@ -125,6 +132,26 @@ TEST(JawLetGo, TheRestOfTheSkullIsInItsWay) {
   EXPECT_LT(depths.way_mm, 0.2);
   EXPECT_LT(depths.end_mm, jaw_rest_depth_mm);
   EXPECT_TRUE(course.rest.reached);
+}
+
+TEST(JawLetGo, LiesOnBoneThatIsBelowItsChin) {
+  Case patient = builtin();
+  const auto& jaw = patient.find(Role::mandible)->mesh.vertices;
+  const Vector3d chin = *std::min_element(
+      jaw.begin(), jaw.end(),
+      [](const Vector3d& a, const Vector3d& b) { return a.y() + a.z() < b.y() + b.z(); });
+  double lowest = chin.z();
+  for (const Vector3d& v : jaw)
+    if (std::abs(v.x()) < 12 && v.y() < chin.y() + 25) lowest = std::min(lowest, v.z());
+  const TriMesh below =
+      test::box({-10, chin.y() - 5, lowest - 12}, {10, chin.y() + 20, lowest - 2});
+  patient.parts.push_back({"graft", Role::transplant, below, {}});
+  const ContactModel contacts(patient, {});
+  const JawLetGo course = let_go_jaw(patient, contacts, Pose{}, {.excitations = {{"lat", 0.0}}}, 2);
+  EXPECT_EQ(course.lies_on, JawLetGo::On::bone);
+  EXPECT_EQ(course.bite_N, 0);
+  EXPECT_LT(course.rest.depth_mm, jaw_rest_depth_mm);
+  EXPECT_LT(measure(patient, course.X_CM.back()).opening_mm, 3);
 }
 
 TEST(JawLetGo, AMeasuredJawThatBitesEndsInNoBone) {
