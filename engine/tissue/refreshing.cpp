@@ -4,18 +4,20 @@
 #include <optional>
 
 namespace condyle {
-
 namespace {
+
+void make_if_none(std::optional<HessianFactor>& fresh, const HessianFactor& factor, int threads) {
+  if (fresh) return;
+  fresh.emplace(factor.another());
+  fresh->set_threads(threads);
+}
 
 /// From where another factor says that the way is over: no iteration where an exact one agrees.
 MinimizeResult go_on_exactly(const SpringPrismNet& net, const NetLoads& loads,
                              SpringPrismEnergy& energy, const HessianFactor& factor,
                              const MinimizeSettings& settings, std::optional<HessianFactor>& fresh,
                              Nodes& x) {
-  if (!fresh) {
-    fresh.emplace(factor.another());
-    fresh->set_threads(energy.threads());
-  }
+  make_if_none(fresh, factor, energy.threads());
   MinimizeSettings here = settings;
   here.fresh = true;
   if (fresh->refactor(net, loads, x, energy.threads(), Curvatures::exact) > 0) {
@@ -48,15 +50,12 @@ MinimizeResult minimize_refreshing(const SpringPrismNet& net, const NetLoads& lo
   MinimizeResult before;                   // at the last refresh
   const auto renew = [&](const Nodes& now, const MinimizeResult& done) -> const Preconditioner* {
     if (done.iterations < next) return nullptr;
-    if (fresh) {
-      // Where a spring is about to push, the exact matrix may be nearly singular, and its steps are
-      // cut short: then the other one is next.
+    // Where a spring is about to push, the exact matrix may be nearly singular, and its steps are
+    // cut short: then the other one is next.
+    if (fresh)
       exact_serves = !exact_serves || done.evaluations - before.evaluations <=
                                           2 * (done.iterations - before.iterations) + 1;
-    } else {
-      fresh.emplace(factor.another());
-      fresh->set_threads(energy.threads());
-    }
+    make_if_none(fresh, factor, energy.threads());
     const bool near = refresh >= schedule.far;
     if (!near || !exact_serves ||
         fresh->refactor(net, loads, now, energy.threads(), Curvatures::exact) > 0)

@@ -85,6 +85,18 @@ bool lies_on_flat_bite(const BitePlane& bite, const Pose& X_CM) {
                   (X_CM * bite.right - bite.right).dot(bite.normal)) < seated_mm;
 }
 
+/// What the jaw lies on in the end, and how hard on its teeth.
+void find_support(const Case& patient, const MuscleJaw& jaw, bool teeth, JawLetGo& course) {
+  if (!teeth && lies_on_flat_bite(bite_plane(patient), jaw.pose()))
+    course.lies_on = JawLetGo::On::flat_bite;
+  for (const RigidContact& contact : jaw.world().contacts())
+    if (contact.pair == jaw.jaw().bite)
+      course.bite_N += contact.push_N;
+    else if (course.lies_on == JawLetGo::On::nothing && contact.push_N > 0)
+      course.lies_on = JawLetGo::On::bone;
+  if (course.bite_N > 0) course.lies_on = JawLetGo::On::teeth;
+}
+
 /// Where the jaw with what it carries gets to from a pose without lying in bone.
 ContactModel::Slide slid_out(const Case& patient, const ContactModel& contacts,
                              const BodyPoses& from, int threads) {
@@ -138,14 +150,7 @@ JawLetGo let_go_jaw(const Case& patient, const ContactModel& contacts, const Bod
     still_s = still ? still_s + jaw.step_s() : 0;
   }
   course.rest.reached = still_s >= settings.rest.still_for_s;
-  if (!muscles.teeth && lies_on_flat_bite(bite_plane(patient), jaw.pose()))
-    course.lies_on = JawLetGo::On::flat_bite;
-  for (const RigidContact& contact : jaw.world().contacts())
-    if (contact.pair == jaw.jaw().bite)
-      course.bite_N += contact.push_N;
-    else if (course.lies_on == JawLetGo::On::nothing && contact.push_N > 0)
-      course.lies_on = JawLetGo::On::bone;
-  if (course.bite_N > 0) course.lies_on = JawLetGo::On::teeth;
+  find_support(patient, jaw, muscles.teeth, course);
   const BodyPoses end = carried_along(patient, from, jaw.pose());
   const auto depth = [](const ContactSet& set) { return set.max_penetration_mm(); };
   course.rest.depth_mm = depth(contacts.find(end, nullptr, threads));

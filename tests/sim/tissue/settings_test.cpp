@@ -196,17 +196,21 @@ INSTANTIATE_TEST_SUITE_P(All, MisplacedFace,
                                          Misplaced{"Elsewhere", {0, 0, 900}, 1, "face: "}),
                          [](const auto& row) { return row.param.name; });
 
-void expect_inside_out_is_told(Case patient) {
-  for (auto& part : patient.parts)
-    if (part.role == Role::face)
-      for (auto& t : part.mesh.triangles) std::swap(t[1], t[2]);
+void expect_refused(Case patient, const std::string& reason) {
   part_lips(patient);
   try {
     build_tissue(patient, {.surface_nodes = 220});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("inside out"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
   }
+}
+
+void expect_inside_out_is_told(Case patient) {
+  for (auto& part : patient.parts)
+    if (part.role == Role::face)
+      for (auto& t : part.mesh.triangles) std::swap(t[1], t[2]);
+  expect_refused(patient, "inside out");
 }
 
 TEST(FaceInsideOut, WithClosedLipsIsRefusedWithTheReason) {
@@ -242,13 +246,7 @@ TEST(MisplacedFaceOnBone, HasNoThickness) {
   TriMesh bone = patient.find(Role::face)->mesh;
   for (auto& part : patient.parts)
     if (part.role == Role::skull || part.role == Role::mandible) part.mesh = bone;
-  part_lips(patient);
-  try {
-    build_tissue(patient, {.surface_nodes = 220});
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("no thickness"), std::string::npos) << error.what();
-  }
+  expect_refused(patient, "no thickness");
 }
 
 TEST(TissueSettings, NothingAttachedIsRefusedWithWhatToDo) {
