@@ -17,9 +17,9 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& precon
                               const MinimizeSettings& settings, Points& x);
 
 inline double dot(const Points& a, const Points& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-  return sum;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of each axis: three sums under way at once
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].cwiseProduct(b[i]);
+  return sum.sum();
 }
 
 inline double largest_norm(const Points& a) {

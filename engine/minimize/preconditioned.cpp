@@ -12,7 +12,7 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
   using Status = MinimizeResult::Status;
   MinimizeResult result;
   Counted counted(objective, settings, result);
-  Points g, g_new, z, z_new, d, trial(x.size());
+  Points g, g_new, z, d, trial(x.size());
 
   // The way that is left, by the preconditioner. Iterations that shorten it by a factor each leave
   // the sum of a geometric series; before the first nothing is known of that factor.
@@ -20,6 +20,7 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
   constexpr double unknown_share = 0.3, least_contraction = 0.95;
   const Preconditioner* preconditioner = &given;
   double gz = 0, way = 0, shortest = 0;
+  double slope = 0, length = 0;  // along d; of its longest
   // The way along z is longer than it says where the preconditioner is stiffer than the objective,
   // and shorter where it is softer: at most to `least`, as other parts may be as stiff.
   const auto stretch = [&](double least) {
@@ -31,13 +32,18 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
   const auto arrived = [&](double enough, double least) {
     return way < far_below * enough || (way * least < enough && way * stretch(least) < enough);
   };
+  const auto downhill = [&] {
+    for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
+    slope = -gz;
+    length = way;
+  };
   const auto begin = [&] {
     preconditioner->solve(g, z);
     gz = dot(g, z);
     if (!std::isfinite(gz)) return false;
-    d.resize(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
     way = shortest = largest_norm(z);
+    d.resize(x.size());
+    downhill();
     if (arrived(unknown_share * settings.tolerance_mm, 1)) result.status = Status::converged;
     return true;
   };
@@ -51,12 +57,7 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
   }
   for (; !result.converged() && result.iterations < settings.max_iterations && !counted.spent();
        ++result.iterations) {
-    double slope = dot(g, d);
-    if (slope >= 0) {
-      for (std::size_t i = 0; i < x.size(); ++i) d[i] = -z[i];
-      slope = -gz;
-    }
-    const double longest = settings.max_step_mm / largest_norm(d);
+    const double longest = settings.max_step_mm / length;
     double step = 1;
     bool foretold = settings.fresh && result.iterations == 0 && step < longest;
     if (!foretold) {
@@ -115,14 +116,11 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
         break;
       }
     }
-    preconditioner->solve(g_new, z_new);
-    double change = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) change += z_new[i].dot(g_new[i] - g[i]);
-    const double beta = std::max(0.0, change / gz);
+    preconditioner->solve(g_new, z);
+    const double gz_new = dot(g_new, z);
+    const double beta = std::max(0.0, (gz_new - dot(g, z)) / gz);
     g.swap(g_new);
-    z.swap(z_new);
-    gz = dot(g, z);
-    for (std::size_t i = 0; i < x.size(); ++i) d[i] = beta * d[i] - z[i];
+    gz = gz_new;
     way = largest_norm(z);
     const double contraction = std::min(way / shortest, least_contraction);
     shortest = std::min(shortest, way);
@@ -131,10 +129,14 @@ MinimizeResult preconditioned(Objective& objective, const Preconditioner& given,
       result.status = Status::converged;
       break;
     }
+    for (std::size_t i = 0; i < x.size(); ++i) d[i] = beta * d[i] - z[i];
+    slope = dot(g, d);
+    length = largest_norm(d);
+    if (slope >= 0) downhill();
   }
   result.energy = f;
   result.residual = largest_norm(g);
-  result.bytes = bytes_of(g, g_new, z, z_new, d, trial) + given.bytes();
+  result.bytes = bytes_of(g, g_new, z, d, trial) + given.bytes();
   return result;
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <initializer_list>
 #include <limits>
+#include <utility>
 
 #include "engine/tissue/spring_prism.h"
 #ifdef __x86_64__
@@ -18,82 +18,127 @@ namespace condyle {
 
 namespace {
 
-/// Reorders runs so that neighbours, which write to the same nodes, do not follow each other: the
-/// processor would wait for what it has just stored. Halves are kept, since threads share by
-/// halves.
-template <class Run>
-void spread(std::vector<Run>& runs, int lanes,
-            std::initializer_list<std::vector<double>*> lane_values) {
-  const std::size_t half = runs.size() / 2, quarter = half / 2;
-  std::vector<std::size_t> order;
+/// Springs or prisms of a net whose nodes follow each other: those of a run.
+struct Group {
+  std::size_t first;
+  int count;
+};
+
+/// Reorders groups so that neighbours, which write to the same nodes, do not follow each other: the
+/// processor would wait for what it has just stored. Kernels may take two at once, and threads
+/// share by halves: the number is filled up with empty ones.
+template <class T>
+void spread(std::vector<T>& groups) {
+  while (groups.size() % NetRuns::align != 0) groups.push_back({});
+  const std::size_t half = groups.size() / 2, quarter = half / 2;
+  const std::vector<T> given = groups;
+  auto to = groups.begin();
   for (std::size_t begin : {std::size_t{0}, half})
-    for (std::size_t i = 0; i < quarter; ++i)
-      for (std::size_t from : {begin + i, begin + quarter + i}) order.push_back(from);
-  const std::vector<Run> given = runs;
-  for (std::size_t i = 0; i < order.size(); ++i) runs[i] = given[order[i]];
-  for (std::vector<double>* values : lane_values) {
-    const std::vector<double> old = *values;
-    for (std::size_t i = 0; i < order.size(); ++i)
-      std::copy_n(old.begin() + static_cast<std::ptrdiff_t>(order[i]) * lanes, lanes,
-                  values->begin() + static_cast<std::ptrdiff_t>(i) * lanes);
-  }
+    for (std::size_t i = begin; i < begin + quarter; ++i)
+      for (std::size_t from : {i, i + quarter}) *to++ = given[from];
 }
+
+std::vector<Group> spring_groups(const SpringPrismNet& net) {
+  const auto &a = net.spring_a, &b = net.spring_b;
+  std::vector<Group> groups;
+  for (std::size_t s = 0; s < a.size(); ++s) {
+    if (!groups.empty()) {
+      auto& [first, count] = groups.back();
+      if (count < NetRuns::lanes && a[s] == a[first] + count && b[s] == b[first] + count) {
+        ++count;
+        continue;
+      }
+    }
+    groups.push_back({s, 1});
+  }
+  return groups;
+}
+
+/// The groups of an edge, by way.
+using EdgeGroups = std::array<Group, NetRuns::Edge::ways>;
 
 }  // namespace
 
 NetRuns::NetRuns(const SpringPrismNet& net) {
-  std::vector<int> counts;  // lanes in use of each run of springs
-  for (std::size_t s = 0; s < net.spring_a.size(); ++s) {
-    const int a = net.spring_a[s], b = net.spring_b[s];
-    if (counts.empty() || counts.back() == lanes || a != springs.back().a.first + counts.back() ||
-        b != springs.back().b.first + counts.back()) {
-      springs.push_back({{a}, {b}});
-      rest_length.resize(springs.size() * lanes, 0.0);
-      stiffness.resize(springs.size() * lanes, 0.0);
-      counts.push_back(0);
+  const auto &a = net.spring_a, &b = net.spring_b;
+  std::vector<EdgeGroups> of_edges;
+  std::vector<Group> of_posts, of_runs;
+  const std::vector<Group> groups = spring_groups(net);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const Group& level = groups[g];
+    const auto diagonal = [&](std::size_t at, int from, int to) {
+      return at < groups.size() && groups[at].count == level.count - 1 &&
+             a[groups[at].first] == from && b[groups[at].first] == to;
+    };
+    const int one = a[level.first], other = b[level.first];
+    if (diagonal(g + 1, one, other + 1) && diagonal(g + 2, other, one + 1)) {
+      of_edges.push_back({level, groups[g + 1], groups[g + 2]});
+      g += 2;
+    } else if (other == one + 1 && level.count < lanes) {
+      of_posts.push_back(level);
+    } else {
+      of_runs.push_back(level);
     }
-    const std::size_t at = (springs.size() - 1) * lanes + counts.back()++;
-    rest_length[at] = net.rest_length[s];
-    stiffness[at] = net.stiffness[s];
   }
-  for (std::size_t p = 0; p < net.prisms.size(); ++p) {
-    const auto& corner = net.prisms[p];
-    bool goes_on = !prisms.empty() && prisms.back().count < lanes;
-    for (int k = 0; goes_on && k < 6; ++k)
-      goes_on = corner[k] == prisms.back().corner[k].first + prisms.back().count;
-    if (!goes_on) {
-      Prisms run{{}, 0};
-      for (int k = 0; k < 6; ++k) run.corner[k].first = corner[k];
-      prisms.push_back(run);
-      rest_volume.resize(prisms.size() * lanes, 1.0);
-      volume_weight.resize(prisms.size() * lanes, 0.0);
+  spread(of_edges);
+  spread(of_posts);
+  spread(of_runs);
+  const std::size_t all = of_edges.size() * Edge::ways + of_posts.size() + of_runs.size();
+  rest_length.assign(all * lanes, 0.0);
+  stiffness.assign(all * lanes, 0.0);
+  const auto place = [&](const Group& group, std::size_t lane) {
+    for (int i = 0; i < group.count; ++i) {
+      rest_length[lane + i] = net.rest_length[group.first + i];
+      stiffness[lane + i] = net.stiffness[group.first + i];
     }
-    const std::size_t at = (prisms.size() - 1) * lanes + prisms.back().count++;
-    rest_volume[at] = net.rest_volume[p];
-    volume_weight[at] = net.volume_weight[p];
-  }
-  // Columns begin where runs of prisms have their outer corners.
-  std::vector<char> begins(net.node_count + 1, 0);
-  for (const Prisms& run : prisms)
-    for (int k = 0; k < 3; ++k) begins[run.corner[k].first] = 1;
-  const auto place = [&](Place& at, int count) {
-    at.late = count < lanes && at.first > 0 && !begins[at.first] && begins[at.first - 1];
   };
-  for (std::size_t r = 0; r < springs.size(); ++r) {
-    place(springs[r].a, counts[r]);
-    place(springs[r].b, counts[r]);
+  const auto ends = [&](const Group& group) {
+    return group.count > 0 ? std::pair{a[group.first], b[group.first]} : std::pair{0, 0};
+  };
+  for (const EdgeGroups& of : of_edges) {
+    for (int way = 0; way < Edge::ways; ++way)
+      place(of[way], lane(edges.size(), static_cast<Edge::Way>(way)));
+    edges.push_back({ends(of[0]).first, ends(of[0]).second});
   }
-  for (Prisms& run : prisms)
-    for (Place& corner : run.corner) place(corner, run.count);
-  // Kernels may take two runs at once, and each half of a sum may be halved: empty runs fill up.
-  while (springs.size() % align != 0) springs.push_back({});
-  while (prisms.size() % align != 0) prisms.push_back({{}, 0});
-  rest_length.resize(springs.size() * lanes, 0.0);
-  stiffness.resize(springs.size() * lanes, 0.0);
-  rest_volume.resize(prisms.size() * lanes, 1.0);
-  volume_weight.resize(prisms.size() * lanes, 0.0);
-  spread(springs, lanes, {&rest_length, &stiffness});
-  spread(prisms, lanes, {&rest_volume, &volume_weight});
+  for (const Group& group : of_posts) posts.push_back({ends(group).first});
+  for (const Group& group : of_runs) runs.push_back({ends(group).first, ends(group).second});
+  for (std::size_t i = 0; i < posts.size(); ++i) place(of_posts[i], lane_of_post(i));
+  for (std::size_t i = 0; i < runs.size(); ++i) place(of_runs[i], lane_of_run(i));
+
+  std::vector<Group> of_stacks, of_prisms;
+  const auto between_columns = [&](std::size_t p) {
+    const auto& at = net.prisms[p];
+    return at[3] == at[0] + 1 && at[4] == at[1] + 1 && at[5] == at[2] + 1;
+  };
+  for (std::size_t p = 0; p < net.prisms.size(); ++p) {
+    const bool stack = between_columns(p);
+    auto& of = stack ? of_stacks : of_prisms;
+    bool goes_on = !of.empty() && of.back().first + of.back().count == p &&
+                   of.back().count < (stack ? lanes - 1 : lanes);
+    for (int k = 0; goes_on && k < 6; ++k)
+      goes_on = net.prisms[p][k] == net.prisms[of.back().first][k] + of.back().count;
+    if (goes_on)
+      ++of.back().count;
+    else
+      of.push_back({p, 1});
+  }
+  spread(of_stacks);
+  spread(of_prisms);
+  const auto corners = [&](const Group& group) {
+    return group.count > 0 ? net.prisms[group.first] : std::array<int, 6>{};
+  };
+  for (const Group& group : of_stacks) {
+    const auto at = corners(group);
+    stacks.push_back({{at[0], at[1], at[2]}, group.count});
+  }
+  for (const Group& group : of_prisms) prisms.push_back({corners(group), group.count});
+  for (const auto* of : {&of_stacks, &of_prisms})
+    for (const Group& group : *of)
+      for (int i = 0; i < lanes; ++i) {
+        const bool used = i < group.count;
+        rest_volume.push_back(used ? net.rest_volume[group.first + i] : 1.0);
+        volume_weight.push_back(used ? net.volume_weight[group.first + i] : 0.0);
+      }
 }
 
 namespace {
@@ -101,30 +146,27 @@ namespace {
 #define INLINE inline __attribute__((always_inline))
 
 /// Vectors of one run.
-#define CONDYLE_ONE_RUN                                                       \
-  constexpr int wide = NetRuns::lanes;                                        \
-  typedef double Lanes __attribute__((vector_size(wide * sizeof(double))));   \
-  struct Place {                                                              \
-    NetRuns::Place one;                                                       \
-    Place(const NetRuns::Place& first, const NetRuns::Place&) : one(first) {} \
-  };                                                                          \
-  INLINE Lanes gathered(const double* row, const Place& at) {                 \
-    Lanes v;                                                                  \
-    std::memcpy(&v, row + at.one.first, sizeof v);                            \
-    return v;                                                                 \
-  }                                                                           \
-  INLINE void scatter(double* row, const Place& at, const Lanes& v) {         \
-    row += at.one.first - at.one.late;                                        \
-    Lanes sum;                                                                \
-    std::memcpy(&sum, row, sizeof sum);                                       \
-    sum += at.one.late ? __builtin_shufflevector(v, v, 3, 0, 1, 2) : v;       \
-    std::memcpy(row, &sum, sizeof sum);                                       \
-  }                                                                           \
-  INLINE auto lanes_in_use(int count, int) {                                  \
-    return Lanes{0, 1, 2, 3} < static_cast<double>(count);                    \
-  }                                                                           \
-  INLINE bool all_above(const Lanes& v, double least) {                       \
-    return v[0] > least && v[1] > least && v[2] > least && v[3] > least;      \
+#define CONDYLE_ONE_RUN                                                                   \
+  constexpr int wide = NetRuns::lanes;                                                    \
+  typedef double Lanes __attribute__((vector_size(wide * sizeof(double))));               \
+  INLINE Lanes gathered(const double* from, const double*) {                              \
+    Lanes v;                                                                              \
+    std::memcpy(&v, from, sizeof v);                                                      \
+    return v;                                                                             \
+  }                                                                                       \
+  INLINE void add_to(double* to, double*, const Lanes& v) {                               \
+    Lanes sum;                                                                            \
+    std::memcpy(&sum, to, sizeof sum);                                                    \
+    sum += v;                                                                             \
+    std::memcpy(to, &sum, sizeof sum);                                                    \
+  }                                                                                       \
+  INLINE Lanes next(const Lanes& v) { return __builtin_shufflevector(v, v, 1, 2, 3, 0); } \
+  INLINE Lanes back(const Lanes& v) { return __builtin_shufflevector(v, v, 3, 0, 1, 2); } \
+  INLINE auto lanes_in_use(int count, int) {                                              \
+    return Lanes{0, 1, 2, 3} < static_cast<double>(count);                                \
+  }                                                                                       \
+  INLINE bool all_above(const Lanes& v, double least) {                                   \
+    return v[0] > least && v[1] > least && v[2] > least && v[3] > least;                  \
   }
 
 namespace any_processor {
@@ -154,25 +196,16 @@ INLINE Lanes inverse_root_of_floats(const Lanes& v) {
 namespace avx512 {
 constexpr int wide = 2 * NetRuns::lanes;
 typedef __m512d Lanes;
-struct Place {
-  NetRuns::Place first, second;
-};
-INLINE Lanes gathered(const double* row, const Place& at) {
-  return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(row + at.first.first)),
-                            _mm256_loadu_pd(row + at.second.first), 1);
+INLINE Lanes gathered(const double* first, const double* second) {
+  return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(first)), _mm256_loadu_pd(second),
+                            1);
 }
-INLINE void scatter(double* row, const Place& at, const Lanes& v) {
-  alignas(64) static constexpr long long turned[4][8] = {{0, 1, 2, 3, 4, 5, 6, 7},
-                                                         {3, 0, 1, 2, 4, 5, 6, 7},
-                                                         {0, 1, 2, 3, 7, 4, 5, 6},
-                                                         {3, 0, 1, 2, 7, 4, 5, 6}};
-  const Lanes placed =
-      _mm512_permutexvar_pd(_mm512_load_si512(turned[at.first.late + 2 * at.second.late]), v);
-  double* first = row + (at.first.first - at.first.late);
-  double* second = row + (at.second.first - at.second.late);
-  _mm256_storeu_pd(first, _mm256_loadu_pd(first) + _mm512_castpd512_pd256(placed));
-  _mm256_storeu_pd(second, _mm256_loadu_pd(second) + _mm512_extractf64x4_pd(placed, 1));
+INLINE void add_to(double* first, double* second, const Lanes& v) {
+  _mm256_storeu_pd(first, _mm256_loadu_pd(first) + _mm512_castpd512_pd256(v));
+  _mm256_storeu_pd(second, _mm256_loadu_pd(second) + _mm512_extractf64x4_pd(v, 1));
 }
+INLINE Lanes next(const Lanes& v) { return __builtin_shufflevector(v, v, 1, 2, 3, 0, 5, 6, 7, 4); }
+INLINE Lanes back(const Lanes& v) { return __builtin_shufflevector(v, v, 3, 0, 1, 2, 7, 4, 5, 6); }
 INLINE auto lanes_in_use(int first, int second) {
   const Lanes lane{0, 1, 2, 3, 0, 1, 2, 3};
   const double a = first, b = second;

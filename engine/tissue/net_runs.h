@@ -8,33 +8,56 @@ namespace condyle {
 
 struct SpringPrismNet;
 
-/// The springs and prisms of a net four by four, as the processor takes them: a run is up to four
-/// that follow each other in the net and whose nodes do so too (nodes a, a + 1, ... against b, b +
-/// 1, ...), as those of one edge of a layered net. Then places and forces are read and written in
-/// one go, and no two lanes write to one node.
+/// The springs and prisms of a net as the processor takes them, four at a time. Nodes that follow
+/// each other (a, a + 1, ...) are read and written in one go; those of a layered net's columns once
+/// for all springs of an edge, and once for all prisms between three columns.
 struct NetRuns {
   static constexpr int lanes = 4;
   static constexpr std::size_t align = 4;  // the numbers of runs are multiples of it
   explicit NetRuns(const SpringPrismNet& net);
 
-  /// The first of the nodes that stand at one end of a run. Where it is `late`, forces are added
-  /// from the node before it on, the last lane's going nowhere: then the nodes of a column are
-  /// written to at one place, which the processor's stores want.
-  struct Place {
-    int first = 0;
-    int late = 0;
+  /// Up to ten springs between two columns: of lane i, `level` joins a + i and b + i, `rising` a +
+  /// i and b + i + 1, `falling` a + i + 1 and b + i.
+  struct Edge {
+    int a, b;
+    enum Way { level, rising, falling, ways };
   };
-  struct Springs {
-    Place a, b;
+  /// Up to three springs within a column: of a + i and a + i + 1.
+  struct Post {
+    int a;
   };
-  struct Prisms {
-    std::array<Place, 6> corner;
+  /// Up to four springs of a + i and b + i.
+  struct Run {
+    int a, b;
+  };
+  std::vector<Edge> edges;
+  std::vector<Post> posts;
+  std::vector<Run> runs;  // all other springs
+
+  /// Up to three prisms between columns: of lane i, corner k and k + 3 are at[k] + i and the next.
+  struct Stack {
+    std::array<int, 3> at;
     int count;  // lanes in use
   };
-  std::vector<Springs> springs;
-  std::vector<Prisms> prisms;
-  // `lanes` of each run; those not in use have no stiffness, no weight.
-  std::vector<double> rest_length, stiffness, rest_volume, volume_weight;
+  struct Prisms {
+    std::array<int, 6> at;
+    int count;
+  };
+  std::vector<Stack> stacks;
+  std::vector<Prisms> prisms;  // all others
+
+  /// First lane of a way of an edge, of a post, of a run. The ways of two edges stand in turn.
+  static std::size_t lane(std::size_t edge, Edge::Way way) {
+    return (edge / 2 * 2 * Edge::ways + way * 2 + edge % 2) * lanes;
+  }
+  std::size_t lane_of_post(std::size_t post) const {
+    return (edges.size() * Edge::ways + post) * lanes;
+  }
+  std::size_t lane_of_run(std::size_t run) const { return lane_of_post(posts.size() + run); }
+  // Of each lane; those not in use have no stiffness.
+  std::vector<double> rest_length, stiffness;
+  // `lanes` of each stack, then of the other prisms; those not in use have no weight.
+  std::vector<double> rest_volume, volume_weight;
 };
 
 /// Three rows of numbers, one for each axis, followed by NetRuns::lanes more.
@@ -42,26 +65,23 @@ struct AxisRows {
   double *x, *y, *z;
 };
 
-/// Sums over runs [first, last) of a net, both even; see SpringPrismEnergy. They use the widest
-/// vectors that the processor has and give the same bits on each that can fuse products and sums.
+/// Sums over half 0 or 1 of a net's runs; see SpringPrismEnergy. They use the widest vectors that
+/// the processor has and give the same bits on each that can fuse products and sums.
 struct RunKernels {
-  struct Range {
-    std::size_t first, last;
-  };
   /// sum k (l - l0)^2; adds its gradient to `gradient` if that has rows; keeps 1 / l of each lane.
-  double (*springs)(const NetRuns& net, Range runs, double compression_share, const AxisRows& x,
+  double (*springs)(const NetRuns& net, int half, double compression_share, const AxisRows& x,
                     const AxisRows& gradient, double* inverse_length);
   /// sum w v0^2 law(v / v0) and `scale` times its gradient; infinite where a prism has less than a
   /// thousandth of its volume.
-  double (*prisms)(const NetRuns& net, Range runs, double barrier_share, double barrier_weight,
+  double (*prisms)(const NetRuns& net, int half, double barrier_share, double barrier_weight,
                    const AxisRows& x, double scale, const AxisRows& gradient);
   /// Second derivatives along d: all, and without the parts that may be negative.
   struct Bend {
     double exact, gauss_newton;
   };
-  Bend (*springs_bend)(const NetRuns& net, Range runs, double compression_share, const AxisRows& x,
+  Bend (*springs_bend)(const NetRuns& net, int half, double compression_share, const AxisRows& x,
                        const AxisRows& d, const double* inverse_length);
-  Bend (*prisms_bend)(const NetRuns& net, Range runs, double barrier_share, double barrier_weight,
+  Bend (*prisms_bend)(const NetRuns& net, int half, double barrier_share, double barrier_weight,
                       const AxisRows& x, const AxisRows& d);
 };
 

@@ -54,7 +54,9 @@ VolumeLaw volume_law(double j, double barrier_share, double barrier_weight) {
   return law;
 }
 
-using Range = RunKernels::Range;
+struct Range {
+  std::size_t first, last;
+};
 Range share(std::size_t count, int chunk, int chunks) {
   return {count * chunk / chunks, count * (chunk + 1) / chunks};
 }
@@ -100,7 +102,7 @@ SpringPrismEnergy::SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& 
   x_.assign(size, 0.0);
   d_.assign(size, 0.0);
   for (auto& gradient : gradient_) gradient.resize(size);
-  inverse_length_.resize(runs_->springs.size() * NetRuns::lanes);
+  inverse_length_.resize(runs_->rest_length.size());
 }
 
 AxisRows SpringPrismEnergy::rows(Rows& of) const {
@@ -130,8 +132,8 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, bool with_grad
     slope.y[node] += force.y();
     slope.z[node] += force.z();
   };
-  double spring_energy = kernels.springs(*runs_, share(runs_->springs.size(), chunk, chunks_),
-                                         net_.compression_share, at, slope, inverse_length_.data());
+  double spring_energy =
+      kernels.springs(*runs_, chunk, net_.compression_share, at, slope, inverse_length_.data());
   const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);
   for (std::size_t i = anchors.first; i < anchors.last; ++i) {
     const int node = net_.anchor_node[i];
@@ -155,9 +157,8 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, bool with_grad
   }
   // Springs and volumes share the gradient: the volumes' part is scaled to the springs' weight.
   const double lambda = net_.lambda, volume_scale = (1 - lambda) / lambda;
-  const double volume_energy =
-      kernels.prisms(*runs_, share(runs_->prisms.size(), chunk, chunks_), net_.barrier_share,
-                     net_.barrier_weight, at, volume_scale, slope);
+  const double volume_energy = kernels.prisms(*runs_, chunk, net_.barrier_share,
+                                              net_.barrier_weight, at, volume_scale, slope);
   return lambda * (spring_energy + volume_scale * volume_energy);
 }
 
@@ -188,10 +189,9 @@ Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& 
   const RunKernels& kernels = run_kernels();
   const AxisRows at = rows(x_), way = rows(d_);
   const auto springs =
-      kernels.springs_bend(*runs_, share(runs_->springs.size(), chunk, chunks_),
-                           net_.compression_share, at, way, inverse_length_.data());
-  const auto prisms = kernels.prisms_bend(*runs_, share(runs_->prisms.size(), chunk, chunks_),
-                                          net_.barrier_share, net_.barrier_weight, at, way);
+      kernels.springs_bend(*runs_, chunk, net_.compression_share, at, way, inverse_length_.data());
+  const auto prisms =
+      kernels.prisms_bend(*runs_, chunk, net_.barrier_share, net_.barrier_weight, at, way);
   double linear = 0;  // parts whose curvature is exact and never negative
   const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);
   for (std::size_t i = anchors.first; i < anchors.last; ++i)
@@ -209,7 +209,6 @@ Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& 
 }
 
 Objective::Curvature SpringPrismEnergy::curvature(const Nodes& x, const Nodes& d) {
-  set_rows(x, x_);
   set_rows(d, d_);
   std::array<Curvature, chunks_> parts;
   parallel_for(chunks_, threads_,
