@@ -136,8 +136,9 @@ NetRuns::NetRuns(const SpringPrismNet& net) {
     for (const Group& group : *of)
       for (int i = 0; i < lanes; ++i) {
         const bool used = i < group.count;
-        rest_volume.push_back(used ? net.rest_volume[group.first + i] : 1.0);
-        volume_weight.push_back(used ? net.volume_weight[group.first + i] : 0.0);
+        const double rest = used ? net.rest_volume[group.first + i] : 0.0;
+        inverse_volume.push_back(used ? 1 / rest : 0.0);
+        volume_energy.push_back(used ? net.volume_weight[group.first + i] * rest * rest : 0.0);
       }
 }
 

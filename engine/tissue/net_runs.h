@@ -56,8 +56,8 @@ struct NetRuns {
   std::size_t lane_of_run(std::size_t run) const { return lane_of_post(posts.size() + run); }
   // Of each lane; those not in use have no stiffness.
   std::vector<double> rest_length, stiffness;
-  // `lanes` of each stack, then of the other prisms; those not in use have no weight.
-  std::vector<double> rest_volume, volume_weight;
+  // `lanes` of each stack, then of the other prisms: 1 / v0 and w v0^2; those not in use have none.
+  std::vector<double> inverse_volume, volume_energy;
 };
 
 /// Three rows of numbers, one for each axis, followed by NetRuns::lanes more.
