@@ -153,18 +153,22 @@ ViewRect Panels::Drawing::key() {
 }
 
 void Panels::Drawing::pointed() {
-  if (input.pointed.empty()) return;
+  if (!input.pointed.empty()) beside_mouse(input.pointed);
+}
+
+void Panels::Drawing::beside_mouse(const std::string& words) {
   const Theme& theme = panels.theme_;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const float pad = pen.px(6), high = theme.regular->FontSize + 2 * pad;
-  const float wide = text_width(theme.regular, input.pointed) + 2 * pad;
+  const float wide = text_width(theme.regular, words) + 2 * pad;
   const ViewRect& r = layout.view;
   const float x = std::min(mouse.x + pen.px(14), static_cast<float>(r.x + r.width) - wide);
   const float y = std::max(mouse.y - pen.px(10) - high, static_cast<float>(r.y));
+  panels.items_.push_back({"beside-mouse", "", {x, y, wide, high}, words});
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.AddRectFilled({x, y}, {x + wide, y + high}, palette().floating, pen.px(4));
   list.AddText(theme.regular, theme.regular->FontSize, {std::round(x + pad), std::round(y + pad)},
-               palette().text, input.pointed.c_str());
+               palette().text, words.c_str());
 }
 
 }  // namespace condyle

@@ -78,6 +78,19 @@ void Panels::Drawing::view_signs() {
     };
     line(theme.large, palette().text, "Condyle", centre.y - pen.px(110));
     line(theme.small, palette().text_dim, purpose, static_cast<float>(r.height) - pen.px(30));
+    if (!input.progress.empty()) return;
+    line(theme.regular, palette().text_dim, "Open a patient, or drop its folder or surfaces here",
+         centre.y - pen.px(50));
+    const float wide = pen.px(96), high = pen.px(32);
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, colour::rgb(0, 0));
+    begin_panel(pen, "start",
+                {std::round(centre.x - wide / 2), std::round(centre.y - pen.px(16)), wide, high});
+    ImGui::SetCursorPos({0, 0});
+    if (word_button(pen, "open-files", "Open", {wide, high}, true))
+      panels.run(Command::open_files, input.scene, view);
+    tooltip(pen, "Ctrl+O");
+    end_panel();
+    ImGui::PopStyleColor();
     return;
   }
 
