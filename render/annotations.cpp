@@ -76,7 +76,11 @@ void draw_letters(Image& image, const Lettering& words, const Inks& inks, const 
                            : axis.letter == 'A' || axis.letter == 'P' ? Vector3f(.10f, .68f, .52f)
                                                                       : Vector3f(.40f, .75f, .95f);
     const Vector2d end = cross + reach * Vector2d(axis.direction.x(), -axis.direction.y());
-    if (positive) stroke(image, cross, end, std::max(1.0, unit / 9), color);
+    if (positive) {
+      const double thick = std::max(1.0, unit / 9);
+      stroke(image, cross, end, 1.5 * thick, inks.border);
+      stroke(image, cross, end, thick, color);
+    }
     const double faint = axis.toward_eye < -0.9 ? 0 : positive ? 0.95 : 0.6;
     if (faint > 0)
       write_centred(image, words, inks, end.x(), end.y() + 0.35 * unit, unit * faint,
@@ -135,7 +139,7 @@ void keep_clear_of(Annotations& annotations, const PixelBox& pane, const Image& 
 void annotate(Image& image, const Lettering& words, const Camera& camera,
               const Annotations& annotations) {
   const double unit = unit_of(image);
-  const Inks& inks = annotations.on_light ? on_light : on_dark;
+  const Inks& inks = annotations.backdrop == Backdrop::light ? on_light : on_dark;
   if (annotations.letters) draw_letters(image, words, inks, camera, unit, annotations.taken_left);
   if (annotations.scale_bar) draw_bar(image, words, inks, camera, unit);
   const double below = annotations.letters ? 3.2 * unit : 1.6 * unit;

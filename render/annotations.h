@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/backdrop.h"
 #include "render/camera.h"
 #include "render/image.h"
 #include "render/lettering.h"
@@ -38,9 +39,9 @@ EdgeLetters edge_letters(const Camera& camera);
 /// What is written on a finished picture.
 struct Annotations {
   bool scale_bar = false;
-  bool letters = false;   // at the edges, and a cross of axes in the upper right corner
-  bool on_light = false;  // dark letters for a light background
-  int taken_left = 0;     // of the left edge's middle, pixels: the letter stands beside it
+  bool letters = false;  // at the edges, and a cross of axes in the upper right corner
+  Backdrop backdrop = Backdrop::dark;
+  int taken_left = 0;  // of the left edge's middle, pixels: the letter stands beside it
   std::vector<std::string> caption = {};  // lines at the bottom, in the middle
 };
 

@@ -25,8 +25,8 @@ void DisplacementDrawing::clear(SceneRenderer& renderer) const {
   if (!name_.empty()) renderer.color_part(name_, {});
 }
 
-PixelBox DisplacementDrawing::add_legend_to(Image& image) const {
-  return add_legend(image, words_, colours_, displacement_remarks());
+PixelBox DisplacementDrawing::add_legend_to(Image& image, Backdrop backdrop) const {
+  return add_legend(image, words_, colours_, displacement_remarks(), backdrop);
 }
 
 }  // namespace condyle

@@ -29,7 +29,7 @@ class DisplacementDrawing {
   void color(SceneRenderer& renderer, const FrameState& frame) const;
   /// The face in its own colours again.
   void clear(SceneRenderer& renderer) const;
-  PixelBox add_legend_to(Image& image) const;
+  PixelBox add_legend_to(Image& image, Backdrop backdrop) const;
 
  private:
   ColourMap colours_ = displacement_map();

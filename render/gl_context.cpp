@@ -33,12 +33,6 @@ bool client_extension(const char* name) {
   return all && std::strstr(all, name);
 }
 
-/// Whether Mesa was asked to leave cards alone. It draws on one that is chosen as a device anyhow.
-bool no_card_wanted() {
-  const char* value = std::getenv("LIBGL_ALWAYS_SOFTWARE");
-  return value && *value && !std::strchr("0nNfF", *value);
-}
-
 /// Hardware devices, then the surfaceless platform, then software devices.
 std::vector<Candidate> candidates() {
   std::vector<Candidate> hardware, software;
@@ -54,6 +48,7 @@ std::vector<Candidate> candidates() {
                 : nullptr;
         const bool soft = about && std::strstr(about, "EGL_MESA_device_software");
         auto& list = soft ? software : hardware;
+        // Mesa draws on a card that is chosen as a device, whatever it was asked.
         if (!soft && no_card_wanted()) continue;
         list.push_back({EGL_PLATFORM_DEVICE_EXT, devices[i],
                         std::string(soft ? "software" : "hardware") + " device"});
@@ -82,6 +77,11 @@ std::string egl_error() {
 }
 
 }  // namespace
+
+bool no_card_wanted() {
+  const char* value = std::getenv("LIBGL_ALWAYS_SOFTWARE");
+  return value && *value && !std::strchr("0nNfF", *value);
+}
 
 struct OffscreenContext::State {
   EGLDisplay display = EGL_NO_DISPLAY;

@@ -5,6 +5,9 @@
 
 namespace condyle {
 
+/// Whether LIBGL_ALWAYS_SOFTWARE asks Mesa to leave graphics cards alone.
+bool no_card_wanted();
+
 /// An OpenGL 3.3 core context with no window and no display, through EGL: hardware devices first
 /// (none where LIBGL_ALWAYS_SOFTWARE is set), then the surfaceless platform, then software devices.
 /// Current on the thread that made it.

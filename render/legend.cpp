@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "render/paint.h"
+#include "render/pane_inks.h"
 
 namespace condyle {
 
@@ -63,15 +64,16 @@ void draw_legend(Image& image, const Lettering& words, const ColourMap& map,
 }
 
 PixelBox add_legend(Image& image, const Lettering& words, const ColourMap& map,
-                    const std::vector<std::string>& remarks) {
+                    const std::vector<std::string>& remarks, Backdrop backdrop) {
   const double scale = std::clamp(std::min(image.width / 1280.0, image.height / 720.0), 0.4, 8.0);
   const auto px = [&](double units) { return static_cast<int>(std::lround(units * scale)); };
   LegendPlace place;
   place.letters = 18 * scale;
   place.bar_width = px(26);
   place.bar_height = px(230);
-  place.ink = Eigen::Vector3f::Constant(0.95f);
-  place.faint = Eigen::Vector3f::Constant(0.80f);
+  const PaneInks inks = pane_inks(backdrop);
+  place.ink = inks.words;
+  place.faint = inks.faint;
   double wide = px(176);
   for (const auto& remark : remarks)
     wide = std::max(wide, words.width(remark, 0.85 * place.letters));
@@ -79,10 +81,9 @@ PixelBox add_legend(Image& image, const Lettering& words, const ColourMap& map,
   const int high = legend_height(place) + line * static_cast<int>(remarks.size());
   place.left = margin + pad;
   place.top = image.height - margin - pad - high;
-  // Dark, so that the white of contact shows.
   const PixelBox pane = {margin, place.top - pad, margin + 2 * pad + static_cast<int>(wide),
                          image.height - margin};
-  shade_box(image, pane, Eigen::Vector3f(0.09f, 0.10f, 0.12f), 0.82f);
+  shade_box(image, pane, inks.ground, inks.cover);
   draw_legend(image, words, map, place);
   double y = place.top + legend_height(place) + 0.9 * line;
   for (const auto& remark : remarks) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "render/backdrop.h"
 #include "render/colour_map.h"
 #include "render/image.h"
 #include "render/lettering.h"
@@ -25,9 +26,10 @@ int legend_height(const LegendPlace& place);
 void draw_legend(Image& image, const Lettering& words, const ColourMap& map,
                  const LegendPlace& place);
 
-/// The legend on a dark pane in the picture's lower left corner, sized by the picture, with remarks
+/// The legend on a pane in the picture's lower left corner, sized by the picture, with remarks
 /// under it. Without a font of the system the bar alone. gives: the pane.
 PixelBox add_legend(Image& image, const Lettering& words, const ColourMap& map,
-                    const std::vector<std::string>& remarks = {});
+                    const std::vector<std::string>& remarks = {},
+                    Backdrop backdrop = Backdrop::dark);
 
 }  // namespace condyle

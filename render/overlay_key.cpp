@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/pane_inks.h"
+
 namespace condyle {
 namespace {
 
@@ -50,22 +52,31 @@ Columns arranged(const Image& image, const Lettering& words, std::span<const Key
   return {};
 }
 
-void draw_mark(Image& image, const KeyEntry& entry, const PixelBox& box, double scale) {
+/// On light ground with the border that the lines themselves have there.
+void draw_mark(Image& image, const KeyEntry& entry, const PixelBox& box, double scale,
+               Backdrop backdrop) {
   const double middle = (box.y0 + box.y1) / 2.0, thick = 1.5 * scale;
   if (entry.mark == KeyEntry::Mark::sheet || entry.mark == KeyEntry::Mark::scale) {
     const int half = static_cast<int>(std::lround(6 * scale));
     for (int x = box.x0; x < box.x1; ++x)
       paint_box(image, {x, static_cast<int>(middle) - half, x + 1, static_cast<int>(middle) + half},
                 color_of(entry, (x - box.x0 + 0.5) / (box.x1 - box.x0)));
+    if (backdrop == Backdrop::light)
+      paint_frame(
+          image, {box.x0, static_cast<int>(middle) - half, box.x1, static_cast<int>(middle) + half},
+          pane_inks(backdrop).faint);
     return;
   }
   const Vector2d from(box.x0 + thick, middle), to(box.x1 - thick, middle);
-  const Eigen::Vector3f& color = entry.colors.front();
-  stroke(image, from, to, thick, color);
-  if (entry.mark == KeyEntry::Mark::path) stroke(image, to, to, 2.6 * thick, entry.colors.back());
-  if (entry.mark == KeyEntry::Mark::arrow)
-    for (const double side : {-1.0, 1.0})
-      stroke(image, to, to + Vector2d(-5 * thick, side * 3 * thick), thick, color);
+  const auto draw = [&](double wider, const Eigen::Vector3f& line, const Eigen::Vector3f& dot) {
+    stroke(image, from, to, thick + wider, line);
+    if (entry.mark == KeyEntry::Mark::path) stroke(image, to, to, 2.6 * thick + wider, dot);
+    if (entry.mark == KeyEntry::Mark::arrow)
+      for (const double side : {-1.0, 1.0})
+        stroke(image, to, to + Vector2d(-5 * thick, side * 3 * thick), thick + wider, line);
+  };
+  if (backdrop == Backdrop::light) draw(0.8 * scale, line_border, line_border);
+  draw(0, entry.colors.front(), entry.colors.back());
 }
 
 }  // namespace
@@ -80,7 +91,8 @@ Eigen::Vector3f color_of(const KeyEntry& entry, double share) {
   return entry.colors[before] + part * (entry.colors[after] - entry.colors[before]);
 }
 
-PixelBox add_key(Image& image, const Lettering& words, std::span<const KeyEntry> key) {
+PixelBox add_key(Image& image, const Lettering& words, std::span<const KeyEntry> key,
+                 Backdrop backdrop) {
   if (key.empty() || !words.has_font()) return {0, 0, 0, 0};
   const Columns columns = arranged(image, words, key);
   if (columns.rows == 0) return {0, 0, 0, 0};
@@ -89,7 +101,8 @@ PixelBox add_key(Image& image, const Lettering& words, std::span<const KeyEntry>
   const PixelBox pane = {px(margin_px), px(margin_px),
                          px(margin_px) + static_cast<int>(std::ceil(columns.width())),
                          px(margin_px) + static_cast<int>(std::ceil(columns.height()))};
-  shade_box(image, pane, Eigen::Vector3f(0.09f, 0.10f, 0.12f), 0.82f);
+  const PaneInks inks = pane_inks(backdrop);
+  shade_box(image, pane, inks.ground, inks.cover);
   double left = pane.x0 + pad_px * scale;
   for (std::size_t i = 0; i < key.size(); ++i) {
     const std::size_t row = i % static_cast<std::size_t>(columns.rows);
@@ -100,9 +113,9 @@ PixelBox add_key(Image& image, const Lettering& words, std::span<const KeyEntry>
     const PixelBox mark = {static_cast<int>(std::lround(left)), static_cast<int>(std::lround(top)),
                            static_cast<int>(std::lround(left + mark_px * scale)),
                            static_cast<int>(std::lround(top + row_px * scale))};
-    draw_mark(image, key[i], mark, scale);
+    draw_mark(image, key[i], mark, scale, backdrop);
     words.write(image, left + (mark_px + gap_px) * scale, top + 0.74 * row_px * scale,
-                letters_px * scale, key[i].words, Eigen::Vector3f::Constant(0.95f));
+                letters_px * scale, key[i].words, inks.words);
   }
   return pane;
 }

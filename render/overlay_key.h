@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/backdrop.h"
 #include "render/image.h"
 #include "render/lettering.h"
 #include "render/paint.h"
@@ -24,9 +25,10 @@ struct KeyEntry {
 /// Colour at a share of the mark's width.
 Eigen::Vector3f color_of(const KeyEntry& entry, double share);
 
-/// The key on a dark pane in the picture's upper left corner, sized by the picture; above the
+/// The key on a pane in the picture's upper left corner, sized by the picture; above the
 /// legend of a map. gives: the pane; an empty one where there is nothing to tell, no font or no
 /// room.
-PixelBox add_key(Image& image, const Lettering& words, std::span<const KeyEntry> key);
+PixelBox add_key(Image& image, const Lettering& words, std::span<const KeyEntry> key,
+                 Backdrop backdrop = Backdrop::dark);
 
 }  // namespace condyle

@@ -4,6 +4,13 @@
 #include <cmath>
 
 namespace condyle {
+namespace {
+
+Eigen::Vector3f divider_of(Backdrop backdrop) {
+  return Eigen::Vector3f::Constant(backdrop == Backdrop::light ? 0.25f : 0.93f);
+}
+
+}  // namespace
 
 void lay_over(std::uint8_t* pixel, const Eigen::Vector3f& color, float cover) {
   const float below = (1 - cover) * static_cast<float>(pixel[3]) / 255, all = cover + below;
@@ -47,7 +54,7 @@ void stroke(Image& image, const Eigen::Vector2d& from, const Eigen::Vector2d& to
     }
 }
 
-Image wiped(const Image& left, const Image& right, double at) {
+Image wiped(const Image& left, const Image& right, double at, Backdrop backdrop) {
   Image image = right;
   const int border = static_cast<int>(std::lround(std::clamp(at, 0.0, 1.0) * image.width));
   for (int y = 0; y < image.height; ++y) {
@@ -55,11 +62,11 @@ Image wiped(const Image& left, const Image& right, double at) {
     std::copy_n(&left.rgba[row], 4 * static_cast<std::size_t>(border), &image.rgba[row]);
   }
   const int half = std::max(1, image.height / 720);
-  paint_box(image, {border - half, 0, border + half, image.height}, {0.93f, 0.93f, 0.93f});
+  paint_box(image, {border - half, 0, border + half, image.height}, divider_of(backdrop));
   return image;
 }
 
-Image beside(std::span<const Image> images) {
+Image beside(std::span<const Image> images, Backdrop backdrop) {
   Image whole;
   const int width = images.front().width, count = static_cast<int>(images.size());
   whole.width = count * width;
@@ -71,7 +78,7 @@ Image beside(std::span<const Image> images) {
       std::copy_n(&images[i].rgba[std::size_t{4} * y * width], std::size_t{4} * width,
                   &whole.rgba[std::size_t{4} * (std::size_t{1} * y * whole.width + i * width)]);
   for (int i = 1; i < count; ++i)
-    paint_box(whole, {i * width - half, 0, i * width + half, whole.height}, {0.93f, 0.93f, 0.93f});
+    paint_box(whole, {i * width - half, 0, i * width + half, whole.height}, divider_of(backdrop));
   return whole;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "render/backdrop.h"
 #include "render/image.h"
 
 namespace condyle {
@@ -28,11 +29,11 @@ void paint_frame(Image& image, const PixelBox& box, const Eigen::Vector3f& color
 void stroke(Image& image, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double radius,
             const Eigen::Vector3f& color);
 
-/// Left of `at` (share of the width) the one, right of it the other, with a light line between
-/// them. Both of one size.
-Image wiped(const Image& left, const Image& right, double at);
+/// Left of `at` (share of the width) the one, right of it the other, with a line between them that
+/// is seen on the backdrop. Both of one size.
+Image wiped(const Image& left, const Image& right, double at, Backdrop backdrop = Backdrop::dark);
 
-/// From left to right, with a light line between them; all of one size.
-Image beside(std::span<const Image> images);
+/// From left to right, with such a line between them; all of one size.
+Image beside(std::span<const Image> images, Backdrop backdrop = Backdrop::dark);
 
 }  // namespace condyle

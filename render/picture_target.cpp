@@ -19,7 +19,7 @@ void PictureTarget::fit(int width, int height, int samples, bool smooth) {
   if (drawn_->samples() > 0 && !finished_) finished_.emplace(width, height, 1);
 }
 
-void PictureTarget::read(const DrawnBox& drawn, Backdrop backdrop, bool from_the_top,
+void PictureTarget::read(const DrawnBox& drawn, std::optional<Backdrop> backdrop, bool from_the_top,
                          std::vector<std::uint8_t>& rgba) {
   const int width = drawn_->width(), height = drawn_->height();
   const DrawnBox all = {0, 0, width, height};
@@ -34,11 +34,11 @@ void PictureTarget::read(const DrawnBox& drawn, Backdrop backdrop, bool from_the
     return rgba.data() + bytes(width) * static_cast<std::size_t>(from_the_top ? height - 1 - y : y);
   };
   rgba.resize(bytes(width) * static_cast<std::size_t>(height));
-  if (box != all && backdrop == Backdrop::none) {
+  if (box != all && !backdrop) {
     std::fill(rgba.begin(), rgba.end(), std::uint8_t{0});
   } else if (box != all) {
     if (!background_) background_.emplace();
-    const auto& empty = background_->picture(width, height, backdrop);
+    const auto& empty = background_->picture(width, height, *backdrop);
     for (int y = 0; y < height; ++y)
       std::memcpy(row(y), empty.data() + bytes(width) * static_cast<std::size_t>(y), bytes(width));
   }
@@ -47,7 +47,7 @@ void PictureTarget::read(const DrawnBox& drawn, Backdrop backdrop, bool from_the
   read_.resize(bytes(box.width()) * static_cast<std::size_t>(box.height()));
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
   glReadPixels(box.x0, box.y0, box.width(), box.height(), GL_RGBA, GL_UNSIGNED_BYTE, read_.data());
-  if (backdrop != Backdrop::none)
+  if (backdrop)
     for (std::size_t i = 3; i < read_.size(); i += 4) read_[i] = 255;
   const std::vector<std::uint8_t>* pixels = &read_;
   if (smooth_) {

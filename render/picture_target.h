@@ -25,8 +25,8 @@ class PictureTarget {
   const Framebuffer& drawn() const { return *drawn_; }
 
   /// The finished picture, RGBA. drawn: what was drawn into, `drawn_air` wider than all but the
-  /// background; around it is the backdrop. Opaque, unless that is none.
-  void read(const DrawnBox& drawn, Backdrop backdrop, bool from_the_top,
+  /// background; around it is the backdrop. Opaque, unless there is none.
+  void read(const DrawnBox& drawn, std::optional<Backdrop> backdrop, bool from_the_top,
             std::vector<std::uint8_t>& rgba);
 
  private:

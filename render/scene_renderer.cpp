@@ -435,7 +435,7 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   if (mouth) surfaces.push_back(*mouth);
   s.passes.opaque(surfaces, view);
   s.overlays.caps(items, view, mouth ? &*s.mouth : nullptr);
-  if (settings.backdrop != Backdrop::none) s.passes.background(view, settings.backdrop);
+  if (!settings.transparent) s.passes.background(view, settings.backdrop);
   if (settings.contacts) s.passes.contacts(s.contacts, view, !view.opaque_face);
   for (const auto& item : items)
     if (settings.ghost && item.role() != Role::face && s.leaves_ghost(item, *settings.ghost))
@@ -474,10 +474,11 @@ Image SceneRenderer::picture(const Camera& camera, const PictureSettings& settin
   s.target.drawn().bind();
   draw(camera, drawn, box);
   Image image{drawn.width, drawn.height, {}};
-  s.target.read(box, settings.backdrop, true, image.rgba);
+  const auto behind = settings.transparent ? std::nullopt : std::optional(settings.backdrop);
+  s.target.read(box, behind, true, image.rgba);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(before));
   if (finer > 1) image = averaged(image, finer);
-  if (settings.backdrop != Backdrop::none) return image;
+  if (!settings.transparent) return image;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     const auto alpha = image.rgba[i + 3];
     if (alpha == 0 || alpha == 255) continue;

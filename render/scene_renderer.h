@@ -27,6 +27,7 @@ struct PictureSettings {
   bool coarse = false;   // shapes within 0.2 mm, for pictures that must come fast
   bool contacts = true;  // mark contact points
   Backdrop backdrop = Backdrop::dark;
+  bool transparent = false;                    // nothing where the backdrop would be seen
   double skin_opacity = 1.0;                   // 0 hides the face
   std::map<std::string, double> part_opacity;  // by part name; missing = 1; 0 hides
   std::optional<ClippingPlane> clip = {};

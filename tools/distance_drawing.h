@@ -18,8 +18,8 @@ class DistanceDrawing {
                   SceneRenderer& renderer, ColourMap colours);
 
   void color(SceneRenderer& renderer, const FrameState& frame) const;
-  PixelBox add_legend_to(Image& image) const {
-    return add_legend(image, words_, colours_, remarks_);
+  PixelBox add_legend_to(Image& image, Backdrop backdrop) const {
+    return add_legend(image, words_, colours_, remarks_, backdrop);
   }
 
  private:

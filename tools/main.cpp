@@ -62,6 +62,9 @@ int run_program(int argc, char** argv) {
   auto* view_command =
       add_command(app, "view", "Open the window", "condyle view mycase --motion opening");
   add_motion(view_command, view.motion, false);
+  view_command->get_option("CASE")->description(
+      "Folder with case.json, or of loose surfaces: the window asks what each is (default: the "
+      "built-in patient)");
   add_contact(view_command, view.motion);
   add_respect_contact(view_command, view.motion);
   add_tissue(view_command, view.motion);

@@ -153,8 +153,8 @@ PicturePlan parse(const PictureOptions& options, const Case* patient) {
     settings.mapped_up_to = patch_mm;
   }
   if (options.light) settings.backdrop = Backdrop::light;
-  plan.annotations.on_light = options.light;
-  if (options.transparent) settings.backdrop = Backdrop::none;
+  plan.annotations.backdrop = settings.backdrop;
+  settings.transparent = options.transparent;
   settings.samples = options.edges == "msaa4" ? 4 : 1;
   settings.smooth_edges = options.edges == "fxaa";
   settings.supersampling = options.supersample;

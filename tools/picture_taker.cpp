@@ -184,12 +184,14 @@ Image PictureTaker::picture(const View& view, const Camera& camera, const Shot& 
   if (plan_.wipe) {
     const Overlays still = overlays_of(rest_, false);
     image = wiped(drawn(view, camera, {shot.renderer, shot.desk, rest_, still}, true), image,
-                  *plan_.wipe);
+                  *plan_.wipe, plan_.settings.backdrop);
   }
-  add_key(image, shot.desk.words, shot.overlays.key);
-  if (shot.desk.distances) keep_clear_of(notes, shot.desk.distances->add_legend_to(image), image);
+  add_key(image, shot.desk.words, shot.overlays.key, plan_.settings.backdrop);
+  if (shot.desk.distances)
+    keep_clear_of(notes, shot.desk.distances->add_legend_to(image, plan_.settings.backdrop), image);
   if (shot.desk.displacement)
-    keep_clear_of(notes, shot.desk.displacement->add_legend_to(image), image);
+    keep_clear_of(notes, shot.desk.displacement->add_legend_to(image, plan_.settings.backdrop),
+                  image);
   return image;
 }
 
@@ -201,11 +203,14 @@ Image PictureTaker::before_after(const View& view, const Camera& camera, const S
     images[i] =
         drawn(view, camera, moved ? shot : Shot{shot.renderer, shot.desk, rest_, still}, mapped);
     auto notes = plan_.annotations;
-    if (i == 0) add_key(images[i], shot.desk.words, shot.overlays.key);
-    if (mapped) keep_clear_of(notes, shot.desk.displacement->add_legend_to(images[i]), images[i]);
+    if (i == 0) add_key(images[i], shot.desk.words, shot.overlays.key, plan_.settings.backdrop);
+    if (mapped)
+      keep_clear_of(notes,
+                    shot.desk.displacement->add_legend_to(images[i], plan_.settings.backdrop),
+                    images[i]);
     annotate(images[i], shot.desk.words, camera, notes);
   }
-  return beside(images);
+  return beside(images, plan_.settings.backdrop);
 }
 
 Image PictureTaker::finished(const View& view, int frame, const Shot& shot) const {
@@ -216,7 +221,7 @@ Image PictureTaker::finished(const View& view, int frame, const Shot& shot) cons
   Image image;
   if (plan_.before_after) {
     image = before_after(view, camera, shot);
-    notes = {.on_light = notes.on_light, .caption = notes.caption};
+    notes = {.backdrop = notes.backdrop, .caption = notes.caption};
   } else {
     image = picture(view, camera, shot, notes);
   }

@@ -28,7 +28,7 @@ int run_view(const ViewOptions& options, const CommonOptions& common) {
   kept.begin(window.arrangement());
   if (!kept.trouble().empty()) window.report_error(kept.trouble());
   ViewSession session(window, options, common);
-  session.open_patient(options.motion.patient);
+  session.open(options.motion.patient);
   ViewStateFile state(options.state_file);
   while (window.open()) {
     session.turn();

@@ -57,8 +57,8 @@ PicturePlan plan_of(const ViewRecording& subject) {
   settings.samples = wanted.edges == RecordEdges::msaa ? 4 : 1;
   settings.smooth_edges = wanted.edges == RecordEdges::fxaa;
   settings.supersampling = wanted.supersampling;
-  plan.annotations.on_light = settings.backdrop == Backdrop::light;
-  if (wanted.transparent) settings.backdrop = Backdrop::none;
+  settings.transparent = wanted.transparent;
+  plan.annotations.backdrop = settings.backdrop;
   plan.words = {{"picture", "as in the window"}};
   return plan;
 }

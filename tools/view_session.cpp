@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "render/window/part_names.h"
+#include "sim/case/landmark_names.h"
 #include "sim/phantom/phantom.h"
 #include "tools/distance_drawing.h"
 
@@ -47,7 +49,7 @@ void ViewSession::take_patient() {
   retire(moving_);
   retire(readying_);
   retire(plotting_);
-  retire(letting_go_);
+  drop_let_go(renewed ? "the patient was made anew" : "another patient was opened");
   retire(simulation_);
   retire(distances_);
   map_sent_ = coloured_ = false;
@@ -81,8 +83,19 @@ void ViewSession::take_patient() {
     show_scene();
     window_.show(patient_->at_rest);
   }
-  if (!patient_->trouble.empty()) window_.report_error(in_window_words(patient_->trouble));
+  if (!patient_->trouble.empty()) window_.report_error(in_words(patient_->trouble));
   want_motion(asked_);
+}
+
+std::string ViewSession::in_words(std::string sentence) const {
+  std::vector<std::string> names = landmark_names();
+  for (const Role role : {Role::upper_teeth, Role::lower_teeth, Role::upper_gums, Role::lower_gums})
+    names.emplace_back(role_name(role));
+  if (patient_) {
+    for (const Part& part : patient_->scene.patient.parts) names.push_back(part.name);
+    for (const auto& [name, at] : patient_->scene.patient.landmarks.points) names.push_back(name);
+  }
+  return with_readable_names(in_window_words(std::move(sentence)), names);
 }
 
 bool ViewSession::obeys_contact() const {
@@ -123,7 +136,7 @@ void ViewSession::show_scene() {
     shown_.excitations = motion_->excitations;
     shown_.notes.insert(shown_.notes.end(), motion.notes.begin(), motion.notes.end());
   }
-  for (std::string& note : shown_.notes) note = in_window_words(std::move(note));
+  for (std::string& note : shown_.notes) note = in_words(std::move(note));
   window_.update_scene(shown_);
 }
 

@@ -14,7 +14,7 @@
 #include "sim/dynamics/jaw_let_go.h"
 #include "sim/dynamics/let_go.h"
 #include "sim/simulator/live.h"
-#include "tools/background.h"
+#include "tools/background_work.h"
 #include "tools/view_motion.h"
 #include "tools/view_overlays.h"
 #include "tools/window_words.h"
@@ -29,6 +29,9 @@ class ViewSession {
 
   /// Loads the case in a folder, or the built-in patient when it is empty.
   void open_patient(const std::filesystem::path& folder);
+  /// Opens what is named as if it were dropped into the window; the built-in patient when it is
+  /// empty.
+  void open(const std::filesystem::path& path);
   /// One turn: what the person wants goes out, what is ready comes in, the picture is drawn.
   void turn();
 
@@ -53,8 +56,10 @@ class ViewSession {
   void let_jaw_go(std::size_t body);
   void let_fall();
   void end_fall();
-  void drop_overtaken_let_go();
-  bool in_the_same_hands(const Hands& then) const;
+  void hold_fall();
+  std::string name_of(const MovableBody& body) const;
+  void drop_let_go(std::string_view why);
+  std::string overtaken_by() const;
   void take_save();
   void carry_out(const wish::Open& wanted);
   void carry_out(const wish::Import& wanted);
@@ -71,25 +76,28 @@ class ViewSession {
   void simulate(const ViewState& view);  // view_live.cpp
   void show(MotionPictures pictures);
 
+  /// As the window says it, with names of the patient's parts and landmarks as people read them.
+  std::string in_words(std::string sentence) const;
   /// Runs a piece of work, its trouble told as a sentence.
   template <class Work>
   void guarded(const Work& work) {
     try {
       work();
     } catch (const std::exception& error) {
-      window_.report_error(in_window_words(error.what()));
+      window_.report_error(in_words(error.what()));
     }
   }
   template <class Result>
-  std::unique_ptr<Background<Result>> beside(std::function<Result(const Progress&)> work) const {
-    return std::make_unique<Background<Result>>(std::move(work), [] { Window::wake(); });
+  std::unique_ptr<BackgroundWork<Result>> beside(
+      std::function<Result(const Progress&)> work) const {
+    return std::make_unique<BackgroundWork<Result>>(std::move(work), [] { Window::wake(); });
   }
   /// Ends work that is not wanted any more without waiting for it.
   template <class Result>
-  void retire(std::unique_ptr<Background<Result>>& work) {
+  void retire(std::unique_ptr<BackgroundWork<Result>>& work) {
     if (!work) return;
     work->cancel();
-    end_with(std::shared_ptr<Background<Result>>(std::move(work)));
+    end_with(std::shared_ptr<BackgroundWork<Result>>(std::move(work)));
   }
   /// Takes apart what runs, or is large, on a thread of its own; the patient that it works on stays
   /// as long.
@@ -101,7 +109,7 @@ class ViewSession {
       std::shared_ptr<Thing> thing;  // goes first
     };
     auto retired = std::make_shared<Retired>(Retired{patient_, std::move(thing)});
-    end_with(std::make_shared<Background<bool>>(
+    end_with(std::make_shared<BackgroundWork<bool>>(
         [retired](const Progress&) {
           retired->thing.reset();
           retired->patient.reset();
@@ -110,7 +118,7 @@ class ViewSession {
         [] {}));
   }
   template <class Result>
-  void end_with(std::shared_ptr<Background<Result>> work) {
+  void end_with(std::shared_ptr<BackgroundWork<Result>> work) {
     ending_.push_back([work] { return work->done(); });
   }
 
@@ -118,15 +126,21 @@ class ViewSession {
     std::size_t body;
     Pose in_carrier;  // of a free part, at rest
     std::string words;
-    JawLetGo course;   // of a jaw
-    Hands hands = {};  // as they are left with it; others: a hand has it again
+    JawLetGo course;  // of a jaw
   };
-  /// What was let go, and what the hands and the person wanted then.
+  /// What was let go, and what the person wants of the patient meanwhile; otherwise it is
+  /// overtaken.
   struct Loosed {
-    bool free_part = false;
+    MovableBody body;
     std::string name;
     Hands hands;
     MotionChoice motion;
+    std::optional<double> opening_mm;
+    double time_s = 0;
+
+    static Loosed now(const MovableBody& body, std::string name, const ViewState& view) {
+      return {body, std::move(name), view.hands, view.motion, view.opening_mm, view.time_s};
+    }
   };
   /// A jaw that was let go and is on its way, as time runs.
   struct Falling {
@@ -173,14 +187,14 @@ class ViewSession {
   std::shared_ptr<PlotPost> plot_post_;
   std::shared_ptr<LiveDistances> distances_;
   std::shared_ptr<LiveSimulation> simulation_;
-  std::unique_ptr<Background<PatientPtr>> loading_;
-  std::unique_ptr<Background<MotionPtr>> moving_;
-  std::unique_ptr<Background<bool>> readying_;  // bones to slide
-  std::unique_ptr<Background<MotionPictures>> plotting_;
-  std::unique_ptr<Background<std::string>> recording_;
-  std::unique_ptr<Background<LetGoResult>> letting_go_;
-  Loosed loosed_;  // while it is being let go
-  std::unique_ptr<Background<Saved>> saving_;
+  std::unique_ptr<BackgroundWork<PatientPtr>> loading_;
+  std::unique_ptr<BackgroundWork<MotionPtr>> moving_;
+  std::unique_ptr<BackgroundWork<bool>> readying_;  // bones to slide
+  std::unique_ptr<BackgroundWork<MotionPictures>> plotting_;
+  std::unique_ptr<BackgroundWork<std::string>> recording_;
+  std::unique_ptr<BackgroundWork<LetGoResult>> letting_go_;
+  Loosed loosed_;  // while it is being let go, or falls
+  std::unique_ptr<BackgroundWork<Saved>> saving_;
 };
 
 }  // namespace condyle

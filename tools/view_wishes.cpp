@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
+#include "render/window/part_names.h"
 #include "sim/motion/measures.h"
 #include "tools/view_recording.h"
 #include "tools/view_session.h"
@@ -60,6 +61,15 @@ std::vector<fs::path> with_loose_surfaces(const std::vector<fs::path>& files) {
 }
 
 }  // namespace
+
+void ViewSession::open(const fs::path& path) {
+  if (path.empty()) return open_patient({});
+  guarded([&] { carry_out(wish::Open{{path}}); });
+}
+
+std::string ViewSession::name_of(const MovableBody& body) const {
+  return readable_name(patient_->scene.patient.parts[body.part].name);
+}
 
 void ViewSession::carry_out(const wish::Open& wanted) {
   if (wanted.files.empty()) return open_patient({});
@@ -133,20 +143,22 @@ void ViewSession::carry_out(const wish::StopRecording&) {
 
 void ViewSession::carry_out(const wish::Cancel&) {
   if (loading_) return retire(loading_);
-  if (!letting_go_) return;
-  retire(letting_go_);
-  window_.say(fmt::format("The {} is not let go: it stays where it is", loosed_.name));
+  drop_let_go("it stays where it is");
 }
 
 void ViewSession::carry_out(const wish::LetGo& wanted) {
   if (letting_go_ || !newest_ || wanted.body >= shown_.bodies.size()) return;
+  hold_fall();
   const MovableBody& body = shown_.bodies[wanted.body];
-  loosed_ = Loosed{body.free.has_value(), patient_->scene.patient.parts[body.part].name,
-                   window_.view().hands, window_.view().motion};
   if (!body.free) return let_jaw_go(wanted.body);
+  // All else stands still until it lies.
+  window_.change([&](ViewState& view) {
+    if (std::exchange(view.playing, false)) view.time_s = newest_->time_s;
+  });
+  loosed_ = Loosed::now(body, name_of(body), window_.view());
   letting_go_ =
-      beside<LetGoResult>([patient = patient_, body, number = wanted.body, frame = *newest_,
-                           threads = common_.threads](const Progress& progress) {
+      beside<LetGoResult>([patient = patient_, body, name = loosed_.name, number = wanted.body,
+                           frame = *newest_, threads = common_.threads](const Progress& progress) {
         const Case& of = patient->scene.patient;
         LetGoSettings settings;
         settings.push_N = push_toward_bone(frame, body.part);
@@ -157,8 +169,9 @@ void ViewSession::carry_out(const wish::LetGo& wanted) {
         const Pose now = pose_of(of.parts, body.part, settled.poses);
         return LetGoResult{number,
                            carrier_pose(body, frame.X_CM).inverse() * now,
-                           fmt::format("Lies still after {:.2f} s on {} places",
-                                       settled.rest.seconds, settled.contacts.size()),
+                           fmt::format("The {} lies still after {:.2f} s on {} place{}", name,
+                                       settled.rest.seconds, settled.contacts.size(),
+                                       settled.contacts.size() == 1 ? "" : "s"),
                            {}};
       });
 }
@@ -207,12 +220,11 @@ void ViewSession::let_jaw_go(std::size_t number) {
   const MovableBody& body = shown_.bodies[number];
   const BodyPoses from = newest_->poses();
   const Pose& X_CM = from.X_CM;
-  end_fall();
   const double time_s = window_.view().time_s;
   window_.change(
       [&](ViewState& view) { view.move(body, body.skull ? view.hands.X_RC(X_CM) : X_CM, X_CM); },
       true);
-  loosed_.hands = window_.view().hands;
+  loosed_ = Loosed::now(body, name_of(body), window_.view());
   letting_go_ = beside<LetGoResult>([patient = patient_, motion = motion_, number, time_s, from,
                                      options = options_.motion,
                                      threads = common_.threads](const Progress& progress) {
@@ -235,20 +247,31 @@ void ViewSession::let_jaw_go(std::size_t number) {
   });
 }
 
-/// What is edited meanwhile counts: the answer would be of what was wanted before.
-void ViewSession::drop_overtaken_let_go() {
-  if (!letting_go_) return;
+/// What the person has moved of the patient since something was let go, as words; empty for
+/// nothing.
+std::string ViewSession::overtaken_by() const {
   const ViewState& view = window_.view();
-  if (loosed_.free_part ? view.hands == loosed_.hands
-                        : in_the_same_hands(loosed_.hands) && view.motion == loosed_.motion)
-    return;
+  if (view.motion.spec != loosed_.motion.spec) return "another motion was chosen";
+  if (!(view.motion == loosed_.motion)) return "the motion was changed";
+  if (view.playing) return "the motion was played";
+  if (view.time_s != loosed_.time_s) return "the motion was moved to another time";
+  if (view.opening_mm != loosed_.opening_mm) return "the mouth was opened or closed";
+  if (!same(view.hands.of(loosed_.body), loosed_.hands.of(loosed_.body))) return "it was moved";
+  if (!view.hands.same_jaws(loosed_.hands)) return "the jaw was moved";
+  return view.hands == loosed_.hands ? "" : "another part was moved";
+}
+
+/// Ends the work on what is let go, and says why.
+void ViewSession::drop_let_go(std::string_view why) {
+  if (!letting_go_) return;
   retire(letting_go_);
-  window_.say(fmt::format("The {} is not let go: something was changed before it had come to rest",
-                          loosed_.name));
+  window_.say(fmt::format("The {} is not let go: {}", loosed_.name, why));
 }
 
 void ViewSession::take_let_go() {
-  drop_overtaken_let_go();
+  // What is edited meanwhile counts: the answer would be of what was wanted before.
+  if (const std::string why = letting_go_ ? overtaken_by() : ""; !why.empty())
+    drop_let_go(why + " before it had come to rest");
   if (!letting_go_ || !letting_go_->done()) return;
   const auto finished = std::move(letting_go_);
   guarded([&] {
@@ -275,7 +298,7 @@ void ViewSession::take_let_go() {
       view.hands.move(body, body.skull ? *view.hands.X_RM * end.inverse() : end, end);
       view.falling = true;
     });
-    result->hands = window_.view().hands;
+    loosed_.hands = window_.view().hands;
     falling_ = Falling{.of = std::move(*result),
                        .shown_s = std::move(shown_s),
                        .start = std::chrono::steady_clock::now(),
@@ -283,10 +306,13 @@ void ViewSession::take_let_go() {
   });
 }
 
-/// The jaw that was let go, where it is by now; a hand that takes it ends its way.
+/// The jaw that was let go, where it is by now; what moves the patient otherwise ends its way.
 void ViewSession::let_fall() {
   if (!falling_) return;
-  if (!in_the_same_hands(falling_->of.hands)) return end_fall();
+  if (const std::string why = overtaken_by(); !why.empty()) {
+    hold_fall();
+    return window_.say(fmt::format("The {} is on its way no more: {}", loosed_.name, why));
+  }
   const double now_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - falling_->start).count();
   const auto& times = falling_->shown_s;
@@ -303,10 +329,16 @@ void ViewSession::end_fall() {
   falling_.reset();
 }
 
-/// Whether nobody has taken the jaw or the skull since.
-bool ViewSession::in_the_same_hands(const Hands& then) const {
-  const ViewState& view = window_.view();
-  return view.hands.same_jaws(then) && !view.opening_mm && !view.playing;
+/// Ends it; a jaw that nobody has taken is wanted where it is by now.
+void ViewSession::hold_fall() {
+  const ViewState& now = window_.view();
+  if (falling_ && now.hands.same_jaws(loosed_.hands) && now.opening_mm == loosed_.opening_mm)
+    window_.change([&](ViewState& view) {
+      const Pose& X_CM = falling_->X_CM;
+      const MovableBody& body = loosed_.body;
+      view.hands.move(body, body.skull ? *view.hands.X_RM * X_CM.inverse() : X_CM, X_CM);
+    });
+  end_fall();
 }
 
 void ViewSession::take_save() {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/progress.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/tri_mesh.h"
 
@@ -44,7 +45,8 @@ class DistanceField {
  public:
   /// The mesh must be welded, with valid indices and finite coordinates. Same bits for any number
   /// of threads.
-  DistanceField(const TriMesh& mesh, const FieldSettings& settings, int threads = 1);
+  DistanceField(const TriMesh& mesh, const FieldSettings& settings, int threads = 1,
+                const Progress& progress = {});
 
   FieldSample at(const Eigen::Vector3d& p) const;
 
@@ -172,7 +174,8 @@ inline FieldSample DistanceField::at(const Eigen::Vector3d& p) const {
 /// The field kept in a cache folder under the hash of mesh and settings; made and put there when it
 /// is absent or damaged. A cache that cannot be written is no error.
 DistanceField kept_field(const std::filesystem::path& cache, const TriMesh& mesh,
-                         const FieldSettings& settings, int threads = 1);
+                         const FieldSettings& settings, int threads = 1,
+                         const Progress& progress = {});
 
 /// $XDG_CACHE_HOME/condyle, else ~/.cache/condyle; empty when neither is set.
 std::filesystem::path field_cache_folder();

@@ -60,13 +60,14 @@ class FieldBuilder {
     for (const FieldFace& face : faces_) planes_.emplace_back(face, center_);
   }
 
-  void run(int threads) {
+  void run(int threads, const Progress& progress) {
     int edge = 1;
     while (edge < *std::max_element(field_.size_.begin(), field_.size_.end())) edge *= 2;
     std::vector<Cube> cubes(1);
     cubes[0].faces.resize(faces_.size());
     for (std::size_t i = 0; i < faces_.size(); ++i) cubes[0].faces[i] = static_cast<int>(i);
     for (edge = std::max(edge, 2); edge > 1; edge /= 2) {
+      report(progress, "measuring the bone", 0);
       std::vector<std::vector<Cube>> parts(2 * cubes.size());
       parallel_for(parts.size(), threads,
                    [&](std::size_t i) { narrow(cubes[i / 2], edge / 2, i % 2 != 0, parts[i]); });
@@ -77,7 +78,13 @@ class FieldBuilder {
     field_.bricks_.resize(cubes.size());
     for (std::size_t i = 0; i < cubes.size(); ++i)
       field_.brick_[field_.slot(cubes[i].x, cubes[i].y, cubes[i].z)] = static_cast<int>(i);
-    parallel_for(cubes.size(), threads, [&](std::size_t i) { fill(cubes[i], field_.bricks_[i]); });
+    constexpr std::size_t at_once = 256;  // from one report of progress to the next
+    for (std::size_t first = 0; first < cubes.size(); first += at_once) {
+      report(progress, "measuring the bone",
+             static_cast<double>(first) / static_cast<double>(cubes.size()));
+      parallel_for(std::min(at_once, cubes.size() - first), threads,
+                   [&](std::size_t i) { fill(cubes[first + i], field_.bricks_[first + i]); });
+    }
   }
 
  private:
@@ -330,10 +337,11 @@ class FieldBuilder {
   float rounding_mm_ = 0;  // of the planes' bounds
 };
 
-DistanceField::DistanceField(const TriMesh& mesh, const FieldSettings& settings, int threads)
+DistanceField::DistanceField(const TriMesh& mesh, const FieldSettings& settings, int threads,
+                             const Progress& progress)
     : settings_(settings) {
   lay_out(mesh);
-  FieldBuilder(*this, mesh).run(threads);
+  FieldBuilder(*this, mesh).run(threads, progress);
   find_whole();
 }
 

@@ -105,7 +105,7 @@ std::optional<DistanceField> DistanceField::from_bytes(std::string_view bytes, s
 }
 
 DistanceField kept_field(const fs::path& cache, const TriMesh& mesh, const FieldSettings& settings,
-                         int threads) {
+                         int threads, const Progress& progress) {
   const std::uint64_t name = name_of(mesh, settings);
   char text[32];
   std::snprintf(text, sizeof text, "field-%016llx.bin", static_cast<unsigned long long>(name));
@@ -118,7 +118,7 @@ DistanceField kept_field(const fs::path& cache, const TriMesh& mesh, const Field
     } catch (const std::exception&) {
       // Unreadable: as good as none.
     }
-  DistanceField field(mesh, settings, threads);
+  DistanceField field(mesh, settings, threads, progress);
   if (!cache.empty()) try {
       make_folder(cache);
       write_file(file, field.to_bytes(name));

@@ -41,6 +41,35 @@ struct Search {
   }
 };
 
+/// `near`: the places that can be within the reach of a point of the ball.
+void around(const SurfaceSamples& samples, int index, const std::vector<Vector3d>& near,
+            double reach_mm, std::vector<int>& found) {
+  constexpr double rounding_mm = 1e-6;
+  const SurfaceSamples::Ball& ball = samples.balls[index];
+  const Vector3d center = ball.center.cast<double>();
+  const double radius = ball.radius + rounding_mm;
+  std::vector<Vector3d> kept;
+  for (const Vector3d& place : near) {
+    const double distance = (place - center).norm();
+    if (distance + radius < reach_mm) {
+      for (int i = ball.first; i < ball.first + ball.count; ++i) found.push_back(i);
+      return;
+    }
+    if (distance < reach_mm + radius) kept.push_back(place);
+  }
+  if (kept.empty()) return;
+  if (ball.right != 0) {
+    around(samples, index + 1, kept, reach_mm, found);
+    around(samples, ball.right, kept, reach_mm, found);
+    return;
+  }
+  for (int i = ball.first; i < ball.first + ball.count; ++i)
+    if (std::any_of(kept.begin(), kept.end(), [&](const Vector3d& place) {
+          return (samples.points[i] - place).squaredNorm() < reach_mm * reach_mm;
+        }))
+      found.push_back(i);
+}
+
 void lower(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS, int index,
            double& least) {
   const SurfaceSamples::Ball& ball = samples.balls[index];
@@ -60,6 +89,13 @@ void collect_near(const SurfaceSamples& samples, const DistanceField& field, con
                   double reach_mm, std::vector<NearSample>& found) {
   if (samples.balls.empty()) return;
   Search{samples, field, X_FS.R.toRotationMatrix(), X_FS.t, reach_mm, found}.ball(0);
+}
+
+std::vector<int> samples_around(const SurfaceSamples& samples, const std::vector<Vector3d>& places,
+                                double reach_mm) {
+  std::vector<int> found;
+  if (!samples.balls.empty()) around(samples, 0, places, reach_mm, found);
+  return found;
 }
 
 double clearance_bound(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS,

@@ -24,6 +24,10 @@ struct NearSample {
 void collect_near(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS,
                   double reach_mm, std::vector<NearSample>& found);
 
+/// The samples nearer than reach_mm to any of the places, in the samples' own coordinates.
+std::vector<int> samples_around(const SurfaceSamples& samples,
+                                const std::vector<Eigen::Vector3d>& places, double reach_mm);
+
 /// No larger than the distance of the surfaces, or `most_mm` when that is smaller: bounds for far
 /// bodies.
 double clearance_bound(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS,

@@ -49,10 +49,13 @@ std::vector<SlidePair> all_pairs(std::size_t fixed, std::size_t moving) {
 
 }  // namespace
 
-SlideBody make_slide_body(const TriMesh& mesh, const SlideBodySettings& settings, int threads) {
+SlideBody make_slide_body(const TriMesh& mesh, const SlideBodySettings& settings, int threads,
+                          const Progress& progress) {
   SampleSettings samples = settings.samples;
   if (settings.field.region && !samples.region) samples.region = settings.field.region;
-  return {kept_field(settings.cache, mesh, settings.field, threads), sample_surface(mesh, samples)};
+  DistanceField field = kept_field(settings.cache, mesh, settings.field, threads, progress);
+  report(progress, "measuring the bone", 1);
+  return {std::move(field), sample_surface(mesh, samples)};
 }
 
 SlidingContact::SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fixed,

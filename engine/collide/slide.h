@@ -9,6 +9,7 @@
 
 #include "engine/collide/distance_field.h"
 #include "engine/collide/surface_samples.h"
+#include "engine/core/progress.h"
 #include "engine/math/pose.h"
 #include "engine/mesh/tri_mesh.h"
 
@@ -27,9 +28,9 @@ struct SlideBodySettings {
 };
 
 /// The mesh must be welded. Where the field has a region the samples keep to it too: outside,
-/// nothing is ever touched.
+/// nothing is ever touched. Throwing from the progress gives up.
 SlideBody make_slide_body(const TriMesh& mesh, const SlideBodySettings& settings = {},
-                          int threads = 1);
+                          int threads = 1, const Progress& progress = {});
 
 struct SlideSettings {
   double friction = 0;     // Coulomb coefficient; 0 slides freely

@@ -158,11 +158,7 @@ void TouchFinder::allow_overlap(int pair, std::span<const Pose> X_WB, double aro
     std::vector<Vector3d> overlapping;
     for (std::size_t i = 0; i < samples.points.size(); ++i)
       if (look.allowed[i] < 0) overlapping.push_back(samples.points[i]);
-    for (std::size_t i = 0; i < samples.points.size(); ++i)
-      if (std::any_of(overlapping.begin(), overlapping.end(), [&](const Vector3d& p) {
-            return (samples.points[i] - p).squaredNorm() < around_mm * around_mm;
-          }))
-        look.allowed[i] = anywhere;
+    for (const int i : samples_around(samples, overlapping, around_mm)) look.allowed[i] = anywhere;
   }
 }
 

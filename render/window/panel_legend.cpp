@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/displacement_drawing.h"
+#include "render/pane_inks.h"
 #include "render/window/panels_drawing.h"
 
 namespace condyle {
@@ -14,10 +15,10 @@ ImU32 ink_of(const Eigen::Vector3f& c) {
   return ImGui::ColorConvertFloat4ToU32({c.x(), c.y(), c.z(), 1});
 }
 
-/// In a width, its left end's middle given.
-void key_mark(ImDrawList& list, const KeyEntry& entry, const ImVec2& from, float width, float px) {
+/// In a width, its left end's middle given; with the border that lines have on the light view.
+void key_mark(ImDrawList& list, const KeyEntry& entry, const ImVec2& from, float width, float px,
+              bool bordered) {
   const ImVec2 to = {from.x + width, from.y};
-  const ImU32 ink = ink_of(entry.colors.front());
   if (entry.mark == KeyEntry::Mark::sheet || entry.mark == KeyEntry::Mark::scale) {
     const int steps = static_cast<int>(width);
     for (int i = 0; i < steps; ++i) {
@@ -25,14 +26,20 @@ void key_mark(ImDrawList& list, const KeyEntry& entry, const ImVec2& from, float
       list.AddRectFilled({x, from.y - 5 * px}, {x + 1, from.y + 5 * px},
                          ink_of(color_of(entry, (i + 0.5) / steps)));
     }
+    if (bordered)
+      list.AddRect({from.x, from.y - 5 * px}, {to.x, from.y + 5 * px}, palette().outline, 0, 0, px);
     return;
   }
-  list.AddLine(from, to, ink, 2.4f * px);
-  if (entry.mark == KeyEntry::Mark::path)
-    list.AddCircleFilled({to.x - 3 * px, to.y}, 3 * px, ink_of(entry.colors.back()));
-  if (entry.mark == KeyEntry::Mark::arrow)
-    for (const float side : {-1.f, 1.f})
-      list.AddLine(to, {to.x - 6 * px, to.y + side * 3.5f * px}, ink, 2 * px);
+  const auto draw = [&](float border, ImU32 line, ImU32 dot) {
+    list.AddLine({from.x - border, from.y}, {to.x + border, to.y}, line, 2.4f * px + 2 * border);
+    if (entry.mark == KeyEntry::Mark::path)
+      list.AddCircleFilled({to.x - 3 * px, to.y}, 3 * px + border, dot);
+    if (entry.mark == KeyEntry::Mark::arrow)
+      for (const float side : {-1.f, 1.f})
+        list.AddLine(to, {to.x - 6 * px, to.y + side * 3.5f * px}, line, 2 * px + 2 * border);
+  };
+  if (bordered) draw(0.9f * px, ink_of(line_border), ink_of(line_border));
+  draw(0, ink_of(entry.colors.front()), ink_of(entry.colors.back()));
 }
 
 }  // namespace
@@ -78,6 +85,7 @@ ViewRect Panels::Drawing::legend() {
     list.AddRectFilled({left, y - 0.5f}, {right, y + 1.5f},
                        ink_of(color_of(map, map.low() + s * (map.high() - map.low()))));
   }
+  list.AddRect({left, top}, {right, bottom}, palette().outline, 0, 0, pen.px(1));
   for (const float value : map.lines)
     list.AddLine({left, y_of(value)}, {right, y_of(value)}, colour::rgb(0x1a1a1a), pen.px(1));
   float numbers = 0;
@@ -128,36 +136,39 @@ ViewRect Panels::Drawing::key() {
   panels.items_.push_back({"key", "", pane});
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const ImVec2 low = {static_cast<float>(pane.x), static_cast<float>(pane.y)};
-  // Dark in both themes: its colours are made for the picture's dark ground.
   list.AddRectFilled(
       low, {low.x + static_cast<float>(pane.width), low.y + static_cast<float>(pane.height)},
-      colour::dark.floating, pen.px(4));
+      palette().floating, pen.px(4));
   float left = low.x + pad;
   for (int i = 0; i < n; ++i) {
     if (i > 0 && i % rows == 0)
       left += mark + gap + widths[static_cast<std::size_t>(i / rows - 1)] + between;
     const KeyEntry& entry = input.key[static_cast<std::size_t>(i)];
     const float top = low.y + pad + static_cast<float>(i % rows) * row;
-    key_mark(list, entry, {left, top + letters / 2}, mark, pen.px(1));
+    key_mark(list, entry, {left, top + letters / 2}, mark, pen.px(1), theme.light);
     list.AddText(theme.small, letters, {std::round(left + mark + gap), std::round(top)},
-                 colour::dark.text, entry.words.c_str());
+                 palette().text, entry.words.c_str());
   }
   return pane;
 }
 
 void Panels::Drawing::pointed() {
-  if (input.pointed.empty()) return;
+  if (!input.pointed.empty()) beside_mouse(input.pointed);
+}
+
+void Panels::Drawing::beside_mouse(const std::string& words) {
   const Theme& theme = panels.theme_;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const float pad = pen.px(6), high = theme.regular->FontSize + 2 * pad;
-  const float wide = text_width(theme.regular, input.pointed) + 2 * pad;
+  const float wide = text_width(theme.regular, words) + 2 * pad;
   const ViewRect& r = layout.view;
   const float x = std::min(mouse.x + pen.px(14), static_cast<float>(r.x + r.width) - wide);
   const float y = std::max(mouse.y - pen.px(10) - high, static_cast<float>(r.y));
+  panels.items_.push_back({"beside-mouse", "", {x, y, wide, high}, words});
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.AddRectFilled({x, y}, {x + wide, y + high}, palette().floating, pen.px(4));
   list.AddText(theme.regular, theme.regular->FontSize, {std::round(x + pad), std::round(y + pad)},
-               palette().text, input.pointed.c_str());
+               palette().text, words.c_str());
 }
 
 }  // namespace condyle

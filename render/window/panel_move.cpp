@@ -27,6 +27,45 @@ constexpr float wanted_column = 58, wanted_width = 92;
 
 ImVec2 point(const Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
 
+/// What is told of a body: of what goes along with it, of its being put back and let go.
+struct BodyWords {
+  const char *goes_along, *put_back, *let_go, *let_go_tip;
+};
+BodyWords words_of(const MovableBody& body) {
+  if (body.free)
+    return {"alone", "To where it was loaded", "Let go onto the bone",
+            "It is pushed gently to the nearest bone that it does not touch yet, slides and turns "
+            "until it lies still; all other bone stays. Moving anything meanwhile, the timeline or "
+            "another motion end this"};
+  if (body.skull)
+    return {
+        "the lower jaw stays",
+        "To where it was loaded; a jaw that stayed in the picture is as before the skull was "
+        "moved",
+        "Let go to the muscles",
+        "The lower jaw stays in the picture: joints, the jaw's weight and muscles (their tone at "
+        "rest, or what a motion by muscles does at this moment) draw skull and jaw together "
+        "until both are still, teeth on teeth, on other bone or apart. Moving anything "
+        "meanwhile, the timeline or another motion end this"};
+  return {"with its teeth", "The jaw follows the motion again", "Let go to the muscles",
+          "Joints draw the condyles in; weight and muscles (their tone at rest, or what a motion "
+          "by muscles does at this moment) move the jaw until it hangs still or lies on its teeth "
+          "or other bone. Moving anything meanwhile, the timeline or another motion end this"};
+}
+
+/// What a handle does: "Mandible: to the left or right, with its teeth".
+std::string words_of(Grip grip, const MovableBody& body, const std::string& name) {
+  constexpr std::array ways = {"to the left or right",
+                               "forward or back",
+                               "up or down",
+                               "about the axis to the left",
+                               "about the axis to the back",
+                               "about the axis upward"};
+  return fmt::format("{}: {}, {}", display_name(name),
+                     ways[static_cast<std::size_t>(static_cast<int>(grip) - 1)],
+                     words_of(body).goes_along);
+}
+
 constexpr double held_mm = 0.05, held_deg = 0.05;  // farther from the wish: contact holds it
 
 /// "-1.25 mm"; what rounds to nothing has no sign.
@@ -98,6 +137,8 @@ void Panels::Drawing::moving() {
                  colour::rgb(0x0f1215), axis_letters[axis]);
   }
   list.PopClipRect();
+  if (lit && input.pointed.empty() && !ImGui::GetIO().WantCaptureMouse && !ImGui::IsAnyMouseDown())
+    beside_mouse(words_of(*lit, body, input.scene.parts[body.part].name));
 
   // Its place in numbers.
   const bool several = input.scene.bodies.size() > 1;
@@ -187,22 +228,11 @@ void Panels::Drawing::moving() {
     view.hands.put_back(body, X_CM);
   }
   ImGui::EndDisabled();
-  tooltip(pen, body.free ? "To where it was loaded"
-               : body.skull
-                   ? "To where it was loaded; a jaw that stayed in the picture is as before the "
-                     "skull was moved"
-                   : "The jaw follows the motion again");
-  if (word_button(pen, "let-go", body.free ? "Let go onto the bone" : "Let go to the muscles",
-                  {ImGui::GetContentRegionAvail().x, size.y}, false))
+  const BodyWords words = words_of(body);
+  tooltip(pen, words.put_back);
+  if (word_button(pen, "let-go", words.let_go, {ImGui::GetContentRegionAvail().x, size.y}, false))
     panels.wishes_.push_back(wish::LetGo{view.chosen});
-  tooltip(
-      pen,
-      body.free ? "It is pushed gently to the nearest bone, slides and turns until it lies still"
-      : body.skull
-          ? "The jaw stays: joints and muscles draw the skull to it until all lies still"
-          : "Joints draw the condyles in; weight and muscles (their tone at rest, or what a "
-            "motion by muscles does at this moment) move the jaw until it hangs still or lies "
-            "on its teeth or other bone. Moving it meanwhile, playing or another motion end this");
+  tooltip(pen, words.let_go_tip);
   end_panel();
 }
 

@@ -43,6 +43,14 @@ std::string direction_letters(const Vector3d& direction) {
   return letters;
 }
 
+ImU32 between(ImU32 from, ImU32 to, double share) {
+  const ImVec4 a = ImGui::ColorConvertU32ToFloat4(from), b = ImGui::ColorConvertU32ToFloat4(to);
+  const auto at = static_cast<float>(share);
+  const auto mix = [at](float p, float q) { return p + at * (q - p); };
+  return ImGui::ColorConvertFloat4ToU32(
+      {mix(a.x, b.x), mix(a.y, b.y), mix(a.z, b.z), mix(a.w, b.w)});
+}
+
 bool inside(const std::array<ImVec2, 4>& quad, ImVec2 p) {
   bool any_left = false, any_right = false;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -70,6 +78,19 @@ void Panels::Drawing::view_signs() {
     };
     line(theme.large, palette().text, "Condyle", centre.y - pen.px(110));
     line(theme.small, palette().text_dim, purpose, static_cast<float>(r.height) - pen.px(30));
+    if (!input.progress.empty()) return;
+    line(theme.regular, palette().text_dim, "Open a patient, or drop its folder or surfaces here",
+         centre.y - pen.px(50));
+    const float wide = pen.px(96), high = pen.px(32);
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, colour::rgb(0, 0));
+    begin_panel(pen, "start",
+                {std::round(centre.x - wide / 2), std::round(centre.y - pen.px(16)), wide, high});
+    ImGui::SetCursorPos({0, 0});
+    if (word_button(pen, "open-files", "Open", {wide, high}, true))
+      panels.run(Command::open_files, input.scene, view);
+    tooltip(pen, "Ctrl+O");
+    end_panel();
+    ImGui::PopStyleColor();
     return;
   }
 
@@ -211,12 +232,10 @@ void Panels::Drawing::cube() {
         project(face.normal + across - face.up), project(face.normal - across - face.up)};
     const bool over = hovered && inside(quad, mouse);
     if (over && pressed) commands.push_back(face.command);
-    // Lighter when it faces us.
-    const auto shade = static_cast<std::uint32_t>(52 + 46 * facing);
-    const ImU32 fill = over ? colour::dark.accent_dark
-                            : colour::rgb((shade << 16) | ((shade + 6) << 8) | (shade + 13), 235);
+    const ImU32 fill =
+        over ? palette().accent_dark : between(palette().cube_aslant, palette().cube_lit, facing);
     list.AddQuadFilled(quad[0], quad[1], quad[2], quad[3], fill);
-    list.AddQuad(quad[0], quad[1], quad[2], quad[3], colour::rgb(0x8a96a3),
+    list.AddQuad(quad[0], quad[1], quad[2], quad[3], palette().cube_edge,
                  std::max(1.0f, pen.px(1)));
 
     if (facing < 0.2) continue;  // too slanted to read
@@ -225,8 +244,7 @@ void Panels::Drawing::cube() {
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e6f, 0, face.letter);
     const ImVec2 flat = {centre.x - size.x / 2, centre.y - size.y / 2};
     const int first = list.VtxBuffer.Size;
-    list.AddText(font, font->FontSize, flat, over ? colour::dark.bright : colour::dark.text,
-                 face.letter);
+    list.AddText(font, font->FontSize, flat, over ? palette().bright : palette().text, face.letter);
     const float unit = 1.2f / font->FontSize;  // letter height against the face's side of 2
     for (int i = first; i < list.VtxBuffer.Size; ++i) {
       ImVec2& p = list.VtxBuffer[i].pos;

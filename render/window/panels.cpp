@@ -32,16 +32,6 @@ constexpr std::array<ViewButton, 6> view_buttons = {{
 
 }  // namespace
 
-std::string display_name(const std::string& part_name) {
-  std::string name = part_name;
-  if (name == "ans") return "ANS";
-  if (name == "pns") return "PNS";
-  for (char& c : name)
-    if (c == '_' || c == '-') c = ' ';
-  if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-  return name;
-}
-
 std::string motion_title(const WindowScene& scene) {
   const std::string title = display_name(scene.motion_name);
   const bool built_in = std::any_of(scene.motions.begin(), scene.motions.end(),

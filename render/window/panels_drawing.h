@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/window/panels.h"
+#include "render/window/part_names.h"
 #include "render/window/widgets.h"
 
 namespace condyle {
@@ -57,6 +58,7 @@ struct Panels::Drawing {
   ViewRect legend();  // of a map, in the lower left corner of the view
   ViewRect key();     // to overlays, in its upper right corner
   void pointed();     // what the mouse is on
+  void beside_mouse(const std::string& words);
 };
 
 /// Stands in the window at all times.
@@ -65,8 +67,6 @@ constexpr const char* purpose = "For research and education, not for clinical us
 /// Centred, above everything, with the rest dimmed; pair with EndPopup when it gives true.
 bool begin_dialog(Pen& pen, const char* name, float dialog_width, double width, double height);
 
-/// "upper_teeth" as "Upper teeth".
-std::string display_name(const std::string& part_name);
 /// The motion of a scene for people: "Chewing right"; words and files as they are.
 std::string motion_title(const WindowScene& scene);
 

@@ -29,7 +29,8 @@ struct Palette {
   std::uint32_t field, field_hovered, well, track, outline;
   std::uint32_t text, text_dim, text_faint, bright;  // bright: what the mouse is on
   std::uint32_t accent, accent_dark, good, warning, bad;
-  std::uint32_t letter, letter_edge, divider;  // on the view
+  std::uint32_t letter, letter_edge, divider;      // on the view
+  std::uint32_t cube_lit, cube_aslant, cube_edge;  // its faces toward us, and nearly away
 };
 inline constexpr Palette dark = {
     .window = rgb(0x0f1215),
@@ -54,6 +55,9 @@ inline constexpr Palette dark = {
     .letter = rgb(0xc4ccd4),
     .letter_edge = rgb(0x0f1215, 200),
     .divider = rgb(0xf0e442),
+    .cube_lit = rgb(0x62686f, 235),
+    .cube_aslant = rgb(0x343a41, 235),
+    .cube_edge = rgb(0x8a96a3),
 };
 inline constexpr Palette light = {
     .window = rgb(0xccd3da),
@@ -78,6 +82,9 @@ inline constexpr Palette light = {
     .letter = rgb(0x2b3640),
     .letter_edge = rgb(0xf3f5f7, 215),
     .divider = rgb(0x005b8f),
+    .cube_lit = rgb(0xfbfcfd, 240),
+    .cube_aslant = rgb(0xc4ccd4, 240),
+    .cube_edge = rgb(0x6b7783),
 };
 /// Chosen by apply_theme; one window is open at a time.
 inline const Palette* in_use = &dark;

@@ -126,4 +126,12 @@ std::string canonical_landmark(std::string_view name) {
   return found != aliases().end() ? found->second : snake_case(name);
 }
 
+std::vector<std::string> landmark_names() {
+  std::vector<std::string> names;
+  for (const auto& known : middle_points()) names.emplace_back(known.name);
+  for (const auto& known : paired_points())
+    for (const std::string side : {"left_", "right_"}) names.push_back(side + known.name);
+  return names;
+}
+
 }  // namespace condyle

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace condyle {
 
@@ -9,5 +10,8 @@ namespace condyle {
 /// of sim/case/landmarks.h; a name that is not known becomes lower case words joined by '_'.
 /// Empty when the name has no letter or digit.
 std::string canonical_landmark(std::string_view name);
+
+/// Canonical names of all landmarks that are known.
+std::vector<std::string> landmark_names();
 
 }  // namespace condyle

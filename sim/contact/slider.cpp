@@ -73,8 +73,11 @@ void Slider::prepare(const Progress& progress, int threads) {
            static_cast<double>(i) / static_cast<double>(surfaces_.size()));
     Surface& surface = surfaces_[i];
     if (surface.body) continue;
-    surface.body =
-        std::make_shared<const SlideBody>(make_slide_body(surface.mesh, surface.settings, threads));
+    surface.body = std::make_shared<const SlideBody>(make_slide_body(
+        surface.mesh, surface.settings, threads, [&](std::string_view, double share) {
+          report(progress, "making the bones ready to slide",
+                 (static_cast<double>(i) + share) / static_cast<double>(surfaces_.size()));
+        }));
     surface.mesh = {};
     surface.sight.thin = is_thin(*surface.body);
   }

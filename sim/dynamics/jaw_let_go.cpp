@@ -18,6 +18,11 @@ constexpr double radius_mm = 50;        // of a jaw
 constexpr std::size_t told_steps = 25;  // from one report of progress to the next
 constexpr double tone_share = 0.3;      // of the work, that the tone takes to find
 
+/// Keeps what is told of a piece of the work at its share of the whole.
+Progress at_share(const Progress& progress, double share) {
+  return [&progress, share](std::string_view, double) { report(progress, "letting go", share); };
+}
+
 [[noreturn]] void torn_off(const Case& patient) {
   throw InputError(patient.name +
                    ": the muscles would tear the jaw off; let it go nearer to its joints, or "
@@ -36,7 +41,7 @@ std::vector<double> holding_tone(const Case& patient, const Pose& X_CM,
   constexpr double found_after_s = 0.4, mean_of_s = 0.1;
   MuscleJawSettings there = settings;
   there.X_CM = X_CM;
-  MuscleJaw jaw(patient, there, threads);
+  MuscleJaw jaw(patient, there, threads, at_share(progress, 0));
   const ExcitationFinderSettings finding;
   ExcitationFinder finder(patient, jaw, finding);
   const long steps = std::lround(finding.hold_s / jaw.step_s()),
@@ -128,7 +133,7 @@ JawLetGo let_go_jaw(const Case& patient, const ContactModel& contacts, const Bod
     excitations = holding_tone(patient, settings.X_CM_rest, how, threads, progress);
   how.X_CM = from.X_CM;
   how.bones = from;
-  MuscleJaw jaw(patient, how, threads);
+  MuscleJaw jaw(patient, how, threads, at_share(progress, tone_share));
   if (excitations.empty())
     for (const Muscle& muscle : jaw.muscles()) {
       const auto told = settings.excitations.find(muscle.name);
@@ -151,6 +156,7 @@ JawLetGo let_go_jaw(const Case& patient, const ContactModel& contacts, const Bod
   }
   course.rest.reached = still_s >= settings.rest.still_for_s;
   find_support(patient, jaw, muscles.teeth, course);
+  report(progress, "letting go", 1);
   const BodyPoses end = carried_along(patient, from, jaw.pose());
   const auto depth = [](const ContactSet& set) { return set.max_penetration_mm(); };
   course.rest.depth_mm = depth(contacts.find(end, nullptr, threads));

@@ -72,7 +72,8 @@ using Surfaces = std::vector<std::shared_ptr<const SlideBody>>;
 
 /// Bone and crowns of the cranium and of the mandible beside those that bite, as the poses have the
 /// free parts, in the coordinates of what carries them.
-std::array<Surfaces, 2> make_bones(const Case& patient, const BodyPoses& at, int threads) {
+std::array<Surfaces, 2> make_bones(const Case& patient, const BodyPoses& at, int threads,
+                                   const Progress& progress) {
   constexpr double spacing_mm = 0.5, sample_mm = 0.6, reach_mm = 20;
   const bool bites = patient.find(Role::upper_teeth) && patient.find(Role::lower_teeth);
   std::array<std::vector<TriMesh>, 2> meshes;
@@ -101,7 +102,8 @@ std::array<Surfaces, 2> make_bones(const Case& patient, const BodyPoses& at, int
       if (region.empty()) continue;
       region.low.array() -= reach_mm;
       region.high.array() += reach_mm;
-      made[side].push_back(std::make_shared<const SlideBody>(make_slide_body(mesh, how, threads)));
+      made[side].push_back(
+          std::make_shared<const SlideBody>(make_slide_body(mesh, how, threads, progress)));
     }
   return made;
 }
@@ -140,7 +142,8 @@ void find_guides(const Case& patient, bool fossa, int threads, JawWorld& jaw) {
 
 }  // namespace
 
-JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, int threads) {
+JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, int threads,
+                        const Progress& progress) {
   const std::array<Vector3d, 2> condyles = {landmark(patient, "left_condyle"),
                                             landmark(patient, "right_condyle")};
   const Vector3d incisor = landmark(patient, "lower_incisal_point");
@@ -157,7 +160,7 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
     how.cache = field_cache_folder();
     if (settings.worn_crowns) how.field.band_mm = worn_band_mm;
     const auto surface = [&](const TriMesh& mesh) {
-      return std::make_shared<const SlideBody>(make_slide_body(mesh, how, threads));
+      return std::make_shared<const SlideBody>(make_slide_body(mesh, how, threads, progress));
     };
     cranium.surfaces = {surface(upper)};
     mandible.surfaces = {surface(lower)};
@@ -165,7 +168,7 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
   }
   Surfaces skull;
   if (settings.bones) {
-    auto [fixed_bones, moving_bones] = make_bones(patient, *settings.bones, threads);
+    auto [fixed_bones, moving_bones] = make_bones(patient, *settings.bones, threads, progress);
     skull = std::move(fixed_bones);
     mandible.surfaces.insert(mandible.surfaces.end(), moving_bones.begin(), moving_bones.end());
   }

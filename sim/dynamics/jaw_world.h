@@ -48,8 +48,8 @@ struct JawWorld {
 /// Condyles follow the guide of the case's mechanics; else their fossa, where that is asked for;
 /// else the case's own path, else an average one. They may move sideways together, as far as the
 /// teeth let them. The mass is the case's own, else that of its surface. throws: InputError when
-/// teeth, condyles or the mandible are missing.
-JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings = {},
-                        int threads = 1);
+/// teeth, condyles or the mandible are missing. Throwing from the progress gives up.
+JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings = {}, int threads = 1,
+                        const Progress& progress = {});
 
 }  // namespace condyle

@@ -58,7 +58,7 @@ void refuse_bad(const Case& patient, const std::vector<std::size_t>& parts,
 /// With the inertia of the hand, or of the soft tissue around it: so large that the push and its
 /// yielding end at the wanted speed.
 RigidBody loose(const Part& part, const Pose& X_CP, double step_s, const LetGoSettings& settings,
-                int threads) {
+                int threads, const Progress& progress) {
   RigidBody body;
   body.mass = mass_properties(part.mesh, 1e-6);
   const double mass_kg =
@@ -68,7 +68,8 @@ RigidBody loose(const Part& part, const Pose& X_CP, double step_s, const LetGoSe
   body.drag_N_s_mm = lost_in_step * mass_kg / step_s / 1000;
   body.turning_drag_N_mm_s = lost_in_step * least_moment(body.mass) / step_s / 1000;
   body.X_WB = X_CP;
-  body.surfaces = {std::make_shared<const SlideBody>(make_slide_body(part.mesh, {}, threads))};
+  body.surfaces = {
+      std::make_shared<const SlideBody>(make_slide_body(part.mesh, {}, threads, progress))};
   return body;
 }
 
@@ -101,7 +102,8 @@ Deepest deepest_of(const Case& patient, const std::vector<PairParts>& pairs,
 
 LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
              const LetGoSettings& settings, int threads, const Progress& progress) {
-  report(progress, "letting go", 0);
+  const Progress making = [&](std::string_view, double) { report(progress, "letting go", 0); };
+  making({}, 0);
   const std::vector<std::size_t> free = free_parts(patient.parts);
   std::vector<std::size_t> parts = {part};
   parts.insert(parts.end(), settings.yielding.begin(), settings.yielding.end());
@@ -114,8 +116,8 @@ LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
   std::vector<Box> near;  // in the cranium
   for (const std::size_t p : parts) {
     const Pose X_CP = pose_of(patient.parts, p, from);
-    bodies.push_back(
-        world.add_body(loose(patient.parts[p], X_CP, world_settings.step_s, settings, threads)));
+    bodies.push_back(world.add_body(
+        loose(patient.parts[p], X_CP, world_settings.step_s, settings, threads, making)));
     near.push_back(grown(moved(bounding_box(patient.parts[p].mesh), X_CP), settings.reach_mm));
   }
   world.add_force(
@@ -147,7 +149,7 @@ LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
     RigidBody fixed;
     fixed.X_WB = X_CO;
     fixed.surfaces = {
-        std::make_shared<const SlideBody>(make_slide_body(other.mesh, surface, threads))};
+        std::make_shared<const SlideBody>(make_slide_body(other.mesh, surface, threads, making))};
     if (fixed.surfaces[0]->samples.points.empty()) continue;
     const int below = world.add_body(fixed);
     for (const std::size_t m : movers) add_pair(below, i, m);
@@ -159,13 +161,16 @@ LetGo let_go(const Case& patient, std::size_t part, const BodyPoses& from,
   if (std::none_of(pairs.begin(), pairs.end(), [&](const PairParts& pair) {
         return pair.below == static_cast<int>(part) || pair.lies == static_cast<int>(part);
       }))
-    throw InputError(name + ": nothing lies within " + std::to_string(settings.reach_mm) +
-                     " mm of it; bring it nearer before letting it go");
+    throw InputError(
+        fmt::format("{}: nothing lies within {:g} mm of it; bring it nearer before letting it go",
+                    name, settings.reach_mm));
 
   std::map<int, Solid> solids;
-  for (const PairParts& pair : pairs)
+  for (const PairParts& pair : pairs) {
+    making({}, 0);
     for (const int p : {pair.below, pair.lies})
       solids.try_emplace(p, patient.parts[static_cast<std::size_t>(p)].mesh);
+  }
   if (const Deepest start = deepest_of(patient, pairs, solids, from);
       start.depth_mm > deep_start_mm) {
     const auto part_name = [&](int p) { return patient.parts[static_cast<std::size_t>(p)].name; };

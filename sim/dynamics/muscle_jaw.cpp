@@ -73,11 +73,12 @@ struct MuscleJaw::Line {
   double length_mm = 0, speed_mm_s = 0;
 };
 
-MuscleJaw::MuscleJaw(const Case& patient, const MuscleJawSettings& settings, int threads)
+MuscleJaw::MuscleJaw(const Case& patient, const MuscleJawSettings& settings, int threads,
+                     const Progress& progress)
     : muscles_(muscles_left(patient, settings.without)),
       settings_(settings),
       world_settings_(world_settings(patient, settings)),
-      jaw_(make_jaw_world(patient, world_settings_, threads)),
+      jaw_(make_jaw_world(patient, world_settings_, threads, progress)),
       mass_(jaw_.world.mass(jaw_.mandible)),
       hyoid_(hyoid_of(patient, muscles_), hyoid_drag_at(patient, hyoid_of(patient, muscles_))),
       bite_(bite_plane(patient)),

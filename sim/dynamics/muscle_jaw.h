@@ -36,8 +36,10 @@ struct MuscleJawSettings {
 /// and at the sides, with gravity, the teeth and perhaps a bolus.
 class MuscleJaw {
  public:
+  /// Throwing from the progress gives up.
   /// throws: InputError when landmarks, teeth or muscles of the patient do not do.
-  MuscleJaw(const Case& patient, const MuscleJawSettings& settings, int threads = 1);
+  MuscleJaw(const Case& patient, const MuscleJawSettings& settings, int threads = 1,
+            const Progress& progress = {});
 
   /// One step with an excitation of 0 to 1 for each muscle. False, and nothing changed, when
   /// something would go faster than a jaw can.

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "render/annotations.h"
 #include "render/legend.h"
+#include "tests/render/scene_fixture.h"
 #include "tests/support/picture.h"
 
 namespace condyle {
@@ -92,6 +94,29 @@ TEST_P(KeyOn, ShowsEachColourBesideItsWords) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, KeyOn,
                          testing::Values(Size{1280, 720}, Size{3840, 2160}, Size{720, 1280}));
+
+TEST(Key, PanesSuitTheBackdrop) {
+  const Lettering words;
+  for (const Backdrop backdrop : {Backdrop::dark, Backdrop::light}) {
+    Image image = grey(1280, 720);
+    const auto key = key_of(10);
+    for (const PixelBox& pane :
+         {add_key(image, words, key, backdrop),
+          add_legend(image, words, distance_colours(), {"a remark"}, backdrop)}) {
+      int ground = 0, inked = 0;
+      for (int y = pane.y0; y < pane.y1; ++y)
+        for (int x = pane.x0; x < pane.x1; ++x) {
+          const Pixel p = pixel(image, x, y);
+          const bool bright = std::min({p.r, p.g, p.b}) > 215,
+                     dark = std::max({p.r, p.g, p.b}) < 60;
+          ground += backdrop == Backdrop::light ? bright : dark;
+          inked += backdrop == Backdrop::light ? dark : bright;
+        }
+      EXPECT_GT(ground, (pane.x1 - pane.x0) * (pane.y1 - pane.y0) / 2);
+      EXPECT_GT(inked, 300);
+    }
+  }
+}
 
 TEST(Key, IsLeftAwayWhereThereIsNothingToTellOrNoRoom) {
   const Lettering words;

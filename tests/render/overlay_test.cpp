@@ -269,8 +269,23 @@ TEST_F(Overlays, BrightLinesHaveADarkBorderOnALightBackground) {
     EXPECT_NEAR(yellow, 4, 1);
     return least;
   };
+  // Without a backdrop for what it will stand on; there is nothing around a line but its border.
+  const auto around = [&](Backdrop backdrop) {
+    settings.backdrop = backdrop;
+    settings.transparent = true;
+    int dark = 0;
+    const Image image = renderer.picture(front_camera(), settings);
+    for (int y = 10; y < 30; ++y) {
+      const Pixel p = pixel(image, 100, y);
+      dark += p.a > 200 && p.g < 90;
+    }
+    return dark;
+  };
+  settings.transparent = false;
   EXPECT_LT(darkest(Backdrop::light), 90);
   EXPECT_GT(darkest(Backdrop::dark), 45) << "no darker than the background";
+  EXPECT_GE(around(Backdrop::light), 2);
+  EXPECT_EQ(around(Backdrop::dark), 0);
 }
 
 TEST_F(Overlays, PatchesColourOnlyWhereTheValueIsSmall) {

@@ -74,7 +74,7 @@ inline Camera front_camera(double height_mm = 100) {
 inline PictureSettings mask_settings(int side = 200) {
   PictureSettings settings;
   settings.width = settings.height = side;
-  settings.backdrop = Backdrop::none;
+  settings.transparent = true;
   return settings;
 }
 

@@ -1,5 +1,7 @@
 #include <Eigen/Geometry>
 #include <cstdlib>
+#include <optional>
+#include <string>
 
 #include "tests/render/scene_fixture.h"
 
@@ -13,6 +15,39 @@ TEST(Context, NeedsNoDisplay) {
   ::unsetenv("WAYLAND_DISPLAY");
   const OffscreenContext context;
   EXPECT_NE(context.description().find("EGL"), std::string::npos) << context.description();
+}
+
+class SoftwareAsked : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* value = std::getenv(name);
+    if (value) before_ = value;
+  }
+  void TearDown() override {
+    if (before_)
+      ::setenv(name, before_->c_str(), 1);
+    else
+      ::unsetenv(name);
+  }
+  static constexpr const char* name = "LIBGL_ALWAYS_SOFTWARE";
+  std::optional<std::string> before_;
+};
+
+TEST_F(SoftwareAsked, LeavesCardsAlone) {
+  for (const char* yes : {"1", "true", "yes", "Y"}) {
+    ::setenv(name, yes, 1);
+    EXPECT_TRUE(no_card_wanted()) << yes;
+  }
+  for (const char* no : {"", "0", "false", "no", "N"}) {
+    ::setenv(name, no, 1);
+    EXPECT_FALSE(no_card_wanted()) << no;
+  }
+  ::unsetenv(name);
+  EXPECT_FALSE(no_card_wanted());
+  // Where there is a card it would be the first choice.
+  ::setenv(name, "1", 1);
+  const OffscreenContext context;
+  EXPECT_EQ(context.description().find("hardware"), std::string::npos) << context.description();
 }
 
 TEST_F(Scene, ABallIsARoundDiscInTheMiddle) {

@@ -173,6 +173,20 @@ TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
   EXPECT_FALSE(state()["items"].contains("import-role:4"));
   click("import-close");
   EXPECT_TRUE(wait_for_item("import", false));
+  // So is one that the command line names.
+  EXPECT_TRUE(press("ctrl+q"));
+  ASSERT_EQ(wait_for_end(), 0);
+  fs::remove(folder_ / "state.json");
+  start({folder_.path()});
+  ASSERT_TRUE(wait_for_item("import-role:3")) << state().value("trouble", "nothing was said");
+  see("named-folder");
+  click("import-close");
+  EXPECT_TRUE(wait_for_item("import", false));
+  see("no-patient");
+  click("open-files");
+  EXPECT_TRUE(wait_for_item("open-path"));
+  EXPECT_TRUE(press("Escape"));
+  EXPECT_TRUE(wait_for_item("open-path", false));
   // So is one with a case.json that another program wrote; a table of muscles is known as such.
   write_text(folder_ / "case.json", R"({"name": "somebody", "parts": 3})");
   write_text(folder_ / "face_muscles.csv",

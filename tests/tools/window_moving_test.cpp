@@ -1,10 +1,21 @@
 // Bones that a hand moves in the window, and lets go of.
+#include <sstream>
+
+#include "tests/support/shapes.h"
 #include "window_session.h"
 
 namespace condyle::test {
 namespace {
 
 double opening_mm(const Json& s) { return s["frame"]["opening_mm"]; }
+
+/// A line of an OBJ file.
+template <class Three>
+std::string obj_line(const char* kind, const Three& v) {
+  std::ostringstream line;
+  line << kind << ' ' << v[0] << ' ' << v[1] << ' ' << v[2] << '\n';
+  return line.str();
+}
 
 TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   start({"--motion", "open 20 over 0.3; close"});
@@ -47,6 +58,20 @@ TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   std::this_thread::sleep_for(std::chrono::seconds(2));
   EXPECT_GT(opening_mm(state()), 15);
 
+  // So does the timeline.
+  click("let-go");
+  ASSERT_TRUE(wait_until([&](const Json& s) { return opening_mm(s) < 23; }));
+  const auto scrub = rect("scrub");
+  drag(scrub[0] + 0.02 * scrub[2], scrub[1] + scrub[3] / 2, scrub[0] + 0.6 * scrub[2],
+       scrub[1] + scrub[3] / 2);
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return !s.contains("X_CM_wanted") &&
+           s.value("said", "") ==
+               "The mandible is on its way no more: the motion was moved to another time";
+  })) << state().value("said", "nothing was said");
+
+  write_into("shift:S", "-30");
+  ASSERT_TRUE(wait_until([](const Json& s) { return opening_mm(s) > 29.9; }));
   // So far from its joints nothing would hold it.
   write_into("shift:P", "-60");
   ASSERT_TRUE(wait_until([](const Json& s) { return double(s["frame"]["mandible_mm"][1]) < -50; }));
@@ -70,7 +95,7 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   const auto computes = [](const Json& s) { return s["busy_with"] == "Letting go"; };
   const auto told = [](const Json& s) {
     return s["busy_with"] == "" &&
-           s.value("said", "").find("changed before it had come to rest") != std::string::npos;
+           s.value("said", "").find("it was moved before it had come to rest") != std::string::npos;
   };
   // A number that is entered.
   click("shift:S");
@@ -101,6 +126,20 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   }));
   EXPECT_NEAR(opening_mm(state()), 30, 0.1);
 
+  // The timeline takes the jaw.
+  const auto scrub = rect("scrub");
+  click("let-go");
+  ASSERT_TRUE(wait_until(computes));
+  drag(scrub[0] + 0.1 * scrub[2], scrub[1] + scrub[3] / 2, scrub[0] + 0.5 * scrub[2],
+       scrub[1] + scrub[3] / 2);
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return s["busy_with"] == "" && !s.contains("X_CM_wanted") &&
+           s.value("said", "") ==
+               "The mandible is not let go: the motion was moved to another time before it had "
+               "come "
+               "to rest";
+  })) << state().value("said", "nothing was said");
+
   // Another motion has other muscles.
   click("tab:Motion");
   click("motion");
@@ -111,8 +150,79 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   click("motion");
   click("motion:protrusion");
   EXPECT_TRUE(wait_until([](const Json& s) {
-    return s.value("said", "").find("changed before it had come to rest") != std::string::npos;
+    return s.value("said", "").find("another motion was chosen before it had come to rest") !=
+           std::string::npos;
   })) << state().value("said", "nothing was said");
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, WhatMovesAPatientMeanwhileEndsTheLetGoOfAPartAndIsTold) {
+  write_box_patient(folder_.path());
+  // So fine that it takes seconds to be let go.
+  const TriMesh ball = sphere(6, 14, {0, -60, 16});
+  std::string obj;
+  for (const auto& v : ball.vertices) obj += obj_line("v", v);
+  for (const auto& t : ball.triangles) obj += obj_line("f", t.array() + 1);
+  write_text(folder_ / "ball.obj", obj);
+  std::vector<std::string> import = {"import", "meshes"};
+  for (const std::string file : {"maxilla.stl", "mandible.stl"})
+    import.insert(import.end(), {"--" + file.substr(0, file.find('.')), folder_ / file});
+  import.insert(import.end(), {"--landmarks", folder_ / "marks.csv", "--transplant",
+                               folder_ / "ball.obj", "--out", folder_ / "case"});
+  ASSERT_EQ(condyle(import).code, 0);
+  // Names of parts have signs that people do not read.
+  std::string text = read_text(folder_ / "case/case.json");
+  text.replace(text.find("\"transplant\""), 12, "\"left_cheek_ball\"");
+  write_text(folder_ / "case/case.json", text);
+  start({folder_ / "case", "--motion", "open 5 over 0.5; close over 0.5"});
+  ASSERT_TRUE(wait_until(idle)) << state().value("trouble", "nothing was said");
+  EXPECT_TRUE(press("m"));
+  click("body");
+  click("body:left_cheek_ball");
+  see("a-fine-ball");
+  const auto begin = [&] {
+    click("let-go");
+    ASSERT_TRUE(wait_until([](const Json& s) { return s["busy_with"] == "Letting go"; }));
+  };
+  const auto ended = [&](const std::string& why) {
+    const std::string words =
+        "The left cheek ball is not let go: " + why + " before it had come to rest";
+    EXPECT_TRUE(wait_until([&](const Json& s) {
+      return s["busy_with"] == "" && s.value("said", "") == words;
+    })) << state().value("said", "nothing was said");
+  };
+  begin();
+  const auto scrub = rect("scrub");
+  drag(scrub[0] + 0.02 * scrub[2], scrub[1] + scrub[3] / 2, scrub[0] + 0.4 * scrub[2],
+       scrub[1] + scrub[3] / 2);
+  ended("the motion was moved to another time");
+  begin();
+  const auto opening = rect("opening");
+  drag(opening[0] + 0.1 * opening[2], opening[1] + opening[3] / 2, opening[0] + 0.8 * opening[2],
+       opening[1] + opening[3] / 2);
+  ended("the mouth was opened or closed");
+  begin();
+  EXPECT_TRUE(press("space"));
+  ended("the motion was played");
+  // Left alone while the motion plays, it stops it and lies down.
+  begin();
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return s["playing"] == false && s["busy_with"] == "" &&
+           s.value("said", "").find("The left cheek ball lies still after") == 0 &&
+           std::abs(double(s["free_mm"][0][2]) + 2) < 0.1;
+  })) << state().value("said", "nothing was said")
+      << state()["free_mm"];
+  // Nothing within reach: the sentence has the name as people read it.
+  write_into("shift:S", "40");
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["free_mm"][0][2]) > 39; }));
+  click("let-go");
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return s.value("trouble", "").find("left cheek ball: nothing lies within 15 mm") !=
+           std::string::npos;
+  })) << state().value("trouble", "nothing was said");
+  see("told-by-its-name");
+  EXPECT_TRUE(press("Return"));
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }

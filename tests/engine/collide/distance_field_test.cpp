@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <numbers>
 #include <random>
@@ -224,6 +225,24 @@ TEST_F(FieldCache, GivesBackTheSameBitsAndRebuildsDamagedFiles) {
   kept_field(folder_, mesh, coarser);
   kept_field(folder_, test::sphere(3, 5.01), {});
   EXPECT_EQ(files().size(), 3u);
+}
+
+TEST_F(FieldCache, WorkThatIsGivenUpStopsWhereItTellsOfIt) {
+  struct GivenUp {};
+  const TriMesh mesh = test::sphere(4, 12);
+  std::vector<double> told;
+  const Progress listen = [&](std::string_view, double share) { told.push_back(share); };
+  EXPECT_EQ(kept_field(folder_, mesh, {}, 2, listen).hash(), DistanceField(mesh, {}).hash());
+  ASSERT_GT(told.size(), 8u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  fs::remove_all(folder_);
+  std::size_t calls = 0;
+  EXPECT_THROW(kept_field(folder_, mesh, {}, 2,
+                          [&](std::string_view, double) {
+                            if (++calls == told.size()) throw GivenUp{};
+                          }),
+               GivenUp);
+  EXPECT_FALSE(fs::exists(folder_)) << "nothing half made is kept";
 }
 
 TEST_F(FieldCache, ThatCannotBeWrittenIsNoError) {

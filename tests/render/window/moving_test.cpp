@@ -216,6 +216,34 @@ TEST(MovePanel, ButtonsUndoAndPutBack) {
   EXPECT_FALSE(stage.view.hands.mandible);
 }
 
+TEST(MovePanel, TellsOfEachBodyWhatItsHandlesAndLettingGoDo) {
+  PanelStage stage(1280, 720, 1);
+  stage.parts.push_back(box_part("left_bone-2", Role::transplant, {85, 0, 20}, {95, 20, 40}));
+  stage.scene.parts = stage.parts;
+  stage.scene.bodies = movable_bodies(stage.parts);
+  ASSERT_EQ(stage.scene.bodies.size(), 3u);
+  stage.view.tool = Tool::move;
+  struct Told {
+    const char *handle, *let_go;
+  };
+  const Told told[] = {{"Mandible: up or down, with its teeth", "Joints draw the condyles in"},
+                       {"Skull: up or down, the lower jaw stays", "The lower jaw stays"},
+                       {"Left bone 2: up or down, alone", "It is pushed gently"}};
+  for (std::size_t body = 0; body < 3; ++body) {
+    stage.view.chosen = body;
+    stage.rest();
+    EXPECT_FALSE(stage.has("beside-mouse"));
+    const ViewRect tip = stage.item("handle:S").rect;
+    stage.step(tip.x + 3, tip.y + 3, false);
+    EXPECT_EQ(stage.item("beside-mouse").words, told[body].handle);
+    const ViewRect button = stage.item("let-go").rect;
+    for (int i = 0; i < 60 && !stage.has("tooltip"); ++i)
+      stage.step(button.x + 20, button.y + 10, false);
+    EXPECT_TRUE(stage.item("tooltip").words.starts_with(told[body].let_go));
+    EXPECT_TRUE(stage.item("tooltip").words.ends_with("another motion end this"));
+  }
+}
+
 TEST(MovePanel, PlayStepsAndTheSliderLeaveASkullThatContactHolds) {
   const auto start = [](PanelStage& stage) {
     stage.scene.bodies = movable_bodies(stage.parts);

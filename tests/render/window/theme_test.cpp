@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "panel_stage.h"
@@ -28,6 +29,8 @@ TEST(Theme, WordsCanBeReadInBothThemes) {
     for (const auto ground : {p->panel, p->popup, p->field})
       EXPECT_GE(contrast(p->text, ground), 7);
     EXPECT_GE(contrast(p->text, p->accent_dark), 4.5);
+    for (const auto face : {p->cube_lit, p->cube_aslant, p->floating})
+      EXPECT_GE(contrast(p->text, face), 4.5);
     for (const auto ink : {p->text_dim, p->good, p->warning, p->bad, p->accent})
       EXPECT_GE(contrast(ink, p->panel), 4.5);
   }
@@ -40,6 +43,34 @@ TEST(Theme, WordsCanBeReadInBothThemes) {
     EXPECT_GE(contrast(colour::light.letter, ground), 4.5);
     EXPECT_GE(contrast(colour::light.divider, ground), 3.5);
   }
+}
+
+TEST(Theme, WhatStandsOnTheViewTurnsLightAndDark) {
+  PanelStage stage(1280, 720, 1);
+  stage.key.push_back({"A line", {{0.94f, 0.89f, 0.26f}}, KeyEntry::Mark::line});
+  stage.rest();
+  struct Shades {
+    double bright, dark;  // shares of the item
+  };
+  const auto shades = [&](const std::string& item) {
+    const Image image = stage.image();
+    const ViewRect r = stage.item(item).rect;
+    double bright = 0, dark = 0;
+    for (int y = static_cast<int>(r.y); y < static_cast<int>(r.y + r.height); ++y)
+      for (int x = static_cast<int>(r.x); x < static_cast<int>(r.x + r.width); ++x) {
+        const auto* p = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + x)];
+        bright += std::min({p[0], p[1], p[2]}) > 175;
+        dark += std::max({p[0], p[1], p[2]}) < 110;
+      }
+    return Shades{bright / (r.width * r.height), dark / (r.width * r.height)};
+  };
+  EXPECT_LT(shades("cube").bright, 0.1);
+  EXPECT_GT(shades("key").dark, 0.6);
+  stage.set_light(true);
+  stage.rest();
+  EXPECT_GT(shades("cube").bright, 0.3);
+  EXPECT_GT(shades("key").bright, 0.6);
+  stage.set_light(false);
 }
 
 TEST(Theme, PanelsTurnLightAndDark) {

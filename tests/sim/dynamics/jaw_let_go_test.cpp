@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 #include "engine/core/error.h"
 #include "sim/motion/measures.h"
 #include "tests/support/boxes.h"
 #include "tests/support/builtin.h"
+#include "tests/support/program.h"
 #include "tests/support/real_cases.h"
 
 namespace condyle {
@@ -96,6 +98,26 @@ TEST(JawLetGo, HasTheSameBitsForAnyThreadCount) {
     ASSERT_EQ(one.X_CM[k].t, two.X_CM[k].t) << k;
     ASSERT_EQ(one.X_CM[k].R.coeffs(), two.X_CM[k].R.coeffs()) << k;
   }
+}
+
+TEST(JawLetGo, IsGivenUpWhileItsBonesAreMeasured) {
+  struct GivenUp {};
+  const test::Folder cache;  // an empty one: every field is made
+  const char* before = std::getenv("XDG_CACHE_HOME");
+  const std::string kept = before ? before : "";
+  ::setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
+  int calls = 0;
+  double share = 1;
+  const auto give_up = [&](std::string_view, double at) {
+    share = at;
+    if (++calls == 40) throw GivenUp{};
+  };
+  EXPECT_THROW(let_go_jaw(builtin(), bones(), Pose{}, {}, 2, give_up), GivenUp);
+  EXPECT_EQ(share, 0) << "its first jaw is not even made";
+  if (before)
+    ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
+  else
+    ::unsetenv("XDG_CACHE_HOME");
 }
 
 TEST(JawLetGo, RefusesACondyleThatNoLigamentWouldHold) {

@@ -18,17 +18,17 @@ struct Cancelled {};
 
 /// Long work on a thread of its own, with progress; it is cancelled where it next tells of it.
 template <class Result>
-class Background {
+class BackgroundWork {
  public:
   /// `told`: called when there is news, from the other thread.
-  Background(std::function<Result(const Progress&)> work, std::function<void()> told)
+  BackgroundWork(std::function<Result(const Progress&)> work, std::function<void()> told)
       : told_(std::move(told)), thread_([this, work = std::move(work)] { run(work); }) {}
-  ~Background() {
+  ~BackgroundWork() {
     cancel();
     thread_.join();
   }
-  Background(const Background&) = delete;
-  Background& operator=(const Background&) = delete;
+  BackgroundWork(const BackgroundWork&) = delete;
+  BackgroundWork& operator=(const BackgroundWork&) = delete;
 
   void cancel() { cancelled_ = true; }
   bool cancelled() const { return cancelled_; }
