@@ -216,8 +216,8 @@ void main() {
   vec3 c = albedo * light + reflectance * shine;
   vec3 mirrored = reflect(-v, n);
   // In the mouth a grazing look is thrown on into the dark.
-  if (cavity.y > 0.0) open *= smoothstep(-1.0, 0.4, dot(mirrored, v));
-  c += ambient_light(mirrored, v) * fresnel(nv, reflectance) * (1.0 - roughness) * open;
+  float around = cavity.y > 0.0 ? open * smoothstep(-1.0, 0.4, dot(mirrored, v)) : open;
+  c += ambient_light(mirrored, v) * fresnel(nv, reflectance) * (1.0 - roughness) * around;
   if (coated) {
     // An eye mirrors a light lower than the key, which its lid would hide, and the fill as bright as
     // a window: on the iris from the front and from either side.
