@@ -6,7 +6,6 @@
 
 #include "render/face_openings.h"
 #include "render/material.h"
-#include "render/mouth_lining.h"
 #include "render/skin_tint.h"
 
 namespace condyle {
@@ -260,11 +259,9 @@ PreparedParts::PreparedParts(std::span<const Part> patient) : patient_(patient) 
       eyes.insert(eyes.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
   const Vector3f skin = material_of(Role::face).color;
   DrawnFace drawn(face->mesh, eyes, skin);
-  if (face->mesh.colors.empty()) {
-    const auto lining = line_mouth(patient, &drawn.mesh());
-    // Where the lips have an inside, the rim is not where they end.
-    if (lining && !lining->cut) drawn.tint(lining->rim, skin);
-  }
+  lining_ = line_mouth(patient, &drawn.mesh());
+  // Where the lips have an inside, the rim is not where they end.
+  if (face->mesh.colors.empty() && lining_ && !lining_->cut) drawn.tint(lining_->rim, skin);
   if (!drawn.changed()) return;
   replaced_ = &*face;
   own_ = {face->name, face->role, drawn.mesh(), {}, face->carrier};
