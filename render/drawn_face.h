@@ -27,6 +27,9 @@ class DrawnFace {
   /// Gives it the colours of lips and cheeks; rim: of its mouth (see skin_tint.h).
   void tint(std::span<const int> rim, const Eigen::Vector3f& skin);
 
+  /// Gives it brows, over eyes that it closes.
+  void draw_brows();
+
   /// Whether it differs from the face that it was made of.
   bool changed() const { return changed_; }
   const TriMesh& mesh() const { return mesh_; }
@@ -70,7 +73,7 @@ class PreparedParts {
 
   std::span<const Part> patient() const { return patient_; }
   const Part& drawn(const Part& part) const { return &part == replaced_ ? own_ : part; }
-  /// What lines the mouth of that face; null if nothing does.
+  /// What lines the mouth of the first face as it is drawn; null if nothing does.
   const MouthLining* lining() const { return lining_ ? &*lining_ : nullptr; }
   /// Of a part that is drawn; null if it is the patient's.
   const DrawnFace* face_of(const Part& drawn) const { return &drawn == &own_ ? &*face_ : nullptr; }
