@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/smooth_step.h"
 #include "render/face_openings.h"
 #include "render/material.h"
-#include "render/mouth_lining.h"
 #include "render/skin_tint.h"
 
 namespace condyle {
@@ -207,6 +207,35 @@ void DrawnFace::draw_lashes() {
   }
 }
 
+/// Over each of two closed eyes, in shares of an eye's width: up to beside its outer corner, and a
+/// little down again. That width is known by the eyes' distance: what is open is wider.
+void DrawnFace::draw_brows() {
+  constexpr double width_share = 0.43, deep_mm = 20;
+  const Vector3f dark(.42f, .36f, .34f);
+  if (closed_eyes_.size() != 2) return;
+  const auto middle = [&](std::size_t e) -> Vector3d {
+    return (closed_eyes_[e].right + closed_eyes_[e].left) / 2;
+  };
+  const Vector3d between = (middle(0) + middle(1)) / 2;
+  const double width = width_share * (middle(1) - middle(0)).norm();
+  for (std::size_t e = 0; e < 2; ++e) {
+    const double outward = middle(e).x() > between.x() ? 1 : -1;
+    for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+      const Vector3d p = mesh_.vertices[v] - middle(e);
+      const double u = outward * p.x() / width;
+      if (std::abs(u) > 1 || p.y() > deep_mm) continue;
+      const double height = 0.60 + 0.14 * smooth_step((u + 0.7) / 0.9) -
+                            0.20 * std::pow(std::max(0.0, (u - 0.1) / 0.7), 2);
+      const double half = 0.12 - 0.07 * smooth_step((u + 0.1) / 0.8);
+      const double off = (p.z() / width - height) / half;
+      const double ends = smooth_step((u + 0.75) / 0.2) * smooth_step((0.85 - u) / 0.4);
+      const double share = 0.8 * ends * std::exp(-std::pow(std::abs(off), 2.6));
+      mesh_.colors[v] = mesh_.colors[v].cwiseProduct(
+          Vector3f::Ones() + static_cast<float>(share) * (dark - Vector3f::Ones()));
+    }
+  }
+}
+
 void DrawnFace::divide() {
   auto finer = subdivide(static_cast<int>(mesh_.vertices.size()), mesh_.triangles);
   mesh_.triangles = std::move(finer.triangles);
@@ -260,11 +289,10 @@ PreparedParts::PreparedParts(std::span<const Part> patient) : patient_(patient) 
       eyes.insert(eyes.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
   const Vector3f skin = material_of(Role::face).color;
   DrawnFace drawn(face->mesh, eyes, skin);
-  if (face->mesh.colors.empty()) {
-    const auto lining = line_mouth(patient, &drawn.mesh());
-    // Where the lips have an inside, the rim is not where they end.
-    if (lining && !lining->cut) drawn.tint(lining->rim, skin);
-  }
+  lining_ = line_mouth(patient, &drawn.mesh());
+  // Where the lips have an inside, the rim is not where they end.
+  if (face->mesh.colors.empty()) drawn.draw_brows();
+  if (face->mesh.colors.empty() && lining_ && !lining_->cut) drawn.tint(lining_->rim, skin);
   if (!drawn.changed()) return;
   replaced_ = &*face;
   own_ = {face->name, face->role, drawn.mesh(), {}, face->carrier};

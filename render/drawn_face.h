@@ -7,6 +7,7 @@
 
 #include "engine/mesh/loop_subdivision.h"
 #include "engine/mesh/tri_mesh.h"
+#include "render/mouth_lining.h"
 #include "sim/frame/part.h"
 
 namespace condyle {
@@ -25,6 +26,9 @@ class DrawnFace {
 
   /// Gives it the colours of lips and cheeks; rim: of its mouth (see skin_tint.h).
   void tint(std::span<const int> rim, const Eigen::Vector3f& skin);
+
+  /// Gives it brows, over eyes that it closes.
+  void draw_brows();
 
   /// Whether it differs from the face that it was made of.
   bool changed() const { return changed_; }
@@ -69,6 +73,8 @@ class PreparedParts {
 
   std::span<const Part> patient() const { return patient_; }
   const Part& drawn(const Part& part) const { return &part == replaced_ ? own_ : part; }
+  /// What lines the mouth of the first face as it is drawn; null if nothing does.
+  const MouthLining* lining() const { return lining_ ? &*lining_ : nullptr; }
   /// Of a part that is drawn; null if it is the patient's.
   const DrawnFace* face_of(const Part& drawn) const { return &drawn == &own_ ? &*face_ : nullptr; }
 
@@ -77,6 +83,7 @@ class PreparedParts {
   const Part* replaced_ = nullptr;
   Part own_;
   std::optional<DrawnFace> face_;
+  std::optional<MouthLining> lining_;
 };
 
 }  // namespace condyle

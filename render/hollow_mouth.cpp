@@ -55,6 +55,7 @@ HollowMouth::HollowMouth(const MouthLining& lining, const Drawable& face) : lini
     float sky = 0.8f - 0.35f * deep;
     const float way = (lining_.rest[v] - lining_.rest[v % around]).norm() / of_lip_mm;
     const float lip = way < 1 ? (1 - way) * (1 - way) * (1 + 2 * way) : 0.f;
+    lip_.push_back(lip);
     if (lip > 0) {
       const auto of = static_cast<std::size_t>(lining_.rim[v % around]);
       const auto& skin = face.colors[of];
@@ -89,7 +90,11 @@ Drawable& HollowMouth::place(const GpuMesh& face, const Pose& X_CM) {
   for (const int v : lining_.rim) rim.push_back(face.point_of(v));
   const auto now = places_now(lining_, rim, X_CM);
   vertex_normals(now, lining_.triangles, normals);
-  std::ranges::copy(rim_normals(lining_.rim, beside_rim_, face), normals.begin());
+  const auto of_rim = rim_normals(lining_.rim, beside_rim_, face);
+  // Round as a lip is: turned within one ring it would glint along a hairline.
+  for (std::size_t v = 0; v < normals.size(); ++v)
+    if (lip_[v] > 0)
+      normals[v] = (normals[v] + lip_[v] * (of_rim[v % of_rim.size()] - normals[v])).normalized();
   drawable_->mesh.send_shape(now, normals);
   return *drawable_;
 }

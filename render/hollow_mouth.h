@@ -24,6 +24,7 @@ class HollowMouth {
 
  private:
   MouthLining lining_;
+  std::vector<float> lip_;                   // how much of the lip each vertex still has, 0 to 1
   std::vector<Eigen::Vector3i> beside_rim_;  // the face's triangles there
   Part part_;
   std::optional<Drawable> drawable_;

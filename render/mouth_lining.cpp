@@ -3,10 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/math/smooth_step.h"
 #include "engine/mesh/rims.h"
 #include "engine/mesh/slit_seam.h"
+#include "render/mouth_space.h"
 
 namespace condyle {
 namespace {
@@ -15,22 +16,8 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr int rings = 24;
-// From the line of the lips to where the cheek turns to the jaws.
-constexpr double fornix_up_mm = 11.5, fornix_down_mm = 13;
-constexpr double behind_teeth_mm = 1.6;     // from teeth to the cheek
-constexpr double throat_mm = 18;            // from the last tooth on
-constexpr double throat_narrower = 0.5;     // by this share of the width
-constexpr double within_mm = 1.5;           // what is seen stands before the lining by so much
-constexpr double within_crowns_mm = 5;      // of a bone that has them, with their cusps and pits
-constexpr double gum_mm = 1;                // of a palate without gums of its own
-constexpr double palate_mm = 32;            // above the line of the lips, at most
-constexpr double palate_share = 0.8;        // of the mouth's half width
-constexpr double soft_palate_slope = 0.85;  // down over back, behind the bone
-
-double smooth(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
+constexpr double throat_narrower = 0.5;  // by this share of the width
+constexpr double palate_share = 0.8;     // of the mouth's half width
 
 std::vector<Vector3d> vertices_of(std::span<const Part> parts, Role role) {
   std::vector<Vector3d> all;
@@ -96,161 +83,6 @@ std::vector<Vector3d> find_arches(std::span<const Part> parts, const TriMesh& fa
   upper.insert(upper.end(), lower.begin(), lower.end());
   return upper;
 }
-
-/// Height of the lowest surface above a level, seen from below, on a grid in plan.
-class Ceiling {
- public:
-  Ceiling(std::span<const Part> parts, const Eigen::AlignedBox3d& region, double above)
-      : low_(region.min().head<2>()), above_(above) {
-    const Eigen::Vector2d size = region.sizes().head<2>();
-    columns_ = static_cast<int>(size.x() / cell_mm) + 2;
-    rows_ = static_cast<int>(size.y() / cell_mm) + 2;
-    heights_.assign(static_cast<std::size_t>(columns_ * rows_), none);
-    for (const auto& part : parts)
-      if (part.role == Role::skull || part.role == Role::maxilla || part.role == Role::upper_gums)
-        for (const auto& t : part.mesh.triangles)
-          add(part.mesh.vertices[static_cast<std::size_t>(t[0])],
-              part.mesh.vertices[static_cast<std::size_t>(t[1])],
-              part.mesh.vertices[static_cast<std::size_t>(t[2])]);
-  }
-
-  static constexpr double none = std::numeric_limits<double>::infinity();
-  double at(double x, double y) const {
-    const int c = static_cast<int>(std::lround((x - low_.x()) / cell_mm)),
-              r = static_cast<int>(std::lround((y - low_.y()) / cell_mm));
-    if (c < 0 || r < 0 || c >= columns_ || r >= rows_) return none;
-    return heights_[static_cast<std::size_t>(r * columns_ + c)];
-  }
-
- private:
-  static constexpr double cell_mm = 0.5;
-
-  void add(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-    if (std::max({a.z(), b.z(), c.z()}) < above_) return;
-    const Eigen::Matrix2d sides =
-        (Eigen::Matrix2d() << (b - a).head<2>(), (c - a).head<2>()).finished();
-    if (std::abs(sides.determinant()) < 1e-9) return;
-    const Eigen::Matrix2d to_shares = sides.inverse();
-    const auto within = [&](double cell, int k) {
-      return static_cast<int>(
-          std::clamp(cell, -1.0, static_cast<double>(k == 0 ? columns_ : rows_)));
-    };
-    const auto first = [&](double v, int k) {
-      return std::max(0, within(std::ceil((v - low_[k]) / cell_mm), k));
-    };
-    const auto last = [&](double v, int k) {
-      return std::min((k == 0 ? columns_ : rows_) - 1,
-                      within(std::floor((v - low_[k]) / cell_mm), k));
-    };
-    for (int r = first(std::min({a.y(), b.y(), c.y()}), 1);
-         r <= last(std::max({a.y(), b.y(), c.y()}), 1); ++r)
-      for (int k = first(std::min({a.x(), b.x(), c.x()}), 0);
-           k <= last(std::max({a.x(), b.x(), c.x()}), 0); ++k) {
-        const Eigen::Vector2d share =
-            to_shares * (low_ + cell_mm * Eigen::Vector2d(k, r) - a.head<2>());
-        if (share.minCoeff() < -1e-9 || share.sum() > 1 + 1e-9) continue;
-        const double z = a.z() + share.x() * (b - a).z() + share.y() * (c - a).z();
-        double& kept = heights_[static_cast<std::size_t>(r * columns_ + k)];
-        if (z > above_) kept = std::min(kept, z);
-      }
-  }
-
-  Eigen::Vector2d low_;
-  double above_;
-  int columns_ = 0, rows_ = 0;
-  std::vector<double> heights_;
-};
-
-/// From the lowest surface above up to the lining: it lies within gums and crowns, but covers a
-/// palate that is bare bone. Crowns are what is hardly above the lowest of its row: the arch rises
-/// to the back.
-class Above {
- public:
-  Above(std::span<const Part> parts, const Ceiling& bone, const Eigen::AlignedBox3d& region,
-        double mid)
-      : bare_(std::none_of(parts.begin(), parts.end(),
-                           [](const Part& part) { return part.role == Role::upper_gums; })),
-        front_(region.min().y()) {
-    constexpr double arch_mm = 9;  // above the line of the lips, at most
-    const auto rows = static_cast<std::size_t>(region.sizes().y() / row_mm) + 1;
-    std::vector<double> lowest(rows, Ceiling::none);
-    for (std::size_t r = 0; r < rows; ++r)
-      for (double x = region.min().x(); x < region.max().x(); x += 0.5)
-        lowest[r] = std::min(lowest[r], bone.at(x, front_ + static_cast<double>(r) * row_mm));
-    constexpr std::size_t gap = 3;  // rows: between two teeth
-    for (std::size_t r = 0; r < rows; ++r) {
-      const auto first = lowest.begin() + static_cast<std::ptrdiff_t>(r - std::min(r, gap));
-      const auto last = lowest.begin() + static_cast<std::ptrdiff_t>(std::min(r + gap + 1, rows));
-      const double z = *std::min_element(first, last);
-      lowest_.push_back(z < mid + arch_mm ? z : -Ceiling::none);
-    }
-  }
-  bool bare() const { return bare_; }
-  double at(double y, double surface_z) const {
-    constexpr double crowns_mm = 2.5, to_palate_mm = 2.5;
-    if (!bare_) return within_mm;
-    const double row =
-        std::clamp((y - front_) / row_mm, 0.0, static_cast<double>(lowest_.size() - 1));
-    const double palate =
-        smooth((surface_z - lowest_[static_cast<std::size_t>(row)] - crowns_mm) / to_palate_mm);
-    return within_crowns_mm - palate * (within_crowns_mm + gum_mm);
-  }
-
- private:
-  static constexpr double row_mm = 1;
-  bool bare_;
-  double front_;
-  std::vector<double> lowest_;
-};
-
-/// The soft palate goes on where the bone ends, down to the throat.
-struct SoftPalate {
-  double begin_y, begin_z, lowest_z;
-  double at(double y) const {
-    return std::max(lowest_z, begin_z - soft_palate_slope * std::max(0.0, y - begin_y));
-  }
-};
-
-SoftPalate soft_palate(const Ceiling& bone, const Above& above, const Eigen::AlignedBox3d& teeth,
-                       double mid) {
-  SoftPalate soft = {teeth.max().y(), mid + fornix_up_mm, mid + 4};
-  bool found = false;
-  for (double y = teeth.min().y(); y < teeth.max().y() + throat_mm; y += 0.5) {
-    const double z = bone.at(teeth.center().x(), y);
-    // Where mucosa ends before its bone, too.
-    const bool steps_up = found && y > teeth.max().y() && z > soft.begin_z;
-    if (z < mid + palate_mm && !steps_up) {
-      soft.begin_y = y;
-      soft.begin_z = z + above.at(y, z);
-      found = true;
-    } else if (found) {
-      break;
-    }
-  }
-  return soft;
-}
-
-/// Half the mouth's width by the way back, from the teeth: it never narrows.
-class Width {
- public:
-  Width(std::span<const Vector3d> arches, const Eigen::AlignedBox3d& teeth)
-      : front_(teeth.min().y()) {
-    half_.assign(static_cast<std::size_t>(teeth.sizes().y()) + 1, 0);
-    for (const auto& v : arches) {
-      double& half = half_[static_cast<std::size_t>(v.y() - front_)];
-      half = std::max(half, std::abs(v.x() - teeth.center().x()));
-    }
-    for (std::size_t i = 1; i < half_.size(); ++i) half_[i] = std::max(half_[i], half_[i - 1]);
-  }
-  double at(double y) const {
-    const auto i = static_cast<std::size_t>(std::max(0.0, y - front_));
-    return half_[std::min(i, half_.size() - 1)] + behind_teeth_mm;
-  }
-
- private:
-  double front_;
-  std::vector<double> half_;
-};
 
 /// Of a rim's vertex: -1 at one corner of the mouth, 1 at the other; and which lip it is on.
 struct RimPlace {
@@ -331,6 +163,132 @@ void draw_together(std::vector<Vector3f>& places) {
   }
 }
 
+/// Rim, whether it is cut, and what is drawn of the face; no rim where there is none.
+MouthLining lining_at_rim(const TriMesh& face, const Eigen::AlignedBox3d& teeth) {
+  constexpr double beside_mm = 45;  // of the teeth's middle
+  MouthLining lining;
+  lining.rim = mouth_rim(face, teeth);
+  if (lining.rim.empty()) return lining;
+  TriMesh shown{
+      face.vertices, without_deep_inside(face, lining.rim, teeth.center(), beside_mm), {}};
+  auto rim = mouth_rim(shown, teeth);
+  lining.cut = !rim.empty() && shown.triangles.size() < face.triangles.size();
+  if (lining.cut) {
+    lining.rim = std::move(rim);
+    lining.face = std::move(shown.triangles);
+  } else {
+    lining.face = face.triangles;
+  }
+  return lining;
+}
+
+/// Of the closed lips, at the corners of the mouth; if there are none, `otherwise`.
+double lips_height(const TriMesh& face, std::span<const int> rim, std::span<const RimPlace> places,
+                   double otherwise) {
+  constexpr double corner = 0.7;
+  double sum = 0, found = 0;
+  for (std::size_t i = 0; i < rim.size(); ++i)
+    if (std::abs(places[i].across) > corner) {
+      sum += face.vertices[static_cast<std::size_t>(rim[i])].z();
+      ++found;
+    }
+  return found > 0 ? sum / found : otherwise;
+}
+
+/// Where the lining begins at each vertex of the rim.
+std::vector<Vector3f> starts_of(const TriMesh& face, const MouthLining& lining) {
+  std::vector<Vector3f> starts;
+  starts.reserve(lining.rim.size());
+  for (const int v : lining.rim)
+    starts.push_back(face.vertices[static_cast<std::size_t>(v)].cast<float>());
+  if (lining.cut) draw_together(starts);
+  return starts;
+}
+
+/// How far back from the rim the lining rises to where the cheek turns to the jaw, mm, and how far
+/// it goes with the lip: it rises before the first crown, however near that stands, and leaves the
+/// lip there.
+struct Rise {
+  double rises_mm, leaves_mm;
+};
+
+Rise rise_from(const Vector3d& start, bool upper, double fornix, const MouthSpace& space) {
+  const double to_throat = space.throat_y - start.y();
+  Rise rise = {0.1 * to_throat, 0.35 * to_throat};
+  for (double way = 0; upper && way < rise.rises_mm; way += 0.5)
+    if (space.bone.at(start.x(), start.y() + way) < fornix) {
+      rise.rises_mm = std::max(1.0, way - MouthSpace::within_mm);
+      rise.leaves_mm = 2 * rise.rises_mm;
+    }
+  return rise;
+}
+
+/// Height of the lining's roof on the way back from an upper lip: up to the fornix, within gums and
+/// crowns, under the palate, down the soft palate. Asked from front to back.
+class Roof {
+ public:
+  Roof(const MouthSpace& space, double across) : space_(space), across_(across) {}
+  double at(double x, double y, double fornix) {
+    const double hit = space_.bone.at(x, y);
+    if (hit < fornix) behind_teeth_ = true;
+    if (!behind_teeth_ || std::abs(across_) >= palate_share)
+      return std::min(fornix, hit + space_.above.at(y, hit));
+    if (hit < space_.mid_z + MouthSpace::highest_palate_mm &&
+        (y < space_.soft.begin_y || hit < bone_z_ + 4)) {
+      bone_z_ = hit + space_.above.at(y, hit);
+      bone_y_ = y;
+    }
+    return bone_z_ + smooth_step((y - bone_y_) / 6) * (space_.soft.at(y) - bone_z_);
+  }
+
+ private:
+  const MouthSpace& space_;
+  double across_;
+  bool behind_teeth_ = false;
+  double bone_z_ = 0, bone_y_ = 0;  // where bone was last above
+};
+
+/// What of each ring lies behind the i-th vertex of the rim.
+void lay_column(MouthLining& lining, std::size_t i, const Vector3d& start, const RimPlace& place,
+                const MouthSpace& space) {
+  const auto [across, is_upper] = place;
+  const auto& teeth = space.teeth;
+  // A lip that ends at its edge is thin: the lining leaves it to the back before it turns aside.
+  const double turned = lining.cut ? 0.35 : 0;
+  // Round at the sides, as far as the rim is not.
+  const double turn = std::sqrt(std::max(0.0, 1 - std::pow(across, 20)));
+  const double fornix =
+      space.mid_z + (is_upper ? MouthSpace::fornix_up_mm : -MouthSpace::fornix_down_mm);
+  const auto [rises_mm, leaves_mm] = rise_from(start, is_upper, fornix, space);
+  Roof roof(space, across);
+  for (int ring = 0; ring <= rings; ++ring) {
+    const std::size_t v = static_cast<std::size_t>(ring) * lining.rim.size() + i;
+    const double t = std::pow(static_cast<double>(ring) / rings, 1.4);
+    const double y = start.y() + t * (space.throat_y - start.y());
+    const double half =
+        space.width.at(y) * (1 - throat_narrower * smooth_step((y - teeth.max().y() + 3) / 12));
+    const double x =
+        start.x() + smooth_step(4 * t) * (teeth.center().x() + across * half - start.x());
+    double z = is_upper ? roof.at(x, y, fornix) : fornix;
+    z = space.mid_z + turn * (z - space.mid_z);
+    const double in = ring == 0 ? 0 : smooth_step(turned + (y - start.y()) / rises_mm);
+    lining.rest[v] = Vector3d(x, y, start.z() + in * (z - start.z())).cast<float>();
+    lining.jaw[v] = static_cast<float>(is_upper ? 0.5 - 0.5 * turn : 0.5 + 0.5 * turn);
+    lining.lip[v] = static_cast<float>(1 - smooth_step((y - start.y()) / leaves_mm));
+  }
+}
+
+/// The middle of the last ring, which closes the throat.
+void add_throat(MouthLining& lining) {
+  const auto n = lining.rim.size();
+  Vector3d middle = Vector3d::Zero();
+  for (std::size_t i = 0; i < n; ++i)
+    middle += lining.rest[static_cast<std::size_t>(rings) * n + i].cast<double>() /
+              static_cast<double>(n);
+  lining.rest.back() = middle.cast<float>();
+  lining.jaw.back() = 0.5f;
+}
+
 }  // namespace
 
 std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh* drawn) {
@@ -343,95 +301,22 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh
   const auto teeth = box_of(arches);
   constexpr double widest_mouth_mm = 300;  // what is larger has stray vertices
   if (teeth.sizes().maxCoeff() > widest_mouth_mm) return std::nullopt;
-  MouthLining lining;
-  lining.rim = mouth_rim(face, teeth);
+  MouthLining lining = lining_at_rim(face, teeth);
   if (lining.rim.empty()) return std::nullopt;
-  constexpr double beside_mm = 45;  // of the teeth's middle
-  TriMesh shown{
-      face.vertices, without_deep_inside(face, lining.rim, teeth.center(), beside_mm), {}};
-  auto rim = mouth_rim(shown, teeth);
-  lining.cut = !rim.empty() && shown.triangles.size() < face.triangles.size();
-  if (lining.cut) {
-    lining.rim = std::move(rim);
-    lining.face = std::move(shown.triangles);
-  } else {
-    lining.face = face.triangles;
-  }
-  // A lip that ends at its edge is thin: the lining leaves it to the back before it turns aside.
-  const double turned = lining.cut ? 0.35 : 0;
   const auto places = rim_places(face, lining.rim);
-  const auto n = lining.rim.size();
-  double corners = 0, found = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    if (std::abs(places[i].across) > 0.7) {
-      corners += face.vertices[static_cast<std::size_t>(lining.rim[i])].z();
-      ++found;
-    }
-  const double mid = found > 0 ? corners / found : teeth.center().z();
+  const double mid = lips_height(face, lining.rim, places, teeth.center().z());
   lining.mid_z = static_cast<float>(mid);
-  auto region = teeth;
-  region.extend(teeth.max() + Vector3d(5, throat_mm + 5, 0));
-  region.extend(teeth.min() - Vector3d(5, 10, 0));
-  const Ceiling bone(parts, region, mid + 1);
-  const Above above(parts, bone, region, mid);
-  const Width width(arches, teeth);
-  const SoftPalate soft = soft_palate(bone, above, teeth, mid);
-  const double throat = teeth.max().y() + throat_mm;
+  const MouthSpace space(parts, arches, mid);
 
+  const auto n = lining.rim.size();
   lining.rest.resize((rings + 1) * n + 1);
   lining.jaw.resize(lining.rest.size());
   lining.lip.resize(lining.rest.size());
-  std::vector<Vector3f> starts;
-  for (const int v : lining.rim)
-    starts.push_back(face.vertices[static_cast<std::size_t>(v)].cast<float>());
-  if (lining.cut) draw_together(starts);
-  Vector3d middle = Vector3d::Zero();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vector3d start = starts[i].cast<double>();
-    const auto [across, is_upper] = places[i];
-    // Round at the sides, as far as the rim is not.
-    const double turn = std::sqrt(std::max(0.0, 1 - std::pow(across, 20)));
-    const double fornix = mid + (is_upper ? fornix_up_mm : -fornix_down_mm);
-    // It rises before the first crown, however near that stands, and leaves the lip there.
-    double rises_mm = 0.1 * (throat - start.y()), leaves_mm = 0.35 * (throat - start.y());
-    for (double way = 0; is_upper && way < rises_mm; way += 0.5)
-      if (bone.at(start.x(), start.y() + way) < fornix) {
-        rises_mm = std::max(1.0, way - within_mm);
-        leaves_mm = 2 * rises_mm;
-      }
-    bool behind_teeth = false;
-    double bone_z = 0, bone_y = 0;  // where bone was last above
-    for (int ring = 0; ring <= rings; ++ring) {
-      const std::size_t v = static_cast<std::size_t>(ring) * n + i;
-      const double t = std::pow(static_cast<double>(ring) / rings, 1.4);
-      const double y = start.y() + t * (throat - start.y());
-      const double half =
-          width.at(y) * (1 - throat_narrower * smooth((y - teeth.max().y() + 3) / 12));
-      const double x = start.x() + smooth(4 * t) * (teeth.center().x() + across * half - start.x());
-      double z = fornix;
-      if (is_upper) {
-        const double hit = bone.at(x, y);
-        if (hit < fornix) behind_teeth = true;
-        z = std::min(fornix, hit + above.at(y, hit));
-        if (behind_teeth && std::abs(across) < palate_share) {
-          if (hit < mid + palate_mm && (y < soft.begin_y || hit < bone_z + 4)) {
-            bone_z = hit + above.at(y, hit);
-            bone_y = y;
-          }
-          z = bone_z + smooth((y - bone_y) / 6) * (soft.at(y) - bone_z);
-        }
-      }
-      z = mid + turn * (z - mid);
-      const double in = ring == 0 ? 0 : smooth(turned + (y - start.y()) / rises_mm);
-      lining.rest[v] = Vector3d(x, y, start.z() + in * (z - start.z())).cast<float>();
-      lining.jaw[v] = static_cast<float>(is_upper ? 0.5 - 0.5 * turn : 0.5 + 0.5 * turn);
-      lining.lip[v] = static_cast<float>(1 - smooth((y - start.y()) / leaves_mm));
-      if (ring == rings) middle += lining.rest[v].cast<double>() / static_cast<double>(n);
-    }
-  }
-  if (above.bare()) even_out(lining.rest, n);
-  lining.rest.back() = middle.cast<float>();
-  lining.jaw.back() = 0.5f;
+  const auto starts = starts_of(face, lining);
+  for (std::size_t i = 0; i < n; ++i)
+    lay_column(lining, i, starts[i].cast<double>(), places[i], space);
+  add_throat(lining);
+  if (space.above.bare()) even_out(lining.rest, n);
   add_triangles(lining);
   return lining;
 }

@@ -66,7 +66,6 @@ struct SceneRenderer::State {
   // Of drawables of the cranium with their numbers, once the skin was whole: without what stands
   // out of it a little; none where nothing does.
   std::map<std::size_t, std::optional<Drawable>> beneath;
-  std::optional<MouthLining> lining;
   std::optional<HollowMouth> mouth;  // from the first picture of an opaque face on
   GpuPoints contacts;
   // Of the last frame:
@@ -79,13 +78,11 @@ struct SceneRenderer::State {
   PictureTarget target;
   float map_low = 0, map_high = 1;  // values are kept within
 
-  State(std::shared_ptr<const PreparedParts> all, std::optional<MouthLining> lined,
-        std::vector<Drawable> made)
+  State(std::shared_ptr<const PreparedParts> all, std::vector<Drawable> made)
       : patient(std::move(all)),
         parts(patient->patient()),
         drawables(std::move(made)),
-        mouth_y(front_of_mouth(drawables)),
-        lining(std::move(lined)) {
+        mouth_y(front_of_mouth(drawables)) {
     for (const auto& drawable : drawables) box.extend(drawable.box);
     if (box.isEmpty()) box = Eigen::AlignedBox3f(Eigen::Vector3f::Zero());
     place({});
@@ -222,6 +219,7 @@ std::optional<DrawItem> SceneRenderer::State::hollow_mouth(std::span<const DrawI
     return item.role() == Role::face && item.opaque();
   });
   if (face == items.end() || (face->clipped && !shows_caps(view))) return std::nullopt;
+  const MouthLining* lining = patient->lining();
   if (!lining) return std::nullopt;
   if (!mouth) mouth.emplace(*lining, *face->drawable);
   DrawItem item{&mouth->place(face->drawable->mesh, X_CM), 1, Eigen::Matrix4f::Identity()};
@@ -284,15 +282,12 @@ SceneRenderer::SceneRenderer(std::span<const Part> patient) {
   auto prepared = std::make_shared<const PreparedParts>(patient);
   std::vector<const Part*> drawn;
   for (const auto& part : patient) drawn.push_back(&prepared->drawn(part));
-  const auto face = std::find_if(drawn.begin(), drawn.end(),
-                                 [](const Part* part) { return part->role == Role::face; });
-  auto lining = line_mouth(patient, face == drawn.end() ? nullptr : &(*face)->mesh);
-  auto drawables = make_drawables(drawn, lining ? &*lining : nullptr);
-  state_ = std::make_unique<State>(std::move(prepared), std::move(lining), std::move(drawables));
+  auto drawables = make_drawables(drawn, prepared->lining());
+  state_ = std::make_unique<State>(std::move(prepared), std::move(drawables));
 }
 
 SceneRenderer::SceneRenderer(const SceneRenderer& other)
-    : state_(std::make_unique<State>(other.state_->patient, other.state_->lining,
+    : state_(std::make_unique<State>(other.state_->patient,
                                      drawables_like(other.state_->drawables))) {}
 
 SceneRenderer::~SceneRenderer() = default;

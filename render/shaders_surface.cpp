@@ -28,8 +28,11 @@ uniform vec3 shadow_scale;       // of the shadow map's cube over mm
 uniform float opacity;
 out vec4 result;
 
-// From one point of a sunflower's spiral to the next: such points are spread evenly over a disc.
+// From one point of a sunflower's spiral to the next, and to the fourth from there: such points are
+// spread evenly over a disc.
+const float one_turn = 2.399963;
 const mat2 next_point = mat2(-0.737369, 0.675490, -0.675490, -0.737369);
+const mat2 fourth_point = mat2(-0.984713, -0.174182, 0.174182, -0.984713);
 
 // Looks at some points of a disc (radius in mm) in the shadow map and adds to `found`: x, how much
 // of the light is hidden there, each 0 to 1; y, the same times how far before here the hiding is,
@@ -67,18 +70,17 @@ vec2 key_visibility(vec3 n, bool wanted) {
   bool shaded = found.x > 0.0;
   look_for_shade(shaded, widest, slope, point, found);
   float reach = clamp(box * found.y / (max(found.x, 1e-6) * shadow_scale.z), least, widest);
-  // These points are turned from pixel to pixel, or each would leave a step in the edge: by a quarter
-  // within four neighbours, which share what they find, and by less from four to four.
+  // Four neighbours look at every fourth point of one spiral each, and share what they find.
   // source: Jimenez, Next Generation Post Processing in Call of Duty: Advanced Warfare, 2014
-  vec2 pixel = floor(gl_FragCoord.xy), four = floor(0.5 * pixel), odd = pixel - 2.0 * four;
-  float turn = 1.5707963 * (odd.x + 2.0 * odd.y
-             + fract(52.9829189 * fract(dot(four, vec2(0.06711056, 0.00583715)))));
-  point = vec2(cos(turn), sin(turn));
+  vec2 odd = mod(floor(gl_FragCoord.xy), 2.0);
+  float own = odd.x + 2.0 * odd.y;
+  point = vec2(cos(own * one_turn), sin(own * one_turn));
   float sum = 0.0;
   for (int i = 0; i < (shaded ? compared : 0); ++i) {
-    point = next_point * point;
-    vec2 off = reach * sqrt((float(i) + 0.5) / float(compared)) * point * shadow_scale.xy;
+    vec2 off = reach * sqrt((float(4 * i) + own + 0.5) / float(4 * compared)) * point
+             * shadow_scale.xy;
     sum += textureLod(shadow_map, shadow_place + vec3(off, dot(slope, off)), 0.0);
+    point = fourth_point * point;
   }
   float seen = mix(1.0, sum / float(compared), share);
   // Neighbours farther apart, mm, or far brighter or darker are not of one surface.
@@ -216,8 +218,8 @@ void main() {
   vec3 c = albedo * light + reflectance * shine;
   vec3 mirrored = reflect(-v, n);
   // In the mouth a grazing look is thrown on into the dark.
-  if (cavity.y > 0.0) open *= smoothstep(-1.0, 0.4, dot(mirrored, v));
-  c += ambient_light(mirrored, v) * fresnel(nv, reflectance) * (1.0 - roughness) * open;
+  float around = cavity.y > 0.0 ? open * smoothstep(-1.0, 0.4, dot(mirrored, v)) : open;
+  c += ambient_light(mirrored, v) * fresnel(nv, reflectance) * (1.0 - roughness) * around;
   if (coated) {
     // An eye mirrors a light lower than the key, which its lid would hide, and the fill as bright as
     // a window: on the iris from the front and from either side.

@@ -93,7 +93,9 @@ void tint_skin(const TriMesh& face, std::span<const int> rim, std::vector<Vector
     colors[v] = colors[v].cwiseProduct(Vector3f::Ones() +
                                        static_cast<float>(blood) * (flushed - Vector3f::Ones()));
     if (!near.contains(p)) continue;
-    const double reach = width * red_of_lip(mouth.across(p), p.z() > mouth.height_at(p.x()));
+    // To its very corners the rim itself is red.
+    const double reach =
+        std::max(0.02, red_of_lip(mouth.across(p), p.z() > mouth.height_at(p.x()))) * width;
     const double share = 1 - smooth((mouth.way_to(p) - reach + 0.8) / 1.6);
     colors[v] = colors[v].cwiseProduct(Vector3f::Ones() +
                                        static_cast<float>(share) * (red - Vector3f::Ones()));

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int surface_version = 9;  // raise when surfaces or landmarks change but no solid does
+constexpr int surface_version = 10;  // raise when surfaces or landmarks change but no solid does
 
 /// What the recipes say at scattered points: another recipe, another key.
 std::uint64_t recipe_key() {

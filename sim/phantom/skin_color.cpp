@@ -39,8 +39,9 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
     return std::exp(-((p - c).cwiseQuotient(r)).squaredNorm());
   };
   mix({.82, .58, .48}, .25 * mottle(at, 26) + .12 * mottle(at, 7));
-  mix({.84, .50, .43}, .42 * spot({42, -76, -14}, {17, 25, 15}));  // cheek
-  mix({.84, .50, .43}, .40 * spot({0, -116, -16}, {12, 10, 9}));   // nose tip
+  const double blood = 1 + .45 * mottle(at, 15) + .2 * mottle(at, 5);
+  mix({.84, .51, .45}, .30 * blood * spot({42, -76, -14}, {22, 27, 18}));  // cheek
+  mix({.84, .50, .44}, .32 * blood * spot({0, -116, -16}, {13, 10, 10}));  // nose
   if (x > 68)
     mix({.82, .50, .42}, .6 * smooth_step((x - 68) / 8) * spot({84, 14, 0}, {14, 25, 38}));
   mix({.70, .50, .44}, .35 * spot({31, -84, 16}, {17, 14, 9}));  // around the eye
@@ -75,8 +76,12 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
   }
   mix({.78, .47, .43}, .8 * spot({18.6, -80.5, 12.5}, {2.6, 3, 2.2}));  // caruncle
   // Hair cut to the skin.
-  const double hair = smooth_step((z - hair_line(y) + 3 * mottle(at, 19)) / 18 + .5);
-  mix({.50, .42, .38}, hair * (.42 + .05 * mottle(at, 9)) * smooth_step((78 - x) / 6));
+  const double above_line = z - hair_line(y) + 3 * mottle(at, 19) + 3 * mottle(at, 6);
+  const double hair =
+      smooth_step(above_line / 22 + .5) * (.75 + .25 * smooth_step(above_line / 60));
+  const double ear =
+      smooth_step((x - 64) / 8) * smooth_step((1.3 - std::hypot((y - 13) / 25, z / 38)) / .35);
+  mix({.42, .36, .33}, hair * (1 - ear) * (.56 + .04 * mottle(at, 9) + .04 * mottle(at, 3)));
   return color.cast<float>();
 }
 

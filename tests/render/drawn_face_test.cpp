@@ -176,6 +176,30 @@ TEST(DrawnFace, LidsMeetInADarkLineFromCornerToCorner) {
     }
 }
 
+TEST(DrawnFace, HasBrowsOverBothEyesThatItClosesUnlessItsColoursAreKnown) {
+  std::vector<Part> parts = {make_part("face", Role::face, head_with_openings())};
+  // Darkest of what lies so far above an eye's middle.
+  const auto light = [&](double side, double up) {
+    const PreparedParts prepared(parts);
+    const TriMesh& face = prepared.drawn(parts[0]).mesh;
+    float darkest = 1;
+    for (std::size_t v = 0; v < face.vertices.size(); ++v) {
+      const auto& p = face.vertices[v];
+      if (p.y() < 0 && std::abs(p.x() - side * eye_at.x()) < 4 &&
+          std::abs(p.z() - eye_at.z() - up) < 2)
+        darkest = std::min(darkest, face.colors[v].x());
+    }
+    return darkest;
+  };
+  for (const double side : {-1, 1}) {
+    EXPECT_LT(light(side, 19), 0.6f);
+    EXPECT_GT(light(side, 28), 0.75f);
+    EXPECT_GT(light(side, 11), 0.75f);
+  }
+  parts[0].mesh.colors.assign(parts[0].mesh.vertices.size(), {.8f, .6f, .5f});
+  for (const double side : {-1, 1}) EXPECT_NEAR(light(side, 19), 0.8f, 0.01f);
+}
+
 TEST(DrawnFace, OfARealHeadHasNoHolesAndLiesNearIt) {
   const auto file = std::filesystem::path(CONDYLE_SOURCE_DIR) / ".." / "shared" / "data" /
                     "case-badin" / "face_skin.ply";

@@ -71,27 +71,29 @@ TEST_F(Edges, OfShadowsHaveNoGrain) {
                 quad({-60, 30, -60}, {60, 30, -60}, {60, 30, 60}, {-60, 30, 60})),
       make_part("ball", Role::maxilla, ball({0, 0, 0}, 14))};
   SceneRenderer renderer(parts);
-  auto settings = mask_settings(400);
+  constexpr int side = 1200;  // as enlarged: a pattern of the pixels would stand out
+  auto settings = mask_settings(side);
   settings.samples = 1;
   const Image lit = renderer.picture(front_camera(), settings);
   settings.shadows = false;
   const Image bare = renderer.picture(front_camera(), settings);
   const auto shade = [&](int x, int y) { return pixel(bare, x, y).g - pixel(lit, x, y).g; };
-  // Second differences along rows, where the shadow is neither full nor none.
+  // Second differences along rows, from one two pixels to the next, where the shadow is neither
+  // full nor none.
   int deepest = 0, edge = 0;
-  for (int y = 0; y < 400; ++y)
-    for (int x = 0; x < 400; ++x) deepest = std::max(deepest, shade(x, y));
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) deepest = std::max(deepest, shade(x, y));
   ASSERT_GT(deepest, 40);
   double grain = 0;
-  for (int y = 1; y + 1 < 400; ++y)
-    for (int x = 2; x + 2 < 400; ++x) {
+  for (int y = 0; y < side; ++y)
+    for (int x = 2; x + 2 < side; ++x) {
       const int s = shade(x, y);
       if (s < 0.2 * deepest || s > 0.8 * deepest) continue;
-      grain += std::abs(shade(x - 1, y) - 2 * s + shade(x + 1, y));
+      grain += std::abs(shade(x - 2, y) - 2 * s + shade(x + 2, y));
       ++edge;
     }
-  ASSERT_GT(edge, 500);
-  EXPECT_LT(grain / edge, 0.05 * deepest);
+  ASSERT_GT(edge, 5000);
+  EXPECT_LT(grain / edge, 0.02 * deepest);
 }
 
 }  // namespace

@@ -280,5 +280,27 @@ TEST_F(MouthSection, WithoutOneTheOpenMouthIsDarkRedAndNothingIsSeenThroughIt) {
   EXPECT_EQ(inside(0.5).a, 0);  // a face that is seen through shows what is behind it
 }
 
+TEST_F(MouthSection, ALipThatEndsAtItsEdgeHasNoGlintAlongIt) {
+  const auto parts = head_with_mouth();
+  SceneRenderer renderer(parts);
+  auto settings = mask_settings(200);
+  settings.shadows = false;
+  settings.part_opacity = {{"upper_teeth", 0}, {"lower_teeth", 0}};
+  Camera camera = front_camera(10);
+  camera.target = {0, -59, -7};
+  camera.direction = Eigen::Vector3d(0.1, -1, 0.5).normalized();
+  const Image image = renderer.picture(camera, settings);
+  // The edge runs through the middle; below is the lip's red.
+  for (int x = 10; x < 200; x += 20) {
+    int edge = 0, lip = 0;
+    for (int y = 0; y < 200; ++y) {
+      int& brightest = y < 140 ? edge : lip;
+      brightest = std::max(brightest, pixel(image, x, y).g);
+    }
+    EXPECT_GT(edge, 60) << x;
+    EXPECT_LT(edge, lip + 12) << x;
+  }
+}
+
 }  // namespace
 }  // namespace condyle

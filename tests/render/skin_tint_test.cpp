@@ -44,6 +44,9 @@ TEST(SkinTint, IsTheRedOfLipsAboutTheMouthAndOfSkinElsewhere) {
       ++others;
     }
   }
+  for (const int v : lining->rim)
+    EXPECT_GT(redness(colors[static_cast<std::size_t>(v)]), 0.38f)
+        << face.vertices[static_cast<std::size_t>(v)].transpose();
   EXPECT_GT(lips, 20);
   EXPECT_GT(others, 1000);
 }

@@ -226,5 +226,16 @@ TEST(Phantom, BuildingCanBeCancelled) {
   EXPECT_THROW(build_phantom([](std::string_view, double) { throw Cancelled(); }), Cancelled);
 }
 
+TEST(Phantom, HairIsCutToTheSkinAboveForeheadAndEarAndOnNeither) {
+  const auto light = [](double x, double y, double z) { return skin_color({x, y, z}).x(); };
+  for (const double side : {-1, 1}) {
+    const double forehead = light(side * 20, -95, 55), ear = light(side * 84, 14, 10);
+    const double above_ear = light(side * 74, 13, 60), behind_ear = light(side * 70, 60, 20),
+                 crown = light(side * 30, 20, 110);
+    EXPECT_GT(std::min(forehead, ear) - std::max({above_ear, behind_ear, crown}), 0.1) << side;
+    EXPECT_NEAR(light(side * 76, 13, 36), ear, 0.06) << side;  // above its root
+  }
+}
+
 }  // namespace
 }  // namespace condyle
