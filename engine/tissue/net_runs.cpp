@@ -18,10 +18,10 @@ namespace condyle {
 
 namespace {
 
-/// Springs or prisms of a net whose nodes follow each other: those of a run.
+/// Springs or prisms of a net whose nodes follow each other, in a run's lanes from `lane` on.
 struct Group {
-  std::size_t first;
-  int count;
+  std::size_t first = 0;
+  int count = 0, lane = 0;
 };
 
 /// Reorders groups so that neighbours, which write to the same nodes, do not follow each other: the
@@ -38,13 +38,14 @@ void spread(std::vector<T>& groups) {
       for (std::size_t from : {i, i + quarter}) *to++ = given[from];
 }
 
+/// All springs, in groups as long as nodes follow each other.
 std::vector<Group> spring_groups(const SpringPrismNet& net) {
   const auto &a = net.spring_a, &b = net.spring_b;
   std::vector<Group> groups;
   for (std::size_t s = 0; s < a.size(); ++s) {
     if (!groups.empty()) {
-      auto& [first, count] = groups.back();
-      if (count < NetRuns::lanes && a[s] == a[first] + count && b[s] == b[first] + count) {
+      auto& [first, count, lane] = groups.back();
+      if (a[s] == a[first] + count && b[s] == b[first] + count) {
         ++count;
         continue;
       }
@@ -54,8 +55,33 @@ std::vector<Group> spring_groups(const SpringPrismNet& net) {
   return groups;
 }
 
-/// The groups of an edge, by way.
-using EdgeGroups = std::array<Group, NetRuns::Edge::ways>;
+void cut(const Group& group, int most, std::vector<Group>& to) {
+  for (int i = 0; i < group.count; i += most)
+    to.push_back({group.first + static_cast<std::size_t>(i), std::min(most, group.count - i)});
+}
+
+/// The groups of an edge, by way, and its first nodes.
+struct EdgeGroups {
+  std::array<Group, NetRuns::Edge::ways> of;
+  NetRuns::Edge edge;
+};
+
+/// Cuts an edge of a layered net into parts of four sheets, each of which begins where the one
+/// before ends.
+void cut_edge(const NetRuns::Edge& edge, const std::array<Group, NetRuns::Edge::ways>& of,
+              std::vector<EdgeGroups>& to) {
+  constexpr int step = NetRuns::lanes - 1;
+  const int diagonals = of[NetRuns::Edge::rising].count;
+  for (int low = 0; low < diagonals; low += step) {
+    const int count = std::min(step, diagonals - low), above = low > 0 ? 1 : 0;
+    const auto from = [low](const Group& group) {
+      return group.first + static_cast<std::size_t>(low);
+    };
+    to.push_back({{Group{from(of[0]) + static_cast<std::size_t>(above), count + 1 - above, above},
+                   Group{from(of[1]), count}, Group{from(of[2]), count}},
+                  {edge.a + low, edge.b + low}});
+  }
+}
 
 }  // namespace
 
@@ -72,12 +98,12 @@ NetRuns::NetRuns(const SpringPrismNet& net) {
     };
     const int one = a[level.first], other = b[level.first];
     if (diagonal(g + 1, one, other + 1) && diagonal(g + 2, other, one + 1)) {
-      of_edges.push_back({level, groups[g + 1], groups[g + 2]});
+      cut_edge({one, other}, {level, groups[g + 1], groups[g + 2]}, of_edges);
       g += 2;
-    } else if (other == one + 1 && level.count < lanes) {
-      of_posts.push_back(level);
+    } else if (other == one + 1) {
+      cut(level, lanes - 1, of_posts);
     } else {
-      of_runs.push_back(level);
+      cut(level, lanes, of_runs);
     }
   }
   spread(of_edges);
@@ -88,17 +114,17 @@ NetRuns::NetRuns(const SpringPrismNet& net) {
   stiffness.assign(all * lanes, 0.0);
   const auto place = [&](const Group& group, std::size_t lane) {
     for (int i = 0; i < group.count; ++i) {
-      rest_length[lane + i] = net.rest_length[group.first + i];
-      stiffness[lane + i] = net.stiffness[group.first + i];
+      rest_length[lane + group.lane + i] = net.rest_length[group.first + i];
+      stiffness[lane + group.lane + i] = net.stiffness[group.first + i];
     }
   };
   const auto ends = [&](const Group& group) {
     return group.count > 0 ? std::pair{a[group.first], b[group.first]} : std::pair{0, 0};
   };
-  for (const EdgeGroups& of : of_edges) {
+  for (const auto& [of, edge] : of_edges) {
     for (int way = 0; way < Edge::ways; ++way)
       place(of[way], lane(edges.size(), static_cast<Edge::Way>(way)));
-    edges.push_back({ends(of[0]).first, ends(of[0]).second});
+    edges.push_back(edge);
   }
   for (const Group& group : of_posts) posts.push_back({ends(group).first});
   for (const Group& group : of_runs) runs.push_back({ends(group).first, ends(group).second});

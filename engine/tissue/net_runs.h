@@ -16,19 +16,19 @@ struct NetRuns {
   static constexpr std::size_t align = 4;  // the numbers of runs are multiples of it
   explicit NetRuns(const SpringPrismNet& net);
 
-  /// Up to ten springs between two columns: of lane i, `level` joins a + i and b + i, `rising` a +
-  /// i and b + i + 1, `falling` a + i + 1 and b + i.
+  /// Up to ten springs between two columns of up to four sheets: of lane i, `level` joins a + i and
+  /// b + i, `rising` a + i and b + i + 1, `falling` a + i + 1 and b + i.
   struct Edge {
-    int a, b;
+    int a = 0, b = 0;
     enum Way { level, rising, falling, ways };
   };
   /// Up to three springs within a column: of a + i and a + i + 1.
   struct Post {
-    int a;
+    int a = 0;
   };
   /// Up to four springs of a + i and b + i.
   struct Run {
-    int a, b;
+    int a = 0, b = 0;
   };
   std::vector<Edge> edges;
   std::vector<Post> posts;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -48,6 +49,59 @@ double time_of_opening(const Case& patient, const Motion& motion, double opening
 
 bool leaps(const Pose& from, const Pose& to) {
   return (to.t - from.t).norm() > leap_mm || rotation_angle(from.inverse() * to) > leap_rad;
+}
+
+bool same(const Pose& a, const Pose& b) { return a.t == b.t && a.R.coeffs() == b.R.coeffs(); }
+
+/// What was asked of the bodies in a step.
+struct Asked {
+  LiveRequest request;
+  std::optional<Pose> X_CM;  // of a hand that holds the mandible
+  std::vector<Pose> X_BF;    // of each free part
+
+  bool by_same_hands(const Asked& other) const {
+    const auto same_poses = [](const auto& a, const auto& b) {
+      return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
+    };
+    return X_CM.has_value() == other.X_CM.has_value() && (!X_CM || same(*X_CM, *other.X_CM)) &&
+           same_poses(X_BF, other.X_BF);
+  }
+  bool same_as(const Asked& other) const {
+    return request.time_s == other.request.time_s &&
+           request.opening_mm == other.request.opening_mm &&
+           request.obey_contact == other.request.obey_contact && by_same_hands(other);
+  }
+};
+
+/// Where the bodies came to for what was asked. A way back may be barred by what was passed; so
+/// what is asked again, as by undo, finds them where they were.
+class Reached {
+ public:
+  void remember(Asked asked, BodyPoses at) {
+    // Of a motion that goes on, the newest.
+    if (!places_.empty() && places_.back().asked.by_same_hands(asked)) places_.pop_back();
+    if (places_.size() == most) places_.pop_front();
+    places_.push_back({std::move(asked), std::move(at)});
+  }
+  /// The newest; null if it was never asked.
+  const BodyPoses* before(const Asked& asked) const {
+    const auto at = std::find_if(places_.rbegin(), places_.rend(),
+                                 [&](const Place& place) { return place.asked.same_as(asked); });
+    return at == places_.rend() ? nullptr : &at->at;
+  }
+
+ private:
+  static constexpr std::size_t most = 2000;
+  struct Place {
+    Asked asked;
+    BodyPoses at;
+  };
+  std::deque<Place> places_;
+};
+
+double way_between(const Pose& a, const Pose& b) {
+  constexpr double arm_mm = 50;
+  return (b.t - a.t).norm() + arm_mm * rotation_angle(a.inverse() * b);
 }
 
 }  // namespace
@@ -151,6 +205,13 @@ void LiveSimulation::work() {
   const auto carrier = [&](std::size_t f) {
     return scene_.patient.parts[free[f]].carrier == Body::mandible ? now.X_CM : Pose{};
   };
+  Reached reached;
+  Pose followed;  // the mandible's when it last followed the motion
+  const auto begin_at = [&](const BodyPoses& at) {
+    now.X_CM = at.X_CM;
+    now.X_CF = at.X_CF;
+    now.contacts = scene_.contacts.find(at, nullptr, settings_.threads);
+  };
   auto last_shown = Clock::now();
   try {
     while (true) {
@@ -189,6 +250,22 @@ void LiveSimulation::work() {
           if (held[1 + f]) X_BF[f] = *held[1 + f];
         step_input.X_BF_wanted = X_BF;
       }
+      Asked asked_now{wanted, held[0], X_BF};
+      if (grips != answered_grips && wanted.obey_contact) {
+        if (const BodyPoses* before = reached.before(asked_now)) {
+          begin_at(*before);
+        } else if (now.stopped && leaps(now.X_CM, step_input.X_CM_wanted)) {
+          const ContactModel::Wanted to{step_input.X_CM_wanted, X_BF};
+          const auto left = [&](const BodyPoses& from) {
+            const auto slide = scene_.contacts.slide(from, to, nullptr, settings_.threads);
+            return way_between(slide.at.X_CM, to.X_CM);
+          };
+          constexpr double nearer_mm = 1;
+          BodyPoses other = now.poses();
+          other.X_CM = followed;
+          if (left(other) + nearer_mm < left(now.poses())) begin_at(other);
+        }
+      }
       // Soft tissue that nobody sees waits; it follows from where it was left.
       SimulatorSettings seen = settings_;
       seen.tissue = seen.tissue && wanted.face;
@@ -207,7 +284,9 @@ void LiveSimulation::work() {
       if (caught_up) {
         answered = wanted;
         answered_grips = grips;
+        reached.remember(std::move(asked_now), now.poses());
       }
+      if (!held[0]) followed = now.X_CM;
       if (shown && wanted.face) carry_face(scene_, now, settings_.threads);
       if (shown) last_shown = start;
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();

@@ -26,15 +26,35 @@ std::vector<int> shuffled(std::size_t count, std::mt19937& random) {
   return order;
 }
 
-TEST(NetRuns, TakeMostOfALayeredNetTogether) {
-  const SyntheticSet set = make_synthetic_set(patient2_size());
-  const NetRuns runs(set.net);
-  EXPECT_LT(3 * runs.springs.size(), set.net.spring_a.size());
-  EXPECT_EQ(3 * runs.prisms.size(), set.net.prisms.size());
+/// Of `layers` in one bent slab.
+SyntheticSet set_of(int layers) {
+  SyntheticSize size = table1_size();
+  size.layers = layers;
+  size.boundary_sheets = {0};
+  return make_synthetic_set(size);
 }
 
-TEST(NetRuns, AnyOrderOfSpringsAndPrismsIsTheSameTissue) {
-  SyntheticSet set = make_synthetic_set(table1_size());
+TEST(NetRuns, TakeALayeredNetByItsColumns) {
+  for (const int layers : {1, 2, 3, 5}) {
+    const SyntheticSet set = set_of(layers);
+    const NetRuns runs(set.net);
+    const std::size_t parts = layers > 3 ? 2 : 1, columns = set.columns,
+                      edges = edges_of(set.triangles).size();
+    EXPECT_EQ(runs.edges.size(), (edges * parts + 3) / 4 * 4) << layers;
+    EXPECT_EQ(runs.posts.size(), (columns * parts + 3) / 4 * 4) << layers;
+    EXPECT_EQ(runs.stacks.size(), (set.triangles.size() * parts + 3) / 4 * 4) << layers;
+    EXPECT_TRUE(runs.runs.empty()) << layers;
+    EXPECT_TRUE(runs.prisms.empty()) << layers;
+    const auto given = std::accumulate(set.net.stiffness.begin(), set.net.stiffness.end(), 0.0);
+    EXPECT_NEAR(std::accumulate(runs.stiffness.begin(), runs.stiffness.end(), 0.0), given,
+                1e-12 * given);
+  }
+}
+
+class AnyOrder : public testing::TestWithParam<int> {};
+
+TEST_P(AnyOrder, OfSpringsAndPrismsIsTheSameTissue) {
+  const SyntheticSet set = set_of(GetParam());
   const NetLoads loads = synthetic_loads(set, synthetic_pose(0.03, {0, 0, 0}));
   std::mt19937 random(7);
   std::uniform_real_distribution<double> entry(-0.3, 0.3);
@@ -52,7 +72,14 @@ TEST(NetRuns, AnyOrderOfSpringsAndPrismsIsTheSameTissue) {
   const std::vector<int> prisms = shuffled(net.prisms.size(), random);
   reorder(net.prisms, prisms);
   for (auto* of : {&net.rest_volume, &net.volume_weight}) reorder(*of, prisms);
-  EXPECT_GT(NetRuns(net).springs.size(), 2 * NetRuns(set.net).springs.size());
+  for (std::size_t p = 0; p < net.prisms.size(); p += 2) {  // corners in another order: no stack
+    auto& at = net.prisms[p];
+    at = {at[3], at[5], at[4], at[0], at[2], at[1]};
+  }
+  const NetRuns taken(net);
+  EXPECT_LT(taken.edges.size(), 8u);
+  EXPECT_GT(taken.runs.size(), set.net.spring_a.size() / 2);
+  EXPECT_GT(taken.prisms.size(), 0u);
 
   SpringPrismEnergy energy_shuffled(net, loads, 1);
   ASSERT_TRUE(std::isfinite(value));
@@ -65,6 +92,7 @@ TEST(NetRuns, AnyOrderOfSpringsAndPrismsIsTheSameTissue) {
   EXPECT_NEAR(bend_shuffled.exact, bend.exact, 1e-11 * bend.gauss_newton);
   EXPECT_NEAR(bend_shuffled.gauss_newton, bend.gauss_newton, 1e-11 * bend.gauss_newton);
 }
+INSTANTIATE_TEST_SUITE_P(NetRuns, AnyOrder, testing::Values(1, 2, 3, 5));
 
 }  // namespace
 }  // namespace condyle

@@ -86,6 +86,30 @@ TEST(Drag, TheJawOfTheBuiltInPatientSlidesInItsBite) {
   EXPECT_NEAR(next_frame(live).X_CM.t.norm(), 0, 1e-9);  // back where the motion wants it
 }
 
+TEST(Drag, AJawThatWasPushedOutOfItsJointsIsBackWhenThatIsUndone) {
+  const Scene scene = make_scene(builtin_patient(), without_tissue());
+  const std::size_t jaw = part_named(scene.patient, "mandible");
+  LiveSimulation live(scene, resting(), without_tissue());
+  await_start(live);
+  const auto at = [&](const Pose& wanted) {
+    live.drag(jaw, wanted);
+    return next_frame(live).X_CM;
+  };
+  const Pose bite = shift(2, 0, 1.5);
+  const Pose in_bite = at(bite);
+  const Pose aside = at(shift(40, 0, 0));
+  EXPECT_GT(aside.t.norm(), 20);
+  EXPECT_LT((aside.t - shift(40, 0, 0).t).norm(), 60);
+  const Pose again = at(bite);
+  EXPECT_EQ(again.t, in_bite.t);
+  EXPECT_EQ(again.R.coeffs(), in_bite.R.coeffs());
+  at(shift(-60, 0, 0));
+  live.release(jaw);
+  EXPECT_NEAR(next_frame(live).X_CM.t.norm(), 0, 1e-9);
+  at(shift(40, 0, 0));
+  EXPECT_NEAR(at(shift(0, 0, -3)).t.z(), -3, 1e-6);  // nothing bars it from where the motion is
+}
+
 TEST(Drag, ATransplantSlidesAlongTheMandible) {
   const Scene scene = make_scene(box_patient_with_free_parts(), without_tissue());
   const std::size_t graft = part_named(scene.patient, "transplant");
