@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string_view>
 
@@ -28,19 +31,35 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr int most_side = 16384;
+constexpr std::uint32_t most_side = 16384;
 constexpr std::size_t most_bytes = std::size_t{1} << 30;
+
+/// Sides as a PNG's header tells them; none if it is no PNG.
+std::optional<std::array<std::uint32_t, 2>> png_sides(std::string_view bytes) {
+  if (!bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.size() < 24) return {};
+  const auto number = [&](std::size_t at) {
+    std::uint32_t n = 0;
+    for (std::size_t i = at; i < at + 4; ++i) n = n << 8 | static_cast<unsigned char>(bytes[i]);
+    return n;
+  };
+  return std::array{number(16), number(20)};
+}
 
 void decode(const fs::path& file, std::string_view bytes, Texture& texture) {
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(std::min<std::size_t>(bytes.size(), INT32_MAX));
   int channels = 0;
+  const auto check_sides = [&](std::uint32_t width, std::uint32_t height) {
+    if (width > most_side || height > most_side)
+      throw InputError(file, "texture",
+                       fmt::format("is too large: {}x{}; at most {} pixels a side, make it smaller",
+                                   width, height, most_side));
+  };
+  if (const auto sides = png_sides(bytes)) check_sides((*sides)[0], (*sides)[1]);
   if (!stbi_info_from_memory(data, size, &texture.width, &texture.height, &channels))
     throw InputError(file, "texture", "is no JPEG or PNG picture, or is damaged");
-  if (texture.width > most_side || texture.height > most_side)
-    throw InputError(file, "texture",
-                     fmt::format("is too large: {}x{}; at most {} pixels a side, make it smaller",
-                                 texture.width, texture.height, most_side));
+  check_sides(static_cast<std::uint32_t>(texture.width),
+              static_cast<std::uint32_t>(texture.height));
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, size, &texture.width, &texture.height, &channels, 3),
       stbi_image_free);

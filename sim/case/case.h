@@ -38,6 +38,11 @@ struct Case {
       if (part.role == role) return &part;
     return nullptr;
   }
+  bool has(Body body) const {
+    for (const auto& part : parts)
+      if (body_of(part.role) == body) return true;
+    return false;
+  }
 };
 
 }  // namespace condyle

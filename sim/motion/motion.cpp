@@ -213,8 +213,10 @@ const std::vector<std::string>& builtin_motions() {
   return names;
 }
 
-Motion make_motion(const std::string& spec, const Case& patient, const ContactModel& contacts,
-                   const MotionSettings& settings) {
+namespace {
+
+Motion motion_of(const std::string& spec, const Case& patient, const ContactModel& contacts,
+                 const MotionSettings& settings) {
   check(settings);
   if (spec == "opening") return move(spec, nullptr, patient, contacts, settings);
   // A jaw without landmarks has no rest position but its own.
@@ -246,6 +248,18 @@ Motion make_motion(const std::string& spec, const Case& patient, const ContactMo
       "motion \"{}\" is not known: give one of {}, movements in words such as \"open 40; "
       "close; protrude 6\", a file of them (*.motion), a recording, muscles:FILE or inverse:MOTION",
       spec, fmt::join(builtin_motions(), ", ")));
+}
+
+}  // namespace
+
+Motion make_motion(const std::string& spec, const Case& patient, const ContactModel& contacts,
+                   const MotionSettings& settings) {
+  Motion motion = motion_of(spec, patient, contacts, settings);
+  if (!patient.has(Body::mandible))
+    motion.notes.insert(motion.notes.begin(),
+                        "nothing of this case goes with the mandible (no part is a mandible, lower "
+                        "teeth or gums): no surface moves, openings are those of landmarks alone");
+  return motion;
 }
 
 }  // namespace condyle

@@ -373,6 +373,7 @@ bool too_coarse(const MotionSeries& series) {
 
 std::vector<Finding> findings(const Scene& scene, const Motion& motion,
                               const MotionSeries& series) {
+  if (!scene.patient.has(Body::mandible)) return {};
   return Judge(scene, motion, series).all();
 }
 

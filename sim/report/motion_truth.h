@@ -24,7 +24,7 @@ struct Finding {
 bool too_coarse(const MotionSeries& series);
 
 /// What the motion did, phase by phase, as it was simulated: inputs marked, all else emerged from
-/// joints and teeth. Nothing without landmarks; only what the widest frame shows where frames are
+/// joints and teeth. Nothing without landmarks or a mandible; only what the widest frame shows where frames are
 /// too coarse.
 std::vector<Finding> findings(const Scene& scene, const Motion& motion, const MotionSeries& series);
 

@@ -79,6 +79,20 @@ TEST_F(Textures, ATextureThatIsTooLargeIsRefusedBeforeItIsRead) {
   }
 }
 
+TEST_F(Textures, APictureTooLargeForItsReaderIsCalledLarge) {
+  // A header says it all: 20000 x 20000, 8 bits, RGB.
+  std::string huge("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0N \0\0N \b\2\0\0\0", 29);
+  huge.resize(100, '\0');
+  write_square(huge);
+  try {
+    read_texture(top / "square.obj");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("too large: 20000x20000"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(Textures, TheScansGlbAndObjGiveTheSameColours) {
   const fs::path folder = fs::path(CONDYLE_SOURCE_DIR) / "../shared/data/scan-leeperrysmith";
   if (!fs::exists(folder)) GTEST_SKIP() << "real anatomy absent";

@@ -173,6 +173,23 @@ TEST(Report, PrintsFindingsWithTheirBands) {
   EXPECT_NE(report.text().find("emergent"), std::string::npos);
 }
 
+TEST(Report, SaysThatNothingMovesWithoutAMandibleAndFindsNothing) {
+  Case patient = box_patient();
+  std::erase_if(patient.parts,
+                [](const Part& part) { return body_of(part.role) == Body::mandible; });
+  SimulatorSettings bones;
+  bones.tissue = false;
+  const Scene scene = make_scene(patient, bones);
+  const Motion motion = make_motion("opening", scene.patient, scene.contacts);
+  ASSERT_FALSE(motion.notes.empty());
+  EXPECT_NE(motion.notes[0].find("goes with the mandible"), std::string::npos) << motion.notes[0];
+  Playback playback(scene, motion, bones);
+  MotionReport report(scene, motion, bones);
+  for (int i = 0; i <= 30; ++i) report.add(playback.at(motion.duration_s * i / 30));
+  EXPECT_TRUE(nlohmann::json::parse(report.json())["findings"].empty());
+  EXPECT_EQ(report.text().find("emergent"), std::string::npos) << report.text();
+}
+
 TEST(MotionPlots, HaveAxesUnitsAndBandsAndKeepAllPointsInside) {
   const Scene scene = make_scene(box_patient());
   Motion motion = there_and_back(
