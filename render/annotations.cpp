@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "render/paint.h"
+#include "render/pane_inks.h"
 
 namespace condyle {
 namespace {
@@ -18,9 +19,10 @@ using Eigen::Vector3f;
 /// Letters with a border are read on skin and on the background.
 struct Inks {
   Vector3f letters, border;
+  double line_border_px;  // of the cross's bright lines
 };
-const Inks on_dark = {Vector3f::Constant(0.96f), Vector3f::Constant(0.05f)},
-           on_light = {Vector3f::Constant(0.10f), Vector3f::Constant(0.97f)};
+const Inks on_dark = {Vector3f::Constant(0.96f), Vector3f::Constant(0.05f), 0},
+           on_light = {Vector3f::Constant(0.10f), Vector3f::Constant(0.97f), 0.8};
 
 Eigen::Matrix3d rows_of(const Camera& camera) {
   return view_matrix(camera).topLeftCorner<3, 3>().cast<double>();
@@ -78,7 +80,8 @@ void draw_letters(Image& image, const Lettering& words, const Inks& inks, const 
     const Vector2d end = cross + reach * Vector2d(axis.direction.x(), -axis.direction.y());
     if (positive) {
       const double thick = std::max(1.0, unit / 9);
-      stroke(image, cross, end, 1.5 * thick, inks.border);
+      if (inks.line_border_px > 0)
+        stroke(image, cross, end, thick + inks.line_border_px, line_border);
       stroke(image, cross, end, thick, color);
     }
     const double faint = axis.toward_eye < -0.9 ? 0 : positive ? 0.95 : 0.6;

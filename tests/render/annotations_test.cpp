@@ -108,5 +108,22 @@ TEST(Annotations, ArePaintedWhereTheyBelongAndOnlyWhenWanted) {
   EXPECT_GT(differs(220, 300, 420, 345), 100);  // the caption
 }
 
+TEST(Annotations, TheCrossHasABorderOnALightBackdrop) {
+  const auto dark_rows = [](Backdrop backdrop) {
+    Image image{640, 360, std::vector<std::uint8_t>(std::size_t{4} * 640 * 360, 230)};
+    annotate(image, Lettering(), seen({0, -1, 0}), {.letters = true, .backdrop = backdrop});
+    int dark = 0, orange = 0;
+    for (int y = 40; y < 70; ++y) {  // across the line to the patient's left
+      const auto* p = &image.rgba[4 * (std::size_t{640} * y + 600)];
+      dark += p[0] < 130;
+      orange += p[0] > 200 && p[2] < 60;
+    }
+    EXPECT_GE(orange, 1);
+    return dark;
+  };
+  EXPECT_GE(dark_rows(Backdrop::light), 2);
+  EXPECT_EQ(dark_rows(Backdrop::dark), 0);
+}
+
 }  // namespace
 }  // namespace condyle

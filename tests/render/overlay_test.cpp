@@ -322,6 +322,8 @@ TEST_F(Overlays, TwoStatesStandSideBySide) {
     EXPECT_EQ(pixel(both, 80, y).g, pixel(rest, 80, y).g);
     EXPECT_EQ(pixel(both, 120, y).g, pixel(open, 120, y).g);
   }
+  EXPECT_GT(pixel(both, 100, 10).g, 220) << "a light line on dark";
+  EXPECT_LT(pixel(wiped(rest, open, 0.5, Backdrop::light), 100, 10).g, 80);
   // The window draws each state into its own part of one target.
   settings.from_x = 0.5;
   const Image right = renderer.picture(front_camera(), settings);
