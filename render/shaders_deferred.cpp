@@ -47,7 +47,8 @@ void begin() {
   to_eye = -texelFetch(kept_away, pixel, 0).r
          * (ray + gl_FragCoord.x * ray_right + gl_FragCoord.y * ray_up);
   shadow_place = (shadow_matrix * vec4(eye - to_eye + shade_offset(world_normal, key_direction,
-                                                                   to_eye, two_sided), 1.0)).xyz;
+                                                                   to_eye, two_sided, traits.z),
+                                     1.0)).xyz;
 }
 )";
 

@@ -96,5 +96,32 @@ TEST_F(Edges, OfShadowsHaveNoGrain) {
   EXPECT_LT(grain / edge, 0.02 * deepest);
 }
 
+TEST_F(Edges, OfShadowsAreNotThrownOnLipsByWhatLiesOnThem) {
+  // A strip of bone before a wall of skin, as far off as lips that have opened are from what throws
+  // their shadow.
+  const auto shaded = [](const Eigen::Vector3f& color, double before_mm) {
+    TriMesh wall = quad({-40, 0, -40}, {40, 0, -40}, {40, 0, 40}, {-40, 0, 40});
+    wall.colors.assign(wall.vertices.size(), color);
+    const double y = -before_mm;
+    const std::vector<Part> parts = {
+        make_part("face", Role::face, wall),
+        make_part("strip", Role::skull, quad({-30, y, 0}, {30, y, 0}, {30, y, 6}, {-30, y, 6}))};
+    SceneRenderer renderer(parts);
+    auto settings = mask_settings(200);
+    const Image lit = renderer.picture(front_camera(), settings);
+    settings.shadows = false;
+    const Image bare = renderer.picture(front_camera(), settings);
+    int darker = 0;
+    for (int y_pixel = 0; y_pixel < 200; ++y_pixel)
+      for (int x = 0; x < 200; ++x)
+        darker += pixel(lit, x, y_pixel).g < pixel(bare, x, y_pixel).g - 8;
+    return darker;
+  };
+  const Eigen::Vector3f skin(.86f, .66f, .55f), lip(.74f, .43f, .40f);
+  EXPECT_GT(shaded(skin, 2), 200);
+  EXPECT_EQ(shaded(lip, 2), 0);
+  EXPECT_GT(shaded(lip, 6), 500);
+}
+
 }  // namespace
 }  // namespace condyle
