@@ -211,6 +211,8 @@ void LiveSimulation::work() {
     now.X_CM = at.X_CM;
     now.X_CF = at.X_CF;
     now.contacts = scene_.contacts.find(at, nullptr, settings_.threads);
+    // No way leads here on which tissue could follow.
+    if (scene_.tissue) now.tissue = rest_tissue(*scene_.tissue);
   };
   auto last_shown = Clock::now();
   try {

@@ -108,6 +108,26 @@ TEST(Live, APlayingFaceIsNearTheConvergedOneAndSettlesWhenNothingIsAsked) {
   }
 }
 
+TEST(Live, AFaceIsAsItWasWhenAJawThatWasPushedFarAsideIsPutBack) {
+  const Scene scene = make_scene(builtin());
+  std::size_t jaw = 0;
+  while (scene.patient.parts[jaw].role != Role::mandible) ++jaw;
+  const Motion resting = {"rest", 1.0, false, [](double) { return Pose{}; }, {}};
+  LiveSimulation live(scene, resting, live_settings({}));
+  live.request({.time_s = 0.5});
+  const TissueState before = wait_for(live, 0.5).tissue;
+  live.drag(jaw, shift(40, 0, 0));
+  FrameState frame = wait_for(live, 0.5);
+  EXPECT_GT(frame.X_CM.t.norm(), 20);
+  live.release(jaw);
+  while (frame.X_CM.t.norm() > 1e-9) frame = wait_for(live, 0.5);
+  double farthest = 0;
+  for (std::size_t i = 0; i < before.nodes.size(); ++i)
+    farthest = std::max(farthest, (frame.tissue.nodes[i] - before.nodes[i]).norm());
+  EXPECT_TRUE(frame.tissue.converged);
+  EXPECT_LT(farthest, 1e-3);
+}
+
 TEST(Live, AnUnansweredWorkerEndsWithItsOwner) {
   const Scene scene = make_scene(box_patient());
   for (int i = 0; i < 20; ++i) {
