@@ -164,15 +164,15 @@ void HessianAssembly::add_springs(int part, float* panels) {
   for (int s : pattern_.elements[part].springs) {
     const int a = net_.spring_a[s], b = net_.spring_b[s];
     const Vector3d d = x_[b] - x_[a];
-    const double length2 = d.squaredNorm();
-    const double strain = 1 - net_.rest_length[s] / std::sqrt(length2);
+    const double inverse = 1 / d.norm();
+    const double strain = 1 - net_.rest_length[s] * inverse;
     const double tension = exact_ ? strain : std::max(0.0, strain);
     // At rest a spring may yet go either way; the stretched ones are those that matter.
     const double k =
         2 * net_.lambda * net_.stiffness[s] * (strain < -1e-9 ? net_.compression_share : 1.0);
     const auto across = static_cast<float>(k * tension);
     Own m{Column{across, 0, 0, 0}, Column{0, across, 0, 0}, Column{0, 0, across, 0}};
-    add_product(m, column_of(d), column_of((k * (1 - tension) / length2) * d));
+    add_product(m, column_of(d), column_of((k * (1 - tension) * inverse * inverse) * d));
     const Spot& spot = pattern_.spring[s];
     float* to = panels + spot.at;
     Own &own_a = own[pattern_.seats[a]], &own_b = own[pattern_.seats[b]];
