@@ -69,19 +69,19 @@ void ViewSession::carry_out(const wish::Open& wanted) {
     if (patient_) show_scene();
     throw InputError(one, "", "is not there (any more)");
   }
-  wish::Import surfaces;
+  std::vector<fs::path> surfaces;
   std::vector<std::string> others;
   for (const fs::path& file : with_loose_surfaces(wanted.files)) {
     if (makes_patient(kind_of(file)))
-      surfaces.files.push_back({file, role_guess(file)});
+      surfaces.push_back(file);
     else
       others.push_back(file.filename().string());
   }
-  if (!surfaces.files.empty()) {
+  if (!surfaces.empty()) {
     if (!others.empty())
       window_.say(fmt::format("Left out: {}. Only surfaces, landmarks and muscles make a patient",
                               fmt::join(others, ", ")));
-    return window_.ask_roles(surfaces);
+    return window_.ask_roles({.files = proposed_roles(surfaces)});
   }
   if (wanted.files.size() > 1)
     window_.say(fmt::format("Of {} files the first is opened: {}", wanted.files.size(),

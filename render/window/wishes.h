@@ -46,6 +46,8 @@ struct FileRole {
   std::filesystem::path file;
   // "mandible", "upper-teeth", ..., "landmarks", "muscles", or empty: leave it out
   std::string role;
+  // The role that its name tells, where another file of the same thing has it.
+  std::string taken = {};
 };
 
 /// What the person asks for once. Whoever runs the window does it.

@@ -292,6 +292,27 @@ TEST_P(Instrument, AnotherPatientsRecordingHasNothingOfThisOnesCaption) {
   EXPECT_EQ(recorded().height, 720);
 }
 
+TEST_P(Instrument, EveryDoubtOfAProposedRoleIsTold) {
+  stage.panels->ask_roles({.files = {{"a/mandible.ply", "mandible"},
+                                     {"a/mandible_8k.ply", "", "mandible"},
+                                     {"a/maxilla_left.ply", "maxilla"},
+                                     {"a/maxilla_right.ply", "maxilla"},
+                                     {"a/maxilla_wrap.ply", "", "maxilla"},
+                                     {"a/skull.ply", "skull"},
+                                     {"a/skull_of_another.ply", "skull"}}});
+  stage.rest();
+  keep("roles");
+  const std::string remark = stage.item("import-remark").words;
+  for (const char* doubt : {"mandible_8k.ply (mandible)", "maxilla_wrap.ply (maxilla)",
+                            "2 surfaces are said to be the skull",
+                            "2 surfaces are said to be the "
+                            "maxilla"})
+    EXPECT_NE(remark.find(doubt), std::string::npos) << remark;
+  EXPECT_EQ(remark.find("to be the mandible"), std::string::npos) << remark;
+  stage.click("import-go");
+  EXPECT_EQ(std::get<wish::Import>(stage.panels->take_wishes().at(0)).files[1].role, "");
+}
+
 TEST_P(Instrument, AStoppedRecordingIsResumedAndAQuestionAnsweredByButtonOrKey) {
   stage.click("tab:Record");
   stage.rest();
