@@ -28,6 +28,8 @@ constexpr std::size_t waiting_most = 3;  // pictures held for the writer: 25 MB 
 // Of the sheet: told, but no other recording where it differs.
 constexpr const char* driver_entry = "driver";
 
+std::string frame_name(int frame) { return fmt::format("{:06d}.png", frame); }
+
 bool is_frame_name(const std::string& name) {
   return name.size() >= 10 && name.ends_with(".png") &&
          std::all_of(name.begin(), name.end() - 4, [](char c) { return c >= '0' && c <= '9'; });
@@ -54,6 +56,15 @@ void remove_files(const fs::path& folder, const Wanted& wanted) {
       throw MachineError(file.string() + ": cannot be removed: " + error.message());
 }
 
+RecordingSheet sheet_of(const RecorderSettings& settings) {
+  RecordingSheet sheet = settings.identity;
+  sheet["width"] = std::to_string(settings.width);
+  sheet["height"] = std::to_string(settings.height);
+  sheet["frames"] = std::to_string(settings.frames);
+  sheet["frames_per_second"] = fmt::format("{:.6g}", settings.frames_per_second);
+  return sheet;
+}
+
 /// Only frames: what else a person keeps in the folder stays where it is.
 void move_frames(const fs::path& from, const fs::path& to) {
   if (!fs::is_directory(from)) return;
@@ -65,6 +76,23 @@ void move_frames(const fs::path& from, const fs::path& to) {
 }
 
 }  // namespace
+
+RecordingThere recording_there(const RecorderSettings& settings) {
+  const fs::path frames = settings.folder / "frames";
+  RecordingThere there;
+  std::error_code error;
+  for (fs::directory_iterator one(frames, error), end; !error && one != end; one.increment(error))
+    if (is_frame_name(one->path().filename().string())) ++there.pictures;
+  auto before = read_recording_sheet(settings.folder / "recording.json");
+  if (before) before->erase(driver_entry);
+  if (there.pictures > 0 || before)
+    there.differs = differing(before.value_or(RecordingSheet{}), sheet_of(settings));
+  if (!before || !there.differs.empty()) return there;
+  there.pictures = 0;
+  for (int frame = 0; frame < settings.frames; ++frame)
+    if (is_whole_png(frames / frame_name(frame), settings.width, settings.height)) ++there.pictures;
+  return there;
+}
 
 struct Recorder::State {
   RecorderSettings settings;
@@ -88,7 +116,7 @@ struct Recorder::State {
   std::map<int, std::uint64_t> hashes;
 
   fs::path frames() const { return settings.folder / "frames"; }
-  fs::path frame_file(int frame) const { return frames() / fmt::format("{:06d}.png", frame); }
+  fs::path frame_file(int frame) const { return frames() / frame_name(frame); }
   fs::path sheet_file() const { return settings.folder / "recording.json"; }
   fs::path film_file() const { return settings.folder / "film.mp4"; }
   fs::path hash_file() const { return settings.folder / "hashes.csv"; }
@@ -265,11 +293,7 @@ Recorder::Recorder(const RecorderSettings& settings) : state_(std::make_unique<S
   auto& s = *state_;
   s.settings = settings;
   s.settings.folder = fs::absolute(settings.folder);
-  s.sheet = settings.identity;
-  s.sheet["width"] = std::to_string(settings.width);
-  s.sheet["height"] = std::to_string(settings.height);
-  s.sheet["frames"] = std::to_string(settings.frames);
-  s.sheet["frames_per_second"] = fmt::format("{:.6g}", settings.frames_per_second);
+  s.sheet = sheet_of(settings);
   s.present.assign(static_cast<std::size_t>(std::max(settings.frames, 0)), 0);
   make_folder(s.settings.folder);
   if (::access(s.settings.folder.c_str(), W_OK | X_OK) != 0)

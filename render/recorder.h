@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "render/image.h"
 #include "render/recording_sheet.h"
@@ -18,6 +19,13 @@ struct RecorderSettings {
   bool resume = false;      // keep the whole frames of the same recording
   RecordingSheet identity;  // what else decides the pictures: camera, case and motion hashes …
 };
+
+/// What lies where a recording is to go.
+struct RecordingThere {
+  int pictures = 0;                  // whole ones of this recording, or those of another
+  std::vector<std::string> differs;  // in what the other is another; empty: it is this one
+};
+RecordingThere recording_there(const RecorderSettings& settings);
 
 /// Writes frames/000000.png …, hashes.csv (of each picture's file) and film.mp4 into a folder. A
 /// frame is written beside and renamed, so that whatever kills the program leaves whole frames;

@@ -37,20 +37,25 @@ void write_recording_sheet(const std::filesystem::path& file, const RecordingShe
   write_file(file, nlohmann::json(sheet).dump(2) + "\n");
 }
 
-std::string difference(const RecordingSheet& before, const RecordingSheet& now) {
-  std::string text;
-  const auto add = [&](const std::string& name, const std::string& was, const std::string& is) {
-    text += (text.empty() ? "" : "; ") + name + " was " + was + ", is " + is;
-  };
-  for (const auto& [name, value] : now) {
-    const auto old = before.find(name);
-    if (old == before.end())
-      add(name, "not noted", value);
-    else if (old->second != value)
-      add(name, old->second, value);
-  }
+std::vector<std::string> differing(const RecordingSheet& before, const RecordingSheet& now) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : now)
+    if (const auto old = before.find(name); old == before.end() || old->second != value)
+      names.push_back(name);
   for (const auto& [name, value] : before)
-    if (!now.contains(name)) add(name, value, "not noted");
+    if (!now.contains(name)) names.push_back(name);
+  return names;
+}
+
+std::string difference(const RecordingSheet& before, const RecordingSheet& now) {
+  const auto told = [](const RecordingSheet& sheet, const std::string& name) {
+    const auto entry = sheet.find(name);
+    return entry == sheet.end() ? std::string("not noted") : entry->second;
+  };
+  std::string text;
+  for (const std::string& name : differing(before, now))
+    text += (text.empty() ? "" : "; ") + name + " was " + told(before, name) + ", is " +
+            told(now, name);
   return text;
 }
 

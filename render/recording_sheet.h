@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace condyle {
 
@@ -17,6 +18,8 @@ std::optional<RecordingSheet> read_recording_sheet(const std::filesystem::path& 
 /// throws: MachineError.
 void write_recording_sheet(const std::filesystem::path& file, const RecordingSheet& sheet);
 
+/// Names of the entries in which they differ.
+std::vector<std::string> differing(const RecordingSheet& before, const RecordingSheet& now);
 /// "frames was 60, is 90; …", or empty when they are the same.
 std::string difference(const RecordingSheet& before, const RecordingSheet& now);
 

@@ -37,6 +37,11 @@ class BackgroundWork {
     const std::lock_guard lock(mutex_);
     return {what_, fraction_};
   }
+  /// Waits for the end, then as `take`.
+  std::optional<Result> finish() {
+    done_.wait(false);
+    return take();
+  }
   /// Of work that is done: what it made, none when it was cancelled. Rethrows what stopped it.
   std::optional<Result> take() {
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
@@ -60,6 +65,7 @@ class BackgroundWork {
       failure_ = std::current_exception();
     }
     done_ = true;
+    done_.notify_all();
     if (told_) told_();
   }
 

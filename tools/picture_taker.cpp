@@ -48,16 +48,58 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const 
   return {box.low, box.high};
 }
 
+RecordingCamera camera_of(const std::string& text, const PicturePlan& plan, const Case& patient,
+                          const Eigen::AlignedBox3d& box) {
+  using Turning = RecordingCamera::Turning;
+  if (plan.window && (text == own_camera || text == turning_camera))
+    return {text, plan.window->camera, text == own_camera ? Turning::no : Turning::once,
+            plan.window->upright};
+  const double aspect = static_cast<double>(plan.settings.width) / plan.settings.height;
+  return {text, patient.parts, box.min(), box.max(), aspect};
+}
+
+/// A camera and the recording of what it sees.
+struct PlannedView {
+  RecordingCamera camera;
+  RecorderSettings recorder;
+};
+
+std::vector<PlannedView> planned_views(const PicturePlan& plan, const RecordingFiles& files,
+                                       const RecordingSubject& subject) {
+  const Case& patient = subject.scene.patient;
+  const auto [low, high] = view_box(patient, subject.motion, plan);
+  std::vector<PlannedView> views;
+  for (const auto& text : plan.cameras) {
+    RecordingCamera camera = camera_of(text, plan, patient, {low, high});
+    RecorderSettings recorder{
+        .folder = plan.cameras.size() == 1 ? files.out : files.out / camera.name(),
+        .width = (plan.before_after ? 3 : 1) * plan.settings.width,
+        .height = plan.settings.height,
+        .frames = subject.frames,
+        .frames_per_second = subject.frames_per_second,
+        .film = files.film,
+        .resume = files.resume,
+        .identity = subject.identity};
+    recorder.identity["camera"] = camera.description();
+    recorder.identity.insert(plan.words.begin(), plan.words.end());
+    views.push_back({std::move(camera), std::move(recorder)});
+  }
+  return views;
+}
+
 }  // namespace
 
-RecordingCamera PictureTaker::camera_of(const std::string& text,
-                                        const Eigen::AlignedBox3d& box) const {
-  using Turning = RecordingCamera::Turning;
-  if (plan_.window && (text == own_camera || text == turning_camera))
-    return {text, plan_.window->camera, text == own_camera ? Turning::no : Turning::once,
-            plan_.window->upright};
-  const double aspect = static_cast<double>(plan_.settings.width) / plan_.settings.height;
-  return {text, subject_.scene.patient.parts, box.min(), box.max(), aspect};
+RecordingThere recording_there(const PicturePlan& plan, const RecordingFiles& files,
+                               const RecordingSubject& subject) {
+  RecordingThere all;
+  for (const PlannedView& view : planned_views(plan, files, subject)) {
+    const RecordingThere there = recording_there(view.recorder);
+    all.pictures += there.pictures;
+    for (const auto& name : there.differs)
+      if (std::find(all.differs.begin(), all.differs.end(), name) == all.differs.end())
+        all.differs.push_back(name);
+  }
+  return all;
 }
 
 PictureTaker::PictureTaker(const PicturePlan& plan, const RecordingFiles& files,
@@ -69,24 +111,11 @@ PictureTaker::PictureTaker(const PicturePlan& plan, const RecordingFiles& files,
   if (subject.settings.face) carry_face(subject.scene, rest_, subject.settings.threads);
   if (plan_.window && plan_.window->before) rest_ = *plan_.window->before;
 
-  const auto [low, high] = view_box(patient, subject.motion, plan_);
-  const Eigen::AlignedBox3d box(low, high);
-  for (const auto& text : plan_.cameras) {
-    View view{camera_of(text, box), plan_.settings, nullptr};
+  for (PlannedView& planned : planned_views(plan_, files, subject)) {
+    View view{std::move(planned.camera), plan_.settings, nullptr};
     if (const auto* arch = view.camera.arch())
       for (const auto& [part, opacity] : arch->hidden()) view.settings.part_opacity[part] = opacity;
-    auto identity = subject.identity;
-    identity["camera"] = view.camera.description();
-    identity.insert(plan_.words.begin(), plan_.words.end());
-    view.recorder = std::make_unique<Recorder>(RecorderSettings{
-        .folder = plan_.cameras.size() == 1 ? files.out : files.out / view.camera.name(),
-        .width = (plan_.before_after ? 3 : 1) * plan_.settings.width,
-        .height = plan_.settings.height,
-        .frames = subject.frames,
-        .frames_per_second = subject.frames_per_second,
-        .film = files.film,
-        .resume = files.resume,
-        .identity = std::move(identity)});
+    view.recorder = std::make_unique<Recorder>(planned.recorder);
     kept_ += view.recorder->kept_frames();
     views_.push_back(std::move(view));
   }

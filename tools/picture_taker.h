@@ -35,6 +35,10 @@ struct RecordingFiles {
   bool resume = false;
 };
 
+/// What lies where a recording is to go, of all its cameras together.
+RecordingThere recording_there(const PicturePlan& plan, const RecordingFiles& files,
+                               const RecordingSubject& subject);
+
 /// Draws the frames of one recording, seen by one camera or several, and keeps them.
 class PictureTaker {
  public:
@@ -84,7 +88,6 @@ class PictureTaker {
   Image finished(const View& view, int frame, const Shot& shot) const;
   /// Whether any camera still wants the frame.
   bool wanted(int frame) const;
-  RecordingCamera camera_of(const std::string& text, const Eigen::AlignedBox3d& box) const;
   Overlays overlays_of(const FrameState& state, bool with_paths) const;
 
   const RecordingSubject subject_;

@@ -1,22 +1,21 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "engine/core/hash.h"
-#include "sim/case/tissue_plan_file.h"
 #include "sim/report/motion_plots.h"
 #include "sim/report/report.h"
 #include "sim/report/trace.h"
 #include "tools/common.h"
+#include "tools/interruption.h"
 #include "tools/picture_taker.h"
-#include "tools/tissue_options.h"
+#include "tools/recording_identity.h"
 
 namespace condyle {
+namespace fs = std::filesystem;
 namespace {
 
 /// Times of the frames: the whole motion, first and last included.
@@ -24,6 +23,11 @@ struct FrameTimes {
   int count = 1;
   double duration_s = 0;
   double operator[](int i) const { return count == 1 ? 0 : duration_s * i / (count - 1); }
+  std::vector<double> all() const {
+    std::vector<double> times;
+    for (int i = 0; i < count; ++i) times.push_back((*this)[i]);
+    return times;
+  }
   double fps() const { return count == 1 || duration_s <= 0 ? 30 : (count - 1) / duration_s; }
 };
 
@@ -34,54 +38,6 @@ FrameTimes frame_times(const RecordOptions& options, double duration_s) {
     throw InputError(fmt::format("--fps {}: makes {} frames of {} s; at most {} are recorded",
                                  options.fps, wanted, duration_s, most_frames));
   return {options.frames > 0 ? options.frames : static_cast<int>(wanted), duration_s};
-}
-
-std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
-
-std::uint64_t case_hash(const Case& patient) {
-  std::uint64_t hash = hash_start;
-  for (const auto& part : patient.parts) {
-    hash = hash_bytes(part.name.data(), part.name.size(), hash);
-    hash = hash_bytes(&part.role, sizeof part.role, hash);
-    hash = hash_bytes(&part.carrier, sizeof part.carrier, hash);
-    for (const auto& c : part.mesh.colors) hash = hash_bytes(c.data(), 3 * sizeof(float), hash);
-    for (const auto& v : part.mesh.vertices) hash = hash_bytes(v.data(), 3 * sizeof(double), hash);
-    for (const auto& t : part.mesh.triangles) hash = hash_bytes(t.data(), 3 * sizeof(int), hash);
-  }
-  for (const auto& [name, point] : patient.landmarks.points)
-    hash = hash_bytes(point.data(), 3 * sizeof(double), hash_bytes(name.data(), name.size(), hash));
-  for (const auto& rule : patient.pair_rules) {
-    const std::string text = fmt::format("{},{},{},{},{}", rule.a, rule.b, policy_name(rule.policy),
-                                         rule.gap_mm, rule.margin_mm.value_or(-1));
-    hash = hash_bytes(text.data(), text.size(), hash);
-  }
-  return hash;
-}
-
-/// Of every pose that the recording asks for: at the fixed steps and at the frames.
-std::uint64_t motion_hash(const Motion& motion, const FrameTimes& times, double step_s) {
-  std::uint64_t hash = hash_start;
-  const auto add = [&](double time_s) {
-    const Pose pose = motion.wanted(time_s);
-    hash = hash_bytes(pose.R.coeffs().data(), 4 * sizeof(double), hash);
-    hash = hash_bytes(pose.t.data(), 3 * sizeof(double), hash);
-  };
-  for (int i = 0; i * step_s <= motion.duration_s; ++i) add(i * step_s);
-  for (int i = 0; i < times.count; ++i) add(times[i]);
-  return hash;
-}
-
-std::string contact_text(const MotionOptions& options) {
-  std::string text = options.respect_contact ? "respected" : "as the motion wants";
-  if (options.friction > 0) text += fmt::format(", friction {}", options.friction);
-  for (const auto& pair : options.pairs) text += "; " + pair;
-  return text;
-}
-
-std::string tissue_text(const MotionOptions& options, const Case& patient) {
-  if (!options.tissue) return "none";
-  const TissuePlan plan = overlaid(patient.tissue, parse_tissue(options.tissue_model));
-  return fmt::format("{} {}", options.surface_nodes, tissue_plan_json(plan).dump());
 }
 
 /// The report, with what its pictures were drawn with.
@@ -121,18 +77,18 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
     pictures.emplace(
         parse_pictures(options.picture, scene.patient),
         RecordingFiles{.out = options.out, .film = options.film, .resume = options.resume},
-        RecordingSubject{
-            .scene = scene,
-            .motion = motion,
-            .settings = settings,
-            .frames = times.count,
-            .frames_per_second = times.fps(),
-            .identity = {{"condyle", CONDYLE_VERSION},
-                         {"case", hash_text(case_hash(scene.patient))},
-                         {"motion", motion.name + " " +
-                                        hash_text(motion_hash(motion, times, settings.step_s))},
-                         {"contact", contact_text(options.motion)},
-                         {"tissue", tissue_text(options.motion, scene.patient)}}});
+        RecordingSubject{.scene = scene,
+                         .motion = motion,
+                         .settings = settings,
+                         .frames = times.count,
+                         .frames_per_second = times.fps(),
+                         .identity = recording_identity(scene, motion, times.all(), settings.step_s,
+                                                        options.motion)});
+  std::optional<Interruption> interruption;
+  if (options.pictures)
+    interruption.emplace("condyle: interrupted; the pictures made so far stay in " +
+                         fs::absolute(options.out).lexically_normal().string() +
+                         ", and the same command with --resume makes the others");
   for (int i = 0; i < times.count; ++i) {
     FrameState frame = playback.at(times[i]);
     const auto done = [&](int number, const FrameState& drawn) {

@@ -1,3 +1,7 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
 #include "render/window/kept_arrangement.h"
 #include "render/window/window.h"
 #include "tools/view_session.h"
@@ -30,12 +34,14 @@ int run_view(const ViewOptions& options, const CommonOptions& common) {
   ViewSession session(window, options, common);
   session.open(options.motion.patient);
   ViewStateFile state(options.state_file);
-  while (window.open()) {
+  while (window.open() || !session.may_close()) {
     session.turn();
     kept.update(window.arrangement());
     state.update(window, session.frame(), session.busy_with());
   }
   kept.update(window.arrangement(), true);
+  if (const std::string words = session.stop_recording(); !words.empty())
+    fmt::print(stderr, "condyle: {}\n", words);
   return 0;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "sim/muscles/usual_muscles.h"
@@ -22,6 +23,33 @@ std::string first_line(const fs::path& file) {
   std::ifstream stream(file);
   for (std::string line; std::getline(stream, line);)
     if (!line.empty() && line.front() != '#' && line.front() != '\r') return lower_case(line);
+  return {};
+}
+
+/// Of the others a patient may well have several.
+bool is_had_once(const std::string& role) {
+  return !role.empty() && role != "segment" && role != "transplant";
+}
+
+std::string role_guess(const fs::path& file) {
+  if (const FileKind kind = kind_of(file); kind != FileKind::surface)
+    return kind == FileKind::landmarks ? "landmarks" : kind == FileKind::muscles ? "muscles" : "";
+  const std::string name = lower_case(file.stem().string());
+  const auto has = [&](std::initializer_list<const char*> words) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const char* word) { return name.find(word) != std::string::npos; });
+  };
+  const bool teeth = has({"teeth", "tooth", "dent", "arch", "crown"}) &&
+                     !has({"with_teeth", "with-teeth", "with teeth", "with_dent"});
+  if (teeth && has({"lower", "mandib", "inferior"})) return "lower-teeth";
+  if (teeth && has({"upper", "maxill", "superior"})) return "upper-teeth";
+  if (has({"mandib", "lower"})) return "mandible";
+  if (has({"maxill", "upper"})) return "maxilla";
+  if (has({"jaw"})) return "mandible";
+  if (has({"skull", "crani", "head_bone"})) return "skull";
+  if (has({"face", "skin", "soft"})) return "face";
+  if (has({"transplant", "graft", "fibula"})) return "transplant";
+  if (has({"segment"})) return "segment";
   return {};
 }
 
@@ -76,29 +104,28 @@ FileKind kind_of(const fs::path& path) {
     const bool has_place = header.find('x') != std::string::npos;
     return header.starts_with("time_s") && !has_place ? FileKind::excitations : FileKind::motion;
   }
-  for (const char* motion : {".motion", ".mot", ".sto", ".trc", ".raw", ".txt", ".json"})
+  for (const char* motion : {".motion", ".mot", ".sto", ".trc", ".raw", ".txt"})
     if (ending == motion) return FileKind::motion;
   return FileKind::unknown;
 }
 
-std::string role_guess(const fs::path& file) {
-  if (const FileKind kind = kind_of(file); kind != FileKind::surface)
-    return kind == FileKind::landmarks ? "landmarks" : kind == FileKind::muscles ? "muscles" : "";
-  const std::string name = lower_case(file.stem().string());
-  const auto has = [&](std::initializer_list<const char*> words) {
-    return std::any_of(words.begin(), words.end(),
-                       [&](const char* word) { return name.find(word) != std::string::npos; });
-  };
-  const bool teeth = has({"teeth", "tooth", "dent", "arch", "crown"});
-  if (teeth && has({"lower", "mandib", "inferior"})) return "lower-teeth";
-  if (teeth && has({"upper", "maxill", "superior"})) return "upper-teeth";
-  if (has({"mandib", "lower", "jaw"})) return "mandible";
-  if (has({"maxill", "upper"})) return "maxilla";
-  if (has({"skull", "crani", "head_bone"})) return "skull";
-  if (has({"face", "skin", "soft"})) return "face";
-  if (has({"transplant", "graft", "fibula"})) return "transplant";
-  if (has({"segment"})) return "segment";
-  return {};
+std::vector<FileRole> proposed_roles(const std::vector<fs::path>& files) {
+  const auto stem = [](const FileRole& one) { return lower_case(one.file.stem().string()); };
+  std::vector<FileRole> roles;
+  for (const fs::path& file : files) roles.push_back({file, role_guess(file)});
+  std::vector<FileRole*> plainest_first;
+  for (FileRole& one : roles)
+    if (kind_of(one.file) == FileKind::surface) plainest_first.push_back(&one);
+  std::stable_sort(
+      plainest_first.begin(), plainest_first.end(),
+      [&](const FileRole* a, const FileRole* b) { return stem(*a).size() < stem(*b).size(); });
+  for (auto one = plainest_first.begin(); one != plainest_first.end(); ++one) {
+    const bool again = std::any_of(plainest_first.begin(), one, [&](const FileRole* plainer) {
+      return plainer->role == (*one)->role && stem(**one).starts_with(stem(*plainer));
+    });
+    if (again && is_had_once((*one)->role)) (*one)->taken = std::exchange((*one)->role, {});
+  }
+  return roles;
 }
 
 Case import_files(const wish::Import& wanted) {

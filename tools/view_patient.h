@@ -36,8 +36,10 @@ FileKind kind_of(const std::filesystem::path& path);
 constexpr bool makes_patient(FileKind kind) {
   return kind == FileKind::surface || kind == FileKind::landmarks || kind == FileKind::muscles;
 }
-/// A guess from the file's name: "mandible" for Lower_Jaw.stl; empty when there is none.
-std::string role_guess(const std::filesystem::path& file);
+/// Guesses from the files' names: "mandible" for Lower_Jaw.stl; none where a name tells nothing. Of
+/// mandible.ply, mandible_8k.ply and mandible_with_teeth.ply, the same bone once more, only the
+/// first one has the role.
+std::vector<FileRole> proposed_roles(const std::vector<std::filesystem::path>& files);
 /// throws: InputError.
 Case import_files(const wish::Import& wanted);
 

@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "render/recorder.h"
 #include "tools/view_motion.h"
 #include "tools/view_patient.h"
 
@@ -19,12 +21,24 @@ struct ViewRecording {
   std::shared_ptr<const ViewPatient> patient;
   std::shared_ptr<const ViewMotion> motion;
   std::shared_ptr<const LineSet> paths;
+  MotionOptions options;  // of the command line
+};
+
+/// What is done where the recording's folder holds pictures already.
+enum class Existing { ask, resume, replace };
+
+/// What came of a recording.
+struct ViewRecorded {
+  enum class End { made, stopped, failed, asks };
+  End end = End::made;
+  std::string words;     // a sentence; of one that asks: what is in the folder
+  RecordingThere there;  // unless it was made
 };
 
 /// Records the motion as the window shows it: its parts, overlays, colours, wipe, scale and
-/// letters; bones stay where hands have put them, and slide on contact if it is obeyed. gives: what
-/// was made, as a sentence. throws: MachineError.
-std::string record_view(const ViewRecording& subject, const SimulatorSettings& settings,
-                        const Progress& progress);
+/// letters; bones stay where hands have put them, and slide on contact if it is obeyed. throws:
+/// InputError for wrong choices; what fails later is told by the result.
+ViewRecorded record_view(const ViewRecording& subject, Existing existing,
+                         const SimulatorSettings& settings, const Progress& progress);
 
 }  // namespace condyle

@@ -58,6 +58,9 @@ void ViewSession::take_patient() {
   motion_.reset();
   newest_.reset();
   end_fall();
+  retire(unfinished_);
+  if (!recording_) retire(recorded_);
+  window_.show_unfinished("");
   const bool first = patient_ == nullptr;
   PatientPtr earlier = std::exchange(patient_, std::move(*made));
   retire(earlier);

@@ -17,6 +17,7 @@
 #include "tools/background_work.h"
 #include "tools/view_motion.h"
 #include "tools/view_overlays.h"
+#include "tools/view_recording.h"
 #include "tools/window_words.h"
 
 namespace condyle {
@@ -39,6 +40,10 @@ class ViewSession {
   const FrameState* frame() const { return newest_ ? &*newest_ : nullptr; }
   /// What runs beside and is shown as progress; empty for nothing.
   const std::string& busy_with() const { return busy_with_; }
+  /// Whether the window may go that the person has closed; asks them while a recording is made.
+  bool may_close();
+  /// Ends a recording. gives: what is there of it, as a sentence; empty when there was none.
+  std::string stop_recording();
 
  private:
   using PatientPtr = std::shared_ptr<const ViewPatient>;
@@ -51,7 +56,9 @@ class ViewSession {
   void take_motion();
   void take_plots();
   // view_wishes.cpp:
+  void record(std::shared_ptr<const ViewRecording> subject, Existing existing);
   void take_recording();
+  void ask_about(const ViewRecorded& found);
   void take_let_go();
   void let_jaw_go(std::size_t body);
   void let_fall();
@@ -65,6 +72,9 @@ class ViewSession {
   void carry_out(const wish::Import& wanted);
   void carry_out(const wish::Record& wanted);
   void carry_out(const wish::StopRecording& wanted);
+  void carry_out(const wish::ResumeRecording& wanted);
+  void carry_out(const wish::ReplaceRecording& wanted);
+  void carry_out(const wish::Quit& wanted);
   void carry_out(const wish::Cancel& wanted);
   void carry_out(const wish::LetGo& wanted);
   void carry_out(const wish::SaveCase& wanted);
@@ -182,6 +192,10 @@ class ViewSession {
     std::optional<MotionPictures> pictures;
   };
 
+  // The recording that is made or was asked about, and one that can go on.
+  std::shared_ptr<const ViewRecording> recorded_, unfinished_;
+  bool quit_when_recorded_ = false, quits_ = false;
+
   // What runs beside, last of all members: it ends first.
   std::vector<std::function<bool()>> ending_;  // whether it has ended
   std::shared_ptr<PlotPost> plot_post_;
@@ -191,7 +205,7 @@ class ViewSession {
   std::unique_ptr<BackgroundWork<MotionPtr>> moving_;
   std::unique_ptr<BackgroundWork<bool>> readying_;  // bones to slide
   std::unique_ptr<BackgroundWork<MotionPictures>> plotting_;
-  std::unique_ptr<BackgroundWork<std::string>> recording_;
+  std::unique_ptr<BackgroundWork<ViewRecorded>> recording_;
   std::unique_ptr<BackgroundWork<LetGoResult>> letting_go_;
   Loosed loosed_;  // while it is being let go, or falls
   std::unique_ptr<BackgroundWork<Saved>> saving_;

@@ -96,6 +96,7 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
   json["recent"] = nlohmann::json::array();
   for (const auto& path : window.scene().recent) json["recent"].push_back(path.string());
   if (const std::string trouble = window.trouble(); !trouble.empty()) json["trouble"] = trouble;
+  if (const Question* question = window.question()) json["asked"] = question->words;
   if (!window.said().empty()) json["said"] = window.said();
   if (const auto hand = view.hands.X_CM_wanted()) json["X_CM_wanted"] = pose(*hand);
   if (view.hands.skull) {

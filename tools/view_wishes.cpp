@@ -5,7 +5,6 @@
 #include "engine/core/error.h"
 #include "render/window/part_names.h"
 #include "sim/motion/measures.h"
-#include "tools/view_recording.h"
 #include "tools/view_session.h"
 
 // Of a ViewSession: what the person asks for once, and what comes of it.
@@ -80,19 +79,19 @@ void ViewSession::carry_out(const wish::Open& wanted) {
     if (patient_) show_scene();
     throw InputError(one, "", "is not there (any more)");
   }
-  wish::Import surfaces;
+  std::vector<fs::path> surfaces;
   std::vector<std::string> others;
   for (const fs::path& file : with_loose_surfaces(wanted.files)) {
     if (makes_patient(kind_of(file)))
-      surfaces.files.push_back({file, role_guess(file)});
+      surfaces.push_back(file);
     else
       others.push_back(file.filename().string());
   }
-  if (!surfaces.files.empty()) {
+  if (!surfaces.empty()) {
     if (!others.empty())
       window_.say(fmt::format("Left out: {}. Only surfaces, landmarks and muscles make a patient",
                               fmt::join(others, ", ")));
-    return window_.ask_roles(surfaces);
+    return window_.ask_roles({.files = proposed_roles(surfaces)});
   }
   if (wanted.files.size() > 1)
     window_.say(fmt::format("Of {} files the first is opened: {}", wanted.files.size(),
@@ -125,20 +124,15 @@ void ViewSession::carry_out(const wish::Record& wanted) {
   if (recording_ || !motion_) return;
   std::optional<Pose> held_jaw = window_.view().hands.X_CM_wanted();
   if (!held_jaw && window_.view().opening_mm && newest_) held_jaw = newest_->X_CM_wanted;
-  recording_ = beside<std::string>([subject = ViewRecording{.wanted = wanted,
-                                                            .view = window_.view(),
-                                                            .bodies = shown_.bodies,
-                                                            .held_jaw = held_jaw,
-                                                            .patient = patient_,
-                                                            .motion = motion_,
-                                                            .paths = paths_},
-                                    settings = settings_](const Progress& progress) {
-    return record_view(subject, settings, progress);
-  });
-}
-
-void ViewSession::carry_out(const wish::StopRecording&) {
-  if (recording_) recording_->cancel();
+  record(std::make_shared<ViewRecording>(ViewRecording{.wanted = wanted,
+                                                       .view = window_.view(),
+                                                       .bodies = shown_.bodies,
+                                                       .held_jaw = held_jaw,
+                                                       .patient = patient_,
+                                                       .motion = motion_,
+                                                       .paths = paths_,
+                                                       .options = options_.motion}),
+         Existing::ask);
 }
 
 void ViewSession::carry_out(const wish::Cancel&) {
@@ -195,23 +189,6 @@ void ViewSession::carry_out(const wish::UseLandmarks&) {
         landmarks](const Progress&) { return with_landmarks(patient->scene.patient, landmarks); },
        patient_->folder, "making the patient with these landmarks");
   renewing_ = landmarks;
-}
-
-void ViewSession::take_recording() {
-  if (!recording_) return;
-  if (!recording_->done()) {
-    const auto [what, fraction] = recording_->progress();
-    window_.show_recording(what.empty() ? "starting" : what, fraction);
-    return;
-  }
-  const auto finished = std::move(recording_);
-  window_.show_recording("", 0);
-  guarded([&] {
-    if (const auto made = finished->take())
-      window_.say(*made);
-    else
-      window_.say("The recording was stopped; its pictures stay in the folder");
-  });
 }
 
 /// The jaw is caught where it is, and falls from there.

@@ -30,7 +30,9 @@ constexpr std::array phrases = {
     Phrase{"import it again with --push-out", "move it by hand (key M)"},
     Phrase{", --push-out moves it out", "; move it out by hand (key M)"},
     Phrase{"(--attach, or \"attachments\" in case.json)", "(\"attachments\" in case.json)"},
-    Phrase{"go on with --resume", "record again"}};
+    Phrase{"; give the same options, another --out, or leave out --resume",
+           "; choose another folder"},
+    Phrase{"go on with --resume", "resume the recording"}};
 
 }  // namespace
 

@@ -41,6 +41,7 @@ struct Drafts {
     /// Those that are chosen, in the order of the list.
     std::vector<std::filesystem::path> chosen_files() const;
   } files;
+  std::optional<Question> question;
   std::optional<wish::Import> import;  // surfaces that wait for their roles
 };
 

@@ -1,6 +1,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "render/window/panels_drawing.h"
 
@@ -66,6 +68,28 @@ void help_columns(const Theme& theme, Pen& pen) {
 
 }  // namespace
 
+void Panels::Drawing::question_dialog() {
+  const Question& asked = *panels.question();
+  text(panels.theme_.bold, palette().text, asked.title);
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
+  ImGui::PushTextWrapPos(0);
+  text(panels.theme_.regular, palette().text_dim, asked.words);
+  ImGui::PopTextWrapPos();
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(10));
+  const auto count = static_cast<float>(asked.answers.size());
+  const float gap = pen.px(8);
+  const float wide =
+      std::floor((ImGui::GetContentRegionAvail().x - gap * (count - 1)) / std::max(1.0f, count));
+  std::optional<std::size_t> given;
+  for (std::size_t i = 0; i < asked.answers.size(); ++i) {
+    if (i > 0) ImGui::SameLine(0, gap);
+    const Question::Answer& one = asked.answers[i];
+    if (word_button(pen, one.item.c_str(), one.label.c_str(), {wide, pen.px(30)}, i == 0))
+      given = i;
+  }
+  if (given) panels.answer(*given);
+}
+
 void Panels::Drawing::dialogs() {
   const Theme& theme = panels.theme_;
   // An error comes before the help. A dialog that was left by its key must still be drawn once
@@ -84,9 +108,17 @@ void Panels::Drawing::dialogs() {
     if (panels.errors_.empty()) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
   }
+  const bool question = panels.question() && !error;
+  if ((question || ImGui::IsPopupOpen("question")) &&
+      begin_dialog(pen, "question", pen.px(480), display_width, display_height)) {
+    if (question) question_dialog();
+    if (!question || !panels.question()) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+  }
   auto& files = panels.drafts_.files;
   auto& import = panels.drafts_.import;
-  const bool asks = import && !error, opens = files.open && !asks && !error;
+  const bool asks = import && !error && !question,
+             opens = files.open && !asks && !error && !question;
   if ((asks || ImGui::IsPopupOpen("import")) &&
       begin_dialog(pen, "import", pen.px(560), display_width, display_height)) {
     if (asks) import_dialog();
@@ -99,7 +131,7 @@ void Panels::Drawing::dialogs() {
     if (!opens || !files.open) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
   }
-  const bool help = panels.help_open_ && !error && !asks && !opens;
+  const bool help = panels.help_open_ && !error && !question && !asks && !opens;
   if ((help || ImGui::IsPopupOpen("help")) &&
       begin_dialog(pen, "help", pen.px(820), display_width, display_height)) {
     if (help) {

@@ -94,13 +94,24 @@ RoleRemark remark_on(const wish::Import& import) {
                           "role or \"leave out\" for the others",
                           count(once), once == "face" ? "the face" : once),
               true};
+  std::string words;
+  const auto add = [&](const std::string& sentence) {
+    words += (words.empty() ? "" : "\n") + sentence;
+  };
+  std::string again;
+  for (const FileRole& one : import.files)
+    if (one.role.empty() && !one.taken.empty())
+      again += fmt::format("{}{} ({})", again.empty() ? "" : ", ", one.file.filename().string(),
+                           one.taken);
+  if (!again.empty())
+    add("By their names these are the same once more, and are left out: " + again);
   for (const char* bone : {"mandible", "skull", "maxilla"})
     if (count(bone) > 1)
-      return {
+      add(
           fmt::format("{} surfaces are said to be the {}. That is right for pieces of one bone; "
                       "of the same bone twice, choose \"leave out\" for one",
-                      count(bone), bone)};
-  return {};
+                      count(bone), bone));
+  return {words};
 }
 
 bool choice(Pen& pen, const std::string& name, float width, std::string& value,

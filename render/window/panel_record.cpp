@@ -182,8 +182,8 @@ void Panels::Drawing::record() {
   ImGui::SameLine(std::floor(whole * 0.56f));
   tick_box(pen, "record-film", "Film (MP4)", choice.film);
   tooltip(pen, "Beside the pictures; made by the program ffmpeg when the last picture is there");
-  // The next recording has a folder of its own, unless the person names one.
-  if (fields.running && !input.recording) fields.folder.clear();
+  // The next recording has a folder of its own, unless the person names one or is asked about it.
+  if (fields.running && !input.recording && !panels.question()) fields.folder.clear();
   fields.running = input.recording;
   if (fields.folder.empty()) fields.folder = next_recording_folder(input.picture_folder).string();
   text_field(pen, "record-folder", fields.folder, record_label("Folder"), "where the pictures go");
@@ -200,7 +200,7 @@ void Panels::Drawing::record() {
     text(theme.small, palette().text, fitted(theme.small, input.recording_what, whole));
     if (word_button(pen, "record-cancel", "Stop recording", {whole, pen.px(32)}, false))
       panels.wishes_.emplace_back(wish::StopRecording{});
-    tooltip(pen, "The pictures made so far stay in the folder");
+    tooltip(pen, "The pictures made so far stay in the folder; the recording can be resumed");
   } else {
     const std::size_t cameras = choice.wanted_cameras().size();
     ImGui::BeginDisabled(duration <= 0 || fields.folder.empty() || cameras == 0);
@@ -230,9 +230,18 @@ void Panels::Drawing::record() {
   ImGui::PopStyleVar();
   ImGui::PushTextWrapPos(0);
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(4));
-  text(theme.small, palette().text_dim,
-       "Pictures are drawn in full quality beside the window, which stays usable. They show what "
-       "the view shows now, bones moved by hand and its light or dark background (T) included.");
+  if (input.unfinished.empty() || input.recording) {
+    text(theme.small, palette().text_dim,
+         "Pictures are drawn in full quality beside the window, which stays usable. They show what "
+         "the view shows now, bones moved by hand and its light or dark background (T) included.");
+  } else {
+    text(theme.small, palette().text, input.unfinished);
+    if (word_button(pen, "record-resume", "Resume this recording", {whole, high}, false))
+      panels.wishes_.emplace_back(wish::ResumeRecording{});
+    tooltip(pen,
+            "Draws the pictures that are missing as the recording was begun, whatever the view "
+            "shows now. It ends with the same bits as if it had never been stopped");
+  }
   ImGui::PopTextWrapPos();
 }
 

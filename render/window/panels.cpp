@@ -59,6 +59,11 @@ void Panels::say(const std::string& sentence) {
   said_until_ = -1;  // the clock is ImGui's: set at the next drawing
 }
 
+void Panels::answer(std::size_t which) {
+  if (auto& wish = drafts_.question->answers.at(which).wish) wishes_.push_back(std::move(*wish));
+  drafts_.question.reset();
+}
+
 bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
   const double step = scene.step_s, duration = scene.duration_s;
   const auto take_jaw = [&] {  // from the hand to the motion
@@ -141,6 +146,8 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
       // Boxes with fields have a button of their own for it.
       if (!errors_.empty()) {
         errors_.pop_front();
+      } else if (drafts_.question) {
+        answer(0);
       } else if (drafts_.files.open && !drafts_.import) {
         drafts_.files.accepted = !drafts_.files.chosen.empty();
       } else if (help_open_ && !drafts_.import) {
@@ -152,6 +159,8 @@ bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
         fold_list_ = true;
       } else if (!errors_.empty()) {
         errors_.pop_front();
+      } else if (drafts_.question) {
+        drafts_.question.reset();
       } else if (drafts_.import) {
         drafts_.import.reset();
       } else if (drafts_.files.open) {
@@ -174,7 +183,7 @@ bool Panels::takes(Command command) const {
     case Command::quit:
       return true;
     case Command::help:
-      return !dialog_open() || (help_open_ && errors_.empty());
+      return !dialog_open() || (help_open_ && errors_.empty() && !drafts_.question);
     default:
       return !dialog_open();
   }

@@ -41,6 +41,7 @@ struct PanelInput {
   bool recording = false;  // a recording is being made
   std::string recording_what = {};
   double recording_fraction = 0;
+  std::string unfinished = {};                 // of a recording that can go on, as a sentence
   std::filesystem::path picture_folder = ".";  // of pictures and recordings
 };
 
@@ -103,11 +104,15 @@ class Panels {
 
   /// Asks for the roles of surfaces.
   void ask_roles(wish::Import import) { drafts_.import = std::move(import); }
+  /// Asks in a box; the answer is a wish.
+  void ask(Question question) { drafts_.question = std::move(question); }
+  const Question* question() const { return drafts_.question ? &*drafts_.question : nullptr; }
   /// What was asked for once, since the last call.
   std::vector<Wish> take_wishes() { return std::exchange(wishes_, {}); }
 
   bool dialog_open() const {
-    return help_open_ || !errors_.empty() || drafts_.files.open || drafts_.import;
+    return help_open_ || !errors_.empty() || drafts_.question || drafts_.files.open ||
+           drafts_.import;
   }
   /// Whether something will come or go by itself in time: a sentence, a tooltip.
   bool talking() const { return !said_.empty() || tooltip_.due; }
@@ -130,6 +135,7 @@ class Panels {
  private:
   struct Drawing;  // one pass over all panels: panels_*.cpp
   PlotSet stage_plots() const;
+  void answer(std::size_t which);
   Theme theme_;
   bool shown_ = true, help_open_ = false;
   PanelSizes sizes_;

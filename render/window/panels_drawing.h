@@ -30,6 +30,7 @@ struct Panels::Drawing {
   void edges();       // panel_edges.cpp: between panels, to draw them wider or higher
   void view_signs();  // panel_view.cpp: letters at the edges, cube, progress
   void dialogs();     // panel_dialogs.cpp
+  void question_dialog();
 
  private:
   void motion();  // panel_motion.cpp

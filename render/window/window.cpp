@@ -142,6 +142,10 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
 
 bool Window::open() const { return !glfwWindowShouldClose(state_->window); }
 
+void Window::close() { glfwSetWindowShouldClose(state_->window, GLFW_TRUE); }
+
+void Window::keep_open() { glfwSetWindowShouldClose(state_->window, GLFW_FALSE); }
+
 const ViewState& Window::poll() {
   State& s = *state_;
   s.wait_for_events();
@@ -233,6 +237,13 @@ void Window::ask_roles(const wish::Import& files) {
   state_->noticed();
 }
 
+void Window::ask(Question question) {
+  state_->panels->ask(std::move(question));
+  state_->noticed();
+}
+
+const Question* Window::question() const { return state_->panels->question(); }
+
 void Window::show_plots(std::vector<PlotSet> plots) {
   state_->plots = std::move(plots);
   if (state_->view.plots) state_->frames_due = std::max(state_->frames_due, 1);
@@ -260,6 +271,11 @@ void Window::show_recording(const std::string& what, double fraction) {
   s.recording = what;
   s.recording_fraction = fraction;
   s.frames_due = std::max(s.frames_due, 1);
+}
+
+void Window::show_unfinished(const std::string& sentence) {
+  state_->unfinished = sentence;
+  state_->noticed();
 }
 
 void Window::say(const std::string& sentence) {

@@ -57,6 +57,9 @@ class Window {
 
   /// False once the person has closed the window.
   bool open() const;
+  void close();
+  /// The person has closed it, but it stays: there is something to ask.
+  void keep_open();
 
   /// Handles events, moves the playing clock and gives what is wanted now. Waits for the next
   /// picture's time while something moves (at most 1/60 s) and up to 1/4 s when nothing does.
@@ -82,6 +85,10 @@ class Window {
   std::vector<Wish> take_wishes();
   /// Asks for the roles of surfaces that were dropped or opened.
   void ask_roles(const wish::Import& files);
+  /// Asks in a box; the answer is a wish.
+  void ask(Question question);
+  /// What is asked and not answered yet.
+  const Question* question() const;
   void show_plots(std::vector<PlotSet> plots);
   /// Lines and sheets in space, of the newest frame, instead of those before.
   void show_overlays(Overlays overlays);
@@ -90,6 +97,8 @@ class Window {
   void show_progress(const std::string& what, double fraction, bool can_cancel = false);
   /// The recording that is being made, 0 to 1; none when `what` is empty.
   void show_recording(const std::string& what, double fraction);
+  /// Of a recording that can go on, as a sentence; empty: there is none.
+  void show_unfinished(const std::string& sentence);
   /// Says a sentence at the foot of the window for some seconds.
   void say(const std::string& sentence);
   /// Shows a sentence in a dialog.

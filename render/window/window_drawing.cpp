@@ -210,6 +210,7 @@ void Window::State::interface_frame() {
                          .recording = !recording.empty(),
                          .recording_what = recording,
                          .recording_fraction = recording_fraction,
+                         .unfinished = unfinished,
                          .picture_folder = options.picture_folder};
   const std::vector<Command> commands = panels->draw(input, view, w, h);
   ImGui::Render();
@@ -319,7 +320,7 @@ void Window::State::draw(bool always, Image* copy) {
   }
   while (const auto saved = painter->take_saved()) {
     if (saved->trouble.empty())
-      panels->say("Saved " + saved->file.string());
+      panels->say("Saved " + std::filesystem::absolute(saved->file).lexically_normal().string());
     else
       panels->report_error(saved->trouble);
     frames_due = 3;

@@ -58,7 +58,7 @@ struct Window::State {
   LoopStatistics loop;
   Camera camera;  // in the room, in which a hand may have moved the skull
   ZoomLimits zoom;
-  std::string progress, recording;
+  std::string progress, recording, unfinished;
   double progress_fraction = 0, recording_fraction = 0;
   bool can_cancel = false;
   std::vector<PlotSet> plots;

@@ -46,6 +46,8 @@ struct FileRole {
   std::filesystem::path file;
   // "mandible", "upper-teeth", ..., "landmarks", "muscles", or empty: leave it out
   std::string role;
+  // The role that its name tells, where another file of the same thing has it.
+  std::string taken = {};
 };
 
 /// What the person asks for once. Whoever runs the window does it.
@@ -76,6 +78,14 @@ struct Record {
   std::shared_ptr<const FrameState> kept = {};  // left of the wipe, if there is one
 };
 struct StopRecording {};
+/// The recording that was stopped or asked about goes on with the pictures that are there.
+struct ResumeRecording {};
+/// The recording that was asked about takes the place of what is in its folder.
+struct ReplaceRecording {};
+/// A recording is being made: it is stopped, or awaited.
+struct Quit {
+  bool when_recorded = false;
+};
 /// Ends what runs beside, other than a recording.
 struct Cancel {};
 /// Lets the dynamics take a free body from where the hand has it.
@@ -89,7 +99,18 @@ struct SaveCase {
 struct UseLandmarks {};
 }  // namespace wish
 
-using Wish = std::variant<wish::Open, wish::Import, wish::Record, wish::StopRecording, wish::Cancel,
+using Wish = std::variant<wish::Open, wish::Import, wish::Record, wish::StopRecording,
+                          wish::ResumeRecording, wish::ReplaceRecording, wish::Quit, wish::Cancel,
                           wish::LetGo, wish::SaveCase, wish::UseLandmarks>;
+
+/// What a person is asked before something is done.
+struct Question {
+  struct Answer {
+    std::string item, label;
+    std::optional<Wish> wish = {};  // none: nothing is done
+  };
+  std::string title, words;
+  std::vector<Answer> answers;  // Enter gives the first, which loses nothing; Esc gives none
+};
 
 }  // namespace condyle

@@ -308,6 +308,10 @@ RecordingFile read_recording_file(const fs::path& file) {
   TextLines lines(content), ahead(content);
   if (!lines.next_filled()) throw InputError(file, "", "the file is empty");
   ahead.next_filled();
+  if (lower_case(file.extension().string()) == ".json")
+    throw InputError(file, "",
+                     "is no motion: a JSON file only tells what stands in the motion beside it, "
+                     "whose name it has with .json behind");
   if (trimmed(lines.line()).starts_with("PathFileType")) return read_trc(file, content);
   const bool second = ahead.next_filled();
   if (second && begins_with_probe(lines.line(), ahead.line())) return read_probe(file, lines);

@@ -240,9 +240,10 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   for (std::size_t p = 0; p < net.prisms.size(); ++p)
     if (net.rest_volume[p] <= 0) {
       const Vector3d& at = model->rest[net.prisms[p][0]];
-      throw InputError("face: the skin folds near (" + std::to_string(at.x()) + ", " +
-                       std::to_string(at.y()) + ", " + std::to_string(at.z()) +
-                       ") mm so that tissue below it would turn inside out; smooth the face there");
+      throw InputError(
+          fmt::format("face: the skin folds near ({:.1f}, {:.1f}, {:.1f}) mm so that tissue below "
+                      "it would turn inside out; smooth the face there",
+                      at.x(), at.y(), at.z()));
     }
 
   // Bone springs.

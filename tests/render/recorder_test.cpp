@@ -95,6 +95,55 @@ TEST_F(Recording, AKilledOneIsCompletedToTheSameBits) {
   EXPECT_EQ(content(top / "killed"), content(top / "whole"));
 }
 
+TEST_F(Recording, WhatLiesInTheFolderIsToldBeforeItBegins) {
+  const auto s = settings("a");
+  EXPECT_EQ(recording_there(s).pictures, 0);
+  EXPECT_TRUE(recording_there(s).differs.empty());
+  record(s, 7, false);
+  fs::resize_file(top / "a/frames/000003.png", 40);
+  EXPECT_EQ(recording_there(s).pictures, 6) << "whole ones";
+  EXPECT_TRUE(recording_there(s).differs.empty());
+  auto other = s;
+  other.identity["camera"] = "left";
+  other.width = 66;
+  EXPECT_EQ(recording_there(other).pictures, 7);
+  EXPECT_EQ(recording_there(other).differs, (std::vector<std::string>{"camera", "width"}));
+  fs::remove(top / "a/recording.json");
+  EXPECT_EQ(recording_there(s).pictures, 7);
+  EXPECT_FALSE(recording_there(s).differs.empty()) << "of unknown origin";
+}
+
+// The encoder takes no picture until it is told to, and whoever draws goes on meanwhile.
+TEST_F(Recording, PicturesAreEncodedBesideTheDrawing) {
+  ASSERT_TRUE(have_ffmpeg()) << "install ffmpeg";
+  auto s = settings("a", 4);
+  s.width = 400;
+  s.height = 300;  // 480 kB: more than a pipe holds
+  fs::create_directories(top / "bin");
+  const std::string path = std::getenv("PATH");
+  write_file(top / "bin/ffmpeg", "#!/bin/sh\nPATH='" + path + "'\ncd '" + top.string() +
+                                     "'\nfor i in $(seq 600); do [ -e go ] && break; sleep 0.1; "
+                                     "done\n: > reads\nexec ffmpeg \"$@\"\n");
+  fs::permissions(top / "bin/ffmpeg", fs::perms::owner_all);
+  ::setenv("PATH", ((top / "bin").string() + ":" + path).c_str(), 1);
+  {
+    Recorder recorder(s);
+    for (int k = 0; k < s.frames; ++k) recorder.add(k, frame(s, k));
+    EXPECT_FALSE(fs::exists(top / "reads")) << "drawing has waited for the film";
+    EXPECT_FALSE(recorder.has(1) || fs::exists(recorder.frame_file(1)))
+        << "drawing has waited for a picture's file";
+    write_file(top / "go", "");
+    recorder.finish();
+  }
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_TRUE(fs::exists(top / "reads"));
+  const auto beside = content(top / "a");
+  auto usual = s;
+  usual.folder = top / "b";
+  record(usual);
+  EXPECT_EQ(beside, content(top / "b"));
+}
+
 TEST_F(Recording, TellsEveryDriverThatDrewItsFrames) {
   const auto draw = [&](const std::string& driver, bool resume, int from, int to) {
     auto s = settings("a");

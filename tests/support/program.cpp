@@ -70,7 +70,7 @@ Outcome condyle(const std::vector<std::string>& arguments, const Limits& limits)
   bool ended = false;
   while (limits.kill_when && !ended) {
     if (limits.kill_when()) {
-      ::kill(child, SIGKILL);
+      ::kill(child, limits.kill_signal);
       break;
     }
     ended = ::waitpid(child, &status, WNOHANG) == child;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -15,7 +16,8 @@ struct Outcome {
 struct Limits {
   long memory_mb = 0;                    // of address space; 0 = none
   long file_mb = -1;                     // largest file that may be written; -1 = none
-  std::function<bool()> kill_when = {};  // asked all the time; SIGKILL as soon as it says so
+  std::function<bool()> kill_when = {};  // asked all the time; killed as soon as it says so
+  int kill_signal = SIGKILL;
 };
 
 /// Runs the built program with the arguments and waits for it.

@@ -228,6 +228,30 @@ TEST(Record, KilledAtAnyMomentLeavesWholeFramesAndResumesToTheSameBits) {
   EXPECT_GT(interrupted, 0);
 }
 
+TEST(Record, InterruptedFromTheKeyboardItTellsHowToGoOn) {
+  const Folder folder;
+  const std::string patient = box_case(folder);
+  const auto command = [&](bool resume) {
+    std::vector<std::string> words = {"record", patient,        "--motion", "opening",
+                                      "--out",  folder / "out", "--frames", "60"};
+    if (resume) words.push_back("--resume");
+    return words;
+  };
+  for (const int signal : {SIGINT, SIGTERM}) {
+    fs::remove_all(folder / "out");
+    const auto ended = condyle(
+        command(false), {.kill_when = [&] { return fs::exists(folder / "out/frames/000002.png"); },
+                         .kill_signal = signal});
+    EXPECT_EQ(ended.code, 128 + signal) << "as any program that is interrupted";
+    EXPECT_NE(ended.err.find("the same command with --resume"), std::string::npos) << ended.err;
+    EXPECT_NE(ended.err.find(folder / "out"), std::string::npos) << ended.err;
+  }
+  const auto resumed = condyle(command(true));
+  EXPECT_EQ(resumed.code, 0) << resumed.err;
+  EXPECT_NE(resumed.err.find("were kept"), std::string::npos) << resumed.err;
+  EXPECT_EQ(resumed.err.find("--resume"), std::string::npos) << resumed.err;
+}
+
 TEST(Info, TellsWhatAFileHolds) {
   const Folder folder;
   write_box_patient(folder.path());

@@ -215,6 +215,26 @@ TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
   see("two-mandibles");
   click("import-close");
   ASSERT_TRUE(wait_for_item("import", false));
+  // The same bone once more, as its name tells, is left out unless the person says otherwise.
+  for (const char* copy : {"mandible_8k.stl", "Mandible_with_teeth_wrap.stl"})
+    fs::copy_file(folder_ / "mandible.stl", fs::path(folder_ / "again") / copy);
+  EXPECT_TRUE(drop_files(
+      "Condyle", {folder_ / "maxilla.stl", folder_ / "again/mandible_8k.stl",
+                  folder_ / "again/mandible.stl", folder_ / "again/Mandible_with_teeth_wrap.stl"}));
+  ASSERT_TRUE(wait_for_item("import-role:3"));
+  see("the-same-bone");
+  EXPECT_TRUE(state()["items"].contains("import-remark"));
+  click("import-go");
+  EXPECT_TRUE(wait_until([](const Json& s) { return idle(s) && s["edits"]["parts"].size() == 2; }));
+  // A JSON file is no motion.
+  write_text(folder_ / "foo.json", "{}");
+  EXPECT_TRUE(drop_files("Condyle", {folder_ / "foo.json"}));
+  ASSERT_TRUE(wait_for_item("error"));
+  const std::string trouble = state()["trouble"];
+  EXPECT_NE(trouble.find("foo.json: cannot be opened"), std::string::npos) << trouble;
+  EXPECT_EQ(trouble.find("json.json"), std::string::npos) << trouble;
+  click("close-error");
+  ASSERT_TRUE(wait_for_item("import", false));
   EXPECT_TRUE(drop_files(
       "Condyle", {folder_ / "mandible.stl", folder_ / "marks.csv", folder_ / "again/marks.csv"}));
   ASSERT_TRUE(wait_for_item("import-remark"));

@@ -292,6 +292,68 @@ TEST_P(Instrument, AnotherPatientsRecordingHasNothingOfThisOnesCaption) {
   EXPECT_EQ(recorded().height, 720);
 }
 
+TEST_P(Instrument, EveryDoubtOfAProposedRoleIsTold) {
+  stage.panels->ask_roles({.files = {{"a/mandible.ply", "mandible"},
+                                     {"a/mandible_8k.ply", "", "mandible"},
+                                     {"a/maxilla_left.ply", "maxilla"},
+                                     {"a/maxilla_right.ply", "maxilla"},
+                                     {"a/maxilla_wrap.ply", "", "maxilla"},
+                                     {"a/skull.ply", "skull"},
+                                     {"a/skull_of_another.ply", "skull"}}});
+  stage.rest();
+  keep("roles");
+  const std::string remark = stage.item("import-remark").words;
+  for (const char* doubt : {"mandible_8k.ply (mandible)", "maxilla_wrap.ply (maxilla)",
+                            "2 surfaces are said to be the skull",
+                            "2 surfaces are said to be the "
+                            "maxilla"})
+    EXPECT_NE(remark.find(doubt), std::string::npos) << remark;
+  EXPECT_EQ(remark.find("to be the mandible"), std::string::npos) << remark;
+  stage.click("import-go");
+  EXPECT_EQ(std::get<wish::Import>(stage.panels->take_wishes().at(0)).files[1].role, "");
+}
+
+TEST_P(Instrument, AStoppedRecordingIsResumedAndAQuestionAnsweredByButtonOrKey) {
+  stage.click("tab:Record");
+  stage.rest();
+  EXPECT_FALSE(stage.has("record-resume"));
+  stage.unfinished = "9 of 91 pictures are in /home/somebody/recordings/condyle-20240131-140509.";
+  stage.rest();
+  keep("record-unfinished");
+  EXPECT_TRUE(stage.has("record")) << "another one can be made";
+  stage.click("record-resume");
+  EXPECT_TRUE(std::holds_alternative<wish::ResumeRecording>(stage.panels->take_wishes().at(0)));
+  stage.recording = "picture 10 of 91";
+  stage.rest();
+  EXPECT_FALSE(stage.has("record-resume"));
+  stage.recording.clear();
+
+  const Question question = {.title = "A recording is being made",
+                             .words = stage.unfinished,
+                             .answers = {{"question:keep", "Keep recording"},
+                                         {"question:when-done", "Quit when done", wish::Quit{true}},
+                                         {"question:quit", "Stop and quit", wish::Quit{}}}};
+  const auto asked = [&] {
+    stage.panels->ask(question);
+    stage.rest();
+  };
+  asked();
+  keep("question");
+  EXPECT_TRUE(stage.panels->dialog_open());
+  EXPECT_FALSE(stage.panels->takes(Command::toggle_play));
+  stage.click("question:when-done");
+  EXPECT_TRUE(std::get<wish::Quit>(stage.panels->take_wishes().at(0)).when_recorded);
+  EXPECT_FALSE(stage.panels->dialog_open());
+  for (const Command key : {Command::accept, Command::close_dialog}) {
+    asked();
+    EXPECT_TRUE(stage.panels->run(key, stage.scene, stage.view));
+    EXPECT_FALSE(stage.panels->question());
+    EXPECT_TRUE(stage.panels->take_wishes().empty()) << "neither key quits";
+  }
+  stage.rest();
+  EXPECT_FALSE(stage.has("question"));
+}
+
 TEST_P(Instrument, ARecordingHasAnySizeWithinBounds) {
   stage.click("tab:Record");
   stage.rest();

@@ -118,7 +118,8 @@ void PanelStage::step(double x, double y, bool down) {
                          .plots = plots,
                          .recording = !recording.empty(),
                          .recording_what = recording,
-                         .recording_fraction = 0.3};
+                         .recording_fraction = 0.3,
+                         .unfinished = unfinished};
   const auto asked = panels->draw(input, view, width_, height_);
   commands.insert(commands.end(), asked.begin(), asked.end());
   ImGui::Render();

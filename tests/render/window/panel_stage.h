@@ -55,7 +55,7 @@ class PanelStage {
   Camera camera;
   std::vector<Command> commands;  // all so far
   PictureStatistics drawing = {.pictures_per_second = 24, .picture_ms = 31};
-  std::string progress, recording;
+  std::string progress, recording, unfinished;
   std::vector<KeyEntry> key;
   bool can_cancel = false;
   std::vector<PlotSet> plots;

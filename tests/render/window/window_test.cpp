@@ -34,6 +34,7 @@ class RealWindow : public testing::Test {
     std::vector<DrawnItem> items;
     ViewRect rect;
     double shown_opening_mm = 0;
+    std::string said;
     int loops = 0;
   };
 
@@ -89,8 +90,8 @@ class RealWindow : public testing::Test {
       window.show(frame, {.steps_per_second = 60},
                   request.distances ? values : std::vector<std::vector<float>>{});
       const std::lock_guard lock(mutex_);
-      seen_ = {window.view(),      window.camera(), window.items(),
-               window.view_rect(), opening,         seen_.loops + 1};
+      seen_ = {window.view(), window.camera(), window.items(), window.view_rect(),
+               opening,       window.said(),   seen_.loops + 1};
     }
     closed_ = !window.open();
     picture_ = window.picture();
@@ -458,6 +459,7 @@ TEST_F(RealWindow, HelpOpensAndEscapeCloses) {
 }
 
 TEST_F(RealWindow, SavesThePictureAndTheWholeWindow) {
+  options_.picture_folder = std::filesystem::relative(folder_);
   const auto saved = [&] {
     std::vector<Image> images;
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
@@ -468,6 +470,9 @@ TEST_F(RealWindow, SavesThePictureAndTheWholeWindow) {
     const ViewRect view = seen().rect;
     EXPECT_TRUE(press("F12"));
     EXPECT_TRUE(wait_until([&](const Seen&) { return saved().size() == 1; }));
+    EXPECT_TRUE(wait_until([&](const Seen& seen) {
+      return seen.said.starts_with("Saved " + (folder_ / "condyle-").string());
+    })) << seen().said;
     EXPECT_EQ(saved().at(0).width, std::lround(view.width));
     EXPECT_EQ(saved().at(0).height, std::lround(view.height));
     EXPECT_TRUE(press("shift+F12"));

@@ -124,6 +124,19 @@ TEST_F(Recording, RefusesWhatIsWrongAndSaysWhere) {
   EXPECT_THROW(read_recording(folder_), InputError);
 }
 
+TEST_F(Recording, AJsonFileIsNoMotion) {
+  const auto file = folder_ / "foo.json";
+  std::ofstream(file) << "{\"a\": 1}";
+  try {
+    read_recording(file);
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string words = error.what();
+    EXPECT_NE(words.find("foo.json: is no motion"), std::string::npos) << words;
+    EXPECT_EQ(words.find("json.json"), std::string::npos) << words;
+  }
+}
+
 TEST(RealRecording, RightChewPlaysBackAsWritten) {
   const auto path = test::real_data() / "case-ubc" / "trajectories" / "rightchew_jaw_pose.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "real anatomy absent";

@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <regex>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -289,6 +291,25 @@ TEST(TissueSettings, AFaceThatPassesThroughItselfMovesWithoutInversion) {
     deform_face(*model, state, face);
     ASSERT_EQ(face.size(), patient.find(Role::face)->mesh.vertices.size());
     for (const auto& p : face) EXPECT_TRUE(p.allFinite());
+  }
+}
+
+TEST(TissueSettings, AFaceThatTurnsTissueInsideOutIsToldOfWithAPlaceThatPeopleRead) {
+  Case patient = plain_patient();
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> off_mm(-12, 12);
+  for (auto& part : patient.parts)
+    if (part.role == Role::face)
+      for (auto& p : part.mesh.vertices)
+        if (std::abs(p.x()) > 30)  // the cheeks
+          p += Eigen::Vector3d(off_mm(random), off_mm(random), off_mm(random));
+  part_lips(patient);
+  try {
+    build_tissue(patient, {.surface_nodes = 220});
+    FAIL();
+  } catch (const InputError& error) {
+    const std::regex place("folds near \\(-?\\d+\\.\\d, -?\\d+\\.\\d, -?\\d+\\.\\d\\) mm");
+    EXPECT_TRUE(std::regex_search(std::string(error.what()), place)) << error.what();
   }
 }
 
