@@ -9,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "render/window/panels.h"
 #include "sim/motion/measures.h"
 #include "sim/report/motion_plots.h"
 #include "tools/passing_path.h"
@@ -198,11 +199,9 @@ std::vector<MotionSetting> settings_of(const MotionChoice& choice, const Motion&
 
 std::string pair_name(const Case& patient, const PairContact& pair) {
   const auto name = [&](int part) {
-    std::string words = patient.parts[static_cast<std::size_t>(part)].name;
-    std::replace(words.begin(), words.end(), '_', ' ');
-    return words;
+    return display_name(patient.parts[static_cast<std::size_t>(part)].name);
   };
-  return name(pair.part_a) + " - " + name(pair.part_b);
+  return name(pair.part_a) + " / " + name(pair.part_b);
 }
 
 /// Signed distance of the pairs that come nearest.

@@ -65,8 +65,6 @@ constexpr const char* purpose = "For research and education, not for clinical us
 /// Centred, above everything, with the rest dimmed; pair with EndPopup when it gives true.
 bool begin_dialog(Pen& pen, const char* name, float dialog_width, double width, double height);
 
-/// "upper_teeth" as "Upper teeth".
-std::string display_name(const std::string& part_name);
 /// The motion of a scene for people: "Chewing right"; words and files as they are.
 std::string motion_title(const WindowScene& scene);
 
