@@ -50,10 +50,8 @@ void Panels::Drawing::measuring() {
   }
   list.PopClipRect();
 
-  if (!in_use) return;
-  const double wide = pen.px(224), high = pen.px(176), margin = pen.px(12);
-  if (r.width < 2 * wide || r.height < high + 2 * margin) return;
-  begin_panel(pen, "measure", {r.x + margin, r.y + margin, wide, high});
+  if (!in_use || layout.tool.width <= 0) return;
+  begin_panel(pen, "measure", layout.tool);
   const std::size_t count = places.size();
   heading(pen, "Measure",
           count == 0 ? "" : std::to_string(count) + (count == 1 ? " point" : " points"));
@@ -78,7 +76,7 @@ void Panels::Drawing::measuring() {
   }
   const float gap = pen.px(5);
   const ImVec2 size = {std::floor((ImGui::GetContentRegionAvail().x - gap) / 2), pen.px(26)};
-  ImGui::SetCursorPosY(static_cast<float>(high) - size.y - pen.px(14));
+  ImGui::SetCursorPosY(pen.px(136));  // below the longest words: buttons do not move
   ImGui::BeginDisabled(places.empty());
   if (word_button(pen, "measure-back", "Last off", size, false)) {
     view.measured.pop_back();

@@ -252,7 +252,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
       *this,
       input,
       view,
-      preparing ? lay_out(width, height, theme_.scale, false) : layout(width, height, view.plots),
+      preparing ? lay_out(width, height, theme_.scale, false) : layout(width, height, view),
       width,
       height,
       Pen{theme_, items_, tooltip_, ""},

@@ -115,6 +115,7 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
   s.view.fit(scene);
   s.order = {.number = s.order.number};
   s.kept.reset();
+  s.kept_by_hand = false;
   s.kept_values.reset();
   s.cannot_draw = false;
   if (!scene.parts.empty())
