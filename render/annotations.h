@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,7 @@ struct Annotations {
   bool letters = false;   // at the edges, and a cross of axes in the upper right corner
   bool on_light = false;  // dark letters for a light background
   int taken_left = 0;     // of the left edge's middle, pixels: the letter stands beside it
+  std::optional<double> line_at = {};     // of an upright line, share of the width: beside it
   std::vector<std::string> caption = {};  // lines at the bottom, in the middle
 };
 

@@ -185,6 +185,7 @@ Image PictureTaker::picture(const View& view, const Camera& camera, const Shot& 
     const Overlays still = overlays_of(rest_, false);
     image = wiped(drawn(view, camera, {shot.renderer, shot.desk, rest_, still}, true), image,
                   *plan_.wipe);
+    notes.line_at = *plan_.wipe;
   }
   add_key(image, shot.desk.words, shot.overlays.key);
   if (shot.desk.distances) keep_clear_of(notes, shot.desk.distances->add_legend_to(image), image);

@@ -141,6 +141,7 @@ class Panels {
   double gripped_size_ = 0;  // of what is being drawn larger, as it was gripped
   double skin_before_ = 1;   // opacity to come back to
   std::vector<std::string> open_groups_ = usual_groups();  // of the tree
+  std::string to_sight_;  // a group that was just unfolded
   std::deque<std::string> errors_;
   std::string said_;
   TooltipWait tooltip_;

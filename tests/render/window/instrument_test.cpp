@@ -10,6 +10,7 @@
 #include <set>
 
 #include "panel_stage.h"
+#include "render/window/handles.h"
 #include "render/window/kept_arrangement.h"
 #include "render/window/plot_drawing.h"
 #include "render/window/recent_files.h"
@@ -296,6 +297,68 @@ TEST_P(Instrument, PlotsHaveAScaleAndTheirNamesStandClearOfTheCurves) {
   EXPECT_GT(ink, 300);  // curves are told from words by their colour
   ASSERT_EQ(ticks.size(), 6u);
   for (const auto& [axis, count] : ticks) EXPECT_GE(count, 3) << axis;
+}
+
+TEST_P(Instrument, ReadingsSayWhatRests) {
+  stage.view.playing = true;
+  stage.rest();
+  EXPECT_EQ(stage.item("rates").words, "60 steps/s, 24 pictures/s");
+  stage.view.playing = false;
+  stage.drawing.pictures_per_second = 0;
+  stage.rest();
+  EXPECT_EQ(stage.item("rates").words, "at rest");
+  EXPECT_TRUE(stage.view.simulates_tissue(stage.scene));
+  const double below = stage.item("heading:Time of a step").rect.y;
+  stage.click("skin:off");
+  EXPECT_FALSE(stage.view.simulates_tissue(stage.scene));
+  EXPECT_EQ(stage.item("beside-heading:Tissue").words, "waits");
+  EXPECT_NEAR(stage.item("heading:Time of a step").rect.y, below, 2);
+  keep("tissue-waits");
+}
+
+TEST_P(Instrument, TheLabelOfAMeasureStandsBesideItsLine) {
+  stage.view.tool = Tool::measure;
+  for (const int corner : {0, 1, 5, 4})  // of the mandible's box
+    for (const auto& t : stage.parts[4].mesh.triangles)
+      if (t[0] == corner) {
+        stage.view.measured.push_back({4, t, {1, 0, 0}});
+        break;
+      }
+  ASSERT_EQ(stage.view.measured.size(), 4u);
+  stage.rest();
+  const ViewRect label = stage.item("measure-label").rect;
+  const Layout layout = stage.panels->layout(GetParam().width, GetParam().height, stage.view);
+  EXPECT_TRUE(lies_within(label, layout.view));
+  std::vector<Eigen::Vector2d> line;
+  for (const auto& point : stage.view.measured)
+    line.push_back(
+        screen_place(stage.camera, layout.view, place_of(point, stage.parts, stage.frame)));
+  for (std::size_t i = 0; i + 1 < line.size(); ++i)
+    for (int k = 0; k <= 400; ++k) {
+      const Eigen::Vector2d p = line[i] + k / 400.0 * (line[i + 1] - line[i]);
+      ASSERT_FALSE(label.contains(p.x(), p.y())) << i;
+    }
+  EXPECT_LT((line.back() - Eigen::Vector2d(label.x + label.width / 2, label.y)).norm(),
+            label.width + 40 * GetParam().scale);
+  keep("measured");
+}
+
+TEST_P(Instrument, TheKeyNamesTheGhost) {
+  EXPECT_FALSE(stage.has("key"));
+  stage.view.look.ghost = true;
+  stage.rest();
+  EXPECT_TRUE(stage.has("key"));
+}
+
+TEST_P(Instrument, WhatIsUnfoldedComesIntoSight) {
+  for (int i = 0; i < 24; ++i)
+    stage.scene.muscles.push_back({"m" + std::to_string(i), "Muscle " + std::to_string(i)});
+  stage.rest();
+  stage.click("group:muscles");
+  stage.rest();
+  EXPECT_NEAR(stage.item("group:muscles").rect.y, stage.item("heading:Parts").rect.y,
+              30 * GetParam().scale);
+  keep("muscles-unfolded");
 }
 
 TEST_P(Instrument, SlidersShapeTheMotionWhenTheyAreLetGo) {
