@@ -398,6 +398,18 @@ TEST_P(PanelsOn, ColumnsAndPlotsAreDrawnWiderAndHigherAndComeBack) {
   EXPECT_NEAR(size("plots").height, plots.height, 0.01);
 }
 
+TEST_P(PanelsOn, WhatIsSaidWhileThePatientIsMadeIsStillSeenWithHim) {
+  stage.scene.parts = {};
+  stage.panels->say("Panels at 100 %: 200 % do not fit into this window");
+  stage.rest(8 * 60);
+  EXPECT_FALSE(stage.panels->said().empty());
+  stage.scene.parts = stage.parts;
+  stage.rest(5 * 60);
+  EXPECT_FALSE(stage.panels->said().empty());
+  stage.rest(2 * 60);
+  EXPECT_TRUE(stage.panels->said().empty());
+}
+
 TEST_P(PanelsOn, PanelsCanBePutAway) {
   stage.panels->run(Command::toggle_panels, stage.scene, stage.view);
   stage.rest();
