@@ -60,14 +60,29 @@ void draw_bar(Image& image, const Lettering& words, const Inks& inks, const Came
   write_centred(image, words, inks, 0.5 * (left + right), low - tick - 0.6 * unit, unit, bar.text);
 }
 
+/// The middle of words that should stand in the picture's middle: beside a line that would cross
+/// them.
+double middle_of(const Image& image, double width, double unit, std::optional<double> line_at) {
+  const double middle = image.width / 2.0, line = line_at.value_or(-1) * image.width;
+  const double least = width / 2 + 0.6 * unit;
+  if (std::abs(middle - line) >= least) return middle;
+  return line <= middle ? line + least : line - least;
+}
+
 void draw_letters(Image& image, const Lettering& words, const Inks& inks, const Camera& camera,
-                  double unit, int taken_left) {
+                  double unit, const Annotations& annotations) {
   const auto [left, right, top, bottom] = edge_letters(camera);
   const double size = 1.5 * unit, middle = image.height / 2.0 + 0.35 * size;
-  write_centred(image, words, inks, std::max(1.6 * unit, taken_left + unit), middle, size, {left});
+  write_centred(image, words, inks, std::max(1.6 * unit, annotations.taken_left + unit), middle,
+                size, {left});
   write_centred(image, words, inks, image.width - 1.6 * unit, middle, size, {right});
-  write_centred(image, words, inks, image.width / 2.0, 2.2 * unit, size, {top});
-  write_centred(image, words, inks, image.width / 2.0, image.height - 1.2 * unit, size, {bottom});
+  const auto centred = [&](char letter, double y) {
+    const double wide = words.width({letter}, size);
+    write_centred(image, words, inks, middle_of(image, wide, unit, annotations.line_at), y, size,
+                  {letter});
+  };
+  centred(top, 2.2 * unit);
+  centred(bottom, image.height - 1.2 * unit);
 
   // Okabe-Ito vermilion, bluish green and sky blue; the letters say what colours cannot.
   const double reach = 3.2 * unit;
@@ -77,17 +92,14 @@ void draw_letters(Image& image, const Lettering& words, const Inks& inks, const 
     const Vector3f color = axis.letter == 'L' || axis.letter == 'R'   ? Vector3f(.90f, .45f, .10f)
                            : axis.letter == 'A' || axis.letter == 'P' ? Vector3f(.10f, .68f, .52f)
                                                                       : Vector3f(.40f, .75f, .95f);
+    if (!positive) continue;  // where its line would go on
     const Vector2d end = cross + reach * Vector2d(axis.direction.x(), -axis.direction.y());
-    if (positive) {
-      const double thick = std::max(1.0, unit / 9);
-      if (inks.line_border_px > 0)
-        stroke(image, cross, end, thick + inks.line_border_px, line_border);
-      stroke(image, cross, end, thick, color);
-    }
-    const double faint = axis.toward_eye < -0.9 ? 0 : positive ? 0.95 : 0.6;
-    if (faint > 0)
-      write_centred(image, words, inks, end.x(), end.y() + 0.35 * unit, unit * faint,
-                    {axis.letter});
+    const double thick = std::max(1.0, unit / 9);
+    if (inks.line_border_px > 0)
+      stroke(image, cross, end, thick + inks.line_border_px, line_border);
+    stroke(image, cross, end, thick, color);
+    if (axis.toward_eye >= -0.9)
+      write_centred(image, words, inks, end.x(), end.y() + 0.35 * unit, 0.95 * unit, {axis.letter});
   }
 }
 
@@ -143,12 +155,14 @@ void annotate(Image& image, const Lettering& words, const Camera& camera,
               const Annotations& annotations) {
   const double unit = unit_of(image);
   const Inks& inks = annotations.backdrop == Backdrop::light ? on_light : on_dark;
-  if (annotations.letters) draw_letters(image, words, inks, camera, unit, annotations.taken_left);
+  if (annotations.letters) draw_letters(image, words, inks, camera, unit, annotations);
   if (annotations.scale_bar) draw_bar(image, words, inks, camera, unit);
   const double below = annotations.letters ? 3.2 * unit : 1.6 * unit;
   const auto count = static_cast<double>(annotations.caption.size());
   for (std::size_t i = 0; i < annotations.caption.size(); ++i)
-    write_centred(image, words, inks, image.width / 2.0,
+    write_centred(image, words, inks,
+                  middle_of(image, words.width(annotations.caption[i], 1.1 * unit), unit,
+                            annotations.line_at),
                   image.height - below - 1.4 * unit * (count - 1 - static_cast<double>(i)),
                   1.1 * unit, annotations.caption[i]);
 }

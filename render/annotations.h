@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,7 @@ struct Annotations {
   bool letters = false;  // at the edges, and a cross of axes in the upper right corner
   Backdrop backdrop = Backdrop::dark;
   int taken_left = 0;  // of the left edge's middle, pixels: the letter stands beside it
+  std::optional<double> line_at = {};     // of an upright line, share of the width: beside it
   std::vector<std::string> caption = {};  // lines at the bottom, in the middle
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "render/shaders.h"
@@ -158,13 +159,53 @@ void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& vie
   glDisable(GL_STENCIL_TEST);
 }
 
+namespace {
+
+/// Triangles whose edges are about as long on the screen, and how dark their lines are.
+struct EdgeClass {
+  float opacity;
+  std::vector<Eigen::Vector3i> triangles = {};
+};
+
+/// Lines of a pixel's width that lie closer than a few pixels would fill the surface: the shorter
+/// edges are, the paler they are drawn, so that together they darken it by less than a half.
+std::vector<EdgeClass> edge_classes(const GpuMesh& mesh, const Eigen::Matrix4f& model,
+                                    const PictureView& view) {
+  constexpr float least_px = 0.7f, factor = 1.4f, opacity_per_px = 0.05f, most = 0.5f;
+  std::vector<EdgeClass> classes;
+  float opacity = opacity_per_px * least_px;
+  for (; opacity < most; opacity *= factor) classes.push_back({opacity});
+  classes.push_back({most});
+  const Eigen::Matrix4f to_screen = view.view_projection * model;
+  const Eigen::Array2f half(0.5f * static_cast<float>(view.width),
+                            0.5f * static_cast<float>(view.height));
+  std::vector<Eigen::Array2f> places;
+  places.reserve(mesh.points().size());
+  for (const auto& p : mesh.points()) {
+    const Eigen::Vector4f q = to_screen * p.homogeneous();
+    places.emplace_back(half * q.head<2>().array() / std::max(q.w(), 1e-3f));
+  }
+  const auto place = [&](int v) -> const Eigen::Array2f& {
+    return places[static_cast<std::size_t>(v)];
+  };
+  for (const auto& t : mesh.fine().triangles) {
+    const Eigen::Array2f u = place(t[1]) - place(t[0]), v = place(t[2]) - place(t[0]);
+    // The edge of an equilateral triangle of that area: narrow at an outline, where lines crowd.
+    const float edge_px = std::sqrt(2.309f * 0.5f * std::abs(u.x() * v.y() - u.y() * v.x()));
+    const float steps = std::log(std::max(edge_px / least_px, 1.f)) / std::log(factor);
+    classes[std::min(static_cast<std::size_t>(steps), classes.size() - 1)].triangles.push_back(t);
+  }
+  return classes;
+}
+
+}  // namespace
+
 void OverlayPasses::wireframe(const DrawItem& item, const PictureView& view) {
   begin(tint_, view, item.model);
   begin_cut(tint_, item, view);
   tint_.set("tint", Eigen::Vector3f(0.004f, 0.006f, 0.010f));
   tint_.set("rim", 0.f);
   tint_.set("moved", 0.f);
-  tint_.set("opacity", 0.5f);
   if (item.drawable->closed && !item.cut()) {
     glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
@@ -196,7 +237,10 @@ void OverlayPasses::wireframe(const DrawItem& item, const PictureView& view) {
   glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   glEnable(GL_POLYGON_OFFSET_LINE);
   glPolygonOffset(-1, -2);
-  item.mesh().draw();
+  for (const auto& [opacity, triangles] : edge_classes(item.mesh(), item.model, view)) {
+    tint_.set("opacity", opacity);
+    item.mesh().draw(triangles);
+  }
   glDisable(GL_POLYGON_OFFSET_LINE);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glDisable(GL_STENCIL_TEST);

@@ -214,6 +214,7 @@ Image PictureTaker::picture(const View& view, const Camera& camera, const Shot& 
     const Overlays still = overlays_of(rest_, false);
     image = wiped(drawn(view, camera, {shot.renderer, shot.desk, rest_, still}, true), image,
                   *plan_.wipe, plan_.settings.backdrop);
+    notes.line_at = *plan_.wipe;
   }
   add_key(image, shot.desk.words, shot.overlays.key, plan_.settings.backdrop);
   if (shot.desk.distances)

@@ -193,7 +193,7 @@ void add_pictures(CLI::App* command, PictureOptions& picture) {
                     "now with the skin coloured by its way from rest");
   command->add_option(
       "--caption", picture.caption,
-      "Words under the picture; {time}, {opening} (drop of the lower incisal point), "
+      "Words at the foot of the picture; {time}, {opening} (drop of the lower incisal point), "
       "{interincisal} (between the incisal edges), {rotation}, {frame} and {motion} "
       "are filled in, | breaks the line");
   command->add_flag("--light", picture.light, "A light background in place of the dark one");

@@ -15,14 +15,6 @@ std::vector<MapSurface> map_surfaces(const DistanceMap& map) {
   return surfaces;
 }
 
-/// Whether anything of the soft tissue is seen though the skin may be off.
-bool shows_tissue(const ViewState& view) {
-  const Look& look = view.look;
-  return look.springs || look.prisms || look.bone_springs ||
-         std::any_of(view.layers.begin(), view.layers.end(),
-                     [](const PartView& layer) { return layer.shown; });
-}
-
 /// Tells the simulation what the hands want otherwise than before. A free part that is put back is
 /// wanted where it was loaded.
 void hand_over(const Hands& now, const Hands& before, std::span<const MovableBody> bodies,
@@ -44,7 +36,7 @@ void ViewSession::simulate(const ViewState& view) {
   simulation_->request({.time_s = view.time_s,
                         .opening_mm = view.opening_mm,
                         .obey_contact = view.obey_contact,
-                        .face = view.shows_face(shown_) || shows_tissue(view)});
+                        .face = view.simulates_tissue(shown_)});
   Hands hands = view.hands;
   if (falling_) hands.hold_jaw(falling_->X_CM);
   if (!(hands == moved_)) {

@@ -201,7 +201,7 @@ std::string pair_name(const Case& patient, const PairContact& pair) {
   const auto name = [&](int part) {
     return readable_name(patient.parts[static_cast<std::size_t>(part)].name);
   };
-  return name(pair.part_a) + " - " + name(pair.part_b);
+  return name(pair.part_a) + " / " + name(pair.part_b);
 }
 
 /// Signed distance of the pairs that come nearest.

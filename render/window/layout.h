@@ -5,10 +5,10 @@
 namespace condyle {
 
 /// Where the panels stand, pixels: a bar on top, a column on each side, the timeline below, and the
-/// 3-D view in what is left; plots, where they are wanted, below it. Without panels the view has
-/// the whole window.
+/// 3-D view in what is left; a tool, while one is in use, at its left and plots, where they are
+/// wanted, below it. Without panels the view and a tool have the whole window.
 struct Layout {
-  ViewRect top, left, right, bottom, view, plots;
+  ViewRect top, left, right, bottom, view, plots, tool;
 };
 
 /// Of what can be drawn wider or higher, pixels at scale 1. The columns are never narrower than at
@@ -19,7 +19,12 @@ struct PanelSizes {
   bool operator==(const PanelSizes&) const = default;
 };
 
-Layout lay_out(double width, double height, double scale, bool with_panels, bool with_plots = false,
-               const PanelSizes& sizes = {});
+/// What stands beside or below the view at times.
+struct Beside {
+  bool plots = false, tool = false;
+};
+
+Layout lay_out(double width, double height, double scale, bool with_panels,
+               const Beside& beside = {}, const PanelSizes& sizes = {});
 
 }  // namespace condyle

@@ -60,8 +60,9 @@ void Panels::Drawing::edges() {
                              right.width, -1, usual.right))
     sizes.right = std::clamp(*size, usual.right, most);
   if (plots.height <= 0) return;
-  if (const auto size = edge("edge:plots", {plots.x, plots.y - wide, plots.width, wide},
-                             plots.height, -1, usual.plots))
+  if (const auto size =
+          edge("edge:plots", {plots.x + wide, plots.y - wide, plots.width - 2 * wide, wide},
+               plots.height, -1, usual.plots))
     sizes.plots = std::clamp(*size, usual.plots, most);
 }
 

@@ -40,19 +40,9 @@ void Panels::Drawing::landmarks() {
   }
   list.PopClipRect();
 
-  const double wide = pen.px(236), margin = pen.px(12);
+  if (layout.tool.width <= 0) return;
   const float button = pen.px(26), foot = 5 * button + pen.px(34);
-  // As high as the list is long, above the legend of colours where there is one.
-  const double all_rows = ImGui::GetTextLineHeightWithSpacing() *
-                          static_cast<double>(std::max<std::size_t>(view.landmarks.size(), 4));
-  const double whole_room = r.height - 2 * margin;
-  const double room =
-      view.distances || view.look.displacement
-          ? std::max(whole_room - pen.px(250), std::min<double>(whole_room, pen.px(320)))
-          : whole_room;
-  const double high = std::min(room, pen.px(84) + foot + all_rows);
-  if (r.width < 2 * wide || high < pen.px(180)) return;
-  begin_panel(pen, "landmarks", {r.x + margin, r.y + margin, wide, high});
+  begin_panel(pen, "landmarks", layout.tool);
   heading(pen, "Landmarks", fmt::format("{}", view.landmarks.size()));
   const float gap = pen.px(5);
   const float whole = ImGui::GetContentRegionAvail().x;
@@ -61,8 +51,10 @@ void Panels::Drawing::landmarks() {
        view.landmark ? "Click on the surface to place it."
                      : "Choose one, then click on the surface.");
   ImGui::PopTextWrapPos();
-  ImGui::BeginChild("landmark-list",
-                    {0, std::max(pen.px(40), ImGui::GetContentRegionAvail().y - foot)});
+  const float all_rows =
+      ImGui::GetTextLineHeightWithSpacing() * static_cast<float>(view.landmarks.size());
+  ImGui::BeginChild("landmark-list", {0, std::clamp(ImGui::GetContentRegionAvail().y - foot,
+                                                    pen.px(40), std::max(pen.px(80), all_rows))});
   for (std::size_t i = 0; i < view.landmarks.size(); ++i) {
     const std::string& name = view.landmarks[i].name;
     if (ImGui::Selectable((display_name(name) + "##" + name).c_str(), view.landmark == i)) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/displacement_drawing.h"
+#include "render/overlays.h"
 #include "render/pane_inks.h"
 #include "render/window/panels_drawing.h"
 
@@ -111,22 +112,25 @@ ViewRect Panels::Drawing::legend() {
 
 /// Marks of overlays and what they are; in columns, down to the cube.
 ViewRect Panels::Drawing::key() {
-  if (input.key.empty()) return {};
+  std::vector<KeyEntry> entries(input.key.begin(), input.key.end());
+  if (view.look.ghost)
+    entries.push_back({"Ghost: at rest", {Ghost{}.color}, KeyEntry::Mark::sheet});
+  if (entries.empty()) return {};
   const Theme& theme = panels.theme_;
   const ViewRect& r = layout.view;
   const float letters = theme.small->FontSize, pad = pen.px(10), row = letters + pen.px(5);
   const float mark = pen.px(24), gap = pen.px(8), between = pen.px(14);
   const auto most = static_cast<int>((r.height - pen.px(92 + 20 + 10) - 2 * pad) / row);
   if (most < 1) return {};
-  const auto n = static_cast<int>(input.key.size());
+  const auto n = static_cast<int>(entries.size());
   const int rows = (n + (n + most - 1) / most - 1) / ((n + most - 1) / most);
   std::vector<float> widths;  // of the words
   float wide = 2 * pad - between;
   for (int first = 0; first < n; first += rows) {
     widths.push_back(0);
     for (int i = first; i < std::min(n, first + rows); ++i)
-      widths.back() = std::max(
-          widths.back(), text_width(theme.small, input.key[static_cast<std::size_t>(i)].words));
+      widths.back() = std::max(widths.back(),
+                               text_width(theme.small, entries[static_cast<std::size_t>(i)].words));
     wide += mark + gap + widths.back() + between;
   }
   const double margin = std::round(pen.px(10));
@@ -143,7 +147,7 @@ ViewRect Panels::Drawing::key() {
   for (int i = 0; i < n; ++i) {
     if (i > 0 && i % rows == 0)
       left += mark + gap + widths[static_cast<std::size_t>(i / rows - 1)] + between;
-    const KeyEntry& entry = input.key[static_cast<std::size_t>(i)];
+    const KeyEntry& entry = entries[static_cast<std::size_t>(i)];
     const float top = low.y + pad + static_cast<float>(i % rows) * row;
     key_mark(list, entry, {left, top + letters / 2}, mark, pen.px(1), theme.light);
     list.AddText(theme.small, letters, {std::round(left + mark + gap), std::round(top)},

@@ -1,9 +1,11 @@
 #include <imgui.h>
 
 #include <array>
+#include <cmath>
 
 #include "render/window/handles.h"
 #include "render/window/panels_drawing.h"
+#include "sim/frame/plot_places.h"
 
 namespace condyle {
 
@@ -42,18 +44,26 @@ void Panels::Drawing::measuring() {
   if (line.size() > 1) {
     const std::string words = words_of(result)[line.size() == 3 ? 1 : 0];
     const ImVec2 extent = theme.bold->CalcTextSizeA(theme.bold->FontSize, 1e6f, 0, words.c_str());
-    ImVec2 at = line.size() == 3 ? line[1] : line.back();
-    at = {at.x + pen.px(12), at.y - extent.y / 2};
+    // Beside the point that it speaks of, and no line behind it.
+    const ImVec2 from = line.size() == 3 ? line[1] : line.back();
+    const float pad = pen.px(6), away = pen.px(7);
+    WordPlaces clear({r.x, r.y, r.x + r.width, r.y + r.height}, pen.px(1.5f));
+    std::vector<WordPlaces::Point> way;
+    for (const ImVec2& p : line) way.push_back({p.x, p.y});
+    clear.add_curve(way);
+    const auto place = clear.take(extent.x + 2 * pad, extent.y + pen.px(6),
+                                  {from.x - away, from.y - away, from.x + away, from.y + away});
+    const ImVec2 at = {std::round(static_cast<float>(place.x) + pad),
+                       std::round(static_cast<float>(place.y) + pen.px(3))};
     list.AddRectFilled({at.x - pen.px(5), at.y - pen.px(2)},
                        {at.x + extent.x + pen.px(5), at.y + extent.y + pen.px(2)}, edge, pen.px(4));
     list.AddText(theme.bold, theme.bold->FontSize, at, tint, words.c_str());
+    pen.items.push_back({"measure-label", "view", {at.x, at.y, extent.x, extent.y}, words});
   }
   list.PopClipRect();
 
-  if (!in_use) return;
-  const double wide = pen.px(224), high = pen.px(176), margin = pen.px(12);
-  if (r.width < 2 * wide || r.height < high + 2 * margin) return;
-  begin_panel(pen, "measure", {r.x + margin, r.y + margin, wide, high});
+  if (!in_use || layout.tool.width <= 0) return;
+  begin_panel(pen, "measure", layout.tool);
   const std::size_t count = places.size();
   heading(pen, "Measure",
           count == 0 ? "" : std::to_string(count) + (count == 1 ? " point" : " points"));
@@ -78,7 +88,7 @@ void Panels::Drawing::measuring() {
   }
   const float gap = pen.px(5);
   const ImVec2 size = {std::floor((ImGui::GetContentRegionAvail().x - gap) / 2), pen.px(26)};
-  ImGui::SetCursorPosY(static_cast<float>(high) - size.y - pen.px(14));
+  ImGui::SetCursorPosY(pen.px(136));  // below the longest words: buttons do not move
   ImGui::BeginDisabled(places.empty());
   if (word_button(pen, "measure-back", "Last off", size, false)) {
     view.measured.pop_back();

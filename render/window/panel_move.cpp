@@ -142,9 +142,8 @@ void Panels::Drawing::moving() {
 
   // Its place in numbers.
   const bool several = input.scene.bodies.size() > 1;
-  const double wide = pen.px(252), high = pen.px(several ? 306 : 294), margin = pen.px(12);
-  if (r.width < 2 * wide || r.height < high + 2 * margin) return;
-  begin_panel(pen, "move", {r.x + margin, r.y + margin, wide, high});
+  if (layout.tool.width <= 0) return;
+  begin_panel(pen, "move", layout.tool);
   heading(pen, "Move", view.obey_contact ? "slides on contact" : "Stop at contact is off");
   if (several) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);

@@ -16,6 +16,21 @@ struct SkinChoice {
 constexpr SkinChoice skin_choices[] = {
     {"skin:off", "Off", 0}, {"skin:glass", "Glass", 0.35}, {"skin:full", "Full", 1}};
 
+/// As much of a height as ends between two lines of the sentences.
+float whole_lines(ImFont* font, const std::vector<std::string>& sentences, float room,
+                  float width) {
+  const float between = ImGui::GetStyle().ItemSpacing.y,
+              wrapped = width - ImGui::GetStyle().ScrollbarSize;
+  float y = 0, fits = font->FontSize;
+  for (const std::string& words : sentences) {
+    const float high = font->CalcTextSizeA(font->FontSize, 1e6f, wrapped, words.c_str()).y;
+    for (float line = font->FontSize; line < high + 0.5f; line += font->FontSize)
+      if (y + line <= room) fits = y + line;
+    y += high + between;
+  }
+  return y - between <= room ? room : fits;
+}
+
 }  // namespace
 
 void Panels::Drawing::parts() {
@@ -77,7 +92,9 @@ void Panels::Drawing::part_list() {
 
   if (!input.scene.notes.empty()) {
     heading(pen, "Notes");
-    ImGui::BeginChild("notes", {0, std::max(pen.px(20), ImGui::GetContentRegionAvail().y)});
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    ImGui::BeginChild("notes", {0, whole_lines(theme.small, input.scene.notes,
+                                               std::max(pen.px(20), room.y), room.x)});
     ImGui::PushTextWrapPos(0);
     for (const std::string& note : input.scene.notes) text(theme.small, palette().text_dim, note);
     ImGui::PopTextWrapPos();

@@ -250,6 +250,12 @@ void Panels::Drawing::contacts(float list_height) {
 void Panels::Drawing::tissue() {
   const Theme& theme = panels.theme_;
   const TissueState& state = input.frame->tissue;
+  if (!view.simulates_tissue(input.scene)) {
+    heading(pen, "Tissue", "waits");
+    reading(theme, "Moves again when it is shown", "", palette().text);
+    ImGui::NewLine();
+    return;
+  }
   heading(pen, "Tissue", fmt::format("{} nodes", state.nodes.size()));
   reading(theme, "Iterations",
           fmt::format("{}{}", state.iterations,
@@ -326,10 +332,12 @@ void Panels::Drawing::times() {
   ImGui::Dummy({width, curve});
   pen.mark("curve");
   const double pictures = input.pictures.pictures_per_second;
-  text(theme.small, palette().text_dim,
-       fmt::format("{:.0f} steps/s, ", input.loop.steps_per_second) +
-           (pictures > 0 ? fmt::format("{:.0f} pictures/s", pictures) : "picture at rest"));
-  pen.mark("rates");
+  const bool runs = view.playing || view.falling || pictures > 0;
+  std::string rates = "at rest";
+  if (runs) rates = fmt::format("{:.0f} steps/s", input.loop.steps_per_second);
+  if (pictures > 0) rates += fmt::format(", {:.0f} pictures/s", pictures);
+  text(theme.small, palette().text_dim, rates);
+  pen.mark("rates", rates);
   if (input.pictures.render_scale < 1 || input.pictures.samples < 4) {
     ImGui::SameLine();
     const bool for_good = input.pictures.finished;

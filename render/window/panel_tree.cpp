@@ -124,6 +124,11 @@ void Panels::Drawing::tree() {
         std::erase(panels.open_groups_, group.name);
       else
         panels.open_groups_.push_back(group.name);
+      panels.to_sight_ = open ? "" : group.name;
+    }
+    if (open && panels.to_sight_ == group.name) {
+      ImGui::SetScrollHereY(0);
+      panels.to_sight_.clear();
     }
     tooltip(pen, open ? "Fold" : "Unfold");
     ImGui::SameLine(0, 0);

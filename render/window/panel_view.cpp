@@ -99,7 +99,8 @@ void Panels::Drawing::view_signs() {
   const Eigen::Matrix3d axes = picture_axes(input.camera);
   const Vector3d right = axes.row(0), up = axes.row(1);
   const float margin = pen.px(12);
-  const auto letter = [&](const Vector3d& direction, float ax, float ay) {
+  const float wiped_at = static_cast<float>(r.x + r.width * view.look.wipe_at);
+  const auto letter = [&](const char* side, const Vector3d& direction, float ax, float ay) {
     const std::string words = direction_letters(direction);
     const ImVec2 size = theme.bold->CalcTextSizeA(theme.bold->FontSize, 1e6f, 0, words.c_str());
     float x = centre.x + ax * (static_cast<float>(r.width) / 2 - margin - size.x / 2) - size.x / 2;
@@ -110,8 +111,14 @@ void Panels::Drawing::view_signs() {
     if (ax < 0 && in_way(legend_pane))
       x = static_cast<float>(legend_pane.x + legend_pane.width) + margin;
     if (ax > 0 && in_way(key_pane)) x = static_cast<float>(key_pane.x) - margin - size.x;
+    // Beside the line between two states, which is drawn from top to bottom.
+    const float beside = margin / 2;
+    if (view.look.wipe && x - beside < wiped_at && wiped_at < x + size.x + beside)
+      x = wiped_at + beside + size.x < r.x + r.width ? wiped_at + beside
+                                                     : wiped_at - beside - size.x;
     const float y =
         centre.y + ay * (static_cast<float>(r.height) / 2 - margin - size.y / 2) - size.y / 2;
+    pen.items.push_back({std::string("side:") + side, "view", {x, y, size.x, size.y}, words});
     // An edge keeps them readable over bone and skin.
     const float d = std::max(1.0f, pen.px(1));
     for (const auto& [dx, dy] : {std::pair{-d, 0.f}, {d, 0.f}, {0.f, -d}, {0.f, d}})
@@ -120,20 +127,27 @@ void Panels::Drawing::view_signs() {
     list.AddText(theme.bold, theme.bold->FontSize, {x, y}, palette().letter, words.c_str());
   };
   if (view.look.letters) {
-    letter(right, 1, 0);
-    letter(-right, -1, 0);
-    letter(up, 0, -1);
-    letter(-up, 0, 1);
+    letter("right", right, 1, 0);
+    letter("left", -right, -1, 0);
+    letter("up", up, 0, -1);
+    letter("down", -up, 0, 1);
   }
   if (view.look.scale_bar) scale();
   if (view.look.wipe) {
-    const float x = static_cast<float>(r.x + r.width * view.look.wipe_at);
     const float top = static_cast<float>(r.y), bottom = top + static_cast<float>(r.height);
-    list.AddLine({x, top}, {x, bottom}, palette().divider, std::max(1.0f, pen.px(1.5f)));
-    const char* words = "kept  |  now";
-    const float before = text_width(theme.small, "kept  ");
-    list.AddText(theme.small, theme.small->FontSize, {x - before, top + pen.px(34)},
-                 palette().divider, words);
+    list.AddLine({wiped_at, top}, {wiped_at, bottom}, palette().divider,
+                 std::max(1.0f, pen.px(1.5f)));
+    const float gap = pen.px(8), y = top + pen.px(34), high = theme.small->FontSize;
+    const auto name = [&](const char* item, const char* words, bool before) {
+      const float wide = text_width(theme.small, words);
+      const float x = before ? wiped_at - gap - wide : wiped_at + gap;
+      if (x < r.x || x + wide > r.x + r.width) return;  // pushed out of the picture
+      list.AddText(theme.small, high, {std::round(x), y}, palette().divider, words);
+      pen.items.push_back({item, "view", {x, y, wide, high}, words});
+    };
+    name("wipe:before", input.kept ? "kept" : "at rest", true);
+    name("wipe:now", "now", false);
+    pen.items.push_back({"wipe", "view", {wiped_at - 1.0, r.y, 2, r.height}});
   }
   cube();
   pointed();

@@ -226,8 +226,9 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
   view.fit(input.scene);
   undone_ = false;
   const Edits before = view.edits();
-  if (said_until_ < 0) said_until_ = ImGui::GetTime() + said_for_s;
-  if (ImGui::GetTime() > said_until_) said_.clear();
+  // It stands in the timeline, which comes with the patient.
+  if (said_until_ < 0 && !input.scene.parts.empty()) said_until_ = ImGui::GetTime() + said_for_s;
+  if (said_until_ >= 0 && ImGui::GetTime() > said_until_) said_.clear();
   X_CM_ = input.frame ? input.frame->X_CM : Pose{};
   if (input.frame) {
     const std::uint64_t step =
@@ -251,7 +252,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
       *this,
       input,
       view,
-      preparing ? lay_out(width, height, theme_.scale, false) : layout(width, height, view.plots),
+      preparing ? lay_out(width, height, theme_.scale, false) : layout(width, height, view),
       width,
       height,
       Pen{theme_, items_, tooltip_, ""},

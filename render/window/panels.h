@@ -23,6 +23,9 @@
 
 namespace condyle {
 
+/// "upper_teeth" as "Upper teeth".
+std::string display_name(const std::string& part_name);
+
 /// What the panels show. Everything is read only.
 struct PanelInput {
   const WindowScene& scene;
@@ -38,6 +41,7 @@ struct PanelInput {
   std::span<const KeyEntry> key = {};  // to overlays
   std::string pointed = {};            // what is said beside the mouse; empty for nothing
   std::span<const PlotSet> plots = {};
+  bool kept = false;       // a state was kept to compare with; else it is the rest state
   bool recording = false;  // a recording is being made
   std::string recording_what = {};
   double recording_fraction = 0;
@@ -117,8 +121,9 @@ class Panels {
   /// Whether something will come or go by itself in time: a sentence, a tooltip.
   bool talking() const { return !said_.empty() || tooltip_.due; }
   bool shown() const { return shown_; }
-  Layout layout(double width, double height, bool with_plots = false) const {
-    return lay_out(width, height, theme_.scale, shown_, with_plots, sizes_);
+  Layout layout(double width, double height, const ViewState& view = {}) const {
+    return lay_out(width, height, theme_.scale, shown_,
+                   {.plots = view.plots, .tool = view.tool != Tool::look}, sizes_);
   }
   /// Sizes that a person has drawn, and groups of the tree that are unfolded.
   const PanelSizes& sizes() const { return sizes_; }
@@ -142,6 +147,7 @@ class Panels {
   double gripped_size_ = 0;  // of what is being drawn larger, as it was gripped
   double skin_before_ = 1;   // opacity to come back to
   std::vector<std::string> open_groups_ = usual_groups();  // of the tree
+  std::string to_sight_;  // a group that was just unfolded
   std::deque<std::string> errors_;
   std::string said_;
   TooltipWait tooltip_;

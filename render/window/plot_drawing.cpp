@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/frame/plot_places.h"
+
 namespace condyle {
 namespace {
 
@@ -113,29 +115,44 @@ void draw_upward(ImDrawList& list, ImFont* font, ImVec2 from, ImU32 ink, const s
   }
 }
 
-void draw_axes(const Pen& pen, ImDrawList& list, const Axes& axes, const PlotSettings& settings) {
+/// Tells where words of a plot stand.
+void note(Pen& pen, const std::string& plot, const char* what, ImVec2 at,
+          const std::string& words) {
+  pen.items.push_back({fmt::format("{}:{}:{}", what, plot, words),
+                       "plot:" + plot,
+                       {at.x, at.y, text_width(pen.theme.small, words), pen.theme.small->FontSize},
+                       words});
+}
+
+void draw_axes(Pen& pen, ImDrawList& list, const Axes& axes, const PlotSettings& settings) {
+  const std::string& plot = settings.title;
   ImFont* font = pen.theme.small;
   const float hair = std::max(1.0f, pen.px(1));
-  double step_x = tick_step(axes.x.span(), static_cast<int>((axes.right - axes.left) / pen.px(46)));
-  if (settings.x_goes_back) step_x = std::max(1.0, std::ceil(step_x));
-  const double step_y =
-      tick_step(axes.y.span(), static_cast<int>((axes.bottom - axes.top) / pen.px(24)));
-  for (double v = std::ceil(axes.x.low / step_x) * step_x; v <= axes.x.high; v += step_x) {
+  Ticks across_ticks =
+      ticks(axes.x.low, axes.x.high, static_cast<int>((axes.right - axes.left) / pen.px(42)));
+  if (settings.x_goes_back && across_ticks.step < 1) {
+    across_ticks = {1, {}};
+    for (double v = std::ceil(axes.x.low); v <= axes.x.high; ++v) across_ticks.values.push_back(v);
+  }
+  const Ticks up_ticks =
+      ticks(axes.y.low, axes.y.high, static_cast<int>((axes.bottom - axes.top) / pen.px(24)));
+  for (const double v : across_ticks.values) {
     const float x = axes.at(v, axes.y.low).x;
     list.AddLine({x, axes.top}, {x, axes.bottom}, palette().panel_edge, hair);
-    const std::string words = number_text(settings.x_goes_back ? -v : v, step_x);
-    list.AddText(font, font->FontSize,
-                 {std::round(x - text_width(font, words) / 2), std::round(axes.bottom + pen.px(3))},
-                 palette().text_dim, words.c_str());
+    const std::string words = number_text(settings.x_goes_back ? -v : v, across_ticks.step);
+    const ImVec2 at = {std::round(x - text_width(font, words) / 2),
+                       std::round(axes.bottom + pen.px(3))};
+    list.AddText(font, font->FontSize, at, palette().text_dim, words.c_str());
+    note(pen, plot, "x-tick", at, words);
   }
-  for (double v = std::ceil(axes.y.low / step_y) * step_y; v <= axes.y.high; v += step_y) {
+  for (const double v : up_ticks.values) {
     const float y = axes.at(axes.x.low, v).y;
     list.AddLine({axes.left, y}, {axes.right, y}, palette().panel_edge, hair);
-    const std::string words = number_text(v, step_y);
-    list.AddText(font, font->FontSize,
-                 {std::round(axes.left - text_width(font, words) - pen.px(5)),
-                  std::round(y - font->FontSize / 2)},
-                 palette().text_dim, words.c_str());
+    const std::string words = number_text(v, up_ticks.step);
+    const ImVec2 at = {std::round(axes.left - text_width(font, words) - pen.px(5)),
+                       std::round(y - font->FontSize / 2)};
+    list.AddText(font, font->FontSize, at, palette().text_dim, words.c_str());
+    note(pen, plot, "y-tick", at, words);
   }
   list.AddRect({axes.left, axes.top}, {axes.right, axes.bottom}, palette().outline, 0, 0, hair);
   const float high = axes.bottom - axes.top;
@@ -152,55 +169,87 @@ void draw_axes(const Pen& pen, ImDrawList& list, const Axes& axes, const PlotSet
               palette().text_dim, up);
 }
 
+/// Corners of a band's area, clockwise: ImGui wants them so to smooth their edge.
+std::vector<ImVec2> corners_of(const PlotBand& band, const Axes& axes) {
+  std::vector<ImVec2> corners;
+  if (band.x.empty()) {
+    const auto [low, high] = std::minmax_element(band.y.begin(), band.y.end());
+    const ImVec2 a = axes.at(axes.x.low, *high), b = axes.at(axes.x.high, *low);
+    return {a, {b.x, a.y}, b, {a.x, b.y}};
+  }
+  double area = 0;
+  for (std::size_t i = 0; i < band.x.size(); ++i) corners.push_back(axes.at(band.x[i], band.y[i]));
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const ImVec2 &p = corners[i], &q = corners[(i + 1) % corners.size()];
+    area += p.x * q.y - q.x * p.y;
+  }
+  if (area < 0) std::reverse(corners.begin(), corners.end());
+  return corners;
+}
+
 void draw_bands(const Pen& pen, ImDrawList& list, const PlotPanel& panel, const Axes& axes) {
   const ImU32 fill = pen.theme.light ? colour::rgb(0x007a5a, 38) : colour::rgb(0x2fbf93, 48);
-  ImFont* font = pen.theme.small;
   for (const PlotBand& band : panel.settings.bands) {
     if (band.y.empty()) continue;
-    ImVec2 words_at;
-    const float wide = text_width(font, band.name);
-    if (band.x.empty()) {
-      const auto [low, high] = std::minmax_element(band.y.begin(), band.y.end());
-      const ImVec2 a = axes.at(axes.x.low, *high), b = axes.at(axes.x.high, *low);
-      list.AddRectFilled(a, b, fill);
-      words_at = {a.x + pen.px(4), a.y + pen.px(1)};
-    } else {
-      std::vector<ImVec2> corners;
-      for (std::size_t i = 0; i < band.x.size(); ++i)
-        corners.push_back(axes.at(band.x[i], band.y[i]));
-      // ImGui wants them clockwise to smooth their edge.
-      double area = 0;
-      for (std::size_t i = 0; i < corners.size(); ++i) {
-        const ImVec2 &p = corners[i], &q = corners[(i + 1) % corners.size()];
-        area += p.x * q.y - q.x * p.y;
+    const auto corners = corners_of(band, axes);
+    list.AddConvexPolyFilled(corners.data(), static_cast<int>(corners.size()), fill);
+  }
+  for (const Level& level : panel.settings.levels)
+    list.AddLine(axes.at(axes.x.low, level.y), axes.at(axes.x.high, level.y), palette().warning,
+                 std::max(1.0f, pen.px(1)));
+}
+
+/// Names of bands and levels, beside the curves; a ground of their own keeps them readable where
+/// there is no room.
+void draw_names(Pen& pen, ImDrawList& list, const PlotPanel& panel, const Axes& axes) {
+  ImFont* font = pen.theme.small;
+  const float pad = pen.px(2), high = font->FontSize + pad;
+  WordPlaces places({axes.left + pad, axes.top, axes.right - pad, axes.bottom}, pen.px(1));
+  const auto point = [](const ImVec2& p) { return WordPlaces::Point{p.x, p.y}; };
+  const bool still = !panel.settings.x_goes_back;  // names do not jump as curves run on
+  for (const Curve& curve : panel.curves) {
+    std::vector<WordPlaces::Point> run;
+    for (std::size_t i = 0; still && i < std::min(curve.x.size(), curve.y.size()); ++i) {
+      if (std::isfinite(curve.y[i]) && curve.y[i] <= panel.settings.y_most) {
+        run.push_back(point(axes.at(curve.x[i], curve.y[i])));
+        continue;
       }
-      if (area < 0) std::reverse(corners.begin(), corners.end());
-      list.AddConvexPolyFilled(corners.data(), static_cast<int>(corners.size()), fill);
-      ImVec2 low = corners.front(), high = low;
-      for (const ImVec2& p : corners) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-      }
-      // Beside it where there is room: curves go through bands.
-      const float gap = pen.px(3);
-      const bool fits_right =
-          high.x + gap + wide<axes.right - pen.px(2), fits_left = low.x - gap - wide> axes.left +
-          pen.px(2);
-      words_at = {fits_right  ? high.x + gap
-                  : fits_left ? low.x - gap - wide
-                              : low.x + pen.px(2),
-                  low.y};
+      places.add_curve(run);
+      run.clear();
     }
-    words_at.x = std::clamp(words_at.x, axes.left + pen.px(2),
-                            std::max(axes.left + pen.px(2), axes.right - wide - pen.px(2)));
-    list.AddText(font, font->FontSize, {std::round(words_at.x), std::round(words_at.y)},
-                 palette().good, band.name.c_str());
+    places.add_curve(run);
+  }
+  for (const Level& level : panel.settings.levels)
+    places.add_curve({point(axes.at(axes.x.low, level.y)), point(axes.at(axes.x.high, level.y))});
+  for (const PlotBand& band : panel.settings.bands) {
+    std::vector<WordPlaces::Point> outline;
+    for (const ImVec2& p : corners_of(band, axes)) outline.push_back(point(p));
+    if (!band.x.empty()) places.add_outline(outline);
+  }
+  const auto write = [&](const std::string& words, const DrawnArea& near, ImU32 ink) {
+    if (words.empty()) return;
+    const float wide = text_width(font, words) + 2 * pad;
+    const auto found = places.take(wide, high, near);
+    const ImVec2 at = {std::round(static_cast<float>(found.x) + pad),
+                       std::round(static_cast<float>(found.y))};
+    list.AddRectFilled({at.x - pad, at.y}, {at.x + wide - pad, at.y + high},
+                       (palette().well & ~IM_COL32_A_MASK) | (190u << IM_COL32_A_SHIFT));
+    list.AddText(font, font->FontSize, at, ink, words.c_str());
+    note(pen, panel.settings.title, "plot-word", at, words);
+  };
+  for (const PlotBand& band : panel.settings.bands) {
+    if (band.y.empty()) continue;
+    const auto corners = corners_of(band, axes);
+    DrawnArea near{corners[0].x, corners[0].y, corners[0].x, corners[0].y};
+    for (const ImVec2& p : corners)
+      near = {std::min<double>(near.left, p.x), std::min<double>(near.top, p.y),
+              std::max<double>(near.right, p.x), std::max<double>(near.bottom, p.y)};
+    if (band.x.empty()) near.right = near.left;
+    write(band.name, near, palette().good);
   }
   for (const Level& level : panel.settings.levels) {
-    const ImVec2 a = axes.at(axes.x.low, level.y), b = axes.at(axes.x.high, level.y);
-    list.AddLine(a, b, palette().warning, std::max(1.0f, pen.px(1)));
-    list.AddText(font, font->FontSize, {a.x + pen.px(4), std::round(a.y - font->FontSize)},
-                 palette().warning, level.name.c_str());
+    const ImVec2 at = axes.at(axes.x.low, level.y);
+    write(level.name, {at.x, at.y - high, at.x, at.y}, palette().warning);
   }
 }
 
@@ -259,14 +308,6 @@ float draw_legend(const Pen& pen, ImDrawList* list, const PlotPanel& panel, floa
 
 }  // namespace
 
-double tick_step(double span, int most) {
-  most = std::max(most, 2);
-  double step = std::pow(10, std::floor(std::log10(span / most)));
-  for (const double factor : {2.0, 2.5, 2.0, 2.0})
-    if (span / step > most) step *= factor;
-  return step;
-}
-
 std::optional<Vector2d> place_on(const Curve& curve, const std::vector<double>& time_s,
                                  double now_s) {
   const std::size_t count = std::min(curve.x.size(), curve.y.size());
@@ -311,6 +352,7 @@ void draw_plot(Pen& pen, const PlotPanel& panel, const std::vector<double>& time
   for (std::size_t i = 0; i < panel.curves.size(); ++i)
     draw_curve(pen, list, panel.curves[i], axes, panel.settings.y_most,
                ink_of(panel.curves[i], i, theme.light));
+  draw_names(pen, list, panel, axes);
   bool over_time = false;
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
     const Curve& curve = panel.curves[i];

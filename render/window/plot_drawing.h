@@ -8,9 +8,6 @@
 
 namespace condyle {
 
-/// A round step for ticks, so that about `most` of them fit into the span.
-double tick_step(double span, int most);
-
 /// Where the curve was at a time, between its samples; none when it has no times or lies elsewhere.
 std::optional<Eigen::Vector2d> place_on(const Curve& curve, const std::vector<double>& time_s,
                                         double now_s);

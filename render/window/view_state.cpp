@@ -1,5 +1,6 @@
 #include "render/window/view_state.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace condyle {
@@ -11,6 +12,12 @@ bool ViewState::shows_face(const WindowScene& scene) const {
         parts[i].opacity > 0)
       return true;
   return false;
+}
+
+bool ViewState::simulates_tissue(const WindowScene& scene) const {
+  return shows_face(scene) || look.springs || look.prisms || look.bone_springs ||
+         std::any_of(layers.begin(), layers.end(),
+                     [](const PartView& layer) { return layer.shown; });
 }
 
 void ViewState::fit(const WindowScene& scene) {

@@ -140,6 +140,8 @@ struct ViewState : Edits, PanelChoice {
 
   /// Whether any face is visible: without one the loop may leave out the face and its tissue.
   bool shows_face(const WindowScene& scene) const;
+  /// Whether the soft tissue is moved: its face or what is drawn of it is visible.
+  bool simulates_tissue(const WindowScene& scene) const;
   /// Gives everything of the scene its view; what is new is as at first.
   void fit(const WindowScene& scene);
 };

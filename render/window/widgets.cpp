@@ -183,7 +183,7 @@ void heading(Pen& pen, const char* words, const std::string& right) {
                          (pen.theme.bold->FontSize - pen.theme.small->FontSize) * 0.7f);
     text_right(pen.theme.small, palette().text_dim,
                fitted(pen.theme.small, right, ImGui::GetContentRegionAvail().x - pen.px(6)));
-    pen.mark(std::string("beside-heading:") + words);
+    pen.mark(std::string("beside-heading:") + words, right);
   }
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(2));
 }

@@ -2,6 +2,7 @@
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -70,6 +71,10 @@ Window::State::State(const WindowOptions& wanted)
   ImGui_ImplGlfw_InitForOpenGL(window, true);  // calls our callbacks before its own
   install_key_callbacks();
   ImGui_ImplOpenGL3_Init("#version 330 core");
+  const double asked = screen_scale() * arrangement.ui_scale.value_or(0);
+  if (options.usual_scale && panel_scale() < asked - 0.005)
+    panels->say(fmt::format("Panels at {:.0f} %: {:.0f} % do not fit into this window",
+                            100 * panel_scale(), 100 * asked));
 }
 
 Window::State::~State() {
@@ -115,6 +120,7 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
   s.view.fit(scene);
   s.order = {.number = s.order.number};
   s.kept.reset();
+  s.kept_by_hand = false;
   s.kept_values.reset();
   s.cannot_draw = false;
   if (!scene.parts.empty())

@@ -43,7 +43,7 @@ std::pair<int, int> Window::State::size() const {
 
 ViewRect Window::State::view_rect() const {
   const auto [w, h] = size();
-  return panels->layout(w, h, view.plots).view;
+  return panels->layout(w, h, view).view;
 }
 
 /// The camera in the cranium's frame, in which all that is drawn is told.
@@ -207,6 +207,7 @@ void Window::State::interface_frame() {
                          .key = overlays.key,
                          .pointed = pointed(),
                          .plots = plots,
+                         .kept = kept_by_hand,
                          .recording = !recording.empty(),
                          .recording_what = recording,
                          .recording_fraction = recording_fraction,

@@ -131,6 +131,7 @@ void Window::State::run(Command command) {
       break;
     case Command::keep_state:
       kept = order.frame;
+      kept_by_hand = kept != nullptr;
       kept_values = order.values;
       scene_changed = true;
       break;

@@ -51,6 +51,7 @@ struct Window::State {
   PictureOrder order;       // the newest picture that is wanted
   // To compare with: the first frame, or the one that was kept.
   std::shared_ptr<const FrameState> kept;
+  bool kept_by_hand = false;
   std::shared_ptr<const MapValues> kept_values;  // its distances; none: they were not shown
   Look ordered_look;
   bool looked = false;       // at mouse and keyboard, at least once

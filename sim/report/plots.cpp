@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "sim/frame/plot_places.h"
+
 namespace condyle {
 namespace {
 
@@ -28,39 +30,46 @@ struct Range {
   }
 };
 
-/// Distance between ticks: 1, 2 or 5 times a power of ten, about six on an axis.
-double tick_step(double span) {
-  const double raw = span / 6, power = std::pow(10, std::floor(std::log10(raw)));
-  for (const double factor : {1.0, 2.0, 5.0})
-    if (raw <= factor * power) return factor * power;
-  return 10 * power;
-}
-
 std::string label(double value, double step) {
   const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
   return fmt::format("{:.{}f}", std::abs(value) < step * 1e-6 ? 0.0 : value, decimals);
 }
 
-/// A band's area, its name at its upper left corner.
+/// Corners of a band's area in the drawing; of a strip from one end of the axes to the other.
 template <class X, class Y>
-std::string band_svg(const PlotBand& band, const X& px, const Y& py, double low, double high) {
+std::vector<WordPlaces::Point> corners_of(const PlotBand& band, const X& px, const Y& py,
+                                          double low, double high) {
   std::vector<double> x = band.x, y = band.y;
   if (x.empty()) {
     const auto [least, most] = std::minmax_element(band.y.begin(), band.y.end());
     x = {low, high, high, low};
     y = {*least, *least, *most, *most};
   }
+  std::vector<WordPlaces::Point> corners;
+  for (std::size_t i = 0; i < x.size(); ++i) corners.push_back({px(x[i]), py(y[i])});
+  return corners;
+}
+
+std::string band_svg(const std::vector<WordPlaces::Point>& corners) {
   std::string svg =
       "<polygon clip-path=\"url(#axes)\" fill=\"#cfe3d4\" fill-opacity=\"0.75\" "
       "stroke=\"#8fb79b\" points=\"";
-  for (std::size_t i = 0; i < x.size(); ++i)
-    svg += fmt::format("{:.2f},{:.2f} ", px(x[i]), py(y[i]));
-  const double at_x = px(*std::min_element(x.begin(), x.end()));
-  const double at_y = py(*std::max_element(y.begin(), y.end()));
-  return svg +
-         fmt::format(
-             "\"/><text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"11\" fill=\"#3c6b4a\">{}</text>\n",
-             at_x + 4, at_y + 12, escaped(band.name));
+  for (const auto& p : corners) svg += fmt::format("{:.2f},{:.2f} ", p.x, p.y);
+  return svg + "\"/>\n";
+}
+
+DrawnArea bounds_of(const std::vector<WordPlaces::Point>& points) {
+  DrawnArea bounds{1e300, 1e300, -1e300, -1e300};
+  for (const auto& p : points)
+    bounds = {std::min(bounds.left, p.x), std::min(bounds.top, p.y), std::max(bounds.right, p.x),
+              std::max(bounds.bottom, p.y)};
+  return bounds;
+}
+
+/// Letters of sans-serif fonts are about so wide, as a share of their size; signs of two bytes
+/// count twice.
+double width_of(const std::string& words, double font_size) {
+  return 0.6 * font_size * static_cast<double>(words.size());
 }
 
 }  // namespace
@@ -126,18 +135,19 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
   svg += fmt::format(
       "<clipPath id=\"axes\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
       left, top, inner_width, inner_height);
-  for (const auto& band : settings.bands) svg += band_svg(band, px, py, x.low, x.high);
-  const double step_x = tick_step(x.size()), step_y = tick_step(y.size());
-  for (double v = std::ceil(x.low / step_x) * step_x; v <= x.high; v += step_x)
+  for (const auto& band : settings.bands) svg += band_svg(corners_of(band, px, py, x.low, x.high));
+  constexpr int most_ticks = 7;
+  const Ticks across = ticks(x.low, x.high, most_ticks), up = ticks(y.low, y.high, most_ticks);
+  for (const double v : across.values)
     svg += fmt::format(
         "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\" stroke=\"#e2e2e2\"/>"
         "<text x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\" fill=\"#444\">{4}</text>\n",
-        px(v), top, height - bottom, height - bottom + 18, label(v, step_x));
-  for (double v = std::ceil(y.low / step_y) * step_y; v <= y.high; v += step_y)
+        px(v), top, height - bottom, height - bottom + 18, label(v, across.step));
+  for (const double v : up.values)
     svg += fmt::format(
         "<line x1=\"{1}\" x2=\"{2}\" y1=\"{0:.1f}\" y2=\"{0:.1f}\" stroke=\"#e2e2e2\"/>"
         "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\" fill=\"#444\">{5}</text>\n",
-        py(v), left, left + axes_width, left - 8, py(v) + 4, label(v, step_y));
+        py(v), left, left + axes_width, left - 8, py(v) + 4, label(v, up.step));
   svg += fmt::format(
       "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888\"/>\n"
       "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\" fill=\"#222\">{}</text>\n"
@@ -147,13 +157,17 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
       top + inner_height / 2, settings.y_label);
   const double legend_x = left + 12 + (settings.legend_beside ? axes_width : 0);
   double legend_y = top + 20;
+  WordPlaces places({left, top, left + inner_width, height - bottom}, 1);
+  const auto taken_by = [&](const std::string& words, double font_size) {
+    places.add_words(
+        {legend_x, legend_y - font_size, legend_x + 28 + width_of(words, font_size), legend_y + 4});
+  };
   for (const auto& level : settings.levels) {
     svg += fmt::format(
         "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#222\" "
-        "stroke-dasharray=\"2 3\"/><text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\" "
-        "fill=\"#222\" font-size=\"12\">{5}</text>\n",
-        left, left + axes_width, py(level.y), left + axes_width - 6, py(level.y) - 4,
-        escaped(level.name));
+        "stroke-dasharray=\"2 3\"/>",
+        left, left + axes_width, py(level.y));
+    places.add_curve({{left, py(level.y)}, {left + axes_width, py(level.y)}});
   }
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const auto& curve = curves[c];
@@ -167,7 +181,12 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
     for (std::size_t i = 0; i < curve.x.size(); ++i)
       svg += fmt::format("{:.2f},{:.2f} ", px(curve.x[i]), py(curve.y[i]));
     svg += "\"/>\n";
+    std::vector<WordPlaces::Point> run;
+    for (std::size_t i = 0; i < curve.x.size(); ++i)
+      run.push_back({px(curve.x[i]), py(curve.y[i])});
+    places.add_curve(run);
     if (curve.name.empty() || !settings.legend) continue;
+    taken_by(curve.name, 13);
     svg += fmt::format(
         "<line x1=\"{}\" x2=\"{}\" y1=\"{:.0f}\" y2=\"{:.0f}\" stroke=\"{}\" "
         "stroke-width=\"2\"{}/><text x=\"{}\" y=\"{:.0f}\" fill=\"#222\">{}</text>\n",
@@ -176,9 +195,33 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
     legend_y += 18;
   }
   for (const auto& remark : settings.remarks) {
+    taken_by(remark, 12);
     svg += fmt::format("<text x=\"{}\" y=\"{:.0f}\" fill=\"#444\" font-size=\"12\">{}</text>\n",
                        legend_x, legend_y + 8, escaped(remark));
     legend_y += 16;
+  }
+  // Names of bands and levels come last, where nothing else is.
+  const auto write = [&](const std::string& words, const DrawnArea& near, double font_size,
+                         const char* ink) {
+    if (words.empty()) return;
+    const auto at = places.take(width_of(words, font_size) + 8, font_size + 4, near);
+    svg += fmt::format(
+        "<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"{}\" fill=\"{}\">{}</text>\n",
+        at.x + 4, at.y + font_size, font_size, ink, escaped(words));
+  };
+  std::vector<std::vector<WordPlaces::Point>> outlines;
+  for (const auto& band : settings.bands) {
+    outlines.push_back(corners_of(band, px, py, x.low, x.high));
+    if (!band.x.empty()) places.add_outline(outlines.back());
+  }
+  for (std::size_t b = 0; b < outlines.size(); ++b) {
+    DrawnArea near = bounds_of(outlines[b]);
+    if (settings.bands[b].x.empty()) near.right = near.left;
+    write(settings.bands[b].name, near, 11, "#3c6b4a");
+  }
+  for (const auto& level : settings.levels) {
+    const double right_end = left + axes_width;
+    write(level.name, {right_end, py(level.y) - 16, right_end, py(level.y)}, 12, "#222");
   }
   return svg + "</svg>\n";
 }

@@ -106,6 +106,14 @@ TEST(Annotations, ArePaintedWhereTheyBelongAndOnlyWhenWanted) {
   annotate(image, words, camera, {.letters = true, .caption = {"Opening 31.0 mm"}});
   EXPECT_GT(differs(0, 140, 60, 220), 20);      // R
   EXPECT_GT(differs(220, 300, 420, 345), 100);  // the caption
+  // A line from top to bottom stays clear of all words; and where axes do not go stands nothing.
+  image = before;
+  annotate(image, words, camera,
+           {.letters = true, .line_at = 0.5, .caption = {"Opening 31.0 mm", "opening"}});
+  EXPECT_EQ(differs(318, 0, 322, 360), 0);
+  EXPECT_GT(differs(322, 290, 540, 345), 100);
+  EXPECT_GT(differs(580, 0, 640, 50), 40);  // S and L
+  EXPECT_EQ(differs(540, 0, 576, 100), 0);  // no R
 }
 
 TEST(Annotations, TheCrossHasABorderOnALightBackdrop) {

@@ -208,6 +208,31 @@ TEST_F(Overlays, WireframesDrawTheEdgesOfTheNamedPart) {
   EXPECT_GT(right, 150);
 }
 
+TEST_F(Overlays, AWireframeLeavesTheShapeVisibleHoweverFineItIs) {
+  PictureSettings settings;
+  settings.width = settings.height = 200;
+  settings.shadows = false;
+  for (const int rings : {12, 48, 160}) {
+    const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30, rings))};
+    SceneRenderer renderer(parts);
+    settings.wireframe.clear();
+    const Image plain = renderer.picture(front_camera(), settings);
+    settings.wireframe = {"*"};
+    const Image lined = renderer.picture(front_camera(), settings);
+    double before = 0, after = 0;
+    int darker = 0, count = 0;
+    for (int y = 80; y < 120; ++y)
+      for (int x = 80; x < 120; ++x) {
+        before += pixel(plain, x, y).r;
+        after += pixel(lined, x, y).r;
+        darker += pixel(lined, x, y).r < pixel(plain, x, y).r - 8;
+        ++count;
+      }
+    EXPECT_GT(after, 0.5 * before) << rings << " rings";
+    EXPECT_GT(darker, 0.05 * count) << "lines are seen with " << rings << " rings";
+  }
+}
+
 TEST_F(Overlays, AWireframeIsHiddenByWhatHidesItsPart) {
   // Hardly a millimetre below the skin, as cheek and chin have it.
   const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 29, 24)),

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <set>
 
 #include "panel_stage.h"
+#include "render/window/handles.h"
 #include "render/window/kept_arrangement.h"
 #include "render/window/plot_drawing.h"
 #include "render/window/recent_files.h"
@@ -226,6 +228,137 @@ TEST_P(Instrument, PlotsStandBelowThePictureAndFollowTheClock) {
   stage.click("plots-close");
   stage.rest();
   EXPECT_FALSE(stage.has("plots"));
+}
+
+TEST_P(Instrument, PlotsHaveAScaleAndTheirNamesStandClearOfTheCurves) {
+  const auto box = [](const char* name, double x0, double x1, double y0, double y1) {
+    return PlotBand{name, {x0, x1, x1, x0}, {y0, y0, y1, y1}};
+  };
+  Curve sagittal{"way", {}, {}}, frontal = sagittal, above = sagittal;
+  for (int i = 0; i <= 60; ++i) {
+    const double s = i / 60.0;
+    sagittal.x.push_back(-24 * s - 2 * std::sin(6 * s));
+    frontal.x.push_back(0);
+    above.x.push_back(0);
+    sagittal.y.push_back(-45 * s);
+    frontal.y.push_back(-45 * s);
+    above.y.push_back(-24 * s);
+  }
+  const auto panel = [](const char* title, const Curve& curve, std::vector<PlotBand> bands) {
+    return PlotPanel{{curve},
+                     {.title = title,
+                      .x_label = "mm",
+                      .y_label = "mm",
+                      .equal_scale = true,
+                      .bands = std::move(bands)}};
+  };
+  stage.plots = {
+      {"Posselt",
+       {panel("sagittal", sagittal,
+              {box("end of hinge", -15, -9, -21, -16), box("maximum opening", -27, -19, -48, -44),
+               box("protrusion", 6, 11, -3, 3)}),
+        panel("frontal", frontal,
+              {box("right", -12, -7, -12, 0), box("left", 7, 12, -12, 0),
+               box("maximum opening", -2, 2, -48, -44)}),
+        panel("horizontal", above,
+              {box("right", -12, -7, -6, 2), box("left", 7, 12, -6, 2),
+               box("protrusion", -1, 1, 6, 11)})}}};
+  stage.click("plots-tool");
+  stage.rest();
+  keep("plots-named");
+  expect_tidy();
+  const Image image = stage.image();
+  const auto is_ink = [&](int x, int y) {  // of the first curve: blue without red
+    const auto* p = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + x)];
+    return p[2] > p[0] + 60 && p[2] > p[1] + 25;
+  };
+  std::map<std::string, int> ticks;
+  int words = 0, ink = 0;
+  for (const DrawnItem& item : stage.panels->items()) {
+    const ViewRect& r = item.rect;
+    if (item.name.starts_with("x-tick:") || item.name.starts_with("y-tick:"))
+      ++ticks[item.name[0] + item.panel];
+    if (item.panel.starts_with("plot:")) {
+      EXPECT_TRUE(lies_within(r, stage.item(item.panel).rect)) << item.name;
+    }
+    const bool named = item.name.starts_with("plot-word:");
+    words += named;
+    if (!named && !item.name.starts_with("plot:")) continue;
+    for (int y = static_cast<int>(r.y); y < r.y + r.height; ++y)
+      for (int x = static_cast<int>(r.x); x < r.x + r.width; ++x) {
+        if (named) {
+          ASSERT_FALSE(is_ink(x, y)) << item.name << " at " << x << ", " << y;
+        } else {
+          ink += is_ink(x, y);
+        }
+      }
+  }
+  EXPECT_EQ(words, 9);
+  EXPECT_GT(ink, 300);  // curves are told from words by their colour
+  ASSERT_EQ(ticks.size(), 6u);
+  for (const auto& [axis, count] : ticks) EXPECT_GE(count, 3) << axis;
+}
+
+TEST_P(Instrument, ReadingsSayWhatRests) {
+  stage.view.playing = true;
+  stage.rest();
+  EXPECT_EQ(stage.item("rates").words, "60 steps/s, 24 pictures/s");
+  stage.view.playing = false;
+  stage.drawing.pictures_per_second = 0;
+  stage.rest();
+  EXPECT_EQ(stage.item("rates").words, "at rest");
+  EXPECT_TRUE(stage.view.simulates_tissue(stage.scene));
+  const double below = stage.item("heading:Time of a step").rect.y;
+  stage.click("skin:off");
+  EXPECT_FALSE(stage.view.simulates_tissue(stage.scene));
+  EXPECT_EQ(stage.item("beside-heading:Tissue").words, "waits");
+  EXPECT_NEAR(stage.item("heading:Time of a step").rect.y, below, 2);
+  keep("tissue-waits");
+}
+
+TEST_P(Instrument, TheLabelOfAMeasureStandsBesideItsLine) {
+  stage.view.tool = Tool::measure;
+  for (const int corner : {0, 1, 5, 4})  // of the mandible's box
+    for (const auto& t : stage.parts[4].mesh.triangles)
+      if (t[0] == corner) {
+        stage.view.measured.push_back({4, t, {1, 0, 0}});
+        break;
+      }
+  ASSERT_EQ(stage.view.measured.size(), 4u);
+  stage.rest();
+  const ViewRect label = stage.item("measure-label").rect;
+  const Layout layout = stage.panels->layout(GetParam().width, GetParam().height, stage.view);
+  EXPECT_TRUE(lies_within(label, layout.view));
+  std::vector<Eigen::Vector2d> line;
+  for (const auto& point : stage.view.measured)
+    line.push_back(
+        screen_place(stage.camera, layout.view, place_of(point, stage.parts, stage.frame)));
+  for (std::size_t i = 0; i + 1 < line.size(); ++i)
+    for (int k = 0; k <= 400; ++k) {
+      const Eigen::Vector2d p = line[i] + k / 400.0 * (line[i + 1] - line[i]);
+      ASSERT_FALSE(label.contains(p.x(), p.y())) << i;
+    }
+  EXPECT_LT((line.back() - Eigen::Vector2d(label.x + label.width / 2, label.y)).norm(),
+            label.width + 40 * GetParam().scale);
+  keep("measured");
+}
+
+TEST_P(Instrument, TheKeyNamesTheGhost) {
+  EXPECT_FALSE(stage.has("key"));
+  stage.view.look.ghost = true;
+  stage.rest();
+  EXPECT_TRUE(stage.has("key"));
+}
+
+TEST_P(Instrument, WhatIsUnfoldedComesIntoSight) {
+  for (int i = 0; i < 24; ++i)
+    stage.scene.muscles.push_back({"m" + std::to_string(i), "Muscle " + std::to_string(i)});
+  stage.rest();
+  stage.click("group:muscles");
+  stage.rest();
+  EXPECT_NEAR(stage.item("group:muscles").rect.y, stage.item("heading:Parts").rect.y,
+              30 * GetParam().scale);
+  keep("muscles-unfolded");
 }
 
 TEST_P(Instrument, SlidersShapeTheMotionWhenTheyAreLetGo) {
@@ -694,19 +827,6 @@ INSTANTIATE_TEST_SUITE_P(Screens, Instrument,
                            return std::to_string(screen.param.height) +
                                   (screen.param.light ? "light" : "dark");
                          });
-
-TEST(Plots, TicksAreRoundAndFew) {
-  for (const double span : {0.003, 0.7, 4.0, 61.0, 1234.0})
-    for (const int most : {2, 5, 9}) {
-      const double step = tick_step(span, most);
-      EXPECT_LE(span / step, most + 1e-9);
-      EXPECT_GT(span / step, most / 5.1) << span << " in " << most;
-      const double mantissa = step / std::pow(10, std::floor(std::log10(step) + 1e-9));
-      EXPECT_TRUE(std::abs(mantissa - 1) < 1e-6 || std::abs(mantissa - 2) < 1e-6 ||
-                  std::abs(mantissa - 5) < 1e-6)
-          << mantissa;
-    }
-}
 
 TEST(Plots, ThePlaceOnACurveLiesBetweenItsSamples) {
   const Curve curve{"way", {0, 2, 4}, {0, 10, 0}};

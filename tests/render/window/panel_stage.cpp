@@ -116,6 +116,7 @@ void PanelStage::step(double x, double y, bool down) {
                          .can_cancel = can_cancel,
                          .key = key,
                          .plots = plots,
+                         .kept = kept,
                          .recording = !recording.empty(),
                          .recording_what = recording,
                          .recording_fraction = 0.3,

@@ -57,7 +57,7 @@ class PanelStage {
   PictureStatistics drawing = {.pictures_per_second = 24, .picture_ms = 31};
   std::string progress, recording, unfinished;
   std::vector<KeyEntry> key;
-  bool can_cancel = false;
+  bool can_cancel = false, kept = false;
   std::vector<PlotSet> plots;
   std::unique_ptr<Panels> panels;
 

@@ -18,6 +18,10 @@ class PanelsOn : public testing::TestWithParam<Screen> {
   PanelStage stage{GetParam().width, GetParam().height,
                    fitting_scale(GetParam().scale, GetParam().width, GetParam().height)};
 
+  /// Panels lie apart on the screen, and so do things in them, each within its own. gives: how many
+  /// panels there are.
+  int expect_apart(const std::string& state);
+
   void keep(const std::string& what) {
     const auto file =
         test::kept_pictures() / ("panels-" + what + "-" + std::to_string(GetParam().width) + "x" +
@@ -36,35 +40,92 @@ bool within(const ViewRect& a, const ViewRect& b) {
          a.y + a.height <= b.y + b.height + 0.5;
 }
 
-TEST_P(PanelsOn, NothingOverlapsOrLeavesTheScreen) {
-  stage.view.opening_mm = 20;  // the fullest state: with the button to let go
-  stage.rest();
+int PanelsOn::expect_apart(const std::string& state) {
   const auto& items = stage.panels->items();
   const ViewRect screen{0, 0, static_cast<double>(GetParam().width),
                         static_cast<double>(GetParam().height)};
   int panels = 0, pairs = 0;
   for (const DrawnItem& a : items) {
+    if (a.panel == "handles") continue;  // of one body, across each other
+    const bool on_view = a.panel == "view", in_plot = a.panel.starts_with("plot:");
     EXPECT_TRUE(within(a.rect, screen)) << a.name;
     if (a.panel.empty()) {
       ++panels;
-    } else {
-      EXPECT_TRUE(within(a.rect, stage.item(a.panel).rect)) << a.name;
+    } else if (!on_view) {
+      EXPECT_TRUE(within(a.rect, stage.item(a.panel).rect)) << state << ": " << a.name;
     }
     for (const DrawnItem& b : items) {
-      // Things are compared with their like: panels with panels, items with items.
-      if (&a == &b || a.panel.empty() != b.panel.empty()) continue;
+      // Panels are compared with panels and what is written on the view, items with items.
+      if (&a == &b || b.panel == "handles" || (on_view && b.panel == a.panel && &a > &b)) continue;
+      if (!on_view && (a.panel.empty() != b.panel.empty() || b.panel == "view")) continue;
+      if (on_view && !b.panel.empty() && !(b.panel == "view")) continue;
       if (a.name.starts_with("edge:") != b.name.starts_with("edge:")) continue;  // lie on margins
-      EXPECT_FALSE(overlap(a.rect, b.rect)) << a.name << " and " << b.name;
+      if (in_plot && b.name == a.panel) continue;
+      if (b.panel == a.name) continue;
+      EXPECT_FALSE(overlap(a.rect, b.rect)) << state << ": " << a.name << " and " << b.name;
       ++pairs;
     }
   }
-  EXPECT_EQ(panels, 7);  // top, left, right, bottom, cube, two edges to grip
   EXPECT_GT(pairs, 500);
+  return panels;
+}
+
+TEST_P(PanelsOn, NothingOverlapsOrLeavesTheScreen) {
+  stage.view.opening_mm = 20;  // the fullest state: with the button to let go
+  stage.rest();
+  const int panels = 7;  // top, left, right, bottom, cube, two edges to grip
+  EXPECT_EQ(expect_apart("held"), panels);
   for (const char* name : {"play", "scrub", "speed", "loop", "opening", "release", "skin",
                            "show:mandible", "opacity:mandible", "obey-contact", "tab:Motion",
                            "view:A", "view:I", "picture", "help-button", "pair:0", "pair:2"})
     EXPECT_TRUE(stage.has(name)) << name;
   keep("held");
+
+  // Each tool stands beside the picture, with plots below and the wipe over it, too.
+  stage.scene.bodies = movable_bodies(stage.parts);
+  stage.view.landmarks = {landmark_at("left_condyle", {45, 0, -48}, stage.parts)};
+  stage.view.look.wipe = true;
+  stage.view.distances = stage.view.look.axes = true;
+  stage.scene.distance_colours = distance_colours();
+  for (const bool plots : {false, true})
+    for (const auto& [tool, name] : {std::pair{Tool::move, "move"},
+                                     {Tool::measure, "measure"},
+                                     {Tool::landmarks, "landmarks"}}) {
+      stage.view.tool = tool;
+      stage.view.plots = plots;
+      stage.rest();
+      ASSERT_TRUE(stage.has(name));
+      const int legend = stage.has("legend");
+      EXPECT_EQ(expect_apart(name), panels + 1 + 2 * plots + legend) << name;
+      const ViewRect view =
+          stage.panels->layout(GetParam().width, GetParam().height, stage.view).view;
+      EXPECT_FALSE(overlap(view, stage.item(name).rect)) << name;
+      EXPECT_GT(view.width, 400 * stage.panels->theme().scale);
+      for (const char* side : {"left", "right", "up", "down"}) {
+        const ViewRect letter = stage.item(std::string("side:") + side).rect;
+        EXPECT_TRUE(within(letter, view)) << side;
+      }
+      keep(std::string(name) + (plots ? "-plots" : ""));
+    }
+}
+
+TEST_P(PanelsOn, TheWipeStandsClearOfLettersAndSaysWhatIsAtItsSides) {
+  stage.view.look.wipe = true;
+  for (const double at : {0.02, 0.25, 0.5, 0.97}) {
+    stage.view.look.wipe_at = at;
+    stage.rest();
+    const ViewRect line = stage.item("wipe").rect;
+    EXPECT_EQ(line.height, stage.panels->layout(GetParam().width, GetParam().height).view.height);
+    for (const char* side : {"left", "right", "up", "down"})
+      EXPECT_FALSE(overlap(stage.item(std::string("side:") + side).rect, line)) << side << at;
+  }
+  stage.view.look.wipe_at = 0.5;
+  stage.rest();
+  EXPECT_EQ(stage.item("wipe:before").words, "at rest");
+  EXPECT_EQ(stage.item("wipe:now").words, "now");
+  stage.kept = true;
+  stage.rest();
+  EXPECT_EQ(stage.item("wipe:before").words, "kept");
 }
 
 TEST_P(PanelsOn, ItemNamesAreUnique) {
@@ -321,7 +382,7 @@ TEST_P(PanelsOn, ColumnsAndPlotsAreDrawnWiderAndHigherAndComeBack) {
   EXPECT_NEAR(size("left").width, left.width, 1);
   pull("edge:left", 1e4, 0);
   pull("edge:plots", 0, -1e4);
-  const Layout drawn = stage.panels->layout(GetParam().width, GetParam().height, true);
+  const Layout drawn = stage.panels->layout(GetParam().width, GetParam().height, stage.view);
   EXPECT_GE(drawn.view.width, std::floor(300 * scale));
   EXPECT_GE(drawn.view.height, std::floor(150 * scale));
   EXPECT_NEAR(size("right").x + size("right").width, GetParam().width, 0.5);
@@ -335,6 +396,18 @@ TEST_P(PanelsOn, ColumnsAndPlotsAreDrawnWiderAndHigherAndComeBack) {
   }
   EXPECT_EQ(stage.panels->sizes(), PanelSizes{});
   EXPECT_NEAR(size("plots").height, plots.height, 0.01);
+}
+
+TEST_P(PanelsOn, WhatIsSaidWhileThePatientIsMadeIsStillSeenWithHim) {
+  stage.scene.parts = {};
+  stage.panels->say("Panels at 100 %: 200 % do not fit into this window");
+  stage.rest(8 * 60);
+  EXPECT_FALSE(stage.panels->said().empty());
+  stage.scene.parts = stage.parts;
+  stage.rest(5 * 60);
+  EXPECT_FALSE(stage.panels->said().empty());
+  stage.rest(2 * 60);
+  EXPECT_TRUE(stage.panels->said().empty());
 }
 
 TEST_P(PanelsOn, PanelsCanBePutAway) {

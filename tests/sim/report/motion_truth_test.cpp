@@ -5,9 +5,11 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "sim/motion/measures.h"
 #include "sim/report/motion_plots.h"
+#include "sim/report/plots.h"
 #include "sim/report/report.h"
 #include "tests/support/boxes.h"
 
@@ -190,6 +192,35 @@ TEST(Report, SaysThatNothingMovesWithoutAMandibleAndFindsNothing) {
   EXPECT_EQ(report.text().find("emergent"), std::string::npos) << report.text();
 }
 
+/// No curve of the drawing runs through the name of a band or level. gives: how many there are.
+int expect_names_clear(const std::string& svg, const std::string& title) {
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t at = 0; (at = svg.find("<polyline", at)) != std::string::npos; ++at) {
+    std::istringstream in(svg.substr(svg.find("points=\"", at) + 8));
+    Eigen::Vector2d last(0, 0), next(0, 0);
+    char comma = 0;
+    for (bool first = true; in >> next.x() >> comma >> next.y(); last = next, first = false)
+      for (int k = 0; k <= 20; ++k)
+        if (!first || k == 20)
+          points.push_back(next + (first ? 0.0 : (20 - k) / 20.0) * (last - next));
+  }
+  EXPECT_GT(points.size(), 100u) << title;
+  int names = 0;
+  for (std::size_t at = 0; (at = svg.find("<text class=\"name\"", at)) != std::string::npos; ++at) {
+    const auto number = [&](const char* key) {
+      return std::stod(svg.substr(svg.find(key, at) + std::string(key).size()));
+    };
+    const double x = number(" x=\""), y = number(" y=\""), size = number("font-size=\"");
+    const std::size_t from = svg.find('>', at) + 1;
+    const double wide = 0.55 * size * static_cast<double>(svg.find('<', from) - from);
+    for (const auto& p : points)
+      EXPECT_FALSE(p.x() > x && p.x() < x + wide && p.y() > y - 0.8 * size && p.y() < y)
+          << title << ": " << svg.substr(from, svg.find('<', from) - from);
+    ++names;
+  }
+  return names;
+}
+
 TEST(MotionPlots, HaveAxesUnitsAndBandsAndKeepAllPointsInside) {
   const Scene scene = make_scene(box_patient());
   Motion motion = there_and_back(
@@ -200,6 +231,7 @@ TEST(MotionPlots, HaveAxesUnitsAndBandsAndKeepAllPointsInside) {
   motion.borders.frontal = {{0, -90, -50}, {9, -90, -55}, {0, -80, -95}, {-9, -90, -55}};
   const auto plots = motion_plots(series_of(scene, motion));
   ASSERT_EQ(plots.size(), 4u);
+  int names = 0;
   for (const auto& plot : plots) {
     EXPECT_GE(plot.panels.size(), 2u);
     bool banded = false;
@@ -212,12 +244,15 @@ TEST(MotionPlots, HaveAxesUnitsAndBandsAndKeepAllPointsInside) {
     EXPECT_TRUE(banded) << plot.name;
     const std::string svg = panels_svg(plot.panels);
     EXPECT_EQ(svg.find("nan"), std::string::npos);
+    for (const auto& panel : plot.panels)
+      names += expect_names_clear(plot_svg(panel.curves, panel.settings), panel.settings.title);
     std::size_t opened = 0, closed = 0;
     for (std::size_t at = 0; (at = svg.find("<svg ", at)) != std::string::npos; ++at) ++opened;
     for (std::size_t at = 0; (at = svg.find("</svg>", at)) != std::string::npos; ++at) ++closed;
     EXPECT_EQ(opened, plot.panels.size() + 1);
     EXPECT_EQ(opened, closed);
   }
+  EXPECT_GT(names, 8);
 }
 
 TEST(MotionPlots, ShowWhatTheMusclesOfEachSideDo) {
