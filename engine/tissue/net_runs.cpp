@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "engine/tissue/spring_prism.h"
@@ -181,7 +182,11 @@ namespace {
     std::memcpy(&v, from, sizeof v);                                                      \
     return v;                                                                             \
   }                                                                                       \
-  INLINE void add_to(double* to, double*, const Lanes& v) {                               \
+  template <int>                                                                          \
+  INLINE const Lanes& of_run(const Lanes& v) {                                            \
+    return v;                                                                             \
+  }                                                                                       \
+  INLINE void add_to(double* to, const Lanes& v) {                                        \
     Lanes sum;                                                                            \
     std::memcpy(&sum, to, sizeof sum);                                                    \
     sum += v;                                                                             \
@@ -227,10 +232,11 @@ INLINE Lanes gathered(const double* first, const double* second) {
   return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(first)), _mm256_loadu_pd(second),
                             1);
 }
-INLINE void add_to(double* first, double* second, const Lanes& v) {
-  _mm256_storeu_pd(first, _mm256_loadu_pd(first) + _mm512_castpd512_pd256(v));
-  _mm256_storeu_pd(second, _mm256_loadu_pd(second) + _mm512_extractf64x4_pd(v, 1));
+template <int run>
+INLINE __m256d of_run(const Lanes& v) {
+  return _mm512_extractf64x4_pd(v, run);
 }
+INLINE void add_to(double* to, const __m256d& v) { _mm256_storeu_pd(to, _mm256_loadu_pd(to) + v); }
 INLINE Lanes next(const Lanes& v) { return __builtin_shufflevector(v, v, 1, 2, 3, 0, 5, 6, 7, 4); }
 INLINE Lanes back(const Lanes& v) { return __builtin_shufflevector(v, v, 3, 0, 1, 2, 7, 4, 5, 6); }
 INLINE auto lanes_in_use(int first, int second) {
@@ -254,16 +260,19 @@ INLINE Lanes inverse_root_of_floats(const Lanes& v) {
 
 }  // namespace
 
-const RunKernels& run_kernels() {
+const std::vector<const RunKernels*>& usable_run_kernels() {
+  static const std::vector<const RunKernels*> usable = [] {
+    std::vector<const RunKernels*> kinds;
 #ifdef __x86_64__
-  static const RunKernels& best =
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") ? avx512::kernels
-      : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")        ? avx2::kernels
-                                                                        : any_processor::kernels;
-  return best;
-#else
-  return any_processor::kernels;
+    if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+      kinds.push_back(&avx512::kernels);
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+      kinds.push_back(&avx2::kernels);
 #endif
+    kinds.push_back(&any_processor::kernels);
+    return kinds;
+  }();
+  return usable;
 }
 
 }  // namespace condyle

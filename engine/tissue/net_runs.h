@@ -85,7 +85,9 @@ struct RunKernels {
                       const AxisRows& x, const AxisRows& d);
 };
 
-/// Those for this processor.
-const RunKernels& run_kernels();
+/// Those that this processor has, the fastest first; the last can be used anywhere, and does not
+/// fuse.
+const std::vector<const RunKernels*>& usable_run_kernels();
+inline const RunKernels& run_kernels() { return *usable_run_kernels().front(); }
 
 }  // namespace condyle

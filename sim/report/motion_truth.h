@@ -24,8 +24,8 @@ struct Finding {
 bool too_coarse(const MotionSeries& series);
 
 /// What the motion did, phase by phase, as it was simulated: inputs marked, all else emerged from
-/// joints and teeth. Nothing without landmarks or a mandible; only what the widest frame shows where frames are
-/// too coarse.
+/// joints and teeth. Nothing without landmarks or a mandible; only what the widest frame shows
+/// where frames are too coarse.
 std::vector<Finding> findings(const Scene& scene, const Motion& motion, const MotionSeries& series);
 
 /// What no healthy jaw does, or what counts as impaired, in sentences.

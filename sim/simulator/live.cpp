@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <deque>
 #include <utility>
 
 #include "engine/core/error.h"
 #include "sim/motion/measures.h"
+#include "sim/simulator/leap_start.h"
 
 namespace condyle {
 namespace {
@@ -23,8 +23,6 @@ constexpr int step_iterations = 3;
 /// After so long without a new request tissue settles, so far in each step, for so many at most.
 constexpr std::chrono::milliseconds calm(60);
 constexpr int settling_iterations = 30, most_settling = 20;
-/// A mandible that is wanted so far away is no step of a motion: its tissue gets what it needs.
-constexpr double leap_mm = 4, leap_rad = 0.05;
 
 /// Time of the way to full opening at which the motion opens by `opening_mm`. Bisection.
 double time_of_opening(const Case& patient, const Motion& motion, double opening_mm) {
@@ -45,63 +43,6 @@ double time_of_opening(const Case& patient, const Motion& motion, double opening
     (measure(patient, motion.wanted(middle)).opening_mm < opening_mm ? low : high) = middle;
   }
   return high;
-}
-
-bool leaps(const Pose& from, const Pose& to) {
-  return (to.t - from.t).norm() > leap_mm || rotation_angle(from.inverse() * to) > leap_rad;
-}
-
-bool same(const Pose& a, const Pose& b) { return a.t == b.t && a.R.coeffs() == b.R.coeffs(); }
-
-/// What was asked of the bodies in a step.
-struct Asked {
-  LiveRequest request;
-  std::optional<Pose> X_CM;  // of a hand that holds the mandible
-  std::vector<Pose> X_BF;    // of each free part
-
-  bool by_same_hands(const Asked& other) const {
-    const auto same_poses = [](const auto& a, const auto& b) {
-      return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
-    };
-    return X_CM.has_value() == other.X_CM.has_value() && (!X_CM || same(*X_CM, *other.X_CM)) &&
-           same_poses(X_BF, other.X_BF);
-  }
-  bool same_as(const Asked& other) const {
-    return request.time_s == other.request.time_s &&
-           request.opening_mm == other.request.opening_mm &&
-           request.obey_contact == other.request.obey_contact && by_same_hands(other);
-  }
-};
-
-/// Where the bodies came to for what was asked. A way back may be barred by what was passed; so
-/// what is asked again, as by undo, finds them where they were.
-class Reached {
- public:
-  void remember(Asked asked, BodyPoses at) {
-    // Of a motion that goes on, the newest.
-    if (!places_.empty() && places_.back().asked.by_same_hands(asked)) places_.pop_back();
-    if (places_.size() == most) places_.pop_front();
-    places_.push_back({std::move(asked), std::move(at)});
-  }
-  /// The newest; null if it was never asked.
-  const BodyPoses* before(const Asked& asked) const {
-    const auto at = std::find_if(places_.rbegin(), places_.rend(),
-                                 [&](const Place& place) { return place.asked.same_as(asked); });
-    return at == places_.rend() ? nullptr : &at->at;
-  }
-
- private:
-  static constexpr std::size_t most = 2000;
-  struct Place {
-    Asked asked;
-    BodyPoses at;
-  };
-  std::deque<Place> places_;
-};
-
-double way_between(const Pose& a, const Pose& b) {
-  constexpr double arm_mm = 50;
-  return (b.t - a.t).norm() + arm_mm * rotation_angle(a.inverse() * b);
 }
 
 }  // namespace
@@ -205,14 +146,13 @@ void LiveSimulation::work() {
   const auto carrier = [&](std::size_t f) {
     return scene_.patient.parts[free[f]].carrier == Body::mandible ? now.X_CM : Pose{};
   };
-  Reached reached;
-  Pose followed;  // the mandible's when it last followed the motion
+  LeapStart leap_start(scene_, settings_.threads);
   const auto begin_at = [&](const BodyPoses& at) {
+    // No way leads there on which tissue could follow.
+    if (scene_.tissue && leaps(now.X_CM, at.X_CM)) now.tissue = rest_tissue(*scene_.tissue);
     now.X_CM = at.X_CM;
     now.X_CF = at.X_CF;
     now.contacts = scene_.contacts.find(at, nullptr, settings_.threads);
-    // No way leads here on which tissue could follow.
-    if (scene_.tissue) now.tissue = rest_tissue(*scene_.tissue);
   };
   auto last_shown = Clock::now();
   try {
@@ -222,12 +162,12 @@ void LiveSimulation::work() {
       long grips = 0;
       {
         std::unique_lock lock(mutex_);
-        const auto asked = [&] {
+        const auto is_asked = [&] {
           return stop_ || !caught_up || answered != wanted_ || answered_grips != grips_;
         };
         if (settling == 0)
-          changed_.wait(lock, asked);
-        else if (changed_.wait_for(lock, settling == most_settling ? calm : calm.zero(), asked))
+          changed_.wait(lock, is_asked);
+        else if (changed_.wait_for(lock, settling == most_settling ? calm : calm.zero(), is_asked))
           settling = 0;
         if (stop_) return;
         wanted = wanted_;
@@ -252,28 +192,16 @@ void LiveSimulation::work() {
           if (held[1 + f]) X_BF[f] = *held[1 + f];
         step_input.X_BF_wanted = X_BF;
       }
-      Asked asked_now{wanted, held[0], X_BF};
-      if (grips != answered_grips && wanted.obey_contact) {
-        if (const BodyPoses* before = reached.before(asked_now)) {
-          begin_at(*before);
-        } else if (now.stopped && leaps(now.X_CM, step_input.X_CM_wanted)) {
-          const ContactModel::Wanted to{step_input.X_CM_wanted, X_BF};
-          const auto left = [&](const BodyPoses& from) {
-            const auto slide = scene_.contacts.slide(from, to, nullptr, settings_.threads);
-            return way_between(slide.at.X_CM, to.X_CM);
-          };
-          constexpr double nearer_mm = 1;
-          BodyPoses other = now.poses();
-          other.X_CM = followed;
-          if (left(other) + nearer_mm < left(now.poses())) begin_at(other);
-        }
-      }
+      const LeapStart::Asked asked{wanted, held[0], step_input.X_CM_wanted, X_BF};
+      if (const auto at = leap_start.of(asked, now, grips != answered_grips)) begin_at(*at);
       // Soft tissue that nobody sees waits; it follows from where it was left.
       SimulatorSettings seen = settings_;
       seen.tissue = seen.tissue && wanted.face;
       int& iterations = seen.tissue_budget.max_iterations;
       const bool settles = settling > 0;
       if (settles) iterations = std::max(iterations, settling_iterations);
+      // A mandible that is wanted so far away is no step of a motion: its tissue gets what it
+      // needs.
       if (now.tissue.kept || leaps(now.tissue.X_CM, step_input.X_CM_wanted))
         iterations = TissueBudget{}.max_iterations;
       now = step(scene_, now, step_input, seen);
@@ -286,9 +214,8 @@ void LiveSimulation::work() {
       if (caught_up) {
         answered = wanted;
         answered_grips = grips;
-        reached.remember(std::move(asked_now), now.poses());
+        leap_start.ended(asked, now);
       }
-      if (!held[0]) followed = now.X_CM;
       if (shown && wanted.face) carry_face(scene_, now, settings_.threads);
       if (shown) last_shown = start;
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();

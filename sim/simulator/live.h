@@ -44,7 +44,9 @@ class LiveSimulation {
 
   /// A hand holds the body of a part (an index of the case) and wants it at a pose, rest to now, in
   /// its carrier's frame (the mandible: the cranium's), until the next call or until it lets go. It
-  /// slides along what is in the way if contact is obeyed. Let go, the mandible follows the motion
+  /// slides along what is in the way if contact is obeyed. Where the wish leaps (undo, a typed
+  /// number) and was asked before, the bodies are where they came to then; see LeapStart. Let go,
+  /// the mandible follows the motion
   /// again; a segment or transplant stays where it came to, in its carrier's frame. From any
   /// thread. throws: InputError for a part that does not move, and for values that are no numbers.
   void drag(std::size_t part, const Pose& wanted);

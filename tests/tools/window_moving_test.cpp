@@ -136,8 +136,7 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
     return s["busy_with"] == "" && !s.contains("X_CM_wanted") &&
            s.value("said", "") ==
                "The mandible is not let go: the motion was moved to another time before it had "
-               "come "
-               "to rest";
+               "come to rest";
   })) << state().value("said", "nothing was said");
 
   // Another motion has other muscles.

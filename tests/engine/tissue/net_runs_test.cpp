@@ -51,6 +51,75 @@ TEST(NetRuns, TakeALayeredNetByItsColumns) {
   }
 }
 
+/// What a kind of kernels makes of a net.
+struct Told {
+  std::vector<double> gradient, inverse_length;
+  std::vector<double> sums;
+};
+Told told_by(const RunKernels& kernels, const NetRuns& runs, std::vector<double> x,
+             std::vector<double> d) {
+  const std::size_t row = x.size() / 3;
+  const auto rows = [row](std::vector<double>& of) {
+    return AxisRows{of.data(), of.data() + row, of.data() + 2 * row};
+  };
+  Told told;
+  told.gradient.resize(x.size());
+  told.inverse_length.resize(runs.rest_length.size());
+  for (int half = 0; half < 2; ++half) {
+    told.sums.push_back(
+        kernels.springs(runs, half, 0.1, rows(x), rows(told.gradient), told.inverse_length.data()));
+    told.sums.push_back(kernels.prisms(runs, half, 0.3, 0.5, rows(x), 0.7, rows(told.gradient)));
+    const auto springs =
+        kernels.springs_bend(runs, half, 0.1, rows(x), rows(d), told.inverse_length.data());
+    const auto prisms = kernels.prisms_bend(runs, half, 0.3, 0.5, rows(x), rows(d));
+    told.sums.insert(told.sums.end(),
+                     {springs.exact, springs.gauss_newton, prisms.exact, prisms.gauss_newton});
+  }
+  return told;
+}
+
+TEST(NetRuns, EveryKindOfKernelsGivesTheSame) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> entry(-0.3, 0.3);
+  for (const int layers : {1, 2, 3, 5}) {
+    SyntheticSet set = set_of(layers);
+    // Also springs that stand alone, many at a few nodes.
+    for (int k = 0; k < 60; ++k) {
+      set.net.spring_a.push_back(k % 7);
+      set.net.spring_b.push_back(9 + (5 * k) % 8);
+      set.net.rest_length.push_back(3);
+      set.net.stiffness.push_back(0.5);
+    }
+    const NetRuns runs(set.net);
+    EXPECT_FALSE(runs.runs.empty());
+    const std::size_t row = set.rest.size() + NetRuns::lanes;
+    std::vector<double> x(3 * row), d(3 * row);
+    for (std::size_t i = 0; i < set.rest.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        x[k * row + i] = set.rest[i][static_cast<Eigen::Index>(k)] + entry(random);
+        d[k * row + i] = entry(random);
+      }
+    const Told best = told_by(run_kernels(), runs, x, d);
+    for (double sum : best.sums) ASSERT_TRUE(std::isfinite(sum));
+    for (const RunKernels* kernels : usable_run_kernels()) {
+      const Told told = told_by(*kernels, runs, x, d);
+      const bool fused = kernels != usable_run_kernels().back();
+      const auto compare = [&](const std::vector<double>& a, const std::vector<double>& b) {
+        double largest = 0;
+        for (double v : b) largest = std::max(largest, std::abs(v));
+        for (std::size_t i = 0; i < a.size(); ++i)
+          if (fused)
+            EXPECT_EQ(a[i], b[i]) << layers << " " << i;
+          else
+            EXPECT_NEAR(a[i], b[i], 1e-12 * largest) << layers << " " << i;
+      };
+      compare(told.gradient, best.gradient);
+      compare(told.inverse_length, best.inverse_length);
+      compare(told.sums, best.sums);
+    }
+  }
+}
+
 class AnyOrder : public testing::TestWithParam<int> {};
 
 TEST_P(AnyOrder, OfSpringsAndPrismsIsTheSameTissue) {

@@ -128,6 +128,26 @@ TEST(Live, AFaceIsAsItWasWhenAJawThatWasPushedFarAsideIsPutBack) {
   EXPECT_LT(farthest, 1e-3);
 }
 
+TEST(Live, TissueGoesOnWhereAHandComesBackToAPlace) {
+  const Scene scene = make_scene(builtin());
+  std::size_t jaw = 0;
+  while (scene.patient.parts[jaw].role != Role::mandible) ++jaw;
+  const Motion resting = {"rest", 1.0, false, [](double) { return Pose{}; }, {}};
+  LiveSimulation live(scene, resting, live_settings({}));
+  live.request({.time_s = 0.5});
+  wait_for(live, 0.5);
+  FrameState frame;
+  for (const double z : {-3.0, -3.1, -3.2, -3.1, -3.0}) {
+    live.drag(jaw, shift(0, 0, z));
+    do {
+      frame = wait_for(live, 0.5);
+    } while (frame.X_CM.t.z() != z);
+  }
+  const TissueState first = frame.tissue;
+  while (!frame.tissue.converged) frame = wait_for(live, 0.5);
+  EXPECT_LT(distance_of_all_but_a_hundredth(first, frame.tissue), 0.3);
+}
+
 TEST(Live, AnUnansweredWorkerEndsWithItsOwner) {
   const Scene scene = make_scene(box_patient());
   for (int i = 0; i < 20; ++i) {
