@@ -147,6 +147,7 @@ class ViewSession {
     MotionChoice motion;
     std::optional<double> opening_mm;
     double time_s = 0;
+    std::optional<Hands> before = {};  // where it is wanted again if it cannot be let go
 
     static Loosed now(const MovableBody& body, std::string name, const ViewState& view) {
       return {body, std::move(name), view.hands, view.motion, view.opening_mm, view.time_s};

@@ -198,10 +198,12 @@ void ViewSession::let_jaw_go(std::size_t number) {
   const BodyPoses from = newest_->poses();
   const Pose& X_CM = from.X_CM;
   const double time_s = window_.view().time_s;
+  const Hands before = window_.view().hands;
   window_.change(
       [&](ViewState& view) { view.move(body, body.skull ? view.hands.X_RC(X_CM) : X_CM, X_CM); },
       true);
   loosed_ = Loosed::now(body, name_of(body), window_.view());
+  loosed_.before = before;
   letting_go_ = beside<LetGoResult>([patient = patient_, motion = motion_, number, time_s, from,
                                      options = options_.motion,
                                      threads = common_.threads](const Progress& progress) {
@@ -252,7 +254,13 @@ void ViewSession::take_let_go() {
   if (!letting_go_ || !letting_go_->done()) return;
   const auto finished = std::move(letting_go_);
   guarded([&] {
-    auto result = finished->take();
+    std::optional<LetGoResult> result;
+    try {
+      result = finished->take();
+    } catch (...) {
+      if (loosed_.before) window_.change([&](ViewState& view) { view.hands = *loosed_.before; });
+      throw;
+    }
     if (!result) return;
     const MovableBody& body = shown_.bodies.at(result->body);
     if (body.free) {
