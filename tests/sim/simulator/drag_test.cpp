@@ -7,15 +7,12 @@
 #include "engine/core/error.h"
 #include "sim/phantom/phantom.h"
 #include "sim/simulator/live.h"
+#include "tests/sim/simulator/resting.h"
 #include "tests/support/boxes.h"
 #include "tests/support/overlap_oracle.h"
 
 namespace condyle::test {
 namespace {
-
-Motion resting() {
-  return {"rest", 1.0, false, [](double) { return Pose{}; }, {}};
-}
 
 std::size_t part_named(const Case& patient, const std::string& name) {
   for (std::size_t i = 0; i < patient.parts.size(); ++i)

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sim/motion/motion.h"
+#include "tests/sim/simulator/resting.h"
 #include "tests/support/boxes.h"
 #include "tests/support/builtin.h"
 
@@ -49,8 +50,7 @@ TEST(Live, AnswersJumpsAndRunningTimeAndHeldOpenings) {
 
 TEST(Live, AHeldOpeningGoesItsOwnWayWhateverTheMotionDoes) {
   const Scene scene = make_scene(box_patient());
-  const Motion resting = {"rest", 1.0, false, [](double) { return Pose{}; }, {}};
-  LiveSimulation live(scene, resting, {}, dropping());
+  LiveSimulation live(scene, resting(), {}, dropping());
   live.request({.time_s = 0.5, .opening_mm = 7.5});
   EXPECT_NEAR(wait_for(live, 0.5).measures.opening_mm, 7.5, 1e-6);
   live.request({.time_s = 0.4});
@@ -110,10 +110,8 @@ TEST(Live, APlayingFaceIsNearTheConvergedOneAndSettlesWhenNothingIsAsked) {
 
 TEST(Live, AFaceIsAsItWasWhenAJawThatWasPushedFarAsideIsPutBack) {
   const Scene scene = make_scene(builtin());
-  std::size_t jaw = 0;
-  while (scene.patient.parts[jaw].role != Role::mandible) ++jaw;
-  const Motion resting = {"rest", 1.0, false, [](double) { return Pose{}; }, {}};
-  LiveSimulation live(scene, resting, live_settings({}));
+  const std::size_t jaw = mandible_of(scene);
+  LiveSimulation live(scene, resting(), live_settings({}));
   live.request({.time_s = 0.5});
   const TissueState before = wait_for(live, 0.5).tissue;
   live.drag(jaw, shift(40, 0, 0));
@@ -130,10 +128,8 @@ TEST(Live, AFaceIsAsItWasWhenAJawThatWasPushedFarAsideIsPutBack) {
 
 TEST(Live, TissueGoesOnWhereAHandComesBackToAPlace) {
   const Scene scene = make_scene(builtin());
-  std::size_t jaw = 0;
-  while (scene.patient.parts[jaw].role != Role::mandible) ++jaw;
-  const Motion resting = {"rest", 1.0, false, [](double) { return Pose{}; }, {}};
-  LiveSimulation live(scene, resting, live_settings({}));
+  const std::size_t jaw = mandible_of(scene);
+  LiveSimulation live(scene, resting(), live_settings({}));
   live.request({.time_s = 0.5});
   wait_for(live, 0.5);
   FrameState frame;
