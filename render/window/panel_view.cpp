@@ -147,7 +147,7 @@ void Panels::Drawing::view_signs() {
     };
     name("wipe:before", input.kept ? "kept" : "at rest", true);
     name("wipe:now", "now", false);
-    pen.items.push_back({"wipe", "view", {wiped_at - 1.0, r.y, 2, r.height}});
+    pen.items.push_back({"wipe:line", "view", {wiped_at - 1.0, r.y, 2, r.height}});
   }
   cube();
   pointed();

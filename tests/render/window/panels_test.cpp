@@ -114,7 +114,7 @@ TEST_P(PanelsOn, TheWipeStandsClearOfLettersAndSaysWhatIsAtItsSides) {
   for (const double at : {0.02, 0.25, 0.5, 0.97}) {
     stage.view.look.wipe_at = at;
     stage.rest();
-    const ViewRect line = stage.item("wipe").rect;
+    const ViewRect line = stage.item("wipe:line").rect;
     EXPECT_EQ(line.height, stage.panels->layout(GetParam().width, GetParam().height).view.height);
     for (const char* side : {"left", "right", "up", "down"})
       EXPECT_FALSE(overlap(stage.item(std::string("side:") + side).rect, line)) << side << at;
