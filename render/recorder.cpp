@@ -260,6 +260,7 @@ struct Recorder::State {
         next = std::move(waiting.front());
         waiting.pop_front();
         busy = true;
+        changed.notify_all();  // there is room for one more
       }
       std::exception_ptr failed;
       try {
