@@ -9,6 +9,7 @@
 #include "render/lettering.h"
 #include "render/paint.h"
 #include "render/scene_renderer.h"
+#include "sim/frame/part_names.h"
 
 namespace condyle {
 namespace {
@@ -72,9 +73,11 @@ class Sheet {
     renderer.set_colour_map(map_);
     renderer.color_part(place_.fixed, place_.fixed_values);
     renderer.color_part(place_.moved, place_.moved_values);
-    add_panel(renderer, 1, place_.fixed + ", seen from " + place_.moved,
+    add_panel(renderer, 1,
+              display_name(place_.fixed) + ", seen from " + readable_name(place_.moved),
               close_camera(place_, place_.normal), place_.fixed);
-    add_panel(renderer, 2, place_.moved + ", seen from " + place_.fixed,
+    add_panel(renderer, 2,
+              display_name(place_.moved) + ", seen from " + readable_name(place_.fixed),
               close_camera(place_, -place_.normal), place_.moved);
     draw_legend(image_, words_, map_,
                 {.left = legend_left, .top = top - 32, .bar_height = panel_height - 54});

@@ -9,6 +9,7 @@
 #include "engine/core/error.h"
 #include "render/contact_picture.h"
 #include "render/gl_context.h"
+#include "sim/frame/part_names.h"
 #include "sim/report/check_page.h"
 #include "tools/common.h"
 #include "tools/picture_facts.h"
@@ -40,7 +41,7 @@ Image picture_of(const Scene& scene, const PairVerdict& pair, int threads) {
                      .normal = worst.measure.normal,
                      .seen_mm = std::clamp(1.3 * worst.measure.size_mm, least_mm, most_mm),
                      .overview = overview_of(worst.measure),
-                     .title = pair.a + " and " + pair.b,
+                     .title = display_name(pair.a) + " and " + readable_name(pair.b),
                      .lines = {worst_caption(pair)}};
   if (const auto words = open_surface_words(pair); !words.empty()) place.lines.push_back(words);
   // Pairs that stay far apart have a wider scale, so that where they are nearest is seen.

@@ -9,7 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "render/window/part_names.h"
+#include "sim/frame/part_names.h"
 #include "sim/motion/measures.h"
 #include "sim/report/motion_plots.h"
 #include "tools/passing_path.h"

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "render/window/part_names.h"
 #include "sim/case/landmark_names.h"
+#include "sim/frame/part_names.h"
 #include "sim/phantom/phantom.h"
 #include "tools/distance_drawing.h"
 

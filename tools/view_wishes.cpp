@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
-#include "render/window/part_names.h"
+#include "sim/frame/part_names.h"
 #include "sim/motion/measures.h"
 #include "tools/view_session.h"
 

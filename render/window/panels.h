@@ -23,9 +23,6 @@
 
 namespace condyle {
 
-/// "upper_teeth" as "Upper teeth".
-std::string display_name(const std::string& part_name);
-
 /// What the panels show. Everything is read only.
 struct PanelInput {
   const WindowScene& scene;

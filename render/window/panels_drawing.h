@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "render/window/panels.h"
-#include "render/window/part_names.h"
 #include "render/window/widgets.h"
+#include "sim/frame/part_names.h"
 
 namespace condyle {
 

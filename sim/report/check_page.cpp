@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "sim/frame/part_names.h"
 #include "sim/report/page_parts.h"
 #include "sim/report/plots.h"
 
@@ -13,7 +14,13 @@ namespace {
 
 class PageWriter {
  public:
-  PageWriter(const ClearanceCheck& check, const CheckPage& page) : check_(check), page_(page) {}
+  /// Of a check whose parts are named as people read them.
+  PageWriter(const ClearanceCheck& check, const CheckPage& page) : check_(check), page_(page) {
+    for (auto& pair : check_.pairs) {
+      pair.a = readable_name(pair.a);
+      pair.b = readable_name(pair.b);
+    }
+  }
 
   std::string write() {
     html_ = page_head("Clearance check: " + page_.patient);
@@ -210,7 +217,7 @@ class PageWriter {
     html_ += "</ul>\n";
   }
 
-  const ClearanceCheck& check_;
+  ClearanceCheck check_;
   const CheckPage& page_;
   std::string html_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sim/frame/part_names.h"
 #include "sim/report/check_page.h"
 #include "sim/report/plots.h"
 
@@ -104,7 +105,7 @@ std::string clearance_svg(const ClearanceCheck& check) {
   for (const std::size_t i : worst_first(check)) {
     const auto& pair = check.pairs[i];
     if (shown.size() == most_pairs) break;
-    shown.push_back({pair.a + " / " + pair.b, &pair.clearance_mm});
+    shown.push_back({display_name(pair.a) + " / " + readable_name(pair.b), &pair.clearance_mm});
     const bool drawn = std::any_of(levels.begin(), levels.end(),
                                    [&](const Level& level) { return level.y == pair.keep_mm; });
     if (pair.keep_mm <= 0 || drawn) continue;
@@ -121,7 +122,8 @@ std::string clearance_svg(const ClearanceCheck& check) {
 
 std::string coronoid_svg(const ClearanceCheck& check) {
   std::vector<ClearanceCurve> shown;
-  for (const auto& side : check.coronoids) shown.push_back({side.side + " coronoid", &side.mm});
+  for (const auto& side : check.coronoids)
+    shown.push_back({display_name(side.side + " coronoid"), &side.mm});
   return shown.empty() ? "" : clearance_plot(check, "Coronoid to zygoma", shown, {}, "");
 }
 

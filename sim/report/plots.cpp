@@ -72,6 +72,23 @@ double width_of(const std::string& words, double font_size) {
   return 0.6 * font_size * static_cast<double>(words.size());
 }
 
+std::vector<WordPlaces::Point> places_of(const Curve& curve, const auto& px, const auto& py) {
+  std::vector<WordPlaces::Point> run;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) run.push_back({px(curve.x[i]), py(curve.y[i])});
+  return run;
+}
+
+/// Whether one curve hides most of another that was measured at the same moments.
+bool hides(const std::vector<WordPlaces::Point>& upper,
+           const std::vector<WordPlaces::Point>& lower) {
+  constexpr double near = 1.5;
+  if (upper.size() != lower.size()) return false;
+  std::size_t hidden = 0;
+  for (std::size_t i = 0; i < upper.size(); ++i)
+    hidden += std::hypot(upper[i].x - lower[i].x, upper[i].y - lower[i].y) < near;
+  return 2 * hidden > upper.size();
+}
+
 }  // namespace
 
 std::string escaped(const std::string& text) {
@@ -169,28 +186,31 @@ std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& setti
         left, left + axes_width, py(level.y));
     places.add_curve({{left, py(level.y)}, {left + axes_width, py(level.y)}});
   }
+  std::vector<std::vector<WordPlaces::Point>> runs;
+  for (const auto& curve : curves) runs.push_back(places_of(curve, px, py));
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const auto& curve = curves[c];
+    const auto& run = runs[c];
+    // Wide enough to be seen on both sides of what lies on it.
+    double stroke = 2;
+    for (std::size_t on = c + 1; on < curves.size() && stroke < 8; ++on)
+      if (hides(runs[on], run)) stroke += 3;
     const std::size_t number = curve.colour < 0 ? c : static_cast<std::size_t>(curve.colour);
     const char* colour = colours[number % colours.size()];
     const char* dashes = curve.dashed ? " stroke-dasharray=\"6 4\"" : "";
     svg += fmt::format(
-        "<polyline clip-path=\"url(#axes)\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{} "
+        "<polyline clip-path=\"url(#axes)\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{} "
         "points=\"",
-        colour, dashes);
-    for (std::size_t i = 0; i < curve.x.size(); ++i)
-      svg += fmt::format("{:.2f},{:.2f} ", px(curve.x[i]), py(curve.y[i]));
+        colour, stroke, dashes);
+    for (const auto& p : run) svg += fmt::format("{:.2f},{:.2f} ", p.x, p.y);
     svg += "\"/>\n";
-    std::vector<WordPlaces::Point> run;
-    for (std::size_t i = 0; i < curve.x.size(); ++i)
-      run.push_back({px(curve.x[i]), py(curve.y[i])});
     places.add_curve(run);
     if (curve.name.empty() || !settings.legend) continue;
     taken_by(curve.name, 13);
     svg += fmt::format(
         "<line x1=\"{}\" x2=\"{}\" y1=\"{:.0f}\" y2=\"{:.0f}\" stroke=\"{}\" "
-        "stroke-width=\"2\"{}/><text x=\"{}\" y=\"{:.0f}\" fill=\"#222\">{}</text>\n",
-        legend_x, legend_x + 22, legend_y - 4, legend_y - 4, colour, dashes, legend_x + 28,
+        "stroke-width=\"{}\"{}/><text x=\"{}\" y=\"{:.0f}\" fill=\"#222\">{}</text>\n",
+        legend_x, legend_x + 22, legend_y - 4, legend_y - 4, colour, stroke, dashes, legend_x + 28,
         legend_y, escaped(curve.name));
     legend_y += 18;
   }

@@ -177,6 +177,18 @@ TEST(ClearancePlot, OpeningIsDrawnThroughAndClosingDashed) {
   EXPECT_EQ(count(still, "stroke-dasharray=\"6 4\""), 0);
 }
 
+TEST(CheckPage, PartsAreNamedAsPeopleReadThem) {
+  Case patient = ball_patient();
+  patient.parts[0].name = "upper_jaw";
+  const Scene scene = make_scene(std::move(patient));
+  const auto check = check_clearance(scene, bite(3), at_120_hz(0.5), {});
+  const auto page = check_page(check, {"p", "m", {}, {}});
+  EXPECT_NE(page.find("<strong>upper jaw and mandible</strong>"), std::string::npos);
+  EXPECT_NE(page.find("Upper jaw / mandible"), std::string::npos) << "in the plot";
+  EXPECT_EQ(page.find("upper_jaw"), std::string::npos);
+  EXPECT_EQ(check.pairs.at(0).a, "upper_jaw") << "files keep it";
+}
+
 TEST(Clearance, ContactAwayFromTheOverlapAtRestHasItsOwnDepth) {
   // A tooth that overlaps the maxilla by 1 mm at rest, and a ball 40 mm away that does not.
   Case patient = ball_patient();

@@ -130,4 +130,19 @@ TEST(Plot, CurvesLieWithinTheAxes) {
   EXPECT_EQ(count, 3);
 }
 
+TEST(Plot, ACurveThatLiesOnAnotherHidesNeither) {
+  const auto widths = [](std::vector<double> second) {
+    const auto svg = plot_svg({{"left", {0, 1, 2}, {0, 5, 9}}, {"right", {0, 1, 2}, second}},
+                              {.title = "t", .x_label = "x", .y_label = "y", .legend = false});
+    std::vector<double> found;
+    for (auto at = svg.find("<polyline"); at != std::string::npos; at = svg.find("<polyline", at)) {
+      at = svg.find("stroke-width=\"", at) + 14;
+      found.push_back(std::stod(svg.substr(at)));
+    }
+    return found;
+  };
+  EXPECT_EQ(widths({0, 5, 3}), (std::vector<double>{5, 2})) << "the lower one is seen beside";
+  EXPECT_EQ(widths({1, 5, 3}), (std::vector<double>{2, 2}));
+}
+
 }  // namespace condyle::test

@@ -1,4 +1,4 @@
-#include "render/window/part_names.h"
+#include "sim/frame/part_names.h"
 
 #include <gtest/gtest.h>
 
