@@ -81,6 +81,10 @@ void draw_mark(Image& image, const KeyEntry& entry, const PixelBox& box, double 
 
 }  // namespace
 
+KeyEntry ghost_key(const Ghost& ghost) {
+  return {"Ghost: at rest", {ghost.color}, KeyEntry::Mark::sheet};
+}
+
 Eigen::Vector3f color_of(const KeyEntry& entry, double share) {
   if (entry.mark != KeyEntry::Mark::scale) return entry.colors.front();
   const double at = share * static_cast<double>(entry.colors.size() - 1);

@@ -8,6 +8,7 @@
 #include "render/backdrop.h"
 #include "render/image.h"
 #include "render/lettering.h"
+#include "render/overlays.h"
 #include "render/paint.h"
 
 namespace condyle {
@@ -21,6 +22,9 @@ struct KeyEntry {
   std::vector<Eigen::Vector3f> colors;
   Mark mark = Mark::line;
 };
+
+/// What a ghost is.
+KeyEntry ghost_key(const Ghost& ghost);
 
 /// Colour at a share of the mark's width.
 Eigen::Vector3f color_of(const KeyEntry& entry, double share);

@@ -190,7 +190,12 @@ Image PictureTaker::drawn(const View& view, const Camera& camera, const Shot& sh
 }
 
 Overlays PictureTaker::overlays_of(const FrameState& state, bool with_paths) const {
-  if (plan_.window) return plan_.window->overlays(state);
+  Overlays all = plan_.window ? plan_.window->overlays(state) : chosen_overlays(state, with_paths);
+  if (plan_.settings.ghost) all.key.push_back(ghost_key(*plan_.settings.ghost));
+  return all;
+}
+
+Overlays PictureTaker::chosen_overlays(const FrameState& state, bool with_paths) const {
   Overlays all;
   all.lines = overlay_lines(subject_.scene, state, plan_.overlays);
   if (plan_.overlays.paths && with_paths) all.lines["paths"] = paths_.lines();

@@ -88,7 +88,9 @@ class PictureTaker {
   Image finished(const View& view, int frame, const Shot& shot) const;
   /// Whether any camera still wants the frame.
   bool wanted(int frame) const;
+  /// Of the window or of the command, with a key to all of it.
   Overlays overlays_of(const FrameState& state, bool with_paths) const;
+  Overlays chosen_overlays(const FrameState& state, bool with_paths) const;
 
   const RecordingSubject subject_;
   PicturePlan plan_;

@@ -113,8 +113,7 @@ ViewRect Panels::Drawing::legend() {
 /// Marks of overlays and what they are; in columns, down to the cube.
 ViewRect Panels::Drawing::key() {
   std::vector<KeyEntry> entries(input.key.begin(), input.key.end());
-  if (view.look.ghost)
-    entries.push_back({"Ghost: at rest", {Ghost{}.color}, KeyEntry::Mark::sheet});
+  if (view.look.ghost) entries.push_back(ghost_key({}));
   if (entries.empty()) return {};
   const Theme& theme = panels.theme_;
   const ViewRect& r = layout.view;

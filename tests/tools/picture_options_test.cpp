@@ -68,6 +68,14 @@ TEST_F(PictureOptions, EachOfThemChangesThePicture) {
   }
 }
 
+TEST_F(PictureOptions, AGhostIsInTheKey) {
+  opened("plain", {});
+  opened("ghost", {"--overlay", "ghost"});
+  const Picture plain(folder_ / "plain/frames/000000.png"),
+      ghost(folder_ / "ghost/frames/000000.png");
+  EXPECT_TRUE(unlike(ghost, plain, 1e-3)) << "nothing has moved yet: the key alone";
+}
+
 TEST_F(PictureOptions, SeveralCamerasAndAPathAreRecordedAtOnce) {
   write_text(folder_ / "around.json",
              R"({"path": [{"view": "front"}, {"view": "left", "distance_mm": 300}]})");
