@@ -252,9 +252,10 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   const auto tissue_share = tissue_of_columns(skin, column_settings.finer);
   const double depth_share =
       static_cast<double>(asked_layers.share.size()) / static_cast<double>(layers.share.size());
+  const double firmness = firmness_over_usual(asked_layers);
   const auto anchor = [&](int node, double share, double stiffness) {
     const bool inner = node % sheets == sheets - 1;
-    stiffness *= tissue_share[node / sheets] * (inner ? 1 : depth_share);
+    stiffness *= firmness * tissue_share[node / sheets] * (inner ? 1 : depth_share);
     net.anchor_node.push_back(node);
     net.anchor_stiffness.push_back(stiffness);
     model->anchor_share.push_back(share);
@@ -339,6 +340,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
                                  model->node_share, model->path.pose(widest_rad)},
                                 jaw_mesh(patient, Body::cranium), jaw_mesh(patient, Body::mandible),
                                 settings.threads);
+  model->contact.firmness = firmness;
   net.may_touch = lips_that_may_touch(model->contact, model->rest);
 
   // Nothing moves before surgery: strains that carry turgor and weight.

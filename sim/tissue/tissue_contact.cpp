@@ -318,6 +318,7 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
 
 Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads,
               NearJaws* known, double firmness) {
+  firmness *= contact.firmness;
   const TouchSettings on_jaw{.stiffness = firmness * TouchSettings{}.stiffness};
   Looks looks(contact_lists);
   const auto jaw = [&](const TissueContact::Jaw& of, const Pose& X_CJ, std::vector<Touch>& touches,

@@ -39,6 +39,7 @@ struct TissueContact {
   Lip upper, lower;
   SkinFold fold;
   int lip_points_left_out = 0;  // too deep in the other lip at rest
+  double firmness = 1;          // over the usual: of tissue that is firmer than living
 };
 
 /// What is known of the sheet when contact is set up.

@@ -1,5 +1,7 @@
 #include "sim/tissue/tissue_layers.h"
 
+#include <algorithm>
+
 namespace condyle {
 
 LayerStack layers_of(const TissuePlan& plan) {
@@ -18,6 +20,13 @@ LayerStack layers_of(const TissuePlan& plan) {
     stack.material.push_back(material);
   }
   return stack;
+}
+
+double firmness_over_usual(const LayerStack& layers) {
+  constexpr double held_well_MPa = 0.1;
+  double softest = layers.material.front().modulus_MPa;
+  for (const auto& material : layers.material) softest = std::min(softest, material.modulus_MPa);
+  return std::max(1.0, softest / held_well_MPa);
 }
 
 SpringPrismNet net_of(const TissuePlan& plan, const LayerStack& layers,

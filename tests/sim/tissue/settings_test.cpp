@@ -52,6 +52,22 @@ TEST(TissueSettings, NothingMovesBeforeSurgeryUnderTurgorAndWeightInAnyDirection
   }
 }
 
+// Without weight the answer depends on no stiffness, only on its shares.
+TEST(TissueSettings, TissueFirmerThanAnyLivingSettlesWhereOrdinaryDoes) {
+  std::vector<Nodes> ends;
+  for (const double modulus_MPa : {0.1, 100.0}) {
+    const auto model = plain_model({.layers = {{.share = 1, .modulus_MPa = modulus_MPa}}});
+    TissueState state = rest_tissue(*model);
+    for (int degrees = 2; degrees <= 20; degrees += 2) {
+      state = follow(*model, state, opening(plain_patient(), degrees));
+      EXPECT_TRUE(state.converged) << modulus_MPa << " MPa at " << degrees << " degrees";
+      EXPECT_LT(state.penetration_mm, 0.2);
+    }
+    ends.push_back(state.nodes);
+  }
+  EXPECT_LT(farthest(ends[0], ends[1]), 0.02);
+}
+
 TEST(TissueSettings, LayersHaveTheirOwnShareStiffnessAndMass) {
   TissuePlan plan;
   plan.layers = {{.share = 0.3, .modulus_MPa = 0.08, .mass_kg = 0.05}, {.share = 0.7}};
