@@ -238,6 +238,13 @@ TEST_F(WindowSession, ThemeScaleSizesAndTabsAreKeptBetweenRunsAndTheCommandLineW
   EXPECT_LT(brightness(), 80);
   quit();
   EXPECT_EQ(read_text(kept), before);
+  start({patient, "--motion", "rest", "--size", "1280x720", "--ui-scale", "4"});
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return s.value("said", "").find("400 % do not fit into this window") != std::string::npos;
+  })) << state().value("said", "nothing");
+  ASSERT_TRUE(wait_until(idle));
+  quit();
+  EXPECT_EQ(read_text(kept), before);
 
   // A broken file: a sentence, and a window as at first.
   write_text(kept, before.substr(0, before.size() / 2));
