@@ -7,8 +7,8 @@
 #include <cstring>
 #include <exception>
 
-#include "engine/minimize/minimize.h"
-#include "engine/tissue/refreshing.h"
+#include "engine/tissue/refactorization.h"
+#include "tools/bench/baseline/baseline_minimizers.h"
 #include "tools/peers/peers.h"
 
 namespace condyle::peers {
@@ -35,7 +35,7 @@ void race_all(const TissueTarget& target, const char* start, int repeats, Json& 
                        {"p95", result.p95_ms},
                        {"unit", "ms"},
                        {"cpu_median", result.cpu_ms},
-                       {"nodes", target.set.net.node_count},
+                       {"nodes", target.set.mesh.node_count},
                        {"threads", 1},
                        {"method", method},
                        {"start", start},
@@ -51,20 +51,23 @@ void race_all(const TissueTarget& target, const char* start, int repeats, Json& 
   const auto with = [&](auto solver) {
     return [&target, solver](double tolerance, Nodes& x) { return solver(target, tolerance, x); };
   };
-  SpringPrismEnergy energy(target.set.net, target.loads, 1, target.runs);
-  const HessianFactor factor(target.set.net, target.rest_loads, target.set.sheets, target.set.rest);
+  SpringPrismEnergy energy(target.set.mesh, target.loads, 1, target.batches);
+  const HessianFactor factor(target.set.mesh, target.rest_loads, target.set.sheets,
+                             target.set.rest);
   if (target.begun.empty())
     add("tissue.cold", "condyle", [&](double tolerance, Nodes& x) {
       MinimizeSettings settings;
       settings.tolerance_mm = tolerance;
       settings.max_step_mm = bench_step_mm;
-      return minimize_refreshing(target.set.net, target.loads, energy, factor, settings, x).energy;
+      return minimize_with_refactorization(target.set.mesh, target.loads, energy, factor, settings,
+                                           x)
+          .energy;
     });
   add("tissue.cold", "cg_parabolic", [&](double tolerance, Nodes& x) {
     MinimizeSettings settings;
     settings.tolerance_mm = tolerance;
     settings.max_iterations = 20000;
-    return minimize(Method::cg_parabolic, energy, settings, x).energy;
+    return minimize_with(Method::cg_parabolic, energy, settings, x).energy;
   });
   add("tissue.peer", "ceres_lbfgs", with(ceres_lbfgs));
   add("tissue.peer", "nlopt_lbfgs", with(nlopt_lbfgs));
@@ -80,10 +83,10 @@ int run(const std::string& which) {
   Json json;
   json["machine"] = machine_json();
   fmt::print(stderr, "{} positions, cold, one thread; target {} mm and {} of the energy\n",
-             target.set.net.node_count, target_mm, target_energy);
+             target.set.mesh.node_count, target_mm, target_energy);
   race_all(target, "rest", small ? 15 : 3, json["results"]);
   if (!small) {
-    const HessianFactor factor(target.set.net, target.rest_loads, target.set.sheets,
+    const HessianFactor factor(target.set.mesh, target.rest_loads, target.set.sheets,
                                target.set.rest);
     target.begun = StoredOpening(target, factor, 1).start(target, bench_movement());
     race_all(target, "stored opening", 3, json["results"]);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/tissue_target.h"
+#include "tools/bench/baseline/tissue_target.h"
 
 /// Other people's minimisers on the same energy, from the same start. Each leaves its answer in x
 /// and returns the energy there; `tolerance` is the library's own, as named.
@@ -10,7 +10,7 @@ namespace condyle::peers {
 class FlatEnergy {
  public:
   FlatEnergy(const TissueTarget& target)
-      : target_(target), energy_(target.set.net, target.loads, 1), x_(target.start()) {}
+      : target_(target), energy_(target.set.mesh, target.loads, 1), x_(target.start()) {}
   std::size_t size() const { return 3 * x_.size(); }
   /// gradient may be null.
   double operator()(const double* x, double* gradient);
