@@ -8,15 +8,15 @@ namespace {
 using Four = FourFloats;
 typedef int Mask __attribute__((vector_size(16)));
 
-/// Of lengths, sums and turns in single precision: some ten roundings of 6e-8.
+/// Relative error of lengths, sums and rotations in single precision: some ten roundings of 6e-8.
 constexpr double lost = 2e-6;
 
 Four same(double value) {
   const auto v = static_cast<float>(value);
   return Four{v, v, v, v};
 }
-Four of_a(const BoxTwins::Two& v) { return Four{v[0], v[0], v[1], v[1]}; }
-Four of_b(const BoxTwins::Two& v) { return Four{v[0], v[1], v[0], v[1]}; }
+Four of_a(const BoxPair::Two& v) { return Four{v[0], v[0], v[1], v[1]}; }
+Four of_b(const BoxPair::Two& v) { return Four{v[0], v[1], v[0], v[1]}; }
 
 Four absolute(Four v) {
   constexpr Mask all_but_sign = {0x7fffffff, 0x7fffffff, 0x7fffffff, 0x7fffffff};
@@ -30,8 +30,8 @@ Four dot(const Four* v, const Four* w) { return v[0] * w[0] + v[1] * w[1] + v[2]
 
 }  // namespace
 
-void BoxTwins::set(int which, const Eigen::Vector3d& middle, const Eigen::Vector3d& half_lengths,
-                   const Eigen::Matrix3d& directions, int held) {
+void BoxPair::set(int which, const Eigen::Vector3d& middle, const Eigen::Vector3d& half_lengths,
+                  const Eigen::Matrix3d& directions, int held) {
   const auto k = static_cast<std::size_t>(which);
   for (int i = 0; i < 3; ++i) {
     center[i][k] = static_cast<float>(middle[i]);
@@ -41,12 +41,13 @@ void BoxTwins::set(int which, const Eigen::Vector3d& middle, const Eigen::Vector
   node[k] = held;
 }
 
-float BoxTwins::squared_radius(int which) const {
+float BoxPair::squared_radius(int which) const {
   const auto k = static_cast<std::size_t>(which);
   return half[0][k] * half[0][k] + half[1][k] * half[1][k] + half[2][k] * half[2][k];
 }
 
-BoxTurn::BoxTurn(const Eigen::Matrix3d& turn, const Eigen::Vector3d& shift, double reach_mm)
+BoxTransform::BoxTransform(const Eigen::Matrix3d& turn, const Eigen::Vector3d& shift,
+                           double reach_mm)
     : uncertain_mm(static_cast<float>(lost * (reach_mm + shift.norm()))) {
   for (int i = 0; i < 3; ++i) {
     t[i] = same(shift[i]);
@@ -54,9 +55,9 @@ BoxTurn::BoxTurn(const Eigen::Matrix3d& turn, const Eigen::Vector3d& shift, doub
   }
 }
 
-// Each box is seen in the axes of the other, where the gaps along the three axes add up by
+// Each box is projected on the axes of the other; the gaps along the three axes combine by
 // Pythagoras.
-FourFloats gap_bounds(const BoxTwins& a, const BoxTwins& b, const BoxTurn& X) {
+FourFloats gap_bounds(const BoxPair& a, const BoxPair& b, const BoxTransform& X) {
   Four axes_a[3][3], axes_b[3][3], between[3];  // in a's body; of each axis
   const Four center_b[3] = {of_b(b.center[0]), of_b(b.center[1]), of_b(b.center[2])};
   for (int j = 0; j < 3; ++j) between[j] = dot(X.R[j], center_b) + X.t[j] - of_a(a.center[j]);
@@ -88,8 +89,8 @@ FourFloats gap_bounds(const BoxTwins& a, const BoxTwins& b, const BoxTurn& X) {
   return gaps - X.uncertain_mm;
 }
 
-BoxSight::BoxSight(const Eigen::Vector3d& direction, const Eigen::Matrix3d& R,
-                   const Eigen::Vector3d& t) {
+BoxDirection::BoxDirection(const Eigen::Vector3d& direction, const Eigen::Matrix3d& R,
+                           const Eigen::Vector3d& t) {
   const Eigen::Vector3d in_b = R.transpose() * direction;
   for (int i = 0; i < 3; ++i) {
     const auto u = static_cast<float>(direction[i]), v = static_cast<float>(in_b[i]);
@@ -99,9 +100,9 @@ BoxSight::BoxSight(const Eigen::Vector3d& direction, const Eigen::Matrix3d& R,
   shift = Four{0, 0, along, along};
 }
 
-FourFloats gaps_along(const BoxTwins& a, const BoxTwins& b, const BoxSight& sight,
+FourFloats gaps_along(const BoxPair& a, const BoxPair& b, const BoxDirection& sight,
                       float uncertain_mm) {
-  const auto both = [](const BoxTwins::Two& v, const BoxTwins::Two& w) {
+  const auto both = [](const BoxPair::Two& v, const BoxPair::Two& w) {
     return Four{v[0], v[1], w[0], w[1]};
   };
   Four middle = sight.shift, half = {};
@@ -111,7 +112,8 @@ FourFloats gaps_along(const BoxTwins& a, const BoxTwins& b, const BoxSight& sigh
     for (int j = 0; j < 3; ++j) seen += sight.n[j] * both(a.axes[i][j], b.axes[i][j]);
     half += absolute(seen) * both(a.half[i], b.half[i]);
   }
-  const Four high = middle + half, low = middle - half;  // of a's the high, of b's the low count
+  const Four high = middle + half,
+             low = middle - half;  // of a the high values count, of b the low ones
   return Four{low[2], low[3], low[2], low[3]} - Four{high[0], high[0], high[1], high[1]} -
          uncertain_mm;
 }

@@ -7,46 +7,47 @@ namespace condyle {
 
 typedef float FourFloats __attribute__((vector_size(16)));
 
-/// Both children of a tree's node, for quick bounds of the gaps to those of another. FCL's own
-/// (between its swept rectangles) is exact but many times slower, and most pairs of boxes need only
-/// be known to be far enough. Single precision: what it loses is taken off the bound.
-struct alignas(64) BoxTwins {
-  typedef std::array<float, 2> Two;  // of each box one
+/// The boxes of both children of a tree node, stored for fast lower bounds of the gaps to the boxes
+/// of another node. FCL's own distance (between its swept rectangles) is exact but many times
+/// slower, and for most pairs of boxes it suffices to know that they are far enough apart. Single
+/// precision: the rounding error is subtracted from the bound.
+struct alignas(64) BoxPair {
+  typedef std::array<float, 2> Two;  // one of each box
 
-  /// axes: columns; half: half lengths along them; node: what the box holds, as the caller numbers.
+  /// axes: as columns; half: half lengths along them; node: the caller's index of the contents.
   void set(int which, const Eigen::Vector3d& center, const Eigen::Vector3d& half,
            const Eigen::Matrix3d& axes, int node);
 
   Two center[3] = {}, half[3] = {}, axes[3][3] = {};  // coordinates; of each axis
   std::array<int, 2> node{};
 
-  float squared_radius(int which) const;  // of the ball around the box
+  float squared_radius(int which) const;  // of the bounding sphere
 };
 
-/// The pose of b's body in a's, for many bounds. `reach_mm`: no farther are the boxes' corners from
-/// the origins of their bodies, both together.
-struct BoxTurn {
-  BoxTurn(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double reach_mm);
-  FourFloats R[3][3], t[3];  // four times the same; row, column
-  float uncertain_mm;        // of gaps
+/// The pose of body b in body a, prepared for many bounds. `reach_mm`: upper bound of the sum of
+/// the distances of the boxes' corners from the origins of their bodies.
+struct BoxTransform {
+  BoxTransform(const Eigen::Matrix3d& R, const Eigen::Vector3d& t, double reach_mm);
+  FourFloats R[3][3], t[3];  // each value four times; row, column
+  float uncertain_mm;        // error of the gaps
 };
 
-/// No more than the gaps between the boxes: a's first and b's first, a's first and b's second, a's
-/// second and b's first, both second.
-FourFloats gap_bounds(const BoxTwins& a, const BoxTwins& b, const BoxTurn& X);
+/// Lower bounds of the gaps between the boxes, in this order: a's first and b's first, a's first
+/// and b's second, a's second and b's first, both second.
+FourFloats gap_bounds(const BoxPair& a, const BoxPair& b, const BoxTransform& X);
 
-/// A direction of the world from a's body to b's, for many bounds.
-struct BoxSight {
-  BoxSight() = default;
-  /// `n`: unit, in a's body; the pose of b's as above.
-  BoxSight(const Eigen::Vector3d& n, const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
-  FourFloats n[3] = {};   // twice in a's body, twice in b's
-  FourFloats shift = {};  // along it, of b's body: twice 0, twice that
+/// A direction from body a to body b, prepared for many bounds.
+struct BoxDirection {
+  BoxDirection() = default;
+  /// `n`: unit, in the coordinates of a; R, t: the pose of b in a.
+  BoxDirection(const Eigen::Vector3d& n, const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
+  FourFloats n[3] = {};   // twice in the coordinates of a, twice in those of b
+  FourFloats shift = {};  // of body b along it: twice 0, twice the value
 };
 
-/// The same as gap_bounds, of gaps along the direction alone: weaker but where boxes face each
-/// other along it, and quick. `uncertain_mm`: of BoxTurn.
-FourFloats gaps_along(const BoxTwins& a, const BoxTwins& b, const BoxSight& sight,
+/// As gap_bounds, but of the gaps along the direction alone: weaker except where boxes face each
+/// other along it, and faster. `uncertain_mm`: of BoxTransform.
+FourFloats gaps_along(const BoxPair& a, const BoxPair& b, const BoxDirection& sight,
                       float uncertain_mm);
 
 }  // namespace condyle

@@ -25,7 +25,8 @@ double gap(const Box& a, const Box& b) {
   return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
 }
 
-/// FCL would put a ball's box around whatever is turned: ours is tighter, and is set by hand.
+/// FCL would use the box of a sphere around a rotated body; this box is tighter and is set
+/// directly.
 class Placed final : public fcl::CollisionObjectd {
  public:
   Placed(const std::shared_ptr<fcl::CollisionGeometryd>& shape, int body)
@@ -34,7 +35,8 @@ class Placed final : public fcl::CollisionObjectd {
   int number;
 };
 
-/// One tree with its objects. Where they were before decides how the tree looks, not what it finds.
+/// One tree with its objects. Earlier positions influence the shape of the tree but not its
+/// answers.
 class Tree {
  public:
   explicit Tree(std::size_t count) {
@@ -71,7 +73,7 @@ class Tree {
     auto& found = *static_cast<Found*>(data);
     const auto [a, b] =
         std::minmax(static_cast<Placed*>(one)->number, static_cast<Placed*>(two)->number);
-    // Grown boxes meet a little farther off than the reach where they pass corner by corner.
+    // Expanded boxes overlap slightly beyond the reach where they approach corner to corner.
     if (gap(found.boxes[static_cast<std::size_t>(a)], found.boxes[static_cast<std::size_t>(b)]) <=
         found.reach_mm)
       found.pairs.push_back({a, b});
@@ -87,7 +89,7 @@ class Tree {
 struct Broadphase::State {
   std::vector<Box> boxes;  // of each body, its own coordinates
   std::mutex mutex;
-  std::vector<std::unique_ptr<Tree>> idle;  // as many as threads have asked at once
+  std::vector<std::unique_ptr<Tree>> idle;  // as many as threads have queried at the same time
 };
 
 Broadphase::Broadphase(std::span<const CollisionMesh* const> bodies)

@@ -16,11 +16,12 @@ struct BodyPair {
   auto operator<=>(const BodyPair&) const = default;
 };
 
-/// Which of many bodies are near enough to each other to be looked at: boxes in a tree (FCL's
-/// DynamicAABBTreeCollisionManager), kept warm from query to query.
+/// Finds which of many bodies are near enough to each other to be examined: a tree of boxes (FCL's
+/// DynamicAABBTreeCollisionManager) that is updated from query to query.
 class Broadphase {
  public:
-  /// Bodies are numbered in the order given. Only their boxes are kept: the surfaces may go away.
+  /// Bodies are numbered in the given order. Only their boxes are kept; the surfaces may be
+  /// destroyed.
   explicit Broadphase(std::span<const CollisionMesh* const> bodies);
   ~Broadphase();
   Broadphase(Broadphase&&) noexcept;
@@ -28,7 +29,8 @@ class Broadphase {
 
   /// Pairs whose boxes (along the world's axes, around the body's own box) are at most `reach_mm`
   /// (>= 0) apart; sorted. Every pair whose surfaces are that near is among them. shape: one finite
-  /// pose per body. The answer depends on the arguments alone; several threads may ask at once.
+  /// pose per body. The result depends on the arguments alone; several threads may query at the
+  /// same time.
   std::vector<BodyPair> near(std::span<const Pose> X_WB, double reach_mm) const;
 
   int body_count() const;

@@ -22,7 +22,7 @@ namespace {
 using Bounds = fcl::OBBRSSd;
 using Model = fcl::BVHModel<Bounds>;
 
-// The packaged library was built for 16; a file with wider vector flags would not fit it.
+// The packaged library was built with an alignment of 16; wider vector flags would be incompatible.
 static_assert(alignof(fcl::Transform3d) == 16);
 
 fcl::Transform3d transform(const Pose& X) {
@@ -32,36 +32,36 @@ fcl::Transform3d transform(const Pose& X) {
   return T;
 }
 
-/// The tree is cut at this depth into regions of its surface.
+/// At this depth the tree is divided into regions of its surface.
 constexpr int region_depth = 6;
 constexpr int region_count = 1 << region_depth;
 
 struct Surface {
   Model model;
-  std::vector<BoxTwins> twins;  // the root alone, then the children of each inner node
-  double reach_mm = 0;          // no corner of a box is farther from the origin
-  std::vector<int> region;      // of each node; -1 above the cut
+  std::vector<BoxPair> boxes;  // the root alone, then the children of each inner node
+  double reach_mm = 0;         // no corner of a box is farther from the origin
+  std::vector<int> region;     // of each node; -1 above the cut
 };
 
-/// What a twin holds: a triangle, or where the twins in it are.
+/// Contents of a box: a triangle, or the index of its children's boxes.
 int holding_triangle(int triangle) { return -1 - triangle; }
 bool holds_triangle(int held) { return held < 0; }
 int held_triangle(int held) { return -1 - held; }
 
-void describe_nodes(Surface& surface, int node, int depth, int region, std::size_t twins,
+void describe_nodes(Surface& surface, int node, int depth, int region, std::size_t boxes,
                     int which) {
   const auto& bv = surface.model.getBV(node);
   const auto& box = bv.bv.obb;
   const int held =
-      bv.isLeaf() ? holding_triangle(bv.primitiveId()) : static_cast<int>(surface.twins.size());
-  surface.twins[twins].set(which, box.To, box.extent, box.axis, held);
+      bv.isLeaf() ? holding_triangle(bv.primitiveId()) : static_cast<int>(surface.boxes.size());
+  surface.boxes[boxes].set(which, box.To, box.extent, box.axis, held);
   surface.reach_mm = std::max(surface.reach_mm, box.To.norm() + box.extent.norm());
   surface.region[node] = depth >= region_depth ? region % region_count : -1;
   if (bv.isLeaf()) return;
-  // The path from the root, written as bits, numbers the regions.
+  // The path from the root, as bits, is the index of the region.
   const int next = depth < region_depth ? 2 * region : region;
-  const std::size_t inner = surface.twins.size();
-  surface.twins.emplace_back();
+  const std::size_t inner = surface.boxes.size();
+  surface.boxes.emplace_back();
   describe_nodes(surface, bv.leftChild(), depth + 1, next, inner, 0);
   describe_nodes(surface, bv.rightChild(), depth + 1, depth < region_depth ? next + 1 : next, inner,
                  1);
@@ -77,49 +77,50 @@ Triangle corners(const Model& model, int triangle, const fcl::Transform3d& X) {
   return {X * model.vertices[t[0]], X * model.vertices[t[1]], X * model.vertices[t[2]]};
 }
 
-/// Some of a node's twins: from..to - 1.
-struct Some {
-  const BoxTwins* twins;
+/// A range of a node's boxes: from..to - 1.
+struct ChildRange {
+  const BoxPair* boxes;
   int from, to;
-  int held(int k) const { return twins->node[static_cast<std::size_t>(k)]; }
-  Some one(int k) const { return {twins, k, k + 1}; }
+  int held(int k) const { return boxes->node[static_cast<std::size_t>(k)]; }
+  ChildRange one(int k) const { return {boxes, k, k + 1}; }
 };
 
-/// Of a pair of boxes that do not both hold triangles both are opened, but for one that is much the
-/// smaller. The twins: of the trees.
-std::pair<Some, Some> opened(const Some& a, const Some& b, const BoxTwins* twins_a,
-                             const BoxTwins* twins_b) {
+/// Descends in a pair of boxes that are not both leaves: in both, except where one is much smaller
+/// than the other. `boxes_a`, `boxes_b`: of the whole trees.
+std::pair<ChildRange, ChildRange> opened(const ChildRange& a, const ChildRange& b,
+                                         const BoxPair* boxes_a, const BoxPair* boxes_b) {
   constexpr float much = 4;
   const int held_a = a.held(a.from), held_b = b.held(b.from);
-  const float size_a = a.twins->squared_radius(a.from), size_b = b.twins->squared_radius(b.from);
+  const float size_a = a.boxes->squared_radius(a.from), size_b = b.boxes->squared_radius(b.from);
   const bool open_a = !holds_triangle(held_a) && (holds_triangle(held_b) || much * size_a > size_b);
   const bool open_b = !holds_triangle(held_b) && (holds_triangle(held_a) || much * size_b > size_a);
-  return {open_a ? Some{twins_a + held_a, 0, 2} : a, open_b ? Some{twins_b + held_b, 0, 2} : b};
+  return {open_a ? ChildRange{boxes_a + held_a, 0, 2} : a,
+          open_b ? ChildRange{boxes_b + held_b, 0, 2} : b};
 }
 
-/// Surfaces farther apart than this face each other along one line; nearer ones (a condyle in its
-/// fossa, crowns) lie along each other.
+/// Surfaces farther apart than this have one dominant direction between them; nearer surfaces (a
+/// condyle in its fossa, crowns) are close over an area.
 constexpr double facing_mm = 10;
 
-/// Walks FCL's two trees, four pairs of boxes at once. Pairs of triangles are measured by our own
-/// exact distance, because FCL's loses digits, and at times the answer, where edges are parallel.
-/// All in A's coordinates.
+/// Traverses FCL's two trees, four pairs of boxes at a time. Pairs of triangles are measured by
+/// triangle_distance, because FCL's triangle distance loses digits, and occasionally the answer,
+/// where edges are parallel. All in the coordinates of A.
 class NearestPair {
  public:
-  /// start: measured first, if there are such triangles. Only what is nearer than the bound counts.
+  /// start: the pair measured first, where valid. Only distances below the bound count.
   NearestPair(const Surface& a, const Surface& b, const fcl::Transform3d& X, TrianglePair start,
               double bound_mm2)
       : a_(a.model),
         b_(b.model),
-        twins_a_(a.twins.data()),
-        twins_b_(b.twins.data()),
+        boxes_a_(a.boxes.data()),
+        boxes_b_(b.boxes.data()),
         X_(X),
         turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm) {
     best.squared_mm2 = bound_mm2;
     best_mm = std::sqrt(bound_mm2);
     if (start.a >= 0 && start.a < a_.num_tris && start.b >= 0 && start.b < b_.num_tris)
       measure(start);
-    look({twins_a_, 0, 1}, {twins_b_, 0, 1});
+    look({boxes_a_, 0, 1}, {boxes_b_, 0, 1});
   }
 
   TriangleGap best;
@@ -127,19 +128,19 @@ class NearestPair {
   TrianglePair triangles;
 
  private:
-  void look(const Some& a, const Some& b) {
+  void look(const ChildRange& a, const ChildRange& b) {
     const auto limit = static_cast<float>(best_mm);
     const bool facing = best_mm > facing_mm;
     FourFloats along;
     if (facing) {
-      along = gaps_along(*a.twins, *b.twins, sight_, turned_.uncertain_mm);
+      along = gaps_along(*a.boxes, *b.boxes, sight_, turned_.uncertain_mm);
       bool any = false;
       for (int i = a.from; i < a.to; ++i)
         for (int k = b.from; k < b.to; ++k) any |= along[2 * i + k] < limit;
       if (!any) return;
     }
-    const FourFloats gaps = gap_bounds(*a.twins, *b.twins, turned_);
-    // The nearest first.
+    const FourFloats gaps = gap_bounds(*a.boxes, *b.boxes, turned_);
+    // The nearest pair first.
     std::array<int, 4> lanes;
     int count = 0;
     for (int i = a.from; i < a.to; ++i)
@@ -153,11 +154,11 @@ class NearestPair {
     for (int n = 0; n < count && gaps[lanes[n]] < best_mm; ++n)
       open(a.one(lanes[n] / 2), b.one(lanes[n] % 2));
   }
-  void open(const Some& a, const Some& b) {
+  void open(const ChildRange& a, const ChildRange& b) {
     const int held_a = a.held(a.from), held_b = b.held(b.from);
     if (holds_triangle(held_a) && holds_triangle(held_b))
       return measure({held_triangle(held_a), held_triangle(held_b)});
-    const auto [in_a, in_b] = opened(a, b, twins_a_, twins_b_);
+    const auto [in_a, in_b] = opened(a, b, boxes_a_, boxes_b_);
     look(in_a, in_b);
   }
   void measure(TrianglePair pair) {
@@ -171,9 +172,9 @@ class NearestPair {
     const Eigen::Vector3d between = gap.q - gap.p;
     if (between.squaredNorm() <= 0) return;
     across_ = between.normalized();
-    sight_ = BoxSight(across_, X_.linear(), X_.translation());
+    sight_ = BoxDirection(across_, X_.linear(), X_.translation());
   }
-  /// No more than the gap of two triangles.
+  /// Lower bound of the gap of two triangles.
   double gap_along(const Triangle& a, const Triangle& b) const {
     double high = across_.dot(a[0]), low = across_.dot(b[0]);
     for (int k = 1; k < 3; ++k) {
@@ -185,31 +186,31 @@ class NearestPair {
 
   const Model& a_;
   const Model& b_;
-  const BoxTwins *twins_a_, *twins_b_;
+  const BoxPair *boxes_a_, *boxes_b_;
   fcl::Transform3d X_;  // of B in A
-  BoxTurn turned_;
-  // From the surface of A to that of B, where they are nearest so far: most of what lies around is
-  // told to be farther by this alone.
-  Eigen::Vector3d across_ = Eigen::Vector3d::Zero();  // unit, or nothing yet
-  BoxSight sight_;
+  BoxTransform turned_;
+  // Direction between the nearest points found so far, from A to B: for most of the surroundings it
+  // proves a larger distance by itself.
+  Eigen::Vector3d across_ = Eigen::Vector3d::Zero();  // unit; zero before the first result
+  BoxDirection sight_;
 };
 
-/// Looks in the same way for a part of B that may have met A on its way. All in A's coordinates,
-/// but B's way.
+/// The same traversal for parts of B that may have met A on their path. All in the coordinates of
+/// A, except the path of B.
 class MetOnWay {
  public:
-  MetOnWay(const Surface& a, const Surface& b, const fcl::Transform3d& X, const BodyWay& way,
+  MetOnWay(const Surface& a, const Surface& b, const fcl::Transform3d& X, const BodyPath& way,
            double kept_mm)
       : a_(a.model),
         b_(b.model),
-        twins_a_(a.twins.data()),
-        twins_b_(b.twins.data()),
+        boxes_a_(a.boxes.data()),
+        boxes_b_(b.boxes.data()),
         X_(X),
         turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm),
         way_(way),
         kept_mm_(kept_mm) {}
 
-  bool found() const { return look({twins_a_, 0, 1}, {twins_b_, 0, 1}); }
+  bool found() const { return look({boxes_a_, 0, 1}, {boxes_b_, 0, 1}); }
   bool found_at(TrianglePair pair) const {
     if (pair.a < 0 || pair.a >= a_.num_tris || pair.b < 0 || pair.b >= b_.num_tris) return false;
     double longest = 0;
@@ -222,8 +223,8 @@ class MetOnWay {
   }
 
  private:
-  bool look(const Some& a, const Some& b) const {
-    const FourFloats gaps = gap_bounds(*a.twins, *b.twins, turned_);
+  bool look(const ChildRange& a, const ChildRange& b) const {
+    const FourFloats gaps = gap_bounds(*a.boxes, *b.boxes, turned_);
     for (int k = b.from; k < b.to; ++k) {
       const double reach = longest(b, k) + kept_mm_;
       for (int i = a.from; i < a.to; ++i)
@@ -232,28 +233,28 @@ class MetOnWay {
     }
     return false;
   }
-  bool open(const Some& a, const Some& b) const {
+  bool open(const ChildRange& a, const ChildRange& b) const {
     const int held_a = a.held(a.from), held_b = b.held(b.from);
     if (holds_triangle(held_a) && holds_triangle(held_b))
       return found_at({held_triangle(held_a), held_triangle(held_b)});
-    const auto [in_a, in_b] = opened(a, b, twins_a_, twins_b_);
+    const auto [in_a, in_b] = opened(a, b, boxes_a_, boxes_b_);
     return look(in_a, in_b);
   }
-  /// Way of any point of a box.
-  double longest(const Some& b, int k) const {
+  /// Upper bound of the path length of any point of a box.
+  double longest(const ChildRange& b, int k) const {
     const auto which = static_cast<std::size_t>(k);
-    const auto& center = b.twins->center;
-    const double radius = std::sqrt(static_cast<double>(b.twins->squared_radius(k)));
+    const auto& center = b.boxes->center;
+    const double radius = std::sqrt(static_cast<double>(b.boxes->squared_radius(k)));
     return way_.length({center[0][which], center[1][which], center[2][which]}, radius) +
            static_cast<double>(turned_.uncertain_mm);
   }
 
   const Model& a_;
   const Model& b_;
-  const BoxTwins *twins_a_, *twins_b_;
+  const BoxPair *boxes_a_, *boxes_b_;
   fcl::Transform3d X_;  // of B in A
-  BoxTurn turned_;
-  const BodyWay& way_;
+  BoxTransform turned_;
+  const BodyPath& way_;
   double kept_mm_;
 };
 
@@ -268,7 +269,7 @@ class CrossingPairs final : public fcl::detail::MeshCollisionTraversalNodeOBBRSS
 
   bool BVTesting(int node_a, int node_b) const override {
     const int region = region_[node_a];
-    if (region >= 0 && count_[region] >= per_region_) return true;  // full: passed over
+    if (region >= 0 && count_[region] >= per_region_) return true;  // full: skipped
     return MeshCollisionTraversalNodeOBBRSS::BVTesting(node_a, node_b);
   }
   void leafTesting(int node_a, int node_b) const override {
@@ -321,8 +322,8 @@ CollisionMesh::CollisionMesh(const TriMesh& mesh) : tree_(std::make_unique<Tree>
   model.addSubModel(mesh.vertices, triangles);
   model.endModel();
   tree_->region.resize(static_cast<std::size_t>(model.getNumBVs()));
-  tree_->twins.reserve(triangles.size());
-  tree_->twins.emplace_back();
+  tree_->boxes.reserve(triangles.size());
+  tree_->boxes.emplace_back();
   describe_nodes(*tree_, 0, 0, 0, 0, 0);
 }
 
@@ -356,8 +357,8 @@ bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, 
   return nearest.best_mm == 0;
 }
 
-bool clear_on_way(const CollisionMesh& stays, const Pose& X_WS, const CollisionMesh& moves,
-                  const Pose& X_WM, const BodyWay& way, double kept_mm, TrianglePair start) {
+bool clear_on_path(const CollisionMesh& stays, const Pose& X_WS, const CollisionMesh& moves,
+                   const Pose& X_WM, const BodyPath& way, double kept_mm, TrianglePair start) {
   const MetOnWay met(stays.tree(), moves.tree(), transform(X_WS.inverse() * X_WM), way, kept_mm);
   return !met.found_at(start) && !met.found();
 }
@@ -381,10 +382,10 @@ double overlap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
 }
 
 PlainQuery plain_query(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
-                       const Pose& X_WB, int most_contacts) {
+                       const Pose& X_WB, int max_contacts) {
   const Model &model_a = a.tree().model, &model_b = b.tree().model;
   const fcl::Transform3d X_A = transform(X_WA), X_B = transform(X_WB);
-  const fcl::CollisionRequestd collision(static_cast<std::size_t>(most_contacts), true);
+  const fcl::CollisionRequestd collision(static_cast<std::size_t>(max_contacts), true);
   fcl::CollisionResultd crossing;
   fcl::collide(&model_a, X_A, &model_b, X_B, collision, crossing);
   PlainQuery query;

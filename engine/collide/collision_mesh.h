@@ -28,12 +28,12 @@ struct MeshDistance {
 struct MeshContact {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    // middle of the common segment, world
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, from A to B, of the outward normals
-  double overlap_mm = 0;                              // least move that parts the two triangles
+  double overlap_mm = 0;  // length of the shortest translation that separates the two triangles
   TrianglePair triangles;
 };
 
-/// A surface with its tree of boxes (FCL's BVHModel<OBBRSS>), in its body's own coordinates: built
-/// once, moved by its pose alone. Queries are const and may run on several threads at once.
+/// A surface with its tree of boxes (FCL's BVHModel<OBBRSS>) in body coordinates: built once, moved
+/// by its pose alone. Queries are const and thread-safe.
 class CollisionMesh {
  public:
   /// throws: InputError, see require_sound.
@@ -53,13 +53,12 @@ class CollisionMesh {
   Box box_;
 };
 
-/// Minimum distance, to rounding (about 1e-13 mm). `start`: where an earlier answer was; any valid
-/// pair gives the same distance, a near one sooner.
+/// Minimum distance, to rounding (about 1e-13 mm). `start`: the triangles of an earlier answer; any
+/// valid pair gives the same distance, a near one faster.
 MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
                       const Pose& X_WB, TrianglePair start = {});
 
-/// The same as far as it matters: nothing when the surfaces are `reach_mm` or more apart, which is
-/// told much sooner.
+/// The distance where it is below `reach_mm`; nothing otherwise, which is decided much faster.
 std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh& a,
                                             const Pose& X_WA, const CollisionMesh& b,
                                             const Pose& X_WB, TrianglePair start = {});
@@ -68,49 +67,52 @@ std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh
 bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
               TrianglePair start = {});
 
-/// A body's way to where it is now, at even speed: a pivot of its own coordinates goes straight,
-/// and the body turns about it. All in those coordinates as they are now.
-struct BodyWay {
+/// The path of a body to its present pose, at constant speed: a pivot moves along a straight line
+/// and the body rotates about it. All in body coordinates at the present pose.
+struct BodyPath {
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // of the pivot, mm
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();   // axis times angle, rad
 
-  /// On the way nothing within `radius` of p is farther than this from where it is now.
+  /// Upper bound of the distance between any position on the path and the present position, of all
+  /// points within `radius` of p.
   double length(const Eigen::Vector3d& p, double radius = 0) const {
     const double angle = turn.norm();
-    // What the turn adds up along its arc, and how far the arc bends from that.
+    // Length of the rotation along its arc, and the deviation of the arc from its chord.
     const Eigen::Vector3d along = turn.cross(p - pivot);
     return (shift + along).norm() + angle * (0.5 * along.norm() + radius * (1 + 0.5 * angle));
   }
 };
 
-/// Whether the moving surface was at least `kept_mm` from the other one on its whole way to X_WM,
-/// told from there: each part of it is farther than its own way is long. False does not tell that
-/// it was not. `start`: looked at first; triangles of the one that stays and of the one that moves.
-bool clear_on_way(const CollisionMesh& stays, const Pose& X_WS, const CollisionMesh& moves,
-                  const Pose& X_WM, const BodyWay& way, double kept_mm, TrianglePair start = {});
+/// Whether the moving surface kept a distance of at least `kept_mm` along its whole path to X_WM.
+/// The test is conservative and uses the final pose: each part must be farther away than its own
+/// path is long. False means undecided. `start`: triangles of the fixed and of the moving surface
+/// that are tested first.
+bool clear_on_path(const CollisionMesh& stays, const Pose& X_WS, const CollisionMesh& moves,
+                   const Pose& X_WM, const BodyPath& way, double kept_mm, TrianglePair start = {});
 
-/// Crossing triangles are many where bones grind: a report wants some, spread over the surface.
+/// Deep overlap gives very many crossing triangles; a report needs a limited number, spread over
+/// the surface.
 struct ContactLimits {
   int total = 4096;
-  int per_region = 4096;  // in each of up to 64 regions of A's surface
+  int per_region = 4096;  // in each of up to 64 regions of the surface of A
 };
 
 /// Pairs of crossing triangles, in the tree's order, up to the limits.
 std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
                                   const Pose& X_WB, ContactLimits limits = {});
 
-/// Length of the shortest move that parts the two triangles of a contact, mm.
+/// Length of the shortest translation that separates the two triangles of a contact, mm.
 double overlap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
                TrianglePair triangles);
 
-/// FCL's own queries as they come, cold, on the same trees: what ours are measured against. Its
-/// contacts and distances are not to be relied on (see distance).
+/// FCL's own queries on the same trees, without a warm start: the baseline of the benchmarks. Their
+/// contacts and distances are not reliable (see distance).
 struct PlainQuery {
-  int contacts = 0;  // crossing triangles found, up to `most_contacts`
+  int contacts = 0;  // crossing triangles found, up to `max_contacts`
   double distance_mm = 0;
 };
 PlainQuery plain_query(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
-                       const Pose& X_WB, int most_contacts);
+                       const Pose& X_WB, int max_contacts);
 
 }  // namespace condyle

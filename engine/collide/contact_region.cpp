@@ -13,7 +13,7 @@ namespace {
 using Corners = std::array<Eigen::Vector3d, 3>;
 using RegionCell = std::array<int, 3>;
 
-/// A small piece of B's surface that is in contact.
+/// A small piece of the surface of B that is in contact.
 struct Piece {
   RegionCell cell;
   double area = 0;
@@ -23,7 +23,7 @@ struct Piece {
   int triangle = 0;
 };
 
-/// Gathers the pieces of one contact, in A's coordinates.
+/// Collects the pieces of one contact, in the coordinates of A.
 class Gatherer {
  public:
   Gatherer(const SignedSurface& a, const RegionSettings& settings) : a_(a), settings_(settings) {}
@@ -48,7 +48,7 @@ class Gatherer {
       if (distance - radius > settings_.within_mm) return;
       known_inside = distance + radius < settings_.within_mm;
     }
-    // Without a rim to find, pieces need only be small enough to hang together.
+    // Without a boundary to locate, pieces need only be small enough to be connected.
     if (edge <= (known_inside ? 2 : 1) * settings_.resolution_mm) {
       cut(t);
       return;
@@ -60,7 +60,7 @@ class Gatherer {
     divide({m[0], m[1], m[2]}, known_inside);
   }
 
-  /// Keeps the part of the triangle in which the distance, linear in it, is small enough.
+  /// Keeps the part of the triangle in which the linearly interpolated distance is small enough.
   void cut(const Corners& t) {
     double d[3];
     for (int k = 0; k < 3; ++k) d[k] = a_.distance(t[k]) - settings_.within_mm;

@@ -22,14 +22,14 @@ Twist row_of(const Vector3d& arm, const Vector3d& direction, double rotation_len
   return row;
 }
 
-/// A contact that has joined.
+/// An active contact.
 struct Joined {
   int row = 0;
-  double push = 0, inverse = 0;  // of the row's square
+  double push = 0, inverse = 0;  // 1 / squared norm of the constraint
   bool rubs = false;
   Twist side[2];                  // motions of the point along two tangents
-  double side_inverse = 0;        // of the larger square
-  Eigen::Vector2d drag = {0, 0};  // friction's part, along the tangents
+  double side_inverse = 0;        // 1 / the larger squared norm
+  Eigen::Vector2d drag = {0, 0};  // friction along the tangents
 };
 
 Joined join(const ContactRow& contact, int row, const TwistSettings& settings) {
@@ -47,7 +47,7 @@ Joined join(const ContactRow& contact, int row, const TwistSettings& settings) {
   return joined;
 }
 
-/// Sweeps over the joined contacts until nothing moves any more.
+/// Gauss-Seidel sweeps over the active contacts until convergence.
 void sweep(std::vector<Joined>& joined, const std::vector<ContactRow>& rows,
            const TwistSettings& settings, Twist& x) {
   const double still = 0.02 * settings.tolerance_mm;
@@ -76,20 +76,21 @@ void sweep(std::vector<Joined>& joined, const std::vector<ContactRow>& rows,
   }
 }
 
-/// Rows whose gap a motion closes, worst first: one after the other, as long as the motion stays.
+/// Iterates over the constraints that a motion violates, the worst first, while the motion is
+/// unchanged.
 class Violated {
  public:
   Violated(const std::vector<ContactRow>& rows, double tolerance_mm)
       : rows_(rows), tolerance_mm_(tolerance_mm), given_up_(rows.size(), false) {}
 
-  /// -1: none is left.
+  /// -1: none left.
   int worst(const Twist& x) {
     if (!sorted_) return first(x);
     return next_ < order_.size() ? order_[next_].second : -1;
   }
 
-  /// The worst one is not looked at again. What comes after it is sorted only now: mostly none is
-  /// given up, but where bodies are deep in each other thousands are.
+  /// The worst one is skipped from now on. The others are sorted only at this point: in most cases
+  /// none is skipped, but in deep overlap thousands are.
   void give_up_worst(int row, const Twist& x) {
     given_up_[static_cast<std::size_t>(row)] = true;
     if (sorted_) {
@@ -130,15 +131,17 @@ class Violated {
   std::size_t next_ = 0;
 };
 
-/// The motion nearest to `wanted` that keeps every gap open, exactly: rows are added and dropped
-/// one at a time and at most six hold. source: Goldfarb and Idnani 1983, with the unit matrix.
+/// The motion nearest to `wanted` that keeps every gap non-negative, exactly: constraints are added
+/// and dropped one at a time and at most six are active. source: Goldfarb and Idnani 1983, with the
+/// unit matrix.
 TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<ContactRow>& rows,
                                        const TwistSettings& settings) {
   constexpr int max_changes = 200;
-  // So many of the worst in a row that cannot be opened: then bodies are so deep in each other that
-  // the rest cannot, either.
-  constexpr int most_given_up = 256;
-  constexpr double dependent = 1e-9;  // square share of a row that others do not span
+  // After this many infeasible constraints in sequence, the worst first, the overlap is so deep
+  // that the remaining ones are infeasible as well.
+  constexpr int max_unresolved = 256;
+  constexpr double dependent =
+      1e-9;  // fraction of a constraint's squared norm that is independent of the others
   TwistSolution solution;
   Twist& x = solution.x;
   x = wanted;
@@ -146,8 +149,9 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
   Violated violated(rows, settings.tolerance_mm);
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
   Columns N;
-  std::optional<Eigen::HouseholderQR<Columns>> factored;  // N, as long as the same rows hold
-  for (int changes = 0, given_up = 0; changes < max_changes && given_up < most_given_up;) {
+  std::optional<Eigen::HouseholderQR<Columns>>
+      factored;  // of N, valid while the active set is unchanged
+  for (int changes = 0, given_up = 0; changes < max_changes && given_up < max_unresolved;) {
     const int joining = violated.worst(x);
     if (joining < 0) break;
     const Twist& n = rows[joining].along;
@@ -174,7 +178,7 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
         }
       const bool free = count < 6 && z.squaredNorm() > dependent * n.squaredNorm();
       const double full = -(rows[joining].gap_mm + n.dot(x)) / z.squaredNorm();
-      if (!free && dropped < 0) {  // the others forbid it: no motion opens all gaps
+      if (!free && dropped < 0) {  // infeasible: no motion satisfies all constraints
         violated.give_up_worst(joining, x);
         ++given_up;
         break;

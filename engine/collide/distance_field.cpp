@@ -35,7 +35,7 @@ void DistanceField::lay_out(const TriMesh& mesh) {
   if (settings_.region) {
     box.low = box.low.cwiseMax(settings_.region->low);
     box.high = box.high.cwiseMin(settings_.region->high);
-    if (box.empty()) box.high = box.low;  // nothing of the surface lies in the region
+    if (box.empty()) box.high = box.low;  // no part of the surface lies in the region
   }
   origin_ = box.low;
   for (int k = 0; k < 3; ++k)
@@ -46,7 +46,8 @@ void DistanceField::lay_out(const TriMesh& mesh) {
   bound_.assign(places, std::numeric_limits<float>::infinity());
 }
 
-/// A distance changes by no more than the way: where it does, its sign has jumped.
+/// A distance changes by at most the displacement: where it changes by more, its sign is
+/// discontinuous.
 void DistanceField::mark_unknown(Brick& brick, double spacing_mm) {
   const float most = static_cast<float>(spacing_mm * 1.0001 + 1e-5);
   const int step[3] = {1, corners, corners * corners};

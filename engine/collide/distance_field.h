@@ -16,23 +16,24 @@
 
 namespace condyle {
 
-/// A brick is eight spacings wide and takes 3 kB; a surface of A mm^2 takes about
-/// A * (2 band + 8 spacing) / (8 spacing)^3 of them. At 0.25 mm and a band of 1 mm an arch of
-/// crowns takes 10 MB, and so it should be with joints; smooth bone is served as well by 0.4 mm (a
-/// third of the memory; the error, an eighth of the spacing's square times the curvature, stays
-/// below 0.01 mm where the radius is above 4 mm). Whole bones should be given a region: what
-/// others can come near, with the band around it.
+/// A brick is eight spacings wide and takes 3 kB; a surface of A mm^2 needs about A * (2 band + 8
+/// spacing) / (8 spacing)^3 of them. At 0.25 mm and a band of 1 mm an arch of crowns takes 10 MB;
+/// joints need the same resolution. For smooth bone 0.4 mm suffices (a third of the memory; the
+/// error, an eighth of the squared spacing times the curvature, stays below 0.01 mm where the
+/// radius is above 4 mm). Whole bones should be given a region: the part that other bodies can
+/// approach, enlarged by the band.
 struct FieldSettings {
   double spacing_mm = 0.25;   // smallest detail of a tooth's cusps; error grows with its square
-  double band_mm = 1.0;       // distances are kept up to here on both sides of the surface
-  std::optional<Box> region;  // the field is made within this box only (body coordinates)
+  double band_mm = 1.0;       // distances are stored up to this value on both sides of the surface
+  std::optional<Box> region;  // the field is limited to this box (body coordinates)
 };
 
 /// Distance at a point. `known` is false well beyond the band, outside the region and where the
-/// side cannot be told (behind the rim of an open surface, where a surface runs through itself).
+/// side is ambiguous (behind the rim of an open surface, at self-intersections).
 struct FieldSample {
-  double distance_mm = 0;                              // negative inside
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // of the interpolated distance, about unit
+  double distance_mm = 0;  // negative inside
+  Eigen::Vector3d gradient =
+      Eigen::Vector3d::Zero();  // of the interpolated distance; length about 1
   bool known = false;
 };
 
@@ -43,14 +44,14 @@ struct FieldSample {
 /// nearest; the cells where that changes are not `known`. Queries are const and thread-safe.
 class DistanceField {
  public:
-  /// The mesh must be welded, with valid indices and finite coordinates. Same bits for any number
-  /// of threads.
+  /// The mesh must be welded, with valid indices and finite coordinates. Deterministic:
+  /// bit-identical for any number of threads.
   DistanceField(const TriMesh& mesh, const FieldSettings& settings, int threads = 1,
                 const Progress& progress = {});
 
   FieldSample at(const Eigen::Vector3d& p) const;
 
-  /// The same in two parts, for those who want few gradients.
+  /// The same query in two parts, for callers that need few gradients.
   struct Spot {
     double distance_mm = 0;
     bool known = false;
@@ -60,18 +61,18 @@ class DistanceField {
   Spot spot(const Eigen::Vector3d& p) const;
   Eigen::Vector3d gradient(const Spot& spot) const;
 
-  /// Sixteen points about a middle, and how their coordinates lie in the field's: R_F takes one
+  /// Batch16 points about a middle, and how their coordinates lie in the field's: R_F takes one
   /// into the other, in floats.
-  struct Sixteen {
+  struct Batch16 {
     alignas(64) std::array<float, 16> x, y, z;
   };
-  /// What spot() tells of all of them, to 1e-4 mm, in a quarter of the time. `middle_F`: where
-  /// their middle is. Returns a bit for each point that is known; of the others nothing is told.
-  /// Same bits on every processor.
-  unsigned distances(const Sixteen& points, const Eigen::Matrix3f& R_F,
+  /// The distances that spot() gives for all of them, to 1e-4 mm, in a quarter of the time.
+  /// `middle_F`: their centre. Returns a bit for each known point; the distances of the others are
+  /// undefined. Bit-identical on every processor.
+  unsigned distances(const Batch16& points, const Eigen::Matrix3f& R_F,
                      const Eigen::Vector3d& middle_F, std::array<float, 16>& distance_mm) const;
 
-  /// No smaller than this is the signed distance at p, near or far; infinite outside the region.
+  /// Lower bound of the signed distance at p, near or far; infinite outside the region.
   double lower_bound(const Eigen::Vector3d& p) const;
 
   const FieldSettings& settings() const { return settings_; }
@@ -80,8 +81,8 @@ class DistanceField {
   /// Hash of all samples.
   std::uint64_t hash() const;
 
-  /// Bits of the field, sealed by a hash; `from_bytes` gives nothing when they are damaged or were
-  /// made under another name.
+  /// Binary form of the field with a checksum; `from_bytes` returns nothing when the data are
+  /// damaged or carry another name.
   std::string to_bytes(std::uint64_t name) const;
   static std::optional<DistanceField> from_bytes(std::string_view bytes, std::uint64_t name,
                                                  const FieldSettings& settings);
@@ -93,7 +94,7 @@ class DistanceField {
   DistanceField() = default;
   struct Brick {
     std::array<float, corners * corners * corners> value;  // x fastest
-    std::bitset<cells * cells * cells> unknown;            // cells across which the side jumps
+    std::bitset<cells * cells * cells> unknown;  // cells across which the sign is discontinuous
   };
   std::size_t slot(int x, int y, int z) const {
     return static_cast<std::size_t>(x + size_[0] * (y + size_[1] * z));
@@ -108,14 +109,14 @@ class DistanceField {
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // corner of the first brick
   double per_mm_ = 0;                                 // 1 / spacing
   std::array<int, 3> size_ = {0, 0, 0};               // of the grid, in bricks
-  std::vector<std::int32_t> brick_;                   // of each place: its brick or -1; x fastest
+  std::vector<std::int32_t> brick_;  // per grid position: its brick or -1; x fastest
   std::vector<float> bound_;  // of each place: lower bound of the distance at its centre; where
                               // below zero without a brick: wholly inside
   std::vector<Brick> bricks_;
   std::vector<std::int32_t> whole_;  // as brick_, but -1 where a brick has unknown cells
 };
 
-/// In the header because sliding asks it some hundred thousand times a frame.
+/// Inline because sliding contact evaluates it some hundred thousand times per frame.
 inline DistanceField::Spot DistanceField::spot(const Eigen::Vector3d& p) const {
   Spot spot;
   spot.distance_mm = settings_.band_mm;
@@ -171,11 +172,11 @@ inline FieldSample DistanceField::at(const Eigen::Vector3d& p) const {
   return {here.distance_mm, gradient(here), here.known};
 }
 
-/// The field kept in a cache folder under the hash of mesh and settings; made and put there when it
-/// is absent or damaged. A cache that cannot be written is no error.
-DistanceField kept_field(const std::filesystem::path& cache, const TriMesh& mesh,
-                         const FieldSettings& settings, int threads = 1,
-                         const Progress& progress = {});
+/// The field from a cache folder, stored under the hash of mesh and settings; computed and stored
+/// when it is absent or damaged. Failure to write the cache is not an error.
+DistanceField cached_field(const std::filesystem::path& cache, const TriMesh& mesh,
+                           const FieldSettings& settings, int threads = 1,
+                           const Progress& progress = {});
 
 /// $XDG_CACHE_HOME/condyle, else ~/.cache/condyle; empty when neither is set.
 std::filesystem::path field_cache_folder();

@@ -18,13 +18,13 @@ using Eigen::Vector3d;
 
 using Points = std::array<Vector3d, 4>;
 
-/// A cube of bricks with the faces that can be nearest to some point of it, grouped by shell.
+/// A cube of bricks with the faces that can be nearest to any of its points, grouped by shell.
 struct Cube {
   int x = 0, y = 0, z = 0;  // in bricks
   std::vector<int> faces;
 };
 
-/// What is nearest to a point.
+/// The nearest distances of a point.
 struct Survey {
   double closed = infinity;  // signed distance to the union of closed shells
   double open = infinity;    // distance to the nearest open shell
@@ -33,8 +33,8 @@ struct Survey {
 
 }  // namespace
 
-/// From the whole box down to bricks and blocks of samples: each cube keeps of its parent's faces
-/// those that can be nearest to any point of it.
+/// Recursive subdivision from the whole box down to bricks and blocks of samples: each cube keeps
+/// those of its parent's faces that can be nearest to any of its points.
 class FieldBuilder {
  public:
   FieldBuilder(DistanceField& field, const TriMesh& mesh) : field_(field) {
@@ -78,7 +78,7 @@ class FieldBuilder {
     field_.bricks_.resize(cubes.size());
     for (std::size_t i = 0; i < cubes.size(); ++i)
       field_.brick_[field_.slot(cubes[i].x, cubes[i].y, cubes[i].z)] = static_cast<int>(i);
-    constexpr std::size_t at_once = 256;  // from one report of progress to the next
+    constexpr std::size_t at_once = 256;  // between two reports of progress
     for (std::size_t first = 0; first < cubes.size(); first += at_once) {
       report(progress, "measuring the bone",
              static_cast<double>(first) / static_cast<double>(cubes.size()));
@@ -99,19 +99,19 @@ class FieldBuilder {
     return away.dot(trees_[f.shell].pseudonormal(found)) < 0 ? -distance : distance;
   }
 
-  /// What a square bound may be where the distance is no more than this.
+  /// Upper bound of a squared distance bound where the distance is at most this value.
   float square_limit(double distance) const {
     const float most = static_cast<float>(distance) + rounding_mm_;
     return most * most * (1 + 1e-6f);
   }
 
-  /// The nearest face of one shell, as far as it is known.
+  /// The nearest face of one shell found so far.
   struct Nearest {
     double square = infinity;
     int face = -1;
     Vector3d at;
 
-    /// The first of equally near faces stays.
+    /// Of equally near faces the first is kept.
     void consider(const std::vector<FieldFace>& faces, int other, const Vector3d& p) {
       Vector3d there;
       const double square_there = nearest(faces[other], p, there);
@@ -122,7 +122,7 @@ class FieldBuilder {
     }
   };
 
-  /// Adds what is known of one more shell. Returns its distance: with a sign where it is closed.
+  /// Adds the result of one more shell. Returns its distance, signed where it is closed.
   double add_shell(const Nearest& found, const Vector3d& p, Survey& result) const {
     const FieldFace& face = faces_[found.face];
     const double plain = std::sqrt(found.square);
@@ -138,8 +138,8 @@ class FieldBuilder {
     return closed ? distance : plain;
   }
 
-  /// What is nearest to each of four points. `kept`, if given: of each point, the faces that can be
-  /// nearest to others within its radius.
+  /// The nearest distances of four points. `kept`, where given: per point, the faces that can be
+  /// nearest to other points within its radius.
   std::array<Survey, 4> survey(const std::vector<int>& faces, const Points& points,
                                const std::array<double, 4>& radius,
                                std::array<std::vector<int>, 4>* kept) const {
@@ -198,7 +198,7 @@ class FieldBuilder {
     return result;
   }
 
-  /// The children of a cube, four of them, that the band reaches.
+  /// Four children of a cube, as far as the band reaches them.
   void narrow(const Cube& parent, int edge, bool upper, std::vector<Cube>& reached) {
     const double mm = DistanceField::cells * field_.settings_.spacing_mm;
     const double radius = 0.5 * edge * mm * std::sqrt(3.0) * (1 + 1e-12);
@@ -220,7 +220,8 @@ class FieldBuilder {
       }
   }
 
-  /// False when the band does not reach the child: then its places are told how far it is.
+  /// False when the band does not reach the child; its grid places then receive the bound of the
+  /// distance.
   bool keep(const Cube& child, int edge, const Vector3d& center, double radius,
             const Survey& found) {
     if (child.x >= field_.size_[0] || child.y >= field_.size_[1] || child.z >= field_.size_[2])
@@ -229,7 +230,7 @@ class FieldBuilder {
     const double band = field_.settings_.band_mm;
     const bool inside = found.closed < -(band + radius);
     if (!inside && outside <= band + radius) {
-      // Past a rim the sign may jump: only the plain distance holds there.
+      // Beyond a rim the sign may be discontinuous: only the unsigned distance is valid there.
       const bool open_near = found.open <= band + radius;
       if (edge == 1)
         bound(child.x, child.y, child.z, open_near ? std::min(found.closed, -found.open) : outside);
@@ -240,7 +241,7 @@ class FieldBuilder {
         for (int x = child.x; x < std::min(child.x + edge, field_.size_[0]); ++x) {
           const double way = (place_center(x, y, z) - center).norm();
           bound(x, y, z, (inside ? found.closed : outside) - (inside ? 0.0 : way));
-          // Inside, a lower bound is of no use to anyone; below zero says enough.
+          // Inside, the magnitude of the bound is not used: any negative value suffices.
         }
     return false;
   }
@@ -334,7 +335,7 @@ class FieldBuilder {
   std::vector<FieldFace> faces_;     // by shell
   std::vector<FacePlanes> planes_;   // of the faces
   Vector3d center_ = Vector3d::Zero();
-  float rounding_mm_ = 0;  // of the planes' bounds
+  float rounding_mm_ = 0;  // error of the bounds of the planes
 };
 
 DistanceField::DistanceField(const TriMesh& mesh, const FieldSettings& settings, int threads,

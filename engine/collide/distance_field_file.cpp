@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t format_version = 1;
 
-/// Eight bytes at a time: the seal of some ten megabytes should not take longer than to read them.
+/// Eight bytes at a time: the checksum of some ten megabytes should not take longer than reading
+/// them.
 std::uint64_t seal_of(std::string_view bytes) {
   std::uint64_t h = hash_start;
   std::size_t i = 0;
@@ -33,7 +34,7 @@ void append(std::string& bytes, const T* values, std::size_t count) {
   bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
 }
 
-/// Takes values off the front; false when too few are left.
+/// Takes values from the front; false when too few remain.
 template <class T>
 bool take(std::string_view& bytes, T* values, std::size_t count) {
   if (bytes.size() / sizeof(T) < count) return false;
@@ -104,8 +105,8 @@ std::optional<DistanceField> DistanceField::from_bytes(std::string_view bytes, s
   return field;
 }
 
-DistanceField kept_field(const fs::path& cache, const TriMesh& mesh, const FieldSettings& settings,
-                         int threads, const Progress& progress) {
+DistanceField cached_field(const fs::path& cache, const TriMesh& mesh,
+                           const FieldSettings& settings, int threads, const Progress& progress) {
   const std::uint64_t name = name_of(mesh, settings);
   char text[32];
   std::snprintf(text, sizeof text, "field-%016llx.bin", static_cast<unsigned long long>(name));
@@ -116,14 +117,14 @@ DistanceField kept_field(const fs::path& cache, const TriMesh& mesh, const Field
         if (auto field = DistanceField::from_bytes(read_file(file), name, settings))
           return *std::move(field);
     } catch (const std::exception&) {
-      // Unreadable: as good as none.
+      // Unreadable: treated as absent.
     }
   DistanceField field(mesh, settings, threads, progress);
   if (!cache.empty()) try {
       make_folder(cache);
       write_file(file, field.to_bytes(name));
     } catch (const std::exception&) {
-      // A cache that cannot be written only costs time.
+      // Failure to write the cache only costs time.
     }
   return field;
 }

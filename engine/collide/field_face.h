@@ -8,9 +8,9 @@
 
 namespace condyle {
 
-/// A triangle made ready for many distance queries.
+/// A triangle with precomputed data for many distance queries.
 struct FieldFace {
-  Eigen::Vector3d a, ab, ac, normal;  // normal: of twice the area's length
+  Eigen::Vector3d a, ab, ac, normal;  // normal: its length is twice the area
   double bb = 0, bc = 0, cc = 0;      // products of ab and ac
   int shell = 0, triangle = 0;        // in that shell
   std::uint8_t rim = 0;               // see Shell
@@ -26,16 +26,17 @@ double nearest(const FieldFace& face, const Eigen::Vector3d& p, Eigen::Vector3d&
 /// Whether the point with these barycentric coordinates lies on a rim.
 bool on_rim(const FieldFace& face, const Eigen::Vector3d& at);
 
-/// Distances to a triangle in single precision, at a tenth of the cost: they tell which triangles
-/// need a closer look.
+/// Distances to a triangle in single precision, at a tenth of the cost; they select the triangles
+/// that need an exact query.
 class FacePlanes {
  public:
   using Four = Eigen::Array4f;
 
-  /// `center`: near all points to be asked for, as single precision serves only there.
+  /// `center`: near all query points; single precision is accurate only there.
   FacePlanes(const FieldFace& face, const Eigen::Vector3d& center);
 
-  /// Square distances of four points less the center; 0 for slivers, which have no certain normal.
+  /// Squared distances of four points, given relative to the centre; 0 for slivers, which have no
+  /// reliable normal.
   Four square_distances(const Four& x, const Four& y, const Four& z) const {
     const auto at = [&](const Eigen::Matrix4f& rows, int k) -> Four {
       return rows(k, 0) * x + rows(k, 1) * y + rows(k, 2) * z + rows(k, 3);
@@ -48,15 +49,16 @@ class FacePlanes {
       farthest_out = farthest_out.max(out);
       in_plane = in_plane.min(out * out + past * past);
     }
-    // Over the face no side counts; outside, the square of the way out is below the side's.
+    // Above the face no edge counts; outside, the squared distance to an edge's line is a lower
+    // bound.
     const Four counts = (farthest_out > 0).select(in_plane, Four::Zero());
     return up * up + counts;
   }
 
  private:
-  Eigen::Matrix4f out_;    // a row each: height over the face, way out of its three sides
-  Eigen::Matrix4f along_;  // way along the sides from their first corners; row 0 is empty
-  Four length_;            // of the sides; the first is empty
+  Eigen::Matrix4f out_;    // one row each: height above the face, distance outside its three edges
+  Eigen::Matrix4f along_;  // position along the edges from their first corners; row 0 is unused
+  Four length_;            // of the edges; the first is unused
 };
 
 }  // namespace condyle

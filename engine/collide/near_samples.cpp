@@ -8,9 +8,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// How far a contact's normal may lie off the normals of the faces at its sample: 30 degrees.
+// Largest angle between a contact normal and the face normals at its sample: 30 degrees.
 constexpr double facing_cos = 0.866, facing_sin = 0.5;
-constexpr double faces_below_mm = 0.05;  // but what is deeper must out in any case
+constexpr double faces_below_mm = 0.05;  // deeper samples are contacts in any case
 
 struct Search {
   const SurfaceSamples& samples;
@@ -23,7 +23,7 @@ struct Search {
   void ball(int index) {
     const SurfaceSamples::Ball& ball_here = samples.balls[index];
     const Vector3d center = R * ball_here.center.cast<double>() + t;
-    // Within the band the field tells more than its bounds do.
+    // Within the band the field is more accurate than its bounds.
     const FieldSample at_center = field.at(center);
     const double bound =
         at_center.known ? at_center.distance_mm - field_bend_mm : field.lower_bound(center);
@@ -41,7 +41,7 @@ struct Search {
   }
 };
 
-/// `near`: the places that can be within the reach of a point of the ball.
+/// `near`: the places that can be within reach of a point of the ball.
 void around(const SurfaceSamples& samples, int index, const std::vector<Vector3d>& near,
             double reach_mm, std::vector<int>& found) {
   constexpr double rounding_mm = 1e-6;
@@ -104,14 +104,14 @@ double clearance_bound(const SurfaceSamples& samples, const DistanceField& field
   return most_mm;
 }
 
-SampleLook look_at_sample(const DistanceField& field, const Vector3d& p_F, const Vector3d& normal_F,
-                          double spread) {
-  return judged(field.at(p_F), normal_F, spread);
+SampleDistance query_sample(const DistanceField& field, const Vector3d& p_F,
+                            const Vector3d& normal_F, double spread) {
+  return classified(field.at(p_F), normal_F, spread);
 }
 
-SampleLook judged(const FieldSample& here, const Vector3d& normal_F, double spread) {
-  SampleLook look{here.distance_mm, here.gradient, here.known, false};
-  // Where two faces are as near, the gradient says nothing: the sample's own face does.
+SampleDistance classified(const FieldSample& here, const Vector3d& normal_F, double spread) {
+  SampleDistance look{here.distance_mm, here.gradient, here.known, false};
+  // Where two faces are equally near the gradient is not reliable; the sample's own face decides.
   if (look.gradient.squaredNorm() < 0.1 && look.distance_mm < 0) look.gradient = -normal_F;
   const double cosine = -look.gradient.dot(normal_F) / look.gradient.norm();
   const double least =

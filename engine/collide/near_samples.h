@@ -11,15 +11,15 @@ namespace condyle {
 
 // Samples S of one surface in the field F of another.
 
-/// Interpolated distances change by more than the way, but by no more than this in all.
+/// Interpolated distances can change by more than the displacement, but by at most this in total.
 constexpr double field_bend_mm = 0.05;
 
 struct NearSample {
   int sample = 0;
-  double distance_mm = 0;  // -reach where the field does not know it
+  double distance_mm = 0;  // -reach where the field is unknown
 };
 
-/// Appends the samples nearer than reach_mm to the field's surface, or inside it, by their number.
+/// Appends the samples nearer than reach_mm to the field's surface, or inside it, in index order.
 /// `reach_mm` lies within the field's band.
 void collect_near(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS,
                   double reach_mm, std::vector<NearSample>& found);
@@ -28,27 +28,26 @@ void collect_near(const SurfaceSamples& samples, const DistanceField& field, con
 std::vector<int> samples_around(const SurfaceSamples& samples,
                                 const std::vector<Eigen::Vector3d>& places, double reach_mm);
 
-/// No larger than the distance of the surfaces, or `most_mm` when that is smaller: bounds for far
-/// bodies.
+/// Lower bound of the distance of the surfaces, at most `most_mm`: for bodies that are far apart.
 double clearance_bound(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS,
                        double most_mm);
 
-/// What the field says about one sample.
-struct SampleLook {
+/// Distance of one sample in the field.
+struct SampleDistance {
   double distance_mm = 0;
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  // field's coordinates
   bool known = false;
-  // The field's surface is met with a face at the sample. Past the end of the other body, the way
-  // to its edge is no contact, and would hold up what only slides along; that edge has samples of
+  // The nearest surface of the field faces the sample. Beyond the end of the other body, the
+  // direction to its edge is no contact normal and would obstruct sliding; that edge has samples of
   // its own.
   bool faces = false;
 };
 
-/// The same where the field was asked already.
-SampleLook judged(const FieldSample& here, const Eigen::Vector3d& normal_F, double spread);
+/// The same from an existing query of the field.
+SampleDistance classified(const FieldSample& here, const Eigen::Vector3d& normal_F, double spread);
 
 /// p_F, normal_F: the sample and its outward normal in the field's coordinates.
-SampleLook look_at_sample(const DistanceField& field, const Eigen::Vector3d& p_F,
-                          const Eigen::Vector3d& normal_F, double spread);
+SampleDistance query_sample(const DistanceField& field, const Eigen::Vector3d& p_F,
+                            const Eigen::Vector3d& normal_F, double spread);
 
 }  // namespace condyle

@@ -14,20 +14,22 @@ namespace {
 
 constexpr double reach_rounding_mm = 1e-9;
 constexpr double touching_mm2 = 1e-20;
-constexpr std::size_t most_inside = 500;  // faces to look at one by one
+constexpr std::size_t most_inside = 500;  // faces examined individually
 
 }  // namespace
 
-/// Looks for the deepest point of either surface inside the shells of the other. Depth changes by
-/// at most a millimetre per millimetre, so that what has been looked at bounds what is around it.
-/// Runs of faces, faces and parts of faces wait in a heap; what may be deepest is divided first,
-/// until nothing may be deeper than what was found.
+/// Branch-and-bound search for the deepest point of either surface inside the shells of the other.
+/// Depth changes by at most one millimetre per millimetre, so an evaluated point bounds its
+/// surroundings. Ranges of faces, faces and parts of faces wait in a priority queue; the one with
+/// the largest upper bound is divided first, until no bound exceeds the depth found.
 class DepthSearch {
  public:
-  DepthSearch(const Solid& a, const Solid& b, const Pose& X_AB, const DepthSettings& settings,
-              const CrossingFaces* crossing)
+  /// `part`: of B's surface, where contact of the rest of it does not count.
+  DepthSearch(const Solid& a, const Solid& b, const SurfacePart* part, const Pose& X_AB,
+              const DepthSettings& settings, const CrossingFaces* crossing)
       : settings_(settings),
-        sides_{{{b, a, X_AB, {}}, {a, b, X_AB.inverse(), {}}}},
+        sides_{{{part ? part->faces : b, a, X_AB, nullptr, {}},
+                {a, b, X_AB.inverse(), part ? &part->tree : nullptr, {}}}},
         crossing_known_(crossing != nullptr) {
     if (crossing_known_) {
       sides_[0].put_crossing(crossing->b);
@@ -51,8 +53,8 @@ class DepthSearch {
 
   double depth_mm = 0;
   int side = 0;                                        // 0: the point is on B, in A
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();     // coordinates of the solid it is in
-  Eigen::Vector3d outward = Eigen::Vector3d::UnitZ();  // of that solid, next to it
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();     // in the coordinates of the enclosing solid
+  Eigen::Vector3d outward = Eigen::Vector3d::UnitZ();  // of that solid at the nearest point
 
   double error_mm() const {
     return std::max(tolerance(), waiting_.empty() ? 0 : waiting_.top().bound - depth_mm);
@@ -61,8 +63,9 @@ class DepthSearch {
  private:
   struct Side {
     const Solid &surface, &solid;
-    Pose X;                     // of the surface in the solid's coordinates
-    std::vector<int> crossing;  // faces that cross the solid, ascending
+    Pose X;                              // of the surface in the solid's coordinates
+    const TriangleTree* part = nullptr;  // of the solid; only points nearest to it count
+    std::vector<int> crossing;           // faces that cross the solid, or its part, ascending
 
     void put_crossing(const std::vector<int>& triangles) {
       for (const int t : triangles) crossing.push_back(surface.slot_[t]);
@@ -74,11 +77,11 @@ class DepthSearch {
       return at != crossing.end() && *at < first + count;
     }
   };
-  struct Into {  // a shell of one side's solid
+  struct Into {  // a shell of the solid of one side
     int side = 0;
     std::size_t shell = 0;
   };
-  /// What is known about a place: its depth (negative outside) and the triangle next to it.
+  /// Result at a point: its depth (negative outside) and the nearest triangle.
   struct Place {
     Eigen::Vector3d at = Eigen::Vector3d::Zero();
     double depth = -infinity;
@@ -86,14 +89,14 @@ class DepthSearch {
   };
   struct Item {
     Into into;
-    int ball = -1;  // a run of faces, or
-    Triangle face;  // a face or a part of one, whose corners have been looked at
+    int ball = -1;  // a range of faces, or
+    Triangle face;  // a face or a part of one, whose corners have been evaluated
     Place middle;
   };
   struct Waiting {
     double bound;
     std::size_t item;
-    int number;  // the earlier of two alike goes first
+    int number;  // ties are broken by age
     bool operator<(const Waiting& other) const {
       return bound != other.bound ? bound < other.bound : number > other.number;
     }
@@ -105,9 +108,23 @@ class DepthSearch {
     return sides_[into.side].solid.shells_[into.shell];
   }
 
+  /// Whether all faces that cross the solid of the side are known.
+  bool knows_all_crossings(Into into) const { return crossing_known_ && !sides_[into.side].part; }
+
+  /// Whether the part that counts may be nearest to some point within `radius` of the place.
+  bool may_count(Into into, const Place& place, double radius) const {
+    const TriangleTree* part = sides_[into.side].part;
+    const double reach = std::abs(place.depth) + 2 * radius + reach_rounding_mm;
+    return !part || part->nearest(place.at, reach).triangle >= 0;
+  }
+
+  static double radius_about(const Triangle& t, const Eigen::Vector3d& p) {
+    return std::max({(t[0] - p).norm(), (t[1] - p).norm(), (t[2] - p).norm()});
+  }
+
   Place look_at(Into into, const Eigen::Vector3d& p, const Place& near) {
     const TriangleTree& tree = shell(into).tree;
-    double reach = infinity;  // a surface known to be near makes the query quick
+    double reach = infinity;  // a known upper bound accelerates the query
     if (near.triangle >= 0)
       reach = (nearest_point(p, tree.corners(near.triangle)) - p).norm() + reach_rounding_mm;
     const SurfacePoint found = tree.signed_nearest(p, reach);
@@ -115,10 +132,10 @@ class DepthSearch {
     return {p, -found.distance, found.triangle};
   }
 
-  /// The same for a point of the surface: keeps the deepest.
+  /// The same for a point of the surface; keeps the deepest.
   Place look_at_point(Into into, const Eigen::Vector3d& p, const Place& near) {
     const Place place = look_at(into, p, near);
-    if (place.depth > depth_mm) {
+    if (place.depth > depth_mm && may_count(into, place, 0)) {
       depth_mm = place.depth;
       side = into.side;
       point = p;
@@ -127,9 +144,9 @@ class DepthSearch {
     return place;
   }
 
-  /// No point of t is deeper. None is deeper than near.depth and its way from there; nor deeper
-  /// than it is far from any one triangle of the shell: that is greatest at a corner of t, and its
-  /// excess goes with the square of t's size.
+  /// Upper bound of the depth of any point of t. It is at most near.depth plus the distance from
+  /// there, and at most the distance to any one triangle of the shell; the latter is largest at a
+  /// corner of t and exceeds the depth by a term quadratic in the size of t.
   double bound(Into into, const Triangle& t, const Place& near) const {
     double way2 = 0;
     for (const auto& corner : t) way2 = std::max(way2, (corner - near.at).squaredNorm());
@@ -142,7 +159,7 @@ class DepthSearch {
     return std::min(by_way, std::sqrt(farthest2));
   }
 
-  /// A face with a point outside lies outside as a whole unless the shell crosses it.
+  /// A face with one point outside lies entirely outside unless the shell crosses it.
   bool is_outside(Into into, const Triangle& t, const Place& middle) const {
     if (middle.depth >= -reach_rounding_mm) return false;
     const Eigen::Vector3d low = t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() - reach_rounding_mm,
@@ -156,8 +173,9 @@ class DepthSearch {
     });
   }
 
-  void wait(double bound, const Item& item) {
-    if (bound <= enough()) return;
+  /// Queues an item; all of it lies within `radius` of its middle.
+  void wait(double bound, double radius, const Item& item) {
+    if (bound <= enough() || !may_count(item.into, item.middle, radius)) return;
     std::size_t place = items_.size();
     if (free_.empty()) {
       items_.push_back(item);
@@ -176,12 +194,12 @@ class DepthSearch {
     if (near.triangle >= 0 && near.depth + (middle - near.at).norm() + ball.radius <= enough())
       return;
     if (!shell(into).box.contains(middle, ball.radius)) return;
-    if (crossing_known_ && ball.connected && !from.crosses(ball.first, ball.count) &&
+    if (knows_all_crossings(into) && ball.connected && !from.crosses(ball.first, ball.count) &&
         look_at_point(into, from.X * from.surface.faces_[ball.first][0], near).depth <
             -reach_rounding_mm)
       return;
     const Place place = look_at(into, middle, near);
-    wait(place.depth + ball.radius, {into, index, {}, place});
+    wait(place.depth + ball.radius, ball.radius, {into, index, {}, place});
   }
 
   void divide_ball(const Item& item) {
@@ -202,39 +220,42 @@ class DepthSearch {
     return t;
   }
 
-  /// Returns what was looked at last.
+  /// Returns the last item examined.
   Place offer_face(Into into, int index, const Place& near) {
     const Side& from = sides_[into.side];
     const Triangle face = face_of(from, index);
     if (near.triangle >= 0 && bound(into, face, near) <= enough()) return near;
     const Place middle = look_at_middle(into, face, near);
     if (bound(into, face, middle) <= enough()) return middle;
-    if (crossing_known_ && !from.crosses(index, 1) ? middle.depth < -reach_rounding_mm
-                                                   : is_outside(into, face, middle))
+    if (knows_all_crossings(into) && !from.crosses(index, 1) ? middle.depth < -reach_rounding_mm
+                                                             : is_outside(into, face, middle))
       return middle;
     for (const auto& corner : face) look_at_point(into, corner, middle);
-    wait(bound(into, face, middle), {into, -1, face, middle});
+    wait(bound(into, face, middle), radius_about(face, middle.at), {into, -1, face, middle});
     return middle;
   }
 
-  /// Whether a piece of a surface lies wholly inside a shell that it does not cross.
+  /// Whether a connected piece of a surface lies entirely inside a shell that it does not cross.
   bool has_hidden_piece() const {
-    for (const Side& from : sides_) {
+    for (int i = 0; i < 2; ++i) {
+      const Side& from = sides_[i];
       std::vector<bool> crosses(from.surface.piece_face_.size(), false);
       for (const int face : from.crossing) crosses[from.surface.piece_[face]] = true;
       for (std::size_t piece = 0; piece < crosses.size(); ++piece) {
         if (crosses[piece]) continue;
         const Eigen::Vector3d p = from.X * from.surface.faces_[from.surface.piece_face_[piece]][0];
         for (const auto& shell : from.solid.shells_)
-          if (shell.depth(p, 0, infinity) > -reach_rounding_mm) return true;
+          if (const double depth = shell.depth(p, 0, infinity);
+              depth > -reach_rounding_mm && may_count({i, 0}, {p, depth, -1}, 0))
+            return true;
       }
     }
     return false;
   }
 
-  /// Offers what of a surface is inside a shell where none of its pieces is hidden: the faces that
-  /// cross, and what hangs together with them on the inner side. False where that is much: then the
-  /// balls know better.
+  /// Adds the part of a surface inside a shell where no piece is entirely enclosed: the faces that
+  /// cross, and the faces connected to them on the inner side. False where that part is large; the
+  /// tree of balls is then faster.
   bool offer_inside(Into into) {
     const Side& from = sides_[into.side];
     std::vector<int> inside;
@@ -242,7 +263,11 @@ class DepthSearch {
     const auto spread = [&](int face, const Place& near) {
       from.surface.each_neighbour(face, [&](int other) {
         if (from.crosses(other, 1) || !seen.insert(other).second) return;
-        if (look_at_point(into, face_of(from, other)[0], near).depth >= -reach_rounding_mm)
+        const Triangle t = face_of(from, other);
+        const Place corner = look_at_point(into, t[0], near);
+        // Where crossings are unknown, a face with a corner outside may still reach inside.
+        const double radius = knows_all_crossings(into) ? 0 : radius_about(t, t[0]);
+        if (corner.depth >= -radius - reach_rounding_mm && may_count(into, corner, radius))
           inside.push_back(other);
       });
     };
@@ -284,7 +309,7 @@ class DepthSearch {
       const Place middle = look_at_middle(item.into, part, item.middle);
       const double most = bound(item.into, part, middle);
       if (most > enough() && !is_outside(item.into, part, middle))
-        wait(most, {item.into, -1, part, middle});
+        wait(most, radius_about(part, middle.at), {item.into, -1, part, middle});
     }
   }
 
@@ -292,14 +317,14 @@ class DepthSearch {
   std::array<Side, 2> sides_;
   bool crossing_known_;
   std::vector<Item> items_;
-  std::vector<std::size_t> free_;  // places in items_ to use again
+  std::vector<std::size_t> free_;  // slots of items_ for reuse
   std::priority_queue<Waiting> waiting_;
   int looks_ = 0, number_ = 0;
 };
 
-OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
-                           const DepthSettings& settings, const CrossingFaces* crossing) {
-  const DepthSearch found(a, b, X_WA.inverse() * X_WB, settings, crossing);
+namespace {
+
+OverlapDepth in_world(const DepthSearch& found, const Pose& X_WA, const Pose& X_WB) {
   OverlapDepth overlap;
   overlap.error_mm = found.error_mm();
   if (found.depth_mm == 0) return overlap;
@@ -308,6 +333,19 @@ OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b, con
   overlap.point = X * found.point;
   overlap.normal = found.side == 0 ? X.R * found.outward : X.R * -found.outward;
   return overlap;
+}
+
+}  // namespace
+
+OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
+                           const DepthSettings& settings, const CrossingFaces* crossing) {
+  return in_world({a, b, nullptr, X_WA.inverse() * X_WB, settings, crossing}, X_WA, X_WB);
+}
+
+OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b,
+                           const SurfacePart& part_of_b, const Pose& X_WB,
+                           const DepthSettings& settings, const CrossingFaces* crossing) {
+  return in_world({a, b, &part_of_b, X_WA.inverse() * X_WB, settings, crossing}, X_WA, X_WB);
 }
 
 }  // namespace condyle

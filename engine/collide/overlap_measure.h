@@ -34,20 +34,20 @@ struct RegionSettings {
 };
 
 /// Area of B's surface inside A or within a distance of it, by patches. B's triangles may be of any
-/// size: what lies wholly inside or outside is told from one distance, for distances change by at
-/// most a millimetre per millimetre.
+/// size: pieces entirely inside or outside are classified by one distance, because distances change
+/// by at most one millimetre per millimetre.
 ContactRegion contact_region(const SignedSurface& a, const Pose& X_WA, const TriMesh& b,
                              const Pose& X_WB, const RegionSettings& settings = {});
 
 /// Volume inside both surfaces.
 struct OverlapVolume {
   double mm3 = 0;
-  double error_mm3 = 0;  // largest difference to the answers of a grid twice as coarse
+  double error_mm3 = 0;  // largest difference from the results of grids of half the resolution
 };
 
 /// Both are cut into columns along the shortest side of their common box; along a column the common
-/// length is exact, across it stands for its cell (midpoint rule, `columns` along either side of
-/// what they share). Only closed shells have an inside; see closed_shells.
+/// length is exact, across it the midpoint rule applies (`columns`: number of columns along either
+/// side of the common box). Only closed shells have an inside; see closed_shells.
 OverlapVolume overlap_volume(const TriMesh& a, const Pose& X_WA, const TriMesh& b, const Pose& X_WB,
                              int columns = 256);
 

@@ -18,7 +18,7 @@ struct Columns {
   }
 };
 
-/// A surface passed through along a column.
+/// An intersection of a surface with a column.
 struct Crossing {
   int column = 0;
   double height = 0;
@@ -37,8 +37,8 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Whether x lies left of the way from p to q. Both triangles at an edge ask for it with the same
-/// arithmetic, so that no column slips between them or is counted by both.
+/// Whether x lies to the left of the line from p to q. Both triangles at an edge use the same
+/// arithmetic, so no column is missed or counted twice.
 bool left_of(const Eigen::Vector2d& p, const Eigen::Vector2d& q, const Eigen::Vector2d& x) {
   const bool forward = p.x() < q.x() || (p.x() == q.x() && p.y() < q.y());
   const Eigen::Vector2d &from = forward ? p : q, &to = forward ? q : p;
@@ -76,7 +76,7 @@ void cross_columns(const TriMesh& mesh, const Pose& X, const Columns& columns, i
                      b2 = cross(p[1] - p[0], x - p[0]) / area;
         const double height =
             t[0]->z() + b1 * (t[1]->z() - t[0]->z()) + b2 * (t[2]->z() - t[0]->z());
-        // Seen along the column, a face that runs clockwise looks down: there the way goes in.
+        // Seen along the column, a clockwise face points down: the column enters there.
         crossings.push_back(
             {j * columns.count_u + i, std::clamp(height, low.z(), high.z()), body, side ? -1 : 1});
       }
@@ -85,8 +85,8 @@ void cross_columns(const TriMesh& mesh, const Pose& X, const Columns& columns, i
 
 struct Counted {
   double volume = 0;
-  double quarter[4] = {};  // of every other column both ways, by where it starts
-  Box used;                // of the columns that have any, in (u, v, 0)
+  double quarter[4] = {};  // sums of every other column along both directions, by starting column
+  Box used;                // of the columns with any overlap, in (u, v, 0)
 };
 
 Counted count(std::vector<Crossing>& crossings, const Columns& columns) {
@@ -135,8 +135,9 @@ OverlapVolume overlap_volume(const TriMesh& a, const Pose& X_WA, const TriMesh& 
   Eigen::Vector2d low(box.low[columns.u], box.low[columns.v]);
   Eigen::Vector2d high(box.high[columns.u], box.high[columns.v]);
   OverlapVolume overlap;
-  // Bones overlap in a small part of their common box: further looks see that part closer, long and
-  // narrow ones across as finely as along. Where a look misses all, a finer one may not.
+  // Bones overlap in a small part of their common box: further passes resolve that part more
+  // finely, long and narrow parts equally in both directions. Where a pass finds nothing, a finer
+  // one may.
   constexpr int looks = 6, finest = 512;
   int along = std::max(8, columns_along);
   for (int look = 0; look < looks; ++look) {
@@ -157,7 +158,7 @@ OverlapVolume overlap_volume(const TriMesh& a, const Pose& X_WA, const TriMesh& 
       along = std::min(4 * along, finest);
       continue;
     }
-    // Columns stand for their cells, and a neighbour may just have missed.
+    // A column represents its cell, and a neighbouring column may have missed the overlap narrowly.
     const Eigen::Vector2d air = 1.5 * columns.step;
     const Eigen::Vector2d next_low = low.cwiseMax(counted.used.low.head<2>() - air);
     const Eigen::Vector2d next_high = high.cwiseMin(counted.used.high.head<2>() + air);

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// Four numbers that the processor works on at once; comparisons give masks that choose.
+// Four numbers in one vector register; comparisons give selection masks.
 using Four = float __attribute__((vector_size(16)));
 
 struct Four3 {
@@ -40,7 +40,7 @@ Four clamp01(Four v) {
   return v < 1 ? v : four(1);
 }
 
-/// Place on each of four triangles nearest to a point: a + v ab + w ac.
+/// The nearest point on each of four triangles: a + v ab + w ac.
 struct Nearest {
   Four v, w, square;
 };
@@ -52,8 +52,8 @@ Nearest nearest_of(const Packet& t, const Four3& p) {
   const Four ab2 = load(t.ab2), ac2 = load(t.ac2), abac = load(t.abac);
   const Four zero = four(0), one = four(1);
   const Four square_a = dot(ap, ap);
-  // |ap - v ab - w ac|^2, which is least in the plane's foot where that lies within, else on one
-  // of the three edges.
+  // |ap - v ab - w ac|^2; its minimum is the projection on the plane where that lies inside,
+  // otherwise on one of the three edges.
   const auto square_at = [&](Four v, Four w) {
     const Four3 q = {ap.x - v * ab.x - w * ac.x, ap.y - v * ab.y - w * ac.y,
                      ap.z - v * ab.z - w * ac.z};
@@ -64,8 +64,8 @@ Nearest nearest_of(const Packet& t, const Four3& p) {
   const auto inside = (fv > 0) & (fw > 0) & (fv + fw < 1);
   const Four on_ab = clamp01(d1 * load(t.per_ab2)), on_ac = clamp01(d2 * load(t.per_ac2));
   const Four on_bc = clamp01((d2 - d1 + ab2 - abac) * load(t.per_bc2));
-  // Which edge: by the squares in products, exact enough to choose; the square itself is taken
-  // anew.
+  // The edge is selected by squared distances from dot products, which are accurate enough for
+  // that; the result is recomputed.
   const Four by_ab = square_a + on_ab * (on_ab * ab2 - 2 * d1);
   const Four by_ac = square_a + on_ac * (on_ac * ac2 - 2 * d2);
   const Four bv = one - on_bc;
@@ -96,9 +96,9 @@ Four outside(const std::array<float, 4>& low, const std::array<float, 4>& high, 
   return off > 0 ? off : four(0);
 }
 
-/// Which of a triangle's normals holds there: corners, edges, face.
+/// Index of the normal at that point: corners, edges, face.
 std::size_t normal_at(float v, float w) {
-  constexpr float hair = 1e-6f;  // edges are found to rounding
+  constexpr float hair = 1e-6f;  // tolerance of the classification as an edge
   const bool on_ac = v <= hair, on_ab = w <= hair, on_bc = v + w >= 1 - hair;
   if (on_ac && on_ab) return 0;
   if (on_ab && on_bc) return 1;
@@ -108,7 +108,7 @@ std::size_t normal_at(float v, float w) {
 
 }  // namespace
 
-/// Divides the triangles in halves of halves: four children to a node.
+/// Splits the triangles in halves twice: four children per node.
 class QuickDistance::Builder {
  public:
   Builder(const TriMesh& mesh, QuickDistance& out) : mesh_(mesh), out_(out), tree_(mesh) {
@@ -118,7 +118,7 @@ class QuickDistance::Builder {
       centers_.push_back(a + b + c);
       const Vector3f ab = (b - a).cast<float>(), ac = (c - a).cast<float>();
       const float area = ab.squaredNorm() * ac.squaredNorm() - ab.dot(ac) * ab.dot(ac);
-      // Slivers that single precision takes for lines have neighbours at the same place.
+      // Slivers that degenerate to lines in single precision have coincident neighbours.
       if (area > 1e-10f * ab.squaredNorm() * ac.squaredNorm())
         order_.push_back(static_cast<int>(i));
     }
@@ -254,7 +254,7 @@ float QuickDistance::signed_distance(const Vector3d& point, float limit, Start& 
                z = outside(node.low[2], node.high[2], at.z);
     const Four squares = x * x + y * y + z * z;
     if (!any(squares < four(best))) continue;
-    // The nearest child is looked at next.
+    // The nearest child is visited next.
     const int top = size;
     for (int k = 0; k < lanes; ++k) {
       if (node.child[k] == none || squares[k] >= best) continue;

@@ -11,21 +11,21 @@
 namespace condyle {
 
 /// Distance of many points to one surface: four boxes or triangles at a time, in single precision
-/// (within 1e-4 mm on bodies of 300 mm), some three times as fast as TriangleTree. Queries are
+/// (within 1e-4 mm on bodies of 300 mm), about three times as fast as TriangleTree. Queries are
 /// const, thread-safe and depend on their arguments alone.
 class QuickDistance {
  public:
   /// Indices must be valid and coordinates finite; at least one triangle with area.
   explicit QuickDistance(const TriMesh& mesh);
 
-  /// Where an answer was found: the start of a query near by.
+  /// The location of an answer: the start of the next query near it.
   struct Start {
     std::int32_t packet = -1;
   };
 
-  /// Distance of p to the surface, mm, negative on the inner side of its nearest place: inside a
-  /// closed surface. Infinite when it is farther than `limit`. `start` says where to look first
-  /// and takes the place found; it may change the answer by rounding alone.
+  /// Distance of p to the surface, mm, negative on the inner side of its nearest point: inside a
+  /// closed surface. Infinite when it is farther than `limit`. `start` is searched first and is set
+  /// to the location found; it affects the answer by rounding only.
   float signed_distance(const Eigen::Vector3d& p, float limit, Start& start) const;
   float signed_distance(const Eigen::Vector3d& p) const {
     Start start;
@@ -39,7 +39,7 @@ class QuickDistance {
     std::array<Lane, 3> low, high;
     std::array<std::int32_t, lanes> child;  // a node, or ~packet, or none
   };
-  struct alignas(16) Packet {  // up to four triangles; spare lanes repeat the first
+  struct alignas(16) Packet {  // up to four triangles; unused lanes repeat the first
     std::array<Lane, 3> a, ab, ac;
     Lane ab2, ac2, abac;                        // products of the edges
     Lane per_ab2, per_ac2, per_bc2, per_area2;  // 1 over squares of edges and of the area
@@ -50,7 +50,8 @@ class QuickDistance {
 
   class Builder;
 
-  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // coordinates are kept from here
+  Eigen::Vector3d origin_ =
+      Eigen::Vector3d::Zero();  // coordinates are stored relative to this point
   std::vector<Node> nodes_;
   std::vector<Packet> packets_;
   std::vector<Normals> normals_;  // of each lane of each packet

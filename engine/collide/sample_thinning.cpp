@@ -24,15 +24,15 @@ std::uint64_t key(const Cell& c) {
 
 }  // namespace
 
-SamplePlaces thinned(const SamplePlaces& all, double reach_mm, double rise_mm) {
+SamplePoints thinned(const SamplePoints& all, double reach_mm, double rise_mm) {
   const std::size_t count = all.points.size();
   std::vector<int> order(count);
   std::iota(order.begin(), order.end(), 0);
-  // Not by the last bits: a turned surface keeps the same samples.
+  // Independent of the last bits: a rotated surface keeps the same samples.
   const auto sharpness = [&](int p) { return std::lround(100 * all.spread[p]); };
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return sharpness(a) < sharpness(b); });
-  // Kept samples by cells of the reach; those of one cell hang on each other.
+  // Kept samples by cells of the size of the reach, as linked lists.
   std::unordered_map<std::uint64_t, int> first;
   first.reserve(count / 2);
   std::vector<int> next(count, -1);
@@ -61,7 +61,7 @@ SamplePlaces thinned(const SamplePlaces& all, double reach_mm, double rise_mm) {
     const auto [place, fresh] = first.try_emplace(key(here), p);
     if (!fresh) next[p] = std::exchange(place->second, p);
   }
-  SamplePlaces out;
+  SamplePoints out;
   for (std::size_t p = 0; p < count; ++p) {
     if (!kept[p]) continue;
     out.points.push_back(all.points[p]);

@@ -5,15 +5,15 @@
 
 namespace condyle {
 
-/// Places that a surface was sampled at.
-struct SamplePlaces {
+/// Points at which a surface is sampled.
+struct SamplePoints {
   std::vector<Eigen::Vector3d> points, normals;
   std::vector<float> spread;  // cosine of the widest angle to a face's normal there
 };
 
-/// Drops samples that others stand for: one lies within `reach_mm`, of nearly the same normal, and
-/// the surface rises above it by no more than `rise_mm` on the way. Slender triangles and fine
-/// meshes give three samples where one does. The sharpest stay; same bits each time.
-SamplePlaces thinned(const SamplePlaces& all, double reach_mm, double rise_mm);
+/// Removes redundant samples: those with another sample within `reach_mm` that has nearly the same
+/// normal and above which the surface between them rises by at most `rise_mm`. Slender triangles
+/// and fine meshes give three samples where one suffices. The sharpest are kept; deterministic.
+SamplePoints thinned(const SamplePoints& all, double reach_mm, double rise_mm);
 
 }  // namespace condyle

@@ -13,12 +13,12 @@
 namespace condyle {
 namespace {
 
-/// A sheet that is covered on both sides is closed by its edges alone.
+/// A sheet that is covered on both sides is closed by its edges but has no volume.
 bool encloses_volume(const TriMesh& mesh) {
   return std::abs(signed_volume(mesh)) > 1e-9 * std::pow(surface_area(mesh), 1.5);
 }
 
-/// The pieces as they are, in order of first appearance.
+/// The connected pieces, in order of first appearance.
 std::vector<Shell> split(const TriMesh& mesh) {
   const Components components = find_components(mesh);
   std::vector<Shell> shells(static_cast<std::size_t>(components.count));
@@ -40,7 +40,7 @@ std::vector<Shell> split(const TriMesh& mesh) {
     piece.triangles.push_back(t);
   }
 
-  // Closed: every edge is run along as often one way as the other.
+  // Closed: every edge is used equally often in both directions.
   for (auto& shell : shells) shell.rim.assign(shell.mesh.triangles.size(), 0);
   std::vector<bool> on_rim(mesh.vertices.size(), false);
   const EdgeList list = find_edges(mesh);

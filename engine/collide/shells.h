@@ -9,8 +9,9 @@ namespace condyle {
 
 /// A connected piece of a surface.
 struct Shell {
-  TriMesh mesh;         // its own vertices, without colours
-  bool closed = false;  // every edge is run along both ways as often, and there is a volume inside
+  TriMesh mesh;  // its own vertices, without colours
+  bool closed =
+      false;  // every edge is used equally often in both directions, and a volume is enclosed
   // One per triangle: bit k for the edge from corner k to corner k + 1 on a rim, bit 3 + k for
   // corner k on a rim. All zero for closed shells.
   std::vector<std::uint8_t> rim;
@@ -21,8 +22,8 @@ struct Shell {
 void require_sound(const TriMesh& mesh);
 
 /// The pieces that bound a solid. Closed shells face outward: those that face inward within another
-/// are cavities and are left out, others that face inward are turned. Open shells keep their sense.
-/// The mesh must be welded.
+/// shell are cavities and are omitted; others that face inward are flipped. Open shells keep their
+/// orientation. The mesh must be welded.
 std::vector<Shell> solid_shells(const TriMesh& mesh);
 
 }  // namespace condyle

@@ -9,8 +9,8 @@
 
 namespace condyle {
 
-/// Distance to a surface with the sign of its inside, as far as it has one: closed shells are
-/// negative inside; open shells have no inside and give a distance without sign. Body coordinates.
+/// Signed distance to a surface: negative inside closed shells; open shells have no inside and give
+/// an unsigned distance. Body coordinates.
 class SignedSurface {
  public:
   /// Welded mesh. throws: InputError, see require_sound.

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/collide/slide_nodes.h"
+#include "engine/collide/slide_lattice.h"
 #include "engine/collide/slide_probe.h"
 #include "engine/collide/slide_walk.h"
 #include "engine/core/infinity.h"
@@ -23,8 +23,8 @@ using Eigen::Vector3d;
 constexpr int max_walks = 8;
 constexpr int most_rubs = 12;
 constexpr double rest_mm = 0.005;
-// Of the band: poses so near each other have nothing between them.
-constexpr double near_share = 0.5;
+// Fraction of the band: between poses this near each other nothing can be passed through.
+constexpr double near_fraction = 0.5;
 
 bool is_finite(const Pose& X) { return X.R.coeffs().allFinite() && X.t.allFinite(); }
 
@@ -49,22 +49,22 @@ std::vector<SlidePair> all_pairs(std::size_t fixed, std::size_t moving) {
 
 }  // namespace
 
-SlideBody make_slide_body(const TriMesh& mesh, const SlideBodySettings& settings, int threads,
-                          const Progress& progress) {
+ContactSurface make_contact_surface(const TriMesh& mesh, const ContactSurfaceSettings& settings,
+                                    int threads, const Progress& progress) {
   SampleSettings samples = settings.samples;
   if (settings.field.region && !samples.region) samples.region = settings.field.region;
-  DistanceField field = kept_field(settings.cache, mesh, settings.field, threads, progress);
+  DistanceField field = cached_field(settings.cache, mesh, settings.field, threads, progress);
   report(progress, "measuring the bone", 1);
   return {std::move(field), sample_surface(mesh, samples)};
 }
 
-SlidingContact::SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fixed,
-                               std::vector<std::shared_ptr<const SlideBody>> moving,
+SlidingContact::SlidingContact(std::vector<std::shared_ptr<const ContactSurface>> fixed,
+                               std::vector<std::shared_ptr<const ContactSurface>> moving,
                                const SlideSettings& settings)
     : SlidingContact(fixed, moving, all_pairs(fixed.size(), moving.size()), settings) {}
 
-SlidingContact::SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fixed,
-                               std::vector<std::shared_ptr<const SlideBody>> moving,
+SlidingContact::SlidingContact(std::vector<std::shared_ptr<const ContactSurface>> fixed,
+                               std::vector<std::shared_ptr<const ContactSurface>> moving,
                                const std::vector<SlidePair>& pairs, const SlideSettings& settings)
     : fixed_(std::move(fixed)), moving_(std::move(moving)), settings_(settings), id_(next_id()) {
   band_mm_ = infinity;
@@ -74,7 +74,7 @@ SlidingContact::SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fix
     };
     if (!in(pair.fixed, fixed_.size()) || !in(pair.moving, moving_.size()))
       throw std::invalid_argument("sliding contact: a pair names a surface that is not there");
-    const SlideBody &f = *fixed_[pair.fixed], &m = *moving_[pair.moving];
+    const ContactSurface &f = *fixed_[pair.fixed], &m = *moving_[pair.moving];
     const double band = std::min(f.field.settings().band_mm, m.field.settings().band_mm);
     if (!(pair.gap_mm >= 0 && pair.gap_mm <= 0.5 * band))
       throw std::invalid_argument("sliding contact: a gap is below 0 or above half the band");
@@ -98,16 +98,16 @@ SlidingContact::SlidingContact(std::vector<std::shared_ptr<const SlideBody>> fix
   if (settings_.rotation_length_mm > 0) rotation_length_mm_ = settings_.rotation_length_mm;
 }
 
-struct SlideMemory::State {
+struct SlideCache::State {
   State(const SlidingContact& model, std::uint64_t model_id, int threads)
       : id(model_id), here(model, threads), there(model, threads), nodes(model, threads) {}
   std::uint64_t id;
-  SlideProbe here, there;  // along the body's way, and about the wanted pose
-  SlideNodes nodes;
+  SlideProbe here, there;  // along the body's path, and around the target pose
+  SlideLattice nodes;
 };
 
-SlideMemory::SlideMemory() = default;
-SlideMemory::~SlideMemory() = default;
+SlideCache::SlideCache() = default;
+SlideCache::~SlideCache() = default;
 
 void SlidingContact::place(const std::vector<Pose>& X_FS, const std::vector<Pose>& X_MS) {
   if (X_FS.size() != fixed_.size() || X_MS.size() != moving_.size())
@@ -130,18 +130,18 @@ void SlidingContact::place(const std::vector<Pose>& X_FS, const std::vector<Pose
       radius_mm_ = std::max(radius_mm_, (X_MS[m] * p - pivot_).norm());
 }
 
-double SlidingContact::allowed_share(const Pair& pair, const Pose& X_FM) const {
+double SlidingContact::allowed_fraction(const Pair& pair, const Pose& X_FM) const {
   if (pair.allowed.empty()) return 0;
   if (fade_mm_ == infinity) return 1;
-  // No point of the moving surface has gone farther.
+  // Upper bound of the displacement of any point of the moving surface.
   const auto& balls = pair.mover().samples.balls;
   if (balls.empty()) return 1;
   const Pose now = pair.between(X_FM);
   const Vector3d center = balls[0].center.cast<double>();
   const double way = (now * center - pair.rest * center).norm() +
                      rotation_angle(pair.rest.inverse() * now) * balls[0].radius;
-  const double share = way / fade_mm_;
-  return std::max(0.0, 1 - share * share);
+  const double fraction = way / fade_mm_;
+  return std::max(0.0, 1 - fraction * fraction);
 }
 
 void SlidingContact::allow_overlap_at(const Pose& rest, double fade_mm) {
@@ -171,21 +171,22 @@ double SlidingContact::depth(const Pose& X_FM, int threads) const {
   return std::max(0.0, -probe.worst_gap());
 }
 
-SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMemory* memory,
+SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideCache* memory,
                                   int threads) const {
   SlideResult out;
   out.X_FM = from;
   if (!is_finite(from) || !is_finite(wanted)) return out;
-  SlideMemory own;
-  SlideMemory& kept = memory ? *memory : own;
+  SlideCache own;
+  SlideCache& kept = memory ? *memory : own;
   if (!kept.state_ || kept.state_->id != id_)
-    kept.state_ = std::make_unique<SlideMemory::State>(*this, id_, threads);
+    kept.state_ = std::make_unique<SlideCache::State>(*this, id_, threads);
   SlideProbe &here = kept.state_->here, &there = kept.state_->there;
   const auto walk = [&](const Pose& start, const Pose& to) {
     return SlideWalk(*this, here, start, to).run();
   };
   if (settings_.friction > 0) {
-    // What a walk had learnt of a crease may hold it back: it rests where a fresh one stays.
+    // Constraints kept from earlier steps of a walk may hold it back: the result is valid where a
+    // new walk does not move.
     const auto rests = [&](const Pose& before, const SlideResult& after) {
       return after.touching && here.way_of(here.between(before, after.X_FM)) <= rest_mm;
     };
@@ -206,11 +207,12 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
 
   if (there.overlaps_at(wanted, settings_.slop_mm)) {
     auto& nodes = kept.state_->nodes;
-    const SlideNodes::Node start = nodes.nearest(wanted);
+    const SlideLattice::Node start = nodes.nearest(wanted);
     SlideResult answer;
-    std::atomic<bool> answered = false;  // how far it looks ahead meanwhile changes no answer
+    std::atomic<bool> answered =
+        false;  // the amount of prefetching meanwhile does not change any answer
     parallel_for(2, threads, [&](std::size_t job) {
-      if (job == 1) return nodes.look_ahead(wanted, [&] { return !answered; });
+      if (job == 1) return nodes.prefetch(wanted, [&] { return !answered; });
       if (start.found) {
         answer = SlideWalk(*this, there, nodes.carried(start, wanted), wanted).run();
         if (!answer.settled || !answer.reached)
@@ -219,13 +221,14 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideMem
       answered = true;
     });
     answer.reached &= start.reached;
-    const double near = near_share * band_mm_;
-    const auto reach = [&](const Pose& to) {  // whether it does, and passes through nothing
-      if (here.way_of(here.between(from, to)) <= near) return std::pair(true, true);
-      const SlideResult there_by_walk = walk(from, to);
-      return std::pair(here.way_of(here.between(there_by_walk.X_FM, to)) <= near,
-                       there_by_walk.reached);
-    };
+    const double near = near_fraction * band_mm_;
+    const auto reach =
+        [&](const Pose& to) {  // whether it arrives there without passing through anything
+          if (here.way_of(here.between(from, to)) <= near) return std::pair(true, true);
+          const SlideResult there_by_walk = walk(from, to);
+          return std::pair(here.way_of(here.between(there_by_walk.X_FM, to)) <= near,
+                           there_by_walk.reached);
+        };
     if (answer.settled) {
       auto [reaches, surely] = reach(answer.X_FM);
       if (!reaches) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "engine/collide/near_samples.h"
@@ -16,28 +17,30 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double measured_share = 0.5;     // of the band: gaps up to here are measured, not bounded
-constexpr double coarse_mm = 1.5;          // of a ball of which one sample tells the overlap
-constexpr double close_mm = 0.015;         // all samples as near as this count
-constexpr double straight = 0.01;          // off 1: of a slope where the cell has no edge in it
-constexpr double look_rounding_mm = 1e-4;  // of what is kept of a look
+constexpr double measured_fraction =
+    0.5;                            // of the band: gaps up to here are measured rather than bounded
+constexpr double coarse_mm = 1.5;   // size of a ball whose overlap is represented by one sample
+constexpr double close_mm = 0.015;  // all samples within this distance count
+constexpr double straight =
+    0.01;  // deviation from 1 of a gradient's length in cells without an edge
+constexpr double look_rounding_mm = 1e-4;  // rounding of the recorded values
 
 }  // namespace
 
-/// One look at a pair.
+/// One query of a pair.
 struct SlideProbe::Search {
   const SlidingContact::Pair& pair;
   std::vector<Seen>& seen;
   int index;
   double within, turned;
-  double share;  // of what is allowed
+  double fraction;  // fraction of the allowance
   std::vector<SlideCandidate>& found;
-  Pose X_fixed;                // of the samples in the fixed frame
+  Pose X_fixed;                // pose of the samples in the fixed frame
   Eigen::Matrix3d R_FS, R_FD;  // samples in the field; field in the fixed frame
   Vector3d t_FS;
   Eigen::Matrix3f R_float;  // R_FS
 
-  /// Written out: this is asked more often than anything else.
+  /// Written out by component: this is the most frequent query.
   template <class Vector>
   Vector3d in_field(const Vector& p) const {
     const double x = p.x(), y = p.y(), z = p.z();
@@ -47,7 +50,7 @@ struct SlideProbe::Search {
             R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + t_FS.z()};
   }
 
-  /// No sample of the ball has a smaller gap than this.
+  /// Lower bound of the gaps of the ball's samples.
   double ball(int b) {
     const SurfaceSamples::Ball& here = pair.samples->samples.balls[b];
     const bool leaf = here.right == 0;
@@ -61,11 +64,12 @@ struct SlideProbe::Search {
                        (turned - last.turned) * here.radius + look_rounding_mm;
     if (last.gap - way > within) return last.gap - way;
     double gap = -infinity;
-    // A ball that moved by less than its size is as near as before: its parts know more.
+    // A ball that moved by less than its size is about as near as before: its children have better
+    // bounds.
     if (way > here.radius) {
       const DistanceField& field = pair.field->field;
       const DistanceField::Spot at = field.spot(center);
-      // Within the band the field tells more than its bounds do.
+      // Within the band the field is more accurate than its bounds.
       gap = (at.known ? at.distance_mm - field_bend_mm : field.lower_bound(center)) - here.radius -
             pair.gap_mm;
     }
@@ -76,18 +80,18 @@ struct SlideProbe::Search {
     return gap;
   }
 
-  /// No sample of a leaf is nearer than this. Of those that are not close the nearest stands for
-  /// all: what it hides is seen at the next look, from where it matters.
+  /// Lower bound of the gaps of a leaf's samples. Those that are not close are represented by the
+  /// nearest; the others are examined at the next query, where they matter.
   double samples(const SurfaceSamples::Ball& leaf, const Vector3d& center) {
     const SurfaceSamples& s = pair.samples->samples;
     const DistanceField& field = pair.field->field;
     std::array<float, 16> gap;
     const unsigned told = field.distances(s.blocks[leaf.block], R_float, center, gap);
     double least = infinity;
-    unsigned near = 0;  // a bit for each sample to look at
+    unsigned near = 0;  // a bit for each sample to examine
     for (int k = 0; k < leaf.count; ++k) {
       const int i = leaf.first + k;
-      const double allowed = share > 0 ? share * static_cast<double>(pair.allowed[i]) : 0.0;
+      const double allowed = fraction > 0 ? fraction * static_cast<double>(pair.allowed[i]) : 0.0;
       if (allowed == -infinity) continue;
       double here = static_cast<double>(gap[k]), at_least = here - field_bend_mm;
       if (!(told >> k & 1)) {
@@ -117,8 +121,8 @@ struct SlideProbe::Search {
     return least;
   }
 
-  /// Where a cell has an edge of the surface in it, its slope leans towards what lies behind the
-  /// edge. A cell farther out knows the way better.
+  /// In a cell that contains an edge of the surface, the gradient is biased towards the far side of
+  /// the edge. A cell farther out has the better direction.
   Vector3d gradient(const Vector3d& p, const DistanceField::Spot& at) const {
     const DistanceField& field = pair.field->field;
     const double spacing = field.settings().spacing_mm;
@@ -136,15 +140,15 @@ struct SlideProbe::Search {
     const DistanceField& field = pair.field->field;
     const Vector3d p = in_field(s.points[sample]);
     const DistanceField::Spot at = field.spot(p);
-    const SampleLook look = judged({at.distance_mm, gradient(p, at), at.known},
-                                   R_FS * s.normals[sample], s.spread[sample]);
+    const SampleDistance look = classified({at.distance_mm, gradient(p, at), at.known},
+                                           R_FS * s.normals[sample], s.spread[sample]);
     SlideCandidate c;
     c.pair = index;
     c.sample = sample;
     c.known = look.known;
     c.faces = look.faces;
     c.gap = at.distance_mm - pair.gap_mm;
-    if (share > 0) c.gap -= share * static_cast<double>(pair.allowed[sample]);
+    if (fraction > 0) c.gap -= fraction * static_cast<double>(pair.allowed[sample]);
     c.gradient = R_FD * look.gradient;
     if (!pair.samples_move) c.gradient = -c.gradient;
     c.point = X_fixed * s.points[sample];
@@ -170,7 +174,7 @@ void SlideProbe::look_at(const Pose& X, double within_mm) {
            static_cast<int>(i),
            within_mm,
            turned_,
-           model_.allowed_share(pair, X),
+           model_.allowed_fraction(pair, X),
            found_[i],
            pair.samples_move ? X_moving : pair.X_FS,
            X_FS.R.toRotationMatrix(),
@@ -197,7 +201,7 @@ void SlideProbe::each_overlap(const Pose& X, const At& at) const {
     const DistanceField& field = pair.field->field;
     const Pose X_FS = pair.to_field(X);
     const Eigen::Matrix3d R = X_FS.R.toRotationMatrix();
-    const double share = model_.allowed_share(pair, X);
+    const double fraction = model_.allowed_fraction(pair, X);
     stack.assign(s.balls.empty() ? 0 : 1, 0);
     while (!stack.empty()) {
       const int index = stack.back();
@@ -215,7 +219,7 @@ void SlideProbe::each_overlap(const Pose& X, const At& at) const {
         continue;
       }
       const double allowed =
-          share > 0 ? share * static_cast<double>(pair.allowed[ball.first]) : 0.0;
+          fraction > 0 ? fraction * static_cast<double>(pair.allowed[ball.first]) : 0.0;
       const double depth = allowed + pair.gap_mm - here.distance_mm;
       if (depth > 0 && !at(pair, ball.first, depth)) return;
     }
@@ -241,13 +245,13 @@ bool SlideProbe::overlaps_at(const Pose& X, double depth_mm) {
     found = depth > depth_mm;
     return !found;
   });
-  if (found) return true;  // roughly; else in full
+  if (found) return true;  // approximate test; otherwise the exact one
   look_at(X, 0);
   return deepest_gap_ < -depth_mm;
 }
 
 double SlideProbe::clearance(const Pose& X) {
-  const double near = measured_share * model_.band_mm_;
+  const double near = measured_fraction * model_.band_mm_;
   look_at(X, near);
   if (deepest_gap_ <= near) return deepest_gap_;
   double least = infinity;
@@ -262,7 +266,7 @@ Twist SlideProbe::between(const Pose& X, const Pose& to) const {
   Twist x;
   const Eigen::AngleAxisd turn((to.R * X.R.conjugate()).normalized());
   double angle = turn.angle();
-  if (angle > M_PI) angle -= 2 * M_PI;
+  if (angle > std::numbers::pi) angle -= 2 * std::numbers::pi;
   x << to * model_.pivot_ - X * model_.pivot_,
       angle * model_.rotation_length_mm_ * Vector3d(turn.axis());
   return x;

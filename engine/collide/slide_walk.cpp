@@ -8,21 +8,26 @@
 namespace condyle {
 namespace {
 
-constexpr double step_share = 0.25;  // longest step, of the band
-// Beyond a step's length contacts may matter, with friction more of them.
+constexpr double step_fraction = 0.25;  // longest step as a fraction of the band
+// Contacts somewhat beyond a step's length may matter, with friction more of them.
 constexpr double margin_mm = 0.02, rubbing_margin_mm = 0.05;
-// With friction a contact drags from where it meets, which shorter steps find better.
+// With friction a contact acts from the point of first contact, which shorter steps locate more
+// accurately.
 constexpr double rubbing_step_mm = 0.1, rubs_below_mm = 0.03;
-constexpr double kept_slop = 0.7;  // share of the slop that is not undone
-constexpr double first_radius_mm = 0.15, least_radius_mm = 0.05;
-constexpr double gained_mm = 5e-4;  // what a move must bring
+constexpr double kept_slop = 0.7;  // fraction of the slop that is not corrected
+constexpr double first_radius_mm = 0.15, min_radius_mm = 0.05;
+constexpr double gained_mm = 5e-4;  // least gain of a step
 constexpr double cut_reach_mm = 0.1;
 constexpr std::size_t max_cuts = 24;
-constexpr double still_mm = 1e-4;  // steps shorter than this lead nowhere
-// Contacts that contradict each other (bodies of two patients in each other, surfaces turned inside
-// out) ask for ways longer than any head; after so many such steps there is no way out.
+constexpr double still_mm = 1e-4;  // shorter steps make no progress
+// Contradictory contacts (bodies of two patients in one place, surfaces turned inside out) request
+// displacements larger than any head; after this many such steps the walk is abandoned.
 constexpr double senseless_mm = 1000;
 constexpr int most_senseless = 3;
+// After this many successive steps that neither reduce the overlap nor bring the body nearer, more
+// would not either.
+constexpr int most_idle = 80;
+constexpr double parted_mm = 1e-3;  // least reduction of the overlap
 
 }  // namespace
 
@@ -35,7 +40,7 @@ SlideWalk::SlideWalk(const SlidingContact& model, SlideProbe& probe, const Pose&
       settled_mm_(settled_mm),
       X_(from) {
   const SlideSettings& settings = model_.settings_;
-  longest_ = step_share * model_.band_mm_;
+  longest_ = step_fraction * model_.band_mm_;
   if (settings.friction > 0) longest_ = std::min(longest_, rubbing_step_mm);
   solver_.friction = settings.friction;
   solver_.rotation_length_mm = model_.rotation_length_mm_;
@@ -45,6 +50,7 @@ SlideWalk::SlideWalk(const SlidingContact& model, SlideProbe& probe, const Pose&
   max_steps_ = 24 + static_cast<int>(3 * whole / longest_);
   radius_ = std::min(longest_, first_radius_mm);
   lately_.fill(infinity);
+  least_depth_ = least_left_ = infinity;
   out_.reached = true;
 }
 
@@ -58,7 +64,17 @@ bool SlideWalk::go_on(int steps) {
   return ended_;
 }
 
-/// True where it was the last.
+/// Whether the body overlaps and the walk does not part it: the contacts contradict each other.
+bool SlideWalk::gets_nowhere(double left) {
+  const bool gains = out_.depth_mm <= model_.settings_.slop_mm ||
+                     out_.depth_mm < least_depth_ - parted_mm || left < least_left_ - gained_mm;
+  least_depth_ = std::min(least_depth_, out_.depth_mm);
+  least_left_ = std::min(least_left_, left);
+  idle_ = gains ? 0 : idle_ + 1;
+  return idle_ >= most_idle;
+}
+
+/// True where it was the last step.
 bool SlideWalk::step() {
   const SlideSettings& settings = model_.settings_;
   if (out_.steps == max_steps_) {
@@ -92,20 +108,20 @@ bool SlideWalk::step() {
   out_.settled = (length <= settled_mm_ * share_ || length <= still_mm || stalls) &&
                  out_.depth_mm <= settings.slop_mm;
   if (out_.steps == 0) start_ = out_;
-  if (out_.settled) {
+  if (out_.settled || gets_nowhere(left.norm())) {
     end();
     return true;
   }
   senseless_ = length > senseless_mm ? senseless_ + 1 : 0;
-  if (senseless_ >= most_senseless && start_.X_FM.t == from_.t) {  // it stays where it was
+  if (senseless_ >= most_senseless && start_.X_FM.t == from_.t) {  // the body stays at its start
     start_.steps = out_.steps;
     out_ = std::move(start_);
     return true;
   }
   if (length > radius_) x *= radius_ / length;
   const bool arrives = length <= radius_ && share_ == 1 && solution.pushes.empty();
-  // Steps that swing back and forth are too long: over a crease of the surface each sees one of
-  // its sides. What held on the other side is kept. Steps that agree may grow.
+  // Alternating steps are too long: at a crease of the surface each step encounters only one side.
+  // The constraints of the other side are kept. Steps in a consistent direction may grow.
   const double agree = x.dot(last_);
   if (agree < 0) {
     share_ = std::max(0.5 * share_, 1e-3);
@@ -115,12 +131,12 @@ bool SlideWalk::step() {
   }
   last_ = x;
   X_ = arrives ? wanted_ : probe_.moved(X_, x);
-  radius_ = std::min(longest_, std::max(2 * std::min(length, radius_), least_radius_mm));
+  radius_ = std::min(longest_, std::max(2 * std::min(length, radius_), min_radius_mm));
   ++out_.steps;
   return false;
 }
 
-/// Where nothing was gained it stays where it was.
+/// Where nothing was gained the body stays at its start.
 void SlideWalk::end() {
   const SlideSettings& settings = model_.settings_;
   const bool start_is_free = start_.X_FM.t == from_.t && start_.depth_mm <= settings.slop_mm;
@@ -139,7 +155,8 @@ void SlideWalk::make_rows() {
   for (std::size_t i = 0; i < probe_.candidates().size(); ++i) {
     const SlideCandidate& c = probe_.candidates()[i];
     if (!c.known || !c.faces || c.gradient.squaredNorm() < 0.1) continue;
-    // Depth within the slop is neither deepened nor undone: to stay is always allowed.
+    // Penetration within the slop is neither increased nor corrected: staying in place is always
+    // feasible.
     const double open =
         c.gap > 0 ? c.gap : std::min(0.0, c.gap + kept_slop * model_.settings_.slop_mm);
     rows_.push_back(contact_row(c.point - pivot, c.gradient, open, model_.rotation_length_mm_));

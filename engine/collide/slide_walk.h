@@ -9,30 +9,31 @@
 
 namespace condyle {
 
-/// Walk of a body towards a wanted pose, in steps that pass through nothing: it slides along what
-/// is in the way, until nothing brings it nearer, which is no more than `settled_mm` at a step.
+/// Incremental motion of a body towards a target pose, in steps too short to pass through anything:
+/// it slides along obstacles until a step brings it nearer by at most `settled_mm`.
 class SlideWalk {
  public:
-  static constexpr double usual_settled_mm = 0.002;
+  static constexpr double default_settled_mm = 0.002;
 
   SlideWalk(const SlidingContact& model, SlideProbe& probe, const Pose& from, const Pose& wanted,
-            double settled_mm = usual_settled_mm);
+            double settled_mm = default_settled_mm);
 
-  /// To the end.
+  /// Runs to the end.
   SlideResult run();
 
-  /// Takes at most so many steps. True at the end.
+  /// Performs at most this many steps. True at the end.
   bool go_on(int steps);
-  /// Of a walk that is at its end.
+  /// The result of a finished walk.
   const SlideResult& result() const { return out_; }
 
  private:
-  struct Cut {  // a row that held at a pose nearby
+  struct Cut {  // a constraint that was active at a pose nearby
     ContactRow row;
     Pose X;
   };
 
   bool step();
+  bool gets_nowhere(double left);
   void end();
   void make_rows();
   void report(const TwistSolution& solution);
@@ -47,14 +48,16 @@ class SlideWalk {
   int max_steps_ = 0;
   Pose X_;             // where it is
   double radius_ = 0;  // no step is longer
-  double share_ = 1;   // of the way left that is asked for
+  double share_ = 1;   // fraction of the remaining displacement that is requested
   Twist last_ = Twist::Zero();
-  std::array<double, 5> lately_;  // how far from the wanted pose it was
+  std::array<double, 5> lately_;  // recent distances from the target pose
   bool ended_ = false;
   SlideResult out_, start_;
-  int senseless_ = 0;  // steps, one after the other, that no body could take
+  int senseless_ = 0;  // number of successive infeasible steps
+  int idle_ = 0;       // number of successive steps that gained nothing
+  double least_depth_, least_left_;
   std::vector<ContactRow> rows_;
-  std::vector<int> row_candidate_;  // of each row, -1 for a cut
+  std::vector<int> row_candidate_;  // per constraint; -1 for a cut
   std::vector<Cut> cuts_;
 };
 

@@ -90,7 +90,7 @@ int Solid::build_balls(const TriMesh& mesh, std::vector<int>& order, int first, 
   Eigen::Index axis = 0;
   box.size().maxCoeff(&axis);
   const int middle = first + (last - first) / 2;
-  const auto before = [&](int i, int j) {  // a full order: the same tree on any machine
+  const auto before = [&](int i, int j) {  // a total order gives the same tree on any machine
     const double x = middle_of(i)[axis], y = middle_of(j)[axis];
     return x != y ? x < y : i < j;
   };
@@ -150,7 +150,8 @@ double Solid::extent(const Eigen::Vector3d& direction) const {
 }
 
 double Solid::signed_distance(const Eigen::Vector3d& p) const {
-  // The shell whose box is nearest goes first: its answer spares most others.
+  // The shell whose box is nearest is queried first; its answer makes most other queries
+  // unnecessary.
   std::size_t first = 0;
   double nearest_box = infinity;
   for (std::size_t i = 0; i < shells_.size(); ++i)
@@ -163,7 +164,7 @@ double Solid::signed_distance(const Eigen::Vector3d& p) const {
     const ClosedShell& shell = shells_[k == 0 ? first : k <= first ? k - 1 : k];
     const double to_box = distance_to(shell.box, p);
     if (to_box > 0 && to_box >= least) continue;
-    // Within its box the point may be deep inside, whatever the distance to the others.
+    // Within its box the point may be deep inside, regardless of the distance to the others.
     least = std::min(least, shell.tree.signed_nearest(p, to_box > 0 ? least : infinity).distance);
   }
   return least;

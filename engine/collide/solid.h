@@ -12,14 +12,14 @@
 namespace condyle {
 
 /// The inside of a surface: the union of its closed shells (connected pieces). Open shells have no
-/// inside; closed shells that face inward within another one are cavities and are passed over;
-/// other closed shells that face inward are turned. Body coordinates, moved by the pose alone.
+/// inside; closed shells that face inward within another one are cavities and are ignored; other
+/// closed shells that face inward are flipped. Body coordinates, moved by the pose alone.
 class Solid {
  public:
   /// Welded mesh. throws: InputError, see require_sound.
   explicit Solid(const TriMesh& mesh);
 
-  /// Cavities do not count.
+  /// Without cavities.
   int shell_count() const { return shell_count_; }
   int open_shell_count() const { return open_shell_count_; }
 
@@ -46,22 +46,22 @@ class Solid {
     Box box;
 
     /// Depth of p inside, negative outside; -infinity when a ball of `radius` about p cannot reach
-    /// it. `reach`: no less than the distance of p from the surface, if known.
+    /// it. `reach`: an upper bound of the distance of p from the surface, where known.
     double depth(const Eigen::Vector3d& p, double radius, double reach) const;
   };
-  struct Ball {  // of a run of faces
+  struct Ball {  // bounds a range of faces
     Eigen::Vector3d center;
     double radius = 0;
     int first = 0, count = 0;
     int right = 0;           // second child (the first is next); 0 for a leaf
-    bool connected = false;  // its faces hang together at their corners
+    bool connected = false;  // its faces are connected at their corners
   };
 
   void order_faces(const TriMesh& mesh);
   int build_balls(const TriMesh& mesh, std::vector<int>& order, int first, int last);
   void find_connected(const TriMesh& mesh, const std::vector<int>& order);
   void find_neighbours(const TriMesh& mesh);
-  /// Calls at(face) for each face at one of this one's corners, this one too.
+  /// Calls at(face) for each face at a corner of this one, including itself.
   template <class At>
   void each_neighbour(int face, const At& at) const {
     for (const int v : face_corners_[face])
@@ -69,46 +69,60 @@ class Solid {
   }
   bool has_shell_inside(const Solid& other, const Pose& X_OS) const;
 
-  std::vector<ClosedShell> shells_;            // facing outward
-  std::vector<Eigen::Vector3d> samples_;       // a vertex of each shell, open ones included
-  std::vector<Triangle> faces_;                // in the order of the balls
-  std::vector<int> slot_;                      // of each of the mesh's triangles, among the faces
-  std::vector<Ball> balls_;                    // depth first
+  std::vector<ClosedShell> shells_;       // facing outward
+  std::vector<Eigen::Vector3d> samples_;  // one vertex of each shell, open ones included
+  std::vector<Triangle> faces_;           // in the order of the balls
+  std::vector<int> slot_;                 // per triangle of the mesh: its index among the faces
+  std::vector<Ball> balls_;               // depth first
   std::vector<Eigen::Vector3i> face_corners_;  // of each face
   std::vector<int> first_at_, at_corner_;      // faces at each corner
-  std::vector<int> piece_;                     // of each face; pieces share no corner
-  std::vector<int> piece_face_;                // one of each piece
+  std::vector<int> piece_;                     // per face; pieces share no corner
+  std::vector<int> piece_face_;                // one face of each piece
   int shell_count_ = 0, open_shell_count_ = 0;
 };
 
 struct DepthSettings {
-  // The answer may be this much too small, or a thousandth of itself if that is more.
+  // The answer may be too small by this much, or by a thousandth of itself if that is more.
   double tolerance_mm = 2e-4;
-  // Points looked at; beyond, the search ends and `error_mm` tells what may be missing.
+  // Limit of points evaluated; the search then ends and `error_mm` bounds the remaining error.
   int max_looks = 20000;
 };
 
-/// The triangles of each mesh that cross the other mesh: all of them, in any order. What hangs
-/// together without crossing anything lies inside or outside as a whole, which spares most looks.
+/// The triangles of each mesh that cross the other mesh: all of them, in any order. A connected
+/// part without a crossing lies entirely inside or outside, which saves most evaluations.
 struct CrossingFaces {
   std::vector<int> a, b;
 };
 
+/// A part of a solid's surface, in the coordinates of the whole solid: its faces, which may have
+/// rims, and a tree of the same triangles. Both must outlive the query.
+struct SurfacePart {
+  const Solid& faces;
+  const TriangleTree& tree;
+};
+
 /// The deepest point of either surface inside the other solid.
 struct OverlapDepth {
-  double depth_mm = 0;  // its distance to that solid's surface; 0 when nothing is inside
+  double depth_mm = 0;  // its distance to the surface of that solid; 0 when nothing is inside
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    // that point, world
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, from A to B
   double error_mm = 0;  // no point of the surfaces is deeper than depth_mm + error_mm
 };
 
-/// Depth of overlap over the whole surfaces, not the vertices alone, by branch and bound. Open
-/// shells have points that may be inside, but no inside themselves.
+/// Depth of overlap over the whole surfaces, not only the vertices, by branch and bound. Points of
+/// open shells may be inside another solid; open shells themselves have no inside.
 OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB,
                            const DepthSettings& settings = {},
                            const CrossingFaces* crossing = nullptr);
 
-/// For solids whose surfaces do not cross: a shell of one lies wholly inside the other.
+/// The same where only a part of B's surface counts: points of that part inside A, and points of
+/// A's surface inside the whole of B to which the part is nearest. `crossing`: of A and the part.
+OverlapDepth overlap_depth(const Solid& a, const Pose& X_WA, const Solid& b,
+                           const SurfacePart& part_of_b, const Pose& X_WB,
+                           const DepthSettings& settings = {},
+                           const CrossingFaces* crossing = nullptr);
+
+/// For solids whose surfaces do not cross: whether a shell of one lies entirely inside the other.
 bool one_encloses_other(const Solid& a, const Pose& X_WA, const Solid& b, const Pose& X_WB);
 
 }  // namespace condyle

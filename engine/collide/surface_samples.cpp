@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int samples_a_leaf = 16;  // what a field tells at once
+constexpr int samples_a_leaf = 16;  // evaluated by a field in one call
 constexpr double hollow_slope =
     0.05;  // tangent of half the angle of an edge that counts as concave
 
@@ -46,7 +46,7 @@ void make_blocks(SurfaceSamples& s) {
   for (SurfaceSamples::Ball& ball : s.balls) {
     if (ball.right != 0) continue;
     ball.block = static_cast<int>(s.blocks.size());
-    DistanceField::Sixteen& block = s.blocks.emplace_back();
+    DistanceField::Batch16& block = s.blocks.emplace_back();
     for (int i = 0; i < samples_a_leaf; ++i) {
       const Vector3d& p = s.points[ball.first + std::min(i, ball.count - 1)];
       const Eigen::Vector3f from_center = (p - ball.center.cast<double>()).cast<float>();
@@ -60,7 +60,7 @@ void make_blocks(SurfaceSamples& s) {
 }  // namespace
 
 SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& settings) {
-  SamplePlaces places;
+  SamplePoints places;
   const auto add = [&](const Vector3d& p, const Vector3d& normal, double widest) {
     if (settings.region && !settings.region->contains(p)) return;
     places.points.push_back(p);
@@ -124,8 +124,8 @@ SurfaceSamples sample_surface(const TriMesh& mesh, const SampleSettings& setting
   }
 
   SurfaceSamples samples;
-  if (settings.thin_share > 0)
-    places = thinned(places, settings.thin_share * settings.spacing_mm, settings.edge_rise_mm);
+  if (settings.thin_fraction > 0)
+    places = thinned(places, settings.thin_fraction * settings.spacing_mm, settings.edge_rise_mm);
   const auto& [points, normals, spread] = places;
   if (points.empty()) return samples;
   for (const auto& p : points) samples.centroid += p;

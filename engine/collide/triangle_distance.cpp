@@ -22,7 +22,7 @@ Vector nearest_on_segment(const Vector& p, const Vector& a, const Vector& b) {
   return a + t * ab;
 }
 
-/// A triangle with what all its tests need.
+/// A triangle with the data that its tests have in common.
 struct Prepared {
   const Triangle& corner;
   std::array<Vector, 3> edge;
@@ -38,7 +38,7 @@ struct Prepared {
 
   double height(const Vector& p) const { return normal.dot(p - corner[0]); }
 
-  /// p is taken to lie on the plane, or is seen along the normal.
+  /// p is assumed to lie in the plane, or is projected along the normal.
   bool covers(const Vector& p) const {
     for (int k = 0; k < 3; ++k)
       if (normal.dot(edge[k].cross(p - corner[k])) < 0) return false;
@@ -58,7 +58,7 @@ struct Prepared {
   }
 };
 
-/// All of `t` lies farther than the bound on one side of the plane of `plane`.
+/// All of `t` lies on one side of the plane of `plane`, farther away than the bound.
 bool beyond_plane(const Prepared& plane, const std::array<double, 3>& height, double bound_mm2) {
   const double least = std::min({height[0], height[1], height[2]});
   const double most = std::max({height[0], height[1], height[2]});
@@ -72,7 +72,7 @@ int pierce(const Prepared& t, const std::array<double, 3>& height, const Prepare
   for (int k = 0; k < 3; ++k) {
     const double h0 = height[k], h1 = height[(k + 1) % 3];
     if ((h0 > 0) == (h1 > 0) && h0 != 0 && h1 != 0) continue;
-    if (h0 == 0 && h1 == 0) continue;  // in the plane: the neighbours' ends tell
+    if (h0 == 0 && h1 == 0) continue;  // in the plane: the adjacent edges decide
     const Vector x = t.corner[k] + t.edge[k] * (h0 / (h0 - h1));
     if (face.covers(x)) points[count++] = x;
   }
@@ -109,9 +109,9 @@ TriangleGap triangle_distance(const Triangle& ta, const Triangle& tb, double bou
     offer(a.nearest(tb[k]), tb[k]);
     offer(ta[k], b.nearest(ta[k]));
   }
-  // Inner points of two edges. By the cross product, the parameters keep their digits when the
-  // edges are nearly parallel (the usual determinant a e - b^2 loses them all at 1e-8 rad). When
-  // they are parallel, the corners above have the answer.
+  // Interior points of two edges. With the cross product the parameters stay accurate for nearly
+  // parallel edges (the standard determinant a e - b^2 loses all digits at 1e-8 rad). For parallel
+  // edges the corners above give the answer.
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       const Vector n = a.edge[i].cross(b.edge[j]);
@@ -119,12 +119,12 @@ TriangleGap triangle_distance(const Triangle& ta, const Triangle& tb, double bou
       if (n2 <= 0) continue;
       const Vector w = tb[j] - ta[i];
       const double h = w.dot(n);
-      // Even the lines are farther apart, rounding of h (1e-15 of its factors) allowed for.
+      // Even the lines are farther apart, including the rounding of h (1e-15 of its factors).
       const double doubt2 = 1e-30 * w.squaredNorm() * a.length2[i] * b.length2[j];
       if (h * h >= 2 * (gap.squared_mm2 * n2 + doubt2)) continue;
       const double s = w.cross(b.edge[j]).dot(n) / n2, t = w.cross(a.edge[i]).dot(n) / n2;
       if (s <= 0 || s >= 1 || t <= 0 || t >= 1) continue;
-      // s and t err apart from each other, along the edges: let one point answer the other.
+      // s and t have independent errors along the edges: each point is projected on the other edge.
       const Vector p = ta[i] + s * a.edge[i];
       offer(p, nearest_on_segment(p, tb[j], tb[(j + 1) % 3]));
     }

@@ -15,22 +15,22 @@ struct TriangleGap {
   Eigen::Vector3d q = Eigen::Vector3d::Zero();  // on b
 };
 
-/// Exact distance of two triangles, also when edges are parallel or a triangle has no area. Answers
-/// not below `bound_mm2` may come back as `bound_mm2` without points.
+/// Exact distance of two triangles, also when edges are parallel or a triangle has no area. Results
+/// not below `bound_mm2` may be returned as `bound_mm2` without points.
 TriangleGap triangle_distance(const Triangle& a, const Triangle& b, double bound_mm2);
 
 /// Point of the triangle nearest to p.
 Eigen::Vector3d nearest_point(const Eigen::Vector3d& p, const Triangle& t);
 
-/// Where the surfaces of two triangles cross: the two ends of the common segment.
+/// Intersection of two triangles: the two ends of the common segment.
 struct TriangleCrossing {
   bool crosses = false;
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();
 };
 TriangleCrossing triangle_crossing(const Triangle& a, const Triangle& b);
 
-/// Length of the shortest move that parts two crossing triangles, mm (separating axes: both face
-/// normals and the nine edge pairs).
+/// Length of the shortest translation that separates two crossing triangles, mm (separating axes:
+/// both face normals and the nine edge pairs).
 double triangle_overlap(const Triangle& a, const Triangle& b);
 
 }  // namespace condyle

@@ -8,6 +8,8 @@
 #include <map>
 #include <mutex>
 
+#include "engine/core/thread_order.h"
+
 namespace condyle {
 namespace {
 
@@ -27,8 +29,16 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
     for (std::size_t i = 0; i < count; ++i) body(i);
     return;
   }
+  char started = 0, done = 0;  // the bodies run after the call begins and before it returns
+  publish_to_sanitizer(&started);
+  const auto ordered_body = [&](std::size_t i) {
+    acquire_for_sanitizer(&started);
+    body(i);
+    publish_to_sanitizer(&done);
+  };
   arena_of(threads).execute(
-      [&] { tbb::parallel_for(std::size_t{0}, count, body, tbb::simple_partitioner()); });
+      [&] { tbb::parallel_for(std::size_t{0}, count, ordered_body, tbb::simple_partitioner()); });
+  acquire_for_sanitizer(&done);
 }
 
 }  // namespace condyle

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t most_edges = 64;
 constexpr int none = -1;
-constexpr double hole_share = 0.25;  // of its piece's area, at most
+constexpr double hole_fraction = 0.25;  // of its piece's area, at most
 
 /// The edges with one triangle, and how each goes on along its rim.
 class Rims {
@@ -172,7 +172,7 @@ ClosedHoles close_small_holes(TriMesh& mesh, const SmallHole& small) {
     const bool few = hole.size() <= static_cast<std::size_t>(small.few_edges);
     if (length > small.rim_mm && !(few && length <= small.few_edges_rim_mm)) continue;
     // The outer rim of a small loose sheet is none of a hole.
-    const auto triangles = cover(mesh, rims, hole, hole_share * area[piece_of[hole[0]]]);
+    const auto triangles = cover(mesh, rims, hole, hole_fraction * area[piece_of[hole[0]]]);
     if (!triangles) continue;
     added.insert(added.end(), triangles->begin(), triangles->end());
     ++closed.holes;

@@ -54,8 +54,8 @@ VertexSums composed(const VertexSums& outer, const VertexSums& inner) {
       const Share& through = outer.shares[static_cast<std::size_t>(i)];
       const auto from = static_cast<std::size_t>(through.of);
       for (int k = inner.first[from]; k < inner.first[from + 1]; ++k) {
-        const Share& share = inner.shares[static_cast<std::size_t>(k)];
-        sum.push_back({share.of, through.weight * share.weight});
+        const Share& fraction = inner.shares[static_cast<std::size_t>(k)];
+        sum.push_back({fraction.of, through.weight * fraction.weight});
       }
     }
     std::stable_sort(sum.begin(), sum.end(),

@@ -74,10 +74,11 @@ class FrontView {
     const auto first = [](double v) { return std::max(0, static_cast<int>(std::ceil(v))); };
     for (int row = first(low.y()); row < rows_ && row <= high.y(); ++row)
       for (int column = first(low.x()); column < columns_ && column <= high.x(); ++column) {
-        const Vector2d share = to_shares * (Vector2d(column, row) - a);
-        if (share.minCoeff() < 0 || share.sum() > 1) continue;
+        const Vector2d fraction = to_shares * (Vector2d(column, row) - a);
+        if (fraction.minCoeff() < 0 || fraction.sum() > 1) continue;
         double& kept = nearest_[static_cast<std::size_t>(row * columns_ + column)];
-        kept = std::min(kept, p.y() + share.x() * (q.y() - p.y()) + share.y() * (r.y() - p.y()));
+        kept =
+            std::min(kept, p.y() + fraction.x() * (q.y() - p.y()) + fraction.y() * (r.y() - p.y()));
       }
   }
 

@@ -4,10 +4,10 @@
 #include <array>
 
 #include "engine/core/error.h"
+#include "engine/mesh_io/line_reader.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "engine/mesh_io/polygon.h"
 #include "engine/mesh_io/readers.h"
-#include "engine/mesh_io/text_lines.h"
 
 namespace condyle {
 namespace {
@@ -131,7 +131,7 @@ class ObjReader {
   }
 
   const fs::path& file_;
-  TextLines lines_;
+  LineReader lines_;
   TriMesh mesh_;
   std::vector<int> corners_;
   std::vector<Face> faces_;

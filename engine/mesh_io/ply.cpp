@@ -7,11 +7,11 @@
 #include <cstring>
 
 #include "engine/core/error.h"
+#include "engine/mesh_io/line_reader.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "engine/mesh_io/ply_header.h"
 #include "engine/mesh_io/polygon.h"
 #include "engine/mesh_io/readers.h"
-#include "engine/mesh_io/text_lines.h"
 
 static_assert(std::endian::native == std::endian::little);
 
@@ -117,7 +117,7 @@ class TextBody {
     throw InputError(file_, fmt::format("{} {}{}", element_->name, index_, where()), problem);
   }
   const fs::path& file_;
-  TextLines lines_;
+  LineReader lines_;
   long header_lines_;
   const PlyElement* element_ = nullptr;
   std::size_t index_ = 0;

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/mesh_io/line_reader.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "engine/mesh_io/readers.h"
-#include "engine/mesh_io/text_lines.h"
 
 namespace condyle {
 namespace {
@@ -40,7 +40,7 @@ std::optional<PlyType> type_named(std::string_view name) {
   return std::nullopt;
 }
 
-PlyType need_type(const fs::path& file, const TextLines& lines, std::string_view name) {
+PlyType need_type(const fs::path& file, const LineReader& lines, std::string_view name) {
   if (const auto type = type_named(name)) return *type;
   throw InputError(file, "header " + lines.where(),
                    "the type " + in_quotes(name) +
@@ -48,7 +48,7 @@ PlyType need_type(const fs::path& file, const TextLines& lines, std::string_view
                        "int, uint, float and double");
 }
 
-void read_element(const fs::path& file, TextLines& lines, PlyHeader& header) {
+void read_element(const fs::path& file, LineReader& lines, PlyHeader& header) {
   PlyElement element;
   element.name = lines.word();
   const std::string_view word = lines.word();
@@ -68,7 +68,7 @@ void read_element(const fs::path& file, TextLines& lines, PlyHeader& header) {
   header.elements.push_back(std::move(element));
 }
 
-void read_property(const fs::path& file, TextLines& lines, PlyHeader& header) {
+void read_property(const fs::path& file, LineReader& lines, PlyHeader& header) {
   if (header.elements.empty())
     throw InputError(file, "header " + lines.where(), "a property comes before the first element");
   PlyProperty property;
@@ -126,7 +126,7 @@ int PlyElement::find(std::string_view property) const {
 }
 
 PlyHeader read_ply_header(const fs::path& file, std::string_view content) {
-  TextLines lines(content);
+  LineReader lines(content);
   lines.next();
   if (lines.line() != "ply")
     throw InputError(file, "",

@@ -6,9 +6,9 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/mesh_io/line_reader.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "engine/mesh_io/readers.h"
-#include "engine/mesh_io/text_lines.h"
 
 namespace condyle {
 namespace {

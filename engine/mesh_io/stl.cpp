@@ -4,9 +4,9 @@
 
 #include "engine/core/error.h"
 #include "engine/mesh/repair.h"
+#include "engine/mesh_io/line_reader.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "engine/mesh_io/readers.h"
-#include "engine/mesh_io/text_lines.h"
 
 namespace condyle {
 namespace {
@@ -70,7 +70,7 @@ TriMesh read_binary(const fs::path& file, std::string_view content) {
 }
 
 TriMesh read_ascii(const fs::path& file, std::string_view content) {
-  TextLines lines(content);
+  LineReader lines(content);
   const auto refuse = [&](const std::string& problem) {
     throw InputError(file, lines.where(), problem + "; export the surface again");
   };

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::uint32_t most_side = 16384;
+constexpr std::uint32_t max_side = 16384;
 constexpr std::size_t most_bytes = std::size_t{1} << 30;
 
 /// Sides as a PNG's header tells them; none if it is no PNG.
@@ -50,10 +50,10 @@ void decode(const fs::path& file, std::string_view bytes, Texture& texture) {
   const int size = static_cast<int>(std::min<std::size_t>(bytes.size(), INT32_MAX));
   int channels = 0;
   const auto check_sides = [&](std::uint32_t width, std::uint32_t height) {
-    if (width > most_side || height > most_side)
+    if (width > max_side || height > max_side)
       throw InputError(file, "texture",
                        fmt::format("is too large: {}x{}; at most {} pixels a side, make it smaller",
-                                   width, height, most_side));
+                                   width, height, max_side));
   };
   if (const auto sides = png_sides(bytes)) check_sides((*sides)[0], (*sides)[1]);
   if (!stbi_info_from_memory(data, size, &texture.width, &texture.height, &channels))
@@ -246,10 +246,11 @@ Eigen::Vector3f color_at(const Texture& texture, const Eigen::Vector2f& place) {
     for (const int i : {0, 1}) {
       const std::size_t at = 3 * (std::size_t(wrapped(top + j, texture.height)) * texture.width +
                                   static_cast<std::size_t>(wrapped(left + i, texture.width)));
-      const float share = (i ? x - static_cast<float>(left) : 1 - x + static_cast<float>(left)) *
-                          (j ? y - static_cast<float>(top) : 1 - y + static_cast<float>(top));
+      const float fraction = (i ? x - static_cast<float>(left) : 1 - x + static_cast<float>(left)) *
+                             (j ? y - static_cast<float>(top) : 1 - y + static_cast<float>(top));
       for (int k = 0; k < 3; ++k)
-        sum[k] += share * static_cast<float>(texture.rgb[at + static_cast<std::size_t>(k)]) / 255;
+        sum[k] +=
+            fraction * static_cast<float>(texture.rgb[at + static_cast<std::size_t>(k)]) / 255;
     }
   return sum.cwiseMax(0).cwiseMin(1);
 }

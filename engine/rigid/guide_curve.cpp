@@ -46,7 +46,7 @@ void GuideCurve::at(double s, Vector3d& point, Vector3d& slope) const {
   const double u = s - static_cast<double>(i), h = length_[i];
   const Vector3d rise = points_[i + 1] - points_[i];
   const Vector3d p = h * slopes_[i], q = h * slopes_[i + 1];
-  // Cubic of ends and slopes.
+  // Cubic Hermite interpolation.
   const Vector3d b = 3 * rise - 2 * p - q, c = p + q - 2 * rise;
   point = points_[i] + u * (p + u * (b + u * c));
   slope = p + u * (2 * b + 3 * u * c);
@@ -66,7 +66,8 @@ GuideCurve::Place GuideCurve::nearest(const Vector3d& p,
       best = k;
     }
   }
-  // Between the marks beside it the way across the slope changes its sign: halved, then secant.
+  // Between the adjacent marks the derivative of the distance changes its sign: bisection, then
+  // secant.
   const auto end = static_cast<double>(length_.size());
   double low = std::max(0.0, (static_cast<double>(best) - 1) / marks_per_span);
   double high = std::min(end, (static_cast<double>(best) + 1) / marks_per_span);

@@ -15,18 +15,18 @@ class GuideCurve {
   struct Place {
     Eigen::Vector3d point;
     Eigen::Vector3d along;     // unit, towards the end
-    double from_start_mm = 0;  // straight on along the end's slope, beyond an end: negative
+    double from_start_mm = 0;  // arc length; negative beyond an end, along its tangent
     double from_end_mm = 0;
   };
-  /// The place next to p; ways along `sideways` (unit) count for nothing.
+  /// The point of the curve nearest to p; distances along `sideways` (unit) are ignored.
   Place nearest(const Eigen::Vector3d& p, const std::optional<Eigen::Vector3d>& sideways) const;
 
  private:
   void at(double s, Eigen::Vector3d& point, Eigen::Vector3d& slope) const;
 
-  std::vector<Eigen::Vector3d> points_, slopes_;  // slopes by length
+  std::vector<Eigen::Vector3d> points_, slopes_;  // derivatives by length
   std::vector<double> length_;                    // of each span, chord
-  std::vector<Eigen::Vector3d> marks_;            // evenly in each span: where a search starts
+  std::vector<Eigen::Vector3d> marks_;  // uniform in each span: starting points of searches
 };
 
 }  // namespace condyle

@@ -8,11 +8,11 @@
 
 namespace condyle {
 
-/// What a joint holds together. Points and directions in the coordinates of their body.
+/// A joint between two bodies. Points and directions in the coordinates of their body.
 struct RigidJoint {
   enum class Kind {
     ball,   // p_B stays on p_A
-    hinge,  // so does axis_B on axis_A
+    hinge,  // as ball, and axis_B stays on axis_A
     fixed,  // the bodies keep the pose X_AB
     guide,  // p_B stays on a curve of A, within its ends
     plane   // p_B stays on the side of the plane through p_A to which axis_A points
@@ -22,9 +22,9 @@ struct RigidJoint {
   Eigen::Vector3d axis_A = Eigen::Vector3d::UnitX(), axis_B = Eigen::Vector3d::UnitX();
   Pose X_AB = {};                             // of a fixed joint
   std::vector<Eigen::Vector3d> curve_A = {};  // of a guide: at least two points, smoothed between
-  // A direction along which the point may leave the curve: it stays on a surface then.
+  // A direction in which the point may leave the curve: it then stays on a ruled surface.
   std::optional<Eigen::Vector3d> sideways_A = {};
-  double max_force_N = 1e4;  // what holds it at most (torques: times a mm)
+  double max_force_N = 1e4;  // largest constraint force (torque: times 1 mm)
 };
 
 }  // namespace condyle

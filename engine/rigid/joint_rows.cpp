@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The shortest turn that leads from R to the identity, reversed: axis times angle.
+/// Rotation vector of R (axis times angle) of least angle.
 Vector3d rotation_vector(const Eigen::Quaterniond& R) {
   const double sine = R.vec().norm();
   if (sine < 1e-300) return Vector3d::Zero();
@@ -62,7 +62,7 @@ int JointRows::count() const {
 double JointRows::append(const JointBody& a, const JointBody& b, double step_s,
                          std::span<const double> impulses, std::vector<JointRow>& rows) const {
   const std::size_t first = rows.size();
-  const double most = joint_.max_force_N * 1000 * step_s;
+  const double limit = joint_.max_force_N * 1000 * step_s;
   const bool is_fixed = joint_.kind == RigidJoint::Kind::fixed;
   const Vector3d p_WB = b.X_WB * (is_fixed ? Vector3d::Zero() : joint_.p_B);
   const auto add = [&](const Vector3d& along, const Vector3d& turn_a, const Vector3d& turn_b,
@@ -74,15 +74,16 @@ double JointRows::append(const JointBody& a, const JointBody& b, double step_s,
     row.turn_a = turn_a;
     row.turn_b = turn_b;
     row.error = error;
-    row.low = -most;
-    row.high = most;
+    row.low = -limit;
+    row.high = limit;
     if (a.solver < 0) row.wanted += along.dot(a.motion.velocity) + turn_a.dot(a.motion.spin);
     if (b.solver < 0) row.wanted -= along.dot(b.motion.velocity) + turn_b.dot(b.motion.spin);
     row.impulse = impulses.empty() ? 0.0 : impulses[rows.size() - first];
     rows.push_back(row);
   };
-  // The point of B, also as carried by A, moves along a direction. Half a step of what turns its
-  // way makes it end up in place, not beside it, and keeps the energy.
+  // The point of B, and the same point moving with A, follow the direction of the row. Half a step
+  // of rotation of the row makes the point end on the constraint instead of beside it and conserves
+  // energy.
   const auto bend = [&](const JointBody& body) {
     return Vector3d(body.motion.spin.cross(body.motion.spin.cross(p_WB - body.center)));
   };
@@ -94,7 +95,7 @@ double JointRows::append(const JointBody& a, const JointBody& b, double step_s,
   const auto turn = [&](const Vector3d& axis, double error) {
     add(Vector3d::Zero(), axis, axis, error);
   };
-  /// One-sided: the point may go `room` against the direction.
+  /// One-sided: the point may move by `room` against the direction.
   const auto stop = [&](const Vector3d& along, double room) {
     hold(along, std::min(room, 0.0));
     rows.back().low = 0;

@@ -15,7 +15,7 @@ MassProperties mass_properties(const TriMesh& mesh, double density_kg_mm3) {
   if (!(density_kg_mm3 > 0) || !std::isfinite(density_kg_mm3))
     throw InputError("a density of " + std::to_string(density_kg_mm3) +
                      " kg/mm^3 is not a positive number");
-  // Signed tetrahedra from a point of the mesh: their volumes, first and second moments add up.
+  // Sum of the volumes and of the first and second moments of signed tetrahedra.
   const Vector3d o = mesh.empty() ? Vector3d::Zero() : mesh.vertices[mesh.triangles[0][0]];
   double volume = 0;
   Vector3d first = Vector3d::Zero();

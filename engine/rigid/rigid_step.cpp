@@ -12,13 +12,13 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr int most_halvings = 7;  // of a step
-constexpr double least_active_mm = 0.01;
-// Depth, as a share of the slop: where bodies come to rest, and how much deeper a contact that is
-// not yet among those that push may go before it joins.
-constexpr double rest_share = 0.5, unseen_share = 0.25;
-constexpr double parted_share = 0.2;     // of what is too deep, in a step
-constexpr std::size_t join_at_once = 8;  // of a pair
+constexpr int max_halvings = 7;  // of a step
+constexpr double min_active_mm = 0.01;
+// Fractions of the slop: depth at which bodies come to rest, and additional depth at which an
+// inactive contact is added.
+constexpr double rest_fraction = 0.5, tolerated_fraction = 0.25;
+constexpr double corrected_fraction = 0.2;  // of the excess depth, per step
+constexpr std::size_t added_at_once = 8;    // of a pair
 
 Quaterniond turned(const Vector3d& turn) {
   const double angle = turn.norm();
@@ -100,66 +100,71 @@ void RigidWorld::State::prepare_joints(RigidWorld::Step& result) {
   }
 }
 
-void RigidWorld::State::add_push(int index, const Vector3d& impulse, std::vector<PushRow>& rows) {
-  const Touch& touch = touches[static_cast<std::size_t>(index)];
-  const RigidPair& pair = pairs[static_cast<std::size_t>(touch.pair)];
+void RigidWorld::State::add_constraint(int index, const Vector3d& impulse,
+                                       std::vector<ContactConstraint>& rows) {
+  const SurfaceContact& contact = contact_points[static_cast<std::size_t>(index)];
+  const RigidPair& pair = pairs[static_cast<std::size_t>(contact.pair)];
   const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-  PushRow row;
+  ContactConstraint row;
   row.a = members[a].solver;
   row.b = members[b].solver;
-  row.normal = touch.normal;
-  row.arm_a = touch.point - centers[a];
-  row.arm_b = touch.point - centers[b];
+  row.normal = contact.normal;
+  row.arm_a = contact.point - centers[a];
+  row.arm_b = contact.point - centers[b];
   if (row.a < 0) row.carried -= motions[a].velocity + motions[a].spin.cross(row.arm_a);
   if (row.b < 0) row.carried += motions[b].velocity + motions[b].spin.cross(row.arm_b);
-  row.gap = touch.gap_mm + rest_share * settings.slop_mm;
-  const double deeper = -touch.gap_mm - settings.slop_mm;
-  if (deeper > 0) row.part = std::min(parted_share * deeper, settings.push_out_mm_s * part_s);
+  row.gap = contact.gap_mm + rest_fraction * settings.slop_mm;
+  const double deeper = -contact.gap_mm - settings.slop_mm;
+  if (deeper > 0)
+    row.part = std::min(corrected_fraction * deeper, settings.depenetration_mm_s * part_s);
   row.friction = pair.friction;
   row.impulse = impulse;
   rows.push_back(row);
-  touch_of_push.push_back(index);
-  joined[static_cast<std::size_t>(index)] = 1;
-  ++pushes_of_pair[static_cast<std::size_t>(touch.pair)];
+  point_of_constraint.push_back(index);
+  added[static_cast<std::size_t>(index)] = 1;
+  ++constraints_of_pair[static_cast<std::size_t>(contact.pair)];
 }
 
-/// What pushed in the step before pushes again, where it is still near.
-void RigidWorld::State::start_pushes() {
-  pushes.clear();
-  touch_of_push.clear();
-  joined.assign(touches.size(), 0);
-  pushes_of_pair.assign(pairs.size(), 0);
+/// Warm start: contacts of the previous step that are still near start with their forces.
+void RigidWorld::State::warm_start_contacts() {
+  constraints.clear();
+  point_of_constraint.clear();
+  added.assign(contact_points.size(), 0);
+  constraints_of_pair.assign(pairs.size(), 0);
   auto held = memory.begin();
-  for (std::size_t t = 0; t < touches.size() && held != memory.end(); ++t) {
-    const auto key = std::pair(touches[t].look, touches[t].sample);
-    while (held != memory.end() && std::pair(held->look, held->sample) < key) ++held;
-    if (held != memory.end() && std::pair(held->look, held->sample) == key)
-      add_push(static_cast<int>(t), mm_per_m * part_s * held->force_N, pushes);
+  for (std::size_t t = 0; t < contact_points.size() && held != memory.end(); ++t) {
+    const auto key = std::pair(contact_points[t].query, contact_points[t].sample);
+    while (held != memory.end() && std::pair(held->query, held->sample) < key) ++held;
+    if (held != memory.end() && std::pair(held->query, held->sample) == key)
+      add_constraint(static_cast<int>(t), mm_per_m * part_s * held->force_N, constraints);
   }
 }
 
-bool RigidWorld::State::join(std::span<const SolverMotion> free, std::vector<PushRow>& rows) {
+bool RigidWorld::State::add_new(std::span<const SolverMotion> free,
+                                std::vector<ContactConstraint>& rows) {
   for (std::size_t i = 0; i < count(); ++i)
     if (is_free(i)) body_motions[i] = free[static_cast<std::size_t>(members[i].solver)];
   violators.clear();
-  const double rest = rest_share * settings.slop_mm, unseen = unseen_share * settings.slop_mm;
-  for (std::size_t t = 0; t < touches.size(); ++t) {
-    if (joined[t]) continue;
-    const Touch& touch = touches[t];
-    const RigidPair& pair = pairs[static_cast<std::size_t>(touch.pair)];
-    if (pushes_of_pair[static_cast<std::size_t>(touch.pair)] >= settings.max_contacts) continue;
+  const double rest = rest_fraction * settings.slop_mm,
+               unseen = tolerated_fraction * settings.slop_mm;
+  for (std::size_t t = 0; t < contact_points.size(); ++t) {
+    if (added[t]) continue;
+    const SurfaceContact& contact = contact_points[t];
+    const RigidPair& pair = pairs[static_cast<std::size_t>(contact.pair)];
+    if (constraints_of_pair[static_cast<std::size_t>(contact.pair)] >= settings.max_contacts)
+      continue;
     const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
     const Vector3d v =
-        body_motions[b].velocity + body_motions[b].spin.cross(touch.point - centers[b]) -
-        body_motions[a].velocity - body_motions[a].spin.cross(touch.point - centers[a]);
-    const double way = part_s * v.dot(touch.normal), gap = touch.gap_mm + rest;
-    const bool overlaps = gap + way < -unseen && way < -std::max(gap, 0.0);
-    if (overlaps || touch.gap_mm < -settings.slop_mm)
-      violators.push_back({-(gap + std::min(way, 0.0)), static_cast<int>(t), 0});
+        body_motions[b].velocity + body_motions[b].spin.cross(contact.point - centers[b]) -
+        body_motions[a].velocity - body_motions[a].spin.cross(contact.point - centers[a]);
+    const double displacement = part_s * v.dot(contact.normal), gap = contact.gap_mm + rest;
+    const bool overlaps = gap + displacement < -unseen && displacement < -std::max(gap, 0.0);
+    if (overlaps || contact.gap_mm < -settings.slop_mm)
+      violators.push_back({-(gap + std::min(displacement, 0.0)), static_cast<int>(t), 0});
   }
   if (violators.empty()) return false;
   const auto pair_of = [&](std::size_t v) {
-    return touches[static_cast<std::size_t>(violators[v].touch)].pair;
+    return contact_points[static_cast<std::size_t>(violators[v].contact)].pair;
   };
   for (std::size_t first = 0, last = 0; first < violators.size(); first = last) {
     while (last < violators.size() && pair_of(last) == pair_of(first)) ++last;
@@ -168,35 +173,39 @@ bool RigidWorld::State::join(std::span<const SolverMotion> free, std::vector<Pus
   return true;
 }
 
-/// Of one pair's violators the deepest joins, then those that are deep and far from the others that
-/// join: a few that stand wide apart hold a body better than the deepest in a heap.
-void RigidWorld::State::pick(std::size_t first, std::size_t last, std::vector<PushRow>& rows) {
+/// Adds the deepest violator of a pair, then those that are deep and far from the ones added: a few
+/// widely spaced contacts support a body better than a cluster of the deepest.
+void RigidWorld::State::pick(std::size_t first, std::size_t last,
+                             std::vector<ContactConstraint>& rows) {
   const double thinning2 = settings.thinning_mm * settings.thinning_mm;
   for (std::size_t v = first; v < last; ++v) violators[v].apart2 = 1e12;
-  const auto pair =
-      static_cast<std::size_t>(touches[static_cast<std::size_t>(violators[first].touch)].pair);
-  for (std::size_t k = 0; k < join_at_once && pushes_of_pair[pair] < settings.max_contacts; ++k) {
+  const auto pair = static_cast<std::size_t>(
+      contact_points[static_cast<std::size_t>(violators[first].contact)].pair);
+  for (std::size_t k = 0; k < added_at_once && constraints_of_pair[pair] < settings.max_contacts;
+       ++k) {
     std::size_t best = last;
-    double most = 0;
+    double limit = 0;
     for (std::size_t v = first; v < last; ++v) {
       if (violators[v].apart2 < thinning2) continue;
       const double weight = violators[v].depth * violators[v].depth * violators[v].apart2;
-      if (best == last || weight > most) {
+      if (best == last || weight > limit) {
         best = v;
-        most = weight;
+        limit = weight;
       }
     }
     if (best == last) return;
-    const Vector3d point = touches[static_cast<std::size_t>(violators[best].touch)].point;
-    add_push(violators[best].touch, Vector3d::Zero(), rows);
+    const Vector3d point = contact_points[static_cast<std::size_t>(violators[best].contact)].point;
+    add_constraint(violators[best].contact, Vector3d::Zero(), rows);
     for (std::size_t v = first; v < last; ++v)
-      violators[v].apart2 = std::min(
-          violators[v].apart2,
-          (touches[static_cast<std::size_t>(violators[v].touch)].point - point).squaredNorm());
+      violators[v].apart2 =
+          std::min(violators[v].apart2,
+                   (contact_points[static_cast<std::size_t>(violators[v].contact)].point - point)
+                       .squaredNorm());
   }
 }
 
-/// Angular momentum stays what the solver left: with it the spin of an asymmetric body turns.
+/// Conserves the angular momentum of the solution: the angular velocity of an asymmetric body
+/// changes accordingly.
 void RigidWorld::State::integrate() {
   for (std::size_t i = 0; i < count(); ++i) {
     const Member& m = members[i];
@@ -225,27 +234,28 @@ void RigidWorld::State::integrate() {
   time_s += part_s;
 }
 
-/// Keeps the forces for the next step, and tells who pushed.
+/// Stores the forces for the next step and reports the contact forces.
 void RigidWorld::State::remember() {
   const double to_N = 1 / (mm_per_m * part_s);
   for (std::size_t r = 0; r < joint_rows.size(); ++r)
     joint_forces[r] = to_N * joint_rows[r].impulse;
   memory.clear();
   contacts.clear();
-  for (std::size_t k = 0; k < pushes.size(); ++k) {
-    const Touch& touch = touches[static_cast<std::size_t>(touch_of_push[k])];
-    const double push = pushes[k].impulse.dot(touch.normal);
-    const Vector3d force = to_N * pushes[k].impulse;
-    // Those that do not push, but would join again at the least motion, stay too.
-    const double gap = touch.gap_mm + rest_share * settings.slop_mm;
-    if (push > 0 || gap < -unseen_share * settings.slop_mm)
-      memory.push_back({touch.look, touch.sample, force});
+  for (std::size_t k = 0; k < constraints.size(); ++k) {
+    const SurfaceContact& contact =
+        contact_points[static_cast<std::size_t>(point_of_constraint[k])];
+    const double push = constraints[k].impulse.dot(contact.normal);
+    const Vector3d force = to_N * constraints[k].impulse;
+    // Contacts without force that would be added again at the slightest motion are kept as well.
+    const double gap = contact.gap_mm + rest_fraction * settings.slop_mm;
+    if (push > 0 || gap < -tolerated_fraction * settings.slop_mm)
+      memory.push_back({contact.query, contact.sample, force});
     if (!(push > 0)) continue;
-    contacts.push_back({touch.pair, touch.point, touch.normal, touch.gap_mm, to_N * push,
-                        force - to_N * push * touch.normal});
+    contacts.push_back({contact.pair, contact.point, contact.normal, contact.gap_mm, to_N * push,
+                        force - to_N * push * contact.normal});
   }
   std::sort(memory.begin(), memory.end(), [](const auto& x, const auto& y) {
-    return std::pair(x.look, x.sample) < std::pair(y.look, y.sample);
+    return std::pair(x.query, x.sample) < std::pair(y.query, y.sample);
   });
 }
 
@@ -255,21 +265,23 @@ bool RigidWorld::State::advance(double step_s, int halvings, int threads,
   collect_forces();
   prepare_joints(result);
   finder.locate(poses);
-  const double most = finder.most_active_mm();
+  const double limit = finder.max_active_mm();
   double active =
-      std::min(most, least_active_mm + 1.5 * finder.way(poses, centers, body_motions, step_s, 0));
+      std::min(limit, min_active_mm +
+                          1.5 * finder.max_displacement(poses, centers, body_motions, step_s, 0));
   SolverSettings how;
   how.step_s = step_s;
   how.max_sweeps = settings.max_sweeps;
   how.tolerance = settings.tolerance_mm_s;
-  how.max_impulse = mm_per_m * step_s * most_force_N;
+  how.max_impulse = mm_per_m * step_s * force_limit_N;
   for (;;) {
-    finder.find(poses, active, threads, touches);
-    for (const Touch& touch : touches) result.depth_mm = std::max(result.depth_mm, -touch.gap_mm);
-    start_pushes();
+    finder.find(poses, active, threads, contact_points);
+    for (const SurfaceContact& contact : contact_points)
+      result.depth_mm = std::max(result.depth_mm, -contact.gap_mm);
+    warm_start_contacts();
     if (solved.size() != solver_bodies.size()) solved.resize(solver_bodies.size());
     result.sweeps +=
-        solver.solve(how, solver_bodies, joint_rows, rows_of, pushes, *this, solved, shifts);
+        solver.solve(how, solver_bodies, joint_rows, rows_of, constraints, *this, solved, shifts);
     for (std::size_t i = 0; i < count(); ++i) {
       if (!is_free(i)) continue;
       const SolverMotion& x = solved[static_cast<std::size_t>(members[i].solver)];
@@ -277,15 +289,16 @@ bool RigidWorld::State::advance(double step_s, int halvings, int threads,
       const double speed = x.velocity.norm() + x.spin.norm() * members[i].radius_mm;
       if (!(speed <= settings.max_speed_mm_s)) return false;
     }
-    // What came nearer than was looked for might have been passed through.
-    const double way = finder.way(poses, centers, body_motions, step_s, active);
-    if (way <= active) break;
-    if (way > most) {
-      if (halvings == most_halvings) return false;
+    // Larger displacements than the active distance could have passed through a contact.
+    const double displacement =
+        finder.max_displacement(poses, centers, body_motions, step_s, active);
+    if (displacement <= active) break;
+    if (displacement > limit) {
+      if (halvings == max_halvings) return false;
       return advance(0.5 * step_s, halvings + 1, threads, result) &&
              advance(0.5 * step_s, halvings + 1, threads, result);
     }
-    active = std::min(most, 1.5 * way);
+    active = std::min(limit, 1.5 * displacement);
     joint_rows.clear();
     prepare_joints(result);
   }

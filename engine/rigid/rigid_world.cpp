@@ -21,9 +21,9 @@ RigidState RigidWorld::State::save() const {
   RigidState out;
   out.time_s = time_s;
   for (std::size_t i = 0; i < count(); ++i) out.bodies.push_back({poses[i], motions[i]});
-  out.touches = memory;
+  out.contact_forces = memory;
   out.joint_forces_N = joint_forces;
-  out.looked_at = finder.looked_at();
+  out.sample_caches = finder.sample_caches();
   return out;
 }
 
@@ -33,9 +33,9 @@ void RigidWorld::State::load(const RigidState& in) {
     motions[i] = in.bodies[i].motion;
   }
   time_s = in.time_s;
-  memory = in.touches;
+  memory = in.contact_forces;
   joint_forces = in.joint_forces_N;
-  finder.set_looked_at(in.looked_at);
+  finder.set_sample_caches(in.sample_caches);
 }
 
 RigidWorld::RigidWorld(const RigidSettings& settings) : state_(std::make_unique<State>()) {
@@ -46,7 +46,7 @@ RigidWorld::RigidWorld(const RigidSettings& settings) : state_(std::make_unique<
   require(settings.slop_mm >= 1e-4 && settings.slop_mm <= 1,
           "a slop of " + text(settings.slop_mm) + " mm is not between 0.0001 and 1");
   require(settings.max_contacts > 0 && settings.max_sweeps > 0 && settings.thinning_mm >= 0 &&
-              settings.push_out_mm_s >= 0 && settings.tolerance_mm_s >= 0 &&
+              settings.depenetration_mm_s >= 0 && settings.tolerance_mm_s >= 0 &&
               settings.max_speed_mm_s > 0,
           "a setting of the solver is below its range");
   state_->settings = settings;
@@ -55,7 +55,7 @@ RigidWorld::RigidWorld(const RigidSettings& settings) : state_(std::make_unique<
 RigidWorld::~RigidWorld() = default;
 RigidWorld::RigidWorld(RigidWorld&&) noexcept = default;
 
-int RigidWorld::add_body(const RigidBody& body) {
+int RigidWorld::add_body(const DynamicBody& body) {
   State& s = *state_;
   const MassProperties& mass = body.mass;
   require(std::isfinite(mass.mass_kg) && mass.mass_kg >= 0 && mass.center.allFinite() &&
@@ -75,11 +75,12 @@ int RigidWorld::add_body(const RigidBody& body) {
     m.principal = axes.eigenvectors();
     if (m.principal.determinant() < 0) m.principal.col(2) *= -1;
     m.inverse_inertia = mass.inertia.inverse();
-    m.give_per_mm2 = 1 / axes.eigenvalues()[0];
+    m.max_inverse_moment = 1 / axes.eigenvalues()[0];
     const double arm = body.drag_at ? (*body.drag_at - mass.center).norm() : 0;
     const double drag = mm_per_m * body.drag_N_s_mm * s.settings.step_s *
-                        (1 / mass.mass_kg + arm * arm * m.give_per_mm2),
-                 turning = mm_per_m * body.turning_drag_N_mm_s * m.give_per_mm2 * s.settings.step_s;
+                        (1 / mass.mass_kg + arm * arm * m.max_inverse_moment),
+                 turning =
+                     mm_per_m * body.turning_drag_N_mm_s * m.max_inverse_moment * s.settings.step_s;
     require(drag >= 0 && drag < 2 && turning >= 0 && turning < 2,
             "a drag times the step over the mass is " + text(std::max(drag, turning)) +
                 ": at 2 or more it would swing up instead of slowing down");
@@ -99,7 +100,7 @@ int RigidWorld::add_force(const RigidForce& force) {
   State& s = *state_;
   s.check_body(force.body);
   require(force.point.allFinite() && force.torque_N_mm.allFinite() &&
-              force.torque_N_mm.norm() <= most_force_N * 1000,
+              force.torque_N_mm.norm() <= force_limit_N * 1000,
           "a force's point or torque is not finite or too large");
   s.check_force(force.force_N);
   s.forces.push_back(force);
@@ -113,18 +114,19 @@ int RigidWorld::add_spring(const RigidSpring& spring) {
   require(spring.p_A.allFinite() && spring.p_B.allFinite() && spring.rest_length_mm >= 0 &&
               std::isfinite(spring.rest_length_mm),
           "a spring's points or length are not usable");
-  const double give = mm_per_m * (s.give(spring.a, spring.p_A) + s.give(spring.b, spring.p_B));
+  const double mobility =
+      mm_per_m * (s.mobility(spring.a, spring.p_A) + s.mobility(spring.b, spring.p_B));
   const double step = s.settings.step_s;
-  const double damping = spring.damping_N_s_mm * give * step,
-               stiffness = spring.stiffness_N_mm * give * step * step;
+  const double damping = spring.damping_N_s_mm * mobility * step,
+               stiffness = spring.stiffness_N_mm * mobility * step * step;
   require(damping >= 0 && damping < 2, "a damper's c dt/m is " + text(damping) +
                                            ": at 2 or more it would swing up instead of "
                                            "slowing down; less damping than " +
-                                           text(2 / (give * step)) + " N s/mm is needed here");
+                                           text(2 / (mobility * step)) + " N s/mm is needed here");
   require(stiffness >= 0 && stiffness < 2, "a spring's k dt^2/m is " + text(stiffness) +
                                                ": from 2 on steps are too long for it; "
                                                "less than " +
-                                               text(2 / (give * step * step)) +
+                                               text(2 / (mobility * step * step)) +
                                                " N/mm is needed here");
   s.springs.push_back(spring);
   return static_cast<int>(s.springs.size()) - 1;
@@ -169,8 +171,8 @@ void RigidWorld::allow_overlap(int pair, double around_mm) {
 void RigidWorld::set_force(int force, const Vector3d& force_N) {
   require(force >= 0 && force < static_cast<int>(state_->forces.size()),
           "there is no force " + std::to_string(force));
-  require(force_N.norm() <= most_force_N,
-          "a force of " + text(force_N.norm()) + " N is not finite or above " + text(most_force_N));
+  require(force_N.norm() <= force_limit_N, "a force of " + text(force_N.norm()) +
+                                               " N is not finite or above " + text(force_limit_N));
   state_->forces[static_cast<std::size_t>(force)].force_N = force_N;
 }
 
@@ -222,7 +224,7 @@ RigidState RigidWorld::state() const { return state_->save(); }
 void RigidWorld::set_state(const RigidState& in) {
   const State& s = *state_;
   require(in.bodies.size() == s.count() && in.joint_forces_N.size() == s.joint_forces.size() &&
-              in.looked_at.size() == s.finder.looked_at().size(),
+              in.sample_caches.size() == s.finder.sample_caches().size(),
           "the state is of another world");
   state_->load(in);
 }

@@ -7,28 +7,28 @@
 
 #include "engine/core/error.h"
 #include "engine/core/units.h"
+#include "engine/rigid/constraint_solver.h"
+#include "engine/rigid/contact_finder.h"
 #include "engine/rigid/joint_rows.h"
 #include "engine/rigid/rigid_world.h"
-#include "engine/rigid/row_solver.h"
-#include "engine/rigid/touch_finder.h"
 
 namespace condyle {
 
-constexpr double most_force_N = 1e5;
+constexpr double force_limit_N = 1e5;
 
 inline void require(bool good, const std::string& problem) {
   if (!good) throw InputError("dynamics: " + problem);
 }
 
-/// A world's parts, and the step that is taken in rigid_step.cpp.
-struct RigidWorld::State : MoreContacts {
-  /// A body with what follows from its mass.
+/// The objects of a world and the stages of a step (rigid_step.cpp).
+struct RigidWorld::State : ContactGenerator {
+  /// A body with quantities derived from its mass.
   struct Member {
-    RigidBody body;  // pose and motion at the start; `now` has the present ones
+    DynamicBody body;  // pose and motion are the initial ones
     int solver = -1;
     Eigen::Matrix3d inverse_inertia = Eigen::Matrix3d::Zero();  // body coordinates
     Eigen::Matrix3d principal = Eigen::Matrix3d::Identity();    // axes, body coordinates
-    double give_per_mm2 = 0;                                    // largest 1 / principal moment
+    double max_inverse_moment = 0;                              // largest 1 / principal moment
     double radius_mm = 0;  // of the surfaces about the centre of mass
   };
 
@@ -39,17 +39,17 @@ struct RigidWorld::State : MoreContacts {
   std::vector<JointRows> joints;
   std::vector<int> rows_of;
   std::vector<RigidPair> pairs;
-  TouchFinder finder;
-  RowSolver solver;
+  ContactFinder finder;
+  ConstraintSolver solver;
 
   double time_s = 0;
   std::vector<RigidMotion> motions;
   std::vector<Pose> poses;
-  std::vector<RigidState::Touch> memory;
+  std::vector<RigidState::ContactForce> memory;
   std::vector<double> joint_forces;
   std::vector<RigidContact> contacts;
 
-  // Of the step that runs.
+  // Work space of a step.
   double part_s = 0;
   std::vector<Eigen::Vector3d> centers;
   std::vector<SolverMotion> body_motions;  // of all bodies
@@ -57,15 +57,15 @@ struct RigidWorld::State : MoreContacts {
   std::vector<SolverMotion> solved, shifts;
   std::vector<JointRow> joint_rows;
   std::vector<double> start_impulses;
-  std::vector<PushRow> pushes;
-  std::vector<int> touch_of_push;
-  std::vector<Touch> touches;
-  std::vector<char> joined;
-  std::vector<int> pushes_of_pair;
+  std::vector<ContactConstraint> constraints;
+  std::vector<int> point_of_constraint;
+  std::vector<SurfaceContact> contact_points;
+  std::vector<char> added;
+  std::vector<int> constraints_of_pair;
   struct Violator {
     double depth = 0;
-    int touch = 0;
-    double apart2 = 0;  // to those that join with it
+    int contact = 0;
+    double apart2 = 0;  // squared distance to the contacts added with it
   };
   std::vector<Violator> violators;
   RigidState before;
@@ -90,24 +90,26 @@ struct RigidWorld::State : MoreContacts {
                                                   std::to_string(settings.max_speed_mm_s));
   }
   static void check_force(const Eigen::Vector3d& force_N) {
-    require(force_N.norm() <= most_force_N, "a force of " + std::to_string(force_N.norm()) +
-                                                " N is not finite or above " +
-                                                std::to_string(most_force_N));
+    require(force_N.norm() <= force_limit_N, "a force of " + std::to_string(force_N.norm()) +
+                                                 " N is not finite or above " +
+                                                 std::to_string(force_limit_N));
   }
-  /// Velocity that a unit impulse at a point gives it, at most.
-  double give(int body, const Eigen::Vector3d& p_B) const {
+  /// Mobility of a body at a point: largest velocity due to a unit impulse there.
+  double mobility(int body, const Eigen::Vector3d& p_B) const {
     const Member& m = members[static_cast<std::size_t>(body)];
     if (m.solver < 0) return 0;
-    return 1 / m.body.mass.mass_kg + (p_B - m.body.mass.center).squaredNorm() * m.give_per_mm2;
+    return 1 / m.body.mass.mass_kg +
+           (p_B - m.body.mass.center).squaredNorm() * m.max_inverse_moment;
   }
 
   void collect_forces();
   void add_spring_forces(const RigidSpring& spring);
   void prepare_joints(RigidWorld::Step& result);
-  void start_pushes();
-  void add_push(int touch, const Eigen::Vector3d& impulse, std::vector<PushRow>& rows);
-  bool join(std::span<const SolverMotion> free, std::vector<PushRow>& rows) override;
-  void pick(std::size_t first, std::size_t last, std::vector<PushRow>& rows);
+  void warm_start_contacts();
+  void add_constraint(int contact, const Eigen::Vector3d& impulse,
+                      std::vector<ContactConstraint>& rows);
+  bool add_new(std::span<const SolverMotion> free, std::vector<ContactConstraint>& rows) override;
+  void pick(std::size_t first, std::size_t last, std::vector<ContactConstraint>& rows);
   bool advance(double step_s, int halvings, int threads, RigidWorld::Step& result);
   void integrate();
   void remember();

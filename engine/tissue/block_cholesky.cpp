@@ -12,8 +12,8 @@ namespace {
 
 using BlockBuffer = std::array<float, largest_block * largest_block>;
 
-/// subtract_product, its columns shared among threads where that is worth it. Where shares have
-/// other bits than the whole, they are taken on one thread, too.
+/// subtract_product with its columns distributed over threads where worthwhile. Where a division
+/// would change the rounding, it is also made with one thread.
 void subtract_product(const FloatKernels::Product& p, int threads) {
   constexpr int width = 48;
   constexpr double worth = 2e6;  // products
@@ -33,7 +33,7 @@ void subtract_product(const FloatKernels::Product& p, int threads) {
   });
 }
 
-/// Numbers of a front's rows, in whole tiles.
+/// Number of floats of a front's rows, in whole tiles.
 struct alignas(64) RowTile {
   float row[16];
 };
@@ -58,7 +58,7 @@ void add(const float* from, int count, float* to) {
 
 }  // namespace
 
-/// Factors are made anew from frame to frame.
+/// Factors are recomputed from frame to frame.
 struct BlockCholesky::Memory {
   explicit Memory(const FrontTree& tree)
       : values(tree.tiles), panels(tree.panel_floats), work(tree.work_floats) {}
@@ -91,7 +91,7 @@ int BlockCholesky::factorize_front(int index, float* panels, float* work, float 
   float* panel = panels + front.panel;
   float* update = work + front.update;
   const FloatKernels& kernels = float_kernels();
-  /// What the children leave for the pivots, or for the rows below.
+  /// Sum of the children's updates for the pivots, or for the rows below.
   const auto add_children = [&](bool for_pivots) {
     for (int c : front.children) {
       const FrontTree::Front& child = tree.fronts[c];
@@ -127,7 +127,7 @@ int BlockCholesky::factorize_front(int index, float* panels, float* work, float 
     raised += kernels.invert_diagonal(diagonal, height, size, least);
     const int below = height - c - size;
     if (below == 0) continue;
-    // The rows below, times the transposed inverse.
+    // The rows below, multiplied by the transposed inverse.
     BlockBuffer negative;
     for (int j = 0; j < size; ++j) {
       for (int i = 0; i < size; ++i) negative[j * size + i] = -diagonal[j * height + i];
@@ -137,7 +137,7 @@ int BlockCholesky::factorize_front(int index, float* panels, float* work, float 
     subtract_product({diagonal + size, copy.data(), negative.data(), below, size, size, height,
                       below, size, false, true},
                      threads);
-    // The columns that are yet to be factored here: those near by at once, the others together.
+    // Remaining columns of this front: the nearest ones immediately, the others in one product.
     const int done = c + size, group_end = std::min(group + c / group * group, width);
     const auto take_from = [&](int first, int last, int depth) {
       float* to = panel + static_cast<std::size_t>(first) * height + first;
@@ -221,7 +221,7 @@ void BlockCholesky::solve(std::vector<float>& b, int threads) const {
   const FrontTree& tree = *tree_;
   const std::size_t shared = static_cast<std::size_t>(tree.order.part[2]) * tree.block;
   const std::size_t longest = tree.most_height / 16 + 1;  // tiles
-  std::array<std::vector<float>, 2> rest;                 // what each half takes from the last part
+  std::array<std::vector<float>, 2> rest;  // contributions of the last part to each half
   parallel_for(2, threads, [&](std::size_t half) {
     rest[half].assign(b.size() - shared, 0.0f);
     std::vector<RowTile> rows(longest);

@@ -10,10 +10,10 @@
 
 namespace condyle {
 
-/// Cholesky factor of a sparse symmetric matrix of dense blocks (multifrontal: see FrontTree). Made
-/// in single precision and kept in half of it: a solve is as fast as the factor is read, and eight
-/// bits point the way as well as 24 (the same iterations of a minimisation). Copies share the
-/// pattern. Same bits for any number of threads.
+/// Cholesky factor of a sparse symmetric matrix of dense blocks (multifrontal: see FrontTree).
+/// Computed in single precision and stored in half of it (bfloat16): a solve is limited by memory
+/// bandwidth, and 8 significant bits give the same iteration counts of the minimisation as 24.
+/// Copies share the pattern. Deterministic for any number of threads.
 class BlockCholesky {
  public:
   explicit BlockCholesky(std::shared_ptr<const FrontTree> tree);
@@ -22,15 +22,15 @@ class BlockCholesky {
   BlockCholesky(BlockCholesky&&) = default;
   BlockCholesky& operator=(BlockCholesky&&) = default;
 
-  /// One of the same pattern, yet to be factored.
+  /// An unfactored matrix of the same pattern.
   BlockCholesky another() const { return {tree_, memory_}; }
 
   const FrontTree& tree() const { return *tree_; }
 
-  /// Factors the matrix that assemble(part, values) adds up: the entries whose column is in one of
-  /// the order's parts, in zeros, at FrontTree::find. Only the lower half is read. It is called
-  /// once for each part, on some thread. Pivots that are not above `least` times the largest
-  /// diagonal entry of their block are raised to it; gives how many were.
+  /// Factors the matrix assembled by assemble(part, values), which adds the entries with columns in
+  /// one part of the order to zeroed storage at FrontTree::find. Only the lower triangle is read.
+  /// It is called once per part, on any thread. Pivots not above `least` times the largest diagonal
+  /// entry of their block are raised to that value; returns their number.
   int factorize(const std::function<void(int part, float* values)>& assemble, float least,
                 int threads);
 
@@ -47,7 +47,7 @@ class BlockCholesky {
   void backward(int front, float* b, float* y) const;
 
   std::shared_ptr<const FrontTree> tree_;
-  std::shared_ptr<const Memory> memory_;  // of all factors of the tree
+  std::shared_ptr<const Memory> memory_;  // common to all factors of the tree
   BufferPool<PairTile>::Buffer values_;
 };
 

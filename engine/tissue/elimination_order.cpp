@@ -10,8 +10,8 @@ namespace {
 
 using Rings = std::vector<std::vector<int>>;
 
-/// Appends `part` in order of minimum degree; `ring` becomes that of the graph left over.
-/// Sheets of a few thousand vertices fill a third less so than by nested dissection.
+/// Appends `part` in minimum degree order; `ring` becomes that of the remaining graph. For sheets
+/// of a few thousand vertices the fill is a third less than with nested dissection.
 void eliminate(const std::vector<int>& part, Rings& ring, std::vector<int>& at) {
   std::vector<char> waits(ring.size(), 0);
   std::set<std::pair<std::size_t, int>> queue;
@@ -59,7 +59,7 @@ EliminationOrder elimination_order(const Rings& ring,
                    [&](int a, int b) { return position[a][axis] < position[b][axis]; });
   std::vector<char> second(count, 0);
   for (int i = count / 2; i < count; ++i) second[all[i]] = 1;
-  // Between them: what touches the other half, taken from the side where that is less.
+  // Separator: the vertices adjacent to the other half, from the smaller side.
   std::array<std::vector<int>, 2> border;
   for (int v = 0; v < count; ++v)
     if (std::any_of(ring[v].begin(), ring[v].end(), [&](int n) { return second[n] != second[v]; }))

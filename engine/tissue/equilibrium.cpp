@@ -19,7 +19,7 @@ double largest(const VectorXd& force) {
   return most;
 }
 
-/// Adds a block of nodes a and b, if it lies in the matrix's lower half.
+/// Adds a block of nodes a and b where it lies in the lower triangle.
 void add_block(std::vector<Eigen::Triplet<double>>& entries, int a, int b, const Matrix3d& m) {
   if (a < b) return;
   for (int i = 0; i < 3; ++i)
@@ -27,8 +27,8 @@ void add_block(std::vector<Eigen::Triplet<double>>& entries, int a, int b, const
       entries.emplace_back(3 * a + i, 3 * b + j, m(i, j));
 }
 
-/// Something whose tension is chosen: N of a spring, N/mm^2 of a prism that pulls inward. It
-/// answers a stretch with its stiffness of that way, up to a bound.
+/// An element with chosen tension: N of a spring, N/mm^2 of a prism. Its tension is proportional to
+/// the stretch, with different stiffness in tension and compression, up to a bound.
 struct Element {
   double pulls = 0, pushes = 0;  // stiffness when stretched and when shortened
   double low = 0, high = 0;      // bounds of the tension
@@ -40,34 +40,33 @@ struct Element {
   double stiffness() const { return bound() ? 0 : stretch < 0 ? pushes : pulls; }
 };
 
-// The strains of least energy that balance given forces are those that a net of such elements would
-// take if these forces displaced its nodes by y; what gives way at a bound leaves the rest to the
-// others. That y is the minimum of a convex function, which Newton's method with a search along
-// each step always finds. Every node is held a little, so that what nothing can balance does not
-// run away; what this hold takes is asked for again, and so goes to zero where strains can balance
-// it. Without the pressures of prisms the weight of soft tissue would have to rest on fibres that
-// buckle.
+// The strains of least energy that balance given forces equal those of a mesh of such elements
+// whose nodes these forces displace by y; elements at a bound transfer the remainder to the others.
+// y is the minimum of a convex function, which Newton's method with a line search always finds.
+// Weak springs at every node keep forces that cannot be balanced from diverging; their reaction is
+// added to the forces again and so tends to zero where strains can balance it. Without prism
+// pressures the weight of soft tissue would rest on buckling fibres.
 class Balance {
  public:
-  Balance(const SpringPrismNet& net, const Nodes& x, const EquilibriumSettings& settings);
-  /// Tensions that balance `outer` within bounds, or nearly; goes on from the last ones.
+  Balance(const SpringPrismMesh& mesh, const Nodes& x, const EquilibriumSettings& settings);
+  /// Tensions that balance `outer` within bounds, or nearly; starts from the previous ones.
   void solve(const VectorXd& outer);
-  /// No strain is chosen any more for what meets these nodes.
+  /// Excludes the elements at these nodes from prestrain.
   void let_go(const std::vector<char>& node);
-  /// Writes the rest lengths and volumes, and what was found.
-  void write(SpringPrismNet& net, Equilibrium& result) const;
+  /// Writes rest lengths, volumes and the result.
+  void write(SpringPrismMesh& mesh, Equilibrium& result) const;
 
  private:
   using Matrix = Eigen::SparseMatrix<double>;
   void factorize();
-  /// Stretch of each element by displacements: of the springs, then of the prisms.
+  /// Stretch of each element due to displacements: springs, then prisms.
   std::vector<double> stretches(const VectorXd& y) const;
   VectorXd force(const VectorXd& outer, const VectorXd& y) const;
   void take_step(const VectorXd& outer, const VectorXd& held_at, const VectorXd& d);
 
-  const SpringPrismNet net_;
+  const SpringPrismMesh mesh_;
   const EquilibriumSettings settings_;
-  std::vector<std::size_t> springs_;  // whose strain is chosen
+  std::vector<std::size_t> springs_;  // with chosen strain
   std::vector<double> length_;        // of those
   std::vector<Vector3d> along_;
   std::vector<double> volume_;
@@ -80,47 +79,47 @@ class Balance {
   bool analyzed_ = false;
 };
 
-Balance::Balance(const SpringPrismNet& net, const Nodes& x, const EquilibriumSettings& settings)
-    : net_(net), settings_(settings) {
-  for (std::size_t s = 0; s < net.spring_a.size(); ++s) {
-    if (net.spring_sheet[s] == 0) continue;
-    const Vector3d d = x[net.spring_b[s]] - x[net.spring_a[s]];
+Balance::Balance(const SpringPrismMesh& mesh, const Nodes& x, const EquilibriumSettings& settings)
+    : mesh_(mesh), settings_(settings) {
+  for (std::size_t s = 0; s < mesh.spring_a.size(); ++s) {
+    if (mesh.spring_sheet[s] == 0) continue;
+    const Vector3d d = x[mesh.spring_b[s]] - x[mesh.spring_a[s]];
     springs_.push_back(s);
     length_.push_back(d.norm());
     along_.push_back(d / d.norm());
-    const double k = 2 * net.stiffness[s], l = d.norm(), push = net.compression_share * k;
+    const double k = 2 * mesh.stiffness[s], l = d.norm(), push = mesh.compression_ratio * k;
     elements_.push_back({k, push, -settings.max_push * l * push, settings.max_pull * l * k});
     stiffest_ = std::max(stiffest_, k);
   }
-  for (std::size_t p = 0; p < net.prisms.size(); ++p) {
+  for (std::size_t p = 0; p < mesh.prisms.size(); ++p) {
     slope_.emplace_back();
-    volume_.push_back(prism_volume_gradient(x, net.prisms[p], slope_.back()));
-    const double k = 2 * (1 - net.lambda) / net.lambda * net.volume_weight[p];
+    volume_.push_back(prism_volume_gradient(x, mesh.prisms[p], slope_.back()));
+    const double k = 2 * (1 - mesh.lambda) / mesh.lambda * mesh.volume_weight[p];
     const double most = settings.max_volume * volume_.back() * k;
     elements_.push_back({k, k, -most, most});
   }
-  y_ = anchor_ = VectorXd::Zero(3 * net.node_count);
-  for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
-    anchor_.segment<3>(3 * net.anchor_node[i]).array() += 2 * net.anchor_stiffness[i];
+  y_ = anchor_ = VectorXd::Zero(3 * mesh.node_count);
+  for (std::size_t i = 0; i < mesh.anchor_node.size(); ++i)
+    anchor_.segment<3>(3 * mesh.anchor_node[i]).array() += 2 * mesh.anchor_stiffness[i];
 }
 
 void Balance::let_go(const std::vector<char>& node) {
   for (std::size_t i = 0; i < elements_.size(); ++i) {
     bool meets = false;
     if (i < springs_.size())
-      meets = node[net_.spring_a[springs_[i]]] || node[net_.spring_b[springs_[i]]];
+      meets = node[mesh_.spring_a[springs_[i]]] || node[mesh_.spring_b[springs_[i]]];
     else
-      for (int corner : net_.prisms[i - springs_.size()]) meets = meets || node[corner];
+      for (int corner : mesh_.prisms[i - springs_.size()]) meets = meets || node[corner];
     if (meets) elements_[i].low = elements_[i].high = 0;
   }
 }
 
 void Balance::factorize() {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(27 * springs_.size() + 189 * volume_.size() + 3 * net_.node_count);
+  entries.reserve(27 * springs_.size() + 189 * volume_.size() + 3 * mesh_.node_count);
   const auto add = [&](int a, int b, const Matrix3d& m) { add_block(entries, a, b, m); };
   for (std::size_t i = 0; i < springs_.size(); ++i) {
-    const int a = net_.spring_a[springs_[i]], b = net_.spring_b[springs_[i]];
+    const int a = mesh_.spring_a[springs_[i]], b = mesh_.spring_b[springs_[i]];
     const Matrix3d m = elements_[i].stiffness() * along_[i] * along_[i].transpose();
     add(a, a, m);
     add(b, b, m);
@@ -131,7 +130,7 @@ void Balance::factorize() {
     const double k = elements_[springs_.size() + p].stiffness();
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b < 6; ++b)
-        add(net_.prisms[p][a], net_.prisms[p][b], k * slope_[p][a] * slope_[p][b].transpose());
+        add(mesh_.prisms[p][a], mesh_.prisms[p][b], k * slope_[p][a] * slope_[p][b].transpose());
   }
   for (Index i = 0; i < anchor_.size(); ++i) {
     const int row = static_cast<int>(i);
@@ -148,11 +147,11 @@ std::vector<double> Balance::stretches(const VectorXd& y) const {
   std::vector<double> stretch;
   stretch.reserve(elements_.size());
   for (std::size_t i = 0; i < springs_.size(); ++i)
-    stretch.push_back(along_[i].dot(y.segment<3>(3 * net_.spring_b[springs_[i]]) -
-                                    y.segment<3>(3 * net_.spring_a[springs_[i]])));
+    stretch.push_back(along_[i].dot(y.segment<3>(3 * mesh_.spring_b[springs_[i]]) -
+                                    y.segment<3>(3 * mesh_.spring_a[springs_[i]])));
   for (std::size_t p = 0; p < volume_.size(); ++p) {
     double sum = 0;
-    for (int k = 0; k < 6; ++k) sum += slope_[p][k].dot(y.segment<3>(3 * net_.prisms[p][k]));
+    for (int k = 0; k < 6; ++k) sum += slope_[p][k].dot(y.segment<3>(3 * mesh_.prisms[p][k]));
     stretch.push_back(sum);
   }
   return stretch;
@@ -162,12 +161,12 @@ VectorXd Balance::force(const VectorXd& outer, const VectorXd& y) const {
   VectorXd sum = outer - anchor_.cwiseProduct(y);
   for (std::size_t i = 0; i < springs_.size(); ++i) {
     const Vector3d pull = elements_[i].tension() * along_[i];
-    sum.segment<3>(3 * net_.spring_a[springs_[i]]) += pull;
-    sum.segment<3>(3 * net_.spring_b[springs_[i]]) -= pull;
+    sum.segment<3>(3 * mesh_.spring_a[springs_[i]]) += pull;
+    sum.segment<3>(3 * mesh_.spring_b[springs_[i]]) -= pull;
   }
   for (std::size_t p = 0; p < volume_.size(); ++p) {
     const double tension = elements_[springs_.size() + p].tension();
-    for (int k = 0; k < 6; ++k) sum.segment<3>(3 * net_.prisms[p][k]) -= tension * slope_[p][k];
+    for (int k = 0; k < 6; ++k) sum.segment<3>(3 * mesh_.prisms[p][k]) -= tension * slope_[p][k];
   }
   return sum;
 }
@@ -177,9 +176,9 @@ void Balance::solve(const VectorXd& outer) {
   const double goal = 1e-13 * largest(outer);
   std::vector<double> factored;  // stiffness of each element in the factor
   int round = 0;
-  for (double share : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-7, 1e-7}) {
+  for (double fraction : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-7, 1e-7}) {
     const double before = largest(left);
-    hold_ = share * stiffest_;
+    hold_ = fraction * stiffest_;
     factored.clear();
     for (; round < settings_.rounds; ++round) {
       const VectorXd down = left - hold_ * (y_ - held_at);
@@ -192,7 +191,7 @@ void Balance::solve(const VectorXd& outer) {
       left = force(outer, y_);
     }
     held_at = y_;
-    // Where less does not come of asking again, strains cannot balance it.
+    // Where repetition does not reduce the remainder, strains cannot balance it.
     const double now = largest(left);
     if (now < goal || now > 0.8 * before || round == settings_.rounds) return;
   }
@@ -200,7 +199,8 @@ void Balance::solve(const VectorXd& outer) {
 
 void Balance::take_step(const VectorXd& outer, const VectorXd& held_at, const VectorXd& d) {
   const std::vector<double> by_d = stretches(d);
-  // The slope along d rises; a step that goes too far is cut where it is nearly flat.
+  // The derivative along d increases; a step that is too long is shortened to where it is nearly
+  // zero.
   const double constant = (anchor_.cwiseProduct(y_) + hold_ * (y_ - held_at) - outer).dot(d);
   const double linear = (anchor_.array() + hold_).matrix().cwiseProduct(d).dot(d);
   const auto slope = [&](double step) {
@@ -222,7 +222,7 @@ void Balance::take_step(const VectorXd& outer, const VectorXd& held_at, const Ve
   for (std::size_t i = 0; i < elements_.size(); ++i) elements_[i].stretch += step * by_d[i];
 }
 
-void Balance::write(SpringPrismNet& net, Equilibrium& result) const {
+void Balance::write(SpringPrismMesh& mesh, Equilibrium& result) const {
   result.at_bound = 0;
   result.max_strain = result.max_volume_strain = 0;
   for (std::size_t i = 0; i < elements_.size(); ++i) {
@@ -230,31 +230,31 @@ void Balance::write(SpringPrismNet& net, Equilibrium& result) const {
     const double t = e.tension(), change = t / (t < 0 ? e.pushes : e.pulls);
     result.at_bound += e.bound();
     if (i < springs_.size()) {
-      net.rest_length[springs_[i]] = length_[i] - change;
+      mesh.rest_length[springs_[i]] = length_[i] - change;
       result.max_strain = std::max(result.max_strain, std::abs(change) / length_[i]);
     } else {
       const std::size_t p = i - springs_.size();
-      net.rest_volume[p] = volume_[p] - change;
+      mesh.rest_volume[p] = volume_[p] - change;
       result.max_volume_strain = std::max(result.max_volume_strain, std::abs(change) / volume_[p]);
     }
   }
-  // What the anchors of a node must pull together, by a shift of their targets.
+  // Common force of the anchors of a node, as a shift of their targets.
   result.anchor_offset.clear();
-  for (int node : net.anchor_node) result.anchor_offset.emplace_back(-y_.segment<3>(3 * node));
+  for (int node : mesh.anchor_node) result.anchor_offset.emplace_back(-y_.segment<3>(3 * node));
 }
 
-/// Nodes at which the state does not come back when it is shaken a little: where a pivot of the
-/// exact second derivatives is not above zero. In double precision: prisms may be slivers, stiff as
-/// a wall next to their springs. Empty when the state is stable.
-std::vector<char> unstable_nodes(const SpringPrismNet& net, const Nodes& x) {
-  const Index n = 3 * static_cast<Index>(net.node_count);
+/// Nodes at which the state is unstable: where a pivot of the exact Hessian is not positive. In
+/// double precision, because sliver prisms are far stiffer than their springs. Empty when the state
+/// is stable.
+std::vector<char> unstable_nodes(const SpringPrismMesh& mesh, const Nodes& x) {
+  const Index n = 3 * static_cast<Index>(mesh.node_count);
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(27 * net.spring_a.size() + 189 * net.prisms.size());
-  for (std::size_t s = 0; s < net.spring_a.size(); ++s) {
-    const int a = net.spring_a[s], b = net.spring_b[s];
+  entries.reserve(27 * mesh.spring_a.size() + 189 * mesh.prisms.size());
+  for (std::size_t s = 0; s < mesh.spring_a.size(); ++s) {
+    const int a = mesh.spring_a[s], b = mesh.spring_b[s];
     const Vector3d d = x[b] - x[a];
-    const double strain = 1 - net.rest_length[s] / d.norm();
-    const double k = 2 * net.stiffness[s] * (strain < 0 ? net.compression_share : 1.0);
+    const double strain = 1 - mesh.rest_length[s] / d.norm();
+    const double k = 2 * mesh.stiffness[s] * (strain < 0 ? mesh.compression_ratio : 1.0);
     Matrix3d m = k * (1 - strain) / d.squaredNorm() * d * d.transpose();
     m.diagonal().array() += k * strain;
     add_block(entries, a, a, m);
@@ -262,14 +262,14 @@ std::vector<char> unstable_nodes(const SpringPrismNet& net, const Nodes& x) {
     add_block(entries, a, b, -m);
     add_block(entries, b, a, -m);
   }
-  for (std::size_t p = 0; p < net.prisms.size(); ++p) {
-    const auto& prism = net.prisms[p];
+  for (std::size_t p = 0; p < mesh.prisms.size(); ++p) {
+    const auto& prism = mesh.prisms[p];
     std::array<Vector3d, 6> slope;
-    const double j = prism_volume_gradient(x, prism, slope) / net.rest_volume[p];
-    const double weight = (1 - net.lambda) / net.lambda * net.volume_weight[p];
-    const double stiff = weight * volume_stiffness(j, net.barrier_share, net.barrier_weight);
-    const double pressure =
-        weight * net.rest_volume[p] * volume_pressure(j, net.barrier_share, net.barrier_weight);
+    const double j = prism_volume_gradient(x, prism, slope) / mesh.rest_volume[p];
+    const double weight = (1 - mesh.lambda) / mesh.lambda * mesh.volume_weight[p];
+    const double stiff = weight * volume_stiffness(j, mesh.barrier_fraction, mesh.barrier_weight);
+    const double pressure = weight * mesh.rest_volume[p] *
+                            volume_pressure(j, mesh.barrier_fraction, mesh.barrier_weight);
     const auto bend = prism_volume_bend(x, prism);
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b <= a; ++b) {
@@ -282,9 +282,9 @@ std::vector<char> unstable_nodes(const SpringPrismNet& net, const Nodes& x) {
         add_block(entries, prism[a], prism[b], m);
       }
   }
-  for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
-    add_block(entries, net.anchor_node[i], net.anchor_node[i],
-              2 * net.anchor_stiffness[i] * Matrix3d::Identity());
+  for (std::size_t i = 0; i < mesh.anchor_node.size(); ++i)
+    add_block(entries, mesh.anchor_node[i], mesh.anchor_node[i],
+              2 * mesh.anchor_stiffness[i] * Matrix3d::Identity());
   Eigen::SparseMatrix<double> matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
@@ -297,46 +297,47 @@ std::vector<char> unstable_nodes(const SpringPrismNet& net, const Nodes& x) {
   return unstable;
 }
 
-/// Force on each node at x, N of the springs' own.
-Nodes forces(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x, double& energy) {
+/// Force on each node at x, N without the factor lambda.
+Nodes forces(const SpringPrismMesh& mesh, const MeshLoads& loads, const Nodes& x, double& energy) {
   Nodes force;
-  energy = SpringPrismEnergy(net, loads, 1).value_and_gradient(x, force);
-  for (auto& f : force) f /= -net.lambda;
+  energy = SpringPrismEnergy(mesh, loads, 1).value_and_gradient(x, force);
+  for (auto& f : force) f /= -mesh.lambda;
   return force;
 }
 
 }  // namespace
 
-Equilibrium balance_strains(SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
+Equilibrium balance_strains(SpringPrismMesh& mesh, const MeshLoads& loads, const Nodes& x,
                             const EquilibriumSettings& settings) {
   Equilibrium result;
-  for (std::size_t s = 0; s < net.spring_a.size(); ++s)
-    if (net.spring_sheet[s] != 0)
-      net.rest_length[s] = (x[net.spring_b[s]] - x[net.spring_a[s]]).norm();
-  for (std::size_t p = 0; p < net.prisms.size(); ++p)
-    net.rest_volume[p] = prism_volume(x, net.prisms[p]);
-  VectorXd outer(3 * static_cast<Index>(net.node_count));  // force of all that is not chosen
-  const Nodes before = forces(net, loads, x, result.rest_energy);
-  for (int i = 0; i < net.node_count; ++i) outer.segment<3>(3 * i) = before[i];
+  for (std::size_t s = 0; s < mesh.spring_a.size(); ++s)
+    if (mesh.spring_sheet[s] != 0)
+      mesh.rest_length[s] = (x[mesh.spring_b[s]] - x[mesh.spring_a[s]]).norm();
+  for (std::size_t p = 0; p < mesh.prisms.size(); ++p)
+    mesh.rest_volume[p] = prism_volume(x, mesh.prisms[p]);
+  VectorXd outer(
+      3 * static_cast<Index>(mesh.node_count));  // force of all elements without chosen strain
+  const Nodes before = forces(mesh, loads, x, result.rest_energy);
+  for (int i = 0; i < mesh.node_count; ++i) outer.segment<3>(3 * i) = before[i];
   result.force_before = largest(outer);
 
-  Balance balance(net, x, settings);
-  NetLoads balanced;
+  Balance balance(mesh, x, settings);
+  MeshLoads balanced;
   for (int attempt = 0; attempt < settings.attempts; ++attempt) {
     balance.solve(outer);
-    balance.write(net, result);
+    balance.write(mesh, result);
     balanced = loads;
-    for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
+    for (std::size_t i = 0; i < mesh.anchor_node.size(); ++i)
       balanced.anchor_target[i] += result.anchor_offset[i];
-    const std::vector<char> unstable = unstable_nodes(net, x);
+    const std::vector<char> unstable = unstable_nodes(mesh, x);
     result.stable = unstable.empty();
     if (result.stable) break;
     balance.let_go(unstable);
   }
 
-  // The rest is held.
+  // Constant forces hold the remainder.
   const double small = 1e-9 * result.force_before;
-  const Nodes left = forces(net, balanced, x, result.rest_energy);
+  const Nodes left = forces(mesh, balanced, x, result.rest_energy);
   for (const auto& f : left) {
     result.force_held = std::max(result.force_held, f.norm());
   }
@@ -350,7 +351,7 @@ Equilibrium balance_strains(SpringPrismNet& net, const NetLoads& loads, const No
   } else {
     result.force_held = 0;
   }
-  for (const auto& f : forces(net, balanced, x, result.rest_energy))
+  for (const auto& f : forces(mesh, balanced, x, result.rest_energy))
     result.force_after = std::max(result.force_after, f.norm());
   return result;
 }

@@ -9,8 +9,8 @@
 #include <immintrin.h>
 #endif
 
-#pragma GCC diagnostic ignored "-Wpsabi"  // no vectors are passed in or out of this file
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // of the compiler's own headers
+#pragma GCC diagnostic ignored "-Wpsabi"  // no vector types cross the boundary of this file
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // false positives in the compiler's headers
 
 namespace condyle {
 namespace {
@@ -46,7 +46,7 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
 #include "engine/tissue/float_kernels.inc"
 }  // namespace any_processor
 
-// Products and sums are fused where the processor can.
+// From here on products and sums are fused where the processor supports it.
 #ifdef __x86_64__
 #pragma GCC push_options
 #pragma GCC optimize("fp-contract=fast")
@@ -74,7 +74,7 @@ namespace avx512 {
 constexpr int W = 16, tile_vectors = tile_rows / W;
 constexpr bool fused = true;
 typedef __m512 Vector;
-/// Both halves of two vectors, added up.
+/// Sums of both halves of two vectors.
 CONDYLE_INLINE Vector halves(const Vector& a, const Vector& b) {
   return _mm512_shuffle_f32x4(a, b, 0x44) + _mm512_shuffle_f32x4(a, b, 0xee);
 }
@@ -85,7 +85,7 @@ CONDYLE_INLINE Vector quarters(const Vector& ab, const Vector& cd) {
 template <int N>
 CONDYLE_INLINE void totals(const Vector (&sum)[N][1], float* to) {
   static_assert(N <= 12);
-  Vector four[4]{};  // the quarters of four columns each
+  Vector four[4]{};  // quarters of four columns each
   CONDYLE_UNROLL for (int j = 0; j < N; j += 4) {
     const Vector ab = halves(sum[j][0], sum[j + 1][0]);
     constexpr int last = N - 2;  // N is even

@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "engine/tissue/layered_net.h"
+#include "engine/tissue/layered_mesh.h"
 
 namespace condyle {
 
@@ -42,8 +42,8 @@ HandleSet make_handles(const std::vector<Eigen::Vector3i>& triangles, int sheets
 
 namespace {
 
-/// The deformation (minus 1) with its stretches held between limits: points off the net are carried
-/// by extrapolation, which a strongly stretched node would throw far away.
+/// The deformation gradient (minus 1) with limited stretches: points off the mesh are extrapolated,
+/// and a strongly stretched node would displace them far.
 Matrix3d limited(const Matrix3d& stretched) {
   constexpr double least = 0.6, most = 1.4;
   const Matrix3d A = stretched + Matrix3d::Identity();
@@ -74,7 +74,7 @@ HandleMotion handle_motion(const HandleSet& handles, const Nodes& rest, const No
     }
     own[h] = sum * handles.inverse_spread[h];
   }
-  // One round of averaging with the ring takes the noise of single nodes out of the turning.
+  // One round of averaging over the ring removes the noise of single nodes.
   motion.stretched.resize(count);
   for (std::size_t h = 0; h < count; ++h) {
     Matrix3d sum = 2 * own[h];
@@ -85,16 +85,16 @@ HandleMotion handle_motion(const HandleSet& handles, const Nodes& rest, const No
 }
 
 CarriedPoint carry(const std::vector<int>& candidates, const BodyDistance& distance,
-                   double reach_share) {
+                   double reach_fraction) {
   std::vector<std::pair<double, int>> order;
   order.reserve(candidates.size());
   for (int h : candidates) order.emplace_back(distance(h), h);
   const std::size_t kept = std::min<std::size_t>(CarriedPoint::capacity, order.size());
-  const std::size_t reach = std::min(kept, order.size() - 1);  // the first one left out, if any
+  const std::size_t reach = std::min(kept, order.size() - 1);  // the first one omitted, if any
   std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(reach + 1),
                     order.end());
-  const double radius =
-      reach_share * (order.size() > kept ? order[reach].first : order[reach].first * 1.0001 + 1e-9);
+  const double radius = reach_fraction * (order.size() > kept ? order[reach].first
+                                                              : order[reach].first * 1.0001 + 1e-9);
   CarriedPoint point;
   double sum = 0;
   std::array<double, CarriedPoint::capacity> weight{};

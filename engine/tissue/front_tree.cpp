@@ -39,8 +39,8 @@ std::vector<int> inverse_of(const std::vector<int>& at) {
   return place;
 }
 
-/// Reorders each part so that a subtree stands together, its largest child last: the same fill,
-/// with more columns that can share a front.
+/// Postorder of each part with the largest child last: the same fill, with more columns that can be
+/// merged in one front.
 void postorder(const std::vector<std::vector<int>>& below, EliminationOrder& order) {
   const int count = static_cast<int>(below.size());
   std::vector<std::vector<int>> children(count);
@@ -72,7 +72,7 @@ void postorder(const std::vector<std::vector<int>>& below, EliminationOrder& ord
   }
 }
 
-/// Offsets in a work space for what lives at the same time: first place that is free.
+/// First-fit allocation of offsets in a work space.
 class Shelf {
  public:
   std::size_t take(std::size_t size) {
@@ -101,8 +101,8 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
   const auto below = rows_below(ring, order.at, place);
   const int count = static_cast<int>(order.at.size());
 
-  // Columns join the front before them where that stores few zeros.
-  constexpr double zeros_share = 0.1;
+  // Columns are merged into the preceding front where that stores few zeros.
+  constexpr double zeros_fraction = 0.1;
   struct Range {
     int first, last;
     long entries;
@@ -118,7 +118,7 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
           break;
         const long width = j - before.first + 1, entries = now.entries + before.entries;
         const long stored = width * (width + 1) / 2 + width * static_cast<long>(below[j].size());
-        if (static_cast<double>(stored - entries) > zeros_share * static_cast<double>(stored))
+        if (static_cast<double>(stored - entries) > zeros_fraction * static_cast<double>(stored))
           break;
         now = {before.first, j, entries};
         ranges.pop_back();
@@ -171,7 +171,7 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
     for (int r = front.rows_end - 1; r >= front.rows_begin; --r)
       run_end[r] = r + 1 < front.rows_end && seat[r + 1] == seat[r] + 1 ? run_end[r + 1] : r + 1;
   }
-  // The halves work at the same time and leave their updates to the last part: a shelf each.
+  // Both halves run concurrently and leave their updates to the last part: one region for each.
   std::array<Shelf, 3> shelves;
   const auto update_floats = [&](const Front& f) {
     return static_cast<std::size_t>(update_height(f)) * update_height(f);

@@ -8,19 +8,19 @@
 
 namespace condyle {
 
-/// Where a block matrix and its Cholesky factor lie in memory: columns with nearly the same rows
-/// stand together in a front, a dense panel. Made once for each pattern.
+/// Storage layout of a block matrix and its Cholesky factor: columns with nearly the same rows form
+/// a front (supernode), a dense panel. Computed once per pattern.
 struct FrontTree {
-  /// `ring` as for the order; `block`: rows of a block.
+  /// `ring`: as for the order; `block`: rows of a block.
   FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder order, int block);
 
   struct Front {
-    int first = 0, pivots = 0;         // places eliminated here, in blocks
-    int rows_begin = 0, rows_end = 0;  // the places below, in `rows`, rising
+    int first = 0, pivots = 0;         // eliminated places, in blocks
+    int rows_begin = 0, rows_end = 0;  // the places below, in `rows`, ascending
     int parent = -1;                   // front, or -1
     std::size_t panel = 0;             // first float; (pivots + rows) * block of each column
     std::size_t tiles = 0;             // first tile (see FrontKernels)
-    std::size_t update = 0;            // first float of what is left for the parent, in work space
+    std::size_t update = 0;  // first float of the update matrix for the parent, in work space
     std::vector<int> children;
   };
   /// Floats from one column of a front's panel to the next, and of its update.
@@ -29,7 +29,8 @@ struct FrontTree {
   /// Panel's first float of the block (row, column); places, row >= column. -1 if not stored.
   std::ptrdiff_t find(int row, int column) const;
 
-  static constexpr int beyond = 16;  // floats that may be touched past the end of each part
+  static constexpr int beyond =
+      16;  // floats of padding that vector kernels may access after each part
 
   int block = 0;
   EliminationOrder order;
@@ -38,9 +39,10 @@ struct FrontTree {
   std::array<int, 4> part{};  // fronts of the order's three parts
   std::vector<int> front_of;  // place -> front
   std::vector<int> rows;      // of all fronts
-  std::vector<int> seat;      // of each entry of `rows`: its block in the parent's rows
-  std::vector<int> run_end;   // of each entry of `rows`: after those that stand together there, too
-  std::vector<int> row_end;   // of each entry of `rows`: after those whose places follow each other
+  std::vector<int> seat;      // per entry of `rows`: its block in the parent's rows
+  std::vector<int>
+      run_end;  // per entry of `rows`: end of the range that is contiguous in the parent as well
+  std::vector<int> row_end;  // per entry of `rows`: end of the range of consecutive places
   std::size_t panel_floats = 0, work_floats = 0, tiles = 0;
   int most_height = 0;  // of any front
 };

@@ -17,9 +17,9 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Spot = HessianPattern::Spot;
 
-std::shared_ptr<const FrontTree> make_tree(const SpringPrismNet& net, int nodes_per_column,
+std::shared_ptr<const FrontTree> make_tree(const SpringPrismMesh& mesh, int nodes_per_column,
                                            const Nodes& x) {
-  const int columns = net.node_count / nodes_per_column;
+  const int columns = mesh.node_count / nodes_per_column;
   std::vector<std::vector<int>> ring(columns);
   const auto couple = [&](int a, int b) {
     a /= nodes_per_column;
@@ -28,11 +28,11 @@ std::shared_ptr<const FrontTree> make_tree(const SpringPrismNet& net, int nodes_
     ring[a].push_back(b);
     ring[b].push_back(a);
   };
-  for (std::size_t s = 0; s < net.spring_a.size(); ++s) couple(net.spring_a[s], net.spring_b[s]);
-  for (const auto& prism : net.prisms)
+  for (std::size_t s = 0; s < mesh.spring_a.size(); ++s) couple(mesh.spring_a[s], mesh.spring_b[s]);
+  for (const auto& prism : mesh.prisms)
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b < a; ++b) couple(prism[a], prism[b]);
-  for (const auto& [a, b] : net.may_touch) couple(a, b);
+  for (const auto& [a, b] : mesh.may_touch) couple(a, b);
   for (auto& r : ring) {
     std::sort(r.begin(), r.end());
     r.erase(std::unique(r.begin(), r.end()), r.end());
@@ -47,7 +47,7 @@ typedef float Column __attribute__((vector_size(4 * sizeof(float))));
 inline Column column_of(const Vector3d& v) {
   return Column{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
 }
-/// What stands below the column stays: the fourth number is 0.
+/// The element below the column is unchanged: the fourth number is 0.
 inline void add_column(float* to, const Column& column) {
   Column sum;
   std::memcpy(&sum, to, sizeof sum);
@@ -69,7 +69,7 @@ inline void add_product(Columns& to, const Column& a, const Column& b) {  // += 
   for (int k = 0; k < 3; ++k) to[k] += b[k] * a;
 }
 
-/// The corners of each pair, as HessianPattern::prism has them.
+/// Corners of each pair, in the order of HessianPattern::prism.
 constexpr std::array<std::pair<int, int>, HessianPattern::corner_pairs> corners_of = [] {
   std::array<std::pair<int, int>, HessianPattern::corner_pairs> corners{};
   for (int a = 0, pair = 0; a < 6; ++a)
@@ -79,22 +79,22 @@ constexpr std::array<std::pair<int, int>, HessianPattern::corner_pairs> corners_
 
 }  // namespace
 
-HessianPattern::HessianPattern(const SpringPrismNet& net, int nodes, const Nodes& x)
-    : tree(make_tree(net, nodes, x)), nodes_per_column(nodes) {
-  for (int n = 0; n < net.node_count; ++n)
+HessianPattern::HessianPattern(const SpringPrismMesh& mesh, int nodes, const Nodes& x)
+    : tree(make_tree(mesh, nodes, x)), nodes_per_column(nodes) {
+  for (int n = 0; n < mesh.node_count; ++n)
     seats.push_back(tree->place[n / nodes] * nodes + n % nodes);
-  diagonal.resize(net.node_count);
-  for (int n = 0; n < net.node_count; ++n) diagonal[seats[n]] = spot(n, n);
+  diagonal.resize(mesh.node_count);
+  for (int n = 0; n < mesh.node_count; ++n) diagonal[seats[n]] = spot(n, n);
   const auto pair_part = [&](int a, int b) { return std::min(part_of(a), part_of(b)); };
-  for (std::size_t s = 0; s < net.spring_a.size(); ++s) {
-    const int a = net.spring_a[s], b = net.spring_b[s];
+  for (std::size_t s = 0; s < mesh.spring_a.size(); ++s) {
+    const int a = mesh.spring_a[s], b = mesh.spring_b[s];
     spring.push_back(spot(a, b));
     elements[pair_part(a, b)].springs.push_back(static_cast<int>(s));
   }
-  for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
-    elements[part_of(net.anchor_node[i])].anchors.push_back(static_cast<int>(i));
-  for (std::size_t p = 0; p < net.prisms.size(); ++p) {
-    const auto& corner = net.prisms[p];
+  for (std::size_t i = 0; i < mesh.anchor_node.size(); ++i)
+    elements[part_of(mesh.anchor_node[i])].anchors.push_back(static_cast<int>(i));
+  for (std::size_t p = 0; p < mesh.prisms.size(); ++p) {
+    const auto& corner = mesh.prisms[p];
     std::map<int, std::uint16_t> pairs;
     for (int corner_a = 0, bit = 0; corner_a < 6; ++corner_a)
       for (int corner_b = 0; corner_b < corner_a; ++corner_b, ++bit) {
@@ -123,27 +123,31 @@ Spot HessianPattern::spot(int a, int b) const {
   return spot;
 }
 
-HessianAssembly::HessianAssembly(const HessianPattern& pattern, const SpringPrismNet& net,
-                                 const NetLoads& loads, const Nodes& x, Curvatures curvatures)
-    : pattern_(pattern), net_(net), loads_(loads), x_(x), exact_(curvatures == Curvatures::exact) {
+HessianAssembly::HessianAssembly(const HessianPattern& pattern, const SpringPrismMesh& mesh,
+                                 const MeshLoads& loads, const Nodes& x, HessianKind curvatures)
+    : pattern_(pattern),
+      mesh_(mesh),
+      loads_(loads),
+      x_(x),
+      exact_(curvatures == HessianKind::exact) {
   for (auto& own : own_) own.resize(pattern.diagonal.size(), Own{});
-  // Two surfaces that touch may couple columns that no spring does. Then each surface alone is
-  // taken (weights of one sign), which leaves the matrix positive definite.
+  // Contact of two surfaces may couple columns without a common spring. Each surface is then added
+  // separately (weights of one sign), which keeps the matrix positive definite.
   for (std::size_t i = 0; i < loads.contacts.size(); ++i) {
-    const ContactRow& row = loads.contacts[i];
+    const ContactSpring& row = loads.contacts[i];
     if (row.gap(x) >= 0) continue;
-    std::array<Spot, ContactRow::capacity * ContactRow::capacity> spots;
+    std::array<Spot, ContactSpring::capacity * ContactSpring::capacity> spots;
     bool whole = true;
     for (int a = 0; a < row.count; ++a)
       for (int b = 0; b <= a; ++b) {
-        Spot& spot = spots[a * ContactRow::capacity + b];
+        Spot& spot = spots[a * ContactSpring::capacity + b];
         spot = pattern.spot(row.node[a], row.node[b]);
         whole = whole && spot.stored();
       }
     for (int a = 0; a < row.count; ++a)
       for (int b = 0; b <= a; ++b) {
         const double weight = row.weight[a] * row.weight[b];
-        const Spot& spot = spots[a * ContactRow::capacity + b];
+        const Spot& spot = spots[a * ContactSpring::capacity + b];
         if (!spot.stored() || !(whole || weight > 0)) continue;
         const int part = std::min(pattern.part_of(row.node[a]), pattern.part_of(row.node[b]));
         presses_[part].push_back({spot, static_cast<int>(i), weight});
@@ -162,14 +166,14 @@ void HessianAssembly::add(int part, float* panels) {
 void HessianAssembly::add_springs(int part, float* panels) {
   auto& own = own_[part];
   for (int s : pattern_.elements[part].springs) {
-    const int a = net_.spring_a[s], b = net_.spring_b[s];
+    const int a = mesh_.spring_a[s], b = mesh_.spring_b[s];
     const Vector3d d = x_[b] - x_[a];
     const double inverse = 1 / d.norm();
-    const double strain = 1 - net_.rest_length[s] * inverse;
+    const double strain = 1 - mesh_.rest_length[s] * inverse;
     const double tension = exact_ ? strain : std::max(0.0, strain);
-    // At rest a spring may yet go either way; the stretched ones are those that matter.
+    // At its rest length a spring counts as stretched.
     const double k =
-        2 * net_.lambda * net_.stiffness[s] * (strain < -1e-9 ? net_.compression_share : 1.0);
+        2 * mesh_.lambda * mesh_.stiffness[s] * (strain < -1e-9 ? mesh_.compression_ratio : 1.0);
     const auto across = static_cast<float>(k * tension);
     Own m{Column{across, 0, 0, 0}, Column{0, across, 0, 0}, Column{0, 0, across, 0}};
     add_product(m, column_of(d), column_of((k * (1 - tension) * inverse * inverse) * d));
@@ -186,16 +190,16 @@ void HessianAssembly::add_springs(int part, float* panels) {
 
 void HessianAssembly::add_anchors(int part) {
   for (int i : pattern_.elements[part].anchors) {
-    Own& own = own_[part][pattern_.seats[net_.anchor_node[i]]];
+    Own& own = own_[part][pattern_.seats[mesh_.anchor_node[i]]];
     for (int k = 0; k < 3; ++k)
-      own[k][k] += static_cast<float>(2 * net_.lambda * net_.anchor_stiffness[i]);
+      own[k][k] += static_cast<float>(2 * mesh_.lambda * mesh_.anchor_stiffness[i]);
   }
 }
 
 void HessianAssembly::add_contacts(int part, float* panels) const {
   for (const auto& [spot, contact, weight] : presses_[part]) {
-    const ContactRow& row = loads_.contacts[contact];
-    const Matrix3d m = row.normal * row.normal.transpose() * (2 * net_.lambda * row.stiffness);
+    const ContactSpring& row = loads_.contacts[contact];
+    const Matrix3d m = row.normal * row.normal.transpose() * (2 * mesh_.lambda * row.stiffness);
     float* to = panels + spot.at;
     for (int j = 0; j < 3; ++j) add_column(to + j * spot.stride, column_of(weight * m.col(j)));
   }
@@ -203,19 +207,19 @@ void HessianAssembly::add_contacts(int part, float* panels) const {
 
 void HessianAssembly::add_prisms(int part, float* panels) {
   auto& own = own_[part];
-  const double lambda = net_.lambda;
+  const double lambda = mesh_.lambda;
   for (const auto& [p, pairs, first] : pattern_.elements[part].prisms) {
-    const auto& prism = net_.prisms[p];
+    const auto& prism = mesh_.prisms[p];
     std::array<Column, 6> c, slope;  // corners, from corner 0; gradient of the volume
     for (int k = 1; k < 6; ++k) c[k] = column_of(x_[prism[k]] - x_[prism[0]]);
     prism_volume_slopes(
         c, [](const Column& u, const Column& v) { return cross(u, v); }, slope);
     float volume = 0;
     for (int k = 1; k < 6; ++k) volume += dot(slope[k], c[k]);
-    const double j = static_cast<double>(volume) / 3 / net_.rest_volume[p];
+    const double j = static_cast<double>(volume) / 3 / mesh_.rest_volume[p];
     const auto weight =
-        static_cast<float>((1 - lambda) * net_.volume_weight[p] *
-                           volume_stiffness(j, net_.barrier_share, net_.barrier_weight));
+        static_cast<float>((1 - lambda) * mesh_.volume_weight[p] *
+                           volume_stiffness(j, mesh_.barrier_fraction, mesh_.barrier_weight));
     std::array<Column, 6> weighted;
     for (int a = 0; a < 6; ++a) weighted[a] = weight * slope[a];
     if (first)
@@ -225,8 +229,9 @@ void HessianAssembly::add_prisms(int part, float* panels) {
     if (exact_) {
       constexpr float scale = 1.0f / 12.0f;
       const auto pressure =
-          scale * static_cast<float>((1 - lambda) * net_.volume_weight[p] * net_.rest_volume[p] *
-                                     volume_pressure(j, net_.barrier_share, net_.barrier_weight));
+          scale *
+          static_cast<float>((1 - lambda) * mesh_.volume_weight[p] * mesh_.rest_volume[p] *
+                             volume_pressure(j, mesh_.barrier_fraction, mesh_.barrier_weight));
       bend = prism_volume_bends(c, pressure);
     }
     const Spot* spots = &pattern_.prism[static_cast<std::size_t>(p) * HessianPattern::corner_pairs];
@@ -237,7 +242,7 @@ void HessianAssembly::add_prisms(int part, float* panels) {
       float* to = panels + spot.at;
       const Column &steep = slope[spot.swapped ? b : a], &along = weighted[spot.swapped ? a : b];
       if (exact_) {
-        // The matrix whose product with v is u x v.
+        // The matrix of the product u x v.
         const Column u = spot.swapped ? -bend[pair] : bend[pair];
         add_column(to, along[0] * steep + Column{0, u[2], -u[1], 0});
         add_column(to + spot.stride, along[1] * steep + Column{-u[2], 0, u[0], 0});
@@ -260,7 +265,7 @@ void HessianAssembly::add_diagonal(int part, float* panels) const {
       for (int k = 0; k < 3; ++k) own[k] += own_[0][seat][k] + own_[1][seat][k];
     for (int k = 0; k < 3; ++k)
       for (int row = k; row < 3; ++row) to[k * spot.stride + row] += own[k][row];
-    // A node that nothing holds in some direction must not get an endless step.
+    // Regularisation for nodes without stiffness in some direction.
     const float most = std::max({to[0], to[spot.stride + 1], to[2 * spot.stride + 2]});
     for (int k = 0; k < 3; ++k) to[k * (spot.stride + 1)] += 1e-5f * most + 1e-12f;
   }

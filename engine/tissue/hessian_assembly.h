@@ -10,26 +10,26 @@
 
 namespace condyle {
 
-/// Which second derivatives: all; or without the parts that may be negative (of shortened springs,
-/// and of volumes under pressure), which is always positive definite.
-enum class Curvatures { gauss_newton, exact };
+/// Exact second derivatives; or Gauss-Newton, without the parts that may be negative (shortened
+/// springs, volumes under pressure), which is always positive definite.
+enum class HessianKind { gauss_newton, exact };
 
-/// Where the entries of a net's Hessian go; made once. Nodes are taken together in columns of
-/// consecutive nodes, the blocks of the tree.
+/// Sparsity pattern and storage locations of a mesh's Hessian; computed once. Consecutive nodes are
+/// grouped in columns, the blocks of the tree.
 struct HessianPattern {
-  HessianPattern(const SpringPrismNet& net, int nodes_per_column, const Nodes& x);
+  HessianPattern(const SpringPrismMesh& mesh, int nodes_per_column, const Nodes& x);
 
-  /// A 3 x 3 part of the matrix: its first float, that of its row node and column node, which is
-  /// the one eliminated first.
-  struct Spot {  // eight bytes: there are many, and all are read
+  /// A 3 x 3 part of the matrix: index of its first float, for a row node and a column node, the
+  /// one eliminated first.
+  struct Spot {  // eight bytes: many are read in sequence
     static constexpr std::uint32_t nowhere = ~0u;
     std::uint32_t at = nowhere;  // not stored
     std::uint32_t stride : 31;
-    std::uint32_t swapped : 1;  // the row is the second of the two nodes
+    std::uint32_t swapped : 1;  // the row belongs to the second of the two nodes
     bool stored() const { return at != nowhere; }
   };
   Spot spot(int a, int b) const;
-  /// Which of the order's three parts the node is in.
+  /// Part of the elimination order (0 to 2) that contains the node.
   int part_of(int node) const {
     const auto& part = tree->order.part;
     const int at = tree->place[node / nodes_per_column];
@@ -37,13 +37,13 @@ struct HessianPattern {
   }
 
   static constexpr int corner_pairs = 15;  // of a prism
-  /// A prism with entries in a part.
+  /// A prism with entries in one part.
   struct PrismPart {
     int prism;
-    std::uint16_t pairs;  // a bit for each pair of corners whose entry is there
-    bool first;           // of the parts with the prism: adds to its corners' own entries
+    std::uint16_t pairs;  // a bit for each pair of corners with an entry in the part
+    bool first;           // first part with this prism: it adds the diagonal entries of the corners
   };
-  /// What a part is added up from.
+  /// Elements that contribute to a part.
   struct Elements {
     std::vector<int> springs, anchors;
     std::vector<PrismPart> prisms;
@@ -51,22 +51,22 @@ struct HessianPattern {
 
   std::shared_ptr<const FrontTree> tree;
   int nodes_per_column = 1;
-  std::vector<int> seats;            // of each node, in the order of elimination
-  std::vector<Spot> diagonal;        // of each seat
-  std::vector<Spot> spring;          // of its two nodes
-  std::vector<Spot> prism;           // corner_pairs of each
+  std::vector<int> seats;            // elimination index of each node
+  std::vector<Spot> diagonal;        // per elimination index
+  std::vector<Spot> spring;          // per spring, of its two nodes
+  std::vector<Spot> prism;           // corner_pairs per prism
   std::array<Elements, 3> elements;  // of each part
 };
 
-/// The Hessian of a net at one state, added up in single precision.
+/// Assembles the Hessian of a mesh at one state, in single precision.
 class HessianAssembly {
  public:
-  /// Keeps all of them.
-  HessianAssembly(const HessianPattern& pattern, const SpringPrismNet& net, const NetLoads& loads,
-                  const Nodes& x, Curvatures curvatures);
+  /// Keeps references to all arguments.
+  HessianAssembly(const HessianPattern& pattern, const SpringPrismMesh& mesh,
+                  const MeshLoads& loads, const Nodes& x, HessianKind curvatures);
 
-  /// Adds the entries whose column is in one of the order's parts to the panels, which are zero.
-  /// Once for each part, from any threads; the third after the others.
+  /// Adds the entries with columns in one part of the order to the zeroed panels. To be called once
+  /// per part, from any thread; the third part after the others.
   void add(int part, float* panels);
 
  private:
@@ -76,11 +76,11 @@ class HessianAssembly {
   void add_prisms(int part, float* panels);
   void add_diagonal(int part, float* panels) const;
 
-  /// Three numbers of a column of the matrix; the fourth is not used.
+  /// Three elements of a matrix column; the fourth is padding.
   typedef float Column __attribute__((vector_size(4 * sizeof(float))));
-  /// A node's own entry.
+  /// The diagonal entry of a node.
   using Own = std::array<Column, 3>;
-  /// What two nodes of a surface that is pressed add.
+  /// Contribution of two nodes of a contact.
   struct Press {
     HessianPattern::Spot spot;
     int contact;
@@ -88,12 +88,13 @@ class HessianAssembly {
   };
 
   const HessianPattern& pattern_;
-  const SpringPrismNet& net_;
-  const NetLoads& loads_;
+  const SpringPrismMesh& mesh_;
+  const MeshLoads& loads_;
   const Nodes& x_;
   const bool exact_;
   std::array<std::vector<Press>, 3> presses_;  // of each part
-  std::array<std::vector<Own>, 3> own_;        // what each part's elements add, seat by seat
+  std::array<std::vector<Own>, 3>
+      own_;  // contribution of each part's elements, by elimination index
 };
 
 }  // namespace condyle

@@ -3,7 +3,7 @@
 namespace condyle {
 namespace {
 
-/// Numbers of another precision.
+/// Conversion to another precision.
 template <class To, class From>
 void convert(const From* from, Eigen::Index count, To* to) {
   using Eigen::Dynamic, Eigen::Map, Eigen::Vector;
@@ -16,28 +16,28 @@ void convert(const From* from, Eigen::Index count, To* to) {
 HessianFactor::HessianFactor(std::shared_ptr<const HessianPattern> pattern, BlockCholesky factor)
     : pattern_(std::move(pattern)), factor_(std::move(factor)) {}
 
-HessianFactor::HessianFactor(const SpringPrismNet& net, const NetLoads& loads, int nodes_per_column,
-                             const Nodes& x, int threads)
+HessianFactor::HessianFactor(const SpringPrismMesh& mesh, const MeshLoads& loads,
+                             int nodes_per_column, const Nodes& x, int threads)
     : threads_(threads),
-      pattern_(std::make_shared<const HessianPattern>(net, nodes_per_column, x)),
+      pattern_(std::make_shared<const HessianPattern>(mesh, nodes_per_column, x)),
       factor_(pattern_->tree) {
-  refactor(net, loads, x, threads);
+  refactor(mesh, loads, x, threads);
 }
 
-int HessianFactor::refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
-                            int threads, Curvatures curvatures) {
-  HessianAssembly assembly(*pattern_, net, loads, x, curvatures);
+int HessianFactor::refactor(const SpringPrismMesh& mesh, const MeshLoads& loads, const Nodes& x,
+                            int threads, HessianKind curvatures) {
+  HessianAssembly assembly(*pattern_, mesh, loads, x, curvatures);
   constexpr float least = 1e-6f;
   return factor_.factorize([&](int part, float* panels) { assembly.add(part, panels); }, least,
                            threads);
 }
 
-HessianFactor HessianFactor::anew(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
-                                  int threads) const {
+HessianFactor HessianFactor::anew(const SpringPrismMesh& mesh, const MeshLoads& loads,
+                                  const Nodes& x, int threads) const {
   HessianFactor made = another();
   made.set_threads(threads_);
-  if (made.refactor(net, loads, x, threads, Curvatures::exact) > 0)
-    made.refactor(net, loads, x, threads);
+  if (made.refactor(mesh, loads, x, threads, HessianKind::exact) > 0)
+    made.refactor(mesh, loads, x, threads);
   return made;
 }
 

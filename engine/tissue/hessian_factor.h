@@ -10,33 +10,34 @@
 
 namespace condyle {
 
-/// Cholesky factor of a net's Hessian at one state: the preconditioner of the
-/// minimiser. Compressed springs keep only their stiffness along the spring and volumes the square
-/// of their gradient, so that it is positive definite. What moves is only in the right-hand side
-/// (anchor targets), so a factor serves at many states; what ages it is the turning of the tissue.
-/// Nodes are taken together in columns of consecutive nodes, as blocks. Single precision: it only
-/// has to point the way. Same bits for any number of threads. Copies share what depends on the net
-/// alone.
+/// Cholesky factor of a mesh's Hessian at one state: the preconditioner of the minimiser.
+/// Compressed springs contribute only their axial stiffness and volumes the outer product of their
+/// gradient, so the matrix is positive definite. Motion enters only the right-hand side (anchor
+/// targets), so a factor is useful at many states; rotation of the tissue makes it less accurate.
+/// Consecutive nodes are grouped in columns, as blocks. Single precision suffices for a
+/// preconditioner. Deterministic for any number of threads. Copies share the data that depend on
+/// the mesh alone.
 class HessianFactor final : public Preconditioner {
  public:
   /// nodes_per_column: 1 to 6.
-  HessianFactor(const SpringPrismNet& net, const NetLoads& loads, int nodes_per_column,
+  HessianFactor(const SpringPrismMesh& mesh, const MeshLoads& loads, int nodes_per_column,
                 const Nodes& x, int threads = 1);
 
-  /// The factor of another state of the same net, in the order chosen for the first. Gives the
+  /// Refactors at another state of the same mesh, with the same elimination order. Returns the
   /// number of pivots that had to be raised: above 0 where the matrix is not positive definite.
-  int refactor(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x, int threads = 1,
-               Curvatures curvatures = Curvatures::gauss_newton);
-  /// Another factor, of another state: of the exact curvatures where they are positive definite.
+  int refactor(const SpringPrismMesh& mesh, const MeshLoads& loads, const Nodes& x, int threads = 1,
+               HessianKind curvatures = HessianKind::gauss_newton);
+  /// anew(): a new factor at another state, of the exact Hessian where it is positive definite.
+  /// another(): an empty one.
   HessianFactor another() const { return {pattern_, factor_.another()}; }  // yet to be factored
-  HessianFactor anew(const SpringPrismNet& net, const NetLoads& loads, const Nodes& x,
+  HessianFactor anew(const SpringPrismMesh& mesh, const MeshLoads& loads, const Nodes& x,
                      int threads = 1) const;
 
   /// z = H^-1 g
   void solve(const Nodes& g, Nodes& z) const override;
   void set_threads(int threads) { threads_ = threads; }  // of solve
 
-  /// Of the factor and of the work space of a solve.
+  /// Of the factor and the work space of a solve.
   std::size_t bytes() const override;
 
  private:

@@ -2,7 +2,7 @@
 
 namespace condyle {
 
-NearPoints::Runs::Runs(const std::vector<NetPoint>& points) : point{0}, first_node{0} {
+NearPoints::Runs::Runs(const std::vector<MeshPoint>& points) : point{0}, first_node{0} {
   constexpr int most = 8;
   const int count = static_cast<int>(points.size());
   for (int first = 0; first < count; first = point.back()) {
@@ -17,8 +17,8 @@ NearPoints::Runs::Runs(const std::vector<NetPoint>& points) : point{0}, first_no
   }
 }
 
-void NearPoints::moved(const std::vector<NetPoint>& points, Nodes x) {
-  if (last_.size() != x.size()) {  // nothing is known of this net
+void NearPoints::moved(const std::vector<MeshPoint>& points, Nodes x) {
+  if (last_.size() != x.size()) {  // first call for this mesh
     runs_ = std::make_shared<const Runs>(points);
     way_.assign(x.size(), 0.0);
     way_then_.assign(runs_->node.size(), 0.0);

@@ -4,20 +4,21 @@
 #include <memory>
 #include <vector>
 
-#include "engine/tissue/net_point.h"
+#include "engine/tissue/mesh_point.h"
 
 namespace condyle {
 
-/// What looks at one obstacle learn for the next ones: how near each point was, and how far nodes
-/// have gone since, as seen from the obstacle. What cannot have come near is passed over. A value
-/// that goes with a state; it serves one list of points, and changes no answer.
+/// Bounds kept between contact searches with one obstacle: the distance of each point at its last
+/// query and the displacement of the nodes since, relative to the obstacle. Points that cannot have
+/// come near are skipped. A value that belongs to a state and to one list of points; it never
+/// changes a result.
 class NearPoints {
  public:
-  /// The nodes are at x now, in the obstacle's coordinates.
-  void moved(const std::vector<NetPoint>& points, Nodes x);
+  /// Sets the present nodes, in obstacle coordinates.
+  void moved(const std::vector<MeshPoint>& points, Nodes x);
 
-  /// Asks `look(i)`, which gives what the point is no nearer than (mm), for each point, rising,
-  /// that may be nearer than `reach`.
+  /// Calls `look(i)`, which returns a lower bound of the distance (mm), for each point in ascending
+  /// order that may be nearer than `reach`.
   template <class Look>
   void each(double reach, const Look& look) {
     for (std::size_t r = 0; r < least_of_run_.size(); ++r) {
@@ -36,10 +37,10 @@ class NearPoints {
   }
 
  private:
-  /// Points that stand together in the list, and the nodes that carry them.
+  /// Ranges of consecutive points, and their nodes.
   struct Runs {
     std::vector<int> point, first_node, node;
-    explicit Runs(const std::vector<NetPoint>& points);
+    explicit Runs(const std::vector<MeshPoint>& points);
   };
   static constexpr double far_mm = 1e6;
   double way_of_run(std::size_t run) const;
@@ -47,9 +48,9 @@ class NearPoints {
 
   std::shared_ptr<const Runs> runs_;
   Nodes last_;
-  std::vector<double> way_;       // of each node so far, mm
-  std::vector<double> way_then_;  // of each run's nodes, when its points were looked at
-  std::vector<double> least_;     // of each point: no nearer then
+  std::vector<double> way_;       // path length of each node so far, mm
+  std::vector<double> way_then_;  // of each range's nodes, at the last query of its points
+  std::vector<double> least_;     // lower bound per point at its last query
   std::vector<double> least_of_run_;
 };
 

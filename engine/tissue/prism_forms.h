@@ -5,8 +5,8 @@
 
 namespace condyle {
 
-/// Derivatives of a prism's volume as forms of its corners, taken from corner 0 (so that [0] is
-/// zero). V: vectors of three numbers; `cross`: their product.
+/// Derivatives of a prism's volume as polynomials of its corners relative to corner 0 ([0] is
+/// zero). V: vectors of three numbers; `cross`: their cross product.
 ///
 /// Twelve times the volume is, with (pqr) for a determinant,
 /// (134) + (214) + (245) + (215) + (145) + (253) - 2 (345): floor, then both splits of each side.
@@ -24,8 +24,8 @@ void prism_volume_slopes(const std::array<V, 6>& c, const Cross& cross, std::arr
   g[0] = -(g[1] + g[2] + g[3] + g[4] + g[5]);
 }
 
-/// The second derivative by corners a > b is the matrix whose product with v is u x v: gives u at
-/// [a (a - 1) / 2 + b], times 12 * `scale`.
+/// The second derivative with respect to corners a > b is the matrix of the product u x v: returns
+/// u at [a (a - 1) / 2 + b], times 12 * `scale`.
 template <class V, class Number>
 std::array<V, 15> prism_volume_bends(const std::array<V, 6>& c, Number scale) {
   // From the slopes: the derivative of p x q is -(q x) by p and (p x) by q.

@@ -9,20 +9,20 @@
 namespace condyle {
 
 struct RemeshSettings {
-  /// Wanted edge length at a point, mm.
+  /// Target edge length at a point, mm.
   std::function<double(const Eigen::Vector3d&)> edge_length;
-  std::vector<int> pinned;  // vertices of the input that stay (corners of an outline)
+  std::vector<int> pinned;  // vertices of the input that are kept (corners of an outline)
   int rounds = 8;
 };
 
 struct Remeshed {
   TriMesh mesh;             // colours are not kept
-  std::vector<int> pinned;  // where the pinned vertices are now
+  std::vector<int> pinned;  // new indices of the pinned vertices
 };
 
-/// A coarse, well-shaped, manifold surface over `fine` with about the wanted edge lengths, whose
-/// open borders run along those of `fine`: splits, collapses, flips, then smoothing along the
-/// surface. `fine` must be manifold (open or closed) and oriented.
+/// A coarse, well-shaped, manifold surface that approximates `fine` with about the target edge
+/// lengths and open borders along those of `fine`: splits, collapses, flips, then smoothing along
+/// the surface. `fine` must be manifold (open or closed) and oriented.
 Remeshed remesh(const TriMesh& fine, const RemeshSettings& settings);
 
 }  // namespace condyle

@@ -9,9 +9,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The 15 different entries of n n n n, each times the square root of how often it stands there, so
-/// that sums of squares are those of the tensor; z is across the layer. Stiffness through the
-/// thickness is taken less seriously than shear: volume holds it too.
+/// The 15 distinct components of n n n n, each times the square root of its multiplicity, so that
+/// sums of squares equal those of the tensor; z is across the layer. Stiffness through the
+/// thickness has less weight than shear, because the volume energy contributes to it.
 using Tensor = Eigen::Matrix<double, 15, 1>;
 constexpr double through = 0.15;
 const double six = std::sqrt(6.0), twelve = std::sqrt(12.0);
@@ -51,9 +51,9 @@ PrismWeights isotropic_weights(const std::array<Vector3d, 6>& c, double volume) 
   Tensor wanted = Tensor::Zero();
   wanted.head<6>() << 3, 3, 3 * through, six, six, six;  // dd + dd + dd
 
-  // Least squares over weights >= least, drawn a little to equal ones where several are as good:
-  // coordinate by coordinate, which cannot fail.
-  constexpr double even = 1, pull = 1e-4, least = 0.2;  // the trace asks for 15 over 15 springs
+  // Least squares with weights >= least, regularised towards equal weights; coordinate descent,
+  // which always converges.
+  constexpr double even = 1, pull = 1e-4, least = 0.2;  // the trace is 15 over 15 springs
   const Eigen::Matrix<double, 7, 7> normal =
       springs.transpose() * springs + pull * Eigen::Matrix<double, 7, 7>::Identity();
   const Eigen::Matrix<double, 7, 1> right =

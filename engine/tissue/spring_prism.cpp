@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 using Corners = std::array<Vector3d, 6>;
 
-/// Corners taken from corner 0, which makes the numbers small; [0] is zero.
+/// Corners relative to corner 0, for accuracy; [0] is zero.
 Corners relative_corners(const Nodes& x, const std::array<int, 6>& prism) {
   Corners c;
   const Vector3d& origin = x[prism[0]];
@@ -32,21 +32,22 @@ double contract(const Corners& a, const Corners& b) {
   return a[1].dot(b[1]) + a[2].dot(b[2]) + a[3].dot(b[3]) + a[4].dot(b[4]) + a[5].dot(b[5]);
 }
 
-/// The volume is a cubic form of the corners: its gradient times them is three times itself.
+/// The volume is a cubic form of the corners: the product of its gradient with them is three times
+/// the volume.
 double volume_and_gradient(const Corners& c, Corners& gradient) {
   volume_gradient(c, gradient);
   return contract(gradient, c) / 3;
 }
 
-/// Energy of a prism of share j = v / rest, without the factor weight * rest^2, and derivatives in
-/// j.
+/// Energy of a prism with volume ratio j = v / rest, without the factor weight * rest^2, and its
+/// derivatives with respect to j.
 struct VolumeLaw {
   double e, de, dde;
 };
-VolumeLaw volume_law(double j, double barrier_share, double barrier_weight) {
+VolumeLaw volume_law(double j, double barrier_fraction, double barrier_weight) {
   VolumeLaw law{(j - 1) * (j - 1), 2 * (j - 1), 2};
-  if (j < barrier_share) {
-    const double u = barrier_share - j, r = u / j;
+  if (j < barrier_fraction) {
+    const double u = barrier_fraction - j, r = u / j;
     law.e += barrier_weight * u * u * r;
     law.de -= barrier_weight * (3 * u * r + u * r * r);
     law.dde += barrier_weight * (6 * r + 6 * r * r + 2 * r * r * r);
@@ -57,7 +58,7 @@ VolumeLaw volume_law(double j, double barrier_share, double barrier_weight) {
 struct Range {
   std::size_t first, last;
 };
-Range share(std::size_t count, int chunk, int chunks) {
+Range fraction(std::size_t count, int chunk, int chunks) {
   return {count * chunk / chunks, count * (chunk + 1) / chunks};
 }
 
@@ -77,32 +78,32 @@ std::array<Vector3d, 15> prism_volume_bend(const Nodes& nodes, const std::array<
   return prism_volume_bends(relative_corners(nodes, prism), 1.0 / 12.0);
 }
 
-double volume_pressure(double share_of_rest, double barrier_share, double barrier_weight) {
-  return volume_law(share_of_rest, barrier_share, barrier_weight).de;
+double volume_pressure(double share_of_rest, double barrier_fraction, double barrier_weight) {
+  return volume_law(share_of_rest, barrier_fraction, barrier_weight).de;
 }
 
-double volume_stiffness(double share_of_rest, double barrier_share, double barrier_weight) {
-  return volume_law(share_of_rest, barrier_share, barrier_weight).dde;
+double volume_stiffness(double share_of_rest, double barrier_fraction, double barrier_weight) {
+  return volume_law(share_of_rest, barrier_fraction, barrier_weight).dde;
 }
 
-Nodes weight_of_nodes(const SpringPrismNet& net, const Vector3d& down) {
+Nodes weight_of_nodes(const SpringPrismMesh& mesh, const Vector3d& down) {
   constexpr double newton_per_kg = 9.81;
   Nodes weight;
-  for (double mass : net.node_mass_kg) weight.push_back(newton_per_kg * mass * down);
+  for (double mass : mesh.node_mass_kg) weight.push_back(newton_per_kg * mass * down);
   return weight;
 }
 
-SpringPrismEnergy::SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads,
-                                     std::shared_ptr<const NetRuns> runs)
-    : net_(net),
+SpringPrismEnergy::SpringPrismEnergy(const SpringPrismMesh& mesh, const MeshLoads& loads,
+                                     int threads, std::shared_ptr<const ElementBatches> batches)
+    : mesh_(mesh),
       loads_(loads),
       threads_(threads),
-      runs_(runs ? std::move(runs) : std::make_shared<const NetRuns>(net)) {
-  const std::size_t size = 3 * (static_cast<std::size_t>(net.node_count) + NetRuns::lanes);
+      batches_(batches ? std::move(batches) : std::make_shared<const ElementBatches>(mesh)) {
+  const std::size_t size = 3 * (static_cast<std::size_t>(mesh.node_count) + ElementBatches::lanes);
   x_.assign(size, 0.0);
   d_.assign(size, 0.0);
   for (auto& gradient : gradient_) gradient.resize(size);
-  inverse_length_.resize(runs_->rest_length.size());
+  inverse_length_.resize(batches_->rest_length.size());
 }
 
 AxisRows SpringPrismEnergy::rows(Rows& of) const {
@@ -120,7 +121,7 @@ void SpringPrismEnergy::set_rows(const Nodes& x, Rows& to) const {
 }
 
 double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, bool with_gradient) {
-  const RunKernels& kernels = run_kernels();
+  const ElementKernels& kernels = element_kernels();
   const AxisRows at = rows(x_);
   AxisRows slope{nullptr, nullptr, nullptr};
   if (with_gradient) {
@@ -133,32 +134,33 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, bool with_grad
     slope.z[node] += force.z();
   };
   double spring_energy =
-      kernels.springs(*runs_, chunk, net_.compression_share, at, slope, inverse_length_.data());
-  const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);
+      kernels.springs(*batches_, chunk, mesh_.compression_ratio, at, slope, inverse_length_.data());
+  const Range anchors = fraction(mesh_.anchor_node.size(), chunk, chunks_);
   for (std::size_t i = anchors.first; i < anchors.last; ++i) {
-    const int node = net_.anchor_node[i];
+    const int node = mesh_.anchor_node[i];
     const Vector3d d = x[node] - loads_.anchor_target[i];
-    spring_energy += net_.anchor_stiffness[i] * d.squaredNorm();
-    if (with_gradient) push(node, (2 * net_.anchor_stiffness[i]) * d);
+    spring_energy += mesh_.anchor_stiffness[i] * d.squaredNorm();
+    if (with_gradient) push(node, (2 * mesh_.anchor_stiffness[i]) * d);
   }
-  const Range contacts = share(loads_.contacts.size(), chunk, chunks_);
+  const Range contacts = fraction(loads_.contacts.size(), chunk, chunks_);
   for (std::size_t i = contacts.first; i < contacts.last; ++i) {
-    const ContactRow& row = loads_.contacts[i];
+    const ContactSpring& row = loads_.contacts[i];
     const double gap = row.gap(x);
     if (gap >= 0) continue;
     spring_energy += row.stiffness * gap * gap;
     for (int k = 0; with_gradient && k < row.count; ++k)
       push(row.node[k], (2 * row.stiffness * gap * row.weight[k]) * row.normal);
   }
-  const Range forced = share(loads_.node_force.size(), chunk, chunks_);
+  const Range forced = fraction(loads_.node_force.size(), chunk, chunks_);
   for (std::size_t i = forced.first; i < forced.last; ++i) {
     spring_energy -= loads_.node_force[i].dot(x[i]);
     if (with_gradient) push(static_cast<int>(i), -loads_.node_force[i]);
   }
-  // Springs and volumes share the gradient: the volumes' part is scaled to the springs' weight.
-  const double lambda = net_.lambda, volume_scale = (1 - lambda) / lambda;
-  const double volume_energy = kernels.prisms(*runs_, chunk, net_.barrier_share,
-                                              net_.barrier_weight, at, volume_scale, slope);
+  // Springs and volumes accumulate in one gradient: the part of the volumes is scaled to the weight
+  // of the springs.
+  const double lambda = mesh_.lambda, volume_scale = (1 - lambda) / lambda;
+  const double volume_energy = kernels.prisms(*batches_, chunk, mesh_.barrier_fraction,
+                                              mesh_.barrier_weight, at, volume_scale, slope);
   return lambda * (spring_energy + volume_scale * volume_energy);
 }
 
@@ -177,33 +179,33 @@ double SpringPrismEnergy::value(const Nodes& x) { return energy(x, false); }
 
 double SpringPrismEnergy::value_and_gradient(const Nodes& x, Nodes& gradient) {
   const double total = energy(x, true);
-  gradient.resize(net_.node_count);
+  gradient.resize(mesh_.node_count);
   const AxisRows a = rows(gradient_[0]), b = rows(gradient_[1]);
   static_assert(chunks_ == 2);
-  for (int i = 0; i < net_.node_count; ++i)
-    gradient[i] = net_.lambda * Vector3d(a.x[i] + b.x[i], a.y[i] + b.y[i], a.z[i] + b.z[i]);
+  for (int i = 0; i < mesh_.node_count; ++i)
+    gradient[i] = mesh_.lambda * Vector3d(a.x[i] + b.x[i], a.y[i] + b.y[i], a.z[i] + b.z[i]);
   return total;
 }
 
 Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& x, const Nodes& d) {
-  const RunKernels& kernels = run_kernels();
+  const ElementKernels& kernels = element_kernels();
   const AxisRows at = rows(x_), way = rows(d_);
-  const auto springs =
-      kernels.springs_bend(*runs_, chunk, net_.compression_share, at, way, inverse_length_.data());
+  const auto springs = kernels.springs_bend(*batches_, chunk, mesh_.compression_ratio, at, way,
+                                            inverse_length_.data());
   const auto prisms =
-      kernels.prisms_bend(*runs_, chunk, net_.barrier_share, net_.barrier_weight, at, way);
-  double linear = 0;  // parts whose curvature is exact and never negative
-  const Range anchors = share(net_.anchor_node.size(), chunk, chunks_);
+      kernels.prisms_bend(*batches_, chunk, mesh_.barrier_fraction, mesh_.barrier_weight, at, way);
+  double linear = 0;  // terms with exact, non-negative curvature
+  const Range anchors = fraction(mesh_.anchor_node.size(), chunk, chunks_);
   for (std::size_t i = anchors.first; i < anchors.last; ++i)
-    linear += 2 * net_.anchor_stiffness[i] * d[net_.anchor_node[i]].squaredNorm();
-  const Range contacts = share(loads_.contacts.size(), chunk, chunks_);
+    linear += 2 * mesh_.anchor_stiffness[i] * d[mesh_.anchor_node[i]].squaredNorm();
+  const Range contacts = fraction(loads_.contacts.size(), chunk, chunks_);
   for (std::size_t i = contacts.first; i < contacts.last; ++i) {
-    const ContactRow& row = loads_.contacts[i];
+    const ContactSpring& row = loads_.contacts[i];
     if (row.gap(x) >= 0) continue;
     const double speed = row.along(d);
     linear += 2 * row.stiffness * speed * speed;
   }
-  const double lambda = net_.lambda;
+  const double lambda = mesh_.lambda;
   return {lambda * (springs.exact + linear) + (1 - lambda) * prisms.exact,
           lambda * (springs.gauss_newton + linear) + (1 - lambda) * prisms.gauss_newton};
 }

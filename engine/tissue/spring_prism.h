@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "engine/minimize/objective.h"
-#include "engine/tissue/contact_row.h"
-#include "engine/tissue/net_runs.h"
+#include "engine/tissue/contact_spring.h"
+#include "engine/tissue/element_batches.h"
 
 namespace condyle {
 
 using Nodes = Points;  // mm
 
-/// A body of springs and volume elements (prisms) over nodes. Structure of arrays; the order of the
-/// springs and prisms fixes the order of every sum.
-struct SpringPrismNet {
+/// A body of springs and volume elements (prisms) over nodes. Structure of arrays; the order of
+/// springs and prisms determines the order of every sum.
+struct SpringPrismMesh {
   int node_count = 0;
 
   // Springs between two nodes.
@@ -23,8 +23,8 @@ struct SpringPrismNet {
   std::vector<double> rest_length;  // mm
   std::vector<double> stiffness;    // N/mm; the spring's energy is stiffness * (l - rest)^2
 
-  // Zero-length springs from a node to a point that is given at each evaluation: energy is
-  // stiffness * |d|^2, so nothing is divided by a length.
+  // Zero-length springs from a node to a point given at each evaluation, with energy stiffness *
+  // |d|^2.
   std::vector<int> anchor_node;
   std::vector<double> anchor_stiffness;
 
@@ -33,39 +33,41 @@ struct SpringPrismNet {
   std::vector<double> rest_volume;    // mm^3
   std::vector<double> volume_weight;  // energy is weight * (v - rest)^2, N/mm^5
 
-  /// Nodes that no spring joins but contact may couple: a preconditioner has room for them.
+  /// Pairs of nodes without a spring that contact may couple: a preconditioner reserves entries for
+  /// them.
   std::vector<std::array<int, 2>> may_touch;
 
-  /// Stiffness of a shortened spring, over that of a stretched one. 1 is the plain energy; less
-  /// says that fibres buckle where they cannot push, and takes most of the folding out of thin
-  /// sheets.
-  double compression_share = 0.05;
+  /// Ratio of the stiffness of a shortened spring to that of a stretched one. 1 is the unmodified
+  /// energy; smaller values model fibres that buckle in compression and prevent most folding of
+  /// thin sheets.
+  double compression_ratio = 0.05;
   double lambda = 0.5;  // weight of the springs; 1 - lambda that of the volumes
-  /// Below this share of its rest volume a prism resists ever more, without bound at zero.
-  double barrier_share = 0.5;
+  /// Below this fraction of its rest volume a prism has an additional barrier energy, unbounded at
+  /// zero volume.
+  double barrier_fraction = 0.5;
   double barrier_weight = 4.0;
 
-  // What each spring is: its layer, and the sheet that it is an edge of, or -1 across a layer.
+  // Layer of each spring, and the sheet of which it is an edge, or -1 across a layer.
   std::vector<int> spring_layer, spring_sheet;
   std::vector<double> node_mass_kg;  // one per node, or none
 };
 
-/// What the outer world asks at one time.
-struct NetLoads {
-  Nodes anchor_target;               // one per anchor
-  std::vector<ContactRow> contacts;  // what may not be entered
-  /// Pulls the nodes, N; one per node, or empty. Like the springs it counts with weight lambda, so
-  /// that a spring under it stretches by force / (2 stiffness) whatever lambda is.
+/// External loads and constraints at one time.
+struct MeshLoads {
+  Nodes anchor_target;                  // one per anchor
+  std::vector<ContactSpring> contacts;  // active or potential contacts
+  /// Forces on the nodes, N; one per node, or empty. They have the weight lambda, as the springs
+  /// have, so a spring under a force stretches by force / (2 stiffness) for any lambda.
   Nodes node_force;
 };
 
-/// Weight of each node's mass: along `down` (unit), 9.81 N/kg.
-Nodes weight_of_nodes(const SpringPrismNet& net, const Eigen::Vector3d& down);
+/// Weight of the nodes along `down` (unit), 9.81 N/kg.
+Nodes weight_of_nodes(const SpringPrismMesh& mesh, const Eigen::Vector3d& down);
 
 /// Signed volume, the mean over both splits of each side quad; positive for the corner order above.
 double prism_volume(const Nodes& nodes, const std::array<int, 6>& prism);
 
-/// The same, and its derivative by each corner.
+/// The same, with its derivative with respect to each corner.
 double prism_volume_gradient(const Nodes& nodes, const std::array<int, 6>& prism,
                              std::array<Eigen::Vector3d, 6>& gradient);
 
@@ -75,31 +77,31 @@ std::array<Eigen::Vector3d, 15> prism_volume_bend(const Nodes& nodes,
                                                   const std::array<int, 6>& prism);
 
 /// First derivative of a prism's energy, over its weight times its rest volume, by its volume.
-double volume_pressure(double share, double barrier_share, double barrier_weight);
-/// Second derivative of a prism's energy, over its weight, by its volume, at v = share * rest.
-double volume_stiffness(double share, double barrier_share, double barrier_weight);
+double volume_pressure(double fraction, double barrier_fraction, double barrier_weight);
+/// Second derivative of a prism's energy, over its weight, by its volume, at v = fraction * rest.
+double volume_stiffness(double fraction, double barrier_fraction, double barrier_weight);
 
-/// Energy, gradient and curvature of a net; keeps its work space, and the net's constants as they
-/// were when it was made. The sums are taken in an order
-/// that does not depend on the number of threads.
+/// Energy, gradient and curvature of a mesh; owns its work space and a copy of the mesh's
+/// constants. The order of the sums does not depend on the number of threads.
 class SpringPrismEnergy final : public Objective {
  public:
-  /// Keeps `loads` by reference: they may change between calls. `runs`: those of the net, when they
-  /// have been made before.
-  SpringPrismEnergy(const SpringPrismNet& net, const NetLoads& loads, int threads,
-                    std::shared_ptr<const NetRuns> runs = nullptr);
+  /// Keeps `loads` by reference; they may change between calls. `batches`: of the mesh, where
+  /// available.
+  SpringPrismEnergy(const SpringPrismMesh& mesh, const MeshLoads& loads, int threads,
+                    std::shared_ptr<const ElementBatches> batches = nullptr);
 
   /// Energy, mJ: lambda sum k (l - l0)^2 + (1 - lambda) sum w (v - v0)^2, anchors, contacts and
   /// node forces with the springs. Infinite where a prism has no positive volume.
   double value(const Nodes& x) override;
-  /// The same, and its gradient (N).
+  /// The same, with its gradient (N).
   double value_and_gradient(const Nodes& x, Nodes& gradient) override;
-  /// Wants the last call of value_and_gradient to have been at `x`: lengths are kept from there.
+  /// Precondition: the last call of value_and_gradient was at `x`, because spring lengths are
+  /// reused.
   Curvature curvature(const Nodes& x, const Nodes& d) override;
   int threads() const { return threads_; }
 
  private:
-  static constexpr int chunks_ = 2;  // fixed: the sums must not know the number of threads
+  static constexpr int chunks_ = 2;  // fixed: sums must not depend on the number of threads
   using Rows = std::vector<double>;  // see AxisRows
   AxisRows rows(Rows& of) const;
   void set_rows(const Nodes& x, Rows& to) const;
@@ -107,13 +109,13 @@ class SpringPrismEnergy final : public Objective {
   double chunk_energy(int chunk, const Nodes& x, bool with_gradient);
   Curvature chunk_curvature(int chunk, const Nodes& x, const Nodes& d);
 
-  const SpringPrismNet& net_;
-  const NetLoads& loads_;
+  const SpringPrismMesh& mesh_;
+  const MeshLoads& loads_;
   int threads_;
-  std::shared_ptr<const NetRuns> runs_;
+  std::shared_ptr<const ElementBatches> batches_;
   Rows x_, d_;
   std::array<Rows, chunks_> gradient_;
-  std::vector<double> inverse_length_;  // of each lane of a run of springs, 1/mm
+  std::vector<double> inverse_length_;  // per lane of the spring batches, 1/mm
 };
 
 }  // namespace condyle
