@@ -9,10 +9,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-TriMesh merged(const Case& patient, const auto& wanted) {
+TriMesh merged(const Case& patient, const auto& selects) {
   TriMesh all;
   for (const auto& part : patient.parts) {
-    if (!wanted(part.role)) continue;
+    if (!selects(part)) continue;
     const int first = static_cast<int>(all.vertices.size());
     all.vertices.insert(all.vertices.end(), part.mesh.vertices.begin(), part.mesh.vertices.end());
     for (const auto& t : part.mesh.triangles) all.triangles.emplace_back(t.array() + first);
@@ -22,14 +22,15 @@ TriMesh merged(const Case& patient, const auto& wanted) {
 
 }  // namespace
 
-TriMesh jaw_mesh(const Case& patient, Body body) {
-  return merged(patient, [body](Role role) { return collides(role) && body_of(role) == body; });
+TriMesh jaw_mesh(const Case& patient, BodyId body) {
+  return merged(patient,
+                [body](const Part& part) { return collides(part.role) && part.body == body; });
 }
 
 Bones collect_bones(const Case& patient) {
-  return {TriangleTree(jaw_mesh(patient, Body::cranium)),
-          TriangleTree(jaw_mesh(patient, Body::mandible)),
-          TriangleTree(merged(patient, [](Role role) { return is_teeth(role); }))};
+  return {patient.jaw, TriangleTree(jaw_mesh(patient, patient.jaw.upper_arch)),
+          TriangleTree(jaw_mesh(patient, patient.jaw.lower_arch)),
+          TriangleTree(merged(patient, [](const Part& part) { return is_teeth(part.role); }))};
 }
 
 Anatomy read_anatomy(const Case& patient, std::vector<std::string>& notes) {
@@ -41,7 +42,7 @@ Anatomy read_anatomy(const Case& patient, std::vector<std::string>& notes) {
 
   Box box;  // of the mandible, or of the face when there is none
   for (const auto& part : patient.parts)
-    if (body_of(part.role) == Body::mandible && collides(part.role))
+    if (part.body == patient.jaw.lower_arch && collides(part.role))
       box.add(bounding_box(part.mesh));
   if (box.empty()) box = bounding_box(patient.find(Role::face)->mesh);
   anatomy.mandible_low = box.low.z();

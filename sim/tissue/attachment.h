@@ -7,16 +7,18 @@
 
 namespace condyle {
 
-/// Says which columns grow on bone (their `hold`), and how firmly. Free are: the lips' margin, the
-/// cheeks between the jaws (teeth, and bone near the bite), the skin over the ramus, under the jaw
-/// and of the neck.
-void hold_columns(const CoarseSkin& skin, const Anatomy& anatomy, std::vector<Column>& columns);
+/// Determines which columns grow on bone (`attached_to`), and how firmly. Free are the margins of
+/// the lips, the cheeks between the jaws (teeth, and bone near the bite), and the skin over the
+/// ramus, under the jaw and of the neck.
+void attach_columns(const CoarseSkin& skin, const Anatomy& anatomy, const JawBodies& jaw,
+                    std::vector<Column>& columns);
 
-/// The plan's own regions, on top of that: where tissue lies on their bone within them it is
-/// attached, or is not. Glued tissue is held by all that it lies on, teeth too; lips by their own
-/// jaw alone. `side` of each column: +1 above the lip line, -1 below.
-/// throws: InputError for a landmark that the patient does not have.
-void hold_as_planned(const TissuePlan& plan, const Landmarks& landmarks, const CoarseSkin& skin,
-                     const std::vector<signed char>& side, std::vector<Column>& columns);
+/// Applies the plan's own regions: within a region, tissue that lies on its bone is attached or
+/// detached. Glued tissue is attached to everything it lies on, teeth included; lips to their own
+/// jaw only. `side` of each column: +1 above the lip line, -1 below.
+/// throws: InputError for a landmark that the patient lacks.
+void attach_as_planned(const TissuePlan& plan, const Landmarks& landmarks, const CoarseSkin& skin,
+                       const std::vector<signed char>& side, const JawBodies& jaw,
+                       std::vector<Column>& columns);
 
 }  // namespace condyle

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// How much longer than at the lips edges may be, by the distance to the mouth (mm).
+/// Factor by which edges may be longer than at the lips, by the distance to the mouth (mm).
 double coarseness(double to_mouth) { return 1 + 1.6 * std::clamp((to_mouth - 6) / 70, 0.0, 1.0); }
 
 }  // namespace
@@ -28,14 +28,14 @@ CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes) {
     return std::sqrt(best);
   };
 
-  // An even triangle net of edge l has 2 / sqrt(3) / l^2 vertices per area.
-  double wanted = 0;
+  // A uniform triangle mesh with edges of length l has 2 / sqrt(3) / l^2 vertices per area.
+  double expected = 0;
   for (const auto& t : fine.triangles) {
     const Vector3d &a = fine.vertices[t[0]], &b = fine.vertices[t[1]], &c = fine.vertices[t[2]];
     const double l = coarseness(to_mouth((a + b + c) / 3));
-    wanted += 0.5 * (b - a).cross(c - a).norm() * 2 / std::sqrt(3.0) / (l * l);
+    expected += 0.5 * (b - a).cross(c - a).norm() * 2 / std::sqrt(3.0) / (l * l);
   }
-  double scale = std::sqrt(wanted / nodes);
+  double scale = std::sqrt(expected / nodes);
   RemeshSettings settings;
   if (region.mouth.found()) settings.pinned = {region.mouth.right_corner, region.mouth.left_corner};
   Remeshed coarse;
@@ -52,8 +52,8 @@ CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes) {
   skin.rim.assign(skin.mesh.vertices.size(), 0);
   skin.border.assign(skin.mesh.vertices.size(), 0);
 
-  // Border vertices slid along the fine borders: each asks the nearest fine border vertex what it
-  // is.
+  // Border vertices have slid along the fine borders: each takes the kind of the nearest fine
+  // border vertex.
   enum class Kind { rim, border };
   std::vector<std::pair<Vector3d, Kind>> marks;
   for (int v : region.rim) marks.emplace_back(fine.vertices[v], Kind::rim);

@@ -5,7 +5,7 @@
 
 namespace condyle {
 
-/// The sheet that is simulated: about `nodes` vertices over the region, finest at the lips.
+/// The simulated sheet: about `nodes` vertices over the region, finest at the lips.
 CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes);
 
 }  // namespace condyle

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "engine/mesh/measure.h"
-#include "engine/tissue/layered_net.h"
+#include "engine/tissue/layered_mesh.h"
 
 namespace condyle {
 namespace {
@@ -22,8 +22,8 @@ std::vector<std::vector<int>> rings_of(const TriMesh& mesh) {
   return ring;
 }
 
-/// Inward directions: mean normals, averaged over the rings several times. The mouth's border takes
-/// its direction from the skin around it, since the lip's own normal turns into the mouth.
+/// Inward directions: mean normals, averaged over several rings. The border of the mouth takes its
+/// direction from the surrounding skin, since the lip's own normal turns into the mouth.
 std::vector<Vector3d> smooth_inward(const CoarseSkin& skin,
                                     const std::vector<std::vector<int>>& ring, int rounds) {
   const auto normals = vertex_normals(skin.mesh);
@@ -60,7 +60,7 @@ void march(const CoarseSkin& skin, const Bones& bones, const ColumnSettings& set
   if (!cranium && !mandible) return;
   const bool lower = mandible && (!cranium || mandible->distance < cranium->distance);
   const SurfacePoint& met = lower ? *mandible : *cranium;
-  column.ground = lower ? Ground::mandible : Ground::cranium;
+  column.support = lower ? bones.jaw.lower_arch : bones.jaw.upper_arch;
   column.met_depth = met.distance;
   column.met_normal = (lower ? bones.mandible : bones.cranium).pseudonormal(met);
   if (!bones.teeth.empty()) {
@@ -69,27 +69,27 @@ void march(const CoarseSkin& skin, const Bones& bones, const ColumnSettings& set
   }
 }
 
-/// Depths where nothing was met come from their neighbours; then all are smoothed, never passing
-/// deeper than what was met.
+/// Depths of columns that hit nothing come from their neighbours; then all depths are smoothed
+/// without exceeding what was hit.
 void smooth_depths(const std::vector<std::vector<int>>& ring, const ColumnSettings& settings,
                    std::vector<Column>& columns) {
   const std::size_t count = columns.size();
   std::vector<double> depth(count), limit(count);
   for (std::size_t v = 0; v < count; ++v) {
-    const double greatest = columns[v].hold == Hold::free ? settings.greatest_free_depth_mm
-                                                          : settings.greatest_depth_mm;
+    const double greatest =
+        !columns[v].attached_to ? settings.greatest_free_depth_mm : settings.greatest_depth_mm;
     depth[v] = settings.default_depth_mm;
     limit[v] = greatest;
-    if (columns[v].ground == Ground::none) continue;
-    // Room is left before teeth: the lips slide on them.
+    if (!columns[v].support) continue;
+    // A clearance remains in front of teeth: the lips slide on them.
     const double met = columns[v].met_depth - (columns[v].met_teeth ? 1.0 : 0.0);
-    depth[v] = std::clamp(met, settings.least_depth_mm, greatest);
-    limit[v] = std::clamp(met, settings.least_depth_mm, greatest);
+    depth[v] = std::clamp(met, settings.min_depth_mm, greatest);
+    limit[v] = std::clamp(met, settings.min_depth_mm, greatest);
   }
   for (int round = 0; round < settings.rounds(40); ++round)  // fill
     for (std::size_t v = 0; v < count; ++v) {
-      if (columns[v].ground != Ground::none) continue;
-      const double drift = 1 / settings.finer;  // to the default far from bone
+      if (columns[v].support) continue;
+      const double drift = 1 / settings.finer;  // towards the default depth far from bone
       double sum = drift * settings.default_depth_mm;
       for (int n : ring[v]) sum += depth[n];
       depth[v] = sum / (drift + static_cast<double>(ring[v].size()));
@@ -111,14 +111,14 @@ void smooth_depths(const std::vector<std::vector<int>>& ring, const ColumnSettin
 
 Nodes column_nodes(const CoarseSkin& skin, const std::vector<Column>& columns,
                    const ColumnSettings& settings) {
-  const int sheets = static_cast<int>(settings.layer_share.size()) + 1;
+  const int sheets = static_cast<int>(settings.layer_fraction.size()) + 1;
   Nodes nodes(columns.size() * sheets);
   for (std::size_t v = 0; v < columns.size(); ++v) {
     double fraction = 0;
     for (int sheet = 0; sheet < sheets; ++sheet) {
       nodes[node_of(static_cast<int>(v), sheet, sheets)] =
           skin.mesh.vertices[v] + fraction * columns[v].depth * columns[v].inward;
-      if (sheet + 1 < sheets) fraction += settings.layer_share[sheet];
+      if (sheet + 1 < sheets) fraction += settings.layer_fraction[sheet];
     }
   }
   return nodes;
@@ -155,15 +155,15 @@ ShapedColumns shape_columns(const CoarseSkin& skin, const ColumnSettings& settin
   const auto ring = rings_of(skin.mesh);
   smooth_depths(ring, settings, columns);
 
-  // Thin the columns of weak prisms, and turn them towards the prism's own normal and their
-  // neighbours, until all are sound.
-  const int sheets = static_cast<int>(settings.layer_share.size()) + 1;
+  // Thins the columns of degenerate prisms and turns them towards the prism's normal and their
+  // neighbours until all are sound.
+  const int sheets = static_cast<int>(settings.layer_fraction.size()) + 1;
   std::vector<char> changed(columns.size(), 0);
   ShapedColumns shaped;
   for (int round = 0; round < 80; ++round) {
     const Nodes nodes = column_nodes(skin, columns, settings);
     std::vector<char> weak(columns.size(), 0);
-    std::vector<Vector3d> wanted(columns.size(), Vector3d::Zero());
+    std::vector<Vector3d> towards(columns.size(), Vector3d::Zero());
     for (const auto& t : skin.mesh.triangles) {
       const Vector3d& p = skin.mesh.vertices[t[0]];
       const double area =
@@ -175,12 +175,13 @@ ShapedColumns shape_columns(const CoarseSkin& skin, const ColumnSettings& settin
           prism[k] = node_of(t[k], layer, sheets);
           prism[k + 3] = node_of(t[k], layer + 1, sheets);
         }
-        if (prism_volume(nodes, prism) > 0.3 * area * depth * settings.layer_share[layer]) continue;
+        if (prism_volume(nodes, prism) > 0.3 * area * depth * settings.layer_fraction[layer])
+          continue;
         const Vector3d below =
             -(skin.mesh.vertices[t[1]] - p).cross(skin.mesh.vertices[t[2]] - p).normalized();
         for (int k = 0; k < 3; ++k) {
           weak[t[k]] = 1;
-          wanted[t[k]] += below;
+          towards[t[k]] += below;
         }
         break;
       }
@@ -192,7 +193,7 @@ ShapedColumns shape_columns(const CoarseSkin& skin, const ColumnSettings& settin
       if (!weak[v]) continue;
       changed[v] = 1;
       columns[v].depth = std::max(0.93 * columns[v].depth, std::min(2.0, columns[v].depth));
-      Vector3d sum = before[v].inward + 0.5 * wanted[v].normalized();
+      Vector3d sum = before[v].inward + 0.5 * towards[v].normalized();
       for (int n : ring[v]) sum += before[n].inward / static_cast<double>(ring[v].size());
       columns[v].inward = sum.normalized();
     }

@@ -16,11 +16,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double deep_mm = 10;  // behind the lips' fronts, in the middle of the mouth: a pocket
+// behind the front of the lips, in the middle of the mouth: a pocket
+constexpr double deep_mm = 10;
 constexpr double middle_mm = 8;
-constexpr double high_mm = 12, back_mm = 30;  // about the line: where it may lie
-constexpr double corner_mm = 2.5;             // of a corner: where the foremost skin is it
-constexpr double steep_mm = 3;                // so much deeper, a way costs a third
+constexpr double high_mm = 12, back_mm = 30;  // around the lip line: the search region
+constexpr double corner_mm = 2.5;             // around a corner, where its foremost skin is sought
+constexpr double steep_mm = 3;                // so much deeper, a path costs a third
 constexpr double level_mm = 4;                // so far above or below the line, twice as much
 
 }  // namespace
@@ -35,7 +36,7 @@ std::vector<int> pocket_bottom(const TriMesh& face, const LipLine& line) {
   std::set<int> border;
   for (const auto& edge : find_edges(face).edges)
     if (edge.count != 2 && in_zone(edge.low)) border.insert({edge.low, edge.high});
-  std::map<int, std::vector<int>> near;  // the vertices about the line and their neighbours
+  std::map<int, std::vector<int>> near;  // the vertices around the line and their neighbours
   double front = infinity;               // of the lips in the middle
   for (const auto& t : face.triangles) {
     if (!std::all_of(t.begin(), t.end(), in_zone)) continue;
@@ -82,11 +83,11 @@ std::vector<int> pocket_bottom(const TriMesh& face, const LipLine& line) {
       if (n != to && (p.x() <= first_x || p.x() >= last_x)) continue;  // the ends are the corners
       const double off = line.height(p) / level_mm;
       const double depth = 0.5 * (p.y() + face.vertices[v].y()) - middle.y();
-      const double way =
+      const double length =
           (p - face.vertices[v]).norm() * (1 + off * off) * std::exp(-depth / steep_mm);
       const auto known = cost.try_emplace(n, infinity).first;
-      if (so_far + way >= known->second) continue;
-      known->second = so_far + way;
+      if (so_far + length >= known->second) continue;
+      known->second = so_far + length;
       before[n] = v;
       waiting.push({known->second, n});
     }
@@ -103,13 +104,13 @@ std::vector<int> pocket_bottom(const TriMesh& face, const LipLine& line) {
 }
 
 bool open_pouch(TriMesh& face, const LipLine& line, const std::vector<int>& bottom) {
-  constexpr double beside_mm = 70, behind_mm = 100;  // of the lips' middle: where it may lie
-  constexpr double least_height_mm = 8;              // or it is but a gap
+  constexpr double beside_mm = 70, behind_mm = 100;  // of the middle of the lips: the search region
+  constexpr double min_height_mm = 8;                // lower openings are mere gaps
   // The tissue ends at the lips' edge; broader seams, which touch one another, fold in it.
   constexpr SlitSeam seam{.at_ends_mm = 0.5, .at_sides_mm = 10};
   auto kept = without_deep_inside(face, bottom, line.middle, beside_mm, seam);
   if (kept.size() == face.triangles.size()) return false;
-  // Both lists are in one order.
+  // Both lists have the same order.
   double low = infinity, high = -infinity;
   std::size_t next = 0;
   for (const auto& t : face.triangles) {
@@ -125,13 +126,13 @@ bool open_pouch(TriMesh& face, const LipLine& line, const std::vector<int>& bott
       high = std::max(high, p.z());
     }
   }
-  if (high - low < least_height_mm) return false;
+  if (high - low < min_height_mm) return false;
   face.triangles = std::move(kept);
   return true;
 }
 
 void cut_along(const std::vector<int>& run, TriMesh& surface) {
-  std::map<int, std::vector<int>> around;  // triangles of each vertex of the run
+  std::map<int, std::vector<int>> around;  // triangles of each vertex of the chain
   for (int v : run) around[v];
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     for (int v : surface.triangles[t])
@@ -145,7 +146,7 @@ void cut_along(const std::vector<int>& run, TriMesh& surface) {
   };
   for (std::size_t i = 1; i + 1 < run.size(); ++i) {
     const int last = run[i - 1], v = run[i], next = run[i + 1];
-    // From the triangle to the right of the next edge on, around v, to the edge before.
+    // Around v, from the triangle to the right of the next edge to the edge before.
     std::set<int> right;
     int at = next;
     while (at != last) {
@@ -159,8 +160,8 @@ void cut_along(const std::vector<int>& run, TriMesh& surface) {
         }
     }
     const int twin = static_cast<int>(surface.vertices.size());
-    const Vector3d place = surface.vertices[v];
-    surface.vertices.push_back(place);
+    const Vector3d position = surface.vertices[v];
+    surface.vertices.push_back(position);
     if (!surface.colors.empty()) {
       const Eigen::Vector3f color = surface.colors[v];
       surface.colors.push_back(color);

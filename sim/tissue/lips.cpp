@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 Vector3d expected_mouth(const Landmarks& landmarks, const Vector3d& incisors) {
   if (const auto stomion = landmarks.find("stomion")) return *stomion;
-  return incisors + Vector3d(0, -8, 0);  // lips stand about 8 mm before the incisal edges
+  return incisors + Vector3d(0, -8, 0);  // lips lie about 8 mm in front of the incisal edges
 }
 
 int nearest_of(const std::vector<int>& loop, const TriMesh& mesh, const Vector3d& p) {
@@ -37,7 +37,7 @@ MouthOutline outline_of(const std::vector<int>& loop, const TriMesh& face,
     if (x < face.vertices[loop[right]].x()) right = static_cast<int>(i);
     if (x > face.vertices[loop[left]].x()) left = static_cast<int>(i);
   }
-  // A landmark near the loop knows better where the corner is than the widest point.
+  // A landmark near the loop locates the corner better than the widest point.
   const auto refine = [&](const char* name, int& corner) {
     const auto mark = landmarks.find(name);
     if (!mark) return;
@@ -77,7 +77,7 @@ bool faces_outward(const TriMesh& mesh) {
 }
 
 std::vector<std::vector<int>> border_loops(const TriMesh& mesh) {
-  std::map<int, int> next;  // a border vertex of a manifold surface has one way on
+  std::map<int, int> next;  // a border vertex of a manifold surface has one successor
   const EdgeList list = find_edges(mesh);
   for (const auto& edge : list.edges) {
     if (edge.count != 1) continue;
@@ -154,7 +154,7 @@ MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vecto
       if (const MouthOutline mouth = find_mouth(parted, landmarks, incisors); mouth.found()) {
         face = std::move(parted);
         notes.push_back(
-            "the face has a mouth behind its lips: opened, and left out but for a seam");
+            "the face has a mouth behind its lips: it was opened, and removed except for a seam");
         return mouth;
       }
       parted = face;
@@ -164,11 +164,11 @@ MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vecto
     if (const MouthOutline mouth = find_mouth(parted, landmarks, incisors); mouth.found()) {
       face = std::move(parted);
       notes.push_back(
-          "the lips were one surface: parted along the bottom of the pocket between them");
+          "the lips were one surface: separated along the bottom of the pocket between them");
       return mouth;
     }
   }
-  // Only the front of the face near the line: not the nape behind it.
+  // Only the front of the face near the line, not the nape behind it.
   const auto near = [&](const Eigen::Vector3i& t) {
     for (int k = 0; k < 3; ++k) {
       const Vector3d& p = face.vertices[t[k]];
@@ -187,7 +187,7 @@ MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vecto
     for (int k = 0; k < 3; ++k)
       height[face.triangles[t][k]] = line->height(face.vertices[face.triangles[t][k]]);
   }
-  // A vertex close to where the line crosses one of its edges is taken as lying on it.
+  // A vertex close to where the line crosses one of its edges counts as lying on it.
   const auto crossing = [&](int a, int b) { return height[a] / (height[a] - height[b]); };
   for (std::size_t t = 0; t < face.triangles.size(); ++t)
     for (int k = 0; in_zone[t] && k < 3; ++k) {
@@ -195,13 +195,13 @@ MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vecto
       if (height[a] * height[b] < 0 && crossing(a, b) < 0.15) height[a] = 0;
     }
   for (std::size_t t = 0; t < face.triangles.size();
-       ++t)  // the other way round, after all of those
+       ++t)  // in the opposite direction, after all of those
     for (int k = 0; in_zone[t] && k < 3; ++k) {
       const int a = face.triangles[t][k], b = face.triangles[t][(k + 1) % 3];
       if (height[a] * height[b] < 0 && crossing(a, b) > 0.85) height[b] = 0;
     }
 
-  // A vertex on every edge that the line crosses, and the triangles split at them.
+  // Inserts a vertex on every edge that the line crosses and splits the triangles there.
   const bool colored = !face.colors.empty();
   std::map<std::pair<int, int>, int> on_edge;
   const auto cut_vertex = [&](int a, int b) {
@@ -226,7 +226,7 @@ MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vecto
   const std::size_t before = face.triangles.size();
   for (std::size_t t = 0; t < before; ++t) {
     if (!in_zone[t]) continue;
-    // Each crossed edge cuts a corner off what is left of the triangle.
+    // Each crossed edge cuts a corner off the remaining triangle.
     std::vector<int> outline;
     const Eigen::Vector3i tri = face.triangles[t];
     for (int k = 0; k < 3; ++k) {
@@ -259,7 +259,8 @@ MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vecto
     }
   }
 
-  // Every vertex on the line but the two ends gets a twin, which the triangles below it use.
+  // Every vertex on the line except the two ends is duplicated; the triangles below it use the
+  // duplicate.
   std::vector<int> on_line;
   for (std::size_t v = 0; v < height.size(); ++v)
     if (height[v] == 0 && line->spans(face.vertices[v].x())) on_line.push_back(static_cast<int>(v));
@@ -288,7 +289,7 @@ MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vecto
     for (int k = 0; k < 3; ++k)
       if (const auto it = twin.find(tri[k]); it != twin.end()) tri[k] = it->second;
   }
-  notes.push_back("the lips were one surface: parted along the lip line");
+  notes.push_back("the lips were one surface: separated along the lip line");
   return find_mouth(face, landmarks, incisors);
 }
 

@@ -9,34 +9,34 @@
 
 namespace condyle {
 
-/// The opening between the lips of a face surface: one closed run of border vertices, from the
+/// The opening between the lips of a face surface: one closed chain of border vertices, from the
 /// right corner along the upper lip to the left corner and back along the lower lip.
 struct MouthOutline {
   int right_corner = -1, left_corner = -1;
-  std::vector<int> upper, lower;  // right to left, corners left out
+  std::vector<int> upper, lower;  // right to left, without the corners
   bool found() const { return right_corner >= 0; }
 };
 
-/// Border loops of a welded mesh, each a run of vertices in the order of the surface's own edges.
+/// Border loops of a welded mesh, each a chain of vertices in the order of the surface's own edges.
 std::vector<std::vector<int>> border_loops(const TriMesh& mesh);
 
-/// Whether the surface's triangles face away from its middle. Then a border loop runs along the
-/// upper lip from the right corner to the left, and back along the lower: the surface lies on its
-/// left. Heights cannot tell the lips apart, since closed lips overlap.
+/// Whether the surface's triangles face outward. Then a border loop runs along the upper lip from
+/// the right corner to the left, and back along the lower: the surface lies on its left. Heights
+/// cannot distinguish the lips, since closed lips overlap.
 bool faces_outward(const TriMesh& mesh);
 
 /// The border loop at the mouth, if the face has one. `incisors`: midpoint of the incisal points.
 MouthOutline find_mouth(const TriMesh& face, const Landmarks& landmarks,
                         const Eigen::Vector3d& incisors);
 
-/// Cuts a face whose lips are one surface along the lip line, from corner to corner, by doubling
-/// vertices (at the end of the list; colours too), and returns the new opening; empty where no lip
+/// Cuts a face whose lips are one surface along the lip line, from corner to corner, by duplicating
+/// vertices (at the end of the list, with colours), and returns the new opening; empty if no lip
 /// line can be found.
 MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks,
                           const Eigen::Vector3d& incisors, std::vector<std::string>& notes);
 
-/// Gives the patient's face an opening between the lips when it has none, so that the displayed
-/// face can part; says so in the case's notes. Does nothing when there is an opening already.
+/// Creates an opening between the lips of a face that has none, so that the displayed face can
+/// open; adds a note to the case. Does nothing when there is an opening already.
 void part_lips(Case& patient);
 
 }  // namespace condyle

@@ -2,70 +2,96 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/tissue/frame_embedding.h"
-#include "engine/tissue/rolling_factor.h"
+#include "engine/tissue/hessian_factor.h"
 #include "engine/tissue/spring_prism.h"
+#include "sim/tissue/body_weights.h"
 #include "sim/tissue/opening_path.h"
+#include "sim/tissue/oral_fissure.h"
 #include "sim/tissue/skin_region.h"
-#include "sim/tissue/slit.h"
 #include "sim/tissue/tissue.h"
 #include "sim/tissue/tissue_contact.h"
 
 namespace condyle {
 
-/// See tissue.h. Nodes in `node_of` order (layered_net.h), mm, at rest in the cranium's frame.
-struct TissueModel : std::enable_shared_from_this<TissueModel> {
+/// The material: columns of prisms and springs from the skin inward.
+struct TissueMesh {
   int columns = 0, sheets = 0;
-  std::vector<int>
-      cut_from;  // for each layer of the net, the number of the layer asked for; empty: its own
-  std::vector<Eigen::Vector3i> triangles;  // of the columns, seen from outside
-  Nodes rest;
-  SpringPrismNet net;
-  std::shared_ptr<const NetRuns> runs;  // of the net as it is solved
+  std::vector<int> cut_from;  // per layer, number of the requested layer; empty: its own
+  std::vector<Eigen::Vector3i> triangles;  // of the columns, counter-clockwise from outside
+  Nodes rest;                              // mm, in the cranium's frame, in `node_of` order
+  SpringPrismMesh elements;
+  std::shared_ptr<const ElementBatches> runs;  // SIMD layout of the elements
+};
 
-  // A share of 1 goes with the mandible, 0 with the cranium: a point X asks for X + share (X_CM X -
-  // X).
-  std::vector<double> anchor_share;
-  Nodes anchor_offset;  // of each target, turned as its bone turns: what balances the strains
-  Nodes node_force;     // weight, N; or none
-  Nodes held_force;  // N, turned as far as its node's bone turns: what strains cannot balance; or
-                     // none
-  TissueContact contact;
-  // Preconditioners, for states turned by `from_rad` and more; rising, the first from 0.
-  struct Factor {
-    double from_rad = 0;
-    std::shared_ptr<const HessianFactor> factor;
-  };
-  std::vector<Factor> factors;
-  OpeningPath path;
-  std::vector<double> node_share;  // of every node, to foresee where a motion takes it
+/// What an anchor represents.
+enum class AnchorKind : signed char {
+  bone,   // tissue grown on bone: it moves with one body
+  rim,    // the cut towards the rest of the face: fixed
+  other,  // borders, lips, loose tissue: carried by several bodies
+};
 
-  // The displayed face.
+/// What holds the tissue from outside, by the bodies that carry it.
+struct TissueSupport {
+  BodyWeights anchor;            // of each anchor of the mesh
+  std::vector<AnchorKind> kind;  // of each anchor
+  Nodes anchor_offset;           // of each target, rotated with its bodies: balances the strains
+  BodyWeights node;              // of every node, for extrapolation
+  Nodes node_force;              // weight, N; empty without
+  // N, rotated with the node's bodies: the part that strains cannot balance; empty without
+  Nodes held_force;
+};
+
+/// Preconditioner for states rotated by `from_rad` or more.
+struct PathFactor {
+  double from_rad = 0;
+  std::shared_ptr<const HessianFactor> factor;
+};
+
+/// How the columns, as its handles, carry the displayed face.
+struct FaceDisplay {
   RegionShape region;
-  LipSlit slit;
+  OralFissure fissure;
   HandleSet handles;
-  std::vector<double> handle_evened;     // 0 to 1: how much its motion is evened out for display
+  std::vector<double> handle_evened;     // 0 to 1: how strongly its motion is smoothed for display
   std::vector<signed char> handle_side;  // +1 above the lip line, -1 below
   std::vector<int> carried_vertex;       // of the face part
   std::vector<CarriedPoint> carried;
   std::vector<Eigen::Vector3d> face_rest;
   std::vector<signed char> face_side;
+};
 
+/// See tissue.h. Its members are read only and shared with models for the pieces of cut bones.
+struct TissueModel {
+  std::shared_ptr<const TissueMesh> mesh;
+  TissueSupport support;
+  std::shared_ptr<const TissueContact> contact;
+  std::vector<PathFactor> factors;  // increasing, the first from 0
+  OpeningPredictor opening;
+  std::shared_ptr<const FaceDisplay> display;
   TissueSummary summary;
 };
 
-/// What the bones ask of the tissue with the mandible at X_CM.
-NetLoads loads_at(const TissueModel& model, const Pose& X_CM);
+/// Loads of the bones on the tissue with the bodies at X_CB.
+MeshLoads loads_at(const TissueModel& model, std::span<const Pose> X_CB);
 
-/// The same, with what the tissue touches when its nodes are at x.
-NetLoads touching_loads(const TissueModel& model, const Pose& X_CM, const Nodes& x);
+/// The same, with the contacts of nodes at x.
+MeshLoads contact_loads(const TissueModel& model, std::span<const Pose> X_CB, const Nodes& x);
 
-/// Farthest way of any node, mm.
-double largest_way(const Nodes& from, const Nodes& to);
+/// Prisms without a positive volume.
+int count_inverted(const SpringPrismMesh& elements, const Nodes& x);
+
+/// Largest displacement of any node, mm.
+double largest_displacement(const Nodes& from, const Nodes& to);
 
 /// How the face's point p with its side (0 = unknown) is carried.
-CarriedPoint carry_face_point(const TissueModel& model, const Eigen::Vector3d& p, int side);
+CarriedPoint carry_face_point(const TissueMesh& mesh, const FaceDisplay& display,
+                              const Eigen::Vector3d& p, int side);
+
+/// Solves a plain opening and fills `opening.path` and `factors`.
+void make_opening_path(const Eigen::Vector3d& condyles, TissueModel& model, int threads);
 
 }  // namespace condyle

@@ -14,8 +14,8 @@ constexpr double thin_mm = 0.5;     // skin nearer to bone than this has no tiss
 constexpr double outward_mm = 120;  // through a whole skull
 constexpr double most_of = 0.5, few_of = 0.1;
 
-std::string percent(double share) {
-  return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
+std::string percent(double fraction) {
+  return std::to_string(static_cast<int>(std::lround(100 * fraction))) + " %";
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ void check_placement(const CoarseSkin& skin, const Bones& bones, const std::vect
         break;
       }
     }
-    if (column.ground == Ground::none) continue;
+    if (!column.support) continue;
     ++met;
     thin += column.met_depth < thin_mm;
     overlapping += column.met_depth < column.depth - thin_mm;
@@ -62,8 +62,8 @@ void check_placement(const CoarseSkin& skin, const Bones& bones, const std::vect
   if (overlapping > 0)
     notes.push_back(std::to_string(overlapping) + " of " + std::to_string(columns.size()) +
                     " tissue columns reach into bone at rest, since at least " +
-                    std::to_string(std::lround(settings.least_depth_mm)) +
-                    " mm of tissue are needed: they may stay as deep, and go no deeper");
+                    std::to_string(std::lround(settings.min_depth_mm)) +
+                    " mm of tissue are needed: this overlap is allowed, but not more");
   if (met < few_of * count)
     notes.push_back("only " + percent(met / count) +
                     " of the skin around the jaw has bone below it: little holds the tissue");
@@ -73,12 +73,12 @@ void check_attachment(int to_cranium, int to_mandible, const Bones& bones,
                       std::vector<std::string>& notes) {
   if (to_cranium + to_mandible == 0)
     throw InputError(
-        "soft tissue: no place is attached to bone; attach some (--attach, or \"attachments\" in "
+        "soft tissue: nothing is attached to bone; attach some (--attach, or \"attachments\" in "
         "case.json)");
   if (to_cranium == 0 && !bones.cranium.empty())
     notes.push_back("no tissue is attached to the cranium");
   if (to_mandible == 0 && !bones.mandible.empty())
-    notes.push_back("no tissue is attached to the mandible: the chin will not go with it");
+    notes.push_back("no tissue is attached to the mandible: the chin will not follow it");
 }
 
 }  // namespace condyle

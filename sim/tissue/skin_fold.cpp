@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/tissue/layered_net.h"
+#include "engine/tissue/layered_mesh.h"
 #include "sim/tissue/tissue_contact.h"
 
 namespace condyle {
@@ -10,15 +10,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Skin folds between columns that a wide opening brings near from afar.
+// Skin folds between columns that a wide opening brings together from afar.
 constexpr double afar_mm = 15, close_mm = 20, nearer = 0.6;
-constexpr double lips_mm = 25;             // from the mouth: lips have their own rules
+constexpr double lips_mm = 25;             // from the mouth: lips are treated separately
 constexpr double beside_mm = 12;           // at rest, of points from the other flap
 constexpr double spacing_mm = 6;           // of points
 constexpr std::size_t most_others = 1000;  // columns that each is compared with
 
-/// Of each column: how many others would fold onto it that go less far with the mandible, less how
-/// many that go farther.
+/// For each column: number of columns that would fold onto it and follow the mandible less, minus
+/// the number that follow it more.
 struct Votes {
   std::vector<int> chin;
   std::vector<char> any;
@@ -26,12 +26,12 @@ struct Votes {
 Votes votes_of(const ContactSource& from) {
   const std::size_t columns = from.columns.size();
   std::vector<Vector3d> rest(columns), open(columns);
-  std::vector<double> share(columns);
+  std::vector<double> lower(columns);  // weight of the lower arch
   for (std::size_t c = 0; c < columns; ++c) {
     const int outer = node_of(static_cast<int>(c), 0, from.sheets);
     rest[c] = from.rest[outer];
-    share[c] = from.share[outer];
-    open[c] = rest[c] + share[c] * (from.wide_open * rest[c] - rest[c]);
+    lower[c] = from.weights.of(static_cast<std::size_t>(outer), from.jaw.lower_arch);
+    open[c] = rest[c] + lower[c] * (from.wide_open * rest[c] - rest[c]);
   }
   Votes votes{std::vector<int>(columns, 0), std::vector<char>(columns, 0)};
   const std::size_t every = 1 + columns / most_others;
@@ -41,7 +41,7 @@ Votes votes_of(const ContactSource& from) {
       const double before = (rest[a] - rest[b]).norm(), after = (open[a] - open[b]).norm();
       if (before < afar_mm || after > close_mm || after > nearer * before) continue;
       if (from.columns[b].to_mouth < lips_mm) continue;
-      votes.chin[a] += share[a] > share[b] ? 1 : -1;
+      votes.chin[a] += lower[a] > lower[b] ? 1 : -1;
       votes.any[a] = 1;
     }
   }
@@ -50,8 +50,8 @@ Votes votes_of(const ContactSource& from) {
 
 void add_points(const Nodes& rest, const Flap& other, Flap& flap) {
   if (flap.surface.empty() || other.surface.empty()) return;
-  std::vector<NetPoint> points;
-  for (int node : flap.surface.nodes()) points.push_back(NetPoint::of_node(node));
+  std::vector<MeshPoint> points;
+  for (int node : flap.surface.nodes()) points.push_back(MeshPoint::of_node(node));
   std::vector<Eigen::Vector3i> triangles;
   for (const auto& [a, b, c] : flap.surface.triangles()) triangles.emplace_back(a, b, c);
   spread(triangles, rest, spacing_mm, points);
@@ -78,8 +78,8 @@ SkinFold find_fold(const ContactSource& from) {
     if (folds) (sum > 0 ? chin : throat).push_back(outer);
   }
   SkinFold fold;
-  fold.chin.surface = NetSurface(std::move(chin), from.rest);
-  fold.throat.surface = NetSurface(std::move(throat), from.rest);
+  fold.chin.surface = MeshSurface(std::move(chin), from.rest);
+  fold.throat.surface = MeshSurface(std::move(throat), from.rest);
   add_points(from.rest, fold.throat, fold.chin);
   add_points(from.rest, fold.chin, fold.throat);
   return fold;

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Keeps the triangles told of, and the vertices they use; `source` follows.
+/// Keeps the given triangles and the vertices they use; `source` is updated to match.
 TriMesh kept_part(const TriMesh& mesh, const std::vector<char>& keep, std::vector<int>& source) {
   TriMesh out;
   std::vector<int> index(mesh.vertices.size(), -1);
@@ -44,7 +44,7 @@ double triangle_area(const TriMesh& mesh, const Eigen::Vector3i& t) {
                    .norm();
 }
 
-/// Drops what is not the largest piece (by area).
+/// Keeps only the largest piece (by area).
 void keep_largest(TriMesh& mesh, std::vector<int>& source) {
   const Components parts = find_components(mesh);
   if (parts.count < 2) return;
@@ -57,7 +57,7 @@ void keep_largest(TriMesh& mesh, std::vector<int>& source) {
   mesh = kept_part(mesh, keep, source);
 }
 
-/// Triangles use the first of all vertices at equal coordinates; no vertex goes.
+/// Triangles use the first of all vertices at equal coordinates; no vertex is removed.
 void join_equal_points(TriMesh& mesh) {
   std::vector<int> order(mesh.vertices.size()), first(mesh.vertices.size());
   for (std::size_t v = 0; v < order.size(); ++v) order[v] = static_cast<int>(v);
@@ -76,7 +76,8 @@ void join_equal_points(TriMesh& mesh) {
   mesh.triangles = std::move(kept);
 }
 
-/// Drops triangles until every edge has one or two that agree on outside. Returns how many went.
+/// Drops triangles until every edge has one or two of consistent orientation. Returns how many were
+/// dropped.
 int make_manifold(TriMesh& mesh, std::vector<int>& source) {
   std::vector<char> keep(mesh.triangles.size(), 1);
   int dropped = 0;
@@ -97,7 +98,7 @@ int make_manifold(TriMesh& mesh, std::vector<int>& source) {
   return dropped;
 }
 
-/// Gives each fan of triangles around a vertex its own vertex, so that no two fans hang on a point.
+/// Gives each fan of triangles around a vertex its own vertex, so that no two fans share one.
 void separate_fans(TriMesh& mesh, std::vector<int>& source) {
   std::vector<std::vector<int>> around(mesh.vertices.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -138,11 +139,11 @@ void separate_fans(TriMesh& mesh, std::vector<int>& source) {
   }
 }
 
-/// Triangles of the lining behind the lips: from the opening's border inward over everything that
-/// does not face out of the mouth.
+/// Triangles of the lining behind the lips: from the border of the opening inward over all
+/// triangles that do not face out of the mouth.
 std::vector<char> find_lining(const TriMesh& mesh, const MouthOutline& opening,
                               const Anatomy& anatomy) {
-  constexpr double least_facing = 0.25;
+  constexpr double min_facing = 0.25;
   constexpr double reach_mm = 80;  // down to the throat
   std::vector<char> lining(mesh.triangles.size(), 0);
   if (!opening.found()) return lining;
@@ -153,7 +154,7 @@ std::vector<char> find_lining(const TriMesh& mesh, const MouthOutline& opening,
   const auto faces_out = [&](int v) {
     const Vector3d& p = mesh.vertices[v];
     const Vector3d out(p.x() - anatomy.incisors.x(), p.y() - (anatomy.incisors.y() + 40), 0);
-    return normals[v].dot(out.normalized()) > least_facing;
+    return normals[v].dot(out.normalized()) > min_facing;
   };
   std::vector<int> front = opening.upper;
   front.insert(front.end(), opening.lower.begin(), opening.lower.end());
@@ -181,12 +182,12 @@ std::vector<char> find_lining(const TriMesh& mesh, const MouthOutline& opening,
   return lining;
 }
 
-/// Of a displayed face whose lips part at vertices of the same place: those that were joined take
-/// the side of what their triangles belong to.
+/// For a displayed face whose lips separate at coincident vertices: joined vertices take the side
+/// of the surface that their triangles belong to.
 void tell_joined_sides(const TriMesh& face, const std::vector<char>& used,
                        std::vector<signed char>& side) {
   std::vector<int> votes(face.vertices.size(), 0);
-  for (int round = 0; round < 2; ++round) {  // the second for those among joined ones alone
+  for (int round = 0; round < 2; ++round) {  // the second for those surrounded by joined vertices
     const auto counts = [&](int v) { return used[v] || (round > 0 && votes[v] != 0); };
     std::vector<int> more(face.vertices.size(), 0);
     for (const auto& t : face.triangles) {
@@ -207,11 +208,11 @@ void tell_joined_sides(const TriMesh& face, const std::vector<char>& used,
 
 double RegionShape::inside(const Vector3d& p) const {
   const double height = p.z() - anatomy.condyles.z();
-  // Above: below the eyes. Behind: before the ear, and below the ear lobe around to the neck's
-  // side.
+  // Upper border: below the eyes. Posterior border: in front of the ear, and below the ear lobe
+  // around to the side of the neck.
   const double top = 13 - height;
   const double back_limit = anatomy.condyles.y() + 3 + 72 * smooth_step((-24 - height) / 40);
-  // That border runs steeply: it is nearer than along y.
+  // This border is steep, so it is nearer than along y.
   constexpr double steepness = 0.45;
   const double back = steepness * (back_limit - p.y());
   return std::min({top, back, p.z() - floor_z});
@@ -225,8 +226,9 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
   for (std::size_t v = 0; v < source.size(); ++v) source[v] = static_cast<int>(v);
   join_equal_points(mesh);
   if (const int dropped = make_manifold(mesh, source))
-    notes.push_back("face: " + std::to_string(dropped) +
-                    " triangles at edges shared by more than two were left out of the soft tissue");
+    notes.push_back(
+        "face: " + std::to_string(dropped) +
+        " triangles at edges shared by more than two were excluded from the soft tissue");
   keep_largest(mesh, source);
   separate_fans(mesh, source);
 
@@ -241,7 +243,7 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
 
   region.shape.anatomy = anatomy;
   // A closed bust has a flat underside, which is no skin; far below the jaw nothing moves. A mask
-  // ends before that: its own rim may move.
+  // ends above that: its own rim may move.
   const Box box = bounding_box(mesh);
   const bool mask = box.low.z() > anatomy.mandible_low - 45;
   region.shape.floor_z =
@@ -263,7 +265,7 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
   if (part.triangles.size() < 100)
     throw InputError(
         "face: no skin found around the jaw; check that face and bones are in the same "
-        "place, unit and frame");
+        "position, unit and frame");
 
   std::vector<char> is_mouth(part.vertices.size(), 0);
   if (opening.found()) {
@@ -278,7 +280,7 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
     for (int v : region.mouth.lower) is_mouth[v] = 1;
   } else {
     notes.push_back(
-        "no opening between the lips was found and none could be cut: the mouth stays shut");
+        "no opening between the lips was found and none could be cut: the mouth stays closed");
   }
   for (const auto& loop : border_loops(part))
     for (int v : loop) {
@@ -286,8 +288,8 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
       (on_own_border[kept_vertex[v]] ? region.border : region.rim).push_back(v);
     }
 
-  region.slit = LipSlit(part, region.mouth);
-  // The lining takes its side from the lip's edge where it begins.
+  region.fissure = OralFissure(part, region.mouth);
+  // The lining takes the side of the lip's edge where it begins.
   MouthOutline edge = region.mouth;
   for (auto* run : {&edge.upper, &edge.lower})
     for (int& v : *run) v = kept_vertex[v];
@@ -295,7 +297,7 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
   for (std::size_t t = 0; t < lining.size(); ++t)
     if (lining[t])
       for (int v : mesh.triangles[t]) lines[v] = 1;
-  const auto side = sides_of(mesh, edge, region.slit, 30, lines);
+  const auto side = sides_of(mesh, edge, region.fissure, 30, lines);
   region.face_side.assign(face.vertices.size(), 0);
   for (std::size_t v = 0; v < side.size(); ++v)
     if (source[v] >= 0) region.face_side[source[v]] = side[v];

@@ -7,7 +7,7 @@
 
 #include "engine/core/parallel.h"
 #include "engine/mesh/measure.h"
-#include "engine/tissue/layered_net.h"
+#include "engine/tissue/layered_mesh.h"
 
 namespace condyle {
 namespace {
@@ -15,25 +15,25 @@ namespace {
 using Eigen::Vector3d;
 using Triangle = std::array<int, 3>;
 
-/// Between nodes 5 mm and more apart bones and teeth would stand in the flat faces by up to 2 mm:
-/// there more points may meet them, so close together, and keep a distance, as far as they have it
+/// Between nodes 5 mm and more apart, bones and teeth would penetrate the flat faces by up to 2 mm:
+/// there additional points may touch them, with this spacing, and keep the distance that they have
 /// at rest.
 constexpr double near_mm = 1.5;  // near the mouth, where teeth have edges
 constexpr double far_mm = 2;
 constexpr double kept_mm = 0.25;
-constexpr double slack_mm = 0.1;  // that at rest little presses when it is stirred
+constexpr double slack_mm = 0.1;  // so that little presses at rest when it is perturbed
 constexpr double near_mouth_mm = 18;
-constexpr double teeth_lip_edge_mm = 7;  // of the points that may meet teeth from before
-constexpr double led_mm = 14;            // of the points that are led before the teeth
-constexpr double whole_mm = 7;           // of the lip that the other one meets
-constexpr double corner_mm = 5;          // nearer to a corner both lips are one
+constexpr double teeth_lip_edge_mm = 7;  // of the points that may touch teeth from the front
+constexpr double led_mm = 14;            // of the points that are guided in front of the teeth
+constexpr double whole_mm = 7;           // of the lip that the other one can touch
+constexpr double corner_mm = 5;          // nearer to a corner both lips merge
 constexpr double deepest_lip_mm = 0.4;
-constexpr double apart_mm = 0.02;       // between the lips when their nodes have been moved apart
-constexpr double lips_stiffness = 0.5;  // N/mm; lips give way to each other themselves
-constexpr double skin_stiffness = 1;    // N/mm; as much as needs the fewest iterations
-constexpr double swept_mm = 10;         // points come this far from where they rest, beside the jaw
+constexpr double apart_mm = 0.02;       // between the lips after their nodes have been moved apart
+constexpr double lips_stiffness = 0.5;  // N/mm; lips are compliant to each other
+constexpr double skin_stiffness = 1;    // N/mm; the value that needs the fewest iterations
+constexpr double swept_mm = 10;  // farthest that points move from their rest relative to a bone
 
-/// Columns along one lip's edge, from the right corner to the left, both with.
+/// Columns along one lip's edge, from the right corner to the left, both included.
 std::vector<int> lip_edge(const ContactSource& from, int side) {
   std::vector<int> run = side > 0 ? from.skin.mouth.upper : from.skin.mouth.lower;
   run.insert(run.begin(), from.skin.mouth.right_corner);
@@ -41,7 +41,7 @@ std::vector<int> lip_edge(const ContactSource& from, int side) {
   return run;
 }
 
-/// The side of the lip that meets the other lip: from the skin's edge inward.
+/// The surface of the lip that touches the other lip: from the skin's edge inward.
 std::vector<Triangle> edge_faces(const ContactSource& from, int side) {
   std::map<std::pair<int, int>, int> edges;  // directed edges of the skin
   for (const auto& t : from.skin.mesh.triangles)
@@ -62,7 +62,7 @@ std::vector<Triangle> edge_faces(const ContactSource& from, int side) {
   return surface;
 }
 
-/// The lip's edge with what is around it: alone it would count what lies before it as inside.
+/// The lip's edge with its surroundings: alone it would classify points in front of it as inside.
 std::vector<Triangle> whole_lip(const ContactSource& from, int side, std::vector<Triangle> edge) {
   const int inner = from.sheets - 1;
   const auto node = [&](int column, int sheet) { return node_of(column, sheet, from.sheets); };
@@ -79,30 +79,31 @@ std::vector<Triangle> whole_lip(const ContactSource& from, int side, std::vector
 
 TissueContact::Lip make_lip(const ContactSource& from, int side) {
   TissueContact::Lip lip;
+  lip.body = side > 0 ? from.jaw.upper_arch : from.jaw.lower_arch;
   if (!from.skin.mouth.found()) return lip;
   lip.edge = edge_faces(from, side);
   for (const auto& [a, b, c] : lip.edge)
     lip.facing += (from.rest[b] - from.rest[a]).cross(from.rest[c] - from.rest[a]);
   lip.facing.normalize();
-  lip.surface = NetSurface(whole_lip(from, side, lip.edge), from.rest);
+  lip.surface = MeshSurface(whole_lip(from, side, lip.edge), from.rest);
   const auto& vertices = from.skin.mesh.vertices;
   for (int c : lip_edge(from, side)) {
     const auto to = [&](int corner) { return (vertices[c] - vertices[corner]).norm(); };
     if (std::min(to(from.skin.mouth.right_corner), to(from.skin.mouth.left_corner)) < corner_mm)
       continue;
     for (int s = 0; s < from.sheets; ++s)
-      lip.points.push_back(NetPoint::of_node(node_of(c, s, from.sheets)));
+      lip.points.push_back(MeshPoint::of_node(node_of(c, s, from.sheets)));
   }
   lip.allowance.assign(lip.points.size(), 0.0);
   return lip;
 }
 
-/// Takes out points so deep in the other lip at rest that nothing tells which way is out. Returns
-/// how many.
-int leave_out_deep(const std::vector<Touch>& touches, TissueContact::Lip& lip) {
+/// Removes points so deep in the other lip at rest that no exit direction is defined. Returns how
+/// many.
+int leave_out_deep(const std::vector<PointContact>& touches, TissueContact::Lip& lip) {
   std::vector<char> deep(lip.points.size(), 0);
   for (const auto& touch : touches) deep[touch.point] = touch.gap < -deepest_lip_mm;
-  std::vector<NetPoint> kept;
+  std::vector<MeshPoint> kept;
   for (std::size_t i = 0; i < lip.points.size(); ++i)
     if (!deep[i]) kept.push_back(lip.points[i]);
   const int gone = static_cast<int>(lip.points.size() - kept.size());
@@ -111,20 +112,20 @@ int leave_out_deep(const std::vector<Touch>& touches, TissueContact::Lip& lip) {
   return gone;
 }
 
-/// Ways of the two ends of each column, outer and inner; between them it stays straight.
-struct ColumnWays {
+/// Displacements of the two ends of each column, outer and inner; it remains straight between them.
+struct ColumnShifts {
   Nodes sum;
   std::vector<double> weight;
-  explicit ColumnWays(std::size_t columns)
+  explicit ColumnShifts(std::size_t columns)
       : sum(2 * columns, Vector3d::Zero()), weight(2 * columns, 0.0) {}
 
-  void add(std::size_t column, double fraction, const Vector3d& way) {
-    sum[2 * column] += (1 - fraction) * way;
+  void add(std::size_t column, double fraction, const Vector3d& shift) {
+    sum[2 * column] += (1 - fraction) * shift;
     weight[2 * column] += 1 - fraction;
-    sum[2 * column + 1] += fraction * way;
+    sum[2 * column + 1] += fraction * shift;
     weight[2 * column + 1] += fraction;
   }
-  Vector3d way(std::size_t column, double fraction) const {
+  Vector3d shift(std::size_t column, double fraction) const {
     const auto end = [&](std::size_t i) {
       return weight[i] > 0 ? Vector3d(sum[i] / weight[i]) : Vector3d(Vector3d::Zero());
     };
@@ -133,63 +134,71 @@ struct ColumnWays {
   void stop(std::size_t column) { weight[2 * column] = weight[2 * column + 1] = 0; }
 };
 
-/// Cosine between the plane of a point that is led and its front.
-constexpr double least_front = 0.5;
+/// Cosine between the contact normal of a guided point and its front direction.
+constexpr double min_front_cos = 0.5;
 
-TissueContact::Jaw make_jaw(const TissueContact& contact, const Nodes& rest, const TriMesh& mesh,
-                            int threads) {
-  TissueContact::Jaw jaw;
-  jaw.allowance.assign(contact.points.size(), 0.0);
-  jaw.near_at_rest.assign(contact.points.size(), 0);
-  if (mesh.empty() || contact.points.empty()) return jaw;
-  Box region;
-  for (const auto& point : contact.points) region.add(point.at(rest));
-  region.low.array() -= swept_mm;
-  region.high.array() += swept_mm;
-  jaw.obstacle = std::make_shared<NetObstacle>(mesh, region, field_cache_folder(), threads);
-  std::vector<Touch> touches;
-  touch_obstacle(contact.points, jaw.allowance, *jaw.obstacle, Pose{}, rest, {}, touches);
-  jaw.shift.assign(contact.points.size(), Vector3d::Zero());
-  jaw.led.resize(contact.points.size());
-  for (std::size_t i = 0; i < jaw.led.size(); ++i) jaw.led[i] = !contact.front[i].isZero();
-  for (const auto& touch : touches) {
-    // What rests under a tooth's edge would not find back there.
-    if (touch.row.normal.dot(contact.front[touch.point]) < least_front) jaw.led[touch.point] = 0;
-    jaw.near_at_rest[touch.point] = 1;
-    if (touch.gap < 0) jaw.shift[touch.point] = jaw.obstacle->way_out(touch.at);
-  }
-  touches.clear();
-  touch_obstacle(contact.points, jaw.allowance, *jaw.obstacle, Pose{}, rest, {}, touches,
-                 jaw.shift);
-  allow(touches, jaw.allowance);
-  std::vector<double> kept(contact.points.size(), kept_mm);
-  for (const auto& touch : touches)
-    kept[touch.point] = std::clamp(touch.gap - slack_mm, 0.0, kept_mm);
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    if (contact.points[i].count > 1) jaw.allowance[i] -= kept[i];
-  return jaw;
-}
-
-/// Where the teeth's edges would let a lip's point go either way, it is led to the front.
-void lead_lips(const TissueContact& contact, const TissueContact::Jaw& jaw, const Pose& X_CM,
-               const Nodes& x, std::vector<Touch>& touches) {
+/// Where the edges of the teeth would push a lip's point either way, its normal is limited to the
+/// front.
+void guide_lips(const TissueContact& contact, const Obstacle& obstacle, std::span<const Pose> X_CB,
+                const Nodes& x, std::vector<PointContact>& touches) {
+  const Pose X_CU = pose_in(X_CB, contact.upper.body), X_CL = pose_in(X_CB, contact.lower.body);
   for (auto& touch : touches) {
-    if (!jaw.led[touch.point]) continue;
-    Vector3d front = contact.front[touch.point];
-    if (contact.lower_lip[touch.point]) front = X_CM.R * front;
-    if (touch.row.normal.dot(front) >= least_front) continue;
-    touch.row.normal = led(touch.row.normal, front, least_front);
-    touch.row.offset = touch.row.along(x) - touch.gap;
+    if (!obstacle.front_guided[touch.point]) continue;
+    const Vector3d front =
+        (contact.lower_lip[touch.point] ? X_CL : X_CU).R * contact.front[touch.point];
+    if (touch.spring.normal.dot(front) >= min_front_cos) continue;
+    touch.spring.normal = limit_angle(touch.spring.normal, front, min_front_cos);
+    touch.spring.offset = touch.spring.along(x) - touch.gap;
   }
 }
 
 }  // namespace
 
+Obstacle make_obstacle(const TissueContact& contact, const Nodes& rest, const BodySurface& bone,
+                       int threads, const std::vector<std::optional<Vector3d>>& shift) {
+  const std::size_t count = contact.points.size();
+  Obstacle made;
+  made.body = bone.body;
+  made.extent = bounding_box(bone.mesh);
+  made.allowance.assign(count, 0.0);
+  made.near_at_rest.assign(count, 0);
+  Box region;
+  for (const auto& point : contact.points) region.add(point.at(rest));
+  region.low.array() -= swept_mm;
+  region.high.array() += swept_mm;
+  made.surface =
+      std::make_shared<ContactObstacle>(bone.mesh, region, field_cache_folder(), threads);
+  std::vector<PointContact> touches;
+  find_obstacle_contacts(contact.points, made.allowance, *made.surface, Pose{}, rest, {}, touches);
+  made.shift.assign(count, Vector3d::Zero());
+  made.front_guided.resize(count);
+  for (std::size_t i = 0; i < count; ++i) made.front_guided[i] = !contact.front[i].isZero();
+  for (const auto& touch : touches) {
+    const auto i = static_cast<std::size_t>(touch.point);
+    // A point that rests under a tooth's edge would not return there.
+    if (touch.spring.normal.dot(contact.front[i]) < min_front_cos) made.front_guided[i] = 0;
+    made.near_at_rest[i] = 1;
+    if (touch.gap < 0)
+      made.shift[i] =
+          !shift.empty() && shift[i] ? *shift[i] : made.surface->exit_displacement(touch.at);
+  }
+  touches.clear();
+  find_obstacle_contacts(contact.points, made.allowance, *made.surface, Pose{}, rest, {}, touches,
+                         made.shift);
+  allow_depths(touches, made.allowance);
+  std::vector<double> kept(count, kept_mm);
+  for (const auto& touch : touches)
+    kept[touch.point] = std::clamp(touch.gap - slack_mm, 0.0, kept_mm);
+  for (std::size_t i = 0; i < count; ++i)
+    if (contact.points[i].count > 1) made.allowance[i] -= kept[i];
+  return made;
+}
+
 double part_closed_lips(const ContactSource& from, Nodes& rest) {
-  constexpr int most_rounds = 60;
-  constexpr double least_share = 0.4;  // of a prism's volume that must remain
+  constexpr int max_rounds = 60;
+  constexpr double min_fraction = 0.4;  // of a prism's volume that must remain
   const TissueContact::Lip upper = make_lip(from, +1), lower = make_lip(from, -1);
-  const NetSurface upper_edge(upper.edge, rest), lower_edge(lower.edge, rest);
+  const MeshSurface upper_edge(upper.edge, rest), lower_edge(lower.edge, rest);
   const Nodes before = rest;
   const auto fraction = [&](int node) {
     const int outer = node - node % from.sheets, inner = outer + from.sheets - 1;
@@ -202,39 +211,39 @@ double part_closed_lips(const ContactSource& from, Nodes& rest) {
         prism[k] = node_of(t[k], s, from.sheets);
         prism[k + 3] = node_of(t[k], s + 1, from.sheets);
       }
-      if (prism_volume(rest, prism) < least_share * prism_volume(before, prism)) return false;
+      if (prism_volume(rest, prism) < min_fraction * prism_volume(before, prism)) return false;
     }
     return true;
   };
-  for (int round = 0; round < most_rounds; ++round) {
-    std::vector<Touch> touches;
-    touch_surface(upper.points, upper.allowance, lower_edge, rest, {}, touches);
-    touch_surface(lower.points, lower.allowance, upper_edge, rest, {}, touches);
-    ColumnWays ways(from.columns.size());
+  for (int round = 0; round < max_rounds; ++round) {
+    std::vector<PointContact> touches;
+    find_surface_contacts(upper.points, upper.allowance, lower_edge, rest, {}, touches);
+    find_surface_contacts(lower.points, lower.allowance, upper_edge, rest, {}, touches);
+    ColumnShifts shifts(from.columns.size());
     bool any = false;
     for (const auto& touch : touches) {
       if (touch.gap >= 0) continue;
       any = true;
-      const ContactRow& row = touch.row;
+      const ContactSpring& row = touch.spring;
       double square = 0;
       for (int k = 0; k < row.count; ++k) square += row.weight[k] * row.weight[k];
       for (int k = 0; k < row.count; ++k)
-        ways.add(row.node[k] / from.sheets, fraction(row.node[k]),
-                 (apart_mm - touch.gap) * row.weight[k] / square * row.normal);
+        shifts.add(row.node[k] / from.sheets, fraction(row.node[k]),
+                   (apart_mm - touch.gap) * row.weight[k] / square * row.normal);
     }
     if (!any) break;
     const Nodes last = rest;
     const auto move = [&](int column) {
       for (int s = 0; s < from.sheets; ++s) {
         const int node = node_of(column, s, from.sheets);
-        rest[node] = last[node] + ways.way(column, fraction(node));
+        rest[node] = last[node] + shifts.shift(column, fraction(node));
       }
     };
     for (std::size_t c = 0; c < from.columns.size(); ++c) move(static_cast<int>(c));
     for (const auto& t : from.skin.mesh.triangles)
       if (!sound(t))
         for (int column : t) {
-          ways.stop(column);
+          shifts.stop(column);
           move(column);
         }
   }
@@ -244,8 +253,7 @@ double part_closed_lips(const ContactSource& from, Nodes& rest) {
   return farthest;
 }
 
-std::vector<std::array<int, 2>> lips_that_may_touch(const TissueContact& contact,
-                                                    const Nodes& rest) {
+std::vector<std::array<int, 2>> lip_contact_pairs(const TissueContact& contact, const Nodes& rest) {
   constexpr double beside_mm = 6;
   std::vector<std::array<int, 2>> pairs;
   const auto add = [&](const TissueContact::Lip& lip, const TissueContact::Lip& other) {
@@ -262,16 +270,16 @@ std::vector<std::array<int, 2>> lips_that_may_touch(const TissueContact& contact
   return pairs;
 }
 
-TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
-                           const TriMesh& mandible, int threads) {
+TissueContact make_contact(const ContactSource& from, std::span<const BodySurface> bones,
+                           int threads) {
   TissueContact contact;
   const int last = from.sheets - 1;
-  const auto free = [&](int node) { return !from.held[node]; };
+  const auto free = [&](int node) { return !from.attached[node]; };
   for (std::size_t c = 0; c < from.columns.size(); ++c) {
     const bool lip = from.columns[c].to_mouth < teeth_lip_edge_mm;
     for (int s = lip ? 0 : last; s <= last; ++s)
       if (const int node = node_of(static_cast<int>(c), s, from.sheets); free(node))
-        contact.points.push_back(NetPoint::of_node(node));
+        contact.points.push_back(MeshPoint::of_node(node));
   }
   std::vector<Eigen::Vector3i> before_teeth, sliding;
   for (const auto& t : from.skin.mesh.triangles) {
@@ -298,82 +306,96 @@ TissueContact make_contact(const ContactSource& from, const TriMesh& cranium,
     contact.front.push_back(lip ? Vector3d(front.normalized()) : Vector3d::Zero());
     contact.lower_lip.push_back(from.side[point.node[0] / from.sheets] < 0);
   }
-  contact.cranium = make_jaw(contact, from.rest, cranium, threads);
-  contact.mandible = make_jaw(contact, from.rest, mandible, threads);
+  if (!contact.points.empty())
+    for (const auto& bone : bones)
+      if (!bone.mesh.empty())
+        contact.obstacles.push_back(make_obstacle(contact, from.rest, bone, threads));
 
   for (const auto& [lip, other] :
        {std::pair{&contact.upper, &contact.lower}, std::pair{&contact.lower, &contact.upper}}) {
-    std::vector<Touch> touches;
-    touch_surface(lip->points, lip->allowance, other->surface, from.rest, {}, touches,
-                  other->facing);
+    std::vector<PointContact> touches;
+    find_surface_contacts(lip->points, lip->allowance, other->surface, from.rest, {}, touches,
+                          other->facing);
     contact.lip_points_left_out += leave_out_deep(touches, *lip);
     touches.clear();
-    touch_surface(lip->points, lip->allowance, other->surface, from.rest, {}, touches,
-                  other->facing);
-    allow(touches, lip->allowance);
+    find_surface_contacts(lip->points, lip->allowance, other->surface, from.rest, {}, touches,
+                          other->facing);
+    allow_depths(touches, lip->allowance);
   }
   contact.fold = find_fold(from);
   return contact;
 }
 
-Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads,
-              NearJaws* known, double firmness) {
+ContactLists find_tissue_contacts(const TissueContact& contact, std::span<const Pose> X_CB,
+                                  const Nodes& x, int threads, NearObstacles* known,
+                                  double firmness) {
   firmness *= contact.firmness;
-  const TouchSettings on_jaw{.stiffness = firmness * TouchSettings{}.stiffness};
-  Looks looks(contact_lists);
-  const auto jaw = [&](const TissueContact::Jaw& of, const Pose& X_CJ, std::vector<Touch>& touches,
-                       NearPoints* near) {
-    if (!of.obstacle) return;
-    touch_obstacle(contact.points, of.allowance, *of.obstacle, X_CJ, x, on_jaw, touches, of.shift,
-                   near);
-    lead_lips(contact, of, X_CM, x, touches);
+  const std::size_t obstacles = contact.obstacles.size();
+  if (known) known->resize(obstacles);
+  ContactLists lists(contact_lists(contact));
+  const auto on_obstacle = [&](std::size_t i) {
+    const Obstacle& obstacle = contact.obstacles[i];
+    const PointContactSettings settings{.stiffness = firmness * PointContactSettings{}.stiffness};
+    find_obstacle_contacts(contact.points, obstacle.allowance, *obstacle.surface,
+                           pose_in(X_CB, obstacle.body), x, settings, lists[i], obstacle.shift,
+                           known ? &(*known)[i] : nullptr);
+    guide_lips(contact, obstacle, X_CB, x, lists[i]);
   };
-  const auto flap = [&](const Flap& of, const Flap& on, double stiffness,
-                        std::vector<Touch>& touches, const Vector3d& facing = Vector3d::Zero()) {
-    touch_surface(of.points, of.allowance, on.surface, x, {.stiffness = firmness * stiffness},
-                  touches, facing);
-  };
-  const auto& [upper, lower] = std::tie(contact.upper, contact.lower);
-  const auto& [chin, throat] = contact.fold;
-  parallel_for(2, threads, [&](std::size_t i) {
-    if (i == 0) {
-      jaw(contact.cranium, Pose{}, looks[on_cranium], known ? &known->cranium : nullptr);
-      flap(upper, lower, lips_stiffness, looks[upper_on_lower], X_CM.R * lower.facing);
-      flap(chin, throat, skin_stiffness, looks[chin_on_throat]);
-    } else {
-      jaw(contact.mandible, X_CM, looks[on_mandible], known ? &known->mandible : nullptr);
-      flap(lower, upper, lips_stiffness, looks[lower_on_upper], upper.facing);
-      flap(throat, chin, skin_stiffness, looks[throat_on_chin]);
+  const auto on_self = [&](SelfContact which) {
+    const auto flap = [&](const Flap& of, const Flap& on, double stiffness,
+                          const Vector3d& facing = Vector3d::Zero()) {
+      find_surface_contacts(of.points, of.allowance, on.surface, x,
+                            {.stiffness = firmness * stiffness}, lists[obstacles + which], facing);
+    };
+    const auto facing = [&](const TissueContact::Lip& lip) {
+      return Vector3d(pose_in(X_CB, lip.body).R * lip.facing);
+    };
+    const auto& [upper, lower] = std::tie(contact.upper, contact.lower);
+    const auto& [chin, throat] = contact.fold;
+    switch (which) {
+      case upper_on_lower:
+        return flap(upper, lower, lips_stiffness, facing(lower));
+      case lower_on_upper:
+        return flap(lower, upper, lips_stiffness, facing(upper));
+      case chin_on_throat:
+        return flap(chin, throat, skin_stiffness);
+      default:
+        return flap(throat, chin, skin_stiffness);
     }
+  };
+  parallel_for(lists.size(), threads, [&](std::size_t i) {
+    if (i < obstacles)
+      on_obstacle(i);
+    else
+      on_self(static_cast<SelfContact>(i - obstacles));
   });
-  return looks;
+  return lists;
 }
 
-ContactMeasure measure_contact(const TissueContact& contact, const Looks& looks, const Pose& X_CM,
-                               const Nodes& rest, const Nodes& x) {
+ContactMeasure measure_contact(const TissueContact& contact, const ContactLists& lists,
+                               std::span<const Pose> X_CB, const Nodes& rest, const Nodes& x) {
   ContactMeasure measure;
-  for (const auto& touches : looks)
+  for (const auto& touches : lists)
     for (const auto& touch : touches)
       measure.penetration_mm = std::max(measure.penetration_mm, -touch.gap);
-  for (const auto* jaw : {&contact.cranium, &contact.mandible})
-    for (std::size_t i = 0; i < jaw->shift.size(); ++i)
+  for (const auto& obstacle : contact.obstacles)
+    for (std::size_t i = 0; i < obstacle.shift.size(); ++i)
       measure.rest_overlap_mm =
-          std::max(measure.rest_overlap_mm, jaw->shift[i].norm() + jaw->allowance[i]);
+          std::max(measure.rest_overlap_mm, obstacle.shift[i].norm() + obstacle.allowance[i]);
   for (const auto* lip : {&contact.upper, &contact.lower})
     for (double depth : lip->allowance)
       measure.rest_overlap_mm = std::max(measure.rest_overlap_mm, depth);
-  const auto slip = [&](const TissueContact::Jaw& jaw, const Pose& X_CJ,
-                        const std::vector<Touch>& touches) {
-    for (const auto& touch : touches) {
-      if (!jaw.near_at_rest[touch.point]) continue;
-      const NetPoint& point = contact.points[touch.point];
-      const Vector3d way = point.at(x) - X_CJ * point.at(rest);
-      const Vector3d along = way - way.dot(touch.row.normal) * touch.row.normal;
+  for (std::size_t o = 0; o < contact.obstacles.size(); ++o) {
+    const Obstacle& obstacle = contact.obstacles[o];
+    const Pose X_CO = pose_in(X_CB, obstacle.body);
+    for (const auto& touch : lists[o]) {
+      if (!obstacle.near_at_rest[touch.point]) continue;
+      const MeshPoint& point = contact.points[touch.point];
+      const Vector3d moved = point.at(x) - X_CO * point.at(rest);
+      const Vector3d along = moved - moved.dot(touch.spring.normal) * touch.spring.normal;
       measure.slip_mm = std::max(measure.slip_mm, along.norm());
     }
-  };
-  slip(contact.cranium, Pose{}, looks[on_cranium]);
-  slip(contact.mandible, X_CM, looks[on_mandible]);
+  }
   return measure;
 }
 

@@ -1,97 +1,118 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "engine/tissue/net_contact.h"
+#include "engine/tissue/mesh_contact.h"
+#include "sim/tissue/body_weights.h"
 #include "sim/tissue/columns.h"
 #include "sim/tissue/skin_fold.h"
 
 namespace condyle {
 
-struct TissueModel;
+/// Bone and teeth of a body that the tissue slides on, with the limits of each contact point
+/// against it.
+struct Obstacle {
+  BodyId body;
+  std::shared_ptr<const ContactObstacle> surface;
+  Box extent;   // of the bone at rest
+  Nodes shift;  // one per point, mm: the shortest exit from the bone, where it overlaps at rest
+  /// mm, one per point: overlap at rest that is allowed; if negative, a distance that is kept.
+  std::vector<double> allowance;
+  std::vector<char> near_at_rest;  // of each point
+  std::vector<char> front_guided;  // of each point: its normal is limited to the front, see below
+};
 
-/// What the tissue slides on where it is not attached: bone and teeth of both jaws, lip on lip, and
-/// the skin below the chin on that of the throat.
+/// Contact of tissue that is not attached: with bones and teeth, lip on lip, and the skin below the
+/// chin on that of the throat.
 struct TissueContact {
-  /// Points that must not enter a jaw, and one jaw.
-  struct Jaw {
-    std::shared_ptr<const NetObstacle> obstacle;  // null when there is no such bone
-    Nodes shift;  // one per point, mm: out of the bone, where it overlaps at rest
-    /// mm, one per point: overlap at rest that is left so; or less than 0, a distance that is kept.
-    std::vector<double> allowance;
-    std::vector<char> near_at_rest;  // of each point
-    std::vector<char> led;           // of each point: to the front, see below
-  };
-  std::vector<NetPoint> points;
-  Jaw cranium, mandible;
-  /// Of each point of the lips, the way out of the mouth at rest (unit); 0 for others. Lips belong
-  /// before the teeth: on edges they are led that way, so that none is caught behind, unless it
-  /// rests there.
+  std::vector<MeshPoint> points;
+  std::vector<Obstacle> obstacles;  // one for each body with bone
+  /// Of each point of the lips, the direction out of the mouth at rest (unit); 0 for others. Lips
+  /// lie in front of the teeth: at edges their normals are limited to this direction, so that no
+  /// point is caught behind a tooth, unless it rests there.
   std::vector<Eigen::Vector3d> front;
-  std::vector<char> lower_lip;  // of each point: it turns with the mandible
+  std::vector<char> lower_lip;  // of each point: it rotates with the lower lip's body
 
-  /// Its surface: the edge, the skin before and the inner side behind it.
+  /// Its surface: the edge, the skin in front and the inner side behind it.
   struct Lip : Flap {
+    BodyId body;                           // the arch that it rotates with
     std::vector<std::array<int, 3>> edge;  // triangles of nodes, from the skin to the inner side
-    Eigen::Vector3d facing = Eigen::Vector3d::Zero();  // the edge's mean way at rest; unit
+    Eigen::Vector3d facing = Eigen::Vector3d::Zero();  // mean normal of the edge at rest; unit
   };
   Lip upper, lower;
   SkinFold fold;
   int lip_points_left_out = 0;  // too deep in the other lip at rest
-  double firmness = 1;          // over the usual: of tissue that is firmer than living
+  double firmness = 1;  // of contact, over the default: for tissue stiffer than living tissue
 };
 
-/// What is known of the sheet when contact is set up.
+/// State of the sheet when contact is set up.
 struct ContactSource {
   const CoarseSkin& skin;
   const std::vector<Column>& columns;
   const std::vector<signed char>& side;  // of each column: +1 above the lip line
   int sheets = 0;
   const Nodes& rest;
-  const std::vector<char>& held;     // of each node: anchored firmly
-  const std::vector<double>& share;  // of each node, of the mandible's way
-  const Pose& wide_open;             // X_CM
+  const std::vector<char>& attached;  // of each node: firmly anchored
+  const BodyWeights& weights;         // of each node
+  const Pose& wide_open;              // of the lower arch, X_CM
+  JawBodies jaw = {};
 };
-/// Moves the nodes of closed lips apart where the coarse lips overlap, so that at rest neither is
-/// inside the other. Gives the farthest way, mm. `from.held`, `share` and `wide_open` are not used.
+/// Separates the nodes of closed lips where the coarse lips overlap, so that at rest neither is
+/// inside the other. Returns the largest displacement, mm. `from.attached`, `weights` and
+/// `wide_open` are not used.
 double part_closed_lips(const ContactSource& from, Nodes& rest);
 
-/// Cranium and mandible with teeth, merged. Fields are kept in the cache of the user.
-TissueContact make_contact(const ContactSource& source, const TriMesh& cranium,
-                           const TriMesh& mandible, int threads = 1);
+/// A body's bone with its teeth.
+struct BodySurface {
+  BodyId body;
+  TriMesh mesh;  // mm, at rest in the cranium's frame; welded
+};
+/// Distance fields of the surfaces are cached in the user's cache folder.
+TissueContact make_contact(const ContactSource& source, std::span<const BodySurface> bones,
+                           int threads = 1);
 
-/// Nodes of both lips that lie side by side at rest: see SpringPrismNet::may_touch.
-std::vector<std::array<int, 2>> lips_that_may_touch(const TissueContact& contact,
-                                                    const Nodes& rest);
+/// A body's surface, with the overlap of the points at rest. `shift` of each point: its
+/// displacement out of this surface, or none for the shortest. Only `points` and `front` of the
+/// contact are used.
+Obstacle make_obstacle(const TissueContact& contact, const Nodes& rest, const BodySurface& bone,
+                       int threads = 1,
+                       const std::vector<std::optional<Eigen::Vector3d>>& shift = {});
 
-/// Order of the lists in what `look_at` returns.
-enum ContactList : std::size_t {
-  on_cranium,
-  on_mandible,
+/// Pairs of nodes of both lips that are side by side at rest: see SpringPrismMesh::may_touch.
+std::vector<std::array<int, 2>> lip_contact_pairs(const TissueContact& contact, const Nodes& rest);
+
+/// Contacts of the tissue with itself. `find_tissue_contacts` returns the lists of the obstacles
+/// first, in their order, then these.
+enum SelfContact : std::size_t {
   upper_on_lower,
   lower_on_upper,
   chin_on_throat,
   throat_on_chin,
-  contact_lists
+  self_contacts
 };
+inline std::size_t contact_lists(const TissueContact& contact) {
+  return contact.obstacles.size() + self_contacts;
+}
 
-/// What looks at one pose of the mandible learn for the next ones.
-struct NearJaws {
-  NearPoints cranium, mandible;
-};
+/// Bounds that a search passes on to the next, of each obstacle.
+using NearObstacles = std::vector<NearPoints>;
 
-/// Everything the tissue touches at x, with the mandible at X_CM. `firmness`: over the usual.
-Looks look_at(const TissueContact& contact, const Pose& X_CM, const Nodes& x, int threads = 1,
-              NearJaws* known = nullptr, double firmness = 1);
+/// All contacts of the tissue at x, with the bodies at X_CB. `firmness`: contact stiffness over the
+/// default.
+ContactLists find_tissue_contacts(const TissueContact& contact, std::span<const Pose> X_CB,
+                                  const Nodes& x, int threads = 1, NearObstacles* known = nullptr,
+                                  double firmness = 1);
 
-/// How tissue lies on the jaws and on itself.
+/// Overlap and slip of tissue on bones and on itself.
 struct ContactMeasure {
-  double penetration_mm = 0;   // deepest point in bone, teeth or skin, beyond rest
-  double slip_mm = 0;          // farthest way of a point along the jaw that it lay on at rest
-  double rest_overlap_mm = 0;  // deepest that a point was allowed from the start
+  double penetration_mm = 0;  // deepest point in bone, teeth or skin, beyond rest
+  double slip_mm = 0;  // largest displacement of a point along the bone that it touched at rest
+  double rest_overlap_mm = 0;  // deepest overlap allowed at rest
 };
-ContactMeasure measure_contact(const TissueContact& contact, const Looks& looks, const Pose& X_CM,
-                               const Nodes& rest, const Nodes& x);
+ContactMeasure measure_contact(const TissueContact& contact, const ContactLists& lists,
+                               std::span<const Pose> X_CB, const Nodes& rest, const Nodes& x);
 
 }  // namespace condyle

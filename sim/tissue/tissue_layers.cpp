@@ -2,51 +2,55 @@
 
 #include <algorithm>
 
+#include "sim/tissue/tissue_defaults.h"
+
 namespace condyle {
 
 LayerStack layers_of(const TissuePlan& plan) {
-  if (plan.layers.empty()) return usual_layers(plan.layer_count.value_or(3));
-  // Usual materials by place: skin outside, a softer middle, firmer next to the bone.
-  const LayerStack usual = usual_layers(3);
+  if (plan.layers.empty()) return default_layers(plan.layer_count.value_or(3));
+  // Default materials by depth: skin outside, a softer middle, a stiffer layer next to the bone.
+  const LayerStack standard = default_layers(3);
   LayerStack stack;
   const std::size_t count = plan.layers.size();
   for (std::size_t i = 0; i < count; ++i) {
-    LayerMaterial material = usual.material[count == 1 ? 2 : i == 0 ? 0 : i + 1 == count ? 2 : 1];
+    LayerMaterial material = standard.material[count == 1       ? 2
+                                               : i == 0         ? 0
+                                               : i + 1 == count ? 2
+                                                                : 1];
     const TissueLayer& layer = plan.layers[i];
     material.modulus_MPa = layer.modulus_MPa.value_or(material.modulus_MPa);
     material.poisson = layer.poisson.value_or(material.poisson);
     material.mass_kg = layer.mass_kg.value_or(0);
-    stack.share.push_back(layer.share);
+    stack.fraction.push_back(layer.fraction);
     stack.material.push_back(material);
   }
   return stack;
 }
 
-double firmness_over_usual(const LayerStack& layers) {
-  constexpr double held_well_MPa = 0.1;
+double firmness_over_default(const LayerStack& layers) {
   double softest = layers.material.front().modulus_MPa;
   for (const auto& material : layers.material) softest = std::min(softest, material.modulus_MPa);
-  return std::max(1.0, softest / held_well_MPa);
+  return std::max(1.0, softest / tissue_defaults::supported_modulus_MPa);
 }
 
-SpringPrismNet net_of(const TissuePlan& plan, const LayerStack& layers,
-                      const std::vector<Eigen::Vector3i>& triangles, const Nodes& rest) {
+SpringPrismMesh make_elements(const TissuePlan& plan, const LayerStack& layers,
+                              const std::vector<Eigen::Vector3i>& triangles, const Nodes& rest) {
   constexpr double kg_per_mm3 = 1e-6;
-  const int sheets = static_cast<int>(layers.share.size()) + 1;
-  SpringPrismNet net = layered_net(triangles, sheets, rest, layers.material);
+  const int sheets = static_cast<int>(layers.fraction.size()) + 1;
+  SpringPrismMesh elements = layered_mesh(triangles, sheets, rest, layers.material);
   if (plan.down) {
     auto material = layers.material;
     for (std::size_t layer = 0; layer < material.size(); ++layer) {
       const std::size_t whole = layers.cut_from.empty() ? layer : layers.cut_from[layer];
       if (whole < plan.layers.size() && plan.layers[whole].mass_kg) continue;
       for (std::size_t t = 0; t < triangles.size(); ++t)
-        material[layer].mass_kg += kg_per_mm3 * net.rest_volume[t * material.size() + layer];
+        material[layer].mass_kg += kg_per_mm3 * elements.rest_volume[t * material.size() + layer];
     }
-    net = layered_net(triangles, sheets, rest, material);
+    elements = layered_mesh(triangles, sheets, rest, material);
   }
-  net.lambda = plan.lambda.value_or(net.lambda);
-  if (plan.turgor) set_turgor(net, *plan.turgor);
-  return net;
+  elements.lambda = plan.lambda.value_or(elements.lambda);
+  if (plan.turgor) set_turgor(elements, *plan.turgor);
+  return elements;
 }
 
 }  // namespace condyle

@@ -1,11 +1,11 @@
-#include "sim/tissue/slit.h"
+#include "sim/tissue/oral_fissure.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
-#include "engine/tissue/layered_net.h"
+#include "engine/tissue/layered_mesh.h"
 
 namespace condyle {
 
@@ -27,7 +27,7 @@ double height_at(const std::vector<std::pair<double, double>>& run, double x) {
 
 }  // namespace
 
-LipSlit::LipSlit(const TriMesh& skin, const MouthOutline& mouth) {
+OralFissure::OralFissure(const TriMesh& skin, const MouthOutline& mouth) {
   if (!mouth.found()) return;
   right_ = skin.vertices[mouth.right_corner];
   left_ = skin.vertices[mouth.left_corner];
@@ -46,7 +46,7 @@ LipSlit::LipSlit(const TriMesh& skin, const MouthOutline& mouth) {
   }
 }
 
-double LipSlit::height(const Vector3d& p) const {
+double OralFissure::height(const Vector3d& p) const {
   if (!found()) return 1;
   const double at =
       (p.x() - x_.front()) / (x_.back() - x_.front()) * static_cast<double>(x_.size() - 1);
@@ -55,18 +55,18 @@ double LipSlit::height(const Vector3d& p) const {
   return p.z() - (z_[i] + (clamped - static_cast<double>(i)) * (z_[i + 1] - z_[i]));
 }
 
-double LipSlit::distance_from(const Vector3d& p) const {
+double OralFissure::distance_from(const Vector3d& p) const {
   if (!found()) return std::numeric_limits<double>::infinity();
   const Vector3d line = left_ - right_;
   const double along = std::clamp((p - right_).dot(line) / line.squaredNorm(), 0.0, 1.0);
   return (p - right_ - along * line).norm();
 }
 
-double LipSlit::distance(const Vector3d& p, int side_p, const Vector3d& q, int side_q) const {
+double OralFissure::distance(const Vector3d& p, int side_p, const Vector3d& q, int side_q) const {
   const double straight = (p - q).norm();
   if (!found() || side_p == side_q) return straight;
-  // Where the straight way crosses the slit; points whose height contradicts their side (lips that
-  // overlap a little) count as just beside it.
+  // Where the straight line crosses the fissure; points whose height contradicts their side (lips
+  // that overlap slightly) count as just beside it.
   const double up = std::max(side_p * height(p), 0.01), down = std::max(side_q * height(q), 0.01);
   const double x = p.x() + up / (up + down) * (q.x() - p.x());
   if (x <= x_.front() || x >= x_.back()) return straight;
@@ -75,11 +75,11 @@ double LipSlit::distance(const Vector3d& p, int side_p, const Vector3d& q, int s
 }
 
 std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth,
-                                  const LipSlit& slit, double reach,
+                                  const OralFissure& fissure, double reach,
                                   const std::vector<char>& lining) {
   std::vector<signed char> side(skin.vertices.size());
   for (std::size_t v = 0; v < side.size(); ++v)
-    side[v] = static_cast<signed char>(slit.side(skin.vertices[v]));
+    side[v] = static_cast<signed char>(fissure.side(skin.vertices[v]));
   if (!mouth.found()) return side;
 
   std::vector<std::vector<int>> ring(skin.vertices.size());
@@ -87,11 +87,12 @@ std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth
     ring[a].push_back(b);
     ring[b].push_back(a);
   }
-  std::vector<double> way(skin.vertices.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> distance_to_lip(skin.vertices.size(),
+                                      std::numeric_limits<double>::infinity());
   std::set<std::pair<double, int>> open;
   const auto start = [&](const std::vector<int>& lip, signed char s) {
     for (int v : lip) {
-      way[v] = 0;
+      distance_to_lip[v] = 0;
       side[v] = s;
       open.insert({0.0, v});
     }
@@ -103,9 +104,9 @@ std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth
     open.erase(open.begin());
     for (int n : ring[v]) {
       const double next = d + (skin.vertices[n] - skin.vertices[v]).norm();
-      if (next >= way[n] || (next > reach && (lining.empty() || !lining[n]))) continue;
-      open.erase({way[n], n});
-      way[n] = next;
+      if (next >= distance_to_lip[n] || (next > reach && (lining.empty() || !lining[n]))) continue;
+      open.erase({distance_to_lip[n], n});
+      distance_to_lip[n] = next;
       side[n] = side[v];
       open.insert({next, n});
     }

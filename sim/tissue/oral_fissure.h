@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "engine/mesh/tri_mesh.h"
+#include "sim/tissue/lips.h"
+
+namespace condyle {
+
+/// The oral fissure, the slit between the lips, projected to the front: z over x from corner to
+/// corner. Tissue is not connected across it, so distances are measured around its corners.
+class OralFissure {
+ public:
+  OralFissure() = default;
+  OralFissure(const TriMesh& skin, const MouthOutline& mouth);
+
+  bool found() const { return x_.size() > 1; }
+  /// Height above the fissure, mm; horizontal beyond the corners.
+  double height(const Eigen::Vector3d& p) const;
+  int side(const Eigen::Vector3d& p) const { return height(p) >= 0 ? 1 : -1; }
+  /// Distance from the line between the corners, mm; infinite without a fissure.
+  double distance_from(const Eigen::Vector3d& p) const;
+  /// Length of the shortest path from p to q that does not cross the fissure; sides as given, +1
+  /// above, -1 below.
+  double distance(const Eigen::Vector3d& p, int side_p, const Eigen::Vector3d& q, int side_q) const;
+
+ private:
+  std::vector<double> x_, z_;
+  Eigen::Vector3d right_ = Eigen::Vector3d::Zero(), left_ = Eigen::Vector3d::Zero();
+};
+
+/// Side of each vertex: that of the lip that is nearer along the surface, up to `reach` mm from the
+/// mouth; by height beyond. `lining` (per vertex; may be empty): belongs to a lip at any distance.
+std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth,
+                                  const OralFissure& fissure, double reach,
+                                  const std::vector<char>& lining = {});
+
+}  // namespace condyle

@@ -1,0 +1,44 @@
+#include <array>
+#include <memory>
+#include <utility>
+
+#include "sim/tissue/model.h"
+#include "sim/tissue/tissue_defaults.h"
+
+namespace condyle {
+
+// A factor is kept at each knot: the tissue of the lower face rotates with the jaw, and a factor of
+// the unrotated tissue needs several times the iterations.
+void make_opening_path(const Eigen::Vector3d& condyles, TissueModel& model, int threads) {
+  const TissueMesh& mesh = *model.mesh;
+  const auto add_factor = [&](double from_rad, const TissueState& state) {
+    model.factors.push_back(
+        {from_rad, std::make_shared<HessianFactor>(mesh.elements,
+                                                   contact_loads(model, state.X_CB, state.nodes),
+                                                   mesh.sheets, state.nodes, threads)});
+  };
+  auto path = std::make_shared<OpeningPath>();
+  path->condyles = condyles;
+  model.opening.path = path;
+  TissueState state = rest_tissue(model);
+  add_factor(0, state);
+  TissueWarmStart warm;
+  std::vector<Nodes> nodes{mesh.rest};
+  TissueBudget budget;
+  budget.tolerance_mm = 2e-3;
+  budget.max_iterations = 300;
+  budget.threads = threads;
+  for (int i = 1; i < tissue_defaults::path_knots; ++i) {
+    const double angle = i * path->step_rad;
+    std::vector<Pose> X_CB(index_of(model.opening.body) + 1);
+    X_CB.back() = path->pose(angle);
+    state = solve_tissue(model, state, X_CB, budget, warm);
+    // the limit of opening for this tissue
+    if (!state.converged || state.inverted_prisms > 0) break;
+    nodes.push_back(state.nodes);
+    add_factor(angle - path->step_rad / 2, state);
+  }
+  path->nodes = std::move(nodes);
+}
+
+}  // namespace condyle

@@ -1,0 +1,249 @@
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <memory>
+#include <tuple>
+#include <utility>
+
+#include "engine/minimize/minimize.h"
+#include "sim/tissue/model.h"
+#include "sim/tissue/pose_steps.h"
+#include "sim/tissue/solver_cache.h"
+
+namespace condyle {
+
+using Eigen::Vector3d;
+
+MeshLoads loads_at(const TissueModel& model, std::span<const Pose> X_CB) {
+  const auto& [elements, rest] = std::tie(model.mesh->elements, model.mesh->rest);
+  const TissueSupport& support = model.support;
+  MeshLoads loads;
+  loads.anchor_target.resize(elements.anchor_node.size());
+  for (std::size_t i = 0; i < elements.anchor_node.size(); ++i) {
+    const Vector3d& X = rest[elements.anchor_node[i]];
+    loads.anchor_target[i] = X + carried_by(support.anchor[i], X_CB, X);
+    if (!support.anchor_offset.empty())
+      loads.anchor_target[i] += turned_by(support.anchor[i], X_CB, support.anchor_offset[i]);
+  }
+  loads.node_force = support.node_force;
+  if (support.held_force.empty()) return loads;
+  loads.node_force.resize(rest.size(), Vector3d::Zero());
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    if (!support.held_force[i].isZero(0))
+      loads.node_force[i] += turned_by(support.node[i], X_CB, support.held_force[i]);
+  return loads;
+}
+
+int count_inverted(const SpringPrismMesh& elements, const Nodes& x) {
+  int count = 0;
+  for (const auto& prism : elements.prisms) count += prism_volume(x, prism) <= 0;
+  return count;
+}
+
+MeshLoads contact_loads(const TissueModel& model, std::span<const Pose> X_CB, const Nodes& x) {
+  MeshLoads loads = loads_at(model, X_CB);
+  set_contacts(find_tissue_contacts(*model.contact, X_CB, x), loads);
+  return loads;
+}
+
+namespace {
+
+/// After this many iterations of a frame the tissue is refactored at its current state, and again
+/// after twice as many; later frames use the new factor. A refactorization costs as much as about
+/// twenty iterations.
+constexpr int first_refactoring = 30;
+/// After more iterations than this in a frame, a factor is computed asynchronously; where frames
+/// end unconverged, after this many iterations of all frames that used the last factor.
+constexpr int refactor_beside_loop_after = 8, refactor_beside_loop_after_all = 24;
+/// After this many iterations contacts are searched again, at the minimum or not: where tissue
+/// buckles, contact planes from before the buckling mislead the solver (median of an opening 8
+/// iterations with or without, 95th percentile 36 instead of 49).
+constexpr int iterations_per_contact = 8;
+constexpr int max_contact_rounds = 40;
+/// A frame whose contacts are off by more than this has not converged.
+constexpr double accepted_contact_mm = 0.1;
+
+/// The stored factor of the nearest state on the opening path.
+std::shared_ptr<const HessianFactor> path_factor(const TissueModel& model,
+                                                 std::span<const Pose> X_CB) {
+  const double turned = rotation_angle(pose_in(X_CB, model.opening.body));
+  const auto* nearest = &model.factors.front();
+  for (const auto& other : model.factors)
+    if (turned >= other.from_rad) nearest = &other;
+  return nearest->factor;
+}
+
+}  // namespace
+
+TissueState rest_tissue(const TissueModel& model) {
+  TissueState state;
+  state.nodes = model.mesh->rest;
+  return state;
+}
+
+namespace {
+
+/// The minimizer of one frame, whose preconditioner is refactored when it is out of date.
+class FrameSolve {
+ public:
+  FrameSolve(const TissueModel& model, const MeshLoads& loads, const TissueBudget& budget,
+             AsyncPreconditioner& factor, TissueState& state)
+      : model_(model),
+        loads_(loads),
+        budget_(budget),
+        factor_(factor),
+        state_(state),
+        energy_(model.mesh->elements, loads, budget.threads, model.mesh->runs) {}
+
+  /// A number of iterations under the current loads.
+  Solved operator()() {
+    MinimizeSettings settings;
+    settings.tolerance_mm = budget_.tolerance_mm;
+    const int left = budget_.max_iterations - state_.iterations;
+    settings.max_iterations = std::clamp(
+        std::min(iterations_per_contact, refactor_after_ - since_factor_), 1, std::max(left, 1));
+    const MinimizeResult result = minimize(energy_, factor_.now(), settings, state_.nodes);
+    state_.iterations += result.iterations;
+    state_.evaluations += result.evaluations;
+    since_factor_ += result.iterations;
+    state_.converged = result.converged();
+    state_.energy = result.energy;
+    state_.residual = result.residual;
+    if (result.status != MinimizeResult::Status::budget_spent) return Solved::at_minimum;
+    if (state_.iterations >= budget_.max_iterations) return Solved::budget_spent;
+    if (since_factor_ >= refactor_after_) refactor();
+    return Solved::in_progress;
+  }
+
+ private:
+  void refactor() {
+    auto fresh = std::make_shared<HessianFactor>(factor_.now());  // in the same order
+    fresh->refactor(model_.mesh->elements, loads_, state_.nodes, budget_.threads);
+    factor_.replace(std::move(fresh));
+    since_factor_ = 0;
+    refactor_after_ *= 2;
+  }
+
+  const TissueModel& model_;
+  const MeshLoads& loads_;
+  const TissueBudget& budget_;
+  AsyncPreconditioner& factor_;
+  TissueState& state_;
+  SpringPrismEnergy energy_;
+  int since_factor_ = 0, refactor_after_ = first_refactoring;  // iterations
+};
+
+/// The contacts that a frame starts with: those of the last frame, moved with the bones.
+ContactLists moved_contacts(const TissueModel& model, const SolverCache* last,
+                            std::span<const Pose> X_CB) {
+  if (!last) return {};
+  ContactLists touches = last->touches;
+  const auto& obstacles = model.contact->obstacles;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const BodyId body = obstacles[i].body;
+    move_contacts(pose_in(X_CB, body) * pose_in(last->X_CB, body).inverse(), touches[i]);
+  }
+  return touches;
+}
+
+bool all_finite(std::span<const Pose> X_CB) {
+  return std::all_of(X_CB.begin(), X_CB.end(),
+                     [](const Pose& X) { return X.t.allFinite() && X.R.coeffs().allFinite(); });
+}
+
+bool usable(const TissueState& state) {
+  return std::isfinite(state.energy) && state.inverted_prisms == 0 &&
+         std::all_of(state.nodes.begin(), state.nodes.end(),
+                     [](const Vector3d& p) { return p.allFinite(); });
+}
+
+/// The state of a frame whose solve failed: that of the previous frame.
+TissueState kept(const TissueState& previous, const TissueState& failed) {
+  TissueState state = previous;
+  state.iterations = failed.iterations;
+  state.evaluations = failed.evaluations;
+  state.converged = false;
+  state.kept = true;
+  return state;
+}
+
+/// One step to finite poses.
+TissueState solve_step(const TissueModel& model, const TissueState& previous,
+                       std::span<const Pose> X_CB, const TissueBudget& budget,
+                       TissueWarmStart& warm) {
+  const auto& [mesh, contact] = std::tie(*model.mesh, *model.contact);
+  MeshLoads loads = loads_at(model, X_CB);
+  TissueState state;
+  state.X_CB.assign(X_CB.begin(), X_CB.end());
+  state.nodes = model.opening.extrapolated(previous.nodes, model.support.node, previous.X_CB, X_CB);
+  if (count_inverted(mesh.elements, state.nodes) > 0) state.nodes = previous.nodes;
+
+  const SolverCache* last = warm.last.get();
+  AsyncPreconditioner factor = last && last->mesh == model.mesh
+                                   ? last->factor
+                                   : AsyncPreconditioner(path_factor(model, X_CB));
+  factor.advance();
+  if (last && last->contact != model.contact) last = nullptr;  // of other obstacles
+  NearObstacles near = last ? last->near : NearObstacles{};
+  const ContactSolveSettings contact_settings{.max_contact_searches = max_contact_rounds,
+                                              .tolerance_mm = 3 * budget.tolerance_mm,
+                                              .gap_mm = 3 * budget.tolerance_mm,
+                                              .rough_mm = accepted_contact_mm};
+  FrameSolve solve(model, loads, budget, factor, state);
+  ContactSolveResult touching = solve_contact(
+      [&](const Nodes& x) {
+        return find_tissue_contacts(contact, X_CB, x, budget.threads, &near,
+                                    budget.contact_firmness);
+      },
+      [&] { return solve(); }, loads, state.nodes, contact_settings,
+      moved_contacts(model, last, X_CB));
+  factor.add_iterations(state.iterations);
+  if (state.iterations > refactor_beside_loop_after ||
+      (!state.converged && factor.iterations_used() > refactor_beside_loop_after_all))
+    factor.begin(mesh.elements, loads, state.nodes, budget.threads, model.mesh);
+  const ContactMeasure measured =
+      measure_contact(contact, touching.contacts, X_CB, mesh.rest, state.nodes);
+  state.contact_error_mm = std::max(touching.error_mm, touching.gap_mm);
+  state.converged = state.converged && state.contact_error_mm < accepted_contact_mm;
+  state.penetration_mm = measured.penetration_mm;
+  state.slip_mm = measured.slip_mm;
+  state.inverted_prisms = count_inverted(mesh.elements, state.nodes);
+  if (!usable(state)) return kept(previous, state);
+  warm.last =
+      std::make_shared<const SolverCache>(SolverCache{.X_CB = state.X_CB,
+                                                      .mesh = model.mesh,
+                                                      .contact = model.contact,
+                                                      .factor = std::move(factor),
+                                                      .touches = std::move(touching.contacts),
+                                                      .near = std::move(near)});
+  return state;
+}
+
+}  // namespace
+
+TissueState solve_tissue(const TissueModel& model, const TissueState& previous,
+                         std::span<const Pose> X_CB, const TissueBudget& budget,
+                         TissueWarmStart& warm) {
+  assert(previous.nodes.size() == model.mesh->rest.size());
+  assert(budget.tolerance_mm > 0 && budget.max_iterations > 0);
+  if (!all_finite(X_CB)) return kept(previous, {});
+  TissueState state = previous;
+  TissueWarmStart reached = warm;
+  int iterations = 0, evaluations = 0;
+  for (const auto& X_CB_step : pose_steps(model, previous.X_CB, X_CB)) {
+    state = solve_step(model, state, X_CB_step, budget, reached);
+    state.iterations = iterations += state.iterations;
+    state.evaluations = evaluations += state.evaluations;
+    if (state.kept) return kept(previous, state);
+  }
+  warm = std::move(reached);
+  return state;
+}
+
+TissueState solve_tissue(const TissueModel& model, const TissueState& previous,
+                         std::span<const Pose> X_CB, const TissueBudget& budget) {
+  TissueWarmStart none;
+  return solve_tissue(model, previous, X_CB, budget, none);
+}
+
+}  // namespace condyle

@@ -1,0 +1,46 @@
+#include <algorithm>
+#include <utility>
+
+#include "sim/tissue/model.h"
+
+namespace condyle {
+
+double largest_displacement(const Nodes& from, const Nodes& to) {
+  double most = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) most = std::max(most, (to[i] - from[i]).norm());
+  return most;
+}
+
+TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& state,
+                                 double tolerance_mm, int threads, TissueWarmStart warm) {
+  constexpr int max_rounds = 100;
+  // Of a round. Where tissue slides along a curved surface, soft contact and its normal can
+  // oscillate.
+  constexpr double firmness = 10, finer = 0.01;
+  constexpr double first_contraction = 0.5, max_contraction = 0.98;
+  TissueState reached = state;
+  reached.converged = false;
+  double before = 0, contraction = first_contraction;
+  for (int round = 0; round < max_rounds; ++round) {
+    TissueState next = solve_tissue(
+        model, reached, reached.X_CB,
+        {.tolerance_mm = finer * tolerance_mm, .contact_firmness = firmness, .threads = threads},
+        warm);
+    if (next.kept) break;
+    const double moved = largest_displacement(reached.nodes, next.nodes);
+    // If each round shortens the displacement by a factor, the remaining sum is a geometric series.
+    // A single round may be shorter by chance.
+    const double last = contraction;
+    if (round > 0) contraction = std::min(moved / before, max_contraction);
+    next.iterations += reached.iterations;
+    next.evaluations += reached.evaluations;
+    reached = std::move(next);
+    before = moved;
+    reached.converged =
+        reached.converged && moved <= tolerance_mm * (1 - std::max(contraction, last));
+    if (reached.converged) break;
+  }
+  return reached;
+}
+
+}  // namespace condyle
