@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/hash.h"
+
 namespace condyle {
 namespace {
 
-// Crossing triangles looked at: all (arches in full bite have some thousands) where the depth is
-// judged from them, else a few from each part of the surface.
+// Number of crossing triangles collected: all (arches in full bite have several thousand) where the
+// depth is measured by them, else a few from each part of the surface.
 constexpr ContactLimits all_crossings{.total = 8192, .per_region = 8192};
 constexpr ContactLimits some_crossings{.total = 1024, .per_region = 8};
-// So few are worth to be found all before the depth is looked for.
+// So few are all found before the search for the depth.
 constexpr ContactLimits light_contact{.total = 1024, .per_region = 1024};
-// Below this the search is quick without.
+// Below this the search is fast without them.
 constexpr std::size_t many_faces = 2000;
-// Teeth that are modelled a millimetre into each other must not excuse a condyle from its fossa.
+// Teeth modelled with a millimetre of overlap must not excuse a condyle from its fossa.
 constexpr double excused_mm = 10;
 
 /// `count` of the contacts, spread evenly over their order.
@@ -39,6 +41,31 @@ PairContact about(const ColliderPair& pair) {
 }
 
 }  // namespace
+
+namespace {
+
+std::uint64_t hash_of(const TriMesh& mesh) {
+  std::uint64_t hash = hash_start;
+  for (const auto& v : mesh.vertices) hash = hash_bytes(v.data(), 3 * sizeof(double), hash);
+  for (const auto& t : mesh.triangles) hash = hash_bytes(t.data(), 3 * sizeof(int), hash);
+  return hash;
+}
+
+}  // namespace
+
+ColliderShape::ColliderShape(const TriMesh& mesh)
+    : mesh_hash(hash_of(mesh)), surface(mesh), solid(mesh) {}
+
+std::shared_ptr<const ColliderShape> ColliderShape::of(
+    const TriMesh& mesh, std::span<const std::shared_ptr<const ColliderShape>> earlier) {
+  if (!earlier.empty()) {
+    const std::uint64_t hash = hash_of(mesh);
+    for (const auto& shape : earlier)
+      if (shape->mesh_hash == hash && shape->solid.face_count() == mesh.triangles.size())
+        return shape;
+  }
+  return std::make_shared<const ColliderShape>(mesh);
+}
 
 PairContact far_apart(const ColliderPair& pair, double at_least_mm) {
   PairContact out = about(pair);
@@ -81,18 +108,21 @@ PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, 
       crossing_faces.b.push_back(contact.triangles.b);
     }
   }
+  const CrossingFaces* known = is_light ? &crossing_faces : nullptr;
   OverlapDepth deepest =
-      overlap_depth(a.solid, X_CA, b.solid, X_CB, {}, is_light ? &crossing_faces : nullptr);
+      b.whole ? overlap_depth(a.solid, X_CA, *b.whole, {b.solid, *b.part_tree}, X_CB, {}, known)
+              : overlap_depth(a.solid, X_CA, b.solid, X_CB, {}, known);
   out.depth_mm = deepest.depth_mm;
   if (!crossing) {
     out.contacts.push_back({deepest.point, deepest.normal});
+    out.witness_a = out.witness_b = deepest.point;
     if (deepest_out) *deepest_out = deepest;
     return out;
   }
   // Open shells have no inside, and edges may cross without a corner inside: then the depth is the
-  // largest move that parts one pair of crossing triangles (bounded by their size).
+  // longest translation that separates one pair of crossing triangles (bounded by their size).
   const bool by_triangles =
-      out.depth_mm == 0 || a.solid.open_shell_count() > 0 || b.solid.open_shell_count() > 0;
+      out.depth_mm == 0 || a.solid.open_shell_count() > 0 || b.inside().open_shell_count() > 0;
   if (by_triangles || looking.max_contacts > 0) {
     const auto all = is_light ? std::move(light)
                               : contacts(a.surface, X_CA, b.surface, X_CB,
@@ -107,6 +137,7 @@ PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, 
           deepest = {depth, contact.point, contact.normal};
     out.depth_mm = std::max(out.depth_mm, deepest.depth_mm);
   }
+  if (deepest.depth_mm > 0) out.witness_a = out.witness_b = deepest.point;
   if (deepest_out) *deepest_out = deepest;
   return out;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/collide/collision_mesh.h"
@@ -10,20 +12,36 @@
 
 namespace condyle {
 
-/// Bodies by number: the cranium, the mandible, then the free parts in the case's order.
-constexpr int cranium_body = 0, mandible_body = 1, first_free_body = 2;
+/// Pose-independent data for queries on one surface; models with the same surface share it.
+struct ColliderShape {
+  std::uint64_t mesh_hash = 0;
+  CollisionMesh surface;
+  Solid solid;
 
-/// One surface that takes part, and the pose-independent queries on it.
+  explicit ColliderShape(const TriMesh& mesh);
+  /// `earlier` if it was made from the same surface, else a new one.
+  static std::shared_ptr<const ColliderShape> of(
+      const TriMesh& mesh, std::span<const std::shared_ptr<const ColliderShape>> earlier);
+};
+
+/// A surface that takes part in contact.
 struct Collider {
   int number = 0;  // among the model's colliders
   int part = 0;    // index in the case
-  int body = cranium_body;
-  bool guard = false;  // only of what is away from an overlap at rest
-  CollisionMesh surface;
-  Solid solid;
+  BodyId body = cranium_body;
+  bool guard = false;  // only the part away from an overlap at rest
+  std::shared_ptr<const ColliderShape> shape;
+  const CollisionMesh& surface = shape->surface;
+  const Solid& solid = shape->solid;
+  // Of a guard: the solid of which its surface, which is cut open and has no inside, is a part;
+  // and a tree of that surface.
+  const Solid* whole = nullptr;
+  std::unique_ptr<const TriangleTree> part_tree = nullptr;
+
+  const Solid& inside() const { return whole ? *whole : solid; }
 };
 
-/// Two colliders of different bodies, and what they may do to each other.
+/// Two colliders of different bodies, and their contact rule.
 struct ColliderPair {
   const Collider* a = nullptr;
   const Collider* b = nullptr;
@@ -34,31 +52,31 @@ struct ColliderPair {
                        // rest
 };
 
-/// Surfaces deeper in each other than this at rest are held there as much by their depth as by
+/// Surfaces deeper in each other than this at rest are held there by their depth as well as by
 /// their shape.
 constexpr double deep_mm = 0.1;
 
 constexpr double nowhere_mm = std::numeric_limits<double>::infinity();
 
-/// How much is to be found out.
+/// Requested accuracy of a query.
 struct Looking {
   int max_contacts = 0;
-  double far_mm = nowhere_mm;  // beyond this a lower bound of the distance will do
-  bool need_depth = true;      // else touching is all that is asked
+  double far_mm = nowhere_mm;  // beyond this a lower bound of the distance suffices
+  bool need_depth = true;      // otherwise only whether they touch
 };
 
-/// Everything about one pair at one pose. `deepest` is where the depth was measured, if at all.
+/// Result for one pair at one pose. `deepest`: where the depth was measured, if at all.
 PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, TrianglePair start,
                   const Looking& looking, OverlapDepth* deepest = nullptr);
 
-/// A pair of which no more is known than that it is apart.
+/// Result for a pair that is known only to be apart.
 PairContact far_apart(const ColliderPair& pair, double at_least_mm);
 
-/// Contacts of a pair at rest, all of them.
+/// All contacts of a pair at rest.
 std::vector<MeshContact> overlap_at_rest(const ColliderPair& pair);
 
-/// The triangles of B that neither cross A at rest nor come near a place that does (10 mm): overlap
-/// in one place must not excuse contact in another.
+/// The triangles of B that neither cross A at rest nor are near (10 mm) a crossing: overlap in one
+/// region must not excuse contact in another.
 TriMesh away_from_overlap(const TriMesh& mesh, const std::vector<MeshContact>& overlap);
 
 }  // namespace condyle

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/collide/push_out.h"
+#include "engine/collide/depenetration.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "sim/case/pair_rules.h"
+#include "sim/contact/constrained_motion.h"
 #include "sim/contact/contact_state.h"
-#include "sim/contact/drive.h"
 #include "sim/contact/slider.h"
 
 namespace condyle {
@@ -24,20 +24,8 @@ bool is_finite(const Pose& X) {
   return X.R.coeffs().allFinite() && X.t.allFinite() && std::abs(X.R.norm() - 1) < 1e-6;
 }
 
-/// The number of each part's body.
-std::vector<int> body_numbers(const std::vector<Part>& parts) {
-  std::vector<int> bodies(parts.size(), cranium_body);
-  int next = first_free_body;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const Body body = body_of(parts[i].role);
-    if (body == Body::mandible) bodies[i] = mandible_body;
-    if (body == Body::free) bodies[i] = next++;
-  }
-  return bodies;
-}
-
-void build_colliders(ContactModel::State& state, const Case& patient) {
-  const std::vector<int> bodies = body_numbers(patient.parts);
+void build_colliders(ContactModel::State& state, const Case& patient,
+                     std::span<const std::shared_ptr<const ColliderShape>> earlier) {
   std::vector<int> parts;
   for (std::size_t i = 0; i < patient.parts.size(); ++i)
     if (collides(patient.parts[i].role) && !patient.parts[i].mesh.empty())
@@ -46,13 +34,14 @@ void build_colliders(ContactModel::State& state, const Case& patient) {
   parallel_for(parts.size(), build_threads, [&](std::size_t i) {
     const auto part = static_cast<std::size_t>(parts[i]);
     const TriMesh& mesh = patient.parts[part].mesh;
-    state.colliders[i] = std::make_unique<Collider>(Collider{
-        static_cast<int>(i), parts[i], bodies[part], false, CollisionMesh(mesh), Solid(mesh)});
+    state.colliders[i] =
+        std::make_unique<Collider>(Collider{static_cast<int>(i), parts[i], patient.parts[part].body,
+                                            false, ColliderShape::of(mesh, earlier)});
   });
-  state.pivot.assign(static_cast<std::size_t>(state.body_count()), Eigen::Vector3d::Zero());
+  state.pivot.assign(state.bodies.bodies().size(), Eigen::Vector3d::Zero());
   std::vector<double> largest(state.pivot.size(), -1);
   for (const auto& collider : state.colliders) {
-    const auto body = static_cast<std::size_t>(collider->body);
+    const std::size_t body = index_of(collider->body);
     if (collider->solid.radius() <= largest[body]) continue;
     largest[body] = collider->solid.radius();
     state.pivot[body] = collider->solid.center();
@@ -71,17 +60,17 @@ void build_pairs(ContactModel::State& state, const Case& patient) {
     }
 }
 
-/// What a free part that starts deep inside another can do about it.
+/// Advice for a body that starts deep inside another.
 std::string deep_start_note(const ColliderPair& pair, const Case& patient, double depth_mm) {
   const auto& name = [&](const Collider& of) {
     return patient.parts[static_cast<std::size_t>(of.part)].name;
   };
-  const PushOut out =
+  const Depenetration out =
       push_out({pair.a->surface, pair.a->solid}, {}, {pair.b->surface, pair.b->solid}, {});
   const std::string start =
       fmt::format("{} starts {:.1f} mm deep inside {}", name(*pair.b), depth_mm, name(*pair.a));
-  if (out.status != PushOut::Status::found)
-    return start + "; a way out cannot be told, for one of them is an open surface";
+  if (out.status != Depenetration::Status::found)
+    return start + "; no exit is defined, because one of them is an open surface";
   const Eigen::Vector3d way = out.length_mm * out.direction;
   return start + fmt::format(
                      "; moved by ({:.1f}, {:.1f}, {:.1f}) mm it would be clear of this "
@@ -89,10 +78,11 @@ std::string deep_start_note(const ColliderPair& pair, const Case& patient, doubl
                      way.x(), way.y(), way.z());
 }
 
-/// Overlap at rest becomes the pairs' baseline; where there is some, a guard watches the rest.
+/// Overlap at rest becomes the pairs' baseline; a guard monitors the surface outside it.
 void find_baseline(ContactModel::State& state, const Case& patient) {
-  const std::vector<Pose> at_rest(static_cast<std::size_t>(state.body_count()));
+  const BodyPoses at_rest = completed(state.bodies, {});
   state.rest = state.judge_all(at_rest, nullptr, 1);
+  state.mixed.assign(state.bodies.bodies().size(), false);
   for (std::size_t i = 0; i < state.pairs.size(); ++i) {
     ColliderPair& pair = state.pairs[i];
     PairContact& rest = state.rest.pairs[i];
@@ -102,29 +92,34 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
       pair.kept_mm = std::min(state.rules[i].gap_mm, rest.distance_mm);
     if (!rest.touching) continue;
     const TriMesh& mesh = patient.parts[static_cast<std::size_t>(rest.part_b)].mesh;
-    const bool mixed = pair.b->body < first_free_body && rest.depth_mm > mixed_bones_mm;
+    const bool mixed = state.in_joint(pair) && rest.depth_mm > mixed_bones_mm;
     state.notes.push_back(fmt::format(
         "{} and {} overlap by {:.2f} mm at rest{}: taken as the baseline, only deeper contact "
         "counts",
         patient.parts[static_cast<std::size_t>(rest.part_a)].name,
         patient.parts[static_cast<std::size_t>(rest.part_b)].name, rest.depth_mm,
         mixed ? ", more than jaws of one patient do (check that both are of the same patient, unit "
-                "and frame)"
+                "and frame; until then the jaw stops where they meet and does not slide)"
               : ""));
-    if (pair.b->body >= first_free_body && rest.depth_mm > deep_start_mm)
+    if (mixed) state.mixed[index_of(pair.b->body)] = true;
+    if (!state.in_joint(pair) && rest.depth_mm > deep_start_mm)
       state.notes.push_back(deep_start_note(pair, patient, rest.depth_mm));
     const TriMesh away = away_from_overlap(mesh, overlap_at_rest(pair));
     if (away.empty()) continue;
-    state.colliders.push_back(
-        std::make_unique<Collider>(Collider{static_cast<int>(state.colliders.size()), rest.part_b,
-                                            pair.b->body, true, CollisionMesh(away), Solid(away)}));
+    state.colliders.push_back(std::make_unique<Collider>(
+        Collider{static_cast<int>(state.colliders.size()), rest.part_b, pair.b->body, true,
+                 std::make_shared<const ColliderShape>(away)}));
+    state.colliders.back()->whole = &pair.b->solid;
+    state.colliders.back()->part_tree = std::make_unique<const TriangleTree>(away);
     const ColliderPair guard{pair.a, state.colliders.back().get(), pair.policy, true, 0, 0};
     if (judge(guard, {}, {}, {}, {.need_depth = false}).touching)
-      continue;  // wholly inside at rest: nothing to guard
+      continue;  // entirely inside at rest: nothing to guard
     state.guards.push_back(guard);
     state.guarded.push_back(i);
   }
-  if (!state.carrier.empty() && state.settings.far_mm < nowhere_mm) {
+  const bool joints_alone = std::all_of(state.pairs.begin(), state.pairs.end(),
+                                        [&](const auto& pair) { return state.in_joint(pair); });
+  if (!joints_alone && state.settings.far_mm < nowhere_mm) {
     std::vector<const CollisionMesh*> surfaces;
     for (const auto& collider : state.colliders) surfaces.push_back(&collider->surface);
     state.broadphase.emplace(surfaces);
@@ -134,71 +129,55 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
 
 }  // namespace
 
-bool same_bits(const Pose& x, const Pose& y) { return x.R.coeffs() == y.R.coeffs() && x.t == y.t; }
-
-std::vector<Pose> ContactModel::State::body_poses(const BodyPoses& at) const {
-  std::vector<Pose> poses(static_cast<std::size_t>(body_count()));
-  poses[mandible_body] = at.X_CM;
-  for (std::size_t f = 0; f < carrier.size(); ++f)
-    poses[first_free_body + f] = f < at.X_CF.size()             ? at.X_CF[f]
-                                 : carrier[f] == Body::mandible ? at.X_CM
-                                                                : Pose{};
-  if (!std::all_of(poses.begin(), poses.end(), is_finite))
+BodyPoses ContactModel::State::complete(const BodyPoses& given) const {
+  BodyPoses at = completed(bodies, given);
+  if (!std::all_of(at.X_CB.begin(), at.X_CB.end(), is_finite))
     throw InputError(
-        "a pose has values that are no numbers, or a turn that is none; the bones "
+        "a pose has values that are not finite, or an invalid rotation; the bones "
         "cannot be placed there");
-  return poses;
+  return at;
 }
 
-BodyPoses ContactModel::State::as_poses(const std::vector<Pose>& X_CB) const {
-  return {X_CB[mandible_body], {X_CB.begin() + first_free_body, X_CB.end()}};
-}
-
-std::vector<bool> ContactModel::State::far_pairs(const std::vector<Pose>& X_CB) const {
+std::vector<bool> ContactModel::State::far_pairs(const BodyPoses& at) const {
   std::vector<bool> far(count(), false);
   if (!broadphase) return far;
   std::vector<Pose> poses;
-  for (const auto& collider : colliders)
-    poses.push_back(X_CB[static_cast<std::size_t>(collider->body)]);
+  for (const auto& collider : colliders) poses.push_back(at[collider->body]);
   const std::vector<BodyPair> near = broadphase->near(poses, settings.far_mm);
   for (std::size_t i = 0; i < far.size(); ++i) {
     const ColliderPair& pair = judged(i);
     const BodyPair sought{std::min(pair.a->number, pair.b->number),
                           std::max(pair.a->number, pair.b->number)};
-    far[i] =
-        pair.b->body >= first_free_body && !std::binary_search(near.begin(), near.end(), sought);
+    far[i] = !in_joint(pair) && !std::binary_search(near.begin(), near.end(), sought);
   }
   return far;
 }
 
-ContactSet ContactModel::State::judge_all(const std::vector<Pose>& X_CB, const ContactSet* previous,
+ContactSet ContactModel::State::judge_all(const BodyPoses& at, const ContactSet* previous,
                                           int threads) const {
   ContactSet set;
-  set.X_CM = X_CB[mandible_body];
-  set.X_CF.assign(X_CB.begin() + first_free_body, X_CB.end());
+  set.at = at;
   set.pairs.resize(pairs.size());
   set.away_from_rest.resize(guards.size());
-  const std::vector<bool> far = far_pairs(X_CB);
+  const std::vector<bool> far = far_pairs(at);
   parallel_for(count(), threads, [&](std::size_t i) {
     const ColliderPair& pair = judged(i);
     if (far[i])
       slot(set, i) = far_apart(pair, settings.far_mm);
     else
       slot(set, i) =
-          judge(pair, X_CB[static_cast<std::size_t>(pair.a->body)],
-                X_CB[static_cast<std::size_t>(pair.b->body)], start(previous, i), full_look(i));
+          judge(pair, at[pair.a->body], at[pair.b->body], start(previous, i), full_look(i));
   });
   return set;
 }
 
-void ContactModel::State::measure_bounds(const std::vector<Pose>& X_CB, ContactSet& set) const {
+void ContactModel::State::measure_bounds(const BodyPoses& at, ContactSet& set) const {
   for (std::size_t i = 0; i < count(); ++i) {
     PairContact& found = slot(set, i);
     if (!found.distance_is_bound || found.distance_mm >= full_look(i).far_mm) continue;
     const ColliderPair& pair = judged(i);
-    found = judge(pair, X_CB[static_cast<std::size_t>(pair.a->body)],
-                  X_CB[static_cast<std::size_t>(pair.b->body)],
-                  {found.triangle_a, found.triangle_b}, full_look(i));
+    found = judge(pair, at[pair.a->body], at[pair.b->body], {found.triangle_a, found.triangle_b},
+                  full_look(i));
   }
 }
 
@@ -206,117 +185,117 @@ ContactSet ContactModel::State::with_guards(ContactSet set) const {
   for (std::size_t g = 0; g < guards.size(); ++g) {
     if (!set.away_from_rest[g].touching) continue;
     PairContact& pair = set.pairs[guarded[g]];
-    pair.depth_mm = std::max(pair.depth_mm, pair.rest_depth_mm + set.away_from_rest[g].depth_mm);
+    const PairContact& away = set.away_from_rest[g];
+    if (pair.rest_depth_mm + away.depth_mm <= pair.depth_mm) continue;
+    pair.depth_mm = pair.rest_depth_mm + away.depth_mm;
+    pair.witness_a = away.witness_a;
+    pair.witness_b = away.witness_b;
   }
   return set;
 }
 
-ContactModel::ContactModel(const Case& patient, const ContactSettings& settings)
+ContactModel::ContactModel(const Case& patient, const ContactSettings& settings,
+                           const ContactModel* earlier)
     : state_(std::make_unique<State>()) {
   State& state = *state_;
   state.settings = settings;
   check_rules(patient, patient.pair_rules, "the case's rule for");
   check_rules(patient, settings.pair_rules, "the rule for");
-  for (const std::size_t i : free_parts(patient.parts))
-    state.carrier.push_back(patient.parts[i].carrier);
-  build_colliders(state, patient);
+  state.bodies = patient.bodies;
+  std::vector<std::shared_ptr<const ColliderShape>> shapes;
+  if (earlier)
+    for (const auto& collider : earlier->state_->colliders) shapes.push_back(collider->shape);
+  build_colliders(state, patient, shapes);
   for (const auto& collider : state.colliders)
     if (const Solid& solid = collider->solid; solid.open_shell_count() > 0)
       state.notes.push_back(fmt::format(
           "{}: {} of {} pieces are open surfaces without an inside; their depth of overlap is "
-          "judged from the crossing triangles alone",
+          "measured by the crossing triangles only",
           patient.parts[static_cast<std::size_t>(collider->part)].name, solid.open_shell_count(),
           solid.shell_count()));
   build_pairs(state, patient);
   find_baseline(state, patient);
-  state.slider = std::make_unique<Slider>(patient, state);
+  state.slider =
+      std::make_unique<Slider>(patient, state, earlier ? earlier->state_->slider.get() : nullptr);
 }
 
 ContactModel::~ContactModel() = default;
 ContactModel::ContactModel(ContactModel&&) noexcept = default;
 
 ContactSet ContactModel::find(const BodyPoses& at, const ContactSet* previous, int threads) const {
-  return state_->with_guards(state_->judge_all(state_->body_poses(at), previous, threads));
+  return state_->with_guards(state_->judge_all(state_->complete(at), previous, threads));
 }
 
 namespace {
 
-/// Whether the set was taken at these poses, with no guard's finding counted into its depths.
-bool taken_at(const ContactModel::State& state, const ContactSet* set,
-              const std::vector<Pose>& X_CB) {
-  if (!state.fits(set) || set->X_CF.size() != state.carrier.size() ||
-      !same_bits(set->X_CM, X_CB[mandible_body]))
-    return false;
+/// Whether the set was taken at these poses, without the guards included in its depths.
+bool taken_at(const ContactModel::State& state, const ContactSet* set, const BodyPoses& at) {
+  if (!state.fits(set)) return false;
   for (const auto& guard : set->away_from_rest)
     if (guard.touching) return false;
-  for (std::size_t f = 0; f < set->X_CF.size(); ++f)
-    if (!same_bits(set->X_CF[f], X_CB[first_free_body + f])) return false;
-  return true;
+  return std::equal(set->at.X_CB.begin(), set->at.X_CB.end(), at.X_CB.begin(), at.X_CB.end(),
+                    bit_identical);
 }
+
+/// Whether all pairs are across one joint: then an answer from another pose is as good a start as
+/// one from this pose.
+bool is_one_joint(const ContactModel::State& state) { return state.bodies.size() == 2; }
 
 }  // namespace
 
-ContactModel::Stop ContactModel::stop_at_contact(const Pose& from, const Pose& wanted,
-                                                 const ContactSet* previous, int threads) const {
+ContactModel::Slide ContactModel::stop_at_contact(const BodyPoses& from, const Pose& wanted,
+                                                  const ContactSet* previous, int threads,
+                                                  BodyId body) const {
   const State& state = *state_;
-  state.body_poses(wanted);  // refuses what is not finite
-  const std::vector<Pose> X_CB = state.body_poses(from);
-  // An answer from elsewhere still tells where the queries start.
-  const bool known = taken_at(state, previous, X_CB);
-  const bool near = state.carrier.empty() && state.fits(previous);
-  ContactSet set = known || near ? *previous : state.judge_all(X_CB, previous, threads);
+  state.complete(BodyPoses(wanted));  // refuses values that are not finite
+  const BodyPoses start = state.complete(from);
+  // An answer from another pose still accelerates the queries.
+  const bool known = taken_at(state, previous, start);
+  const bool near = is_one_joint(state) && state.fits(previous);
+  ContactSet set = known || near ? *previous : state.judge_all(start, previous, threads);
   const bool exact = known || !near;
-  const Drive drive = make_drive(state, X_CB, mandible_body, wanted);
-  const Arrival arrival = stop(state, drive, set, exact, threads);
-  const BodyPoses there = state.as_poses(drive.poses_at(arrival.X_CD));
-  set.X_CM = there.X_CM;
-  set.X_CF = there.X_CF;
-  return {arrival.X_CD, arrival.stopped, state.with_guards(std::move(set))};
+  const BodyMove move = make_move(state, start, body, wanted);
+  const MoveResult reached = stop(state, move, set, exact, threads);
+  set.at = move.poses_at(reached.X_CD);
+  BodyPoses there = set.at;
+  return {std::move(there), reached.stopped, state.with_guards(std::move(set))};
 }
 
-BodyPoses ContactModel::placed(const Wanted& wanted) const {
-  BodyPoses at(wanted.X_CM);
-  for (std::size_t f = 0; f < state_->carrier.size(); ++f) {
-    const Pose X_CB = state_->carrier[f] == Body::mandible ? wanted.X_CM : Pose{};
-    const bool asked = f < wanted.X_BF.size() && !same_bits(wanted.X_BF[f], {});
-    at.X_CF.push_back(asked ? X_CB * wanted.X_BF[f] : X_CB);
-  }
-  return at;
+BodyPoses ContactModel::placed(std::span<const Pose> X_PB_target) const {
+  return condyle::placed(state_->bodies, X_PB_target);
 }
 
 void ContactModel::prepare_sliding(const Progress& progress, int threads) const {
   state_->slider->prepare(progress, threads);
 }
 
-ContactModel::Slide ContactModel::slide(const BodyPoses& from, const Wanted& wanted,
+ContactModel::Slide ContactModel::slide(const BodyPoses& from, std::span<const Pose> X_PB_target,
                                         const ContactSet* previous, int threads,
                                         bool bound_far) const {
   const State& state = *state_;
-  std::vector<Pose> X_CB = state.body_poses(from);
-  state.body_poses({wanted.X_CM, wanted.X_BF});  // refuses what is no pose
-  bool exact = taken_at(state, previous, X_CB);
-  const bool near = state.carrier.empty() && state.fits(previous);
-  ContactSet set = exact || near ? *previous : state.judge_all(X_CB, previous, threads);
-  exact = exact || !near;
   Slide result;
-  const auto go = [&](int body, const Pose& to) {
-    const Drive drive = make_drive(state, X_CB, body, to);
-    const Arrival arrival = slide_drive(state, drive, set, exact, bound_far, threads);
-    X_CB = drive.poses_at(arrival.X_CD);
+  BodyPoses& at = result.at;
+  at = state.complete(from);
+  state.complete(placed(X_PB_target));  // refuses invalid poses
+  bool exact = taken_at(state, previous, at);
+  const bool near = is_one_joint(state) && state.fits(previous);
+  ContactSet set = exact || near ? *previous : state.judge_all(at, previous, threads);
+  exact = exact || !near;
+  for (int b = 1; b < state.bodies.size(); ++b) {
+    const BodyId body{b};
+    // Relative to the pose that the parent reached.
+    const Pose to =
+        composed(at[state.bodies[body].parent],
+                 index_of(body) < X_PB_target.size() ? X_PB_target[index_of(body)] : Pose{});
+    if (!state.bodies.moved_by_motion(body) && bit_identical(at[body], to)) continue;
+    const BodyMove move = make_move(state, at, body, to);
+    const MoveResult reached = slide_move(state, move, set, exact, bound_far, threads);
+    at = move.poses_at(reached.X_CD);
     exact = true;
-    result.stopped |= arrival.stopped;
-  };
-  go(mandible_body, wanted.X_CM);
-  const BodyPoses target = placed({X_CB[mandible_body], wanted.X_BF});
-  for (std::size_t f = 0; f < state.carrier.size(); ++f) {
-    const Pose& to = target.X_CF[f];
-    const int body = first_free_body + static_cast<int>(f);
-    if (!same_bits(X_CB[static_cast<std::size_t>(body)], to)) go(body, to);
+    result.stopped |= reached.stopped;
   }
-  if (!bound_far) state.measure_bounds(X_CB, set);
-  result.at = state.as_poses(X_CB);
-  set.X_CM = result.at.X_CM;
-  set.X_CF = result.at.X_CF;
+  if (!bound_far) state.measure_bounds(at, set);
+  set.at = at;
   result.contacts = state.with_guards(std::move(set));
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,77 +14,69 @@ namespace condyle {
 
 struct ContactSettings {
   int max_contacts = 64;      // reported per pair
-  double slack_mm = 0.02;     // how much deeper than at rest counts as penetrating
+  double slack_mm = 0.02;     // penetration beyond rest that is tolerated
   double stop_gap_mm = 0.01;  // clearance left when a pose is stopped at a surface
   double friction = 0;        // Coulomb coefficient of sliding
-  // On top of the case's own; the last that fits counts. Unknown part names: InputError.
+  // In addition to the case's own; the last match applies. Unknown part names: InputError.
   std::vector<PairRule> pair_rules = {};
-  // Of pairs with a free part that are farther apart than this only a lower bound of the distance
-  // is found (PairContact::distance_is_bound); infinite: every distance is exact.
+  // For pairs that no joint connects and that are farther apart than this, only a lower bound of
+  // the distance is computed (PairContact::distance_is_bound); infinite: every distance is exact.
   double far_mm = 30;
 };
 
-/// The colliders of a case (one BVH per bone, arch or free part) and the pairs of those that belong
-/// to different bodies, each with its rule and its overlap at rest: the baseline, in its
-/// neighbourhood (10 mm) only. Surfaces that were apart at rest may not touch.
+/// The colliders of a case (one BVH per bone, arch or piece) and the pairs of different bodies,
+/// each with its rule and its overlap at rest: the baseline, valid in its neighbourhood (10 mm)
+/// only. Surfaces that were apart at rest may not touch.
 class ContactModel {
  public:
-  /// throws: InputError for rules that do not fit the case.
-  explicit ContactModel(const Case& patient, const ContactSettings& settings = {});
+  /// `earlier`: of the patient before an edit; unchanged surfaces and their distance fields are
+  /// reused. throws: InputError for rules that do not match the case.
+  explicit ContactModel(const Case& patient, const ContactSettings& settings = {},
+                        const ContactModel* earlier = nullptr);
   ~ContactModel();
   ContactModel(ContactModel&&) noexcept;
 
   /// Contacts at the poses, warm-started from an earlier answer (may be null). Pairs run on
-  /// `threads` threads; the result has the same bits for any number.
-  /// throws: InputError for poses with values that are no numbers, here and below.
+  /// `threads` threads; bit-identical for any number.
+  /// throws: InputError for poses with values that are not finite, here and below.
   ContactSet find(const BodyPoses& at, const ContactSet* previous, int threads = 1) const;
-
-  /// The pose farthest along the straight way from `from` to `wanted` up to which no pair is deeper
-  /// than at rest; nothing thicker than 0.1 mm is passed through. A `from` that is itself too deep
-  /// may leave, but goes no deeper. `previous` taken at `from` saves time. Free parts stay with
-  /// their carriers.
-  struct Stop {
-    Pose X_CM;
-    bool stopped = false;
-    ContactSet contacts;  // at X_CM
-  };
-  Stop stop_at_contact(const Pose& from, const Pose& wanted, const ContactSet* previous,
-                       int threads = 1) const;
-
-  /// Where the hand, a motion or a plan wants the bodies.
-  struct Wanted {
-    Pose X_CM;
-    std::vector<Pose> X_BF = {};  // of each free part in its carrier's frame; missing: as at rest
-  };
-  /// All bodies where they are wanted, whatever is in the way.
-  BodyPoses placed(const Wanted& wanted) const;
 
   struct Slide {
     BodyPoses at;
-    bool stopped = false;  // something kept a body from where it was wanted
+    bool stopped = false;  // contact kept a body from its target
     ContactSet contacts;   // there
   };
-  /// Each body to the nearest pose that it can slide to: the mandible with what it carries, then
-  /// the free parts in order, each against all others as they are. Distance fields find it, and
-  /// without friction it depends on the wanted pose alone; the exact surfaces judge it: no pair is
-  /// deeper than at rest by more than the slack. What overlaps deeply at rest is held there or
-  /// slides beside it, whichever is nearer. Where fields do not see all (open shells from behind,
-  /// walls as thin as each other, far from where bodies were at rest) the body creeps from `from`
-  /// in stretches of a millimetre, each proved by the exact surfaces, and goes no deeper than it
-  /// was. Same bits for any number of threads; nothing that is remembered from call to call changes
-  /// an answer. `bound_far`: surfaces that are sure to be apart by 5 mm need not be measured; then
-  /// PairContact::distance_is_bound.
-  Slide slide(const BodyPoses& from, const Wanted& wanted, const ContactSet* previous,
+
+  /// Moves one body with its descendants along the straight path to the pose `X_CB_target` as far
+  /// as no pair is deeper than at rest; nothing thicker than 0.1 mm is passed through. A start that
+  /// is itself too deep may be left, but does not deepen. `previous` taken at `from` saves time.
+  Slide stop_at_contact(const BodyPoses& from, const Pose& X_CB_target, const ContactSet* previous,
+                        int threads = 1, BodyId body = mandible_body) const;
+
+  /// All bodies at their targets in their parents' frames, regardless of obstacles.
+  BodyPoses placed(std::span<const Pose> X_PB_target) const;
+
+  /// Moves each body to the nearest pose that it can slide to, in the order of the tree, with its
+  /// descendants, against all others at their present poses. X_PB_target: in the parents' frames;
+  /// missing ones at rest. Distance fields find the pose, which without friction depends on the
+  /// target alone; the exact surfaces verify it: no pair is deeper than at rest by more than the
+  /// slack. A body that overlaps deeply at rest is held there or slides beside it, whichever is
+  /// nearer to the target. Where the fields are incomplete (open shells from behind, two thin
+  /// walls, far from the rest poses) the body advances from `from` in steps of a millimetre, each
+  /// verified by the exact surfaces, and does not go deeper than it was. Bit-identical for any
+  /// number of threads; caches never change a result. `bound_far`: surfaces that are at least 5 mm
+  /// apart need not be measured; then PairContact::distance_is_bound.
+  Slide slide(const BodyPoses& from, std::span<const Pose> X_PB_target, const ContactSet* previous,
               int threads = 1, bool bound_far = false) const;
 
-  /// Makes the distance fields that sliding needs, or reads them from the cache: slide() does so
-  /// where it first meets something. Threads may share a model.
+  /// Computes the distance fields that sliding needs, or reads them from the cache; otherwise
+  /// slide() does so at first contact. Threads may share a model.
   void prepare_sliding(const Progress& progress = {}, int threads = 2) const;
 
   const ContactSet& at_rest() const;
   /// The rule of each pair, in the order of ContactSet::pairs.
   const std::vector<PairRule>& rules() const;
-  /// What could not be judged (open shells) and what overlaps at rest, for people.
+  /// Notes for people on inexact measurements (open shells) and on overlap at rest.
   const std::vector<std::string>& notes() const;
 
   struct State;

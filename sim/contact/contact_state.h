@@ -11,24 +11,28 @@ namespace condyle {
 
 class Slider;
 
-/// What a contact model keeps: colliders, pairs, and how they are at rest.
+/// Data of a contact model: colliders, pairs, and their state at rest.
 struct ContactModel::State {
   ContactSettings settings;
-  std::vector<Body> carrier;  // of each free part
+  BodyTree bodies;
   std::vector<std::unique_ptr<Collider>> colliders;
   std::vector<ColliderPair> pairs;
   std::vector<ColliderPair> guards;      // see ContactSet::away_from_rest
   std::vector<std::size_t> guarded;      // the pair of each guard
-  std::vector<Eigen::Vector3d> pivot;    // of each body, about its middle
+  std::vector<Eigen::Vector3d> pivot;    // of each body, near its centre
   std::vector<PairRule> rules;           // of each pair
-  std::optional<Broadphase> broadphase;  // of the colliders, where there are free parts
+  std::optional<Broadphase> broadphase;  // of the colliders, where bodies roam
   std::unique_ptr<Slider> slider;
   ContactSet rest;
+  std::vector<bool> mixed;  // per body: overlaps its joint at rest more than in one patient
   std::vector<std::string> notes;
 
-  int body_count() const { return first_free_body + static_cast<int>(carrier.size()); }
+  /// Whether the two form a joint: they are always near each other, so every distance matters.
+  bool in_joint(const ColliderPair& pair) const {
+    return bodies.link(pair.a->body, pair.b->body) == BodyLink::joint;
+  }
 
-  /// Pairs, then guards, under one number.
+  /// Pairs, then guards, in one numbering.
   std::size_t count() const { return pairs.size() + guards.size(); }
   const ColliderPair& judged(std::size_t i) const {
     return i < pairs.size() ? pairs[i] : guards[i - pairs.size()];
@@ -49,23 +53,19 @@ struct ContactModel::State {
   Looking full_look(std::size_t i) const {
     const ColliderPair& pair = judged(i);
     return {.max_contacts = i < pairs.size() ? settings.max_contacts : 0,
-            .far_mm = pair.b->body < first_free_body ? nowhere_mm : settings.far_mm};
+            .far_mm = in_joint(pair) ? nowhere_mm : settings.far_mm};
   }
 
-  /// One pose per body. throws: InputError for values that are no numbers.
-  std::vector<Pose> body_poses(const BodyPoses& at) const;
-  BodyPoses as_poses(const std::vector<Pose>& X_CB) const;
+  /// Poses of all bodies. throws: InputError for values that are not finite.
+  BodyPoses complete(const BodyPoses& at) const;
 
-  /// Pairs with a free part that the broadphase knows to be farther apart than asked for.
-  std::vector<bool> far_pairs(const std::vector<Pose>& X_CB) const;
-  /// Measures what is only bounded there.
-  void measure_bounds(const std::vector<Pose>& X_CB, ContactSet& set) const;
-  ContactSet judge_all(const std::vector<Pose>& X_CB, const ContactSet* previous,
-                       int threads) const;
-  /// Counts what the guards found into the depths of their pairs.
+  /// Pairs that the broadphase proves to be farther apart than requested.
+  std::vector<bool> far_pairs(const BodyPoses& at) const;
+  /// Measures pairs that are only bounded there.
+  void measure_bounds(const BodyPoses& at, ContactSet& set) const;
+  ContactSet judge_all(const BodyPoses& at, const ContactSet* previous, int threads) const;
+  /// Includes the depths of the guards in those of their pairs.
   ContactSet with_guards(ContactSet set) const;
 };
-
-bool same_bits(const Pose& x, const Pose& y);
 
 }  // namespace condyle

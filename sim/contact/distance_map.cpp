@@ -18,11 +18,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double rounding_mm = 1e-3;  // of single precision, with room
+constexpr double rounding_mm = 1e-3;  // of single precision, with a margin
 constexpr int leaf_vertices = 12;
-constexpr int task_vertices = 600;  // run as one by a thread
-constexpr double meeting_mm = 12;   // bones so near at rest may meet in motion
-constexpr double coarsest_mm = 8;   // of edges, so that what comes near is told by the vertices
+constexpr int task_vertices = 600;  // processed as one task by a thread
+constexpr double meeting_mm = 12;   // bones this near at rest may touch in motion
+constexpr double coarsest_mm = 8;   // of edges, so that the vertices register approaching surfaces
 
 /// A rigid motion, quick to apply to many points.
 struct Place {
@@ -33,13 +33,13 @@ struct Place {
   Vector3d operator*(const Vector3d& p) const { return R * p + t; }
 };
 
-/// One connected piece of a surface to which distance is taken.
+/// One connected piece of a target surface.
 struct Target {
   QuickDistance surface;
   Box box;
   bool closed;
 
-  /// No more than the distance of p.
+  /// Lower bound of the distance of p.
   double to_box(const Vector3d& p) const {
     return (box.low - p).cwiseMax(p - box.high).cwiseMax(0.0).norm();
   }
@@ -57,14 +57,14 @@ std::vector<Target> targets_of(const TriMesh& mesh) {
   return targets;
 }
 
-struct Ball {  // around a run of vertices
+struct Ball {  // around a range of vertices
   Vector3d center;
   double radius = 0;
   int first = 0, count = 0;
   int right = 0;  // second child (the first is next); 0 for a leaf
 };
 
-/// The vertices of a surface in balls within balls.
+/// The vertices of a surface in a hierarchy of balls.
 class VertexBalls {
  public:
   explicit VertexBalls(const std::vector<Vector3d>& vertices) : points_(vertices) {
@@ -77,7 +77,7 @@ class VertexBalls {
   const Vector3d& point(int i) const { return points_[static_cast<std::size_t>(i)]; }
   int vertex(int i) const { return vertex_[static_cast<std::size_t>(i)]; }
 
-  /// Balls that hold every vertex once, none with more than `most`.
+  /// Balls that contain every vertex once, none with more than `most`.
   std::vector<int> cut(int most) const {
     std::vector<int> found, open = {0};
     while (!open.empty()) {
@@ -123,9 +123,9 @@ class VertexBalls {
   std::vector<Ball> balls_;       // depth first
 };
 
-/// Takes the distances of a run of vertices to one target, lowering `values` where it is nearer.
-/// Distance changes by no more than the way from a point where it is known: that keeps each query
-/// short, and does not change its answer.
+/// Computes the distances of a range of vertices to one target, lowering `values` where it is
+/// nearer. A distance changes by at most the displacement from a point where it is known: this
+/// bounds each query without affecting its result.
 class Search {
  public:
   Search(const VertexBalls& balls, const Target& target, const Place& X_TV, double reach_mm,
@@ -135,7 +135,7 @@ class Search {
   void run(int ball) { run(ball, {}); }
 
  private:
-  /// A point near which to go on, coordinates of the target.
+  /// A point to continue from, coordinates of the target.
   struct Known {
     Vector3d point = Vector3d::Zero();
     double distance_mm = 0;
@@ -150,7 +150,7 @@ class Search {
     if (target_.to_box(c) > wanted + ball.radius) return;
     if (!ask(c, wanted + ball.radius, known)) return;
     if (std::abs(known.distance_mm) > wanted + ball.radius) {
-      // The surface passes at a distance: all of the ball lies on one side of it.
+      // The surface is outside the ball: all of the ball lies on one side of it.
       if (known.distance_mm > 0) return;
       for (int i = ball.first; i < ball.first + ball.count; ++i)
         lower(i, -std::numeric_limits<float>::infinity());
@@ -172,14 +172,14 @@ class Search {
       lower(i, -std::numeric_limits<float>::infinity());
   }
 
-  /// The distance of p, from what is known of a point near by, into `known`. False, and that stays
-  /// as it was, when p is outside and farther than `wanted`.
+  /// Computes the distance of p, from that of a nearby point, into `known`. False, without change
+  /// of `known`, when p is outside and farther than `wanted`.
   bool ask(const Vector3d& p, double wanted, Known& known) const {
     double limit = infinity;
     if (known.any) {
       const double step = (p - known.point).norm() + rounding_mm;
       limit = std::abs(known.distance_mm) + step;
-      if (known.distance_mm > step) {  // p is outside, too
+      if (known.distance_mm > step) {  // p is outside as well
         if (known.distance_mm - step > wanted) return false;
         limit = std::min(limit, wanted + rounding_mm);
       }
@@ -192,7 +192,7 @@ class Search {
     return true;
   }
 
-  /// No vertex of the ball needs to know of a target that is farther off.
+  /// A target farther away is irrelevant to all vertices of the ball.
   double farthest(const Ball& ball) const {
     float most = -std::numeric_limits<float>::infinity();
     if (ball.count > 4 * leaf_vertices) return reach_mm_;
@@ -210,17 +210,16 @@ class Search {
   std::vector<float>& values_;
 };
 
-/// Whether distance between the two is of interest: both collide, and are of different bodies.
+/// Whether the distance of two parts matters: both collide, and belong to different bodies.
 bool may_meet(const Case& patient, std::span<const PairRule> more, const Part& a, const Part& b) {
   if (&a == &b || !collides(a.role) || !collides(b.role) || a.mesh.empty() || b.mesh.empty())
     return false;
-  const Body body_a = body_of(a.role), body_b = body_of(b.role);
-  if (body_a == body_b && body_a != Body::free) return false;
+  if (a.body == b.body) return false;
   return rule_for(patient, more, a, b).policy != PairPolicy::cut_face;
 }
 
-/// The part's surface without very large triangles; its normals stand in for colours, so that those
-/// of new vertices lie between.
+/// The part's surface without very large triangles; its normals are processed as colours, so that
+/// new vertices are interpolated.
 TriMesh with_normals(const TriMesh& part, int most_triangles) {
   TriMesh mesh{part.vertices, part.triangles, {}};
   for (const auto& n : vertex_normals(mesh)) mesh.colors.push_back(n.cast<float>());
@@ -228,7 +227,7 @@ TriMesh with_normals(const TriMesh& part, int most_triangles) {
   return refine(std::move(mesh), edge_mm, most_triangles);
 }
 
-/// Smaller triangles where parts may meet.
+/// Smaller triangles where parts may touch.
 void divide(DistanceMap::Surface& surface, Role role, const std::vector<float>& rest_mm,
             const DistanceMapSettings& settings) {
   TriMesh& mesh = surface.mesh;
@@ -248,12 +247,13 @@ void divide(DistanceMap::Surface& surface, Role role, const std::vector<float>& 
 }  // namespace
 
 struct DistanceMap::State {
-  std::vector<Part> parts;  // without their meshes: roles and carriers, for their poses
-  std::vector<std::vector<Target>> targets;  // of each part; empty where nothing meets it
+  BodyTree bodies;
+  std::vector<BodyId> body;                  // of each part
+  std::vector<std::vector<Target>> targets;  // of each part; empty where none can touch it
   std::vector<Surface> surfaces;
   std::vector<VertexBalls> balls;         // of each surface
   std::vector<std::vector<int>> meets;    // of each surface: parts
-  std::vector<std::pair<int, int>> runs;  // surface and ball: the work of a thread
+  std::vector<std::pair<int, int>> runs;  // surface and ball: the tasks of the threads
   double reach_mm = 0;
 
   void lay_out() {
@@ -266,9 +266,10 @@ struct DistanceMap::State {
     }
   }
 
-  Values at(const BodyPoses& poses, double reach, int threads) const {
+  Values at(const BodyPoses& given, double reach, int threads) const {
+    const BodyPoses poses = completed(bodies, given);
     std::vector<Pose> X_WP;
-    for (std::size_t p = 0; p < parts.size(); ++p) X_WP.push_back(pose_of(parts, p, poses));
+    for (const BodyId b : body) X_WP.push_back(poses[b]);
     std::vector<std::vector<Place>> X_TV(surfaces.size());
     Values values;
     for (std::size_t s = 0; s < surfaces.size(); ++s) {
@@ -277,7 +278,7 @@ struct DistanceMap::State {
                              X_WP[static_cast<std::size_t>(surfaces[s].part)]);
       values.emplace_back(surfaces[s].mesh.vertices.size(), std::numeric_limits<float>::infinity());
     }
-    // Every run has its own vertices: no two threads write to one place.
+    // Every task has its own vertices: no two threads write to the same value.
     parallel_for(runs.size(), threads, [&](std::size_t r) {
       const auto [surface, ball] = runs[r];
       const auto s = static_cast<std::size_t>(surface);
@@ -293,12 +294,13 @@ DistanceMap::DistanceMap(const Case& patient, const DistanceMapSettings& setting
     : state_(std::make_unique<State>()) {
   State& state = *state_;
   state.reach_mm = settings.reach_mm;
+  state.bodies = patient.bodies;
   const auto& parts = patient.parts;
   state.targets.resize(parts.size());
   std::vector<std::size_t> met;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Part& part = parts[i];
-    state.parts.push_back({part.name, part.role, {}, {}, part.carrier});
+    state.body.push_back(part.body);
     std::vector<int> meets;
     for (std::size_t k = 0; k < parts.size(); ++k)
       if (may_meet(patient, settings.pair_rules, part, parts[k]))

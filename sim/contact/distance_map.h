@@ -10,27 +10,28 @@ namespace condyle {
 
 struct DistanceMapSettings {
   double reach_mm = 2;  // distances and depths beyond are infinite
-  // Triangles are divided so far where surfaces may meet, that a map is smooth between vertices.
+  // Triangles are subdivided to this size where surfaces may touch, so that a map is smooth between
+  // vertices.
   double teeth_edge_mm = 1.0;
   double bone_edge_mm = 2.0;
   int most_triangles = 150000;  // of one part
-  // On top of the case's own; the last that fits counts.
+  // In addition to the case's own; the last match applies.
   std::vector<PairRule> pair_rules = {};
 };
 
-/// How far each bone and each arch is from all that it may meet: what is fixed to the cranium from
-/// the mandible's and free parts, and so on. Left out are pairs of one body, and those that were
-/// one before a cut.
+/// Distance of each bone and each arch to all parts that it may touch: from parts fixed to the
+/// cranium to those of the mandible and free parts, and so on. Excluded are pairs of one body, and
+/// those that were one before a cut.
 class DistanceMap {
  public:
-  /// `patient` may go away afterwards.
+  /// `patient` may be destroyed afterwards.
   explicit DistanceMap(const Case& patient, const DistanceMapSettings& settings = {},
                        int threads = 1);
   ~DistanceMap();
   DistanceMap(DistanceMap&&) noexcept;
   DistanceMap& operator=(DistanceMap&&) noexcept;
 
-  /// A part's surface as the map sees it: the same points, in smaller triangles.
+  /// A part's surface in the map: the same surface, in smaller triangles.
   struct Surface {
     int part = 0;                          // index in the case
     TriMesh mesh;                          // its first vertices are the part's own
@@ -38,11 +39,11 @@ class DistanceMap {
     bool unsigned_near_open = false;       // something it may meet has open shells, which have no
                                            // inside: near them distance has no sign
   };
-  /// Of parts that may meet something, in the case's order.
+  /// Of parts that may touch another, in the case's order.
   const std::vector<Surface>& surfaces() const;
 
   /// One value per vertex of each surface, mm: exact signed distance within the reach, negative
-  /// inside; +infinity farther off, -infinity deeper. Depends on the poses alone, to the bit, for
+  /// inside; +infinity farther off, -infinity deeper. Depends on the poses alone; bit-identical for
   /// any number of threads.
   using Values = std::vector<std::vector<float>>;
   Values at(const BodyPoses& poses, int threads = 1) const;

@@ -46,7 +46,7 @@ void LiveDistances::work() {
         if (stop_) return;
         answer.frame = *std::exchange(wanted_, std::nullopt);
       }
-      answer.values = map_->at(answer.frame.poses());
+      answer.values = map_->at(answer.frame.poses);
       const std::lock_guard lock(mutex_);
       newest_ = std::move(answer);
       answered_ = true;

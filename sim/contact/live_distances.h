@@ -11,11 +11,11 @@
 
 namespace condyle {
 
-/// Takes the distances of the newest frame on a thread of its own, so that neither the steps of the
-/// simulation nor the pictures wait for them.
+/// Computes the distances of the newest frame on a separate thread, so that neither the simulation
+/// steps nor the pictures wait for them.
 class LiveDistances {
  public:
-  /// Makes the map on that thread, too. The patient must outlive this.
+  /// Builds the map on that thread, too. The patient must outlive this.
   explicit LiveDistances(const Case& patient, const DistanceMapSettings& settings = {});
   ~LiveDistances();
   LiveDistances(const LiveDistances&) = delete;
@@ -27,10 +27,10 @@ class LiveDistances {
     FrameState frame;
     DistanceMap::Values values;
   };
-  /// The newest answer when there is one that was not taken yet. Rethrows what stopped the thread.
+  /// The newest result, if it was not taken yet. Rethrows the exception that stopped the thread.
   std::optional<Answer> take();
 
-  /// Null until the first answer is there.
+  /// Null until the first result is available.
   const DistanceMap* map() const;
 
  private:

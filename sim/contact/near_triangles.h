@@ -9,15 +9,15 @@
 
 namespace condyle {
 
-/// The triangles of a surface in a tree of balls: tells at once which of them can be near another
-/// surface, or inside it. Queries are const and thread-safe.
+/// The triangles of a surface in a tree of balls, for quick selection of those that can be near
+/// another surface, or inside it. Queries are const and thread-safe.
 class NearTriangles {
  public:
   /// At least one triangle.
   explicit NearTriangles(const TriMesh& mesh);
 
-  /// The triangles in balls that come within `reach_mm` of the other surface or lie inside it, each
-  /// with corners of its own, in the order of the tree; body coordinates.
+  /// The triangles in balls within `reach_mm` of the other surface or inside it, each with separate
+  /// corners, in the order of the tree; body coordinates.
   TriMesh near(const Pose& X_W, const SignedSurface& other, const Pose& X_WO,
                double reach_mm) const;
 
@@ -25,13 +25,13 @@ class NearTriangles {
   struct Ball {
     Eigen::Vector3d center;
     double radius = 0;
-    int first = 0, count = 0;  // run of triangles
+    int first = 0, count = 0;  // range of triangles
     int right = 0;             // second child (the first is next); 0 for a leaf
   };
   int build(const TriMesh& mesh, const std::vector<Eigen::Vector3d>& middles,
             std::vector<int>& order, int first, int last);
 
-  TriMesh soup_;  // three corners of its own for each triangle, in the order of the balls
+  TriMesh soup_;             // three separate corners for each triangle, in the order of the balls
   std::vector<Ball> balls_;  // depth first
 };
 

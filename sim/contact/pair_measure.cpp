@@ -10,20 +10,21 @@
 namespace condyle {
 namespace {
 
-constexpr double middle_mm = 5;     // to either side of the midline
-constexpr double one_sided = 0.95;  // share of the area that makes a contact left or right
-constexpr double together_mm = 70;  // patches farther apart, as of both condyles, are not one place
+constexpr double middle_mm = 5;     // on either side of the midline
+constexpr double one_sided = 0.95;  // fraction of the area that makes a contact left or right
+// patches farther apart, as of both condyles, are separate contacts
+constexpr double together_mm = 70;
 constexpr int volume_columns = 256;
-// Contacts wider than 1250 mm^2 (bones that lie in each other) are measured with coarser pieces.
-constexpr double most_pieces = 20000;
+// Contacts wider than 1250 mm^2 (overlapping bones) are measured with coarser pieces.
+constexpr double max_pieces = 20000;
 
-/// Where B lies inside A or near to it.
+/// The region of B inside A or near to it.
 ContactRegion region_of(const SignedSurface& a, const Pose& X_A, const NearTriangles& b,
                         const Pose& X_B) {
   RegionSettings settings;
   const TriMesh near = b.near(X_B, a, X_A, settings.within_mm);
   settings.resolution_mm =
-      std::max(settings.resolution_mm, std::sqrt(surface_area(near) / most_pieces));
+      std::max(settings.resolution_mm, std::sqrt(surface_area(near) / max_pieces));
   return contact_region(a, X_A, near, X_B, settings);
 }
 
@@ -61,15 +62,15 @@ const PairMeasures::PartShape& PairMeasures::shape(int part) const {
 
 PairMeasure PairMeasures::measure(const PairContact& pair, const BodyPoses& at) const {
   const PartShape &a = shape(pair.part_a), &b = shape(pair.part_b);
-  const Pose X_CA = pose_of(patient_.parts, static_cast<std::size_t>(pair.part_a), at),
-             X_CB = pose_of(patient_.parts, static_cast<std::size_t>(pair.part_b), at);
+  const Pose X_CA = pose_of(patient_.parts[static_cast<std::size_t>(pair.part_a)], at),
+             X_CB = pose_of(patient_.parts[static_cast<std::size_t>(pair.part_b)], at);
   PairMeasure measure;
   measure.open_a = a.surface->has_open_shells();
   measure.open_b = b.surface->has_open_shells();
   measure.volume_known = a.surface->has_inside() && b.surface->has_inside();
   measure.place = 0.5 * (pair.witness_a + pair.witness_b);
   Eigen::Vector3d place_a = pair.witness_a, place_b = pair.witness_b;
-  ContactRegion region, placed;  // what is measured, and where it is looked at
+  ContactRegion region, placed;  // the measured region, and the one that locates the contact
   if (!pair.touching) {
     const Eigen::Vector3d gap = pair.witness_b - pair.witness_a;
     if (gap.norm() > 0) measure.normal = gap.normalized();
@@ -80,8 +81,8 @@ PairMeasure PairMeasures::measure(const PairContact& pair, const BodyPoses& at) 
       turn(turned);
       return turned;
     };
-    if (region.patches.empty()) region = a_in_b();  // A lies wholly in B
-    // An open surface has no depths to find the deepest place by; it may lie in the other one.
+    if (region.patches.empty()) region = a_in_b();  // A lies entirely in B
+    // An open surface has no depths to find the deepest point by; it may lie in the other one.
     if (!a.surface->has_inside() && b.surface->has_inside()) placed = a_in_b();
     if (placed.patches.empty()) placed = region;
     measure.area_mm2 = region.area_mm2;
@@ -103,7 +104,7 @@ PairMeasure PairMeasures::measure(const PairContact& pair, const BodyPoses& at) 
     }
     place_a = place_b = measure.place;
   }
-  Box box, own;  // of all patches, of the one at the place
+  Box box, own;  // of all patches, and of the one at the location
   box.add(measure.place);
   own.add(measure.place);
   for (const auto& patch : placed.patches) {

@@ -2,14 +2,14 @@
 
 #include <fmt/core.h>
 
-#include "engine/collide/push_out.h"
+#include "engine/collide/depenetration.h"
 #include "engine/mesh/measure.h"
 #include "sim/frame/body_poses.h"
 
 namespace condyle {
 namespace {
 
-constexpr double least_depth_mm = 0.5;
+constexpr double min_depth_mm = 0.5;
 
 struct Bone {
   const Part* part;
@@ -18,10 +18,10 @@ struct Bone {
   explicit Bone(const Part& of) : part(&of), surface(of.mesh), solid(of.mesh) {}
 };
 
-/// The bone that it lies deepest in; none when it is in none.
+/// The bone that it lies deepest in; none if it is outside all.
 struct Inside {
   const Bone* bone = nullptr;
-  double depth_mm = least_depth_mm;
+  double depth_mm = min_depth_mm;
 };
 Inside deepest_bone(const Bone& own, const std::vector<Bone>& others) {
   Inside in;
@@ -31,13 +31,13 @@ Inside deepest_bone(const Bone& own, const std::vector<Bone>& others) {
   return in;
 }
 
-/// Whether it lies among another's surfaces, as what is inside does.
+/// Whether it is enclosed by another's surfaces.
 bool box_within(const TriMesh& mesh, const TriMesh& other) {
   const Box box = bounding_box(mesh), around = bounding_box(other);
   return around.contains(box.low) && around.contains(box.high);
 }
 
-/// Out of all that have an inside at once: out of one alone it could come into the next.
+/// Out of all closed bones at once: leaving one alone could lead into the next.
 void push(Part& part, const std::vector<Bone>& others, Case& patient) {
   const Bone own(part);
   const Inside in = deepest_bone(own, others);
@@ -45,7 +45,7 @@ void push(Part& part, const std::vector<Bone>& others, Case& patient) {
     for (const auto& other : others)
       if (other.solid.open_shell_count() > 0 && box_within(part.mesh, other.part->mesh))
         patient.notes.push_back(
-            fmt::format("{}: was left where it is: {} is an open surface without an inside to "
+            fmt::format("{}: was not moved: {} is an open surface without an inside to "
                         "push it out of",
                         part.name, other.part->name));
     return;
@@ -59,15 +59,15 @@ void push(Part& part, const std::vector<Bone>& others, Case& patient) {
     for (const auto& t : mesh.triangles)
       together.triangles.push_back(t + Eigen::Vector3i::Constant(first));
   }
-  PushOut out;
+  Depenetration out;
   if (!together.empty()) {
     const CollisionMesh surface(together);
     const Solid solid(together);
     out = push_out({surface, solid}, {}, {own.surface, own.solid}, {});
   }
-  if (out.status != PushOut::Status::found) {
+  if (out.status != Depenetration::Status::found) {
     patient.notes.push_back(
-        fmt::format("{}: lies {:.1f} mm deep inside {}, and no way out of all bones was found; "
+        fmt::format("{}: lies {:.1f} mm deep inside {}, and no exit from all bones was found; "
                     "move it by hand",
                     part.name, in.depth_mm, in.bone->part->name));
     return;
@@ -81,13 +81,17 @@ void push(Part& part, const std::vector<Bone>& others, Case& patient) {
 
 }  // namespace
 
-void push_out_free_parts(Case& patient) {
+void push_out_pieces(Case& patient) {
   std::vector<Bone> others;
-  for (const auto& part : patient.parts)
-    if (collides(part.role) && body_of(part.role) != Body::free) others.emplace_back(part);
-  for (const std::size_t i : free_parts(patient.parts)) {
-    push(patient.parts[i], others, patient);
-    others.emplace_back(patient.parts[i]);
+  std::vector<Part*> pieces;
+  for (auto& part : patient.parts)
+    if (patient.bodies.roams(part.body))
+      pieces.push_back(&part);
+    else if (collides(part.role))
+      others.emplace_back(part);
+  for (Part* piece : pieces) {
+    push(*piece, others, patient);
+    others.emplace_back(*piece);
   }
 }
 

@@ -6,63 +6,81 @@ namespace condyle {
 namespace {
 
 constexpr double reach_mm = 20;  // of the other bodies beyond their boxes at rest
-constexpr double tooth_spacing_mm = 0.25, free_spacing_mm = 0.3, jaw_spacing_mm = 0.4,
+constexpr double tooth_spacing_mm = 0.25, roaming_spacing_mm = 0.3, jaw_spacing_mm = 0.4,
                  cranium_spacing_mm = 0.5;
 constexpr double band_mm = 1;
 constexpr double tooth_sample_mm = 0.4, bone_sample_mm = 0.6;
-// Of a guided pair: fields reach little farther than twice the gap. Wider gaps are kept by exact
+// For guided pairs: fields reach little farther than twice the gap. Larger gaps are kept by exact
 // distances alone.
 constexpr double widest_gap_mm = 4;
 // Half of what the exact surfaces allow: then they seldom disagree.
 constexpr double slop_mm = 0.01;
-constexpr double fade_mm = 2;  // from rest, where overlap that is there at rest must be gone
-// Between looks along a way, of points as far from the middle as those of a jaw.
+constexpr double fade_mm = 2;  // distance from rest over which the overlap at rest fades
+// Between samples along a path, for points as far from the centre as those of a jaw.
 constexpr double sight_step_mm = 5, turning_mm = 80;
 constexpr double ways_out_mm[] = {4, 8, 16};
-constexpr std::size_t most_settings = 24;
+constexpr std::size_t max_settings = 24;
 
-double spacing_of(const Part& part) {
+double spacing_of(const BodyTree& bodies, const Part& part) {
   if (is_teeth(part.role)) return tooth_spacing_mm;
-  switch (body_of(part.role)) {
-    case Body::free:
-      return free_spacing_mm;
-    case Body::mandible:
-      return jaw_spacing_mm;
-    default:
-      return cranium_spacing_mm;
-  }
+  if (bodies.roams(part.body)) return roaming_spacing_mm;
+  return part.body == cranium_body ? cranium_spacing_mm : jaw_spacing_mm;
 }
 
 }  // namespace
 
-Slider::Slider(const Case& patient, const ContactModel::State& state) : state_(state) {
-  std::vector<Box> boxes(static_cast<std::size_t>(state.body_count()));
+Slider::Slider(const Case& patient, const ContactModel::State& state, Slider* earlier)
+    : state_(state) {
+  std::vector<Box> boxes(state.bodies.bodies().size());
   for (const auto& collider : state.colliders)
-    boxes[static_cast<std::size_t>(collider->body)].add(collider->surface.box());
+    boxes[index_of(collider->body)].add(collider->surface.box());
   for (const auto& collider : state.colliders) {
     if (collider->guard) continue;
     const Part& part = patient.parts[static_cast<std::size_t>(collider->part)];
     Surface surface{collider->number, part.mesh, {}, nullptr, {}};
     FieldSettings& field = surface.settings.field;
-    field.spacing_mm = spacing_of(part);
+    field.spacing_mm = spacing_of(state.bodies, part);
     field.band_mm = band_mm;
     for (const auto& pair : state.pairs)
       if ((pair.a == collider.get() || pair.b == collider.get()) && pair.kept_mm <= widest_gap_mm)
         field.band_mm = std::max(field.band_mm, 2 * pair.kept_mm + 0.5 * band_mm);
-    if (collider->body < first_free_body) {  // a free part may go anywhere, and is small
+    if (!state.bodies.roams(collider->body)) {  // a roaming body may be anywhere, and is small
       field.region.emplace();
-      for (int body = 0; body < state.body_count(); ++body)
-        if (body != collider->body) field.region->add(boxes[static_cast<std::size_t>(body)]);
-      // Nothing else is there: a field of one place, which nobody will ask.
+      for (std::size_t body = 0; body < boxes.size(); ++body)
+        if (body != index_of(collider->body)) field.region->add(boxes[body]);
+      // No other body is near: a minimal field that will not be queried.
       if (field.region->empty()) field.region->add(collider->surface.box().low);
       field.region->low.array() -= reach_mm;
       field.region->high.array() += reach_mm;
     }
     surface.settings.samples.spacing_mm = is_teeth(part.role) ? tooth_sample_mm : bone_sample_mm;
     surface.settings.cache = field_cache_folder();
-    surface.sight = field_sight(collider->surface.box(), field.region);
+    surface.sight = field_coverage(collider->surface.box(), field.region);
     surfaces_.push_back(std::move(surface));
   }
+  if (earlier) take_over(*earlier);
+}
+
+void Slider::take_over(Slider& earlier) {
+  const std::lock_guard lock(earlier.mutex_);
+  const auto shape = [](const Slider& slider, const Surface& surface) {
+    return slider.state_.colliders[static_cast<std::size_t>(surface.collider)]->shape.get();
+  };
+  const auto same_field = [](const FieldSettings& a, const FieldSettings& b) {
+    return a.spacing_mm == b.spacing_mm && a.band_mm == b.band_mm &&
+           a.region.has_value() == b.region.has_value() &&
+           (!a.region || (a.region->low == b.region->low && a.region->high == b.region->high));
+  };
+  for (Surface& surface : surfaces_)
+    for (const Surface& other : earlier.surfaces_) {
+      if (!other.body || shape(*this, surface) != shape(earlier, other) ||
+          !same_field(surface.settings.field, other.settings.field) ||
+          surface.settings.samples.spacing_mm != other.settings.samples.spacing_mm)
+        continue;
+      surface.body = other.body;
+      surface.sight.thin = other.sight.thin;
+      surface.mesh = {};
+    }
 }
 
 void Slider::prepare(const Progress& progress, int threads) {
@@ -73,7 +91,7 @@ void Slider::prepare(const Progress& progress, int threads) {
            static_cast<double>(i) / static_cast<double>(surfaces_.size()));
     Surface& surface = surfaces_[i];
     if (surface.body) continue;
-    surface.body = std::make_shared<const SlideBody>(make_slide_body(
+    surface.body = std::make_shared<const ContactSurface>(make_contact_surface(
         surface.mesh, surface.settings, threads, [&](std::string_view, double share) {
           report(progress, "making the bones ready to slide",
                  (static_cast<double>(i) + share) / static_cast<double>(surfaces_.size()));
@@ -81,33 +99,32 @@ void Slider::prepare(const Progress& progress, int threads) {
     surface.mesh = {};
     surface.sight.thin = is_thin(*surface.body);
   }
-  contacts_.resize(static_cast<std::size_t>(state_.body_count()));
+  contacts_.resize(state_.bodies.bodies().size());
   outside_.resize(contacts_.size());
-  for (int body = mandible_body; body < state_.body_count(); ++body) {
-    contacts_[static_cast<std::size_t>(body)] = make_contact(body);
-    outside_[static_cast<std::size_t>(body)] = find_outside(body);
+  for (int body = 1; body < state_.bodies.size(); ++body) {
+    contacts_[static_cast<std::size_t>(body)] = make_contact(BodyId{body});
+    outside_[static_cast<std::size_t>(body)] = find_outside(BodyId{body});
   }
   report(progress, "making the bones ready to slide", 1);
   ready_ = true;
 }
 
-std::unique_ptr<SlidingContact> Slider::make_contact(int body) const {
-  const Drive drive = make_drive(state_, std::vector<Pose>(contacts_.size()), body, {});
-  std::vector<std::shared_ptr<const SlideBody>> fixed, moving;
+std::unique_ptr<SlidingContact> Slider::make_contact(BodyId body) const {
+  const BodyMove move = make_move(state_, completed(state_.bodies, {}), body, {});
+  std::vector<std::shared_ptr<const ContactSurface>> fixed, moving;
   std::vector<int> place(state_.colliders.size(), -1);
   for (const Surface& surface : surfaces_) {
     const auto number = static_cast<std::size_t>(surface.collider);
-    auto& side =
-        drive.moves[static_cast<std::size_t>(state_.colliders[number]->body)] ? moving : fixed;
+    auto& side = move.moves[index_of(state_.colliders[number]->body)] ? moving : fixed;
     place[number] = static_cast<int>(side.size());
     side.push_back(surface.body);
   }
   std::vector<SlidePair> pairs;
   for (const auto& pair : state_.pairs) {
-    if (!drive.concerns(pair) || pair.kept_mm > widest_gap_mm) continue;
+    if (!move.concerns(pair) || pair.kept_mm > widest_gap_mm) continue;
     int a = place[static_cast<std::size_t>(pair.a->number)],
         b = place[static_cast<std::size_t>(pair.b->number)];
-    if (drive.moves[static_cast<std::size_t>(pair.a->body)]) std::swap(a, b);
+    if (move.moves[index_of(pair.a->body)]) std::swap(a, b);
     pairs.push_back({a, b, pair.kept_mm});
   }
   auto contact = std::make_unique<SlidingContact>(
@@ -117,13 +134,13 @@ std::unique_ptr<SlidingContact> Slider::make_contact(int body) const {
   return contact;
 }
 
-std::optional<Pose> Slider::find_outside(int body) const {
-  const Drive drive = make_drive(state_, std::vector<Pose>(contacts_.size()), body, {});
-  Eigen::Vector3d out = Eigen::Vector3d::Zero();  // of what it lies in, on the whole
+std::optional<Pose> Slider::find_outside(BodyId body) const {
+  const BodyMove move = make_move(state_, completed(state_.bodies, {}), body, {});
+  Eigen::Vector3d out = Eigen::Vector3d::Zero();  // sum of the exit directions
   for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
     const ColliderPair& pair = state_.pairs[i];
-    if (!drive.concerns(pair) || pair.rest_depth_mm <= deep_mm) continue;
-    const double sign = drive.moves[static_cast<std::size_t>(pair.a->body)] ? -1 : 1;
+    if (!move.concerns(pair) || pair.rest_depth_mm <= deep_mm) continue;
+    const double sign = move.moves[index_of(pair.a->body)] ? -1 : 1;
     for (const ContactPoint& contact : state_.rest.pairs[i].contacts) out += sign * contact.normal;
   }
   if (!(out.norm() > 0)) return std::nullopt;
@@ -134,34 +151,33 @@ std::optional<Pose> Slider::find_outside(int body) const {
   return std::nullopt;
 }
 
-std::optional<Pose> Slider::outside(const Drive& drive) const {
-  for (std::size_t b = 0; b < drive.X_CB.size(); ++b)
-    if (drive.moves[b] ? drive.X_DM[b].has_value() : !same_bits(drive.X_CB[b], {}))
+std::optional<Pose> Slider::outside(const BodyMove& move) const {
+  for (std::size_t b = 0; b < move.at.X_CB.size(); ++b)
+    if (move.moves[b] ? move.X_DM[b].has_value() : !bit_identical(move.at.X_CB[b], {}))
       return std::nullopt;
-  return outside_[static_cast<std::size_t>(drive.body)];
+  return outside_[index_of(move.body)];
 }
 
-bool Slider::sees(const Drive& drive) const {
-  std::vector<const FieldSight*> of(state_.colliders.size(), nullptr);
+bool Slider::covers(const BodyMove& move) const {
+  std::vector<const FieldCoverage*> of(state_.colliders.size(), nullptr);
   for (const Surface& surface : surfaces_)
     of[static_cast<std::size_t>(surface.collider)] = &surface.sight;
-  const double way_mm = (drive.wanted.t - drive.from().t).norm() +
-                        rotation_angle(drive.from().inverse() * drive.wanted) * turning_mm;
+  const double way_mm = (move.wanted.t - move.from().t).norm() +
+                        rotation_angle(move.from().inverse() * move.wanted) * turning_mm;
   const int looks = 1 + static_cast<int>(way_mm / sight_step_mm);
-  std::vector<std::vector<Pose>> X_CB;
+  std::vector<BodyPoses> at;
   for (int i = 0; i <= looks; ++i)
-    X_CB.push_back(drive.poses_at(interpolate(drive.from(), drive.wanted,
-                                              static_cast<double>(i) / looks, pivot(drive.body))));
+    at.push_back(move.poses_at(
+        interpolate(move.from(), move.wanted, static_cast<double>(i) / looks, pivot(move.body))));
   return std::none_of(state_.pairs.begin(), state_.pairs.end(), [&](const ColliderPair& pair) {
-    if (!drive.concerns(pair)) return false;
-    const FieldSight &a = *of[static_cast<std::size_t>(pair.a->number)],
-                     &b = *of[static_cast<std::size_t>(pair.b->number)];
+    if (!move.concerns(pair)) return false;
+    const FieldCoverage &a = *of[static_cast<std::size_t>(pair.a->number)],
+                        &b = *of[static_cast<std::size_t>(pair.b->number)];
     if ((a.thin && b.thin) || pair.kept_mm > widest_gap_mm) return true;
-    // A jaw does not leave its joints far enough to bring anything else to what is outside.
-    if (pair.b->body < first_free_body) return a.blind || b.blind;
-    return std::any_of(X_CB.begin(), X_CB.end(), [&](const std::vector<Pose>& X) {
-      const Pose X_AB = X[static_cast<std::size_t>(pair.a->body)].inverse() *
-                        X[static_cast<std::size_t>(pair.b->body)];
+    // A jaw does not leave its joints far enough to bring other parts to the outside regions.
+    if (state_.in_joint(pair)) return a.blind || b.blind;
+    return std::any_of(at.begin(), at.end(), [&](const BodyPoses& X) {
+      const Pose X_AB = X[pair.a->body].inverse() * X[pair.b->body];
       const auto meets = [&](const Box& box_a, const Box& box_b) {
         return boxes_meet(box_a, box_b, X_AB, 0.5 * sight_step_mm + pair.kept_mm);
       };
@@ -173,25 +189,24 @@ bool Slider::sees(const Drive& drive) const {
   });
 }
 
-std::unique_ptr<Slider::Setting> Slider::take_setting(const Drive& drive) const {
+std::unique_ptr<Slider::Setting> Slider::take_setting(const BodyMove& move) const {
   std::vector<Pose> X_FS, X_MS;
   for (const Surface& surface : surfaces_) {
-    const auto body = static_cast<std::size_t>(
-        state_.colliders[static_cast<std::size_t>(surface.collider)]->body);
-    if (!drive.moves[body])
-      X_FS.push_back(drive.X_CB[body]);
+    const BodyId body = state_.colliders[static_cast<std::size_t>(surface.collider)]->body;
+    if (!move.moves[index_of(body)])
+      X_FS.push_back(move.at[body]);
     else
-      X_MS.push_back(drive.X_DM[body].value_or(Pose{}));
+      X_MS.push_back(move.X_DM[index_of(body)].value_or(Pose{}));
   }
   const auto alike = [](const std::vector<Pose>& x, const std::vector<Pose>& y) {
-    return std::equal(x.begin(), x.end(), y.begin(), y.end(), same_bits);
+    return std::equal(x.begin(), x.end(), y.begin(), y.end(), bit_identical);
   };
   std::unique_ptr<Setting> setting;
   {
     const std::lock_guard lock(settings_mutex_);
     auto best = settings_.end();
     for (auto it = settings_.begin(); it != settings_.end(); ++it)
-      if ((*it)->body == drive.body) {
+      if ((*it)->body == move.body) {
         best = it;
         if (alike((*it)->X_FS, X_FS) && alike((*it)->X_MS, X_MS)) break;
       }
@@ -201,7 +216,7 @@ std::unique_ptr<Slider::Setting> Slider::take_setting(const Drive& drive) const 
     }
   }
   if (!setting)
-    setting = std::make_unique<Setting>(Setting{drive.body, {}, {}, contact(drive.body), {}});
+    setting = std::make_unique<Setting>(Setting{move.body, {}, {}, contact(move.body), {}});
   if (!alike(setting->X_FS, X_FS) || !alike(setting->X_MS, X_MS)) {
     setting->contact.place(X_FS, X_MS);
     setting->X_FS = std::move(X_FS);
@@ -213,12 +228,12 @@ std::unique_ptr<Slider::Setting> Slider::take_setting(const Drive& drive) const 
 void Slider::keep_setting(std::unique_ptr<Setting> setting) const {
   const std::lock_guard lock(settings_mutex_);
   settings_.push_back(std::move(setting));
-  if (settings_.size() > most_settings) settings_.erase(settings_.begin());
+  if (settings_.size() > max_settings) settings_.erase(settings_.begin());
 }
 
-SlideResult Slider::slide(const Drive& drive, const Pose& from, const Pose& wanted,
+SlideResult Slider::slide(const BodyMove& move, const Pose& from, const Pose& wanted,
                           int threads) const {
-  auto setting = take_setting(drive);
+  auto setting = take_setting(move);
   SlideResult result = setting->contact.slide(from, wanted, &setting->memory, threads);
   keep_setting(std::move(setting));
   return result;

@@ -7,62 +7,62 @@
 
 #include "engine/collide/slide.h"
 #include "engine/core/progress.h"
+#include "sim/contact/constrained_motion.h"
 #include "sim/contact/contact_state.h"
-#include "sim/contact/drive.h"
-#include "sim/contact/field_sight.h"
+#include "sim/contact/field_coverage.h"
 
 namespace condyle {
 
-/// Sliding of a contact model's bodies on distance fields. The fields are made when they are first
-/// needed, near where bones can meet: each surface's within 20 mm of the boxes of the bodies that
-/// it can touch, so that they take some 10 MB a bone.
+/// Sliding of a contact model's bodies on distance fields. The fields are computed at first use,
+/// near where bones can meet: within 20 mm of the boxes of the bodies that each surface can touch,
+/// about 10 MB per bone.
 class Slider {
  public:
-  /// Keeps copies of the surfaces until the fields are there.
-  Slider(const Case& patient, const ContactModel::State& state);
+  /// Keeps copies of the surfaces until the fields exist. `earlier`: its fields of the same
+  /// surfaces in the same regions are reused.
+  Slider(const Case& patient, const ContactModel::State& state, Slider* earlier = nullptr);
 
-  /// Makes the fields, or reads them from the cache, unless they are there. Throwing from the
-  /// progress gives up; the next call starts anew.
+  /// Computes the fields, or reads them from the cache, unless they exist. An exception from
+  /// `progress` cancels; the next call starts again.
   void prepare(const Progress& progress, int threads);
 
-  /// Whether fields see all that the drive may meet: they do not see one wall thinner than their
-  /// spacing from another, nor what lay more than 20 mm from the other body's box at rest.
-  bool sees(const Drive& drive) const;
+  /// Whether the fields cover all that the move may meet: not one wall thinner than their spacing
+  /// against another, nor surfaces more than 20 mm from the other body's box at rest.
+  bool covers(const BodyMove& move) const;
 
-  /// By the fields alone, all other bodies where the drive has them. prepare() must have been
-  /// called. Same bits whatever was asked before.
-  SlideResult slide(const Drive& drive, const Pose& from, const Pose& wanted, int threads) const;
+  /// By the fields alone, all other bodies at their poses in the move. prepare() must have been
+  /// called. Independent of earlier calls.
+  SlideResult slide(const BodyMove& move, const Pose& from, const Pose& wanted, int threads) const;
 
-  /// A free pose beside rest of a body that lies deep in others at rest, and may be held there.
-  /// None where it does not, or where others have been moved.
-  std::optional<Pose> outside(const Drive& drive) const;
+  /// A free pose near rest of a body that overlaps deeply at rest, and may be held there. None
+  /// without such overlap, or where others have been moved.
+  std::optional<Pose> outside(const BodyMove& move) const;
 
-  /// What a radian of a drive costs against a millimetre, and the point it turns about.
-  double rotation_length_mm(int body) const { return contact(body).rotation_length_mm(); }
-  const Eigen::Vector3d& pivot(int body) const { return contact(body).pivot(); }
+  /// Weight of a radian of a move relative to a millimetre, and its centre of rotation.
+  double rotation_length_mm(BodyId body) const { return contact(body).rotation_length_mm(); }
+  const Eigen::Vector3d& pivot(BodyId body) const { return contact(body).pivot(); }
 
  private:
   struct Surface {
     int collider = 0;
     TriMesh mesh;
-    SlideBodySettings settings;
-    std::shared_ptr<const SlideBody> body;
-    FieldSight sight;
+    ContactSurfaceSettings settings;
+    std::shared_ptr<const ContactSurface> body;
+    FieldCoverage sight;
   };
-  /// A driven body among others that lie somewhere, and what it remembers of its last slide there.
+  /// A driven body among others at given poses, with its slide cache.
   struct Setting {
-    int body = 0;
+    BodyId body = cranium_body;
     std::vector<Pose> X_FS, X_MS;
     SlidingContact contact;
-    SlideMemory memory;
+    SlideCache memory;
   };
-  std::unique_ptr<Setting> take_setting(const Drive& drive) const;
+  void take_over(Slider& earlier);
+  std::unique_ptr<Setting> take_setting(const BodyMove& move) const;
   void keep_setting(std::unique_ptr<Setting> setting) const;
-  const SlidingContact& contact(int body) const {
-    return *contacts_[static_cast<std::size_t>(body)];
-  }
-  std::unique_ptr<SlidingContact> make_contact(int body) const;
-  std::optional<Pose> find_outside(int body) const;
+  const SlidingContact& contact(BodyId body) const { return *contacts_[index_of(body)]; }
+  std::unique_ptr<SlidingContact> make_contact(BodyId body) const;
+  std::optional<Pose> find_outside(BodyId body) const;
 
   const ContactModel::State& state_;
   std::vector<Surface> surfaces_;                          // in the order of the first colliders
@@ -71,7 +71,8 @@ class Slider {
   std::mutex mutex_;
   bool ready_ = false;
   mutable std::mutex settings_mutex_;
-  mutable std::vector<std::unique_ptr<Setting>> settings_;  // that no thread has, the latest last
+  // not in use by a thread, the latest last
+  mutable std::vector<std::unique_ptr<Setting>> settings_;
 };
 
 }  // namespace condyle

@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double molar_share = 0.55;  // of the arch's depth, from the front
-constexpr double around_mm = 4;       // of the place, along the arch
-constexpr double top_mm = 2;          // chewing surface below the highest cusp
+constexpr double molar_fraction = 0.55;  // of the arch's depth, from the front
+constexpr double around_mm = 4;          // along the arch
+constexpr double top_mm = 2;             // chewing surface below the highest cusp
 
 std::optional<Vector3d> landmark(const Case& patient, std::initializer_list<const char*> names) {
   for (const char* name : names)
@@ -22,10 +22,10 @@ std::optional<Vector3d> landmark(const Case& patient, std::initializer_list<cons
   return std::nullopt;
 }
 
-/// Middle of the chewing surface of one side's first molar.
+/// Centre of the occlusal surface of the first molar on one side.
 std::optional<Vector3d> molar(const Part& lower, double middle_x, double side) {
   const Box box = bounding_box(lower.mesh);
-  const double y = box.low.y() + molar_share * box.size().y();
+  const double y = box.low.y() + molar_fraction * box.size().y();
   double highest = -1e300;
   const auto here = [&](const Vector3d& v) {
     return std::abs(v.y() - y) < around_mm && side * (v.x() - middle_x) > 0;
@@ -48,14 +48,14 @@ BitePlane bite_plane(const Case& patient) {
              right_condyle = landmark(patient, {"right_condyle"});
   if (!incisor || !left_condyle || !right_condyle)
     throw InputError(patient.name +
-                     ": condyles and the lower incisal point are needed to tell where it bites");
+                     ": condyles and the lower incisal point are needed to locate the bite");
   std::optional<Vector3d> left = landmark(patient, {"left_bite", "lbite"}),
                           right = landmark(patient, {"right_bite", "rbite"});
   if (const Part* lower = patient.find(Role::lower_teeth); lower && !lower->mesh.empty()) {
     if (!left) left = molar(*lower, incisor->x(), 1);
     if (!right) right = molar(*lower, incisor->x(), -1);
   }
-  // A third of the way to the condyles, and half as far apart as these.
+  // At a third of the distance to the condyles, with half their separation.
   const Vector3d middle = 0.5 * (*left_condyle + *right_condyle);
   const Vector3d back = *incisor + (middle - *incisor) / 3,
                  aside = 0.25 * (*left_condyle - *right_condyle);

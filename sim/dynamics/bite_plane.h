@@ -6,10 +6,10 @@
 
 namespace condyle {
 
-/// Where the back teeth bite at rest.
+/// The plane in which the back teeth occlude at rest.
 struct BitePlane {
   Eigen::Vector3d left, right;  // on the lower first molars
-  Eigen::Vector3d normal;       // unit, downward: of the plane through both and the incisal point
+  Eigen::Vector3d normal;       // unit, downward, of the plane through both and the incisal point
 };
 
 /// From the landmarks left_bite and right_bite (also lbite, rbite), else from the lower teeth, else

@@ -7,23 +7,23 @@
 
 namespace condyle {
 
-/// The hyoid: a small bone that hangs in muscles. Its mass is so small and its damping so large
-/// that a step of a millisecond is taken implicitly in the velocities.
+/// The hyoid: a small bone suspended by muscles. Its mass is so small and its damping so large that
+/// a step of one millisecond is implicit in the velocities.
 class Hyoid {
  public:
-  /// Its drag acts on the velocity of `drag_at`, which moves with it.
+  /// Drag acts on the velocity of the body-fixed point `drag_at`.
   Hyoid(const BoneMechanics& bone, const Eigen::Vector3d& drag_at);
 
   const Pose& pose() const { return X_CH_; }  // rest to now
   Eigen::Vector3d velocity(const Eigen::Vector3d& p_C) const;
 
-  /// Collects a pull at a point (cranium) along a unit direction; `slope_N_s_mm`: how much it grows
-  /// for each mm/s that the point moves against it.
+  /// Adds a force at a point (cranium) along a unit direction; `slope_N_s_mm`: increase of the
+  /// force per mm/s of motion of the point against it.
   void pull(const Eigen::Vector3d& p_C, const Eigen::Vector3d& direction, double force_N,
             double slope_N_s_mm);
-  /// Steps with gravity and what was collected, which is then forgotten.
+  /// Steps under gravity and the added forces, and clears these.
   void step(double step_s, const Eigen::Vector3d& gravity_mm_s2);
-  /// Carries it to a pose instead.
+  /// Sets the pose instead.
   void carry(const Pose& X_CH, double step_s);
 
  private:

@@ -3,62 +3,53 @@
 #include "engine/core/error.h"
 #include "engine/core/units.h"
 #include "engine/mesh/measure.h"
-#include "engine/mesh/topology.h"
-#include "sim/motion/condylar_path.h"
+#include "sim/dynamics/body_mass.h"
+#include "sim/motion/condylar_kinematics.h"
 #include "sim/motion/jaw_joints.h"
+#include "sim/occlusion/arches.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double bone_kg_mm3 = 1.9e-6;
-constexpr double box_share = 0.12;  // of its box that a mandible fills
 constexpr double worn_band_mm = 2;
 constexpr double around_overlap_mm = 10;
-constexpr double least_forward_mm = -0.5, guide_step_mm = 0.5;
-constexpr double farthest_turned_mm = 16;  // the jaw opens no farther with the condyles
+constexpr double min_forward_mm = -0.5, guide_step_mm = 0.5;
+// of forward travel: the fossa path is tabulated by rotation, to this travel
+constexpr double farthest_turned_mm = 16;
 
 Vector3d landmark(const Case& patient, const char* name) {
   const auto point = patient.landmarks.find(name);
   if (!point)
     throw InputError(patient.name + ": the landmark " + name +
-                     " is missing; the jaw cannot be hung without it");
+                     " is missing; the jaw cannot be suspended without it");
   return *point;
 }
 
-const Part& part(const Case& patient, Role role, const char* name) {
-  const Part* found = patient.find(role);
-  if (!found || found->mesh.empty())
-    throw InputError(patient.name + ": " + name + " are missing; the jaw cannot close without");
-  return *found;
+/// What meets what: the teeth; where an arch has none, the crowns of the bone that carries them.
+struct BitingSurfaces {
+  const TriMesh *upper = nullptr, *lower = nullptr;
+  std::optional<Box> upper_crowns, lower_crowns;  // of a bone: only there does it bite
+};
+
+BitingSurfaces biting_surfaces(const Case& patient) {
+  const auto teeth = [&](Role role) {
+    const Part* part = patient.find(role);
+    return part && !part->mesh.empty() ? &part->mesh : nullptr;
+  };
+  BitingSurfaces found{teeth(Role::upper_teeth), teeth(Role::lower_teeth), {}, {}};
+  if (found.upper && found.lower) return found;
+  const Arches arches = find_arches(patient);
+  if (!found.upper)
+    found.upper = &arches.upper.part->mesh, found.upper_crowns = arches.upper.crowns;
+  if (!found.lower)
+    found.lower = &arches.lower.part->mesh, found.lower_crowns = arches.lower.crowns;
+  return found;
 }
 
-/// Of a mandible whose surface is open: of a box that weighs as much as a mandible of its size.
-MassProperties mandible_mass(const TriMesh& mesh) {
-  const Topology topology = inspect(mesh);
-  if (topology.closed() && topology.volume_mm3 > 0) return mass_properties(mesh, bone_kg_mm3);
-  const Box box = bounding_box(mesh);
-  const Vector3d size = box.size(), square = size.cwiseProduct(size);
-  MassProperties out;
-  out.mass_kg = box_share * bone_kg_mm3 * size.prod();
-  out.center = box.center();
-  out.inertia =
-      (out.mass_kg / 12 *
-       Vector3d(square.y() + square.z(), square.z() + square.x(), square.x() + square.y()))
-          .asDiagonal();
-  return out;
-}
-
-MassProperties jaw_mass(const Case& patient) {
-  if (patient.mechanics)
-    return {patient.mechanics->mandible.mass_kg, patient.mechanics->mandible.center,
-            patient.mechanics->mandible.inertia};
-  return mandible_mass(part(patient, Role::mandible, "mandibles").mesh);
-}
-
-/// How deep crowns overlap where they lie, by the samples of each in the field of the other.
-double rest_depth(const SlideBody& a, const SlideBody& b) {
+/// Depth to which crowns overlap at rest, by the samples of each in the field of the other.
+double rest_depth(const ContactSurface& a, const ContactSurface& b) {
   double depth = 0;
   for (const auto& [samples, field] : {std::pair{&a, &b}, std::pair{&b, &a}})
     for (const Vector3d& p : samples->samples.points) {
@@ -68,33 +59,31 @@ double rest_depth(const SlideBody& a, const SlideBody& b) {
   return depth;
 }
 
-using Surfaces = std::vector<std::shared_ptr<const SlideBody>>;
+using Surfaces = std::vector<std::shared_ptr<const ContactSurface>>;
 
-/// Bone and crowns of the cranium and of the mandible beside those that bite, as the poses have the
-/// free parts, in the coordinates of what carries them.
-std::array<Surfaces, 2> make_bones(const Case& patient, const BodyPoses& at, int threads,
+/// Bone and crowns that move with the cranium and with the jaw, except the biting crowns; other
+/// bodies at the given poses, in the coordinates of the cranium and of the jaw.
+std::array<Surfaces, 2> make_bones(const Case& patient, const BodyPoses& given, int threads,
                                    const Progress& progress) {
+  const BodyPoses at = completed(patient.bodies, given);
   constexpr double spacing_mm = 0.5, sample_mm = 0.6, reach_mm = 20;
   const bool bites = patient.find(Role::upper_teeth) && patient.find(Role::lower_teeth);
   std::array<std::vector<TriMesh>, 2> meshes;
   std::array<Box, 2> boxes;
-  for (std::size_t i = 0; i < patient.parts.size(); ++i) {
-    const Part& part = patient.parts[i];
+  for (const Part& part : patient.parts) {
     if (!collides(part.role) || part.mesh.empty() || (bites && is_teeth(part.role))) continue;
-    const bool is_free = body_of(part.role) == Body::free;
-    const bool moves = (is_free ? part.carrier : body_of(part.role)) == Body::mandible;
+    const BodyId jaw = patient.jaw.lower_arch;
+    const bool moves = patient.bodies.is_within(part.body, jaw);
     TriMesh mesh = part.mesh;
-    if (is_free) {
-      const Pose X = (moves ? at.X_CM : Pose{}).inverse() * pose_of(patient.parts, i, at);
+    if (const Pose X = pose_in(moves ? jaw : cranium_body, part.body, at); !bit_identical(X, {}))
       for (Vector3d& v : mesh.vertices) v = X * v;
-    }
     boxes[moves].add(bounding_box(mesh));
     meshes[moves].push_back(std::move(mesh));
   }
   std::array<Surfaces, 2> made;
   for (std::size_t side = 0; side < 2; ++side)
     for (const TriMesh& mesh : meshes[side]) {
-      SlideBodySettings how;
+      ContactSurfaceSettings how;
       how.field.spacing_mm = spacing_mm;
       how.samples.spacing_mm = sample_mm;
       how.cache = field_cache_folder();
@@ -102,20 +91,21 @@ std::array<Surfaces, 2> make_bones(const Case& patient, const BodyPoses& at, int
       if (region.empty()) continue;
       region.low.array() -= reach_mm;
       region.high.array() += reach_mm;
-      made[side].push_back(
-          std::make_shared<const SlideBody>(make_slide_body(mesh, how, threads, progress)));
+      made[side].push_back(std::make_shared<const ContactSurface>(
+          make_contact_surface(mesh, how, threads, progress)));
     }
   return made;
 }
 
-/// Drop of the condyles by their forward travel; on a fossa as the jaw turns when it opens.
+/// Inferior translation of the condyles by their forward travel; on a fossa along an opening of the
+/// jaw.
 void find_guides(const Case& patient, bool fossa, int threads, JawWorld& jaw) {
   const auto both = [&](Pchip path, const char* guide) {
-    jaw.drop_mm.fill(path);
+    jaw.inferior_mm.fill(path);
     jaw.guide = guide;
   };
   if (patient.mechanics && patient.mechanics->guide)
-    return both(known_path(*patient.mechanics->guide), "on the guide of the jaw's mechanics");
+    return both(path_of_case(*patient.mechanics->guide), "on the guide of the jaw's mechanics");
   if (fossa) {
     const JawJoints joints(patient, {}, JointReach::straight, threads);
     if (joints.surfaces()) {
@@ -126,16 +116,17 @@ void find_guides(const Case& patient, bool fossa, int threads, JawWorld& jaw) {
         drop.clear();
         for (double s = 0; s <= longest_forward_mm; s += guide_step_mm) {
           forward.push_back(s);
-          drop.push_back(joints.drop_mm(side, s, coupling.theta(std::min(s, farthest_turned_mm))));
+          drop.push_back(joints.inferior_translation_mm(
+              side, s, coupling.theta(std::min(s, farthest_turned_mm))));
         }
-        jaw.drop_mm[side == JawSide::left ? 0 : 1] = Pchip(forward, drop);
+        jaw.inferior_mm[side == JawSide::left ? 0 : 1] = Pchip(forward, drop);
       }
-      jaw.guide = "at their disc's gap on the fossa";
+      jaw.guide = "at the disc gap on the fossa";
       return;
     }
   }
   if (patient.condylar_path)
-    both(known_path(*patient.condylar_path), "on the patient's own path");
+    both(path_of_case(*patient.condylar_path), "on the patient's own path");
   else
     both(average_path(), "on an average path");
 }
@@ -150,20 +141,21 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
 
   RigidSettings world_settings;
   JawWorld jaw{
-      .world = RigidWorld(world_settings), .condyles = condyles, .drop_mm = {}, .guide = {}};
+      .world = RigidWorld(world_settings), .condyles = condyles, .inferior_mm = {}, .guide = {}};
   find_guides(patient, settings.fossa, threads, jaw);
-  RigidBody cranium, mandible;
+  DynamicBody cranium, mandible;
   if (settings.teeth) {
-    const TriMesh &upper = part(patient, Role::upper_teeth, "upper teeth").mesh,
-                  &lower = part(patient, Role::lower_teeth, "lower teeth").mesh;
-    SlideBodySettings how;
+    const BitingSurfaces bite = biting_surfaces(patient);
+    ContactSurfaceSettings how;
     how.cache = field_cache_folder();
     if (settings.worn_crowns) how.field.band_mm = worn_band_mm;
-    const auto surface = [&](const TriMesh& mesh) {
-      return std::make_shared<const SlideBody>(make_slide_body(mesh, how, threads, progress));
+    const auto surface = [&](const TriMesh& mesh, const std::optional<Box>& crowns) {
+      how.field.region = crowns;
+      return std::make_shared<const ContactSurface>(
+          make_contact_surface(mesh, how, threads, progress));
     };
-    cranium.surfaces = {surface(upper)};
-    mandible.surfaces = {surface(lower)};
+    cranium.surfaces = {surface(*bite.upper, bite.upper_crowns)};
+    mandible.surfaces = {surface(*bite.lower, bite.lower_crowns)};
     if (settings.worn_crowns) jaw.worn_mm = rest_depth(*cranium.surfaces[0], *mandible.surfaces[0]);
   }
   Surfaces skull;
@@ -174,7 +166,7 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
   }
   const int fixed = jaw.world.add_body(cranium);
 
-  mandible.mass = jaw_mass(patient);
+  mandible.mass = body_mass(patient, patient.jaw.lower_arch);
   const double per_step = settings.lost_in_step / world_settings.step_s;
   mandible.drag_N_s_mm = settings.drag_kg_s.value_or(per_step * mandible.mass.mass_kg) / mm_per_m;
   mandible.turning_drag_N_mm_s =
@@ -187,19 +179,19 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
   if (!skull.empty()) {
     const int bones = jaw.world.add_body({.surfaces = std::move(skull)});
     jaw.bones = jaw.world.add_pair({.a = bones, .b = jaw.mandible, .friction = 0});
-    // At rest, where they are so far. Bone that crowns are drawn on is held by the bite.
+    // The overlap at rest is allowed. Bone that carries the crowns is part of the bite.
     jaw.world.allow_overlap(*jaw.bones, around_overlap_mm);
   }
   jaw.world.set_pose(jaw.mandible, settings.X_CM);
 
-  const double first_mm = settings.stops ? 0 : least_forward_mm;
+  const double first_mm = settings.stops ? 0 : min_forward_mm;
   for (std::size_t side = 0; side < 2; ++side) {
     const Vector3d& condyle = condyles[side];
     RigidJoint guide{.kind = RigidJoint::Kind::guide, .a = fixed, .b = jaw.mandible};
     guide.p_B = condyle;
     for (double forward = first_mm; forward <= longest_forward_mm; forward += guide_step_mm)
       guide.curve_A.push_back(condyle -
-                              Vector3d(0, forward, jaw.drop_mm[side](std::max(forward, 0.0))));
+                              Vector3d(0, forward, jaw.inferior_mm[side](std::max(forward, 0.0))));
     guide.sideways_A = Vector3d::UnitX();
     jaw.world.add_joint(guide);
     if (!settings.stops) continue;
@@ -209,9 +201,10 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
     jaw.world.add_joint(stop);
   }
   const Vector3d middle = 0.5 * (condyles[0] + condyles[1]);
-  jaw.bite_force = jaw.world.add_force({.body = jaw.mandible,
-                                        .point = middle + settings.bite_place * (incisor - middle),
-                                        .force_N = settings.bite_force_N});
+  jaw.bite_force =
+      jaw.world.add_force({.body = jaw.mandible,
+                           .point = middle + settings.bite_position * (incisor - middle),
+                           .force_N = settings.bite_force_N});
   return jaw;
 }
 

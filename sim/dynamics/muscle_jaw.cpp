@@ -5,28 +5,28 @@
 
 #include "engine/core/error.h"
 #include "engine/core/units.h"
-#include "sim/muscles/usual_muscles.h"
+#include "sim/muscles/default_muscles.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double arm_mm = 50;  // of a jaw about its centre of mass
-// Damping of a bone's frame, as mechanics tell it, acts at the frame's origin, not at the centre of
-// mass: the same damping slows a turning jaw twice as much there.
-// Where the patient's coordinates begin elsewhere, it is taken at the centre.
+constexpr double arm_mm = 50;  // size of a jaw about its centre of mass
+// Frame damping in the mechanics file acts at the origin of the bone's frame, where it slows a
+// rotating jaw twice as much as at the centre of mass. It acts at the centre of mass where the
+// origin of the patient's coordinates is elsewhere.
 constexpr double longest_arm_mm = 150;
 Vector3d damped_place(const BoneMechanics& bone) {
   return bone.center.norm() < longest_arm_mm ? Vector3d(Vector3d::Zero()) : bone.center;
 }
-// Of a jaw in its soft tissue, where the patient's own is not known.
-constexpr double usual_drag_kg_s = 20, usual_turning_drag_kg_mm2_s = 200;
-const BoneMechanics usual_hyoid = {.mass_kg = 0.01,
-                                   .center = Vector3d::Zero(),
-                                   .inertia = Eigen::Matrix3d::Identity(),
-                                   .drag_kg_s = 10,
-                                   .turning_drag_kg_mm2_s = 100};
+// Drag of a jaw in its soft tissue, where the case has none.
+constexpr double default_drag_kg_s = 20, default_angular_drag_kg_mm2_s = 200;
+const BoneMechanics default_hyoid = {.mass_kg = 0.01,
+                                     .center = Vector3d::Zero(),
+                                     .inertia = Eigen::Matrix3d::Identity(),
+                                     .drag_kg_s = 10,
+                                     .turning_drag_kg_mm2_s = 100};
 
 JawWorldSettings world_settings(const Case& patient, const MuscleJawSettings& settings) {
   JawWorldSettings world;
@@ -38,16 +38,16 @@ JawWorldSettings world_settings(const Case& patient, const MuscleJawSettings& se
   world.fossa = settings.fossa;
   world.bones = settings.bones;
   const bool known = patient.mechanics && patient.mechanics->mandible.drag_kg_s > 0;
-  world.drag_kg_s = known ? patient.mechanics->mandible.drag_kg_s : usual_drag_kg_s;
+  world.drag_kg_s = known ? patient.mechanics->mandible.drag_kg_s : default_drag_kg_s;
   world.turning_drag_kg_mm2_s =
-      known ? patient.mechanics->mandible.turning_drag_kg_mm2_s : usual_turning_drag_kg_mm2_s;
+      known ? patient.mechanics->mandible.turning_drag_kg_mm2_s : default_angular_drag_kg_mm2_s;
   if (known) world.drag_at = settings.damped_at.value_or(damped_place(patient.mechanics->mandible));
   return world;
 }
 
 BoneMechanics hyoid_of(const Case& patient, const std::vector<Muscle>& muscles) {
   if (patient.mechanics && patient.mechanics->hyoid) return *patient.mechanics->hyoid;
-  BoneMechanics bone = usual_hyoid;
+  BoneMechanics bone = default_hyoid;
   if (const auto center = hyoid_center(muscles)) bone.center = *center;
   return bone;
 }
@@ -66,10 +66,10 @@ std::vector<Muscle> muscles_left(const Case& patient, const std::vector<std::str
 
 }  // namespace
 
-/// A muscle's line of action now.
+/// Present line of action of a muscle.
 struct MuscleJaw::Line {
   Vector3d origin, insertion;  // cranium
-  Vector3d toward_origin;      // unit: how the insertion is pulled
+  Vector3d toward_origin;      // unit, direction of the force on the insertion
   double length_mm = 0, speed_mm_s = 0;
 };
 
@@ -103,8 +103,8 @@ MuscleJaw::MuscleJaw(const Case& patient, const MuscleJawSettings& settings, int
       stop.axis_A = bite_.normal;
       jaw_.world.add_joint(stop);
     }
-  if (settings_.hyoid == MuscleJawSettings::HyoidMode::prescribed && !settings_.hyoid_way)
-    throw InputError("the hyoid's way is prescribed, but not given");
+  if (settings_.hyoid == MuscleJawSettings::HyoidMode::prescribed && !settings_.hyoid_displacement)
+    throw InputError("the hyoid is prescribed, but its displacement is missing");
 }
 
 MuscleJaw::Line MuscleJaw::line(const Muscle& m) const {
@@ -123,15 +123,15 @@ MuscleJaw::Line MuscleJaw::line(const Muscle& m) const {
   Vector3d origin_velocity, insertion_velocity;
   place(m.origin_body, m.origin, out.origin, origin_velocity);
   place(m.insertion_body, m.insertion, out.insertion, insertion_velocity);
-  const Vector3d way = out.origin - out.insertion;
-  out.length_mm = way.norm();
-  out.toward_origin = out.length_mm > 0 ? Vector3d(way / out.length_mm) : Vector3d::UnitZ();
+  const Vector3d span = out.origin - out.insertion;
+  out.length_mm = span.norm();
+  out.toward_origin = out.length_mm > 0 ? Vector3d(span / out.length_mm) : Vector3d::UnitZ();
   out.speed_mm_s = out.toward_origin.dot(origin_velocity - insertion_velocity);
   return out;
 }
 
-/// Directions in which the mandible is free to go: an orthonormal basis of (velocity, spin) that
-/// the guides, the stops and the teeth it is pressed on leave.
+/// Directions in which the mandible is free to move: an orthonormal basis of (velocity, angular
+/// velocity) compatible with guides, stops and loaded tooth contacts.
 Eigen::MatrixXd MuscleJaw::free_directions() const {
   constexpr double seated_mm = 0.01, still_mm_s = 1;
   std::vector<Vector6d> held_rows;
@@ -147,7 +147,7 @@ Eigen::MatrixXd MuscleJaw::free_directions() const {
     const Vector3d now = pose() * seat;
     const Vector3d velocity = motion().velocity + motion().spin.cross(now - center());
     if (seat.y() - now.y() < seated_mm && -velocity.y() < still_mm_s)
-      hold(now, Vector3d(0, -1, -jaw_.drop_mm[side].derivative(0)).normalized());
+      hold(now, Vector3d(0, -1, -jaw_.inferior_mm[side].derivative(0)).normalized());
   }
   for (const RigidContact& contact : jaw_.world.contacts()) hold(contact.point, contact.normal);
   for (const Vector3d& seat : {bite_.left, bite_.right}) {
@@ -160,7 +160,7 @@ Eigen::MatrixXd MuscleJaw::free_directions() const {
   Eigen::MatrixXd rows(6, static_cast<Eigen::Index>(held_rows.size()));
   for (std::size_t k = 0; k < held_rows.size(); ++k) {
     rows.col(static_cast<Eigen::Index>(k)) = held_rows[k];
-    // Lengths and angles alike, at the size of a jaw.
+    // Angles are scaled by the size of a jaw.
     rows.col(static_cast<Eigen::Index>(k)).tail<3>() /= arm_mm;
   }
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rows);
@@ -171,8 +171,8 @@ Eigen::MatrixXd MuscleJaw::free_directions() const {
   return free;
 }
 
-/// Sets the forces of a step. Force falls with speed so steeply in strong muscles that taking it at
-/// the step's start would swing up: it is taken at the velocity that the step is about to reach.
+/// Sets the forces of a step. The force of strong muscles falls so steeply with speed that an
+/// explicit step would oscillate: it is evaluated at the predicted velocity at the end of the step.
 void MuscleJaw::pull(std::span<const double> excitations) {
   const double h = step_s();
   const Eigen::Matrix3d R = pose().R.toRotationMatrix();
@@ -197,7 +197,7 @@ void MuscleJaw::pull(std::span<const double> excitations) {
                directions.back().transpose();
   }
   const Eigen::MatrixXd free = free_directions();
-  Vector6d change = Vector6d::Zero();  // of velocity and spin in the step
+  Vector6d change = Vector6d::Zero();  // of velocity and angular velocity in the step
   if (free.cols() > 0)
     change = free * (free.transpose() * inertia * free)
                         .ldlt()
@@ -224,10 +224,11 @@ void MuscleJaw::move_hyoid() {
   if (settings_.hyoid == Mode::free)
     hyoid_.step(step_s(), jaw_.world.settings().gravity_mm_s2);
   else
-    hyoid_.carry({Eigen::Quaterniond::Identity(), settings_.hyoid == Mode::prescribed
-                                                      ? settings_.hyoid_way(time_s_ + step_s())
-                                                      : Vector3d(Vector3d::Zero())},
-                 step_s());
+    hyoid_.carry(
+        {Eigen::Quaterniond::Identity(), settings_.hyoid == Mode::prescribed
+                                             ? settings_.hyoid_displacement(time_s_ + step_s())
+                                             : Vector3d(Vector3d::Zero())},
+        step_s());
 }
 
 bool MuscleJaw::step(std::span<const double> excitations, int threads) {
@@ -244,7 +245,7 @@ bool MuscleJaw::step(std::span<const double> excitations, int threads) {
   return true;
 }
 
-/// Unit force on the mandible and its torque about the centre of mass; zero where it does not pull.
+/// Unit force on the mandible and its torque about the centre of mass; zero if not attached there.
 Vector6d MuscleJaw::direction(std::size_t muscle, const Line& now) const {
   Vector6d out = Vector6d::Zero();
   if (forces_[muscle] < 0) return out;
@@ -289,7 +290,7 @@ Eigen::Matrix<double, 3, 6> MuscleJaw::held() const {
   };
   for (std::size_t k = 0; k < 2; ++k) {
     const Vector3d seat = jaw_.condyles[k], now = pose() * seat;
-    const double slope = jaw_.drop_mm[k].derivative(std::max(seat.y() - now.y(), 0.0));
+    const double slope = jaw_.inferior_mm[k].derivative(std::max(seat.y() - now.y(), 0.0));
     row(static_cast<int>(k), now, Vector3d(0, -slope, 1).normalized());
   }
   row(2, pose() * (0.5 * (jaw_.condyles[0] + jaw_.condyles[1])), Vector3d::UnitX());

@@ -6,14 +6,15 @@ namespace condyle {
 
 Rest run_to_rest(RigidWorld& world, std::span<const int> bodies, const RestSettings& settings,
                  int threads, const Progress& progress) {
-  constexpr double radius_mm = 50;  // of a jaw; smaller pieces are stiller than asked for
+  // of a jaw; smaller pieces are held to a stricter limit than requested
+  constexpr double radius_mm = 50;
   Rest rest;
-  constexpr int told_steps = 25;  // from one report of progress to the next
+  constexpr int report_every_steps = 25;  // steps between reports of progress
   int steps = 0;
   double still_s = 0;
   while (rest.seconds < settings.longest_s && still_s < settings.still_for_s) {
-    if (steps++ % told_steps == 0)
-      report(progress, "letting go", rest.seconds / settings.longest_s);
+    if (steps++ % report_every_steps == 0)
+      report(progress, "releasing", rest.seconds / settings.longest_s);
     const auto step = world.step(threads);
     if (!step.taken) return rest;
     rest.seconds += world.settings().step_s;

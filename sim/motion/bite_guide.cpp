@@ -7,38 +7,39 @@
 #include <functional>
 #include <vector>
 
-#include "sim/motion/condylar_path.h"
+#include "sim/motion/condylar_kinematics.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double touch_mm = 0.01;
-constexpr double most_closed = -10 * radian_per_degree, most_open = 25 * radian_per_degree;
-constexpr double same_bite_mm = 0.4;  // teeth this near are in their bite
+constexpr double contact_mm = 0.01;
+constexpr double closed_limit = -10 * degree, open_limit = 25 * degree;
+constexpr double same_bite_mm = 0.4;  // teeth closer than this are in their bite
 constexpr double fade_mm = 3;
-constexpr double usual_table_deg = 20;
+constexpr double default_table_deg = 20;
 
-/// Triangles of a body's bones and teeth (of its teeth alone) with a corner that `wanted` takes.
-TriMesh gathered(const Case& patient, Body body, bool teeth_alone,
-                 const std::function<bool(const Vector3d&)>& wanted) {
+/// Triangles of a body's bones and teeth (or of its teeth alone) with a vertex that `selects`
+/// accepts.
+TriMesh gathered(const Case& patient, BodyId body, bool teeth_alone,
+                 const std::function<bool(const Vector3d&)>& selects) {
   TriMesh out;
   for (const auto& part : patient.parts) {
-    if (!collides(part.role) || body_of(part.role) != body) continue;
+    if (!collides(part.role) || part.body != body) continue;
     if (teeth_alone && !is_teeth(part.role)) continue;
     std::vector<int> index(part.mesh.vertices.size(), -1);
     for (const auto& t : part.mesh.triangles) {
       const auto& v = part.mesh.vertices;
-      if (!wanted(v[t[0]]) && !wanted(v[t[1]]) && !wanted(v[t[2]])) continue;
+      if (!selects(v[t[0]]) && !selects(v[t[1]]) && !selects(v[t[2]])) continue;
       Eigen::Vector3i copy;
       for (int k = 0; k < 3; ++k) {
-        int& place = index[t[k]];
-        if (place < 0) {
-          place = static_cast<int>(out.vertices.size());
+        int& copied = index[t[k]];
+        if (copied < 0) {
+          copied = static_cast<int>(out.vertices.size());
           out.vertices.push_back(v[t[k]]);
         }
-        copy[k] = place;
+        copy[k] = copied;
       }
       out.triangles.push_back(copy);
     }
@@ -55,55 +56,57 @@ bool has_teeth(const Case& patient) {
 BiteGuide::BiteGuide(const Case& patient, const JawJoints& joints,
                      const MotionParameters& parameters)
     : joints_(joints) {
-  // Without teeth of their own, the biting surfaces lie in front of the rami, within some 20 mm of
-  // the incisal points' height.
+  // Without separate teeth, the occluding surfaces are those in front of the rami within 20 mm of
+  // the height of the incisal points.
   const Vector3d hinge = 0.5 * (joints.condyle(JawSide::left) + joints.condyle(JawSide::right));
   const Vector3d& incisor = joints.incisor();
   const Vector3d upper_incisor = patient.landmarks.find("upper_incisal_point").value_or(incisor);
   const double behind = hinge.y() + 0.4 * (incisor.y() - hinge.y());
   constexpr double beside_mm = 20;
   const TriMesh lower = gathered(
-      patient, Body::mandible, has_teeth(patient),
+      patient, patient.jaw.lower_arch, has_teeth(patient),
       [&](const Vector3d& p) { return p.y() < behind && p.z() > incisor.z() - beside_mm; });
   const TriMesh upper = gathered(
-      patient, Body::cranium, has_teeth(patient),
+      patient, patient.jaw.upper_arch, has_teeth(patient),
       [&](const Vector3d& p) { return p.y() < behind && p.z() < upper_incisor.z() + beside_mm; });
   if (parameters.incisal_guidance_deg || lower.empty() || upper.empty() || !has_teeth(patient))
-    table_slope_ =
-        std::tan(parameters.incisal_guidance_deg.value_or(usual_table_deg) * radian_per_degree);
+    table_slope_ = std::tan(parameters.incisal_guidance_deg.value_or(default_table_deg) * degree);
   if (lower.empty() || upper.empty()) {
-    notes_ = "no teeth to guide: an incisal table guides protrusion and laterotrusion";
+    notes_ = "without teeth, an incisal table guides protrusion and laterotrusion";
     return;
   }
   lower_.emplace(lower);
   upper_.emplace(upper);
   for (const auto& v : lower.vertices)
     lever_mm_ = std::max(lever_mm_, std::hypot(v.y() - hinge.y(), v.z() - hinge.z()));
-  lever_mm_ *= 1.1;  // a path that falls adds to what the rotation does
-  const double at_rest = touch_theta({});
+  lever_mm_ *= 1.1;  // allowance for the inferior translation of the condyles
+  const double at_rest = contact_theta({});
   TrianglePair start;
   const double apart = distance(*upper_, {}, *lower_, {}, start).distance_mm;
-  if (at_rest <= most_closed) {
-    notes_ = "the case's teeth do not meet when the jaw closes: its pose at rest is its bite";
+  if (at_rest <= closed_limit) {
+    notes_ =
+        "the teeth of the case do not meet when the jaw closes: its rest pose is taken as the bite";
   } else if (apart > same_bite_mm) {
     bite_theta_ = at_rest;
     notes_ = fmt::format(
-        "the case's teeth are {:.1f} mm apart at rest; they meet when the jaw closes by {:.1f} deg",
-        apart, -at_rest / radian_per_degree);
+        "the teeth of the case are {:.1f} mm apart at rest; they meet when the jaw closes by "
+        "{:.1f} deg",
+        apart, -at_rest / degree);
   } else {
     baseline_ = at_rest;
-    if (at_rest > 0.1 * radian_per_degree)
+    if (at_rest > 0.1 * degree)
       notes_ = fmt::format(
-          "crowns overlap at rest: free from {:.1f} deg of opening on; guidance takes the bite at "
-          "rest for closed",
-          at_rest / radian_per_degree);
+          "crowns overlap at rest and separate at {:.1f} deg of opening; guidance takes the rest "
+          "pose "
+          "as closed",
+          at_rest / degree);
   }
   known_[{0, 0, 0}] = bite_theta_;
 }
 
-/// Closes from where nothing touches, by what the distance allows, until something does.
-double BiteGuide::touch_theta(const JawInputs& at) {
-  constexpr double raise = 2 * radian_per_degree;
+/// Closes from an open pose in steps that the distance allows, until the surfaces touch.
+double BiteGuide::contact_theta(const JawInputs& at) {
+  constexpr double raise = 2 * degree;
   JawInputs in = at;
   const auto apart = [&](double theta) {
     in.theta = theta;
@@ -111,25 +114,25 @@ double BiteGuide::touch_theta(const JawInputs& at) {
     near_ = now.triangles;
     return now.distance_mm;
   };
-  double theta = std::clamp(last_ + 0.5 * raise, 0.0, most_open);
+  double theta = std::clamp(last_ + 0.5 * raise, 0.0, open_limit);
   double gap = apart(theta);
-  while (gap <= touch_mm && theta < most_open) gap = apart(theta += raise);
-  for (int i = 0; i < 200 && gap > touch_mm && theta > most_closed; ++i)
+  while (gap <= contact_mm && theta < open_limit) gap = apart(theta += raise);
+  for (int i = 0; i < 200 && gap > contact_mm && theta > closed_limit; ++i)
     gap = apart(theta -= std::max(gap / lever_mm_, 1e-5));
   last_ = theta;
-  return std::max(theta, most_closed);
+  return std::max(theta, closed_limit);
 }
 
-/// Rotation at which the incisal point stands on the table: it drops by the table's slope times its
-/// way forward or aside.
+/// Rotation at which the incisal point is on the table, which it lowers by the table's slope times
+/// its forward or lateral displacement.
 double BiteGuide::table_theta(const JawInputs& at) const {
   JawInputs in = at;
-  double low = most_closed, high = most_open;
+  double low = closed_limit, high = open_limit;
   for (int i = 0; i < 50; ++i) {
     in.theta = 0.5 * (low + high);
-    const Vector3d way = joints_.incisor(in) - joints_.incisor();
-    const double aside = std::hypot(way.x(), std::max(0.0, -way.y()));
-    (-way.z() < *table_slope_ * aside ? low : high) = in.theta;
+    const Vector3d d = joints_.incisor(in) - joints_.incisor();
+    const double aside = std::hypot(d.x(), std::max(0.0, -d.y()));
+    (-d.z() < *table_slope_ * aside ? low : high) = in.theta;
   }
   return high;
 }
@@ -138,13 +141,13 @@ double BiteGuide::theta(const JawInputs& at) {
   const auto rounded = [](double value) { return std::lround(value * 1e5); };
   const std::tuple key{rounded(at.left_mm), rounded(at.right_mm), rounded(at.shift_mm)};
   if (const auto found = known_.find(key); found != known_.end()) return found->second;
-  double least = most_closed;
+  double least = closed_limit;
   if (lower_) {
-    const double way =
+    const double displacement =
         std::max({std::abs(at.left_mm), std::abs(at.right_mm), std::abs(at.shift_mm)});
-    const double u = std::clamp(way / fade_mm, 0.0, 1.0);
-    // What the crowns overlap by at rest is not kept up where others meet.
-    least = touch_theta(at) - baseline_ * (1 - u * u * (3 - 2 * u));
+    const double u = std::clamp(displacement / fade_mm, 0.0, 1.0);
+    // The overlap of the crowns at rest does not apply where other teeth meet.
+    least = contact_theta(at) - baseline_ * (1 - u * u * (3 - 2 * u));
   }
   if (table_slope_ && bite_theta_ == 0) least = std::max(least, table_theta(at));
   return known_[key] = least;

@@ -11,33 +11,33 @@
 
 namespace condyle {
 
-/// How far the teeth (or what bites in their place) let the jaw close while its condyles are
-/// anywhere: the rotation at which the first of them touch when the jaw closes from above. Where
-/// the case's crowns overlap at rest, that overlap is the baseline, given up over the first 3 mm.
-/// An incisal table, where there is one, stops the closing jaw too.
+/// Tooth guidance: for given condylar positions, the rotation at which the teeth (or the occluding
+/// surfaces in their place) first touch as the jaw closes. Where the crowns overlap at rest, that
+/// overlap is the baseline, faded out over the first 3 mm. An incisal table, if present, also
+/// limits closing.
 class BiteGuide {
  public:
   BiteGuide(const Case& patient, const JawJoints& joints, const MotionParameters& parameters);
 
-  /// Least rotation, rad, with the condyles and shift of `at`. Remembers what it was asked; not for
-  /// several threads at once.
+  /// Minimum rotation, rad, for the condylar positions and shift of `at`. Caches results; not
+  /// thread-safe.
   double theta(const JawInputs& at);
 
-  /// Rotation that closes the case's own pose into its bite: 0 where the case is in its bite.
+  /// Rotation from the rest pose of the case to its bite, rad; 0 where the case is in its bite.
   double bite_theta() const { return bite_theta_; }
 
-  /// Teeth, or surfaces in their place, guide; not the table alone.
+  /// Whether teeth, or surfaces in their place, guide, rather than the table alone.
   bool on_teeth() const { return lower_.has_value(); }
-  /// What guides, for people.
+  /// Description of the guidance.
   const std::string& notes() const { return notes_; }
 
  private:
-  double touch_theta(const JawInputs& at);
+  double contact_theta(const JawInputs& at);
   double table_theta(const JawInputs& at) const;
 
   const JawJoints& joints_;
   std::optional<CollisionMesh> upper_, lower_;
-  double lever_mm_ = 0;  // farthest of the lower surface from the condyles' line
+  double lever_mm_ = 0;  // largest distance of the lower surface from the intercondylar axis
   double baseline_ = 0, bite_theta_ = 0;
   std::optional<double> table_slope_;
   TrianglePair near_;

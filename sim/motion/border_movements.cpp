@@ -1,4 +1,4 @@
-// The border movements: as far as joints and teeth let the jaw go, all round.
+// The border movements: the limits of motion set by joints and teeth.
 
 #include <algorithm>
 #include <cmath>
@@ -8,49 +8,51 @@
 namespace condyle {
 namespace {
 
-constexpr double usual_retrusion_mm = 0.7;
+constexpr double default_retrusion_mm = 0.7;
 
 }  // namespace
 
-/// The condyles stop before they come much nearer to the rear wall than at rest.
+/// Retrusion ends where the gap to the rear wall of the fossa is half that at rest.
 double Movements::retruded_mm() {
-  const double wanted = parameters_.retrusion_mm.value_or(usual_retrusion_mm);
-  if (!joints_->surfaces()) return wanted;
-  constexpr double step_mm = 0.05, least_share = 0.5;
+  const double requested = parameters_.retrusion_mm.value_or(default_retrusion_mm);
+  if (!joints_->surfaces()) return requested;
+  constexpr double step_mm = 0.05, min_fraction = 0.5;
   TrianglePair left, right;
   double reached = 0;
-  for (double s = step_mm; s <= wanted + 1e-9; s += step_mm) {
+  for (double s = step_mm; s <= requested + 1e-9; s += step_mm) {
     const Pose X_CM = joints_->pose(at_condyles(-s, -s));
     const auto& joint = *joints_->surfaces();
-    if (joint.gap_mm(JawSide::left, X_CM, left) < least_share * joint.rest_gap_mm(JawSide::left) ||
-        joint.gap_mm(JawSide::right, X_CM, right) < least_share * joint.rest_gap_mm(JawSide::right))
+    if (joint.gap_mm(JawSide::left, X_CM, left) < min_fraction * joint.rest_gap_mm(JawSide::left) ||
+        joint.gap_mm(JawSide::right, X_CM, right) <
+            min_fraction * joint.rest_gap_mm(JawSide::right))
       break;
     reached = s;
   }
-  if (reached < wanted - step_mm)
-    say("retrusion stops where the condyle has half its gap to the rear of the fossa");
+  if (reached < requested - step_mm)
+    add_note("retrusion stops where the gap of a condyle to the rear wall of the fossa is halved");
   return reached;
 }
 
-/// A pure hinge first where the fossa leaves room for it; else as the jaw opens anyway.
+/// Starts with a pure hinge where the fossa permits it; else the coupling of the opening.
 Coupling Movements::hinge_border() const {
   Coupling hinge = limits_.coupling;
   hinge.early = 0;
   if (!joints_->surfaces() || parameters_.early_translation) return limits_.coupling;
-  constexpr double least_share = 0.5;
+  constexpr double min_fraction = 0.5;
   TrianglePair left, right;
-  for (double theta = 0; theta < hinge.hinge; theta += radian_per_degree) {
+  for (double theta = 0; theta < hinge.hinge; theta += degree) {
     const Pose X_CM = joints_->pose({theta, 0, 0, 0});
     const auto& joint = *joints_->surfaces();
-    if (joint.gap_mm(JawSide::left, X_CM, left) < least_share * joint.rest_gap_mm(JawSide::left) ||
-        joint.gap_mm(JawSide::right, X_CM, right) < least_share * joint.rest_gap_mm(JawSide::right))
+    if (joint.gap_mm(JawSide::left, X_CM, left) < min_fraction * joint.rest_gap_mm(JawSide::left) ||
+        joint.gap_mm(JawSide::right, X_CM, right) <
+            min_fraction * joint.rest_gap_mm(JawSide::right))
       return limits_.coupling;
   }
   return hinge;
 }
 
-/// From the teeth (0) to maximum opening (1): the orbiting condyle stays forward, the other one
-/// follows as the jaw opens.
+/// From tooth contact (progress 0) to maximum opening (1): the orbiting condyle stays forward while
+/// the other one follows the opening.
 JawInputs Movements::lateral_border(bool to_left, double forward_mm, double bite,
                                     double progress) const {
   const double widest = limits_.widest_theta, theta = bite + (widest - bite) * progress;
@@ -62,7 +64,8 @@ JawInputs Movements::lateral_border(bool to_left, double forward_mm, double bite
   return in;
 }
 
-/// What of a forward travel aside the bones leave free, on the teeth and along the border.
+/// Largest forward travel of the orbiting condyle without contact of bone, at tooth contact and
+/// along the border.
 double Movements::free_aside(bool to_left, double forward_mm, bool whole_border) {
   constexpr double step_mm = 0.25;
   const auto is_free = [&](double s) {
@@ -75,8 +78,8 @@ double Movements::free_aside(bool to_left, double forward_mm, bool whole_border)
   double s = forward_mm;
   while (s > step_mm && !is_free(s)) s -= step_mm;
   if (s < forward_mm)
-    say(std::string("laterotrusion to the ") + (to_left ? "left" : "right") +
-        " ends where bone meets bone");
+    add_note(std::string("laterotrusion to the ") + (to_left ? "left" : "right") +
+             " ends where bone meets bone");
   return s;
 }
 
@@ -94,12 +97,12 @@ std::vector<std::pair<std::string, Movements::Leg>> Movements::border_legs() {
   if (back > 0) legs.emplace_back("retruded contact", straight_glide(0, 0, -back, -back));
   const double start = biting(-back, -back).theta;
   const Coupling hinge = hinge_border();
-  const double share = open / std::max(hinge.forward_mm(widest), 1e-9);
+  const double ratio = open / std::max(hinge.forward_mm(widest), 1e-9);
   legs.emplace_back("posterior border", leg(
                                             [=](double p) {
                                               const double theta = start + (widest - start) * p;
                                               const double s =
-                                                  share * hinge.forward_mm(std::max(theta, 0.0)) -
+                                                  ratio * hinge.forward_mm(std::max(theta, 0.0)) -
                                                   back * (1 - p);
                                               return inputs(theta, s, s);
                                             },
@@ -117,7 +120,7 @@ std::vector<std::pair<std::string, Movements::Leg>> Movements::border_legs() {
     double s = forward_aside_for(aside_mm, to_left, "laterotrusion", false);
     if (!parameters_.laterotrusion_mm) s = free_aside(to_left, s, true);
     const double bite = (to_left ? biting(0, s) : biting(s, 0)).theta;
-    // The border as it is read later: this object is not there any more then.
+    // Tabulated, because the leg outlives this object.
     constexpr int samples = 64;
     std::vector<double> progress, thetas, lefts, rights;
     for (int i = 0; i <= samples; ++i) {
@@ -144,7 +147,7 @@ std::vector<std::pair<std::string, Movements::Leg>> Movements::border_legs() {
 }
 
 void Movements::posselt(const Pace& pace) {
-  wants_borders_ = true;
+  traces_borders_ = true;
   if (here_.theta != biting(0, 0).theta || here_.left_mm != 0 || here_.right_mm != 0) {
     begin("closing");
     close({});
@@ -152,12 +155,13 @@ void Movements::posselt(const Pace& pace) {
   auto legs = border_legs();
   std::optional<double> each = pace.duration_s;
   double whole = 0;
-  for (const auto& [name, made] : legs) whole += way_mm(made);
+  for (const auto& [name, made] : legs) whole += path_length_mm(made);
   for (auto& [name, made] : legs) {
-    const double way = way_mm(made);
+    const double length = path_length_mm(made);
     begin(name);
-    append(std::move(made), {.duration_s = each ? std::optional(*each * way / whole) : std::nullopt,
-                             .speed_mm_s = pace.speed_mm_s});
+    append(std::move(made),
+           {.duration_s = each ? std::optional(*each * length / whole) : std::nullopt,
+            .speed_mm_s = pace.speed_mm_s});
   }
 }
 

@@ -8,14 +8,14 @@
 
 #include "engine/core/error.h"
 #include "engine/math/smooth_step.h"
-#include "sim/motion/condylar_path.h"
+#include "sim/motion/condylar_kinematics.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double usual_bennett_deg = 7.5, usual_side_shift_mm = 0.3;
+constexpr double default_bennett_deg = 7.5, default_side_shift_mm = 0.3;
 constexpr double known_joint_front_gap_mm = 1.3;
 constexpr double side_shift_length_mm = 1;
 
@@ -30,7 +30,7 @@ Vector3d needed(const Case& patient, const char* name) {
 
 }  // namespace
 
-void JawJoints::place_condyles(const Case& patient, const MotionParameters& parameters) {
+void JawJoints::set_condyles(const Case& patient, const MotionParameters& parameters) {
   incisor_ = needed(patient, "lower_incisal_point");
   articulator_ = parameters.bonwill_mm || parameters.balkwill_deg;
   const bool marked =
@@ -45,11 +45,10 @@ void JawJoints::place_condyles(const Case& patient, const MotionParameters& para
                       patient.name, left_.x(), right_.x()));
   }
   if (!articulator_) return;
-  constexpr double usual_bonwill_mm = 104, usual_balkwill_deg = 26;
-  const double side = parameters.bonwill_mm.value_or(marked ? bonwill_mm() : usual_bonwill_mm);
+  constexpr double default_bonwill_mm = 104, default_balkwill_deg = 26;
+  const double side = parameters.bonwill_mm.value_or(marked ? bonwill_mm() : default_bonwill_mm);
   const double angle =
-      parameters.balkwill_deg.value_or(marked ? balkwill_deg() : usual_balkwill_deg) *
-      radian_per_degree;
+      parameters.balkwill_deg.value_or(marked ? balkwill_deg() : default_balkwill_deg) * degree;
   const double width = marked ? (left_ - right_).norm() : side;
   if (2 * side < 1.1 * width)
     throw InputError(
@@ -63,12 +62,12 @@ void JawJoints::place_condyles(const Case& patient, const MotionParameters& para
 
 JawJoints::JawJoints(const Case& patient, const MotionParameters& parameters, JointReach reach,
                      int threads) {
-  place_condyles(patient, parameters);
-  bennett_slope_ = std::tan(parameters.bennett_deg.value_or(usual_bennett_deg) * radian_per_degree);
-  side_shift_mm_ = parameters.side_shift_mm.value_or(usual_side_shift_mm);
-  // Condyles placed as in an articulator are not the patient's: their fossae are none.
+  set_condyles(patient, parameters);
+  bennett_slope_ = std::tan(parameters.bennett_deg.value_or(default_bennett_deg) * degree);
+  side_shift_mm_ = parameters.side_shift_mm.value_or(default_side_shift_mm);
+  // Condyles placed as in an articulator have no fossae.
   if (!articulator_) surfaces_ = JointSurfaces::find(patient);
-  bool seated = false, given = false;
+  bool from_fossa = false, given = false;
   for (const JawSide which : {JawSide::left, JawSide::right}) {
     Side& joint = sides_[which == JawSide::left ? 0 : 1];
     const auto inclination =
@@ -84,40 +83,42 @@ JawJoints::JawJoints(const Case& patient, const MotionParameters& parameters, Jo
                                 : gap.seated_mm);
       const double widest =
           reach == JointReach::aside ? 0.5 + side_shift_mm_ + 14 * bennett_slope_ : 0;
-      joint.seats.emplace(*surfaces_, which,
-                          SeatTable::Settings{.center = condyle(which),
-                                              .axis = (left_ - right_).normalized(),
-                                              .gap = gap,
-                                              .widest_shift_mm = widest},
+      joint.table.emplace(*surfaces_, which,
+                          CondylarPathTable::Settings{.center = condyle(which),
+                                                      .axis = (left_ - right_).normalized(),
+                                                      .gap = gap,
+                                                      .widest_shift_mm = widest},
                           threads);
-      seated = true;
+      from_fossa = true;
     } else if (patient.condylar_path && !articulator_) {
-      joint.path = known_path(*patient.condylar_path);
+      joint.path = path_of_case(*patient.condylar_path);
     } else {
       joint.path = average_path();
     }
   }
   well_known_ = patient.condylar_path.has_value() && !articulator_;
   if (given)
-    guide_ = seated ? "along a path of given inclination on one side, on its fossa on the other"
-                    : "along a path of given inclination";
-  else if (seated)
-    guide_ = "condyles keep their disc's gap to the fossa";
+    guide_ = from_fossa
+                 ? "along a path of given inclination on one side, along the fossa on the other"
+                 : "along a path of given inclination";
+  else if (from_fossa)
+    guide_ = "condyles keep the disc gap to the fossa";
   else if (patient.condylar_path && !articulator_)
     guide_ = "along the patient's own condylar path";
   else
-    guide_ = "along an average condylar path, for want of a fossa";
+    guide_ = "along an average condylar path, because no fossa was found";
 }
 
-double JawJoints::drop_mm(JawSide which, double forward_mm, double theta, double shift_mm) const {
+double JawJoints::inferior_translation_mm(JawSide which, double forward_mm, double theta,
+                                          double shift_mm) const {
   const Side& joint = side(which);
-  return joint.seats ? joint.seats->drop_mm(forward_mm, theta, shift_mm)
+  return joint.table ? joint.table->inferior_translation_mm(forward_mm, theta, shift_mm)
                      : joint.path(std::max(forward_mm, 0.0));
 }
 
 double JawJoints::inclination_deg(JawSide which) const {
   constexpr double secant_mm = 5;
-  return std::atan2(drop_mm(which, secant_mm), secant_mm) / radian_per_degree;
+  return std::atan2(inferior_translation_mm(which, secant_mm), secant_mm) / degree;
 }
 
 double JawJoints::bennett_shift_mm(double left_mm, double right_mm) const {
@@ -131,10 +132,11 @@ Pose JawJoints::pose(const JawInputs& in) const {
   const Vector3d across = left_ - right_, middle = 0.5 * (left_ + right_);
   const double width = across.norm();
   const double dy = across.y() - in.left_mm + in.right_mm;
-  const double dz = across.z() - drop_mm(JawSide::left, in.left_mm, in.theta, in.shift_mm) +
-                    drop_mm(JawSide::right, in.right_mm, in.theta, in.shift_mm);
-  // The condyles stay as far apart as they are: what the jaw loses across when it stands aslant,
-  // the working side makes good; the orbiting condyle is where it was told to be.
+  const double dz = across.z() -
+                    inferior_translation_mm(JawSide::left, in.left_mm, in.theta, in.shift_mm) +
+                    inferior_translation_mm(JawSide::right, in.right_mm, in.theta, in.shift_mm);
+  // The intercondylar distance is constant: the orbiting condyle is where the inputs put it, and
+  // the working condyle compensates for the foreshortening of an oblique jaw.
   const double dx = std::sqrt(std::max(width * width - dy * dy - dz * dz, 0.01 * width * width));
   const double ahead = in.left_mm - in.right_mm;
   const double side = (ahead > 0 ? 1 : -1) * smooth_step(0.5 * std::abs(ahead));
@@ -142,8 +144,9 @@ Pose JawJoints::pose(const JawInputs& in) const {
   const Vector3d at(
       middle.x() + in.shift_mm + 0.5 * side * (across.x() - dx),
       middle.y() - 0.5 * (in.left_mm + in.right_mm),
-      middle.z() - 0.5 * (drop_mm(JawSide::left, in.left_mm, in.theta, in.shift_mm) +
-                          drop_mm(JawSide::right, in.right_mm, in.theta, in.shift_mm)));
+      middle.z() -
+          0.5 * (inferior_translation_mm(JawSide::left, in.left_mm, in.theta, in.shift_mm) +
+                 inferior_translation_mm(JawSide::right, in.right_mm, in.theta, in.shift_mm)));
   const Eigen::Quaterniond slant = Eigen::Quaterniond::FromTwoVectors(across, now);
   const Eigen::Quaterniond R = (Eigen::AngleAxisd(in.theta, now.normalized()) * slant).normalized();
   return {R, at - R * middle};
@@ -155,7 +158,7 @@ double JawJoints::bonwill_mm() const {
 
 double JawJoints::balkwill_deg() const {
   const Vector3d up = 0.5 * (left_ + right_) - incisor_;
-  return std::atan2(up.z(), std::hypot(up.x(), up.y())) / radian_per_degree;
+  return std::atan2(up.z(), std::hypot(up.x(), up.y())) / degree;
 }
 
 }  // namespace condyle

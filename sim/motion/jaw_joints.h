@@ -9,45 +9,47 @@
 #include "engine/math/pchip.h"
 #include "engine/math/pose.h"
 #include "sim/case/case.h"
+#include "sim/motion/condylar_path_table.h"
 #include "sim/motion/joint_surfaces.h"
-#include "sim/motion/seat_table.h"
 
 namespace condyle {
 
-/// The four inputs that tell a jaw's pose: six freedoms less the two condyles' contact with their
-/// fossae.
+/// The four inputs that determine a jaw's pose: six degrees of freedom less the contact of both
+/// condyles with their fossae.
 struct JawInputs {
   double theta = 0;                  // rad of opening about the line through the condyles
   double left_mm = 0, right_mm = 0;  // forward travel (toward -y) of each condyle
   double shift_mm = 0;               // of the jaw to the left
 };
 
-/// Whether a motion also goes aside: seats are then sought beside the straight path, too.
+/// Whether a motion includes lateral movement, so that condylar paths are also tabulated for
+/// lateral shifts.
 enum class JointReach { straight, aside };
 
-/// The patient's two joints as four inputs move them: each condyle follows its path down, the
-/// distance between the condyles stays as it is, and the jaw turns about the line through them.
+/// The patient's two joints driven by four inputs: each condyle follows its path, the intercondylar
+/// distance is constant, and the jaw rotates about the intercondylar axis.
 /// source: four inputs after the jaw's two joint-surface constraints; Bennett angle and immediate
 /// side shift (an exponential of 1 mm) of the orbiting condyle.
 class JawJoints {
  public:
-  /// The path of a side is, in this order: one of the given inclination; the patient's fossa at the
-  /// disc gap; the path in the case; an average one.
-  /// throws: InputError naming landmarks that are missing or impossible.
+  /// The path of a side is, in order of precedence: one of the given inclination; the patient's
+  /// fossa at the disc gap; the path in the case; an average path. throws: InputError naming
+  /// missing or implausible landmarks.
   JawJoints(const Case& patient, const MotionParameters& parameters, JointReach reach, int threads);
 
   /// Pose of the mandible, rest to now.
   Pose pose(const JawInputs& inputs) const;
 
-  /// Shift that Bennett angle and immediate side shift give to a jaw whose condyles are forward by
-  /// so much: toward the side of the condyle that stays behind.
+  /// Lateral shift due to Bennett angle and immediate side shift for the given forward travels, mm:
+  /// toward the side of the condyle that stays behind.
   double bennett_shift_mm(double left_mm, double right_mm) const;
 
-  /// Drop of the condyle centre, mm.
-  double drop_mm(JawSide side, double forward_mm, double theta = 0, double shift_mm = 0) const;
+  /// Inferior translation of the condyle centre, mm.
+  double inferior_translation_mm(JawSide side, double forward_mm, double theta = 0,
+                                 double shift_mm = 0) const;
 
-  /// Secant of the condyle's path over its first 5 mm forward to the horizontal, deg; positive down.
-  /// The jaw does not turn.
+  /// Secant of the condyle's path over its first 5 mm forward to the horizontal, deg; positive
+  /// down. Without rotation of the jaw.
   double inclination_deg(JawSide side) const;
 
   const Eigen::Vector3d& incisor() const { return incisor_; }  // lower incisal point at rest
@@ -55,7 +57,7 @@ class JawJoints {
     return side == JawSide::left ? left_ : right_;
   }
   Eigen::Vector3d incisor(const JawInputs& inputs) const { return pose(inputs) * incisor_; }
-  /// Drop of the lower incisal point from rest, mm.
+  /// Downward displacement of the lower incisal point from rest, mm.
   double opening_mm(const JawInputs& inputs) const { return incisor_.z() - incisor(inputs).z(); }
 
   /// Condyle centre to lower incisal point, mean of both sides, mm; and the angle of the triangle
@@ -65,16 +67,16 @@ class JawJoints {
 
   /// The fossae, where they guide.
   const std::optional<JointSurfaces>& surfaces() const { return surfaces_; }
-  /// The case tells the joint's own path: how far it opens is not a guess.
+  /// Whether the case contains the condylar path, so that the maximum opening is not estimated.
   bool well_known() const { return well_known_; }
-  /// Where the paths come from, for people.
+  /// Description of the source of the paths.
   const std::string& guide() const { return guide_; }
 
  private:
-  void place_condyles(const Case& patient, const MotionParameters& parameters);
+  void set_condyles(const Case& patient, const MotionParameters& parameters);
   struct Side {
-    std::optional<SeatTable> seats;
-    Pchip path;  // drop by forward travel, where there are no seats
+    std::optional<CondylarPathTable> table;
+    Pchip path;  // inferior translation by forward travel, without a table
   };
   const Side& side(JawSide which) const { return sides_[which == JawSide::left ? 0 : 1]; }
 

@@ -6,24 +6,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/motion/condylar_path.h"
+#include "sim/motion/condylar_kinematics.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double secant_mm = 5;         // forward, over which an inclination is told
-constexpr double path_shown_mm = 3;     // forward travel that shows a path
-constexpr double path_used_mm = 8;      // of it
-constexpr double orbits_by_mm = 1;      // farther forward than the other side
-constexpr double together_mm = 1;       // both sides forward alike
-constexpr double turned_least_deg = 5;  // that shows a hinge
-constexpr double shift_length_mm = 1;   // over which the immediate side shift happens
-constexpr int least_rows = 8;
+constexpr double secant_mm = 5;      // forward travel over which the inclination is measured
+constexpr double path_shown_mm = 3;  // forward travel needed to determine a path
+constexpr double path_used_mm = 8;   // forward travel used for the fit
+constexpr double orbits_by_mm =
+    1;                             // lead over the other side that makes a condyle the orbiting one
+constexpr double together_mm = 1;  // difference of forward travel in symmetric motion
+constexpr double min_turn_deg = 5;  // rotation needed to determine a hinge phase
+constexpr double shift_length_mm =
+    1;  // forward travel over which the immediate side shift develops
+constexpr int min_rows = 8;
 
 struct Row {
-  double turn_deg = 0;                   // opening
+  double turn_deg = 0;                   // opening rotation
   double forward[2] = {}, drop[2] = {};  // left, right; mm
   double medial[2] = {};
 };
@@ -40,23 +42,23 @@ std::vector<Row> rows_of(const Case& patient, const Motion& motion, const Vector
     level = Eigen::AngleAxisd(-*slope, Vector3d::UnitX());
   std::vector<Row> rows;
   for (const double time : times) {
-    const Pose X = motion.wanted(time);
+    const Pose X = motion.target(time);
     Row row;
     const Eigen::AngleAxisd turn(X.R.w() < 0 ? Eigen::Quaterniond(-X.R.coeffs()) : X.R);
-    row.turn_deg = turn.angle() * turn.axis().x() / radian_per_degree;
+    row.turn_deg = turn.angle() * turn.axis().x() / degree;
     for (int side = 0; side < 2; ++side) {
       const Vector3d& seat = side == 0 ? left : right;
-      const Vector3d way = level * (X * seat - seat);
-      row.forward[side] = -way.y();
-      row.drop[side] = -way.z();
-      row.medial[side] = side == 0 ? -way.x() : way.x();
+      const Vector3d d = level * (X * seat - seat);
+      row.forward[side] = -d.y();
+      row.drop[side] = -d.z();
+      row.medial[side] = side == 0 ? -d.x() : d.x();
     }
     rows.push_back(row);
   }
   return rows;
 }
 
-/// Angle of the secant, from a cubic through the seat.
+/// Angle of the secant of a cubic through the rest position.
 std::optional<double> inclination_deg(const std::vector<Row>& rows, int side) {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Vector3d b = Vector3d::Zero();
@@ -71,10 +73,10 @@ std::optional<double> inclination_deg(const std::vector<Row>& rows, int side) {
     farthest = std::max(farthest, f);
     count += f > path_shown_mm / 2;
   }
-  if (farthest < path_shown_mm || count < least_rows) return std::nullopt;
+  if (farthest < path_shown_mm || count < min_rows) return std::nullopt;
   const Vector3d c = A.ldlt().solve(b);
   const double f = std::min(secant_mm, farthest);
-  return std::atan(c[0] + f * (c[1] + f * c[2])) / radian_per_degree;
+  return std::atan(c[0] + f * (c[1] + f * c[2])) / degree;
 }
 
 void fit_side_shift(const std::vector<Row>& rows, int side, JointFit::Side& out) {
@@ -91,13 +93,13 @@ void fit_side_shift(const std::vector<Row>& rows, int side, JointFit::Side& out)
     farthest = std::max(farthest, f);
     ++count;
   }
-  if (farthest < path_shown_mm || count < least_rows) return;
+  if (farthest < path_shown_mm || count < min_rows) return;
   const Eigen::Vector2d c = A.ldlt().solve(b);
   out.side_shift_mm = c[0];
-  out.bennett_deg = std::atan(c[1]) / radian_per_degree;
+  out.bennett_deg = std::atan(c[1]) / degree;
 }
 
-/// Forward travel over opening as a straight rise after the hinge: the break that fits best.
+/// Fits forward travel as linear in rotation after a hinge phase, by search over its end.
 void fit_hinge(const std::vector<Row>& rows, JointFit& out) {
   std::vector<std::pair<double, double>> points;  // turn, forward
   double farthest = 0, widest = 0;
@@ -107,25 +109,25 @@ void fit_hinge(const std::vector<Row>& rows, JointFit& out) {
       farthest = std::max(farthest, points.back().second);
       widest = std::max(widest, row.turn_deg);
     }
-  if (static_cast<int>(points.size()) < least_rows || farthest < path_shown_mm ||
-      widest < turned_least_deg)
+  if (static_cast<int>(points.size()) < min_rows || farthest < path_shown_mm ||
+      widest < min_turn_deg)
     return;
-  // Near the end of their travel condyles may turn on the spot again.
-  constexpr double used_share = 0.85, fine_deg = 0.05;
-  double least = 1e300;
+  // Near the end of travel the condyles may only rotate.
+  constexpr double used_fraction = 0.85, fine_deg = 0.05;
+  double min_error = 1e300;
   for (double hinge = 0; hinge < widest - 1; hinge += fine_deg) {
     double xx = 0, xy = 0, yy = 0;
     for (const auto& [turn, forward] : points) {
-      if (forward > used_share * farthest) continue;
+      if (forward > used_fraction * farthest) continue;
       const double x = std::max(turn - hinge, 0.0);
       xx += x * x;
       xy += x * forward;
       yy += forward * forward;
     }
     if (!(xy > 0)) continue;
-    const double miss = yy - xy * xy / xx;
-    if (miss >= least) continue;
-    least = miss;
+    const double error = yy - xy * xy / xx;
+    if (error >= min_error) continue;
+    min_error = error;
     out.hinge_deg = hinge;
     out.deg_per_mm = xx / xy;
   }
@@ -167,7 +169,7 @@ std::vector<std::string> describe(const JointFit& fit) {
   const auto& [l, r] = std::pair{fit.left, fit.right};
   if (l.inclination_deg || r.inclination_deg) {
     const auto text = [](const std::optional<double>& deg) {
-      return deg ? fmt::format("{:.1f} deg", *deg) : std::string("not shown");
+      return deg ? fmt::format("{:.1f} deg", *deg) : std::string("not determined");
     };
     out.push_back(fmt::format("condylar inclination left {}, right {}, to the {}",
                               text(l.inclination_deg), text(r.inclination_deg),
@@ -178,8 +180,9 @@ std::vector<std::string> describe(const JointFit& fit) {
       out.push_back(fmt::format("Bennett angle {} {:.1f} deg, immediate side shift {:.2f} mm", name,
                                 *side->bennett_deg, *side->side_shift_mm));
   if (fit.hinge_deg)
-    out.push_back(fmt::format("hinge phase to {:.1f} deg, then {:.2f} deg for each mm forward",
-                              *fit.hinge_deg, *fit.deg_per_mm));
+    out.push_back(
+        fmt::format("hinge phase up to {:.1f} deg, then {:.2f} deg per mm of forward travel",
+                    *fit.hinge_deg, *fit.deg_per_mm));
   return out;
 }
 

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace condyle {
 namespace {
 
-constexpr double condyle_radius_mm = 15;  // of the mandible about the landmark
-constexpr double fossa_radius_mm = 45;    // of the cranium: the condyle travels some 20 mm
-constexpr double largest_gap_mm = 6;      // a farther surface is no fossa
-constexpr double least_gap_mm = 0.02;     // a nearer one cannot be kept free
+constexpr double condyle_radius_mm = 15;  // part of the mandible about the landmark
+constexpr double fossa_radius_mm = 45;    // part of the cranium; the condyle travels about 20 mm
+constexpr double largest_gap_mm = 6;      // a surface farther away is not a fossa
+constexpr double min_gap_mm = 0.02;       // a closer surface counts as touching
 
 /// Appends the triangles of `mesh` that have a corner within `radius` of `center`.
 void append_near(const TriMesh& mesh, const Eigen::Vector3d& center, double radius, TriMesh& out) {
@@ -36,19 +37,20 @@ void append_near(const TriMesh& mesh, const Eigen::Vector3d& center, double radi
 
 std::optional<JointSurfaces> JointSurfaces::find(const Case& patient) {
   JointSurfaces joint;
-  for (const char* name : {"left_condyle", "right_condyle"}) {
+  for (const auto& [name, body] : {std::pair{"left_condyle", patient.jaw.left_condyle},
+                                   std::pair{"right_condyle", patient.jaw.right_condyle}}) {
     const auto center = patient.landmarks.find(name);
     if (!center) return std::nullopt;
     TriMesh condyle, fossa;
     for (const auto& part : patient.parts) {
-      if (part.role == Role::mandible) append_near(part.mesh, *center, condyle_radius_mm, condyle);
-      if (part.role == Role::skull || part.role == Role::maxilla)
-        append_near(part.mesh, *center, fossa_radius_mm, fossa);
+      if (!collides(part.role) || is_teeth(part.role)) continue;
+      if (part.body == body) append_near(part.mesh, *center, condyle_radius_mm, condyle);
+      if (part.body == cranium_body) append_near(part.mesh, *center, fossa_radius_mm, fossa);
     }
     if (condyle.empty() || fossa.empty()) return std::nullopt;
     Side side{CollisionMesh(condyle), CollisionMesh(fossa), 0, {}};
     const MeshDistance rest = distance(side.fossa, {}, side.condyle, {});
-    if (rest.distance_mm < least_gap_mm || rest.distance_mm > largest_gap_mm) return std::nullopt;
+    if (rest.distance_mm < min_gap_mm || rest.distance_mm > largest_gap_mm) return std::nullopt;
     side.rest_gap_mm = rest.distance_mm;
     side.last = rest.triangles;
     joint.sides_.push_back(std::move(side));

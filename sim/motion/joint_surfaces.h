@@ -12,12 +12,12 @@ namespace condyle {
 
 enum class JawSide { left, right };
 
-/// The two condyles and the cranium round them: how near they come compared with rest. In place of
-/// a disc, each joint keeps a gap.
+/// Clearance between each condyle and the cranium around it. The articular disc is represented by a
+/// gap.
 class JointSurfaces {
  public:
-  /// Absent when a landmark or bone is missing, or when the cranium is too far from a condyle to
-  /// guide it (more than 8 mm), or touches it.
+  /// Absent when a landmark or bone is missing, or when the cranium touches a condyle or is too far
+  /// from it to guide it (more than 6 mm).
   static std::optional<JointSurfaces> find(const Case& patient);
 
   /// Smaller rest gap of the two sides, mm.
@@ -28,7 +28,7 @@ class JointSurfaces {
   /// it by at most d.
   double slack_mm(const Pose& X_CM);
 
-  /// Condyle to fossa of one side, mm. `start` makes the next query near by sooner.
+  /// Distance from condyle to fossa on one side, mm. `start` speeds up the next query nearby.
   double gap_mm(JawSide side, const Pose& X_CM, TrianglePair& start) const;
 
  private:

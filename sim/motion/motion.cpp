@@ -11,6 +11,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/similar_word.h"
 #include "sim/motion/joint_fit.h"
 #include "sim/motion/movements.h"
 #include "sim/motion/opening.h"
@@ -19,11 +20,11 @@
 namespace condyle {
 namespace {
 
-constexpr double usual_opening_s = 3;
+constexpr double default_opening_s = 3;
 constexpr std::size_t largest_script = std::size_t{1} << 20;
 constexpr int threads = 2;
 
-/// The built-in motions in the words of a motion file.
+/// The built-in motions as motion scripts.
 const std::vector<std::pair<std::string, std::string>>& builtin_scripts() {
   static const std::vector<std::pair<std::string, std::string>> scripts = {
       {"opening", ""},
@@ -38,7 +39,7 @@ const std::vector<std::pair<std::string, std::string>>& builtin_scripts() {
   return scripts;
 }
 
-/// Words as they are read under a picture: lines parted by ";", and cut where there are many.
+/// A script as a caption: statements separated by ";", truncated if long.
 std::string in_one_line(const std::string& words) {
   constexpr std::size_t most = 60;
   std::string line, gap;
@@ -76,7 +77,7 @@ void check(const MotionSettings& settings) {
   constexpr double longest_s = 3600;
   if (!(settings.duration_s >= 0 && settings.duration_s <= longest_s))
     throw InputError(
-        fmt::format("motion duration {} s: give 0 (the motion's own time) or up to {} s",
+        fmt::format("motion duration {} s: give 0 (the natural duration) or at most {} s",
                     settings.duration_s, longest_s));
   for (const auto& entry : motion_parameter_names())
     for (const auto member : entry.values)
@@ -86,14 +87,16 @@ void check(const MotionSettings& settings) {
                                      entry.high, entry.unit));
 }
 
-/// The motion in another time.
+/// The motion with another duration.
 Motion stretched(Motion motion, double duration_s) {
   if (duration_s <= 0 || motion.duration_s <= 0) return motion;
-  const double share = motion.duration_s / duration_s;
-  motion.wanted = [wanted = motion.wanted, share](double time_s) { return wanted(time_s * share); };
+  const double fraction = motion.duration_s / duration_s;
+  motion.target = [target = motion.target, fraction](double time_s) {
+    return target(time_s * fraction);
+  };
   for (auto& phase : motion.phases) {
-    phase.start_s /= share;
-    phase.end_s /= share;
+    phase.start_s /= fraction;
+    phase.end_s /= fraction;
   }
   motion.duration_s = duration_s;
   return motion;
@@ -120,7 +123,7 @@ void add_found(Motion& motion, const JawJoints& joints, const OpeningLimits& lim
       {"opening", "mm", joints.opening_mm({limits.widest_theta, forward, forward, 0})},
       {"inclination_left", "deg", joints.inclination_deg(JawSide::left)},
       {"inclination_right", "deg", joints.inclination_deg(JawSide::right)}};
-  if (const auto& fossae = joints.surfaces())  // the mean of both
+  if (const auto& fossae = joints.surfaces())  // mean of both sides
     found.push_back(
         {"disc_gap", "mm",
          0.5 * (fossae->rest_gap_mm(JawSide::left) + fossae->rest_gap_mm(JawSide::right))});
@@ -130,8 +133,8 @@ void add_found(Motion& motion, const JawJoints& joints, const OpeningLimits& lim
       motion.found.push_back(one);
 }
 
-/// The one of movements in words that asks to open farthest; null: none says how far.
-const Statement* farthest_opening(const MotionScript* script) {
+/// The statement of a script with the largest opening; null when none gives one.
+const Statement* widest_open(const MotionScript* script) {
   const Statement* farthest = nullptr;
   if (script)
     for (const Statement& statement : script->statements)
@@ -141,7 +144,7 @@ const Statement* farthest_opening(const MotionScript* script) {
   return farthest;
 }
 
-/// `round`: ends in the case's own pose, where that is not its bite.
+/// `round`: ends in the rest pose of the case, where that is not its bite.
 Motion move(const std::string& name, const MotionScript* script, const Case& patient,
             const ContactModel& contacts, const MotionSettings& settings, bool round = false) {
   MotionParameters parameters = settings.parameters.over(patient.motion);
@@ -151,24 +154,24 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
       patient, parameters, aside ? JointReach::aside : JointReach::straight, threads);
   std::vector<std::string> notes;
   const OpeningLimits limits = opening_limits(*joints, contacts, parameters, notes);
-  // "open 50" tries as much as "set opening 50" does, where no opening was set; a plain "open" goes
-  // no farther for it.
+  // "open 50" raises the limit as "set opening 50" does, where no opening was set; a plain "open"
+  // is unaffected.
   OpeningLimits reach = limits;
   std::optional<double> plain_opening;
   const double forward = limits.coupling.forward_mm(limits.widest_theta);
-  const double most = joints->opening_mm({limits.widest_theta, forward, forward, 0});
-  if (const Statement* open = farthest_opening(script);
-      open && !parameters.opening_mm && *open->amount > most + 1e-6) {
+  const double max_mm = joints->opening_mm({limits.widest_theta, forward, forward, 0});
+  if (const Statement* open = widest_open(script);
+      open && !parameters.opening_mm && *open->amount > max_mm + 1e-6) {
     MotionParameters farther = parameters;
     farther.opening_mm = open->amount;
-    notes = {fmt::format("open {:.6g} is asked for; unasked this jaw opens to {:.1f} mm",
-                         *open->amount, most)};
+    notes = {fmt::format("open {:.6g} is requested; by default this jaw opens to {:.1f} mm",
+                         *open->amount, max_mm)};
     try {
       reach = opening_limits(*joints, contacts, farther, notes);
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", open->where, error.what()));
     }
-    plain_opening = most;
+    plain_opening = max_mm;
   }
   const auto guide = std::make_shared<BiteGuide>(patient, *joints, parameters);
   Movements movements(joints, guide, reach, parameters,
@@ -180,13 +183,14 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
     }
     if (round && guide->bite_theta() != 0) movements.back("back to the start", {});
   } else {
-    // The same share of time to open and to close, a pause between them.
-    constexpr double stroke_share = 0.45;
-    const double whole = settings.duration_s > 0 ? settings.duration_s : usual_opening_s;
-    Statement open{.verb = Verb::open, .duration_s = stroke_share * whole, .where = "opening"};
+    // Equal durations of opening and closing, with a pause between them.
+    constexpr double stroke_fraction = 0.45;
+    const double whole = settings.duration_s > 0 ? settings.duration_s : default_opening_s;
+    Statement open{.verb = Verb::open, .duration_s = stroke_fraction * whole, .where = "opening"};
     if (parameters.speed_mm_s && settings.duration_s == 0) open.duration_s.reset();
     movements.add(open);
-    movements.add({.verb = Verb::hold, .amount = (1 - 2 * stroke_share) * whole, .where = "hold"});
+    movements.add(
+        {.verb = Verb::hold, .amount = (1 - 2 * stroke_fraction) * whole, .where = "hold"});
     movements.back("closing", open.duration_s);
   }
   if (!guide->notes().empty()) notes.push_back(guide->notes());
@@ -215,13 +219,20 @@ const std::vector<std::string>& builtin_motions() {
 
 namespace {
 
+[[noreturn]] void refuse_motion(const std::string& spec) {
+  throw InputError(fmt::format(
+      "unknown motion \"{}\"{}; give one of {}, a motion script such as \"open 40; close; "
+      "protrude 6\", a script file (*.motion), a recording, muscles:FILE or inverse:MOTION",
+      spec, suggestion(spec, builtin_motions()), fmt::join(builtin_motions(), ", ")));
+}
+
 Motion motion_of(const std::string& spec, const Case& patient, const ContactModel& contacts,
                  const MotionSettings& settings) {
   check(settings);
   if (spec == "opening") return move(spec, nullptr, patient, contacts, settings);
-  // A jaw without landmarks has no rest position but its own.
+  // Without landmarks, the rest position is the rest pose of the case.
   if (spec == "rest" && !has_landmarks(patient)) {
-    const double duration_s = settings.duration_s > 0 ? settings.duration_s : usual_opening_s;
+    const double duration_s = settings.duration_s > 0 ? settings.duration_s : default_opening_s;
     return {spec, duration_s, false, [](double) { return Pose{}; }, {}};
   }
   for (const auto& [name, text] : builtin_scripts())
@@ -232,7 +243,7 @@ Motion motion_of(const std::string& spec, const Case& patient, const ContactMode
   if (looks_like_a_file(spec)) {
     if (ending_of(spec) != ".motion") {
       Motion motion = read_recording(spec);
-      note_what_looks_wrong(patient, motion);
+      note_implausible_values(patient, motion);
       if (const auto fit = fit_joint(patient, motion))
         for (auto& note : describe(*fit)) motion.notes.push_back(std::move(note));
       return motion;
@@ -240,25 +251,39 @@ Motion motion_of(const std::string& spec, const Case& patient, const ContactMode
     const MotionScript script = parse_motion_script(read_file(spec, largest_script), spec);
     return move(std::filesystem::path(spec).stem().string(), &script, patient, contacts, settings);
   }
-  if (looks_like_a_script(spec)) {
+  if (is_motion_script(spec)) {
     const MotionScript script = parse_motion_script(spec, "motion");
     return move(in_one_line(spec), &script, patient, contacts, settings);
   }
-  throw InputError(fmt::format(
-      "motion \"{}\" is not known: give one of {}, movements in words such as \"open 40; "
-      "close; protrude 6\", a file of them (*.motion), a recording, muscles:FILE or inverse:MOTION",
-      spec, fmt::join(builtin_motions(), ", ")));
+  refuse_motion(spec);
 }
 
 }  // namespace
 
+void check_motion(const std::string& spec, const MotionSettings& settings) {
+  check(settings);
+  const auto& names = builtin_motions();
+  if (std::find(names.begin(), names.end(), spec) != names.end()) return;
+  if (looks_like_a_file(spec)) {
+    if (ending_of(spec) == ".motion")
+      parse_motion_script(read_file(spec, largest_script), spec);
+    else
+      read_recording(spec);
+  } else if (is_motion_script(spec)) {
+    parse_motion_script(spec, "motion");
+  } else {
+    refuse_motion(spec);
+  }
+}
+
 Motion make_motion(const std::string& spec, const Case& patient, const ContactModel& contacts,
                    const MotionSettings& settings) {
   Motion motion = motion_of(spec, patient, contacts, settings);
-  if (!patient.has(Body::mandible))
-    motion.notes.insert(motion.notes.begin(),
-                        "nothing of this case goes with the mandible (no part is a mandible, lower "
-                        "teeth or gums): no surface moves, openings are those of landmarks alone");
+  if (!patient.has_parts(patient.jaw.lower_arch))
+    motion.notes.insert(
+        motion.notes.begin(),
+        "no part of this case moves with the mandible (there is no mandible and there are no "
+        "lower teeth or gums): no surface moves; openings are those of landmarks");
   return motion;
 }
 

@@ -12,13 +12,13 @@
 
 namespace condyle {
 
-/// A named stretch of a motion.
+/// A named interval of a motion.
 struct MotionPhase {
   std::string name;  // as in "opening", "chewing right"
   double start_s = 0, end_s = 0;
 };
 
-/// What a motion was made from: it proves nothing when it is found again.
+/// A parameter that a motion was generated from; finding its value in the results is no evidence.
 struct MotionInput {
   std::string name, unit;
   double value = 0;
@@ -26,58 +26,62 @@ struct MotionInput {
 
 /// Border movements of the lower incisal point, mm, in the cranium's frame.
 struct MotionBorders {
-  std::vector<Eigen::Vector3d> sagittal, frontal;  // closed rounds
+  std::vector<Eigen::Vector3d> sagittal, frontal;  // closed curves
 };
 
-/// What is known of a recorded motion's file.
+/// Facts about the file of a recorded motion.
 struct RecordingFacts {
   std::string format;
   int rows = 0, rows_without_pose = 0;
-  double usual_step_s = 0;
+  double median_step_s = 0;
   struct Gap {
     double after_s = 0, length_s = 0;
   };
-  std::vector<Gap> gaps = {};  // longer than two and a half usual steps
+  std::vector<Gap> gaps = {};  // longer than 2.5 median steps
   bool has_markers = false;
-  double residual_rms_mm = 0, residual_max_mm = 0;  // of markers from the fitted rigid pose
-  double smooth_hz = 0;                             // jitter above was taken out; 0: nothing was
+  double residual_rms_mm = 0, residual_max_mm = 0;  // of markers to the fitted rigid pose
+  double smooth_hz = 0;                             // cutoff of the low-pass filter; 0: unfiltered
   std::string file_name;
-  double largest_shift_mm = 0;  // of the translations as they stand in the file
+  double largest_shift_mm = 0;  // of the translations as given in the file
 };
 
-/// Asks for a pose of the mandible at each time.
+/// Prescribes a pose of the mandible at each time.
 struct Motion {
   std::string name;
   double duration_s = 0;
-  bool recorded = false;  // a recording is played back as it is unless contact is asked for
-  std::function<Pose(double time_s)> wanted;  // X_CM; clamps the time to [0, duration_s]
-  std::vector<std::string> notes;             // how it was made, for people
+  bool recorded = false;  // a recording is played back unchanged unless contact is requested
+  std::function<Pose(double time_s)> target;  // X_CM; clamps the time to [0, duration_s]
+  std::vector<std::string> notes;             // how it was generated, as sentences
   std::vector<double> sample_times = {};      // of a recording, increasing from 0 to duration_s
 
   std::vector<MotionPhase> phases = {};  // of a built-in motion, in order
   std::vector<MotionInput> inputs = {};
-  std::vector<MotionInput> found = {};  // what nobody gave: as the patient's joints have it
-  MotionBorders borders = {};  // of motions that are measured by them (chewing, posselt)
-  // Of a motion driven by muscles: their names, and what each does at a time.
+  std::vector<MotionInput> found = {};  // values determined by the patient's joints
+  MotionBorders borders = {};           // of motions that are compared with them (chewing, posselt)
+  // Of a muscle-driven motion: names and states of the muscles at a time.
   std::vector<std::string> muscle_names = {};
   std::function<MuscleStates(double time_s)> muscles = {};
-  // X_CH at a time, rest to now, where muscles hang from a hyoid; none: it stays.
+  // X_CH at a time, rest to now, where muscles attach to a hyoid; empty: it is fixed.
   std::function<Pose(double time_s)> hyoid = {};
   std::optional<RecordingFacts> recording = {};  // of a file
 };
 
 struct MotionSettings {
-  MotionParameters parameters = {};  // before those of the case
-  double duration_s = 0;             // of the whole motion; 0 = its own time
+  MotionParameters parameters = {};  // take precedence over those of the case
+  double duration_s = 0;             // of the whole motion; 0: its natural duration
 };
 
 /// Names of the built-in motions.
 const std::vector<std::string>& builtin_motions();
 
-/// The motion called `spec`: a built-in name, movements in words ("open 40; close; protrude 6"), a
-/// file of such words (*.motion), or a pose file (CSV). `contacts`, of the same patient, tells how
-/// far the bones let the jaw go.
-/// throws: InputError for an unknown name (listing the known ones), bad settings or a bad file.
+/// Checks what can be wrong with a motion without a patient: its name, words, file and settings.
+/// throws: InputError as make_motion().
+void check_motion(const std::string& spec, const MotionSettings& settings = {});
+
+/// The motion called `spec`: a built-in name, a motion script ("open 40; close; protrude 6"), a
+/// script file (*.motion), or a pose file (CSV). `contacts`, of the same patient, limits the motion
+/// to what the bones permit.
+/// throws: InputError for an unknown name (listing the valid ones), invalid settings or a bad file.
 Motion make_motion(const std::string& spec, const Case& patient, const ContactModel& contacts,
                    const MotionSettings& settings = {});
 

@@ -13,9 +13,9 @@
 namespace condyle {
 namespace {
 
-constexpr std::size_t most_statements = 10000;
+constexpr std::size_t max_statements = 10000;
 
-/// What a verb's number means.
+/// Unit and range of a verb's number.
 struct VerbRule {
   Verb verb;
   const char* unit;
@@ -49,13 +49,13 @@ std::optional<double> number_of(const std::string& word) {
   return value;
 }
 
-std::string known_verbs() {
+std::string list_of_verbs() {
   std::string names;
   for (const auto& [name, rule] : verbs()) names += name + ", ";
   return names + "set";
 }
 
-/// One statement's words, read from the left.
+/// Reads the words of one statement from left to right.
 class Reader {
  public:
   Reader(std::vector<std::string> words, int line, const std::string& source)
@@ -66,24 +66,24 @@ class Reader {
   std::string take() { return words_[next_++]; }
   std::string where() const { return fmt::format("line {}, {}", line_, words_.front()); }
 
-  /// Complains of the word taken last.
+  /// throws: InputError about the word taken last.
   [[noreturn]] void refuse(const std::string& problem) const {
     const std::string word = next_ > 0 ? words_[next_ - 1] : "";
     throw InputError(
         source_, fmt::format("line {}, word {} \"{}\"", line_, next_, word.substr(0, 40)), problem);
   }
 
-  /// The number that must come next, and its unit if it is there.
+  /// The next word as a number, with an optional unit.
   double number(const std::string& what, const char* unit, double low, double high) {
     if (done()) refuse(fmt::format("must be followed by {}", what));
     const std::string word = take();
-    // A unit may stand at the number: 40mm.
+    // The unit may be attached to the number: 40mm.
     std::size_t split = word.size();
     while (split > 0 && !std::isdigit(static_cast<unsigned char>(word[split - 1])) &&
            word[split - 1] != '.')
       --split;
     const auto value = number_of(split > 0 ? word.substr(0, split) : word);
-    if (!value) refuse(fmt::format("is not a number; {} is wanted here", what));
+    if (!value) refuse(fmt::format("is not a number; expected {}", what));
     if (split < word.size()) check_unit(word.substr(split), unit);
     if (!(*value >= low && *value <= high))
       refuse(fmt::format("is out of range: {} must be {} to {}{}{}", what, low, high,
@@ -104,8 +104,8 @@ class Reader {
         {"degrees", "deg"}, {"degree", "deg"}, {"sec", "s"}, {"seconds", "s"}, {"cycle", "cycles"}};
     const auto other = same.find(word);
     if ((other == same.end() ? word : other->second) != unit)
-      refuse(unit.empty() ? "is a unit where a plain number is wanted"
-                          : fmt::format("is a unit where {} is meant", unit));
+      refuse(unit.empty() ? "is a unit where a plain number is expected"
+                          : fmt::format("is a unit, but {} is expected", unit));
   }
 
   std::vector<std::string> words_;
@@ -154,11 +154,12 @@ Statement read_movement(Reader& reader, const std::string& word, const VerbRule&
       reader.refuse(fmt::format("is neither a number of {} to {} nor one of its options ({})",
                                 rule.unit, word, chews ? "rate, size, width, over" : "over, at"));
     else
-      reader.refuse(chews ? "is not understood; after the cycles come rate, size, width or over"
+      reader.refuse(chews ? "is not understood; the number of cycles may be followed by rate, "
+                            "size, width or over"
                     : rule.verb == Verb::hold
                         ? std::string("is not understood; hold takes seconds only")
-                        : std::string("is not understood; after the amount come over (s) or at "
-                                      "(mm/s)"));
+                        : std::string("is not understood; the amount may be followed by over "
+                                      "(s) or at (mm/s)"));
   }
   return statement;
 }
@@ -172,7 +173,7 @@ void read_setting(Reader& reader, MotionParameters& parameters) {
     std::string known;
     for (const auto& parameter : motion_parameter_names())
       known += (known.empty() ? "" : ", ") + parameter.name;
-    reader.refuse("is no motion parameter; known are " + known);
+    reader.refuse("is not a motion parameter; valid ones are " + known);
   }
   const std::string unit = entry->unit == "mm_s" ? "mm/s" : entry->unit;
   const double value = reader.number(entry->name, unit.c_str(), entry->low, entry->high);
@@ -183,7 +184,7 @@ void read_setting(Reader& reader, MotionParameters& parameters) {
   for (const auto member : entry->values) parameters.*member = value;
 }
 
-/// The first word, in small letters.
+/// The first word, in lower case.
 std::string first_word(const std::string& text) {
   const auto start = text.find_first_not_of(" \t\r\n;");
   if (start == std::string::npos) return {};
@@ -193,7 +194,7 @@ std::string first_word(const std::string& text) {
 
 }  // namespace
 
-bool looks_like_a_script(const std::string& text) {
+bool is_motion_script(const std::string& text) {
   const std::string word = first_word(text);
   const bool verb = verbs().contains(word) || word == "set";
   return verb || text.find(';') != std::string::npos || text.find('\n') != std::string::npos;
@@ -216,15 +217,15 @@ MotionScript parse_motion_script(const std::string& text, const std::string& sou
     words.clear();
     const std::string verb = reader.take();
     if (verb == "set") {
-      if (!script.statements.empty())
-        reader.refuse("must come before the first movement: a jaw does not change on its way");
+      if (!script.statements.empty()) reader.refuse("must come before the first movement");
       read_setting(reader, script.parameters);
       return;
     }
     const auto rule = verbs().find(verb);
-    if (rule == verbs().end()) reader.refuse("is no movement; known are " + known_verbs());
-    if (script.statements.size() == most_statements)
-      reader.refuse(fmt::format("is one movement too many; at most {} are taken", most_statements));
+    if (rule == verbs().end())
+      reader.refuse("is not a movement; valid ones are " + list_of_verbs());
+    if (script.statements.size() == max_statements)
+      reader.refuse(fmt::format("exceeds the limit of {} movements", max_statements));
     script.statements.push_back(read_movement(reader, verb, rule->second));
   };
   for (std::size_t i = 0; i <= text.size(); ++i) {
@@ -247,7 +248,7 @@ MotionScript parse_motion_script(const std::string& text, const std::string& sou
     }
   }
   if (script.statements.empty())
-    throw InputError(source, "", "has no movement; write e.g. open 40; close; protrude 6");
+    throw InputError(source, "", "contains no movement; write e.g. open 40; close; protrude 6");
   return script;
 }
 

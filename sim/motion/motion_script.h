@@ -24,24 +24,24 @@ enum class Verb {
   chew_right
 };
 
-/// One movement in words.
+/// One statement of a motion script.
 struct Statement {
   Verb verb = Verb::open;
   std::optional<double> amount = {};      // mm, deg (hinge), s (hold), cycles (chew)
   std::optional<double> duration_s = {};  // "over 2"
   std::optional<double> speed_mm_s = {};  // "at 60"
   std::optional<double> rate_hz = {}, size_mm = {}, width_mm = {};  // of chewing
-  std::string where = {};                                           // "line 3, open", for people
+  std::string where = {};                                           // "line 3, open", for messages
 };
 
-/// Movements in words: statements on lines of their own or parted by ';', after '#' a comment.
+/// A motion script: statements separated by line breaks or ';'; '#' starts a comment.
 ///
-///   open 40 over 1.5     drop of the incisal point, mm; seconds        (open: as far as it goes)
+///   open 40 over 1.5     descent of the incisal point, mm; seconds     (open: to the maximum)
 ///   close                to the bite
-///   hinge 10             turn without translation, degrees
+///   hinge 10             rotation without translation, degrees
 ///   protrude 6 at 30     mm at the incisal point; mm/s          (retrude: mm at the condyles)
 ///   left 8, right 8      laterotrusion, mm at the incisal point
-///   rest                 to the rest position; rest 3: that many mm apart
+///   rest                 to the rest position; rest 3: with 3 mm of freeway space
 ///   hold 0.5             seconds
 ///   posselt              the border movements
 ///   chew left 10 rate 1.4 size 15 width 5
@@ -56,7 +56,7 @@ struct MotionScript {
 /// throws: InputError naming `source`, line and word.
 MotionScript parse_motion_script(const std::string& text, const std::string& source);
 
-/// Whether the text begins as movements in words do.
-bool looks_like_a_script(const std::string& text);
+/// Whether the text starts like a motion script.
+bool is_motion_script(const std::string& text);
 
 }  // namespace condyle

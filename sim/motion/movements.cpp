@@ -12,18 +12,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double usual_speed_mm_s = 40;
-constexpr double usual_glide_mm_s = 15;  // teeth on teeth
+constexpr double default_speed_mm_s = 40;
+constexpr double default_glide_mm_s = 15;  // gliding on the teeth
 constexpr double shortest_s = 0.15;
-constexpr double guide_step_mm = 0.4;  // of condylar way between places where the guide is asked
-constexpr double contact_theta = 0.3 * radian_per_degree;
-constexpr double clear_theta = 14 * radian_per_degree;  // teeth do not meet when open this far
-constexpr double never = -1;                            // rad, less than any closed jaw
+constexpr double guide_step_mm = 0.4;  // of condylar travel between samples of the guide
+constexpr double contact_theta = 0.3 * degree;
+constexpr double clear_theta = 14 * degree;  // the teeth are clear beyond this rotation
+constexpr double never = -1;                 // rad, below any closed position
 constexpr double farthest_forward_mm = 17;
 
 }  // namespace
 
-double least_jerk(double u) {
+double minimum_jerk(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return u * u * u * (10 + u * (-15 + 6 * u));
 }
@@ -46,8 +46,8 @@ Movements::Movements(std::shared_ptr<const JawJoints> joints, std::shared_ptr<Bi
       parameters_(parameters),
       free_(std::move(free)) {}
 
-/// Once.
-void Movements::say(const std::string& note) {
+/// Adds a note unless it is already there.
+void Movements::add_note(const std::string& note) {
   if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
 }
 
@@ -72,21 +72,22 @@ bool Movements::in_contact() {
   return here_.theta - biting(here_.left_mm, here_.right_mm).theta < contact_theta;
 }
 
-/// Asks the guide along the way, so that playing costs no search.
+/// Tabulates the guide along the path, so that playback needs no search.
 Movements::Leg Movements::leg(Path at, bool on_teeth) {
-  constexpr int looks = 64;
+  constexpr int coarse_samples = 64;
   Leg made{.at = std::move(at), .closed = {}, .on_teeth = on_teeth};
-  double way = 0;
+  double travel = 0;
   JawInputs before = made.at(0);
   bool low = on_teeth;
-  for (int i = 0; i <= looks; ++i) {
-    const JawInputs in = made.at(static_cast<double>(i) / looks);
-    way += std::max(std::abs(in.left_mm - before.left_mm), std::abs(in.right_mm - before.right_mm));
+  for (int i = 0; i <= coarse_samples; ++i) {
+    const JawInputs in = made.at(static_cast<double>(i) / coarse_samples);
+    travel +=
+        std::max(std::abs(in.left_mm - before.left_mm), std::abs(in.right_mm - before.right_mm));
     low |= in.theta < clear_theta;
     before = in;
   }
   if (!low) return made;
-  const int samples = std::clamp(static_cast<int>(std::ceil(way / guide_step_mm)), 4, 400);
+  const int samples = std::clamp(static_cast<int>(std::ceil(travel / guide_step_mm)), 4, 400);
   std::vector<double> progress, closed;
   for (int i = 0; i <= samples; ++i) {
     progress.push_back(static_cast<double>(i) / samples);
@@ -97,16 +98,16 @@ Movements::Leg Movements::leg(Path at, bool on_teeth) {
   return made;
 }
 
-double Movements::way_mm(const Leg& made) const {
+double Movements::path_length_mm(const Leg& made) const {
   constexpr int steps = 48;
-  double way = 0;
+  double length = 0;
   Vector3d before = joints_->incisor(made.resolved(0));
   for (int i = 1; i <= steps; ++i) {
     const Vector3d now = joints_->incisor(made.resolved(static_cast<double>(i) / steps));
-    way += (now - before).norm();
+    length += (now - before).norm();
     before = now;
   }
-  return way;
+  return length;
 }
 
 void Movements::begin(const std::string& phase) {
@@ -116,9 +117,9 @@ void Movements::begin(const std::string& phase) {
 
 void Movements::append(Leg made, const Pace& pace) {
   const double speed = pace.speed_mm_s.value_or(
-      parameters_.speed_mm_s.value_or(made.on_teeth ? usual_glide_mm_s : usual_speed_mm_s));
+      parameters_.speed_mm_s.value_or(made.on_teeth ? default_glide_mm_s : default_speed_mm_s));
   made.start_s = now_s_;
-  made.duration_s = pace.duration_s.value_or(std::max(way_mm(made) / speed, shortest_s));
+  made.duration_s = pace.duration_s.value_or(std::max(path_length_mm(made) / speed, shortest_s));
   now_s_ += made.duration_s;
   here_ = made.resolved(1);
   legs_.push_back(std::move(made));
@@ -130,8 +131,9 @@ void Movements::hold(double seconds) {
   append(std::move(still), {.duration_s = seconds, .speed_mm_s = {}});
 }
 
-/// Through free space, rotation and translation coupled as in opening; what the start and the
-/// target are off that coupling fades over the way. The incisal point's drop keeps time.
+/// Moves through free space with rotation and translation coupled as in opening; deviations of
+/// start and target from that coupling are blended. The timing follows the descent of the incisal
+/// point.
 void Movements::swing(const JawInputs& target, const Pace& pace) {
   const JawInputs from = here_;
   const auto by_theta = [=, joints = joints_, coupling = limits_.coupling](double theta, double w) {
@@ -145,18 +147,18 @@ void Movements::swing(const JawInputs& target, const Pace& pace) {
     return JawInputs{theta, left, right, joints->bennett_shift_mm(left, right)};
   };
   const double turn = target.theta - from.theta;
-  const double drop0 = joints_->opening_mm(from), drop1 = joints_->opening_mm(target);
+  const double opening0 = joints_->opening_mm(from), opening1 = joints_->opening_mm(target);
   const auto at = [=, joints = joints_](double progress) {
     if (progress <= 0) return from;
     if (progress >= 1) return target;
-    if (std::abs(drop1 - drop0) < 2 || turn * (drop1 - drop0) <= 0)
+    if (std::abs(opening1 - opening0) < 2 || turn * (opening1 - opening0) <= 0)
       return by_theta(from.theta + turn * progress, progress);
-    const double wanted = drop0 + (drop1 - drop0) * progress;
+    const double requested = opening0 + (opening1 - opening0) * progress;
     double low = 0, high = 1;
     for (int i = 0; i < 50; ++i) {
       const double w = 0.5 * (low + high);
       const double drop = joints->opening_mm(by_theta(from.theta + turn * w, w));
-      ((drop - wanted) * turn < 0 ? low : high) = w;
+      ((drop - requested) * turn < 0 ? low : high) = w;
     }
     const double w = 0.5 * (low + high);
     return by_theta(from.theta + turn * w, w);
@@ -173,8 +175,8 @@ Movements::Leg Movements::straight_glide(double left0, double right0, double lef
       true);
 }
 
-/// On the teeth where they touch now, else through free space, to where condyles are wanted and
-/// teeth touch.
+/// Moves the condyles to a position with the teeth in contact: along the teeth if they touch now,
+/// else through free space.
 void Movements::glide(double left_mm, double right_mm, const Pace& pace) {
   if (!in_contact()) {
     swing(biting(left_mm, right_mm), pace);
@@ -184,12 +186,12 @@ void Movements::glide(double left_mm, double right_mm, const Pace& pace) {
   append(straight_glide(from.left_mm, from.right_mm, left_mm, right_mm), pace);
 }
 
-void Movements::open_to(double drop_mm, const Pace& pace) {
+void Movements::open_to(double opening_mm, const Pace& pace) {
   double low = 0, high = limits_.widest_theta;
-  if (joints_->opening_mm(opened(high)) <= drop_mm) low = high;
+  if (joints_->opening_mm(opened(high)) <= opening_mm) low = high;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    (joints_->opening_mm(opened(middle)) < drop_mm ? low : high) = middle;
+    (joints_->opening_mm(opened(middle)) < opening_mm ? low : high) = middle;
   }
   swing(opened(0.5 * (low + high)), pace);
 }
@@ -206,27 +208,27 @@ void Movements::back(const std::string& phase, std::optional<double> duration_s)
   swing({}, {.duration_s = duration_s, .speed_mm_s = {}});
 }
 
-/// The forward travel at which `reached_mm` of it is what is wanted; by halving.
-double Movements::reach_for(double wanted_mm, const std::function<double(double)>& reached_mm,
+/// Forward travel at which `reached_mm` takes the requested value, by safeguarded iteration.
+double Movements::reach_for(double target_mm, const std::function<double(double)>& reached_mm,
                             const std::string& what, bool asked) {
   constexpr double close_mm = 0.005;
   double low = 0, high = farthest_forward_mm;
   const double most = reached_mm(high);
-  if (most < wanted_mm) {
-    const std::string problem = fmt::format(
-        "{} {:.1f} mm: this jaw reaches {:.1f} mm when its condyle is {:.0f} mm forward", what,
-        wanted_mm, most, high);
-    if (asked) throw InputError(problem + "; ask for less");
-    say(problem);
+  if (most < target_mm) {
+    const std::string problem =
+        fmt::format("{} {:.1f} mm: this jaw reaches {:.1f} mm with its condyle {:.0f} mm forward",
+                    what, target_mm, most, high);
+    if (asked) throw InputError(problem + "; request less");
+    add_note(problem);
     return high;
   }
-  double middle = std::min(wanted_mm, high);
+  double middle = std::min(target_mm, high);
   for (int i = 0; i < 30; ++i) {
     const double reached = reached_mm(middle);
-    if (std::abs(reached - wanted_mm) < close_mm) break;
-    (reached < wanted_mm ? low : high) = middle;
-    // What is missing is about what the condyle must go farther.
-    middle += wanted_mm - reached;
+    if (std::abs(reached - target_mm) < close_mm) break;
+    (reached < target_mm ? low : high) = middle;
+    // The remainder is about the additional travel of the condyle.
+    middle += target_mm - reached;
     if (middle <= low || middle >= high) middle = 0.5 * (low + high);
   }
   return middle;
@@ -258,13 +260,13 @@ void Movements::add(const Statement& statement) {
     case Verb::open: {
       begin("opening");
       const double most = joints_->opening_mm(opened(limits_.widest_theta));
-      const double wanted = statement.amount.value_or(most);
-      if (wanted > most + 1e-6)
+      const double requested = statement.amount.value_or(most);
+      if (requested > most + 1e-6)
         throw InputError(fmt::format(
-            "{}: this jaw opens to {:.1f} mm; set opening {} before the first movement to let it "
-            "try",
-            statement.where, most, wanted));
-      open_to(wanted, pace);
+            "{}: this jaw opens to {:.1f} mm; to attempt more, write \"set opening {}\" before the "
+            "first movement",
+            statement.where, most, requested));
+      open_to(requested, pace);
       break;
     }
     case Verb::close:
@@ -274,7 +276,7 @@ void Movements::add(const Statement& statement) {
     case Verb::hinge: {
       begin("hinge");
       JawInputs target = here_;
-      target.theta += *statement.amount * radian_per_degree;
+      target.theta += *statement.amount * degree;
       append(leg(
                  [from = here_, target](double p) {
                    JawInputs in = from;
@@ -336,17 +338,17 @@ Motion Movements::finish(const std::string& name) {
   motion.duration_s = now_s_;
   motion.notes = notes_;
   motion.phases = phases_;
-  if (wants_borders_) motion.borders = borders();
-  motion.wanted = [legs = std::make_shared<const std::vector<Leg>>(std::move(legs_)),
+  if (traces_borders_) motion.borders = borders();
+  motion.target = [legs = std::make_shared<const std::vector<Leg>>(std::move(legs_)),
                    joints = joints_](double time_s) {
     if (legs->empty()) return Pose{};
     const auto next = std::upper_bound(legs->begin(), legs->end(), time_s,
                                        [](double t, const Leg& leg) { return t < leg.start_s; });
     const Leg& leg = next == legs->begin() ? *next : *(next - 1);
     double u = std::clamp((time_s - leg.start_s) / leg.duration_s, 0.0, 1.0);
-    if (leg.eased) u = least_jerk(u);
+    if (leg.eased) u = minimum_jerk(u);
     const JawInputs in = leg.resolved(u);
-    // The case's own pose to the bit.
+    // Exactly the rest pose of the case.
     if (in.theta == 0 && in.left_mm == 0 && in.right_mm == 0 && in.shift_mm == 0) return Pose{};
     return joints->pose(in);
   };

@@ -7,24 +7,24 @@
 #include <optional>
 
 #include "engine/core/error.h"
-#include "sim/motion/condylar_path.h"
+#include "sim/motion/condylar_kinematics.h"
 #include "sim/motion/joint_surfaces.h"
 
 namespace condyle {
 namespace {
 
-constexpr double known_joint_way_mm = 51.2;  // mean of adults, Woelfel
-constexpr double imported_way_mm = 46.6;     // a joint that was only guessed is asked for less
-constexpr double largest_rotation = 45 * radian_per_degree;
-constexpr double give_way_mm = 0.5;     // opening given up where bone is met, so that it is not
-constexpr double least_opening_mm = 5;  // of a jaw; met earlier, contact shall show where
+constexpr double known_joint_displacement_mm = 51.2;      // mean of adults (Woelfel)
+constexpr double estimated_joint_displacement_mm = 46.6;  // where the joint is estimated (Travers)
+constexpr double largest_rotation = 45 * degree;
+constexpr double clearance_reserve_mm = 0.5;  // opening kept in reserve before contact of bone
+constexpr double min_opening_mm = 5;  // smaller limits are ignored, so that contact stays visible
 
-/// How far the lower incisal point shall go: the drop that was asked for, else an adult's way.
-struct Wanted {
+/// Target of the lower incisal point: a requested descent, else a displacement.
+struct Target {
   bool drop;
   double mm;
 
-  const char* word() const { return drop ? "drop" : "way"; }
+  const char* word() const { return drop ? "vertical" : "displacement"; }
 };
 
 /// A symmetric opening, by rotation.
@@ -36,27 +36,27 @@ struct OpeningPath {
     const double forward = coupling.forward_mm(theta);
     return {theta, forward, forward, 0};
   }
-  double drop_mm(double theta) const { return joints.opening_mm(inputs(theta)); }
-  double way_mm(double theta) const {
+  double opening_mm(double theta) const { return joints.opening_mm(inputs(theta)); }
+  double displacement_mm(double theta) const {
     return (joints.incisor(inputs(theta)) - joints.incisor()).norm();
   }
-  double gone_mm(double theta, const Wanted& wanted) const {
-    return wanted.drop ? drop_mm(theta) : way_mm(theta);
+  double travel_mm(double theta, const Target& target) const {
+    return target.drop ? opening_mm(theta) : displacement_mm(theta);
   }
 
-  /// Rotation at which the incisal point has gone as far as wanted; at most the largest rotation.
-  double theta_for(const Wanted& wanted) const {
-    if (gone_mm(largest_rotation, wanted) <= wanted.mm) return largest_rotation;
+  /// Rotation at which the incisal point reaches the target; at most the largest rotation.
+  double theta_for(const Target& target) const {
+    if (travel_mm(largest_rotation, target) <= target.mm) return largest_rotation;
     double low = 0, high = largest_rotation;
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (low + high);
-      (gone_mm(middle, wanted) < wanted.mm ? low : high) = middle;
+      (travel_mm(middle, target) < target.mm ? low : high) = middle;
     }
     return 0.5 * (low + high);
   }
 };
 
-/// Every pair at most as deep as at rest, and pairs that were apart still apart.
+/// Whether no pair is deeper than at rest and pairs that were apart still are.
 bool is_free(const ContactSet& now, const ContactSet& rest) {
   for (std::size_t i = 0; i < now.pairs.size(); ++i)
     if (now.pairs[i].touching &&
@@ -65,25 +65,25 @@ bool is_free(const ContactSet& now, const ContactSet& rest) {
   return true;
 }
 
-/// A condyle that comes much nearer to its fossa than at rest would crush the disc: nearer than
-/// `least` tells, of the rest gap.
-bool crushes(const JawJoints& joints, const Pose& X_CM, double least, TrianglePair& left,
+/// Whether the gap of a condyle to its fossa is below `min_ratio` times the gap at rest, which
+/// would crush the disc.
+bool crushes(const JawJoints& joints, const Pose& X_CM, double min_ratio, TrianglePair& left,
              TrianglePair& right) {
   if (!joints.surfaces()) return false;
   const JointSurfaces& joint = *joints.surfaces();
-  return joint.gap_mm(JawSide::left, X_CM, left) < least * joint.rest_gap_mm(JawSide::left) ||
-         joint.gap_mm(JawSide::right, X_CM, right) < least * joint.rest_gap_mm(JawSide::right);
+  return joint.gap_mm(JawSide::left, X_CM, left) < min_ratio * joint.rest_gap_mm(JawSide::left) ||
+         joint.gap_mm(JawSide::right, X_CM, right) < min_ratio * joint.rest_gap_mm(JawSide::right);
 }
 
-/// The largest rotation up to `end` that is reached without bone meeting bone.
-double free_rotation(const OpeningPath& path, double end, double least_gap,
+/// The largest rotation up to `end` that is reached without contact of bone.
+double free_rotation(const OpeningPath& path, double end, double min_gap,
                      const ContactModel& contacts) {
   constexpr int steps = 120;
   ContactSet last = contacts.at_rest();
   TrianglePair left, right;
   for (int i = 1; i <= steps; ++i) {
     const Pose X_CM = path.joints.pose(path.inputs(end * i / steps));
-    if (crushes(path.joints, X_CM, least_gap, left, right)) return end * (i - 1) / steps;
+    if (crushes(path.joints, X_CM, min_gap, left, right)) return end * (i - 1) / steps;
     last = contacts.find(X_CM, &last, 2);
     if (!is_free(last, contacts.at_rest())) return end * (i - 1) / steps;
   }
@@ -91,20 +91,20 @@ double free_rotation(const OpeningPath& path, double end, double least_gap,
 }
 
 std::vector<Coupling> couplings_to_try(const MotionParameters& parameters) {
-  Coupling usual;
-  if (parameters.hinge_deg) usual.hinge = *parameters.hinge_deg * radian_per_degree;
+  Coupling standard;
+  if (parameters.hinge_deg) standard.hinge = *parameters.hinge_deg * degree;
   std::vector<Coupling> all;
   if (parameters.early_translation) {
-    usual.early = *parameters.early_translation;
-    return {usual};
+    standard.early = *parameters.early_translation;
+    return {standard};
   }
-  for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-    all.push_back(usual);
-    all.back().early = share;
+  for (const double fraction : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    all.push_back(standard);
+    all.back().early = fraction;
   }
   for (const double degrees : {1.25, 1.0, 2.0, 3.0}) {
-    all.push_back(usual);
-    all.back().rad_per_mm = degrees * radian_per_degree;
+    all.push_back(standard);
+    all.back().rad_per_mm = degrees * degree;
     all.back().early = 1;
   }
   return all;
@@ -129,12 +129,13 @@ bool bones_free(const Case& patient, const ContactModel& contacts, const Pose& X
 OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contacts,
                              const MotionParameters& parameters, std::vector<std::string>& notes) {
   const auto& asked = parameters.opening_mm;
-  const Wanted wanted =
-      asked ? Wanted{true, *asked}
-            : Wanted{false, joints.well_known() ? known_joint_way_mm : imported_way_mm};
-  // A gap that thins along the way is meant to.
-  const double least_gap = joints.well_known() ? 0.3 : 0.7;
-  // The first coupling that reaches the wanted opening freely, else the one that opens farthest.
+  const Target target = asked
+                            ? Target{true, *asked}
+                            : Target{false, joints.well_known() ? known_joint_displacement_mm
+                                                                : estimated_joint_displacement_mm};
+  // A prescribed thinning of the gap is allowed.
+  const double min_gap = joints.well_known() ? 0.3 : 0.7;
+  // The first coupling that reaches the target freely, else the one that opens farthest.
   struct Choice {
     Coupling coupling;
     double end = 0, free_end = 0, free_mm = 0;
@@ -142,38 +143,36 @@ OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contac
   std::optional<Choice> best;
   for (const Coupling& coupling : couplings_to_try(parameters)) {
     const OpeningPath path{joints, coupling};
-    Choice choice{coupling, path.theta_for(wanted)};
-    choice.free_end = free_rotation(path, choice.end, least_gap, contacts);
-    choice.free_mm = path.gone_mm(choice.free_end, wanted);
+    Choice choice{coupling, path.theta_for(target)};
+    choice.free_end = free_rotation(path, choice.end, min_gap, contacts);
+    choice.free_mm = path.travel_mm(choice.free_end, target);
     if (!best || choice.free_mm > best->free_mm + 1e-9) best = choice;
-    if (choice.free_end == choice.end && choice.free_mm > wanted.mm - 1e-6) break;
+    if (choice.free_end == choice.end && choice.free_mm > target.mm - 1e-6) break;
   }
   const OpeningPath path{joints, best->coupling};
-  const double largest = path.gone_mm(best->end, wanted);
-  if (asked && largest < wanted.mm - 1e-6)
+  const double largest = path.travel_mm(best->end, target);
+  if (asked && largest < target.mm - 1e-6)
     throw InputError(
-        fmt::format("opening {:.6g} mm: this jaw opens to {:.1f} mm when it turns by 45 "
-                    "degrees; ask for less",
-                    wanted.mm, largest));
+        fmt::format("opening {:.6g} mm: this jaw opens to {:.1f} mm at 45 degrees of rotation; "
+                    "request less",
+                    target.mm, largest));
   double end = best->end;
   if (best->free_end < best->end) {
-    const bool keeps_clear = !asked && best->free_mm > least_opening_mm;
-    notes.push_back(fmt::format(
-        "bone meets bone where the incisal point has gone {:.1f} mm ({}) of the {:.1f} mm "
-        "wanted{}",
-        best->free_mm, wanted.word(), wanted.mm,
-        keeps_clear ? "" : ", which is tried all the same"));
+    const bool keeps_clear = !asked && best->free_mm > min_opening_mm;
+    notes.push_back(fmt::format("bone meets bone at {:.1f} mm ({}) of the {:.1f} mm requested{}",
+                                best->free_mm, target.word(), target.mm,
+                                keeps_clear ? "" : "; the motion is attempted anyway"));
     if (keeps_clear)
-      end = path.theta_for({wanted.drop, std::max(best->free_mm - give_way_mm, 0.0)});
+      end = path.theta_for({target.drop, std::max(best->free_mm - clearance_reserve_mm, 0.0)});
   }
   const double forward = best->coupling.forward_mm(end);
   notes.push_back(fmt::format(
-      "maximum opening: the incisal point drops by {:.1f} mm and goes {:.1f} mm; rotation {:.1f} "
+      "maximum opening {:.1f} mm (displacement of the incisal point {:.1f} mm); rotation {:.1f} "
       "deg, condyles {:.1f} mm forward and {:.1f} mm down, early translation {:.2f}, {:.2f} "
       "deg/mm; {}",
-      path.drop_mm(end), path.way_mm(end), end / radian_per_degree, forward,
-      joints.drop_mm(JawSide::left, forward, end), best->coupling.early,
-      best->coupling.rad_per_mm / radian_per_degree, joints.guide()));
+      path.opening_mm(end), path.displacement_mm(end), end / degree, forward,
+      joints.inferior_translation_mm(JawSide::left, forward, end), best->coupling.early,
+      best->coupling.rad_per_mm / degree, joints.guide()));
   return {best->coupling, end};
 }
 

@@ -9,16 +9,16 @@
 
 namespace condyle {
 
-/// How this jaw opens: the coupling of rotation and translation that its bones leave free, as near
-/// to a hinge first as they do, and how far: to the drop that is asked for, else until the incisal
-/// point has gone as far as in adults. Notes tell people.
-/// source: the coupling after Leader 2003 (1.5 deg/mm) and Travers 2000; the way after Woelfel
-/// (51.2 mm), in patients whose joint is a guess after Travers (46.6 mm).
-/// throws: InputError when the opening that is asked for needs too large a rotation.
+/// Opening of this jaw: the coupling of rotation and translation that its bones permit, as close to
+/// an initial hinge as possible, and its extent: the requested descent of the incisal point, else
+/// the mean displacement in adults. Appends to `notes`. source: coupling after Leader 2003 (1.5
+/// deg/mm) and Travers 2000; displacement after Woelfel (51.2 mm), where the joint is estimated
+/// after Travers (46.6 mm). throws: InputError when the requested opening needs too large a
+/// rotation.
 OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contacts,
                              const MotionParameters& parameters, std::vector<std::string>& notes);
 
-/// Whether bones that are apart at rest, teeth aside, are apart at the pose.
+/// Whether bones other than teeth that are apart at rest are apart at the pose.
 bool bones_free(const Case& patient, const ContactModel& contacts, const Pose& X_CM);
 
 }  // namespace condyle

@@ -17,19 +17,19 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double unit_tolerance = 1e-3;      // of a quaternion's length: files have few digits
-constexpr double rotation_tolerance = 0.05;  // of a matrix written with two decimals
+constexpr double unit_tolerance = 1e-3;      // of a quaternion's norm, for files with few digits
+constexpr double rotation_tolerance = 0.05;  // for matrices written with two decimals
 constexpr double farthest_mm = 1000;
-constexpr double most_angle_rad = 7;  // a little more than a turn
+constexpr double max_angle_rad = 7;  // slightly more than a full turn
 
 Quaterniond about(char axis, double angle) {
   const int k = std::tolower(static_cast<unsigned char>(axis)) - 'x';
   return Quaterniond(Eigen::AngleAxisd(angle, Vector3d::Unit(k)));
 }
 
-/// Places of a body's columns in the table.
-std::vector<std::size_t> places(const std::filesystem::path& file, const NumberTable& table,
-                                const std::vector<std::string>& names) {
+/// Indices of a body's columns in the table.
+std::vector<std::size_t> column_indices(const std::filesystem::path& file, const NumberTable& table,
+                                        const std::vector<std::string>& names) {
   std::vector<std::size_t> out;
   for (const auto& name : names) out.push_back(column_of(file, table, name));
   return out;
@@ -48,14 +48,15 @@ Quaterniond rotation_of(const std::filesystem::path& file, const std::string& wh
                         const Matrix3d& R) {
   const double off = (R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(off <= rotation_tolerance))
-    throw InputError(file, where,
-                     fmt::format("the 3x3 part is no rotation: R'R differs from 1 by {:.3g} (its "
-                                 "first row is {:.4g} {:.4g} {:.4g}); write poses without scale or "
-                                 "shear, and check which columns hold them",
-                                 off, R(0, 0), R(0, 1), R(0, 2)));
+    throw InputError(
+        file, where,
+        fmt::format("the 3x3 part is not a rotation: R'R differs from 1 by {:.3g} (its "
+                    "first row is {:.4g} {:.4g} {:.4g}); use poses without scale or "
+                    "shear, and check the assignment of columns",
+                    off, R(0, 0), R(0, 1), R(0, 2)));
   if (R.determinant() < 0)
     throw InputError(file, where,
-                     "the 3x3 part mirrors; it must be a rotation. Write poses of a right-handed "
+                     "the 3x3 part is a reflection, not a rotation. Use poses of a right-handed "
                      "frame");
   const Eigen::JacobiSVD<Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return Quaterniond(Matrix3d(svd.matrixU() * svd.matrixV().transpose())).normalized();
@@ -68,9 +69,9 @@ std::size_t column_of(const std::filesystem::path& file, const NumberTable& tabl
     if (number >= 1 && number <= static_cast<double>(table.names.size()) &&
         number == std::floor(number))
       return static_cast<std::size_t>(number) - 1;
-    throw InputError(
-        file, "",
-        fmt::format("there is no column {}; it has {}", shortened(name), table.names.size()));
+    throw InputError(file, "",
+                     fmt::format("there is no column {}; the file has {} columns", shortened(name),
+                                 table.names.size()));
   }
   std::vector<std::size_t> found;
   for (std::size_t c = 0; c < table.names.size(); ++c)
@@ -80,16 +81,17 @@ std::size_t column_of(const std::filesystem::path& file, const NumberTable& tabl
   for (std::size_t c = 0; c < std::min<std::size_t>(table.names.size(), 20); ++c)
     there += (c ? ", " : "") + shortened(table.names[c]);
   throw InputError(file, fmt::format("line {}", table.header_line),
-                   found.empty()
-                       ? fmt::format("column {} is missing; there are {}", shortened(name), there)
-                       : fmt::format("column {} stands twice", shortened(name)));
+                   found.empty() ? fmt::format("column {} is missing; the columns are {}",
+                                               shortened(name), there)
+                                 : fmt::format("column {} appears twice", shortened(name)));
 }
 
 PoseSeries poses_from_columns(const std::filesystem::path& file, const NumberTable& table,
                               const RecordingMap& map, const BodyColumns& body,
                               const std::vector<double>& time_s) {
   using Rotation = BodyColumns::Rotation;
-  const auto shift = places(file, table, body.translation), turn = places(file, table, body.turn);
+  const auto shift = column_indices(file, table, body.translation),
+             turn = column_indices(file, table, body.turn);
   PoseSeries series;
   series.time_s = time_s;
   for (std::size_t r = 0; r < table.rows(); ++r) {
@@ -109,9 +111,9 @@ PoseSeries poses_from_columns(const std::filesystem::path& file, const NumberTab
       std::array<Quaterniond, 3> turns;
       for (std::size_t k = 0; k < 3; ++k) {
         const double angle = value(k) * map.angle_unit_rad;
-        if (std::abs(angle) > most_angle_rad)
+        if (std::abs(angle) > max_angle_rad)
           throw InputError(file, table.where(r, turn[k]),
-                           fmt::format("{} is more than a whole turn in {}; check angle_unit",
+                           fmt::format("{} is more than a full turn in {}; check angle_unit",
                                        value(k), map.angle_unit_rad == 1 ? "radians" : "degrees"));
         turns[k] = about(body.order[k], angle);
       }
@@ -128,12 +130,12 @@ PoseSeries poses_from_columns(const std::filesystem::path& file, const NumberTab
         const bool by_columns = value(3) == 0 && value(7) == 0 && value(11) == 0 && value(15) == 1;
         if (!by_rows && !by_columns)
           throw InputError(file, line,
-                           fmt::format("a 4x4 pose ends with the row 0 0 0 1; here it is {} {} {} "
-                                       "{}",
+                           fmt::format("the last row of a 4x4 pose must be 0 0 0 1; here it is {} "
+                                       "{} {} {}",
                                        value(12), value(13), value(14), value(15)));
         X.t = map.length_unit_mm * (by_rows ? Vector3d(value(3), value(7), value(11))
                                             : Vector3d(value(12), value(13), value(14)));
-        if (!by_rows) R.transposeInPlace();  // written column by column
+        if (!by_rows) R.transposeInPlace();  // stored column by column
       }
       X.R = rotation_of(
           file, fmt::format("{}, columns {} to {}", line, body.turn.front(), body.turn.back()), R);
@@ -144,11 +146,10 @@ PoseSeries poses_from_columns(const std::filesystem::path& file, const NumberTab
       if (!map.first_is_rest && std::abs(mm) > farthest_mm)
         throw InputError(
             file, table.where(r, shift[k]),
-            fmt::format(
-                "{:.6g} mm is farther than {} mm; lengths are taken in {}. If another unit is "
-                "meant, write {{\"length_unit\": ...}} with mm, cm, m or in into {}.json "
-                "beside it",
-                mm, farthest_mm, unit_name(map.length_unit_mm), file.filename().string()));
+            fmt::format("{:.6g} mm exceeds {} mm; lengths are read in {}. For another unit, add "
+                        "the sidecar "
+                        "file {}.json with {{\"length_unit\": ...}} (mm, cm, m or in)",
+                        mm, farthest_mm, unit_name(map.length_unit_mm), file.filename().string()));
     }
     series.X.push_back(X);
   }
@@ -162,7 +163,7 @@ PoseSeries poses_from_markers(const std::filesystem::path& file, const MarkerTab
     const auto found = std::find(table.names.begin(), table.names.end(), name);
     if (found == table.names.end())
       throw InputError(file, "header",
-                       fmt::format("the marker {} is missing; there are {}", shortened(name),
+                       fmt::format("the marker {} is missing; the markers are {}", shortened(name),
                                    shortened(fmt::format("{}", fmt::join(table.names, ", ")))));
     tracks.push_back(&table.markers[static_cast<std::size_t>(found - table.names.begin())]);
   }
@@ -175,7 +176,7 @@ PoseSeries poses_from_markers(const std::filesystem::path& file, const MarkerTab
   std::size_t first = 0;
   while (first < table.time_s.size() && seen(first).size() < tracks.size()) ++first;
   if (first == table.time_s.size())
-    throw InputError(file, "", "in no row are all markers of the body seen");
+    throw InputError(file, "", "no row contains all markers of the body");
 
   PoseSeries series;
   for (std::size_t r = 0; r < table.time_s.size(); ++r) {
@@ -192,11 +193,11 @@ PoseSeries poses_from_markers(const std::filesystem::path& file, const MarkerTab
       H += u * v.transpose();
     }
     const Eigen::JacobiSVD<Matrix3d> shape(spread);
-    constexpr double thin = 1e-4;  // of the longest extent, squared: markers in a line
+    constexpr double thin = 1e-4;  // ratio of squared extents below which markers are collinear
     if (here.size() < 3 || shape.singularValues()[1] <= thin * shape.singularValues()[0]) {
       if (r == first)
         throw InputError(file, "line " + std::to_string(table.lines[r]),
-                         "the markers lie in a line; they tell no rotation");
+                         "the markers are collinear and determine no rotation");
       ++series.missing;
       continue;
     }

@@ -12,22 +12,21 @@
 
 namespace condyle {
 
-/// Poses of one body over time as a file has them: its units and axes already millimetres, radians
-/// and its own axes.
+/// Poses of one body over time in the axes of the file, converted to millimetres and radians.
 struct PoseSeries {
   std::vector<double> time_s;
   std::vector<Pose> X;                   // rest to now
-  std::vector<double> residual_mm = {};  // of markers, root mean square; none: no markers
-  int missing = 0;                       // rows without a pose, left out
+  std::vector<double> residual_mm = {};  // root mean square over the markers; empty without markers
+  int missing = 0;                       // rows without a pose, omitted
 };
 
-/// A rotation nearest to a matrix that is one but for rounding. throws: InputError where it is not
-/// (farther than 0.05 in any entry of R'R - 1, or a reflection).
+/// The rotation nearest to a matrix that is orthogonal up to rounding. throws: InputError where an
+/// entry of R'R - 1 exceeds 0.05, or for a reflection.
 Eigen::Quaterniond rotation_of(const std::filesystem::path& file, const std::string& where,
                                const Eigen::Matrix3d& R);
 
-/// A column of a table by its name, or its number from 1 on ("#3"). throws: InputError listing what
-/// there is.
+/// Index of a column given by its name, or by its number from 1 ("#3"). throws: InputError listing
+/// the columns.
 std::size_t column_of(const std::filesystem::path& file, const NumberTable& table,
                       const std::string& name);
 
@@ -36,7 +35,7 @@ PoseSeries poses_from_columns(const std::filesystem::path& file, const NumberTab
                               const RecordingMap& map, const BodyColumns& body,
                               const std::vector<double>& time_s);
 
-/// Places of markers over time: markers[m][r], mm; not finite where not seen.
+/// Positions of markers over time: markers[m][r], mm; not finite where not visible.
 struct MarkerTable {
   std::vector<std::string> names;
   std::vector<double> time_s;
@@ -44,8 +43,8 @@ struct MarkerTable {
   std::vector<std::vector<Eigen::Vector3d>> markers;
 };
 
-/// Each row's pose that carries the markers of the first whole row nearest to where they are now,
-/// by least squares; rows with fewer than three markers, or with these in a line, are left out.
+/// Least-squares rigid pose of each row relative to the first complete row. Rows with fewer than
+/// three visible markers, or with collinear ones, are omitted.
 PoseSeries poses_from_markers(const std::filesystem::path& file, const MarkerTable& table,
                               const std::vector<std::string>& names);
 

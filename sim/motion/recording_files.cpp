@@ -9,7 +9,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "sim/case/json_file.h"
-#include "sim/motion/condylar_path.h"
+#include "sim/motion/condylar_kinematics.h"
 
 namespace condyle {
 namespace {
@@ -38,18 +38,18 @@ std::vector<std::string> texts(const std::vector<std::string_view>& fields) {
   return {fields.begin(), fields.end()};
 }
 
-RecordingMap with_sidecar(const fs::path& file, const RecordingMap& usual) {
+RecordingMap with_sidecar(const fs::path& file, const RecordingMap& defaults) {
   const auto sidecar = sidecar_of(file);
-  return sidecar ? read_sidecar(*sidecar, usual) : usual;
+  return sidecar ? read_sidecar(*sidecar, defaults) : defaults;
 }
 
-/// Times of rows, from a column or from the rate; they must increase.
+/// Times of the rows, from a column or from the rate; they must increase.
 std::vector<double> times_of(const fs::path& file, const NumberTable& table,
                              const RecordingMap& map, std::optional<std::size_t> column) {
   std::vector<double> times;
   if (!column && !(map.rate_hz > 0))
     throw InputError(file, "",
-                     "has no times; tell how many rows make a second in a file beside it, " +
+                     "has no times; give the rows per second in a sidecar file " +
                          file.filename().string() + ".json: {\"rate_hz\": 100}");
   if (column && map.time_unit_s == 1) check_times(file, table, *column);
   for (std::size_t r = 0; r < table.rows(); ++r)
@@ -58,33 +58,33 @@ std::vector<double> times_of(const fs::path& file, const NumberTable& table,
   for (std::size_t r = 1; r < times.size(); ++r)
     if (!(times[r] > times[r - 1]))
       throw InputError(file, table.where(r, column.value_or(0)),
-                       "does not come after the row before; sort the rows by time");
+                       "is not later than the previous row; sort the rows by time");
   return times;
 }
 
-/// Reads those columns of the rows that the poses need.
+/// Reads the columns that the poses need.
 RecordingFile from_columns(const fs::path& file, TextLines& lines, std::vector<std::string> names,
                            char separator, const RecordingMap& map, std::string format) {
   NumberTable head;
   head.names = names;
   head.header_line = std::max<std::size_t>(lines.number(), 1);
-  std::vector<std::size_t> wanted;
+  std::vector<std::size_t> needed;
   std::optional<std::size_t> time;
   if (map.rate_hz == 0 && !map.time.empty()) {
     time = column_of(file, head, map.time);
-    wanted.push_back(*time);
+    needed.push_back(*time);
   }
-  const auto want = [&](const BodyColumns& body) {
-    if (!body.markers.empty()) throw InputError(file, "", "markers are only read from .trc files");
+  const auto need = [&](const BodyColumns& body) {
+    if (!body.markers.empty()) throw InputError(file, "", "markers are read from .trc files only");
     for (const auto* columns : {&body.translation, &body.turn})
-      for (const auto& name : *columns) wanted.push_back(column_of(file, head, name));
+      for (const auto& name : *columns) needed.push_back(column_of(file, head, name));
   };
-  want(map.mandible);
-  if (map.cranium) want(*map.cranium);
+  need(map.mandible);
+  if (map.cranium) need(*map.cranium);
   const std::size_t header = head.header_line;
-  NumberTable table = read_rows(file, lines, std::move(names), separator, wanted);
+  NumberTable table = read_rows(file, lines, std::move(names), separator, needed);
   table.header_line = header;
-  if (table.rows() == 0) throw InputError(file, "", "there is a header but no pose");
+  if (table.rows() == 0) throw InputError(file, "", "the file has a header but no pose");
   const std::vector<double> times = times_of(file, table, map, time);
   RecordingFile out{std::move(format), map,
                     poses_from_columns(file, table, map, map.mandible, times)};
@@ -92,23 +92,39 @@ RecordingFile from_columns(const fs::path& file, TextLines& lines, std::vector<s
   return out;
 }
 
+/// Refuses a file whose rows are too short for a position and a rotation.
+[[noreturn]] void refuse_positions(const fs::path& file, const std::string& where,
+                                   std::size_t width) {
+  throw InputError(
+      file, where,
+      fmt::format(
+          "has {} columns, at most the path of a point, which does not give the rotation of the "
+          "jaw. A recording needs position and rotation, as in "
+          "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz, or at least three markers (.trc); the sidecar "
+          "file {}.json gives the columns of the file where they have other names",
+          width, file.filename().string()));
+}
+
 RecordingFile read_named_columns(const fs::path& file, TextLines& lines) {
-  RecordingMap usual;
-  usual.mandible = {.rotation = BodyColumns::Rotation::quaternion,
-                    .translation = {"tx_mm", "ty_mm", "tz_mm"},
-                    .turn = {"qw", "qx", "qy", "qz"}};
-  const RecordingMap map = with_sidecar(file, usual);
+  RecordingMap defaults;
+  defaults.mandible = {.rotation = BodyColumns::Rotation::quaternion,
+                       .translation = {"tx_mm", "ty_mm", "tz_mm"},
+                       .turn = {"qw", "qx", "qy", "qz"}};
+  const RecordingMap map = with_sidecar(file, defaults);
   const char separator = separator_of(lines.line());
   auto names = texts(fields_of(lines.line(), separator));
+  const std::size_t width = names.size();
   try {
     return from_columns(file, lines, std::move(names), separator, map, "table of poses");
   } catch (const InputError& error) {
     const std::string problem = error.what();
-    if (sidecar_of(file) || problem.find(" is missing; there are") == std::string::npos) throw;
+    if (sidecar_of(file) || problem.find(" is missing; the columns are") == std::string::npos)
+      throw;
+    if (width <= 4) refuse_positions(file, lines.where(), width);
     throw InputError(problem +
                      "; a pose file starts with the header time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz, "
-                     "or a file beside it, " +
-                     file.filename().string() + ".json, tells its columns");
+                     "or a sidecar file " +
+                     file.filename().string() + ".json names its columns");
   }
 }
 
@@ -126,28 +142,29 @@ RecordingFile read_matrices(const fs::path& file, std::string_view content) {
   const std::size_t width = fields_of(lines.line(), separator).size();
   if (width < 16 || (width % 16 != 0 && width % 16 != 1))
     throw InputError(file, lines.where(),
-                     fmt::format("{} numbers without a header; a row of a 4x4 pose has 16, or 17 "
-                                 "with the time first",
+                     fmt::format("{} numbers without a header; a 4x4 pose has 16, or 17 with the "
+                                 "time first",
                                  width));
   const std::size_t first = width % 16 + 1;
-  RecordingMap usual;
-  usual.time = first == 2 ? "#1" : "";
-  usual.mandible = {.rotation = BodyColumns::Rotation::matrix, .turn = numbered(first, 16)};
+  RecordingMap defaults;
+  defaults.time = first == 2 ? "#1" : "";
+  defaults.mandible = {.rotation = BodyColumns::Rotation::matrix, .turn = numbered(first, 16)};
   TextLines rows(content);
-  return from_columns(file, rows, numbered(1, width), separator, with_sidecar(file, usual),
+  return from_columns(file, rows, numbered(1, width), separator, with_sidecar(file, defaults),
                       "4x4 rows");
 }
 
 /// ArtiSynth's text of a numeric probe.
 RecordingFile read_probe(const fs::path& file, TextLines& lines) {
   const auto start = fields_of(lines.line(), ' ');
-  // Start and stop are left: times count from the first row.
+  // Start and stop are ignored: time is counted from the first row.
   const double scale = parse_number(file, lines.where() + ", scale", start[2]);
   lines.next_filled();
   const auto head = fields_of(lines.line(), ' ');
   if (head.size() < 3)
-    throw InputError(file, lines.where(),
-                     "a probe's second line holds interpolation, number of columns, and time step");
+    throw InputError(
+        file, lines.where(),
+        "the second line of a probe must hold interpolation, number of columns and time step");
   const double count = parse_number(file, lines.where() + ", columns", head[1]);
   if (count != 12 && count != 16)
     throw InputError(file, lines.where(),
@@ -155,43 +172,43 @@ RecordingFile read_probe(const fs::path& file, TextLines& lines) {
                                  shortened(head[1])));
   const auto n = static_cast<std::size_t>(count);
   const bool explicit_times = lower_case(head[2]) == "explicit";
-  RecordingMap usual;
-  usual.time = explicit_times ? "#1" : "";
+  RecordingMap defaults;
+  defaults.time = explicit_times ? "#1" : "";
   const std::size_t first = explicit_times ? 2 : 1;
   if (!explicit_times) {
     const double step_s = parse_number(file, lines.where() + ", time step", head[2]) * scale;
     if (!(step_s > 1e-6 && step_s <= 60))
       throw InputError(file, lines.where(),
                        fmt::format("a time step of {} s is not between 1e-6 and 60", step_s));
-    usual.rate_hz = 1 / step_s;
+    defaults.rate_hz = 1 / step_s;
   }
-  usual.mandible.rotation = BodyColumns::Rotation::matrix;
-  usual.mandible.turn = numbered(first, 16);
+  defaults.mandible.rotation = BodyColumns::Rotation::matrix;
+  defaults.mandible.turn = numbered(first, 16);
   if (n == 12) {  // rows of three and one
-    usual.mandible.turn.clear();
+    defaults.mandible.turn.clear();
     for (const std::size_t k : {0u, 1u, 2u, 4u, 5u, 6u, 8u, 9u, 10u})
-      usual.mandible.turn.push_back("#" + std::to_string(first + k));
+      defaults.mandible.turn.push_back("#" + std::to_string(first + k));
     for (const std::size_t k : {3u, 7u, 11u})
-      usual.mandible.translation.push_back("#" + std::to_string(first + k));
+      defaults.mandible.translation.push_back("#" + std::to_string(first + k));
   }
-  return from_columns(file, lines, numbered(1, n + first - 1), ' ', with_sidecar(file, usual),
+  return from_columns(file, lines, numbered(1, n + first - 1), ' ', with_sidecar(file, defaults),
                       "ArtiSynth probe");
 }
 
-/// OpenSim: lengths in metres, x forward, y up, z right; angles as the header tells.
+/// OpenSim: lengths in metres, x forward, y up, z right; angle unit from the header.
 RecordingFile read_opensim(const fs::path& file, std::string_view content) {
   TextLines lines(content);
-  RecordingMap usual;
-  usual.time = "time";
-  usual.length_unit_mm = 1000;
-  usual.axes = "ASR";
+  RecordingMap defaults;
+  defaults.time = "time";
+  defaults.length_unit_mm = 1000;
+  defaults.source = source_frame("mm", "ASR");
   bool ended = false;
   while (!ended && lines.next()) {
     const std::string line = lower_case(trimmed(lines.line()));
-    if (line == "indegrees=yes") usual.angle_unit_rad = radian_per_degree;
+    if (line == "indegrees=yes") defaults.angle_unit_rad = degree;
     ended = line == "endheader";
   }
-  if (!lines.next_filled()) throw InputError(file, "", "there is no column after endheader");
+  if (!lines.next_filled()) throw InputError(file, "", "there are no columns after endheader");
   auto names = texts(
       fields_of(lines.line(), lines.line().find('\t') != std::string_view::npos ? '\t' : ' '));
   // Coordinates of one free joint: NAME_tx, NAME_ty, NAME_tz and NAME_rx, NAME_ry, NAME_rz.
@@ -199,15 +216,15 @@ RecordingFile read_opensim(const fs::path& file, std::string_view content) {
   int joints = 0;
   for (const auto& name : names)
     if (lower_case(name).ends_with("_tx")) joint = name.substr(0, name.size() - 2), ++joints;
-  usual.mandible = {.rotation = BodyColumns::Rotation::euler,
-                    .translation = {joint + "tx", joint + "ty", joint + "tz"},
-                    .turn = {joint + "rx", joint + "ry", joint + "rz"}};
+  defaults.mandible = {.rotation = BodyColumns::Rotation::euler,
+                       .translation = {joint + "tx", joint + "ty", joint + "tz"},
+                       .turn = {joint + "rx", joint + "ry", joint + "rz"}};
   if (joints != 1 && !sidecar_of(file))
     throw InputError(file, lines.where(),
-                     fmt::format("{} columns end with _tx, so it is not known which are the "
-                                 "mandible's; tell its columns in a file beside it, {}.json",
+                     fmt::format("{} columns end with _tx, so those of the mandible are ambiguous; "
+                                 "name them in the sidecar file {}.json",
                                  joints, file.filename().string()));
-  return from_columns(file, lines, std::move(names), ' ', with_sidecar(file, usual),
+  return from_columns(file, lines, std::move(names), ' ', with_sidecar(file, defaults),
                       "OpenSim storage");
 }
 
@@ -219,7 +236,7 @@ struct TrcHeader {
 TrcHeader read_trc_header(const fs::path& file, TextLines& lines) {
   const auto next = [&] {
     if (!lines.next())
-      throw InputError(file, "", "ends within its header; a .trc file has five lines of it");
+      throw InputError(file, "", "ends within its header; a .trc file has five header lines");
     return fields_of(lines.line(), '\t');
   };
   lines.next();  // PathFileType
@@ -234,11 +251,12 @@ TrcHeader read_trc_header(const fs::path& file, TextLines& lines) {
       head.unit_mm = 10;
     else if (unit != "mm")
       throw InputError(file, lines.where() + ", Units",
-                       "\"" + shortened(values[k]) + "\" is not known; known are mm, cm, m");
+                       "\"" + shortened(values[k]) + "\" is unknown; valid units are mm, cm, m");
   }
   const auto names = next();
   if (names.size() < 3 || lower_case(names[0]).find("frame") == std::string::npos)
-    throw InputError(file, lines.where(), "should begin with Frame#, Time and the markers' names");
+    throw InputError(file, lines.where(),
+                     "should start with Frame#, Time and the names of the markers");
   for (std::size_t k = 2; k < names.size(); ++k)
     if (!names[k].empty()) head.markers.emplace_back(names[k]);
   if (head.markers.empty()) throw InputError(file, lines.where(), "names no marker");
@@ -249,24 +267,24 @@ TrcHeader read_trc_header(const fs::path& file, TextLines& lines) {
 RecordingFile read_trc(const fs::path& file, std::string_view content) {
   TextLines lines(content);
   const TrcHeader head = read_trc_header(file, lines);
-  RecordingMap usual;
-  usual.first_is_rest = true;
-  usual.axes = "ASR";
-  usual.mandible.markers = head.markers;
-  usual.length_unit_mm = head.unit_mm;
-  RecordingFile out{"markers (.trc)", with_sidecar(file, usual), {}};
+  RecordingMap defaults;
+  defaults.first_is_rest = true;
+  defaults.source = source_frame("mm", "ASR");
+  defaults.mandible.markers = head.markers;
+  defaults.length_unit_mm = head.unit_mm;
+  RecordingFile out{"markers (.trc)", with_sidecar(file, defaults), {}};
   MarkerTable table{head.markers, {}, {}, {}};
   table.markers.resize(head.markers.size());
   const Vector3d unseen = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   while (lines.next_filled()) {
     const auto fields = fields_of(lines.line(), '\t');
     if (fields.size() < 2)
-      throw InputError(file, lines.where(), "has no time; the file may be cut off");
+      throw InputError(file, lines.where(), "has no time; the file may be truncated");
     const double time_s = parse_number(file, lines.where() + ", Time", fields[1]);
     if (!table.time_s.empty() && !(time_s > table.time_s.back()))
       throw InputError(
           file, lines.where() + ", Time",
-          fmt::format("{} does not come after {} of the row before", time_s, table.time_s.back()));
+          fmt::format("{} is not later than {} of the previous row", time_s, table.time_s.back()));
     table.time_s.push_back(time_s);
     table.lines.push_back(lines.number());
     for (std::size_t m = 0; m < head.markers.size(); ++m) {
@@ -281,10 +299,11 @@ RecordingFile read_trc(const fs::path& file, std::string_view content) {
       table.markers[m].push_back(p);
     }
   }
-  if (table.time_s.empty()) throw InputError(file, "", "there is a header but no row");
+  if (table.time_s.empty()) throw InputError(file, "", "the file has a header but no row");
   const auto poses = [&](const BodyColumns& body) {
     if (body.markers.empty())
-      throw InputError(file, "", "a .trc file holds markers; name those of each body as markers");
+      throw InputError(file, "",
+                       "a .trc file contains markers; list those of each body under markers");
     return poses_from_markers(file, table, body.markers);
   };
   out.mandible = poses(out.map.mandible);
@@ -310,8 +329,8 @@ RecordingFile read_recording_file(const fs::path& file) {
   ahead.next_filled();
   if (lower_case(file.extension().string()) == ".json")
     throw InputError(file, "",
-                     "is no motion: a JSON file only tells what stands in the motion beside it, "
-                     "whose name it has with .json behind");
+                     "is not a motion: a JSON file is the sidecar of the motion file whose name "
+                     "precedes .json");
   if (trimmed(lines.line()).starts_with("PathFileType")) return read_trc(file, content);
   const bool second = ahead.next_filled();
   if (second && begins_with_probe(lines.line(), ahead.line())) return read_probe(file, lines);
@@ -321,6 +340,9 @@ RecordingFile read_recording_file(const fs::path& file) {
   const auto fields = fields_of(lines.line(), separator_of(lines.line()));
   if (fields.size() >= 16 && is_number(fields[0]) && is_number(fields[1]))
     return read_matrices(file, content);
+  if (fields.size() <= 4 && !sidecar_of(file) &&
+      std::all_of(fields.begin(), fields.end(), is_number))
+    refuse_positions(file, lines.where(), fields.size());
   return read_named_columns(file, lines);
 }
 

@@ -9,7 +9,7 @@
 #include "engine/core/files.h"
 #include "sim/case/json_file.h"
 #include "sim/case/source_frame.h"
-#include "sim/motion/condylar_path.h"
+#include "sim/motion/condylar_kinematics.h"
 
 namespace condyle {
 namespace {
@@ -21,7 +21,7 @@ std::vector<std::string> names(const JsonItem& list, std::initializer_list<std::
   for (std::size_t i = 0; i < list.size(); ++i) out.push_back(list.at(i).text());
   if (sizes.size() > 0 && std::find(sizes.begin(), sizes.end(), out.size()) == sizes.end())
     list.refuse(
-        fmt::format("names {} columns; {} are needed", out.size(), fmt::join(sizes, " or ")));
+        fmt::format("names {} columns; {} are required", out.size(), fmt::join(sizes, " or ")));
   return out;
 }
 
@@ -40,7 +40,7 @@ BodyColumns body(const JsonItem& item) {
         std::pair{"matrix", Rotation::matrix}}) {
     const auto columns = item.find(key);
     if (!columns) continue;
-    if (out.rotation != Rotation::none) columns->refuse("is a second rotation; give one");
+    if (out.rotation != Rotation::none) columns->refuse("is a second rotation; give only one");
     out.rotation = rotation;
     out.turn = rotation == Rotation::quaternion ? names(*columns, {4})
                : rotation == Rotation::euler    ? names(*columns, {3})
@@ -60,13 +60,13 @@ BodyColumns body(const JsonItem& item) {
                          out.order.find_first_not_of("xyz") == std::string::npos;
     if (!proper || !letters)
       order->refuse("\"" + out.order.substr(0, 20) +
-                    "\" is no order of angles; write XYZ, ZYX, ... (about axes that go along) or "
-                    "xyz, zyx, ... (about axes that stay)");
+                    "\" is not an order of angles; use XYZ, ZYX, ... (intrinsic) or xyz, zyx, ... "
+                    "(extrinsic)");
   }
   return out;
 }
 
-/// One of some words. gives: its value.
+/// The value of one of several words. throws: InputError listing them.
 template <std::size_t N>
 double choice(const JsonItem& item, const std::array<std::pair<const char*, double>, N>& values) {
   std::string known;
@@ -74,7 +74,7 @@ double choice(const JsonItem& item, const std::array<std::pair<const char*, doub
     if (item.text() == name) return value;
     known += (known.empty() ? "" : ", ") + std::string(name);
   }
-  item.refuse("\"" + item.text().substr(0, 20) + "\" is not known; known are " + known);
+  item.refuse("\"" + item.text().substr(0, 20) + "\" is unknown; valid values are " + known);
 }
 
 }  // namespace
@@ -92,16 +92,14 @@ RecordingMap read_sidecar(const std::filesystem::path& file, RecordingMap map) {
     map.length_unit_mm = choice(*item, std::array{std::pair{"mm", 1.0}, std::pair{"cm", 10.0},
                                                   std::pair{"m", 1e3}, std::pair{"in", 25.4}});
   if (const auto item = root.find("angle_unit"))
-    map.angle_unit_rad =
-        choice(*item, std::array{std::pair{"deg", radian_per_degree}, std::pair{"rad", 1.0}});
+    map.angle_unit_rad = choice(*item, std::array{std::pair{"deg", degree}, std::pair{"rad", 1.0}});
   if (const auto item = root.find("axes")) {
-    map.axes = item->text();
     try {
-      source_frame("mm", map.axes);
+      map.source = source_frame("mm", item->text());
     } catch (const InputError&) {
-      item->refuse("\"" + map.axes.substr(0, 20) +
-                   "\" tells no axes; name where x, y and z point with one letter each of L or R, "
-                   "A or P, S or I: LPS, RAS, ASR ...");
+      item->refuse("\"" + item->text().substr(0, 20) +
+                   "\" does not name axes; give the directions of x, y and z, one letter each of L "
+                   "or R, A or P, S or I: LPS, RAS, ASR ...");
     }
   }
   if (const auto item = root.find("origin_mm")) {

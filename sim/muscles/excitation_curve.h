@@ -4,20 +4,20 @@
 
 namespace condyle {
 
-/// How a value goes from one knot to the next. step: held until the next. smooth: cubic without
-/// overshoot. cubic: each slope as between the neighbours (Catmull-Rom), none at the first and the
-/// last knot, as ArtiSynth reads its probes.
-enum class Between { step, linear, smooth, cubic };
+/// Interpolation between knots. step: constant up to the next knot. smooth: monotone cubic without
+/// overshoot. cubic: Catmull-Rom with zero slope at the first and last knot, as in ArtiSynth
+/// probes.
+enum class Interpolation { step, linear, smooth, cubic };
 
-/// A value over time by its knots; constant beyond them.
+/// A value over time, interpolated between knots and constant beyond them.
 class ExcitationCurve {
  public:
-  /// times strictly increasing, as many as values, at least 1.
-  ExcitationCurve(std::vector<double> times, std::vector<double> values, Between between);
+  /// `times` strictly increasing, one per value, at least one.
+  ExcitationCurve(std::vector<double> times, std::vector<double> values, Interpolation kind);
   double operator()(double time_s) const;
 
  private:
-  Between between_;
+  Interpolation interpolation_;
   std::vector<double> times_, values_, slopes_;
 };
 

@@ -20,25 +20,25 @@ namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
 constexpr std::size_t max_bytes = std::size_t{256} << 20, max_sidecar_bytes = std::size_t{1} << 20;
-constexpr double rounding = 1e-3;  // of excitations made elsewhere: so far beyond 0 and 1
-constexpr double dip = 0.05;       // below 0, of knots that shape a cubic; cut off at 0
+constexpr double rounding = 1e-3;  // tolerated excess beyond 0 and 1 in files of other programs
+constexpr double dip = 0.05;       // tolerated negative values of cubic knots; clamped to 0
 
-const std::array<std::pair<std::string_view, Between>, 4> words = {{{"step", Between::step},
-                                                                    {"linear", Between::linear},
-                                                                    {"smooth", Between::smooth},
-                                                                    {"cubic", Between::cubic}}};
+const std::array<std::pair<std::string_view, Interpolation>, 4> words = {
+    {{"step", Interpolation::step},
+     {"linear", Interpolation::linear},
+     {"smooth", Interpolation::smooth},
+     {"cubic", Interpolation::cubic}}};
 
-std::optional<Between> between_called(std::string_view word) {
-  for (const auto& [name, between] : words)
-    if (lower_case(word) == name) return between;
+std::optional<Interpolation> interpolation_named(std::string_view word) {
+  for (const auto& [name, kind] : words)
+    if (lower_case(word) == name) return kind;
   return std::nullopt;
 }
 
-std::string no_interpolation(std::string_view word) {
+std::string unknown_interpolation(std::string_view word) {
   std::string known;
-  for (const auto& [name, between] : words)
-    known += (known.empty() ? "" : ", ") + std::string(name);
-  return "\"" + shortened(word) + "\" is no interpolation; known are " + known;
+  for (const auto& [name, kind] : words) known += (known.empty() ? "" : ", ") + std::string(name);
+  return "\"" + shortened(word) + "\" is not an interpolation; valid ones are " + known;
 }
 
 /// Reads one file for the muscles of a case.
@@ -70,8 +70,8 @@ class Reader {
     root.only_keys({"interpolation", "tone", "without", "until_s"});
     if (const auto item = root.find("until_s")) until_s_ = item->number(0.001, 3600);
     if (const auto item = root.find("interpolation")) {
-      between_ = between_called(item->text());
-      if (!between_) item->refuse(no_interpolation(item->text()));
+      interpolation_ = interpolation_named(item->text());
+      if (!interpolation_) item->refuse(unknown_interpolation(item->text()));
     }
     if (const auto list = root.find("without")) {
       std::vector<bool> out(muscles_.size(), false);
@@ -87,7 +87,7 @@ class Reader {
     }
     out_.tone.assign(kept_.size(), 0.0);
     if (const auto tones = root.find("tone")) {
-      if (!tones->value().is_object()) tones->refuse("is no object {\"MUSCLE\": 0.001, ...}");
+      if (!tones->value().is_object()) tones->refuse("must be an object {\"MUSCLE\": 0.001, ...}");
       for (const auto& [name, value] : tones->value().items()) {
         const JsonItem item = tones->at(name);
         for (const std::size_t m : called(item, name, kept_)) out_.tone[m] += item.number(0, 1);
@@ -96,10 +96,10 @@ class Reader {
   }
   static std::vector<std::size_t> called(const JsonItem& item, const std::string& name,
                                          std::span<const Muscle> among) {
-    auto found = muscles_called(name, among);
+    auto found = muscles_named(name, among);
     if (found.empty())
-      item.refuse("\"" + shortened(name) + "\" is no muscle of this case; known are " +
-                  known_muscle_names(among));
+      item.refuse("\"" + shortened(name) + "\" is not a muscle of this case; its muscles are " +
+                  list_muscle_names(among));
     return found;
   }
 
@@ -107,20 +107,22 @@ class Reader {
     bool filled = false;
     while ((filled = lines_.next_filled()) && trimmed(lines_.line()).starts_with('#')) {
       const auto fields = fields_of(trimmed(lines_.line()).substr(1), ':');
-      if (fields.size() != 2 || lower_case(fields[0]) != "interpolation" || between_) continue;
-      between_ = between_called(fields[1]);
-      if (!between_) throw InputError(file_, lines_.where(), no_interpolation(fields[1]));
+      if (fields.size() != 2 || lower_case(fields[0]) != "interpolation" || interpolation_)
+        continue;
+      interpolation_ = interpolation_named(fields[1]);
+      if (!interpolation_)
+        throw InputError(file_, lines_.where(), unknown_interpolation(fields[1]));
     }
     if (!filled) throw InputError(file_, "", "the file is empty");
     for (const auto field : fields_of(lines_.line(), ',')) names_.emplace_back(field);
     header_ = lines_.where();
     for (const auto& name : names_)
       if (std::count(names_.begin(), names_.end(), name) > 1)
-        throw InputError(file_, header_, "column " + shortened(name) + " stands twice");
+        throw InputError(file_, header_, "column " + shortened(name) + " appears twice");
   }
-  std::optional<std::size_t> column(std::string_view wanted) const {
+  std::optional<std::size_t> column(std::string_view name) const {
     for (std::size_t c = 0; c < names_.size(); ++c)
-      if (lower_case(names_[c]) == wanted) return c;
+      if (lower_case(names_[c]) == name) return c;
     return std::nullopt;
   }
   std::optional<std::size_t> column_like(std::string_view begin) const {
@@ -128,37 +130,38 @@ class Reader {
       if (lower_case(names_[c]).starts_with(begin)) return c;
     return std::nullopt;
   }
-  std::size_t needed_column(std::string_view wanted, const char* shape) const {
-    if (const auto found = column(wanted)) return *found;
+  std::size_t needed_column(std::string_view name, const char* shape) const {
+    if (const auto found = column(name)) return *found;
     throw InputError(file_, header_,
-                     fmt::format("column {} is missing; {} (found \"{}\")", wanted, shape,
+                     fmt::format("column {} is missing; {} (found \"{}\")", name, shape,
                                  shortened(lines_.line())));
   }
 
-  /// Muscles that a name means and that are not taken out.
+  /// Muscles of that name that are not removed.
   std::vector<std::size_t> driven(std::string_view name, const std::string& where) const {
-    auto found = muscles_called(name, kept_);
-    if (found.empty() && muscles_called(name, muscles_).empty())
+    auto found = muscles_named(name, kept_);
+    if (found.empty() && muscles_named(name, muscles_).empty())
       throw InputError(file_, where,
-                       "\"" + shortened(name) + "\" is no muscle of this case; known are " +
-                           known_muscle_names(muscles_));
+                       "\"" + shortened(name) +
+                           "\" is not a muscle of this case; its muscles are " +
+                           list_muscle_names(muscles_));
     return found;
   }
   void check(double value, const std::string& where, double below = rounding) const {
     if (!(value >= -below && value <= 1 + rounding))
       throw InputError(file_, where,
-                       fmt::format("{} is no excitation; it goes from 0 to 1", value));
+                       fmt::format("{} is not an excitation; the range is 0 to 1", value));
   }
 
   void read_columns() {
     const std::size_t time = needed_column(
-        "time_s", "a file of excitations starts with the header time_s,MUSCLE,MUSCLE,...");
+        "time_s", "an excitation file starts with the header time_s,MUSCLE,MUSCLE,...");
     std::vector<std::vector<std::size_t>> of_column(names_.size());
     for (std::size_t c = 0; c < names_.size(); ++c)
       if (c != time) of_column[c] = driven(names_[c], header_);
-    if (names_.size() < 2) throw InputError(file_, header_, "no muscle has a column");
+    if (names_.size() < 2) throw InputError(file_, header_, "no column names a muscle");
     const NumberTable table = read_rows(file_, lines_, names_, ',');
-    if (table.rows() == 0) throw InputError(file_, "", "there is a header but no excitation");
+    if (table.rows() == 0) throw InputError(file_, "", "the file has a header but no excitation");
     check_times(file_, table, time);
     std::vector<double> times;
     for (std::size_t r = 0; r < table.rows(); ++r)
@@ -172,7 +175,8 @@ class Reader {
         values.push_back(table.at(r, c));
       }
       out_.channels.push_back(
-          {ExcitationCurve(times, values, between_.value_or(Between::smooth)), of_column[c]});
+          {ExcitationCurve(times, values, interpolation_.value_or(Interpolation::smooth)),
+           of_column[c]});
     }
   }
 
@@ -183,7 +187,7 @@ class Reader {
     const auto interpolation = column("interpolation"), active = column_like("active");
     struct Knots {
       std::string name;
-      Between between;
+      Interpolation kind;
       std::vector<std::size_t> muscles;
       std::vector<double> times, values;
     };
@@ -199,37 +203,39 @@ class Reader {
       const double value = parse_number(file_, where(excitation), fields[excitation]);
       if (active && parse_number(file_, where(*active), fields[*active]) == 0) continue;
       check(value, where(excitation), dip);
-      Between between = between_.value_or(Between::smooth);
-      if (interpolation && !between_) {
-        const auto told = between_called(fields[*interpolation]);
-        if (!told)
-          throw InputError(file_, where(*interpolation), no_interpolation(fields[*interpolation]));
-        between = *told;
+      Interpolation kind = interpolation_.value_or(Interpolation::smooth);
+      if (interpolation && !interpolation_) {
+        const auto named = interpolation_named(fields[*interpolation]);
+        if (!named)
+          throw InputError(file_, where(*interpolation),
+                           unknown_interpolation(fields[*interpolation]));
+        kind = *named;
       }
       auto found = std::find_if(all.begin(), all.end(),
                                 [&](const Knots& k) { return k.name == fields[muscle]; });
       if (found == all.end()) {
         all.push_back(
-            {std::string(fields[muscle]), between, driven(fields[muscle], where(muscle)), {}, {}});
+            {std::string(fields[muscle]), kind, driven(fields[muscle], where(muscle)), {}, {}});
         found = all.end() - 1;
       }
-      if (found->between != between)
+      if (found->kind != kind)
         throw InputError(
             file_, where(*interpolation),
-            fmt::format("{} goes on in another way than before; one muscle has one", found->name));
+            fmt::format("{} has a different interpolation than in earlier rows; use one per muscle",
+                        found->name));
       if (t < 0 || (!found->times.empty() && !(t > found->times.back())))
         throw InputError(file_, where(time),
                          found->times.empty()
-                             ? fmt::format("{} lies before the beginning, 0", t)
-                             : fmt::format("{} does not come after {}", t, found->times.back()));
+                             ? fmt::format("{} is before the start, 0", t)
+                             : fmt::format("{} is not later than {}", t, found->times.back()));
       found->times.push_back(t);
       found->values.push_back(value);
       out_.duration_s = std::max(out_.duration_s, t);
     }
-    if (all.empty()) throw InputError(file_, "", "there is a header but no excitation");
+    if (all.empty()) throw InputError(file_, "", "the file has a header but no excitation");
     for (auto& knots : all)
       out_.channels.push_back(
-          {ExcitationCurve(std::move(knots.times), std::move(knots.values), knots.between),
+          {ExcitationCurve(std::move(knots.times), std::move(knots.values), knots.kind),
            std::move(knots.muscles)});
   }
 
@@ -240,7 +246,7 @@ class Reader {
   TextLines lines_;
   Names names_;
   std::string header_;
-  std::optional<Between> between_;  // of the whole file
+  std::optional<Interpolation> interpolation_;  // for the whole file
   std::optional<double> until_s_;
   Excitations out_;
 };

@@ -7,9 +7,9 @@
 namespace condyle {
 namespace {
 
-/// Force by speed v of the fibres in units of the fastest (negative: shortening), of the isometric
-/// force, and its slope by v: Hill's hyperbola, and a steeper one when lengthening, with the same
-/// slope at rest times 2 (Katz).
+/// Force over isometric force, and its derivative, at fibre speed v in units of the maximum speed
+/// (negative: shortening): Hill's hyperbola, continued by a hyperbola of twice the slope at v = 0
+/// when lengthening (Katz).
 struct SpeedFactor {
   double value = 1, slope = 0;
 };

@@ -12,7 +12,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// What groups are made of: kinds, or other groups.
+/// Members of each group: kinds, or other groups.
 const std::map<std::string, Names>& groups() {
   static const std::map<std::string, Names> table = {
       {"t", {"at", "mt", "pt"}},
@@ -41,7 +41,7 @@ void add_kinds(const std::string& name, std::set<std::string>& kinds) {
   for (const auto& member : group->second) add_kinds(member, kinds);
 }
 
-/// Muscles of a kind or group on the side 'l' or 'r', or on both (0).
+/// Muscles of a kind or group on side 'l' or 'r', or on both sides (0).
 std::vector<std::size_t> of_kinds(const std::string& name, char side,
                                   std::span<const Muscle> muscles) {
   std::set<std::string> kinds;
@@ -57,7 +57,7 @@ std::vector<std::size_t> of_kinds(const std::string& name, char side,
 
 }  // namespace
 
-std::vector<std::size_t> muscles_called(std::string_view called, std::span<const Muscle> muscles) {
+std::vector<std::size_t> muscles_named(std::string_view called, std::span<const Muscle> muscles) {
   std::string name = lower_case(called);
   for (std::size_t i = 0; i < muscles.size(); ++i)
     if (lower_case(muscles[i].name) == name) return {i};
@@ -88,7 +88,7 @@ std::string short_name(const Muscle& muscle) {
   return (side == 'l' ? "L " : side == 'r' ? "R " : "") + words;
 }
 
-std::string known_muscle_names(std::span<const Muscle> muscles) {
+std::string list_muscle_names(std::span<const Muscle> muscles) {
   std::string text;
   for (const Muscle& muscle : muscles) text += muscle.name + " ";
   text += "and the groups";

@@ -9,17 +9,17 @@
 
 namespace condyle {
 
-/// Which muscles a name means: one ("lat"), a kind on both sides ("at"), or a group: t temporalis,
-/// m masseter, my mylohyoid, lp lateral pterygoid, close, open, hopen, pro, protracthyoid,
-/// retracthyoid, suprahyoid, infrahyoid, stiffenjaw, with l or r before it for one side (bi_ before
-/// any name: both). None: the name is unknown.
-std::vector<std::size_t> muscles_called(std::string_view name, std::span<const Muscle> muscles);
+/// Indices of the muscles that a name refers to: one ("lat"), a kind on both sides ("at"), or a
+/// group: t temporalis, m masseter, my mylohyoid, lp lateral pterygoid, close, open, hopen, pro,
+/// protracthyoid, retracthyoid, suprahyoid, infrahyoid, stiffenjaw, with l or r before it for one
+/// side (bi_ before any name: both). Empty: the name is unknown.
+std::vector<std::size_t> muscles_named(std::string_view name, std::span<const Muscle> muscles);
 
-/// The full name in few letters, its side first: "L Ant. Temporal" for "Anterior Temporal" of the
-/// left, "L" and "R" being the patient's. Without a side: the name alone.
+/// Abbreviated full name, side first: "L Ant. Temporal" for "Anterior Temporal" of the
+/// left, "L" and "R" being the patient's sides. Without a side: the name alone.
 std::string short_name(const Muscle& muscle);
 
-/// All names there are, for a message.
-std::string known_muscle_names(std::span<const Muscle> muscles);
+/// All valid names, for a message.
+std::string list_muscle_names(std::span<const Muscle> muscles);
 
 }  // namespace condyle

@@ -8,22 +8,22 @@
 
 #include "engine/core/error.h"
 #include "engine/mesh/triangle_tree.h"
-#include "sim/occlusion/foil.h"
+#include "sim/occlusion/elastic_layer.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double crown_mm = 16;       // of an arch's height, its curve included
-constexpr double room_mm = 2;         // about it
-constexpr double on_bone_mm = 3;      // an incisal landmark this near lies on the bone
-constexpr double molar_share = 0.58;  // of an arch's length lies before the first molars
+constexpr double crown_mm = 16;          // height of the crowns, including the curve of the arch
+constexpr double margin_mm = 2;          // around the crowns
+constexpr double on_bone_mm = 3;         // largest distance of an incisal landmark on the bone
+constexpr double molar_fraction = 0.58;  // fraction of the arch length in front of the first molars
 constexpr double molar_behind_mm = 28;
 constexpr double slice_mm = 4, top_mm = 1.5, piece_mm = 1;
-constexpr double steepest_cos = 0.8;  // of the occlusal plane to the horizontal: 37 degrees
+constexpr double steepest_cos = 0.8;  // limit of the inclination of the occlusal plane: 37 degrees
 
-/// Reads one arch; "height" is how far a point is toward the other arch.
+/// Finds one arch; "height" is measured towards the opposing arch.
 class ArchReader {
  public:
   ArchReader(const Case& patient, bool upper, double midline_mm, std::vector<std::string>& notes)
@@ -51,11 +51,11 @@ class ArchReader {
       arch_.crowns.add(Vector3d(midline_mm_ - size.x(), e.y() - 8, e.z() - size.z()));
       arch_.crowns.add(Vector3d(midline_mm_ + size.x(), e.y() + size.y(), e.z() + size.z()));
     }
-    arch_.crowns.low.array() -= room_mm;
-    arch_.crowns.high.array() += room_mm;
-    const double molar_y =
-        teeth ? front_mm_ + molar_share * (back_mm_ - front_mm_) : arch_.edge.y() + molar_behind_mm;
-    const auto pieces = make_foil_surface(arch_.part->mesh, arch_.crowns, piece_mm).pieces;
+    arch_.crowns.low.array() -= margin_mm;
+    arch_.crowns.high.array() += margin_mm;
+    const double molar_y = teeth ? front_mm_ + molar_fraction * (back_mm_ - front_mm_)
+                                 : arch_.edge.y() + molar_behind_mm;
+    const auto pieces = make_layer_surface(arch_.part->mesh, arch_.crowns, piece_mm).pieces;
     std::array<std::optional<Vector3d>, 2> found;
     for (int side = 0; side < 2; ++side) {
       const int fdi = upper_ ? (side == 0 ? 26 : 16) : (side == 0 ? 36 : 46);
@@ -74,7 +74,7 @@ class ArchReader {
     };
     if (!found[0] && !found[1])
       throw InputError(
-          fmt::format("{}: no {} molars can be found at y = {:.0f} mm; a bite needs "
+          fmt::format("{}: no {} molars were found at y = {:.0f} mm; a bite needs "
                       "back teeth",
                       arch_.part->name, upper_ ? "upper" : "lower", molar_y));
     for (int side = 0; side < 2; ++side)
@@ -103,7 +103,7 @@ class ArchReader {
                              [&](const auto& a, const auto& b) { return height(a) < height(b); });
   }
 
-  /// Over the middle of what is highest, at the height of the tip.
+  /// At the centre of the highest vertices and at the height of the tip.
   std::optional<Vector3d> top_of(const std::vector<Vector3d>& points) const {
     const auto tip = highest(points);
     if (!tip) return tip;
@@ -119,7 +119,7 @@ class ArchReader {
                right = highest(tooth_vertices(upper_ ? 11 : 41));
     if (left && right) return 0.5 * (*left + *right);
     if (arch_.part->teeth.empty()) {
-      // Markers of motion are often not on the edge: the teeth themselves come first.
+      // Motion-tracking markers are often off the edge: the teeth take precedence.
       std::array<std::vector<Vector3d>, 2> front;
       for (const auto& p : arch_.part->mesh.vertices)
         if (const double x = p.x() - midline_mm_; std::abs(x) < 5 && p.y() < front_mm_ + 12)
@@ -148,8 +148,9 @@ class ArchReader {
       if (!landmark || !bone || bone->mesh.empty()) continue;
       if (TriangleTree(bone->mesh).nearest(*landmark, on_bone_mm).triangle < 0) continue;
       arch_.part = bone;
-      notes_.push_back(fmt::format("the {} arch is the surface of {}, for want of {} teeth", name,
-                                   bone->name, name));
+      notes_.push_back(
+          fmt::format("the {} arch is the surface of {}, because the case has no {} teeth", name,
+                      bone->name, name));
       return;
     }
     throw InputError(fmt::format(
@@ -177,8 +178,9 @@ Arches find_arches(const Case& patient) {
     arches.midline_mm = 0.5 * (left->x() + right->x());
   } else {
     arches.notes.push_back(
-        "the landmarks left_condyle and right_condyle are missing: the joints do not hold the "
-        "mandible, and how far the condyles move is not told");
+        "the landmarks left_condyle and right_condyle are missing: the joints exert no force, and "
+        "the "
+        "displacement of the condyles is not reported");
     if (const auto edge = patient.landmarks.find("upper_incisal_point"))
       arches.midline_mm = edge->x();
     else if (const Part* teeth = patient.find(Role::upper_teeth))
@@ -193,8 +195,8 @@ Arches find_arches(const Case& patient) {
   arches.up = across.cross(back).normalized();
   if (!(arches.up.z() > steepest_cos)) {
     arches.notes.push_back(
-        "the occlusal plane cannot be told from the incisal edge and the molars; the horizontal "
-        "plane stands for it");
+        "the occlusal plane cannot be determined from the incisal edge and the molars; the "
+        "horizontal plane is used");
     arches.up = Vector3d::UnitZ();
   }
   arches.left = (across - arches.up * arches.up.dot(across)).normalized();

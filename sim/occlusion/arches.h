@@ -15,25 +15,25 @@ namespace condyle {
 /// crowns.
 struct Arch {
   const Part* part = nullptr;
-  Box crowns;                             // about the crowns, with some room
-  Eigen::Vector3d edge;                   // middle of the incisal edge
-  std::array<Eigen::Vector3d, 2> molars;  // tops of the first molars: left, right
+  Box crowns;                             // bounding box of the crowns, with a margin
+  Eigen::Vector3d edge;                   // midpoint of the incisal edge
+  std::array<Eigen::Vector3d, 2> molars;  // cusps of the first molars: left, right
   Eigen::Vector3d middle() const { return (edge + molars[0] + molars[1]) / 3; }
 };
 
-/// Both arches of a case, and the directions in which a bite is told.
+/// Both arches of a case, and the directions in which a bite is described.
 struct Arches {
   Arch upper, lower;
   // Unit vectors, cranium: normal of the upper arch's occlusal plane (incisal edge and first
-  // molars), upward; to the front in that plane; to the patient's left.
+  // molars), upward; forward in that plane; to the patient's left.
   Eigen::Vector3d up, front, left;
   double midline_mm = 0;                                   // x
   std::optional<std::array<Eigen::Vector3d, 2>> condyles;  // centres at rest: left, right
-  std::vector<std::string> notes;                          // how they were found, for people
+  std::vector<std::string> notes;                          // how they were found, as sentences
 };
 
 /// The teeth of the case; where an arch has none, the bone on whose surface its incisal landmark
-/// lies. The case must outlive the answer. throws: InputError naming what is missing.
+/// lies. The case must outlive the result. throws: InputError naming what is missing.
 Arches find_arches(const Case& patient);
 
 }  // namespace condyle

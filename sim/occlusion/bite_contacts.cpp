@@ -13,12 +13,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double cell_mm = 0.35;  // pressed pieces in the same or neighbouring cells hang together
-constexpr double least_mark_mm2 = 0.02;
+constexpr double cell_mm = 0.35;  // loaded pieces in the same or adjacent cells are connected
+constexpr double min_mark_mm2 = 0.02;
 
 struct Cell {
   int upper = 0, lower = 0;
-  bool left = false;  // what reaches over the midline counts for both sides
+  bool left = false;  // a patch across the midline counts for both sides
   int x = 0, y = 0, z = 0;
   auto operator<=>(const Cell&) const = default;
 };
@@ -26,7 +26,7 @@ struct Cell {
 struct Mark {
   ToothContact contact;
   double force_N = 0;
-  Vector3d place = Vector3d::Zero(), normal = Vector3d::Zero();  // sums, weighted by area
+  Vector3d place = Vector3d::Zero(), normal = Vector3d::Zero();  // sums weighted by area
 };
 
 }  // namespace
@@ -42,7 +42,7 @@ std::vector<ToothContact> find_contacts(const Arches& arches, const BiteModel& m
                                         const Pose& X_CM) {
   const Part &upper = *arches.upper.part, &lower = *arches.lower.part;
   const TriangleTree upper_tree(upper.mesh);
-  const auto pressed = model.pressed(X_CM);
+  const auto pressed = model.loaded_pieces(X_CM);
   std::map<Cell, std::vector<int>> cells;
   for (std::size_t i = 0; i < pressed.size(); ++i) {
     const auto& p = pressed[i].point;
@@ -81,7 +81,7 @@ std::vector<ToothContact> find_contacts(const Arches& arches, const BiteModel& m
             front.push_back(
                 {cell.upper, cell.lower, cell.left, cell.x + dx, cell.y + dy, cell.z + dz});
     }
-    if (mark.contact.area_mm2 < least_mark_mm2) continue;
+    if (mark.contact.area_mm2 < min_mark_mm2) continue;
     mark.contact.place = mark.place / mark.contact.area_mm2;
     mark.contact.normal = mark.normal.normalized();
     marks.push_back(mark);
@@ -92,7 +92,7 @@ std::vector<ToothContact> find_contacts(const Arches& arches, const BiteModel& m
                    [](const Mark& a, const Mark& b) { return a.force_N > b.force_N; });
   std::vector<ToothContact> contacts;
   for (auto& mark : marks) {
-    mark.contact.load_share = mark.force_N / all;
+    mark.contact.load_fraction = mark.force_N / all;
     contacts.push_back(mark.contact);
   }
   return contacts;
@@ -109,7 +109,7 @@ std::vector<ToothLoad> tooth_loads(const Arches& arches,
       auto& load = loads[fdi];
       ++load.contacts;
       load.area_mm2 += contact.area_mm2;
-      load.load_share += contact.load_share;
+      load.load_fraction += contact.load_fraction;
     }
   std::vector<ToothLoad> list;
   for (const auto& [fdi, load] : loads) list.push_back(load);

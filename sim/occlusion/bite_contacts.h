@@ -2,16 +2,16 @@
 
 #include <vector>
 
-#include "sim/occlusion/settle.h"
+#include "sim/occlusion/close_bite.h"
 
 namespace condyle {
 
-/// The marks on the paper at a pose: pressed pieces that hang together, of one pair of teeth.
-/// Largest share of the load first. Marks below 0.02 mm^2 are left out.
+/// Marks on the articulating film at a pose: connected loaded patches of one pair of teeth, in
+/// order of decreasing load. Marks below 0.02 mm^2 are omitted.
 std::vector<ToothContact> find_contacts(const Arches& arches, const BiteModel& model,
                                         const Pose& X_CM);
 
-/// What each separate tooth bears, by FDI number; teeth without contact are there, too.
+/// Load of each separate tooth, by FDI number, including teeth without contact.
 std::vector<ToothLoad> tooth_loads(const Arches& arches, const std::vector<ToothContact>& contacts);
 
 /// FDI number of the tooth that a triangle of the part belongs to; 0 where teeth are not separate.

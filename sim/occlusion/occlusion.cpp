@@ -14,9 +14,9 @@ namespace condyle {
 namespace {
 
 constexpr double farthest_start_mm = 25, farthest_turn_deg = 30;
-constexpr double residual_share = 0.01;  // of the closing force, that may be left at rest
-constexpr double least_side_share = 0.05;
-constexpr double most_joint_share = 0.5;
+constexpr double residual_fraction = 0.01;  // of the closing force, tolerated at equilibrium
+constexpr double min_side_fraction = 0.05;
+constexpr double max_joint_fraction = 0.5;
 
 IncisorOverlap incisors(const Arches& arches, const Pose& X_CM) {
   const Eigen::Vector3d lower = X_CM * arches.lower.edge - arches.upper.edge;
@@ -25,15 +25,15 @@ IncisorOverlap incisors(const Arches& arches, const Pose& X_CM) {
 
 bool is_front(int fdi) { return fdi % 10 >= 1 && fdi % 10 <= 3; }
 
-/// Exact distance of the arches, overlap where they cross, and bones that the bite brings deeper
-/// into each other than they are at rest.
-void look_at_pairs(const Case& patient, const ContactSet& set, double most_overlap_mm, Bite& bite) {
+/// Exact distance of the arches, their overlap, and notes on bones that overlap deeper in the bite
+/// than at rest.
+void inspect_pairs(const Case& patient, const ContactSet& set, double max_overlap_mm, Bite& bite) {
   for (const auto& pair : set.pairs) {
     const Part &a = patient.parts[pair.part_a], &b = patient.parts[pair.part_b];
     if (a.name == bite.upper && b.name == bite.lower) {
       bite.gap_mm = pair.distance_mm;
       bite.overlap_mm = pair.depth_mm;
-    } else if (pair.touching && pair.depth_mm > std::max(most_overlap_mm, pair.rest_depth_mm)) {
+    } else if (pair.touching && pair.depth_mm > std::max(max_overlap_mm, pair.rest_depth_mm)) {
       bite.notes.push_back(fmt::format(
           "{} and {} overlap by {:.2f} mm in this bite; at rest {}", a.name, b.name, pair.depth_mm,
           pair.rest_depth_mm > 0 ? fmt::format("by {:.2f} mm", pair.rest_depth_mm)
@@ -43,24 +43,25 @@ void look_at_pairs(const Case& patient, const ContactSet& set, double most_overl
 }
 
 std::string why_unstable(const Bite& bite, const OcclusionSettings& settings) {
-  if (!bite.rest.converged) return "the arches did not come to rest";
-  if (bite.contacts.empty()) return "no tooth touches another";
-  if (bite.overlap_mm > settings.most_overlap_mm)
+  if (!bite.rest.converged) return "the arches did not reach equilibrium";
+  if (bite.contacts.empty()) return "no teeth are in contact";
+  if (bite.overlap_mm > settings.max_overlap_mm)
     return fmt::format("the arches still overlap by {:.2f} mm", bite.overlap_mm);
-  if (std::min(bite.left_share, 1 - bite.left_share) < least_side_share)
-    return fmt::format("only the {} side bears the load", bite.left_share > 0.5 ? "left" : "right");
-  if (bite.joint_share > most_joint_share)
+  if (std::min(bite.left_fraction, 1 - bite.left_fraction) < min_side_fraction)
+    return fmt::format("only the {} side carries load",
+                       bite.left_fraction > 0.5 ? "left" : "right");
+  if (bite.joint_fraction > max_joint_fraction)
     return fmt::format(
-        "the joints, not the teeth, hold the mandible: they bear {:.0f} % of the "
+        "the joints rather than the teeth support the mandible: they carry {:.0f} % of the "
         "closing force",
-        100 * bite.joint_share);
+        100 * bite.joint_fraction);
   return "";
 }
 
 }  // namespace
 
-Pose pose_beside_rest(const Case& patient, const Eigen::Vector3d& moved_mm,
-                      const Eigen::Vector3d& turned_deg) {
+Pose displaced_from_rest(const Case& patient, const Eigen::Vector3d& moved_mm,
+                         const Eigen::Vector3d& turned_deg) {
   const Eigen::Vector3d pivot = find_arches(patient).lower.middle();
   const double angle = turned_deg.norm() * std::numbers::pi / 180;
   Pose pose;
@@ -95,17 +96,17 @@ Bite BiteFinder::find(const Pose& start, const Progress& progress) const {
   if (!start.R.coeffs().allFinite() || !start.t.allFinite())
     throw InputError("the start is not a finite pose; give numbers");
   for (const auto& p : {arches.lower.edge, arches.lower.molars[0], arches.lower.molars[1]})
-    if (const double way = (start * p - p).norm(); !(way <= farthest_start_mm))
+    if (const double shift_mm = (start * p - p).norm(); !(shift_mm <= farthest_start_mm))
       throw InputError(fmt::format(
-          "the start holds the lower teeth {:.3g} mm from where they are in the case; a bite is "
-          "looked for from at most {:.0f} mm away",
-          way, farthest_start_mm));
+          "at the start the lower teeth are {:.3g} mm from their position in the case; at most "
+          "{:.0f} mm are allowed",
+          shift_mm, farthest_start_mm));
   const double turn_deg = rotation_angle(start) * 180 / std::numbers::pi;
   if (turn_deg > farthest_turn_deg)
-    throw InputError(fmt::format(
-        "the start turns the lower teeth by {:.3g} degrees; a bite is looked for from at most "
-        "{:.0f} degrees away",
-        turn_deg, farthest_turn_deg));
+    throw InputError(
+        fmt::format("at the start the lower teeth are rotated by {:.3g} degrees; at most {:.0f} "
+                    "degrees are allowed",
+                    turn_deg, farthest_turn_deg));
 
   Bite bite;
   bite.notes = arches.notes;
@@ -116,7 +117,7 @@ Bite BiteFinder::find(const Pose& start, const Progress& progress) const {
   bite.upper_edge = arches.upper.edge;
   auto found = find_bites(model, start, settings, bite.starts, progress);
   bite.rest = found.front();
-  bite.rest.converged = bite.rest.residual_N < residual_share * settings.closing_force_N;
+  bite.rest.converged = bite.rest.residual_N < residual_fraction * settings.closing_force_N;
   bite.others.assign(found.begin() + 1, found.end());
   report(progress, "contacts", 0.9);
   const Pose& X_CM = bite.rest.X_CM;
@@ -124,17 +125,17 @@ Bite BiteFinder::find(const Pose& start, const Progress& progress) const {
   bite.teeth = tooth_loads(arches, bite.contacts);
   bite.front_known = !arches.upper.part->teeth.empty() && !arches.lower.part->teeth.empty();
   for (const auto& contact : bite.contacts) {
-    if (contact.left) bite.left_share += contact.load_share;
-    if (is_front(contact.lower_fdi)) bite.front_share += contact.load_share;
-    bite.load_center += contact.load_share * contact.place;
+    if (contact.left) bite.left_fraction += contact.load_fraction;
+    if (is_front(contact.lower_fdi)) bite.front_fraction += contact.load_fraction;
+    bite.load_center += contact.load_fraction * contact.place;
   }
-  bite.joint_share = model.joint_force_N(X_CM) / settings.closing_force_N;
-  look_at_pairs(patient, all_contacts.find(X_CM, nullptr, settings.threads),
-                settings.most_overlap_mm, bite);
+  bite.joint_fraction = model.joint_force_N(X_CM) / settings.closing_force_N;
+  inspect_pairs(patient, all_contacts.find(X_CM, nullptr, settings.threads),
+                settings.max_overlap_mm, bite);
   bite.before = incisors(arches, {});
   bite.after = incisors(arches, X_CM);
-  bite.moved_from_start_mm = model.way_mm(start, X_CM);
-  bite.moved_from_rest_mm = model.way_mm({}, X_CM);
+  bite.moved_from_start_mm = model.max_displacement_mm(start, X_CM);
+  bite.moved_from_rest_mm = model.max_displacement_mm({}, X_CM);
   bite.rotation_deg = rotation_angle(X_CM) * 180 / std::numbers::pi;
   if (arches.condyles) {
     bite.condyle_moved.emplace();

@@ -1,4 +1,4 @@
-#include "sim/motion/seat_table.h"
+#include "sim/motion/condylar_path_table.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double step_mm = 1;
 constexpr double close_mm = 0.01;
-constexpr double steepest = 2.5;  // of the way down: a steeper wall does not guide, it stops
+constexpr double steepest = 2.5;  // slope of the path; a steeper wall stops the condyle
 constexpr int theta_rows = 4, shift_rows = 3;
 
 /// Four-point interpolation through the inner two (Catmull-Rom), u from 0 to 1 between them.
@@ -23,23 +23,24 @@ double between(const std::array<double, 4>& y, double u) {
          (u3 - u2) * m2;
 }
 
-/// Where x lies among evenly spaced values: the four round it (clamped) and the place between.
-struct Place {
+/// Position of x among evenly spaced values: the four neighbours (clamped) and the fraction between
+/// the inner two.
+struct Cell {
   std::array<std::size_t, 4> index{};
   double u = 0;
 };
-Place place_of(const std::vector<double>& values, double x) {
-  Place place;
+Cell cell_of(const std::vector<double>& values, double x) {
+  Cell cell;
   const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
-  if (last == 0) return place;
+  if (last == 0) return cell;
   const double at =
       std::clamp((x - values.front()) / (values[1] - values[0]), 0.0, static_cast<double>(last));
   const auto base = std::min(static_cast<std::ptrdiff_t>(at), last - 1);
-  place.u = at - static_cast<double>(base);
+  cell.u = at - static_cast<double>(base);
   for (std::ptrdiff_t k = 0; k < 4; ++k)
-    place.index[static_cast<std::size_t>(k)] =
+    cell.index[static_cast<std::size_t>(k)] =
         static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(base + k - 1, 0, last));
-  return place;
+  return cell;
 }
 
 std::vector<double> even(double low, double high, int count) {
@@ -48,27 +49,28 @@ std::vector<double> even(double low, double high, int count) {
   return values;
 }
 
-/// The drop at one place that gives the gap, searched from a guess: secants between bounds.
-double seat(const JointSurfaces& joint, JawSide side, const SeatTable::Settings& settings,
-            double forward, double theta, double shift, double wanted, double guess,
-            TrianglePair& start) {
+/// Inferior translation that gives the required gap at one forward travel, by bounded secant steps
+/// from a guess.
+double find_translation(const JointSurfaces& joint, JawSide side,
+                        const CondylarPathTable::Settings& settings, double forward, double theta,
+                        double shift, double target, double guess, TrianglePair& start) {
   const Eigen::Quaterniond R(Eigen::AngleAxisd(theta, settings.axis));
   const Eigen::Vector3d& c = settings.center;
   const double deepest = steepest * forward;
-  const auto room = [&](double drop) {
+  const auto excess = [&](double drop) {
     const Eigen::Vector3d moved(shift, -forward, -drop);
-    return joint.gap_mm(side, {R, c - R * c + moved}, start) - wanted;
+    return joint.gap_mm(side, {R, c - R * c + moved}, start) - target;
   };
-  double low = 0, high = deepest, before = 0, room_before = room(0);
-  if (room_before >= 0) return 0;
+  double low = 0, high = deepest, before = 0, excess_before = excess(0);
+  if (excess_before >= 0) return 0;
   double drop = std::clamp(guess, 0.05 * deepest, deepest);
   for (int i = 0; i < 12; ++i) {
-    const double now = room(drop);
+    const double now = excess(drop);
     if (std::abs(now) <= close_mm) break;
     (now > 0 ? high : low) = drop;
-    const double slope = std::clamp((now - room_before) / (drop - before), 0.2, 1.0);
+    const double slope = std::clamp((now - excess_before) / (drop - before), 0.2, 1.0);
     before = drop;
-    room_before = now;
+    excess_before = now;
     drop -= now / slope;
     if (drop <= low || drop >= high) drop = 0.5 * (low + high);
     if (high - low < close_mm) break;
@@ -84,13 +86,13 @@ double DiscGap::at(double forward_mm) const {
   return seated_mm + (front_mm - seated_mm) * u * u * (3 - 2 * u);
 }
 
-SeatTable::SeatTable(const JointSurfaces& joint, JawSide side, const Settings& settings,
-                     int threads)
+CondylarPathTable::CondylarPathTable(const JointSurfaces& joint, JawSide side,
+                                     const Settings& settings, int threads)
     : theta_(even(0, settings.largest_theta, theta_rows)), shift_{0.0} {
   const double widest = settings.widest_shift_mm;
   if (widest > 0) shift_ = even(-widest, widest, shift_rows);
-  drop_.resize(theta_.size() * shift_.size());
-  parallel_for(drop_.size(), threads, [&](std::size_t row) {
+  inferior_.resize(theta_.size() * shift_.size());
+  parallel_for(inferior_.size(), threads, [&](std::size_t row) {
     const double theta = theta_[row / shift_.size()], shift = shift_[row % shift_.size()];
     std::vector<double> forward{0}, needed{0};
     TrianglePair start;
@@ -99,35 +101,36 @@ SeatTable::SeatTable(const JointSurfaces& joint, JawSide side, const Settings& s
       const Eigen::Vector3d& c = settings.center;
       return joint.gap_mm(side, {R, c - R * c + Eigen::Vector3d(aside, 0, 0)}, start);
     };
-    // What a seated condyle loses of its gap by going aside it wins back on its way forward.
-    constexpr double won_back_mm = 6;
+    // The gap lost by lateral shift of a seated condyle is regained during forward travel.
+    constexpr double regained_mm = 6;
     const double lost = shift != 0 ? std::max(0.0, seated_gap(0) - seated_gap(shift)) : 0;
     for (double s = step_mm; s <= settings.longest_mm + 1e-9; s += step_mm) {
       const std::size_t n = needed.size();
       const double trend = n > 1 ? needed[n - 1] - needed[n - 2] : 0.5 * step_mm;
-      const double u = std::min(s / won_back_mm, 1.0);
-      const double wanted = settings.gap.at(s) - lost * (1 - u * u * (3 - 2 * u));
-      needed.push_back(
-          seat(joint, side, settings, s, theta, shift, wanted, needed.back() + trend, start));
+      const double u = std::min(s / regained_mm, 1.0);
+      const double target = settings.gap.at(s) - lost * (1 - u * u * (3 - 2 * u));
+      needed.push_back(find_translation(joint, side, settings, s, theta, shift, target,
+                                        needed.back() + trend, start));
       forward.push_back(s);
     }
-    // The joint does not climb again, and the facets of the surface are rounded off.
+    // The path does not rise again, and the facets of the surface are smoothed.
     for (std::size_t i = 1; i < needed.size(); ++i) needed[i] = std::max(needed[i], needed[i - 1]);
     std::vector<double> smooth = needed;
     for (std::size_t i = 1; i + 1 < needed.size(); ++i)
       smooth[i] = std::max(needed[i], (needed[i - 1] + 2 * needed[i] + needed[i + 1]) / 4);
-    drop_[row] = Pchip(forward, smooth);
+    inferior_[row] = Pchip(forward, smooth);
   });
 }
 
-double SeatTable::drop_mm(double forward_mm, double theta, double shift_mm) const {
+double CondylarPathTable::inferior_translation_mm(double forward_mm, double theta,
+                                                  double shift_mm) const {
   if (forward_mm <= 0) return 0;
-  const Place t = place_of(theta_, theta), x = place_of(shift_, shift_mm);
+  const Cell t = cell_of(theta_, theta), x = cell_of(shift_, shift_mm);
   std::array<double, 4> rows{};
   for (std::size_t i = 0; i < 4; ++i) {
     std::array<double, 4> row{};
     for (std::size_t k = 0; k < 4; ++k)
-      row[k] = drop_[t.index[i] * shift_.size() + x.index[k]](forward_mm);
+      row[k] = inferior_[t.index[i] * shift_.size() + x.index[k]](forward_mm);
     rows[i] = between(row, x.u);
   }
   return std::max(0.0, between(rows, t.u));

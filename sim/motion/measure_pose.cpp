@@ -1,18 +1,18 @@
-#include "sim/motion/measures.h"
+#include "sim/motion/measure_pose.h"
 
 #include <cmath>
+
+#include "engine/core/units.h"
 
 namespace condyle {
 namespace {
 
-constexpr double deg_per_rad = 180 / 3.14159265358979323846;
-
-/// The axis of X, through the place nearest to `near`.
+/// The axis of X, through its point nearest to `near`.
 HelicalAxis helical_axis(const Pose& X, const Eigen::Vector3d& near) {
-  constexpr double least_deg = 1;
+  constexpr double min_deg = 1;
   HelicalAxis axis;
   const double angle = rotation_angle(X);
-  if (angle * deg_per_rad < least_deg) return axis;
+  if (angle * degrees_per_radian < min_deg) return axis;
   axis.known = true;
   axis.direction = X.R.vec().normalized() * (X.R.w() < 0 ? -1 : 1);
   axis.slide_mm = axis.direction.dot(X.t);
@@ -25,30 +25,34 @@ HelicalAxis helical_axis(const Pose& X, const Eigen::Vector3d& near) {
 
 }  // namespace
 
-Measures measure(const Case& patient, const Pose& X_CM) {
+Measures measure(const Case& patient, const BodyPoses& given) {
+  const BodyPoses at = completed(patient.bodies, given);
+  const JawBodies& jaw = patient.jaw;
+  const Pose& X_CM = at[jaw.lower_arch];
   const Landmarks& landmarks = patient.landmarks;
   Measures out;
   if (const auto p = landmarks.find("lower_incisal_point")) {
     out.incisor = X_CM * *p;
     out.opening_mm = p->z() - out.incisor.z();
-    out.incisal_way_mm = (out.incisor - *p).norm();
+    out.incisal_displacement_mm = (out.incisor - *p).norm();
     out.protrusion_mm = p->y() - out.incisor.y();
     out.laterotrusion_mm = out.incisor.x() - p->x();
-    if (const auto upper = landmarks.find("upper_incisal_point")) {
-      out.interincisal_mm = (out.incisor - *upper).norm();
-      out.midline_deviation_mm = out.incisor.x() - upper->x();
+    if (const auto at_rest = landmarks.find("upper_incisal_point")) {
+      const Eigen::Vector3d upper = at[jaw.upper_arch] * *at_rest;
+      out.interincisal_mm = (out.incisor - upper).norm();
+      out.midline_deviation_mm = out.incisor.x() - upper.x();
     }
   }
   const auto left = landmarks.find("left_condyle"), right = landmarks.find("right_condyle");
   if (left) {
-    out.left_condyle = X_CM * *left;
+    out.left_condyle = at[jaw.left_condyle] * *left;
     out.left_condyle_travel_mm = (out.left_condyle - *left).norm();
   }
   if (right) {
-    out.right_condyle = X_CM * *right;
+    out.right_condyle = at[jaw.right_condyle] * *right;
     out.right_condyle_travel_mm = (out.right_condyle - *right).norm();
   }
-  out.rotation_deg = rotation_angle(X_CM) * deg_per_rad;
+  out.rotation_deg = rotation_angle(X_CM) * degrees_per_radian;
   out.helical_axis = helical_axis(
       X_CM, left && right ? Eigen::Vector3d(0.5 * (*left + *right)) : Eigen::Vector3d(X_CM.t));
   return out;

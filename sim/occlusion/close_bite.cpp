@@ -1,4 +1,4 @@
-#include "sim/occlusion/settle.h"
+#include "sim/occlusion/close_bite.h"
 
 #include <fmt/format.h>
 
@@ -18,18 +18,19 @@ using Eigen::Vector3d;
 
 constexpr double field_spacing_mm = 0.25, field_band_mm = 1;
 constexpr double fine_spacing_mm = 0.3, coarse_spacing_mm = 0.8;
-constexpr double coarse_foil_mm = 0.4;     // bridges what lies between the coarse points
+constexpr double coarse_layer_mm = 0.4;    // bridges the spacing of the coarse points
 constexpr double rotation_length_mm = 25;  // half an arch
-constexpr double longest_step_mm = 0.3;    // well below the field's band: nothing is passed through
+constexpr double longest_step_mm =
+    0.3;  // well below the band of the field, so that no surface is passed
 constexpr double still_mm = 1e-6;
-constexpr int most_steps = 400;
-constexpr double open_step_mm = 0.5, most_open_mm = 30;
+constexpr int max_steps = 400;
+constexpr double open_step_mm = 0.5, max_open_mm = 30;
 constexpr double same_mm = 0.1;
-constexpr int most_rounds = 4;
-constexpr std::size_t refined = 3;  // of the coarse bites
+constexpr int max_rounds = 4;
+constexpr std::size_t refined = 3;  // coarse bites that are refined
 
 DistanceField field_of(const Arch& arch, const OcclusionSettings& settings) {
-  return kept_field(
+  return cached_field(
       settings.cache, arch.part->mesh,
       {.spacing_mm = field_spacing_mm, .band_mm = field_band_mm, .region = arch.crowns},
       settings.threads);
@@ -43,16 +44,18 @@ BiteModel::BiteModel(const Arches& arches, const OcclusionSettings& settings,
       settings_(settings),
       upper_field_((report(progress, "upper arch", 0), field_of(arches.upper, settings))),
       lower_field_((report(progress, "lower arch", 0.3), field_of(arches.lower, settings))),
-      fine_upper_(make_foil_surface(arches.upper.part->mesh, arches.upper.crowns, fine_spacing_mm)),
-      fine_lower_(make_foil_surface(arches.lower.part->mesh, arches.lower.crowns, fine_spacing_mm)),
+      fine_upper_(
+          make_layer_surface(arches.upper.part->mesh, arches.upper.crowns, fine_spacing_mm)),
+      fine_lower_(
+          make_layer_surface(arches.lower.part->mesh, arches.lower.crowns, fine_spacing_mm)),
       coarse_upper_(
-          make_foil_surface(arches.upper.part->mesh, arches.upper.crowns, coarse_spacing_mm)),
+          make_layer_surface(arches.upper.part->mesh, arches.upper.crowns, coarse_spacing_mm)),
       coarse_lower_(
-          make_foil_surface(arches.lower.part->mesh, arches.lower.crowns, coarse_spacing_mm)),
+          make_layer_surface(arches.lower.part->mesh, arches.lower.crowns, coarse_spacing_mm)),
       fine_({&fine_upper_, &upper_field_}, {&fine_lower_, &lower_field_},
-            {settings.paper_mm, settings.foil_MPa}),
+            {settings.paper_mm, settings.layer_stiffness_MPa}),
       coarse_({&coarse_upper_, &upper_field_}, {&coarse_lower_, &lower_field_},
-              {std::max(coarse_foil_mm, settings.paper_mm), settings.foil_MPa}) {
+              {std::max(coarse_layer_mm, settings.paper_mm), settings.layer_stiffness_MPa}) {
   pivot_ = arches.lower.middle();
   Box crowns;
   for (const auto& piece : coarse_lower_.pieces) crowns.add(piece.point);
@@ -62,11 +65,11 @@ BiteModel::BiteModel(const Arches& arches, const OcclusionSettings& settings,
                                 (i & 4 ? crowns.high : crowns.low).z());
 }
 
-double BiteModel::way_mm(const Pose& a, const Pose& b) const {
-  // Of all points in a box a corner goes farthest: the way is a convex function of the point.
-  double way = 0;
-  for (const auto& p : crown_corners_) way = std::max(way, (a * p - b * p).norm());
-  return way;
+double BiteModel::max_displacement_mm(const Pose& a, const Pose& b) const {
+  // Displacement is a convex function of the point, so a corner of the box has the largest.
+  double largest = 0;
+  for (const auto& p : crown_corners_) largest = std::max(largest, (a * p - b * p).norm());
+  return largest;
 }
 
 Pose BiteModel::moved(const Pose& X_CM, const Twist& x) const {
@@ -88,15 +91,15 @@ Pose BiteModel::beside(const Pose& X_CM, const Vector3d& left_front_up, double y
 }
 
 std::optional<Pose> BiteModel::opened(const Pose& X_CM) const {
-  for (double mm = 0; mm <= most_open_mm; mm += open_step_mm) {
+  for (double mm = 0; mm <= max_open_mm; mm += open_step_mm) {
     const Pose open = beside(X_CM, {0, 0, -mm}, 0);
     if (coarse_.free(open)) return open;
   }
   return std::nullopt;
 }
 
-FoilForce BiteModel::total(const FoilContact& foil, const Pose& X_CM, int threads) const {
-  FoilForce sum = foil.press(X_CM, pivot_, rotation_length_mm, threads);
+LayerForce BiteModel::total(const LayerContact& layer, const Pose& X_CM, int threads) const {
+  LayerForce sum = layer.evaluate(X_CM, pivot_, rotation_length_mm, threads);
   const Vector3d center = X_CM * pivot_;
   for (const auto& molar : arches_.lower.molars) {
     const Vector3d at = X_CM * molar, force = 0.5 * settings_.closing_force_N * arches_.up;
@@ -125,24 +128,24 @@ double BiteModel::joint_force_N(const Pose& X_CM) const {
   return force;
 }
 
-/// Levenberg-Marquardt steps downhill.
-RestingPose BiteModel::settle(const FoilContact& foil, const Pose& from, int threads) const {
-  const double least_damping = 1e-4 * settings_.closing_force_N;
+/// Levenberg-Marquardt descent.
+RestingPose BiteModel::close_from(const LayerContact& layer, const Pose& from, int threads) const {
+  const double min_damping = 1e-4 * settings_.closing_force_N;
   double damping = 1e-3 * settings_.closing_force_N;
   RestingPose rest{from, 0, false, 0};
-  FoilForce now = total(foil, from, threads);
-  for (int k = 0; k < most_steps && !rest.converged; ++k) {
+  LayerForce now = total(layer, from, threads);
+  for (int k = 0; k < max_steps && !rest.converged; ++k) {
     Eigen::Matrix<double, 6, 6> A = now.hessian;
     A.diagonal().array() += damping;
     Twist x = -A.ldlt().solve(now.gradient);
     const double step = x.norm();
     if (step > longest_step_mm) x *= longest_step_mm / step;
     const Pose X = moved(rest.X_CM, x);
-    const FoilForce there = total(foil, X, threads);
+    const LayerForce there = total(layer, X, threads);
     if (there.energy < now.energy) {
       rest.X_CM = X;
       now = there;
-      damping = std::max(0.3 * damping, least_damping);
+      damping = std::max(0.3 * damping, min_damping);
     } else {
       damping *= 4;
     }
@@ -164,7 +167,7 @@ std::vector<RestingPose> find_bites(const BiteModel& model, const Pose& start,
     std::vector<RestingPose> distinct;
     for (const auto& bite : found)
       if (std::none_of(distinct.begin(), distinct.end(), [&](const auto& kept) {
-            return model.way_mm(kept.X_CM, bite.X_CM) < same_mm;
+            return model.max_displacement_mm(kept.X_CM, bite.X_CM) < same_mm;
           }))
         distinct.push_back(bite);
     found = std::move(distinct);
@@ -173,16 +176,16 @@ std::vector<RestingPose> find_bites(const BiteModel& model, const Pose& start,
   const auto open = model.opened(start);
   if (!open)
     throw InputError(fmt::format(
-        "the start holds the arches so deep in each other that {:.0f} mm of opening do not part "
+        "the arches overlap so deeply at the start that {:.0f} mm of opening do not separate "
         "them",
-        most_open_mm));
+        max_open_mm));
   add({model.coarse(*open, settings.threads)});
   starts = 1;
-  // From beside the best, until it stays the best.
+  // Restarts near the best bite until it remains the best.
   const double s = settings.search_mm, turn = settings.search_deg * std::numbers::pi / 180;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     const Pose best = found.front().X_CM;
-    if (!found.front().converged) break;  // it slides away, for nothing holds it
+    if (!found.front().converged) break;  // unstable: it slides away
     std::vector<Pose> froms;
     const auto add_from = [&](const Vector3d& left_front_up, double yaw_rad) {
       if (const auto from = model.opened(model.beside(best, left_front_up, yaw_rad)))
@@ -197,8 +200,8 @@ std::vector<RestingPose> find_bites(const BiteModel& model, const Pose& start,
                  [&](std::size_t i) { more[i] = model.coarse(froms[i], 1); });
     starts += static_cast<int>(froms.size());
     add(more);
-    report(progress, "looking beside", 0.6 + 0.08 * round);
-    if (model.way_mm(best, found.front().X_CM) < same_mm) break;
+    report(progress, "searching nearby", 0.6 + 0.08 * round);
+    if (model.max_displacement_mm(best, found.front().X_CM) < same_mm) break;
   }
   std::vector<RestingPose> coarse = std::move(found);
   if (coarse.size() > refined) coarse.resize(refined);

@@ -1,4 +1,4 @@
-#include "sim/contact/places.h"
+#include "sim/contact/anatomical_regions.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double tooth_mm = 3;       // how near a tooth names a place
-constexpr double chin_half_mm = 12;  // to either side of the midline: neither left nor right
+constexpr double tooth_mm = 3;       // distance within which a tooth names a point
+constexpr double chin_half_mm = 12;  // on either side of the midline: neither left nor right
 
 double half_width(const Case& patient) {
   const auto left = patient.landmarks.find("left_condyle"),
@@ -39,10 +39,10 @@ std::optional<CoronoidTip> coronoid_tip(const Case& patient, const std::string& 
   const auto condyle = patient.landmarks.find(side + "_condyle");
   const double half = half_width(patient);
   if (!condyle || half <= 0) return std::nullopt;
-  // Height of the ramus' upper border, forward from the condyle.
+  // Height of the upper border of the ramus, forward from the condyle.
   constexpr double bin_mm = 2;
   constexpr std::size_t bins = 30;
-  constexpr double least_rise_mm = 2;  // of the tip above the notch
+  constexpr double min_rise_mm = 2;  // of the tip above the notch
   const double middle = midline_of(patient), outward = side == "left" ? 1 : -1;
   std::array<std::optional<Vector3d>, bins> top;
   for (const auto& part : patient.parts) {
@@ -54,23 +54,24 @@ std::optional<CoronoidTip> coronoid_tip(const Case& patient, const std::string& 
       if (bin < bins && (!top[bin] || p.z() > top[bin]->z())) top[bin] = p;
     }
   }
-  // The notch: lower than the way before it, and the tip after it is higher.
+  // The notch: lower than the border before it, and the tip after it is higher.
   std::optional<Vector3d> notch, tip;
   for (const auto& p : top) {
     if (!p) continue;
     if (!notch || p->z() < notch->z()) {
-      if (tip && tip->z() > notch->z() + least_rise_mm) break;
+      if (tip && tip->z() > notch->z() + min_rise_mm) break;
       notch = p;
       tip.reset();
     } else if (!tip || p->z() > tip->z()) {
       tip = p;
     }
   }
-  if (!tip || tip->z() < notch->z() + least_rise_mm) return std::nullopt;
+  if (!tip || tip->z() < notch->z() + min_rise_mm) return std::nullopt;
   return CoronoidTip{*tip, true};
 }
 
-Places::Places(const Case& patient) : patient_(patient), midline_mm_(midline_of(patient)) {
+AnatomicalRegions::AnatomicalRegions(const Case& patient)
+    : patient_(patient), midline_mm_(midline_of(patient)) {
   add_anchors();
   for (std::size_t i = 0; i < patient.parts.size(); ++i) {
     const auto& part = patient.parts[i];
@@ -79,15 +80,16 @@ Places::Places(const Case& patient) : patient_(patient), midline_mm_(midline_of(
   }
 }
 
-void Places::add_anchors() {
+void AnatomicalRegions::add_anchors() {
   struct Known {
     const char* landmark;  // of a pair: without the side
     const char* name;
-    Body body;
+    BodyId body;
     double reach_mm;
   };
-  constexpr auto mandible = Body::mandible, cranium = Body::cranium;
-  constexpr std::array paired = {
+  const JawBodies& jaw = patient_.jaw;
+  const BodyId mandible = jaw.lower_arch, cranium = jaw.upper_arch;
+  const std::array paired = {
       Known{"condyle", "condyle", mandible, 13}, Known{"condylion", "condyle", mandible, 8},
       Known{"sigmoid_notch", "notch of the ramus", mandible, 8},
       Known{"gonion", "angle of the mandible", mandible, 14},
@@ -98,8 +100,8 @@ void Places::add_anchors() {
       Known{"zygion", "zygomatic arch", cranium, 20}, Known{"malar", "zygomatic bone", cranium, 18},
       Known{"zygomaxillare", "zygomatic bone", cranium, 12},
       Known{"mastoidale", "mastoid process", cranium, 14}};
-  constexpr std::array single = {Known{"pogonion", "chin", mandible, 14},
-                                 Known{"menton", "chin", mandible, 12}};
+  const std::array single = {Known{"pogonion", "chin", mandible, 14},
+                             Known{"menton", "chin", mandible, 12}};
   const auto add = [&](const Known& known, const std::string& side) {
     if (const auto p = patient_.landmarks.find((side.empty() ? "" : side + "_") + known.landmark))
       anchors_.push_back(
@@ -108,12 +110,13 @@ void Places::add_anchors() {
   for (const std::string side : {"left", "right"}) {
     for (const auto& known : paired) add(known, side);
     if (const auto tip = coronoid_tip(patient_, side))
-      anchors_.push_back({side + " coronoid process", Body::mandible, tip->point, 13});
+      anchors_.push_back({side + " coronoid process",
+                          side == "left" ? jaw.left_condyle : jaw.right_condyle, tip->point, 13});
   }
   for (const auto& known : single) add(known, "");
 }
 
-int Places::tooth_at(int part, const Vector3d& p) const {
+int AnatomicalRegions::tooth_at(int part, const Vector3d& p) const {
   const auto arch = arches_.find(part);
   if (arch == arches_.end()) return 0;
   const int triangle = arch->second.tree.nearest(p, tooth_mm).triangle;
@@ -123,16 +126,16 @@ int Places::tooth_at(int part, const Vector3d& p) const {
   return 0;
 }
 
-std::string Places::side_of(const Vector3d& p) const {
+std::string AnatomicalRegions::side_of(const Vector3d& p) const {
   return p.x() > midline_mm_ ? "left" : "right";
 }
 
-/// Where no landmark is near: by how far forward and outward a place lies between the condyles and
-/// the incisors.
-std::string Places::by_shape(Role role, const Vector3d& p) const {
+/// Region of a point without a landmark nearby: by its forward and outward position between the
+/// condyles and the incisors.
+std::string AnatomicalRegions::by_shape(const Part& part, const Vector3d& p) const {
   const auto left = patient_.landmarks.find("left_condyle"),
              right = patient_.landmarks.find("right_condyle");
-  const bool lower = body_of(role) == Body::mandible;
+  const bool lower = part.body != patient_.jaw.upper_arch;
   const auto incisor =
       patient_.landmarks.find(lower ? "lower_incisal_point" : "upper_incisal_point");
   if (!left || !right || !incisor) return "";
@@ -141,7 +144,7 @@ std::string Places::by_shape(Role role, const Vector3d& p) const {
   const double forward = (back - p.y()) / (back - incisor->y());  // 0 condyles, 1 incisors
   const double outward = std::abs(p.x() - midline_mm_);
   const std::string side = side_of(p);
-  if (is_teeth(role)) {
+  if (is_teeth(part.role)) {
     const std::string jaw = lower ? "lower" : "upper";
     return forward > 0.85 ? jaw + " front teeth" : side + " " + jaw + " back teeth";
   }
@@ -151,7 +154,7 @@ std::string Places::by_shape(Role role, const Vector3d& p) const {
   }
   if (forward > 0.1 && outward > 0.75 * half_width(patient_))
     return side + " zygomatic bone or arch";
-  // The back teeth stand behind the middle, but low; the base lies as high as the condyles.
+  // The back teeth are posterior of the middle, but low; the skull base is as high as the condyles.
   const double high = 0.5 * (left->z() + right->z());
   const bool low = 2 * (high - p.z()) > high - incisor->z();
   if (forward > 0.45 || (low && forward > 0.15))
@@ -159,27 +162,26 @@ std::string Places::by_shape(Role role, const Vector3d& p) const {
   return outward < chin_half_mm ? "skull base" : side + " half of the skull base";
 }
 
-std::string Places::name(int part, const Vector3d& p_rest) const {
+std::string AnatomicalRegions::name(int part, const Vector3d& p_rest) const {
   const Part& of = patient_.parts[static_cast<std::size_t>(part)];
   if (const int fdi = tooth_at(part, p_rest)) return fmt::format("tooth {}", fdi);
-  const Body body = body_of(of.role);
-  if (body == Body::free) return of.name;
+  if (patient_.bodies.roams(of.body)) return of.name;
   if (!is_teeth(of.role)) {
     const Anchor* nearest = nullptr;
-    double least = 1;  // share of the reach
+    double least = 1;  // fraction of the reach
     for (const auto& anchor : anchors_) {
       const double share = (anchor.point - p_rest).norm() / anchor.reach_mm;
-      if (anchor.body != body || share >= least) continue;
+      if (anchor.body != of.body || share >= least) continue;
       least = share;
       nearest = &anchor;
     }
     if (nearest) return nearest->name;
   }
-  const std::string name = by_shape(of.role, p_rest);
+  const std::string name = by_shape(of, p_rest);
   return name.empty() ? of.name : name;
 }
 
-std::string both_places(const std::string& a, const std::string& b) {
+std::string join_regions(const std::string& a, const std::string& b) {
   const std::string tooth = "tooth ";
   if (a.starts_with(tooth) && b.starts_with(tooth))
     return "teeth " + a.substr(tooth.size()) + " and " + b.substr(tooth.size());

@@ -1,4 +1,4 @@
-#include "sim/muscles/usual_muscles.h"
+#include "sim/muscles/default_muscles.h"
 
 #include <array>
 
@@ -10,19 +10,19 @@ namespace {
 using Eigen::Vector3d;
 using B = MuscleBody;
 
-/// Places: to the left, forward and up from the middle between the condyles, in mm of a jaw with
+/// Attachments: to the left, forward and up from the midpoint of the condyles, mm, for a jaw with
 /// condyles 101 mm apart and 90.6 mm from them to the incisors; those on hyoid and neck from the
-/// middle of the hyoid.
-struct Usual {
+/// centre of the hyoid.
+struct DefaultMuscle {
   const char* kind;
   const char* full_name;
   const char* group;
   B from, to;
   std::array<double, 3> origin, insertion;
-  double max_force_N, tendon_ratio, stretch;  // longest by optimal length
+  double max_force_N, tendon_ratio, stretch;  // stretch: maximum over optimal length
 };
 
-const std::array<Usual, 17> table = {{
+const std::array<DefaultMuscle, 17> default_table = {{
     {"at",
      "Anterior Temporal",
      "closer",
@@ -150,8 +150,8 @@ const std::array<Usual, 17> table = {{
     {"oh", "Omohyoid", "hyoid", B::hyoid, B::neck, {9, 3, -8}, {12, -9, -54}, 50, 0.5, 1.3},
 }};
 
-constexpr double usual_width_mm = 101, usual_depth_mm = 90.6;
-const Vector3d usual_hyoid(0, 30, -80);  // as the places
+constexpr double default_width_mm = 101, default_depth_mm = 90.6;
+const Vector3d default_hyoid(0, 30, -80);  // in the axes of the attachments
 constexpr double passive_fraction = 0.015;
 
 Vector3d landmark(const Case& patient, const char* name) {
@@ -164,7 +164,7 @@ Vector3d landmark(const Case& patient, const char* name) {
 
 }  // namespace
 
-std::vector<Muscle> usual_muscles(const Case& patient) {
+std::vector<Muscle> default_muscles(const Case& patient) {
   const Vector3d left = landmark(patient, "left_condyle"),
                  right = landmark(patient, "right_condyle"),
                  incisor = landmark(patient, "lower_incisal_point");
@@ -174,32 +174,34 @@ std::vector<Muscle> usual_muscles(const Case& patient) {
     throw InputError(patient.name + ": the condyles are " + std::to_string(width) +
                      " mm apart and " + std::to_string(depth) +
                      " mm from the incisors; no jaw is like that");
-  const double scale = depth / usual_depth_mm;
-  const auto place = [&](const Vector3d& from, const Vector3d& p) {
-    return Vector3d(from + Vector3d(p.x() * width / usual_width_mm, -scale * p.y(), scale * p.z()));
+  const double scale = depth / default_depth_mm;
+  const auto scaled_point = [&](const Vector3d& from, const Vector3d& p) {
+    return Vector3d(from +
+                    Vector3d(p.x() * width / default_width_mm, -scale * p.y(), scale * p.z()));
   };
-  const Vector3d hyoid = patient.landmarks.find("hyoid").value_or(place(middle, usual_hyoid));
+  const Vector3d hyoid =
+      patient.landmarks.find("hyoid").value_or(scaled_point(middle, default_hyoid));
 
   std::vector<Muscle> muscles;
-  for (const Usual& usual : table)
+  for (const DefaultMuscle& entry : default_table)
     for (const double side : {1.0, -1.0}) {
       const auto at = [&](B body, const std::array<double, 3>& p) {
-        return place(body == B::hyoid || body == B::neck ? hyoid : middle,
-                     {side * p[0], p[1], p[2]});
+        return scaled_point(body == B::hyoid || body == B::neck ? hyoid : middle,
+                            {side * p[0], p[1], p[2]});
       };
       Muscle m;
-      m.kind = usual.kind;
+      m.kind = entry.kind;
       m.name = (side > 0 ? "l" : "r") + m.kind;
-      m.full_name = usual.full_name;
-      m.group = usual.group;
-      m.origin_body = usual.from;
-      m.insertion_body = usual.to;
-      m.origin = at(usual.from, usual.origin);
-      m.insertion = at(usual.to, usual.insertion);
-      m.max_force_N = usual.max_force_N;
+      m.full_name = entry.full_name;
+      m.group = entry.group;
+      m.origin_body = entry.from;
+      m.insertion_body = entry.to;
+      m.origin = at(entry.from, entry.origin);
+      m.insertion = at(entry.to, entry.insertion);
+      m.max_force_N = entry.max_force_N;
       m.optimal_length_mm = (m.origin - m.insertion).norm();
-      m.max_length_mm = usual.stretch * m.optimal_length_mm;
-      m.tendon_ratio = usual.tendon_ratio;
+      m.max_length_mm = entry.stretch * m.optimal_length_mm;
+      m.tendon_ratio = entry.tendon_ratio;
       m.passive_fraction = passive_fraction;
       muscles.push_back(m);
     }
@@ -207,7 +209,7 @@ std::vector<Muscle> usual_muscles(const Case& patient) {
 }
 
 std::vector<Muscle> muscles_of(const Case& patient) {
-  return patient.muscles.empty() ? usual_muscles(patient) : patient.muscles;
+  return patient.muscles.empty() ? default_muscles(patient) : patient.muscles;
 }
 
 std::optional<Vector3d> hyoid_center(const std::vector<Muscle>& muscles) {

@@ -1,4 +1,4 @@
-#include "sim/contact/field_sight.h"
+#include "sim/contact/field_coverage.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,18 +9,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A place is thin where the field a spacing below it does not tell that it is inside.
-constexpr double thin_share = 0.1;
+// A wall is thin where the field a spacing below the surface is not inside.
+constexpr double thin_fraction = 0.1;
 constexpr double flat = 0.9;  // cosine
 constexpr std::size_t stride = 7;
 
 }  // namespace
 
-FieldSight field_sight(const Box& surface, const std::optional<Box>& region) {
-  FieldSight sight;
+FieldCoverage field_coverage(const Box& surface, const std::optional<Box>& region) {
+  FieldCoverage sight;
   sight.box = surface;
   if (!region) return sight;
-  Box rest = surface;  // less what was put outside
+  Box rest = surface;  // excluding the parts outside the region
   for (int axis = 0; axis < 3; ++axis) {
     if (rest.low[axis] < region->low[axis]) {
       Box below = rest;
@@ -40,7 +40,7 @@ FieldSight field_sight(const Box& surface, const std::optional<Box>& region) {
   return sight;
 }
 
-bool is_thin(const SlideBody& body) {
+bool is_thin(const ContactSurface& body) {
   const SurfaceSamples& samples = body.samples;
   const double below_mm = body.field.settings().spacing_mm;
   std::size_t thin = 0, all = 0;
@@ -50,7 +50,7 @@ bool is_thin(const SlideBody& body) {
     thin += body.field.at(samples.points[i] - below_mm * samples.normals[i]).distance_mm >
             -0.25 * below_mm;
   }
-  return static_cast<double>(thin) > thin_share * static_cast<double>(all);
+  return static_cast<double>(thin) > thin_fraction * static_cast<double>(all);
 }
 
 bool boxes_meet(const Box& a, const Box& b, const Pose& X_AB, double within_mm) {

@@ -1,4 +1,4 @@
-#include "sim/motion/condylar_path.h"
+#include "sim/motion/condylar_kinematics.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 namespace condyle {
 namespace {
 
-/// Zero before, one after, with a rounded corner of half-width w: integral of a ramp.
+/// max(x, 0) with a corner rounded over |x| < w.
 double rounded_ramp(double x, double w) {
   if (x <= -w) return 0;
   if (x >= w) return x;
@@ -17,7 +17,7 @@ double rounded_ramp(double x, double w) {
 }  // namespace
 
 double Coupling::forward_mm(double theta) const {
-  constexpr double corner = 3 * radian_per_degree;  // the speed of the condyles does not jump
+  constexpr double corner = 3 * degree;  // keeps the speed of the condyles continuous
   constexpr double full_travel_mm = 15;
   const double hinge_first = rounded_ramp(theta - hinge, corner) / rad_per_mm;
   const double from_start = theta * full_travel_mm / (hinge + full_travel_mm * rad_per_mm);
@@ -36,12 +36,12 @@ double Coupling::theta(double forward) const {
   return 0.5 * (low + high);
 }
 
-Pchip known_path(const CondylarPath& path) { return {path.forward_mm, path.drop_mm}; }
+Pchip path_of_case(const CondylarPath& path) { return {path.forward_mm, path.inferior_mm}; }
 
 Pchip average_path() { return inclined_path(40, 1); }
 
 Pchip inclined_path(double inclination_deg, double shape) {
-  const double slope = std::tan(inclination_deg * radian_per_degree);
+  const double slope = std::tan(inclination_deg * degree);
   constexpr std::array<double, 13> forward = {0, 1, 2, 3, 4, 5, 6, 8, 10, 12, 14, 16, 20};
   constexpr std::array<double, 13> curved = {0,   0.7, 1.75, 2.9, 4,   5,  5.9,
                                              7.3, 8.3, 8.9,  9.2, 9.3, 9.3};

@@ -1,4 +1,4 @@
-#include "sim/occlusion/foil.h"
+#include "sim/occlusion/elastic_layer.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -13,20 +13,20 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double tangent_share = 0.05;  // of the thickness, below which the law goes on straight
-constexpr double bent_mm = 0.05;        // interpolated distances may be off by as much
-// Where two edges cross, neither has the middle of a piece near: sharp convex ones have pieces of
-// their own, narrow ones.
+constexpr double tangent_fraction = 0.05;  // of the thickness, below which the law is linear
+constexpr double bent_mm = 0.05;           // error bound of interpolated distances
+// Where two edges cross, no centre of a piece may be near: sharp convex edges get narrow pieces of
+// their own.
 constexpr double sharp_cos = 0.94;  // 20 degrees between the faces' normals
 constexpr double edge_spacing_mm = 0.1, edge_width_mm = 0.02;
 constexpr int leaf_pieces = 24;
-constexpr std::size_t runs = 16;  // of each surface, whose sums are taken one by one
+constexpr std::size_t runs = 16;  // parts of each surface, summed in a fixed order
 
-int build_balls(FoilSurface& surface, int first, int last) {
+int build_balls(LayerSurface& surface, int first, int last) {
   auto& pieces = surface.pieces;
   Box box;
   for (int i = first; i < last; ++i) box.add(pieces[i].point);
-  FoilSurface::Ball ball{box.center(), 0, first, last - first, 0};
+  LayerSurface::Ball ball{box.center(), 0, first, last - first, 0};
   for (int i = first; i < last; ++i)
     ball.radius = std::max(ball.radius, (pieces[i].point - ball.center).norm());
   const int index = static_cast<int>(surface.balls.size());
@@ -46,10 +46,10 @@ int build_balls(FoilSurface& surface, int first, int last) {
   return index;
 }
 
-/// Calls visit(piece, point, sample) for the pieces of one surface that are less than `reach_mm`
-/// from the other, or inside it; X maps the surface into the field's body.
+/// Calls visit(piece, point, sample) for the pieces of one surface that are within `reach_mm` of
+/// the other, or inside it; X maps the surface into the frame of the field.
 template <class Visit>
-void visit_near(const FoilSurface& surface, const DistanceField& field, const Pose& X,
+void visit_near(const LayerSurface& surface, const DistanceField& field, const Pose& X,
                 double reach_mm, int root, const Visit& visit) {
   const Eigen::Matrix3d R = X.R.toRotationMatrix();
   std::array<int, 64> stack;
@@ -76,8 +76,8 @@ void visit_near(const FoilSurface& surface, const DistanceField& field, const Po
   }
 }
 
-/// Balls that part a surface into about as many runs as wanted.
-std::vector<int> roots(const FoilSurface& surface) {
+/// Balls that divide a surface into about the given number of runs.
+std::vector<int> roots(const LayerSurface& surface) {
   std::vector<int> level;
   if (!surface.balls.empty()) level.push_back(0);
   while (!level.empty() && level.size() < runs) {
@@ -92,7 +92,7 @@ std::vector<int> roots(const FoilSurface& surface) {
   return level;
 }
 
-void add_sharp_edges(const TriMesh& mesh, const Box& region, FoilSurface& surface) {
+void add_sharp_edges(const TriMesh& mesh, const Box& region, LayerSurface& surface) {
   const auto edges = find_edges(mesh);
   const auto corner = [&](int triangle, int k) -> const Vector3d& {
     return mesh.vertices[mesh.triangles[triangle][k]];
@@ -117,19 +117,19 @@ void add_sharp_edges(const TriMesh& mesh, const Box& region, FoilSurface& surfac
 
 }  // namespace
 
-Foil::Answer Foil::at(double gap_mm) const {
+ElasticLayer::Response ElasticLayer::at(double gap_mm) const {
   const double h = thickness_mm, S = stiffness_MPa;
   if (gap_mm >= h) return {};
-  const double straight = tangent_share * h, g = std::max(gap_mm, straight);
-  Answer answer{S * (h * std::log(h / g) - (h - g)), S * (h / g - 1), S * h / (g * g)};
+  const double straight = tangent_fraction * h, g = std::max(gap_mm, straight);
+  Response answer{S * (h * std::log(h / g) - (h - g)), S * (h / g - 1), S * h / (g * g)};
   const double deeper = g - gap_mm;
   answer.energy += deeper * (answer.pressure + 0.5 * deeper * answer.stiffness);
   answer.pressure += deeper * answer.stiffness;
   return answer;
 }
 
-FoilSurface make_foil_surface(const TriMesh& mesh, const Box& region, double spacing_mm) {
-  FoilSurface surface;
+LayerSurface make_layer_surface(const TriMesh& mesh, const Box& region, double spacing_mm) {
+  LayerSurface surface;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& triangle = mesh.triangles[t];
     const Vector3d &a = mesh.vertices[triangle[0]], &b = mesh.vertices[triangle[1]],
@@ -142,7 +142,7 @@ FoilSurface make_foil_surface(const TriMesh& mesh, const Box& region, double spa
       surface.pieces.push_back(
           {a + (b - a) * (u / n) + (c - a) * (v / n), area / (n * n), static_cast<int>(t)});
     };
-    // The middles of n * n equal triangles, upright ones and those between them.
+    // Centroids of n * n equal triangles, both orientations.
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n - i; ++j) {
         add(i + 1.0 / 3, j + 1.0 / 3);
@@ -154,26 +154,26 @@ FoilSurface make_foil_surface(const TriMesh& mesh, const Box& region, double spa
   return surface;
 }
 
-FoilForce FoilContact::press(const Pose& X_FM, const Vector3d& pivot, double rotation_length_mm,
-                             int threads) const {
+LayerForce LayerContact::evaluate(const Pose& X_FM, const Vector3d& pivot,
+                                  double rotation_length_mm, int threads) const {
   const Vector3d center = X_FM * pivot;
   const Pose X_MF = X_FM.inverse();
   const Eigen::Matrix3d R = X_FM.R.toRotationMatrix();
   const auto moving_roots = roots(*moving_.surface), fixed_roots = roots(*fixed_.surface);
-  std::vector<FoilForce> parts(moving_roots.size() + fixed_roots.size());
+  std::vector<LayerForce> parts(moving_roots.size() + fixed_roots.size());
   parallel_for(parts.size(), threads, [&](std::size_t k) {
-    FoilForce& part = parts[k];
-    part.least_gap_mm = fixed_.field->settings().band_mm;
+    LayerForce& part = parts[k];
+    part.min_gap_mm = fixed_.field->settings().band_mm;
     const bool moving = k < moving_roots.size();
-    const FoilSurface& surface = moving ? *moving_.surface : *fixed_.surface;
+    const LayerSurface& surface = moving ? *moving_.surface : *fixed_.surface;
     visit_near(surface, moving ? *fixed_.field : *moving_.field, moving ? X_FM : X_MF,
-               foil_.thickness_mm, moving ? moving_roots[k] : fixed_roots[k - moving_roots.size()],
+               layer_.thickness_mm, moving ? moving_roots[k] : fixed_roots[k - moving_roots.size()],
                [&](int i, const Vector3d& p, const FieldSample& sample) {
-                 part.least_gap_mm = std::min(part.least_gap_mm, sample.distance_mm);
+                 part.min_gap_mm = std::min(part.min_gap_mm, sample.distance_mm);
                  if (!sample.known) return;
                  const auto& piece = surface.pieces[i];
                  const double area = 0.5 * piece.area_mm2;
-                 const auto answer = foil_.at(sample.distance_mm);
+                 const auto answer = layer_.at(sample.distance_mm);
                  const Vector3d along = moving ? sample.gradient : Vector3d(-(R * sample.gradient));
                  const Twist row = contact_row((moving ? p : piece.point) - center, along,
                                                sample.distance_mm, rotation_length_mm)
@@ -184,37 +184,37 @@ FoilForce FoilContact::press(const Pose& X_FM, const Vector3d& pivot, double rot
                  part.area_mm2 += area;
                });
   });
-  FoilForce force;
-  force.least_gap_mm = fixed_.field->settings().band_mm;
+  LayerForce force;
+  force.min_gap_mm = fixed_.field->settings().band_mm;
   for (const auto& part : parts) {
     force.energy += part.energy;
     force.gradient += part.gradient;
     force.hessian += part.hessian;
     force.area_mm2 += part.area_mm2;
-    force.least_gap_mm = std::min(force.least_gap_mm, part.least_gap_mm);
+    force.min_gap_mm = std::min(force.min_gap_mm, part.min_gap_mm);
   }
   return force;
 }
 
-bool FoilContact::free(const Pose& X_FM) const {
+bool LayerContact::free(const Pose& X_FM) const {
   bool found = false;
   const auto any = [&](int, const Vector3d&, const FieldSample&) { found = true; };
   if (!moving_.surface->balls.empty())
-    visit_near(*moving_.surface, *fixed_.field, X_FM, foil_.thickness_mm, 0, any);
+    visit_near(*moving_.surface, *fixed_.field, X_FM, layer_.thickness_mm, 0, any);
   if (!found && !fixed_.surface->balls.empty())
-    visit_near(*fixed_.surface, *moving_.field, X_FM.inverse(), foil_.thickness_mm, 0, any);
+    visit_near(*fixed_.surface, *moving_.field, X_FM.inverse(), layer_.thickness_mm, 0, any);
   return !found;
 }
 
-std::vector<FoilContact::Pressed> FoilContact::pressed(const Pose& X_FM) const {
-  std::vector<Pressed> all;
+std::vector<LayerContact::LoadedPiece> LayerContact::loaded_pieces(const Pose& X_FM) const {
+  std::vector<LoadedPiece> all;
   if (moving_.surface->balls.empty()) return all;
-  visit_near(*moving_.surface, *fixed_.field, X_FM, foil_.thickness_mm, 0,
+  visit_near(*moving_.surface, *fixed_.field, X_FM, layer_.thickness_mm, 0,
              [&](int i, const Vector3d& p, const FieldSample& sample) {
                if (!sample.known) return;
                all.push_back(
                    {i, p, sample.gradient, sample.distance_mm,
-                    moving_.surface->pieces[i].area_mm2 * foil_.at(sample.distance_mm).pressure});
+                    moving_.surface->pieces[i].area_mm2 * layer_.at(sample.distance_mm).pressure});
              });
   return all;
 }
