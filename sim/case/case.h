@@ -9,7 +9,9 @@
 #include "sim/case/landmarks.h"
 #include "sim/case/motion_parameters.h"
 #include "sim/case/muscle.h"
+#include "sim/case/source_frame.h"
 #include "sim/case/tissue_plan.h"
+#include "sim/frame/body_tree.h"
 #include "sim/frame/pair_rule.h"
 #include "sim/frame/part.h"
 
@@ -18,19 +20,20 @@ namespace condyle {
 /// A patient at rest, ready to simulate: DICOM LPS, mm.
 struct Case {
   std::string name;
+  BodyTree bodies = native_bodies();
+  JawBodies jaw;
   std::vector<Part> parts;
   Landmarks landmarks;
   std::optional<CondylarPath> condylar_path;  // when the joint's own path is known
-  std::string source_units = "mm";            // as declared at import
-  std::string source_frame = "LPS";
-  std::vector<std::string> notes;  // what import found and did, for people
-  TissuePlan tissue;               // how its soft tissue differs from the usual
+  SourceFrame source;                         // of the files that it was imported from
+  std::vector<std::string> notes;             // results of the import, for people
+  TissuePlan tissue;                          // deviations of its soft tissue from the default
 
-  std::vector<PairRule> pair_rules;  // where they differ from the usual ones; the last that fits
-                                     // counts
-  MotionParameters motion;           // where the jaw moves otherwise than usual
+  std::vector<PairRule> pair_rules;  // deviations from the default rules; the last match
+                                     // applies
+  MotionParameters motion;           // deviations of its motion from the default
 
-  std::vector<Muscle> muscles = {};  // none: usual ones are put to its landmarks
+  std::vector<Muscle> muscles = {};  // empty: default muscles fitted to its landmarks
   std::optional<JawMechanics> mechanics = std::nullopt;  // where measured
 
   const Part* find(Role role) const {
@@ -38,11 +41,14 @@ struct Case {
       if (part.role == role) return &part;
     return nullptr;
   }
-  bool has(Body body) const {
+  bool has_parts(BodyId body) const {
     for (const auto& part : parts)
-      if (body_of(part.role) == body) return true;
+      if (part.body == body) return true;
     return false;
   }
+  /// Appends a part with its own body of the same name. Returns the body.
+  /// throws: InputError as BodyTree::add().
+  BodyId add_piece(Part part, BodyId parent, BodyDriver driver = BodyDriver::hand);
 };
 
 }  // namespace condyle

@@ -5,17 +5,18 @@
 
 namespace condyle {
 
-/// What a case folder's case.json says of itself.
+/// Format and version stated in case.json.
 constexpr const char* case_format = "condyle case";
-constexpr int case_version = 1;
+// 1: a segment or transplant names its carrier, cranium or mandible. 2: bodies and their parents.
+constexpr int case_version = 2;
 constexpr const char* muscles_file = "muscles.csv";
 constexpr const char* mechanics_file = "mechanics.json";
 constexpr std::size_t max_case_json_bytes = std::size_t{16} << 20;
 
-/// Letters, digits, '-' and '_': a part's name is its file's name too.
+/// Letters, digits, '-' and '_': a part's name is also its file name.
 bool is_part_name(const std::string& name);
 
-/// 11 to 48 without the gaps, and the milk teeth 51 to 85.
+/// 11 to 48 without the gaps, and deciduous teeth 51 to 85.
 bool is_fdi(int number);
 
 }  // namespace condyle

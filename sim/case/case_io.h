@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/case/case.h"
+#include "sim/case/source_frame.h"
 
 namespace condyle {
 
@@ -16,45 +17,41 @@ struct ImportFile {
 };
 
 struct ImportRequest {
-  std::vector<ImportFile> files;    // one bone at least; a role may come several times
+  std::vector<ImportFile> files;    // at least one bone; a role may occur several times
   std::filesystem::path landmarks;  // CSV or .mrk.json; empty = none
-  std::string units = "mm";         // mm m cm in
-  std::string frame = "LPS";        // any of the 48 signed axis orders: LPS, RAS, ...
+  SourceFrame source = {};          // unit and axes of the files
   std::string name;
-  // Carriers of free parts by name (segment, segment-2, transplant, ...); of others the body that
-  // is nearer.
-  std::map<std::string, Body> carriers = {};
-  // In millimetres whatever the units of the surfaces, axes as these; empty = none.
-  std::filesystem::path muscles = {};    // CSV, as sim/case/muscle_table.h tells
-  std::filesystem::path mechanics = {};  // JSON, as sim/case/jaw_mechanics.h tells
+  // Parent bodies of pieces, by the piece's name (segment, segment-2, ...): the cranium, the
+  // mandible or another piece; by default the cranium or mandible, whichever is nearer.
+  std::map<std::string, std::string> parents = {};
+  // In millimetres regardless of the units of the surfaces, with the same axes; empty = none.
+  std::filesystem::path muscles = {};    // CSV, see sim/case/muscle_table.h
+  std::filesystem::path mechanics = {};  // JSON, see sim/case/jaw_mechanics.h
 };
 
-/// Reads, converts to LPS mm, checks and repairs what can be; `notes` of the result say what was
-/// found, repaired and estimated. Several files of one arch of teeth become one part (a Tooth per
-/// file named by its FDI number, as tooth_36.ply); several files of another role become parts of
-/// their own, skull, skull-2. Unused vertices go. throws: InputError.
+/// Reads the files, converts them to LPS mm, checks and repairs them where possible; `notes` of the
+/// result list what was found, repaired and estimated. Several files of one dental arch become one
+/// part (a Tooth per file named by its FDI number, as tooth_36.ply); several files of another role
+/// become separate parts, skull, skull-2. Unused vertices are removed. throws: InputError.
 Case import_meshes(const ImportRequest& request);
 
-/// Landmarks file (CSV `name,x_mm,y_mm,z_mm`, or 3D Slicer .mrk.json), names made canonical.
+/// Landmarks file (CSV `name,x_mm,y_mm,z_mm`, or 3D Slicer .mrk.json), with canonical names.
 Landmarks read_landmarks(const std::filesystem::path& file);
 
-/// Whether the case.json in a folder is of another program: JSON that does not call itself a case of
-/// this one. Without such a file, or where it cannot be read, false.
+/// Whether the case.json in a folder belongs to another program: JSON without this program's format
+/// name. False without such a file, or where it cannot be read.
 bool has_foreign_case_file(const std::filesystem::path& folder);
 
-/// A case folder: case.json, one binary PLY per part, landmarks.csv. Files inside the folder only.
-/// Loading gives the bits that were saved. throws: InputError.
+/// Loads a case folder: case.json, one binary PLY per part, landmarks.csv. Only files inside the
+/// folder are read. Loading is bit-identical to what was saved. throws: InputError.
 Case load_case(const std::filesystem::path& folder);
 
-/// Writes beside the folder and swaps: a failed save leaves the earlier case whole. A folder that
-/// holds anything but a case is refused. throws: InputError, MachineError.
+/// Writes to a temporary folder and swaps: a failed save leaves the earlier case intact. A folder
+/// that contains anything but a case is refused. throws: InputError, MachineError.
 void save_case(const Case& patient, const std::filesystem::path& folder);
 
 std::string role_name(Role role);  // "upper-teeth"
 std::optional<Role> role_named(const std::string& name);
-/// "cranium", "mandible": what a free part goes along with.
-std::string carrier_name(Body carrier);
-std::optional<Body> carrier_named(const std::string& name);
 std::string known_roles();  // "skull, maxilla, ...", for messages
 
 }  // namespace condyle

@@ -6,8 +6,8 @@ namespace condyle {
 
 /// Path of both condyle centres in the sagittal plane, from the seated position.
 struct CondylarPath {
-  std::vector<double> forward_mm;  // toward -y, increasing, starts at or below 0
-  std::vector<double> drop_mm;     // toward -z, one per entry
+  std::vector<double> forward_mm;   // toward -y, increasing, first value at most 0
+  std::vector<double> inferior_mm;  // toward -z, one per entry
 };
 
 }  // namespace condyle

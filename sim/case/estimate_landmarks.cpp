@@ -17,10 +17,11 @@ std::string place_of(const Vector3d& p) {
 void adopt(Case& patient, const std::string& name, const Vector3d& p, const std::string& how) {
   patient.landmarks.points[name] = p;
   patient.notes.push_back(
-      fmt::format("landmark {} was not given: estimated at {} from {}", name, place_of(p), how));
+      fmt::format("landmark {} is missing: estimated at {} from {}", name, place_of(p), how));
 }
 
-/// Middle of the box of the top 10 mm of the hind quarter of one side. `side` is 1 left, -1 right.
+/// Centre of the bounding box of the top 10 mm of the posterior quarter of one side. `side` is 1
+/// left, -1 right.
 std::optional<Vector3d> condyle_center(const std::vector<const Part*>& mandibles, double middle,
                                        double side) {
   Box whole;
@@ -41,11 +42,11 @@ std::optional<Vector3d> condyle_center(const std::vector<const Part*>& mandibles
   return box.center();
 }
 
-/// The midline's point farthest forward and, times `up`, upward.
+/// The point of the midline farthest forward and, times `up`, upward.
 std::optional<Vector3d> incisal_point(const Part& part, double middle, double up) {
   std::optional<Vector3d> best;
   double most = -std::numeric_limits<double>::infinity();
-  // The middle teeth may leave the plane itself free: their nearest parts count as well.
+  // There may be a gap between the central incisors: vertices near the plane are included.
   for (const auto& p : midline_points(part.mesh, middle, 5)) {
     const double reach = up * p.z() - p.y();
     if (reach > most) most = reach, best = Vector3d(middle, p.y(), p.z());
@@ -75,7 +76,7 @@ void estimate_landmarks(Case& patient) {
   if (mandibles.empty()) return;
   const auto known = [&](const char* name) { return patient.landmarks.find(name); };
 
-  // The midline: from points where there are some, else from the most symmetric thing there is.
+  // The midline: from landmarks, else from the most symmetric part.
   double middle = 0;
   if (known("left_condyle") && known("right_condyle")) {
     middle = 0.5 * (known("left_condyle")->x() + known("right_condyle")->x());
@@ -93,7 +94,7 @@ void estimate_landmarks(Case& patient) {
   const auto estimate_condyle = [&](const std::string& name, double side) {
     if (patient.landmarks.find(name)) return;
     if (const auto p = condyle_center(mandibles, middle, side))
-      adopt(patient, name, *p, "the top of the mandible's hind end");
+      adopt(patient, name, *p, "the top of the posterior end of the mandible");
   };
   estimate_condyle("left_condyle", 1);
   estimate_condyle("right_condyle", -1);
@@ -102,14 +103,15 @@ void estimate_landmarks(Case& patient) {
     const auto opposite = known(other);
     if (known(name) || !opposite) continue;
     adopt(patient, name, {2 * middle - opposite->x(), opposite->y(), opposite->z()},
-          "the other side, mirrored: this mandible has no such condyle");
+          "the other side, mirrored: the mandible has no condyle on this side");
   }
 
   if (!known("lower_incisal_point")) {
     const Part* part = patient.find(Role::lower_teeth);
     if (!part) part = mandibles.front();
     if (const auto p = incisal_point(*part, middle, 1))
-      adopt(patient, "lower_incisal_point", *p, "the foremost top of the midline of " + part->name);
+      adopt(patient, "lower_incisal_point", *p,
+            "the upper foremost point in the midline of " + part->name);
   }
   if (!known("upper_incisal_point")) {
     const Part* part = patient.find(Role::upper_teeth);
@@ -118,7 +120,7 @@ void estimate_landmarks(Case& patient) {
     if (!part) return;
     if (const auto p = incisal_point(*part, middle, -1))
       adopt(patient, "upper_incisal_point", *p,
-            "the foremost bottom of the midline of " + part->name);
+            "the lower foremost point in the midline of " + part->name);
   }
 }
 

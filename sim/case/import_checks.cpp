@@ -17,15 +17,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double least_head_mm = 40, largest_head_mm = 600;
+constexpr double min_head_mm = 40, max_head_mm = 600;
 
-/// "0.2 mm", "200 m": a length as people say it.
+/// "0.2 mm", "200 m": a length in a readable unit.
 std::string length_text(double mm) {
   if (mm >= 10'000) return fmt::format("{:.0f} m", mm / 1000);
   return mm >= 10 ? fmt::format("{:.0f} mm", mm) : fmt::format("{:.2g} mm", mm);
 }
 
-/// How the mandible lies, from its shape alone: the chin's part crosses the midline, the rami are
+/// Orientation of the mandible from its shape alone: the chin crosses the midline; the rami are
 /// apart at the sides and reach highest.
 bool lies_as_lps(const TriMesh& mandible) {
   const Box box = bounding_box(mandible);
@@ -53,7 +53,7 @@ JawPoints jaw_points(const Landmarks& landmarks) {
           landmarks.find("lower_incisal_point")};
 }
 
-/// What contradicts LPS in the jaw's points; empty when nothing does.
+/// What contradicts LPS in the jaw's landmarks; empty if nothing does.
 std::string contradiction(const JawPoints& jaw) {
   if (jaw.left_condyle && jaw.right_condyle && jaw.left_condyle->x() <= jaw.right_condyle->x())
     return fmt::format(
@@ -73,12 +73,12 @@ std::string contradiction(const JawPoints& jaw) {
   return "";
 }
 
-/// The first usual frame in which mandible and points would lie as they should.
+/// The first common frame in which mandible and landmarks would be oriented correctly.
 std::string fitting_frame(const TriMesh& mandible, const JawPoints& jaw,
                           const ImportRequest& request) {
-  const Eigen::Matrix3d back = source_frame("mm", request.frame).to_lps_mm.inverse();
+  const Eigen::Matrix3d back = request.source.axes_to_lps.transpose();
   for (const auto& frame : all_frames()) {
-    const Eigen::Matrix3d turn = source_frame("mm", frame).to_lps_mm * back;
+    const Eigen::Matrix3d turn = source_frame("mm", frame).axes_to_lps * back;
     TriMesh lying = mandible;
     for (auto& v : lying.vertices) v = turn * v;
     JawPoints turned;
@@ -94,19 +94,19 @@ std::string fitting_frame(const TriMesh& mandible, const JawPoints& jaw,
 
 void check_size(const Box& box, const ImportRequest& request) {
   const double size = box.size().maxCoeff();
-  if (size >= least_head_mm && size <= largest_head_mm) return;
+  if (size >= min_head_mm && size <= max_head_mm) return;
   std::string fits;
   for (const auto& units :
-       all_units()) {  // the usual ones first; inches only where nothing else fits
-    const double other = size / unit_mm(request.units) * unit_mm(units);
-    if (other < least_head_mm || other > largest_head_mm) continue;
+       all_units()) {  // the common ones first; inches only where nothing else fits
+    const double other = size / request.source.unit_mm * unit_mm(units);
+    if (other < min_head_mm || other > max_head_mm) continue;
     fits = units;
     break;
   }
   throw InputError(
       request.files.front().file, "",
       fmt::format("the patient is {} wide with --units {}; a head is 100 to 300 mm: {}",
-                  length_text(size), request.units,
+                  length_text(size), request.source.units,
                   fits.empty() ? "no unit fits, so check which file this is"
                                : "did you mean --units " + fits + "?"));
 }
@@ -117,7 +117,12 @@ void check_frame(const Case& patient, const ImportRequest& request) {
   const JawPoints jaw = jaw_points(patient.landmarks);
   std::string problem = contradiction(jaw);
   if (problem.empty()) {
-    // A point apiece proves the frame; the shape is asked only when there is none.
+    // check_jaw_order refuses exchanged jaws.
+    for (const auto& part : patient.parts)
+      if ((part.role == Role::maxilla || part.role == Role::skull) && lies_as_lps(part.mesh) &&
+          !lies_as_lps(mandible->mesh))
+        return;
+    // One point on each side proves the frame; the shape is used only without landmarks.
     const bool proved = jaw.incisal && (jaw.left_condyle || jaw.right_condyle);
     if (proved || lies_as_lps(mandible->mesh)) return;
     problem = "the mandible's rami are not behind and above its chin";
@@ -127,9 +132,9 @@ void check_frame(const Case& patient, const ImportRequest& request) {
   if (fits.empty() && contradiction(jaw).empty()) return;
   throw InputError(request.files.front().file, "",
                    fmt::format("with --frame {} {}: the axes or the landmarks are wrong; {}",
-                               request.frame, problem,
-                               fits.empty() || fits == request.frame
-                                   ? "check which way x, y and z of the files point"
+                               request.source.axes, problem,
+                               fits.empty() || fits == request.source.axes
+                                   ? "check the directions of x, y and z of the files"
                                    : "did you mean --frame " + fits + "?"));
 }
 

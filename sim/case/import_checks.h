@@ -10,27 +10,28 @@
 
 namespace condyle {
 
-/// Refuses a patient whose box is not of a head's size, naming the unit that would fit.
+/// Refuses a patient whose bounding box is not of a head's size, naming the unit that would fit.
 void check_size(const Box& box, const ImportRequest& request);
 
-/// Where the mesh's edges cross the sagittal plane x = `middle`, and its vertices within `near_mm`.
+/// Points where the mesh's edges cross the sagittal plane x = `middle`, and its vertices within
+/// `near_mm`.
 std::vector<Eigen::Vector3d> midline_points(const TriMesh& mesh, double middle, double near_mm);
 
-/// Adds condyle centres and incisal points that are missing, estimated from the meshes, each with a
-/// note. Does nothing for a point that is there.
+/// Adds missing condyle centres and incisal points, estimated from the meshes, each with a note.
+/// Existing points are unchanged.
 void estimate_landmarks(Case& patient);
 
-/// Refuses landmarks of a jaw that is nowhere near this mandible. One far point alone may be right:
-/// a resected condyle has its landmark still.
+/// Refuses landmarks of a jaw that are far from this mandible. A single distant point may be right:
+/// the landmark of a resected condyle.
 void check_landmarks(const Case& patient, const ImportRequest& request);
 
 /// Refuses a mandible that is upside down, back to front or side to side in LPS, naming a frame
-/// that would fit. `patient` is as converted by the request.
+/// that would fit. `patient` is converted as requested.
 void check_frame(const Case& patient, const ImportRequest& request);
 
-/// Gives each segment and transplant its carrier: the one asked for by name, else the body (cranium
-/// or mandible) that it lies nearest to, with a note.
-/// throws: InputError for a name that no free part has.
-void choose_carriers(Case& patient, const std::map<std::string, Body>& asked);
+/// Gives each segment and transplant its own body, child of the body given by name, else of the
+/// cranium or mandible, whichever is nearer, with a note. throws: InputError for an unknown piece
+/// or parent, and for pieces that form a cycle.
+void make_piece_bodies(Case& patient, const std::map<std::string, std::string>& asked);
 
 }  // namespace condyle

@@ -17,6 +17,7 @@
 #include "sim/case/case_io.h"
 #include "sim/case/import_checks.h"
 #include "sim/case/import_muscles.h"
+#include "sim/case/jaw_order.h"
 #include "sim/case/landmark_files.h"
 #include "sim/case/soft_landmarks.h"
 #include "sim/case/source_frame.h"
@@ -27,13 +28,13 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-/// A file read, converted and cleaned.
+/// A file after reading, conversion and cleaning.
 struct Surface {
   ImportFile source;
   TriMesh mesh;
 };
 
-/// What cleaning did to the files of one part.
+/// Result of cleaning the files of one part.
 struct Cleaning {
   int welded = 0, flat = 0, twice = 0, turned = 0, holes = 0, unused = 0;
 };
@@ -43,7 +44,7 @@ bool is_bone(Role role) {
 }
 
 std::string at(const Vector3d& p) {
-  // Rounded first: no "-0".
+  // Rounded first, to avoid "-0".
   return fmt::format("({:.0f}, {:.0f}, {:.0f})", std::round(p.x()) + 0.0, std::round(p.y()) + 0.0,
                      std::round(p.z()) + 0.0);
 }
@@ -52,8 +53,9 @@ std::string counted(long count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-/// Joins corners at one place, then those nearer than single precision can tell on a head, where
-/// that closes more edges than it overloads: some surfaces touch themselves at a point on purpose.
+/// Merges coincident corners, then those nearer than single precision resolves on a head, where
+/// that closes more edges than it makes non-manifold: some surfaces touch themselves at a point
+/// intentionally.
 int weld_file(TriMesh& mesh) {
   int welded = 0;
   for (const double tolerance_mm : {0.0, 1e-4}) {
@@ -88,7 +90,7 @@ void clean(Surface& surface, Cleaning& done) {
                      "has no triangle with an area; export the surface again");
 }
 
-/// What the part is and what is wrong with it, as people say it.
+/// The part and its flaws, in readable form.
 std::string description(const Part& part, const std::string& files) {
   const Topology found = inspect(part.mesh);
   std::string note =
@@ -110,10 +112,10 @@ std::string description(const Part& part, const std::string& files) {
   if (found.misoriented_edges > 0)
     note += fmt::format("; neighbours disagree about outside at {}",
                         counted(found.misoriented_edges, "edge", "edges"));
-  return note + "; inside and outside cannot be told for certain";
+  return note + "; inside and outside are uncertain";
 }
 
-/// Empty when nothing had to be done.
+/// Empty when nothing was changed.
 std::string description(const Cleaning& done) {
   std::string text;
   const auto add = [&](long count, const char* one, const char* many) {
@@ -129,7 +131,7 @@ std::string description(const Cleaning& done) {
   return text;
 }
 
-/// The FDI number in a file's name ("tooth_36.ply", "36.stl", "FDI36"); 0 when there is none.
+/// The FDI number in a file name ("tooth_36.ply", "36.stl", "FDI36"); 0 without one.
 int fdi_of(const fs::path& file) {
   const std::string name = file.stem().string();
   int found = 0;
@@ -165,7 +167,7 @@ void append(TriMesh& whole, const TriMesh& piece) {
     whole.colors.clear();
 }
 
-/// One part of all files of an arch, with a run of triangles for each file named by a tooth.
+/// One part of all files of an arch, with a range of triangles for each file named by a tooth.
 Part join_teeth(Role role, const std::vector<Surface>& surfaces, std::vector<std::string>& notes) {
   Part part{role_name(role), role, {}, {}};
   std::set<int> numbers;
@@ -188,18 +190,18 @@ Part join_teeth(Role role, const std::vector<Surface>& surfaces, std::vector<std
                       is_upper(fdi) ? "lower" : "upper", is_upper(fdi) ? "upper" : "lower"));
     if (!numbers.insert(fdi).second)
       throw InputError(surface.source.file, "",
-                       fmt::format("is tooth {}, which another file is already", fdi));
+                       fmt::format("is tooth {}, which another file also claims", fdi));
     part.teeth.push_back({fdi, first, static_cast<int>(surface.mesh.triangles.size())});
   }
   if (unnamed > 0 && count > 1)
     notes.push_back(fmt::format(
-        "{}: {} no FDI number in the name (as in tooth_36.ply), so its teeth are not told apart",
+        "{}: {} no FDI number in the name (as in tooth_36.ply), so its teeth are not separated",
         part.name, unnamed == 1 ? "1 file has" : fmt::format("{} files have", unnamed)));
   return part;
 }
 
-/// Colours the face by its file's own picture, if there is one: in triangles that are small enough
-/// to keep what is seen in it.
+/// Colours the face by its file's own texture, if it has one, with triangles small enough to
+/// preserve the detail.
 void lay_texture(const fs::path& file, const SourceFrame& frame, Case& patient) {
   constexpr int most_triangles = 150000;
   const auto part = std::find_if(patient.parts.begin(), patient.parts.end(),
@@ -207,16 +209,15 @@ void lay_texture(const fs::path& file, const SourceFrame& frame, Case& patient) 
   if (part == patient.parts.end() || !part->mesh.colors.empty()) return;
   const auto texture = read_texture(file);
   if (!texture) return;
-  // Of even triangles there would be about so many; longer edges alone are halved.
+  // Estimated number of uniform triangles; only longer edges are halved.
   const double edge_mm =
       1.3 * std::sqrt(4 / std::sqrt(3.0) * surface_area(part->mesh) / most_triangles);
   const std::vector<double> edges(part->mesh.vertices.size(), edge_mm);
   part->mesh = refine(std::move(part->mesh), edges, most_triangles);
-  paint(part->mesh, *texture, Eigen::Affine3d(frame.to_lps_mm));
+  paint(part->mesh, *texture, Eigen::Affine3d(frame.to_lps_mm()));
   patient.notes.push_back(fmt::format(
-      "{}: coloured by the picture of {} ({}x{}), in {} triangles so that it stays sharp",
-      part->name, file.filename().string(), texture->width, texture->height,
-      part->mesh.triangles.size()));
+      "{}: coloured by the texture of {} ({}x{}), in {} triangles to keep it sharp", part->name,
+      file.filename().string(), texture->width, texture->height, part->mesh.triangles.size()));
 }
 
 std::vector<Part> make_parts(std::vector<Surface>& surfaces, std::vector<std::string>& notes) {
@@ -245,7 +246,7 @@ std::vector<Part> make_parts(std::vector<Surface>& surfaces, std::vector<std::st
   return parts;
 }
 
-Landmarks import_landmarks(const ImportRequest& request, const SourceFrame& frame, const Box& box,
+Landmarks import_landmarks(const ImportRequest& request, const Box& box,
                            std::vector<std::string>& notes) {
   if (request.landmarks.empty()) return {};
   LandmarkTable table = read_landmark_table(request.landmarks);
@@ -255,16 +256,16 @@ Landmarks import_landmarks(const ImportRequest& request, const SourceFrame& fram
       return !box.contains(turn * row.point, margin_mm);
     });
   };
-  // A file that tells its own frame is LPS mm already. Others are as the meshes; only where that
-  // puts them off the patient and the millimetres of their column names do not, those count.
-  Eigen::Matrix3d turn = frame.to_lps_mm;
+  // A file that defines its own frame is in LPS mm. Others have the frame of the meshes, unless
+  // that places them off the patient and the millimetres of their column names do not.
+  const SourceFrame& frame = request.source;
+  Eigen::Matrix3d turn = frame.to_lps_mm();
   if (table.own_frame) {
     turn.setIdentity();
-  } else if (request.units != "mm" && strays(turn) != table.rows.end()) {
-    const Eigen::Matrix3d in_mm = turn / unit_mm(request.units);
-    if (strays(in_mm) == table.rows.end()) {
-      turn = in_mm;
-      notes.push_back("landmarks: taken in mm, as their columns say; in " + request.units +
+  } else if (frame.units != "mm" && strays(turn) != table.rows.end()) {
+    if (strays(frame.axes_to_lps) == table.rows.end()) {
+      turn = frame.axes_to_lps;
+      notes.push_back("landmarks: taken in mm, as their columns say; in " + frame.units +
                       " they would lie off the patient");
     }
   }
@@ -287,19 +288,19 @@ Case import_meshes(const ImportRequest& request) {
   if (std::none_of(request.files.begin(), request.files.end(),
                    [](const ImportFile& file) { return is_bone(file.role); }))
     throw InputError("no bone is given; name one with --skull, --maxilla or --mandible");
-  const SourceFrame frame = source_frame(request.units, request.frame);
+  const SourceFrame& frame = request.source;
 
   std::vector<Surface> surfaces;
   Box box;
   const ImportFile* face = nullptr;
   for (const auto& file : request.files) {
     if (file.role == Role::face) {
-      if (face) throw InputError(file.file, "", "is a second face; give one face only");
+      if (face) throw InputError(file.file, "", "is a second face; give only one");
       face = &file;
     }
     Surface surface{file, read_mesh(file.file)};
-    for (auto& v : surface.mesh.vertices) v = frame.to_lps_mm * v;
-    if (frame.mirrored) flip(surface.mesh);
+    for (auto& v : surface.mesh.vertices) v = frame.to_lps_mm() * v;
+    if (frame.mirrored()) flip(surface.mesh);
     drop_unreferenced(surface.mesh);
     box.add(bounding_box(surface.mesh));
     surfaces.push_back(std::move(surface));
@@ -308,20 +309,17 @@ Case import_meshes(const ImportRequest& request) {
 
   Case patient;
   patient.name = request.name;
-  patient.source_units = request.units;
-  patient.source_frame = request.frame;
-  std::transform(patient.source_frame.begin(), patient.source_frame.end(),
-                 patient.source_frame.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  patient.landmarks = import_landmarks(request, frame, box, patient.notes);
+  patient.source = frame;
+  patient.landmarks = import_landmarks(request, box, patient.notes);
   patient.parts = make_parts(surfaces, patient.notes);
   if (face) lay_texture(face->file, frame, patient);
-  choose_carriers(patient, request.carriers);
+  make_piece_bodies(patient, request.parents);
   check_frame(patient, request);
+  check_jaw_order(patient, request);
   check_landmarks(patient, request);
   estimate_landmarks(patient);
   estimate_profile_landmarks(patient);
-  import_muscles(request, frame, box, patient);
+  import_muscles(request, box, patient);
   return patient;
 }
 

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Temple and breastbone lie outside the jaws.
+/// Temple and sternum lie outside the jaws.
 constexpr double margin_mm = 150;
 
 void check_near(const std::filesystem::path& file, const std::string& what, const Vector3d& p,
@@ -31,9 +31,8 @@ void turn(BoneMechanics& bone, const Matrix3d& axes) {
 
 }  // namespace
 
-void import_muscles(const ImportRequest& request, const SourceFrame& frame, const Box& box,
-                    Case& patient) {
-  const Matrix3d axes = frame.to_lps_mm / unit_mm(request.units);
+void import_muscles(const ImportRequest& request, const Box& box, Case& patient) {
+  const Matrix3d& axes = request.source.axes_to_lps;
   if (!request.muscles.empty()) {
     patient.muscles = read_muscles(request.muscles, patient.notes);
     for (Muscle& muscle : patient.muscles) {

@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr const char* polyline_key = "polyline_posterior_superior_offsets_mm_from_tmj_marker";
-constexpr double heaviest_kg = 10, most_inertia = 1e5, farthest_center_mm = 1000, most_drag = 1e7;
+constexpr double heaviest_kg = 10, max_inertia = 1e5, farthest_center_mm = 1000, max_drag = 1e7;
 
 JsonItem list(const JsonItem& item, std::size_t size) {
   if (item.size() != size)
@@ -29,7 +29,7 @@ Vector3d vector(const JsonItem& item, double most) {
           item.at(2).number(-most, most)};
 }
 
-/// A ball of bone of that mass, for want of better.
+/// Inertia of a sphere of bone of that mass, the default.
 Matrix3d ball_inertia(double mass_kg) {
   constexpr double radius_mm = 15;
   return 0.4 * mass_kg * radius_mm * radius_mm * Matrix3d::Identity();
@@ -43,15 +43,15 @@ BoneMechanics bone(const JsonItem& item) {
   if (const auto rows = item.find("inertia_about_com_kg_mm2")) {
     list(*rows, 3);
     for (int k = 0; k < 3; ++k)
-      out.inertia.row(k) = vector(rows->at(static_cast<std::size_t>(k)), most_inertia).transpose();
+      out.inertia.row(k) = vector(rows->at(static_cast<std::size_t>(k)), max_inertia).transpose();
     const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(out.inertia);
     if (!out.inertia.isApprox(out.inertia.transpose(), 1e-6) || !(axes.eigenvalues()[0] > 0))
-      rows->refuse("is not symmetric and positive, as an inertia is");
+      rows->refuse("is not symmetric and positive definite, as an inertia must be");
     out.inertia = (0.5 * (out.inertia + out.inertia.transpose())).eval();
   }
-  if (const auto drag = item.find("frame_damping")) out.drag_kg_s = drag->number(0, most_drag);
+  if (const auto drag = item.find("frame_damping")) out.drag_kg_s = drag->number(0, max_drag);
   if (const auto drag = item.find("rotary_damping"))
-    out.turning_drag_kg_mm2_s = drag->number(0, most_drag);
+    out.turning_drag_kg_mm2_s = drag->number(0, max_drag);
   return out;
 }
 
@@ -60,9 +60,9 @@ CondylarPath guide(const JsonItem& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const JsonItem point = list(points.at(i), 2);
     path.forward_mm.push_back(-point.at(0).number(-100, 100));
-    path.drop_mm.push_back(-point.at(1).number(-100, 100));
+    path.inferior_mm.push_back(-point.at(1).number(-100, 100));
     if (i > 0 && !(path.forward_mm[i] > path.forward_mm[i - 1]))
-      point.refuse("does not lead farther forward than the point before");
+      point.refuse("is not farther forward than the previous point");
   }
   if (points.size() < 2) points.refuse("needs two points or more");
   if (path.forward_mm.front() > 0) points.at(0).refuse("the guide must start at or behind 0");
@@ -99,7 +99,7 @@ std::string mechanics_json(const JawMechanics& mechanics) {
   if (mechanics.guide)
     for (std::size_t i = 0; i < mechanics.guide->forward_mm.size(); ++i)
       root["tmj"][polyline_key].push_back(
-          {-mechanics.guide->forward_mm[i], -mechanics.guide->drop_mm[i]});
+          {-mechanics.guide->forward_mm[i], -mechanics.guide->inferior_mm[i]});
   return root.dump(1) + "\n";
 }
 

@@ -10,13 +10,13 @@
 namespace condyle {
 namespace {
 
-/// The value as it may stand in a message.
+/// The value, shortened for a message.
 std::string shown(const nlohmann::json& value) {
   std::string text = value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
   return text.size() > 60 ? text.substr(0, 60) + "..." : text;
 }
 
-/// nlohmann's text without its "[json.exception...]" and position.
+/// The message of nlohmann::json without its prefix and position.
 std::string reason_of(const nlohmann::json::exception& error) {
   const std::string what = error.what();
   const std::size_t end = what.find("; last read");
@@ -38,24 +38,24 @@ JsonItem JsonItem::at(const std::string& key) const {
 }
 
 std::optional<JsonItem> JsonItem::find(const std::string& key) const {
-  if (!value_->is_object()) refuse("is " + shown(*value_) + "; an object {...} is needed");
+  if (!value_->is_object()) refuse("is " + shown(*value_) + "; expected an object {...}");
   const auto found = value_->find(key);
   if (found == value_->end() || found->is_null()) return std::nullopt;
   return JsonItem(*file_, *found, name_.empty() ? key : name_ + "." + key);
 }
 
 JsonItem JsonItem::at(std::size_t index) const {
-  if (index >= size()) refuse(fmt::format("has {} items; more are needed", size()));
+  if (index >= size()) refuse(fmt::format("has {} items; more are required", size()));
   return JsonItem(*file_, (*value_)[index], fmt::format("{}[{}]", name_, index));
 }
 
 std::size_t JsonItem::size() const {
-  if (!value_->is_array()) refuse("is " + shown(*value_) + "; a list [...] is needed");
+  if (!value_->is_array()) refuse("is " + shown(*value_) + "; expected a list [...]");
   return value_->size();
 }
 
 std::string JsonItem::text() const {
-  if (!value_->is_string()) refuse("is " + shown(*value_) + "; a text \"...\" is needed");
+  if (!value_->is_string()) refuse("is " + shown(*value_) + "; expected a text \"...\"");
   return value_->get<std::string>();
 }
 
@@ -65,7 +65,7 @@ int JsonItem::integer(int low, int high) const {
     const double n = value_->get<double>();
     if (n >= low && n <= high) return value_->get<int>();
   }
-  refuse(fmt::format("is {}; a whole number from {} to {} is needed", shown(*value_), low, high));
+  refuse(fmt::format("is {}; expected a whole number from {} to {}", shown(*value_), low, high));
 }
 
 double JsonItem::number(double low, double high) const {
@@ -73,20 +73,20 @@ double JsonItem::number(double low, double high) const {
     const double n = value_->get<double>();
     if (n >= low && n <= high) return n;
   }
-  refuse(fmt::format("is {}; a number from {} to {} is needed", shown(*value_), low, high));
+  refuse(fmt::format("is {}; expected a number from {} to {}", shown(*value_), low, high));
 }
 
 void JsonItem::only_keys(std::initializer_list<std::string_view> known) const {
-  if (!value_->is_object()) refuse("is no object { ... }");
+  if (!value_->is_object()) refuse("is not an object { ... }");
   for (const auto& [key, value] : value_->items())
     if (std::find(known.begin(), known.end(), key) == known.end())
-      refuse(fmt::format("the key \"{}\" is not known; known are {}", key.substr(0, 40),
+      refuse(fmt::format("unknown key \"{}\"; valid keys are {}", key.substr(0, 40),
                          fmt::join(known, ", ")));
 }
 
 JsonFile::JsonFile(const std::filesystem::path& file, std::string_view text) : file_(file) {
   if (json_depth(text) > max_json_depth)
-    throw InputError(file, "", "nests its lists deeper than a case or list of landmarks does");
+    throw InputError(file, "", "is nested deeper than any case or landmark list");
   try {
     value_ = nlohmann::json::parse(text.begin(), text.end());
   } catch (const nlohmann::json::parse_error& error) {

@@ -9,8 +9,8 @@
 
 namespace condyle {
 
-/// A value in a JSON file that knows its name there ("parts[2].role"): asking it for what it is not
-/// throws an InputError with file, name and value.
+/// A value in a JSON file with its name there ("parts[2].role"). Access with the wrong type or
+/// range throws an InputError with file, name and value.
 class JsonItem {
  public:
   JsonItem(const std::filesystem::path& file, const nlohmann::json& value, std::string name)
@@ -19,15 +19,15 @@ class JsonItem {
   const nlohmann::json& value() const { return *value_; }
   const std::string& name() const { return name_; }
 
-  JsonItem at(const std::string& key) const;  // of an object; must be there
+  JsonItem at(const std::string& key) const;  // of an object; required
   std::optional<JsonItem> find(
-      const std::string& key) const;     // of an object; may be absent or null
+      const std::string& key) const;     // of an object; absent if missing or null
   JsonItem at(std::size_t index) const;  // of a list
   std::size_t size() const;              // of a list
   std::string text() const;
   int integer(int low, int high) const;
   double number(double low, double high) const;
-  /// Refuses an object with other keys than these, naming them.
+  /// throws: InputError if the object has other keys than these.
   void only_keys(std::initializer_list<std::string_view> known) const;
 
   [[noreturn]] void refuse(const std::string& problem) const;
@@ -38,7 +38,7 @@ class JsonItem {
   std::string name_;
 };
 
-/// A parsed JSON text. throws: InputError naming the line that is wrong.
+/// A parsed JSON text. throws: InputError naming the invalid line.
 class JsonFile {
  public:
   JsonFile(const std::filesystem::path& file, std::string_view text);
@@ -49,7 +49,7 @@ class JsonFile {
   nlohmann::json value_;
 };
 
-/// What is told of a file beside it: FILE.json ("chew.csv.json"). Absent when there is none.
+/// Path of the sidecar file FILE.json of a file ("chew.csv.json"); absent when there is none.
 std::optional<std::filesystem::path> sidecar_of(const std::filesystem::path& file);
 
 }  // namespace condyle

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_landmark_bytes = std::size_t{16} << 20;
+constexpr std::size_t max_landmark_bytes = std::size_t{16} << 20;
 constexpr std::size_t max_rows = 100'000;
 
 std::string trimmed(std::string_view text) {
@@ -69,7 +69,7 @@ std::vector<std::string> split(const fs::path& file, const std::string& where,
       fields.back() += c;
     }
   }
-  if (quoted) throw InputError(file, where, "a quote is opened and not closed");
+  if (quoted) throw InputError(file, where, "a quoted field is not closed");
   for (auto& field : fields) field = trimmed(field);
   return fields;
 }
@@ -84,7 +84,7 @@ std::optional<double> number(std::string_view text) {
 
 LandmarkTable read_csv(const fs::path& file, std::string_view text) {
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
-  constexpr std::array<const char*, 4> wanted = {"name", "x_mm", "y_mm", "z_mm"};
+  constexpr std::array<const char*, 4> required = {"name", "x_mm", "y_mm", "z_mm"};
   std::array<std::size_t, 4> column{};
   std::size_t columns = 0;
   char separator = ',';
@@ -103,19 +103,20 @@ LandmarkTable read_csv(const fs::path& file, std::string_view text) {
         separator = line.find('\t') != std::string_view::npos ? '\t' : ';';
       const auto header = split(file, where, line, separator);
       columns = header.size();
-      for (std::size_t w = 0; w < wanted.size(); ++w) {
+      for (std::size_t w = 0; w < required.size(); ++w) {
         column[w] = columns;
         for (std::size_t i = 0; i < columns; ++i) {
-          if (lower(header[i]) != wanted[w]) continue;
+          if (lower(header[i]) != required[w]) continue;
           if (column[w] < columns)
-            throw InputError(file, where, fmt::format("the column \"{}\" comes twice", wanted[w]));
+            throw InputError(file, where,
+                             fmt::format("the column \"{}\" appears twice", required[w]));
           column[w] = i;
         }
         if (column[w] == columns)
           throw InputError(file, where,
                            fmt::format("the column \"{}\" is missing (found: {}); the header must "
-                                       "have name,x_mm,y_mm,z_mm",
-                                       wanted[w], in_quotes(line)));
+                                       "contain name,x_mm,y_mm,z_mm",
+                                       required[w], in_quotes(line)));
       }
       continue;
     }
@@ -133,7 +134,7 @@ LandmarkTable read_csv(const fs::path& file, std::string_view text) {
       if (!value || !(std::abs(*value) <= 1e9))
         throw InputError(file, where,
                          fmt::format("{} of {} is {}; it must be a finite number such as 12.5",
-                                     wanted[static_cast<std::size_t>(k) + 1], in_quotes(row.name),
+                                     required[static_cast<std::size_t>(k) + 1], in_quotes(row.name),
                                      in_quotes(field)));
       row.point[k] = *value;
     }
@@ -145,10 +146,10 @@ LandmarkTable read_csv(const fs::path& file, std::string_view text) {
   return table;
 }
 
-/// Sign of x and y that turns the list's coordinate system into LPS.
+/// Sign of x and y that converts the coordinate system of the list to LPS.
 double sign_to_lps(const fs::path& file, const JsonItem& markup) {
   const auto system = markup.find("coordinateSystem");
-  if (!system) return 1;  // 3D Slicer's own default
+  if (!system) return 1;  // default of 3D Slicer
   const std::string name = system->value().is_number_integer()
                                ? std::to_string(system->value().get<int>())
                                : system->text();
@@ -156,7 +157,7 @@ double sign_to_lps(const fs::path& file, const JsonItem& markup) {
   if (name == "RAS" || name == "0") return -1;
   throw InputError(
       file, system->name(),
-      "the coordinate system " + in_quotes(name) + " is unknown; LPS and RAS are read");
+      "the coordinate system " + in_quotes(name) + " is unknown; LPS and RAS are supported");
 }
 
 LandmarkTable read_markups(const fs::path& file, std::string_view text) {
@@ -184,7 +185,7 @@ LandmarkTable read_markups(const fs::path& file, std::string_view text) {
       const JsonItem position = point.at("position");
       if (position.size() != 3)
         throw InputError(file, position.name(),
-                         fmt::format("has {} numbers; 3 are needed", position.size()));
+                         fmt::format("has {} numbers; 3 are required", position.size()));
       for (int k = 0; k < 3; ++k)
         row.point[k] =
             position.at(static_cast<std::size_t>(k)).number(-1e9, 1e9) * (k < 2 ? sign : 1);
@@ -198,14 +199,14 @@ LandmarkTable read_markups(const fs::path& file, std::string_view text) {
 
 LandmarkTable read_landmark_table(const fs::path& file) {
   if (std::error_code error; fs::is_directory(file, error))
-    throw InputError(file, "", "is a folder; name one .csv or .mrk.json file");
+    throw InputError(file, "", "is a folder; give a .csv or .mrk.json file");
   const std::string extension = lower(file.extension().string());
   if (extension != ".csv" && extension != ".json" && extension != ".txt" && extension != ".tsv")
     throw InputError(file, "",
                      "landmarks are read from .csv (name,x_mm,y_mm,z_mm) and .mrk.json files");
-  const std::string text = read_file(file, most_landmark_bytes);
+  const std::string text = read_file(file, max_landmark_bytes);
   LandmarkTable table = extension == ".json" ? read_markups(file, text) : read_csv(file, text);
-  if (table.rows.empty()) throw InputError(file, "", "holds no landmarks");
+  if (table.rows.empty()) throw InputError(file, "", "contains no landmarks");
   return table;
 }
 
@@ -216,10 +217,11 @@ Landmarks name_landmarks(const fs::path& file, const LandmarkTable& table) {
     const std::string name = canonical_landmark(row.name);
     const auto [other, is_new] = first.try_emplace(name, &row);
     if (!is_new && other->second->point != row.point)
-      throw InputError(file, row.where,
-                       fmt::format("{} is the landmark {} again, which {} has at another place; "
-                                   "delete one of them",
-                                   in_quotes(row.name), name, other->second->where));
+      throw InputError(
+          file, row.where,
+          fmt::format("{} repeats the landmark {}, which {} gives at another position; "
+                      "delete one of them",
+                      in_quotes(row.name), name, other->second->where));
     landmarks.points[name] = row.point;
   }
   return landmarks;

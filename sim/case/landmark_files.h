@@ -8,7 +8,7 @@
 
 namespace condyle {
 
-/// One landmark as the file has it.
+/// One landmark as given in the file.
 struct LandmarkRow {
   std::string name;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -17,17 +17,17 @@ struct LandmarkRow {
 
 struct LandmarkTable {
   std::vector<LandmarkRow> rows;
-  bool own_frame = false;  // the file tells its frame (.mrk.json): the points are LPS, mm
+  bool own_frame = false;  // the file defines its frame (.mrk.json): the points are LPS, mm
 };
 
-/// Reads names and points, unchanged but for a .mrk.json in RAS. throws: InputError.
+/// Reads names and points; those of a .mrk.json in RAS are converted to LPS. throws: InputError.
 LandmarkTable read_landmark_table(const std::filesystem::path& file);
 
-/// Gives the rows their canonical names. throws: InputError when two rows mean one landmark and
-/// have different places.
+/// Replaces names by canonical ones. throws: InputError when two rows name the same landmark at
+/// different positions.
 Landmarks name_landmarks(const std::filesystem::path& file, const LandmarkTable& table);
 
-/// CSV with a digit string for each number that reads back to the same bits.
+/// The landmarks as CSV with exact round trip.
 std::string landmarks_csv(const Landmarks& landmarks);
 
 }  // namespace condyle

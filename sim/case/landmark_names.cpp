@@ -48,7 +48,7 @@ const std::vector<Known>& middle_points() {
   return points;
 }
 
-/// Paired points: each name and alias comes with a side before or after it.
+/// Paired points: each name and alias has a side before or after it.
 const std::vector<Known>& paired_points() {
   static const std::vector<Known> points = {
       {"condyle", {"tmj", "condylecenter", "condylecentre"}},
@@ -66,7 +66,7 @@ const std::vector<Known>& paired_points() {
   return points;
 }
 
-/// Letters and digits in lower case, and ' for soft tissue: what aliases are compared by.
+/// Letters and digits in lower case, and ' for soft tissue: the key for comparing aliases.
 std::string key_of(std::string_view name) {
   std::string key;
   for (const char c : name) {

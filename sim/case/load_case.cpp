@@ -19,13 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The path of a file named in case.json, which must lie in the case's folder, links followed.
+/// Path of a file named in case.json, which must lie in the case's folder after following links.
 fs::path inside(const fs::path& folder, const JsonItem& item) {
   const std::string name = item.text();
   const fs::path relative(name);
   const bool climbs = std::any_of(relative.begin(), relative.end(),
                                   [](const fs::path& step) { return step == ".."; });
-  const std::string rule = "; a case speaks only of files in its own folder";
+  const std::string rule = "; a case refers only to files in its own folder";
   if (name.empty() || relative.is_absolute() || climbs || name.find('\0') != std::string::npos)
     item.refuse("\"" + name + "\" is not a file in the case's folder" + rule);
   const fs::path file = folder / relative;
@@ -49,7 +49,7 @@ std::vector<Tooth> load_teeth(const JsonItem& list, int triangles) {
     if (!is_fdi(tooth.fdi))
       item.at("fdi").refuse(fmt::format("{} is no FDI tooth number (11 to 48)", tooth.fdi));
     if (!numbers.insert(tooth.fdi).second)
-      item.at("fdi").refuse(fmt::format("the tooth {} comes twice", tooth.fdi));
+      item.at("fdi").refuse(fmt::format("the tooth {} appears twice", tooth.fdi));
     tooth.first_triangle = item.at("first_triangle").integer(free_from, triangles);
     tooth.triangle_count = item.at("triangle_count").integer(1, triangles - tooth.first_triangle);
     free_from = tooth.first_triangle + tooth.triangle_count;
@@ -71,14 +71,62 @@ Part load_part(const fs::path& folder, const JsonItem& item) {
   part.mesh = read_mesh(inside(folder, item.at("file")));
   if (const auto teeth = item.find("teeth"))
     part.teeth = load_teeth(*teeth, static_cast<int>(part.mesh.triangles.size()));
-  if (const auto carrier = item.find("carrier")) {
-    const auto body = carrier_named(carrier->text());
-    if (!body) carrier->refuse("is \"" + carrier->text() + "\"; it must be cranium or mandible");
-    if (body_of(part.role) != Body::free)
-      carrier->refuse("only a segment or transplant has a carrier; this part is " + role);
-    part.carrier = *body;
-  }
   return part;
+}
+
+BodyId body_named(const BodyTree& bodies, const JsonItem& item) {
+  const auto body = bodies.find(item.text());
+  if (!body) item.refuse("the body \"" + item.text() + "\" does not exist");
+  return *body;
+}
+
+/// In the file parents precede their children, the cranium first.
+BodyTree load_bodies(const JsonItem& list) {
+  BodyTree bodies;
+  if (list.size() == 0 || list.at(std::size_t{0}).at("name").text() != bodies[cranium_body].name)
+    list.refuse("the first body must be the cranium");
+  for (std::size_t i = 1; i < list.size(); ++i) {
+    const JsonItem item = list.at(i);
+    Body body;
+    body.name = item.at("name").text();
+    if (body.name.empty() || bodies.find(body.name))
+      item.at("name").refuse("is \"" + body.name + "\"; each body needs a unique name");
+    body.parent = body_named(bodies, item.at("parent"));
+    const std::string driver = item.at("driver").text();
+    if (const auto known = driver_named(driver))
+      body.driver = *known;
+    else
+      item.at("driver").refuse("is \"" + driver +
+                               "\"; it must be fixed, motion, plan, hand or dynamics");
+    bodies.add(std::move(body));
+  }
+  return bodies;
+}
+
+JawBodies load_jaw(const JsonItem& item, const BodyTree& bodies) {
+  return {.upper_arch = body_named(bodies, item.at("upper_arch")),
+          .lower_arch = body_named(bodies, item.at("lower_arch")),
+          .left_condyle = body_named(bodies, item.at("left_condyle")),
+          .right_condyle = body_named(bodies, item.at("right_condyle"))};
+}
+
+/// Format 1: a segment or transplant is its own body, child of its "carrier".
+void give_native_body(Case& patient, Part& part, const JsonItem& item) {
+  part.body = default_body(part.role);
+  const auto carrier = item.find("carrier");
+  if (carrier && !is_piece(part.role))
+    carrier->refuse("only a segment or transplant has a carrier; this part is " +
+                    role_name(part.role));
+  if (!is_piece(part.role)) return;
+  BodyId parent = cranium_body;
+  if (carrier && carrier->text() == "mandible")
+    parent = mandible_body;
+  else if (carrier && carrier->text() != "cranium")
+    carrier->refuse("is \"" + carrier->text() + "\"; it must be cranium or mandible");
+  const bool taken = patient.bodies.find(part.name).has_value();
+  part.body = patient.bodies.add({.name = taken ? part.name + "-body" : part.name,
+                                  .parent = parent,
+                                  .driver = BodyDriver::hand});
 }
 
 PairRule load_rule(const Case& patient, const JsonItem& item) {
@@ -110,11 +158,11 @@ CondylarPath load_path(const JsonItem& item) {
       forward.at(i).refuse("the values must increase");
   }
   for (std::size_t i = 0; i < drop.size(); ++i)
-    path.drop_mm.push_back(drop.at(i).number(-100, 100));
-  if (path.forward_mm.size() != path.drop_mm.size() || path.forward_mm.size() < 2)
+    path.inferior_mm.push_back(drop.at(i).number(-100, 100));
+  if (path.forward_mm.size() != path.inferior_mm.size() || path.forward_mm.size() < 2)
     item.refuse(
         fmt::format("forward_mm has {} values and drop_mm {}; both need the same number, 2 or more",
-                    path.forward_mm.size(), path.drop_mm.size()));
+                    path.forward_mm.size(), path.inferior_mm.size()));
   if (path.forward_mm.front() > 0) forward.at(0).refuse("the path must start at or below 0");
   return path;
 }
@@ -140,7 +188,7 @@ bool calls_itself_a_case(const nlohmann::json& root) {
   return root.is_object() && root.contains("format") && root["format"] == case_format;
 }
 
-void check_format(const fs::path& file, const JsonItem& root) {
+int check_format(const fs::path& file, const JsonItem& root) {
   const std::string how =
       "; make a case from surfaces with: condyle import meshes --mandible FILE --maxilla FILE ... "
       "--out FOLDER";
@@ -151,8 +199,19 @@ void check_format(const fs::path& file, const JsonItem& root) {
   const int version = root.at("version").integer(1, 1'000'000);
   if (version > case_version)
     root.at("version").refuse(
-        fmt::format("is {}; this program reads cases up to version {}: use a newer program",
+        fmt::format("is {}; this program reads cases up to version {}: use a newer version",
                     version, case_version));
+  return version;
+}
+
+SourceFrame load_source_frame(const JsonItem& root) {
+  const JsonItem units = root.at("source_units"), axes = root.at("source_frame");
+  try {
+    return source_frame(units.text(), axes.text());
+  } catch (const InputError&) {
+    axes.refuse("\"" + units.text().substr(0, 20) + "\" and \"" + axes.text().substr(0, 20) +
+                "\" are not valid units and axes of a case");
+  }
 }
 
 }  // namespace
@@ -182,22 +241,30 @@ Case load_case(const fs::path& given) {
                      "import meshes --mandible FILE --maxilla FILE ... --out FOLDER");
   const JsonFile json(file, read_file(file, max_case_json_bytes));
   const JsonItem root = json.root();
-  check_format(file, root);
+  const int version = check_format(file, root);
 
   Case patient;
   patient.name = root.at("name").text();
-  patient.source_units = root.at("source_units").text();
-  patient.source_frame = root.at("source_frame").text();
+  patient.source = load_source_frame(root);
+  if (version > 1) {
+    patient.bodies = load_bodies(root.at("bodies"));
+    patient.jaw = load_jaw(root.at("jaw"), patient.bodies);
+  }
   const JsonItem parts = root.at("parts");
   if (parts.size() == 0) parts.refuse("is empty; a case needs one part or more");
   std::set<std::string> names;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     patient.parts.push_back(load_part(folder, parts.at(i)));
+    Part& part = patient.parts.back();
+    if (version == 1)
+      give_native_body(patient, part, parts.at(i));
+    else
+      part.body = body_named(patient.bodies, parts.at(i).at("body"));
     if (!names.insert(patient.parts.back().name).second)
       parts.at(i).at("name").refuse("the part \"" + patient.parts.back().name + "\" comes twice");
   }
   if (const auto landmarks = root.find("landmarks")) {
-    // The names are canonical already: taken as they are.
+    // The names are canonical already.
     const fs::path points = inside(folder, *landmarks);
     for (const auto& row : read_landmark_table(points).rows)
       if (!patient.landmarks.points.try_emplace(row.name, row.point).second)

@@ -15,16 +15,16 @@
 namespace condyle {
 namespace {
 
-constexpr std::size_t most_muscle_bytes = std::size_t{16} << 20;
-constexpr std::size_t most_muscles = 1000;
+constexpr std::size_t max_muscle_bytes = std::size_t{16} << 20;
+constexpr std::size_t max_muscles = 1000;
 constexpr double farthest_mm = 1000, strongest_N = 2000;
-constexpr double usual_stretch = 1.3, usual_passive = 0.015;
-constexpr double least_length_mm = 1;
+constexpr double default_stretch = 1.3, default_passive = 0.015;
+constexpr double min_length_mm = 1;
 
 const std::array<const char*, 7> needed_numbers = {"ox_mm", "oy_mm", "oz_mm",      "ix_mm",
                                                    "iy_mm", "iz_mm", "max_force_N"};
 
-/// Absent: known, but not simulated.
+/// Bodies by name; absent value: valid, but not simulated.
 std::optional<std::optional<MuscleBody>> body_named(const std::string& name) {
   using B = MuscleBody;
   static const std::map<std::string, std::optional<MuscleBody>> names = {
@@ -50,7 +50,7 @@ const char* body_name(MuscleBody body) {
   }
 }
 
-/// One row and where its columns stand.
+/// One row with the indices of its columns.
 class Row {
  public:
   Row(const std::filesystem::path& file, const TextLines& lines,
@@ -61,7 +61,7 @@ class Row {
         fields_(fields_of(lines.line(), ',')) {
     if (fields_.size() < columns.size())
       throw InputError(file, where_,
-                       fmt::format("{} values where {} are needed; the file may be cut off",
+                       fmt::format("{} values instead of {}; the file may be cut off",
                                    fields_.size(), columns.size()));
   }
   std::string text(const std::string& column) const {
@@ -74,8 +74,8 @@ class Row {
       refuse(column, fmt::format("{} is not between {} and {}", value, low, high));
     return value;
   }
-  double number_or(const std::string& column, double usual, double low, double high) const {
-    return text(column).empty() ? usual : number(column, low, high);
+  double number_or(const std::string& column, double by_default, double low, double high) const {
+    return text(column).empty() ? by_default : number(column, low, high);
   }
   [[noreturn]] void refuse(const std::string& column, const std::string& problem) const {
     throw InputError(file_, item(column), problem);
@@ -95,7 +95,8 @@ std::map<std::string, std::size_t> read_header(const std::filesystem::path& file
   const auto fields = fields_of(lines.line(), ',');
   for (std::size_t c = 0; c < fields.size(); ++c)
     if (!columns.emplace(std::string(fields[c]), c).second)
-      throw InputError(file, "line 1", fmt::format("column {} stands twice", shortened(fields[c])));
+      throw InputError(file, "line 1",
+                       fmt::format("column {} appears twice", shortened(fields[c])));
   std::vector<std::string> needed = {"name", "origin_body", "insertion_body"};
   for (const char* name : needed_numbers) needed.emplace_back(name);
   for (const auto& name : needed)
@@ -108,7 +109,7 @@ std::map<std::string, std::size_t> read_header(const std::filesystem::path& file
   return columns;
 }
 
-/// Nothing when it pulls at bodies that are not simulated.
+/// Absent for a muscle of bodies that are not simulated.
 std::optional<Muscle> read_muscle(const Row& row) {
   Muscle m;
   m.name = row.text("name");
@@ -120,9 +121,10 @@ std::optional<Muscle> read_muscle(const Row& row) {
        {std::pair{"origin_body", &m.origin_body}, std::pair{"insertion_body", &m.insertion_body}}) {
     const auto known = body_named(lower_case(row.text(column)));
     if (!known)
-      row.refuse(column, "\"" + shortened(row.text(column)) +
-                             "\" is no body; known are cranium, maxilla, jaw, hyoid, thyroid, "
-                             "cricoid, sternum, neck");
+      row.refuse(column,
+                 "\"" + shortened(row.text(column)) +
+                     "\" is not a body; valid ones are cranium, maxilla, jaw, hyoid, thyroid, "
+                     "cricoid, sternum, neck");
     if (!*known) return std::nullopt;
     *body = **known;
   }
@@ -133,18 +135,18 @@ std::optional<Muscle> read_muscle(const Row& row) {
         row.number(needed_numbers[static_cast<std::size_t>(k + 3)], -farthest_mm, farthest_mm);
   }
   const double rest = (m.origin - m.insertion).norm();
-  if (rest < least_length_mm)
+  if (rest < min_length_mm)
     row.refuse("ox_mm", fmt::format("the muscle {} is {:.3g} mm long; its ends coincide",
                                     shortened(m.name), rest));
   m.max_force_N = row.number("max_force_N", 0, strongest_N);
-  m.optimal_length_mm = row.number_or("opt_length_mm", rest, least_length_mm, farthest_mm);
-  m.max_length_mm = row.number_or("max_length_mm", usual_stretch * m.optimal_length_mm,
-                                  least_length_mm, farthest_mm);
+  m.optimal_length_mm = row.number_or("opt_length_mm", rest, min_length_mm, farthest_mm);
+  m.max_length_mm = row.number_or("max_length_mm", default_stretch * m.optimal_length_mm,
+                                  min_length_mm, farthest_mm);
   if (!(m.max_length_mm > m.optimal_length_mm))
     row.refuse("max_length_mm", fmt::format("{} is not above the optimal length, {}",
                                             m.max_length_mm, m.optimal_length_mm));
   m.tendon_ratio = row.number_or("tendon_ratio", 0, 0, 0.95);
-  m.passive_fraction = row.number_or("passive_fraction", usual_passive, 0, 1);
+  m.passive_fraction = row.number_or("passive_fraction", default_passive, 0, 1);
   if (m.origin_body == m.insertion_body ||
       (!m.moves(MuscleBody::mandible) && !m.moves(MuscleBody::hyoid)))
     return std::nullopt;
@@ -155,7 +157,7 @@ std::optional<Muscle> read_muscle(const Row& row) {
 
 std::vector<Muscle> read_muscles(const std::filesystem::path& file,
                                  std::vector<std::string>& notes) {
-  const std::string content = read_file(file, most_muscle_bytes);
+  const std::string content = read_file(file, max_muscle_bytes);
   TextLines lines(content);
   if (!lines.next_filled()) throw InputError(file, "", "the file is empty");
   const auto columns = read_header(file, lines);
@@ -168,9 +170,9 @@ std::vector<Muscle> read_muscles(const std::filesystem::path& file,
     const auto muscle = read_muscle(row);
     const std::string name = row.text("name");
     if (!names.insert(name).second)
-      row.refuse("name", "the muscle \"" + shortened(name) + "\" comes twice");
-    if (names.size() > most_muscles)
-      throw InputError(file, lines.where(), fmt::format("more than {} muscles", most_muscles));
+      row.refuse("name", "the muscle \"" + shortened(name) + "\" appears twice");
+    if (names.size() > max_muscles)
+      throw InputError(file, lines.where(), fmt::format("more than {} muscles", max_muscles));
     if (muscle) {
       muscles.push_back(*muscle);
     } else {
@@ -179,10 +181,10 @@ std::vector<Muscle> read_muscles(const std::filesystem::path& file,
   }
   if (muscles.empty())
     throw InputError(file, "",
-                     names.empty() ? "there is a header but no muscle"
+                     names.empty() ? "the file has a header but no muscle"
                                    : "none of its muscles moves the mandible or the hyoid");
   if (idle > 0)
-    notes.push_back(fmt::format("muscles: {} that move neither mandible nor hyoid are left out: {}",
+    notes.push_back(fmt::format("muscles: {} that move neither mandible nor hyoid are omitted: {}",
                                 idle, left_out));
   return muscles;
 }

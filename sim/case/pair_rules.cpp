@@ -22,7 +22,7 @@ bool fits(const PairRule& rule, const Part& a, const Part& b) {
 
 PairRule rule_for(const Case& patient, std::span<const PairRule> more, const Part& a,
                   const Part& b) {
-  PairRule rule = usual_rule(a, b);
+  PairRule rule = default_rule(patient.bodies, a, b);
   const auto take = [&](const PairRule& other) {
     if (!fits(other, a, b)) return;
     rule = other;
@@ -64,10 +64,10 @@ void check_rules(const Case& patient, std::span<const PairRule> rules, const std
     if (rule.a == rule.b && rule.a != "*")
       throw InputError(pair + "a pair has two different parts");
     if (rule.gap_mm != 0 && rule.policy != PairPolicy::guided)
-      throw InputError(pair + "a gap is kept by guided pairs only, not by " +
-                       policy_name(rule.policy) + " ones");
+      throw InputError(pair + "only guided pairs have a gap, not " + policy_name(rule.policy) +
+                       " ones");
     if (rule.margin_mm && rule.policy != PairPolicy::forbidden)
-      throw InputError(pair + "a margin is kept by forbidden pairs only, not by " +
+      throw InputError(pair + "only forbidden pairs have a margin, not " +
                        policy_name(rule.policy) + " ones");
     if (rule.margin_mm && !(*rule.margin_mm >= 0 && std::isfinite(*rule.margin_mm)))
       throw InputError(pair +

@@ -35,16 +35,6 @@ std::optional<Role> role_named(const std::string& name) {
   return std::nullopt;
 }
 
-std::string carrier_name(Body carrier) {
-  return carrier == Body::mandible ? "mandible" : "cranium";
-}
-
-std::optional<Body> carrier_named(const std::string& name) {
-  for (const Body body : {Body::cranium, Body::mandible})
-    if (name == carrier_name(body)) return body;
-  return std::nullopt;
-}
-
 std::string known_roles() {
   std::string list;
   for (const auto& [role, name] : roles) list += (list.empty() ? "" : ", ") + std::string(name);

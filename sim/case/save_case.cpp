@@ -27,14 +27,34 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-Json to_json(const Part& part) {
+Json to_json(const Part& part, const BodyTree& bodies) {
   Json item = {{"name", part.name}, {"role", role_name(part.role)}, {"file", part.name + ".ply"}};
   for (const auto& tooth : part.teeth)
     item["teeth"].push_back({{"fdi", tooth.fdi},
                              {"first_triangle", tooth.first_triangle},
                              {"triangle_count", tooth.triangle_count}});
-  if (body_of(part.role) == Body::free) item["carrier"] = carrier_name(part.carrier);
+  item["body"] = bodies[part.body].name;
   return item;
+}
+
+Json to_json(const BodyTree& bodies) {
+  Json list = Json::array();
+  for (const Body& body : bodies.bodies()) {
+    Json item = {{"name", body.name}};
+    if (!list.empty()) {
+      item["parent"] = bodies[body.parent].name;
+      item["driver"] = driver_name(body.driver);
+    }
+    list.push_back(std::move(item));
+  }
+  return list;
+}
+
+Json to_json(const JawBodies& jaw, const BodyTree& bodies) {
+  return {{"upper_arch", bodies[jaw.upper_arch].name},
+          {"lower_arch", bodies[jaw.lower_arch].name},
+          {"left_condyle", bodies[jaw.left_condyle].name},
+          {"right_condyle", bodies[jaw.right_condyle].name}};
 }
 
 Json to_json(const PairRule& rule) {
@@ -48,14 +68,16 @@ Json to_json(const Case& patient) {
   Json root = {{"format", case_format},
                {"version", case_version},
                {"name", patient.name},
-               {"source_units", patient.source_units},
-               {"source_frame", patient.source_frame},
+               {"source_units", patient.source.units},
+               {"source_frame", patient.source.axes},
+               {"bodies", to_json(patient.bodies)},
+               {"jaw", to_json(patient.jaw, patient.bodies)},
                {"parts", Json::array()}};
-  for (const auto& part : patient.parts) root["parts"].push_back(to_json(part));
+  for (const auto& part : patient.parts) root["parts"].push_back(to_json(part, patient.bodies));
   if (!patient.landmarks.points.empty()) root["landmarks"] = "landmarks.csv";
   if (patient.condylar_path)
     root["condylar_path"] = {{"forward_mm", patient.condylar_path->forward_mm},
-                             {"drop_mm", patient.condylar_path->drop_mm}};
+                             {"drop_mm", patient.condylar_path->inferior_mm}};
   if (!patient.muscles.empty()) root["muscles"] = muscles_file;
   if (patient.mechanics) root["mechanics"] = mechanics_file;
   for (const auto& rule : patient.pair_rules) root["contact_pairs"].push_back(to_json(rule));
@@ -85,17 +107,17 @@ void check(const Case& patient, const fs::path& folder) {
       throw InputError(folder, "landmark \"" + name + "\"",
                        "the name must be of letters, digits, - and _");
     else if (!point.allFinite())
-      throw InputError(folder, "landmark " + name, "its place is not finite");
+      throw InputError(folder, "landmark " + name, "its position is not finite");
 }
 
-/// Whether everything in the folder was written by an earlier save: it may be replaced.
+/// Whether everything in the folder was written by an earlier save, so that it may be replaced.
 void check_replaceable(const fs::path& folder) {
   std::set<std::string> files;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error))
     files.insert(entry->path().filename().string());
-  if (error) throw MachineError(folder.string() + ": cannot be looked into: " + error.message());
+  if (error) throw MachineError(folder.string() + ": cannot be read: " + error.message());
   if (files.empty()) return;
   const auto refuse = [&](const std::string& problem) {
     throw InputError(folder, "", problem + "; choose a new or empty folder for the case");
@@ -108,7 +130,7 @@ void check_replaceable(const fs::path& folder) {
     }
   }();
   if (!saved.is_object() || !saved.contains("format") || saved["format"] != case_format)
-    refuse("holds " + *files.begin() + " and is not a case");
+    refuse("contains " + *files.begin() + " and is not a case");
   files.erase("case.json");
   files.erase("landmarks.csv");
   files.erase(muscles_file);
@@ -117,7 +139,8 @@ void check_replaceable(const fs::path& folder) {
     for (const auto& part : saved["parts"])
       if (part.is_object() && part.contains("file") && part["file"].is_string())
         files.erase(part["file"].get<std::string>());
-  if (!files.empty()) refuse("holds " + *files.begin() + ", which is not part of the case there");
+  if (!files.empty())
+    refuse("contains " + *files.begin() + ", which is not part of the case there");
 }
 
 void put_in_place(const fs::path& made, const fs::path& folder) {
@@ -128,7 +151,7 @@ void put_in_place(const fs::path& made, const fs::path& folder) {
     fs::remove_all(made, ignored);  // now the earlier case
     return;
   } else if (errno == EINVAL || errno == ENOSYS) {
-    // No exchange on this file system: two steps, the first undone when the second fails.
+    // No atomic exchange on this file system: two steps, the first undone if the second fails.
     const fs::path earlier = made.string() + ".earlier";
     if (::rename(folder.c_str(), earlier.c_str()) == 0) {
       if (::rename(made.c_str(), folder.c_str()) == 0) {
@@ -144,7 +167,7 @@ void put_in_place(const fs::path& made, const fs::path& folder) {
     }
   }
   throw MachineError(folder.string() +
-                     ": the case cannot be put in place: " + std::strerror(errno));
+                     ": the case cannot be moved into place: " + std::strerror(errno));
 }
 
 }  // namespace
@@ -163,13 +186,13 @@ bool is_fdi(int number) {
 void save_case(const Case& patient, const fs::path& given) {
   check(patient, given);
   std::error_code error;
-  // Through links and without a trailing slash: the folder itself is what gets replaced.
+  // Follows links and removes a trailing slash: the folder itself is replaced.
   fs::path folder = fs::weakly_canonical(given, error);
   if (error || folder.empty()) folder = fs::absolute(given);
   if (!folder.has_filename()) folder = folder.parent_path();
   if (fs::exists(folder, error)) {
     if (!fs::is_directory(folder, error))
-      throw InputError(given, "", "is a file; name a folder for the case");
+      throw InputError(given, "", "is a file; give a folder for the case");
     check_replaceable(folder);
   }
   if (folder.has_parent_path()) make_folder(folder.parent_path());

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double bin_mm = 0.5;
 
-constexpr double face_depth_mm = 50;  // what lies farther behind the foremost point is no profile
+constexpr double face_depth_mm = 50;  // largest depth of the profile behind its foremost point
 
 /// The most anterior crossing of a surface with the plane x = x0, by height: z bin -> y.
 std::map<int, double> profile(const TriMesh& mesh, double x0) {
@@ -57,9 +57,9 @@ Found most_anterior(const std::map<int, double>& front, double x0, double low, d
   return best;
 }
 
-/// How far a place lies behind what stands out above and below it, whichever is less.
+/// Depth of a point behind the prominences above and below it, the lesser of the two.
 double hollow(const std::map<int, double>& front, int bin, double y) {
-  constexpr int reach = static_cast<int>(8 / bin_mm);  // a lip's height
+  constexpr int reach = static_cast<int>(8 / bin_mm);  // height of a lip
   double above = y, below = y;
   for (int step = 1; step <= reach; ++step) {
     if (const auto at = front.find(bin + step); at != front.end())
@@ -70,12 +70,12 @@ double hollow(const std::map<int, double>& front, int bin, double y) {
   return y - std::max(above, below);
 }
 
-/// Between the lips: the widest gap of the profile, or its deepest hollow, or where it lies
-/// farthest back.
+/// Between the lips: the widest gap of the profile, its deepest concavity, or its most posterior
+/// point.
 Found mouth(const std::map<int, double>& front, double x0, double low, double high) {
   Found gap, valley;
   double widest = 3 * bin_mm, deepest = 0.2;
-  std::optional<std::pair<double, double>> above;  // z, y of the sample before, going up
+  std::optional<std::pair<double, double>> above;  // z, y of the previous sample, upward
   for (const auto& [bin, y] : front) {
     const double z = height(bin);
     if (z < low || z > high) continue;

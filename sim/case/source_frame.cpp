@@ -1,6 +1,5 @@
 #include "sim/case/source_frame.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -29,26 +28,25 @@ double unit_mm(const std::string& units) {
 }
 
 SourceFrame source_frame(const std::string& units, const std::string& frame) {
-  const double scale = unit_mm(units);
-  SourceFrame result;
-  result.to_lps_mm.setZero();
+  SourceFrame result{.units = units, .axes = frame, .unit_mm = unit_mm(units)};
+  result.axes_to_lps.setZero();
+  for (char& c : result.axes) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   std::array<bool, 3> taken{};
   bool sound = frame.size() == 3;
   for (int k = 0; sound && k < 3; ++k) {
-    const char letter = static_cast<char>(
-        std::toupper(static_cast<unsigned char>(frame[static_cast<std::size_t>(k)])));
+    const char letter = result.axes[static_cast<std::size_t>(k)];
     const auto found = std::find_if(directions.begin(), directions.end(),
                                     [&](const Direction& d) { return d.letter == letter; });
     sound = found != directions.end() && !taken[static_cast<std::size_t>(found->axis)];
     if (!sound) break;
     taken[static_cast<std::size_t>(found->axis)] = true;
-    result.to_lps_mm(found->axis, k) = found->sign * scale;
+    result.axes_to_lps(found->axis, k) = found->sign;
   }
   if (!sound)
-    throw InputError("--frame \"" + frame +
-                     "\" is no coordinate frame; name where x, y and z point with one letter each "
-                     "of L or R, A or P, S or I: LPS, RAS, LSA ...");
-  result.mirrored = result.to_lps_mm.determinant() < 0;
+    throw InputError(
+        "--frame \"" + frame +
+        "\" is no coordinate frame; give the directions of x, y and z with one letter each "
+        "of L or R, A or P, S or I: LPS, RAS, LSA ...");
   return result;
 }
 
@@ -59,7 +57,7 @@ const std::vector<std::string>& all_units() {
 
 const std::vector<std::string>& all_frames() {
   static const auto frames = [] {
-    // DICOM, Slicer and NIfTI, glTF (y up, facing z), then y up facing the other way.
+    // DICOM, Slicer and NIfTI, glTF (y up, facing z), then y up facing -z.
     std::vector<std::string> list = {"LPS", "RAS", "LSA", "RSP", "LAI", "RPI", "LIP", "RIA"};
     for (int order = 0; order < 6; ++order) {
       constexpr int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},

@@ -23,7 +23,7 @@ TissuePlan overlaid(TissuePlan plan, const TissuePlan& over) {
 }
 
 void check_plan(const TissuePlan& plan, const std::string& where) {
-  // Not a number is out of any range.
+  // NaN is outside any range.
   const auto require = [&](bool holds, const std::string& item, const std::string& rule,
                            double value) {
     if (!holds) throw InputError(fmt::format("{}{} must be {}, not {}", where, item, rule, value));
@@ -36,9 +36,9 @@ void check_plan(const TissuePlan& plan, const std::string& where) {
           static_cast<double>(plan.layers.size()));
   double sum = plan.layers.empty() ? 1 : 0;
   for (const auto& layer : plan.layers) {
-    require(layer.share >= 0.02 && layer.share <= 1, "a layer's share of the thickness",
-            "0.02 to 1", layer.share);
-    sum += layer.share;
+    require(layer.fraction >= 0.02 && layer.fraction <= 1, "a layer's share of the thickness",
+            "0.02 to 1", layer.fraction);
+    sum += layer.fraction;
     if (layer.modulus_MPa)
       require(*layer.modulus_MPa >= 1e-5 && *layer.modulus_MPa <= 100, "a layer's modulus (MPa)",
               "0.00001 to 100", *layer.modulus_MPa);

@@ -34,7 +34,7 @@ AttachmentRegion load_region(const JsonItem& item) {
   AttachmentRegion region;
   const std::string bone = item.at("bone").text();
   if (bone == "mandible")
-    region.bone = Body::mandible;
+    region.bone = mandible_body;
   else if (bone != "cranium")
     item.at("bone").refuse("is \"" + bone + "\"; it must be cranium or mandible");
   if (const auto attached = item.find("attached")) {
@@ -61,7 +61,7 @@ TissuePlan load_tissue_plan(const JsonItem& item) {
       for (std::size_t i = 0; i < layers->size(); ++i) {
         const JsonItem from = layers->at(i);
         only(from, {"share", "modulus_MPa", "poisson", "mass_kg"});
-        TissueLayer layer{.share = from.at("share").number(0, 1)};
+        TissueLayer layer{.fraction = from.at("share").number(0, 1)};
         if (const auto value = from.find("modulus_MPa")) layer.modulus_MPa = value->number(0, 100);
         if (const auto value = from.find("poisson")) layer.poisson = value->number(0, 1);
         if (const auto value = from.find("mass_kg")) layer.mass_kg = value->number(0, 10);
@@ -94,7 +94,7 @@ Json tissue_plan_json(const TissuePlan& plan) {
   Json json = Json::object();
   if (plan.layer_count) json["layers"] = *plan.layer_count;
   for (const auto& layer : plan.layers) {
-    Json item = {{"share", layer.share}};
+    Json item = {{"share", layer.fraction}};
     if (layer.modulus_MPa) item["modulus_MPa"] = *layer.modulus_MPa;
     if (layer.poisson) item["poisson"] = *layer.poisson;
     if (layer.mass_kg) item["mass_kg"] = *layer.mass_kg;
@@ -105,7 +105,7 @@ Json tissue_plan_json(const TissuePlan& plan) {
   if (plan.down) json["gravity"] = vector_json(*plan.down);
   if (plan.bond) json["bond"] = *plan.bond == TissueBond::glued ? "glued" : "sliding";
   for (const auto& region : plan.attachments) {
-    Json item = {{"bone", region.bone == Body::mandible ? "mandible" : "cranium"},
+    Json item = {{"bone", region.bone == mandible_body ? "mandible" : "cranium"},
                  {"attached", region.attached}};
     if (region.landmark.empty())
       item["centre"] = vector_json(region.centre);

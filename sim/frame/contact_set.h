@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "engine/math/pose.h"
+#include "sim/frame/body_poses.h"
 #include "sim/frame/pair_rule.h"
 
 namespace condyle {
@@ -14,19 +14,20 @@ struct ContactPoint {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit, from A to B
 };
 
-/// What one pair of parts does at one pose.
+/// Contact or clearance of one pair of parts at one pose.
 struct PairContact {
-  // Indices into the case's parts. Cranium before mandible before free parts; two free ones in
-  // their order.
+  // Indices into the case's parts: A's body comes before B's.
   int part_a = 0, part_b = 0;
   bool touching = false;
-  std::vector<ContactPoint> contacts;                   // capped
-  double distance_mm = 0;                               // exact least, 0 when touching; or a bound
-  Eigen::Vector3d witness_a = Eigen::Vector3d::Zero();  // nearest points when apart
+  std::vector<ContactPoint> contacts;  // capped
+  double distance_mm = 0;              // exact minimum, 0 when touching; or a lower bound
+  // The nearest points; where the surfaces touch, both are the deepest point.
+  Eigen::Vector3d witness_a = Eigen::Vector3d::Zero();
   Eigen::Vector3d witness_b = Eigen::Vector3d::Zero();
-  int triangle_a = -1, triangle_b = -1;  // triangles of the witness points: the next query's start
+  // triangles of the witness points, where the next query starts
+  int triangle_a = -1, triangle_b = -1;
   // Deepest point of either surface inside the other, 0 when apart. Where the surfaces were apart
-  // at rest, depth counts from the rest depth on: depth_mm - rest_depth_mm is what is new.
+  // at rest, depth counts from the depth at rest: depth_mm - rest_depth_mm is the excess.
   double depth_mm = 0;
   double rest_depth_mm = 0;  // the same at rest: the pair's baseline
   PairPolicy policy = PairPolicy::forbidden;
@@ -45,14 +46,13 @@ struct ContactSet {
   }
   /// Smallest distance over the pairs, 0 when any touches. Infinite without pairs.
   double min_clearance_mm() const;
-  /// Deepest overlap beyond what was there at rest, over the pairs.
+  /// Deepest overlap beyond the overlap at rest, over the pairs.
   double max_penetration_mm() const;
 
-  Pose X_CM;               // where it was taken
-  std::vector<Pose> X_CF;  // the same of the free parts
+  BodyPoses at;  // poses of the query
 
-  // Of pairs that overlap at rest, in their order: the mandible's surface away from that overlap,
-  // which may not touch at all. What it does is counted into the pairs' depths.
+  // Of pairs that overlap at rest, in their order: B's surface outside that overlap, where no
+  // contact is allowed. Its depth is included in that of the pairs.
   std::vector<PairContact> away_from_rest;
 };
 

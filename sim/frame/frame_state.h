@@ -14,34 +14,31 @@
 
 namespace condyle {
 
-/// What drives one step.
+/// Input of one step.
 struct StepInput {
   double time_s = 0;
-  Pose X_CM_wanted;          // where the motion, or the hand, wants the mandible
-  bool obey_contact = true;  // false plays a recording as it is
-  bool bound_far = false;    // obeying: nobody looks at the distances (ContactModel::slide)
-  // Where the hand or a plan wants each free part, in its carrier's frame (none: as at rest).
-  std::vector<Pose> X_BF_wanted = {};
+  // Target pose of each body in its parent's frame, set by the motion, a hand or a plan; missing
+  // ones are at rest.
+  std::vector<Pose> X_PB_target = {};
+  bool obey_contact = true;  // false plays a recording unaltered
+  // with contact: large distances may be lower bounds (ContactModel::slide)
+  bool bound_far = false;
 };
 
-/// Everything that is true at one time: a plain value to copy to a thread, a file or a test.
+/// The complete state at one time: a plain value to copy to a thread, a file or a test.
 struct FrameState {
   double time_s = 0;
-  Pose X_CM_wanted;
-  Pose X_CM;             // maps the mandible from rest to now
-  bool stopped = false;  // contact kept the mandible from the wanted pose
+  std::vector<Pose> X_PB_target;  // of each body in its parent's frame
+  BodyPoses poses;                // reached by the bodies
+  bool stopped = false;           // contact kept a body from its target
   ContactSet contacts;
   TissueState tissue;
   std::vector<Eigen::Vector3f>
-      face;  // vertices of the displayed face, mm; empty when not asked for
+      face;  // vertices of the displayed face, mm; empty when not requested
   Measures measures;
-  StageTimes times;
-  std::uint64_t state_hash = 0;  // of poses, contacts, tissue and measures
-  std::vector<Pose> X_CF = {};   // of each free part, in the case's order; none: with its carrier
-
-  MuscleStates muscles = {};  // of a motion driven by muscles, in its order
-
-  BodyPoses poses() const { return {X_CM, X_CF}; }
+  MuscleStates muscles;  // of a motion driven by muscles, in the order of the case
+  StageTimes times;      // measured; excluded from the hash
+  std::uint64_t state_hash = 0;
 };
 
 }  // namespace condyle

@@ -13,7 +13,7 @@ struct MuscleState {
   double force_N = 0;
 };
 
-/// In the order of the case's muscles; none when the motion is not driven by muscles.
+/// In the order of the case's muscles; empty when the motion is not driven by muscles.
 using MuscleStates = std::vector<MuscleState>;
 
 }  // namespace condyle

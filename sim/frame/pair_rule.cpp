@@ -13,16 +13,12 @@ constexpr std::array<std::pair<PairPolicy, const char*>, 4> policies = {{
     {PairPolicy::cut_face, "cut-face"},
 }};
 
-bool carries(const Part& carrier, const Part& free) {
-  return body_of(free.role) == Body::free && body_of(carrier.role) == free.carrier;
-}
-
 }  // namespace
 
-PairRule usual_rule(const Part& a, const Part& b) {
+PairRule default_rule(const BodyTree& bodies, const Part& a, const Part& b) {
   PairRule rule{a.name, b.name, PairPolicy::forbidden, std::nullopt, 0};
   if (is_teeth(a.role) && is_teeth(b.role)) rule.policy = PairPolicy::allowed;
-  if (carries(a, b) || carries(b, a)) rule.policy = PairPolicy::cut_face;
+  if (bodies.link(a.body, b.body) == BodyLink::cut) rule.policy = PairPolicy::cut_face;
   return rule;
 }
 

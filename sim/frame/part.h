@@ -1,14 +1,14 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/mesh/tri_mesh.h"
+#include "sim/frame/body_tree.h"
 
 namespace condyle {
 
-/// What a surface is. Eyes, gums and tongue are only drawn.
+/// The role of a surface. Eyes, gums and tongue are only drawn.
 enum class Role {
   skull,
   maxilla,
@@ -24,38 +24,37 @@ enum class Role {
   transplant  // bone from elsewhere, or an implant
 };
 
-/// What a surface is part of: the fixed cranium C, the mandible M, the deforming soft tissue, or a
-/// free body F of its own.
-enum class Body { cranium, mandible, tissue, free };
-
-constexpr Body body_of(Role role) {
+/// The default body of a surface at import: the mandible for lower ones, else the cranium. A piece
+/// (see below) gets its own body instead.
+constexpr BodyId default_body(Role role) {
   switch (role) {
     case Role::mandible:
     case Role::lower_teeth:
     case Role::lower_gums:
     case Role::tongue:
-      return Body::mandible;
-    case Role::face:
-      return Body::tissue;
-    case Role::segment:
-    case Role::transplant:
-      return Body::free;
+      return mandible_body;
     default:
-      return Body::cranium;
+      return cranium_body;
   }
 }
+
+/// Bone that becomes its own body at import.
+constexpr bool is_piece(Role role) { return role == Role::segment || role == Role::transplant; }
 
 constexpr bool is_teeth(Role role) {
   return role == Role::upper_teeth || role == Role::lower_teeth;
 }
 
+/// The face deforms with the soft tissue; every other surface is rigid.
+constexpr bool is_rigid(Role role) { return role != Role::face; }
+
 /// Bone and teeth take part in collision.
 constexpr bool collides(Role role) {
   return role == Role::skull || role == Role::maxilla || role == Role::mandible || is_teeth(role) ||
-         body_of(role) == Body::free;
+         is_piece(role);
 }
 
-/// One separate tooth of an arch: its FDI number and its run of triangles in the part's mesh.
+/// One separate tooth of an arch: its FDI number and its range of triangles in the part's mesh.
 struct Tooth {
   int fdi = 0;
   int first_triangle = 0;
@@ -67,9 +66,8 @@ struct Part {
   std::string name;  // unique in the case, e.g. "mandible"
   Role role = Role::skull;
   TriMesh mesh;
-  std::vector<Tooth> teeth;      // only of teeth whose crowns are separate
-  Body carrier = Body::cranium;  // of a free part: the cranium or the mandible, whichever it goes
-                                 // along with where it is not moved itself
+  std::vector<Tooth> teeth;          // of dental arches with separate crowns
+  BodyId body = default_body(role);  // the rigid body that carries it
 };
 
 }  // namespace condyle

@@ -6,21 +6,22 @@
 #include "sim/phantom/cache.h"
 #include "sim/phantom/mix_hash.h"
 #include "sim/phantom/phantom.h"
-#include "sim/phantom/solid.h"
+#include "sim/phantom/phantom_solid.h"
 
 namespace condyle {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int surface_version = 10;  // raise when surfaces or landmarks change but no solid does
+constexpr int surface_version =
+    10;  // increment when surfaces or landmarks change without a change of the solids
 
-/// What the recipes say at scattered points: another recipe, another key.
+/// Hash of the recipes' values at scattered points, so that a changed recipe changes the key.
 std::uint64_t recipe_key() {
   const PhantomSolid solid = make_phantom_solid();
   std::uint64_t hash = hash_start, seed = 1;
   mix(hash, surface_version);
-  const auto next = [&] {  // a plain linear congruence; any fixed scatter would do
+  const auto next = [&] {  // linear congruential generator; any fixed scatter will do
     seed = seed * 6364136223846793005ull + 1442695040888963407ull;
     return static_cast<double>(seed >> 11) * 0x1p-53;
   };
@@ -38,7 +39,7 @@ std::uint64_t recipe_key() {
   return hash;
 }
 
-/// The user's cache folder of this program, when the environment names one.
+/// The user's cache folder of this program, if the environment defines one.
 std::optional<fs::path> cache_folder() {
   const auto absolute = [](const char* name) -> std::optional<fs::path> {
     const char* value = std::getenv(name);
@@ -55,8 +56,8 @@ std::optional<fs::path> cache_folder() {
 Case builtin_patient(const Progress& progress) {
   const auto cache = cache_folder();
   if (!cache) return build_phantom(progress);
-  return kept_case(*cache, fmt::format("built-in-patient-{:016x}", recipe_key()),
-                   [&] { return build_phantom(progress); });
+  return cached_case(*cache, fmt::format("built-in-patient-{:016x}", recipe_key()),
+                     [&] { return build_phantom(progress); });
 }
 
 }  // namespace condyle

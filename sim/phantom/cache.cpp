@@ -30,12 +30,12 @@ std::uint64_t content_hash(const Case& patient) {
   }
   if (patient.condylar_path) {
     hash = hash_values(std::span<const double>(patient.condylar_path->forward_mm), hash);
-    hash = hash_values(std::span<const double>(patient.condylar_path->drop_mm), hash);
+    hash = hash_values(std::span<const double>(patient.condylar_path->inferior_mm), hash);
   }
   return hash;
 }
 
-/// The stored case when it is whole: its content must have the hash written beside it.
+/// The stored case, if its content has the stored hash.
 std::optional<Case> stored_case(const fs::path& folder, const fs::path& seal) {
   try {
     std::error_code absent;
@@ -48,7 +48,7 @@ std::optional<Case> stored_case(const fs::path& folder, const fs::path& seal) {
   return std::nullopt;
 }
 
-/// The seal goes first and comes last, so that it never vouches for half a case.
+/// The seal is removed first and written last, so that it never confirms an incomplete case.
 void store(const Case& patient, const fs::path& folder, const fs::path& seal) {
   try {
     fs::remove(seal);
@@ -62,7 +62,8 @@ void store(const Case& patient, const fs::path& folder, const fs::path& seal) {
 
 }  // namespace
 
-Case kept_case(const fs::path& cache, const std::string& name, const std::function<Case()>& make) {
+Case cached_case(const fs::path& cache, const std::string& name,
+                 const std::function<Case()>& make) {
   const fs::path folder = cache / name, seal = cache / (name + ".hash");
   if (auto patient = stored_case(folder, seal)) return *std::move(patient);
   Case patient = make();

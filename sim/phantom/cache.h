@@ -8,10 +8,10 @@
 
 namespace condyle {
 
-/// The case kept under a name in a cache folder; made and put there when it is absent or damaged
-/// (its content is sealed by a hash beside it). A cache that cannot be written is no error; what
-/// `make` throws goes through.
-Case kept_case(const std::filesystem::path& cache, const std::string& name,
-               const std::function<Case()>& make);
+/// The case stored under a name in a cache folder; made and stored when it is absent or damaged
+/// (its content is verified by a stored hash). A cache that cannot be written is not an error;
+/// exceptions of `make` are passed on.
+Case cached_case(const std::filesystem::path& cache, const std::string& name,
+                 const std::function<Case()>& make);
 
 }  // namespace condyle

@@ -190,7 +190,7 @@ void hollow_out(FieldRecipe& bone) {
   bone.add(tube({{10.5, -77, -13}, {8.5, -72, -15}, {8.5, -55, -15}}, {2.2, 3, 3}), 1.5);
   bone.add(tube({{5.2, -80, 1}, {5, -70, -1}, {5, -56, -1}}, {2, 2.6, 2.6}), 1.5);  // conchae
   bone.cut(tube({{70, 0, -4}, {50, 0, -4}}, {4., 3.2}), 1.5);                       // ear canal
-  bone.cut(ellipsoid({45, -46, -20}, {10.5, 12.5, 19}), 3);  // room for the coronoid process
+  bone.cut(ellipsoid({45, -46, -20}, {10.5, 12.5, 19}), 3);  // space for the coronoid process
   bone.cut(fossa_cut(), .8);
 }
 

@@ -70,7 +70,7 @@ std::vector<double> flat_ended_spline(const std::vector<double>& x, const std::v
   return out;
 }
 
-/// Gauss blur of a row; beyond its ends the row goes on as its mirror image or as its end value.
+/// Gaussian blur of a row, continued beyond its ends by its mirror image or by its end value.
 std::vector<double> blurred(const std::vector<double>& row, double sigma, bool mirror_ends) {
   const int n = static_cast<int>(row.size()), reach = static_cast<int>(4 * sigma + 0.5);
   std::vector<double> out(row.size());
@@ -140,7 +140,7 @@ struct RadiusMap {
         const double w = smooth_step((c - 55) / 30.0), z = low + r;
         double& v = at(radius, r, c);
         v = v * (1 - w) + at(smoother, r, c) * w;
-        // Drawn in above and behind, where the vault rules.
+        // Shrunk above and behind, where the vault determines the shape.
         v -= 9 * smooth_step((z - 34) / 34) +
              7 * smooth_step((c - 95) / 30.0) * smooth_step((z + 30) / 20);
       }

@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The closed lips touch along a slit too fine for any grid. So the face is sampled with the lips
-// apart by a known map, and its vertices are mapped back.
-constexpr double rest_half_gap = 0.05;  // mm, half of what stays between the lips
+// The closed lips touch along a slit too fine for any grid. Therefore the face is sampled with the
+// lips separated by a known map, and its vertices are mapped back.
+constexpr double rest_half_gap = 0.05;  // mm, half the gap between the closed lips
 
-/// Half the height of the slit while it is sampled; negative beyond the mouth corner.
+/// Half the height of the slit for sampling; negative beyond the corner of the mouth.
 double half_gap(double x) {
   const double s = std::abs(x) / mouth_corner_x;
   if (s >= 1) return mouth_corner_x - std::abs(x);
@@ -60,7 +60,7 @@ FieldRecipe parted_face() {
 
 /// Positive where the surface is not skin: deep behind the lips, and the eye sockets.
 double hidden(const Vector3d& p, const Primitive& space, const Primitive& lids) {
-  // Ever less lining toward the corners: it would hang there like a curtain when the lips part.
+  // The lining tapers towards the corners, where it would hang like a curtain in the open mouth.
   const double lining = 6.5 * smooth_step((mouth_corner_x - std::abs(p.x())) / 16);
   const double mouth =
       std::min(0.6 - space.distance(p),
@@ -69,7 +69,8 @@ double hidden(const Vector3d& p, const Primitive& space, const Primitive& lids) 
   return std::max(mouth, socket);
 }
 
-/// Fine where looks and tissue need it: lips, eyes and nose, then the rest of the face.
+/// Finest at lips, eyes and nose, where appearance and tissue need it, then in the rest of the
+/// face.
 double importance(const Vector3d& p) {
   const auto bump = [&](double x, double y, double z, double r) {
     return std::exp(-(p - Vector3d(x, y, z)).squaredNorm() / (r * r));
@@ -80,8 +81,8 @@ double importance(const Vector3d& p) {
          120 * (bump(0, -112, -18, 17) + bump(28, -86, 35, 16)) + 60 * bump(78, 10, 0, 30);
 }
 
-/// Nobody's face is the same on both sides: the nose leans to the left and the chin to the right,
-/// the left brow stands higher and the left ear lower. Lips and lids, which have to fit, stay.
+/// Natural asymmetry: the nose leans to the left and the chin to the right, the left brow is higher
+/// and the left ear lower. Lips and lids, which must fit, are unchanged.
 Vector3d uneven(const Vector3d& p) {
   const auto near = [&](const Vector3d& c, const Vector3d& r) {
     return std::exp(-((p - c).cwiseQuotient(r)).squaredNorm());
@@ -107,7 +108,8 @@ TriMesh face_surface() {
   TriMesh face = with_mirror_image(half);
   for (const auto& p : face.vertices) {
     const Vector3d left(std::abs(p.x()), p.y(), p.z());
-    // What lines the mouth is moist and red, in the corners too, where it shows when the lips part.
+    // The lining of the mouth is moist and red, including the corners, which show when the lips
+    // part.
     const bool lining = std::abs(space.distance(left)) < 0.8 && p.y() < -76 &&
                         std::abs(p.z() - lip_line(left.x(), p.y())) < 12;
     face.colors.push_back(lining ? Eigen::Vector3f(.48f, .20f, .20f) : skin_color(p));

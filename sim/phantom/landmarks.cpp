@@ -14,7 +14,7 @@ enum class On { skull, mandible, skin, space };
 struct Named {
   const char* name;
   On on;
-  double x, y, z;  // mm; x > 0: the left one of a pair
+  double x, y, z;  // mm; x > 0: left one of a pair
 };
 
 const std::vector<Named> named_points = {
@@ -90,7 +90,8 @@ const std::vector<Named> named_points = {
     {"soft_euryon", On::skin, 77, 12, 45},
 };
 
-/// Foot of the point on the surface, by steps along the gradient; midline points stay in it.
+/// Projection of the point onto the surface along the gradient; midline points remain in the
+/// midline.
 Vector3d onto_surface(const FieldRecipe& field, Vector3d p) {
   const bool midline = p.x() == 0;
   const double h = 0.05;

@@ -14,22 +14,22 @@ using Eigen::Vector3d;
 constexpr double root_radius = 0.085, tip_radius = 0.015;  // mm
 constexpr int sides = 4, pieces = 5;
 
-/// What tells the lashes of one lid from those of the other.
+/// Differences between the lashes of the two lids.
 struct LashRow {
   int count;
-  double first, last;  // place along the lid, 0 at the inner corner to 1 at the outer
+  double first, last;  // position along the lid, 0 at the inner corner to 1 at the outer
   double length_mm;    // of the longest
-  double sink, curl;   // at the tip, shares of the length: first with the lid, then away
+  double sink, curl;   // at the tip, fractions of the length: first with the lid, then away
   double side;         // 1 above, -1 below
 };
 
-/// 0 to 1, another for every lash and question; neighbours have nothing in common.
+/// Pseudo-random number from 0 to 1 for each lash and property.
 double chance(int lash, int question) {
   const double x = std::sin(12.9898 * (lash + 1) + 78.233 * question) * 43758.5453;
   return x - std::floor(x);
 }
 
-/// The lid's front edge: from the line of the opening, outward until the skin is met.
+/// The lid's front edge: from the line of the opening outward to the skin.
 class LidEdge {
  public:
   LidEdge() : skin_(skin_recipe(Lips::none)), opening_(lid_opening()) {}

@@ -5,14 +5,14 @@
 
 namespace condyle {
 
-/// A monotone cubic curve read from an even table: fast enough to be asked at every sample.
+/// A monotone cubic curve as an evenly spaced table: fast enough to evaluate at every sample.
 class Lookup {
  public:
   Lookup(std::span<const double> x, std::span<const double> y);
   Lookup(const std::vector<double>& x, const std::vector<double>& y)
       : Lookup(std::span<const double>(x), std::span<const double>(y)) {}
 
-  /// Constant beyond the ends.
+  /// Linear between entries, constant beyond the ends.
   double operator()(double x) const {
     const double g = (x - low_) * scale_;
     if (!(g > 0)) return values_.front();

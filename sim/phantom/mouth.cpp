@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Outline of the upper arch seen from below, outside the crowns by the room behind the lips.
+/// Outline of the upper arch seen from below, offset from the crowns by the space behind the lips.
 std::vector<Vector2d> arch_outline() {
   const double room = 1.6;
   std::vector<Vector2d> left;
@@ -28,7 +28,7 @@ std::vector<Vector2d> arch_outline() {
   return closed_outline(points, 4);
 }
 
-/// Distance in plan to the outline; the lower arch stands inside the upper one.
+/// Distance in plan to the outline; the lower arch lies inside the upper one.
 Distance arch_plan() {
   const auto outline = arch_outline();
   return [outline](const Vector3d& p) {

@@ -16,7 +16,7 @@ Part plain_part(const char* name, Role role, TriMesh mesh) {
   return {name, role, std::move(mesh), {}};
 }
 
-/// The smooth brain case needs few triangles, the joints need many.
+/// Few triangles on the smooth brain case, many at the joints.
 double skull_importance(const Vector3d& p) {
   const bool face = p.y() < -45 && p.z() < 45,
              joint = p.z() < 8 && std::abs(p.x()) > 35 && p.y() < 5;

@@ -7,13 +7,13 @@
 
 namespace condyle {
 
-/// The built-in patient, made by code: an adult head of distance fields. Deterministic; about 6 s
-/// on two cores.
+/// The built-in patient, generated from distance fields: an adult head. Deterministic; about 6 s on
+/// two cores.
 Case build_phantom(const Progress& progress = {});
 
-/// The same, kept in the user's cache folder ($XDG_CACHE_HOME/condyle, else ~/.cache/condyle) and
-/// made again when the cache is absent, damaged or of another version. A cache that cannot be
-/// written is no error.
+/// The same from the user's cache folder ($XDG_CACHE_HOME/condyle, else ~/.cache/condyle);
+/// generated again when the cache is absent, damaged or of another version. A cache that cannot be
+/// written is not an error.
 Case builtin_patient(const Progress& progress = {});
 
 }  // namespace condyle

@@ -9,7 +9,7 @@ TriMesh symmetric_surface(const FieldRecipe& solid, const std::array<GridAxis, 3
                           int triangles,
                           const std::function<double(const Eigen::Vector3d&)>& importance) {
   const TriMesh half = isosurface(sample_field(solid, half_grid));
-  // Thinned before it is mirrored: half the work, and the halves stay exact mirror images.
+  // Decimated before mirroring: half the work, and the halves are exact mirror images.
   return largest_piece(with_mirror_image(
       decimated(half, {.target_triangles = triangles / 2, .importance = importance})));
 }

@@ -5,14 +5,14 @@
 
 #include "engine/core/progress.h"
 #include "engine/field/sampled_field.h"
-#include "sim/phantom/solid.h"
+#include "sim/phantom/phantom_solid.h"
 
 namespace condyle {
 
 // The parts of the built-in patient as triangles. mm, at rest.
 
 /// A solid that is symmetric in x, sampled on a grid of the half x >= 0, as a closed, exactly
-/// symmetric surface of about so many triangles; `importance` as in DecimationOptions.
+/// symmetric surface of about the given number of triangles; `importance` as in DecimationOptions.
 TriMesh symmetric_surface(const FieldRecipe& solid, const std::array<GridAxis, 3>& half_grid,
                           int triangles,
                           const std::function<double(const Eigen::Vector3d&)>& importance = {});
@@ -26,13 +26,13 @@ TriMesh face_surface();
 
 /// Both eyeballs and the lashes before them, closed, with colours.
 TriMesh eyes_surface();
-/// To the left eye: lashes along both lids, each a closed strand.
+/// Adds lashes along both lids to the left eye, each a closed strand.
 void add_lashes(TriMesh& eye);
 
 /// Named points of the head; those on a surface are moved onto it.
 Landmarks phantom_landmarks(const PhantomSolid& solid);
 
-/// build_phantom on so many threads; the same bits for any number.
+/// build_phantom on a number of threads; bit-identical for any number.
 Case build_phantom_on(int threads, const Progress& progress = {});
 
 /// sRGB, 0 to 1, of the skin at a point of the face.

@@ -80,7 +80,7 @@ const std::map<char, CrownSection> crown_sections = {{'I',
                                                        {0, .03, 0, 0, 0},
                                                        3.0}}};
 
-/// Cusps: distal and buccal place as fractions of half the width and depth, mm below the tip.
+/// Cusps: distal and buccal position as fractions of half the width and depth, mm below the tip.
 struct Cusp {
   double distal, buccal, below;
 };

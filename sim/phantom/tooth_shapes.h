@@ -7,7 +7,7 @@
 
 namespace condyle {
 
-/// Where one tooth of the left side stands, and how large it is. mm.
+/// Position and size of one tooth of the left side. mm.
 struct ToothFrame {
   bool upper = true;
   std::string name;                // I1 I2 C P1 P2 M1 M2

@@ -48,21 +48,22 @@ Json worst_of(const PairVerdict& pair) {
 Json methods() {
   return {
       {"depth",
-       "at the deepest place, how far it lies inside the other bone; beyond_rest: how much deeper "
-       "than at rest, where the bones overlap there at rest"},
+       "penetration at the deepest point; beyond_rest: in excess of the depth at rest, where the "
+       "bones overlap at rest at that point"},
       {"between_frames",
-       "where clearance and motion leave it open whether bones touch, or come 0.1 mm nearer or "
-       "deeper than at any frame, moments between frames are looked at, down to 0.1 mm of motion"},
+       "where clearance and motion cannot exclude that bones touch, or come 0.1 mm closer or "
+       "deeper than in any frame, additional samples are taken between frames, down to 0.1 mm of "
+       "motion"},
       {"contact_area",
-       "surface of b inside a or within 0.1 mm of it; triangles at the rim divided "
-       "to 0.25 mm (coarser where more than 1250 mm2 lie near each other) and cut"},
-      {"patches", "connected pieces of that surface; nearer than 0.5 mm counts as one"},
+       "surface of b inside a or within 0.1 mm of it; triangles at the rim are subdivided "
+       "to 0.25 mm (coarser where more than 1250 mm2 are close) and clipped"},
+      {"patches", "connected components of that surface; those closer than 0.5 mm count as one"},
       {"penetration_volume",
-       "columns along the shortest side of the common box, 128 across; the "
-       "error is the largest difference to a grid twice as coarse; null where one has no inside"},
+       "columns along the shortest side of the common bounding box, 128 across; the error is "
+       "the largest difference from a grid of twice the spacing; null for open surfaces"},
       {"coronoid_zygoma",
-       "mandible within 8 mm of the coronoid tip, to cranial bone lateral of the "
-       "tip and in front of half way to the condyle"}};
+       "from the mandible within 8 mm of the coronoid tip to cranial bone lateral of the tip and "
+       "in front of the midpoint between tip and condyle"}};
 }
 
 }  // namespace
@@ -75,7 +76,7 @@ std::string ClearanceCheck::json(const Scene& scene, const Motion& motion,
                {"motion", {{"name", motion.name}, {"duration_s", motion.duration_s}}},
                {"margin_mm", margin_mm},
                {"frames", frames()},
-               {"looks_between_frames", looks_between},
+               {"samples_between_frames", samples_between},
                {"violation", violated()},
                {"max_opening_mm", opening_mm[widest_frame()]},
                {"pairs", Json::array()}};
@@ -84,26 +85,26 @@ std::string ClearanceCheck::json(const Scene& scene, const Motion& motion,
     Json entry = {{"a", pair.a},
                   {"b", pair.b},
                   {"policy", policy_name(pair.rule.policy)},
-                  {"margin_mm", pair.rule.policy == PairPolicy::forbidden ? pair.keep_mm : 0.0},
+                  {"margin_mm", pair.rule.policy == PairPolicy::forbidden ? pair.required_mm : 0.0},
                   {"violation", pair.violated()},
-                  {"verdict", verdict_words(pair)},
+                  {"verdict", verdict_text(pair)},
                   {"penetrates", pair.collides},
-                  {"violates_margin", pair.too_near},
+                  {"violates_margin", pair.too_close},
                   {"violation_at_rest", pair.at_rest},
                   {"distance_at_rest_mm", pair.rest_distance_mm},
                   {"overlap_at_rest_mm", pair.rest_depth_mm},
-                  {"min_distance_mm", pair.least_distance_mm},
-                  {"min_distance_at", json_of(pair.least_at)},
+                  {"min_distance_mm", pair.min_distance_mm},
+                  {"min_distance_at", json_of(pair.min_distance_at)},
                   {"beyond_rest_mm", pair.beyond_rest_mm},
                   {"touching_frames", pair.touching_frames},
                   {"contact_frequency", static_cast<double>(pair.touching_frames) / frames()},
                   {"times_brought_together", pair.touches}};
     if (pair.rule.policy == PairPolicy::guided || pair.rule.policy == PairPolicy::cut_face)
-      entry["gap"] = {{"asked_mm", pair.keep_mm},
-                      {"min_mm", pair.least_distance_mm},
-                      {"min_at", json_of(pair.least_at)},
-                      {"max_mm", pair.most_distance_mm},
-                      {"max_at", json_of(pair.most_at)}};
+      entry["gap"] = {{"required_mm", pair.required_mm},
+                      {"min_mm", pair.min_distance_mm},
+                      {"min_at", json_of(pair.min_distance_at)},
+                      {"max_mm", pair.max_distance_mm},
+                      {"max_at", json_of(pair.max_distance_at)}};
     if (pair.first_touch) entry["first_contact"] = json_of(*pair.first_touch);
     if (pair.beyond_rest_mm > 0) entry["deepest_at"] = json_of(pair.deepest_at);
     if (pair.push_out_mm) entry["push_out"] = list(*pair.push_out_mm);
@@ -121,11 +122,11 @@ std::string ClearanceCheck::json(const Scene& scene, const Motion& motion,
   json["coronoid_zygoma"] = {{"available", !coronoids.empty()}};
   auto& coronoid = json["coronoid_zygoma"];
   for (const auto& side : coronoids) {
-    const auto f = static_cast<std::size_t>(side.least_frame());
+    const auto f = static_cast<std::size_t>(side.min_frame());
     coronoid[side.side] = {
         {"at_rest_mm", side.mm.front()},
-        {"min_mm", side.least_mm()},
-        {"min_at", json_of({side.least_frame(), false, time_s[f], opening_mm[f], rotation_deg[f]})},
+        {"min_mm", side.min_mm()},
+        {"min_at", json_of({side.min_frame(), false, time_s[f], opening_mm[f], rotation_deg[f]})},
         {"at_widest_opening_mm", side.mm[widest_frame()]},
         {"tip_mm", list(side.tip)},
         {"tip_estimated", side.estimated}};
@@ -138,11 +139,11 @@ std::string ClearanceCheck::json(const Scene& scene, const Motion& motion,
 }
 
 std::string ClearanceCheck::text() const {
-  std::string text = summary_words(*this) + "\n";
+  std::string text = summary_text(*this) + "\n";
   for (const std::size_t i : worst_first(*this)) {
     const auto& pair = pairs[i];
     text += fmt::format("{} {} and {}: {}\n", pair.violated() ? "VIOLATION" : "ok", pair.a, pair.b,
-                        verdict_words(pair));
+                        verdict_text(pair));
   }
   return text;
 }

@@ -5,18 +5,18 @@
 #include <cmath>
 #include <functional>
 
-#include "sim/report/bite_place.h"
+#include "sim/report/bite_position.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-/// Directions as people look at a patient. Sagittal: anterior to the right; frontal and from above:
-/// the patient's left to the right, as the axis says.
-double anterior(const Vector3d& way) { return -way.y(); }
-double superior(const Vector3d& way) { return way.z(); }
-double to_left(const Vector3d& way) { return way.x(); }
+/// Axes of the clinical views. Sagittal: anterior to the right; frontal and horizontal: the
+/// patient's left to the right, as the axis label says.
+double anterior(const Vector3d& d) { return -d.y(); }
+double superior(const Vector3d& d) { return d.z(); }
+double to_left(const Vector3d& d) { return d.x(); }
 
 using Coordinate = double (*)(const Vector3d&);
 
@@ -40,7 +40,7 @@ PlotBand box(const char* name, double x0, double x1, double y0, double y1) {
   return {name, {x0, x1, x1, x0}, {y0, y0, y1, y1}};
 }
 
-/// The border movements, where the motion has them, closed and dashed.
+/// The border movements, where the motion has them, as a closed dashed line.
 void add_border(std::vector<Curve>& curves, std::vector<Vector3d> round, const Vector3d& rest,
                 Coordinate across, Coordinate up) {
   if (round.empty()) return;
@@ -53,7 +53,7 @@ void add_border(std::vector<Curve>& curves, std::vector<Vector3d> round, const V
 
 MotionPlot posselt(const MotionSeries& series) {
   const auto incisor = points_of(series, &Measures::incisor);
-  const Vector3d rest = bite_place(series);
+  const Vector3d rest = bite_position(series);
   const auto panel = [&](const char* title, const char* x, const char* y, Coordinate across,
                          Coordinate up, const std::vector<Vector3d>& border,
                          std::vector<PlotBand> bands) {
@@ -83,7 +83,7 @@ MotionPlot posselt(const MotionSeries& series) {
                   box("protrusion", -1, 1, 6, 11)})}};
 }
 
-/// Accepted inclination over the first 5 mm, 26 to 62 degrees, as a wedge.
+/// Normal inclination over the first 5 mm, 26 to 62 degrees, as a wedge.
 PlotBand inclination_wedge() {
   constexpr double secant_mm = 5, slope_low = 0.48773, slope_high = 1.88073;  // tan 26, 62 deg
   return {"26 to 62\u00b0 over 5 mm",
@@ -91,12 +91,12 @@ PlotBand inclination_wedge() {
           {0, -secant_mm * slope_low, -secant_mm * slope_high}};
 }
 
-/// Medial way of an orbiting condyle by a Bennett angle of 5 to 15 degrees.
+/// Medial displacement of an orbiting condyle for Bennett angles of 5 to 15 degrees.
 PlotBand bennett_wedge(double side) {
-  constexpr double way_mm = 10, low = 0.08749, high = 0.26795;
+  constexpr double forward_mm = 10, low = 0.08749, high = 0.26795;
   return {side > 0 ? "Bennett 5 to 15\u00b0" : "",
-          {0, -side * way_mm * low, -side * way_mm * high},
-          {0, way_mm, way_mm}};
+          {0, -side * forward_mm * low, -side * forward_mm * high},
+          {0, forward_mm, forward_mm}};
 }
 
 MotionPlot axiography(const MotionSeries& series) {
@@ -113,12 +113,12 @@ MotionPlot axiography(const MotionSeries& series) {
                       .bands = std::move(bands)}};
   };
   return {"axiography",
-          {panel("Axiography, sagittal", "posterior  -  mm from the seat  -  anterior",
+          {panel("Axiography, sagittal", "posterior  -  mm from rest  -  anterior",
                  "inferior  -  mm  -  superior", anterior, superior, {inclination_wedge()}),
-           panel("Axiography, horizontal", "patient's right  -  mm from the seat  -  left",
+           panel("Axiography, horizontal", "patient's right  -  mm from rest  -  left",
                  "posterior  -  mm  -  anterior", to_left, anterior,
                  {bennett_wedge(1), bennett_wedge(-1)}),
-           panel("Axiography, frontal", "patient's right  -  mm from the seat  -  left",
+           panel("Axiography, frontal", "patient's right  -  mm from rest  -  left",
                  "inferior  -  mm  -  superior", to_left, superior, {})}};
 }
 
@@ -135,7 +135,8 @@ double largest(const Curve& curve) {
   return most;
 }
 
-/// A band is drawn where the motion comes near it: a chewing jaw is not held against full opening.
+/// Adds a reference band only if the motion comes near it: chewing is not compared with full
+/// opening.
 void add_if_reached(PlotPanel& panel, double reached, double from, PlotBand band) {
   if (reached >= from) panel.settings.bands.push_back(std::move(band));
 }
@@ -144,11 +145,12 @@ MotionPlot opening(const MotionSeries& series) {
   const auto of = [&](double Measures::*value) {
     return [&series, value](std::size_t i) { return series.measures[i].*value; };
   };
-  PlotPanel down{{over_time("drop of the lower incisal point", series, of(&Measures::opening_mm)),
-                  over_time("between incisal edges", series, of(&Measures::interincisal_mm))},
+  PlotPanel down{{over_time("vertical displacement of the lower incisal point", series,
+                            of(&Measures::opening_mm)),
+                  over_time("interincisal distance", series, of(&Measures::interincisal_mm))},
                  {.title = "Opening over time", .x_label = "time, s", .y_label = "mm"}};
   add_if_reached(down, largest(down.curves[1]), 30,
-                 {"widest between edges: 42 to 58 mm", {}, {42, 58}});
+                 {"maximum interincisal distance: 42 to 58 mm", {}, {42, 58}});
   PlotPanel aside{
       {over_time("protrusion (anterior)", series, of(&Measures::protrusion_mm)),
        over_time("laterotrusion (to the left)", series, of(&Measures::laterotrusion_mm)),
@@ -187,7 +189,7 @@ MotionPlot rotation(const MotionSeries& series) {
   return {"rotation", {std::move(turn), std::move(travel), std::move(speed)}};
 }
 
-/// Muscles by side: "lat" is the left one of "lat" and "rat"; what has no twin comes last.
+/// Muscles by side: "lat" is the left one of "lat" and "rat"; unpaired muscles come last.
 std::array<std::vector<std::size_t>, 3> muscles_by_side(const std::vector<std::string>& names) {
   std::array<std::vector<std::size_t>, 3> sides;
   const auto has_twin = [&](const std::string& name, char other) {
@@ -205,11 +207,11 @@ std::array<std::vector<std::size_t>, 3> muscles_by_side(const std::vector<std::s
   return sides;
 }
 
-/// A value of the muscles over time, a panel for each side with those that do the most.
+/// A value of the muscles over time: one panel per side with the muscles of largest values.
 MotionPlot muscles(const MotionSeries& series, const char* file, const std::string& what,
                    const char* y_label, double MuscleState::*value) {
-  constexpr std::size_t most_curves = 8;
-  constexpr double least_share = 0.02;  // of the largest of all
+  constexpr std::size_t max_curves = 8;
+  constexpr double min_fraction = 0.02;  // of the largest value
   const auto peak = [&](std::size_t m) {
     double most = 0;
     for (const auto& states : series.muscles) most = std::max(most, states[m].*value);
@@ -217,22 +219,22 @@ MotionPlot muscles(const MotionSeries& series, const char* file, const std::stri
   };
   std::vector<double> peaks;
   for (std::size_t m = 0; m < series.muscle_names.size(); ++m) peaks.push_back(peak(m));
-  const double least = least_share * *std::max_element(peaks.begin(), peaks.end());
+  const double least = min_fraction * *std::max_element(peaks.begin(), peaks.end());
   MotionPlot plot{file, {}};
-  const std::array<const char*, 3> titles = {", left", ", right", ", of no side"};
+  const std::array<const char*, 3> titles = {", left", ", right", ", unpaired"};
   auto sides = muscles_by_side(series.muscle_names);
   for (std::size_t side = 0; side < sides.size(); ++side) {
     auto& shown = sides[side];
     if (side == 2 && shown.empty()) continue;
     std::stable_sort(shown.begin(), shown.end(),
                      [&](std::size_t a, std::size_t b) { return peaks[a] > peaks[b]; });
-    if (shown.size() > most_curves) shown.resize(most_curves);
+    if (shown.size() > max_curves) shown.resize(max_curves);
     PlotPanel panel{{},
                     {.title = what + titles[side],
                      .x_label = "time, s",
                      .y_label = y_label,
                      .legend_beside = true}};
-    constexpr std::size_t colours = 6;  // the seventh has the first one's again
+    constexpr std::size_t colours = 6;  // the colours repeat after six
     for (const std::size_t m : shown) {
       if (!(peaks[m] >= least && peaks[m] > 0)) continue;
       panel.curves.push_back(over_time(series.muscle_names[m].c_str(), series,

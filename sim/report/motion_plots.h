@@ -8,16 +8,16 @@
 
 namespace condyle {
 
-/// One picture of a motion: panels beside each other. Values, to be drawn as SVG or in a window.
+/// One figure of a motion: panels side by side. Plain values, drawn as SVG or in the window.
 struct MotionPlot {
-  std::string name;  // of the file: "posselt"
+  std::string name;  // stem of the file name: "posselt"
   std::vector<PlotPanel> panels;
 };
 
-/// What clinicians look at, with the published bands behind: Posselt's diagram of the incisal
-/// point, axiography of both condyles (sagittal, horizontal, frontal each), opening and excursions
-/// over time, rotation and speed over time; of a motion that muscles drive, the activations and
-/// forces of the strongest of each side over time.
+/// The clinical plots of a motion with published reference bands: Posselt's diagram of the incisal
+/// point, axiography of both condyles (sagittal, horizontal and frontal), opening and excursions
+/// over time, rotation and speed over time; for a muscle-driven motion also activation and force of
+/// the strongest muscles of each side over time.
 std::vector<MotionPlot> motion_plots(const MotionSeries& series);
 
 }  // namespace condyle

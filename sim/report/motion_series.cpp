@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/motion/measures.h"
+#include "sim/motion/measure_pose.h"
 
 namespace condyle {
 
@@ -11,25 +11,26 @@ MotionSeries::MotionSeries(const Scene& scene, const Motion& motion)
       rest(measure(scene.patient, {})),
       phases(motion.phases),
       borders(motion.borders) {
+  jaw_ = scene.patient.jaw;
   known_landmarks = true;
   for (const char* name : {"lower_incisal_point", "left_condyle", "right_condyle"})
     known_landmarks &= scene.patient.landmarks.find(name).has_value();
-  for (const auto& part : scene.patient.parts) bodies_.push_back(body_of(part.role));
+  for (const auto& part : scene.patient.parts) bodies_.push_back(part.body);
   const bool has_teeth =
       scene.patient.find(Role::upper_teeth) && scene.patient.find(Role::lower_teeth);
   if (known_landmarks && !has_teeth) {
-    constexpr double front_share = 0.4;  // of the way from the condyles to the incisors
+    constexpr double front_fraction = 0.4;  // of the distance from the condyles to the incisors
     const double hinge_y = 0.5 * (rest.left_condyle.y() + rest.right_condyle.y());
-    bite_y_ = hinge_y + front_share * (rest.incisor.y() - hinge_y);
+    bite_y_ = hinge_y + front_fraction * (rest.incisor.y() - hinge_y);
   }
 }
 
-/// Whether what a pair tells of its distance is told of the bite.
+/// Whether the distance of a pair is that of the occlusal surfaces.
 bool MotionSeries::bites(const PairContact& pair) const {
   if (pair.policy == PairPolicy::allowed) return true;
   const auto body = [&](int part) { return bodies_.at(static_cast<std::size_t>(part)); };
-  if (!bite_y_ || pair.distance_is_bound || body(pair.part_a) != Body::cranium ||
-      body(pair.part_b) != Body::mandible)
+  if (!bite_y_ || pair.distance_is_bound || body(pair.part_a) != jaw_.upper_arch ||
+      body(pair.part_b) != jaw_.lower_arch)
     return false;
   if (!pair.touching) return pair.witness_a.y() < *bite_y_;
   return std::any_of(pair.contacts.begin(), pair.contacts.end(),
@@ -45,7 +46,7 @@ void MotionSeries::add(const FrameState& frame) {
   }
   time_s.push_back(frame.time_s);
   measures.push_back(frame.measures);
-  X_CM.push_back(frame.X_CM);
+  X_CM.push_back(frame.poses[jaw_.lower_arch]);
   if (frame.muscles.size() == muscle_names.size() && !muscle_names.empty())
     muscles.push_back(frame.muscles);
   tooth_gap_mm.push_back(gap);

@@ -34,15 +34,15 @@ constexpr const char* csv_header = "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n";
 
 }  // namespace
 
-std::string way_in_words(const Eigen::Vector3d& way) {
+std::string displacement_text(const Eigen::Vector3d& displacement_mm) {
   const char* const names[3][2] = {{"left", "right"}, {"back", "forward"}, {"up", "down"}};
-  constexpr double least_mm = 0.05;
-  std::string words;
+  constexpr double min_mm = 0.05;
+  std::string text;
   for (const int axis : {2, 1, 0})
-    if (std::abs(way[axis]) >= least_mm)
-      words += fmt::format("{}{:.1f} mm {}", words.empty() ? "" : ", ", std::abs(way[axis]),
-                           names[axis][way[axis] < 0]);
-  return words.empty() ? "not at all" : words;
+    if (std::abs(displacement_mm[axis]) >= min_mm)
+      text += fmt::format("{}{:.1f} mm {}", text.empty() ? "" : ", ",
+                          std::abs(displacement_mm[axis]), names[axis][displacement_mm[axis] < 0]);
+  return text.empty() ? "no displacement" : text;
 }
 
 std::string bite_pose_csv(const Bite& bite) { return csv_header + csv_row(0, bite.rest.X_CM); }
@@ -78,11 +78,12 @@ std::string OcclusionReport::json() const {
   if (bite.condyle_moved)
     json["condyles_moved_mm"] = {{"left", list((*bite.condyle_moved)[0])},
                                  {"right", list((*bite.condyle_moved)[1])}};
-  json["load"] = {{"left_share", bite.left_share},
-                  {"right_share", bite.contacts.empty() ? 0 : 1 - bite.left_share},
-                  {"front_teeth_share", bite.front_known ? Json(bite.front_share) : Json(nullptr)},
-                  {"center_mm", list(bite.load_center)},
-                  {"joints_over_closing_force", bite.joint_share}};
+  json["load"] = {
+      {"left_share", bite.left_fraction},
+      {"right_share", bite.contacts.empty() ? 0 : 1 - bite.left_fraction},
+      {"front_teeth_share", bite.front_known ? Json(bite.front_fraction) : Json(nullptr)},
+      {"center_mm", list(bite.load_center)},
+      {"joints_over_closing_force", bite.joint_fraction}};
   json["contacts"] = Json::array();
   for (const auto& contact : bite.contacts)
     json["contacts"].push_back({{"upper", tooth(contact.upper_fdi)},
@@ -92,13 +93,13 @@ std::string OcclusionReport::json() const {
                                 {"normal", list(contact.normal)},
                                 {"area_mm2", contact.area_mm2},
                                 {"gap_mm", contact.gap_mm},
-                                {"load_share", contact.load_share}});
+                                {"load_share", contact.load_fraction}});
   json["teeth"] = Json::array();
   for (const auto& load : bite.teeth)
     json["teeth"].push_back({{"fdi", load.fdi},
                              {"contacts", load.contacts},
                              {"area_mm2", load.area_mm2},
-                             {"load_share", load.load_share}});
+                             {"load_share", load.load_fraction}});
   json["closings_tried"] = bite.starts;
   json["rest_work_Nmm"] = bite.rest.work;
   json["residual_N"] = bite.rest.residual_N;
@@ -107,15 +108,17 @@ std::string OcclusionReport::json() const {
     json["other_bites"].push_back({{"X_CM", json_of(other.X_CM)}, {"rest_work_Nmm", other.work}});
   json["methods"] = {
       {"bite",
-       "an elastic foil as thick as the paper lies between the arches; the closing force acts "
-       "upward, at right angles to the plane of the upper teeth, half of it at each lower first "
-       "molar; springs hold the centres of the condyles where they are at rest; of all poses in "
-       "which this comes to rest, the one where it does most work"},
-      {"contacts", "surface of the lower arch within the paper's thickness of the upper one"},
-      {"load", "force of the foil; shares of the sum over all contacts"},
-      {"gap_overlap", "exact: least distance of the triangles; deepest corner inside"},
+       "the arches close on an elastic film of the thickness of the articulating paper; the "
+       "closing "
+       "force acts upward, perpendicular to the occlusal plane of the upper teeth, half of it at "
+       "each lower first molar; springs hold the centres of the condyles at their rest positions; "
+       "of all equilibria, the one of lowest energy"},
+      {"contacts",
+       "surface of the lower arch closer to the upper arch than the thickness of the film"},
+      {"load", "force transmitted by the film; fractions of the sum over all contacts"},
+      {"gap_overlap", "exact: least distance between triangles; deepest vertex inside"},
       {"overjet_overbite",
-       "from the upper to the lower incisal edges, along and at right angles to the plane through "
+       "from the upper to the lower incisal edges, parallel and perpendicular to the plane through "
        "the upper incisal edge and first molars"}};
   if (!picture.empty()) json["picture"] = picture;
   json["notes"] = bite.notes;
@@ -125,22 +128,22 @@ std::string OcclusionReport::json() const {
 
 std::string OcclusionReport::text() const {
   std::string text =
-      bite.stable ? "stable bite" : "NO stable bite: " + bite.unstable_because + "; reached";
+      bite.stable ? "stable bite" : "NO stable bite: " + bite.unstable_because + "; pose reached";
   text += fmt::format(": {} contacts at {:g} mm paper, load {:.0f} % left and {:.0f} % right\n",
-                      bite.contacts.size(), settings.paper_mm, 100 * bite.left_share,
-                      bite.contacts.empty() ? 0.0 : 100 * (1 - bite.left_share));
+                      bite.contacts.size(), settings.paper_mm, 100 * bite.left_fraction,
+                      bite.contacts.empty() ? 0.0 : 100 * (1 - bite.left_fraction));
   if (bite.overlap_mm > 0)
     text += fmt::format("arches overlap by {:.3f} mm; ", bite.overlap_mm);
   else
-    text += fmt::format("arches are {:.3f} mm apart where nearest; ", bite.gap_mm);
+    text += fmt::format("least gap of the arches {:.3f} mm; ", bite.gap_mm);
   text += fmt::format("overjet {:.1f} mm, overbite {:.1f} mm\n", bite.after.overjet_mm,
                       bite.after.overbite_mm);
-  text += fmt::format("moved {:.2f} mm from the start, {:.2f} mm from rest",
+  text += fmt::format("displacement {:.2f} mm from the start, {:.2f} mm from rest",
                       bite.moved_from_start_mm, bite.moved_from_rest_mm);
   if (bite.condyle_moved)
-    text +=
-        fmt::format("; condyles from rest: left {}, right {}",
-                    way_in_words((*bite.condyle_moved)[0]), way_in_words((*bite.condyle_moved)[1]));
+    text += fmt::format("; condyles from rest: left {}, right {}",
+                        displacement_text((*bite.condyle_moved)[0]),
+                        displacement_text((*bite.condyle_moved)[1]));
   return text + "\n";
 }
 

@@ -8,30 +8,30 @@
 
 namespace condyle {
 
-/// What was asked for and what came of it.
+/// A bite with the settings and start from which it was found.
 struct OcclusionReport {
   std::string patient;
-  std::string start;  // in words
+  std::string start;  // as text
   OcclusionSettings settings;
   Bite bite;
-  std::string picture = {};             // file beside the report, or empty
-  std::vector<std::string> notes = {};  // besides the bite's own
+  std::string picture = {};             // file name in the report's folder, or empty
+  std::vector<std::string> notes = {};  // in addition to the bite's own
 
   std::string json() const;  // content of report.json
-  std::string text() const;  // a few sentences for people
-  std::string page() const;  // one page for people, HTML without scripts
+  std::string text() const;  // summary for the terminal
+  std::string page() const;  // HTML page without scripts
 };
 
 /// The bite as a motion file of one row.
 std::string bite_pose_csv(const Bite& bite);
 
-/// Two seconds from the start to the bite by way of an open mouth, as a motion file.
+/// A motion file of two seconds from the start to the bite through an opened position.
 std::string bite_motion_csv(const Bite& bite, const Pose& start);
 
-/// "1.2 mm down, 0.3 mm forward": parts below 0.05 mm are left out.
-std::string way_in_words(const Eigen::Vector3d& way);
+/// A displacement as text, "1.2 mm down, 0.3 mm forward"; components below 0.05 mm are omitted.
+std::string displacement_text(const Eigen::Vector3d& displacement_mm);
 
-/// Both arches in the bite, ready to be drawn: with small triangles where they touch.
+/// Both arches in the bite, prepared for drawing: refined where they touch.
 struct BiteView {
   std::vector<Part> parts;                  // bones and teeth at rest
   std::vector<float> upper_gap, lower_gap;  // of the arches' vertices to the other arch, mm

@@ -17,20 +17,37 @@ th { border-bottom: 2px solid #888; } td.bad { font-weight: bold; }
 ol.worst > li { margin: 8px 0; }
 figure { margin: 16px 0; } img, svg { max-width: 100%; height: auto; } figcaption { color: #444; font-size: 14px; }
 .small { color: #555; font-size: 13px; } li { margin: 2px 0; }
+@media print {
+  @page { margin: 15mm; }
+  body { font-size: 10pt; max-width: none; margin: 0; padding: 0; }
+  figure, tr, li, .verdict { break-inside: avoid; } h2 { break-after: avoid; }
+  .verdict, th, td { print-color-adjust: exact; }
+}
 </style>
 )";
 
 }  // namespace
 
-std::string page_head(const std::string& title) {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-         escaped(title) + "</title>\n" + style + "</head>\n<body>\n";
+PageWriter::PageWriter(const std::string& title)
+    : html_(
+          "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
+          escaped(title) + "</title>\n" + style + "</head>\n<body>\n") {}
+
+PageWriter& PageWriter::operator+=(std::string_view html) {
+  html_ += html;
+  return *this;
 }
 
-std::string page_foot() {
-  return "<p class=\"small\">For research and education, not for clinical "
-         "use.</p>\n</body>\n</html>\n";
+void PageWriter::add_notes(const std::vector<std::string>& notes) {
+  for (const auto& note : notes) add("<li>{}</li>\n", escaped(note));
+}
+
+std::string PageWriter::finish() {
+  html_ +=
+      "<p class=\"small\">For research and education, not for clinical "
+      "use.</p>\n</body>\n</html>\n";
+  return std::exchange(html_, {});
 }
 
 }  // namespace condyle

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "sim/frame/plot_places.h"
+#include "sim/frame/label_placement.h"
 
 namespace condyle {
 namespace {
@@ -23,10 +23,10 @@ struct Range {
     high = std::max(high, value);
   }
   double size() const { return high - low; }
-  void widen(double wanted) {
+  void widen(double new_size) {
     const double middle = 0.5 * (low + high);
-    low = middle - 0.5 * wanted;
-    high = middle + 0.5 * wanted;
+    low = middle - 0.5 * new_size;
+    high = middle + 0.5 * new_size;
   }
 };
 
@@ -35,22 +35,22 @@ std::string label(double value, double step) {
   return fmt::format("{:.{}f}", std::abs(value) < step * 1e-6 ? 0.0 : value, decimals);
 }
 
-/// Corners of a band's area in the drawing; of a strip from one end of the axes to the other.
+/// Corners of a band in the drawing. A band without x extends over the whole width of the axes.
 template <class X, class Y>
-std::vector<WordPlaces::Point> corners_of(const PlotBand& band, const X& px, const Y& py,
-                                          double low, double high) {
+std::vector<LabelPlacement::Point> corners_of(const PlotBand& band, const X& px, const Y& py,
+                                              double low, double high) {
   std::vector<double> x = band.x, y = band.y;
   if (x.empty()) {
-    const auto [least, most] = std::minmax_element(band.y.begin(), band.y.end());
+    const auto [low_y, high_y] = std::minmax_element(band.y.begin(), band.y.end());
     x = {low, high, high, low};
-    y = {*least, *least, *most, *most};
+    y = {*low_y, *low_y, *high_y, *high_y};
   }
-  std::vector<WordPlaces::Point> corners;
+  std::vector<LabelPlacement::Point> corners;
   for (std::size_t i = 0; i < x.size(); ++i) corners.push_back({px(x[i]), py(y[i])});
   return corners;
 }
 
-std::string band_svg(const std::vector<WordPlaces::Point>& corners) {
+std::string band_svg(const std::vector<LabelPlacement::Point>& corners) {
   std::string svg =
       "<polygon clip-path=\"url(#axes)\" fill=\"#cfe3d4\" fill-opacity=\"0.75\" "
       "stroke=\"#8fb79b\" points=\"";
@@ -58,7 +58,7 @@ std::string band_svg(const std::vector<WordPlaces::Point>& corners) {
   return svg + "\"/>\n";
 }
 
-DrawnArea bounds_of(const std::vector<WordPlaces::Point>& points) {
+DrawnArea bounds_of(const std::vector<LabelPlacement::Point>& points) {
   DrawnArea bounds{1e300, 1e300, -1e300, -1e300};
   for (const auto& p : points)
     bounds = {std::min(bounds.left, p.x), std::min(bounds.top, p.y), std::max(bounds.right, p.x),
@@ -66,21 +66,20 @@ DrawnArea bounds_of(const std::vector<WordPlaces::Point>& points) {
   return bounds;
 }
 
-/// Letters of sans-serif fonts are about so wide, as a share of their size; signs of two bytes
-/// count twice.
-double width_of(const std::string& words, double font_size) {
-  return 0.6 * font_size * static_cast<double>(words.size());
+/// Estimated width of a text in a sans-serif font; characters of two bytes count twice.
+double width_of(const std::string& text, double font_size) {
+  return 0.6 * font_size * static_cast<double>(text.size());
 }
 
-std::vector<WordPlaces::Point> places_of(const Curve& curve, const auto& px, const auto& py) {
-  std::vector<WordPlaces::Point> run;
+std::vector<LabelPlacement::Point> places_of(const Curve& curve, const auto& px, const auto& py) {
+  std::vector<LabelPlacement::Point> run;
   for (std::size_t i = 0; i < curve.x.size(); ++i) run.push_back({px(curve.x[i]), py(curve.y[i])});
   return run;
 }
 
-/// Whether one curve hides most of another that was measured at the same moments.
-bool hides(const std::vector<WordPlaces::Point>& upper,
-           const std::vector<WordPlaces::Point>& lower) {
+/// Whether one curve covers most of another with the same sample times.
+bool hides(const std::vector<LabelPlacement::Point>& upper,
+           const std::vector<LabelPlacement::Point>& lower) {
   constexpr double near = 1.5;
   if (upper.size() != lower.size()) return false;
   std::size_t hidden = 0;
@@ -112,138 +111,192 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& settings) {
-  Range x, y;
-  for (const auto& curve : curves)
-    for (std::size_t i = 0; i < curve.x.size(); ++i) {
-      x.include(curve.x[i]);
-      y.include(std::min(curve.y[i], settings.y_most));
-    }
-  if (curves.empty() || x.low > x.high) x = y = {0, 1};
-  for (const auto& level : settings.levels) y.include(level.y);
-  for (const auto& band : settings.bands) {
-    for (const double v : band.x) x.include(v);
-    for (const double v : band.y) y.include(v);
-  }
-  const double width = left + axes_width + right + (settings.legend_beside ? legend_width : 0);
-  const double inner_width = axes_width, inner_height = height - top - bottom;
-  x.widen(std::max(x.size() * 1.06, 1e-3));
-  y.widen(std::max(y.size() * 1.12, 1e-3));
-  if (settings.legend && !settings.legend_beside) {
-    // Room for the names above the curves.
-    const auto named = std::count_if(curves.begin(), curves.end(),
-                                     [](const Curve& curve) { return !curve.name.empty(); });
-    y.high += y.size() * 18.0 * static_cast<double>(named) / inner_height;
-  }
-  if (settings.equal_scale) {
-    const double scale = std::max(x.size() / inner_width, y.size() / inner_height);
-    x.widen(scale * inner_width);
-    y.widen(scale * inner_height);
-  }
-  const auto px = [&](double v) { return left + (v - x.low) / x.size() * inner_width; };
-  const auto py = [&](double v) { return top + (y.high - v) / y.size() * inner_height; };
+namespace {
 
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-      "height=\"{1}\" font-family=\"sans-serif\" font-size=\"13\">\n"
-      "<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n"
-      "<text x=\"{2}\" y=\"26\" font-size=\"16\" fill=\"#222\">{3}</text>\n",
-      width, height, left, settings.title);
-  svg += fmt::format(
-      "<clipPath id=\"axes\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
-      left, top, inner_width, inner_height);
-  for (const auto& band : settings.bands) svg += band_svg(corners_of(band, px, py, x.low, x.high));
-  constexpr int most_ticks = 7;
-  const Ticks across = ticks(x.low, x.high, most_ticks), up = ticks(y.low, y.high, most_ticks);
-  for (const double v : across.values)
-    svg += fmt::format(
-        "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\" stroke=\"#e2e2e2\"/>"
-        "<text x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\" fill=\"#444\">{4}</text>\n",
-        px(v), top, height - bottom, height - bottom + 18, label(v, across.step));
-  for (const double v : up.values)
-    svg += fmt::format(
-        "<line x1=\"{1}\" x2=\"{2}\" y1=\"{0:.1f}\" y2=\"{0:.1f}\" stroke=\"#e2e2e2\"/>"
-        "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\" fill=\"#444\">{5}</text>\n",
-        py(v), left, left + axes_width, left - 8, py(v) + 4, label(v, up.step));
-  svg += fmt::format(
-      "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888\"/>\n"
-      "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\" fill=\"#222\">{}</text>\n"
-      "<text transform=\"translate(18 {:.1f}) rotate(-90)\" text-anchor=\"middle\" "
-      "fill=\"#222\">{}</text>\n",
-      left, top, inner_width, inner_height, left + inner_width / 2, height - 14, settings.x_label,
-      top + inner_height / 2, settings.y_label);
-  const double legend_x = left + 12 + (settings.legend_beside ? axes_width : 0);
-  double legend_y = top + 20;
-  WordPlaces places({left, top, left + inner_width, height - bottom}, 1);
-  const auto taken_by = [&](const std::string& words, double font_size) {
-    places.add_words(
-        {legend_x, legend_y - font_size, legend_x + 28 + width_of(words, font_size), legend_y + 4});
-  };
-  for (const auto& level : settings.levels) {
-    svg += fmt::format(
+/// Draws one plot as SVG.
+class PlotWriter {
+ public:
+  PlotWriter(const std::vector<Curve>& curves, const PlotSettings& settings)
+      : curves_(curves),
+        settings_(settings),
+        places_({left, top, left + inner_width, height - bottom}, 1),
+        legend_x_(left + 12 + (settings.legend_beside ? axes_width : 0)) {
+    find_ranges();
+  }
+
+  std::string write() {
+    frame_and_grid();
+    for (const auto& level : settings_.levels) level_line(level);
+    for (const auto& curve : curves_) runs_.push_back(places_of(curve, px_, py_));
+    for (std::size_t c = 0; c < curves_.size(); ++c) draw(c);
+    for (const auto& remark : settings_.remarks) {
+      reserve_legend(remark, 12);
+      svg_ += fmt::format("<text x=\"{}\" y=\"{:.0f}\" fill=\"#444\" font-size=\"12\">{}</text>\n",
+                          legend_x_, legend_y_ + 8, escaped(remark));
+      legend_y_ += 16;
+    }
+    names();
+    return std::move(svg_) + "</svg>\n";
+  }
+
+ private:
+  static constexpr double inner_width = axes_width, inner_height = height - top - bottom;
+
+  void find_ranges() {
+    for (const auto& curve : curves_)
+      for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        x_.include(curve.x[i]);
+        y_.include(std::min(curve.y[i], settings_.y_most));
+      }
+    if (curves_.empty() || x_.low > x_.high) x_ = y_ = {0, 1};
+    for (const auto& level : settings_.levels) y_.include(level.y);
+    for (const auto& band : settings_.bands) {
+      for (const double v : band.x) x_.include(v);
+      for (const double v : band.y) y_.include(v);
+    }
+    x_.widen(std::max(x_.size() * 1.06, 1e-3));
+    y_.widen(std::max(y_.size() * 1.12, 1e-3));
+    if (settings_.legend && !settings_.legend_beside) {
+      // Space for the legend above the curves.
+      const auto named = std::count_if(curves_.begin(), curves_.end(),
+                                       [](const Curve& curve) { return !curve.name.empty(); });
+      y_.high += y_.size() * 18.0 * static_cast<double>(named) / inner_height;
+    }
+    if (settings_.equal_scale) {
+      const double scale = std::max(x_.size() / inner_width, y_.size() / inner_height);
+      x_.widen(scale * inner_width);
+      y_.widen(scale * inner_height);
+    }
+  }
+
+  void frame_and_grid() {
+    const double width = left + axes_width + right + (settings_.legend_beside ? legend_width : 0);
+    svg_ = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+        "height=\"{1}\" font-family=\"sans-serif\" font-size=\"13\">\n"
+        "<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n"
+        "<text x=\"{2}\" y=\"26\" font-size=\"16\" fill=\"#222\">{3}</text>\n",
+        width, height, left, settings_.title);
+    svg_ += fmt::format(
+        "<clipPath id=\"axes\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
+        left, top, inner_width, inner_height);
+    for (const auto& band : settings_.bands)
+      svg_ += band_svg(corners_of(band, px_, py_, x_.low, x_.high));
+    constexpr int max_ticks = 7;
+    const Ticks across = ticks(x_.low, x_.high, max_ticks), up = ticks(y_.low, y_.high, max_ticks);
+    for (const double v : across.values)
+      svg_ += fmt::format(
+          "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\" stroke=\"#e2e2e2\"/>"
+          "<text x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\" fill=\"#444\">{4}</text>\n",
+          px_(v), top, height - bottom, height - bottom + 18, label(v, across.step));
+    for (const double v : up.values)
+      svg_ += fmt::format(
+          "<line x1=\"{1}\" x2=\"{2}\" y1=\"{0:.1f}\" y2=\"{0:.1f}\" stroke=\"#e2e2e2\"/>"
+          "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\" fill=\"#444\">{5}</text>\n",
+          py_(v), left, left + axes_width, left - 8, py_(v) + 4, label(v, up.step));
+    svg_ += fmt::format(
+        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888\"/>\n"
+        "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\" fill=\"#222\">{}</text>\n"
+        "<text transform=\"translate(18 {:.1f}) rotate(-90)\" text-anchor=\"middle\" "
+        "fill=\"#222\">{}</text>\n",
+        left, top, inner_width, inner_height, left + inner_width / 2, height - 14,
+        settings_.x_label, top + inner_height / 2, settings_.y_label);
+  }
+
+  void level_line(const Level& level) {
+    svg_ += fmt::format(
         "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#222\" "
         "stroke-dasharray=\"2 3\"/>",
-        left, left + axes_width, py(level.y));
-    places.add_curve({{left, py(level.y)}, {left + axes_width, py(level.y)}});
+        left, left + axes_width, py_(level.y));
+    places_.add_curve({{left, py_(level.y)}, {left + axes_width, py_(level.y)}});
   }
-  std::vector<std::vector<WordPlaces::Point>> runs;
-  for (const auto& curve : curves) runs.push_back(places_of(curve, px, py));
-  for (std::size_t c = 0; c < curves.size(); ++c) {
-    const auto& curve = curves[c];
-    const auto& run = runs[c];
-    // Wide enough to be seen on both sides of what lies on it.
+
+  /// Keeps the names of bands and levels away from one line of the legend.
+  void reserve_legend(const std::string& text, double font_size) {
+    places_.add_words({legend_x_, legend_y_ - font_size, legend_x_ + 28 + width_of(text, font_size),
+                       legend_y_ + 4});
+  }
+
+  /// One curve and its entry in the legend.
+  void draw(std::size_t c) {
+    const auto& curve = curves_[c];
+    const auto& run = runs_[c];
+    // Wide enough to show on both sides of a curve drawn over it.
     double stroke = 2;
-    for (std::size_t on = c + 1; on < curves.size() && stroke < 8; ++on)
-      if (hides(runs[on], run)) stroke += 3;
+    for (std::size_t on = c + 1; on < curves_.size() && stroke < 8; ++on)
+      if (hides(runs_[on], run)) stroke += 3;
     const std::size_t number = curve.colour < 0 ? c : static_cast<std::size_t>(curve.colour);
     const char* colour = colours[number % colours.size()];
     const char* dashes = curve.dashed ? " stroke-dasharray=\"6 4\"" : "";
-    svg += fmt::format(
+    svg_ += fmt::format(
         "<polyline clip-path=\"url(#axes)\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{} "
         "points=\"",
         colour, stroke, dashes);
-    for (const auto& p : run) svg += fmt::format("{:.2f},{:.2f} ", p.x, p.y);
-    svg += "\"/>\n";
-    places.add_curve(run);
-    if (curve.name.empty() || !settings.legend) continue;
-    taken_by(curve.name, 13);
-    svg += fmt::format(
+    for (const auto& p : run) svg_ += fmt::format("{:.2f},{:.2f} ", p.x, p.y);
+    svg_ += "\"/>\n";
+    places_.add_curve(run);
+    if (curve.name.empty() || !settings_.legend) return;
+    reserve_legend(curve.name, 13);
+    svg_ += fmt::format(
         "<line x1=\"{}\" x2=\"{}\" y1=\"{:.0f}\" y2=\"{:.0f}\" stroke=\"{}\" "
         "stroke-width=\"{}\"{}/><text x=\"{}\" y=\"{:.0f}\" fill=\"#222\">{}</text>\n",
-        legend_x, legend_x + 22, legend_y - 4, legend_y - 4, colour, stroke, dashes, legend_x + 28,
-        legend_y, escaped(curve.name));
-    legend_y += 18;
+        legend_x_, legend_x_ + 22, legend_y_ - 4, legend_y_ - 4, colour, stroke, dashes,
+        legend_x_ + 28, legend_y_, escaped(curve.name));
+    legend_y_ += 18;
   }
-  for (const auto& remark : settings.remarks) {
-    taken_by(remark, 12);
-    svg += fmt::format("<text x=\"{}\" y=\"{:.0f}\" fill=\"#444\" font-size=\"12\">{}</text>\n",
-                       legend_x, legend_y + 8, escaped(remark));
-    legend_y += 16;
+
+  /// Names of bands and levels, placed last in the free space.
+  void names() {
+    std::vector<std::vector<LabelPlacement::Point>> outlines;
+    for (const auto& band : settings_.bands) {
+      outlines.push_back(corners_of(band, px_, py_, x_.low, x_.high));
+      if (!band.x.empty()) places_.add_outline(outlines.back());
+    }
+    for (std::size_t b = 0; b < outlines.size(); ++b) {
+      DrawnArea near = bounds_of(outlines[b]);
+      if (settings_.bands[b].x.empty()) near.right = near.left;
+      name_near(settings_.bands[b].name, near, 11, "#3c6b4a");
+    }
+    for (const auto& level : settings_.levels) {
+      const double right_end = left + axes_width;
+      name_near(level.name, {right_end, py_(level.y) - 16, right_end, py_(level.y)}, 12, "#222");
+    }
   }
-  // Names of bands and levels come last, where nothing else is.
-  const auto write = [&](const std::string& words, const DrawnArea& near, double font_size,
-                         const char* ink) {
-    if (words.empty()) return;
-    const auto at = places.take(width_of(words, font_size) + 8, font_size + 4, near);
-    svg += fmt::format(
+
+  void name_near(const std::string& text, const DrawnArea& near, double font_size,
+                 const char* colour) {
+    if (text.empty()) return;
+    const auto at = places_.take(width_of(text, font_size) + 8, font_size + 4, near);
+    svg_ += fmt::format(
         "<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"{}\" fill=\"{}\">{}</text>\n",
-        at.x + 4, at.y + font_size, font_size, ink, escaped(words));
+        at.x + 4, at.y + font_size, font_size, colour, escaped(text));
+  }
+
+  /// From a value to a coordinate of the drawing.
+  struct Scale {
+    const Range& range;
+    double start, size;
+    bool downward;
+    double operator()(double v) const {
+      return downward ? start + (range.high - v) / range.size() * size
+                      : start + (v - range.low) / range.size() * size;
+    }
   };
-  std::vector<std::vector<WordPlaces::Point>> outlines;
-  for (const auto& band : settings.bands) {
-    outlines.push_back(corners_of(band, px, py, x.low, x.high));
-    if (!band.x.empty()) places.add_outline(outlines.back());
-  }
-  for (std::size_t b = 0; b < outlines.size(); ++b) {
-    DrawnArea near = bounds_of(outlines[b]);
-    if (settings.bands[b].x.empty()) near.right = near.left;
-    write(settings.bands[b].name, near, 11, "#3c6b4a");
-  }
-  for (const auto& level : settings.levels) {
-    const double right_end = left + axes_width;
-    write(level.name, {right_end, py(level.y) - 16, right_end, py(level.y)}, 12, "#222");
-  }
-  return svg + "</svg>\n";
+
+  const std::vector<Curve>& curves_;
+  const PlotSettings& settings_;
+  Range x_, y_;
+  const Scale px_{x_, left, inner_width, false}, py_{y_, top, inner_height, true};
+  LabelPlacement places_;
+  std::vector<std::vector<LabelPlacement::Point>> runs_;
+  double legend_x_, legend_y_ = top + 20;
+  std::string svg_;
+};
+
+}  // namespace
+
+std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& settings) {
+  return PlotWriter(curves, settings).write();
 }
 
 std::string panels_svg(const std::vector<PlotPanel>& panels) {

@@ -6,20 +6,22 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "sim/frame/part_names.h"
+
 namespace condyle {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr int cold_samples = 8;
-constexpr double rounding_mm = 1e-6;  // a stop lies at the slack, give or take its rounding
+constexpr double rounding_mm = 1e-6;  // rounding of a stop at the slack
 
-/// An emergent quantity beside the band that is accepted for healthy adults.
+/// An emergent quantity with its reference range in healthy adults.
 Json banded(double value, double low, double high) {
   return {{"value", value}, {"band", {low, high}}, {"within", value >= low && value <= high}};
 }
 
-Json to_json(const Finding& finding) {
+Json json_of(const Finding& finding) {
   Json json = {{"quantity", finding.name}, {"value", finding.value}, {"unit", finding.unit}};
   if (finding.banded()) {
     json["band"] = {finding.low, finding.high};
@@ -31,16 +33,22 @@ Json to_json(const Finding& finding) {
   return json;
 }
 
-/// Of emergent quantities.
+/// A quantity outside its reference range.
 std::string outside_text(const Finding& finding) {
-  return fmt::format("{}: {:.2f}{}{}, accepted {:g} to {:g}; {}", finding.name, finding.value,
+  return fmt::format("{}{}: {:.2f}{}{}, reference range {:g} to {:g}; {}", finding.name,
+                     finding.input ? " (prescribed)" : "", finding.value,
                      finding.unit.empty() ? "" : " ", finding.unit, finding.low, finding.high,
                      finding.why);
 }
 
+/// "1 frame", "12 frames".
+std::string frame_count(int frames, const char* more = "") {
+  return fmt::format("{}{} {}", frames, more, frames == 1 ? "frame" : "frames");
+}
+
 double round_to(double value, double unit) { return std::round(value / unit) * unit; }
 
-/// How the soft tissue answered at one frame. Empty without tissue or landmarks.
+/// Response of the soft tissue at one frame. Empty without tissue or landmarks.
 Json soft_response(const Scene& scene, const FrameState& frame) {
   Json json;
   if (!scene.tissue || frame.tissue.nodes.empty()) return json;
@@ -50,7 +58,7 @@ Json soft_response(const Scene& scene, const FrameState& frame) {
   };
   if (const auto soft = marks.find("soft_pogonion")) {
     const Eigen::Vector3d bone = marks.find("pogonion").value_or(*soft);
-    const Eigen::Vector3d bone_move = frame.X_CM * bone - bone;
+    const Eigen::Vector3d bone_move = frame.poses[scene.patient.jaw.lower_arch] * bone - bone;
     const Eigen::Vector3d soft_move = carried(*soft) - *soft;
     if (bone_move.norm() > 1)
       json["soft_pogonion_follows_bone"] = soft_move.dot(bone_move) / bone_move.squaredNorm();
@@ -67,11 +75,11 @@ Json soft_response(const Scene& scene, const FrameState& frame) {
   return json;
 }
 
-Json told(const RecordingFacts& facts) {
+Json json_of(const RecordingFacts& facts) {
   Json json = {{"format", facts.format},
                {"rows", facts.rows},
                {"rows_without_pose", facts.rows_without_pose},
-               {"usual_step_s", facts.usual_step_s},
+               {"median_step_s", facts.median_step_s},
                {"gaps", Json::array()}};
   for (const auto& gap : facts.gaps)
     json["gaps"].push_back({{"after_s", gap.after_s}, {"length_s", gap.length_s}});
@@ -81,7 +89,7 @@ Json told(const RecordingFacts& facts) {
   return json;
 }
 
-Json told(const std::vector<Extreme>& extremes) {
+Json json_of(const std::vector<Extreme>& extremes) {
   Json json;
   for (const Extreme& extreme : extremes)
     json[extreme.name] = {
@@ -89,15 +97,15 @@ Json told(const std::vector<Extreme>& extremes) {
   return json;
 }
 
-Json told(const HelicalAxis& axis) {
+Json json_of(const HelicalAxis& axis) {
   const auto list = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
   return {{"direction", list(axis.direction)},
           {"point_mm", list(axis.point)},
           {"slide_mm", axis.slide_mm}};
 }
 
-/// What the motion does not show is left out.
-Json told(const JointFit& fit) {
+/// Parameters that the motion does not show are omitted.
+Json json_of(const JointFit& fit) {
   Json json;
   const auto put = [](Json& where, const char* name, const std::optional<double>& value) {
     if (value) where[name] = *value;
@@ -149,22 +157,24 @@ void MotionReport::add(const FrameState& frame) {
       if (record.first_touch < 0) record.first_touch = frames_;
     }
     if (beyond > settings_.contact.slack_mm + rounding_mm) ++record.penetrating_frames;
-    if (record.worst_frame < 0 || distance < record.least_distance ||
-        (distance == record.least_distance && pair.depth_mm > record.deepest))
+    if (record.worst_frame < 0 || distance < record.min_distance ||
+        (distance == record.min_distance && pair.depth_mm > record.deepest))
       record.worst_frame = frames_;
-    record.least_distance = std::min(record.least_distance, distance);
+    record.min_distance = std::min(record.min_distance, distance);
     record.deepest = std::max(record.deepest, pair.depth_mm);
   }
   if (frame.stopped) {
     ++stopped_frames_;
     if (first_stopped_ < 0) first_stopped_ = frames_;
     const auto incisor = rest.find("lower_incisal_point").value_or(Eigen::Vector3d::Zero());
-    kept_back_mm_ =
-        std::max(kept_back_mm_, (frame.X_CM * incisor - frame.X_CM_wanted * incisor).norm());
+    const BodyId jaw = scene_.patient.jaw.lower_arch;
+    const Eigen::Vector3d wanted = placed(scene_.patient.bodies, frame.X_PB_target)[jaw] * incisor;
+    contact_deviation_mm_ =
+        std::max(contact_deviation_mm_, (frame.poses[jaw] * incisor - wanted).norm());
   }
   if (frame.tissue.inverted_prisms > 0) ++inverted_frames_;
   if (!frame.tissue.converged) ++unconverged_frames_;
-  if (frame.tissue.kept) ++kept_frames_;
+  if (frame.tissue.kept) ++reused_frames_;
   tissue_penetration_mm_ = std::max(tissue_penetration_mm_, frame.tissue.penetration_mm);
   tissue_slip_mm_ = std::max(tissue_slip_mm_, frame.tissue.slip_mm);
   tissue_contact_error_mm_ = std::max(tissue_contact_error_mm_, frame.tissue.contact_error_mm);
@@ -190,51 +200,36 @@ void MotionReport::add(const FrameState& frame) {
   ++frames_;
 }
 
-std::string MotionReport::json() const {
-  Json json;
-  json["about"] = "Condyle; for research and education, not for clinical use";
-  json["case"] = scene_.patient.name;
-  json["motion"] = {
+Json MotionReport::motion_json() const {
+  Json json = {
       {"name", motion_.name}, {"recorded", motion_.recorded}, {"duration_s", motion_.duration_s}};
   for (const auto& phase : motion_.phases)
-    json["motion"]["phases"].push_back(
+    json["phases"].push_back(
         {{"name", phase.name}, {"start_s", phase.start_s}, {"end_s", phase.end_s}});
   for (const auto& input : motion_.inputs)
-    json["motion"]["inputs"].push_back(
-        {{"name", input.name}, {"value", input.value}, {"unit", input.unit}});
-  json["motion"]["notes"] = motion_.notes;
-  if (motion_.recording) json["motion"]["recording"] = told(*motion_.recording);
+    json["inputs"].push_back({{"name", input.name}, {"value", input.value}, {"unit", input.unit}});
+  json["notes"] = motion_.notes;
+  if (motion_.recording) json["recording"] = json_of(*motion_.recording);
   if (motion_.recorded)
-    if (const auto joint = fit_joint(scene_.patient, motion_))
-      json["motion"]["joint"] = told(*joint);
-  json["frames"] = frames_;
-  json["step_s"] = settings_.step_s;
-  const auto& w = widest_.measures;
-  json["opening"] = {{"max_opening_mm", w.opening_mm},
-                     {"frame", widest_frame_},
-                     {"time_s", widest_.time_s},
-                     {"interincisal_mm", w.interincisal_mm},
-                     {"max_rotation_deg", banded(max_rotation_deg_, 28, 45)},
-                     {"left_condylar_travel_mm", banded(left_travel_mm_, 10, 20)},
-                     {"right_condylar_travel_mm", banded(right_travel_mm_, 10, 20)}};
-  if (scene_.patient.landmarks.find("lower_incisal_point"))
-    json["opening"]["incisal_way_mm"] = banded(w.incisal_way_mm, 42, 58);
-  if (w.helical_axis.known) json["opening"]["helical_axis"] = told(w.helical_axis);
+    if (const auto joint = fit_joint(scene_.patient, motion_)) json["joint"] = json_of(*joint);
+  return json;
+}
 
-  if (series_.known_landmarks) json["measures"] = told(extremes(series_));
-
+/// Findings, and those outside their reference range, prescribed ones too.
+void MotionReport::add_findings(Json& json) const {
   Json list = Json::array(), outside = Json::array();
   for (const auto& finding : findings(scene_, motion_, series_)) {
-    list.push_back(to_json(finding));
-    if (!finding.within() && !finding.input) outside.push_back(outside_text(finding));
+    list.push_back(json_of(finding));
+    if (!finding.within()) outside.push_back(outside_text(finding));
   }
   json["findings"] = list;
   if (too_coarse(series_) && !motion_.phases.empty())
     json["findings_note"] =
-        "what happens within a phase is told from 20 frames a second on (--fps, --frames)";
+        "findings within a phase need at least 20 frames per second (--fps, --frames)";
   json["outside_bands"] = outside;
-  json["warnings"] = physiology_warnings(series_);
+}
 
+Json MotionReport::contact_json() const {
   Json pairs = Json::array();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const auto& rest = scene_.contacts.at_rest().pairs[i];
@@ -246,7 +241,7 @@ std::string MotionReport::json() const {
                  {"b", name(rest.part_b)},
                  {"overlap_at_rest_mm", record.rest_depth},
                  {"distance_at_rest_mm", rest.touching ? 0 : rest.distance_mm},
-                 {"min_distance_mm", record.least_distance},
+                 {"min_distance_mm", record.min_distance},
                  {"deepest_mm", record.deepest},
                  {"beyond_rest_mm", std::max(0.0, record.deepest - record.rest_depth)},
                  {"touching_frames", record.touching_frames},
@@ -254,50 +249,80 @@ std::string MotionReport::json() const {
     if (record.first_touch >= 0) pair["first_touching_frame"] = record.first_touch;
     pairs.push_back(pair);
   }
-  json["contact"] = {{"pairs", pairs}, {"stopped_frames", stopped_frames_}};
+  Json json = {{"pairs", pairs}, {"stopped_frames", stopped_frames_}};
   if (first_stopped_ >= 0) {
-    json["contact"]["first_stopped_frame"] = first_stopped_;
-    json["contact"]["kept_from_where_wanted_mm"] = kept_back_mm_;
+    json["first_stopped_frame"] = first_stopped_;
+    json["contact_deviation_mm"] = contact_deviation_mm_;
   }
+  return json;
+}
 
-  if (scene_.tissue) {
-    const auto& made = summary(*scene_.tissue);
-    Json tissue = {{"nodes", made.nodes},
-                   {"springs", made.springs},
-                   {"prisms", made.prisms},
-                   {"layers", made.layers},
-                   {"attached_to_cranium", made.attached_to_cranium},
-                   {"attached_to_mandible", made.attached_to_mandible},
-                   {"boundary", made.boundary},
-                   {"lips_cut", made.lips_cut},
-                   {"frames_with_inverted_prisms", inverted_frames_},
-                   {"frames_not_converged", unconverged_frames_},
-                   {"frames_kept_from_before", kept_frames_},
-                   {"at_rest",
-                    {{"largest_force_N", made.rest_force_N},
-                     {"moves_mm", made.rest_move_mm},
-                     {"overlap_mm", made.rest_overlap_mm},
-                     {"lip_points_left_out", made.lip_points_left_out}}},
-                   {"max_penetration_mm", tissue_penetration_mm_},
-                   {"max_slip_mm", tissue_slip_mm_},
-                   {"max_contact_error_mm", tissue_contact_error_mm_},
-                   {"at_widest_opening", soft_response(scene_, widest_)},
-                   {"notes", made.notes}};
-    std::vector<double> warm, cold;
-    for (const auto& frame : samples_) {
-      TissueBudget budget = settings_.tissue_budget;
-      budget.threads = settings_.threads;
-      warm.push_back(frame.tissue.iterations);
-      cold.push_back(
-          follow(*scene_.tissue, rest_tissue(*scene_.tissue), frame.X_CM, budget).iterations);
-    }
-    const double warm_median = summarise(warm).median, cold_median = summarise(cold).median;
-    if (cold_median > 0)
-      tissue["iterations"] = {{"warm_median", warm_median},
-                              {"cold_median", cold_median},
-                              {"warm_over_cold", warm_median / cold_median}};
-    json["tissue"] = tissue;
+Json MotionReport::tissue_json() const {
+  const auto& made = summary(*scene_.tissue);
+  Json tissue = {{"nodes", made.nodes},
+                 {"springs", made.springs},
+                 {"prisms", made.prisms},
+                 {"layers", made.layers},
+                 {"attached_to_cranium", made.attached_to_cranium},
+                 {"attached_to_mandible", made.attached_to_mandible},
+                 {"boundary", made.boundary},
+                 {"lips_cut", made.lips_cut},
+                 {"frames_with_inverted_prisms", inverted_frames_},
+                 {"frames_not_converged", unconverged_frames_},
+                 {"frames_reusing_previous_tissue", reused_frames_},
+                 {"at_rest",
+                  {{"largest_force_N", made.rest_force_N},
+                   {"moves_mm", made.rest_move_mm},
+                   {"overlap_mm", made.rest_overlap_mm},
+                   {"lip_points_left_out", made.lip_points_left_out}}},
+                 {"max_penetration_mm", tissue_penetration_mm_},
+                 {"max_slip_mm", tissue_slip_mm_},
+                 {"max_contact_error_mm", tissue_contact_error_mm_},
+                 {"at_widest_opening", soft_response(scene_, widest_)},
+                 {"notes", made.notes}};
+  std::vector<double> warm, cold;
+  for (const auto& frame : samples_) {
+    TissueBudget budget = settings_.tissue_budget;
+    budget.threads = settings_.threads;
+    warm.push_back(frame.tissue.iterations);
+    cold.push_back(
+        solve_tissue(*scene_.tissue, rest_tissue(*scene_.tissue), frame.tissue.X_CB, budget)
+            .iterations);
   }
+  const double warm_median = summarise(warm).median, cold_median = summarise(cold).median;
+  if (cold_median > 0)
+    tissue["iterations"] = {{"warm_median", warm_median},
+                            {"cold_median", cold_median},
+                            {"warm_over_cold", warm_median / cold_median}};
+  return tissue;
+}
+
+std::string MotionReport::json() const {
+  Json json;
+  json["about"] = "Condyle; for research and education, not for clinical use";
+  json["case"] = scene_.patient.name;
+  json["motion"] = motion_json();
+  json["frames"] = frames_;
+  json["step_s"] = settings_.step_s;
+  const auto& w = widest_.measures;
+  json["opening"] = {{"max_opening_mm", w.opening_mm},
+                     {"frame", widest_frame_},
+                     {"time_s", widest_.time_s},
+                     {"interincisal_mm", w.interincisal_mm},
+                     {"max_rotation_deg", banded(max_rotation_deg_, 28, 45)},
+                     {"left_condylar_travel_mm", banded(left_travel_mm_, 10, 20)},
+                     {"right_condylar_travel_mm", banded(right_travel_mm_, 10, 20)}};
+  if (scene_.patient.landmarks.find("lower_incisal_point"))
+    json["opening"]["incisal_displacement_mm"] = banded(w.incisal_displacement_mm, 42, 58);
+  if (w.helical_axis.known) json["opening"]["helical_axis"] = json_of(w.helical_axis);
+
+  if (series_.known_landmarks) json["measures"] = json_of(extremes(series_));
+
+  add_findings(json);
+  json["warnings"] = physiology_warnings(series_);
+
+  json["contact"] = contact_json();
+  if (scene_.tissue) json["tissue"] = tissue_json();
   Json stages;
   for (const auto name : stage_names) {
     const auto times = summarise(stage_ms_.at(std::string(name)));
@@ -310,78 +335,90 @@ std::string MotionReport::json() const {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string MotionReport::text() const {
-  const auto& m = widest_.measures;
-  const Landmarks& landmarks = scene_.patient.landmarks;
-  std::string text = fmt::format("{} frames; ", frames_);
-  if (landmarks.find("lower_incisal_point")) {
-    text +=
-        fmt::format("widest opening {:.1f} mm (drop of the lower incisal point; its way {:.1f} mm",
-                    m.opening_mm, m.incisal_way_mm);
-    if (landmarks.find("upper_incisal_point"))
-      text += fmt::format("; between incisors {:.1f} mm", m.interincisal_mm);
-    text += fmt::format(") at {:.2f} s, ", widest_.time_s);
-  }
-  text += fmt::format("rotation {:.1f} deg, condyles travel {:.1f} mm left, {:.1f} mm right\n",
-                      max_rotation_deg_, left_travel_mm_, right_travel_mm_);
-  int emergent = 0, within = 0;
-  std::string outside;
-  for (const auto& finding : findings(scene_, motion_, series_)) {
-    if (finding.input || !finding.banded()) continue;
-    ++emergent;
-    within += finding.within();
-    if (!finding.within()) outside += "  " + outside_text(finding) + "\n";
-  }
-  if (emergent > 0)
-    text += fmt::format("{} of {} emergent quantities lie within their bands\n{}", within, emergent,
-                        outside);
-  for (const auto& warning : physiology_warnings(series_)) text += "warning: " + warning + "\n";
+std::string MotionReport::contact_text() const {
+  std::string text;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const auto& rest = scene_.contacts.at_rest().pairs[i];
     const auto& a = scene_.patient.parts[static_cast<std::size_t>(rest.part_a)].name;
     const auto& b = scene_.patient.parts[static_cast<std::size_t>(rest.part_b)].name;
     const auto& record = pairs_[i];
-    text += fmt::format("{} and {}: ", a, b);
+    text += fmt::format("{} and {}: ", readable_name(a), readable_name(b));
     if (record.rest_depth > 0)
       text += fmt::format("overlap {:.2f} mm at rest, ", record.rest_depth);
     if (record.penetrating_frames > 0)
-      text += fmt::format("up to {:.2f} mm deeper than at rest in {} frames\n",
-                          record.deepest - record.rest_depth, record.penetrating_frames);
-    else if (record.touching_frames > 0)
       text +=
-          fmt::format("touch in {} frames, never deeper than at rest\n", record.touching_frames);
+          fmt::format("up to {:.2f} mm deeper than at rest, in {}\n",
+                      record.deepest - record.rest_depth, frame_count(record.penetrating_frames));
+    else if (record.touching_frames > 0)
+      text += fmt::format("in contact in {}, never deeper than at rest\n",
+                          frame_count(record.touching_frames));
     else
-      text += fmt::format("at least {:.2f} mm apart\n", record.least_distance);
+      text += fmt::format("at least {:.2f} mm apart\n", record.min_distance);
   }
+  return text;
+}
+
+std::string MotionReport::tissue_text() const {
+  std::string text = fmt::format("soft tissue: {} nodes, {} prisms; inverted prisms in {}\n",
+                                 summary(*scene_.tissue).nodes, summary(*scene_.tissue).prisms,
+                                 frame_count(inverted_frames_));
+  text += fmt::format(
+      "it slides along bone and teeth by up to {:.1f} mm and penetrates them by up to {:.2f} mm\n",
+      tissue_slip_mm_, tissue_penetration_mm_);
+  if (reused_frames_ > 0)
+    text += fmt::format("its solve failed in {}; these show the tissue of the previous frame\n",
+                        frame_count(reused_frames_));
+  if (unconverged_frames_ > reused_frames_)
+    text += fmt::format(
+        "it did not converge in {} (tissue_converged 0 in trace.csv); contact error up to "
+        "{:.2f} mm\n",
+        frame_count(unconverged_frames_ - reused_frames_, reused_frames_ > 0 ? " more" : ""),
+        tissue_contact_error_mm_);
+  return text;
+}
+
+std::string MotionReport::text() const {
+  const auto& m = widest_.measures;
+  const Landmarks& landmarks = scene_.patient.landmarks;
+  std::string text = fmt::format("{} frames; ", frames_);
+  if (landmarks.find("lower_incisal_point")) {
+    text += fmt::format(
+        "maximum opening {:.1f} mm (vertical, lower incisal point; displacement {:.1f} mm",
+        m.opening_mm, m.incisal_displacement_mm);
+    if (landmarks.find("upper_incisal_point"))
+      text += fmt::format("; interincisal distance {:.1f} mm", m.interincisal_mm);
+    text += fmt::format(") at {:.2f} s, ", widest_.time_s);
+  }
+  text += fmt::format("rotation {:.1f} deg, condylar travel {:.1f} mm left, {:.1f} mm right\n",
+                      max_rotation_deg_, left_travel_mm_, right_travel_mm_);
+  int emergent = 0, within = 0, inputs = 0;
+  std::string outside;
+  for (const auto& finding : findings(scene_, motion_, series_)) {
+    if (!finding.banded()) continue;
+    if (!finding.within()) outside += "  " + outside_text(finding) + "\n";
+    ++(finding.input ? inputs : emergent);
+    within += !finding.input && finding.within();
+  }
+  if (emergent + inputs > 0)
+    text += fmt::format(
+        "{} of {} emergent quantities are within their reference ranges{}\n{}", within, emergent,
+        inputs > 0 ? fmt::format("; {} more follow from the inputs in any anatomy", inputs) : "",
+        outside);
+  for (const auto& warning : physiology_warnings(series_)) text += "warning: " + warning + "\n";
+  text += contact_text();
   const bool penetrates = std::any_of(pairs_.begin(), pairs_.end(), [](const PairRecord& record) {
     return record.penetrating_frames > 0;
   });
   if (motion_.recorded && penetrates && stopped_frames_ == 0)
-    text += "a recorded motion is played as it is; --respect-contact stops it where bones meet\n";
-  constexpr double glide_mm = 0.05;  // teeth that glide are led by as much
-  if (kept_back_mm_ > glide_mm)
+    text +=
+        "a recorded motion is played back unchanged; --respect-contact stops it where bones meet\n";
+  constexpr double glide_mm = 0.05;  // guidance of gliding teeth stays below this
+  if (contact_deviation_mm_ > glide_mm)
     text += fmt::format(
-        "contact keeps the jaw from where it is wanted in {} frames, first in frame {}, by up to "
+        "contact deflects the jaw from the prescribed motion in {}, first in frame {}, by up to "
         "{:.2f} mm at the incisors\n",
-        stopped_frames_, first_stopped_, kept_back_mm_);
-  if (scene_.tissue) {
-    text += fmt::format("soft tissue: {} nodes, {} prisms, inverted in {} frames\n",
-                        summary(*scene_.tissue).nodes, summary(*scene_.tissue).prisms,
-                        inverted_frames_);
-    text += fmt::format(
-        "it slips along bone and teeth by up to {:.1f} mm and enters them by {:.2f} mm\n",
-        tissue_slip_mm_, tissue_penetration_mm_);
-    if (kept_frames_ > 0)
-      text +=
-          fmt::format("its solve failed in {} frames, which keep the tissue of the frame before\n",
-                      kept_frames_);
-    if (unconverged_frames_ > kept_frames_)
-      text += fmt::format(
-          "it had not settled in {}{} frames (tissue_converged 0 in trace.csv), on what it "
-          "touches by up to {:.2f} mm\n",
-          unconverged_frames_ - kept_frames_, kept_frames_ > 0 ? " more" : "",
-          tissue_contact_error_mm_);
-  }
+        frame_count(stopped_frames_), first_stopped_, contact_deviation_mm_);
+  if (scene_.tissue) text += tissue_text();
   return text;
 }
 

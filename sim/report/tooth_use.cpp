@@ -27,8 +27,8 @@ std::vector<bool> ToothContacts::touching_at(const ContactSet& contacts,
          {std::pair(pair.part_a, pair.part_b), std::pair(pair.part_b, pair.part_a)}) {
       const auto& arch = arches_[static_cast<std::size_t>(other)];
       if (!arch) continue;
-      const Pose X_own = pose_of(patient_.parts, static_cast<std::size_t>(own), at),
-                 X_other = pose_of(patient_.parts, static_cast<std::size_t>(other), at);
+      const Pose X_own = pose_of(patient_.parts[static_cast<std::size_t>(own)], at),
+                 X_other = pose_of(patient_.parts[static_cast<std::size_t>(other)], at);
       for (std::size_t i = 0; i < crowns_.size(); ++i)
         if (crowns_[i].part == own && !found[i])
           found[i] = touching(crowns_[i].surface, X_own, *arch, X_other);

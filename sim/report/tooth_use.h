@@ -10,15 +10,15 @@
 
 namespace condyle {
 
-/// How much of a motion one tooth touches the teeth opposite.
+/// Contact of one tooth with the opposing teeth during a motion.
 struct ToothUse {
   int fdi = 0;
   int touching_frames = 0;
-  int touches = 0;  // times that it came to touch; from the start on counts as one
+  int touches = 0;  // number of times it came into contact; contact at the start counts
 };
 
-/// Asks, tooth by tooth, whether its crown touches the other arch. Of parts whose crowns are
-/// separate. Queries are const and thread-safe.
+/// Tests for each tooth of a part with separate crowns whether it touches the opposing arch.
+/// Queries are const and thread-safe.
 class ToothContacts {
  public:
   /// The patient must outlive this.
@@ -27,7 +27,7 @@ class ToothContacts {
   /// FDI numbers, part after part.
   const std::vector<int>& teeth() const { return numbers_; }
 
-  /// Which of the teeth touch; `contacts` as found at these poses. shape: one per tooth.
+  /// Which teeth touch; `contacts` must belong to these poses. shape: one per tooth.
   std::vector<bool> touching_at(const ContactSet& contacts, const BodyPoses& at) const;
 
  private:
@@ -38,10 +38,10 @@ class ToothContacts {
   const Case& patient_;
   std::vector<int> numbers_;
   std::vector<Crown> crowns_;                           // of each tooth
-  std::vector<std::unique_ptr<CollisionMesh>> arches_;  // of each part that is teeth, else null
+  std::vector<std::unique_ptr<CollisionMesh>> arches_;  // one per part; null where it is not teeth
 };
 
-/// Counts frame by frame. shape: a row per frame, one per tooth.
+/// Counts contacts over the frames. shape of `touching`: [frame][tooth].
 std::vector<ToothUse> tooth_use(const std::vector<int>& teeth,
                                 const std::vector<std::vector<bool>>& touching);
 

@@ -25,13 +25,23 @@ const char* TraceWriter::header() {
          "tissue_slip_mm,tissue_kept,tissue_converged,tissue_contact_error_mm";
 }
 
-TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& muscles)
-    : file_(file), beside_(file.parent_path() / ("." + file.filename().string() + ".part")) {
+TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& muscles,
+                         const BodyTree& bodies, const JawBodies& jaw)
+    : file_(file),
+      beside_(file.parent_path() / ("." + file.filename().string() + ".part")),
+      jaw_(jaw.lower_arch) {
   stream_ = std::fopen(beside_.c_str(), "wb");
   if (!stream_) throw MachineError(file_.string() + ": cannot be written: " + std::strerror(errno));
   std::string columns = header();
   for (const auto& name : muscles)
     columns += fmt::format(",{0}_excitation,{0}_length_mm,{0}_force_N", name);
+  for (int b = 1; b < bodies.size(); ++b) {
+    const BodyId body{b};
+    if (body == jaw_) continue;
+    others_.push_back(body);
+    columns += fmt::format(",{0}_tx_mm,{0}_ty_mm,{0}_tz_mm,{0}_qw,{0}_qx,{0}_qy,{0}_qz",
+                           bodies[body].name);
+  }
   put(columns + "\n");
 }
 
@@ -48,7 +58,7 @@ void TraceWriter::put(const std::string& text) {
 
 void TraceWriter::add(int frame, const FrameState& s) {
   const auto& m = s.measures;
-  const auto& q = s.X_CM.R;
+  const auto& q = s.poses[jaw_].R;
   std::string row = std::to_string(frame);
   const auto numbers = [&row](std::initializer_list<double> values) {
     for (const double value : values) row += std::isfinite(value) ? fmt::format(",{}", value) : ",";
@@ -58,7 +68,7 @@ void TraceWriter::add(int frame, const FrameState& s) {
   const auto ms = [&row](double value) { row += fmt::format(",{:.4f}", value); };
 
   numbers({s.time_s});
-  point(s.X_CM.t);
+  point(s.poses[jaw_].t);
   numbers({q.w(), q.x(), q.y(), q.z()});
   point(m.incisor);
   numbers({m.opening_mm, m.interincisal_mm, m.rotation_deg});
@@ -95,6 +105,11 @@ void TraceWriter::add(int frame, const FrameState& s) {
   numbers({s.tissue.contact_error_mm});
   for (const MuscleState& muscle : s.muscles)
     numbers({muscle.excitation, muscle.length_mm, muscle.force_N});
+  for (const BodyId body : others_) {
+    const Pose& X_CB = s.poses[body];
+    point(X_CB.t);
+    numbers({X_CB.R.w(), X_CB.R.x(), X_CB.R.y(), X_CB.R.z()});
+  }
   put(row + "\n");
 }
 

@@ -4,10 +4,11 @@
 namespace condyle {
 namespace {
 
-constexpr double seen_mm = 30;           // about the contact
-constexpr double edge_share = 1.0 / 60;  // of that radius: fine enough for the picture's bands
-constexpr double reach_mm = 6;           // distances beyond are not drawn
-constexpr int most_triangles = 600000;
+constexpr double seen_mm = 30;  // visible radius about the contact
+constexpr double edge_fraction =
+    1.0 / 60;                   // edge length over that radius, fine enough for the colour bands
+constexpr double reach_mm = 6;  // larger distances are not coloured
+constexpr int max_triangles = 600000;
 
 std::vector<float> distances(const Part& part, const Pose& X_part, const TriMesh& other,
                              const Pose& X_other, int threads) {
@@ -24,9 +25,9 @@ WorstView worst_view(const Scene& scene, const PairVerdict& pair, int threads) {
   const auto a = static_cast<std::size_t>(sample.contact.part_a),
              b = static_cast<std::size_t>(sample.contact.part_b);
   const auto& patient = scene.patient.parts;
-  const Pose X_CA = pose_of(patient, a, poses), X_CB = pose_of(patient, b, poses);
+  const Pose X_CA = pose_of(patient[a], poses), X_CB = pose_of(patient[b], poses);
   const double radius = seen_mm + measure.size_mm / 2;
-  const double edge_mm = radius * edge_share;
+  const double edge_mm = radius * edge_fraction;
   WorstView view;
   std::size_t drawn_a = 0, drawn_b = 0;
   for (std::size_t i = 0; i < patient.size(); ++i) {
@@ -37,7 +38,7 @@ WorstView worst_view(const Scene& scene, const PairVerdict& pair, int threads) {
   }
   const auto refined = [&](Part& part, const Pose& X) {
     part.mesh = refine_near(std::move(part.mesh), X.inverse() * measure.middle, radius, edge_mm,
-                            most_triangles);
+                            max_triangles);
   };
   Part &part_a = view.parts[drawn_a], &part_b = view.parts[drawn_b];
   refined(part_a, X_CA);

@@ -11,6 +11,9 @@
 
 namespace condyle {
 
+struct LiveTarget;
+class LiveSteps;
+
 /// What a person at the window wants simulated.
 struct LiveRequest {
   double time_s = 0;                                // of the motion
@@ -42,15 +45,14 @@ class LiveSimulation {
 
   void request(const LiveRequest& wanted);
 
-  /// A hand holds the body of a part (an index of the case) and wants it at a pose, rest to now, in
-  /// its carrier's frame (the mandible: the cranium's), until the next call or until it lets go. It
-  /// slides along what is in the way if contact is obeyed. Where the wish leaps (undo, a typed
-  /// number) and was asked before, the bodies are where they came to then; see LeapStart. Let go,
-  /// the mandible follows the motion
-  /// again; a segment or transplant stays where it came to, in its carrier's frame. From any
-  /// thread. throws: InputError for a part that does not move, and for values that are no numbers.
-  void drag(std::size_t part, const Pose& wanted);
-  void release(std::size_t part);
+  /// A hand holds a body and wants it at a pose, rest to now, in its parent's frame, until the next
+  /// call or until release(). It slides along what is in between if contact is obeyed. Where the
+  /// target is discontinuous (undo, a typed number) and was asked before, the bodies are where they
+  /// came to then; see TeleportStart. Released, a body that the motion drives follows the motion
+  /// again; another stays where it came to in its parent's frame. From any thread. throws:
+  /// InputError for the cranium and for values that are no numbers.
+  void drag(BodyId body, const Pose& X_PB_target);
+  void release(BodyId body);
 
   /// The newest frame when there is one that was not taken yet. Rethrows what stopped the thread.
   std::optional<FrameState> take();
@@ -60,8 +62,11 @@ class LiveSimulation {
 
  private:
   void work();
-  StepInput input(const LiveRequest& wanted, double time_s) const;
-  std::size_t body_of_part(std::size_t part) const;
+  /// Waits until a step is due, or tissue is to settle. gives: none at the end.
+  std::optional<LiveTarget> next_target(LiveSteps& steps);
+  /// Hands a frame over, if it is to be shown; `settled_only`: the step's time is not typical.
+  void publish(const FrameState* shown, bool settled_only, double seconds);
+  void require_movable(BodyId body) const;
 
   const Scene& scene_;
   Motion motion_;
@@ -71,7 +76,7 @@ class LiveSimulation {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   LiveRequest wanted_;
-  std::vector<std::optional<Pose>> held_;  // X_CM, then X_BF of each free part, where held
+  std::vector<std::optional<Pose>> held_;  // X_PB of each body that a hand holds
   long grips_ = 0;                         // how often a hand moved
   std::optional<FrameState> newest_;
   std::exception_ptr failure_;

@@ -1,11 +1,12 @@
 #include "sim/simulator/simulator.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
 
-#include "sim/motion/measures.h"
-#include "sim/simulator/state_hash.h"
+#include "sim/frame/state_hash.h"
+#include "sim/motion/measure_pose.h"
 #include "sim/tissue/lips.h"
 
 namespace condyle {
@@ -25,48 +26,93 @@ Scene make_scene(Case patient, const SimulatorSettings& settings, const Progress
   return {std::move(patient), std::move(contacts), std::move(tissue)};
 }
 
+namespace {
+
+bool same_mesh(const TriMesh& a, const TriMesh& b) {
+  return a.vertices == b.vertices && a.triangles == b.triangles && a.colors == b.colors;
+}
+
+/// Whether the soft tissue is unchanged: it depends on the jaw's bodies only.
+bool same_for_tissue(const Case& a, const Case& b) {
+  const auto parts = [](const Case& patient) {
+    std::vector<const Part*> list;
+    for (const Part& part : patient.parts)
+      if (!is_rigid(part.role) || part.body == patient.jaw.upper_arch ||
+          part.body == patient.jaw.lower_arch)
+        list.push_back(&part);
+    return list;
+  };
+  const auto x = parts(a), y = parts(b);
+  return a.jaw == b.jaw && a.landmarks.points == b.landmarks.points &&
+         std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const Part* p, const Part* q) {
+           return p->name == q->name && p->role == q->role && p->body == q->body &&
+                  same_mesh(p->mesh, q->mesh);
+         });
+}
+
+}  // namespace
+
+Scene edited_scene(const Scene& before, Case patient, const SimulatorSettings& settings,
+                   const Progress& progress) {
+  report(progress, "building the collision models", 0.0);
+  ContactModel contacts(patient, settings.contact, &before.contacts);
+  std::shared_ptr<const TissueModel> tissue;
+  if (settings.tissue) {
+    // The lips of the face of an earlier scene have been separated already.
+    const Part *face = patient.find(Role::face), *parted = before.patient.find(Role::face);
+    if (!(before.tissue && face && parted && same_mesh(face->mesh, parted->mesh)))
+      part_lips(patient);
+    report(progress, "building the soft tissue", 0.3);
+    TissueSettings of_tissue = settings.tissue_model;
+    of_tissue.threads = settings.threads;
+    const bool kept = before.tissue && same_for_tissue(before.patient, patient);
+    tissue = kept ? before.tissue : build_tissue(patient, of_tissue, progress);
+  }
+  report(progress, "building the soft tissue", 1.0);
+  return {std::move(patient), std::move(contacts), std::move(tissue)};
+}
+
 FrameState rest_frame(const Scene& scene) {
   FrameState frame;
+  frame.X_PB_target.resize(scene.patient.bodies.bodies().size());
+  frame.poses = completed(scene.patient.bodies, {});
   frame.contacts = scene.contacts.at_rest();
   if (scene.tissue) frame.tissue = rest_tissue(*scene.tissue);
-  frame.measures = measure(scene.patient, frame.X_CM);
+  frame.measures = measure(scene.patient, frame.poses);
   frame.state_hash = state_hash(frame);
   return frame;
 }
 
 FrameState step(const Scene& scene, const FrameState& previous, const StepInput& input,
-                const SimulatorSettings& settings) {
+                const SimulatorSettings& settings, TissueWarmStart& warm) {
   FrameState now;
   now.time_s = input.time_s;
-  now.X_CM_wanted = input.X_CM_wanted;
+  now.X_PB_target = input.X_PB_target;
+  now.X_PB_target.resize(scene.patient.bodies.bodies().size());
   {
     const StageTimer timer(now.times, Stage::contact);
-    const ContactModel::Wanted wanted{input.X_CM_wanted, input.X_BF_wanted};
-    BodyPoses at;
     if (input.obey_contact) {
-      auto slide = scene.contacts.slide(previous.poses(), wanted, &previous.contacts,
+      auto slide = scene.contacts.slide(previous.poses, input.X_PB_target, &previous.contacts,
                                         settings.threads, input.bound_far);
-      at = std::move(slide.at);
+      now.poses = std::move(slide.at);
       now.stopped = slide.stopped;
       now.contacts = std::move(slide.contacts);
     } else {
-      at = scene.contacts.placed(wanted);
-      now.contacts = scene.contacts.find(at, &previous.contacts, settings.threads);
+      now.poses = placed(scene.patient.bodies, input.X_PB_target);
+      now.contacts = scene.contacts.find(now.poses, &previous.contacts, settings.threads);
     }
-    now.X_CM = at.X_CM;
-    now.X_CF = std::move(at.X_CF);
   }
   if (scene.tissue && !settings.tissue) {
-    now.tissue = previous.tissue;  // nobody looks at it
+    now.tissue = previous.tissue;  // not requested
   } else if (scene.tissue) {
     const StageTimer timer(now.times, Stage::tissue);
     TissueBudget budget = settings.tissue_budget;
     budget.threads = settings.threads;
-    now.tissue = follow(*scene.tissue, previous.tissue, now.X_CM, budget);
+    now.tissue = solve_tissue(*scene.tissue, previous.tissue, now.poses.X_CB, budget, warm);
   }
   {
     const StageTimer timer(now.times, Stage::measures);
-    now.measures = measure(scene.patient, now.X_CM);
+    now.measures = measure(scene.patient, now.poses);
     now.state_hash = state_hash(now);
   }
   return now;
@@ -76,29 +122,31 @@ void carry_face(const Scene& scene, FrameState& frame, int threads) {
   if (!scene.tissue) return;
   const StageTimer timer(frame.times, Stage::face);
   deform_face(*scene.tissue, frame.tissue, frame.face, threads);
+  frame.state_hash = state_hash(frame);
 }
 
 Playback::Playback(const Scene& scene, Motion motion, const SimulatorSettings& settings,
-                   bool respect_contact, std::vector<Pose> X_BF_wanted)
+                   bool respect_contact, std::vector<Pose> X_PB_target)
     : scene_(scene),
       motion_(std::move(motion)),
       settings_(settings),
       obey_contact_(respect_contact || !motion_.recorded),
-      X_BF_wanted_(std::move(X_BF_wanted)),
-      now_(step_to(0, rest_frame(scene))) {}
+      X_PB_target_(std::move(X_PB_target)),
+      now_(step_to(0, rest_frame(scene), warm_)) {}
 
-FrameState Playback::step_to(double time_s, const FrameState& from) const {
+FrameState Playback::step_to(double time_s, const FrameState& from, TissueWarmStart& warm) const {
   StageTimes motion_time;
-  StepInput input{.time_s = time_s,
-                  .X_CM_wanted = {},
-                  .obey_contact = obey_contact_,
-                  .X_BF_wanted = X_BF_wanted_};
+  StepInput input{.time_s = time_s, .obey_contact = obey_contact_};
   {
     const StageTimer timer(motion_time, Stage::motion);
-    input.X_CM_wanted = motion_.wanted(time_s);
+    input.X_PB_target =
+        motion_target_poses(scene_.patient.bodies, motion_.target(time_s), X_PB_target_);
   }
-  FrameState next = step(scene_, from, input, settings_);
-  if (motion_.muscles) next.muscles = motion_.muscles(time_s);
+  FrameState next = step(scene_, from, input, settings_, warm);
+  if (motion_.muscles) {
+    next.muscles = motion_.muscles(time_s);
+    next.state_hash = state_hash(next);
+  }
   next.times[Stage::motion] = motion_time[Stage::motion];
   return next;
 }
@@ -108,11 +156,15 @@ FrameState Playback::at(double time_s) {
   assert(time_s >= static_cast<double>(step_) * settings_.step_s - same_time_s);
   while (static_cast<double>(step_ + 1) * settings_.step_s <= time_s + same_time_s) {
     ++step_;
-    now_ = step_to(static_cast<double>(step_) * settings_.step_s, now_);
+    now_ = step_to(static_cast<double>(step_) * settings_.step_s, now_, warm_);
   }
   const bool on_step = std::abs(time_s - now_.time_s) <= same_time_s;
-  FrameState shown = on_step ? now_ : step_to(time_s, now_);
-  shown.time_s = time_s;
+  TissueWarmStart warm = warm_;
+  FrameState shown = on_step ? now_ : step_to(time_s, now_, warm);
+  if (shown.time_s != time_s) {
+    shown.time_s = time_s;
+    shown.state_hash = state_hash(shown);
+  }
   if (settings_.face) carry_face(scene_, shown, settings_.threads);
   return shown;
 }

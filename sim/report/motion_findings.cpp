@@ -1,4 +1,4 @@
-#include "sim/report/motion_truth.h"
+#include "sim/report/motion_findings.h"
 
 #include <fmt/core.h>
 
@@ -6,8 +6,9 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/core/units.h"
 #include "sim/motion/joint_surfaces.h"
-#include "sim/report/bite_place.h"
+#include "sim/report/bite_position.h"
 #include "sim/report/motion_extremes.h"
 
 namespace condyle {
@@ -15,13 +16,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double degrees = 180 / 3.14159265358979323846;
-
-/// Gathers the findings of one motion.
-class Judge {
+/// Collects the findings of one motion.
+class MotionAssessment {
  public:
-  Judge(const Scene& scene, const Motion& motion, const MotionSeries& series)
-      : scene_(scene), motion_(motion), series_(series), bite_(bite_place(series)) {}
+  MotionAssessment(const Scene& scene, const Motion& motion, const MotionSeries& series)
+      : scene_(scene),
+        motion_(motion),
+        series_(series),
+        bite_(bite_position(series)),
+        joint_(JointSurfaces::find(scene.patient)) {}
 
   std::vector<Finding> all() {
     if (!series_.known_landmarks || series_.size() < 2) return {};
@@ -46,11 +49,21 @@ class Judge {
 
  private:
   void add(Finding finding) { found_.push_back(std::move(finding)); }
-  /// Whether the motion was told so and so; a recording was told nothing.
+  /// Whether the target values of the motion were prescribed; those of a recording were not.
   bool built_in() const { return !motion_.recorded; }
   const Measures& at(std::size_t frame) const { return series_.measures[frame]; }
 
-  /// From the bite, forward and up.
+  /// Whether the fossa of a side ("left", "right") guides its condyle, not a path that was given or
+  /// assumed. Condyles placed as in an articulator have no fossae.
+  bool on_fossa(const std::string& side) const {
+    return joint_ &&
+           std::none_of(motion_.inputs.begin(), motion_.inputs.end(), [&](const auto& in) {
+             return in.name == "inclination_" + side || in.name == "bonwill" ||
+                    in.name == "balkwill";
+           });
+  }
+
+  /// Position of the incisal point forward of and above the bite, mm.
   double anterior(std::size_t frame) const { return bite_.y() - at(frame).incisor.y(); }
   double superior(std::size_t frame) const { return at(frame).incisor.z() - bite_.z(); }
 
@@ -61,20 +74,20 @@ class Judge {
     return best;
   }
 
-  /// Way of a condyle along its curve from the first frame to the last.
+  /// Path length of a condyle from the first frame to the last, mm.
   double curve_mm(std::size_t first, std::size_t last, Vector3d Measures::*condyle) const {
-    double way = 0;
+    double length = 0;
     for (std::size_t i = first + 1; i <= last; ++i)
-      way += (at(i).*condyle - at(i - 1).*condyle).norm();
-    return way;
+      length += (at(i).*condyle - at(i - 1).*condyle).norm();
+    return length;
   }
 
   void opening() {
     const auto widest = frame_of_largest(0, series_.size() - 1, &Measures::opening_mm);
-    constexpr double wide_mm = 35;  // less is no maximal opening
+    constexpr double wide_mm = 35;  // smaller openings are not maximal
     if (at(widest).opening_mm < wide_mm) return;
     const std::string why =
-        fmt::format("{:.1f} mm of drop ask for {:.1f} deg here: condyle to incisor is {:.0f} mm",
+        fmt::format("{:.1f} mm of opening require {:.1f} deg here: condyle to incisor is {:.0f} mm",
                     at(widest).opening_mm, at(widest).rotation_deg,
                     (series_.rest.incisor - series_.rest.left_condyle).norm());
     add({"maximum opening", "mm", (at(widest).incisor - bite_).norm(), 42, 58,
@@ -86,14 +99,17 @@ class Judge {
          travel, false, why});
     add({"right condylar travel at maximum opening", "mm", at(widest).right_condyle_travel_mm, 10,
          20, travel, false, why});
-    std::size_t start = widest;
-    while (start > 0 && at(start).opening_mm > 0.02) --start;
-    add({"left condylar travel along its curve", "mm",
-         curve_mm(start, widest, &Measures::left_condyle), 10, 24, travel, false, why});
+    if (!too_coarse(series_)) {  // too few frames to measure the length of a curve
+      std::size_t start = widest;
+      while (start > 0 && at(start).opening_mm > 0.02) --start;
+      add({"left condylar travel along its curve", "mm",
+           curve_mm(start, widest, &Measures::left_condyle), 10, 24, travel, false, why});
+    }
     const double before = at(widest).rotation_deg;
+    // Two condyles on the same path open straight in any anatomy.
     add({"midline deviation at maximum opening", "mm",
          std::abs(at(widest).midline_deviation_mm - series_.rest.midline_deviation_mm), 0, 2,
-         "under 2 in healthy adults", false,
+         "under 2 in healthy adults", built_in() && !(on_fossa("left") && on_fossa("right")),
          fmt::format("the condyles travel {:.1f} mm left and {:.1f} mm right ({:.0f} deg)",
                      at(widest).left_condyle_travel_mm, at(widest).right_condyle_travel_mm,
                      before)});
@@ -103,25 +119,25 @@ class Judge {
     const auto [first, last] = series_.frames_of(phase);
     const auto end = frame_of_largest(first, last, &Measures::protrusion_mm);
     add({"protrusion", "mm", anterior(end), 6, 11, "8.0 (Woelfel), 8.8 +- 2.3", built_in(),
-         "it ends where it was told to"});
+         "its end is prescribed"});
     tooth_path(first, end, "protrusion");
   }
 
-  /// The dip over the incisors' edges, and the slope to it.
+  /// The dip over the incisal edges, and the slope towards it.
   void tooth_path(std::size_t first, std::size_t end, const std::string& what) {
     const auto low = std::min(first, end), high = std::max(first, end);
     const auto dip = frame_of_largest(low, high, &Measures::opening_mm);
     add({"dip of the incisal point in " + what, "mm", -superior(dip), 0.5, 6,
          "an edge-to-edge dip of about the overbite (Posselt)", false,
-         "the teeth's overbite decides it"});
-    // The place 2 mm in front of the bite.
-    std::optional<std::size_t> place;
+         "determined by the overbite"});
+    // First frame 2 mm in front of the bite.
+    std::optional<std::size_t> frame;
     for (auto i = low; i <= high; ++i)
-      if (anterior(i) >= 2 && (!place || anterior(i) < anterior(*place))) place = i;
-    if (place)
+      if (anterior(i) >= 2 && (!frame || anterior(i) < anterior(*frame))) frame = i;
+    if (frame)
       add({"incisal guidance over 2 mm of " + what, "deg",
-           std::atan2(-superior(*place), anterior(*place)) * degrees, 20, 70,
-           "an incisal table is set to 20 to 70", false, "overjet and overbite decide it"});
+           std::atan2(-superior(*frame), anterior(*frame)) * degrees_per_radian, 20, 70,
+           "an incisal table is set to 20 to 70", false, "determined by overjet and overbite"});
   }
 
   void laterotrusion(const MotionPhase& phase) {
@@ -132,7 +148,7 @@ class Judge {
       if (std::abs(at(i).laterotrusion_mm) > std::abs(at(end).laterotrusion_mm)) end = i;
     add({phase.name, "mm", std::abs(at(end).laterotrusion_mm), 7, 12,
          "9.2 right, 9.4 left (Woelfel)", built_in(),
-         "it ends where it was told to, or where bone meets bone"});
+         "its end is prescribed, or is where bone meets bone"});
     lateral_joints(end, to_left, phase.name);
   }
 
@@ -145,18 +161,18 @@ class Judge {
     const double outward = (to_left ? 1 : -1) * working.x();
     add({"working-side shift in " + what, "mm", outward, 0, 3.5,
          "immediate side shift up to 0.75, at the extreme 2.5 to 3.5 (Lundeen 1978)", false,
-         "Bennett angle and side shift of the orbiting side carry it over the fixed width"});
-    add({"working condyle's way in " + what, "mm", working.norm(), 0, 4,
-         "it turns about itself and moves little", false,
-         "Bennett angle and side shift of the orbiting side carry it over the fixed width"});
-    add({"orbiting condyle's way in " + what, "mm", orbiting.norm(), 5, 16,
+         "determined by Bennett angle and side shift of the orbiting side"});
+    add({"displacement of the working condyle in " + what, "mm", working.norm(), 0, 4,
+         "it rotates in place and moves little", false,
+         "determined by Bennett angle and side shift of the orbiting side"});
+    add({"displacement of the orbiting condyle in " + what, "mm", orbiting.norm(), 5, 16,
          "10 mm of it yaw the jaw by about 5.5 deg", false,
-         "it follows from how far the incisors go aside"});
+         "determined by the lateral displacement of the incisors"});
     const Vector3d across = m.left_condyle - m.right_condyle;
-    const double yaw = std::abs(std::atan2(across.y(), across.x())) * degrees;
+    const double yaw = std::abs(std::atan2(across.y(), across.x())) * degrees_per_radian;
     add({"yaw for 10 mm of the orbiting condyle in " + what, "deg",
          10 * yaw / std::max(-orbiting.y(), 1e-9), 4.5, 6.5, "about 5.5", false,
-         "the width between the condyles decides it"});
+         "determined by the intercondylar width"});
   }
 
   void posterior_border(const MotionPhase& phase) {
@@ -164,18 +180,19 @@ class Judge {
     const std::string derived = "derived from 88 to 100 mm condyle to incisor, 32 to 34 deg";
     const double retruded = std::hypot(anterior(first), superior(first));
     add({"retruded contact from the bite", "mm", retruded, 0.1, 1.9, "0.86 +- 0.52 (Utz 2021)",
-         false, "retrusion is set; the teeth open the jaw on the way"});
+         false, "retrusion is prescribed; the teeth open the jaw meanwhile"});
     constexpr double hinge_end_deg = 13.5;
     for (auto i = first; i <= last; ++i)
       if (at(i).rotation_deg >= hinge_end_deg) {
         add({"Posselt: end of hinge, anterior", "mm", anterior(i), -15, -9, derived, false,
-             "condyles that translate early put it farther forward"});
+             "early translation of the condyles moves it forward"});
         add({"Posselt: end of hinge, superior", "mm", superior(i), -21, -16, derived, false,
-             "condyles that translate early put it lower"});
+             "early translation of the condyles moves it down"});
         break;
       }
-    const std::string why = fmt::format(
-        "this opening turns the jaw by {:.1f} deg, the bands mean 32 to 34", at(last).rotation_deg);
+    const std::string why =
+        fmt::format("this opening rotates the jaw by {:.1f} deg; the ranges assume 32 to 34",
+                    at(last).rotation_deg);
     add({"Posselt: maximum opening, anterior", "mm", anterior(last), -27, -19, derived, false,
          why});
     add({"Posselt: maximum opening, superior", "mm", superior(last), -48, -44, derived, false,
@@ -185,7 +202,7 @@ class Judge {
   void protruded_contact(const MotionPhase& phase) {
     const auto [first, last] = series_.frames_of(phase);
     add({"Posselt: protruded contact, anterior", "mm", anterior(first), 6, 11, "8 (Woelfel)",
-         built_in(), "it is set"});
+         built_in(), "prescribed"});
     tooth_path(last, first, "protruded contact");
   }
 
@@ -196,20 +213,20 @@ class Judge {
     for (auto i = first; i <= last; ++i)
       widest = std::max(widest, (to_left ? 1 : -1) * at(i).laterotrusion_mm);
     add({"Posselt: widest " + phase.name, "mm", widest, 7, 12, "9.2 right, 9.4 left (Woelfel)",
-         false, "the frontal border is widest some millimetres below the teeth"});
+         false, "the frontal border is widest a few millimetres below the teeth"});
     lateral_joints(to_left ? first : last, to_left, phase.name);
   }
 
   void rest_position(const MotionPhase& phase) {
     const auto [first, last] = series_.frames_of(phase);
     (void)first;
-    if (at(last).opening_mm <= 0) return;  // a case that rests with its teeth apart
-    add({"freeway space", "mm", at(last).opening_mm, 2, 3, "2 to 3", built_in(), "it is set"});
+    if (at(last).opening_mm <= 0) return;  // a case whose teeth are apart at rest
+    add({"freeway space", "mm", at(last).opening_mm, 2, 3, "2 to 3", built_in(), "prescribed"});
   }
 
   // ---- chewing
 
-  /// Frames at which a cycle leaves the bite; the end of the last one closes the list.
+  /// Frames at which a cycle leaves the bite.
   std::vector<std::size_t> cycle_starts(std::size_t first, std::size_t last, double lowest) const {
     const double gate = 0.15 * lowest;
     std::vector<std::size_t> starts;
@@ -222,7 +239,7 @@ class Judge {
     return starts;
   }
 
-  /// Time at which the opening passes a value between two frames.
+  /// Time at which the opening crosses a value between a frame and the previous one, s.
   double crossing_s(std::size_t after, double opening_mm) const {
     const double a = at(after - 1).opening_mm, b = at(after).opening_mm;
     const double u = b != a ? (opening_mm - a) / (b - a) : 0;
@@ -252,7 +269,7 @@ class Judge {
         if (b > a && passes(2 * lowest / 3)) down2 = crossing_s(i, bite + 2 * lowest / 3);
         if (b < a && passes(2 * lowest / 3)) up1 = crossing_s(i, bite + 2 * lowest / 3);
         if (b < a && passes(lowest / 3)) up2 = crossing_s(i, bite + lowest / 3);
-        constexpr double touch_mm = 0.12;  // a tooth's own springiness
+        constexpr double touch_mm = 0.12;  // compliance of the teeth
         if (b < a && series_.tooth_gap_mm[i] < touch_mm && series_.tooth_gap_mm[i - 1] < touch_mm)
           glide += (at(i).incisor - at(i - 1).incisor).norm();
       }
@@ -274,9 +291,9 @@ class Judge {
             ? (cycles - 1) / (series_.time_s[starts.back()] - series_.time_s[starts.front()])
             : 1 / std::max(phase.end_s - phase.start_s, 1e-9);
     const std::string& what = phase.name;
-    add({what + ": rate", "Hz", rate, 1.2, 1.7, "1.46 +- 0.21", built_in(), "it is set"});
-    add({what + ": height of a cycle", "mm", lowest, 10, 24, "", built_in(), "it is set"});
-    add({what + ": width of a cycle", "mm", mean(widths), 2, 8, "", built_in(), "it is set"});
+    add({what + ": rate", "Hz", rate, 1.2, 1.7, "1.46 +- 0.21", built_in(), "prescribed"});
+    add({what + ": height of a cycle", "mm", lowest, 10, 24, "", built_in(), "prescribed"});
+    add({what + ": width of a cycle", "mm", mean(widths), 2, 8, "", built_in(), "prescribed"});
     if (!series_.borders.frontal.empty()) {
       const double border = frontal_area(series_.borders.frontal);
       add({what + ": cycle area of the border area", "%", 100 * mean(areas) / border, 5, 12,
@@ -288,13 +305,13 @@ class Judge {
          speed});
     add({what + ": closing speed, middle third", "mm/s", mean(closing_speed), 40, 80, "58", false,
          speed});
-    constexpr double felt_mm = 0.1;
+    constexpr double relevant_mm = 0.1;
     const double overlap = series_.tooth_overlap_at_rest_mm;
     add({what + ": glide on the teeth", "mm", mean(glides), 0.5, 4, "about 1.4", false,
-         overlap > felt_mm
-             ? fmt::format("crowns overlap by {:.2f} mm at rest: they touch long before the bite",
+         overlap > relevant_mm
+             ? fmt::format("crowns overlap by {:.2f} mm at rest and touch long before the bite",
                            overlap)
-             : "teeth touch as far aside as the cycle is wide there; flat cusps shorten it"});
+             : "determined by the width of the cycle at tooth contact; flat cusps shorten it"});
   }
 
   // ---- joints
@@ -305,45 +322,45 @@ class Judge {
     const auto condyle = side == JawSide::left ? &Measures::left_condyle : &Measures::right_condyle;
     const Vector3d seat = series_.rest.*condyle;
     for (std::size_t i = 0; i < series_.size(); ++i) {
-      const Vector3d way = at(i).*condyle - seat;
-      if (-way.y() < secant_mm) continue;
+      const Vector3d d = at(i).*condyle - seat;
+      if (-d.y() < secant_mm) continue;
       const std::string name = side == JawSide::left ? "left" : "right";
-      const bool given =
-          std::any_of(motion_.inputs.begin(), motion_.inputs.end(),
-                      [&](const auto& in) { return in.name == "inclination_" + name; });
+      const bool given = built_in() && !on_fossa(name);
       add({name + " condylar inclination over 5 mm", "deg",
-           std::atan2(-way.z(), -way.y()) * degrees, 26, 62,
-           "41.9 +- 7.8, range 26 to 62, to Frankfort", given, "the fossa's own shape decides it"});
+           std::atan2(-d.z(), -d.y()) * degrees_per_radian, 26, 62,
+           "41.9 +- 7.8, range 26 to 62, to Frankfort", given,
+           "determined by the shape of the fossa"});
       return;
     }
   }
 
   void disc_gaps() {
-    if (motion_.recorded && !motion_.muscles) return;  // a recording tells its own
-    const auto joint = JointSurfaces::find(scene_.patient);
-    if (!joint) return;
-    constexpr std::size_t most = 120;
-    const std::size_t stride = std::max<std::size_t>(1, series_.size() / most);
+    if (motion_.recorded && !motion_.muscles) return;  // a recording is not guided by the fossa
+    if (!joint_) return;
+    constexpr std::size_t max_samples = 120;
+    const std::size_t stride = std::max<std::size_t>(1, series_.size() / max_samples);
     for (const JawSide side : {JawSide::left, JawSide::right}) {
       TrianglePair start;
-      double least = 1e300, most_mm = 0;
+      double min_mm = 1e300, max_mm = 0;
       for (std::size_t i = 0; i < series_.size(); i += stride) {
-        const double gap = joint->gap_mm(side, series_.X_CM[i], start);
-        least = std::min(least, gap);
-        most_mm = std::max(most_mm, gap);
+        const double gap = joint_->gap_mm(side, series_.X_CM[i], start);
+        min_mm = std::min(min_mm, gap);
+        max_mm = std::max(max_mm, gap);
       }
       const std::string name = side == JawSide::left ? "left" : "right";
-      const double rest = joint->rest_gap_mm(side);
+      const double rest = joint_->rest_gap_mm(side);
       const std::string published =
           "1.3 anterior, 2.5 superior, 2.1 posterior (Ikeda & Kawamura 2013)";
-      // A case that came in with another gap keeps its own.
+      // The range is extended to the gap of the case.
       const double low = std::min(0.8, std::floor(45 * rest) / 100);
-      const std::string why =
-          fmt::format("its gap at rest is {:.2f} mm; going back or aside takes {:.2f} mm of it, {}",
-                      rest, std::max(0.0, rest - least),
-                      least > 0 ? "and bone stays off bone" : "and bone meets bone");
-      add({name + " condyle to fossa, least", "mm", least, low, 3.2, published, false, why});
-      add({name + " condyle to fossa, most", "mm", most_mm, low, 3.2, published, false, why});
+      const std::string why = fmt::format(
+          "its gap at rest is {:.2f} mm; retrusion or lateral motion reduces it by {:.2f} mm, {}",
+          rest, std::max(0.0, rest - min_mm),
+          min_mm > 0 ? "without contact of bone" : "down to contact of bone");
+      // A condyle guided by its fossa keeps the disc gap, which is an input.
+      const bool kept = built_in() && !motion_.muscles && on_fossa(name);
+      add({name + " condyle to fossa, minimum", "mm", min_mm, low, 3.2, published, kept, why});
+      add({name + " condyle to fossa, maximum", "mm", max_mm, low, 3.2, published, kept, why});
     }
   }
 
@@ -351,6 +368,7 @@ class Judge {
   const Motion& motion_;
   const MotionSeries& series_;
   const Vector3d bite_;  // incisal point
+  const std::optional<JointSurfaces> joint_;
   std::vector<Finding> found_;
 };
 
@@ -373,61 +391,65 @@ bool too_coarse(const MotionSeries& series) {
 
 std::vector<Finding> findings(const Scene& scene, const Motion& motion,
                               const MotionSeries& series) {
-  if (!scene.patient.has(Body::mandible)) return {};
-  return Judge(scene, motion, series).all();
+  if (!scene.patient.has_parts(scene.patient.jaw.lower_arch)) return {};
+  return MotionAssessment(scene, motion, series).all();
 }
 
 std::vector<std::string> physiology_warnings(const MotionSeries& series) {
   std::vector<std::string> warnings;
   if (!series.known_landmarks || series.size() == 0) return warnings;
   const std::vector<Extreme> all = extremes(series);
-  const auto warn = [&](const Extreme& most, double limit, const std::string& what) {
-    if (most.value > limit)
-      warnings.push_back(
-          fmt::format("{} at {:.2f} s", fmt::format(fmt::runtime(what), most.value), most.time_s));
+  const auto warn = [&](const Extreme& found, double limit, const std::string& what) {
+    if (found.value > limit)
+      warnings.push_back(fmt::format("{} at {:.2f} s", fmt::format(fmt::runtime(what), found.value),
+                                     found.time_s));
   };
-  const auto limit = [&](const char* name, double most, const char* what) {
-    warn(extreme(all, name), most, what);
+  const auto limit = [&](const char* name, double max_value, const char* what) {
+    warn(extreme(all, name), max_value, what);
   };
   limit("opening", 65, "opening of {:.1f} mm: adults seldom open more than 65 mm");
-  limit("closing_beyond_rest", 6, "the lower incisors go {:.1f} mm above their place at rest");
+  limit("closing_beyond_rest", 6, "the lower incisors rise {:.1f} mm above their rest position");
   limit("protrusion", 13, "protrusion of {:.1f} mm: adults reach 6 to 11 mm");
   limit("laterotrusion_left", 14,
         "laterotrusion of {:.1f} mm to the left: adults reach 7 to 12 mm");
   limit("laterotrusion_right", 14,
         "laterotrusion of {:.1f} mm to the right: adults reach 7 to 12 mm");
-  limit("left_condyle_travel", 23, "the left condyle travels {:.1f} mm: 10 to 20 mm are usual");
-  limit("right_condyle_travel", 23, "the right condyle travels {:.1f} mm: 10 to 20 mm are usual");
-  limit("rotation", 48, "the jaw turns by {:.1f} deg: 28 to 45 are usual at full opening");
+  limit("left_condyle_travel", 23,
+        "the left condyle travels {:.1f} mm: the normal range is 10 to 20 mm");
+  limit("right_condyle_travel", 23,
+        "the right condyle travels {:.1f} mm: the normal range is 10 to 20 mm");
+  limit("rotation", 48,
+        "the jaw rotates by {:.1f} deg: the normal range at full opening is 28 to 45 deg");
   limit("opening_speed", 457 + 183,
         "the incisors open at {:.0f} mm/s: the fastest voluntary opening is 457 +- 183");
   limit("closing_speed", 373 + 142,
         "the incisors close at {:.0f} mm/s: the fastest voluntary closing is 373 +- 142");
   Extreme backward, asymmetry;
-  const auto look = [&](Extreme& most, double value, std::size_t i) {
-    if (value <= most.value) return;
-    most.value = value;
-    most.time_s = series.time_s[i];
+  const auto update = [&](Extreme& largest, double value, std::size_t i) {
+    if (value <= largest.value) return;
+    largest.value = value;
+    largest.time_s = series.time_s[i];
   };
   for (std::size_t i = 0; i < series.size(); ++i) {
     const Measures& m = series.measures[i];
-    look(backward,
-         std::max(m.left_condyle.y() - series.rest.left_condyle.y(),
-                  m.right_condyle.y() - series.rest.right_condyle.y()),
-         i);
-    // Aside one condyle travels and the other does not; in an opening both do.
+    update(backward,
+           std::max(m.left_condyle.y() - series.rest.left_condyle.y(),
+                    m.right_condyle.y() - series.rest.right_condyle.y()),
+           i);
+    // In lateral motion the travels differ normally; in an opening they should not.
     if (std::abs(m.laterotrusion_mm) < 1 && m.opening_mm > 20)
-      look(asymmetry, std::abs(m.left_condyle_travel_mm - m.right_condyle_travel_mm), i);
+      update(asymmetry, std::abs(m.left_condyle_travel_mm - m.right_condyle_travel_mm), i);
   }
   warn(backward, 2.5,
-       "a condyle goes {:.1f} mm behind its seat, where the rear wall of the fossa is");
-  warn(asymmetry, 4, "the condyles' ways differ by {:.1f} mm while the jaw opens straight");
+       "a condyle moves {:.1f} mm behind its rest position, into the rear wall of the fossa");
+  warn(asymmetry, 4,
+       "condylar travel differs by {:.1f} mm between the sides while the jaw opens straight");
   const bool opens = std::any_of(series.phases.begin(), series.phases.end(),
                                  [](const MotionPhase& p) { return p.name == "opening"; });
   const double opening = extreme(all, "opening").value;
   if (opens && series.phases.size() <= 3 && opening > 5 && opening < 30)
     warnings.push_back(fmt::format(
-        "opening of {:.1f} mm: a largest opening under 30 mm counts as impaired", opening));
+        "opening of {:.1f} mm: a maximum opening below 30 mm counts as limited", opening));
   return warnings;
 }
 

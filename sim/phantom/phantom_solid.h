@@ -15,8 +15,8 @@ struct ToothSolid {
   Eigen::AlignedBox3d box;
 };
 
-/// The built-in patient as a solid: signed distances in the cranium's frame, mm, at rest. Every
-/// recipe but the teeth answers on both sides; all are symmetric in x.
+/// The built-in patient as a solid: signed distances in the cranium's frame, mm, at rest. All
+/// recipes are symmetric in x; all but the teeth are defined on both sides.
 struct PhantomSolid {
   FieldRecipe skull, mandible;
   FieldRecipe skin;          // everything inside the skin, eyeballs and mouth included

@@ -6,8 +6,7 @@
 
 namespace condyle {
 
-/// Hash of the bits of a frame's poses, contacts, tissue and measures. Times, stage times and the
-/// displayed face (which follows from the tissue) are left out.
+/// Hash of the bits of every field of a frame except its measured times and the hash itself.
 std::uint64_t state_hash(const FrameState& frame);
 
 }  // namespace condyle

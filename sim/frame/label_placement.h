@@ -5,8 +5,8 @@
 
 namespace condyle {
 
-/// Round numbers from low to high: of the steps 1, 2, 5 times a power of ten the smallest that
-/// gives no more than `most`, or a smaller one where that gives fewer than three.
+/// Round numbers from low to high: the smallest step of 1, 2 or 5 times a power of ten that gives
+/// at most `most` values, or a smaller one where that gives fewer than three.
 struct Ticks {
   double step = 1;
   std::vector<double> values;
@@ -20,24 +20,24 @@ struct DrawnArea {
   double height() const { return bottom - top; }
 };
 
-/// Finds places for words between axes that no curve runs through.
-class WordPlaces {
+/// Finds positions for labels between axes that no curve crosses.
+class LabelPlacement {
  public:
   struct Point {
     double x, y;
   };
 
-  /// unit: about the width of a drawn line; how finely the drawing is looked at.
-  WordPlaces(const DrawnArea& axes, double unit);
+  /// unit: about the width of a drawn line, the resolution of the search.
+  LabelPlacement(const DrawnArea& axes, double unit);
 
-  /// Curves and words, which must not be covered.
+  /// Curves and labels, which must not be covered.
   void add_curve(const std::vector<Point>& points);
   void add_words(const DrawnArea& words) { add_area(words, hard); }
-  /// The inside of a convex outline: covered only where there is no room beside it.
+  /// The interior of a convex outline: covered only where there is no space beside it.
   void add_outline(const std::vector<Point>& corners);
 
-  /// Upper left corner of the place nearest to `near` where words of this size are clear, or else
-  /// cover least; it is taken from now on.
+  /// Upper left corner of the position nearest to `near` where a label of this size covers nothing,
+  /// or else covers least; it is reserved from now on.
   Point take(double width, double height, const DrawnArea& near);
 
  private:
@@ -50,7 +50,7 @@ class WordPlaces {
   DrawnArea axes_;
   double size_;  // of a cell
   int columns_, rows_;
-  std::vector<float> cells_;  // what it costs to cover one, pixels of way
+  std::vector<float> cells_;  // cost of covering each cell, in pixels of distance
 };
 
 }  // namespace condyle

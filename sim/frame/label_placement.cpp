@@ -1,4 +1,4 @@
-#include "sim/frame/plot_places.h"
+#include "sim/frame/label_placement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@ namespace condyle {
 Ticks ticks(double low, double high, int most) {
   constexpr int least = 3;
   const double span = high - low;
-  // In units of a step, so that 0.3 is the third tick and not 0.30000000000000004.
+  // In units of a step, so that the third tick is 0.3 and not 0.30000000000000004.
   const auto first = [&](double step) { return std::ceil(low / step - 1e-9); };
   const auto count = [&](double step) {
     return static_cast<int>(std::floor(high / step + 1e-9) - first(step)) + 1;
@@ -30,14 +30,14 @@ Ticks ticks(double low, double high, int most) {
   return found;
 }
 
-WordPlaces::WordPlaces(const DrawnArea& axes, double unit)
+LabelPlacement::LabelPlacement(const DrawnArea& axes, double unit)
     : axes_(axes),
       size_(2 * unit),
       columns_(std::max(1, static_cast<int>(axes.width() / size_))),
       rows_(std::max(1, static_cast<int>(axes.height() / size_))),
       cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0.f) {}
 
-void WordPlaces::add_area(const DrawnArea& area, float weight) {
+void LabelPlacement::add_area(const DrawnArea& area, float weight) {
   const auto clamped = [](double v, int most) {
     return std::clamp(static_cast<int>(std::floor(v)), 0, most);
   };
@@ -50,7 +50,7 @@ void WordPlaces::add_area(const DrawnArea& area, float weight) {
       cell(column, row) = std::max(cell(column, row), weight);
 }
 
-void WordPlaces::add_curve(const std::vector<Point>& points) {
+void LabelPlacement::add_curve(const std::vector<Point>& points) {
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Point &a = points[i], &b = points[i + 1];
     const double dx = b.x - a.x, dy = b.y - a.y;
@@ -64,7 +64,7 @@ void WordPlaces::add_curve(const std::vector<Point>& points) {
   }
 }
 
-void WordPlaces::add_outline(const std::vector<Point>& corners) {
+void LabelPlacement::add_outline(const std::vector<Point>& corners) {
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column) {
       const double x = axes_.left + (column + 0.5) * size_, y = axes_.top + (row + 0.5) * size_;
@@ -79,8 +79,8 @@ void WordPlaces::add_outline(const std::vector<Point>& corners) {
     }
 }
 
-WordPlaces::Point WordPlaces::take(double width, double height, const DrawnArea& near) {
-  // What the cells above and left of a corner cost together.
+LabelPlacement::Point LabelPlacement::take(double width, double height, const DrawnArea& near) {
+  // Total cost of the cells above and to the left of a corner.
   const auto across = static_cast<std::size_t>(columns_) + 1;
   std::vector<double> sums(across * (static_cast<std::size_t>(rows_) + 1), 0.0);
   const auto sum = [&](int column, int row) -> double& {
@@ -101,7 +101,7 @@ WordPlaces::Point WordPlaces::take(double width, double height, const DrawnArea&
                              sum(column + wide, row) + sum(column, row);
       const double dx = std::max({0.0, x - near.right, near.left - x - width});
       const double dy = std::max({0.0, y - near.bottom, near.top - y - height});
-      // Of places as near as another the one whose middle is.
+      // Among equally near positions, the one whose centre is nearest.
       const double off = std::hypot(x + width / 2 - (near.left + near.right) / 2,
                                     y + height / 2 - (near.top + near.bottom) / 2);
       const double cost = covered + std::hypot(dx, dy) / size_ + 0.05 * off / size_;

@@ -1,4 +1,4 @@
-#include "sim/phantom/solid.h"
+#include "sim/phantom/phantom_solid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,14 +23,14 @@ std::vector<ToothSolid> make_teeth() {
     if (frame.upper) {
       upper.push_back(shape);
     } else {
-      // Shaped a little too high, then carved: every contact comes out at the same small gap.
+      // Shaped slightly too high, then carved, so that every contact has the same small gap.
       for (const auto& opponent : upper) {
         if (!opponent.box.intersects(shape.box)) continue;
         tooth.solid.cut(
             {[opponent](const Eigen::Vector3d& p) { return opponent.distance(p) - contact_gap; },
              opponent.box},
             0);
-        if (opponent.box.min().x() < 0)  // reaches over the midline, and so does its twin
+        if (opponent.box.min().x() < 0)  // crosses the midline, as does its mirror image
           tooth.solid.cut({[opponent](const Eigen::Vector3d& p) {
                              return opponent.distance({-p.x(), p.y(), p.z()}) - contact_gap;
                            },

@@ -13,11 +13,11 @@ std::vector<std::size_t> worst_first(const ClearanceCheck& check) {
   for (std::size_t i = 0; i < check.pairs.size(); ++i) order.push_back(i);
   const auto rank = [&](std::size_t i) {
     const auto& pair = check.pairs[i];
-    const int kind = pair.collides ? 0 : pair.too_near ? 1 : pair.at_rest ? 2 : 3;
-    // Teeth and cut faces are meant to be near: after bones that are not.
+    const int kind = pair.collides ? 0 : pair.too_close ? 1 : pair.at_rest ? 2 : 3;
+    // Pairs that may touch rank after pairs that may not.
     const bool may_touch =
         pair.rule.policy == PairPolicy::allowed || pair.rule.policy == PairPolicy::cut_face;
-    return std::tuple(kind, kind == 3 && may_touch, -pair.beyond_rest_mm, pair.least_distance_mm,
+    return std::tuple(kind, kind == 3 && may_touch, -pair.beyond_rest_mm, pair.min_distance_mm,
                       -pair.rest_depth_mm);
   };
   std::stable_sort(order.begin(), order.end(),
@@ -33,21 +33,22 @@ std::vector<std::size_t> pairs_to_show(const ClearanceCheck& check, std::size_t 
   return shown;
 }
 
-std::string summary_words(const ClearanceCheck& check) {
+std::string summary_text(const ClearanceCheck& check) {
   if (check.pairs.empty())
-    return "Nothing to check: the case has no two bones of which one moves against the other.";
+    return "Nothing to check: no two bones of this case move relative to each other.";
   int collide = 0, near = 0, rest = 0, overlap = 0;
-  constexpr double told_overlap_mm = 0.05;
+  constexpr double reported_overlap_mm = 0.05;
   for (const auto& pair : check.pairs) {
     collide += pair.collides;
-    near += !pair.collides && pair.too_near;
-    rest += !pair.collides && !pair.too_near && (pair.at_rest || pair.coincide);
-    overlap += pair.rest_depth_mm > told_overlap_mm;
+    near += !pair.collides && pair.too_close;
+    rest += !pair.collides && !pair.too_close && (pair.at_rest || pair.coincide);
+    overlap += pair.rest_depth_mm > reported_overlap_mm;
   }
   if (!check.violated()) {
-    const std::string words = "No violation. Every pair keeps its rule during the whole motion";
+    const std::string words =
+        "No violation. Every pair complies with its rule throughout the motion";
     if (overlap == 0) return words + ".";
-    return words + fmt::format(", but {} {} already at rest.", overlap,
+    return words + fmt::format(", but {} {} at rest.", overlap,
                                overlap == 1 ? "pair overlaps" : "pairs overlap");
   }
   std::string words;
@@ -56,30 +57,31 @@ std::string summary_words(const ClearanceCheck& check) {
       words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, count == 1 ? one : several);
   };
   add(collide, "collides", "collide");
-  add(near, "comes too near", "come too near");
-  add(rest, "breaks its rule already at rest", "break their rule already at rest");
+  add(near, "comes too close", "come too close");
+  add(rest, "breaks its rule at rest", "break their rule at rest");
   return fmt::format("Violation. Of {} {}, {}.", check.pairs.size(),
                      check.pairs.size() == 1 ? "pair" : "pairs", words);
 }
 
-std::string open_surface_words(const PairVerdict& pair) {
+std::string open_surface_text(const PairVerdict& pair) {
   const bool open_a = pair.worst.measure.open_a, open_b = pair.worst.measure.open_b;
   if (open_a && open_b)
-    return "Both have open surfaces, which have no inside: near them distance is shown without "
-           "sign, as if apart.";
+    return "Both surfaces are open and have no inside: near the openings, distance is shown "
+           "unsigned, "
+           "as if they were apart.";
   if (!open_a && !open_b) return "";
   return fmt::format(
-      "{0} has open surfaces, which have no inside: near them, distance on {1} is shown without "
-      "sign, as if apart.",
+      "The surface of {0} is open and has no inside: near the openings, distance on {1} is shown "
+      "unsigned, as if they were apart.",
       open_a ? pair.a : pair.b, open_a ? pair.b : pair.a);
 }
 
-std::string push_out_words(const PairVerdict& pair) {
+std::string push_out_text(const PairVerdict& pair) {
   const Eigen::Vector3d& out = *pair.push_out_mm;
   const auto along = [](double mm, const char* plus, const char* minus) {
     return fmt::format("{:.2f} mm {}", std::abs(mm), mm >= 0 ? plus : minus);
   };
-  return fmt::format("At rest, moving {} by {}, {} and {} ({:.2f} mm) parts these two.", pair.b,
+  return fmt::format("At rest, moving {} by {}, {} and {} ({:.2f} mm) separates the two.", pair.b,
                      along(out.x(), "left", "right"), along(out.y(), "back", "forward"),
                      along(out.z(), "up", "down"), out.norm());
 }
@@ -88,9 +90,9 @@ std::string worst_caption(const PairVerdict& pair) {
   const auto& [when, sample, measure, poses] = pair.worst;
   std::string text;
   if (!sample.contact.touching)
-    text = fmt::format("nearest {:.2f} mm", sample.contact.distance_mm);
+    text = fmt::format("{:.2f} mm apart", sample.contact.distance_mm);
   else if (sample.was_apart)
-    text = fmt::format("{:.2f} mm deep where they are apart at rest", sample.depth_mm);
+    text = fmt::format("{:.2f} mm deep at a point where they are apart at rest", sample.depth_mm);
   else if (sample.beyond_rest_mm() > 0 && pair.rest_depth_mm > 0)
     text = fmt::format("{:.2f} mm deep, {:.2f} mm deeper than at rest", sample.depth_mm,
                        sample.beyond_rest_mm());
@@ -98,14 +100,14 @@ std::string worst_caption(const PairVerdict& pair) {
     text = fmt::format("{:.2f} mm deep", sample.depth_mm);
   else
     text = pair.rest_depth_mm > 0
-               ? fmt::format("{:.2f} mm deep, not deeper than at rest", sample.depth_mm)
+               ? fmt::format("{:.2f} mm deep, no deeper than at rest", sample.depth_mm)
                : "touching";
   text += fmt::format(" at {} mm opening, {}° rotation ({:.2f} s{})", tenths(when.opening_mm),
                       tenths(when.rotation_deg), when.time_s,
                       when.between ? ", between two frames" : "");
   if (sample.contact.touching) {
-    text += fmt::format("; contact {:.1f} mm² in {} {}", measure.area_mm2, measure.patches,
-                        measure.patches == 1 ? "patch" : "patches");
+    text += fmt::format("; contact {:.1f} mm² (within 0.1 mm) in {} {}", measure.area_mm2,
+                        measure.patches, measure.patches == 1 ? "patch" : "patches");
     text += measure.volume_known ? fmt::format(", overlap {:.1f} mm³", measure.volume_mm3)
                                  : ", overlap volume unknown: open surface";
   }

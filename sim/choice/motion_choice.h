@@ -1,0 +1,33 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+namespace condyle {
+
+/// The motion that a person chooses: what a command line states, as values.
+struct MotionChoice {
+  std::string spec;                           // a name, a file or movements in words
+  std::map<std::string, double> parameters;   // by name, where they differ from the case's
+  std::map<std::string, double> excitations;  // by group of muscles, where they are set by hand
+  bool operator==(const MotionChoice&) const = default;
+};
+
+/// One number that shapes the motion, as a front end shows it.
+struct MotionSetting {
+  std::string name, label, unit, help;
+  double low = 0, high = 1;              // what is accepted
+  double default_low = 0, default_high = 0;  // published band of adults; none when equal
+  double value = 0;                      // in use
+  bool known = true;                     // false: what the patient's joints and teeth give
+  std::optional<double> patients = {};   // that
+};
+
+/// One group of muscles: 0 to 1 of its maximum, or a fraction of what the motion's file states.
+struct ExcitationSetting {
+  std::string name, label;
+  double high = 1, value = 0;
+};
+
+}  // namespace condyle

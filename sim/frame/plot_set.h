@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/frame/plot.h"
+
+namespace condyle {
+
+/// Plots of one kind, side by side.
+struct PlotSet {
+  std::string name;  // on its tab
+  std::vector<PlotPanel> panels;
+  /// Of curves with as many points: the time of each. The current time is marked on them.
+  std::vector<double> time_s = {};
+};
+
+}  // namespace condyle

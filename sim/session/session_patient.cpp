@@ -1,0 +1,37 @@
+#include "sim/session/session_patient.h"
+
+#include <utility>
+
+#include "engine/core/error.h"
+#include "sim/muscles/default_muscles.h"
+
+namespace condyle {
+
+std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
+                                                           std::filesystem::path folder,
+                                                           SimulatorSettings settings,
+                                                           const Progress& progress) {
+  std::string trouble;
+  const auto build = [&]() -> Scene {
+    try {
+      return make_scene(patient, settings, progress);
+    } catch (const InputError& error) {
+      if (!settings.tissue) throw;
+      trouble = std::string("The soft tissue is left out. ") + error.what();
+      settings.tissue = false;
+      return make_scene(patient, settings, progress);
+    }
+  };
+  auto made = std::make_shared<SessionPatient>(
+      SessionPatient{std::move(folder), build(), {}, {}, std::move(trouble)});
+  made->at_rest = rest_frame(made->scene);
+  carry_face(made->scene, made->at_rest, settings.threads);
+  try {
+    made->muscles = muscles_of(made->scene.patient);
+  } catch (const InputError&) {
+    // Nobody asked for them; a motion by muscles says what is missing.
+  }
+  return made;
+}
+
+}  // namespace condyle

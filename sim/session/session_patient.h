@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/case/muscle.h"
+#include "sim/simulator/simulator.h"
+
+namespace condyle {
+
+/// A patient of a session: what is simulated, and what is reported of it.
+struct SessionPatient {
+  std::filesystem::path folder;  // none: not kept in files
+  Scene scene;
+  FrameState at_rest;           // with its face
+  std::vector<Muscle> muscles;  // the case's, or default ones; none where landmarks are missing
+  std::string trouble;          // what had to be left out, as a sentence
+};
+
+/// Builds the scene of a patient, without soft tissue when the face does not allow any: the bones
+/// can still be moved. throws: InputError.
+std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
+                                                           std::filesystem::path folder,
+                                                           SimulatorSettings settings,
+                                                           const Progress& progress);
+
+}  // namespace condyle

@@ -1,0 +1,121 @@
+#include "sim/simulator/live_steps.h"
+
+#include <algorithm>
+
+namespace condyle {
+namespace {
+
+/// A time farther ahead than this is a jump of the scrub bar, not time running on.
+constexpr double jump_s = 0.25;
+constexpr int settling_iterations = 30;
+
+}  // namespace
+
+TissueBudget live_budget(TissueBudget keeping_up, bool settles, bool jaw_leaps, bool kept_before) {
+  if (settles) keeping_up.max_iterations = std::max(keeping_up.max_iterations, settling_iterations);
+  if (jaw_leaps || kept_before) keeping_up.max_iterations = TissueBudget{}.max_iterations;
+  return keeping_up;
+}
+
+LiveSteps::LiveSteps(const Scene& scene, const Motion& motion, const Motion& opening,
+                     const SimulatorSettings& settings)
+    : scene_(scene),
+      motion_(motion),
+      opening_(opening),
+      settings_(settings),
+      opening_times_(scene.patient, opening),
+      leap_start_(scene, settings.threads),
+      now_(rest_frame(scene)),
+      X_PB_moved_(scene.patient.bodies.bodies().size()) {}
+
+bool LiveSteps::runs_on(const LiveRequest& request) const {
+  const double ahead_s = request.time_s - now_.time_s;
+  return !request.opening_mm && ahead_s > 1.5 * settings_.step_s && ahead_s < jump_s;
+}
+
+StepInput LiveSteps::input(const LiveTarget& target, double time_s, bool shown) {
+  for (std::size_t b = 0; b < X_PB_moved_.size(); ++b)
+    if (target.X_PB_held[b]) X_PB_moved_[b] = *target.X_PB_held[b];
+  const auto& opening_mm = target.request.opening_mm;
+  const Pose X_CM =
+      opening_mm ? opening_.target(opening_times_.time_of(*opening_mm)) : motion_.target(time_s);
+  StepInput input{.time_s = time_s,
+                  .X_PB_target = motion_target_poses(scene_.patient.bodies, X_CM, X_PB_moved_),
+                  .obey_contact = target.request.obey_contact};
+  input.bound_far = !shown;
+  for (std::size_t b = 0; b < X_PB_moved_.size(); ++b)
+    if (target.X_PB_held[b]) input.X_PB_target[b] = *target.X_PB_held[b];
+  return input;
+}
+
+void LiveSteps::begin_at(const BodyPoses& poses) {
+  const BodyId jaw = scene_.patient.jaw.lower_arch;
+  // No path leads there on which tissue could follow.
+  if (scene_.tissue && is_teleport(now_.poses[jaw], poses[jaw])) {
+    now_.tissue = rest_tissue(*scene_.tissue);
+    warm_ = {};
+  }
+  now_.poses = poses;
+  now_.contacts = scene_.contacts.find(poses, nullptr, settings_.threads);
+}
+
+TeleportStart::Asked LiveSteps::asked(const LiveTarget& target, const StepInput& input) const {
+  TeleportStart::Asked asked{target.request, input.X_PB_target, std::vector<bool>(X_PB_moved_.size())};
+  for (std::size_t b = 0; b < X_PB_moved_.size(); ++b)
+    asked.follows_motion[b] =
+        !target.X_PB_held[b] && scene_.patient.bodies.moved_by_motion(BodyId{static_cast<int>(b)});
+  return asked;
+}
+
+SimulatorSettings LiveSteps::settings_for(const LiveTarget& target, const StepInput& input) const {
+  const BodyId jaw = scene_.patient.jaw.lower_arch;
+  SimulatorSettings settings = settings_;
+  // Soft tissue that nobody sees waits; it follows from where it was left.
+  settings.tissue = settings.tissue && target.request.face;
+  const bool jaw_leaps =
+      is_teleport(pose_in(now_.tissue.X_CB, jaw), placed(scene_.patient.bodies, input.X_PB_target)[jaw]);
+  settings.tissue_budget =
+      live_budget(settings.tissue_budget, settling_ > 0, jaw_leaps, now_.tissue.kept);
+  return settings;
+}
+
+void LiveSteps::keep_moved(const LiveTarget& target) {
+  const BodyTree& bodies = scene_.patient.bodies;
+  for (int b = 1; b < bodies.size(); ++b)
+    if (const auto i = static_cast<std::size_t>(b); target.X_PB_held[i])
+      X_PB_moved_[i] = pose_in(bodies[BodyId{b}].parent, BodyId{b}, now_.poses);
+}
+
+void LiveSteps::count_settling(bool tissue) {
+  const bool settles = settling_ > 0;
+  const bool settled = !tissue || now_.tissue.converged || (settles && now_.tissue.kept);
+  settling_ = settled ? 0 : settles ? settling_ - 1 : most_settling;
+}
+
+void LiveSteps::step(const LiveTarget& target, bool shown) {
+  const bool on_the_way = runs_on(target.request);
+  const double time_s = on_the_way ? now_.time_s + settings_.step_s : target.request.time_s;
+  StageTimes motion_time;
+  StepInput step_input;
+  {
+    const StageTimer timer(motion_time, Stage::motion);
+    step_input = input(target, time_s, shown);
+  }
+  const TeleportStart::Asked question = asked(target, step_input);
+  if (const auto start = leap_start_.of(question, now_, target.grips != answered_grips_))
+    begin_at(*start);
+  const SimulatorSettings settings = settings_for(target, step_input);
+  now_ = condyle::step(scene_, now_, step_input, settings, warm_);
+  now_.times[Stage::motion] = motion_time[Stage::motion];
+  keep_moved(target);
+  count_settling(settings.tissue);
+  caught_up_ = !on_the_way;
+  if (caught_up_) {
+    answered_ = target.request;
+    answered_grips_ = target.grips;
+    leap_start_.ended(question, now_);
+  }
+  if (shown && target.request.face) carry_face(scene_, now_, settings_.threads);
+}
+
+}  // namespace condyle

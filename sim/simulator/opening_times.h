@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "sim/case/case.h"
+#include "sim/motion/motion.h"
+
+namespace condyle {
+
+/// When a motion has opened the mouth so far. Samples of the motion are kept, so that only the
+/// first questions cost as much as sampling it.
+class OpeningTimes {
+ public:
+  /// Patient and motion must outlive it.
+  OpeningTimes(const Case& patient, const Motion& motion) : patient_(patient), motion_(motion) {}
+
+  /// Time at which the motion first opens by `opening_mm`, or opens widest if it does not open so
+  /// far; found by bisection between rest and that sample.
+  double time_of(double opening_mm);
+
+ private:
+  double opening_at(double time_s) const;
+  double sampled_opening(int sample);
+
+  const Case& patient_;
+  const Motion& motion_;
+  std::vector<double> sampled_mm_;  // at equal intervals from the start, as far as it was asked for
+};
+
+}  // namespace condyle
