@@ -25,7 +25,7 @@ std::string take_glfw_error() {
 }
 
 GlfwSession::GlfwSession() {
-  // Asked before GLFW is: its own answer does not tell a missing display from a broken one.
+  // Asked before GLFW is: its own error does not distinguish a missing display from a broken one.
   if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY"))
     throw MachineError(
         std::string("no display was found: DISPLAY is not set, so no window can be opened.") +

@@ -10,12 +10,14 @@
 #include <utility>
 
 #include "engine/core/error.h"
-#include "render/window/playback.h"
+#include "render/window/view/playback.h"
 #include "render/window/window_state.h"
 
 namespace condyle {
 
 namespace {
+
+constexpr int min_window_width = 800, min_window_height = 500;  // that the panels need
 
 void ask_for_opengl() {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -55,7 +57,8 @@ Window::State::State(const WindowOptions& wanted)
                        "); install libgl1-mesa-dri or the graphics card's driver. Pictures and "
                        "films need no window: condyle record --motion opening --out DIR");
   }
-  glfwSetWindowSizeLimits(window, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  glfwSetWindowSizeLimits(window, min_window_width, min_window_height, GLFW_DONT_CARE,
+                          GLFW_DONT_CARE);
   glfwMakeContextCurrent(window);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window, this);
@@ -67,19 +70,19 @@ Window::State::State(const WindowOptions& wanted)
   panels.emplace(1.0f, arrangement.light);
   panels->arrange(arrangement.sizes, arrangement.open_groups, arrangement.record);
   texture.emplace();
-  painter.emplace([] { Window::wake(); });
+  render_thread.emplace([] { Window::wake(); });
   ImGui_ImplGlfw_InitForOpenGL(window, true);  // calls our callbacks before its own
   install_key_callbacks();
   ImGui_ImplOpenGL3_Init("#version 330 core");
   const double asked = screen_scale() * arrangement.ui_scale.value_or(0);
-  if (options.usual_scale && panel_scale() < asked - 0.005)
+  if (options.default_scale && panel_scale() < asked - 0.005)
     panels->say(fmt::format("Panels at {:.0f} %: {:.0f} % do not fit into this window",
                             100 * panel_scale(), 100 * asked));
 }
 
 Window::State::~State() {
   if (window) glfwHideWindow(window);  // it is gone at once, though a picture is being drawn
-  painter.reset();
+  render_thread.reset();
   texture.reset();
   if (imgui) {
     ImGui_ImplOpenGL3_Shutdown();
@@ -90,8 +93,8 @@ Window::State::~State() {
   if (window) glfwDestroyWindow(window);
 }
 
-/// The painter found no context through EGL: it gets one of the display's. gives: whether there is
-/// one.
+/// The render_thread found no context through EGL: it gets one of the display's. gives: whether
+/// there is one.
 bool Window::State::lend_context() {
   if (spare) return false;
   glfwDefaultWindowHints();
@@ -99,7 +102,7 @@ bool Window::State::lend_context() {
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
   spare = glfwCreateWindow(16, 16, "", nullptr, nullptr);
   if (!spare) return false;
-  painter->use_context([lent = spare] {
+  render_thread->use_context([lent = spare] {
     glfwMakeContextCurrent(lent);
     if (glfwGetCurrentContext() != lent)
       throw MachineError("the display lends no OpenGL context to draw pictures with");
@@ -115,22 +118,22 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
                        std::shared_ptr<const void> keeper) {
   State& s = *state_;
   s.scene = scene;
-  s.seen_face = SeenFace(scene.parts);
+  s.displayed_face = DisplayedFace(scene.parts);
   s.view = start;
   s.view.fit(scene);
-  s.order = {.number = s.order.number};
-  s.kept.reset();
-  s.kept_by_hand = false;
-  s.kept_values.reset();
+  s.render_request = {.number = s.render_request.number};
+  s.comparison.frame.reset();
+  s.comparison.by_hand = false;
+  s.comparison.values.reset();
   s.cannot_draw = false;
   if (!scene.parts.empty())
-    s.order.parts = std::make_shared<DrawnParts>(
+    s.render_request.parts = std::make_shared<DrawnParts>(
         DrawnParts{scene.parts, scene.distance_colours, std::move(keeper)});
   s.box.setEmpty();
   for (const Part& part : scene.parts)
     for (const auto& vertex : part.mesh.vertices) s.box.extend(vertex);
   if (s.box.isEmpty()) s.box.extend(Eigen::Vector3d::Zero());
-  s.held.reset();
+  s.input.held.reset();
   s.plots.clear();
   s.overlays = {};
   s.overlays_due = true;
@@ -142,7 +145,7 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
                                    : (scene.case_name + " - " + s.options.title).c_str());
   s.fit_scale();
   s.set_standard_view(camera_of(Command::reset_view));
-  s.scene_changed = true;
+  s.pacing.scene_changed = true;
   s.noticed();
 }
 
@@ -155,8 +158,8 @@ void Window::keep_open() { glfwSetWindowShouldClose(state_->window, GLFW_FALSE);
 const ViewState& Window::poll() {
   State& s = *state_;
   s.wait_for_events();
-  const double elapsed = std::min(0.25, seconds_since(s.last_poll));
-  s.last_poll = State::Clock::now();
+  const double elapsed = std::min(0.25, seconds_since(s.pacing.last_poll));
+  s.pacing.last_poll = State::Clock::now();
   if (s.view.playing) {
     advance_clock(s.view, elapsed, s.scene.duration_s, s.frame() ? s.frame()->time_s : 0);
   }
@@ -166,8 +169,9 @@ const ViewState& Window::poll() {
 void Window::set_map_surfaces(std::vector<MapSurface> surfaces,
                               std::shared_ptr<const void> keeper) {
   State& s = *state_;
-  s.order.map = std::make_shared<DrawnMap>(DrawnMap{std::move(surfaces), std::move(keeper)});
-  s.scene_changed = true;
+  s.render_request.map =
+      std::make_shared<DrawnMap>(DrawnMap{std::move(surfaces), std::move(keeper)});
+  s.pacing.scene_changed = true;
 }
 
 void Window::show(FrameState frame, const LoopStatistics& loop, MapValues values) {
@@ -176,18 +180,19 @@ void Window::show(FrameState frame, const LoopStatistics& loop, MapValues values
   const bool same = before && before->time_s == frame.time_s &&
                     before->state_hash == frame.state_hash &&
                     before->face.size() == frame.face.size();
-  if (s.loop.message != loop.message) s.frames_due = std::max(s.frames_due, 1);
+  if (s.loop.message != loop.message) s.pacing.frames_due = std::max(s.pacing.frames_due, 1);
   s.loop = loop;
-  s.governor.simulated(loop.steps_per_second);
-  if (s.order.values ? values != *s.order.values : !values.empty()) {
-    s.order.values = values.empty() ? nullptr : std::make_shared<MapValues>(std::move(values));
-    s.scene_changed = true;
+  s.pacing.governor.simulated(loop.steps_per_second);
+  if (s.render_request.values ? values != *s.render_request.values : !values.empty()) {
+    s.render_request.values =
+        values.empty() ? nullptr : std::make_shared<MapValues>(std::move(values));
+    s.pacing.scene_changed = true;
   }
   if (!same) {
-    s.order.frame = std::make_shared<FrameState>(std::move(frame));
-    if (!s.kept) s.kept = s.order.frame;
-    s.last_change = State::Clock::now();
-    s.scene_changed = true;
+    s.render_request.frame = std::make_shared<FrameState>(std::move(frame));
+    if (!s.comparison.frame) s.comparison.frame = s.render_request.frame;
+    s.pacing.last_change = State::Clock::now();
+    s.pacing.scene_changed = true;
   }
   s.draw(false);
 }
@@ -196,14 +201,14 @@ void Window::draw() { state_->draw(false); }
 
 void Window::renew_scene(const WindowScene& scene, std::shared_ptr<const void> keeper) {
   State& s = *state_;
-  s.order.parts = std::make_shared<DrawnParts>(
+  s.render_request.parts = std::make_shared<DrawnParts>(
       DrawnParts{scene.parts, scene.distance_colours, std::move(keeper)});
-  s.order.map.reset();
-  s.order.values.reset();
-  s.kept_values.reset();
-  s.held.reset();
-  s.scene_changed = true;
-  s.seen_face = SeenFace(scene.parts);
+  s.render_request.map.reset();
+  s.render_request.values.reset();
+  s.comparison.values.reset();
+  s.input.held.reset();
+  s.pacing.scene_changed = true;
+  s.displayed_face = DisplayedFace(scene.parts);
   update_scene(scene);
 }
 
@@ -224,21 +229,22 @@ void Window::change(const std::function<void(ViewState&)>& edit, bool remember) 
   s.noticed();
 }
 
-std::vector<Wish> Window::take_wishes() {
+std::vector<Request> Window::take_requests() {
   State& s = *state_;
-  auto wishes = s.panels->take_wishes();
-  for (Wish& one : wishes)
-    if (auto* record = std::get_if<wish::Record>(&one)) {
+  auto requests = s.panels->take_requests();
+  for (Request& one : requests)
+    if (auto* record = std::get_if<request::Record>(&one)) {
       record->picture = s.settings();
-      const Pose X_RC = s.view.hands.X_RC(s.frame() ? s.frame()->X_CM : Pose{});
+      const Pose X_RC = s.view.hands.X_RC(s.frame() ? s.frame()->poses[s.view.hands.jaw] : Pose{});
       record->upright = X_RC.R.conjugate() * Eigen::Vector3d::UnitZ();
-      if (s.view.look.wipe) record->kept = s.kept;
+      if (s.view.look.wipe) record->kept = s.comparison.frame;
     }
-  if (!s.dropped.empty()) wishes.push_back(wish::Open{std::exchange(s.dropped, {})});
-  return wishes;
+  if (!s.input.dropped.empty())
+    requests.push_back(request::Open{std::exchange(s.input.dropped, {})});
+  return requests;
 }
 
-void Window::ask_roles(const wish::Import& files) {
+void Window::ask_roles(const request::Import& files) {
   state_->panels->ask_roles(files);
   state_->noticed();
 }
@@ -252,35 +258,35 @@ const Question* Window::question() const { return state_->panels->question(); }
 
 void Window::show_plots(std::vector<PlotSet> plots) {
   state_->plots = std::move(plots);
-  if (state_->view.plots) state_->frames_due = std::max(state_->frames_due, 1);
+  if (state_->view.plots) state_->pacing.frames_due = std::max(state_->pacing.frames_due, 1);
 }
 
 void Window::show_overlays(Overlays overlays) {
   state_->overlays = std::move(overlays);
-  state_->overlays_due = state_->scene_changed = true;
+  state_->overlays_due = state_->pacing.scene_changed = true;
 }
 
 void Window::show_progress(const std::string& what, double fraction, bool can_cancel) {
   State& s = *state_;
-  if (what == s.progress && std::abs(fraction - s.progress_fraction) < 0.005 &&
-      can_cancel == s.can_cancel)
+  if (what == s.work.progress && std::abs(fraction - s.work.progress_fraction) < 0.005 &&
+      can_cancel == s.work.can_cancel)
     return;
-  s.progress = what;
-  s.progress_fraction = fraction;
-  s.can_cancel = can_cancel;
-  s.frames_due = std::max(s.frames_due, 1);
+  s.work.progress = what;
+  s.work.progress_fraction = fraction;
+  s.work.can_cancel = can_cancel;
+  s.pacing.frames_due = std::max(s.pacing.frames_due, 1);
 }
 
 void Window::show_recording(const std::string& what, double fraction) {
   State& s = *state_;
-  if (what == s.recording && fraction == s.recording_fraction) return;
-  s.recording = what;
-  s.recording_fraction = fraction;
-  s.frames_due = std::max(s.frames_due, 1);
+  if (what == s.work.recording && fraction == s.work.recording_fraction) return;
+  s.work.recording = what;
+  s.work.recording_fraction = fraction;
+  s.pacing.frames_due = std::max(s.pacing.frames_due, 1);
 }
 
 void Window::show_unfinished(const std::string& sentence) {
-  state_->unfinished = sentence;
+  state_->work.unfinished = sentence;
   state_->noticed();
 }
 
@@ -289,8 +295,8 @@ void Window::say(const std::string& sentence) {
   state_->noticed();
 }
 
-void Window::report_error(const std::string& sentence) {
-  state_->panels->report_error(sentence);
+void Window::report_error(const std::string& title, const std::string& sentence) {
+  state_->panels->report_error({title, sentence});
   state_->noticed();
 }
 
@@ -299,13 +305,13 @@ void Window::wake() { glfwPostEmptyEvent(); }
 const ViewState& Window::view() const { return state_->view; }
 const WindowScene& Window::scene() const { return state_->scene; }
 const std::string& Window::said() const { return state_->panels->said(); }
-std::string Window::trouble() const { return state_->panels->trouble(); }
+std::string Window::trouble() const { return state_->panels->trouble().sentence; }
 const Camera& Window::camera() const { return state_->camera; }
 void Window::set_camera(const Camera& camera) {
   state_->camera = camera;
-  state_->scene_changed = true;
+  state_->pacing.scene_changed = true;
 }
-const PictureStatistics& Window::pictures() const { return state_->pictures; }
+const PictureStatistics& Window::pictures() const { return state_->pacing.pictures; }
 const std::vector<DrawnItem>& Window::items() const { return state_->panels->items(); }
 ViewRect Window::view_rect() const { return state_->view_rect(); }
 
@@ -321,8 +327,8 @@ Arrangement Window::arrangement() const {
 
 Image Window::picture() {
   Image image;
-  state_->order_picture();
-  state_->painter->finish();
+  state_->request_picture();
+  state_->render_thread->finish();
   state_->draw(true, &image);
   return image;
 }

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "render/camera.h"
-#include "render/image.h"
-#include "render/window/arrangement.h"
-#include "render/window/panels.h"
-#include "render/window/picture_order.h"
-#include "render/window/plot_set.h"
-#include "render/window/view_state.h"
+#include "render/camera/camera.h"
+#include "render/image/image.h"
+#include "render/window/settings/arrangement.h"
+#include "render/window/front_end.h"
+#include "render/window/panels/panels.h"
+#include "render/window/picture/render_request.h"
+#include "render/window/view/view_state.h"
 #include "sim/frame/frame_state.h"
 
 namespace condyle {
@@ -25,7 +25,7 @@ struct WindowOptions {
   bool fit_screen = false;  // make the window no larger than the screen, which may be another one
   // Of panels and text, times the screen's own scale, which Ctrl+0 comes back to; none: 1, more on
   // screens with small pixels.
-  std::optional<double> usual_scale = {};
+  std::optional<double> default_scale = {};
   std::filesystem::path picture_folder = ".";  // where F12 and recordings go
 };
 
@@ -41,11 +41,11 @@ struct WindowOptions {
 ///     }
 ///
 /// One window at a time, on the main thread; only wake() may be called from others.
-class Window {
+class Window : public FrontEnd {
  public:
   /// throws: MachineError when there is no display or no OpenGL 3.3, saying what to do instead.
   explicit Window(const WindowOptions& options = {});
-  ~Window();
+  ~Window() override;
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
@@ -53,60 +53,62 @@ class Window {
   /// The parts are uploaded beside the window; `keeper` keeps them for as long as they are needed
   /// (without one they must outlive the window).
   void set_scene(const WindowScene& scene, const ViewState& start = {},
-                 std::shared_ptr<const void> keeper = {});
+                 std::shared_ptr<const void> keeper = {}) override;
 
   /// False once the person has closed the window.
   bool open() const;
-  void close();
+  void close() override;
   /// The person has closed it, but it stays: there is something to ask.
-  void keep_open();
+  void keep_open() override;
 
   /// Handles events, moves the playing clock and gives what is wanted now. Waits for the next
   /// picture's time while something moves (at most 1/60 s) and up to 1/4 s when nothing does.
-  const ViewState& poll();
+  const ViewState& poll() override;
 
   /// Surfaces that frames may come with values for, in the order of these; kept as the parts are.
-  void set_map_surfaces(std::vector<MapSurface> surfaces, std::shared_ptr<const void> keeper = {});
+  void set_map_surfaces(std::vector<MapSurface> surfaces,
+                        std::shared_ptr<const void> keeper = {}) override;
 
   /// Takes over a frame and draws if anything has changed. The same frame again costs nothing.
   /// `values`: one per vertex of each map surface, drawn in the scene's colours for distances;
   /// none: parts look like themselves.
-  void show(FrameState frame, const LoopStatistics& loop = {}, MapValues values = {});
+  void show(FrameState frame, const LoopStatistics& loop = {}, MapValues values = {}) override;
   /// Draws if anything has changed: when there is no new frame.
-  void draw();
+  void draw() override;
 
   /// The same patient made anew: its surfaces, in other memory. View and edits stay.
-  void renew_scene(const WindowScene& scene, std::shared_ptr<const void> keeper = {});
+  void renew_scene(const WindowScene& scene, std::shared_ptr<const void> keeper = {}) override;
   /// Another motion, other words or lists of the same case; its parts are the same.
-  void update_scene(const WindowScene& scene);
+  void update_scene(const WindowScene& scene) override;
   /// An edit that the person did not make by hand; with `remember` it can be undone.
-  void change(const std::function<void(ViewState&)>& edit, bool remember = false);
+  void change(const std::function<void(ViewState&)>& edit, bool remember = false) override;
   /// What was asked for once, since the last call.
-  std::vector<Wish> take_wishes();
+  std::vector<Request> take_requests() override;
   /// Asks for the roles of surfaces that were dropped or opened.
-  void ask_roles(const wish::Import& files);
-  /// Asks in a box; the answer is a wish.
-  void ask(Question question);
-  /// What is asked and not answered yet.
+  void ask_roles(const request::Import& files) override;
+  /// Asks in a box; the answer is a request.
+  void ask(Question question) override;
+  /// The question that has not been answered yet.
   const Question* question() const;
-  void show_plots(std::vector<PlotSet> plots);
+  void show_plots(std::vector<PlotSet> plots) override;
   /// Lines and sheets in space, of the newest frame, instead of those before.
-  void show_overlays(Overlays overlays);
+  void show_overlays(Overlays overlays) override;
 
-  /// What is being prepared, 0 to 1; empty when it is done.
-  void show_progress(const std::string& what, double fraction, bool can_cancel = false);
+  /// Progress of background work, 0 to 1; an empty text when it is done.
+  void show_progress(const std::string& what, double fraction, bool can_cancel = false) override;
   /// The recording that is being made, 0 to 1; none when `what` is empty.
-  void show_recording(const std::string& what, double fraction);
+  void show_recording(const std::string& what, double fraction) override;
   /// Of a recording that can go on, as a sentence; empty: there is none.
-  void show_unfinished(const std::string& sentence);
+  void show_unfinished(const std::string& sentence) override;
   /// Says a sentence at the foot of the window for some seconds.
-  void say(const std::string& sentence);
+  void say(const std::string& sentence) override;
   /// Shows a sentence in a dialog.
-  void report_error(const std::string& sentence);
+  void report_error(const std::string& title, const std::string& sentence) override;
   /// Ends the wait of poll(), e.g. when a frame is ready. From any thread, while the window lives.
   static void wake();
+  void wake_up() override { wake(); }
 
-  const ViewState& view() const;
+  const ViewState& view() const override;
   const WindowScene& scene() const;
   /// The sentence of the dialog that is open; empty without one.
   std::string trouble() const;
@@ -119,7 +121,7 @@ class Window {
   const std::vector<DrawnItem>& items() const;
   /// Where the 3-D view is.
   ViewRect view_rect() const;
-  /// What a person has made of it.
+  /// The arrangement that the user has chosen.
   Arrangement arrangement() const;
   /// Draws now, the finished 3-D picture with it, and gives the whole window.
   Image picture();

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "render/window/panels_drawing.h"
-#include "render/window/pointing.h"
+#include "render/window/input/picking.h"
+#include "render/window/panels/panels_drawing.h"
 #include "render/window/window_state.h"
 #include "sim/frame/body_poses.h"
 
@@ -46,9 +46,10 @@ ViewRect Window::State::view_rect() const {
   return panels->layout(w, h, view).view;
 }
 
-/// The camera in the cranium's frame, in which all that is drawn is told.
+/// The camera in the cranium's frame, in which everything is drawn.
 Camera Window::State::seen() const {
-  return told_in(view.hands.X_RC(frame() ? frame()->X_CM : Pose{}).inverse(), camera);
+  return expressed_in(view.hands.X_RC(frame() ? frame()->poses[view.hands.jaw] : Pose{}).inverse(),
+                      camera);
 }
 
 PictureSettings Window::State::settings() const {
@@ -64,7 +65,7 @@ PictureSettings Window::State::settings() const {
   wanted.backdrop = arrangement.light ? Backdrop::light : Backdrop::dark;
   wanted.skin_opacity = view.skin_opacity;
   wanted.part_opacity = part_opacities(scene, view);
-  if (order.parts) apply_look(wanted);
+  if (render_request.parts) apply_look(wanted);
   return wanted;
 }
 
@@ -100,8 +101,8 @@ void Window::State::apply_look(PictureSettings& wanted) const {
 }
 
 bool Window::State::moving() const {
-  return view.playing || view.falling || held || drag != CameraDrag::none ||
-         seconds_since(last_change) < calm_s;
+  return view.playing || view.falling || input.held || input.drag != CameraDrag::none ||
+         seconds_since(pacing.last_change) < calm_s;
 }
 
 double Window::State::screen_scale() const {
@@ -115,7 +116,7 @@ float Window::State::panel_scale() const {
   int pixels = 0, ignored = 0;
   glfwGetFramebufferSize(window, &pixels, &ignored);
   const double screen = screen_scale();
-  return fitting_scale(screen * arrangement.ui_scale.value_or(usual_scale(screen, pixels)), w, h);
+  return fitting_scale(screen * arrangement.ui_scale.value_or(default_scale(screen, pixels)), w, h);
 }
 
 void Window::State::fit_scale() {
@@ -134,8 +135,8 @@ void Window::State::scale_panels(Command command) {
   std::optional<double>& ui_scale = arrangement.ui_scale;
   const float before = panels->theme().scale;
   const double steps = command == Command::larger_panels ? 1 : -1;
-  if (command == Command::usual_panels)
-    ui_scale = options.usual_scale;
+  if (command == Command::default_panels)
+    ui_scale = options.default_scale;
   else
     ui_scale = std::clamp(step * std::round(before / step + steps), least, most) / screen_scale();
   const float after = panel_scale();
@@ -154,21 +155,22 @@ void Window::State::interface_frame() {
   // The backend only knows where the mouse is now; the queue knows each press and where it was;
   // so it is with keys. What was typed goes first: it is for a field that was clicked before, and a
   // click on a button beside the field must find it written.
-  const bool look_at_mouse = keys.empty();
-  if (look_at_mouse) mouse_shown = mouse.take();
-  const MouseMoment& moment = mouse_shown;
+  const bool look_at_mouse = input.keys.empty();
+  if (look_at_mouse) input.mouse_shown = input.mouse.take();
+  const MouseMoment& moment = input.mouse_shown;
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(moment.x), static_cast<float>(moment.y)};
   for (std::size_t i = 0; i < moment.down.size(); ++i) io.MouseDown[i] = moment.down[i];
-  if (!keys.empty()) {
-    const KeyMoment next = keys.front();
-    keys.pop_front();
+  if (!input.keys.empty()) {
+    const WindowInput::KeyMoment next = input.keys.front();
+    input.keys.pop_front();
     if (next.letter) {
       io.KeyCtrl = io.KeyShift = false;
       io.AddInputCharacter(next.letter);
     } else {
       io.KeysDown[next.key] = next.down;
-      // What is held besides this key, and the key itself: a release still tells it as held.
+      // Modifiers held besides this key, and the key itself: at its release GLFW still reports it
+      // as held.
       const auto held_now = [&](int mod, int left_key, int right_key) {
         const bool itself = next.key == left_key || next.key == right_key;
         return itself ? next.down : (next.mods & mod) != 0;
@@ -191,29 +193,31 @@ void Window::State::interface_frame() {
         reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture->name())), low, high,
         {0, 1}, {1, 0});
   }
-  const auto seen_places = frame() ? seen_face.places(*frame()) : std::vector<Eigen::Vector3f>();
-  const PanelInput input{.scene = scene,
-                         .frame = frame(),
-                         .seen_face = seen_places,
-                         .loop = loop,
-                         .pictures = pictures,
-                         .camera = seen(),
-                         .box = box,
-                         .progress = progress.empty() && order.parts && !drawn() && !cannot_draw
-                                         ? std::string(preparing)
-                                         : progress,
-                         .progress_fraction = progress_fraction,
-                         .can_cancel = can_cancel,
-                         .key = overlays.key,
-                         .pointed = pointed(),
-                         .plots = plots,
-                         .kept = kept_by_hand,
-                         .recording = !recording.empty(),
-                         .recording_what = recording,
-                         .recording_fraction = recording_fraction,
-                         .unfinished = unfinished,
-                         .picture_folder = options.picture_folder};
-  const std::vector<Command> commands = panels->draw(input, view, w, h);
+  const auto seen_places =
+      frame() ? displayed_face.places(*frame()) : std::vector<Eigen::Vector3f>();
+  const PanelInput shown{
+      .scene = scene,
+      .frame = frame(),
+      .displayed_face = seen_places,
+      .loop = loop,
+      .pictures = pacing.pictures,
+      .camera = seen(),
+      .box = box,
+      .progress = work.progress.empty() && render_request.parts && !drawn() && !cannot_draw
+                      ? std::string(preparing)
+                      : work.progress,
+      .progress_fraction = work.progress_fraction,
+      .can_cancel = work.can_cancel,
+      .key = overlays.key,
+      .hover_text = hover_text(),
+      .plots = plots,
+      .kept = comparison.by_hand,
+      .recording = !work.recording.empty(),
+      .recording_what = work.recording,
+      .recording_fraction = work.recording_fraction,
+      .unfinished = work.unfinished,
+      .picture_folder = options.picture_folder};
+  const std::vector<Command> commands = panels->draw(shown, view, w, h);
   ImGui::Render();
   io.KeyCtrl = ctrl_of_keys;
   io.KeyShift = shift_of_keys;
@@ -221,26 +225,26 @@ void Window::State::interface_frame() {
 }
 
 /// The part under the mouse and its distance, while distances are shown.
-std::string Window::State::pointed() const {
+std::string Window::State::hover_text() const {
   constexpr double seen_through = 0.5;  // what is paler does not hide what is pointed at
-  const MouseMoment& now = mouse.now();
-  if (!view.distances || !order.values || !order.map || drag != CameraDrag::none ||
-      !over_view(now.x, now.y))
+  const MouseMoment& now = input.mouse.now();
+  if (!view.distances || !render_request.values || !render_request.map ||
+      input.drag != CameraDrag::none || !over_view(now.x, now.y))
     return {};
   if (view.shows_face(scene) && view.skin_opacity > seen_through) return {};
-  std::vector<PointedSurface> surfaces;
+  std::vector<PickableSurface> surfaces;
   std::vector<std::size_t> parts;
-  const auto& finer = order.map->surfaces;
-  for (std::size_t i = 0; i < std::min(finer.size(), order.values->size()); ++i) {
+  const auto& finer = render_request.map->surfaces;
+  for (std::size_t i = 0; i < std::min(finer.size(), render_request.values->size()); ++i) {
     const std::size_t part = finer[i].part;
     if (part >= view.parts.size() || !view.parts[part].shown ||
         view.parts[part].opacity <= seen_through)
       continue;
     surfaces.push_back(
-        {finer[i].mesh, pose_of(scene.parts, part, frame()->poses()), (*order.values)[i]});
+        {finer[i].mesh, pose_of(scene.parts[part], frame()->poses), (*render_request.values)[i]});
     parts.push_back(part);
   }
-  const auto found = pointed_value(seen(), view_rect(), {now.x, now.y}, surfaces);
+  const auto found = pick_value(seen(), view_rect(), {now.x, now.y}, surfaces);
   if (!found) return {};
   const std::string name = display_name(scene.parts[parts[found->surface]].name);
   const ColourMap& map = *scene.distance_colours;
@@ -250,90 +254,94 @@ std::string Window::State::pointed() const {
   return fmt::format("{}: {:.2f} mm", name, found->value);
 }
 
-bool Window::State::drawn() const { return order.parts && texture->parts() == order.parts; }
+bool Window::State::drawn() const {
+  return render_request.parts && texture->parts() == render_request.parts;
+}
 
 /// Asks for the picture as everything is now.
-void Window::State::order_picture() {
-  if (!order.parts) return;
-  order.camera = seen();
-  order.settings = settings();
-  order.moving = moving();
-  order.quality = governor.choose(order.moving);
-  order.beside = view.look.wipe && order.frame ? kept : nullptr;
-  order.wipe_at = view.look.wipe_at;
-  order.beside_values = order.beside ? kept_values : nullptr;
-  order.displacement = view.look.displacement;
-  if (overlays_due) order.overlays = std::make_shared<Overlays>(overlays);
+void Window::State::request_picture() {
+  if (!render_request.parts) return;
+  render_request.camera = seen();
+  render_request.settings = settings();
+  render_request.moving = moving();
+  render_request.quality = pacing.governor.choose(render_request.moving);
+  render_request.beside = view.look.wipe && render_request.frame ? comparison.frame : nullptr;
+  render_request.wipe_at = view.look.wipe_at;
+  render_request.beside_values = render_request.beside ? comparison.values : nullptr;
+  render_request.displacement = view.look.displacement;
+  if (overlays_due) render_request.overlays = std::make_shared<Overlays>(overlays);
   overlays_due = false;
-  ++order.number;
-  last_order = Clock::now();
-  painter->order(order);
-  pictures.finished = false;
-  ordered_look = view.look;
-  scene_changed = false;  // also when it fails: the next change tries again
+  ++render_request.number;
+  pacing.last_request = Clock::now();
+  render_thread->request(render_request);
+  pacing.pictures.finished = false;
+  requested_look = view.look;
+  pacing.scene_changed = false;  // also when it fails: the next change tries again
 }
 
 /// Shows the newest picture if there is one. gives: whether there was.
 bool Window::State::take_picture() {
-  const auto picture = painter->take();
-  if (!picture || picture->parts != order.parts) return false;
+  const auto picture = render_thread->take();
+  if (!picture || picture->parts != render_request.parts) return false;
   texture->show(*picture);
   cannot_draw = false;
-  governor.measured(picture->moving, picture->ms);
-  pictures.picture_ms = picture->ms;
+  pacing.governor.measured(picture->moving, picture->ms);
+  pacing.pictures.picture_ms = picture->ms;
   // A quick machine draws no better at rest than while things move: then none follows.
-  pictures.finished = picture->number == order.number && !scene_changed &&
-                      picture->quality == governor.choose(false);
-  pictures.render_scale = picture->quality.render_scale;
-  pictures.samples = picture->samples;
+  pacing.pictures.finished = picture->number == render_request.number && !pacing.scene_changed &&
+                             picture->quality == pacing.governor.choose(false);
+  pacing.pictures.render_scale = picture->quality.render_scale;
+  pacing.pictures.samples = picture->samples;
   // Pictures a second only mean something while things move.
-  const double counted_s = seconds_since(counted_from);
-  ++counted_pictures;
+  const double counted_s = seconds_since(pacing.counted_from);
+  ++pacing.counted_pictures;
   if (picture->moving && counted_s < 0.5) return true;
-  pictures.pictures_per_second =
-      picture->moving && counted_s < 2 ? counted_pictures / counted_s : 0;
-  counted_pictures = 0;
-  counted_from = Clock::now();
+  pacing.pictures.pictures_per_second =
+      picture->moving && counted_s < 2 ? pacing.counted_pictures / counted_s : 0;
+  pacing.counted_pictures = 0;
+  pacing.counted_from = Clock::now();
   return true;
 }
 
 void Window::State::draw(bool always, Image* copy) {
-  if (order.parts && (!(view.look == ordered_look) || !same(settings(), order.settings) ||
-                      !same(seen(), order.camera))) {
-    scene_changed = true;
-    last_change = Clock::now();
+  if (render_request.parts &&
+      (!(view.look == requested_look) || !same(settings(), render_request.settings) ||
+       !same(seen(), render_request.camera))) {
+    pacing.scene_changed = true;
+    pacing.last_change = Clock::now();
   }
-  const bool yields = view.playing && drag == CameraDrag::none &&
-                      seconds_since(last_order) < governor.least_interval_s();
-  if (order.parts && !yields && (scene_changed || !(governor.choose(moving()) == order.quality)))
-    order_picture();
+  const bool yields = view.playing && input.drag == CameraDrag::none &&
+                      seconds_since(pacing.last_request) < pacing.governor.min_interval_s();
+  if (render_request.parts && !yields &&
+      (pacing.scene_changed || !(pacing.governor.choose(moving()) == render_request.quality)))
+    request_picture();
   bool news = false;
   try {
     news = take_picture();
   } catch (const std::exception& error) {
-    if (painter->lacks_context() && lend_context()) {
-      order_picture();
+    if (render_thread->lacks_context() && lend_context()) {
+      request_picture();
     } else {
       cannot_draw = true;
-      panels->report_error(error.what());
-      frames_due = 3;
+      panels->report_error({"Cannot draw the picture", error.what()});
+      pacing.frames_due = 3;
     }
   }
-  while (const auto saved = painter->take_saved()) {
+  while (const auto saved = render_thread->take_saved()) {
     if (saved->trouble.empty())
       panels->say("Saved " + std::filesystem::absolute(saved->file).lexically_normal().string());
     else
-      panels->report_error(saved->trouble);
-    frames_due = 3;
+      panels->report_error({"Cannot save the picture", saved->trouble});
+    pacing.frames_due = 3;
   }
-  const bool clock_due = view.playing && seconds_since(last_draw) > clock_interval_s;
-  const bool due = news || frames_due > 0 || clock_due || save_window || panels->talking();
+  const bool clock_due = view.playing && seconds_since(pacing.last_draw) > clock_interval_s;
+  const bool due = news || pacing.frames_due > 0 || clock_due || save_window || panels->talking();
   // A hair early is in time: the wait before was for this picture.
-  if (!always && (!due || seconds_since(last_draw) < 0.9 * picture_interval_s)) {
-    if (news) frames_due = std::max(frames_due, 1);
+  if (!always && (!due || seconds_since(pacing.last_draw) < 0.9 * picture_interval_s)) {
+    if (news) pacing.frames_due = std::max(pacing.frames_due, 1);
     return;
   }
-  last_draw = Clock::now();
+  pacing.last_draw = Clock::now();
   interface_frame();
 
   int w = 0, h = 0;
@@ -347,10 +355,10 @@ void Window::State::draw(bool always, Image* copy) {
   if (copy) *copy = read_back();
   if (save_window) {
     save_window = false;
-    painter->save(read_back(), options.picture_folder);
+    render_thread->save(read_back(), options.picture_folder);
   }
   glfwSwapBuffers(window);
-  frames_due = std::max(0, frames_due - 1);
+  pacing.frames_due = std::max(0, pacing.frames_due - 1);
 }
 
 Image Window::State::read_back() const {

@@ -25,14 +25,15 @@ void Window::State::install_callbacks() {
   });
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) {
     guarded(w, [](State& s) {
-      s.scene_changed = true;
+      s.pacing.scene_changed = true;
       s.note_size();
     });
   });
   glfwSetWindowMaximizeCallback(
       window, [](GLFWwindow* w, int) { guarded(w, [](State& s) { s.note_size(); }); });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-    guarded(w, [&](State& s) { s.dropped.insert(s.dropped.end(), paths, paths + count); });
+    guarded(w,
+            [&](State& s) { s.input.dropped.insert(s.input.dropped.end(), paths, paths + count); });
   });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { guarded(w, [](State&) {}); });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { guarded(w, [](State&) {}); });
@@ -45,13 +46,13 @@ void Window::State::install_key_callbacks() {
     guarded(w, [&](State& s) {
       if (action != GLFW_REPEAT && key >= 0 && key <= GLFW_KEY_LAST &&
           (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput))
-        s.keys.push_back({key, action == GLFW_PRESS, mods});
+        s.input.keys.push_back({key, action == GLFW_PRESS, mods});
     });
     if (action != GLFW_RELEASE) guarded(w, [&](State& s) { s.on_key(key, scancode, mods); });
   });
   glfwSetCharCallback(window, [](GLFWwindow* w, unsigned letter) {
     guarded(w, [&](State& s) {
-      if (ImGui::GetIO().WantTextInput) s.keys.push_back({.letter = letter});
+      if (ImGui::GetIO().WantTextInput) s.input.keys.push_back({.letter = letter});
     });
   });
 }
@@ -71,7 +72,10 @@ void Window::State::on_key(int key, int scancode, int mods) {
   const auto command = command_of({.key = key,
                                    .shift = (mods & GLFW_MOD_SHIFT) != 0,
                                    .ctrl = (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0});
-  if (command && panels->takes(*command)) run(*command);
+  if (command && panels->takes(*command))
+    run(*command);
+  else if (command)
+    panels->refuse_key();
 }
 
 bool Window::State::over_view(double x, double y) const {
@@ -83,44 +87,44 @@ bool Window::State::over_view(double x, double y) const {
 }
 
 void Window::State::on_button(int button, bool down, int mods) {
-  mouse.pressed(button, down, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0);
-  const MouseMoment& now = mouse.now();
+  input.mouse.pressed(button, down, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0);
+  const MouseMoment& now = input.mouse.now();
   if (down && button == GLFW_MOUSE_BUTTON_LEFT && mods == 0 && over_view(now.x, now.y) &&
       (grip_body({now.x, now.y}) || set_point({now.x, now.y})))
     return;
-  if (!down && button == GLFW_MOUSE_BUTTON_LEFT) held.reset();
-  if (down && drag == CameraDrag::none && !held && over_view(now.x, now.y)) {
-    drag = drag_of({.left = button == GLFW_MOUSE_BUTTON_LEFT,
-                    .middle = button == GLFW_MOUSE_BUTTON_MIDDLE,
-                    .right = button == GLFW_MOUSE_BUTTON_RIGHT,
-                    .shift = (mods & GLFW_MOD_SHIFT) != 0,
-                    .ctrl = (mods & GLFW_MOD_CONTROL) != 0});
-    drag_button = button;
-  } else if (!down && button == drag_button) {
-    drag = CameraDrag::none;
-    drag_button = -1;
+  if (!down && button == GLFW_MOUSE_BUTTON_LEFT) input.held.reset();
+  if (down && input.drag == CameraDrag::none && !input.held && over_view(now.x, now.y)) {
+    input.drag = drag_of({.left = button == GLFW_MOUSE_BUTTON_LEFT,
+                          .middle = button == GLFW_MOUSE_BUTTON_MIDDLE,
+                          .right = button == GLFW_MOUSE_BUTTON_RIGHT,
+                          .shift = (mods & GLFW_MOD_SHIFT) != 0,
+                          .ctrl = (mods & GLFW_MOD_CONTROL) != 0});
+    input.drag_button = button;
+  } else if (!down && button == input.drag_button) {
+    input.drag = CameraDrag::none;
+    input.drag_button = -1;
   }
 }
 
 void Window::State::on_move(double x, double y) {
-  const MouseMoment before = mouse.now();
-  mouse.moved(x, y);
-  if (held) {
+  const MouseMoment before = input.mouse.now();
+  input.mouse.moved(x, y);
+  if (input.held) {
     move_body({x, y});
     return;
   }
-  if (drag == CameraDrag::none) return;
-  camera = dragged(camera, drag, {before.x, before.y}, {x, y}, view_rect(), zoom);
-  scene_changed = true;
-  last_change = Clock::now();
+  if (input.drag == CameraDrag::none) return;
+  camera = dragged(camera, input.drag, {before.x, before.y}, {x, y}, view_rect(), zoom);
+  pacing.scene_changed = true;
+  pacing.last_change = Clock::now();
 }
 
 void Window::State::on_wheel(double clicks) {
-  const MouseMoment& now = mouse.now();
+  const MouseMoment& now = input.mouse.now();
   if (!over_view(now.x, now.y)) return;
   camera = wheeled(camera, clicks, {now.x, now.y}, view_rect(), zoom);
-  scene_changed = true;
-  last_change = Clock::now();
+  pacing.scene_changed = true;
+  pacing.last_change = Clock::now();
 }
 
 void Window::State::run(Command command) {
@@ -130,25 +134,25 @@ void Window::State::run(Command command) {
       glfwSetWindowShouldClose(window, GLFW_TRUE);
       break;
     case Command::keep_state:
-      kept = order.frame;
-      kept_by_hand = kept != nullptr;
-      kept_values = order.values;
-      scene_changed = true;
+      comparison.frame = render_request.frame;
+      comparison.by_hand = comparison.frame != nullptr;
+      comparison.values = render_request.values;
+      pacing.scene_changed = true;
       break;
     case Command::toggle_theme:
       arrangement.light = !arrangement.light;
       break;
     case Command::larger_panels:
     case Command::smaller_panels:
-    case Command::usual_panels:
+    case Command::default_panels:
       scale_panels(command);
       break;
     case Command::window_picture:
       save_window = true;
       break;
     case Command::picture:
-      if (order.parts) order_picture();
-      painter->save_picture(options.picture_folder);
+      if (render_request.parts) request_picture();
+      render_thread->save_picture(options.picture_folder);
       break;
     default:
       set_standard_view(camera_of(command));
@@ -160,17 +164,17 @@ void Window::State::note_size() {
   arrangement.maximized = glfwGetWindowAttrib(window, GLFW_MAXIMIZED) == GLFW_TRUE;
   if (arrangement.maximized || glfwGetWindowAttrib(window, GLFW_ICONIFIED) == GLFW_TRUE) return;
   const auto [w, h] = size();
-  const double screen = screen_scale();  // GLFW makes a window by so much larger than it is told
+  const double screen = screen_scale();  // GLFW enlarges a new window by this factor
   arrangement.width = static_cast<int>(std::lround(w / screen));
   arrangement.height = static_cast<int>(std::lround(h / screen));
 }
 
 void Window::State::set_standard_view(std::string_view name) {
-  if (!order.parts || name.empty()) return;
+  if (!render_request.parts || name.empty()) return;
   const ViewRect rect = view_rect();
   Eigen::AlignedBox3d in_room = box;
-  if (view.hands.skull) {
-    const Pose X_RC = view.hands.X_RC(frame() ? frame()->X_CM : Pose{});
+  if (view.hands.at(cranium_body)) {
+    const Pose X_RC = view.hands.X_RC(frame() ? frame()->poses[view.hands.jaw] : Pose{});
     for (int corner = 0; corner < 8; ++corner)
       in_room.extend(X_RC * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
   }
@@ -178,25 +182,26 @@ void Window::State::set_standard_view(std::string_view name) {
   camera = standard_camera(std::string(name), low, high, rect.width / rect.height);
   const double size = std::max(1.0, (high - low).norm());
   zoom = {.nearest_mm = 0.05 * size, .farthest_mm = 12 * size};
-  scene_changed = true;
+  pacing.scene_changed = true;
 }
 
 void Window::State::wait_for_events() {
-  const bool active = moving() || frames_due > 0 || scene_changed;
+  const bool active = moving() || pacing.frames_due > 0 || pacing.scene_changed;
   const double wait =
-      active ? picture_interval_s - seconds_since(last_look)
-             : (seconds_since(last_event) < attentive_s ? picture_interval_s : idle_wait_s);
-  if (looked)
-    pictures.longest_away_ms = std::max(pictures.longest_away_ms, 1e3 * seconds_since(last_look));
-  looked = true;
+      active ? picture_interval_s - seconds_since(pacing.last_look)
+             : (seconds_since(pacing.last_event) < attentive_s ? picture_interval_s : idle_wait_s);
+  if (pacing.polled)
+    pacing.pictures.longest_away_ms =
+        std::max(pacing.pictures.longest_away_ms, 1e3 * seconds_since(pacing.last_look));
+  pacing.polled = true;
   if (wait > 0) {
     glfwWaitEventsTimeout(wait);
   } else {
     glfwPollEvents();
   }
-  last_look = Clock::now();
+  pacing.last_look = Clock::now();
   // Each press and release has its own pass over the panels, so that none is lost between pictures.
-  while (input_waits()) interface_frame();
+  while (input.waits()) interface_frame();
 }
 
 }  // namespace condyle

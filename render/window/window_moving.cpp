@@ -10,14 +10,14 @@ constexpr double seen_through = 0.5;  // what is paler does not hide what is poi
 }  // namespace
 
 /// The surface that is seen there; its number is the part's.
-std::optional<PointedPlace> Window::State::surface_under(const Eigen::Vector2d& at,
-                                                         bool with_face) const {
+std::optional<PickedPoint> Window::State::surface_under(const Eigen::Vector2d& at,
+                                                        bool with_face) const {
   const bool skinned = view.shows_face(scene) && view.skin_opacity > seen_through;
   if (skinned && !with_face) return std::nullopt;
-  std::vector<PointedSurface> surfaces;
+  std::vector<PickableSurface> surfaces;
   std::vector<std::size_t> parts;
   TriMesh face;
-  const auto elsewhere = seen_face.places(*frame());
+  const auto elsewhere = displayed_face.places(*frame());
   const auto& places = elsewhere.empty() ? frame()->face : elsewhere;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const Part& part = scene.parts[i];
@@ -29,11 +29,11 @@ std::optional<PointedPlace> Window::State::surface_under(const Eigen::Vector2d& 
       face.triangles = part.mesh.triangles;
       surfaces.push_back({&face, Pose{}});
     } else {
-      surfaces.push_back({&part.mesh, pose_of(scene.parts, i, frame()->poses())});
+      surfaces.push_back({&part.mesh, pose_of(scene.parts[i], frame()->poses)});
     }
     parts.push_back(i);
   }
-  auto found = pointed_place(seen(), view_rect(), at, surfaces);
+  auto found = pick_point(seen(), view_rect(), at, surfaces);
   if (found) found->surface = parts[found->surface];
   return found;
 }
@@ -48,53 +48,55 @@ bool Window::State::set_point(const Eigen::Vector2d& at) {
   panels->remember(view);
   if (places) {
     Landmark& landmark = view.landmarks[*view.landmark];
-    landmark =
-        landmark_on(landmark.name, {found->surface, found->triangle, found->shares}, scene.parts);
-    frames_due = 3;
+    landmark = landmark_on(landmark.name, {found->surface, found->triangle, found->barycentric},
+                           scene.parts);
+    pacing.frames_due = 3;
     return true;
   }
-  view.measured.push_back({found->surface, found->triangle, found->shares});
+  view.measured.push_back({found->surface, found->triangle, found->barycentric});
   return true;
 }
 
-/// A handle of the chosen body, else a body that is pointed at. gives: whether the hand has one.
+/// Grips a handle of the selected body, else the body under the mouse. gives: whether one is held.
 bool Window::State::grip_body(const Eigen::Vector2d& at) {
   if (view.tool != Tool::move || !frame() || view.chosen >= scene.bodies.size()) return false;
-  const auto pose = [&](const MovableBody& body) {
-    return pose_of(scene.parts, body.part, frame()->poses());
-  };
+  const auto pose = [&](const MovableBody& body) { return frame()->poses[body.body]; };
   const MovableBody& chosen = scene.bodies[view.chosen];
-  HandleView handle_view{seen(), view_rect(), pose(chosen) * chosen.center};
-  handle_view.arrow_px *= panels->theme().scale;
-  handle_view.ring_px *= panels->theme().scale;
-  const auto grip = grip_at(handle_view, at, reach_px * panels->theme().scale);
+  GizmoView gizmo_view{seen(), view_rect(), pose(chosen) * chosen.center};
+  gizmo_view.arrow_px *= panels->theme().scale;
+  gizmo_view.ring_px *= panels->theme().scale;
+  const auto grip = grip_at(gizmo_view, at, reach_px * panels->theme().scale);
   if (grip) {
-    held = {*grip, view.chosen, handle_view,
-            chosen.skull ? view.hands.X_RC(frame()->X_CM) : pose(chosen), at};
+    input.held = {
+        *grip, view.chosen, gizmo_view,
+        chosen.is_skull() ? view.hands.X_RC(frame()->poses[view.hands.jaw]) : pose(chosen), at};
   } else {
     const auto found = surface_under(at, false);
     if (!found) return false;
     const auto body = movable_body_of(scene.bodies, scene.parts, found->surface);
     // The skull fills the picture: it goes along only where it is chosen, else the view turns.
-    if (!body || scene.bodies[*body].skull) return false;
-    handle_view.center = found->place;
+    if (!body || scene.bodies[*body].is_skull()) return false;
+    gizmo_view.center = found->place;
     view.chosen = *body;
-    held = {Grip::body, *body, handle_view, pose(scene.bodies[*body]), at};
+    input.held = {Grip::body, *body, gizmo_view, pose(scene.bodies[*body]), at};
   }
   panels->remember(view);
   return true;
 }
 
 void Window::State::move_body(const Eigen::Vector2d& at) {
-  const MovableBody& body = scene.bodies[held->body];
-  const Pose& X_CM = frame()->X_CM;
-  // The skull's handles are told in its own frame, as it was gripped.
-  const Pose wanted = body.skull ? held->start * gripped(held->view, held->grip, {}, held->from, at)
-                                 : carrier_pose(body, X_CM).inverse() *
-                                       gripped(held->view, held->grip, held->start, held->from, at);
+  const MovableBody& body = scene.bodies[input.held->body];
+  const Pose& X_CM = frame()->poses[view.hands.jaw];
+  // The skull's handles are expressed in its own frame at the moment of the grip.
+  const Pose wanted = body.is_skull()
+                          ? input.held->start * gripped(input.held->view, input.held->grip, {},
+                                                        input.held->from, at)
+                          : frame()->poses[body.parent].inverse() *
+                                gripped(input.held->view, input.held->grip, input.held->start,
+                                        input.held->from, at);
   view.move(body, wanted, X_CM);
-  last_change = Clock::now();
-  frames_due = 3;
+  pacing.last_change = Clock::now();
+  pacing.frames_due = 3;
 }
 
 }  // namespace condyle

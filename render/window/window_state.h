@@ -13,20 +13,84 @@
 #include <utility>
 
 #include "render/window/glfw_session.h"
-#include "render/window/handles.h"
-#include "render/window/mouse_queue.h"
-#include "render/window/picture_texture.h"
-#include "render/window/picture_thread.h"
-#include "render/window/pointing.h"
-#include "render/window/quality.h"
-#include "render/window/seen_face.h"
+#include "render/window/input/gizmos.h"
+#include "render/window/input/mouse_queue.h"
+#include "render/window/input/picking.h"
+#include "render/window/picture/displayed_face.h"
+#include "render/window/picture/picture_texture.h"
+#include "render/window/picture/quality.h"
+#include "render/window/picture/render_thread.h"
 #include "render/window/window.h"
 
 struct ImGuiContext;
 
 namespace condyle {
 
-/// What a Window holds. Only for window*.cpp.
+/// The state that the wipe shows at its left: the first frame, or the one that the user kept.
+struct WindowComparison {
+  std::shared_ptr<const FrameState> frame;
+  bool by_hand = false;
+  std::shared_ptr<const MapValues> values;  // its distances; none: they were not shown
+};
+
+/// Background work and recordings, as the panels report them.
+struct WorkProgress {
+  std::string progress, recording, unfinished;
+  double progress_fraction = 0, recording_fraction = 0;
+  bool can_cancel = false;
+};
+
+/// Events of mouse and keyboard that the panels have not seen, and what is dragged.
+struct WindowInput {
+  /// Keys and letters for a text field, in their order, each with its own pass over the panels.
+  struct KeyMoment {
+    int key = 0;
+    bool down = false;
+    int mods = 0;
+    unsigned letter = 0;  // that was typed; 0: a key
+  };
+  /// A body moved by hand, as it was at the moment of the grip.
+  struct Held {
+    Grip grip;
+    std::size_t body;
+    GizmoView view;
+    Pose start;  // in the cranium's frame; of the skull in the world's
+    Eigen::Vector2d from;
+  };
+
+  MouseQueue mouse;
+  MouseMoment mouse_shown;  // to the panels
+  std::deque<KeyMoment> keys;
+  CameraDrag drag = CameraDrag::none;
+  int drag_button = -1;
+  std::optional<Held> held;
+  std::vector<std::filesystem::path> dropped;  // on the window, not taken yet
+
+  bool waits() const { return mouse.waiting() || !keys.empty(); }
+};
+
+/// When pictures and panels are drawn, and in which quality.
+struct WindowPacing {
+  using Clock = std::chrono::steady_clock;
+
+  QualityGovernor governor;
+  PictureStatistics pictures;
+  bool scene_changed = true;  // the last request is out of date
+  int frames_due = 3;         // passes over the panels still to draw
+  int counted_pictures = 0;   // since counted_from
+  bool polled = false;        // events, at least once
+  Clock::time_point last_request{};
+  Clock::time_point last_poll = Clock::now(), last_look = last_poll, last_draw = last_poll,
+                    last_change = last_poll, last_event = last_poll, counted_from = last_poll;
+
+  /// An event came: ImGui needs some passes to settle what is hovered and held.
+  void noticed() {
+    frames_due = 3;
+    last_event = Clock::now();
+  }
+};
+
+/// The members of a Window. Only for window*.cpp.
 struct Window::State {
   using Clock = std::chrono::steady_clock;
 
@@ -39,66 +103,32 @@ struct Window::State {
   ImGuiContext* imgui = nullptr;
   std::optional<Panels> panels;
   std::optional<PictureTexture> texture;
-  GLFWwindow* spare = nullptr;  // never seen: lends its context to the painter where EGL has none
-  std::optional<PictureThread> painter;
+  GLFWwindow* spare =
+      nullptr;  // never seen: lends its context to the render_thread where EGL has none
+  std::optional<RenderThread> render_thread;
 
   WindowOptions options;
-  Arrangement arrangement;  // theme, scale and size: the rest is where it is used
+  Arrangement arrangement;  // theme, scale and size; the rest is kept by the panels
   WindowScene scene;
-  SeenFace seen_face{scene.parts};
+  DisplayedFace displayed_face{scene.parts};
   ViewState view;
   Eigen::AlignedBox3d box;  // of the scene at rest
-  PictureOrder order;       // the newest picture that is wanted
-  // To compare with: the first frame, or the one that was kept.
-  std::shared_ptr<const FrameState> kept;
-  bool kept_by_hand = false;
-  std::shared_ptr<const MapValues> kept_values;  // its distances; none: they were not shown
-  Look ordered_look;
-  bool looked = false;       // at mouse and keyboard, at least once
-  bool cannot_draw = false;  // the last picture failed
-  LoopStatistics loop;
-  Camera camera;  // in the room, in which a hand may have moved the skull
+  Camera camera;            // in the world frame, in which the skull may have been moved
   ZoomLimits zoom;
-  std::string progress, recording, unfinished;
-  double progress_fraction = 0, recording_fraction = 0;
-  bool can_cancel = false;
   std::vector<PlotSet> plots;
+  LoopStatistics loop;
+
+  RenderRequest render_request;  // the newest picture that was requested
+  Look requested_look;
   Overlays overlays;
-  bool overlays_due = true;                    // not ordered yet
-  std::vector<std::filesystem::path> dropped;  // on the window, not taken yet
-
-  MouseQueue mouse;
-  MouseMoment mouse_shown;  // to the panels
-  /// Keys and letters for a field that is written in, in their order, each with its own pass over
-  /// the panels.
-  struct KeyMoment {
-    int key = 0;
-    bool down = false;
-    int mods = 0;
-    unsigned letter = 0;  // that was typed; 0: a key
-  };
-  std::deque<KeyMoment> keys;
-  CameraDrag drag = CameraDrag::none;
-  int drag_button = -1;
-  /// A body in the hand, from the moment it was gripped.
-  struct Held {
-    Grip grip;
-    std::size_t body;
-    HandleView view;
-    Pose start;  // in the cranium's frame; of the skull in the room
-    Eigen::Vector2d from;
-  };
-  std::optional<Held> held;
-
-  QualityGovernor governor;
-  PictureStatistics pictures;
-  bool scene_changed = true;  // what was ordered last is out of date
+  bool overlays_due = true;  // changed since the last request
+  bool cannot_draw = false;  // the last picture failed
   bool save_window = false;
-  int frames_due = 3;        // pictures of the panels still to draw
-  int counted_pictures = 0;  // since counted_from
-  Clock::time_point last_order{};
-  Clock::time_point last_poll = Clock::now(), last_look = last_poll, last_draw = last_poll,
-                    last_change = last_poll, last_event = last_poll, counted_from = last_poll;
+
+  WindowComparison comparison;
+  WorkProgress work;
+  WindowInput input;
+  WindowPacing pacing;
 
   // window_input.cpp
   void install_callbacks();
@@ -111,28 +141,23 @@ struct Window::State {
   bool set_point(const Eigen::Vector2d& at);
   bool grip_body(const Eigen::Vector2d& at);
   void move_body(const Eigen::Vector2d& at);
-  std::optional<PointedPlace> surface_under(const Eigen::Vector2d& at, bool with_face) const;
+  std::optional<PickedPoint> surface_under(const Eigen::Vector2d& at, bool with_face) const;
   void run(Command command);
   void note_size();
   void set_standard_view(std::string_view name);
   void wait_for_events();
-  bool input_waits() const { return mouse.waiting() || !keys.empty(); }
   /// GLFW is C: nothing may be thrown through it.
   template <class Work>
-  static void guarded(GLFWwindow* w, Work&& work) {
+  static void guarded(GLFWwindow* w, Work&& handle) {
     State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
     state.noticed();
     try {
-      work(state);
+      handle(state);
     } catch (const std::exception& error) {
-      state.panels->report_error(error.what());
+      state.panels->report_error({"Cannot do this", error.what()});
     }
   }
-  /// Something happened: ImGui needs some pictures to settle what is hovered and held.
-  void noticed() {
-    frames_due = 3;
-    last_event = Clock::now();
-  }
+  void noticed() { pacing.noticed(); }
 
   // window_drawing.cpp
   std::pair<int, int> size() const;
@@ -147,13 +172,13 @@ struct Window::State {
   void fit_scale();
   void scale_panels(Command command);
   void interface_frame();
-  std::string pointed() const;
-  void order_picture();
+  std::string hover_text() const;
+  void request_picture();
   bool take_picture();
   bool lend_context();
   void draw(bool always, Image* copy = nullptr);
   Image read_back() const;
-  const FrameState* frame() const { return order.frame.get(); }
+  const FrameState* frame() const { return render_request.frame.get(); }
 };
 
 inline double seconds_since(std::chrono::steady_clock::time_point start) {

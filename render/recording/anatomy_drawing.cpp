@@ -1,0 +1,121 @@
+#include "render/recording/anatomy_drawing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "engine/tissue/layered_mesh.h"
+#include "sim/tissue/model.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3f;
+
+// By position, from the skin to the bone; distinguishable by lightness too.
+const std::array<Vector3f, 4> layer_colors = {
+    {{0.88f, 0.67f, 0.56f}, {0.94f, 0.83f, 0.45f}, {0.72f, 0.24f, 0.20f}, {0.62f, 0.68f, 0.74f}}};
+
+// Of a muscle; distinguishable by lightness alone.
+const Vector3f idle(0.50f, 0.12f, 0.11f), excited(1.0f, 0.88f, 0.25f);
+
+Vector3f excited_color(double excitation) {
+  return idle + static_cast<float>(std::clamp(excitation, 0.0, 1.0)) * (excited - idle);
+}
+
+/// The layer below a sheet: as requested, or a division of it.
+struct LayerPiece {
+  int layer = 0, layers = 1, piece = 0, pieces = 1;
+};
+LayerPiece below(const TissueModel& model, int sheet) {
+  if (model.mesh->cut_from.empty()) return {.layer = sheet, .layers = model.mesh->sheets - 1};
+  LayerPiece here{.layer = model.mesh->cut_from[static_cast<std::size_t>(sheet)],
+                  .layers = model.mesh->cut_from.back() + 1,
+                  .pieces = 0};
+  for (int other = 0; other + 1 < model.mesh->sheets; ++other) {
+    if (model.mesh->cut_from[static_cast<std::size_t>(other)] != here.layer) continue;
+    ++here.pieces;
+    here.piece += other < sheet;
+  }
+  return here;
+}
+
+Vector3f layer_color(const TissueModel& model, int sheet) {
+  if (sheet + 1 >= model.mesh->sheets) return layer_colors[3];
+  const LayerPiece here = below(model, sheet);
+  return layer_colors[static_cast<std::size_t>(
+      here.layers == 1 ? 0 : 2 * here.layer / (here.layers - 1))];
+}
+
+double excitation_of(const Muscle& muscle, const Motion& motion, const FrameState& frame) {
+  for (std::size_t k = 0; k < std::min(frame.muscles.size(), motion.muscle_names.size()); ++k)
+    if (motion.muscle_names[k] == muscle.name) return frame.muscles[k].excitation;
+  return 0;
+}
+
+std::string label_of(const TissueModel& model, int sheet,
+                     const std::array<const char*, 3>& standard) {
+  if (sheet + 1 == model.mesh->sheets) return "Inner side";
+  const LayerPiece here = below(model, sheet);
+  const std::string name = here.layers == static_cast<int>(standard.size())
+                               ? standard[static_cast<std::size_t>(here.layer)]
+                               : fmt::format("Layer {}", here.layer + 1);
+  return here.pieces == 1 ? name : fmt::format("{}, {} of {}", name, here.piece + 1, here.pieces);
+}
+
+}  // namespace
+
+LineSet muscle_line(const Muscle& muscle, const Motion& motion, const FrameState& frame,
+                    double opacity) {
+  const auto now = [&](MuscleBody body, const Eigen::Vector3d& rest) -> Vector3f {
+    if (body == MuscleBody::mandible) return (frame.poses[mandible_body] * rest).cast<float>();
+    // A hand that moves the jaw elsewhere does not affect the hyoid, which follows the motion.
+    if (body == MuscleBody::hyoid && motion.hyoid)
+      return (motion.hyoid(frame.time_s) * rest).cast<float>();
+    return rest.cast<float>();
+  };
+  const Vector3f origin = now(muscle.origin_body, muscle.origin),
+                 insertion = now(muscle.insertion_body, muscle.insertion);
+  return {.ends = {origin, insertion},
+          .colors = {},
+          .dots = {origin, insertion},
+          .color = excited_color(excitation_of(muscle, motion, frame)),
+          .width_px = 6,
+          .dot_mm = 1.2f,
+          .through = 0.45f,
+          .opacity = static_cast<float>(opacity)};
+}
+
+GlassSheet layer_sheet(const TissueModel& model, const TissueState& now, int sheet,
+                       double opacity) {
+  GlassSheet made{.positions = {},
+                  .triangles = model.mesh->triangles,
+                  .color = layer_color(model, sheet),
+                  .opacity = static_cast<float>(opacity)};
+  made.positions.reserve(static_cast<std::size_t>(model.mesh->columns));
+  for (int column = 0; column < model.mesh->columns; ++column)
+    made.positions.push_back(
+        now.nodes[static_cast<std::size_t>(node_of(column, sheet, model.mesh->sheets))]
+            .cast<float>());
+  return made;
+}
+
+KeyEntry muscle_key() {
+  return {"Muscles, at rest to excited", {idle, excited}, KeyEntry::Mark::scale};
+}
+
+std::string layer_label(const TissueModel& model, int sheet) {
+  return label_of(model, sheet, {"Skin", "Fat", "Muscle layer"});
+}
+std::string layer_short_label(const TissueModel& model, int sheet) {
+  return label_of(model, sheet, {"Skin", "Fat", "Muscle"});
+}
+
+KeyEntry layer_key(const TissueModel& model, int sheet) {
+  return {layer_label(model, sheet), {layer_color(model, sheet)}, KeyEntry::Mark::sheet};
+}
+
+std::string layer_overlay_name(int sheet) { return fmt::format("layer {:03}", 999 - sheet); }
+
+}  // namespace condyle

@@ -1,0 +1,275 @@
+#include "render/scene/drawable.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/hash.h"
+#include "engine/mesh/triangle_tree.h"
+#include "render/mesh/ambient_occlusion.h"
+#include "render/mesh/cut_cover.h"
+#include "render/mesh/vertex_normals.h"
+#include "render/shaders/skin_table.h"
+
+namespace condyle {
+namespace {
+
+constexpr int occlusion_directions = 48;
+constexpr int bake_threads = 2;
+
+/// Ambient shade: bones of each body shade each other, at rest the other body too; the eyes lie
+/// under the lids; the face is shaded by itself alone, since bones under it are invisible. Other
+/// bodies have arbitrary poses: they neither cast nor receive shade from others.
+void set_layers(const Part& part, BodyId lower_jaw, OcclusionSurface& surface) {
+  enum { cranium, mandible, face, others };
+  const Role role = part.role;
+  if (role == Role::face) {
+    surface.layer = face;
+    surface.alone = surface.together = 1u << face;
+  } else if (role == Role::eyes) {
+    surface.layer = cranium;
+    surface.alone = 1u << cranium;
+    surface.together = 1u << cranium | 1u << face;
+  } else if (part.body != cranium_body && part.body != lower_jaw) {
+    surface.layer = others;
+    surface.alone = surface.together = 1u << others;
+  } else {
+    surface.layer = part.body == lower_jaw ? mandible : cranium;
+    surface.alone = 1u << surface.layer;
+    surface.together = 1u << cranium | 1u << mandible;
+  }
+}
+
+/// 0 to 1 by the position in a lattice of 1 mm cells; deterministic.
+float lattice(int x, int y, int z) {
+  const int cell[3] = {x, y, z};
+  return static_cast<float>(hash_bytes(cell, sizeof cell) >> 40) / static_cast<float>(1 << 24);
+}
+
+/// Smooth noise, -1 to 1.
+float noise(const Eigen::Vector3f& p) {
+  const Eigen::Vector3f base = p.array().floor();
+  const Eigen::Vector3f f = p - base;
+  const Eigen::Vector3f s = f.array().square() * (3 - 2 * f.array());
+  const Eigen::Vector3i c = base.cast<int>();
+  float sum = 0;
+  for (int k = 0; k < 8; ++k) {
+    const int dx = k & 1, dy = k >> 1 & 1, dz = k >> 2;
+    sum += (dx ? s.x() : 1 - s.x()) * (dy ? s.y() : 1 - s.y()) * (dz ? s.z() : 1 - s.z()) *
+           lattice(c.x() + dx, c.y() + dy, c.z() + dz);
+  }
+  return 2 * sum - 1;
+}
+
+/// Skin colour varies: patches with more blood, and fine unevenness.
+Eigen::Vector3f mottled(const Eigen::Vector3f& color, const Eigen::Vector3f& p) {
+  const float blood = 0.6f * noise(p / 13) + 0.4f * noise(p / 5), grain = noise(p / 1.7f);
+  return color.cwiseProduct(Eigen::Vector3f(1 + 0.008f * blood + 0.012f * grain,
+                                            1 - 0.022f * blood + 0.016f * grain,
+                                            1 - 0.026f * blood + 0.018f * grain));
+}
+
+struct Prepared {
+  std::vector<Eigen::Vector3f> positions, normals;
+};
+
+}  // namespace
+
+std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const MouthLining* mouth) {
+  std::vector<Prepared> prepared(parts.size());
+  std::vector<OcclusionSurface> surfaces(parts.size());
+  std::vector<Part> heads;  // without meshes
+  for (const Part* part : parts) heads.push_back({part->name, part->role, {}, {}, part->body});
+  const BodyId lower_jaw = lower_jaw_of(heads);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    auto& [positions, normals] = prepared[p];
+    positions.reserve(parts[p]->mesh.vertices.size());
+    for (const auto& v : parts[p]->mesh.vertices) positions.push_back(v.cast<float>());
+    vertex_normals(positions, parts[p]->mesh.triangles, normals);
+    surfaces[p] = {positions, normals, parts[p]->mesh.triangles};
+    set_layers(*parts[p], lower_jaw, surfaces[p]);
+  }
+  const auto occlusion = bake_occlusion(surfaces, occlusion_directions, bake_threads);
+
+  std::vector<Drawable> drawables;
+  drawables.reserve(parts.size());
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const Part& part = *parts[p];
+    auto& [positions, normals] = prepared[p];
+    std::vector<Eigen::Vector3i> own;
+    std::vector<int> uneven;
+    if (part.role == Role::face && mouth) {
+      own = mouth->face;
+      if (mouth->cut) uneven = mouth->rim;
+      mouth = nullptr;
+    }
+    even_rim(positions, uneven);
+    const auto& triangles = own.empty() ? part.mesh.triangles : own;
+    if (!own.empty()) vertex_normals(positions, triangles, normals);
+    const bool moving = !is_rigid(part.role);
+    const bool own_colors = part.mesh.colors.size() == positions.size();
+    const auto material = material_of(part.role);
+    std::vector<float> curvature;
+    if (part.role == Role::face) curvature = vertex_curvature(positions, triangles, normals);
+    std::vector<GpuMesh::Bytes> colors(positions.size()), extras(positions.size());
+    Eigen::AlignedBox3f box;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      box.extend(positions[i]);
+      Eigen::Vector3f color = own_colors ? part.mesh.colors[i] : material.color;
+      // Lips are redder and moister than skin.
+      const float redness = (color.x() - color.y()) / std::max(color.x(), 0.05f);
+      const float gloss = own_colors ? std::clamp((redness - 0.30f) / 0.18f, 0.f, 1.f) : 0.f;
+      if (part.role == Role::face) color = mottled(color, positions[i]);
+      colors[i] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()),
+                   to_byte(occlusion[p].together[i])};
+      extras[i] = {to_byte(occlusion[p].alone[i]),
+                   to_byte(curvature.empty() ? 0.f : curvature[i] / SkinTable::max_curvature),
+                   to_byte(gloss), 0};
+    }
+    GpuMesh mesh(positions, triangles, moving);
+    mesh.add_coarse(positions, triangles);
+    mesh.send_shape(positions, normals);
+    mesh.send_colors(colors);
+    mesh.send_extras(extras);
+    if (part.role == Role::face) mesh.send_rest(positions);
+    std::vector<Crease> creases;
+    if (part.role == Role::face) creases = find_creases(positions, normals, occlusion[p].together);
+    std::optional<SurfaceEdges> edges, coarse_edges;
+    if (part.role == Role::face) {
+      edges.emplace(mesh.fine().triangles);
+      coarse_edges.emplace(mesh.coarse().triangles);
+    }
+    drawables.push_back({&part, material, is_closed_surface(triangles), box, std::move(mesh),
+                         std::move(creases), std::move(colors), std::move(extras), std::move(edges),
+                         std::move(coarse_edges)});
+    drawables.back().own = std::move(own);
+    drawables.back().uneven = std::move(uneven);
+  }
+  return drawables;
+}
+
+std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
+  std::vector<Drawable> drawables;
+  drawables.reserve(others.size());
+  for (const auto& other : others) {
+    const Part& part = *other.part;
+    std::vector<Eigen::Vector3f> positions, normals;
+    for (const auto& v : part.mesh.vertices) positions.push_back(v.cast<float>());
+    even_rim(positions, other.uneven);
+    vertex_normals(positions, other.triangles(), normals);
+    GpuMesh mesh = other.mesh.twin();
+    mesh.send_shape(positions, normals);
+    mesh.send_colors(other.colors);
+    mesh.send_extras(other.extras);
+    if (part.role == Role::face) mesh.send_rest(positions);
+    drawables.push_back({&part, other.material, other.closed, other.box, std::move(mesh),
+                         other.creases, other.colors, other.extras, other.edges,
+                         other.coarse_edges});
+    drawables.back().own = other.own;
+    drawables.back().uneven = other.uneven;
+  }
+  return drawables;
+}
+
+Drawable piece_of(const Drawable& whole, std::span<const Eigen::Vector3i> triangles) {
+  std::vector<Eigen::Vector3f> positions, normals;
+  for (const auto& v : whole.part->mesh.vertices) positions.push_back(v.cast<float>());
+  vertex_normals(positions, triangles, normals);
+  Eigen::AlignedBox3f box;
+  for (const auto& t : triangles)
+    for (const int v : t) box.extend(positions[static_cast<std::size_t>(v)]);
+  GpuMesh mesh(positions, triangles, false);
+  mesh.send_shape(positions, normals);
+  mesh.send_colors(whole.colors);
+  mesh.send_extras(whole.extras);
+  Drawable piece{whole.part,
+                 whole.material,
+                 is_closed_surface(triangles),
+                 box,
+                 std::move(mesh),
+                 {},
+                 whole.colors,
+                 whole.extras,
+                 {},
+                 {}};
+  piece.own.assign(triangles.begin(), triangles.end());
+  return piece;
+}
+
+void Drawable::set_finer(const TriMesh& surface, std::span<const Eigen::Vector3f> normals) {
+  std::vector<Eigen::Vector3f> positions;
+  positions.reserve(surface.vertices.size());
+  for (const auto& v : surface.vertices) positions.push_back(v.cast<float>());
+  finer_vertices = positions.size();
+  finer.emplace(positions, surface.triangles, false);
+  finer->send_shape(positions, normals);
+  // A map is not shaded by these, but the driver reads them.
+  const std::vector<GpuMesh::Bytes> none(positions.size());
+  finer->send_colors(none);
+  finer->send_extras(none);
+  undressed = std::move(positions);
+}
+
+void Drawable::dress_finer() {
+  if (undressed.empty()) return;
+  const TriangleTree tree(part->mesh);
+  std::vector<GpuMesh::Bytes> fine_colors(undressed.size()), fine_extras(undressed.size());
+  for (std::size_t v = 0; v < undressed.size(); ++v) {
+    const SurfacePoint at = tree.nearest(undressed[v].cast<double>());
+    if (at.triangle < 0) continue;
+    const auto& corners = part->mesh.triangles[static_cast<std::size_t>(at.triangle)];
+    for (std::size_t k = 0; k < 4; ++k) {
+      double color = 0, extra = 0;
+      for (int c = 0; c < 3; ++c) {
+        const auto corner = static_cast<std::size_t>(corners[c]);
+        color += at.barycentric[c] * colors[corner][k];
+        extra += at.barycentric[c] * extras[corner][k];
+      }
+      fine_colors[v][k] = to_byte(static_cast<float>(color / 255));
+      fine_extras[v][k] = to_byte(static_cast<float>(extra / 255));
+    }
+  }
+  finer->send_colors(fine_colors);
+  finer->send_extras(fine_extras);
+  undressed.clear();
+}
+
+void Drawable::cover(std::span<const Eigen::Vector3i> closed_otherwise) {
+  if (covered) return;
+  std::vector<Eigen::Vector3i> all(triangles().begin(), triangles().end());
+  all.insert(all.end(), closed_otherwise.begin(), closed_otherwise.end());
+  mesh.send_cover(cover_rims(all));
+  covered = true;
+}
+
+const GpuMesh& Drawable::rest_mesh() {
+  if (is_rigid(part->role)) return mesh;
+  if (!at_rest) {
+    std::vector<Eigen::Vector3f> positions, normals;
+    for (const auto& v : part->mesh.vertices) positions.push_back(v.cast<float>());
+    even_rim(positions, uneven);
+    vertex_normals(positions, triangles(), normals);
+    at_rest.emplace(positions, triangles(), false);
+    at_rest->send_shape(positions, normals);
+    at_rest->send_colors(colors);
+    at_rest->send_extras(extras);
+  }
+  at_rest->send_displacements_to(mesh);
+  return *at_rest;
+}
+
+void Drawable::move_face(std::vector<Eigen::Vector3f> positions,
+                         std::vector<Eigen::Vector3f>& normals_scratch) {
+  even_rim(positions, uneven);
+  vertex_normals(positions, triangles(), normals_scratch);
+  mesh.send_shape(positions, normals_scratch);
+  if (creases.empty()) return;
+  auto now = colors;
+  for (const auto& crease : creases) {
+    auto& sky = now[static_cast<std::size_t>(crease.vertex)][3];
+    sky = to_byte(opened_sky(crease, static_cast<float>(sky) / 255, positions));
+  }
+  mesh.send_colors(now);
+}
+
+}  // namespace condyle

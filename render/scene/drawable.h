@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "render/face/mouth_lining.h"
+#include "render/gl/gpu_mesh.h"
+#include "render/mesh/cover_grid.h"
+#include "render/mesh/creases.h"
+#include "render/shaders/material.h"
+#include "sim/frame/part.h"
+
+namespace condyle {
+
+/// A part ready to be drawn.
+struct Drawable {
+  const Part* part;
+  Material material;
+  bool closed;              // its back is never visible
+  Eigen::AlignedBox3f box;  // at rest, mm
+  GpuMesh mesh;
+  std::vector<Crease> creases;                      // of a face only
+  std::vector<GpuMesh::Bytes> colors, extras;       // at rest, one per vertex
+  std::optional<SurfaceEdges> edges, coarse_edges;  // of a face only, for occlusion culling
+
+  bool mapped = false;                // coloured by its values
+  std::optional<GpuMesh> finer = {};  // drawn instead while it is mapped
+  std::size_t finer_vertices = 0;
+  std::vector<Eigen::Vector3f> undressed = {};  // vertices of a finer mesh without colours as yet
+  bool covered = false;
+  std::vector<Eigen::Vector3i> own = {};  // triangles, where they are a subset of the part's
+  std::vector<int> uneven = {};           // a rim of theirs, drawn smooth
+  std::span<const Eigen::Vector3i> triangles() const {
+    return own.empty() ? part->mesh.triangles : own;
+  }
+  std::optional<GpuMesh> at_rest = {};  // of a deforming part, for its ghost
+
+  const GpuMesh& shown() const { return mapped && finer ? *finer : mesh; }
+  /// The same surface in smaller triangles, for maps.
+  void set_finer(const TriMesh& surface, std::span<const Eigen::Vector3f> normals);
+
+  /// Copies the colours and shade of the part to the finer mesh.
+  void dress_finer();
+  /// Prepares winding numbers of the solid (see cut_cover.h). Rims that another surface closes are
+  /// given as constant triangles that would close them.
+  void cover(std::span<const Eigen::Vector3i> closed_otherwise = {});
+  /// The part at rest.
+  const GpuMesh& rest_mesh();
+
+  /// Sends a deformed face, its normals and the shade of its folds.
+  void move_face(std::vector<Eigen::Vector3f> positions,
+                 std::vector<Eigen::Vector3f>& normals_scratch);
+};
+
+/// Uploads the parts with their normals, colours, baked ambient occlusion and curvature. mouth: of
+/// the first face; null without one.
+std::vector<Drawable> make_drawables(std::span<const Part* const> parts,
+                                     const MouthLining* mouth = nullptr);
+/// Some triangles of a part as a separate drawable.
+Drawable piece_of(const Drawable& whole, std::span<const Eigen::Vector3i> triangles);
+/// The same for another context, at rest.
+std::vector<Drawable> drawables_like(std::span<const Drawable> others);
+
+}  // namespace condyle

@@ -1,0 +1,462 @@
+#include "render/scene/passes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "render/shaders/skin_detail.h"
+#include "render/shaders/skin_table.h"
+
+namespace condyle {
+namespace {
+
+constexpr int shadow_side = 1024;
+constexpr int colour_count = 1024;  // of the lookup table of a colour map
+constexpr float marker_radius_mm = 1.2f;
+constexpr float mouth_depth_mm = 24;  // over which the light inside the mouth falls to 1/e
+
+constexpr std::size_t max_map_lines = 4;
+constexpr std::array<const char*, max_map_lines> map_line_names = {"map_lines[0]", "map_lines[1]",
+                                                                   "map_lines[2]", "map_lines[3]"};
+
+void cull_by_closure(const DrawItem& item) {
+  if (item.drawable->closed && !item.cut()) {
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+  } else {
+    glDisable(GL_CULL_FACE);
+  }
+}
+
+/// The sides that remain after culling by closure.
+Sides sides_of(const DrawItem& item) {
+  return item.drawable->closed && !item.cut() ? Sides::front : Sides::both;
+}
+
+const GpuMesh::Surface& surface_of(const DrawItem& item, const PictureView& view) {
+  return item.surface(view.coarse);
+}
+
+Viewpoint eye_of(const PictureView& view) {
+  return {view.view_projection, view.eye.homogeneous(), view.width, view.height};
+}
+
+/// Calls for each face that hides surfaces behind it.
+template <class Add>
+void each_covering(std::span<const DrawItem> items, const Add& add) {
+  for (const auto& item : items)
+    if (item.role() == Role::face && item.opaque() && !item.cut()) add(item);
+}
+
+}  // namespace
+
+void set_cut(GlProgram& program, const DrawItem& item, const PictureView& view) {
+  // Not only by the clip switches: Mesa's rasteriser clips by inaccurate distances.
+  program.set("clip_plane", item.clipped ? view.clip_plane : nothing_clipped);
+  program.set("cut_ball", item.holed ? view.cut_ball : no_ball);
+  const Eigen::Vector3f color = cut_color_of(item.role()).array().pow(2.2f);
+  program.set("cut", Eigen::Vector3f(color));
+  program.set("cut_normal", view.cut_normal);
+}
+
+void begin_cut(GlProgram& program, const DrawItem& item, const PictureView& view) {
+  set_cut(program, item, view);
+  (item.clipped ? glEnable : glDisable)(GL_CLIP_DISTANCE0);
+  (item.holed ? glEnable : glDisable)(GL_CLIP_DISTANCE1);
+}
+
+void end_cut() {
+  glDisable(GL_CLIP_DISTANCE0);
+  glDisable(GL_CLIP_DISTANCE1);
+}
+
+void PictureView::set_rays_in(GlProgram& program) const {
+  // For pixel x, y: the point at unit distance from the eye is ray + x * ray_right + y * ray_up.
+  const Eigen::Matrix3f to_world = view.topLeftCorner<3, 3>().transpose();
+  const float right = 2 / (static_cast<float>(width) * projection(0, 0)),
+              up = 2 / (static_cast<float>(height) * projection(1, 1));
+  program.set("ray", Eigen::Vector3f(to_world * Eigen::Vector3f(-1 / projection(0, 0),
+                                                                -1 / projection(1, 1), -1)));
+  program.set("ray_right", Eigen::Vector3f(right * to_world.col(0)));
+  program.set("ray_up", Eigen::Vector3f(up * to_world.col(1)));
+}
+
+Eigen::AlignedBox3f DrawItem::box() const {
+  Eigen::AlignedBox3f moved;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto at = static_cast<Eigen::AlignedBox3f::CornerType>(corner);
+    moved.extend((model * drawable->box.corner(at).homogeneous()).head<3>());
+  }
+  return moved;
+}
+
+Passes::Passes()
+    : surfaces_("surface", surface_shaders),
+      skins_("skin", skin_shaders),
+      interiors_("interior", interior_shaders),
+      kept_("surface", keep_shaders),
+      depth_("depth", depth_shaders()),
+      marker_("marker", marker_shaders()),
+      carry_("carry", carry_shaders()),
+      place_("place", place_shaders()),
+      shadow_map_(shadow_side) {
+  const auto table = make_skin_table();
+  glBindTexture(GL_TEXTURE_2D, skin_table_);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, SkinTable::width, SkinTable::height, 0, GL_RGB,
+               GL_UNSIGNED_BYTE, table.rgb.data());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+
+  constexpr int side = SkinDetail::side;
+  glBindTexture(GL_TEXTURE_3D, skin_detail_);
+  glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, side, side, side, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+               make_skin_detail().rgba.data());
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glGenerateMipmap(GL_TEXTURE_3D);
+}
+
+void Passes::set_colour_map(const ColourMap& map) {
+  colour_map_ = map;
+  std::vector<std::uint8_t> table;
+  for (int i = 0; i < colour_count; ++i) {
+    // The last entry is still within the range.
+    const float s = (static_cast<float>(i) + 0.5f) / colour_count;
+    const Eigen::Vector3f color = color_of(map, map.low() + s * (map.high() - map.low()));
+    for (int k = 0; k < 3; ++k)
+      table.push_back(static_cast<std::uint8_t>(std::lround(255 * color[k])));
+  }
+  glBindTexture(GL_TEXTURE_2D, colour_table_);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, colour_count, 1, 0, GL_RGB, GL_UNSIGNED_BYTE,
+               table.data());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+}
+
+void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view) {
+  Eigen::Matrix4f to_clip = Eigen::Matrix4f::Identity();
+  to_clip.diagonal().head<3>().setConstant(2);
+  to_clip.topRightCorner<3, 1>().setConstant(-1);
+  const Viewpoint light = {to_clip * view.shadow,
+                           (Eigen::Vector4f() << view.lights.key_direction, 0).finished(),
+                           shadow_side, shadow_side};
+  constexpr float slope = 2, units = 4;
+  shadow_map_.bind();
+  glClear(GL_DEPTH_BUFFER_BIT);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(slope, units);
+  depth_.use();
+  depth_.set("view_projection", light.view_projection);
+  // Translucent parts transmit light; parts enclosed by an opaque face cast no shadow beyond that
+  // of the face.
+  Eigen::AlignedBox3f enclosed;
+  for (const auto& item : items)
+    if (item.opaque() && !item.cut() && item.role() == Role::face) enclosed.extend(item.box());
+  for (const auto& item : items) {
+    if (!item.opaque()) continue;
+    const bool shows = item.role() == Role::face || is_teeth(item.role());
+    if (!shows && !enclosed.isEmpty() && enclosed.contains(item.box())) continue;
+    cull_by_closure(item);
+    begin_cut(depth_, item, view);
+    depth_.set("model", item.model);
+    const auto& mesh = item.drawable->mesh;
+    mesh.draw(visibility_.choose(mesh, mesh.coarse(), item.model, light, sides_of(item)));
+    end_cut();
+  }
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glFlush();  // without a GPU it is drawn in parallel with the following
+}
+
+void Passes::background(const PictureView& view, Backdrop shade) {
+  background_.draw(view.width, view.height, shade);
+}
+
+GlProgram& Passes::Programs::of(const Shading& shading) {
+  const auto found = built_.find(shading);
+  if (found != built_.end()) return found->second;
+  return built_.try_emplace(shading, what_, source_(shading)).first->second;
+}
+
+void Passes::place(GlProgram& program, const DrawItem& item, const PictureView& view) {
+  program.set("model", item.model);
+  program.set("view_projection", view.view_projection);
+  program.set("eye", view.eye);
+  // The shading of the face's folds follows their opening.
+  program.set("together", item.role() == Role::eyes   ? view.skin_opacity
+                          : item.role() == Role::face ? 1.f
+                                                      : view.at_rest);
+  const bool in_mouth = view.dark_mouth && item.role() != Role::eyes && !is_piece(item.role());
+  program.set("cavity", Eigen::Vector2f(view.lips_y, in_mouth ? 1 / mouth_depth_mm : 0.f));
+  program.set("window_ball", view.window_ball);
+  begin_cut(program, item, view);
+}
+
+GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const PictureView& view,
+                         bool deferred) {
+  const auto& material = item.drawable->material;
+  const auto role = item.role();
+  const bool mapped = item.drawable->mapped;
+  if (mapped) {
+    glActiveTexture(GL_TEXTURE2);
+    glBindTexture(GL_TEXTURE_2D, colour_table_);
+  }
+  if (role == Role::face) {
+    glActiveTexture(GL_TEXTURE3);
+    glBindTexture(GL_TEXTURE_3D, skin_detail_);
+  }
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_2D, skin_table_);
+  shadow_map_.bind_depths(4);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, shadow_map_.texture());
+  GlProgram& program = programs.of({.shadowed = view.shadows,
+                                    .mapped = mapped,
+                                    .coated = material.coat > 0,
+                                    .cuttable = item.cut(),
+                                    .seen_through = !item.opaque(),
+                                    .skin = role == Role::face,
+                                    .deferred = deferred});
+  program.use();
+  view.lights.set_in(program);
+  program.set("shadow_matrix", view.shadow);
+  program.set("shadow_map", 0);
+  program.set("skin_table", 1);
+  program.set("skin_detail", 3);
+  program.set("pixel_size", 1 / view.pixels_per_unit);
+  program.set("shadow_depth", 4);
+  program.set("shadow_scale", Eigen::Vector3f(view.shadow.topLeftCorner<3, 3>().rowwise().norm()));
+  program.set("two_sided", item.drawable->closed || role == Role::face ? 0.f : 1.f);
+  program.set("opacity", static_cast<float>(item.opacity));
+  program.set("roughness", material.roughness);
+  program.set("reflectance", material.reflectance);
+  program.set("wrap", material.wrap);
+  program.set("scatter", material.scatter);
+  program.set("coat", material.coat);
+  program.set("open_mouth", view.sectioned ? 1.f : 1 - view.at_rest);
+  program.set("mapped_up_to", view.mapped_up_to);
+  program.set("colour_table", 2);
+  if (mapped) {
+    program.set("map_range", Eigen::Vector2f(colour_map_.low(), colour_map_.high()));
+    program.set("map_beyond", colour_map_.beyond);
+    for (std::size_t i = 0; i < max_map_lines; ++i)
+      program.set(map_line_names[i],
+                  i < colour_map_.lines.size() ? colour_map_.lines[i] : colour_map_.low() - 100);
+  }
+  place(program, item, view);
+  return program;
+}
+
+const std::vector<Eigen::Vector3i>& Passes::seen_of(const DrawItem& item, const PictureView& view) {
+  const auto& mesh = item.mesh();
+  const auto& surface = surface_of(item, view);
+  if (item.role() != Role::face) {
+    cull_by_closure(item);
+    return visibility_.choose(mesh, surface, item.model, eye_of(view), sides_of(item), &cover_);
+  }
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  return visibility_.choose(mesh, surface, item.model, eye_of(view), Sides::front);
+}
+
+void Passes::shade(const DrawItem& item, const PictureView& view) {
+  const bool skin = item.role() == Role::face && !item.drawable->mapped;
+  begin(skin ? skins_ : surfaces_, item, view, false);
+  item.mesh().draw(seen_of(item, view));
+  end_cut();
+  if (item.role() == Role::face) shade_interior(item, view);
+}
+
+void Passes::shade_interior(const DrawItem& item, const PictureView& view) {
+  glFlush();  // as after the shadow map
+  if (item.drawable->closed && !item.cut()) return;
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_FRONT);
+  begin(interiors_, item, view, false).set("capped", view.capped && item.opaque() ? 1.f : 0.f);
+  item.mesh().draw(visibility_.choose(item.mesh(), surface_of(item, view), item.model, eye_of(view),
+                                      Sides::back, &cover_));
+  end_cut();
+}
+
+void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) {
+  GLint target = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+  // Edge filters read a pixel's neighbours. Whole tiles are lit: Mesa's rasteriser has one program
+  // for whole tiles and another for partial ones, with different rounding.
+  constexpr int tile = 64;
+  const auto down = [](int x) { return x / tile * tile; };
+  const auto around_of = [&](const DrawnBox& box) {
+    return DrawnBox{down(std::max(0, box.x0 - 1)), down(std::max(0, box.y0 - 1)),
+                    down(box.x1 + tile), down(box.y1 + tile)}
+        .both({0, 0, view.width, view.height});
+  };
+  const DrawnBox around = around_of(view.box);
+  buffer_.fit(view.width, view.height);
+  buffer_.begin_surfaces(around);
+  std::vector<char> seen(items.size(), 0);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const auto& chosen = seen_of(items[i], view);
+    seen[i] = !chosen.empty();
+    if (!seen[i]) continue;
+    buffer_.number_surface(static_cast<int>(i) + 1);
+    GlProgram& program = kept_.of({.skin = items[i].role() == Role::face});
+    program.use();
+    place(program, items[i], view);
+    items[i].mesh().draw(chosen);
+    end_cut();
+  }
+  glFlush();
+
+  const auto bind = [](GLenum unit, GLuint texture) {
+    glActiveTexture(unit);
+    glBindTexture(GL_TEXTURE_2D, texture);
+  };
+  // Lit pixels store the number of their surface in place of their opacity.
+  const auto number_of = [](std::size_t i) { return static_cast<float>(i + 1) / 255; };
+  const auto see = [&](GlProgram& program) {
+    bind(GL_TEXTURE5, buffer_.words());
+    bind(GL_TEXTURE6, buffer_.away());
+    program.set("kept_words", 5);
+    program.set("kept_away", 6);
+  };
+  buffer_.begin_light();
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    PictureBounds bounds(view.width, view.height, view.view_projection);
+    bounds.add(surface_of(items[i], view).box, items[i].model);
+    const DrawnBox box = around_of(bounds.box(1)).both(around);
+    if (!seen[i] || box.empty()) continue;
+    GlProgram& program =
+        begin(items[i].role() == Role::face ? skins_ : surfaces_, items[i], view, true);
+    see(program);
+    program.set("opacity", number_of(i));
+    view.set_rays_in(program);
+    glBindVertexArray(no_attributes_);
+    buffer_.light(static_cast<int>(i) + 1, box);
+  }
+  buffer_.end();
+
+  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
+  glScissor(view.box.x0, view.box.y0, view.box.width(), view.box.height());
+  GlProgram& last = view.one_sample ? place_ : carry_;
+  last.use();
+  see(last);
+  bind(GL_TEXTURE7, buffer_.lit());
+  last.set("lit", 7);
+  if (view.one_sample) {
+    bind(GL_TEXTURE6, buffer_.depth());
+    last.set("kept_depth", 6);
+    glBindVertexArray(no_attributes_);
+    glDisable(GL_CULL_FACE);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    return;
+  }
+  last.set("last_pixel", Eigen::Vector2i(view.width - 1, view.height - 1));
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (!seen[i]) continue;
+    place(last, items[i], view);
+    last.set("number", number_of(i));
+    items[i].mesh().draw(seen_of(items[i], view));
+    end_cut();
+  }
+}
+
+void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
+  cover_.start(view.width, view.height, view.view_projection);
+  if (view.may_cull)
+    each_covering(items, [&](const DrawItem& item) {
+      const auto& mesh = item.drawable->mesh;
+      const auto& surface = surface_of(item, view);
+      const bool coarse = &surface == &mesh.coarse();
+      cover_.add(mesh.points(), surface.corners, surface.triangles,
+                 coarse ? *item.drawable->coarse_edges : *item.drawable->edges, item.model);
+    });
+  cover_.finish();
+  // The face hides most of the rest: drawn first, it avoids shading hidden surfaces.
+  std::vector<DrawItem> whole, others;
+  const bool fits = SurfaceBuffer::fits(view.width, view.height);
+  for (const bool face : {true, false})
+    for (const auto& item : items) {
+      if (!item.opaque() || (item.role() == Role::face) != face) continue;
+      const bool kept = fits && !item.cut() && !item.drawable->mapped &&
+                        std::ssize(whole) < SurfaceBuffer::max_surfaces;
+      (kept ? whole : others).push_back(item);
+    }
+  if (!whole.empty()) deferred(whole, view);
+  for (const auto& item : whole)
+    if (item.role() == Role::face) shade_interior(item, view);
+  for (const auto& item : others) shade(item, view);
+}
+
+void Passes::depth_only(const DrawItem& item, const PictureView& view) {
+  cull_by_closure(item);
+  depth_.use();
+  depth_.set("view_projection", view.view_projection);
+  begin_cut(depth_, item, view);
+  depth_.set("model", item.model);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  item.mesh().draw(visibility_.choose(item.mesh(), surface_of(item, view), item.model, eye_of(view),
+                                      sides_of(item), &cover_));
+  end_cut();
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void Passes::translucent(std::span<const DrawItem> items, const PictureView& view) {
+  std::vector<DrawItem> order;
+  for (const auto& item : items)
+    if (!item.opaque()) order.push_back(item);
+  const auto away = [&](const DrawItem& item) { return (item.box().center() - view.eye).norm(); };
+  std::stable_sort(order.begin(), order.end(), [&](const DrawItem& a, const DrawItem& b) {
+    const bool face_a = a.role() == Role::face, face_b = b.role() == Role::face;
+    return face_a != face_b ? face_b : away(a) > away(b);
+  });
+  // Colours are premultiplied when they are blended, so that an empty background stays exact.
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  for (const auto& item : order) {
+    depth_only(item, view);
+    glDepthFunc(GL_EQUAL);
+    glEnable(GL_BLEND);
+    shade(item, view);
+    glDisable(GL_BLEND);
+    glDepthFunc(GL_LESS);
+  }
+}
+
+void Passes::add_contacts(std::span<const Eigen::Vector3f> points, PictureBounds& bounds,
+                          const PictureView& view) {
+  for (const auto& point : points) bounds.add(point, view.radius_px(point, marker_radius_mm));
+}
+
+void Passes::contacts(const GpuPoints& points, const PictureView& view, bool through) {
+  if (points.empty()) return;
+  marker_.use();
+  marker_.set("view", view.view);
+  marker_.set("projection", view.projection);
+  marker_.set("radius", marker_radius_mm);
+  marker_.set("nearer", 1.2f * marker_radius_mm);
+  marker_.set("pixels_per_unit", view.pixels_per_unit);
+  marker_.set("color", Eigen::Vector3f(0.835f, 0.369f, 0.f));  // Okabe-Ito vermilion
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  if (through) {
+    // Contacts lie between surfaces.
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    marker_.set("opacity", 0.4f);
+    points.draw();
+    glDisable(GL_BLEND);
+    glEnable(GL_DEPTH_TEST);
+  }
+  marker_.set("opacity", 1.f);
+  points.draw();
+  glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+}  // namespace condyle

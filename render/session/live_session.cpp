@@ -1,0 +1,111 @@
+#include "render/session/live_session.h"
+
+#include <utility>
+
+namespace condyle {
+namespace {
+
+std::vector<MapSurface> map_surfaces(const DistanceMap& map) {
+  std::vector<MapSurface> surfaces;
+  for (const auto& surface : map.surfaces())
+    surfaces.push_back({static_cast<std::size_t>(surface.part), &surface.mesh, surface.normals});
+  return surfaces;
+}
+
+/// Sends the simulation what the hands want otherwise than before. A body that is reset and that
+/// no motion drives is wanted where it was loaded.
+void send_hands(const Hands& now, const Hands& before, std::span<const MovableBody> bodies,
+                LiveSimulation& simulation) {
+  for (const auto& body : bodies) {
+    if (body.is_skull()) continue;  // all poses are relative to it
+    const auto wanted = now.of(body);
+    if (same(wanted, before.of(body))) continue;
+    if (wanted || body.roams())
+      simulation.drag(body.body, wanted.value_or(Pose{}));
+    else
+      simulation.release(body.body);
+  }
+}
+
+}  // namespace
+
+void LiveSession::start() {
+  if (simulation_) state_.retired.add(std::move(simulation_), state_.patient);
+  simulation_ = std::make_shared<LiveSimulation>(state_.patient->scene, state_.motion->motion,
+                                                 live_settings(state_.settings.simulator),
+                                                 state_.motion->opening);
+  applied_ = {};
+}
+
+void LiveSession::stop() {
+  if (simulation_) state_.retired.add(std::move(simulation_), state_.patient);
+  if (distances_) state_.retired.add(std::move(distances_), state_.patient);
+  map_sent_ = coloured_ = false;
+  overlaid_.reset();
+  state_.newest.reset();
+}
+
+void LiveSession::request(const ViewState& view, const std::optional<Pose>& X_CM_released) {
+  simulation_->request({.time_s = view.time_s,
+                        .opening_mm = view.opening_mm,
+                        .obey_contact = view.obey_contact,
+                        .face = view.simulates_tissue(state_.scene)});
+  Hands hands = view.hands;
+  if (X_CM_released) hands.hold_jaw(*X_CM_released);
+  if (hands == applied_) return;
+  state_.guarded("Cannot move the body",
+                 [&] { send_hands(hands, applied_, state_.scene.bodies, *simulation_); });
+  applied_ = std::move(hands);
+}
+
+/// Gives whether there is a new frame.
+bool LiveSession::take_frame(const ViewState& view) {
+  std::optional<FrameState> frame;
+  state_.guarded("Cannot simulate the motion", [&] { frame = simulation_->take(); });
+  if (!frame) return false;
+  state_.newest = std::move(frame);
+  const Motion& motion = state_.motion->motion;
+  if (motion.muscles && !view.jaw_is_held())
+    state_.newest->muscles = motion.muscles(state_.newest->time_s);
+  return true;
+}
+
+void LiveSession::update(const ViewState& view, const std::optional<Pose>& X_CM_released,
+                         const std::shared_ptr<const LineSet>& paths) {
+  request(view, X_CM_released);
+  const bool is_new = take_frame(view);
+  if (!state_.newest) return state_.front_end.draw();
+  if (OverlayInputs inputs = OverlayInputs::of(view, paths); is_new || inputs != overlaid_) {
+    state_.front_end.show_overlays(
+        view_overlays(*state_.patient, state_.motion->motion, *state_.newest, view, paths));
+    overlaid_ = std::move(inputs);
+  }
+  show(view, is_new);
+}
+
+/// A frame waits for its colours, so that both belong to one time.
+void LiveSession::show(const ViewState& view, bool is_new) {
+  LoopStatistics loop{.steps_per_second = simulation_->steps_per_second(),
+                      .message = view.distances && !map_sent_ ? "Measuring distances" : ""};
+  if (view.distances && !distances_)
+    distances_ = std::make_shared<LiveDistances>(
+        state_.patient->scene.patient,
+        DistanceMapSettings{.pair_rules = state_.settings.simulator.contact.pair_rules});
+  const bool switched = coloured_ != view.distances;
+  if (view.distances && (is_new || switched)) distances_->request(*state_.newest);
+  coloured_ = view.distances;
+  auto answer = distances_ ? distances_->take() : std::nullopt;
+  if (answer && !map_sent_) {
+    state_.front_end.set_map_surfaces(map_surfaces(*distances_->map()), distances_);
+    map_sent_ = true;
+    loop.message.clear();
+  }
+  if (answer && view.distances)
+    state_.front_end.show(std::move(answer->frame), loop, std::move(answer->values));
+  else if ((is_new || switched) && !(view.distances && map_sent_))
+    state_.front_end.show(*state_.newest, loop);
+  else
+    state_.front_end.draw();
+}
+
+}  // namespace condyle

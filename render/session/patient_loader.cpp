@@ -1,0 +1,65 @@
+#include "render/session/patient_loader.h"
+
+#include <utility>
+
+#include "sim/case/case_io.h"
+#include "sim/phantom/phantom.h"
+#include "sim/session/patient_files.h"
+
+namespace condyle {
+
+void PatientLoader::start(std::function<Case(const Progress&)> read, std::filesystem::path folder,
+                          std::string words) {
+  renewing_.reset();
+  job_.start([read = std::move(read), folder = std::move(folder), words = std::move(words),
+              settings = state_.settings.simulator](const Progress& progress) {
+    report(progress, words, 0);
+    return make_session_patient(read(progress), folder, settings, progress);
+  });
+}
+
+void PatientLoader::open(const std::filesystem::path& folder) {
+  start(
+      [folder](const Progress& progress) {
+        return folder.empty() ? builtin_patient(progress) : load_case(folder);
+      },
+      folder, folder.empty() ? "loading the patient" : "loading " + folder.filename().string());
+}
+
+void PatientLoader::import(const request::Import& wanted) {
+  start(
+      [wanted](const Progress&) { return import_files(wanted.files, wanted.units, wanted.frame); },
+      {}, "reading the surfaces");
+}
+
+void PatientLoader::renew(std::vector<Landmark> landmarks) {
+  start([patient = state_.patient,
+         landmarks](const Progress&) { return with_landmarks(patient->scene.patient, landmarks); },
+        state_.patient->folder, "making the patient with these landmarks");
+  renewing_ = std::move(landmarks);
+}
+
+std::optional<PatientLoader::Loaded> PatientLoader::take() {
+  if (!job_.done()) return {};
+  auto renewed = std::exchange(renewing_, std::nullopt);
+  std::optional<Loaded> loaded;
+  state_.guarded(renewed ? "Cannot use these landmarks" : "Cannot open the patient", [&] {
+    if (auto patient = job_.take()) loaded = {std::move(*patient), std::move(renewed)};
+  });
+  return loaded;
+}
+
+Case with_landmarks(Case patient, const std::vector<Landmark>& landmarks) {
+  patient.landmarks.points.clear();
+  for (const auto& landmark : landmarks) patient.landmarks.points[landmark.name] = landmark.at_rest;
+  return patient;
+}
+
+std::vector<Landmark> landmarks_of(const Case& patient) {
+  std::vector<Landmark> landmarks;
+  for (const auto& [name, at] : patient.landmarks.points)
+    landmarks.push_back(landmark_at(name, at, patient.parts));
+  return landmarks;
+}
+
+}  // namespace condyle

@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include "engine/core/error.h"
+#include "render/session/view_session.h"
+#include "sim/case/case_io.h"
+#include "sim/session/patient_files.h"
+
+// Of a ViewSession: what the person asks for once, and what comes of it.
+
+namespace condyle {
+namespace fs = std::filesystem;
+namespace {
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+
+/// Of the dialog that says why it was not carried out.
+std::string title_of_failure(const Request& wanted) {
+  return std::visit(
+      Overloaded{[](const request::Open&) { return "Cannot open this"; },
+                 [](const request::Import&) { return "Cannot make a patient of these surfaces"; },
+                 [](const request::Record&) { return "Cannot record the motion"; },
+                 [](const request::StopRecording&) { return "Cannot stop the recording"; },
+                 [](const request::ResumeRecording&) { return "Cannot resume the recording"; },
+                 [](const request::ReplaceRecording&) { return "Cannot replace the recording"; },
+                 [](const request::Quit&) { return "Cannot quit"; },
+                 [](const request::Cancel&) { return "Cannot cancel this"; },
+                 [](const request::Release&) { return "Cannot release this"; },
+                 [](const request::SaveCase&) { return "Cannot save the patient"; },
+                 [](const request::UseLandmarks&) { return "Cannot use these landmarks"; }},
+      wanted);
+}
+
+}  // namespace
+
+void ViewSession::open(const fs::path& path) {
+  if (path.empty()) return loader_.open({});
+  state_.guarded("Cannot open this", [&] { open_files({path}); });
+}
+
+void ViewSession::carry_out(const Request& wanted) {
+  const Overloaded act{
+      [&](const request::Open& open) { open_files(open.files); },
+      [&](const request::Import& files) { loader_.import(files); },
+      [&](const request::Record& record) { recording_.record(record, preview_.paths()); },
+      [&](const request::StopRecording&) { recording_.stop(); },
+      [&](const request::ResumeRecording&) { recording_.resume(); },
+      [&](const request::ReplaceRecording&) { recording_.replace(); },
+      [&](const request::Quit& quit) { recording_.quit(quit); },
+      [&](const request::Cancel&) { cancel(); },
+      [&](const request::Release& released) { release_.release(released.body); },
+      [&](const request::SaveCase& saved) { save(saved.folder); },
+      [&](const request::UseLandmarks&) {
+        if (state_.patient) loader_.renew(state_.front_end.view().landmarks);
+      },
+  };
+  state_.guarded(title_of_failure(wanted), [&] { std::visit(act, wanted); });
+}
+
+void ViewSession::open_files(const std::vector<fs::path>& files) {
+  if (files.empty()) return loader_.open({});
+  const fs::path& one = files.front();
+  std::error_code ignored;
+  if (!fs::exists(one, ignored)) {
+    recent_.forget(one);
+    if (state_.patient) show_scene();
+    throw InputError(one, "", "does not exist (any more)");
+  }
+  std::vector<fs::path> surfaces;
+  std::vector<std::string> others;
+  for (const fs::path& file : with_loose_surfaces(files)) {
+    if (makes_patient(kind_of(file)))
+      surfaces.push_back(file);
+    else
+      others.push_back(file.filename().string());
+  }
+  if (!surfaces.empty()) {
+    if (!others.empty())
+      state_.front_end.say(
+          fmt::format("Left out: {}. Only surfaces, landmarks and muscles make a patient",
+                      fmt::join(others, ", ")));
+    return state_.front_end.ask_roles({.files = proposed_roles(surfaces)});
+  }
+  if (files.size() > 1)
+    state_.front_end.say(
+        fmt::format("Of {} files the first is opened: {}", files.size(), one.filename().string()));
+  open_file(one);
+}
+
+/// A case, or a motion for the patient that is there.
+void ViewSession::open_file(const fs::path& file) {
+  switch (kind_of(file)) {
+    case FileKind::patient:
+      return loader_.open(fs::is_directory(file) ? file : file.parent_path());
+    case FileKind::motion:
+    case FileKind::excitations: {
+      const std::string spec =
+          (kind_of(file) == FileKind::excitations ? "muscles:" : "") + fs::absolute(file).string();
+      return state_.front_end.change(
+          [&](ViewState& view) {
+            view.motion = {spec, view.motion.parameters, {}};
+          },
+          true);
+    }
+    default:
+      throw InputError(file, "",
+                       "cannot be opened: it is no case folder, no motion (CSV, .motion, .mot, "
+                       ".sto, .trc) and no surface (STL, PLY, OBJ, glTF)");
+  }
+}
+
+void ViewSession::cancel() {
+  if (loader_.job().active()) return loader_.drop();
+  release_.drop("it stays where it is");
+}
+
+void ViewSession::save(const fs::path& folder) {
+  if (!state_.patient) return;
+  if (saving_.active())
+    return state_.front_end.say("A patient is being saved; ask again when that is done");
+  saving_.start([opened = opened_, patient = state_.patient,
+                 landmarks = state_.front_end.view().landmarks, folder](const Progress& progress) {
+    report(progress, "saving the patient", 0.5);
+    save_case(with_landmarks(patient->scene.patient, landmarks), folder);
+    return Saved{opened, landmarks, folder};
+  });
+}
+
+void ViewSession::take_save() {
+  if (!saving_.done()) return;
+  state_.guarded("Cannot save the patient", [&] {
+    const auto saved = saving_.take();
+    if (!saved) return;
+    WindowScene& shown = state_.scene;
+    recent_.add(saved->folder);
+    if (saved->opened == opened_) {
+      shown.landmarks = saved->landmarks;
+      shown.case_folder = saved->folder;
+    } else if (!shown.case_folder.empty()) {
+      recent_.add(shown.case_folder);  // another patient was opened meanwhile
+    }
+    shown.recent = recent_.list();
+    state_.front_end.update_scene(shown);
+    state_.front_end.say("Saved the patient in " + saved->folder.string());
+  });
+}
+
+}  // namespace condyle

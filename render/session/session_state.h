@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "render/window/front_end.h"
+#include "sim/session/job.h"
+#include "sim/session/session_motion.h"
+#include "sim/session/session_patient.h"
+
+namespace condyle {
+
+/// What the pieces of a session share: the front end, and what is loaded.
+struct SessionState {
+  FrontEnd& front_end;
+  SessionSettings settings;
+
+  std::shared_ptr<const SessionPatient> patient = {};  // none before the first is loaded
+  std::shared_ptr<const SessionMotion> motion = {};    // none before the patient's first
+  WindowScene scene = {};                              // as the front end has it
+  std::optional<FrameState> newest = {};               // the newest frame
+  RetiredWork retired = {};
+
+  int threads() const { return settings.simulator.threads; }
+  /// What background work calls when it has news.
+  auto waker() const {
+    return [&front_end = front_end] { front_end.wake_up(); };
+  }
+  /// A sentence as the front end shows it, with readable names of the patient's parts and
+  /// landmarks.
+  std::string in_words(std::string sentence) const;
+  std::string name_of(const MovableBody& body) const;
+
+  /// Runs a piece of work; what it throws is reported under the title ("Cannot save the patient").
+  template <class Work>
+  void guarded(const std::string& title, const Work& work) {
+    try {
+      work();
+    } catch (const std::exception& error) {
+      front_end.report_error(title, in_words(error.what()));
+    }
+  }
+};
+
+}  // namespace condyle

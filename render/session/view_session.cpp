@@ -1,0 +1,198 @@
+#include "render/session/view_session.h"
+
+#include <cctype>
+#include <utility>
+
+#include "render/recording/distance_drawing.h"
+#include "render/session/view_overlays.h"
+
+namespace condyle {
+
+ViewSession::ViewSession(FrontEnd& front_end, const SessionSettings& settings)
+    : state_{.front_end = front_end, .settings = settings},
+      loader_(state_),
+      moving_(state_.retired, state_.waker()),
+      readying_(state_.retired, state_.waker()),
+      saving_(state_.retired, state_.waker()),
+      preview_(state_),
+      recording_(state_),
+      release_(state_),
+      live_(state_) {
+  asked_.spec = settings.first_motion;
+}
+
+void ViewSession::take_patient() {
+  auto loaded = loader_.take();
+  if (!loaded) return;
+  moving_.drop();
+  readying_.drop();
+  release_.drop(loaded->renewed ? "the patient was made anew" : "another patient was opened");
+  release_.end();
+  live_.stop();
+  preview_.forget();
+  recording_.forget();
+  state_.motion.reset();
+  if (auto earlier = std::exchange(state_.patient, std::move(loaded->patient)))
+    state_.retired.add(std::move(earlier), nullptr);
+  if (loaded->renewed)
+    show_renewed_patient(*loaded->renewed);
+  else
+    show_new_patient();
+  if (!state_.patient->trouble.empty())
+    state_.front_end.report_error("Cannot build the soft tissue",
+                                  state_.in_words(state_.patient->trouble));
+  want_motion(asked_);
+}
+
+void ViewSession::show_renewed_patient(const std::vector<Landmark>& landmarks) {
+  WindowScene scene = scene_of_patient();
+  WindowScene& shown = state_.scene;
+  shown.parts = scene.parts;
+  shown.distance_remarks = std::move(scene.distance_remarks);
+  shown.bodies = std::move(scene.bodies);
+  shown.muscles = std::move(scene.muscles);
+  shown.layers = std::move(scene.layers);
+  shown.landmarks_in_use = landmarks;
+  shown.motion = asked_ = state_.front_end.view().motion;
+  state_.front_end.renew_scene(shown, state_.patient);
+}
+
+void ViewSession::show_new_patient() {
+  // The first motion of the settings is for the first patient; another one opens the mouth first.
+  if (++opened_ > 1) asked_ = {.spec = "opening", .parameters = {}, .excitations = {}};
+  if (!state_.patient->folder.empty()) recent_.add(state_.patient->folder);
+  state_.scene = scene_of_patient();
+  ViewState start;
+  static_cast<PanelChoice&>(start) = state_.front_end.view();  // the panels in use stay
+  state_.front_end.set_scene(state_.scene, start, state_.patient);
+  show_scene();
+  state_.front_end.show(state_.patient->at_rest);
+}
+
+bool ViewSession::obeys_contact() const {
+  return state_.settings.respect_contact || !state_.motion || !state_.motion->motion.recorded;
+}
+
+WindowScene ViewSession::scene_of_patient() const {
+  const Case& patient = state_.patient->scene.patient;
+  const DistanceMapSettings map_settings{.pair_rules =
+                                             state_.settings.simulator.contact.pair_rules};
+  WindowScene scene{.parts = patient.parts,
+                    .case_name = patient.name,
+                    .distance_colours = distance_colours({.near_mm = map_settings.reach_mm}),
+                    .distance_remarks = distance_remarks(patient),
+                    .bodies = movable_bodies(patient.parts, patient.bodies)};
+  scene.case_folder = state_.patient->folder;
+  scene.landmarks = scene.landmarks_in_use = landmarks_of(patient);
+  scene.motions = motion_names();
+  scene.motion = asked_;
+  scene.muscles = muscle_items(*state_.patient);
+  scene.layers = layer_items(*state_.patient);
+  return scene;
+}
+
+void ViewSession::show_scene() {
+  const Scene& scene = state_.patient->scene;
+  WindowScene& shown = state_.scene;
+  shown.recent = recent_.list();
+  shown.notes = scene.patient.notes;
+  const auto& contact_notes = scene.contacts.notes();
+  shown.notes.insert(shown.notes.end(), contact_notes.begin(), contact_notes.end());
+  shown.motion = asked_;
+  if (state_.motion) {
+    const Motion& motion = state_.motion->motion;
+    shown.motion = state_.motion->choice;
+    shown.motion_name = motion.name;
+    shown.duration_s = motion.duration_s;
+    shown.max_opening_mm = state_.motion->widest_mm;
+    shown.motion_settings = state_.motion->settings;
+    shown.excitations = state_.motion->excitations;
+    shown.notes.insert(shown.notes.end(), motion.notes.begin(), motion.notes.end());
+  }
+  for (std::string& note : shown.notes) note = state_.in_words(std::move(note));
+  state_.front_end.update_scene(shown);
+}
+
+void ViewSession::want_motion(const MotionChoice& choice) {
+  asked_ = choice;
+  moving_.start([patient = state_.patient, choice,
+                 settings = state_.settings](const Progress& progress) {
+    report(progress, "preparing the motion", 0.5);
+    return std::make_shared<const SessionMotion>(make_session_motion(choice, *patient, settings));
+  });
+}
+
+/// What was asked for cannot be: the motion stays as it was, or the jaw at rest.
+void ViewSession::keep_motion() {
+  const MotionChoice rest{.spec = "rest", .parameters = {}, .excitations = {}};
+  const MotionChoice back = state_.motion ? state_.motion->choice : rest;
+  if (!state_.motion && asked_.spec != rest.spec) want_motion(rest);
+  asked_ = back;
+  state_.front_end.change([&](ViewState& view) { view.motion = back; });
+}
+
+void ViewSession::take_motion() {
+  if (!moving_.done()) return;
+  std::optional<std::shared_ptr<const SessionMotion>> made;
+  state_.guarded("Cannot make this motion", [&] { made = moving_.take(); });
+  if (!made) return keep_motion();
+  preview_.restart();
+  const bool was_playing = state_.front_end.view().playing;
+  state_.motion = *made;
+  show_scene();
+  live_.start();
+  state_.front_end.change([&](ViewState& view) {
+    view.obey_contact = obeys_contact();
+    view.playing = was_playing && state_.motion->motion.duration_s > 0;
+  });
+  prepare_sliding();
+}
+
+/// Sliding is felt at once when a hand moves the jaw: its fields are made before.
+void ViewSession::prepare_sliding() {
+  if (ready_for_ && ready_for_ == state_.patient) return;
+  ready_for_ = state_.patient;
+  readying_.start([patient = state_.patient, threads = state_.threads()](const Progress& progress) {
+    patient->scene.contacts.prepare_sliding(progress, threads);
+    return true;
+  });
+}
+
+void ViewSession::show_progress() {
+  const auto show = [&](const auto& job, bool can_cancel) {
+    if (!job.active() || job.done()) return false;
+    const auto [what, fraction] = job.progress();
+    std::string words = what.empty() ? "working" : what;
+    words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
+    state_.front_end.show_progress(words, fraction, can_cancel);
+    busy_with_ = std::move(words);
+    return true;
+  };
+  if (show(loader_.job(), state_.patient != nullptr) || show(moving_, false) ||
+      show(release_.job(), true) || show(saving_, false) || show(readying_, false))
+    return;
+  state_.front_end.show_progress("", 1);
+  busy_with_ = recording_.active() ? "recording" : "";
+}
+
+void ViewSession::turn() {
+  const ViewState& view = state_.front_end.poll();
+  for (const Request& wanted : state_.front_end.take_requests()) carry_out(wanted);
+  state_.retired.sweep();
+  take_patient();
+  if (state_.patient && !loader_.job().active() && !(view.motion == asked_))
+    want_motion(view.motion);
+  take_motion();
+  if (readying_.done()) state_.guarded("Cannot prepare contact", [&] { readying_.take(); });
+  preview_.update(!readying_.active());
+  recording_.update();
+  release_.update();
+  take_save();
+  show_progress();
+  if (live_.running())
+    live_.update(view, release_.X_CM(), preview_.paths());
+  else
+    state_.front_end.draw();
+}
+
+}  // namespace condyle

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "render/session/live_session.h"
+#include "render/session/patient_loader.h"
+#include "render/session/preview_session.h"
+#include "render/session/recording_session.h"
+#include "render/session/release_session.h"
+#include "sim/session/recent_files.h"
+
+namespace condyle {
+
+/// A patient in a front end: loading, simulating, plotting, recording and saving, each on threads
+/// of its own, so that the front end answers at all times.
+class ViewSession {
+ public:
+  /// The front end must outlive the session.
+  ViewSession(FrontEnd& front_end, const SessionSettings& settings);
+
+  /// Opens what is named as if it were dropped into the front end; the built-in patient when it is
+  /// empty.
+  void open(const std::filesystem::path& path);
+  /// One turn: what the person wants goes out, what is ready comes in, the picture is drawn.
+  void turn();
+
+  /// The newest frame; none before the first.
+  const FrameState* frame() const { return state_.newest ? &*state_.newest : nullptr; }
+  /// What runs beside and is shown as progress; empty for nothing.
+  const std::string& busy_with() const { return busy_with_; }
+  /// Whether the front end may close as the person wants; asks them while a recording is made.
+  bool may_close() { return recording_.may_close(); }
+  /// Ends a recording. gives: what there is of it, as a sentence; empty when there was none.
+  std::string stop_recording() { return recording_.finish(); }
+
+ private:
+  struct Saved {
+    int opened;
+    std::vector<Landmark> landmarks;
+    std::filesystem::path folder;
+  };
+
+  // session_requests.cpp:
+  void carry_out(const Request& wanted);
+  void open_files(const std::vector<std::filesystem::path>& files);
+  void open_file(const std::filesystem::path& file);
+  void cancel();
+  void save(const std::filesystem::path& folder);
+  void take_save();
+
+  void take_patient();
+  void show_new_patient();
+  void show_renewed_patient(const std::vector<Landmark>& landmarks);
+  void want_motion(const MotionChoice& choice);
+  void take_motion();
+  void keep_motion();
+  void prepare_sliding();
+  bool obeys_contact() const;
+  WindowScene scene_of_patient() const;
+  void show_scene();  // once more, with what is new
+  void show_progress();
+
+  SessionState state_;
+  RecentFiles recent_;
+  int opened_ = 0;      // patients so far; one that is made anew is the same
+  MotionChoice asked_;  // the motion that is being made, or was made last
+  std::shared_ptr<const SessionPatient> ready_for_;  // whose bones are, or are being made, ready
+  std::string busy_with_;
+
+  PatientLoader loader_;
+  Job<std::shared_ptr<const SessionMotion>> moving_;
+  Job<bool> readying_;  // bones to slide
+  Job<Saved> saving_;
+  PreviewSession preview_;
+  RecordingSession recording_;
+  ReleaseSession release_;
+  LiveSession live_;
+};
+
+}  // namespace condyle

@@ -1,0 +1,97 @@
+#include "render/shaders/shader_parts.h"
+
+#include "render/shaders/shaders.h"
+#include "render/shaders/skin_detail.h"
+
+namespace condyle {
+
+// Offset along the normal, increasing towards grazing light, so that a surface does not shade
+// itself; an open one towards the visible side. Lips (gloss 1) turn over as they open: their
+// coarser shadow caster deviates from them by more than elsewhere.
+const char* const shade_offset_source = R"(
+vec3 shade_offset(vec3 n, vec3 key, vec3 to_eye, float open, float gloss) {
+  float offset = 0.6 + 2.0 * (1.0 - abs(dot(n, key))) + 1.2 * gloss;
+  return (open > 0.5 && dot(n, to_eye) < 0.0 ? -offset : offset) * n;
+}
+)";
+
+namespace {
+
+// `invariant`: a part that is drawn twice must have identical depths.
+const char* const vertex_source = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 color;  // sRGB, occlusion with everything at rest
+layout(location = 3) in vec4 extra;  // occlusion by its own body, curvature, gloss, fraction of lip
+layout(location = 4) in float value;  // value of a colour map
+layout(location = 5) in vec3 rest;  // position at rest; of skin
+uniform mat4 model;            // rigid
+uniform mat4 view_projection;
+uniform mat4 shadow_matrix;
+uniform vec3 eye, key_direction;
+uniform float two_sided;       // 1 when the surface is open
+uniform float together;  // 1 with everything at rest, 0 far from it
+uniform vec2 cavity;           // y where the mouth's darkness starts, 1/length; 0 length = none
+uniform vec4 clip_plane;  // kept: dot(plane, position) > 0
+uniform vec4 cut_ball;  // centre and radius; the outside is kept
+uniform vec4 window_ball;  // the same, of the skin: the mouth's darkness is not applied through it
+out float gl_ClipDistance[2];
+invariant gl_Position;
+out vec3 to_eye;
+out vec3 world_normal;
+out vec3 albedo;               // linear
+out vec3 shadow_place;
+out vec4 traits;  // occlusion, curvature, gloss, depth in the mouth at rest
+out float mapped_value;
+out vec3 rest_place;
+void main() {
+  mapped_value = value;
+  rest_place = rest;
+  vec4 world = model * vec4(position, 1.0);
+  gl_Position = view_projection * world;
+  gl_ClipDistance[0] = dot(clip_plane, world);
+  gl_ClipDistance[1] = distance(world.xyz, cut_ball.xyz) - cut_ball.w;
+  to_eye = eye - world.xyz;
+  world_normal = mat3(model) * normal;
+  albedo = pow(color.rgb, vec3(2.2));
+  shadow_place = (shadow_matrix * vec4(world.xyz + shade_offset(world_normal, key_direction, to_eye,
+                                                                two_sided, extra.z), 1.0)).xyz;
+  vec3 offset = window_ball.xyz - eye;
+  float nearest = clamp(-dot(offset, to_eye) / dot(to_eye, to_eye), 0.0, 1.0);
+  float beside_window = distance(offset, -nearest * to_eye) - window_ball.w;
+  traits = vec4(mix(extra.x, color.a, together), extra.y, extra.z,
+                mix(1.0, exp(-max(position.y - cavity.x, 0.0) * cavity.y),
+                    smoothstep(-2.0, 0.0, beside_window) * (1.0 - extra.w)));
+}
+)";
+
+}  // namespace
+
+std::string surface_vertices() {
+  return std::string("#version 330 core\n") + shade_offset_source + vertex_source;
+}
+
+std::string shading_constants(const Shading& shading) {
+  std::string text = "#version 330 core\n";
+  const auto fixed = [&](const char* name, bool value) {
+    text += std::string("const bool ") + name + " = " + (value ? "true" : "false") + ";\n";
+  };
+  fixed("shadowed", shading.shadowed);
+  fixed("mapped", shading.mapped);
+  fixed("coated", shading.coated);
+  fixed("cuttable", shading.cuttable);
+  fixed("seen_through", shading.seen_through);
+  fixed("skin", shading.skin);
+  const auto number = [&](const char* name, int value) {
+    text += std::string("const float ") + name + " = " + std::to_string(value) + ".0;\n";
+  };
+  // Period of the skin detail, mm; both patterns repeat after the product.
+  constexpr int fine = 21, coarse = 83;
+  number("fine_period", fine);
+  number("coarse_period", coarse);
+  number("rest_period", fine * coarse);
+  number("detail_side", SkinDetail::side);
+  return text;
+}
+
+}  // namespace condyle

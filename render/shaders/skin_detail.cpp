@@ -1,0 +1,87 @@
+#include "render/shaders/skin_detail.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/hash.h"
+
+namespace condyle {
+namespace {
+
+constexpr int detail_side = SkinDetail::side;
+
+/// 0 to 1 for a cell of a lattice with period `cells`.
+float random_of(Eigen::Vector3i cell, int cells, int which) {
+  for (int k = 0; k < 3; ++k) cell[k] = ((cell[k] % cells) + cells) % cells;
+  const int key[4] = {cell.x(), cell.y(), cell.z(), which};
+  return static_cast<float>(hash_bytes(key, sizeof key) >> 40) / static_cast<float>(1 << 24);
+}
+
+/// Cellular pattern of skin: flat cells with creases between them, at a position in cells. source:
+/// Worley, A cellular texture basis function, 1996
+float cells_height(const Eigen::Vector3f& place, int cells) {
+  const Eigen::Vector3i base = place.array().floor().cast<int>();
+  float nearest = std::numeric_limits<float>::infinity(), second = nearest;
+  for (int dz = -1; dz <= 1; ++dz)
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Eigen::Vector3i cell = base + Eigen::Vector3i(dx, dy, dz);
+        const Eigen::Vector3f middle =
+            cell.cast<float>() + Eigen::Vector3f(random_of(cell, cells, 0),
+                                                 random_of(cell, cells, 1),
+                                                 random_of(cell, cells, 2));
+        const float away = (middle - place).norm();
+        if (away < nearest) {
+          second = nearest;
+          nearest = away;
+        } else {
+          second = std::min(second, away);
+        }
+      }
+  return std::min((second - nearest) / 0.35f, 1.f);
+}
+
+}  // namespace
+
+SkinDetail make_skin_detail() {
+  // Two sizes of cells, neither a multiple of the other.
+  constexpr int large = 17, small = 26;
+  std::vector<float> height(std::size_t{detail_side} * detail_side * detail_side);
+  const auto at = [](int x, int y, int z) {
+    const auto wrap = [](int i) {
+      return static_cast<std::size_t>((i + detail_side) % detail_side);
+    };
+    return (wrap(z) * detail_side + wrap(y)) * detail_side + wrap(x);
+  };
+  float mean = 0;
+  for (int z = 0; z < detail_side; ++z)
+    for (int y = 0; y < detail_side; ++y)
+      for (int x = 0; x < detail_side; ++x) {
+        const Eigen::Vector3f place =
+            Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) /
+            detail_side;
+        const float h =
+            0.6f * cells_height(large * place, large) + 0.4f * cells_height(small * place, small);
+        height[at(x, y, z)] = h;
+        mean += h / static_cast<float>(height.size());
+      }
+  SkinDetail detail;
+  detail.rgba.resize(4 * height.size());
+  const auto byte = [](float value) {
+    return static_cast<std::uint8_t>(std::lround(std::clamp(128 + 127 * value, 0.f, 255.f)));
+  };
+  for (int z = 0; z < detail_side; ++z)
+    for (int y = 0; y < detail_side; ++y)
+      for (int x = 0; x < detail_side; ++x) {
+        auto* texel = &detail.rgba[4 * at(x, y, z)];
+        texel[0] = byte(height[at(x + 1, y, z)] - height[at(x - 1, y, z)]);
+        texel[1] = byte(height[at(x, y + 1, z)] - height[at(x, y - 1, z)]);
+        texel[2] = byte(height[at(x, y, z + 1)] - height[at(x, y, z - 1)]);
+        texel[3] = byte(height[at(x, y, z)] - mean);
+      }
+  return detail;
+}
+
+}  // namespace condyle

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace condyle {
+
+/// What a key or a button asks for.
+enum class Command {
+  toggle_play,
+  step_back,
+  step_forward,
+  jump_back,
+  jump_forward,
+  view_front,
+  view_back,
+  view_left,
+  view_right,
+  view_above,
+  view_below,
+  reset_view,
+  picture,
+  window_picture,
+  toggle_skin,
+  toggle_distances,
+  toggle_panels,
+  toggle_theme,
+  larger_panels,
+  smaller_panels,
+  default_panels,
+  toggle_move,
+  toggle_measure,
+  toggle_landmarks,
+  toggle_plots,
+  open_files,
+  keep_state,
+  undo,
+  redo,
+  help,
+  close_dialog,
+  accept,  // what a box says: it closes
+  quit
+};
+
+/// Keys by their GLFW numbers, so that this stays free of GLFW.
+struct KeyPress {
+  int key = 0;
+  bool shift = false, ctrl = false;
+};
+std::optional<Command> command_of(const KeyPress& press);
+
+/// Name of the camera (render/camera/camera.h) that a view command asks for; empty for other
+/// commands.
+std::string_view camera_of(Command command);
+
+/// The lines of the help: keys and mouse, and what they do.
+struct HelpLine {
+  std::string_view keys, meaning;
+};
+struct HelpGroup {
+  std::string_view title;
+  std::span<const HelpLine> lines;
+};
+std::span<const HelpGroup> help_groups();
+
+}  // namespace condyle

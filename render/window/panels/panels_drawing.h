@@ -1,0 +1,135 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/window/panels/panels.h"
+#include "render/window/panels/widgets.h"
+#include "render/window/view/measuring.h"
+#include "sim/frame/part_names.h"
+
+namespace condyle {
+
+/// One pass over all panels. Only for this module: each function is defined in the file named.
+struct Panels::Drawing {
+  /// How far a body is from where it is wanted; 0 where no hand holds it.
+  struct Shortfall {
+    double shift_mm = 0, turn_deg = 0;
+  };
+  /// What the dialog Open was left with.
+  struct OpenChoice {
+    std::vector<std::filesystem::path> files;
+    bool builtin = false, close = false;
+  };
+
+  Panels& panels;
+  const PanelInput& input;
+  ViewState& view;
+  Layout layout;
+  double display_width, display_height;  // pixels
+  Pen pen;
+  std::vector<Command> commands;
+
+  void top_bar();     // panels.cpp
+  void timeline();    // panel_timeline.cpp
+  void parts();       // panel_parts.cpp
+  void side();        // panel_readings.cpp
+  void moving();      // panel_move.cpp: handles, and the chosen body's place in numbers
+  void measuring();   // panel_measure.cpp: points and lines until they are cleared; its tool
+  void landmarks();   // panel_landmarks.cpp
+  void plots();       // panel_plots.cpp
+  void edges();       // panel_edges.cpp: between panels, to draw them wider or higher
+  void view_signs();  // panel_view.cpp: letters at the edges, cube, progress
+  void dialogs();     // panel_dialogs.cpp
+  void question_dialog();
+  void key_hint(const char* words);
+
+ private:
+  // panel_move.cpp
+  void gizmo(const MovableBody& body);
+  void body_choice(const MovableBody& body);
+  void body_placement(const MovableBody& body);
+  void body_state(const MovableBody& body, bool held, const Shortfall& shortfall);
+  void body_buttons(const MovableBody& body);
+  // panel_measure.cpp
+  void measured_line(const Measured& result);
+  void measure_label(std::span<const ImVec2> line, const std::string& words);
+  void measure_panel(const Measured& result, std::span<const Eigen::Vector3d> places);
+  void measure_buttons(const Measured& result, std::span<const Eigen::Vector3d> places);
+  // panel_landmarks.cpp
+  void landmark_marks();
+  void landmark_list();
+  void landmark_edits();
+  void landmark_uses();
+  // panel_motion.cpp
+  void motion();
+  void motion_choice();
+  void motion_muscles();
+  void motion_parameters();
+  // panel_record.cpp
+  void record();
+  float record_label(const char* words);
+  void record_picture();
+  void record_size();
+  void record_quality();
+  void record_cameras();
+  void record_contents();
+  void record_folder();
+  void record_progress();
+  void record_button();
+  void record_note();
+  // panel_files.cpp
+  void open_dialog();
+  void recent_list(float column, OpenChoice& chosen);
+  void folder_list(float column, OpenChoice& chosen);
+  void open_path(OpenChoice& chosen);
+  void import_dialog();
+  void side_tabs();
+  void part_list();
+  float notes_room(float left) const;
+  void tree();  // panel_tree.cpp
+  int tree_rows() const;
+  bool unfolded(const std::string& group) const;
+  void fold_group(const std::string& group);  // or unfolds it
+  // panel_look.cpp
+  void look();
+  void look_cuts();
+  void look_comparison();
+  void look_overlays();
+  void look_distances();
+  void look_displacement();
+  void look_springs();
+  void look_panel_size();
+  void scale();     // panel_view.cpp
+  void readings();  // panel_readings.cpp, as what follows
+  void opening();
+  void opening_slider(double live);
+  void opening_measures();
+  void contacts(float list_height);
+  void tissue();
+  void performance();  // times of a step and of pictures; their details under a fold
+  void stage_bars(const StageTimes& times, double full_ms);
+  void step_curve();
+  void progress();
+  std::optional<double> edge(const char* name, const ViewRect& place, double size, double direction,
+                             double reset);
+  void cube();
+  // panel_legend.cpp; each gives its pane, empty without one:
+  ViewRect legend();  // of a map, in the lower left corner of the view
+  ViewRect key();     // to overlays, in its upper right corner
+  void hover_text();  // what the mouse is on
+  void beside_mouse(const std::string& words);
+};
+
+/// Stands in the window at all times.
+constexpr const char* purpose = "For research and education, not for clinical use";
+
+/// Centred, above everything, with the rest dimmed; pair with EndPopup when it gives true.
+bool begin_dialog(Pen& pen, const char* name, float dialog_width, double width, double height);
+
+/// The motion of a scene for people: "Chewing right"; words and files as they are.
+std::string motion_title(const WindowScene& scene);
+
+}  // namespace condyle

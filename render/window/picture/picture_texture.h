@@ -1,0 +1,25 @@
+#pragma once
+
+#include "render/gl/gl_objects.h"
+#include "render/window/picture/render_request.h"
+
+namespace condyle {
+
+/// The last 3-D picture as a texture of the window's context, so that panels can be redrawn
+/// without it.
+class PictureTexture {
+ public:
+  /// Takes the pixels over.
+  void show(const DrawnPicture& picture);
+  /// GL texture, its first row at the bottom, opaque.
+  unsigned name() const { return texture_; }
+  /// The patient that it shows; none before the first picture.
+  const std::shared_ptr<const DrawnParts>& parts() const { return parts_; }
+
+ private:
+  GlTexture texture_;
+  int width_ = 0, height_ = 0;
+  std::shared_ptr<const DrawnParts> parts_;
+};
+
+}  // namespace condyle

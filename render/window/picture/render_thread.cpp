@@ -1,0 +1,229 @@
+#include "render/window/picture/render_thread.h"
+
+#include <utility>
+
+#include "render/gl/gl_context.h"
+#include "render/scene/displacement_drawing.h"
+#include "render/window/picture/picture_files.h"
+#include "render/window/picture/view_picture.h"
+
+namespace condyle {
+
+struct RenderThread::Drawing {
+  explicit Drawing(std::shared_ptr<void> made) : context(std::move(made)) {}
+
+  std::shared_ptr<void> context;
+  ViewPicture view;
+  std::optional<SceneRenderer> renderer;
+  OverlaySender overlays;
+  std::optional<DisplacementDrawing> displacement;
+  RenderRequest applied;  // what the renderer has
+
+  /// Gives the renderer what the request has otherwise than the last one.
+  void apply(const RenderRequest& wanted) {
+    const bool other = wanted.parts != applied.parts;
+    if (other) {
+      renderer.reset();
+      displacement.reset();
+      overlays = {};
+      applied = {.parts = wanted.parts};  // also where it cannot be uploaded: once is enough
+      if (wanted.parts) {
+        renderer.emplace(wanted.parts->parts);
+        if (wanted.parts->colours) renderer->set_colour_map(*wanted.parts->colours);
+      }
+    }
+    if (!renderer) return;
+    const auto name = [&](const MapSurface& surface) {
+      return wanted.parts->parts[surface.part].name;
+    };
+    if (wanted.map && wanted.map != applied.map)
+      for (const auto& surface : wanted.map->surfaces)
+        renderer->set_finer(name(surface), *surface.mesh, surface.normals);
+    const bool moved = wanted.frame != applied.frame || applied.beside;
+    const bool tinted = wanted.map != applied.map || wanted.values != applied.values ||
+                        wanted.displacement != applied.displacement ||
+                        (wanted.displacement && moved) || applied.beside;
+    if (wanted.frame && moved) renderer->update(*wanted.frame);
+    if (tinted) tint(wanted, wanted.frame.get(), wanted.values.get());
+    if (wanted.overlays != applied.overlays)
+      overlays.send(*renderer, wanted.overlays ? *wanted.overlays : Overlays{});
+    applied = wanted;
+  }
+
+  /// Shows the state beside, or the request's own.
+  void turn_to(const RenderRequest& wanted, bool beside) {
+    const FrameState& frame = beside ? *wanted.beside : *wanted.frame;
+    renderer->update(frame);
+    tint(wanted, &frame, beside ? wanted.beside_values.get() : wanted.values.get());
+    if (!wanted.overlays) return;
+    // Lines and sheets are of the request's own state; paths are of the whole motion.
+    Overlays lasting;
+    if (const auto paths = wanted.overlays->lines.find("paths");
+        paths != wanted.overlays->lines.end())
+      lasting.lines.insert(*paths);
+    overlays.send(*renderer, beside ? lasting : *wanted.overlays);
+  }
+
+ private:
+  /// Colours by values, of a frame (none: at rest).
+  void tint(const RenderRequest& wanted, const FrameState* frame, const MapValues* values) {
+    if (wanted.map)
+      for (std::size_t i = 0; i < wanted.map->surfaces.size(); ++i)
+        renderer->color_part(wanted.parts->parts[wanted.map->surfaces[i].part].name,
+                             values && i < values->size() ? (*values)[i] : std::vector<float>{});
+    if (wanted.displacement) {
+      if (!displacement) displacement.emplace(wanted.parts->parts);
+      displacement->color(*renderer, frame ? *frame : FrameState{});
+    } else if (displacement) {
+      displacement->clear(*renderer);
+      displacement.reset();
+      if (wanted.parts->colours) renderer->set_colour_map(*wanted.parts->colours);
+    }
+  }
+};
+
+RenderThread::RenderThread(std::function<void()> notify)
+    : notify_(std::move(notify)),
+      make_context_([] { return std::make_shared<OffscreenContext>(); }),
+      thread_([this] { work(); }) {}
+
+RenderThread::~RenderThread() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void RenderThread::request(RenderRequest wanted) {
+  {
+    const std::lock_guard lock(mutex_);
+    requested_ = std::move(wanted);
+  }
+  changed_.notify_all();
+}
+
+std::optional<DrawnPicture> RenderThread::take() {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  return std::exchange(newest_, std::nullopt);
+}
+
+bool RenderThread::lacks_context() const {
+  const std::lock_guard lock(mutex_);
+  return lacks_context_;
+}
+
+void RenderThread::use_context(ContextMaker maker) {
+  const std::lock_guard lock(mutex_);
+  make_context_ = std::move(maker);
+}
+
+void RenderThread::finish() {
+  std::unique_lock lock(mutex_);
+  finished_.wait(lock, [this] { return !busy_ && !requested_ && saves_.empty(); });
+}
+
+void RenderThread::save_picture(std::filesystem::path folder) {
+  {
+    const std::lock_guard lock(mutex_);
+    saves_.push_back({std::move(folder), std::nullopt});
+  }
+  changed_.notify_all();
+}
+
+void RenderThread::save(Image image, std::filesystem::path folder) {
+  {
+    const std::lock_guard lock(mutex_);
+    saves_.push_back({std::move(folder), std::move(image)});
+  }
+  changed_.notify_all();
+}
+
+std::optional<RenderThread::Saved> RenderThread::take_saved() {
+  const std::lock_guard lock(mutex_);
+  if (saved_.empty()) return std::nullopt;
+  Saved first = std::move(saved_.front());
+  saved_.pop_front();
+  return first;
+}
+
+bool RenderThread::given_up() const {
+  const std::lock_guard lock(mutex_);
+  return stop_ || requested_;
+}
+
+void RenderThread::work() {
+  std::optional<Drawing> drawing;
+  RenderRequest last;
+  while (true) {
+    std::optional<SaveRequest> save_order;
+    bool requested = false;
+    {
+      std::unique_lock lock(mutex_);
+      busy_ = false;
+      finished_.notify_all();
+      changed_.wait(lock, [this] { return stop_ || requested_ || !saves_.empty(); });
+      if (stop_) return;
+      busy_ = true;
+      requested = requested_.has_value();
+      if (requested) {
+        last = *std::exchange(requested_, std::nullopt);
+      } else {
+        save_order = std::move(saves_.front());
+        saves_.pop_front();
+      }
+    }
+    if (requested)
+      draw(drawing, last);
+    else
+      save(drawing, last, std::move(*save_order));
+    if (notify_) notify_();
+  }
+}
+
+void RenderThread::draw(std::optional<Drawing>& drawing, const RenderRequest& wanted) {
+  try {
+    if (!drawing) {
+      ContextMaker maker;
+      {
+        const std::lock_guard lock(mutex_);
+        lacks_context_ = true;
+        maker = make_context_;
+      }
+      drawing.emplace(maker());
+      const std::lock_guard lock(mutex_);
+      lacks_context_ = false;
+    }
+    drawing->apply(wanted);
+    if (!drawing->renderer) return;
+    auto picture = drawing->view.draw(
+        *drawing->renderer, wanted, [&](bool beside) { drawing->turn_to(wanted, beside); },
+        [this] { return given_up(); });
+    const std::lock_guard lock(mutex_);
+    if (picture) newest_ = std::move(picture);
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+  }
+}
+
+void RenderThread::save(std::optional<Drawing>& drawing, const RenderRequest& shown,
+                        SaveRequest wanted) {
+  Saved saved;
+  try {
+    if (!wanted.image) {
+      if (!drawing || !drawing->renderer) return;
+      wanted.image = drawing->renderer->picture(shown.camera, shown.settings);
+    }
+    saved.file = next_picture_file(wanted.folder);
+    write_png(saved.file, *wanted.image);
+  } catch (const std::exception& error) {
+    saved.trouble = error.what();
+  }
+  const std::lock_guard lock(mutex_);
+  saved_.push_back(std::move(saved));
+}
+
+}  // namespace condyle

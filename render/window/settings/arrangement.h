@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/window/settings/layout.h"
+#include "render/window/view/record_choice.h"
+#include "render/window/view/view_state.h"
+
+namespace condyle {
+
+/// Groups of the tree that are unfolded at first.
+inline std::vector<std::string> default_groups() { return {"bones", "free", "teeth"}; }
+
+/// The user's arrangement of the window. It holds nothing about the patient, so it is kept from one
+/// run to the next. Whether the panels are put away (Tab) is not in it: a window that opens without
+/// any would look broken.
+struct Arrangement {
+  bool light = false;                   // theme of the panels
+  std::optional<double> ui_scale = {};  // times the screen's own; none: the default
+  int width = 1280, height = 720;       // before the screen's own scale
+  bool maximized = false;               // then the size is the one to come back to
+  PanelSizes sizes = {};
+  PanelChoice panels = {};
+  std::vector<std::string> open_groups = default_groups();  // of the tree
+  RecordChoice record = {};
+  bool operator==(const Arrangement&) const = default;
+};
+
+}  // namespace condyle

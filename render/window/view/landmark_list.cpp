@@ -1,0 +1,82 @@
+#include "render/window/view/landmark_list.h"
+
+#include <cctype>
+#include <limits>
+
+#include "sim/frame/body_poses.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The nearest vertex of a part; what is not nearer than `nearest` is left alone.
+void look(std::span<const Part> parts, std::size_t part, const Vector3d& p, double& nearest,
+          Landmark& landmark) {
+  const auto& vertices = parts[part].mesh.vertices;
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const double away = (vertices[v] - p).squaredNorm();
+    if (away >= nearest) continue;
+    nearest = away;
+    landmark.part = part;
+    landmark.vertex = static_cast<int>(v);
+  }
+}
+
+}  // namespace
+
+Landmark landmark_at(const std::string& name, const Vector3d& at_rest,
+                     std::span<const Part> parts) {
+  Landmark landmark{name, at_rest, 0, 0};
+  double nearest = std::numeric_limits<double>::infinity();
+  const bool of_condyle = name.ends_with("condyle") || name.ends_with("condylion");
+  for (std::size_t i = 0; of_condyle && i < parts.size(); ++i)
+    if (parts[i].role == Role::mandible) look(parts, i, at_rest, nearest, landmark);
+  if (nearest < std::numeric_limits<double>::infinity()) return landmark;
+  for (std::size_t i = 0; i < parts.size(); ++i) look(parts, i, at_rest, nearest, landmark);
+  return landmark;
+}
+
+Landmark landmark_on(const std::string& name, const PinnedPoint& point,
+                     std::span<const Part> parts) {
+  Landmark landmark{name, Vector3d::Zero(), point.part, point.triangle[0]};
+  double largest = -1;
+  for (int k = 0; k < 3; ++k) {
+    landmark.at_rest +=
+        point.barycentric[k] *
+        parts[point.part].mesh.vertices[static_cast<std::size_t>(point.triangle[k])];
+    if (point.barycentric[k] <= largest) continue;
+    largest = point.barycentric[k];
+    landmark.vertex = point.triangle[k];
+  }
+  return landmark;
+}
+
+Vector3d place_of(const Landmark& landmark, std::span<const Part> parts, const FrameState& frame) {
+  return place_of(landmark, parts, frame, frame.face);
+}
+
+Vector3d place_of(const Landmark& landmark, std::span<const Part> parts, const FrameState& frame,
+                  std::span<const Eigen::Vector3f> face) {
+  if (face.empty()) face = frame.face;
+  if (landmark.part >= parts.size()) return landmark.at_rest;
+  const Part& part = parts[landmark.part];
+  if (part.role != Role::face) return pose_of(parts[landmark.part], frame.poses) * landmark.at_rest;
+  const auto v = static_cast<std::size_t>(landmark.vertex);
+  if (face.size() != part.mesh.vertices.size() || v >= face.size()) return landmark.at_rest;
+  return landmark.at_rest + face[v].cast<double>() - part.mesh.vertices[v];
+}
+
+std::string landmark_name(const std::string& words) {
+  std::string name;
+  for (const char c : words) {
+    if (std::isalnum(static_cast<unsigned char>(c)) || c == '\'')
+      name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    else if (!name.empty() && name.back() != '_')
+      name += '_';
+  }
+  while (!name.empty() && name.back() == '_') name.pop_back();
+  return name;
+}
+
+}  // namespace condyle

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "render/camera/camera.h"
+#include "render/scene/scene_renderer.h"
+#include "render/window/view/record_choice.h"
+#include "sim/choice/file_role.h"
+#include "sim/choice/motion_choice.h"
+#include "sim/frame/frame_state.h"
+#include "sim/frame/part.h"
+
+namespace condyle {
+
+/// What the person asks for once. Whoever runs the window does it.
+namespace request {
+/// Whatever it is: a case folder, a motion; several may be surfaces. None: the built-in patient.
+struct Open {
+  std::vector<std::filesystem::path> files;
+};
+struct Import {
+  std::vector<FileRole> files;
+  std::string units = "mm", frame = "LPS";
+};
+/// Records a film or pictures of the motion as the window shows it now.
+struct Record {
+  std::filesystem::path folder;
+  int width = 1920, height = 1080;
+  double frames_per_second = 30;
+  bool film = true;
+  // Names as a command line has them, files of a view or a path of views, and the window's own two.
+  std::vector<std::string> cameras = {own_camera};
+  std::string caption = {};  // with braces to fill in
+  bool transparent = false;
+  int supersampling = 1;
+  RecordEdges edges = RecordEdges::msaa;
+  Camera camera;  // the window's, in the cranium's frame
+  Eigen::Vector3d upright = {
+      0, 0, 1};  // axis of the turntable: the world's upright, in the cranium's frame
+  PictureSettings picture;
+  std::shared_ptr<const FrameState> kept = {};  // left of the wipe, if there is one
+};
+struct StopRecording {};
+/// The recording that was stopped or asked about goes on with the pictures that are there.
+struct ResumeRecording {};
+/// The recording that was asked about takes the place of what is in its folder.
+struct ReplaceRecording {};
+/// Quits while a recording is being made: it is stopped, or awaited.
+struct Quit {
+  bool when_recorded = false;
+};
+/// Cancels background work other than a recording.
+struct Cancel {};
+/// Hands a body over to the dynamics, from the pose in which it is held.
+struct Release {
+  std::size_t body = 0;  // of the scene's
+};
+struct SaveCase {
+  std::filesystem::path folder;
+};
+/// Rebuilds the simulation with the edited landmarks.
+struct UseLandmarks {};
+}  // namespace request
+
+using Request =
+    std::variant<request::Open, request::Import, request::Record, request::StopRecording,
+                 request::ResumeRecording, request::ReplaceRecording, request::Quit,
+                 request::Cancel, request::Release, request::SaveCase, request::UseLandmarks>;
+
+/// A question to the user before something is done.
+struct Question {
+  struct Answer {
+    std::string item, label;
+    std::optional<Request> request = {};  // none: nothing is done
+  };
+  std::string title, words;
+  std::vector<Answer> answers;  // Enter gives the first, which loses nothing; Esc gives none
+};
+
+}  // namespace condyle

@@ -1,0 +1,170 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/image/colour_map.h"
+#include "render/window/view/landmark_list.h"
+#include "render/window/view/measuring.h"
+#include "render/window/view/movable.h"
+#include "render/window/view/ui_commands.h"
+#include "sim/frame/part.h"
+
+namespace condyle {
+
+/// What the tree lists beside the parts.
+struct TreeItem {
+  std::string name, label;
+  std::string short_label = {};  // in the tree, where the label is long; empty: the label
+};
+
+/// What a window shows. Plain data; the parts must outlive the window or the next scene.
+struct WindowScene {
+  std::span<const Part> parts = {};
+  std::string case_name = {};
+  std::string motion_name = {};
+  double duration_s = 0;       // of the motion; 0 when there is none
+  double step_s = 1.0 / 30;    // what one press of an arrow key moves
+  double max_opening_mm = 50;  // end of the opening slider; below 1: the slider is disabled
+  std::vector<std::string> notes = {};  // sentences about this case, e.g. overlap at rest
+  // Colours for distances, where the loop behind the window can compute them; beside them in the
+  // legend stand the remarks.
+  std::optional<ColourMap> distance_colours = {};
+  std::vector<std::string> distance_remarks = {};
+  std::vector<MovableBody> bodies = {};    // that a hand may move
+  std::filesystem::path case_folder = {};  // none: not kept in files
+  std::vector<std::string> motions = {};   // names to choose from
+  MotionChoice motion = {};                // what the motion was made from
+  std::vector<MotionSetting> motion_settings = {};
+  std::vector<ExcitationSetting> excitations = {};  // of a motion that muscles drive
+  std::vector<Landmark> landmarks = {};             // of the case, as it was loaded or saved
+  std::vector<Landmark> landmarks_in_use = {};      // what is simulated was made with these
+  std::vector<TreeItem> muscles = {};  // lines of action that can be shown, in the case's order
+  std::vector<TreeItem> layers = {};   // sheets of the soft tissue, from the skin inward
+  std::vector<std::filesystem::path> recent = {};  // opened before, the last one first
+};
+
+/// How one part is wanted.
+struct PartView {
+  bool shown = true;
+  double opacity = 1;  // 0 to 1
+  bool operator==(const PartView&) const = default;
+};
+
+/// What the left button does in the picture: turn it, move bodies, set points to measure or place
+/// landmarks.
+enum class Tool { look, move, measure, landmarks };
+
+/// What the picture shows in addition to the surfaces, and how they are cut.
+struct Look {
+  bool clip = false;
+  bool clip_skin = false;   // and nothing but the face
+  char clip_from = 'L';     // side that is taken away: L R A P S I
+  double clip_share = 0.5;  // of the patient's extent, from that side
+  bool cut_away = false;
+  enum class Window { left_joint, right_joint, mouth } cut_at = Window::left_joint;
+  double cut_radius_mm = 35;
+  bool ghost = false;      // of the rest state
+  bool wireframe = false;  // of all parts
+  bool patches = false;    // only where surfaces touch, of the map of distances
+  bool paths = false, axes = false;
+  bool springs = false, prisms = false, bone_springs = false;  // of the soft tissue
+  bool displacement = false;  // the skin coloured by its displacement from rest
+  bool scale_bar = true, letters = true;
+  bool wipe = false;     // the kept state at the left, the present one at the right
+  double wipe_at = 0.5;  // fraction of the width
+  bool operator==(const Look&) const = default;
+};
+
+/// What the left column shows.
+enum class LeftTab { parts, look };
+
+/// What the right column shows.
+enum class SideTab { readings, motion, record };
+
+/// Which panels are in use.
+struct PanelChoice {
+  SideTab tab = SideTab::readings;
+  LeftTab left_tab = LeftTab::parts;
+  bool plots = false;        // below the picture
+  std::size_t plot_set = 0;  // the one that is shown, while there are so many
+  bool operator==(const PanelChoice&) const = default;
+};
+
+/// The settings that undo restores: all but the clock, the camera and which panels
+/// and tools are in use.
+struct Edits {
+  bool obey_contact = true;  // false plays the motion through the contact
+  bool mark_contacts = true;
+  bool shadows = true;
+  bool distances = false;                  // colour parts by their distance from what they may meet
+  std::vector<PinnedPoint> measured = {};  // points that were clicked, in their order
+  std::optional<double> opening_mm = {};   // wanted while set, instead of the motion's
+  Hands hands = {};                        // where bodies are wanted instead of where they would be
+  std::vector<Landmark> landmarks = {};    // where the person has them; the scene's at first
+  MotionChoice motion = {};                // wanted; the scene's at first
+  Look look = {};
+  double skin_opacity = 1;                    // of parts with the role `face`, on top of their own
+  std::optional<double> skin_to_return = {};  // its opacity before distances took it away
+  std::vector<PartView> parts = {};           // one per part of the scene, in its order
+  // The same of muscles and layers of tissue; not shown at first.
+  std::vector<PartView> muscles = {}, layers = {};
+  bool operator==(const Edits&) const = default;
+};
+
+/// The state that the user requests. The loop reads it and responds with a FrameState; nothing
+/// here steps the simulation.
+struct ViewState : Edits, PanelChoice {
+  bool playing = false;
+  bool falling = false;  // a released jaw is moving to its target
+  bool loop = true;
+  double speed = 1;                          // times real time, 0.1 to 2
+  double time_s = 0;                         // of the motion, 0 to duration
+  Tool tool = Tool::look;                    // what the left button does
+  std::size_t chosen = 0;                    // the body that has the handles, of the scene's
+  std::optional<std::size_t> landmark = {};  // the one that the next click places
+
+  const Edits& edits() const { return *this; }
+  /// Whether the jaw is held by hand instead of following the motion.
+  bool jaw_is_held() const { return opening_mm || hands.X_CM_target(); }
+  /// Moves a body by hand; the jaw is at X_CM. Moving the jaw or skull ends the motion; a mouth
+  /// that the slider held open stays open once the skull is reset.
+  void move(const MovableBody& body, const Pose& wanted, const Pose& X_CM);
+  /// After distances are switched off: restores the skin's opacity, unless the user has set it
+  /// since.
+  void return_skin();
+  /// Restores earlier edits; the rest stays, but the clock stops where the jaw is held by hand.
+  void set_edits(Edits other);
+
+  /// Whether any face is visible: without one the loop may leave out the face and its tissue.
+  bool shows_face(const WindowScene& scene) const;
+  /// Whether the soft tissue is moved: its face or what is drawn of it is visible.
+  bool simulates_tissue(const WindowScene& scene) const;
+  /// Fits the lists to the scene; new entries have their defaults.
+  void fit(const WindowScene& scene);
+};
+
+/// Opacity of every part by name, hidden ones 0: what a SceneRenderer wants.
+std::map<std::string, double> part_opacities(const WindowScene& scene, const ViewState& view);
+
+/// Performance of the simulation loop. Zero where unknown.
+struct LoopStatistics {
+  double steps_per_second = 0;  // of the simulation
+  std::string message = {};     // one line for the foot of the window; empty for none
+};
+
+/// Performance of drawing, measured by the window itself.
+struct PictureStatistics {
+  double pictures_per_second = 0;
+  double picture_ms = 0;  // the 3-D picture alone
+  bool finished = false;  // it shows all that is wanted, in full quality
+  // Longest time between two looks at mouse and keyboard, waiting for them not counted.
+  double longest_away_ms = 0;
+  double render_scale = 1;  // 1 is full resolution
+  int samples = 1;          // of multisampling
+};
+
+}  // namespace condyle
