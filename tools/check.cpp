@@ -1,22 +1,37 @@
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <ctime>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <set>
 
+#include "engine/core/atomic_output.h"
 #include "engine/core/error.h"
-#include "render/contact_picture.h"
-#include "render/gl_context.h"
+#include "engine/mesh/measure.h"
+#include "render/gl/gl_context.h"
+#include "render/output/contact_picture.h"
+#include "render/recording/render_metadata.h"
 #include "sim/frame/part_names.h"
 #include "sim/report/check_page.h"
+#include "tools/commands.h"
 #include "tools/common.h"
-#include "tools/picture_facts.h"
-#include "tools/staged_files.h"
+#include "tools/motion_options.h"
 
 namespace condyle {
 namespace {
+
+struct CheckOptions {
+  MotionOptions motion;
+  std::filesystem::path out;
+  double margin_mm = 0;
+  int frames = 0;  // 0 = duration x fps
+  double fps = 30;
+};
 
 const std::string picture_start = "worst-", picture_end = ".png";
 
@@ -30,20 +45,20 @@ Image picture_of(const Scene& scene, const PairVerdict& pair, int threads) {
   constexpr double least_mm = 45, most_mm = 90;
   const WorstView view = worst_view(scene, pair, threads);
   const auto& worst = pair.worst;
-  ContactPlace place{.parts = view.parts,
-                     .fixed = pair.a,
-                     .moved = pair.b,
-                     .fixed_values = view.distance_a,
-                     .moved_values = view.distance_b,
-                     .X_CM = worst.poses.X_CM,
-                     .place = worst.measure.place,
-                     .middle = worst.measure.middle,
-                     .normal = worst.measure.normal,
-                     .seen_mm = std::clamp(1.3 * worst.measure.size_mm, least_mm, most_mm),
-                     .overview = overview_of(worst.measure),
-                     .title = display_name(pair.a) + " and " + readable_name(pair.b),
-                     .lines = {worst_caption(pair)}};
-  if (const auto words = open_surface_words(pair); !words.empty()) place.lines.push_back(words);
+  ContactView place{.parts = view.parts,
+                    .fixed = pair.a,
+                    .moved = pair.b,
+                    .fixed_values = view.distance_a,
+                    .moved_values = view.distance_b,
+                    .at = worst.poses,
+                    .place = worst.measure.place,
+                    .middle = worst.measure.middle,
+                    .normal = worst.measure.normal,
+                    .seen_mm = std::clamp(1.3 * worst.measure.size_mm, least_mm, most_mm),
+                    .overview = overview_of(worst.measure),
+                    .title = display_name(pair.a) + " and " + readable_name(pair.b),
+                    .lines = {worst_caption(pair)}};
+  if (const auto words = open_surface_text(pair); !words.empty()) place.lines.push_back(words);
   // Pairs that stay far apart have a wider scale, so that where they are nearest is seen.
   const double least = std::abs(worst.sample.signed_distance_mm());
   const double near_mm = least < 4 ? 5 : least < 9 ? 10 : least < 18 ? 20 : 50;
@@ -59,7 +74,7 @@ std::string file_of(const PairVerdict& pair) {
 }
 
 /// Draws each pair worth a picture; gives its file's name, or empty, for every pair.
-std::vector<std::string> write_pictures(StagedFiles& files, const Scene& scene,
+std::vector<std::string> write_pictures(AtomicOutput& files, const Scene& scene,
                                         const ClearanceCheck& check, int threads,
                                         std::vector<std::string>& notes, const Progress& progress) {
   std::vector<std::string> names(check.pairs.size());
@@ -71,7 +86,7 @@ std::vector<std::string> write_pictures(StagedFiles& files, const Scene& scene,
     return names;
   }
   const auto shown = pairs_to_show(check);
-  if (const auto lacks = usual_picture_facts(*context).shortfall();
+  if (const auto lacks = default_render_metadata(*context).shortfall();
       !shown.empty() && !lacks.empty())
     notes.push_back(lacks);
   for (std::size_t k = 0; k < shown.size(); ++k) {
@@ -106,6 +121,14 @@ std::vector<std::string> notes_on_crowns(const Case& patient, const ClearanceChe
   return notes;
 }
 
+/// "mandible 1f0c...": each part and the hash of its surface.
+std::vector<std::string> surface_hashes(const Case& patient) {
+  std::vector<std::string> hashes;
+  for (const auto& part : patient.parts)
+    hashes.push_back(fmt::format("{} {:016x}", part.name, mesh_hash(part.mesh)));
+  return hashes;
+}
+
 /// Pictures of an earlier check must not be taken for this one's.
 void remove_other_pictures(const std::filesystem::path& folder,
                            const std::vector<std::string>& kept) {
@@ -118,18 +141,18 @@ void remove_other_pictures(const std::filesystem::path& folder,
   }
 }
 
-}  // namespace
-
 int run_check(const CheckOptions& options, const CommonOptions& common) {
   constexpr int violation = 3;
   ProgressBar bar(common);
+  check_motion(options.motion);
   auto settings = simulator_settings(options.motion, common);
   settings.contact.far_mm = std::numeric_limits<double>::infinity();  // every distance is plotted
-  std::optional<StagedFiles> files;
+  std::optional<AtomicOutput> files;
   if (!options.out.empty()) files.emplace(options.out);  // fails before the long work
-  const Scene scene =
-      make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
-  tell_notes(scene, common, bar);
+  Case patient = open_patient(options.motion.patient, common, bar);
+  check_motion(options.motion, patient);
+  const Scene scene = make_scene(std::move(patient), settings, bar.callback());
+  print_notes(scene, options.motion.patient, common, bar);
   const Motion motion = motion_of(options.motion, scene, common.threads);
   const auto check = check_clearance(
       scene, motion, {.margin_mm = options.margin_mm, .sampling = {options.frames, options.fps}},
@@ -140,7 +163,13 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   bar.clear();
   const std::string json = check.json(scene, motion, pictures, notes);
   if (files) {
-    CheckPage page{scene.patient.name, motion.name, pictures, scene.contacts.notes()};
+    CheckPage page{.patient = scene.patient.name,
+                   .motion = motion.name,
+                   .pictures = pictures,
+                   .notes = scene.contacts.notes(),
+                   .program = "Condyle " CONDYLE_VERSION,
+                   .date = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr))),
+                   .surfaces = surface_hashes(scene.patient)};
     page.notes.insert(page.notes.end(), notes.begin(), notes.end());
     files->write("pairs.csv", check.pairs_csv);
     files->write("clearance.svg", clearance_svg(check));
@@ -152,11 +181,40 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
     remove_other_pictures(options.out, pictures);
   }
   if (common.json) fmt::print("{}", json);
-  if (!common.quiet) {
+  if (common.prints_summary()) {
     for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
     fmt::print(stderr, "{}", check.text());
   }
   return check.violated() ? violation : 0;
+}
+
+}  // namespace
+
+void add_check(Commands& commands) {
+  const auto options = std::make_shared<CheckOptions>();
+  options->motion.motion = "opening";
+  options->motion.tissue.simulated = false;
+  CLI::App& command =
+      commands.add("check", "Check the bones for collisions and clearances along a motion",
+                   "condyle check mycase --motion opening --margin 1 --out out; echo $?",
+                   [options](const CommonOptions& common) { return run_check(*options, common); });
+  add_motion(command, options->motion);
+  command
+      .add_option("--out", options->out,
+                  "Folder for report.html with its pictures, report.json and pairs.csv")
+      ->type_name("FOLDER");
+  in_range(command.add_option("--margin", options->margin_mm,
+                              "Clearance that bones must keep, mm; default 0"),
+           0, 50);
+  in_range(command.add_option("--frames", options->frames,
+                              "Report the whole motion in this many frames, both ends included"),
+           1, 100000);
+  in_range(command.add_option("--fps", options->fps,
+                              "Frames per second of the motion; default 30. Between them nothing "
+                              "thicker than 0.1 mm passes through unseen"),
+           0.1, 1000);
+  add_pairs(command, options->motion);
+  add_motion_details(command, options->motion);
 }
 
 }  // namespace condyle

@@ -9,19 +9,19 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "sim/case/case_io.h"
 #include "sim/phantom/phantom.h"
-#include "tools/pair_options.h"
-#include "tools/tissue_options.h"
 
 namespace condyle {
 
 ProgressBar::ProgressBar(const CommonOptions& common)
-    : terminal_(!common.quiet && ::isatty(STDERR_FILENO) == 1) {}
+    : quiet_(common.quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() { clear(); }
 
 void ProgressBar::show(std::string_view what, double fraction) {
-  if (!terminal_) return;
+  if (quiet_) return;
+  if (!terminal_) return print_line(what, fraction);
   constexpr int width = 30;
   const int full = static_cast<int>(std::lround(std::clamp(fraction, 0.0, 1.0) * width));
   fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} %  {}",
@@ -29,6 +29,14 @@ void ProgressBar::show(std::string_view what, double fraction) {
              std::string(static_cast<std::size_t>(width - full), '.'), fraction * 100, what);
   std::fflush(stderr);
   drawn_ = true;
+}
+
+void ProgressBar::print_line(std::string_view what, double fraction) {
+  constexpr std::chrono::seconds between(10);
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_line_ < between) return;
+  last_line_ = now;
+  fmt::print(stderr, "{:3.0f} %  {}\n", fraction * 100, what);
 }
 
 void ProgressBar::clear() {
@@ -44,11 +52,11 @@ Case open_patient(const std::filesystem::path& folder, const CommonOptions& comm
                   ProgressBar& bar, const Progress& progress) {
   if (!folder.empty()) return load_case(folder);
   // Making the patient takes some seconds once; a reader of a log should know what is going on.
-  bool told = false;
+  bool announced = false;
   return builtin_patient([&](std::string_view what, double fraction) {
-    if (!told && !common.quiet)
+    if (!announced && !common.quiet)
       fmt::print(stderr, "making the built-in patient (once; then it is cached)\n");
-    told = true;
+    announced = true;
     if (progress)
       progress(what, fraction);
     else
@@ -56,29 +64,14 @@ Case open_patient(const std::filesystem::path& folder, const CommonOptions& comm
   });
 }
 
-SimulatorSettings simulator_settings(const MotionOptions& options, const CommonOptions& common) {
-  SimulatorSettings settings;
-  settings.threads = common.threads;
-  settings.tissue = options.tissue;
-  settings.tissue_model.surface_nodes = options.surface_nodes;
-  settings.tissue_model.plan = parse_tissue(options.tissue_model);
-  settings.contact.friction = options.friction;
-  for (const auto& pair : options.pairs) settings.contact.pair_rules.push_back(parse_pair(pair));
-  return settings;
-}
-
-void tell_notes(const Scene& scene, const CommonOptions& common, ProgressBar& bar) {
-  if (common.quiet) return;
+void print_notes(const Scene& scene, const std::filesystem::path& folder,
+                 const CommonOptions& common, ProgressBar& bar) {
+  if (!common.prints_summary() || (folder.empty() && !common.verbose)) return;
   bar.clear();
   for (const auto& note : scene.contacts.notes()) fmt::print(stderr, "note: {}\n", note);
   if (!scene.tissue) return;
   for (const auto& note : summary(*scene.tissue).notes)
     fmt::print(stderr, "note: soft tissue: {}\n", note);
-}
-
-Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
-  return motion_of(options.motion, scene.patient, scene.contacts, options.settings, options.muscles,
-                   threads);
 }
 
 std::string processor() {

@@ -1,17 +1,21 @@
 #pragma once
 
+#include <chrono>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
 
-#include "render/scene_renderer.h"
+#include "render/recording/picture_plan.h"
+#include "render/scene/scene_renderer.h"
 #include "sim/simulator/simulator.h"
-#include "tools/commands.h"
+#include "tools/command.h"
 
 namespace condyle {
 
-/// A bar on standard error while it is a terminal; silent elsewhere and with --quiet.
+/// Progress on standard error: a bar where that is a terminal, elsewhere a line from time to time
+/// in work that takes long; nothing with --quiet.
 class ProgressBar {
  public:
   explicit ProgressBar(const CommonOptions& common);
@@ -24,23 +28,23 @@ class ProgressBar {
   Progress callback();
 
  private:
-  bool terminal_;
+  void print_line(std::string_view what, double fraction);
+
+  bool quiet_, terminal_;
   bool drawn_ = false;
+  std::chrono::steady_clock::time_point last_line_ = std::chrono::steady_clock::now();
 };
 
 /// The case in the folder, or the built-in patient when it is empty.
-/// `progress` is told instead of the bar when it is given.
+/// `progress` is called instead of the bar when it is given.
 Case open_patient(const std::filesystem::path& folder, const CommonOptions& common,
                   ProgressBar& bar, const Progress& progress = {});
 
-SimulatorSettings simulator_settings(const MotionOptions& options, const CommonOptions& common);
-
-/// What is told of a scene before the long work: surfaces that overlap or are open, and what the
-/// soft tissue had to leave out.
-void tell_notes(const Scene& scene, const CommonOptions& common, ProgressBar& bar);
-
-/// The motion that the command line asks for.
-Motion motion_of(const MotionOptions& options, const Scene& scene, int threads);
+/// Prints what a user should know of a scene before the long work: surfaces that overlap or are
+/// open, and simplifications of the soft tissue. Those of the built-in patient (no folder) are
+/// printed with --verbose alone; report.json has them.
+void print_notes(const Scene& scene, const std::filesystem::path& folder,
+                 const CommonOptions& common, ProgressBar& bar);
 
 /// The machine's processor, by its own name.
 std::string processor();
@@ -54,7 +58,6 @@ const std::map<std::string, std::set<Role>>& part_groups();
 /// Fills opacities from a list such as "bones,teeth,skin:0.4"; "all" shows every part.
 /// gives: the map of numbers on the surfaces that is in the list, if one is. throws: InputError for
 /// an unknown name, listing the known ones.
-enum class SurfaceMap { none, distance, displacement };
 SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
                            PictureSettings& settings);
 

@@ -1,10 +1,15 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "engine/mesh/topology.h"
 #include "engine/mesh_io/mesh_files.h"
+#include "sim/case/case_io.h"
+#include "sim/dynamics/body_mass.h"
+#include "tools/commands.h"
 #include "tools/common.h"
 
 namespace condyle {
@@ -25,6 +30,36 @@ Json describe(const TriMesh& mesh) {
           {"high_mm", {high.x(), high.y(), high.z()}}};
 }
 
+Json describe(const Case& patient, BodyId id) {
+  const Body& body = patient.bodies[id];
+  Json json = {{"name", body.name}};
+  if (id != cranium_body) {
+    json["parent"] = patient.bodies[body.parent].name;
+    json["driver"] = driver_name(body.driver);
+  }
+  json["parts"] = Json::array();
+  bool bone = false;
+  for (const Part& part : patient.parts) {
+    if (part.body != id) continue;
+    json["parts"].push_back(part.name);
+    bone = bone || (collides(part.role) && !part.mesh.empty());
+  }
+  // The cranium is fixed, so its mass is of no use.
+  if (bone && id != cranium_body) json["mass_g"] = 1000 * body_mass(patient, id).mass_kg;
+  return json;
+}
+
+std::string body_line(const Json& body) {
+  std::string text = body["name"].get<std::string>();
+  if (body.contains("parent")) {
+    const std::string driver = body["driver"].get<std::string>();
+    text += fmt::format(": on {}, {}", body["parent"].get<std::string>(),
+                        driver == "fixed" ? driver : "moved by " + driver);
+  }
+  if (body.contains("mass_g")) text += fmt::format(", {:.1f} g", body["mass_g"].get<double>());
+  return text;
+}
+
 std::string line(const Json& mesh) {
   const auto& low = mesh["low_mm"];
   const auto& high = mesh["high_mm"];
@@ -39,8 +74,6 @@ std::string line(const Json& mesh) {
       high[2].get<double>() - low[2].get<double>());
 }
 
-}  // namespace
-
 int run_info(const std::filesystem::path& what, const CommonOptions& common) {
   if (!what.empty() && !std::filesystem::is_directory(what)) {
     const Json mesh = describe(read_mesh(what));
@@ -52,14 +85,16 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
   const Case patient = open_patient(what, common, bar);
   bar.clear();
   Json json = {{"name", patient.name},
-               {"source_units", patient.source_units},
-               {"source_frame", patient.source_frame}};
+               {"source_units", patient.source.units},
+               {"source_frame", patient.source.axes}};
   for (const auto& part : patient.parts) {
     Json described = {{"name", part.name}, {"role", role_name(part.role)}};
     described.update(describe(part.mesh));
     if (!part.teeth.empty()) described["teeth"] = part.teeth.size();
     json["parts"].push_back(described);
   }
+  for (int i = 0; i < patient.bodies.size(); ++i)
+    json["bodies"].push_back(describe(patient, BodyId{i}));
   for (const auto& [name, point] : patient.landmarks.points)
     json["landmarks"][name] = {point.x(), point.y(), point.z()};
   json["notes"] = patient.notes;
@@ -67,15 +102,27 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     return 0;
   }
-  fmt::print("{} (LPS, mm; imported from {} in {})\n", patient.name, patient.source_frame,
-             patient.source_units);
+  fmt::print("{} (LPS, mm; imported from {} in {})\n", patient.name, patient.source.axes,
+             patient.source.units);
   for (const auto& part : json["parts"])
     fmt::print("  {:<14}{}\n", part["name"].get<std::string>(), line(part));
+  for (const auto& body : json["bodies"]) fmt::print("  body {}\n", body_line(body));
   fmt::print("  {} landmarks:", patient.landmarks.points.size());
   for (const auto& [name, point] : patient.landmarks.points) fmt::print(" {}", name);
   fmt::print("\n");
   for (const auto& note : patient.notes) fmt::print("  note: {}\n", note);
   return 0;
+}
+
+}  // namespace
+
+void add_info(Commands& commands) {
+  const auto what = std::make_shared<std::filesystem::path>();
+  CLI::App& command =
+      commands.add("info", "Describe a case or a surface file", "condyle info mycase --json",
+                   [what](const CommonOptions& common) { return run_info(*what, common); });
+  command.add_option("CASE|FILE", *what,
+                     "Case folder or surface file (default: the built-in patient)");
 }
 
 }  // namespace condyle

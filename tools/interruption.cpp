@@ -12,10 +12,10 @@ namespace {
 constexpr std::array interrupting = {SIGINT, SIGTERM};
 std::string last_words;  // unchanged while a signal may come
 
-extern "C" void tell_and_end(int signal) {
-  const auto told = ::write(STDERR_FILENO, last_words.data(), last_words.size());
-  static_cast<void>(told);
-  ::raise(signal);  // its usual end: the handler was for once
+extern "C" void print_and_end(int signal) {
+  const auto written = ::write(STDERR_FILENO, last_words.data(), last_words.size());
+  static_cast<void>(written);
+  ::raise(signal);  // ends as by default: the handler was for once
 }
 
 void set(void (*handler)(int), int flags) {
@@ -34,7 +34,7 @@ void set(void (*handler)(int), int flags) {
 
 Interruption::Interruption(const std::string& sentence) {
   last_words = "\n" + sentence + "\n";
-  set(tell_and_end, static_cast<int>(SA_RESETHAND | SA_NODEFER));
+  set(print_and_end, static_cast<int>(SA_RESETHAND | SA_NODEFER));
 }
 
 Interruption::~Interruption() { set(SIG_DFL, 0); }

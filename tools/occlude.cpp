@@ -1,24 +1,34 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <system_error>
 
 #include "engine/collide/distance_field.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/mesh/measure.h"
-#include "render/contact_picture.h"
-#include "render/gap_colours.h"
-#include "render/gl_context.h"
+#include "render/gl/gl_context.h"
+#include "render/image/gap_colours.h"
+#include "render/output/contact_picture.h"
+#include "render/recording/render_metadata.h"
 #include "sim/motion/recording.h"
 #include "sim/report/occlusion_report.h"
+#include "tools/commands.h"
 #include "tools/common.h"
-#include "tools/picture_facts.h"
 
 namespace condyle {
 namespace {
+
+struct OccludeOptions {
+  std::filesystem::path patient;  // case folder; empty: the built-in patient
+  std::filesystem::path out;
+  std::string start;      // pose file or offsets; empty: the pose of the case
+  double paper_mm = 0.1;  // what is marked when bitten on
+};
 
 constexpr const char* picture_name = "arches.png";
 
@@ -48,7 +58,7 @@ Start parse_start(const std::string& text, const Case& patient) {
       throw InputError("--start " + text +
                        ": is neither a pose file nor offsets left,back,up[,turns about them] in mm "
                        "and degrees, e.g. 1,-2,0 or 0,0,0,2,0,0");
-    return {read_recording(text).wanted(0), "the first pose of " + text};
+    return {read_recording(text).target(0), "the first pose of " + text};
   }
   if (numbers.size() != 3 && numbers.size() != 6)
     throw InputError(
@@ -62,7 +72,7 @@ Start parse_start(const std::string& text, const Case& patient) {
   const Eigen::Vector3d turned = numbers.size() == 6
                                      ? Eigen::Vector3d(numbers[3], numbers[4], numbers[5])
                                      : Eigen::Vector3d::Zero();
-  return {pose_beside_rest(patient, moved, turned),
+  return {displaced_from_rest(patient, moved, turned),
           fmt::format("{} mm left, {} mm back, {} mm up of the case's pose, turned by {}, {} and "
                       "{}° about these axes",
                       moved.x(), moved.y(), moved.z(), turned.x(), turned.y(), turned.z())};
@@ -77,13 +87,13 @@ Image picture_of(const Case& patient, const Bite& bite, double paper_mm, int thr
     if (part.name == bite.upper || part.name == bite.lower)
       for (const auto& p : part.mesh.vertices) arches.add(p);
   constexpr double border = 1.12;  // and a panel is a little narrower than high
-  ContactPlace place{
+  ContactView place{
       .parts = view.parts,
       .fixed = bite.upper,
       .moved = bite.lower,
       .fixed_values = view.upper_gap,
       .moved_values = view.lower_gap,
-      .X_CM = bite.rest.X_CM,
+      .at = bite.rest.X_CM,
       .place = heaviest,
       .middle = arches.center(),
       .normal = -bite.up,
@@ -92,8 +102,8 @@ Image picture_of(const Case& patient, const Bite& bite, double paper_mm, int thr
       .title = "Settled bite: " + patient.name,
       .lines = {fmt::format("{} contacts at {:g} mm paper; load {:.0f} % left, {:.0f} % right; "
                             "overjet {:.1f} mm, overbite {:.1f} mm",
-                            bite.contacts.size(), paper_mm, 100 * bite.left_share,
-                            bite.contacts.empty() ? 0.0 : 100 * (1 - bite.left_share),
+                            bite.contacts.size(), paper_mm, 100 * bite.left_fraction,
+                            bite.contacts.empty() ? 0.0 : 100 * (1 - bite.left_fraction),
                             bite.after.overjet_mm, bite.after.overbite_mm)}};
   return contact_picture(place, gap_colours(paper_mm));
 }
@@ -106,7 +116,7 @@ std::string write_picture(const std::filesystem::path& folder, const Case& patie
   std::filesystem::remove(folder / picture_name, none);  // one of an earlier bite
   try {
     const OffscreenContext context;
-    if (const auto lacks = usual_picture_facts(context).shortfall(); !lacks.empty())
+    if (const auto lacks = default_render_metadata(context).shortfall(); !lacks.empty())
       notes.push_back(lacks);
     write_png(folder / picture_name, picture_of(patient, bite, paper_mm, threads));
   } catch (const MachineError& error) {
@@ -115,8 +125,6 @@ std::string write_picture(const std::filesystem::path& folder, const Case& patie
   }
   return picture_name;
 }
-
-}  // namespace
 
 int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
   constexpr int no_stable_bite = 1;
@@ -143,12 +151,37 @@ int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
   }
   bar.clear();
   if (common.json) fmt::print("{}", report.json());
-  if (!common.quiet) {
+  if (common.prints_summary()) {
     for (const auto& note : bite.notes) fmt::print(stderr, "note: {}\n", note);
     for (const auto& note : report.notes) fmt::print(stderr, "note: {}\n", note);
     fmt::print(stderr, "{}", report.text());
   }
   return bite.stable ? 0 : no_stable_bite;
+}
+
+}  // namespace
+
+void add_occlude(Commands& commands) {
+  const auto options = std::make_shared<OccludeOptions>();
+  CLI::App& command = commands.add(
+      "occlude", "Find maximum intercuspation: close the teeth until they rest on each other",
+      "condyle occlude mycase --start 1,-2,0 --out out",
+      [options](const CommonOptions& common) { return run_occlude(*options, common); });
+  command.add_option("CASE", options->patient,
+                     "Folder with case.json (default: the built-in patient)");
+  command
+      .add_option("--start", options->start,
+                  "Where the mandible starts: a pose file, or its displacement from the pose of "
+                  "the case in mm to the left, back and up, optionally with rotations about these "
+                  "axes in degrees; default the pose of the case")
+      ->type_name("FILE|X,Y,Z[,RX,RY,RZ]");
+  in_range(command.add_option("--paper", options->paper_mm,
+                              "Thickness of the articulating paper, mm; default 0.1"),
+           0.02, 0.3);
+  command
+      .add_option("--out", options->out,
+                  "Folder for report.html with its picture, report.json, pose.csv and motion.csv")
+      ->type_name("FOLDER");
 }
 
 }  // namespace condyle

@@ -3,9 +3,9 @@
 #include <cstdlib>
 
 #include "engine/core/error.h"
+#include "engine/core/text_list.h"
 #include "sim/case/case_io.h"
 #include "sim/case/pair_rules.h"
-#include "tools/text_list.h"
 
 namespace condyle {
 PairRule parse_pair(const std::string& text) {
@@ -41,18 +41,17 @@ PairRule parse_pair(const std::string& text) {
   return rule;
 }
 
-std::map<std::string, Body> parse_carriers(const std::vector<std::string>& texts) {
-  std::map<std::string, Body> carriers;
+std::map<std::string, std::string> parse_parents(const std::vector<std::string>& texts) {
+  std::map<std::string, std::string> parents;
   for (const auto& text : texts) {
     const std::size_t equals = text.find('=');
-    const auto body =
-        equals == std::string::npos ? std::nullopt : carrier_named(text.substr(equals + 1));
-    if (!body)
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
       throw InputError("--carrier-of " + text +
-                       ": must be NAME=mandible or NAME=cranium, e.g. segment-2=mandible");
-    carriers[text.substr(0, equals)] = *body;
+                       ": must be NAME=mandible, NAME=cranium or NAME=PIECE, e.g. "
+                       "segment-2=mandible");
+    parents[text.substr(0, equals)] = text.substr(equals + 1);
   }
-  return carriers;
+  return parents;
 }
 
 }  // namespace condyle

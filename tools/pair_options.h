@@ -12,7 +12,7 @@ namespace condyle {
 /// "A,B,POLICY[,gap=MM][,margin=MM]". throws: InputError naming what is wrong with it.
 PairRule parse_pair(const std::string& text);
 
-/// "NAME=mandible" or "NAME=cranium" each. throws: InputError.
-std::map<std::string, Body> parse_carriers(const std::vector<std::string>& texts);
+/// "NAME=BODY" each: on which body a piece hangs. throws: InputError.
+std::map<std::string, std::string> parse_parents(const std::vector<std::string>& texts);
 
 }  // namespace condyle

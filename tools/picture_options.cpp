@@ -1,246 +1,103 @@
 #include "tools/picture_options.h"
 
-#include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
-#include <algorithm>
-
-#include "engine/core/error.h"
-#include "tools/camera_options.h"
-#include "tools/text_list.h"
+#include "tools/command.h"
 
 namespace condyle {
 namespace {
 
-using Eigen::Vector3d;
-
-// What gap is marked as contact: the thickness of articulating paper.
-constexpr float patch_mm = 0.1f;
-
-/// Names of the parts that a list of groups and parts means.
-std::vector<std::string> parts_of(const std::vector<std::string>& items, const Case& patient,
-                                  const std::string& option) {
-  std::vector<std::string> names;
-  for (const auto& item : items) {
-    const auto group = part_groups().find(item);
-    bool known = group != part_groups().end() || item == "all";
-    for (const auto& part : patient.parts) {
-      const bool meant = item == "all" || item == part.name ||
-                         (group != part_groups().end() && group->second.contains(part.role));
-      known |= meant;
-      if (meant) names.push_back(part.name);
-    }
-    if (!known) {
-      std::string all = "all";
-      for (const auto& [name, roles] : part_groups()) all += ", " + name;
-      for (const auto& part : patient.parts) all += ", " + part.name;
-      throw InputError(option + ": " + item + " is unknown; known are " + all);
-    }
-  }
-  // A group that this patient has nothing of cuts nothing, which an empty list would not mean.
-  if (names.empty() && !items.empty()) names.emplace_back();
-  return names;
+void add_cuts(CLI::App& command, PictureOptions& picture) {
+  command
+      .add_option("--clip", picture.clip,
+                  "Remove what lies beyond a plane and close what it cuts: left, right, front, "
+                  "back, above or below, optionally at so many mm from the middle between the "
+                  "condyles (left:10); or X,Y,Z,NX,NY,NZ: a point and the outward normal")
+      ->type_name("SIDE[:MM]");
+  command
+      .add_option("--clip-parts", picture.clip_parts,
+                  "Parts that the plane cuts, as in --show; default all")
+      ->type_name("PARTS");
+  command.add_flag("--clip-open", picture.clip_open,
+                   "Show the inner sides, drawn flat, instead of closing what is cut");
+  command
+      .add_option("--cut-away", picture.cut_away,
+                  "Open a round window in the skin about a landmark or point, e.g. "
+                  "left_condyle,35")
+      ->type_name("PLACE,RADIUS");
 }
 
-Vector3d middle_of_joints(const Case& patient) {
-  const auto left = patient.landmarks.find("left_condyle"),
-             right = patient.landmarks.find("right_condyle");
-  if (left && right) return 0.5 * (*left + *right);
-  Box box;
-  for (const auto& part : patient.parts)
-    for (const auto& v : part.mesh.vertices) box.add(v);
-  return box.empty() ? Vector3d(0, 0, 0) : Vector3d(0.5 * (box.low + box.high));
+void add_overlays(CLI::App& command, PictureOptions& picture) {
+  command
+      .add_option("--overlay", picture.overlay,
+                  "Also draw, separated by commas: springs, prisms, bone-springs, layers (of the "
+                  "tissue), muscles (lines of action), axes, paths (of condyles and incisal "
+                  "point), ghost (the rest position), wireframe[:PARTS], patches (of contact), "
+                  "scale, letters (L R A P S I)")
+      ->type_name("LIST");
+  in_range(command.add_option("--wipe", picture.wipe,
+                              "Rest at the left of this fraction of the width, now at the right"),
+           0, 1);
+  command.add_flag("--before-after", picture.before_after,
+                   "Three pictures of that size side by side: at rest, now, and now with the skin "
+                   "coloured by its displacement");
+  command
+      .add_option("--caption", picture.caption,
+                  "Words at the foot of the picture; {time}, {opening} (drop of the lower incisal "
+                  "point), {interincisal} (between the incisal edges), {rotation}, {frame} and "
+                  "{motion} are filled in, | breaks the line")
+      ->type_name("TEXT");
 }
 
-ClippingPlane parse_clip(const std::string& text, const Case* patient) {
-  const std::string option = "--clip " + text;
-  ClippingPlane plane;
-  const auto numbers = split_list(text);
-  if (numbers.size() == 6) {
-    for (int k = 0; k < 3; ++k) {
-      plane.point[k] = parse_number(numbers[static_cast<std::size_t>(k)], option);
-      plane.normal[k] = parse_number(numbers[static_cast<std::size_t>(3 + k)], option);
-    }
-    if (plane.normal.norm() < 1e-9) throw InputError(option + ": the way out must not be zero");
-    return plane;
-  }
-  const auto colon = text.find(':');
-  const std::string side = text.substr(0, colon);
-  const std::map<std::string, Vector3d> sides = {
-      {"left", Vector3d::UnitX()},   {"right", -Vector3d::UnitX()}, {"back", Vector3d::UnitY()},
-      {"front", -Vector3d::UnitY()}, {"above", Vector3d::UnitZ()},  {"below", -Vector3d::UnitZ()}};
-  const auto found = sides.find(side);
-  if (found == sides.end())
-    throw InputError(option +
-                     ": must be left, right, front, back, above or below with a place if wanted "
-                     "(left:10), or X,Y,Z,NX,NY,NZ");
-  plane.normal = found->second;
-  const double way = colon == std::string::npos ? 0 : parse_number(text.substr(colon + 1), option);
-  if (patient) plane.point = middle_of_joints(*patient) + way * plane.normal;
-  return plane;
-}
-
-CutAway parse_cut_away(const std::string& text, const Case* patient) {
-  const std::string option = "--cut-away " + text;
-  const auto items = split_list(text);
-  CutAway hole;
-  if (items.size() == 4) {
-    for (int k = 0; k < 3; ++k)
-      hole.center[k] = parse_number(items[static_cast<std::size_t>(k)], option);
-  } else if (items.size() != 2) {
-    throw InputError(option + ": must be LANDMARK,RADIUS or X,Y,Z,RADIUS, e.g. left_condyle,35");
-  } else if (patient) {
-    const auto place = patient->landmarks.find(items[0]);
-    if (!place) throw InputError(option + ": the patient has no landmark " + items[0]);
-    hole.center = *place;
-  }
-  hole.radius_mm = parse_number(items.back(), option);
-  if (!(hole.radius_mm > 0 && hole.radius_mm <= 500))
-    throw InputError(option + ": the radius must be above 0 and at most 500 mm");
-  return hole;
-}
-
-void add_overlay(const std::string& item, const Case* patient, PicturePlan& plan) {
-  const std::map<std::string, bool*> switches = {{"springs", &plan.overlays.springs},
-                                                 {"prisms", &plan.overlays.prisms},
-                                                 {"bone-springs", &plan.overlays.bone_springs},
-                                                 {"axes", &plan.overlays.axes},
-                                                 {"paths", &plan.overlays.paths},
-                                                 {"muscles", &plan.overlays.muscles},
-                                                 {"layers", &plan.overlays.layers},
-                                                 {"patches", &plan.patches},
-                                                 {"scale", &plan.annotations.scale_bar},
-                                                 {"letters", &plan.annotations.letters}};
-  const auto colon = item.find(':');
-  const std::string name = item.substr(0, colon);
-  if (const auto found = switches.find(item); found != switches.end()) {
-    *found->second = true;
-  } else if (item == "ghost") {
-    plan.settings.ghost.emplace();
-  } else if (name == "wireframe") {
-    if (colon == std::string::npos)
-      plan.settings.wireframe = {"*"};
-    else if (patient)
-      for (auto& part : parts_of({item.substr(colon + 1)}, *patient, "--overlay " + item))
-        plan.settings.wireframe.push_back(std::move(part));
-  } else {
-    std::string known = "ghost, wireframe[:PARTS]";
-    for (const auto& [other, value] : switches) known += ", " + other;
-    throw InputError("--overlay " + item + ": unknown; known are " + known);
-  }
-}
-
-/// Without a patient only what can be told without one.
-PicturePlan parse(const PictureOptions& options, const Case* patient) {
-  PicturePlan plan;
-  auto& settings = plan.settings;
-  std::tie(settings.width, settings.height) = parse_size(options.size);
-  if (patient) plan.map = apply_show_list(options.show, patient->parts, settings);
-  if (!options.clip.empty()) {
-    settings.clip = parse_clip(options.clip, patient);
-    settings.clip->capped = !options.clip_open;
-    if (patient && !options.clip_parts.empty())
-      settings.clip->parts =
-          parts_of(split_list(options.clip_parts), *patient, "--clip-parts " + options.clip_parts);
-  } else if (!options.clip_parts.empty() || options.clip_open) {
-    throw InputError("--clip-parts and --clip-open need --clip");
-  }
-  if (!options.cut_away.empty()) settings.cut_away = parse_cut_away(options.cut_away, patient);
-  if (!options.overlay.empty())
-    for (const auto& item : split_list(options.overlay)) add_overlay(item, patient, plan);
-  if (plan.patches) {
-    if (plan.map == SurfaceMap::distance)
-      throw InputError("--overlay patches: shows less than --show distance does; leave one out");
-    settings.mapped_up_to = patch_mm;
-  }
-  if (options.light) settings.backdrop = Backdrop::light;
-  plan.annotations.backdrop = settings.backdrop;
-  settings.transparent = options.transparent;
-  settings.samples = options.edges == "msaa4" ? 4 : 1;
-  settings.smooth_edges = options.edges == "fxaa";
-  settings.supersampling = options.supersample;
-  settings.shadows = options.shadows;
-  plan.wipe = options.wipe;
-  plan.near_mm = options.distance_near_mm;
-  plan.caption = options.caption;
-  plan.cameras = split_cameras(options.camera);
-  if (options.before_after) {
-    if (plan.map == SurfaceMap::distance || plan.patches || plan.wipe)
-      throw InputError(
-          "--before-after: shows rest, now and the skin's way beside one another; leave --wipe, "
-          "--show distance and --overlay patches out");
-    plan.before_after = true;
-    plan.map = SurfaceMap::displacement;
-  }
-  plan.words = {{"show", options.show},
-                {"distances", plan.map == SurfaceMap::distance
-                                  ? fmt::format("up to {} mm", options.distance_near_mm)
-                                  : std::string("none")},
-                {"picture", describe(options)}};
-  return plan;
+void add_quality(CLI::App& command, PictureOptions& picture) {
+  command.add_flag("--light", picture.light, "A light background in place of the dark one");
+  command.add_flag("--transparent", picture.transparent, "No background: PNG with alpha");
+  static const Choices<int> edges = {{"msaa4", 0}, {"fxaa", 0}, {"none", 0}};
+  command
+      .add_option_function<std::string>(
+          "--edges",
+          [&picture](const std::string& word) {
+            chosen(edges, "--edges", word);
+            picture.edges = word;
+          },
+          "How edges are smoothed: by four samples per pixel (the default; fewer are reported), by "
+          "a filter (twice as fast), or not at all")
+      ->type_name(words_of(edges));
+  in_range(command.add_option("--supersample", picture.supersample,
+                              "Draw so many times as wide and high, then average; default 1"),
+           1, 4);
+  command.add_flag_callback(
+      "--no-shadows", [&picture] { picture.shadows = false; }, "Draw no shadows");
 }
 
 }  // namespace
 
-PicturePlan parse_pictures(const PictureOptions& options, const Case& patient) {
-  return parse(options, &patient);
-}
-
-void check_pictures(const PictureOptions& options) {
-  parse(options, nullptr);
-  caption_lines(options.caption, 0, {}, "");
-}
-
-std::string describe(const PictureOptions& o) {
-  std::string text = fmt::format("edges {}, {} times, {}", o.edges, o.supersample,
-                                 o.shadows ? "shadows" : "no shadows");
-  if (!o.clip.empty())
-    text += fmt::format("; clip {} of {}{}", o.clip, o.clip_parts.empty() ? "all" : o.clip_parts,
-                        o.clip_open ? ", open" : "");
-  if (!o.cut_away.empty()) text += "; cut away " + o.cut_away;
-  if (!o.overlay.empty()) text += "; overlay " + o.overlay;
-  if (o.before_after) text += "; before and after";
-  if (o.wipe) text += fmt::format("; wipe {}", *o.wipe);
-  if (!o.caption.empty()) text += "; caption " + o.caption;
-  if (o.light) text += "; light";
-  if (o.transparent) text += "; transparent";
-  return text;
-}
-
-std::vector<std::string> caption_lines(const std::string& caption, int frame,
-                                       const FrameState& state, const std::string& motion) {
-  if (caption.empty()) return {};
-  const auto number = [](double value, int digits) {
-    std::string text = fmt::format("{:.{}f}", value, digits);
-    // A jaw at rest is not "-0.0" open.
-    return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1)
-                                                                                : text;
-  };
-  const std::map<std::string, std::string> values = {
-      {"time", number(state.time_s, 2)},
-      {"opening", number(state.measures.opening_mm, 1)},
-      {"interincisal", number(state.measures.interincisal_mm, 1)},
-      {"rotation", number(state.measures.rotation_deg, 1)},
-      {"frame", std::to_string(frame)},
-      {"motion", motion}};
-  std::vector<std::string> lines(1);
-  for (std::size_t i = 0; i < caption.size(); ++i) {
-    if (caption[i] == '|') {
-      lines.emplace_back();
-    } else if (caption[i] == '{') {
-      const auto end = caption.find('}', i);
-      const std::string name = caption.substr(i + 1, std::min(end, caption.size()) - i - 1);
-      const auto value = values.find(name);
-      if (end == std::string::npos || value == values.end())
-        throw InputError("--caption " + caption + ": {" + name +
-                         "} is unknown; known are {time}, {opening}, {interincisal}, {rotation}, "
-                         "{frame} and {motion}");
-      lines.back() += value->second;
-      i = end;
-    } else {
-      lines.back() += caption[i];
-    }
-  }
-  return lines;
+void add_pictures(CLI::App& command, PictureOptions& picture) {
+  begin_group(command, "Camera");
+  command
+      .add_option("--size", picture.size,
+                  "Size of a picture, up to 8192 a side; default 1280x720 (4K: 3840x2160)")
+      ->type_name("WIDTHxHEIGHT");
+  command
+      .add_option("--camera", picture.camera,
+                  "front, back, left, right, three-quarter (the default), above, below, spin, "
+                  "upper-arch, lower-arch, or a JSON file with a view or a path of views; several "
+                  "separated by commas")
+      ->type_name("VIEW|FILE");
+  begin_group(command, "Look");
+  command
+      .add_option("--show", picture.show,
+                  "What to draw: all (the default), bones, teeth, segments, transplants, skin, "
+                  "mouth, contacts or names of parts, each with an opacity if wanted, e.g. "
+                  "bones,teeth,skin:0.4; distance colours bones and teeth by their distance from "
+                  "what they may meet, displacement the skin by its displacement from rest")
+      ->type_name("PARTS");
+  in_range(command.add_option("--distance-near", picture.distance_near_mm,
+                              "Distances up to here are coloured, mm; default 2"),
+           0.5, 10);
+  add_cuts(command, picture);
+  add_overlays(command, picture);
+  add_quality(command, picture);
 }
 
 }  // namespace condyle

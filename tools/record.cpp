@@ -1,22 +1,39 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "render/recording/frame_renderer.h"
+#include "render/recording/recording_identity.h"
 #include "sim/report/motion_plots.h"
 #include "sim/report/report.h"
 #include "sim/report/trace.h"
+#include "tools/commands.h"
 #include "tools/common.h"
 #include "tools/interruption.h"
-#include "tools/picture_taker.h"
-#include "tools/recording_identity.h"
+#include "tools/motion_options.h"
+#include "tools/picture_options.h"
 
 namespace condyle {
 namespace fs = std::filesystem;
 namespace {
+
+struct RecordOptions {
+  MotionOptions motion;
+  fs::path out;
+  int frames = 0;  // 0 = duration x fps
+  double fps = 30;
+  bool plots = false;
+  bool pictures = false;  // `run` has none
+  PictureOptions picture = {};
+  bool film = false;
+  bool resume = false;
+};
 
 /// Times of the frames: the whole motion, first and last included.
 struct FrameTimes {
@@ -41,7 +58,7 @@ FrameTimes frame_times(const RecordOptions& options, double duration_s) {
 }
 
 /// The report, with what its pictures were drawn with.
-std::string with_pictures(const std::string& report, const PictureFacts& facts) {
+std::string with_pictures(const std::string& report, const RenderMetadata& facts) {
   auto json = nlohmann::ordered_json::parse(report);
   json["pictures"] = {
       {"driver", facts.driver}, {"samples_asked", facts.samples_asked}, {"samples", facts.samples}};
@@ -50,10 +67,9 @@ std::string with_pictures(const std::string& report, const PictureFacts& facts) 
 
 /// Fails before the long work when the command line is wrong in a way that needs no patient.
 void check_early(const RecordOptions& options) {
+  check_motion(options.motion);
   if (options.pictures) check_pictures(options.picture);
 }
-
-}  // namespace
 
 int run_record(const RecordOptions& options, const CommonOptions& common) {
   check_early(options);
@@ -61,29 +77,32 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   ProgressBar bar(common);
   auto settings = simulator_settings(options.motion, common);
   settings.face = options.pictures;
-  const Scene scene =
-      make_scene(open_patient(options.motion.patient, common, bar), settings, bar.callback());
-  tell_notes(scene, common, bar);
+  Case patient = open_patient(options.motion.patient, common, bar);
+  check_motion(options.motion, patient);
+  std::optional<PicturePlan> plan;
+  if (options.pictures) plan = parse_pictures(options.picture, patient);
+  const Scene scene = make_scene(std::move(patient), settings, bar.callback());
+  print_notes(scene, options.motion.patient, common, bar);
   bar.show("preparing the motion", 0);
   Playback playback(scene, motion_of(options.motion, scene, common.threads), settings,
                     options.motion.respect_contact);
   const Motion& motion = playback.motion();
   const FrameTimes times = frame_times(options, motion.duration_s);
 
-  TraceWriter trace(options.out / "trace.csv", motion.muscle_names);
+  TraceWriter trace(options.out / "trace.csv", motion.muscle_names, scene.patient.bodies,
+                    scene.patient.jaw);
   MotionReport report(scene, motion, settings);
-  std::optional<PictureTaker> pictures;  // ends first: it gives frames to the trace
+  std::optional<FrameRenderer> pictures;  // ends first: it gives frames to the trace
   if (options.pictures)
     pictures.emplace(
-        parse_pictures(options.picture, scene.patient),
-        RecordingFiles{.out = options.out, .film = options.film, .resume = options.resume},
+        *plan, RecordingFiles{.out = options.out, .film = options.film, .resume = options.resume},
         RecordingSubject{.scene = scene,
                          .motion = motion,
                          .settings = settings,
                          .frames = times.count,
                          .frames_per_second = times.fps(),
-                         .identity = recording_identity(scene, motion, times.all(), settings.step_s,
-                                                        options.motion)});
+                         .identity = recording_identity(scene, motion, times.all(), settings,
+                                                        options.motion.respect_contact)});
   std::optional<Interruption> interruption;
   if (options.pictures)
     interruption.emplace("condyle: interrupted; the pictures made so far stay in " +
@@ -114,7 +133,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   }
   if (pictures) pictures->finish();
   if (common.json) fmt::print("{}", json);
-  if (!common.quiet) {
+  if (common.prints_summary()) {
     for (const auto& note : motion.notes) fmt::print(stderr, "note: {}\n", note);
     if (const auto lacks = pictures ? pictures->facts().shortfall() : ""; !lacks.empty())
       fmt::print(stderr, "note: {}; --edges fxaa or --supersample 2 smooth them\n", lacks);
@@ -124,6 +143,55 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
     fmt::print(stderr, "results are in {}\n", options.out.string());
   }
   return 0;
+}
+
+/// Options of `record` and `run` alike but for the pictures.
+CLI::App& add_recording(Commands& commands, const char* name, const char* what, const char* example,
+                        const std::shared_ptr<RecordOptions>& options) {
+  CLI::App& command = commands.add(name, what, example, [options](const CommonOptions& common) {
+    return run_record(*options, common);
+  });
+  add_motion(command, options->motion);
+  command.get_option("--motion")->required();
+  command.add_option("--out", options->out, "Folder for the results")
+      ->type_name("FOLDER")
+      ->required();
+  in_range(command.add_option("--frames", options->frames,
+                              "The whole motion in this many frames, both ends included"),
+           1, 1000000);
+  in_range(command.add_option("--fps", options->fps, "Frames per second of the motion; default 30"),
+           0.1, 1000);
+  command.add_flag("--plots", options->plots, "Also draw plots (SVG)");
+  return command;
+}
+
+void add_details(CLI::App& command, MotionOptions& motion) {
+  add_pairs(command, motion);
+  add_sliding(command, motion);
+  add_tissue(command, motion.tissue);
+  add_motion_details(command, motion);
+}
+
+}  // namespace
+
+void add_record(Commands& commands) {
+  const auto options = std::make_shared<RecordOptions>();
+  options->pictures = true;
+  CLI::App& command = add_recording(
+      commands, "record", "Record a motion as pictures, off-screen",
+      "condyle record --motion opening --out out --show bones,teeth,skin:0.4 --film", options);
+  command.add_flag("--film", options->film, "Also make film.mp4 (needs the ffmpeg program)");
+  command.add_flag("--resume", options->resume, "Complete an interrupted recording");
+  add_pictures(command, options->picture);
+  add_details(command, options->motion);
+}
+
+void add_run(Commands& commands) {
+  const auto options = std::make_shared<RecordOptions>();
+  CLI::App& command =
+      add_recording(commands, "run", "Simulate a motion without pictures",
+                    "condyle run mycase --motion chew.csv --out out --json", options);
+  add_details(command, options->motion);
 }
 
 }  // namespace condyle

@@ -1,9 +1,30 @@
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "sim/case/tissue_plan.h"
-#include "tools/commands.h"
+
+namespace CLI {
+class App;
+}
 
 namespace condyle {
+
+/// How the soft tissue differs from the case's own, as the user wrote it.
+struct TissueOptions {
+  bool simulated = true;
+  int surface_nodes = 520;
+  std::optional<int> layers = {};
+  std::optional<double> turgor = {}, lambda = {};
+  std::string gravity = {};
+  bool glued = false;
+  std::vector<std::string> attach = {}, detach = {};
+};
+
+/// The group "Tissue".
+void add_tissue(CLI::App& command, TissueOptions& tissue);
 
 /// What the command line says of the soft tissue. throws: InputError naming option and value.
 TissuePlan parse_tissue(const TissueOptions& options);

@@ -1,18 +1,31 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
+#include <memory>
 
-#include "render/window/kept_arrangement.h"
+#include "render/session/view_session.h"
+#include "render/window/settings/kept_arrangement.h"
+#include "render/window/view_state_file.h"
 #include "render/window/window.h"
-#include "tools/view_session.h"
-#include "tools/view_state_file.h"
+#include "tools/commands.h"
+#include "tools/common.h"
+#include "tools/motion_options.h"
 
 namespace condyle {
 namespace {
 
+struct ViewOptions {
+  MotionOptions motion;
+  std::optional<double> ui_scale = {};  // none: as the window was left, at first by the screen
+  std::optional<bool> light = {};       // none: as the window was left
+  std::string size = {};                // "1280x720"; empty: as the window was left
+  std::filesystem::path state_file;     // kept up to date with what the window shows; empty: none
+};
+
 /// As the window was left, but for what the command line asks for.
 WindowOptions window_options(const ViewOptions& options, const Arrangement& kept) {
-  WindowOptions window{.title = "Condyle", .arrangement = kept, .usual_scale = options.ui_scale};
+  WindowOptions window{.title = "Condyle", .arrangement = kept, .default_scale = options.ui_scale};
   Arrangement& wanted = window.arrangement;
   window.fit_screen = options.size.empty();
   if (!options.size.empty()) {
@@ -24,14 +37,22 @@ WindowOptions window_options(const ViewOptions& options, const Arrangement& kept
   return window;
 }
 
-}  // namespace
+SessionSettings session_settings(const MotionOptions& options, const CommonOptions& common) {
+  SessionSettings settings{.motion = options.settings,
+                           .muscles = options.muscles,
+                           .respect_contact = options.respect_contact,
+                           .simulator = simulator_settings(options, common)};
+  if (!options.motion.empty()) settings.first_motion = options.motion;
+  return settings;
+}
 
 int run_view(const ViewOptions& options, const CommonOptions& common) {
   KeptArrangement kept;
   Window window(window_options(options, kept.arrangement()));
   kept.begin(window.arrangement());
-  if (!kept.trouble().empty()) window.report_error(kept.trouble());
-  ViewSession session(window, options, common);
+  if (!kept.trouble().empty())
+    window.report_error("Cannot restore the window as it was left", kept.trouble());
+  ViewSession session(window, session_settings(options.motion, common));
   session.open(options.motion.patient);
   ViewStateFile state(options.state_file);
   while (window.open() || !session.may_close()) {
@@ -43,6 +64,42 @@ int run_view(const ViewOptions& options, const CommonOptions& common) {
   if (const std::string words = session.stop_recording(); !words.empty())
     fmt::print(stderr, "condyle: {}\n", words);
   return 0;
+}
+
+}  // namespace
+
+void add_view(Commands& commands) {
+  const auto options = std::make_shared<ViewOptions>();
+  CLI::App& command =
+      commands.add("view", "Open the window", "condyle view mycase --motion opening",
+                   [options](const CommonOptions& common) { return run_view(*options, common); });
+  add_motion(command, options->motion);
+  command.get_option("CASE")->description(
+      "Folder with case.json, or of loose surfaces: the window asks what each is (default: the "
+      "built-in patient)");
+  begin_group(command, "Window");
+  in_range(command.add_option("--ui-scale", options->ui_scale,
+                              "Size of the panels; default as they were left, at first by the "
+                              "screen"),
+           0.5, 4);
+  command
+      .add_option("--size", options->size,
+                  "Size of the window; default as it was left, at first 1280x720")
+      ->type_name("WIDTHxHEIGHT");
+  command
+      .add_option("--state-file", options->state_file,
+                  "Keep a JSON file up to date with what the window shows, for programs that use "
+                  "the window")
+      ->type_name("FILE");
+  command.add_flag_callback(
+      "--light", [options] { options->light = true; },
+      "Light panels and picture; default as they were left, at first dark (key T)");
+  command.add_flag_callback(
+      "--dark", [options] { options->light = false; }, "Dark panels and picture");
+  add_pairs(command, options->motion);
+  add_sliding(command, options->motion);
+  add_tissue(command, options->motion.tissue);
+  add_motion_details(command, options->motion);
 }
 
 }  // namespace condyle

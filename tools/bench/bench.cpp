@@ -1,0 +1,53 @@
+#include "tools/bench/bench.h"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "tools/commands.h"
+
+namespace condyle {
+namespace {
+
+void add_patient(CLI::App& command, BenchOptions& options) {
+  command.add_option("CASE", options.patient,
+                     "Folder with case.json (default: the built-in patient)");
+}
+
+}  // namespace
+
+void add_bench(Commands& commands) {
+  const auto options = std::make_shared<BenchOptions>();
+  CLI::App& bench = commands.add_parent("bench", "Measure speed", "condyle bench frame --json");
+  const auto add = [&](const char* name, const char* what, const char* example,
+                       int (*run)(const BenchOptions&, const CommonOptions&)) -> CLI::App& {
+    return commands.add_below(
+        bench, name, what, example,
+        [options, run](const CommonOptions& common) { return run(*options, common); });
+  };
+  CLI::App& frame = add("frame", "Each stage of a frame, median and 95th percentile",
+                        "condyle bench frame --json", run_bench_frame);
+  add_patient(frame, *options);
+  in_range(frame.add_option("--repeats", options->repeats, "Openings to measure; default 3"), 1,
+           1000);
+  add_patient(add("table1", "Minimisers compared, beside the published table",
+                  "condyle bench table1 --json", run_bench_table1),
+              *options);
+  add("table2", "Time of a prediction, beside the published one", "condyle bench table2 --json",
+      [](const BenchOptions&, const CommonOptions& common) { return run_bench_table2(common); });
+  CLI::App& tissue = add("tissue", "Soft tissue: cold solves, warm frames, large meshes",
+                         "condyle bench tissue --sizes 10000 --json", run_bench_tissue);
+  in_range(tissue.add_option("--repeats", options->repeats, "Runs of the slow methods; default 3"),
+           1, 1000);
+  in_range(tissue.add_option("--sizes", options->sizes,
+                             "Nodes of larger tissues; default 10000 50000 100000"),
+           200, 1000000);
+  add_patient(add("collide",
+                  "Contact, sliding, dynamics and distance fields, beside FCL's and Bullet's own",
+                  "condyle bench collide --json", run_bench_collide),
+              *options);
+  CLI::App& mesh = add("mesh", "The decimators on the built-in patient's surfaces",
+                       "condyle bench mesh --json", run_bench_mesh);
+  in_range(mesh.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1, 1000);
+}
+
+}  // namespace condyle

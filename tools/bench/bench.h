@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "tools/command.h"
+
+namespace condyle {
+
+struct BenchOptions {
+  std::filesystem::path patient;                    // case folder; empty: the built-in patient
+  int repeats = 3;                                  // whole openings
+  std::vector<int> sizes = {10000, 50000, 100000};  // nodes of larger tissues
+};
+
+// Each returns the program's exit code.
+int run_bench_frame(const BenchOptions& options, const CommonOptions& common);
+int run_bench_table1(const BenchOptions& options, const CommonOptions& common);
+int run_bench_table2(const CommonOptions& common);
+int run_bench_tissue(const BenchOptions& options, const CommonOptions& common);
+int run_bench_collide(const BenchOptions& options, const CommonOptions& common);
+int run_bench_mesh(const BenchOptions& options, const CommonOptions& common);
+
+}  // namespace condyle

@@ -1,0 +1,154 @@
+// Speed of the tissue's minimiser: a cold solve against the published method and other libraries,
+// warm frames of a steady opening, and sizes beyond those of the frame loop.
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "engine/tissue/refactorization.h"
+#include "tools/bench/baseline/baseline_minimizers.h"
+#include "tools/bench/tissue_kernels.h"
+#include "tools/bench/tissue_tables.h"
+#include "tools/bench/tissue_warm.h"
+#include "tools/bench/bench.h"
+
+namespace condyle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json race_json(const TimingLine& line, const Race& result) {
+  Json json = timing_json(line, {result.median_ms, result.p95_ms}, result.cpu_ms, result.error_mm);
+  json["energy_error"] = result.energy_error;
+  json["tolerance"] = result.tolerance;
+  json["met_target"] = result.met;
+  if (!result.met) json["median"] = json["p95"] = nullptr;
+  return json;
+}
+
+}  // namespace
+
+int run_bench_tissue(const BenchOptions& options, const CommonOptions& common) {
+  Json json;
+  json["machine"] = machine_json();
+  auto& results = json["results"] = Json::array();
+  const auto say = [&](const Json& row) {
+    results.push_back(row);
+    if (common.quiet) return;
+    const auto time = [&](const char* key) {
+      return row[key].is_null() ? std::string("-") : fmt::format("{:.2f}", row[key].get<double>());
+    };
+    fmt::print(
+        stderr, "  {:<14}{:<20}{:<16}{:>8}{:>8}{:>12}{:>12}{:>12}{:>12}\n",
+        row["name"].get<std::string>(),
+        row.contains("method") ? row["method"].get<std::string>() : "",
+        row.contains("start") ? row["start"].get<std::string>() : "", row["nodes"].get<int>(),
+        row["threads"].get<int>(), time("median"), time("p95"), time("cpu_median"),
+        row.contains("error_mm") ? fmt::format("{:.1e}", row["error_mm"].get<double>()) : "");
+  };
+  if (!common.quiet)
+    fmt::print(stderr, "ms  {:<12}{:<20}{:<16}{:>8}{:>8}{:>12}{:>12}{:>12}{:>12}\n", "", "method",
+               "start", "nodes", "threads", "median", "p95", "processor", "error mm");
+
+  // Cold, against the published method, each from rest and from where the setup's stored opening
+  // foretells the tissue, as the simulator begins; "foretelling" is given rest and takes itself
+  // there, "with setup" makes its factor first.
+  TissueTarget target = make_target(make_synthetic_set(patient2_size()), bench_movement());
+  const SyntheticSet& set = target.set;
+  std::vector<double> setup, setup_cpu;
+  for (int i = 0; i < 5; ++i) {
+    const Stopwatch watch;
+    const HessianFactor factor(set.mesh, target.rest_loads, set.sheets, set.rest);
+    const StoredOpening stored(target, factor, 1);
+    setup.push_back(watch.wall_ms());
+    setup_cpu.push_back(watch.cpu_ms());
+  }
+  say(timing_json({"tissue.setup", set.mesh.node_count, 1, "condyle"}, quantiles(setup),
+                  quantiles(setup_cpu).median, 0));
+  const auto condyle_solve = [&](double tolerance, int threads, Nodes& x, const HessianFactor& from,
+                                 const RefactorPolicy& schedule) {
+    SpringPrismEnergy energy(set.mesh, target.loads, threads, target.batches);
+    MinimizeSettings settings;
+    settings.tolerance_mm = tolerance;
+    settings.max_step_mm = bench_step_mm;
+    auto r =
+        minimize_with_refactorization(set.mesh, target.loads, energy, from, settings, x, schedule);
+    return r.energy;
+  };
+  constexpr RefactorPolicy from_stored{.first = 1, .far = 0};
+  for (int threads : {1, 2}) {
+    const HessianFactor factor(set.mesh, target.rest_loads, set.sheets, set.rest, threads);
+    const StoredOpening stored(target, factor, threads);
+    const auto row = [&](const char* method, int times,
+                         const std::function<double(double tolerance, Nodes& x)>& attempt) {
+      Json json_row = race_json({"tissue.cold", set.mesh.node_count, threads, method},
+                                race(target, times, attempt));
+      json_row["start"] = target.begun.empty() ? "rest" : "stored opening";
+      say(json_row);
+    };
+    const int repeats = options.repeats * 3;
+    for (const bool at_rest : {true, false}) {
+      target.begun = at_rest ? Nodes() : stored.start(target, bench_movement());
+      if (at_rest)
+        row("condyle with setup", repeats, [&](double tolerance, Nodes& x) {
+          const HessianFactor own(set.mesh, target.rest_loads, set.sheets, set.rest, threads);
+          return condyle_solve(tolerance, threads, x, own, {});
+        });
+      if (at_rest)
+        row("condyle foretelling", repeats, [&](double tolerance, Nodes& x) {
+          x = stored.start(target, bench_movement());
+          return condyle_solve(tolerance, threads, x, stored.factor, from_stored);
+        });
+      row("condyle", repeats, [&](double tolerance, Nodes& x) {
+        return at_rest ? condyle_solve(tolerance, threads, x, factor, {})
+                       : condyle_solve(tolerance, threads, x, stored.factor, from_stored);
+      });
+      row("cg_parabolic", options.repeats, [&](double tolerance, Nodes& x) {
+        SpringPrismEnergy energy(set.mesh, target.loads, threads, target.batches);
+        MinimizeSettings settings;
+        settings.tolerance_mm = tolerance;
+        settings.max_iterations = 20000;
+        return minimize_with(Method::cg_parabolic, energy, settings, x).energy;
+      });
+    }
+  }
+  target.begun.clear();
+  const Json peers = output_of_companion("condyle-peers", "table2");
+  if (peers.empty() && !common.quiet)
+    fmt::print(stderr, "  (condyle-peers is not built: tools/setup --bench)\n");
+  for (const auto& row : peers.empty() ? Json::array() : peers["results"])
+    if (row["name"] == "tissue.peer") say(row);
+
+  for (int threads : {1, 2}) say(warm_frames(set, threads));
+  for (int nodes : options.sizes) say(warm_frames(make_synthetic_set(size_of_nodes(nodes)), 2));
+
+  // One prediction for each, from nothing, as before and after surgery.
+  std::vector<int> sizes{20000};
+  sizes.insert(sizes.end(), options.sizes.begin(), options.sizes.end());
+  for (int nodes : sizes)
+    for (int threads : {1, 2})
+      if (threads == 2 || nodes <= 20000) say(static_prediction(nodes, threads));
+
+  const Json tolerances = tolerance_rows(target, 5);
+  for (const auto& row : tolerances) results.push_back(row);
+  if (!common.quiet) {
+    fmt::print(stderr, "Tolerance against time and error, {} nodes, cold, one thread:\n",
+               set.mesh.node_count);
+    fmt::print(stderr, "  {:>13}{:>12}{:>12}{:>14}{:>17}\n", "tolerance mm", "median ms",
+               "iterations", "worst node mm", "relative energy");
+    for (const auto& row : tolerances)
+      fmt::print(stderr, "  {:>13.1e}{:>12.2f}{:>12}{:>14.1e}{:>17.1e}\n",
+                 row["tolerance"].get<double>(), row["median"].get<double>(),
+                 row["iterations"].get<int>(), row["error_mm"].get<double>(),
+                 row["energy_error"].get<double>());
+  }
+  Json kernels = factor_rows();
+  if (kernels.empty() && !common.quiet)
+    fmt::print(stderr, "  (condyle-factors is not built: tools/setup)\n");
+  for (auto& row : element_rows({2000, 8000})) kernels.push_back(std::move(row));
+  if (!common.quiet) print_kernel_rows(kernels);
+  for (auto& row : kernels) results.push_back(std::move(row));
+  if (common.json) fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  return 0;
+}
+
+}  // namespace condyle

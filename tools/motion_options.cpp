@@ -1,0 +1,130 @@
+#include "tools/motion_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "sim/case/pair_rules.h"
+#include "sim/muscles/default_muscles.h"
+#include "tools/pair_options.h"
+
+namespace condyle {
+namespace {
+
+void add_parameters(CLI::App& command, MotionOptions& motion) {
+  begin_group(command, "Motion");
+  for (const auto& entry : motion_parameter_names()) {
+    std::string name = "--" + entry.name;
+    std::replace(name.begin(), name.end(), '_', '-');
+    const std::string unit = entry.unit.empty() || entry.unit == "mm_s" ? "" : ", " + entry.unit;
+    in_range(command.add_option_function<double>(
+                 name,
+                 [&motion, &entry](const double& value) {
+                   for (const auto member : entry.values)
+                     motion.settings.parameters.*member = value;
+                 },
+                 entry.help + unit),
+             entry.low, entry.high);
+  }
+}
+
+void add_muscles(CLI::App& command, MuscleMotionSettings& muscles) {
+  begin_group(command, "Muscles");
+  static const Choices<MuscleLaw> laws = {{"hill", MuscleLaw::hill}, {"peck", MuscleLaw::peck}};
+  command
+      .add_option_function<std::string>(
+          "--muscle-law",
+          [&muscles](const std::string& word) {
+            muscles.law.law = chosen(laws, "--muscle-law", word);
+          },
+          "hill: force falls with speed, and activation lags; peck: neither. Default hill")
+      ->type_name(words_of(laws));
+  command
+      .add_option("--hyoid", muscles.hyoid,
+                  "Fixed (the default), free, or a CSV of its displacement from rest: "
+                  "time_s,x_mm,y_mm,z_mm")
+      ->type_name("fixed|free|FILE");
+  using Side = BolusSettings::Side;
+  static const Choices<Side> sides = {
+      {"none", Side::none}, {"left", Side::left}, {"right", Side::right}};
+  command
+      .add_option_function<std::string>(
+          "--bolus",
+          [&muscles](const std::string& word) {
+            muscles.bolus.side = chosen(sides, "--bolus", word);
+          },
+          "Food between the back teeth; default none")
+      ->type_name(words_of(sides));
+  in_range(command.add_option("--bolus-size", muscles.bolus.size_mm,
+                              "Thickness of the food, mm; default 10"),
+           1, 40);
+  in_range(command.add_option("--bolus-resistance", muscles.bolus.resistance_N,
+                              "Force at which the food is bitten through, N; default 35"),
+           0, 300);
+}
+
+}  // namespace
+
+void add_motion(CLI::App& command, MotionOptions& motion) {
+  command.add_option("CASE", motion.patient,
+                     "Folder with case.json (default: the built-in patient)");
+  command
+      .add_option("--motion", motion.motion,
+                  "A built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
+                      "), movements in words (\"open 40; close; protrude 6\") or a file of them "
+                      "(*.motion), a recorded motion, muscles:FILE, or inverse:MOTION (muscles "
+                      "that follow it): condyle help motions, recordings, muscles")
+      ->type_name("MOTION");
+  in_range(command.add_option("--duration", motion.settings.duration_s,
+                              "Time of the whole motion, s; default its own (opening: 3)"),
+           0.2, 3600);
+}
+
+void add_pairs(CLI::App& command, MotionOptions& motion) {
+  begin_group(command, "Contact");
+  command
+      .add_option("--pair", motion.pairs,
+                  "What two parts may do to each other (" + known_policies() +
+                      "; * is any part), e.g. skull,mandible,guided,gap=1.5 or "
+                      "segment,*,forbidden,margin=2; may be given several times")
+      ->type_name("A,B,POLICY[,gap=MM][,margin=MM]");
+}
+
+void add_sliding(CLI::App& command, MotionOptions& motion) {
+  begin_group(command, "Contact");
+  command.add_flag("--respect-contact", motion.respect_contact,
+                   "A recorded motion, too, slides where bones meet, as built-in motions do");
+  in_range(command.add_option("--friction", motion.friction,
+                              "Coulomb coefficient of sliding bone and teeth; default 0"),
+           0, 2);
+}
+
+void add_motion_details(CLI::App& command, MotionOptions& motion) {
+  add_parameters(command, motion);
+  add_muscles(command, motion.muscles);
+}
+
+SimulatorSettings simulator_settings(const MotionOptions& options, const CommonOptions& common) {
+  SimulatorSettings settings;
+  settings.threads = common.threads;
+  settings.tissue = options.tissue.simulated;
+  settings.tissue_model.surface_nodes = options.tissue.surface_nodes;
+  settings.tissue_model.plan = parse_tissue(options.tissue);
+  settings.contact.friction = options.friction;
+  for (const auto& pair : options.pairs) settings.contact.pair_rules.push_back(parse_pair(pair));
+  return settings;
+}
+
+void check_motion(const MotionOptions& options) {
+  check_motion(options.motion, options.settings, options.muscles);
+}
+
+void check_motion(const MotionOptions& options, const Case& patient) {
+  check_excitations(options.motion, patient);
+}
+
+Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
+  return motion_of(options.motion, scene.patient, scene.contacts, options.settings, options.muscles,
+                   threads);
+}
+
+}  // namespace condyle
