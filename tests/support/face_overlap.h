@@ -8,7 +8,7 @@
 
 #include "engine/mesh/measure.h"
 #include "engine/mesh/triangle_tree.h"
-#include "engine/tissue/layered_net.h"
+#include "engine/tissue/layered_mesh.h"
 #include "sim/tissue/model.h"
 
 namespace condyle::test {
@@ -22,32 +22,35 @@ class FaceOverlap {
   FaceOverlap(const Case& patient, const TissueModel& model) : model_(model) {
     for (const auto& part : patient.parts)
       if (collides(part.role))
-        parts_[body_of(part.role) == Body::mandible].push_back(
+        parts_[part.body == mandible_body].push_back(
             {TriangleTree(part.mesh), bounding_box(part.mesh)});
     constexpr double firm = 0.3;  // N/mm: what is held by more is grown on and does not slide
-    std::vector<char> held(model.rest.size(), 0);
-    for (std::size_t i = 0; i < model.net.anchor_node.size(); ++i)
-      if (model.net.anchor_stiffness[i] > firm) held[model.net.anchor_node[i]] = 1;
-    for (const auto& t : model.triangles) {
-      const auto inner = [&](int k) { return node_of(t[k], model.sheets - 1, model.sheets); };
+    std::vector<char> held(model.mesh->rest.size(), 0);
+    for (std::size_t i = 0; i < model.mesh->elements.anchor_node.size(); ++i)
+      if (model.mesh->elements.anchor_stiffness[i] > firm)
+        held[model.mesh->elements.anchor_node[i]] = 1;
+    for (const auto& t : model.mesh->triangles) {
+      const auto inner = [&](int k) {
+        return node_of(t[k], model.mesh->sheets - 1, model.mesh->sheets);
+      };
       if (!held[inner(0)] && !held[inner(1)] && !held[inner(2)])
         add({inner(0), inner(1), inner(2)}, neither);
     }
-    for (const auto& face : model.contact.upper.edge) add(face, upper);
-    for (const auto& face : model.contact.lower.edge) add(face, lower);
-    for (const auto* lip : {&model.contact.upper, &model.contact.lower})
+    for (const auto& face : model.contact->upper.edge) add(face, upper);
+    for (const auto& face : model.contact->lower.edge) add(face, lower);
+    for (const auto* lip : {&model.contact->upper, &model.contact->lower})
       for (const auto& face : lip->edge)
         for (const int n : face)
-          if (n % model.sheets == 0) edge_.push_back(model.rest[n]);
+          if (n % model.mesh->sheets == 0) edge_.push_back(model.mesh->rest[n]);
     std::sort(edge_.begin(), edge_.end(),
               [](const auto& a, const auto& b) { return a.x() < b.x(); });
     for (auto& sample : samples_)
       for (int jaw = 0; jaw < 2; ++jaw)
-        sample.in_jaw_at_rest[jaw] = in_jaw(jaw, at(sample, model.rest));
+        sample.in_jaw_at_rest[jaw] = in_jaw(jaw, at(sample, model.mesh->rest));
     for (const Lip lip : {upper, lower}) {
-      const TriangleTree other(body(lip == upper ? lower : upper, model.rest));
+      const TriangleTree other(body(lip == upper ? lower : upper, model.mesh->rest));
       for (auto& sample : samples_)
-        if (sample.lip == lip) sample.in_lip_at_rest = depth(other, at(sample, model.rest));
+        if (sample.lip == lip) sample.in_lip_at_rest = depth(other, at(sample, model.mesh->rest));
     }
   }
 
@@ -118,13 +121,14 @@ class FaceOverlap {
     constexpr double near_mm = 15;
     TriMesh mesh;
     mesh.vertices = x;
-    const int inner = model_.sheets - 1;
-    const auto node = [&](int column, int s) { return node_of(column, s, model_.sheets); };
+    const int inner = model_.mesh->sheets - 1;
+    const auto node = [&](int column, int s) { return node_of(column, s, model_.mesh->sheets); };
     const auto belongs = [&](int c) {
-      return model_.handle_side[c] == lip && to_edge(model_.rest[node(c, 0)]) < near_mm;
+      return model_.display->handle_side[c] == lip &&
+             to_edge(model_.mesh->rest[node(c, 0)]) < near_mm;
     };
     std::set<std::array<int, 2>> border;  // directed edges that have no other side
-    for (const auto& t : model_.triangles) {
+    for (const auto& t : model_.mesh->triangles) {
       if (!belongs(t[0]) || !belongs(t[1]) || !belongs(t[2])) continue;
       mesh.triangles.emplace_back(node(t[0], 0), node(t[1], 0), node(t[2], 0));
       mesh.triangles.emplace_back(node(t[0], inner), node(t[2], inner), node(t[1], inner));
@@ -146,7 +150,7 @@ class FaceOverlap {
   }
   bool far_from_corners(const Sample& sample) const {
     constexpr double corner_mm = 5;  // nearer to a corner both lips are one
-    const Eigen::Vector3d p = at(sample, model_.rest);
+    const Eigen::Vector3d p = at(sample, model_.mesh->rest);
     return (p - edge_.front()).norm() > corner_mm && (p - edge_.back()).norm() > corner_mm;
   }
 

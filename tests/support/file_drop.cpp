@@ -1,30 +1,15 @@
 #include "tests/support/file_drop.h"
 
 #include <X11/Xatom.h>
-#include <X11/Xlib.h>
 
 #include <array>
 #include <chrono>
 #include <thread>
 
+#include "tests/support/x11_windows.h"
+
 namespace condyle::test {
 namespace {
-
-/// The window whose title ends so, below `from`; 0 when there is none.
-Window window_called(Display* display, Window from, const std::string& title) {
-  char* name = nullptr;
-  if (XFetchName(display, from, &name) && name) {
-    const bool found = std::string_view(name).ends_with(title);
-    XFree(name);
-    if (found) return from;
-  }
-  Window root = 0, parent = 0, *children = nullptr, found = 0;
-  unsigned count = 0;
-  if (!XQueryTree(display, from, &root, &parent, &children, &count)) return 0;
-  for (unsigned i = 0; i < count && !found; ++i) found = window_called(display, children[i], title);
-  if (children) XFree(children);
-  return found;
-}
 
 class DropSource {
  public:

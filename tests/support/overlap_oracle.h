@@ -19,7 +19,7 @@ class OverlapOracle {
                                        .edge_rise_mm = 0.002,
                                        .edge_spacing_mm = 0.05,
                                        .region = region,
-                                       .thin_share = 0})) {}
+                                       .thin_fraction = 0})) {}
 
   friend double deepest(const OverlapOracle& a, const OverlapOracle& b, const Pose& X_AB) {
     double depth = 0;

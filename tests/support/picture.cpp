@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "tests/support/places.h"
+
 namespace condyle::test {
 namespace {
 
@@ -32,7 +34,7 @@ constexpr int most_alike = 12;  // levels of a channel
 
 /// Of the pixels of a region, told by the place of their first channel.
 template <class Is>
-double share(const Picture& picture, const Region& region, const Is& is) {
+double fraction(const Picture& picture, const Region& region, const Is& is) {
   const int left = std::max(0, static_cast<int>(region.x)),
             top = std::max(0, static_cast<int>(region.y)),
             right = static_cast<int>(std::min<double>(picture.width, region.x + region.width)),
@@ -45,7 +47,7 @@ double share(const Picture& picture, const Region& region, const Is& is) {
   return all ? static_cast<double>(counted) / static_cast<double>(all) : 0;
 }
 
-std::string percent(double share) { return std::to_string(100 * share) + " %"; }
+std::string percent(double fraction) { return std::to_string(100 * fraction) + " %"; }
 
 }  // namespace
 
@@ -72,15 +74,15 @@ void Picture::save(const std::filesystem::path& file) const {
 
 double difference(const Picture& a, const Picture& b, const Region& region) {
   if (a.empty() || a.width != b.width || a.height != b.height) return 1;
-  return share(a, region, [&](std::size_t pixel) {
+  return fraction(a, region, [&](std::size_t pixel) {
     for (std::size_t k = pixel; k < pixel + 4; ++k)
       if (std::abs(a.rgba[k] - b.rgba[k]) > most_alike) return true;
     return false;
   });
 }
 
-double share_of_colour(const Picture& picture, unsigned rgb, const Region& region) {
-  return share(picture, region, [&](std::size_t pixel) {
+double colour_fraction(const Picture& picture, unsigned rgb, const Region& region) {
+  return fraction(picture, region, [&](std::size_t pixel) {
     for (std::size_t k = 0; k < 3; ++k)
       if (std::abs(picture.rgba[pixel + k] - int(rgb >> (16 - 8 * k) & 0xff)) > most_alike)
         return false;
@@ -90,18 +92,18 @@ double share_of_colour(const Picture& picture, unsigned rgb, const Region& regio
 
 testing::AssertionResult alike(const Picture& seen, const Picture& expected, double most,
                                const Region& region) {
-  const double share = difference(seen, expected, region);
-  if (share <= most) return testing::AssertionSuccess();
+  const double fraction = difference(seen, expected, region);
+  if (fraction <= most) return testing::AssertionSuccess();
   return failed(seen, expected, "expected",
-                percent(share) + " of the pixels differ, of " + percent(most) + " allowed");
+                percent(fraction) + " of the pixels differ, of " + percent(most) + " allowed");
 }
 
 testing::AssertionResult unlike(const Picture& seen, const Picture& before, double least,
                                 const Region& region) {
-  const double share = difference(seen, before, region);
-  if (share > least) return testing::AssertionSuccess();
+  const double fraction = difference(seen, before, region);
+  if (fraction > least) return testing::AssertionSuccess();
   return failed(seen, before, "before",
-                percent(share) + " of the pixels differ, not more than " + percent(least));
+                percent(fraction) + " of the pixels differ, not more than " + percent(least));
 }
 
 testing::AssertionResult same_bytes(const Picture& seen, const Picture& expected) {
@@ -111,8 +113,7 @@ testing::AssertionResult same_bytes(const Picture& seen, const Picture& expected
 }
 
 std::filesystem::path kept_pictures() {
-  const auto folder =
-      std::filesystem::path(CONDYLE_PROGRAM).parent_path() / "test-results" / "pictures";
+  const auto folder = program_file().parent_path() / "test-results" / "pictures";
   std::filesystem::create_directories(folder);
   return folder;
 }

@@ -43,7 +43,7 @@ struct Region {
 double difference(const Picture& a, const Picture& b, const Region& region = {});
 
 /// Share of the pixels whose colour is no farther than that 12 from 0xRRGGBB.
-double share_of_colour(const Picture& picture, unsigned rgb, const Region& region = {});
+double colour_fraction(const Picture& picture, unsigned rgb, const Region& region = {});
 
 // Expectations by that measure: EXPECT_TRUE(alike(seen, expected, 0.003)). One that is not met
 // keeps both pictures in kept_pictures()/failed and names them.

@@ -13,8 +13,18 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/support/places.h"
+
 namespace condyle::test {
 namespace fs = std::filesystem;
+
+namespace {
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool reserves_address_space = true;  // AddressSanitizer takes terabytes at the start
+#else
+constexpr bool reserves_address_space = false;
+#endif
+}  // namespace
 
 Folder::Folder() {
   std::string name = (fs::temp_directory_path() / "condyle-test-XXXXXX").string();
@@ -40,6 +50,7 @@ std::string read_text(const fs::path& file) {
 Outcome condyle(const std::vector<std::string>& arguments, const Limits& limits) {
   const Folder streams;
   const std::string out = streams / "out", err = streams / "err";
+  const std::string program = program_file();
   const pid_t child = ::fork();
   if (child == 0) {
     const int o = ::open(out.c_str(), O_WRONLY | O_CREAT, 0600);
@@ -48,7 +59,7 @@ Outcome condyle(const std::vector<std::string>& arguments, const Limits& limits)
     ::dup2(i, 0);
     ::dup2(o, 1);
     ::dup2(e, 2);
-    if (limits.memory_mb > 0) {
+    if (limits.memory_mb > 0 && !reserves_address_space) {
       const rlimit limit{static_cast<rlim_t>(limits.memory_mb) << 20,
                          static_cast<rlim_t>(limits.memory_mb) << 20};
       ::setrlimit(RLIMIT_AS, &limit);
@@ -60,10 +71,10 @@ Outcome condyle(const std::vector<std::string>& arguments, const Limits& limits)
       ::setrlimit(RLIMIT_FSIZE, &limit);
     }
     ::setenv("XDG_CONFIG_HOME", streams.path().c_str(), 1);  // the settings of nobody
-    std::vector<char*> argv = {const_cast<char*>(CONDYLE_PROGRAM)};
+    std::vector<char*> argv = {const_cast<char*>(program.c_str())};
     for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
-    ::execv(CONDYLE_PROGRAM, argv.data());
+    ::execv(program.c_str(), argv.data());
     ::_exit(127);
   }
   int status = 0;

@@ -4,13 +4,12 @@
 #include <optional>
 
 #include "sim/case/case_io.h"
+#include "tests/support/places.h"
 
 namespace condyle::test {
 
 /// Folder of real anatomy beside the checkout; it may be absent.
-inline std::filesystem::path real_data() {
-  return std::filesystem::path(CONDYLE_SOURCE_DIR) / ".." / "shared" / "data";
-}
+inline std::filesystem::path real_data() { return source_folder() / ".." / "shared" / "data"; }
 
 /// Its muscles and mechanics only where they are asked for: they change how its joints are guided.
 enum class Driven { no, by_muscles };

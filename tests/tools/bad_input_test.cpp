@@ -140,6 +140,25 @@ TEST(BadMotion, RefusedWithFileLineAndValue) {
                  {"nowhere.csv"});
 }
 
+TEST(BadMotion, RefusedBeforeThePatientIsMade) {
+  const Folder folder;
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  const std::string earlier = cache ? cache : "";
+  ::setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);  // the built-in patient is not there
+  const std::string out = folder / "out";
+  for (const char* command : {"run", "record"})
+    expect_refused({command, "--motion", "opning", "--out", out}, 2, {"did you mean \"opening\"?"});
+  expect_refused({"check", "--motion", "opning"}, 2, {"did you mean \"opening\"?"});
+  for (const std::string motion : {"muscles:nowhere.csv", "nowhere.csv", "inverse:nowhere.csv"})
+    expect_refused({"run", "--motion", motion, "--out", out}, 2, {"nowhere.csv"});
+  expect_refused({"run", "--motion", "open 40; jump 3", "--out", out}, 2, {"jump"});
+  EXPECT_FALSE(fs::exists(out)) << "nothing was begun";
+  if (cache)
+    ::setenv("XDG_CACHE_HOME", earlier.c_str(), 1);
+  else
+    ::unsetenv("XDG_CACHE_HOME");
+}
+
 TEST(BadCommand, RefusedWithTheValue) {
   const Folder folder;
   const std::string patient = box_case(folder), out = folder / "out";
@@ -175,9 +194,13 @@ TEST(BadCommand, RefusedWithTheValue) {
     expect_refused({"run", patient, "--motion", "opening", "--out", out, "--pair", rule}, 2,
                    {told});
   }
-  expect_refused({"import", "meshes", "--mandible", folder / "mandible.stl", "--carrier-of",
-                  "segment=head", "--out", out},
-                 2, {"segment=head", "NAME=mandible"});
+  for (const auto& [carrier, reported] : std::map<std::string, std::string>{
+           {"transplant", "NAME=mandible"},
+           {"graft=mandible", "\"graft\"; there are transplant"},
+           {"transplant=head", "\"head\" is no body; there are cranium, mandible, transplant"}})
+    expect_refused({"import", "meshes", "--mandible", folder / "mandible.stl", "--transplant",
+                    folder / "maxilla.stl", "--carrier-of", carrier, "--out", out},
+                   2, {carrier, reported});
   expect_refused({"import"}, 2, {});
   EXPECT_EQ(condyle({"--help"}).code, 0);
   EXPECT_EQ(condyle({"record", "--help"}).code, 0);

@@ -154,7 +154,7 @@ TEST(Check, ATransplantThatOverlapsItsBoneAtRestIsToldAndDrawn) {
     // A millimetre up parts them.
     EXPECT_NEAR(pair["push_out"][2].get<double>(), 1, 0.03);
     EXPECT_NEAR(pair["push_out"][0].get<double>(), 0, 0.1);
-    EXPECT_NE(read_text(folder / "out/report.html").find("parts these two"), std::string::npos);
+    EXPECT_NE(read_text(folder / "out/report.html").find("separates the two"), std::string::npos);
     const std::string page = read_text(folder / "out/report.html");
     const bool blind = page.find("pictures are left out") != std::string::npos;
     EXPECT_EQ(pair["worst"].contains("picture"), !blind);
@@ -183,8 +183,8 @@ TEST(Check, BadRulesAndNumbersAreRefusedBeforeAnythingIsWritten) {
   refused("--pair", "maxilla,mandible,guided,gap=-1", {"-1"});
   refused("--pair", "maxilla,mandible,forbidden,margin=nan", {"nan"});
   refused("--pair", "mandible,mandible,forbidden", {"two different parts"});
-  refused("--pair", "maxilla,mandible,allowed,gap=1", {"guided pairs only"});
-  refused("--pair", "maxilla,mandible,cut-face,margin=2", {"forbidden pairs only"});
+  refused("--pair", "maxilla,mandible,allowed,gap=1", {"only guided pairs"});
+  refused("--pair", "maxilla,mandible,cut-face,margin=2", {"only forbidden pairs"});
   refused("--margin", "-0.5", {"--margin", "-0.5"});
   refused("--margin", "nan", {"--margin", "nan"});
   refused("--frames", "0", {"--frames", "0"});

@@ -179,6 +179,26 @@ TEST(Json, GoesAloneToStandardOutput) {
   EXPECT_EQ(condyle({"info", patient, "--quiet"}).err, "");
 }
 
+TEST(Info, ListsTheBodiesWithTheirMass) {
+  const Folder folder;
+  write_box_patient(folder.path());
+  const std::string patient = folder / "case";
+  ASSERT_EQ(
+      condyle({"import", "meshes", "--maxilla", folder / "maxilla.stl", "--mandible",
+               folder / "mandible.stl", "--transplant", folder / "mandible.stl", "--out", patient})
+          .code,
+      0);
+  const auto bodies = nlohmann::json::parse(condyle({"info", patient, "--json"}).out)["bodies"];
+  ASSERT_EQ(bodies.size(), 3u);
+  EXPECT_EQ(bodies[1]["parent"], "cranium");
+  EXPECT_EQ(bodies[1]["driver"], "motion");
+  EXPECT_EQ(bodies[2]["parts"], nlohmann::json({"transplant"}));
+  EXPECT_EQ(bodies[2]["driver"], "hand");
+  EXPECT_GT(bodies[2]["mass_g"].get<double>(), 0);
+  EXPECT_EQ(bodies[2]["mass_g"], bodies[1]["mass_g"]) << "the same bone twice";
+  EXPECT_NE(condyle({"info", patient}).out.find("body transplant: on "), std::string::npos);
+}
+
 TEST(Record, KilledAtAnyMomentLeavesWholeFramesAndResumesToTheSameBits) {
   const Folder folder;
   const std::string patient = box_case(folder);

@@ -29,8 +29,8 @@ TEST(PictureComparison, CountsPixelsOfWhichAChannelDiffersByMoreThanTwelve) {
   EXPECT_EQ(difference(a, b, {2, 0, 2, 2}), 0);
   EXPECT_EQ(difference(a, grey(2, 4)), 1);
   EXPECT_EQ(difference({}, {}), 1);
-  EXPECT_EQ(share_of_colour(b, 0x646a64), 1);
-  EXPECT_EQ(share_of_colour(b, 0x647264), 1 / 8.0);
+  EXPECT_EQ(colour_fraction(b, 0x646a64), 1);
+  EXPECT_EQ(colour_fraction(b, 0x647264), 1 / 8.0);
 }
 
 TEST(PictureComparison, OneThatFailsKeepsBothPicturesAndNamesThem) {

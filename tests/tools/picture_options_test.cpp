@@ -105,7 +105,7 @@ TEST_F(PictureOptions, WrongOnesAreNamedWithWhatIsKnown) {
       {"radius", {{"--cut-away", "0,0,0,-3"}, "above 0"}},
       {"overlay", {{"--overlay", "halo"}, "bone-springs"}},
       {"caption", {{"--caption", "{speed}"}, "{opening}"}},
-      {"twice", {{"--camera", "front,front"}, "two cameras have the name front"}},
+      {"twice", {{"--camera", "front,front"}, "two cameras are named front"}},
       {"path", {{"--camera", folder_ / "bad.json"}, "must be later"}},
       {"key", {{"--camera", folder_ / "odd.json"}, "zoom"}},
       // Two samples are four on some drivers: the same command would draw different pictures.
@@ -199,19 +199,19 @@ TEST_F(PictureOptions, ResumedWithAnotherDriverTheReportTellsBoth) {
 TEST_F(PictureOptions, SamplesThatTheDriverDoesNotGiveAreTold) {
   const auto sampled = condyle_with("softpipe", command("sampled", {}));
   ASSERT_EQ(sampled.code, 0) << sampled.err;
-  EXPECT_NE(sampled.err.find("asked for 4 samples a pixel, the graphics driver (softpipe"),
+  EXPECT_NE(sampled.err.find("requested 4 samples per pixel, the graphics driver (softpipe"),
             std::string::npos)
       << sampled.err;
   EXPECT_EQ(drawn_with(folder_ / "sampled")["samples"], 1);
   const auto smoothed = condyle_with("softpipe", command("smoothed", {"--edges", "fxaa"}));
-  EXPECT_EQ(smoothed.err.find("samples a pixel"), std::string::npos) << smoothed.err;
+  EXPECT_EQ(smoothed.err.find("samples per pixel"), std::string::npos) << smoothed.err;
   const auto usual = condyle(command("usual", {}));
-  EXPECT_EQ(usual.err.find("samples a pixel"), std::string::npos) << usual.err;
+  EXPECT_EQ(usual.err.find("samples per pixel"), std::string::npos) << usual.err;
   EXPECT_EQ(drawn_with(folder_ / "usual")["samples"], 4);
   // Of what check draws, too.
   const std::vector<std::string> check = {
       "check", box_case(folder_), "--motion", "rest", "--margin", "5", "--out", folder_ / "check"};
-  EXPECT_NE(condyle_with("softpipe", check).err.find("asked for 4 samples"), std::string::npos);
+  EXPECT_NE(condyle_with("softpipe", check).err.find("requested 4 samples"), std::string::npos);
   EXPECT_EQ(condyle(check).err.find("samples"), std::string::npos);
 }
 

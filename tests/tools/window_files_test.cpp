@@ -112,8 +112,8 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
   see("no-bone");
   click("import-close");
   ASSERT_TRUE(wait_for_item("import", false));
-  // Troubles are told in words of the window, not of the command line.
-  const auto told = [&](const std::string& words) {
+  // Errors use the words of the window, not of the command line.
+  const auto reported = [&](const std::string& words) {
     EXPECT_TRUE(wait_until([&](const Json& s) {
       return s.value("trouble", "").find(words) != std::string::npos;
     })) << state().value("trouble", "nothing was said");
@@ -130,10 +130,10 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
              metres + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
   EXPECT_TRUE(drop_files("Condyle", {folder_ / "metres/mandible.obj"}));
   click("import-go");
-  told("choose as the unit of lengths m.");
+  reported("choose as the unit of lengths m.");
   write_text(folder_ / "README.md", "# Notes\n");
   EXPECT_TRUE(drop_files("Condyle", {folder_ / "README.md"}));
-  told("README.md: cannot be opened: it is no case folder");
+  reported("README.md: cannot be opened: it is no case folder");
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }
@@ -206,7 +206,7 @@ TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
   EXPECT_NE(notes.find("rotation 28.1\u00b0"), std::string::npos) << notes;
   EXPECT_NE(notes.find("358.8 cm\u00b3"), std::string::npos) << notes;
   EXPECT_EQ(notes.find(" deg"), std::string::npos) << notes;
-  // Roles that cannot be are told before a patient is made, and what to do.
+  // Impossible roles are refused before the patient is made, with what to do.
   fs::create_directories(folder_ / "again");
   for (const char* name : {"mandible.stl", "marks.csv"})
     fs::copy_file(folder_ / name, fs::path(folder_ / "again") / name);
@@ -351,7 +351,7 @@ TEST_F(WindowSession, ATransplantIsMovedLetGoAndTheDiskIsFull) {
   start({folder_ / "case", "--motion", "open 5 over 0.2; close over 0.2"});
   ASSERT_TRUE(wait_until(idle));
   const std::string notes = state()["notes"].dump();
-  EXPECT_NE(notes.find("goes along with it"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("moves with it"), std::string::npos) << notes;
   EXPECT_EQ(notes.find("--"), std::string::npos) << "no options of the command line: " << notes;
 
   EXPECT_TRUE(press("a"));
@@ -364,21 +364,21 @@ TEST_F(WindowSession, ATransplantIsMovedLetGoAndTheDiskIsFull) {
   click("body");
   ASSERT_TRUE(wait_for_item("body:transplant"));
   click("body:transplant");
-  ASSERT_TRUE(wait_for_item("let-go"));
+  ASSERT_TRUE(wait_for_item("release-body"));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   const auto tip = rect("handle:S");
   drag(tip[0] + 3, tip[1] + 3, tip[0] + 3, tip[1] - 22);
-  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["free_mm"][0][2]) > 1; }));
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["body_mm"][2][2]) > 1; }));
   see("lifted");
-  const double lifted = double(state()["free_mm"][0][2]);
-  click("let-go");
+  const double lifted = double(state()["body_mm"][2][2]);
+  click("release-body");
   EXPECT_TRUE(wait_until([](const Json& s) {
-    return idle(s) && std::abs(double(s["free_mm"][0][2]) + 2.5) < 0.1;
-  })) << state()["free_mm"];
-  EXPECT_GT(see("let-go"), 1e-4);
+    return idle(s) && std::abs(double(s["body_mm"][2][2]) + 2.5) < 0.1;
+  })) << state()["body_mm"];
+  EXPECT_GT(see("release-body"), 1e-4);
   EXPECT_TRUE(press("ctrl+z"));
   EXPECT_TRUE(wait_until(
-      [&](const Json& s) { return std::abs(double(s["free_mm"][0][2]) - lifted) < 1e-3; }));
+      [&](const Json& s) { return std::abs(double(s["body_mm"][2][2]) - lifted) < 1e-3; }));
 
   // The recording has the strut where the hand has it.
   const auto record = [&](const std::string& folder) {
@@ -393,12 +393,12 @@ TEST_F(WindowSession, ATransplantIsMovedLetGoAndTheDiskIsFull) {
       [&](const Json& s) { return idle(s) && fs::exists(folder_ / "lifted/film.mp4"); }));
   EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(
-      wait_until([](const Json& s) { return std::abs(double(s["free_mm"][0][2])) < 1e-6; }));
-  record(folder_ / "put-back");
+      wait_until([](const Json& s) { return std::abs(double(s["body_mm"][2][2])) < 1e-6; }));
+  record(folder_ / "reset-position");
   ASSERT_TRUE(wait_until(
-      [&](const Json& s) { return idle(s) && fs::exists(folder_ / "put-back/film.mp4"); }));
+      [&](const Json& s) { return idle(s) && fs::exists(folder_ / "reset-position/film.mp4"); }));
   EXPECT_TRUE(unlike(Picture(folder_ / "lifted/frames/000000.png"),
-                     Picture(folder_ / "put-back/frames/000000.png"), 2e-4));
+                     Picture(folder_ / "reset-position/frames/000000.png"), 2e-4));
 
   // The disk is full in the middle of a recording: a sentence, and the window goes on.
   if (!disk.mounted()) {

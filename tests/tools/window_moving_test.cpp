@@ -28,7 +28,7 @@ TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   ASSERT_TRUE(wait_until([](const Json& s) { return double(s["frame"]["mandible_mm"][0]) > 5.9; }));
   see("in-the-hand");
   const double held_mm = opening_mm(state());
-  click("let-go");
+  click("release-body");
   EXPECT_TRUE(wait_until([&](const Json& s) {
     return opening_mm(s) < held_mm - 4 && opening_mm(s) > 3;
   })) << "it is seen on its way";
@@ -52,14 +52,14 @@ TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   // A hand that takes it on its way has it from there on.
   EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(wait_until([&](const Json& s) { return std::abs(opening_mm(s) - held_mm) < 1e-6; }));
-  click("let-go");
+  click("release-body");
   ASSERT_TRUE(wait_until([&](const Json& s) { return opening_mm(s) < held_mm - 2; }));
   write_into("shift:S", "-25");
   std::this_thread::sleep_for(std::chrono::seconds(2));
   EXPECT_GT(opening_mm(state()), 15);
 
   // So does the timeline.
-  click("let-go");
+  click("release-body");
   ASSERT_TRUE(wait_until([&](const Json& s) { return opening_mm(s) < 23; }));
   const auto scrub = rect("scrub");
   drag(scrub[0] + 0.02 * scrub[2], scrub[1] + scrub[3] / 2, scrub[0] + 0.6 * scrub[2],
@@ -67,7 +67,7 @@ TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   EXPECT_TRUE(wait_until([](const Json& s) {
     return !s.contains("X_CM_wanted") &&
            s.value("said", "") ==
-               "The mandible is on its way no more: the motion was moved to another time";
+               "The mandible moves no further by itself: the motion was moved to another time";
   })) << state().value("said", "nothing was said");
 
   write_into("shift:S", "-30");
@@ -79,7 +79,7 @@ TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   ASSERT_TRUE(wait_until([](const Json& s) { return s["frame"]["stopped"] == true; }));
   const Json wanted = state()["X_CM_wanted"];
   EXPECT_GT(double(wanted["mm"][2]), double(state()["frame"]["mandible_mm"][2]) + 1);
-  click("let-go");
+  click("release-body");
   ASSERT_TRUE(wait_for_item("error"));
   EXPECT_TRUE(wait_until([](const Json& s) {
     return s.value("trouble", "").find("out of its joint") != std::string::npos;
@@ -97,7 +97,7 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   EXPECT_TRUE(press("m"));
   write_into("shift:S", "-30");
   ASSERT_TRUE(wait_until([](const Json& s) { return opening_mm(s) > 29.9; }));
-  const auto computes = [](const Json& s) { return s["busy_with"] == "Letting go"; };
+  const auto computes = [](const Json& s) { return s["busy_with"] == "Releasing"; };
   const auto told = [](const Json& s) {
     return s["busy_with"] == "" &&
            s.value("said", "").find("it was moved before it had come to rest") != std::string::npos;
@@ -106,7 +106,7 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   click("shift:S");
   ASSERT_TRUE(wait_for_item("writing"));
   EXPECT_TRUE(press("Escape"));
-  click("let-go");
+  click("release-body");
   ASSERT_TRUE(wait_until(computes));
   write_into("shift:S", "-12");
   EXPECT_TRUE(wait_until(told)) << state().value("said", "nothing was said");
@@ -115,7 +115,7 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   see("entered-meanwhile");
 
   // What is taken back.
-  click("let-go");
+  click("release-body");
   ASSERT_TRUE(wait_until(computes));
   EXPECT_TRUE(press("ctrl+z"));
   EXPECT_TRUE(wait_until([](const Json& s) { return s["busy_with"] == ""; }));
@@ -123,7 +123,7 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   EXPECT_NEAR(opening_mm(state()), 30, 0.1) << "as it was before the number";
 
   // And what is cancelled.
-  click("let-go");
+  click("release-body");
   click("cancel");
   EXPECT_TRUE(wait_until([](const Json& s) {
     return s["busy_with"] == "" &&
@@ -133,14 +133,14 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
 
   // The timeline takes the jaw.
   const auto scrub = rect("scrub");
-  click("let-go");
+  click("release-body");
   ASSERT_TRUE(wait_until(computes));
   drag(scrub[0] + 0.1 * scrub[2], scrub[1] + scrub[3] / 2, scrub[0] + 0.5 * scrub[2],
        scrub[1] + scrub[3] / 2);
   EXPECT_TRUE(wait_until([](const Json& s) {
     return s["busy_with"] == "" && !s.contains("X_CM_wanted") &&
            s.value("said", "") ==
-               "The mandible is not let go: the motion was moved to another time before it had "
+               "The mandible is not released: the motion was moved to another time before it had "
                "come to rest";
   })) << state().value("said", "nothing was said");
 
@@ -149,7 +149,7 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   click("motion");
   ASSERT_TRUE(wait_for_item("motion:protrusion"));
   EXPECT_TRUE(press("Escape"));
-  click("let-go");
+  click("release-body");
   ASSERT_TRUE(wait_until(computes));
   click("motion");
   click("motion:protrusion");
@@ -177,7 +177,12 @@ TEST_F(WindowSession, WhatMovesAPatientMeanwhileEndsTheLetGoOfAPartAndIsTold) {
   ASSERT_EQ(condyle(import).code, 0);
   // Names of parts have signs that people do not read.
   std::string text = read_text(folder_ / "case/case.json");
-  text.replace(text.find("\"transplant\""), 12, "\"left_cheek_ball\"");
+  // The part and its body, not the role.
+  const std::string role = "\"role\": ";
+  for (auto at = text.find("\"transplant\""); at != std::string::npos;
+       at = text.find("\"transplant\"", at + 1))
+    if (text.compare(at - role.size(), role.size(), role) != 0)
+      text.replace(at, 12, "\"left_cheek_ball\"");
   write_text(folder_ / "case/case.json", text);
   start({folder_ / "case", "--motion", "open 5 over 0.5; close over 0.5"});
   ASSERT_TRUE(wait_until(idle)) << state().value("trouble", "nothing was said");
@@ -186,12 +191,12 @@ TEST_F(WindowSession, WhatMovesAPatientMeanwhileEndsTheLetGoOfAPartAndIsTold) {
   click("body:left_cheek_ball");
   see("a-fine-ball");
   const auto begin = [&] {
-    click("let-go");
-    ASSERT_TRUE(wait_until([](const Json& s) { return s["busy_with"] == "Letting go"; }));
+    click("release-body");
+    ASSERT_TRUE(wait_until([](const Json& s) { return s["busy_with"] == "Releasing"; }));
   };
   const auto ended = [&](const std::string& why) {
     const std::string words =
-        "The left cheek ball is not let go: " + why + " before it had come to rest";
+        "The left cheek ball is not released: " + why + " before it had come to rest";
     EXPECT_TRUE(wait_until([&](const Json& s) {
       return s["busy_with"] == "" && s.value("said", "") == words;
     })) << state().value("said", "nothing was said");
@@ -214,13 +219,13 @@ TEST_F(WindowSession, WhatMovesAPatientMeanwhileEndsTheLetGoOfAPartAndIsTold) {
   EXPECT_TRUE(wait_until([](const Json& s) {
     return s["playing"] == false && s["busy_with"] == "" &&
            s.value("said", "").find("The left cheek ball lies still after") == 0 &&
-           std::abs(double(s["free_mm"][0][2]) + 2) < 0.1;
+           std::abs(double(s["body_mm"][2][2]) + 2) < 0.1;
   })) << state().value("said", "nothing was said")
-      << state()["free_mm"];
+      << state()["body_mm"];
   // Nothing within reach: the sentence has the name as people read it.
   write_into("shift:S", "40");
-  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["free_mm"][0][2]) > 39; }));
-  click("let-go");
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["body_mm"][2][2]) > 39; }));
+  click("release-body");
   EXPECT_TRUE(wait_until([](const Json& s) {
     return s.value("trouble", "").find("left cheek ball: nothing lies within 15 mm") !=
            std::string::npos;
@@ -284,12 +289,12 @@ TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsLetGo) {
   EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(wait_until([](const Json& s) { return double(s["X_RC_wanted"]["mm"][2]) == -60; }));
   // Let go, joints and muscles bring both together; the motion has the jaw when it plays.
-  click("let-go");
+  click("release-body");
   EXPECT_TRUE(wait_until([](const Json& s) {
     return idle(s) && std::abs(opening_mm(s) - 2.5) < 0.3;
   })) << state()["frame"].dump();
-  see("let-go");
-  click("put-back");
+  see("release-body");
+  click("reset-position");
   EXPECT_TRUE(wait_until([](const Json& s) { return !s.contains("X_RC_wanted"); }));
   EXPECT_TRUE(wait_until([&](const Json& s) { return std::abs(opening_mm(s) - motion_mm) < 0.01; }))
       << state()["frame"].dump();

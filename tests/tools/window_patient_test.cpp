@@ -73,8 +73,8 @@ TEST_F(WindowSession, ThePatientIsUsedFromOpeningToQuitting) {
   constexpr unsigned blue = 0x56b4e9, yellow = 0xf0e442;  // upward handle; points and lines
   see("handles");
   const Region up = region_of("handle:S");
-  EXPECT_GT(share_of_colour(seen_, blue, up), 0.3);
-  EXPECT_EQ(share_of_colour(seen_before_, blue, up), 0);
+  EXPECT_GT(colour_fraction(seen_, blue, up), 0.3);
+  EXPECT_EQ(colour_fraction(seen_before_, blue, up), 0);
   const Picture at_rest = seen_;
   const auto pull = [&](const std::string& handle, double dx, double dy) {
     const auto tip = rect(handle);
@@ -127,17 +127,17 @@ TEST_F(WindowSession, ThePatientIsUsedFromOpeningToQuitting) {
   const Region view = view_region();
   see("measuring");
   EXPECT_TRUE(unlike(seen_, seen_before_, 0.3, region_of("measure"))) << "its panel is there";
-  EXPECT_EQ(share_of_colour(seen_, yellow, view), 0);
+  EXPECT_EQ(colour_fraction(seen_, yellow, view), 0);
   for (const double x : {0.47, 0.54})
     EXPECT_TRUE(xdotool({"mousemove", px(view.x + x * view.width), px(view.y + 0.25 * view.height),
                          "click", "1", "sleep", "0.2"}));
   EXPECT_TRUE(wait_until([](const Json& s) { return s["measured"] == 2; }));
   EXPECT_GT(see("measured"), 2e-4);
-  EXPECT_GT(share_of_colour(seen_, yellow, view), 2e-4);
+  EXPECT_GT(colour_fraction(seen_, yellow, view), 2e-4);
   EXPECT_TRUE(press("n"));
   ASSERT_TRUE(wait_for_item("measure", false));
   see("measured-still");
-  EXPECT_GT(share_of_colour(seen_, yellow, view), 2e-4) << "until it is cleared";
+  EXPECT_GT(colour_fraction(seen_, yellow, view), 2e-4) << "until it is cleared";
 
   // Record; the film shows the skull as the window does.
   click("tab:Record");

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "tests/support/display.h"
+#include "tests/support/places.h"
 #include "tests/support/program.h"
 
 namespace condyle::test {
@@ -41,12 +42,12 @@ class WindowSession : public testing::Test {
     unsetenv("XDG_CONFIG_HOME");
   }
   void start(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {CONDYLE_PROGRAM, "--threads", "1", "view"});
+    arguments.insert(arguments.begin(), {program_file().string(), "--threads", "1", "view"});
     arguments.insert(arguments.end(), {"--state-file", folder_ / "state.json"});
     std::vector<char*> words;
     for (auto& word : arguments) words.push_back(word.data());
     words.push_back(nullptr);
-    ASSERT_EQ(posix_spawn(&program_, CONDYLE_PROGRAM, nullptr, nullptr, words.data(), environ), 0);
+    ASSERT_EQ(posix_spawn(&program_, words[0], nullptr, nullptr, words.data(), environ), 0);
   }
   Json state() {
     const std::string file = folder_ / "state.json";

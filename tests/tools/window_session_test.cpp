@@ -159,7 +159,7 @@ TEST_F(WindowSession, TroubleIsToldAsASentenceAndTheWindowStays) {
   // Loading, simulating and failing went on beside: the window never stood still.
   EXPECT_LT(double(state()["longest_away_ms"]), 800);
   // Resized to almost nothing.
-  EXPECT_TRUE(xdotool({"search", "--name", "Condyle", "windowsize", "--sync", "640", "400"}));
+  EXPECT_TRUE(xdotool({"search", "--name", "Condyle", "windowsize", "--sync", "800", "500"}));
   EXPECT_TRUE(wait_until([](const Json& s) { return double(s["view"][2]) < 500; }));
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);

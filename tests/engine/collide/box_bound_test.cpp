@@ -25,18 +25,18 @@ struct TurnedBox {
   double reach() const { return center.norm() + half.norm(); }
 };
 
-BoxTwins twins(const TurnedBox (&boxes)[2]) {
-  BoxTwins both;
+BoxPair twins(const TurnedBox (&boxes)[2]) {
+  BoxPair both;
   for (int i = 0; i < 2; ++i) both.set(i, boxes[i].center, boxes[i].half, boxes[i].axes, i);
   return both;
 }
 
 /// Bounds of the gaps between all of two and two boxes: of [i] and [k] at 2 i + k.
-FourFloats bounds(const TurnedBox (&a)[2], const TurnedBox (&b)[2], const BoxTurn& X) {
+FourFloats bounds(const TurnedBox (&a)[2], const TurnedBox (&b)[2], const BoxTransform& X) {
   return gap_bounds(twins(a), twins(b), X);
 }
 
-/// Boxes are convex: going to and fro between nearest points ends at the gap, from above.
+/// Boxes are convex: alternating projection between nearest points converges to the gap from above.
 double gap(const TurnedBox& a, const TurnedBox& b, const Matrix3d& R, const Vector3d& t) {
   Vector3d p = a.center;
   double apart = 0;
@@ -72,10 +72,10 @@ TEST_P(BoxGap, IsNeverOverstated) {
     const TurnedBox a[2] = {box(away), box(away)}, b[2] = {box(-away), box(-away)};
     const Matrix3d R = turn();
     const Vector3d t = a[0].center - R * b[0].center + 20 * vector();
-    const BoxTurn X(R, t,
-                    std::max(a[0].reach(), a[1].reach()) + std::max(b[0].reach(), b[1].reach()));
+    const BoxTransform X(
+        R, t, std::max(a[0].reach(), a[1].reach()) + std::max(b[0].reach(), b[1].reach()));
     const FourFloats found = bounds(a, b, X);
-    const BoxSight sight(vector().normalized(), R, t);
+    const BoxDirection sight(vector().normalized(), R, t);
     const FourFloats along = gaps_along(twins(a), twins(b), sight, X.uncertain_mm);
     for (int i = 0; i < 2; ++i)
       for (int k = 0; k < 2; ++k) {
@@ -94,9 +94,9 @@ TEST_P(BoxGap, IsKnownBetweenFacesThatSeeEachOther) {
   const Matrix3d R = b.axes.transpose();
   for (double apart : {0.01, 1.0, 50.0}) {
     const Vector3d t = away + Vector3d(6, 4, 1.5 + apart) - R * b.center;
-    const BoxTurn X(R, t, a.reach() + b.reach());
+    const BoxTransform X(R, t, a.reach() + b.reach());
     EXPECT_NEAR(bounds({a, a}, {b, b}, X)[0], apart, 1e-3 + 2e-5 * GetParam());
-    const BoxSight sight(Vector3d::UnitZ(), R, t);
+    const BoxDirection sight(Vector3d::UnitZ(), R, t);
     EXPECT_NEAR(gaps_along(twins({a, a}), twins({b, b}), sight, X.uncertain_mm)[3], apart,
                 1e-3 + 2e-5 * GetParam());
   }

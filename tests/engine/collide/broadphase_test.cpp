@@ -110,7 +110,7 @@ TEST(Broadphase, NoneAndOneHaveNoPairs) {
   EXPECT_TRUE(Broadphase(bodies).near(std::vector<Pose>(1), 5).empty());
 }
 
-TEST(Broadphase, ThreadsThatAskAtOnceGetTheAnswersOfOneAlone) {
+TEST(Broadphase, ConcurrentQueriesGetTheAnswersOfOneThread) {
   std::mt19937_64 random(43);
   const Scene scene(80, 8, random);
   const Broadphase shared(scene.all);

@@ -4,8 +4,8 @@
 #include <random>
 
 #include "engine/collide/broadphase.h"
+#include "engine/collide/depenetration.h"
 #include "engine/collide/overlap_measure.h"
-#include "engine/collide/push_out.h"
 #include "engine/core/error.h"
 #include "tests/engine/collide/triangle_oracle.h"
 #include "tests/support/boxes.h"
@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What goes wrong in files, on a sphere that is else closed.
+/// Typical flaws of files, on an otherwise closed sphere.
 TriMesh with_degenerate_triangles(TriMesh mesh) {
   mesh.triangles.emplace_back(3, 3, 3);
   mesh.triangles.emplace_back(1, 1, 7);
@@ -94,7 +94,7 @@ TEST(BrokenMesh, DistanceIsStillThatOfItsTriangles) {
   }
 }
 
-TEST(BrokenMesh, DepthAndVolumeAreRightOrTheInsideIsToldToBeUnknown) {
+TEST(BrokenMesh, DepthAndVolumeAreRightOrTheInsideIsReportedUnknown) {
   const TriMesh whole = test::sphere(2, 10), other = test::box({8, -3, -3}, {20, 3, 3});
   const Solid b(other), reference(whole);
   const double depth = overlap_depth(reference, {}, b, {}).depth_mm,
@@ -114,14 +114,14 @@ TEST(BrokenMesh, DepthAndVolumeAreRightOrTheInsideIsToldToBeUnknown) {
     if (!broken.inside_known) {
       EXPECT_TRUE(closed.empty());
       EXPECT_EQ(push_out({CollisionMesh(broken.mesh), a}, {}, {CollisionMesh(other), b}, {}).status,
-                PushOut::Status::unknown);
+                Depenetration::Status::unknown);
       continue;
     }
     EXPECT_NEAR(found.depth_mm, depth, 2 * (2e-4 + 1e-3 * depth));
     EXPECT_NEAR(overlap_volume(closed, {}, other, {}).mm3, volume, 1e-3 * volume);
     EXPECT_NEAR(surface.distance({0, 0, 1}), reference.signed_distance({0, 0, 1}), 1e-9);
     EXPECT_EQ(push_out({CollisionMesh(broken.mesh), a}, {}, {CollisionMesh(other), b}, {}).status,
-              PushOut::Status::found);
+              Depenetration::Status::found);
   }
 }
 
@@ -136,7 +136,7 @@ TEST(BrokenMesh, ASheetCoveredOnBothSidesHasNoInside) {
   EXPECT_NEAR(SignedSurface(sheet).distance({0, 0, 3}), 3, 1e-12);
 }
 
-TEST(BrokenMesh, WhatCannotTakePartIsRefusedByName) {
+TEST(BrokenMesh, UnusableSurfacesAreRefusedByName) {
   const auto refused = [](const TriMesh& mesh, const std::string& what) {
     for (int kind = 0; kind < 3; ++kind) try {
         if (kind == 0) CollisionMesh{mesh};

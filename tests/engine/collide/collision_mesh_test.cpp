@@ -142,7 +142,7 @@ TEST(Distance, AMovedSceneGivesTheSameDistanceAndTheMovedPoints) {
   }
 }
 
-TEST(Distance, TwoThreadsOnOnePairGiveTheSameBits) {
+TEST(Distance, TwoThreadsOnOnePairAreBitIdentical) {
   const CollisionMesh a(test::sphere(4, 20, {0, 0, 0}, 0.05)),
       b(test::sphere(4, 20, {0, 0, 0}, 0.05));
   std::mt19937_64 random(6);
@@ -193,7 +193,7 @@ TEST(Contacts, NormalsPointFromAToB) {
   for (const auto& contact : found) EXPECT_GT(contact.normal.x(), 0.9);
 }
 
-TEST(Contacts, AShareForEachRegionSpreadsThemOverTheSurface) {
+TEST(Contacts, AQuotaForEachRegionSpreadsThemOverTheSurface) {
   const CollisionMesh a(test::sphere(5, 20)), b(test::sphere(5, 20));
   const Pose X_WB{Eigen::Quaterniond::Identity(), {15, 0, 0}};  // they cross in a circle
   const auto all = contacts(a, {}, b, X_WB), some = contacts(a, {}, b, X_WB, {.per_region = 2});

@@ -68,7 +68,7 @@ TEST(NearestAllowed, RelaxationAgreesWithTheExactAnswer) {
   EXPECT_LE(apart, 0.02);
 }
 
-TEST(NearestAllowed, WhatIsFreeArrives) {
+TEST(NearestAllowed, FreeMotionIsCompleted) {
   std::mt19937_64 random(13);
   const Twist wanted = any_twist(random);
   auto rows = any_rows(random, 50, 10);
@@ -96,7 +96,7 @@ TEST(NearestAllowed, PointSticksWithinTheConeOfFrictionAndSlidesBeyond) {
   }
 }
 
-TEST(NearestAllowed, WithoutAnyAllowedMotionItSaysHowMuchIsLeft) {
+TEST(NearestAllowed, WithoutAnyAllowedMotionTheResidualIsReported) {
   const std::vector<ContactRow> rows = {contact_row({0, 0, 0}, Vector3d::UnitX(), -0.1, 10),
                                         contact_row({0, 0, 0}, -Vector3d::UnitX(), -0.1, 10)};
   EXPECT_GE(nearest_allowed(Twist::Zero(), rows, {}).violation_mm, 0.1);

@@ -140,7 +140,7 @@ TEST(DistanceField, AnOpenSheetIsSolidBehindItsFacesButNotPastItsRim) {
     EXPECT_LE(field.lower_bound({x, 5, -0.5}), -0.5 + 1e-6);
 }
 
-TEST(DistanceField, SameBitsOnOneAndTwoThreads) {
+TEST(DistanceField, IsBitIdenticalOnOneAndTwoThreads) {
   const TriMesh mesh = test::sphere(4, 8, {0.3, 0.2, 0.1}, 0.08);
   const DistanceField one(mesh, {}, 1), two(mesh, {}, 2);
   EXPECT_EQ(one.hash(), two.hash());
@@ -199,48 +199,48 @@ class FieldCache : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(FieldCache, GivesBackTheSameBitsAndRebuildsDamagedFiles) {
+TEST_F(FieldCache, RoundTripsBitIdenticallyAndRebuildsDamagedFiles) {
   const TriMesh mesh = test::sphere(3, 5);
   const auto expected = DistanceField(mesh, {}).hash();
-  EXPECT_EQ(kept_field(folder_, mesh, {}).hash(), expected);
+  EXPECT_EQ(cached_field(folder_, mesh, {}).hash(), expected);
   ASSERT_EQ(files().size(), 1u);
   const fs::path file = files().front();
   const std::string whole = read_file(file);
-  EXPECT_EQ(kept_field(folder_, mesh, {}).hash(), expected);
+  EXPECT_EQ(cached_field(folder_, mesh, {}).hash(), expected);
   for (const std::size_t at :
        {std::size_t{3}, std::size_t{20}, whole.size() / 2, whole.size() - 1}) {
     std::string damaged = whole;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
     write_file(file, damaged);
-    EXPECT_EQ(kept_field(folder_, mesh, {}).hash(), expected);
+    EXPECT_EQ(cached_field(folder_, mesh, {}).hash(), expected);
     EXPECT_EQ(read_file(file), whole) << at;
   }
   for (const std::size_t length : {std::size_t{0}, std::size_t{7}, whole.size() / 3}) {
     write_file(file, whole.substr(0, length));
-    EXPECT_EQ(kept_field(folder_, mesh, {}).hash(), expected);
+    EXPECT_EQ(cached_field(folder_, mesh, {}).hash(), expected);
     EXPECT_EQ(read_file(file), whole) << length;
   }
   FieldSettings coarser;
   coarser.spacing_mm = 0.3;
-  kept_field(folder_, mesh, coarser);
-  kept_field(folder_, test::sphere(3, 5.01), {});
+  cached_field(folder_, mesh, coarser);
+  cached_field(folder_, test::sphere(3, 5.01), {});
   EXPECT_EQ(files().size(), 3u);
 }
 
-TEST_F(FieldCache, WorkThatIsGivenUpStopsWhereItTellsOfIt) {
+TEST_F(FieldCache, CancelledWorkStopsAtItsNextReport) {
   struct GivenUp {};
   const TriMesh mesh = test::sphere(4, 12);
   std::vector<double> told;
-  const Progress listen = [&](std::string_view, double share) { told.push_back(share); };
-  EXPECT_EQ(kept_field(folder_, mesh, {}, 2, listen).hash(), DistanceField(mesh, {}).hash());
+  const Progress listen = [&](std::string_view, double fraction) { told.push_back(fraction); };
+  EXPECT_EQ(cached_field(folder_, mesh, {}, 2, listen).hash(), DistanceField(mesh, {}).hash());
   ASSERT_GT(told.size(), 8u);
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   fs::remove_all(folder_);
   std::size_t calls = 0;
-  EXPECT_THROW(kept_field(folder_, mesh, {}, 2,
-                          [&](std::string_view, double) {
-                            if (++calls == told.size()) throw GivenUp{};
-                          }),
+  EXPECT_THROW(cached_field(folder_, mesh, {}, 2,
+                            [&](std::string_view, double) {
+                              if (++calls == told.size()) throw GivenUp{};
+                            }),
                GivenUp);
   EXPECT_FALSE(fs::exists(folder_)) << "nothing half made is kept";
 }
@@ -248,7 +248,7 @@ TEST_F(FieldCache, WorkThatIsGivenUpStopsWhereItTellsOfIt) {
 TEST_F(FieldCache, ThatCannotBeWrittenIsNoError) {
   std::ofstream(folder_) << "a file where the folder should be";
   const TriMesh mesh = test::sphere(2, 4);
-  EXPECT_EQ(kept_field(folder_, mesh, {}).hash(), DistanceField(mesh, {}).hash());
+  EXPECT_EQ(cached_field(folder_, mesh, {}).hash(), DistanceField(mesh, {}).hash());
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return found;
 }
 
-/// Starts work in a process of its own, whose exit code is 0 when the work says true.
+/// Starts work in a separate process, whose exit code is 0 when the work returns true.
 pid_t start(const std::function<bool()>& work) {
   const pid_t child = ::fork();
   if (child != 0) return child;
@@ -45,13 +45,13 @@ TEST(FieldCacheUnderStress, ProcessesThatMakeTheSameFieldAtOnceLeaveOneWholeFile
   const TriMesh mesh = test::sphere(3, 5);
   const auto expected = DistanceField(mesh, {}).hash();
   const test::Folder folder, alone;
-  kept_field(alone.path(), mesh, {});
+  cached_field(alone.path(), mesh, {});
   const std::string whole = read_file(files_in(alone.path()).front());
   for (int round = 0; round < 3; ++round) {
     std::vector<pid_t> children;
     for (int k = 0; k < 4; ++k)
       children.push_back(
-          start([&] { return kept_field(folder.path(), mesh, {}).hash() == expected; }));
+          start([&] { return cached_field(folder.path(), mesh, {}).hash() == expected; }));
     for (const pid_t child : children) EXPECT_EQ(end_of(child), 0);
     const auto files = files_in(folder.path());
     ASSERT_EQ(files.size(), 1u);  // and nothing half written beside it
@@ -68,7 +68,7 @@ TEST(FieldCacheUnderStress, ThreadsThatMakeTheSameFieldAtOnceLeaveOneWholeFile) 
     std::vector<std::uint64_t> hashes(4);
     std::vector<std::thread> threads;
     for (auto& hash : hashes)
-      threads.emplace_back([&] { hash = kept_field(folder.path(), mesh, {}).hash(); });
+      threads.emplace_back([&] { hash = cached_field(folder.path(), mesh, {}).hash(); });
     for (auto& thread : threads) thread.join();
     for (const auto hash : hashes) EXPECT_EQ(hash, expected);
     const auto files = files_in(folder.path());
@@ -76,7 +76,7 @@ TEST(FieldCacheUnderStress, ThreadsThatMakeTheSameFieldAtOnceLeaveOneWholeFile) 
     const fs::path file = files.front();
     const std::string kept = read_file(file);
     fs::remove(file);
-    kept_field(folder.path(), mesh, {});
+    cached_field(folder.path(), mesh, {});
     EXPECT_EQ(kept, read_file(file));
     fs::remove(file);
   }
@@ -90,14 +90,14 @@ TEST(FieldCacheUnderStress, AFullDiskOnlyCostsTime) {
     ::signal(SIGXFSZ, SIG_IGN);  // writes then fail with EFBIG, as on a full disk
     const rlimit limit{100000, 100000};
     ::setrlimit(RLIMIT_FSIZE, &limit);
-    return kept_field(folder.path(), mesh, {}).hash() == expected;
+    return cached_field(folder.path(), mesh, {}).hash() == expected;
   };
   EXPECT_EQ(end_of(start(on_full_disk)), 0);
   EXPECT_TRUE(files_in(folder.path()).empty());  // nor is anything left of the attempt
-  kept_field(folder.path(), mesh, {});
+  cached_field(folder.path(), mesh, {});
   ASSERT_EQ(files_in(folder.path()).size(), 1u);
   EXPECT_GT(fs::file_size(files_in(folder.path()).front()), 100000u);
-  EXPECT_EQ(end_of(start(on_full_disk)), 0);  // what is there is read
+  EXPECT_EQ(end_of(start(on_full_disk)), 0);  // an existing file is read
 }
 
 TEST(FieldCacheUnderStress, AFolderThatMayNotBeWrittenOnlyCostsTime) {
@@ -108,8 +108,8 @@ TEST(FieldCacheUnderStress, AFolderThatMayNotBeWrittenOnlyCostsTime) {
   const auto as_a_plain_user = [&] {
     if (::geteuid() == 0 && ::setuid(65534) != 0) return false;  // no folder is closed to root
     return ::access(folder.path().c_str(), W_OK) != 0 &&
-           kept_field(folder.path(), mesh, {}).hash() == expected &&
-           kept_field(folder.path() / "below", mesh, {}).hash() == expected;
+           cached_field(folder.path(), mesh, {}).hash() == expected &&
+           cached_field(folder.path() / "below", mesh, {}).hash() == expected;
   };
   EXPECT_EQ(end_of(start(as_a_plain_user)), 0);
   EXPECT_TRUE(files_in(folder.path()).empty());
@@ -119,11 +119,11 @@ TEST(FieldCacheUnderStress, AFolderThatMayNotBeWrittenOnlyCostsTime) {
 TEST(FieldCacheUnderStress, AFileOfAnotherMeshIsNotTaken) {
   const TriMesh mesh = test::sphere(3, 5), other = test::sphere(3, 6);
   const test::Folder folder, others;
-  kept_field(folder.path(), mesh, {});
-  kept_field(others.path(), other, {});
+  cached_field(folder.path(), mesh, {});
+  cached_field(others.path(), other, {});
   const fs::path file = files_in(folder.path()).front();
   write_file(file, read_file(files_in(others.path()).front()));
-  EXPECT_EQ(kept_field(folder.path(), mesh, {}).hash(), DistanceField(mesh, {}).hash());
+  EXPECT_EQ(cached_field(folder.path(), mesh, {}).hash(), DistanceField(mesh, {}).hash());
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(NearSamples, AroundPlacesAreThoseThatEachDistanceTells) {
+TEST(NearSamples, AroundPointsAreThoseFoundByEachDistance) {
   const SurfaceSamples samples = sample_surface(test::sphere(3, 20));
   ASSERT_GT(samples.points.size(), 5000u);
   std::mt19937 random(7);

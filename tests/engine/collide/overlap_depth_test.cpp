@@ -123,8 +123,8 @@ using std::numbers::pi;
 TEST(Overlap, OfSpheresIsTheirLens) {
   std::mt19937_64 random(22);
   for (const double R : {3.0, 12.0, 40.0})
-    for (const double share : {0.05, 0.3, 1.0}) {  // of the smaller radius
-      const double r = 0.6 * R, depth = share * r, d = R + r - depth;
+    for (const double fraction : {0.05, 0.3, 1.0}) {  // of the smaller radius
+      const double r = 0.6 * R, depth = fraction * r, d = R + r - depth;
       // Facets press in by edge^2 / (6 r): by less than a thousandth of these depths.
       const double lens =
           depth * depth * pi * (d * d + 2 * d * (R + r) - 3 * (R - r) * (R - r)) / (12 * d);
@@ -168,12 +168,12 @@ TriMesh groove(double half, double depth, double length) {
 TEST(Overlap, OfACapsuleInAGrooveIsTwoSegmentsAndTwoCaps) {
   // Each side cuts off the depth d: a circular segment times the cylinder's length, and the two
   // halves of a ball's cap. The two sides' parts stay apart while d is below 0.29 r. Along the
-  // whole capsule it is equally deep: that nothing is deeper takes long to prove.
+  // whole capsule it is equally deep: proving that nothing is deeper takes long.
   std::mt19937_64 random(24);
   const double half = pi / 4, length = 12;
   for (const double r : {2.0, 5.0})
-    for (const double share : {0.02, 0.1, 0.25}) {
-      const double d = share * r, theta = std::acos(1 - share);
+    for (const double fraction : {0.02, 0.1, 0.25}) {
+      const double d = fraction * r, theta = std::acos(1 - fraction);
       SCOPED_TRACE(testing::Message() << "radius " << r << ", depth " << d);
       const double segment = r * r * (theta - std::sin(theta) * std::cos(theta));
       const double cap = pi * d * d * (3 * r - d) / 3;
@@ -214,7 +214,7 @@ TEST(Overlap, OfAFlatFaceOnARoundOneIsInsideTheFace) {
 }
 
 TEST(OverlapDepth, OfFlatFacesOfManyTrianglesEndsSoon) {
-  // Everywhere equally deep: the search may give up, but says what it may have missed.
+  // Equally deep everywhere: the search may stop early, but reports what it may have missed.
   TriMesh floor;
   const int n = 60;
   for (int i = 0; i <= n; ++i)

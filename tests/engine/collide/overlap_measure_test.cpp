@@ -127,7 +127,7 @@ TEST(ContactRegion, TwoFeetOfBigTrianglesAreTwoPatches) {
                   .patches.empty());
 }
 
-TEST(SignedSurface, OpenShellsGiveADistanceWithoutSign) {
+TEST(SignedSurface, OpenShellsHaveAnUnsignedDistance) {
   TriMesh cup = box({-5, -5, -5}, {5, 5, 5});
   cup.triangles.pop_back();
   const SignedSurface open(cup), closed(box({-5, -5, -5}, {5, 5, 5}));

@@ -9,14 +9,13 @@
 #include "engine/mesh/repair.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "tests/engine/collide/triangle_oracle.h"
+#include "tests/support/places.h"
 #include "tests/support/shapes.h"
 
 namespace condyle {
 namespace {
 
-std::filesystem::path real_data() {
-  return std::filesystem::path(CONDYLE_SOURCE_DIR) / ".." / "shared" / "data";
-}
+std::filesystem::path real_data() { return test::source_folder() / ".." / "shared" / "data"; }
 
 TriMesh bone(const char* file) {
   TriMesh mesh = read_mesh(real_data() / file);
@@ -26,7 +25,7 @@ TriMesh bone(const char* file) {
   return mesh;
 }
 
-/// Some hundred triangles of the mesh that lie together: brute force can go through their pairs.
+/// Several hundred adjacent triangles of the mesh: few enough for brute force over pairs.
 TriMesh patch(const TriMesh& mesh, const Eigen::Vector3d& near, std::size_t count) {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
@@ -51,7 +50,7 @@ constexpr RealPair pairs[] = {
     {"case-badin/maxilla_capped.ply", "case-badin/tongue.ply", false, false},
     {"ct-cranium/skull_iso300.ply", "case-ubc/hyoid.ply", true, false}};
 
-TEST(RealBones, DistanceEqualsBruteForceOnPatchesOpenShellsAreToldAndDepthIsFinite) {
+TEST(RealBones, DistanceEqualsBruteForceOnPatchesOpenShellsAreReportedAndDepthIsFinite) {
   if (!std::filesystem::exists(real_data())) GTEST_SKIP() << "real anatomy absent";
   std::mt19937_64 random(91);
   for (const auto& pair : pairs) {
@@ -85,7 +84,7 @@ TEST(RealBones, DistanceEqualsBruteForceOnPatchesOpenShellsAreToldAndDepthIsFini
   }
 }
 
-TEST(RealBones, AWholeSkullIsReadyAndAskedInReasonableTime) {
+TEST(RealBones, AWholeSkullIsBuiltAndQueriedInReasonableTime) {
   if (!std::filesystem::exists(real_data())) GTEST_SKIP() << "real anatomy absent";
   const TriMesh skull = bone("ct-cranium/skull_iso300.ply"), hyoid = bone("case-ubc/hyoid.ply");
   ASSERT_GT(skull.triangles.size(), 100000u);

@@ -16,10 +16,10 @@ TEST(SampleThinning, EachSampleThatIsDroppedHasOneNearbyThatStandsForIt) {
   const TriMesh bumpy = test::sphere(5, 4, {0, 0, 0}, 0.05);
   const SampleSettings settings{.region = {}};
   SampleSettings whole = settings;
-  whole.thin_share = 0;
+  whole.thin_fraction = 0;
   const SurfaceSamples few = sample_surface(bumpy, settings), all = sample_surface(bumpy, whole);
   EXPECT_LT(few.points.size(), 0.8 * static_cast<double>(all.points.size()));
-  const double reach = settings.thin_share * settings.spacing_mm;
+  const double reach = settings.thin_fraction * settings.spacing_mm;
   int dropped = 0;
   for (std::size_t i = 0; i < all.points.size(); ++i) {
     double nearest = 1, rise = 1;
@@ -37,7 +37,7 @@ TEST(SampleThinning, EachSampleThatIsDroppedHasOneNearbyThatStandsForIt) {
 }
 
 TEST(SampleThinning, SharpEdgesKeepTheirSamples) {
-  SamplePlaces places;
+  SamplePoints places;
   for (int i = 0; i < 100; ++i) {
     places.points.emplace_back(0.1 * i, 0, 0);
     places.normals.push_back(Vector3d(0, 1, 1).normalized());

@@ -7,8 +7,8 @@
 
 namespace condyle::test {
 
-inline std::shared_ptr<const SlideBody> body(const TriMesh& mesh) {
-  return std::make_shared<const SlideBody>(make_slide_body(mesh, {}, 2));
+inline std::shared_ptr<const ContactSurface> body(const TriMesh& mesh) {
+  return std::make_shared<const ContactSurface>(make_contact_surface(mesh, {}, 2));
 }
 
 /// A flat plate whose top is the plane z = 0.

@@ -22,7 +22,7 @@ Pose turned(const Vector3d& axis, double degrees) {
   return {Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis)), Vector3d::Zero()};
 }
 
-/// Hardly turns, so that a pull at the middle is a pull at the contacts.
+/// Hardly rotates, so that a pull at the centre acts at the contacts.
 SlideSettings rough(double friction) {
   SlideSettings settings;
   settings.friction = friction;
@@ -30,7 +30,7 @@ SlideSettings rough(double friction) {
   return settings;
 }
 
-TEST(SlideFriction, AnInclineHoldsBelowTheFrictionAngleAndLetsSlideAboveIt) {
+TEST(SlideFriction, AnInclineHoldsBelowTheFrictionAngleAndSlidesAboveIt) {
   for (const double friction : {0.2, 0.5}) {
     const double holds = std::atan(friction) * 180 / std::numbers::pi;
     for (const double degrees : {0.5 * holds, 0.9 * holds, 1.1 * holds, 1.5 * holds}) {
@@ -68,19 +68,19 @@ TEST(SlideFriction, AGrooveHoldsByFrictionOverTheSineOfItsHalfAngle) {
     const Vector3d rest(0, 0, 5 / sine);
     const Pose start = model.slide(placed(rest + 0.3 * Vector3d::UnitZ()), placed(rest)).X_FM;
     const double holds = friction * press / sine;
-    for (const double share : {0.5, 0.85, 1.2, 2.0}) {
-      const double along = share * holds;
+    for (const double fraction : {0.5, 0.85, 1.2, 2.0}) {
+      const double along = fraction * holds;
       const SlideResult result = model.slide(start, placed(start.t + Vector3d(0, along, -press)));
       EXPECT_NEAR(result.X_FM.t.y() - start.t.y(), std::max(0.0, along - holds), 0.04)
-          << half << " at " << share;
+          << half << " at " << fraction;
       EXPECT_NEAR(result.X_FM.t.x(), 0, 0.04);
       EXPECT_NEAR(result.X_FM.t.z(), rest.z(), 0.06);
     }
   }
 }
 
-/// Two bumpy balls, pressed together and drawn sideways.
-TEST(SlideFriction, OnBumpsItNeitherTremblesNorCreepsWhileTheWantedPoseRests) {
+/// Two bumpy balls, pressed together and pulled sideways.
+TEST(SlideFriction, OnBumpsItNeitherTremblesNorCreepsWhileTheTargetRests) {
   const auto crown = body(test::sphere(4, 9, {0, 0, 0}, 0.05));
   const auto other = body(test::sphere(4, 5, {0, 0, 0}, 0.05));
   for (const double friction : {0.1, 0.3}) {
@@ -89,7 +89,7 @@ TEST(SlideFriction, OnBumpsItNeitherTremblesNorCreepsWhileTheWantedPoseRests) {
     const SlidingContact model({crown}, {other}, settings);
     for (const double sideways : {0.0, 0.1, 0.6}) {
       const Pose wanted = placed({0.5 + sideways, 0.3, 13.2});
-      SlideMemory memory;
+      SlideCache memory;
       Pose X = model.slide(placed({0.5, 0.3, 16}), placed({0.5, 0.3, 13.2}), &memory).X_FM;
       X = model.slide(X, wanted, &memory).X_FM;
       const auto way = [](const Pose& a, const Pose& b) {

@@ -25,12 +25,12 @@ Pose turned(const Vector3d& axis, double degrees, const Vector3d& t) {
   return {Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized())), t};
 }
 
-/// How far any point of a 10 mm body moves between two poses.
+/// Largest displacement of any point of a 10 mm body between two poses.
 double apart(const Pose& a, const Pose& b) {
   return (a.t - b.t).norm() + 10 * rotation_angle(a.inverse() * b);
 }
 
-TEST(Slide, WhatIsFreeArrivesToTheBit) {
+TEST(Slide, FreeMotionReachesTheTargetExactly) {
   const SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
   const Pose wanted = turned({1, 2, 3}, 20, {3, 1, 5.5});
   const SlideResult result = model.slide(shift(-8, 0, 12), wanted);
@@ -104,20 +104,20 @@ TEST(Slide, EdgeStopsAtEdge) {
   }
 }
 
-TEST(Slide, FrictionHoldsBelowItsCoefficientAndLetsSlideAbove) {
+TEST(Slide, FrictionHoldsBelowItsCoefficientAndSlidesAbove) {
   SlideSettings rough;
   rough.friction = 0.3;
   const SlidingContact model({body(plate())}, {body(test::box({-3, -3, 0}, {3, 3, 4}))}, rough);
   const double press = 0.5;
   const Pose start = model.slide(shift(0, 0, 0.5), shift(0, 0, -0.01)).X_FM;
-  for (const double share : {0.5, 0.8, 1.3, 2.0}) {  // of what friction holds
-    const double sideways = share * rough.friction * press;
+  for (const double fraction : {0.5, 0.8, 1.3, 2.0}) {  // of what friction holds
+    const double sideways = fraction * rough.friction * press;
     const SlideResult result = model.slide(start, shift(sideways, 0, -press));
     const double slip = result.X_FM.t.x() - start.t.x();
-    if (share < 1) {
-      EXPECT_NEAR(slip, 0, 0.02) << share;
+    if (fraction < 1) {
+      EXPECT_NEAR(slip, 0, 0.02) << fraction;
     } else {
-      EXPECT_NEAR(slip, sideways - rough.friction * press, 0.03) << share;
+      EXPECT_NEAR(slip, sideways - rough.friction * press, 0.03) << fraction;
     }
     EXPECT_NEAR(result.X_FM.t.z(), 0, 0.03);
   }
@@ -151,7 +151,7 @@ TEST(Slide, TurnedSceneGivesTheTurnedAnswer) {
     EXPECT_NEAR(left(here.X_FM), left(there), 0.01);
     EXPECT_LT((here.X_FM.t - there.t).norm(), 0.05);
     EXPECT_LT(corner.rotation_length_mm() * rotation_angle(here.X_FM.inverse() * there), 0.24);
-    // On a hilltop directions are flat, and the place less certain than the nearness.
+    // On a hilltop directions are flat, and the position less certain than the distance.
     const SlidingContact turned_hill({body(test::moved(bumpy, X))}, {ball});
     const Pose above = shift(0, 1, 16);
     const Pose first = hill.slide(above, on_hill).X_FM,
@@ -161,7 +161,7 @@ TEST(Slide, TurnedSceneGivesTheTurnedAnswer) {
   }
 }
 
-TEST(Slide, EndsAtTheSamePlaceByDifferentWays) {
+TEST(Slide, DifferentPathsEndAtTheSamePose) {
   // A ball between a floor and a leaning wall.
   const TriMesh floor = test::box({-15, -15, -4}, {15, 15, 0});
   const TriMesh wall =
@@ -183,7 +183,7 @@ TEST(Slide, AnAnswerIsItsOwnAnswer) {
   int touching = 0;
   for (int k = 0; k < 20; ++k) {
     const Vector3d way = test::any_pose(random, 1).R * Vector3d::UnitX();
-    SlideMemory memory;
+    SlideCache memory;
     const Pose wanted = turned(way, 10, 12.5 * way);
     SlideResult result = model.slide({Quaterniond::Identity(), 20 * way}, wanted, &memory);
     touching += result.touching;
@@ -233,7 +233,7 @@ TEST(Slide, PairsKeepTheirGap) {
   EXPECT_THROW(SlidingContact({floor}, {ball}, {{0, 0, -0.1}}), std::invalid_argument);
 }
 
-TEST(Slide, SurfacesThatArePlacedElsewhereSlideThere) {
+TEST(Slide, SurfacesAtOtherPosesSlideThere) {
   const TriMesh floor = plate(), wall = test::box({-4, -15, -5}, {0, 15, 15});
   const auto ball = body(test::sphere(4, 4, {0, 0, 0}, 0.04));
   const Pose X_wall = turned({0, 1, 0}, 10, {-3, 0, 0}), X_ball = turned({1, 1, 0}, 30, {2, 1, 6});
@@ -250,7 +250,7 @@ TEST(Slide, SurfacesThatArePlacedElsewhereSlideThere) {
     EXPECT_LT(apart(a.X_FM * X_ball, b.X_FM), 0.06);  // fields on other grids
   }
   EXPECT_THROW(placed.place({{}}, {X_ball}), std::invalid_argument);
-  // What is allowed to overlap goes along.
+  // Allowed overlap moves along.
   SlidingContact sunk({body(plate())}, {body(test::box({-3, -3, -0.4}, {3, 3, 4}))});
   sunk.allow_overlap_at({});
   const Pose X = turned({1, 2, 3}, 50, {30, 5, 9});
@@ -259,7 +259,7 @@ TEST(Slide, SurfacesThatArePlacedElsewhereSlideThere) {
   EXPECT_LT(apart(sunk.slide(X, X * shift(0, 0, -1)).X_FM, X), 0.05);
 }
 
-TEST(Slide, OverlapThatIsAllowedFadesAwayFromItsPlace) {
+TEST(Slide, AllowedOverlapFadesWithDistanceFromItsPose) {
   SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
   const double deep = 0.4;
   model.allow_overlap_at(shift(0, 0, 5 - deep), 2.0);
@@ -285,7 +285,7 @@ TEST(Slide, AStartThatOverlapsIsMovedOut) {
   EXPECT_LE(result.depth_mm, 0.02);
 }
 
-TEST(Slide, TellsWhetherItsWayPassesThroughNothing) {
+TEST(Slide, ReportsWhetherItsPathIsFree) {
   const SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
   EXPECT_TRUE(model.slide(shift(-6, 2, 7), shift(5, -3, 4)).reached);      // along the plane
   EXPECT_TRUE(model.slide(shift(0, 0, 40), shift(0, 0, -30)).reached);     // a long jump stopped
@@ -308,7 +308,7 @@ std::vector<Pose> grind(int frames, int threads, const TriMesh& a, const TriMesh
                         std::vector<double>* depths) {
   const SlidingContact model({body(a)}, {body(b)});
   const test::OverlapOracle fixed(a), moving(b);
-  SlideMemory memory;
+  SlideCache memory;
   Pose X = shift(0, 0, 20);
   std::vector<Pose> poses;
   for (int f = 0; f < frames; ++f) {
@@ -333,23 +333,23 @@ TEST(Slide, BumpyBallsGrindWithoutOverlap) {
   EXPECT_LE(depths[depths.size() / 2], 0.05);
 }
 
-TEST(Slide, WhatWasRememberedChangesNoBit) {
+TEST(Slide, CachedNodesChangeNoBit) {
   const SlidingContact model({body(test::sphere(4, 9, {0, 0, 0}, 0.06))},
                              {body(test::sphere(4, 6, {0, 0, 0}, 0.06))});
-  const auto wanted_at = [](int f) {
+  const auto target_at = [](int f) {
     const double s = 0.2 * f;
     return turned({0.2, 1, 0.4}, 12 * std::sin(1.7 * s),
                   {2 * std::sin(s), 2 * std::sin(1.3 * s), 12.5});
   };
   constexpr int frames = 30;
-  SlideMemory forward, backward;
+  SlideCache forward, backward;
   const Pose from = shift(0, 0, 15.5);
-  for (int f = frames; f >= 0; --f) model.slide(from, wanted_at(f), &backward);
+  for (int f = frames; f >= 0; --f) model.slide(from, target_at(f), &backward);
   int touching = 0;
   for (int f = 0; f <= frames; ++f) {
-    const SlideResult a = model.slide(from, wanted_at(f), &forward),
-                      b = model.slide(from, wanted_at(f), &backward, 2),
-                      c = model.slide(from, wanted_at(f));
+    const SlideResult a = model.slide(from, target_at(f), &forward),
+                      b = model.slide(from, target_at(f), &backward, 2),
+                      c = model.slide(from, target_at(f));
     touching += a.touching;
     for (const SlideResult& other : {b, c}) {
       EXPECT_EQ(a.X_FM.t, other.X_FM.t) << f;
@@ -360,7 +360,7 @@ TEST(Slide, WhatWasRememberedChangesNoBit) {
   EXPECT_GT(touching, 25);
 }
 
-TEST(Slide, SameBitsOnOneAndTwoThreads) {
+TEST(Slide, IsBitIdenticalOnOneAndTwoThreads) {
   const TriMesh a = test::sphere(4, 9, {0, 0, 0}, 0.06), b = test::sphere(4, 6, {0, 0, 0}, 0.06);
   const auto one = grind(60, 1, a, b, nullptr), two = grind(60, 2, a, b, nullptr);
   for (std::size_t i = 0; i < one.size(); ++i) {

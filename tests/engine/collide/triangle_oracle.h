@@ -59,7 +59,7 @@ inline bool pierces(const Point& p, const Point& q, const Corners& t) {
   return (x >= 0 && y >= 0 && z >= 0) || (x <= 0 && y <= 0 && z <= 0);
 }
 
-/// Distance of two triangles in long double, written apart from the one it tests.
+/// Distance of two triangles in long double, implemented independently of the one under test.
 inline Real triangle_distance_oracle(const Corners& a, const Corners& b) {
   Real best = std::numeric_limits<Real>::infinity();
   for (int i = 0; i < 3; ++i) {
@@ -89,7 +89,7 @@ inline double brute_force_distance(const TriMesh& a, const Pose& X_WA, const Tri
   Real best = std::numeric_limits<Real>::infinity();
   for (const auto& ta : triangles_a)
     for (const auto& tb : triangles_b) {
-      // Triangles whose balls are farther apart than the best so far need no look.
+      // Triangles whose bounding balls are farther apart than the best so far are skipped.
       const Point ca = (ta[0] + ta[1] + ta[2]) / 3, cb = (tb[0] + tb[1] + tb[2]) / 3;
       Real ra = 0, rb = 0;
       for (int k = 0; k < 3; ++k)

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 enum class Kind { any, slivers, parallel, mixed };
 
-/// Triangles that hang together nowhere.
+/// Triangles without any connection.
 TriMesh soup(Kind kind, int count, std::mt19937_64& random) {
   std::uniform_real_distribution<double> along(-1, 1);
   const auto any = [&](double size) -> Vector3d {
@@ -25,7 +25,7 @@ TriMesh soup(Kind kind, int count, std::mt19937_64& random) {
     const Kind k = kind != Kind::mixed ? kind : static_cast<Kind>(i % 3);
     const Vector3d at = any(10);
     Vector3d u = any(2), v = any(2);
-    if (k == Kind::slivers) v = 0.5 * u + any(1e-7);  // 1e-7 mm wide, the corner half way
+    if (k == Kind::slivers) v = 0.5 * u + any(1e-7);  // 1e-7 mm wide, the corner at the midpoint
     if (k == Kind::parallel) {                        // of one lattice
       u = {1.0 * static_cast<int>(3 * along(random)), 1, 0};
       v = {1, 1.0 * static_cast<int>(3 * along(random)), 0};

@@ -8,7 +8,7 @@
 namespace condyle {
 namespace {
 
-TEST(BufferPool, WhatIsGivenBackIsUsedNext) {
+TEST(BufferPool, AReturnedBufferIsUsedNext) {
   const BufferPool<float> pool(100);
   auto first = pool.take();
   EXPECT_TRUE(std::all_of(first.get(), first.get() + 100, [](float f) { return f == 0; }));
@@ -32,7 +32,7 @@ TEST(BufferPool, BuffersOutliveIt) {
   EXPECT_EQ(kept[9], 1);
 }
 
-TEST(BufferPool, NoBufferIsHeldTwice) {
+TEST(BufferPool, NoBufferIsLentTwice) {
   const BufferPool<int> pool(1);
   bool alone[2] = {true, true};
   const auto use = [&](int who) {

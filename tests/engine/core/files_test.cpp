@@ -11,7 +11,7 @@
 
 namespace condyle::test {
 
-TEST(Files, ReadGivesBackWhatWasWritten) {
+TEST(Files, ReadReturnsWhatWasWritten) {
   const Folder folder;
   const std::string text("a\0b\n", 4);
   write_file(folder.path() / "x", text);

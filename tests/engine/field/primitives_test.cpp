@@ -125,7 +125,7 @@ TEST(Recipe, CutAndKeepAreIntersections) {
   keep.keep(bite, 0);
   for (const auto& p : scattered(300, 6)) {
     const double exact = std::max(ball.distance(p), -bite.distance(p));
-    if (exact > -3) {  // deeper, the bite's box may stand in for it
+    if (exact > -3) {  // deeper, the bite's box may replace it
       EXPECT_NEAR(cut(p), exact, 1e-12);
     } else {
       EXPECT_LT(cut(p), -2.9);

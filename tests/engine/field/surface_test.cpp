@@ -21,7 +21,7 @@ FieldRecipe ball(double radius, Symmetry symmetry = Symmetry::none) {
   return recipe;
 }
 
-/// A ring with a ball joined to it: genus 1, curved both ways.
+/// A ring with a ball joined to it: genus 1, curvature of both signs.
 FieldRecipe ring_and_ball() {
   FieldRecipe recipe;
   std::vector<Vector3d> circle;
@@ -55,7 +55,7 @@ TEST(SampledField, SkippedBlocksLeaveTheSurfaceAsItIs) {
   EXPECT_EQ(mesh_hash(isosurface(quick)), mesh_hash(isosurface(whole)));
 }
 
-TEST(SampledField, SamplesHaveTheSameBitsOnOneAndTwoThreads) {
+TEST(SampledField, SamplesAreBitIdenticalOnOneAndTwoThreads) {
   const auto grid = even_grid(cube(17), 0.7);
   EXPECT_EQ(sample_field(ring_and_ball(), grid, {.threads = 1}).values,
             sample_field(ring_and_ball(), grid, {.threads = 2}).values);
@@ -188,7 +188,7 @@ TEST(Decimation, KeepsTopologyAndShape) {
   }
 }
 
-TEST(Decimation, ImportantPlacesKeepSmallerTriangles) {
+TEST(Decimation, ImportantRegionsKeepSmallerTriangles) {
   const auto mesh = isosurface(sample_field(ball(8), even_grid(cube(9), 0.4)));
   const auto thin =
       decimated(mesh, {.target_triangles = 1500,
@@ -200,7 +200,7 @@ TEST(Decimation, ImportantPlacesKeepSmallerTriangles) {
   EXPECT_GT(above, 2 * (thin.triangles.size() - above));
 }
 
-TEST(Decimation, SameMeshSameBits) {
+TEST(Decimation, SameMeshGivesBitIdenticalResults) {
   const auto mesh = isosurface(sample_field(ring_and_ball(), even_grid(cube(17), 0.6)));
   EXPECT_EQ(mesh_hash(decimated(mesh, {.target_triangles = 1000})),
             mesh_hash(decimated(mesh, {.target_triangles = 1000})));

@@ -68,7 +68,7 @@ TEST(Holes, OfFewEdgesMayBeWider) {
 }
 
 TEST(Holes, NoEdgeGetsAThirdTriangle) {
-  // Two triangles share an edge; a third on it makes it knotted: nothing there may be closed.
+  // Two triangles fraction an edge; a third on it makes it knotted: nothing there may be closed.
   TriMesh fin;
   fin.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
   fin.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};

@@ -40,7 +40,7 @@ TriMesh divided(const TriMesh& mesh) {
   return result;
 }
 
-TEST(LoopSubdivision, MakesFourOfATriangleAndKeepsNeighboursTheirTurnAndTheRim) {
+TEST(LoopSubdivision, SplitsATriangleInFourAndKeepsNeighboursWindingAndRim) {
   TriMesh mesh = sheet(6);
   mesh.triangles.erase(mesh.triangles.begin() + 28, mesh.triangles.begin() + 30);  // a hole
   const auto before = inspect(mesh), after = inspect(divided(mesh));
@@ -52,7 +52,7 @@ TEST(LoopSubdivision, MakesFourOfATriangleAndKeepsNeighboursTheirTurnAndTheRim) 
   EXPECT_EQ(rims_of(divided(mesh)).size(), 2u);
 }
 
-TEST(LoopSubdivision, SharesAddUpToOneSoThatWhatMovesAsAWholeStaysAsItIs) {
+TEST(LoopSubdivision, WeightsSumToOneSoThatRigidMotionIsPreserved) {
   const TriMesh mesh = sheet(4);
   const auto finer = subdivide(static_cast<int>(mesh.vertices.size()), mesh.triangles);
   const auto twice = composed(
@@ -67,7 +67,7 @@ TEST(LoopSubdivision, SharesAddUpToOneSoThatWhatMovesAsAWholeStaysAsItIs) {
     EXPECT_NEAR(p.z(), 2 * p.x() - 3 * p.y() + 1, 1e-4f);
 }
 
-TEST(LoopSubdivision, SumsOfSumsAreThoseTakenOneAfterTheOther) {
+TEST(LoopSubdivision, ComposedWeightsEqualSuccessiveSubdivisions) {
   TriMesh mesh = sheet(3);
   for (auto& v : mesh.vertices) v.z() = std::sin(3 * v.x() + v.y());
   const auto first = subdivide(static_cast<int>(mesh.vertices.size()), mesh.triangles);

@@ -43,7 +43,7 @@ TEST(Patches, HoldEveryTriangleOnceAndStaySmall) {
   }
 }
 
-TEST(Patches, OfNothingAreNone) {
+TEST(Patches, OfNoTrianglesAreNone) {
   const Patches patches = cut_into_patches({}, {}, 64);
   EXPECT_TRUE(patches.triangles.empty());
   EXPECT_EQ(patches.first, std::vector<int>{0});

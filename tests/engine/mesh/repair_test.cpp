@@ -40,7 +40,7 @@ TEST(Measure, VertexNormalsOfASpherePointOutwardAndOfABoxAlongItsDiagonals) {
     EXPECT_LT((corners[i] - cube.vertices[i].normalized()).norm(), 1e-12);
 }
 
-TEST(Measure, HashTellsAnyChangedBit) {
+TEST(Measure, HashChangesWithAnyBit) {
   TriMesh mesh = sphere(2, 10);
   const auto before = mesh_hash(mesh);
   EXPECT_EQ(before, mesh_hash(sphere(2, 10)));
@@ -48,7 +48,7 @@ TEST(Measure, HashTellsAnyChangedBit) {
   EXPECT_NE(before, mesh_hash(mesh));
 }
 
-TEST(Weld, GivesBackTheMeshThatWasTakenApart) {
+TEST(Weld, RestoresAMeshThatWasTakenApart) {
   const TriMesh mesh = moved(sphere(3, 10), arbitrary_pose(2));
   TriMesh soup = test::unwelded(mesh);
   EXPECT_EQ(weld(soup), static_cast<int>(3 * mesh.triangles.size() - mesh.vertices.size()));
@@ -138,7 +138,7 @@ TEST(Repair, AFlatTriangleLeavesNoCrack) {
               0.1);
 }
 
-TEST(Repair, UnusedVerticesGoWithTheirColours) {
+TEST(Repair, UnusedVerticesAreRemovedWithTheirColours) {
   TriMesh mesh;
   mesh.vertices = {{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {8, 8, 8}, {0, 1, 0}};
   mesh.colors = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {0, 0, 1}};
@@ -178,7 +178,7 @@ TEST(Orient, ACavityStaysACavityAndAnInwardSolidIsTurnedWithIt) {
   EXPECT_EQ(orient_outward(rooted).turned, 0);
 }
 
-TEST(Orient, OpenSurfacesKeepTheSenseOfMostOfTheirArea) {
+TEST(Orient, OpenSurfacesKeepTheOrientationOfMostOfTheirArea) {
   TriMesh cup = sphere(2, 10);
   std::erase_if(cup.triangles, [&](const auto& t) { return cup.vertices[t[0]].z() > 3; });
   TriMesh mixed = cup;

@@ -42,7 +42,7 @@ TEST(Rims, AreOneForEachHoleAndTheEdgeAndRunAsMissingTrianglesWould) {
   }
 }
 
-TEST(Rims, OfHolesThatShareAVertexAreToldApart) {
+TEST(Rims, OfHolesThatShareAVertexAreSeparated) {
   EXPECT_EQ(sizes(plane_without(6, {{2, 2}, {3, 3}})), (std::vector<std::size_t>{4, 4, 24}));
   EXPECT_EQ(sizes(plane_without(6, {{3, 2}, {2, 3}})), (std::vector<std::size_t>{4, 4, 24}));
   EXPECT_EQ(sizes(plane_without(6, {{1, 1}, {2, 2}, {3, 3}})),

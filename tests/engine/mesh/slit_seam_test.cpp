@@ -16,8 +16,8 @@ using Eigen::Vector3d;
 constexpr int around = 120, deep = 40, outside = 20;
 constexpr double half_width = 25, half_height = 1.5;
 
-/// A wall that looks to -y with a slit in it, behind which a tube goes 20 mm back and grows wider,
-/// so that the wall hides it; its last ring is the rim.
+/// A wall facing -y with a slit in it, behind which a tube extends 20 mm back and widens, so that
+/// the wall hides it; its last ring is the rim.
 TriMesh wall_with_tube(std::vector<int>& rim) {
   TriMesh mesh;
   for (int ring = 0; ring <= outside + deep; ++ring)

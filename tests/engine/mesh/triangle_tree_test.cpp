@@ -16,7 +16,7 @@ using test::cuboid;
 using test::moved;
 using test::sphere;
 
-/// Distance to a triangle by projection on its plane, edges and corners: an independent way.
+/// Distance to a triangle by projection on its plane, edges and corners: an independent method.
 double distance_by_cases(const Vector3d& a, const Vector3d& b, const Vector3d& c,
                          const Vector3d& p) {
   const auto to_edge = [&](const Vector3d& u, const Vector3d& v) {
@@ -165,7 +165,7 @@ TEST(TriangleTree, RayHitsASphereWhereItsFormulaSays) {
     const double b = o.dot(d) / d.squaredNorm(), c = (o.squaredNorm() - 100) / d.squaredNorm();
     const double root = b * b - c;
     const auto hit = tree.ray_cast(o, d);
-    const double past = (o - b * d).norm();  // nearest the ray comes to the centre
+    const double past = (o - b * d).norm();  // least distance of the ray from the centre
     if (past < 9.9) {
       ASSERT_TRUE(hit);
       ++hits;
@@ -206,7 +206,7 @@ TEST(TriangleTree, FlatTrianglesAndEmptyMeshesAreNoAnswer) {
   for (const auto& p : points_around(11, 200, 10)) EXPECT_NE(tree.nearest(p).triangle, flat);
 }
 
-TEST(TriangleTree, ThreadsGetTheSameBits) {
+TEST(TriangleTree, ThreadsGetBitIdenticalResults) {
   const TriangleTree tree(sphere(4, 10));
   const auto points = points_around(12, 2000, 10);
   std::vector<double> one(points.size()), two(points.size());

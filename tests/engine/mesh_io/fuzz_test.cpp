@@ -7,7 +7,7 @@
 namespace condyle {
 namespace {
 
-/// Changes the text a little, as bad copies, bad disks and bad programs do.
+/// Changes the text slightly, as copying, disk and program errors do.
 std::string mutated(std::string text, std::mt19937& random) {
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
   const auto spot = [&] {
@@ -45,7 +45,7 @@ std::string mutated(std::string text, std::mt19937& random) {
         for (std::size_t k = 0; k < n; ++k) std::swap(text[at + k], text[other + k]);
         break;
       }
-      default: {  // another number in place of one
+      default: {  // another number instead of one
         const std::size_t digit = text.find_first_of("0123456789", at);
         const char* numbers[] = {"4294967296",           "-1", "1e308",     "nan",
                                  "99999999999999999999", "0",  "2147483648"};

@@ -24,7 +24,7 @@ void expect_same(const TriMesh& a, const TriMesh& b) {
   for (std::size_t i = 0; i < a.vertices.size(); ++i) ASSERT_EQ(a.vertices[i], b.vertices[i]);
 }
 
-TEST(ReadMesh, EveryFormatGivesBackTheBitsThatWereWritten) {
+TEST(ReadMesh, EveryFormatRoundTripsBitIdentically) {
   const TempFolder folder;
   for (const auto& [name, content] :
        {std::pair("a.ply", test::ascii_ply(ball())),
@@ -158,7 +158,7 @@ TEST(ReadMesh, PolygonsKeepTheirAreaWhetherConvexOrNot) {
   EXPECT_NEAR(projected, 11, 1e-12);
 }
 
-TEST(ReadMesh, GlbNodesArePutInPlaceAndMerged) {
+TEST(ReadMesh, GlbNodesAreTransformedAndMerged) {
   const TempFolder folder;
   const TriMesh cube = test::cuboid({0, 0, 0}, {1, 1, 1});
   // A parent turned by 90 degrees about z and moved; one child scaled, one mirrored by its matrix.

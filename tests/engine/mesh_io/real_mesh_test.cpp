@@ -5,15 +5,14 @@
 #include "engine/mesh/repair.h"
 #include "engine/mesh/topology.h"
 #include "engine/mesh_io/mesh_files.h"
+#include "tests/support/places.h"
 
 namespace condyle {
 namespace {
 
-std::filesystem::path data() {
-  return std::filesystem::path(CONDYLE_SOURCE_DIR) / "../shared/data";
-}
+std::filesystem::path data() { return test::source_folder() / "../shared/data"; }
 
-/// The figures are those of the data's own notes, found with other programs.
+/// The figures are those of the data's own notes, determined by other programs.
 TEST(RealMesh, TopologyIsAsDescribed) {
   if (!std::filesystem::exists(data())) GTEST_SKIP() << "real anatomy absent";
   struct Known {

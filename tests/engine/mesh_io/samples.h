@@ -14,7 +14,7 @@
 
 namespace condyle::test {
 
-/// A folder of this test's own, removed with the object.
+/// A folder for this test, removed with the object.
 class TempFolder {
  public:
   TempFolder() {

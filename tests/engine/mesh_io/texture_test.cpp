@@ -6,6 +6,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/mesh_io/mesh_files.h"
+#include "tests/support/places.h"
 
 namespace condyle {
 namespace {
@@ -36,7 +37,7 @@ const unsigned char red_blue[] = {
     0x44, 0x60, 0xe2, 0x3f, 0x43, 0x03, 0x03, 0x08, 0x81, 0x89, 0x06, 0x00, 0x5a, 0xcc, 0x05, 0xfd,
     0x5e, 0x5d, 0xe2, 0x41, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
 
-TEST_F(Textures, AnObjTakesItsMaterialsPictureTheRightWayUp) {
+TEST_F(Textures, AnObjUsesItsMaterialsTextureUpright) {
   write_square(std::string(reinterpret_cast<const char*>(red_blue), sizeof red_blue));
   const auto texture = read_texture(top / "square.obj");
   ASSERT_TRUE(texture);
@@ -68,7 +69,7 @@ TEST_F(Textures, WithoutAPictureThereIsNoneAndADamagedOneIsNamed) {
 
 TEST_F(Textures, ATextureThatIsTooLargeIsRefusedBeforeItIsRead) {
   std::string huge(reinterpret_cast<const char*>(red_blue), sizeof red_blue);
-  huge[18] = 0x60;  // 24,576 pixels wide, so its head says
+  huge[18] = 0x60;  // 24,576 pixels wide, according to its header
   huge[19] = 0;
   write_square(huge);
   try {
@@ -80,7 +81,7 @@ TEST_F(Textures, ATextureThatIsTooLargeIsRefusedBeforeItIsRead) {
 }
 
 TEST_F(Textures, APictureTooLargeForItsReaderIsCalledLarge) {
-  // A header says it all: 20000 x 20000, 8 bits, RGB.
+  // Only the header matters: 20000 x 20000, 8 bits, RGB.
   std::string huge("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0N \0\0N \b\2\0\0\0", 29);
   huge.resize(100, '\0');
   write_square(huge);
@@ -93,8 +94,8 @@ TEST_F(Textures, APictureTooLargeForItsReaderIsCalledLarge) {
   }
 }
 
-TEST_F(Textures, TheScansGlbAndObjGiveTheSameColours) {
-  const fs::path folder = fs::path(CONDYLE_SOURCE_DIR) / "../shared/data/scan-leeperrysmith";
+TEST_F(Textures, GlbAndObjOfAScanHaveTheSameColours) {
+  const fs::path folder = test::source_folder() / "../shared/data/scan-leeperrysmith";
   if (!fs::exists(folder)) GTEST_SKIP() << "real anatomy absent";
   const auto glb = read_texture(folder / "LeePerrySmith.glb"),
              obj = read_texture(folder / "head_lps_mm.obj");

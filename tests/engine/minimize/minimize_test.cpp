@@ -7,7 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/minimize/line_search.h"
+#include "tools/bench/baseline/baseline_minimizers.h"
+#include "tools/bench/baseline/line_search.h"
 
 namespace condyle {
 namespace {
@@ -24,7 +25,7 @@ class Chain final : public Objective {
   }
   double value_and_gradient(const Points& x, Points& gradient) override {
     const auto info = mallinfo2();
-    most_memory = std::max(most_memory, info.uordblks + info.hblkhd);
+    max_memory = std::max(max_memory, info.uordblks + info.hblkhd);
     gradient.assign(x.size(), Vector3d::Zero());
     double sum = 0;
     for (std::size_t i = 0; i + 1 < x.size(); ++i) {
@@ -63,8 +64,8 @@ class Chain final : public Objective {
   }
 
   double floor = -1;
-  int looks = 0;  // along ways
-  std::size_t most_memory = 0;
+  int looks = 0;  // along line searches
+  std::size_t max_memory = 0;
 };
 
 class Unit final : public Preconditioner {
@@ -86,8 +87,8 @@ Points straight_chain(std::size_t n) {
   return x;
 }
 
-MinimizeSettings tight() {
-  MinimizeSettings settings;
+BaselineSettings tight() {
+  BaselineSettings settings;
   settings.tolerance_mm = 1e-8;
   settings.line_tolerance = 1e-3;
   settings.max_iterations = 20000;
@@ -100,24 +101,24 @@ TEST_P(EachMethod, FindsTheSameMinimum) {
   Chain chain;
   const Unit unit;
   Points expected = straight_chain(12), x = expected;
-  ASSERT_TRUE(minimize(Method::quasi_newton, chain, tight(), expected).converged());
+  ASSERT_TRUE(minimize_with(Method::quasi_newton, chain, tight(), expected).converged());
   const double start = chain.value(x);
-  const auto result = minimize(GetParam().method, chain, tight(), x, &unit);
+  const auto result = minimize_with(GetParam().method, chain, tight(), x, &unit);
   EXPECT_TRUE(result.converged());
   EXPECT_LT(result.energy, 0.9 * start);
   EXPECT_EQ(result.energy, chain.value(x));
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - expected[i]).norm(), 1e-4);
 }
 
-TEST_P(EachMethod, ABudgetLeavesTheBestSoFarAndTellsTheResidual) {
+TEST_P(EachMethod, ABudgetLeavesTheBestSoFarAndReportsTheResidual) {
   Chain chain;
   const Unit unit;
   for (int evaluations : {1, 7, 40}) {
-    MinimizeSettings settings = tight();
+    BaselineSettings settings = tight();
     settings.max_evaluations = evaluations;
     Points x = straight_chain(12), gradient;
     const double start = chain.value(x);
-    const auto result = minimize(GetParam().method, chain, settings, x, &unit);
+    const auto result = minimize_with(GetParam().method, chain, settings, x, &unit);
     EXPECT_EQ(result.status, MinimizeResult::Status::budget_spent);
     EXPECT_LE(result.evaluations, evaluations + 3);  // that in hand is completed
     EXPECT_LE(chain.value_and_gradient(x, gradient), start);
@@ -131,10 +132,10 @@ TEST_P(EachMethod, ABudgetLeavesTheBestSoFarAndTellsTheResidual) {
 TEST_P(EachMethod, NeverGoesWhereTheValueIsInfinite) {
   Chain chain;
   const Unit unit;
-  chain.floor = -0.01;  // the way down to y < 0 passes close to it
+  chain.floor = -0.01;  // the path down to y < 0 passes close to it
   Points x = straight_chain(8);
   for (auto& p : x) p.z() = 0.5;
-  const auto result = minimize(GetParam().method, chain, tight(), x, &unit);
+  const auto result = minimize_with(GetParam().method, chain, tight(), x, &unit);
   EXPECT_TRUE(std::isfinite(result.energy));
   for (const auto& p : x) EXPECT_GE(p.z(), chain.floor);
 }
@@ -145,23 +146,23 @@ TEST_P(EachMethod, ABadStartMovesNothing) {
   Points x = straight_chain(5);
   x[2].z() = -5;
   const Points before = x;
-  const auto result = minimize(GetParam().method, chain, {}, x, &unit);
+  const auto result = minimize_with(GetParam().method, chain, {}, x, &unit);
   EXPECT_EQ(result.status, MinimizeResult::Status::bad_start);
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(x[i], before[i]);
 }
 
-TEST_P(EachMethod, TheMemoryToldIsThatAllocated) {
+TEST_P(EachMethod, TheMemoryReportedIsThatAllocated) {
   Chain chain;
   const Unit unit;
   MinimizeSettings settings;
   settings.max_evaluations = 60;
   Points x = straight_chain(200), warm_up = x;
-  minimize(GetParam().method, chain, settings, warm_up, &unit);
-  chain.most_memory = 0;
+  minimize_with(GetParam().method, chain, settings, warm_up, &unit);
+  chain.max_memory = 0;
   const auto before = mallinfo2();
-  const auto result = minimize(GetParam().method, chain, settings, x, &unit);
+  const auto result = minimize_with(GetParam().method, chain, settings, x, &unit);
   const auto grown =
-      static_cast<double>(chain.most_memory) - static_cast<double>(before.uordblks + before.hblkhd);
+      static_cast<double>(chain.max_memory) - static_cast<double>(before.uordblks + before.hblkhd);
   ASSERT_GT(grown, 0);
   // The chain's own curvature and value use up to four vectors of points besides.
   EXPECT_GE(grown, 0.95 * static_cast<double>(result.bytes) - 4800);
@@ -172,30 +173,30 @@ TEST_P(EachMethod, RepeatsToTheBit) {
   Chain chain;
   const Unit unit;
   Points a = straight_chain(9), b = a;
-  minimize(GetParam().method, chain, {}, a, &unit);
-  minimize(GetParam().method, chain, {}, b, &unit);
+  minimize_with(GetParam().method, chain, {}, a, &unit);
+  minimize_with(GetParam().method, chain, {}, b, &unit);
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i], b[i]);
 }
 
 TEST(Preconditioned, IsNotAtTheMinimumBecauseThePreconditionerIsTooStiff) {
   Chain chain;
   Points expected = straight_chain(12);
-  ASSERT_TRUE(minimize(Method::quasi_newton, chain, tight(), expected).converged());
+  ASSERT_TRUE(minimize_with(Method::quasi_newton, chain, tight(), expected).converged());
   MinimizeSettings settings;
   for (double stiffness : {1.0, 50.0, 1000.0}) {
     const Unit unit(stiffness);
     Points x = expected;
     for (auto& p : x) p.z() += 5 * settings.tolerance_mm;  // pulled back by 0.1 a point
-    EXPECT_TRUE(minimize(Method::preconditioned, chain, settings, x, &unit).converged());
+    EXPECT_TRUE(minimize(chain, unit, settings, x).converged());
     for (std::size_t i = 0; i < x.size(); ++i)
       EXPECT_LT((x[i] - expected[i]).norm(), settings.tolerance_mm) << stiffness;
   }
 }
 
-TEST(Preconditioned, LooksAlongAWayOnlyWhereItNeedsTo) {
+TEST(Preconditioned, SearchesALineOnlyWhereNecessary) {
   Chain chain;
   Points expected = straight_chain(12);
-  ASSERT_TRUE(minimize(Method::quasi_newton, chain, tight(), expected).converged());
+  ASSERT_TRUE(minimize_with(Method::quasi_newton, chain, tight(), expected).converged());
   constexpr double pull = 0.1;  // of a point that the whole chain has left its line by
   MinimizeSettings settings;
   for (double too_stiff : {1.0, 2.0, 4.0})
@@ -205,7 +206,7 @@ TEST(Preconditioned, LooksAlongAWayOnlyWhereItNeedsTo) {
       for (auto& p : x) p.z() += 5 * settings.tolerance_mm;
       settings.fresh = fresh;
       chain.looks = 0;
-      EXPECT_TRUE(minimize(Method::preconditioned, chain, settings, x, &unit).converged());
+      EXPECT_TRUE(minimize(chain, unit, settings, x).converged());
       for (std::size_t i = 0; i < x.size(); ++i)
         EXPECT_LT((x[i] - expected[i]).norm(), settings.tolerance_mm) << too_stiff << fresh;
       EXPECT_EQ(chain.looks == 0, fresh) << too_stiff;
@@ -235,42 +236,42 @@ TEST(LineSearch, BothFindTheMinimumOfACurveFromAnyFirstStep) {
   }
 }
 
-TEST(Minimize, APreconditionerIsRenewedOnTheWay) {
+TEST(Minimize, APreconditionerIsRenewedDuringTheSolve) {
   Chain chain;
   const Unit unit, stiffer(2);
   Points expected = straight_chain(12), x = expected;
-  ASSERT_TRUE(minimize(Method::quasi_newton, chain, tight(), expected).converged());
-  MinimizeSettings settings = tight();
+  ASSERT_TRUE(minimize_with(Method::quasi_newton, chain, tight(), expected).converged());
+  BaselineSettings settings = tight();
   std::vector<int> asked;
   settings.renew = [&](const Points& now, const MinimizeResult& done) -> const Preconditioner* {
     asked.push_back(done.iterations);
     EXPECT_EQ(now.size(), x.size());
     return done.iterations == 3 ? &stiffer : nullptr;
   };
-  const auto result = minimize(Method::preconditioned, chain, settings, x, &unit);
+  const auto result = minimize(chain, unit, settings, x);
   EXPECT_TRUE(result.converged());
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - expected[i]).norm(), 1e-4);
   ASSERT_EQ(asked.size(), static_cast<std::size_t>(result.iterations));
   for (std::size_t i = 0; i < asked.size(); ++i) EXPECT_EQ(asked[i], static_cast<int>(i) + 1);
 }
 
-TEST(Minimize, ARenewedPreconditionerThatIsNoneEndsWithWhatWasReached) {
+TEST(Minimize, AFailedRenewalEndsWithTheBestPointReached) {
   Chain chain;
   const Unit unit, none(0);
   Points x = straight_chain(12);
   const double start = chain.value(x);
-  MinimizeSettings settings = tight();
+  BaselineSettings settings = tight();
   settings.renew = [&](const Points&, const MinimizeResult& done) -> const Preconditioner* {
     return done.iterations == 3 ? &none : nullptr;
   };
-  const auto result = minimize(Method::preconditioned, chain, settings, x, &unit);
+  const auto result = minimize(chain, unit, settings, x);
   EXPECT_EQ(result.status, MinimizeResult::Status::stalled);
   EXPECT_EQ(result.iterations, 3);
   EXPECT_LT(result.energy, start);
   EXPECT_EQ(result.energy, chain.value(x));
 }
 
-TEST(LineSearch, ParabolasLookToBothSidesAndTurnBackBeforeAWall) {
+TEST(LineSearch, ParabolasSearchBothSidesAndTurnBackBeforeAWall) {
   LineSettings settings;
   settings.both_sides = true;
   settings.tolerance = 1e-4;

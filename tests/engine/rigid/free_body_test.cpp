@@ -15,20 +15,20 @@ const TriMesh plank = test::box({-1, -2, -4}, {1, 2, 4});
 TEST(FreeBody, KeepsItsMomentaAndEnergyHoweverItTumbles) {
   // About its middle axis it flips over and over.
   RigidWorld world(test::weightless());
-  RigidBody body = test::ghost(plank, test::turned({1, 2, 3}, 50, {30, 20, 10}));
+  DynamicBody body = test::ghost(plank, test::turned({1, 2, 3}, 50, {30, 20, 10}));
   body.motion = {{30, -40, 50}, body.X_WB.R * Vector3d(0.1, 20, 0.1)};
   const int id = world.add_body(body);
   const double energy = world.kinetic_energy();
   const Vector3d p = world.momentum(), L = world.angular_momentum();
-  double off_energy = 0, off_L = 0, least_turn = 1;
+  double off_energy = 0, off_L = 0, min_turn = 1;
   const Vector3d axis = body.X_WB.R * Vector3d::UnitY();
   for (int k = 0; k < 10000; ++k) {
     world.step();
     off_energy = std::max(off_energy, std::abs(world.kinetic_energy() / energy - 1));
     off_L = std::max(off_L, (world.angular_momentum() - L).norm() / L.norm());
-    least_turn = std::min(least_turn, axis.dot(world.pose(id).R * Vector3d::UnitY()));
+    min_turn = std::min(min_turn, axis.dot(world.pose(id).R * Vector3d::UnitY()));
   }
-  EXPECT_LT(least_turn, -0.9);  // it did flip
+  EXPECT_LT(min_turn, -0.9);  // it did flip
   EXPECT_LT(off_energy, 1e-4);
   EXPECT_LT(off_L, 1e-10);
   EXPECT_LT((world.momentum() - p).norm(), 1e-12 * p.norm());
@@ -37,7 +37,7 @@ TEST(FreeBody, KeepsItsMomentaAndEnergyHoweverItTumbles) {
 
 TEST(FreeBody, AThrowFollowsItsParabola) {
   RigidWorld world;
-  RigidBody body = test::ghost(plank);
+  DynamicBody body = test::ghost(plank);
   body.motion.velocity = {100, 0, 500};
   const int id = world.add_body(body);
   const double start = world.kinetic_energy() + world.potential_energy();
@@ -61,7 +61,7 @@ TEST(FreeBody, AForceAtAPointMovesTheCentreAndTurnsAboutIt) {
   EXPECT_NEAR(world.motion(id).spin.y(), 1e3 * 0.02 * 4 * 1e-3 / m.inertia(1, 1), 1e-9);
 }
 
-TEST(FreeBody, AForceOfItsOwnCoordinatesTurnsWithIt) {
+TEST(FreeBody, ABodyFixedForceTurnsWithIt) {
   RigidWorld world(test::weightless());
   const Pose X = test::turned({0, 0, 1}, 90, {0, 0, 0});
   const int id = world.add_body(test::ghost(plank, X));
@@ -73,7 +73,7 @@ TEST(FreeBody, AForceOfItsOwnCoordinatesTurnsWithIt) {
 
 TEST(FreeBody, DragSlowsItByItsLaw) {
   RigidWorld world(test::weightless());
-  RigidBody body = test::ghost(plank);
+  DynamicBody body = test::ghost(plank);
   body.motion.velocity = {100, 0, 0};
   const double m = body.mass.mass_kg;
   body.drag_N_s_mm = 0.5 * m / 1000 / 1e-3;  // c dt/m = 0.5
@@ -89,9 +89,9 @@ TEST(FreeBody, DragSlowsItByItsLaw) {
   EXPECT_THROW(world.add_body(body), InputError);
 }
 
-TEST(FreeBody, DragAtAPlaceMakesABodyTurnAboutIt) {
+TEST(FreeBody, DragAtAPointTurnsABodyAboutIt) {
   RigidWorld world(test::weightless());
-  RigidBody body = test::ghost(plank);
+  DynamicBody body = test::ghost(plank);
   body.motion.velocity = {0, 0, 100};
   body.drag_N_s_mm = 1e-3 * body.mass.mass_kg;  // slow against the step
   body.drag_at = body.mass.center + Vector3d(5, 0, 0);
@@ -101,7 +101,7 @@ TEST(FreeBody, DragAtAPlaceMakesABodyTurnAboutIt) {
     return Vector3d(world.motion(id).velocity + world.motion(id).spin.cross(arm));
   };
   world.step();
-  // The first pull: against the place's velocity, with its arm.
+  // The first pull: opposite to the point's velocity, with its lever arm.
   const double pull = 1000 * body.drag_N_s_mm * 100 * world.settings().step_s;
   EXPECT_NEAR(world.motion(id).velocity.z(), 100 - pull / body.mass.mass_kg, 1e-6);
   EXPECT_NEAR(world.motion(id).spin.y(), 5 * pull / body.mass.inertia(1, 1),
@@ -148,7 +148,7 @@ TEST(FreeBody, ASpringSwingsAtItsFrequencyAndADamperLosesWhatItShould) {
 TEST(FreeBody, ALigamentPullsButDoesNotPush) {
   RigidWorld world(test::weightless());
   const int wall = world.add_body({});
-  RigidBody body = test::ghost(plank, test::at(5, 0, 0));
+  DynamicBody body = test::ghost(plank, test::at(5, 0, 0));
   body.motion.velocity = {50, 0, 0};
   const int id = world.add_body(body);
   world.add_spring({.a = wall,

@@ -62,7 +62,7 @@ TEST(Joint, AHingeTurnsAboutItsAxisOnly) {
   const int wall = world.add_body({});
   const int id = world.add_body(test::ghost(hanging_plank, test::turned({1, 0, 0}, 60, {0, 0, 0})));
   world.add_joint({.kind = Kind::hinge, .a = wall, .b = id});
-  world.set_motion(id, {{3, 0, 0}, {0, 2, 2}});  // what the hinge does not allow
+  world.set_motion(id, {{3, 0, 0}, {0, 2, 2}});  // a motion that the hinge excludes
   EXPECT_LT(swing(world, 2).error_mm, 0.02);
   EXPECT_GT((world.pose(id).R * Vector3d::UnitX()).x(), 1 - 1e-6);
   EXPECT_GT(world.motion(id).spin.norm(), 0.5);
@@ -73,7 +73,7 @@ TEST(Joint, AFixedJointMovesTwoBodiesAsOne) {
   RigidWorld world(test::weightless());
   const Pose X_WA = test::turned({1, 2, 0}, 30, {1, 2, 3}),
              X_AB = test::turned({0, 1, 1}, 40, {8, 0, 0});
-  RigidBody a = test::ghost(hanging_plank, X_WA);
+  DynamicBody a = test::ghost(hanging_plank, X_WA);
   a.motion = {{20, 0, 0}, {3, 4, 5}};
   const int first = world.add_body(a),
             second = world.add_body(test::ghost(hanging_plank, X_WA * X_AB));
@@ -93,7 +93,7 @@ TEST(Joint, AGuideLeadsAlongItsCurveUpToItsStops) {
   // A slope like an eminence, descending forward.
   std::vector<Vector3d> curve;
   for (int k = 0; k <= 10; ++k) curve.emplace_back(0, -k, -0.08 * k * k);
-  RigidBody body = test::ghost(test::box({-3, -3, -3}, {3, 3, 3}), test::at(0, 0, 0));
+  DynamicBody body = test::ghost(test::box({-3, -3, -3}, {3, 3, 3}), test::at(0, 0, 0));
   const int id = world.add_body(body);
   world.add_joint({.kind = Kind::guide, .a = wall, .b = id, .curve_A = curve});
   world.add_force({.body = id, .force_N = {0, -0.002, 0}});
@@ -112,7 +112,7 @@ TEST(Joint, AGuideLeadsAlongItsCurveUpToItsStops) {
 TEST(Joint, AGuideWithFreePlaySidewaysIsASurface) {
   RigidWorld world(test::weightless());
   const int wall = world.add_body({});
-  RigidBody body = test::ghost(test::box({-3, -3, -3}, {3, 3, 3}));
+  DynamicBody body = test::ghost(test::box({-3, -3, -3}, {3, 3, 3}));
   body.motion.velocity = {7, -20, 30};
   const int id = world.add_body(body);
   world.add_joint({.kind = Kind::guide,
@@ -126,9 +126,9 @@ TEST(Joint, AGuideWithFreePlaySidewaysIsASurface) {
   EXPECT_NEAR(world.pose(id).t.z(), 0, 1e-3);
 }
 
-TEST(Joint, AMovedBodyCarriesWhatHangsOnIt) {
+TEST(Joint, AMovedBodyCarriesItsAttachedBodies) {
   RigidWorld world(test::weightless());
-  RigidBody hand;
+  DynamicBody hand;
   hand.motion = {{10, 0, 0}, {0, 0, 1}};
   const int a = world.add_body(hand);
   const int b = world.add_body(test::ghost(hanging_plank, test::at(6, 0, 0)));
@@ -140,7 +140,7 @@ TEST(Joint, AMovedBodyCarriesWhatHangsOnIt) {
   EXPECT_NEAR(rotation_angle(world.pose(b)), 1, 1e-3);
 }
 
-TEST(Joint, ThatMakesNoSenseIsRefused) {
+TEST(Joint, OfInvalidValuesIsRefused) {
   RigidWorld world;
   const int a = world.add_body({}), b = world.add_body({});
   const int c = world.add_body(test::ghost(hanging_plank));

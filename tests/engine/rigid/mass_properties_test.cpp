@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <random>
 
 #include "engine/core/error.h"
@@ -36,7 +37,7 @@ TEST(MassProperties, OfABoxInAnyPoseAreAnalytic) {
 
 TEST(MassProperties, OfASphereApproachTheAnalyticOnesAsItsMeshIsRefined) {
   const double r = 7, density = 1e-6;
-  const double mass = density * 4 / 3 * M_PI * r * r * r;
+  const double mass = density * 4 / 3 * std::numbers::pi * r * r * r;
   double last = 1;
   for (const int level : {2, 3, 4}) {
     const MassProperties m = mass_properties(test::sphere(level, r, {5, -3, 2}), density);

@@ -11,8 +11,8 @@ namespace condyle::test {
 
 constexpr double density = 1.9e-6;  // of bone, kg/mm^3
 
-inline std::shared_ptr<const SlideBody> surface(const TriMesh& mesh) {
-  return std::make_shared<const SlideBody>(make_slide_body(mesh, {}, 2));
+inline std::shared_ptr<const ContactSurface> surface(const TriMesh& mesh) {
+  return std::make_shared<const ContactSurface>(make_contact_surface(mesh, {}, 2));
 }
 
 inline Pose at(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
@@ -24,9 +24,9 @@ inline Pose turned(const Eigen::Vector3d& axis, double degrees, const Eigen::Vec
 }
 
 /// A free body of bone.
-inline RigidBody solid(const TriMesh& mesh, const Pose& X_WB,
-                       std::shared_ptr<const SlideBody> surface_of = nullptr) {
-  RigidBody body;
+inline DynamicBody solid(const TriMesh& mesh, const Pose& X_WB,
+                         std::shared_ptr<const ContactSurface> surface_of = nullptr) {
+  DynamicBody body;
   body.mass = mass_properties(mesh, density);
   body.X_WB = X_WB;
   body.surfaces = {surface_of ? surface_of : surface(mesh)};
@@ -34,15 +34,15 @@ inline RigidBody solid(const TriMesh& mesh, const Pose& X_WB,
 }
 
 /// The same without a surface: nothing touches it.
-inline RigidBody ghost(const TriMesh& mesh, const Pose& X_WB = {}) {
-  RigidBody body;
+inline DynamicBody ghost(const TriMesh& mesh, const Pose& X_WB = {}) {
+  DynamicBody body;
   body.mass = mass_properties(mesh, density);
   body.X_WB = X_WB;
   return body;
 }
 
-inline RigidBody fixed(const TriMesh& mesh, const Pose& X_WB = {}) {
-  RigidBody body;
+inline DynamicBody fixed(const TriMesh& mesh, const Pose& X_WB = {}) {
+  DynamicBody body;
   body.X_WB = X_WB;
   body.surfaces = {surface(mesh)};
   return body;
@@ -59,7 +59,7 @@ inline void run(RigidWorld& world, double seconds, int threads = 1) {
   for (int k = 0; k < steps; ++k) world.step(threads);
 }
 
-/// How far any point of a body moves between two poses, for points up to 10 mm from its origin.
+/// Largest displacement of a body between two poses, for points up to 10 mm from its origin.
 inline double apart(const Pose& a, const Pose& b) {
   return (a.t - b.t).norm() + 10 * rotation_angle(a.inverse() * b);
 }

@@ -94,12 +94,12 @@ TEST(BlockCholesky, SolvesAsADenseFactorDoes) {
     for (std::size_t i = 0; i < b.size(); ++i)
       error = std::max(
           error, std::abs(b[i] - expected[at[i / block] * block + static_cast<int>(i) % block]));
-    EXPECT_LT(error, 0.03 * expected.cwiseAbs().maxCoeff()) << block;  // it is kept in 8 bits
+    EXPECT_LT(error, 0.03 * expected.cwiseAbs().maxCoeff()) << block;  // it is stored in 8 bits
     EXPECT_GT(expected.norm(), 1);
   }
 }
 
-TEST(BlockCholesky, SameBitsForAnyNumberOfThreads) {
+TEST(BlockCholesky, IsBitIdenticalForAnyNumberOfThreads) {
   const Sparse s = make_sparse(16, 12, 12);
   BlockCholesky one(tree_of(s)), two(tree_of(s));
   factorize(s, one, 1);
@@ -110,7 +110,7 @@ TEST(BlockCholesky, SameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(a, b);
 }
 
-TEST(BlockCholesky, TellsWhatIsNotPositiveDefinite) {
+TEST(BlockCholesky, ReportsAMatrixThatIsNotPositiveDefinite) {
   Sparse s = make_sparse(6, 5, 6);
   s.dense.block<6, 6>(48, 48) *= -1;
   BlockCholesky factor(tree_of(s));

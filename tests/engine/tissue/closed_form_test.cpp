@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 constexpr LayerMaterial soft{0.02, 0.45, 0}, softer{0.02, 0.3, 0};
 constexpr double both_ways = 1;  // springs push as they pull: the energy of an elastic body
 
-/// Mean displacement of the nodes at one place along an axis of the box, in the box's frame.
+/// Mean displacement of the nodes at one coordinate along an axis of the box, in the box's frame.
 Vector3d mean_moved(const ElasticBlock& block, const Settled& settled, int axis, double at) {
   Vector3d sum = Vector3d::Zero();
   int count = 0;
@@ -38,10 +38,10 @@ struct BarAnswer {
   double strain, narrowing;  // along; across over along
 };
 
-/// Both ends pulled by `force_N`, spread evenly; hardly held otherwise.
-BarAnswer pull(const BarCase& bar, const LayerMaterial& material, double share, double force_N) {
-  ElasticBlock block = make_block(bar.size, material, share);
-  NetLoads loads;
+/// Both ends pulled by `force_N`, evenly distributed; minimal supports otherwise.
+BarAnswer pull(const BarCase& bar, const LayerMaterial& material, double fraction, double force_N) {
+  ElasticBlock block = make_block(bar.size, material, fraction);
+  MeshLoads loads;
   const int a = bar.axis, b = (a + 1) % 3, c = (a + 2) % 3;
   loads.node_force.assign(block.rest.size(), Vector3d::Zero());
   // A node's part of an end: its part of the triangles there, or of the rows and layers.
@@ -99,8 +99,8 @@ TEST_P(Bar, StretchesByForceOverModulusAndSectionAndNarrowsByPoissonsRatio) {
     }
 }
 
-/// Springs that are weak when shortened, as tissue's are by default: a bar is stiffer pulled, by up
-/// to a third, and softer pressed, by up to a half.
+/// Springs that are weak when shortened, as tissue's are by default: a bar is stiffer in tension,
+/// by up to a third, and softer in compression, by up to a half.
 TEST_P(Bar, ThatBucklesIsStifferPulledAndSofterPressed) {
   const BarCase& bar = GetParam();
   const double section = bar.size.mm().prod() / bar.size.mm()[bar.axis];
@@ -125,14 +125,14 @@ std::ostream& operator<<(std::ostream& out, const ShearCase& shear) { return out
 
 class Shear : public testing::TestWithParam<ShearCase> {};
 
-/// The border is sheared; what is inside follows, and stores mu gamma^2 / 2 in each mm^3.
+/// The border is sheared; the interior follows, and stores mu gamma^2 / 2 in each mm^3.
 TEST_P(Shear, StoresTheEnergyOfAnElasticBlockAndStaysEven) {
   constexpr double gamma = 0.04;
   const ShearCase& shear = GetParam();
   for (const LayerMaterial& material : {soft, softer})
-    for (double share : {both_ways, 0.05}) {
-      ElasticBlock block = make_block(shear.size, material, share);
-      NetLoads loads;
+    for (double fraction : {both_ways, 0.05}) {
+      ElasticBlock block = make_block(shear.size, material, fraction);
+      MeshLoads loads;
       const auto sheared = [&](const Vector3d& place) {
         Vector3d p = place.cwiseProduct(shear.size.mm());
         p[shear.along] += gamma * p[shear.across];
@@ -163,14 +163,14 @@ INSTANTIATE_TEST_SUITE_P(ClosedForm, Shear,
                                          ShearCase{"along", 0, 1, {8, 10, 5, 3, 3}},
                                          ShearCase{"tall cells", 1, 2, {8, 10, 4, 2, 3}}));
 
-/// Hung by an end, a bar of density rho gets longer by rho g L^2 / (2 E).
+/// Suspended by an end, a bar of density rho lengthens by rho g L^2 / (2 E).
 TEST(ClosedForm, ABarHangsDownByItsWeight) {
   const BoxSize size{24, 6, 3, 3, 3};
   LayerMaterial material = soft;
   material.mass_kg = 1e-6 * size.mm().prod() / size.layers;  // per layer, of water
   ElasticBlock block = make_block(size, material, both_ways);
-  NetLoads loads;
-  loads.node_force = weight_of_nodes(block.net, (block.pose.R * Vector3d::UnitX()));
+  MeshLoads loads;
+  loads.node_force = weight_of_nodes(block.mesh, (block.pose.R * Vector3d::UnitX()));
   block.each_node([&](int node, const Vector3d& at) {
     if (at.x() == 0) hold(block, loads, node, block.rest[node], 100);
   });
@@ -184,16 +184,16 @@ TEST(ClosedForm, ABarHangsDownByItsWeight) {
   }
 }
 
-/// The reference itself: even strain is exact, and a bar hung by an end is as long as it should be.
+/// The reference itself: uniform strain is exact, and a suspended bar has its analytic length.
 TEST(ClosedForm, FiniteElementsAgreeToo) {
   const BoxSize size{24, 6, 3, 3, 3};
   const ElasticBlock block = make_block(size, soft, both_ways);
-  fe::Body body = fe::body_of(block.net, block.rest, {0.02, 0.3});
+  fe::Body body = fe::body_of(block.mesh, block.rest, {0.02, 0.3});
   fe::Given even;
   Eigen::Matrix3d stretch;
   stretch << 1.01, 0.02, 0, 0, 0.99, -0.01, 0.01, 0, 1.02;
   double volume = 0;
-  for (const auto& prism : block.net.prisms) volume += prism_volume(block.rest, prism);
+  for (const auto& prism : block.mesh.prisms) volume += prism_volume(block.rest, prism);
   block.each_node([&](int node, const Vector3d& at) {
     if (at.minCoeff() > 0 && at.maxCoeff() < 1) return;
     even.node.push_back(node);
@@ -206,9 +206,9 @@ TEST(ClosedForm, FiniteElementsAgreeToo) {
   fe::Given hung;
   LayerMaterial heavy = soft;
   heavy.mass_kg = 1e-6 * volume / size.layers;
-  const auto net = layered_net(block.triangles, size.layers + 1, block.rest,
-                               std::vector<LayerMaterial>(size.layers, heavy));
-  hung.force = weight_of_nodes(net, (block.pose.R * Vector3d::UnitX()));
+  const auto mesh = layered_mesh(block.triangles, size.layers + 1, block.rest,
+                                 std::vector<LayerMaterial>(size.layers, heavy));
+  hung.force = weight_of_nodes(mesh, (block.pose.R * Vector3d::UnitX()));
   block.each_node([&](int node, const Vector3d& at) {
     if (at.x() > 0) return;
     hung.node.push_back(node);

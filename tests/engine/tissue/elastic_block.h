@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "engine/math/pose.h"
-#include "engine/tissue/layered_net.h"
-#include "engine/tissue/refreshing.h"
+#include "engine/tissue/layered_mesh.h"
+#include "engine/tissue/refactorization.h"
 
-/// Boxes of layered tissue, and what they do under loads.
+/// Boxes of layered tissue and their response to loads.
 namespace condyle {
 
-/// A net of triangles with edges of `edge` mm: `along` of them along x, `rows` rows along y; and
+/// A mesh of triangles with edges of `edge` mm: `along` of them along x, `rows` rows along y; and
 /// `layers` along z, of `height` mm each.
 struct BoxSize {
   int along, rows, layers;
@@ -25,12 +25,12 @@ struct ElasticBlock {
   BoxSize size;
   Pose pose;  // of the box in the world: nothing may depend on it
   LayerMaterial material;
-  std::vector<Eigen::Vector2d> place;  // of the columns, as shares of the way through the box
+  std::vector<Eigen::Vector2d> place;  // of the columns, as fractions of the box
   std::vector<Eigen::Vector3i> triangles;
   Nodes rest;
-  SpringPrismNet net;
+  SpringPrismMesh mesh;
 
-  /// f(node, its share of the way through the box along x, y and z)
+  /// f(node, its coordinates as fractions of the box along x, y and z)
   template <class F>
   void each_node(F&& f) const {
     for (std::size_t c = 0; c < place.size(); ++c)
@@ -49,7 +49,7 @@ inline Pose tilted_pose() {
 }
 
 inline ElasticBlock make_block(const BoxSize& size, const LayerMaterial& material,
-                               double compression_share) {
+                               double compression_ratio) {
   ElasticBlock block{size, tilted_pose(), material, {}, {}, {}, {}};
   // Odd rows are shifted by half an edge, with a node more to reach both ends.
   std::vector<int> row_start;
@@ -77,16 +77,16 @@ inline ElasticBlock make_block(const BoxSize& size, const LayerMaterial& materia
   block.each_node([&](int node, const Eigen::Vector3d& at) {
     block.rest[node] = block.pose * Eigen::Vector3d(at.cwiseProduct(size.mm()));
   });
-  block.net = layered_net(block.triangles, size.layers + 1, block.rest,
-                          std::vector<LayerMaterial>(size.layers, material), compression_share);
+  block.mesh = layered_mesh(block.triangles, size.layers + 1, block.rest,
+                            std::vector<LayerMaterial>(size.layers, material), compression_ratio);
   return block;
 }
 
-/// Holds a node where it is, or pulls it to where it is to go.
-inline void hold(ElasticBlock& block, NetLoads& loads, int node, const Eigen::Vector3d& target,
+/// Fixes a node, or pulls it to its target.
+inline void hold(ElasticBlock& block, MeshLoads& loads, int node, const Eigen::Vector3d& target,
                  double stiffness) {
-  block.net.anchor_node.push_back(node);
-  block.net.anchor_stiffness.push_back(stiffness);
+  block.mesh.anchor_node.push_back(node);
+  block.mesh.anchor_stiffness.push_back(stiffness);
   loads.anchor_target.push_back(target);
 }
 
@@ -96,16 +96,16 @@ struct Settled {
   bool converged;
 };
 
-inline Settled settle(const ElasticBlock& block, const NetLoads& loads) {
+inline Settled settle(const ElasticBlock& block, const MeshLoads& loads) {
   Nodes x = block.rest;
-  const HessianFactor factor(block.net, loads, 1, block.rest);
-  SpringPrismEnergy energy(block.net, loads, 1);
+  const HessianFactor factor(block.mesh, loads, 1, block.rest);
+  SpringPrismEnergy energy(block.mesh, loads, 1);
   MinimizeSettings settings;
   settings.tolerance_mm = 1e-6;
-  const auto result = minimize_refreshing(block.net, loads, energy, factor, settings, x);
+  const auto result = minimize_with_refactorization(block.mesh, loads, energy, factor, settings, x);
   const Pose back = block.pose.inverse();
   for (auto& p : x) p = back * p;
-  return {x, result.energy / block.net.lambda, result.converged()};
+  return {x, result.energy / block.mesh.lambda, result.converged()};
 }
 
 }  // namespace condyle

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "engine/minimize/minimize.h"
 #include "engine/tissue/hessian_factor.h"
-#include "engine/tissue/synthetic_set.h"
+#include "tools/bench/baseline/baseline_minimizers.h"
+#include "tools/bench/baseline/synthetic_set.h"
 
 namespace condyle {
 namespace {
@@ -18,7 +18,7 @@ enum class Form { normalised, paper };
 
 SyntheticSet small_set(Form form) {
   SyntheticSet set = make_synthetic_set({30, 18, 3, 8, {0, 3}});
-  if (form == Form::paper) use_paper_form(set.net, {{0.05, 0.03, 0.04}, 0.999});
+  if (form == Form::paper) use_paper_form(set.mesh, {{0.05, 0.03, 0.04}, 0.999});
   return set;
 }
 
@@ -36,14 +36,14 @@ struct Random {
 
 class EachForm : public testing::TestWithParam<Form> {};
 
-/// Over magnitudes of displacement, at random places and attitudes: a smooth stretch of that
-/// magnitude, roughened as far as prisms allow.
+/// Over magnitudes of displacement, at random positions and orientations: a smooth stretch of that
+/// magnitude, perturbed as far as prisms permit.
 TEST_P(EachForm, DerivativesEqualCentralDifferencesFromAMillionthToAThousandMillimetres) {
   SyntheticSet set = small_set(GetParam());
   Random random{std::mt19937(5)};
   for (double magnitude = 1e-6; magnitude < 2e3; magnitude *= 10) {
     const Pose pose = random.pose();
-    NetLoads loads = synthetic_loads(set, Pose{});
+    MeshLoads loads = synthetic_loads(set, Pose{});
     Nodes x = set.rest;
     for (auto& p : x) {
       const double stretch = magnitude / 60;
@@ -55,17 +55,17 @@ TEST_P(EachForm, DerivativesEqualCentralDifferencesFromAMillionthToAThousandMill
     loads.node_force.assign(x.size(), Vector3d(0.01, -0.02, 0.03));
     // Two pressed and one free, by about the magnitude: a node, and points of triangles.
     const double depth[] = {1, -1, 2};
-    const std::array<ContactRow, 3> shapes = {{{{3}, {1}, 1},
-                                               {{7, 11, 15}, {0.2, 0.3, 0.5}, 3},
-                                               {{30, 34, 2, 6}, {0.4, 0.6, -0.5, -0.5}, 4}}};
+    const std::array<ContactSpring, 3> shapes = {{{{3}, {1}, 1},
+                                                  {{7, 11, 15}, {0.2, 0.3, 0.5}, 3},
+                                                  {{30, 34, 2, 6}, {0.4, 0.6, -0.5, -0.5}, 4}}};
     for (int i = 0; i < 3; ++i) {
-      ContactRow row = shapes[i];
+      ContactSpring row = shapes[i];
       row.normal = random.vector().normalized();
       row.offset = row.along(x) + depth[i] * magnitude;
       row.stiffness = 0.5;
       loads.contacts.push_back(row);
     }
-    SpringPrismEnergy energy(set.net, loads, 1);
+    SpringPrismEnergy energy(set.mesh, loads, 1);
     Nodes g, up = x, down = x, g_up, g_down, d(x.size());
     ASSERT_TRUE(std::isfinite(energy.value_and_gradient(x, g))) << magnitude;
     EXPECT_EQ(energy.value(x), energy.value_and_gradient(x, g));
@@ -97,18 +97,18 @@ TEST_P(EachForm, DerivativesEqualCentralDifferencesFromAMillionthToAThousandMill
 TEST_P(EachForm, DoesNotChangeUnderRigidMotion) {
   const SyntheticSet set = small_set(GetParam());
   Random random{std::mt19937(8)};
-  NetLoads loads = synthetic_loads(set, synthetic_pose(0.1, {1, 0, 0}));
+  MeshLoads loads = synthetic_loads(set, synthetic_pose(0.1, {1, 0, 0}));
   Nodes x = set.rest, g, turned_g;
   for (auto& p : x) p += 0.8 * random.vector();
-  const double before = SpringPrismEnergy(set.net, loads, 1).value_and_gradient(x, g);
+  const double before = SpringPrismEnergy(set.mesh, loads, 1).value_and_gradient(x, g);
   for (int i = 0; i < 5; ++i) {
     const Pose pose = random.pose();
     Nodes turned = x;
-    NetLoads turned_loads = loads;
+    MeshLoads turned_loads = loads;
     for (auto& p : turned) p = pose * p;
     for (auto& p : turned_loads.anchor_target) p = pose * p;
     const double after =
-        SpringPrismEnergy(set.net, turned_loads, 1).value_and_gradient(turned, turned_g);
+        SpringPrismEnergy(set.mesh, turned_loads, 1).value_and_gradient(turned, turned_g);
     EXPECT_GT(before, 0.1);
     EXPECT_NEAR(after, before, 1e-10 * before);
     for (std::size_t k = 0; k < g.size(); ++k)
@@ -118,46 +118,46 @@ TEST_P(EachForm, DoesNotChangeUnderRigidMotion) {
 
 TEST_P(EachForm, IsEquationOneAtRestPlusAPulledNode) {
   const SyntheticSet set = small_set(GetParam());
-  const SpringPrismNet& net = set.net;
+  const SpringPrismMesh& mesh = set.mesh;
   Nodes x = set.rest;
   x[20] += Vector3d(0.3, -0.2, 0.4);
   double springs = 0, volumes = 0;
-  for (std::size_t s = 0; s < net.spring_a.size(); ++s) {
-    const double stretch = (x[net.spring_a[s]] - x[net.spring_b[s]]).norm() - net.rest_length[s];
-    springs += net.stiffness[s] * (stretch < 0 ? net.compression_share : 1) * stretch * stretch;
+  for (std::size_t s = 0; s < mesh.spring_a.size(); ++s) {
+    const double stretch = (x[mesh.spring_a[s]] - x[mesh.spring_b[s]]).norm() - mesh.rest_length[s];
+    springs += mesh.stiffness[s] * (stretch < 0 ? mesh.compression_ratio : 1) * stretch * stretch;
   }
-  for (std::size_t p = 0; p < net.prisms.size(); ++p)
+  for (std::size_t p = 0; p < mesh.prisms.size(); ++p)
     volumes +=
-        net.volume_weight[p] * std::pow(prism_volume(x, net.prisms[p]) - net.rest_volume[p], 2);
-  for (std::size_t i = 0; i < net.anchor_node.size(); ++i)
-    if (net.anchor_node[i] == 20) springs += net.anchor_stiffness[i] * 0.29;
-  const NetLoads loads = synthetic_loads(set, Pose{});
-  const double expected = net.lambda * springs + (1 - net.lambda) * volumes;
+        mesh.volume_weight[p] * std::pow(prism_volume(x, mesh.prisms[p]) - mesh.rest_volume[p], 2);
+  for (std::size_t i = 0; i < mesh.anchor_node.size(); ++i)
+    if (mesh.anchor_node[i] == 20) springs += mesh.anchor_stiffness[i] * 0.29;
+  const MeshLoads loads = synthetic_loads(set, Pose{});
+  const double expected = mesh.lambda * springs + (1 - mesh.lambda) * volumes;
   EXPECT_GT(volumes, 0);
-  EXPECT_NEAR(SpringPrismEnergy(net, loads, 1).value(x), expected, 1e-10 * expected);
+  EXPECT_NEAR(SpringPrismEnergy(mesh, loads, 1).value(x), expected, 1e-10 * expected);
   if (GetParam() == Form::paper) {
-    EXPECT_EQ(net.volume_weight[0], 1);
-    EXPECT_EQ(net.compression_share, 1);
+    EXPECT_EQ(mesh.volume_weight[0], 1);
+    EXPECT_EQ(mesh.compression_ratio, 1);
   }
 }
 
 /// The lower bone is driven 30 mm into the tissue: whatever the method and form, no prism inverts.
 TEST_P(EachForm, NoMethodInvertsAPrism) {
   SyntheticSet set = small_set(GetParam());
-  if (GetParam() == Form::paper) set.net.lambda = 0.999999;  // volumes that hardly resist
-  const NetLoads loads = synthetic_loads(set, synthetic_pose(0, {0, -30, 12}));
-  const HessianFactor factor(set.net, synthetic_loads(set, Pose{}), set.sheets, set.rest);
-  SpringPrismEnergy energy(set.net, loads, 1);
+  if (GetParam() == Form::paper) set.mesh.lambda = 0.999999;  // volumes that hardly resist
+  const MeshLoads loads = synthetic_loads(set, synthetic_pose(0, {0, -30, 12}));
+  const HessianFactor factor(set.mesh, synthetic_loads(set, Pose{}), set.sheets, set.rest);
+  SpringPrismEnergy energy(set.mesh, loads, 1);
   for (const auto& method : all_methods()) {
     Nodes x = set.rest;
     MinimizeSettings settings;
     settings.max_iterations = method.method == Method::powell ? 5 : 300;
     const double before = energy.value(x);
-    const auto result = minimize(method.method, energy, settings, x, &factor);
+    const auto result = minimize_with(method.method, energy, settings, x, &factor);
     EXPECT_LT(result.energy, 0.9 * before) << method.name;
     double least = 1e9;
-    for (std::size_t p = 0; p < set.net.prisms.size(); ++p)
-      least = std::min(least, prism_volume(x, set.net.prisms[p]) / set.net.rest_volume[p]);
+    for (std::size_t p = 0; p < set.mesh.prisms.size(); ++p)
+      least = std::min(least, prism_volume(x, set.mesh.prisms[p]) / set.mesh.rest_volume[p]);
     EXPECT_GT(least, 0) << method.name;
     EXPECT_LT(least, 0.9) << method.name;  // it was pressed indeed
   }
@@ -166,14 +166,14 @@ TEST_P(EachForm, NoMethodInvertsAPrism) {
 INSTANTIATE_TEST_SUITE_P(Energy, EachForm, testing::Values(Form::normalised, Form::paper));
 
 TEST(Energy, TheBarrierGrowsWithoutBoundAsAPrismFlattens) {
-  SpringPrismNet net;
-  net.node_count = 6;
-  net.prisms = {{0, 1, 2, 3, 4, 5}};
+  SpringPrismMesh mesh;
+  mesh.node_count = 6;
+  mesh.prisms = {{0, 1, 2, 3, 4, 5}};
   Nodes x{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  net.rest_volume = {prism_volume(x, net.prisms[0])};
-  net.volume_weight = {1};
-  const NetLoads loads;
-  SpringPrismEnergy energy(net, loads, 1);
+  mesh.rest_volume = {prism_volume(x, mesh.prisms[0])};
+  mesh.volume_weight = {1};
+  const MeshLoads loads;
+  SpringPrismEnergy energy(mesh, loads, 1);
   double before = energy.value(x);
   for (double height : {0.5, 0.2, 0.05, 0.01, 0.002}) {
     for (int i = 0; i < 3; ++i) x[i].z() = height;

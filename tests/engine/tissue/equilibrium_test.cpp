@@ -6,9 +6,9 @@
 #include <random>
 
 #include "engine/core/error.h"
-#include "engine/minimize/minimize.h"
 #include "engine/tissue/hessian_factor.h"
-#include "engine/tissue/synthetic_set.h"
+#include "tools/bench/baseline/baseline_minimizers.h"
+#include "tools/bench/baseline/synthetic_set.h"
 
 namespace condyle {
 namespace {
@@ -23,7 +23,7 @@ double farthest(const Nodes& a, const Nodes& b) {
 
 struct Prestressed {
   SyntheticSet set;
-  NetLoads loads;
+  MeshLoads loads;
   Equilibrium equilibrium;
 };
 
@@ -31,12 +31,12 @@ struct Prestressed {
 Prestressed prestressed(int layers, double c_turgor, const Vector3d& down,
                         const EquilibriumSettings& settings = {}) {
   Prestressed p{make_synthetic_set({150, 46, layers, 52, {0, layers}}), {}, {}};
-  set_turgor(p.set.net, c_turgor);
-  for (std::size_t i = 0; i < p.set.net.node_mass_kg.size(); ++i)
-    p.set.net.node_mass_kg[i] = 0.13 / p.set.net.node_count;
+  set_turgor(p.set.mesh, c_turgor);
+  for (std::size_t i = 0; i < p.set.mesh.node_mass_kg.size(); ++i)
+    p.set.mesh.node_mass_kg[i] = 0.13 / p.set.mesh.node_count;
   p.loads = synthetic_loads(p.set, Pose{});
-  p.loads.node_force = weight_of_nodes(p.set.net, down);
-  p.equilibrium = balance_strains(p.set.net, p.loads, p.set.rest, settings);
+  p.loads.node_force = weight_of_nodes(p.set.mesh, down);
+  p.equilibrium = balance_strains(p.set.mesh, p.loads, p.set.rest, settings);
   p.set.anchor_offset = p.equilibrium.anchor_offset;
   Nodes force = p.loads.node_force;
   for (std::size_t i = 0; i < p.equilibrium.held.size(); ++i) force[i] += p.equilibrium.held[i];
@@ -59,13 +59,13 @@ TEST_P(EachLayerCount, NothingMovesBeforeSurgeryUnderTurgorAndGravityInAnyDirect
       EXPECT_TRUE(p.equilibrium.stable);
       EXPECT_EQ(p.equilibrium.held.empty(), p.equilibrium.force_held == 0);
       EXPECT_GT(p.equilibrium.rest_energy, 0);
-      SpringPrismEnergy energy(p.set.net, p.loads, 1);
-      const HessianFactor factor(p.set.net, p.loads, p.set.sheets, p.set.rest);
+      SpringPrismEnergy energy(p.set.mesh, p.loads, 1);
+      const HessianFactor factor(p.set.mesh, p.loads, p.set.sheets, p.set.rest);
       for (Method method : {Method::preconditioned, Method::cg_parabolic}) {
         Nodes x = p.set.rest;
         MinimizeSettings settings;
         settings.tolerance_mm = 1e-6;
-        const auto result = minimize(method, energy, settings, x, &factor);
+        const auto result = minimize_with(method, energy, settings, x, &factor);
         EXPECT_LT(farthest(x, p.set.rest), 1e-4);
         EXPECT_NEAR(result.energy, p.equilibrium.rest_energy, 1e-9 * p.equilibrium.rest_energy);
       }
@@ -74,8 +74,8 @@ TEST_P(EachLayerCount, NothingMovesBeforeSurgeryUnderTurgorAndGravityInAnyDirect
 
 TEST_P(EachLayerCount, ShakenTissueComesBackToTheBalancedState) {
   const Prestressed p = prestressed(GetParam(), 0.9, Vector3d::Zero());
-  SpringPrismEnergy energy(p.set.net, p.loads, 1);
-  const HessianFactor factor(p.set.net, p.loads, p.set.sheets, p.set.rest);
+  SpringPrismEnergy energy(p.set.mesh, p.loads, 1);
+  const HessianFactor factor(p.set.mesh, p.loads, p.set.sheets, p.set.rest);
   Nodes x = p.set.rest;
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-0.2, 0.2);
@@ -83,11 +83,11 @@ TEST_P(EachLayerCount, ShakenTissueComesBackToTheBalancedState) {
   EXPECT_GT(farthest(x, p.set.rest), 0.2);
   MinimizeSettings settings;
   settings.tolerance_mm = 1e-6;
-  EXPECT_TRUE(minimize(Method::preconditioned, energy, settings, x, &factor).converged());
+  EXPECT_TRUE(minimize(energy, factor, settings, x).converged());
   EXPECT_LT(farthest(x, p.set.rest), 1e-4);
 }
 
-TEST_P(EachLayerCount, WhatStrainsMayNotBalanceIsHeldAndTold) {
+TEST_P(EachLayerCount, UnbalancedStrainsAreHeldAndReported) {
   const EquilibriumSettings hardly{.max_pull = 0.004, .max_push = 0.004, .max_volume = 0.002};
   const Prestressed p = prestressed(GetParam(), 0.8, Vector3d(0, 0, -1), hardly);
   EXPECT_LE(p.equilibrium.max_strain, 0.004 + 1e-12);
@@ -99,12 +99,12 @@ TEST_P(EachLayerCount, WhatStrainsMayNotBalanceIsHeldAndTold) {
   double most = 0;
   for (const auto& f : p.equilibrium.held) most = std::max(most, f.norm());
   EXPECT_NEAR(most, p.equilibrium.force_held, 1e-12);
-  SpringPrismEnergy energy(p.set.net, p.loads, 1);
-  const HessianFactor factor(p.set.net, p.loads, p.set.sheets, p.set.rest);
+  SpringPrismEnergy energy(p.set.mesh, p.loads, 1);
+  const HessianFactor factor(p.set.mesh, p.loads, p.set.sheets, p.set.rest);
   Nodes x = p.set.rest;
   MinimizeSettings settings;
   settings.tolerance_mm = 1e-6;
-  EXPECT_TRUE(minimize(Method::preconditioned, energy, settings, x, &factor).converged());
+  EXPECT_TRUE(minimize(energy, factor, settings, x).converged());
   EXPECT_LT(farthest(x, p.set.rest), 1e-4);
 }
 
@@ -112,12 +112,12 @@ INSTANTIATE_TEST_SUITE_P(Equilibrium, EachLayerCount, testing::Values(1, 2, 3, 5
 
 TEST(Equilibrium, WithoutBalancingTautSkinMoves) {
   SyntheticSet set = make_synthetic_set({150, 46, 3, 52, {0, 3}});
-  const HessianFactor factor(set.net, synthetic_loads(set, Pose{}), set.sheets, set.rest);
-  set_turgor(set.net, 0.9);
-  const NetLoads loads = synthetic_loads(set, Pose{});
-  SpringPrismEnergy energy(set.net, loads, 1);
+  const HessianFactor factor(set.mesh, synthetic_loads(set, Pose{}), set.sheets, set.rest);
+  set_turgor(set.mesh, 0.9);
+  const MeshLoads loads = synthetic_loads(set, Pose{});
+  SpringPrismEnergy energy(set.mesh, loads, 1);
   Nodes x = set.rest;
-  minimize(Method::preconditioned, energy, {}, x, &factor);
+  minimize(energy, factor, {}, x);
   EXPECT_GT(farthest(x, set.rest), 0.05);
 }
 
@@ -127,11 +127,11 @@ TEST(Equilibrium, WeightIsThatOfTheLayersMasses) {
   layers[1].mass_kg = 0.02;
   layers[2].mass_kg = 0.06;
   const SyntheticSet set = make_synthetic_set({60, 20, 3, 10, {0, 3}});
-  const SpringPrismNet net = layered_net(set.triangles, set.sheets, set.rest, layers);
+  const SpringPrismMesh mesh = layered_mesh(set.triangles, set.sheets, set.rest, layers);
   Vector3d sum = Vector3d::Zero();
   double outermost = 0;
-  for (const auto& force : weight_of_nodes(net, Vector3d(0, 0, -1))) sum += force;
-  for (int c = 0; c < set.columns; ++c) outermost += net.node_mass_kg[node_of(c, 0, set.sheets)];
+  for (const auto& force : weight_of_nodes(mesh, Vector3d(0, 0, -1))) sum += force;
+  for (int c = 0; c < set.columns; ++c) outermost += mesh.node_mass_kg[node_of(c, 0, set.sheets)];
   EXPECT_NEAR(sum.z(), -9.81 * 0.13, 1e-12);
   EXPECT_NEAR(outermost, 0.025, 1e-12);
 }
@@ -139,15 +139,15 @@ TEST(Equilibrium, WeightIsThatOfTheLayersMasses) {
 TEST(Equilibrium, ValuesOutOfRangeAreRefusedWithTheValue) {
   SyntheticSet set = make_synthetic_set({60, 20, 2, 10, {0, 2}});
   const double nan = std::nan("");
-  for (double c : {0.0, -0.5, 1.01, nan}) EXPECT_THROW(set_turgor(set.net, c), InputError) << c;
+  for (double c : {0.0, -0.5, 1.01, nan}) EXPECT_THROW(set_turgor(set.mesh, c), InputError) << c;
   for (double lambda : {0.0, 1.0, -1.0, nan})
-    EXPECT_THROW(use_paper_form(set.net, {{1, 1}, lambda}), InputError) << lambda;
+    EXPECT_THROW(use_paper_form(set.mesh, {{1, 1}, lambda}), InputError) << lambda;
   for (double k : {0.0, -1.0, nan})
-    EXPECT_THROW(use_paper_form(set.net, {{1, k}, 0.9}), InputError) << k;
+    EXPECT_THROW(use_paper_form(set.mesh, {{1, k}, 0.9}), InputError) << k;
   for (double modulus : {0.0, -0.1, nan}) {
     std::vector<LayerMaterial> layers(2);
     layers[1].modulus_MPa = modulus;
-    EXPECT_THROW(layered_net(set.triangles, set.sheets, set.rest, layers), InputError);
+    EXPECT_THROW(layered_mesh(set.triangles, set.sheets, set.rest, layers), InputError);
   }
 }
 

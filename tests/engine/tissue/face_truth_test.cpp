@@ -11,16 +11,17 @@
 #include <string>
 
 #include "engine/math/pose.h"
-#include "engine/tissue/layered_net.h"
-#include "engine/tissue/refreshing.h"
+#include "engine/tissue/layered_mesh.h"
+#include "engine/tissue/refactorization.h"
 #include "tests/engine/tissue/finite_elements.h"
+#include "tests/support/places.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-/// What is needed of a VTK file in text: points, cells, and a number of each name for each point.
+/// The needed content of a VTK file in text: points, cells, and a named value for each point.
 struct VtkGrid {
   Nodes points;
   std::vector<std::vector<int>> cells;
@@ -57,7 +58,7 @@ VtkGrid read_vtk(const std::filesystem::path& path) {
   return grid;
 }
 
-/// The face as a layered net: its bricks stand in columns of three from the skin to the bone.
+/// The face as a layered mesh: its bricks form columns of three from the skin to the bone.
 struct FaceNet {
   static constexpr int sheets = 4;
   std::vector<int> of_column;  // node_of order -> node of the file
@@ -99,12 +100,12 @@ FaceNet columns_of(const VtkGrid& bricks, const VtkGrid& tets) {
     front = next;
   }
 
-  FaceNet net;
+  FaceNet mesh;
   std::map<int, int> column;
   for (int node : skin) {
     const int c = static_cast<int>(column.size());
     column[node] = c;
-    for (int s = 0, v = node; s < FaceNet::sheets; ++s, v = below[v]) net.of_column.push_back(v);
+    for (int s = 0, v = node; s < FaceNet::sheets; ++s, v = below[v]) mesh.of_column.push_back(v);
   }
   for (const auto& tet : tets.cells)
     for (int k = 0; k < 4; ++k) {
@@ -112,12 +113,12 @@ FaceNet columns_of(const VtkGrid& bricks, const VtkGrid& tets) {
       const int a = tet[(k + 1) % 4], b = tet[(k + 2) % 4], c = tet[(k + 3) % 4];
       const auto& p = tets.points;
       const bool outward = (p[b] - p[a]).cross(p[c] - p[a]).dot(p[tet[k]] - p[a]) < 0;
-      net.triangles.emplace_back(column[a], column[outward ? b : c], column[outward ? c : b]);
+      mesh.triangles.emplace_back(column[a], column[outward ? b : c], column[outward ? c : b]);
     }
-  return net;
+  return mesh;
 }
 
-/// What grows on bone, and where the bone takes it.
+/// Tissue grown on bone, and its displacement by the bone.
 fe::Given attached(const VtkGrid& tets, const Pose& jaw) {
   const auto marked = [&](const char* name, std::size_t i) { return tets.values.at(name)[i] != 0; };
   fe::Given given;
@@ -134,8 +135,8 @@ fe::Given attached(const VtkGrid& tets, const Pose& jaw) {
   return given;
 }
 
-TEST(FaceTruth, SkinIsWhereFiniteElementsPutItWhenTheJawMovesFiveMillimetres) {
-  const auto folder = std::filesystem::path(CONDYLE_SOURCE_DIR) / "../shared/data/case-badin";
+TEST(FaceTruth, SkinAgreesWithFiniteElementsWhenTheJawMovesFiveMillimetres) {
+  const auto folder = test::source_folder() / "../shared/data/case-badin";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "real anatomy absent";
   const VtkGrid tets = read_vtk(folder / "softtissue_tet.vtk");
   const FaceNet face = columns_of(read_vtk(folder / "softtissue_hex.vtk"), tets);
@@ -152,8 +153,8 @@ TEST(FaceTruth, SkinIsWhereFiniteElementsPutItWhenTheJawMovesFiveMillimetres) {
   constexpr double young_MPa = 0.02, poisson = 0.45;
   fe::Body body{tets.points, {}, {young_MPa, poisson}};
   for (const auto& cell : tets.cells) body.tets.push_back({cell[0], cell[1], cell[2], cell[3]});
-  const SpringPrismNet plain =
-      layered_net(face.triangles, FaceNet::sheets, rest, {3, {young_MPa, poisson, 0}});
+  const SpringPrismMesh plain =
+      layered_mesh(face.triangles, FaceNet::sheets, rest, {3, {young_MPa, poisson, 0}});
 
   Pose forward, opened;
   forward.t = {0, -5, 0};
@@ -165,19 +166,20 @@ TEST(FaceTruth, SkinIsWhereFiniteElementsPutItWhenTheJawMovesFiveMillimetres) {
     EXPECT_EQ(given.node.size(), 900u);
     const fe::Solution reference = fe::solve(body, given, 2);
 
-    SpringPrismNet net = plain;
-    NetLoads loads, rest_loads;
+    SpringPrismMesh mesh = plain;
+    MeshLoads loads, rest_loads;
     for (std::size_t i = 0; i < given.node.size(); ++i) {
-      net.anchor_node.push_back(in_column[given.node[i]]);
-      net.anchor_stiffness.push_back(2);
+      mesh.anchor_node.push_back(in_column[given.node[i]]);
+      mesh.anchor_stiffness.push_back(2);
       loads.anchor_target.push_back(given.at[i]);
       rest_loads.anchor_target.push_back(tets.points[given.node[i]]);
     }
-    const HessianFactor factor(net, rest_loads, FaceNet::sheets, rest);
-    SpringPrismEnergy energy(net, loads, 1);
+    const HessianFactor factor(mesh, rest_loads, FaceNet::sheets, rest);
+    SpringPrismEnergy energy(mesh, loads, 1);
     MinimizeSettings settings;
     Nodes x = rest;
-    EXPECT_TRUE(minimize_refreshing(net, loads, energy, factor, settings, x).converged());
+    EXPECT_TRUE(
+        minimize_with_refactorization(mesh, loads, energy, factor, settings, x).converged());
 
     std::vector<double> apart, moved;
     for (std::size_t i = 0; i < x.size(); i += FaceNet::sheets) {

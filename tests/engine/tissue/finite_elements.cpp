@@ -29,7 +29,7 @@ Element element_of(const Nodes& rest, const std::array<int, 4>& t) {
   return e;
 }
 
-/// The turning part of the deformation of a tetrahedron.
+/// The rotational part of a tetrahedron's deformation.
 Matrix3d rotation_of(const Element& e, const Nodes& x, const std::array<int, 4>& t) {
   Matrix3d deformation = Matrix3d::Zero();
   for (int k = 0; k < 4; ++k) deformation += x[t[k]] * e.slope.col(k).transpose();
@@ -41,9 +41,9 @@ Matrix3d rotation_of(const Element& e, const Nodes& x, const std::array<int, 4>&
 
 }  // namespace
 
-Body body_of(const SpringPrismNet& net, const Nodes& rest, const Elastic& elastic) {
+Body body_of(const SpringPrismMesh& mesh, const Nodes& rest, const Elastic& elastic) {
   Body body{rest, {}, elastic};
-  for (const auto& prism : net.prisms) {
+  for (const auto& prism : mesh.prisms) {
     // From the corner column with the smallest number the others follow; each side quad is cut
     // through its smallest node, so neighbours cut it alike.
     const int first =

@@ -5,8 +5,8 @@
 
 #include "engine/tissue/spring_prism.h"
 
-/// An answer that shares nothing with springs and prisms: corotational linear finite elements on
-/// four-node tetrahedra.
+/// A reference independent of springs and prisms: corotational linear finite elements on four-node
+/// tetrahedra.
 namespace condyle::fe {
 
 struct Elastic {
@@ -20,8 +20,8 @@ struct Body {
   Elastic elastic;
 };
 
-/// The prisms of a layered net, each as three tetrahedra whose faces agree with the neighbours'.
-Body body_of(const SpringPrismNet& net, const Nodes& rest, const Elastic& elastic);
+/// The prisms of a layered mesh, each as three tetrahedra whose faces agree with the neighbours'.
+Body body_of(const SpringPrismMesh& mesh, const Nodes& rest, const Elastic& elastic);
 
 struct Given {
   std::vector<int> node;

@@ -15,7 +15,7 @@
 namespace condyle {
 namespace {
 
-/// Each kind that this processor has: those that fuse give the same bits.
+/// Each instruction set of this processor: fused ones are bit-identical to each other.
 class FloatKernelsTest : public testing::TestWithParam<const FloatKernels*> {
  protected:
   const FloatKernels& kernels = *GetParam();
@@ -39,8 +39,8 @@ struct RandomFront {
     kernels.pack(panel.data(), pivots, height, A.data());
   }
   float panel_at(int row, int column) const { return panel[column * height + row]; }
-  /// What the tiles should hold.
-  double wanted(int row, int column) const {
+  /// Expected content of the tiles.
+  double target(int row, int column) const {
     const int block = column / size * size;
     if (row < block) return 0;
     if (row < block + size) return -panel_at(row, column);
@@ -49,7 +49,7 @@ struct RandomFront {
       sum += static_cast<double>(panel_at(row, k)) * panel_at(k, column);
     return sum;
   }
-  /// What they hold.
+  /// Their actual content.
   float held(int row, int column) const {
     const int block = column / size * size, in_block = column - block, pairs = (size + 1) / 2;
     std::ptrdiff_t at = 0;
@@ -71,7 +71,7 @@ TEST_P(FloatKernelsTest, FrontsKeepEachNumberToEightBits) {
     const RandomFront front(fronts(size), size, 3, 4);
     for (int c = 0; c < front.pivots * size; ++c)
       for (int r = c / size * size / 16 * 16; r < front.height; ++r) {
-        const double wanted = front.wanted(r, c);
+        const double wanted = front.target(r, c);
         EXPECT_NEAR(front.held(r, c), wanted, std::ldexp(std::abs(wanted), -8) + 1e-6)
             << size << ' ' << r << ' ' << c;
         if (wanted == 0) {
@@ -89,13 +89,13 @@ TEST_P(FloatKernelsTest, FrontsHugeAndTinyNumbersStayFinite) {
   for (int c = 0; c < 6; ++c)
     for (int r = 0; r < front.height; ++r) {
       EXPECT_TRUE(std::isfinite(front.held(r, c)));
-      if (std::abs(front.wanted(r, c)) > 1) {
-        EXPECT_NEAR(front.held(r, c) / front.wanted(r, c), 1, 1.0 / 256);
+      if (std::abs(front.target(r, c)) > 1) {
+        EXPECT_NEAR(front.held(r, c) / front.target(r, c), 1, 1.0 / 256);
       }
     }
 }
 
-TEST_P(FloatKernelsTest, FrontsGiveTheBitsOfPlainLoops) {
+TEST_P(FloatKernelsTest, FrontsAreBitIdenticalToPlainLoops) {
   for (int size : {3, 6, 9, 12, 15, 18})
     for (const auto& [pivots, below] : {std::pair{1, 0}, {1, 4}, {2, 3}, {5, 7}}) {
       const RandomFront front(fronts(size), size, pivots, below);
@@ -161,11 +161,11 @@ TEST_P(FloatKernelsTest, ABlockTimesItsInverseFactorsIsOne) {
     EXPECT_LT(
         (inverse * block * inverse.transpose() - Eigen::MatrixXf::Identity(size, size)).norm(),
         1e-3);
-    EXPECT_EQ(given[size], 7.0f);  // what stands between the columns stays
+    EXPECT_EQ(given[size], 7.0f);  // the gap between the columns is unchanged
   }
 }
 
-TEST_P(FloatKernelsTest, GiveTheBitsOfPlainLoops) {
+TEST_P(FloatKernelsTest, AreBitIdenticalToPlainLoops) {
   for (int rows : {1, 12, 16, 37, 64})
     for (int columns : {1, 5, 6, 12, 18}) {
       const int depth = columns + 3;
@@ -185,7 +185,7 @@ TEST_P(FloatKernelsTest, GiveTheBitsOfPlainLoops) {
     }
 }
 
-TEST_P(FloatKernelsTest, AProductAnewIsThatOfZeros) {
+TEST_P(FloatKernelsTest, AProductIntoAnyTargetEqualsOneIntoZeros) {
   for (const auto& [rows, columns, depth] : {std::array{7, 5, 12}, {31, 31, 12}, {250, 131, 250}})
     for (const bool lower : {false, true}) {
       const std::vector<float> A = random_numbers(static_cast<std::size_t>(rows) * depth + 16);
@@ -207,7 +207,7 @@ TEST_P(FloatKernelsTest, AProductAnewIsThatOfZeros) {
     }
 }
 
-TEST_P(FloatKernelsTest, ProductsThatAreNotTooDeepHaveTheSameBitsInParts) {
+TEST_P(FloatKernelsTest, ProductsOfLimitedDepthAreBitIdenticalInParts) {
   constexpr int rows = 200, columns = 200, depth = FloatKernels::most_whole_depth, width = 48;
   const std::vector<float> A = random_numbers(static_cast<std::size_t>(rows) * depth + 16);
   std::vector<float> whole(static_cast<std::size_t>(rows) * columns + 16, 0.0f), parts = whole;
@@ -246,7 +246,7 @@ TEST_P(FloatKernelsTest, LargeProductsAreThoseOfPlainLoops) {
   }
 }
 
-TEST(FloatKernels, ThoseThatFuseGiveTheSameBits) {
+TEST(FloatKernels, FusedKernelsAreBitIdentical) {
   constexpr int pivots = 5, below = 7;
   const FloatKernels& widest = float_kernels();
   for (const FloatKernels* other : usable_float_kernels()) {

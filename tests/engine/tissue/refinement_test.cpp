@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "engine/math/pose.h"
-#include "engine/tissue/layered_net.h"
-#include "engine/tissue/refreshing.h"
+#include "engine/tissue/layered_mesh.h"
+#include "engine/tissue/refactorization.h"
 
 namespace condyle {
 namespace {
@@ -15,18 +15,18 @@ namespace {
 using Eigen::Vector3d;
 
 /// A bent patch the size of a lower face over two bones, in `cells` x `cells` squares. The upper
-/// third grows on the upper bone and the lower third on the lower one; along the rim tissue goes
-/// from one to the other.
+/// third grows on the upper bone and the lower third on the lower one; along the rim the attachment
+/// changes from one to the other.
 struct FacePatch {
   int cells, sheets;
   std::vector<Eigen::Vector3i> triangles;
   Nodes rest;
-  SpringPrismNet net;
-  std::vector<double> share;  // per anchor, of the lower bone's way
+  SpringPrismMesh mesh;
+  std::vector<double> fraction;  // per anchor, of the lower bone's displacement
 };
 
 FacePatch make_patch(int cells, const LayerStack& layers) {
-  FacePatch patch{cells, static_cast<int>(layers.share.size()) + 1, {}, {}, {}, {}};
+  FacePatch patch{cells, static_cast<int>(layers.fraction.size()) + 1, {}, {}, {}, {}};
   const int n = cells + 1;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
@@ -37,7 +37,7 @@ FacePatch make_patch(int cells, const LayerStack& layers) {
       for (int s = 0; s < patch.sheets; ++s) {
         const double radius = 70 - below * depth;
         patch.rest.emplace_back(radius * std::sin(angle), -radius * std::cos(angle), z);
-        if (s + 1 < patch.sheets) below += layers.share[s];
+        if (s + 1 < patch.sheets) below += layers.fraction[s];
       }
     }
   for (int j = 0; j < cells; ++j)
@@ -51,16 +51,16 @@ FacePatch make_patch(int cells, const LayerStack& layers) {
         patch.triangles.emplace_back(b, d, c);
       }
     }
-  patch.net = layered_net(patch.triangles, patch.sheets, patch.rest, layers.material);
+  patch.mesh = layered_mesh(patch.triangles, patch.sheets, patch.rest, layers.material);
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const bool rim = i == 0 || j == 0 || i == cells || j == cells;
       if (!rim && 3 * j > cells && 3 * j < 2 * cells) continue;
       const double way = std::clamp(3.0 * j / cells - 1, 0.0, 1.0);
       for (int s = rim ? 0 : patch.sheets - 1; s < patch.sheets; ++s) {
-        patch.net.anchor_node.push_back(node_of(j * n + i, s, patch.sheets));
-        patch.net.anchor_stiffness.push_back(2);
-        patch.share.push_back(way * way * (3 - 2 * way));
+        patch.mesh.anchor_node.push_back(node_of(j * n + i, s, patch.sheets));
+        patch.mesh.anchor_stiffness.push_back(2);
+        patch.fraction.push_back(way * way * (3 - 2 * way));
       }
     }
   return patch;
@@ -68,27 +68,27 @@ FacePatch make_patch(int cells, const LayerStack& layers) {
 
 /// Displacements of the skin with the lower bone moved.
 Nodes skin_moved(const FacePatch& patch, const Pose& bone) {
-  NetLoads rest_loads, loads;
-  for (std::size_t i = 0; i < patch.share.size(); ++i) {
-    const Vector3d& p = patch.rest[patch.net.anchor_node[i]];
+  MeshLoads rest_loads, loads;
+  for (std::size_t i = 0; i < patch.fraction.size(); ++i) {
+    const Vector3d& p = patch.rest[patch.mesh.anchor_node[i]];
     rest_loads.anchor_target.push_back(p);
-    loads.anchor_target.push_back(p + patch.share[i] * (bone * p - p));
+    loads.anchor_target.push_back(p + patch.fraction[i] * (bone * p - p));
   }
-  const HessianFactor factor(patch.net, rest_loads, 1, patch.rest);
-  SpringPrismEnergy energy(patch.net, loads, 1);
+  const HessianFactor factor(patch.mesh, rest_loads, 1, patch.rest);
+  SpringPrismEnergy energy(patch.mesh, loads, 1);
   Nodes x = patch.rest;
-  EXPECT_TRUE(minimize_refreshing(patch.net, loads, energy, factor, {}, x).converged());
+  EXPECT_TRUE(minimize_with_refactorization(patch.mesh, loads, energy, factor, {}, x).converged());
   Nodes moved;
   for (std::size_t i = 0; i < x.size(); i += patch.sheets) moved.push_back(x[i] - patch.rest[i]);
   return moved;
 }
 
 TEST(Refinement, FromTwoToTwentyThousandNodesMovesTheSkinByLessThanFivePercent) {
-  const LayerStack layers = usual_layers(3);
+  const LayerStack layers = default_layers(3);
   const FacePatch coarse = make_patch(21, layers);
   const FacePatch fine = make_patch(48, split_layers(layers, 14, 105.0 / 48));
-  EXPECT_NEAR(coarse.net.node_count, 2000, 100);
-  EXPECT_NEAR(fine.net.node_count, 20000, 2000);
+  EXPECT_NEAR(coarse.mesh.node_count, 2000, 100);
+  EXPECT_NEAR(fine.mesh.node_count, 20000, 2000);
   Pose bone;  // opened by 3 degrees about a hinge behind, 2 mm forward and 1 mm down
   const Vector3d hinge(0, 25, 45);
   bone.R = Eigen::AngleAxisd(0.05, Vector3d::UnitX());
@@ -116,24 +116,24 @@ TEST(Refinement, FromTwoToTwentyThousandNodesMovesTheSkinByLessThanFivePercent) 
       farthest = std::max(farthest, there.norm());
     }
   std::printf("refined from %d to %d nodes: %.1f %% of the displacement, worst %.1f %%\n",
-              coarse.net.node_count, fine.net.node_count, 100 * std::sqrt(difference / whole),
+              coarse.mesh.node_count, fine.mesh.node_count, 100 * std::sqrt(difference / whole),
               100 * most / farthest);
   EXPECT_GT(farthest, 5);
   EXPECT_LT(std::sqrt(difference / whole), 0.05);
 }
 
 TEST(Refinement, LayersAreSplitOnlyWhereCellsWouldBeTall) {
-  const LayerStack layers = usual_layers(3);
-  EXPECT_EQ(split_layers(layers, 14, 6).share.size(), 3u);
+  const LayerStack layers = default_layers(3);
+  EXPECT_EQ(split_layers(layers, 14, 6).fraction.size(), 3u);
   const LayerStack split = split_layers(layers, 14, 2);
   double sum = 0, heaviest = 0;
-  for (std::size_t i = 0; i < split.share.size(); ++i) {
-    sum += split.share[i];
-    heaviest = std::max(heaviest, split.share[i] * 14);
+  for (std::size_t i = 0; i < split.fraction.size(); ++i) {
+    sum += split.fraction[i];
+    heaviest = std::max(heaviest, split.fraction[i] * 14);
   }
   EXPECT_NEAR(sum, 1, 1e-12);
   EXPECT_LE(heaviest, 1.2 * 2 + 1e-12);
-  EXPECT_EQ(split.material.size(), split.share.size());
+  EXPECT_EQ(split.material.size(), split.fraction.size());
   EXPECT_EQ(split.material.front().modulus_MPa, layers.material.front().modulus_MPa);
   EXPECT_EQ(split.material.back().modulus_MPa, layers.material.back().modulus_MPa);
 }

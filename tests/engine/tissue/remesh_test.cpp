@@ -46,7 +46,7 @@ TEST(Remesh, KeepsTopologyBordersPinsAndTheSurface) {
   for (const auto& v : coarse.mesh.vertices) EXPECT_NEAR(v.head<2>().norm(), 60, 0.1);
 }
 
-TEST(Remesh, GivesAboutTheWantedEdgeLength) {
+TEST(Remesh, GivesAboutTheRequestedEdgeLength) {
   RemeshSettings settings;
   settings.edge_length = [](const Vector3d&) { return 8.0; };
   const Remeshed coarse = remesh(patch_with_slit(), settings);

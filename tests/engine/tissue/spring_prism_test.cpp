@@ -8,7 +8,7 @@
 
 #include "engine/minimize/minimize.h"
 #include "engine/tissue/hessian_factor.h"
-#include "engine/tissue/layered_net.h"
+#include "engine/tissue/layered_mesh.h"
 
 namespace condyle {
 namespace {
@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 struct Slab {
   std::vector<Eigen::Vector3i> triangles;
   Nodes rest;
-  SpringPrismNet net;
+  SpringPrismMesh mesh;
   int columns = 0, sheets = 0;
 };
 
@@ -38,17 +38,18 @@ Slab make_slab(int n, int sheets) {
       slab.triangles.emplace_back(a, a + 1, a + n + 1);
       slab.triangles.emplace_back(a, a + n + 1, a + n);
     }
-  slab.net = layered_net(slab.triangles, sheets, slab.rest, std::vector<LayerMaterial>(sheets - 1));
+  slab.mesh =
+      layered_mesh(slab.triangles, sheets, slab.rest, std::vector<LayerMaterial>(sheets - 1));
   for (int c = 0; c < slab.columns; ++c) {
-    slab.net.anchor_node.push_back(node_of(c, sheets - 1, sheets));
-    slab.net.anchor_stiffness.push_back(1.0);
+    slab.mesh.anchor_node.push_back(node_of(c, sheets - 1, sheets));
+    slab.mesh.anchor_stiffness.push_back(1.0);
   }
   return slab;
 }
 
-NetLoads loads_of(const Slab& slab, const Vector3d& moved) {
-  NetLoads loads;
-  for (int node : slab.net.anchor_node) loads.anchor_target.push_back(slab.rest[node] + moved);
+MeshLoads loads_of(const Slab& slab, const Vector3d& moved) {
+  MeshLoads loads;
+  for (int node : slab.mesh.anchor_node) loads.anchor_target.push_back(slab.rest[node] + moved);
   return loads;
 }
 
@@ -87,7 +88,7 @@ TEST(SpringPrism, VolumesOfNeighboursSumToTheWhole) {
   const Slab slab = make_slab(5, 3);
   const auto total = [&](const Nodes& x) {
     double sum = 0;
-    for (const auto& prism : slab.net.prisms) sum += prism_volume(x, prism);
+    for (const auto& prism : slab.mesh.prisms) sum += prism_volume(x, prism);
     return sum;
   };
   Nodes x = slab.rest;
@@ -99,12 +100,12 @@ TEST(SpringPrism, VolumesOfNeighboursSumToTheWhole) {
 TEST(SpringPrism, GradientEqualsCentralDifferenceOverMagnitudes) {
   Slab slab = make_slab(4, 4);
   for (double shake : {0.01, 0.3, 1.2}) {
-    NetLoads loads = loads_of(slab, {0.5, -1, 0.3});
-    loads.contacts = {ContactRow::of_node(0, Vector3d::UnitZ(), 5, 1),  // two pressed, one free
-                      ContactRow::of_node(5, Vector3d::UnitX(), -50, 1),
-                      ContactRow::of_node(9, Vector3d(0, 0.6, 0.8), 90, 1)};
+    MeshLoads loads = loads_of(slab, {0.5, -1, 0.3});
+    loads.contacts = {ContactSpring::of_node(0, Vector3d::UnitZ(), 5, 1),  // two pressed, one free
+                      ContactSpring::of_node(5, Vector3d::UnitX(), -50, 1),
+                      ContactSpring::of_node(9, Vector3d(0, 0.6, 0.8), 90, 1)};
     const Nodes x = shaken(slab.rest, shake, 3);
-    SpringPrismEnergy energy(slab.net, loads, 1);
+    SpringPrismEnergy energy(slab.mesh, loads, 1);
     Nodes gradient, unused;
     ASSERT_TRUE(std::isfinite(energy.value_and_gradient(x, gradient)));
     double largest = 0;
@@ -126,10 +127,10 @@ TEST(SpringPrism, GradientEqualsCentralDifferenceOverMagnitudes) {
 
 TEST(SpringPrism, CurvatureEqualsDifferenceOfGradientsAlongTheDirection) {
   const Slab slab = make_slab(4, 4);
-  const NetLoads loads = loads_of(slab, {0, 0, 0.4});
+  const MeshLoads loads = loads_of(slab, {0, 0, 0.4});
   const Nodes x = shaken(slab.rest, 0.8, 7), zero(x.size(), Vector3d::Zero());
   const Nodes d = shaken(zero, 1, 8);
-  SpringPrismEnergy energy(slab.net, loads, 1);
+  SpringPrismEnergy energy(slab.mesh, loads, 1);
   const double h = 1e-5;
   Nodes up = x, down = x, g_up, g_down, g;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -147,26 +148,26 @@ TEST(SpringPrism, CurvatureEqualsDifferenceOfGradientsAlongTheDirection) {
 
 TEST(SpringPrism, EnergyDoesNotChangeUnderRigidMotion) {
   const Slab slab = make_slab(4, 3);
-  NetLoads loads = loads_of(slab, {1, 2, 0});
+  MeshLoads loads = loads_of(slab, {1, 2, 0});
   Nodes x = shaken(slab.rest, 0.7, 11), gradient;
-  const double before = SpringPrismEnergy(slab.net, loads, 1).value_and_gradient(x, gradient);
+  const double before = SpringPrismEnergy(slab.mesh, loads, 1).value_and_gradient(x, gradient);
   const Eigen::AngleAxisd turn(2.1, Vector3d(3, -1, 2).normalized());
   for (auto& p : x) p = turn * p + Vector3d(100, 3, -50);
   for (auto& p : loads.anchor_target) p = turn * p + Vector3d(100, 3, -50);
-  const double after = SpringPrismEnergy(slab.net, loads, 1).value_and_gradient(x, gradient);
+  const double after = SpringPrismEnergy(slab.mesh, loads, 1).value_and_gradient(x, gradient);
   EXPECT_GT(before, 0.1);
   EXPECT_NEAR(after, before, 1e-10 * before);
 }
 
 TEST(Minimizer, FollowsARigidMotionOfItsAnchorsExactly) {
   const Slab slab = make_slab(6, 4);
-  const HessianFactor factor(slab.net, loads_of(slab, Vector3d::Zero()), slab.sheets, slab.rest);
+  const HessianFactor factor(slab.mesh, loads_of(slab, Vector3d::Zero()), slab.sheets, slab.rest);
   Nodes x = slab.rest;
   MinimizeSettings settings;
   settings.tolerance_mm = 1e-8;
-  const NetLoads loads = loads_of(slab, {0, 1.5, 0.5});
-  SpringPrismEnergy energy(slab.net, loads, 1);
-  const auto result = minimize(Method::preconditioned, energy, settings, x, &factor);
+  const MeshLoads loads = loads_of(slab, {0, 1.5, 0.5});
+  SpringPrismEnergy energy(slab.mesh, loads, 1);
+  const auto result = minimize(energy, factor, settings, x);
   EXPECT_TRUE(result.converged());
   EXPECT_GT(result.iterations, 0);
   EXPECT_LT(result.energy, 1e-12);
@@ -176,15 +177,15 @@ TEST(Minimizer, FollowsARigidMotionOfItsAnchorsExactly) {
 
 TEST(HessianFactor, ExactCurvaturesUndoADifferenceOfGradients) {
   Slab slab = make_slab(7, 4);
-  for (auto& length : slab.net.rest_length) length *= 0.95;
-  const NetLoads loads = loads_of(slab, {0, 0.4, 0.3});
+  for (auto& length : slab.mesh.rest_length) length *= 0.95;
+  const MeshLoads loads = loads_of(slab, {0, 0.4, 0.3});
   const Nodes x = shaken(slab.rest, 0.08, 3);
-  HessianFactor factor(slab.net, loads, slab.sheets, slab.rest);
-  ASSERT_EQ(factor.refactor(slab.net, loads, x, 1, Curvatures::exact), 0);
+  HessianFactor factor(slab.mesh, loads, slab.sheets, slab.rest);
+  ASSERT_EQ(factor.refactor(slab.mesh, loads, x, 1, HessianKind::exact), 0);
   HessianFactor gauss_newton = factor;
-  gauss_newton.refactor(slab.net, loads, x);
+  gauss_newton.refactor(slab.mesh, loads, x);
 
-  SpringPrismEnergy energy(slab.net, loads, 1);
+  SpringPrismEnergy energy(slab.mesh, loads, 1);
   Nodes up = x, down = x, d = x, g, g_down, z, z_gauss_newton;
   constexpr double h = 1e-5;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -202,38 +203,39 @@ TEST(HessianFactor, ExactCurvaturesUndoADifferenceOfGradients) {
     error = std::max(error, (z[i] - d[i]).norm());
     without = std::max(without, (z_gauss_newton[i] - d[i]).norm());
   }
-  EXPECT_LT(error, 0.01);  // it is kept in eight bits, and what holds loose nodes is in it only
+  // it is stored in eight bits, and only it contains what holds loose nodes
+  EXPECT_LT(error, 0.01);
   EXPECT_GT(without, 2 * error);
 }
 
 TEST(Minimizer, NeverInvertsAPrismHoweverHardItIsPressed) {
   Slab slab = make_slab(6, 3);
-  NetLoads loads = loads_of(slab, Vector3d::Zero());
+  MeshLoads loads = loads_of(slab, Vector3d::Zero());
   for (int c = 0; c < slab.columns; ++c) {  // the skin is pulled to 12 mm below the bone
-    slab.net.anchor_node.push_back(node_of(c, 0, 3));
-    slab.net.anchor_stiffness.push_back(0.02);
+    slab.mesh.anchor_node.push_back(node_of(c, 0, 3));
+    slab.mesh.anchor_stiffness.push_back(0.02);
     loads.anchor_target.push_back(slab.rest[node_of(c, 0, 3)] - Vector3d(0, 0, 20));
   }
-  const HessianFactor factor(slab.net, loads, 3, slab.rest);
+  const HessianFactor factor(slab.mesh, loads, 3, slab.rest);
   Nodes x = slab.rest;
-  SpringPrismEnergy energy(slab.net, loads, 1);
-  minimize(Method::preconditioned, energy, {}, x, &factor);
+  SpringPrismEnergy energy(slab.mesh, loads, 1);
+  minimize(energy, factor, {}, x);
   double least = 1e9;
-  for (std::size_t p = 0; p < slab.net.prisms.size(); ++p)
-    least = std::min(least, prism_volume(x, slab.net.prisms[p]) / slab.net.rest_volume[p]);
+  for (std::size_t p = 0; p < slab.mesh.prisms.size(); ++p)
+    least = std::min(least, prism_volume(x, slab.mesh.prisms[p]) / slab.mesh.rest_volume[p]);
   EXPECT_GT(least, 0);
   EXPECT_LT(least, 0.8);  // it was pressed indeed
 }
 
-TEST(Minimizer, SameBitsForAnyNumberOfThreads) {
+TEST(Minimizer, IsBitIdenticalForAnyNumberOfThreads) {
   const Slab slab = make_slab(8, 4);
-  const HessianFactor factor(slab.net, loads_of(slab, Vector3d::Zero()), slab.sheets, slab.rest);
-  const NetLoads loads = loads_of(slab, {0, 0, 0});
+  const HessianFactor factor(slab.mesh, loads_of(slab, Vector3d::Zero()), slab.sheets, slab.rest);
+  const MeshLoads loads = loads_of(slab, {0, 0, 0});
   Nodes one = shaken(slab.rest, 0.9, 21), two = one;
   MinimizeSettings settings;
-  SpringPrismEnergy energy(slab.net, loads, 1), energy_on_two(slab.net, loads, 2);
-  const auto a = minimize(Method::preconditioned, energy, settings, one, &factor);
-  const auto b = minimize(Method::preconditioned, energy_on_two, settings, two, &factor);
+  SpringPrismEnergy energy(slab.mesh, loads, 1), energy_on_two(slab.mesh, loads, 2);
+  const auto a = minimize(energy, factor, settings, one);
+  const auto b = minimize(energy_on_two, factor, settings, two);
   EXPECT_GT(a.iterations, 1);
   EXPECT_EQ(a.iterations, b.iterations);
   EXPECT_EQ(a.energy, b.energy);

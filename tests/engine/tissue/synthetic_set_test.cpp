@@ -1,4 +1,4 @@
-#include "engine/tissue/synthetic_set.h"
+#include "tools/bench/baseline/synthetic_set.h"
 
 #include <gtest/gtest.h>
 
@@ -12,10 +12,10 @@ using Eigen::Vector3d;
 
 void expect_size(const SyntheticSize& size, int positions, int springs, int volumes) {
   const SyntheticSet set = make_synthetic_set(size);
-  EXPECT_EQ(set.net.node_count, positions);
+  EXPECT_EQ(set.mesh.node_count, positions);
   EXPECT_EQ(set.springs(), springs);
-  EXPECT_EQ(set.net.prisms.size(), static_cast<std::size_t>(volumes));
-  for (double volume : set.net.rest_volume) EXPECT_GT(volume, 0);
+  EXPECT_EQ(set.mesh.prisms.size(), static_cast<std::size_t>(volumes));
+  for (double volume : set.mesh.rest_volume) EXPECT_GT(volume, 0);
 }
 
 TEST(SyntheticSet, HasThePublishedCounts) {
@@ -27,26 +27,26 @@ TEST(SyntheticSet, HasThePublishedCounts) {
 TEST(SyntheticSet, ComesInAnySizeAndNumberOfLayers) {
   for (int layers : {1, 2, 3, 5}) {
     const SyntheticSet set = make_synthetic_set({80, 26, layers, 30, {0, layers}});
-    EXPECT_EQ(set.net.node_count, 80 * (layers + 1));
-    for (double volume : set.net.rest_volume) EXPECT_GT(volume, 0);
+    EXPECT_EQ(set.mesh.node_count, 80 * (layers + 1));
+    for (double volume : set.mesh.rest_volume) EXPECT_GT(volume, 0);
   }
-  const int nodes = make_synthetic_set(size_of_nodes(10000)).net.node_count;
+  const int nodes = make_synthetic_set(size_of_nodes(10000)).mesh.node_count;
   EXPECT_NEAR(nodes, 10000, 300);
 }
 
-TEST(SyntheticSet, BonesTakeTheirTissueAndNothingIsStretchedAtRest) {
+TEST(SyntheticSet, BonesCarryTheirTissueAndNothingIsStretchedAtRest) {
   const SyntheticSet set = make_synthetic_set(table1_size());
-  const NetLoads rest = synthetic_loads(set, Pose{});
+  const MeshLoads rest = synthetic_loads(set, Pose{});
   Nodes gradient, x = set.rest;
-  EXPECT_LT(SpringPrismEnergy(set.net, rest, 1).value_and_gradient(x, gradient), 1e-20);
-  const HessianFactor factor(set.net, rest, set.sheets, set.rest);
+  EXPECT_LT(SpringPrismEnergy(set.mesh, rest, 1).value_and_gradient(x, gradient), 1e-20);
+  const HessianFactor factor(set.mesh, rest, set.sheets, set.rest);
   const Pose pose = synthetic_pose(0, {0, -4, 0});
-  const NetLoads loads = synthetic_loads(set, pose);
-  SpringPrismEnergy energy(set.net, loads, 1);
-  EXPECT_TRUE(minimize(Method::preconditioned, energy, {}, x, &factor).converged());
+  const MeshLoads loads = synthetic_loads(set, pose);
+  SpringPrismEnergy energy(set.mesh, loads, 1);
+  EXPECT_TRUE(minimize(energy, factor, {}, x).converged());
   int moving = 0, still = 0;
   for (std::size_t i = 0; i < set.anchor_moves.size(); ++i) {
-    const double moved = set.rest[set.net.anchor_node[i]].y() - x[set.net.anchor_node[i]].y();
+    const double moved = set.rest[set.mesh.anchor_node[i]].y() - x[set.mesh.anchor_node[i]].y();
     EXPECT_NEAR(moved, set.anchor_moves[i] ? 4 : 0, 1.0);
     ++(set.anchor_moves[i] ? moving : still);
   }
@@ -55,17 +55,17 @@ TEST(SyntheticSet, BonesTakeTheirTissueAndNothingIsStretchedAtRest) {
 }
 
 /// The published test of robustness: the same movement in ten steps, at a small and a wide opening.
-TEST(SyntheticSet, TenSmallMovesEqualOneWholeMove) {
+TEST(SyntheticSet, TenSmallMovesEqualOneLargeMove) {
   const SyntheticSet set = make_synthetic_set(table1_size());
-  const HessianFactor factor(set.net, synthetic_loads(set, Pose{}), set.sheets, set.rest);
+  const HessianFactor factor(set.mesh, synthetic_loads(set, Pose{}), set.sheets, set.rest);
   MinimizeSettings settings;
   settings.tolerance_mm = 1e-6;
   for (double opening : {0.03, 0.5}) {
     Nodes open = set.rest;
     const auto solve = [&](const Vector3d& moved, Nodes& x) {
-      const NetLoads loads = synthetic_loads(set, synthetic_pose(opening, moved));
-      SpringPrismEnergy energy(set.net, loads, 1);
-      EXPECT_TRUE(minimize(Method::preconditioned, energy, settings, x, &factor).converged());
+      const MeshLoads loads = synthetic_loads(set, synthetic_pose(opening, moved));
+      SpringPrismEnergy energy(set.mesh, loads, 1);
+      EXPECT_TRUE(minimize(energy, factor, settings, x).converged());
     };
     solve(Vector3d::Zero(), open);
     Nodes once = open, stepwise = open;

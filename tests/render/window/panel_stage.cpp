@@ -1,4 +1,4 @@
-#include "panel_stage.h"
+#include "tests/render/window/panel_stage.h"
 
 #include <backends/imgui_impl_opengl3.h>
 #include <gtest/gtest.h>
@@ -16,6 +16,7 @@ Part box_part(const std::string& name, Role role, const Vector3d& low, const Vec
   Part part;
   part.name = name;
   part.role = role;
+  part.body = default_body(role);
   for (int corner = 0; corner < 8; ++corner)
     part.mesh.vertices.emplace_back(corner & 1 ? high.x() : low.x(),
                                     corner & 2 ? high.y() : low.y(),
@@ -38,15 +39,16 @@ FrameState box_frame(double time_s, double opening_mm) {
   FrameState frame;
   frame.time_s = time_s;
   const double angle = opening_mm / 90;
-  frame.X_CM.R = Eigen::AngleAxisd(angle, Vector3d::UnitX());
+  frame.poses[mandible_body].R = Eigen::AngleAxisd(angle, Vector3d::UnitX());
   const Vector3d hinge(0, 10, -10);
-  frame.X_CM.t = hinge - frame.X_CM.R * hinge + Vector3d(0, -0.2, -0.1) * opening_mm;
-  frame.X_CM_wanted = frame.X_CM;
+  frame.poses[mandible_body].t =
+      hinge - frame.poses[mandible_body].R * hinge + Vector3d(0, -0.2, -0.1) * opening_mm;
+  frame.X_PB_target = frame.poses.X_CB;
   frame.measures.opening_mm = opening_mm;
   frame.measures.interincisal_mm = opening_mm + 1.5;
   frame.measures.rotation_deg = angle * 180 / std::numbers::pi;
-  frame.measures.left_condyle = frame.X_CM * Vector3d(50, 10, -10);
-  frame.measures.right_condyle = frame.X_CM * Vector3d(-50, 10, -10);
+  frame.measures.left_condyle = frame.poses[mandible_body] * Vector3d(50, 10, -10);
+  frame.measures.right_condyle = frame.poses[mandible_body] * Vector3d(-50, 10, -10);
   const auto pair = [](int a, int b, double distance, double depth, double rest) {
     PairContact contact;
     contact.part_a = a;

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "render/framebuffer.h"
-#include "render/gl_context.h"
-#include "render/image.h"
-#include "render/window/panels.h"
+#include "render/gl/framebuffer.h"
+#include "render/gl/gl_context.h"
+#include "render/image/image.h"
+#include "render/window/panels/panels.h"
 #include "tests/support/picture.h"
 
 namespace condyle {

@@ -11,12 +11,14 @@
 #include <cstdlib>
 #include <functional>
 #include <mutex>
+#include <numbers>
 #include <thread>
 
 #include "engine/core/error.h"
-#include "panel_stage.h"
-#include "render/window/handles.h"
+#include "render/window/input/gizmos.h"
+#include "tests/render/window/panel_stage.h"
 #include "tests/support/display.h"
+#include "tests/support/window_hints.h"
 
 namespace condyle {
 namespace {
@@ -61,7 +63,7 @@ class RealWindow : public testing::Test {
                       .duration_s = 4,
                       .max_opening_mm = 50,
                       .distance_colours = distance_colours(),
-                      .bodies = movable_bodies(parts_),
+                      .bodies = movable_bodies(parts_, native_bodies()),
                       .motions = motions_,
                       .motion = {.spec = "opening", .parameters = {}, .excitations = {}}});
     // The lower teeth are told their height as a distance.
@@ -81,10 +83,10 @@ class RealWindow : public testing::Test {
     while (window.open() && !done && Clock::now() - start < std::chrono::seconds(60)) {
       const ViewState request = window.poll();
       const double opening =
-          request.opening_mm.value_or(20 - 20 * std::cos(request.time_s * M_PI / 2));
+          request.opening_mm.value_or(20 - 20 * std::cos(request.time_s * std::numbers::pi / 2));
       FrameState frame = box_frame(request.time_s, opening);
-      if (const auto& hand = request.hands.mandible) {
-        frame.X_CM = *hand;
+      if (const auto hand = request.hands.at(mandible_body)) {
+        frame.poses[mandible_body] = *hand;
         frame.state_hash += static_cast<std::uint64_t>(1e6 * (200 + hand->t.sum()));
       }
       window.show(frame, {.steps_per_second = 60},
@@ -128,7 +130,7 @@ class RealWindow : public testing::Test {
   /// Where the hand wants the jaw, once every event of a drag has arrived.
   Eigen::Vector3d settled_jaw() {
     const auto jaw = [&] {
-      const auto hand = seen().view.hands.mandible;
+      const auto hand = seen().view.hands.at(mandible_body);
       return hand ? hand->t : Eigen::Vector3d::Zero().eval();
     };
     Eigen::Vector3d last = jaw();
@@ -280,8 +282,9 @@ TEST_F(RealWindow, HandsMoveTheJawByHandlesByItselfAndByNumbers) {
     // The upward arrow takes it down, and only that.
     const ViewRect tip = place("handle:S");
     drag(tip.x + 3, tip.y + 3, tip.x + 3, tip.y + 43, "1");
-    ASSERT_TRUE(wait_until(
-        [](const Seen& s) { return s.view.hands.mandible && s.view.hands.mandible->t.z() < -5; }));
+    ASSERT_TRUE(wait_until([](const Seen& s) {
+      return s.view.hands.at(mandible_body) && s.view.hands.at(mandible_body)->t.z() < -5;
+    }));
     const Eigen::Vector3d down = settled_jaw();
     EXPECT_EQ(down.head<2>().norm(), 0);
     EXPECT_EQ(moved_mm(settled_camera(), before), 0) << "the camera stays";
@@ -289,22 +292,25 @@ TEST_F(RealWindow, HandsMoveTheJawByHandlesByItselfAndByNumbers) {
     const ViewRect rest = place("handle:S");
     const double x = rest.x + 3 + 85, y = rest.y + 3 + 78 + 12;  // beside the rings
     drag(x, y, x + 30, y, "1");
-    EXPECT_TRUE(wait_until(
-        [](const Seen& s) { return s.view.hands.mandible && s.view.hands.mandible->t.x() > 3; }));
+    EXPECT_TRUE(wait_until([](const Seen& s) {
+      return s.view.hands.at(mandible_body) && s.view.hands.at(mandible_body)->t.x() > 3;
+    }));
     EXPECT_NEAR(settled_jaw().z(), down.z(), 1e-6);
     EXPECT_TRUE(press("ctrl+z"));
-    EXPECT_TRUE(wait_until(
-        [&](const Seen& s) { return s.view.hands.mandible && s.view.hands.mandible->t == down; }));
+    EXPECT_TRUE(wait_until([&](const Seen& s) {
+      return s.view.hands.at(mandible_body) && s.view.hands.at(mandible_body)->t == down;
+    }));
     EXPECT_TRUE(press("ctrl+z"));
-    EXPECT_TRUE(wait_until([](const Seen& s) { return !s.view.hands.mandible; }));
+    EXPECT_TRUE(wait_until([](const Seen& s) { return !s.view.hands.at(mandible_body); }));
     // Digits and letters in a field are no shortcuts.
     click("shift:L");
     std::this_thread::sleep_for(milliseconds(200));
     EXPECT_TRUE(xdotool({"type", "3.5"}));
     EXPECT_TRUE(press("Return"));
     EXPECT_TRUE(wait_until([](const Seen& s) {
-      return s.view.hands.mandible && std::abs(s.view.hands.mandible->t.x() - 3.5) < 1e-9;
-    })) << (seen().view.hands.mandible ? seen().view.hands.mandible->t.x() : -1);
+      return s.view.hands.at(mandible_body) &&
+             std::abs(s.view.hands.at(mandible_body)->t.x() - 3.5) < 1e-9;
+    })) << seen().view.hands.at(mandible_body).value_or(Pose{}).t.x();
     EXPECT_EQ(moved_mm(settled_camera(), before), 0);
     EXPECT_LT(turned_rad(settled_camera(), before), 1e-9);
   });
@@ -513,6 +519,7 @@ TEST_F(RealWindow, KeysDoNothingBehindABoxButCloseIt) {
       ASSERT_TRUE(wait_until(has("error")));
       for (const char* key : {"l", "a", "n", "k", "d", "m", "g", "space", "F1", "ctrl+z", "Tab"})
         EXPECT_TRUE(press(key));
+      EXPECT_TRUE(wait_until(has("key-hint"))) << "the box says why keys do nothing";
       EXPECT_TRUE(press(closing));
       EXPECT_TRUE(wait_until([&](const Seen& s) { return !has("error")(s); })) << closing;
       const Seen now = seen();
@@ -522,7 +529,7 @@ TEST_F(RealWindow, KeysDoNothingBehindABoxButCloseIt) {
       EXPECT_FALSE(has("help")(now));
       EXPECT_EQ(turned_rad(settled_camera(), before), 0);
     }
-    EXPECT_TRUE(press("n"));
+    EXPECT_TRUE(press("shift+m"));  // as key N
     EXPECT_TRUE(wait_until([](const Seen& s) { return s.view.tool == Tool::measure; }));
     EXPECT_TRUE(press("F1"));
     ASSERT_TRUE(wait_until(has("help")));
@@ -615,6 +622,29 @@ TEST_F(RealWindow, SurvivesAnySize) {
   });
 }
 
+TEST_F(RealWindow, AsksForTheLeastSizeThatItsPanelsNeed) {
+  run([&] { EXPECT_EQ(min_window_size("Condyle test"), std::pair(800, 500)); });
+}
+
+TEST_F(RealWindow, PanelsGrowWhenTheWindowIsResizedTo4K) {
+  display_.reset();
+  display_ = std::make_unique<TestDisplay>(3840, 2160);
+  ASSERT_TRUE(display_->running());
+  run([&] {
+    const double before = place("left").width;
+    EXPECT_TRUE(
+        xdotool({"search", "--name", "Condyle test", "windowsize", "--sync", "3840", "2160"}));
+    EXPECT_TRUE(wait_until(
+        [&](const Seen& s) {
+          return std::any_of(s.items.begin(), s.items.end(), [&](const DrawnItem& item) {
+            return item.name == "left" && std::abs(item.rect.width - 1.5 * before) < 1.5;
+          });
+        },
+        30))
+        << before << " " << place("left").width;
+  });
+}
+
 TEST_F(RealWindow, AScaledInterfaceStillFits) {
   options_.arrangement.ui_scale = 1.4;
   options_.arrangement.width = 1000;
@@ -641,21 +671,21 @@ TEST_F(RealWindow, CtrlKeysAndButtonsScaleThePanels) {
     });
   };
   run([&] {
-    const double usual = wide();
+    const double standard = wide();
     EXPECT_TRUE(press("ctrl+minus"));
-    EXPECT_TRUE(becomes(0.9 * usual)) << wide();
+    EXPECT_TRUE(becomes(0.9 * standard)) << wide();
     EXPECT_TRUE(press("ctrl+minus"));
-    EXPECT_TRUE(becomes(0.8 * usual)) << wide();
+    EXPECT_TRUE(becomes(0.8 * standard)) << wide();
     EXPECT_TRUE(press("ctrl+equal"));
-    EXPECT_TRUE(becomes(0.9 * usual)) << wide();
+    EXPECT_TRUE(becomes(0.9 * standard)) << wide();
     EXPECT_TRUE(press("ctrl+0"));
-    EXPECT_TRUE(becomes(usual)) << wide();
+    EXPECT_TRUE(becomes(standard)) << wide();
     // What does not fit leaves all as it is, and one step down is seen at once.
     for (int i = 0; i < 4; ++i) EXPECT_TRUE(press("ctrl+equal"));
     std::this_thread::sleep_for(milliseconds(300));
-    EXPECT_TRUE(becomes(usual)) << wide();
+    EXPECT_TRUE(becomes(standard)) << wide();
     EXPECT_TRUE(press("ctrl+minus"));
-    EXPECT_TRUE(becomes(0.9 * usual)) << wide();
+    EXPECT_TRUE(becomes(0.9 * standard)) << wide();
   });
 }
 
@@ -666,7 +696,7 @@ TEST_F(RealWindow, ASecondWindowOpensAfterTheFirst) {
   }
 }
 
-TEST(NoDisplay, IsASentenceThatNamesTheWayWithout) {
+TEST(NoDisplay, IsReportedWithAnAlternative) {
   unsetenv("WAYLAND_DISPLAY");
   for (const char* display : {"", ":9321"}) {
     setenv("DISPLAY", display, 1);

@@ -11,6 +11,7 @@
 #include "sim/case/case_io.h"
 #include "sim/case/pair_rules.h"
 #include "tests/engine/mesh_io/samples.h"
+#include "tests/support/places.h"
 
 namespace condyle {
 namespace {
@@ -32,8 +33,7 @@ Case sample() {
   patient.landmarks.points = {{"left_condyle", {1.0 / 3, 1e-300, -0.0}},
                               {"my_point", {5e8, 2.5, 0.1}}};
   patient.condylar_path = CondylarPath{{-1.0, 0.1, 12}, {0, 0.3, 1.0 / 7}};
-  patient.source_units = "m";
-  patient.source_frame = "LSA";
+  patient.source = source_frame("m", "LSA");
   patient.notes = {"one", "two \"quoted\"\nlines"};
   return patient;
 }
@@ -55,14 +55,14 @@ void expect_words(const std::string& message, const std::vector<const char*>& wo
     EXPECT_NE(message.find(word), std::string::npos) << message << "\n  lacks " << word;
 }
 
-TEST(CaseFiles, LoadingGivesTheBitsThatWereSaved) {
+TEST(CaseFiles, LoadingIsBitIdenticalToSaving) {
   const TempFolder folder;
   const Case saved = sample();
   save_case(saved, folder.path() / "a" / "case");
   const Case loaded = load_case(folder.path() / "a" / "case");
   EXPECT_EQ(loaded.name, saved.name);
-  EXPECT_EQ(loaded.source_units, "m");
-  EXPECT_EQ(loaded.source_frame, "LSA");
+  EXPECT_EQ(loaded.source.units, "m");
+  EXPECT_EQ(loaded.source.axes, "LSA");
   EXPECT_EQ(loaded.notes, saved.notes);
   ASSERT_EQ(loaded.parts.size(), saved.parts.size());
   for (std::size_t i = 0; i < saved.parts.size(); ++i) {
@@ -78,32 +78,34 @@ TEST(CaseFiles, LoadingGivesTheBitsThatWereSaved) {
     EXPECT_EQ(std::memcmp(loaded.landmarks.find(name)->data(), p.data(), sizeof(p)), 0) << name;
   ASSERT_TRUE(loaded.condylar_path);
   EXPECT_EQ(loaded.condylar_path->forward_mm, saved.condylar_path->forward_mm);
-  EXPECT_EQ(loaded.condylar_path->drop_mm, saved.condylar_path->drop_mm);
+  EXPECT_EQ(loaded.condylar_path->inferior_mm, saved.condylar_path->inferior_mm);
   EXPECT_EQ(load_case(folder.path() / "a" / "case" / "case.json").name, saved.name);
 }
 
 /// The sample with two free parts and rules.
 Case sample_with_free_parts() {
   Case patient = sample();
-  patient.parts.push_back({"segment", Role::segment, test::sphere(1, 5), {}, Body::cranium});
-  patient.parts.push_back(
-      {"transplant", Role::transplant, test::sphere(1, 5, {20, 0, 0}), {}, Body::mandible});
+  patient.add_piece({"segment", Role::segment, test::sphere(1, 5), {}}, cranium_body);
+  patient.add_piece({"transplant", Role::transplant, test::sphere(1, 5, {20, 0, 0}), {}},
+                    mandible_body);
   patient.pair_rules = {{"mandible", "segment", PairPolicy::guided, std::nullopt, 0.1},
                         {"*", "transplant", PairPolicy::cut_face, {}, 0},
                         {"lower-teeth", "transplant", PairPolicy::forbidden, 1.0 / 3, 0}};
   return patient;
 }
 
-TEST(CaseFiles, FreePartsAndRulesComeBackAsTheyWere) {
+TEST(CaseFiles, FreePartsAndRulesRoundTrip) {
   const TempFolder folder;
   const Case saved = sample_with_free_parts();
   save_case(saved, folder.path() / "case");
   const Case loaded = load_case(folder.path() / "case");
   ASSERT_EQ(loaded.parts.size(), 4u);
   EXPECT_EQ(loaded.parts[2].role, Role::segment);
-  EXPECT_EQ(loaded.parts[2].carrier, Body::cranium);
+  EXPECT_EQ(loaded.bodies[loaded.parts[2].body].parent, cranium_body);
   EXPECT_EQ(loaded.parts[3].role, Role::transplant);
-  EXPECT_EQ(loaded.parts[3].carrier, Body::mandible);
+  EXPECT_EQ(loaded.bodies[loaded.parts[3].body].parent, mandible_body);
+  EXPECT_EQ(loaded.bodies, saved.bodies);
+  EXPECT_EQ(loaded.jaw, saved.jaw);
   ASSERT_EQ(loaded.pair_rules.size(), 3u);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(loaded.pair_rules[i].a, saved.pair_rules[i].a);
@@ -120,6 +122,35 @@ TEST(CaseFiles, FreePartsAndRulesComeBackAsTheyWere) {
   EXPECT_THROW(save_case(broken, folder.path() / "broken"), InputError);
 }
 
+/// case.json as written by programs up to 0.1.7.
+void write_as_version_1(const std::filesystem::path& folder, const Case& patient) {
+  const auto file = folder / "case.json";
+  json root = json::parse(read_file(file));
+  root["version"] = 1;
+  root.erase("bodies");
+  root.erase("jaw");
+  for (std::size_t i = 0; i < patient.parts.size(); ++i) {
+    root["parts"][i].erase("body");
+    if (!is_piece(patient.parts[i].role)) continue;
+    const BodyId parent = patient.bodies[patient.parts[i].body].parent;
+    root["parts"][i]["carrier"] = patient.bodies[parent].name;
+  }
+  write_file(file, root.dump());
+}
+
+TEST(CaseFiles, AFolderOfTheFirstFormatOpensWithTheSameBodies) {
+  const TempFolder folder;
+  const Case saved = sample_with_free_parts();
+  save_case(saved, folder.path() / "case");
+  write_as_version_1(folder.path() / "case", saved);
+  const Case loaded = load_case(folder.path() / "case");
+  EXPECT_EQ(loaded.bodies, saved.bodies);
+  EXPECT_EQ(loaded.jaw, saved.jaw);
+  ASSERT_EQ(loaded.parts.size(), saved.parts.size());
+  for (std::size_t i = 0; i < saved.parts.size(); ++i)
+    EXPECT_EQ(loaded.parts[i].body, saved.parts[i].body) << i;
+}
+
 TEST(CaseFiles, TheLastRuleThatFitsCounts) {
   Case patient = sample_with_free_parts();
   const auto policy = [&](int a, int b, const std::vector<PairRule>& more = {}) {
@@ -128,13 +159,13 @@ TEST(CaseFiles, TheLastRuleThatFitsCounts) {
   EXPECT_EQ(policy(0, 2), PairPolicy::guided);
   EXPECT_EQ(policy(2, 0), PairPolicy::guided);  // in either order
   EXPECT_EQ(policy(0, 3), PairPolicy::cut_face);
-  EXPECT_EQ(policy(1, 2), PairPolicy::forbidden);  // the usual one
+  EXPECT_EQ(policy(1, 2), PairPolicy::forbidden);  // the default
   EXPECT_EQ(policy(0, 2, {{"segment", "*", PairPolicy::allowed, {}, 0}}), PairPolicy::allowed);
   patient.pair_rules.clear();
   EXPECT_EQ(policy(1, 3), PairPolicy::cut_face);  // the mandible's teeth carry the transplant
 }
 
-TEST(CaseFiles, EveryRoleHasANameOfItsOwn) {
+TEST(CaseFiles, EveryRoleHasItsOwnName) {
   for (const Role role : {Role::skull, Role::maxilla, Role::mandible, Role::upper_teeth,
                           Role::lower_teeth, Role::face, Role::eyes, Role::upper_gums,
                           Role::lower_gums, Role::tongue, Role::segment, Role::transplant})
@@ -143,7 +174,7 @@ TEST(CaseFiles, EveryRoleHasANameOfItsOwn) {
   EXPECT_NE(known_roles().find("upper-teeth"), std::string::npos);
 }
 
-TEST(CaseFiles, SavingAgainReplacesTheWholeCaseAndLeavesNothingBeside) {
+TEST(CaseFiles, SavingAgainReplacesTheWholeCaseAndLeavesNoOtherFiles) {
   const TempFolder folder;
   const fs::path home = folder.path() / "case";
   Case patient = sample();
@@ -177,7 +208,7 @@ TEST(CaseFiles, AFailedSaveLeavesTheEarlierCaseWhole) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
-TEST(CaseFiles, FoldersOfOtherThingsAreNeverReplaced) {
+TEST(CaseFiles, OtherFoldersAreNeverReplaced) {
   const TempFolder folder;
   fs::create_directory(folder.path() / "photos");
   folder.write("photos/cat.jpg", "cat");
@@ -226,7 +257,7 @@ TEST_F(BadCase, FilesOutsideTheFolderAreRefused) {
 }
 
 TEST_F(BadCase, EveryWrongValueIsNamed) {
-  expect([](json& root) { root["version"] = 99; }, {"version", "99", "newer program"});
+  expect([](json& root) { root["version"] = 99; }, {"version", "99", "newer version"});
   expect([](json& root) { root["version"] = "one"; }, {"version", "\"one\"", "whole number"});
   expect([](json& root) { root.erase("name"); }, {"\"name\" is missing"});
   expect([](json& root) { root["name"] = 7; }, {"name", "7", "text"});
@@ -258,12 +289,30 @@ TEST_F(BadCase, EveryWrongValueIsNamed) {
   expect([](json& root) { root["notes"] = "x"; }, {"notes", "list"});
 }
 
-TEST_F(BadCase, WrongCarriersAndRulesAreNamed) {
-  save_case(sample_with_free_parts(), home_);
+TEST_F(BadCase, WrongCarriersOfTheFirstFormatAreNamed) {
+  const Case saved = sample_with_free_parts();
+  save_case(saved, home_);
+  write_as_version_1(home_, saved);
   expect([](json& root) { root["parts"][2]["carrier"] = "tibia"; },
          {"parts[2].carrier", "\"tibia\"", "cranium or mandible"});
   expect([](json& root) { root["parts"][0]["carrier"] = "cranium"; },
          {"parts[0].carrier", "only a segment or transplant"});
+}
+
+TEST_F(BadCase, WrongCarriersAndRulesAreNamed) {
+  save_case(sample_with_free_parts(), home_);
+  expect([](json& root) { root["parts"][2]["body"] = "tibia"; },
+         {"parts[2].body", "the body \"tibia\" does not exist"});
+  expect([](json& root) { root["bodies"][2]["parent"] = "transplant"; },
+         {"bodies[2].parent", "the body \"transplant\" does not exist"});
+  expect([](json& root) { root["bodies"][2]["name"] = "mandible"; },
+         {"bodies[2].name", "\"mandible\""});
+  expect([](json& root) { root["bodies"][0]["name"] = "world"; },
+         {"bodies", "the first body must be the cranium"});
+  expect([](json& root) { root["bodies"][2]["driver"] = "wind"; },
+         {"bodies[2].driver", "\"wind\"", "fixed, motion, plan, hand or dynamics"});
+  expect([](json& root) { root["jaw"]["lower_arch"] = "tibia"; }, {"jaw.lower_arch", "\"tibia\""});
+  expect([](json& root) { root.erase("bodies"); }, {"\"bodies\" is missing"});
   expect([](json& root) { root["contact_pairs"] = 3; }, {"contact_pairs", "list"});
   expect([](json& root) { root["contact_pairs"][0]["a"] = "mandibel"; },
          {"contact_pairs[0].a", "\"mandibel\"", "mandible, lower-teeth, segment, transplant"});
@@ -276,7 +325,7 @@ TEST_F(BadCase, WrongCarriersAndRulesAreNamed) {
          {"contact_pairs[0].gap_mm", "\"wide\"", "number"});
 }
 
-TEST_F(BadCase, WhatIsNoCaseSaysHowToMakeOne) {
+TEST_F(BadCase, AFolderWithoutACaseIsRefusedWithAdvice) {
   folder_.write("case/case.json", R"({"id":"case-ubc","roles":{"mandible":"mandible.ply"}})");
   expect_words(refusal(home_), {"case.json", "not a Condyle case", "condyle import meshes"});
   folder_.write("case/case.json", "[1,2,3]");
@@ -303,8 +352,8 @@ TEST_F(BadCase, DamagedPartsAndLandmarksAreNamed) {
   expect_words(refusal(folder_.path() / "other"), {"landmarks.csv", "line 3", "nan"});
 }
 
-TEST(CaseFiles, SharedDataOfAnotherKindIsNoCase) {
-  const auto folder = fs::path(CONDYLE_SOURCE_DIR) / "../shared/data/case-ubc";
+TEST(CaseFiles, OtherSharedDataIsNoCase) {
+  const auto folder = test::source_folder() / "../shared/data/case-ubc";
   if (!fs::exists(folder)) GTEST_SKIP() << "real anatomy absent";
   expect_words(refusal(folder), {"not a Condyle case", "condyle import meshes"});
 }

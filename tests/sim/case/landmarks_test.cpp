@@ -59,7 +59,7 @@ TEST(LandmarkNames, OtherNamesStayTheirOwn) {
   EXPECT_EQ(canonical_landmark("hyoidRef"), "hyoid_ref");
   EXPECT_EQ(canonical_landmark("  My  Point #2 "), "my_point_2");
   EXPECT_EQ(canonical_landmark("-- '"), "");
-  // A canonical name stays what it is.
+  // A canonical name is unchanged.
   for (const char* name : {"left_condyle", "stomion", "hyoid_ref", "soft_pogonion", "my_point_2"})
     EXPECT_EQ(canonical_landmark(name), name);
 }
@@ -119,7 +119,7 @@ TEST(Landmarks, BadFilesAreRefusedWithTheirLine) {
             {"line 4", "left_condyle", "line 2"}},
            {"h.csv", head + "\"sto,1,2,3\n", {"line 2", "quote"}},
            {"i.csv", head + "--,1,2,3\n", {"line 2", "no letter"}},
-           {"j.csv", head, {"holds no landmarks"}},
+           {"j.csv", head, {"contains no landmarks"}},
            {"k.csv", "", {"no header"}},
            {"l.csv", head + "sto,1 mm,2,3\n", {"line 2", "\"1 mm\""}},
            {"m.csv", "name,x_mm,x_mm,y_mm,z_mm\n", {"twice"}},
@@ -146,20 +146,20 @@ TEST(SourceFrame, AllFortyEightFramesAreSignedAxisOrders) {
   int mirrored = 0;
   for (const auto& frame : all_frames()) {
     const SourceFrame found = source_frame("mm", frame);
-    mirrored += found.mirrored;
-    EXPECT_EQ((found.to_lps_mm * found.to_lps_mm.transpose()), Eigen::Matrix3d::Identity())
+    mirrored += found.mirrored();
+    EXPECT_EQ((found.to_lps_mm() * found.to_lps_mm().transpose()), Eigen::Matrix3d::Identity())
         << frame;
     // The file's first axis points where the first letter says.
     const std::string letters = "LRPASI";
     const auto at = letters.find(frame[0]);
-    EXPECT_EQ(found.to_lps_mm.col(0)[static_cast<int>(at / 2)], at % 2 ? -1 : 1) << frame;
+    EXPECT_EQ(found.to_lps_mm().col(0)[static_cast<int>(at / 2)], at % 2 ? -1 : 1) << frame;
   }
   EXPECT_EQ(mirrored, 24);
-  EXPECT_EQ(source_frame("cm", "ras").to_lps_mm * Eigen::Vector3d(1, 2, 3),
+  EXPECT_EQ(source_frame("cm", "ras").to_lps_mm() * Eigen::Vector3d(1, 2, 3),
             Eigen::Vector3d(-10, -20, 30));
-  EXPECT_EQ(source_frame("m", "LSA").to_lps_mm * Eigen::Vector3d(1, 2, 3),
+  EXPECT_EQ(source_frame("m", "LSA").to_lps_mm() * Eigen::Vector3d(1, 2, 3),
             Eigen::Vector3d(1000, -3000, 2000));
-  EXPECT_EQ(source_frame("in", "LPS").to_lps_mm(2, 2), 25.4);
+  EXPECT_EQ(source_frame("in", "LPS").to_lps_mm()(2, 2), 25.4);
   for (const char* bad : {"", "LP", "LPSX", "LRS", "XYZ", "LLS"})
     EXPECT_THROW(source_frame("mm", bad), InputError) << bad;
   EXPECT_THROW(source_frame("km", "LPS"), InputError);

@@ -73,7 +73,7 @@ TEST_F(MuscleFiles, ATableReadsBackAsWritten) {
   EXPECT_EQ(again[0].tendon_ratio, 0.5);
 }
 
-TEST_F(MuscleFiles, LengthsThatAreNotToldFollowFromThePoints) {
+TEST_F(MuscleFiles, MissingLengthsFollowFromThePoints) {
   std::vector<std::string> notes;
   const auto muscles = read_muscles(write("m.csv", header + good + "\n"), notes);
   const double rest = (muscles[0].origin - muscles[0].insertion).norm();
@@ -82,7 +82,7 @@ TEST_F(MuscleFiles, LengthsThatAreNotToldFollowFromThePoints) {
   EXPECT_EQ(muscles[0].kind, "lat");
 }
 
-TEST_F(MuscleFiles, WhatIsWrongIsRefusedWithItsPlace) {
+TEST_F(MuscleFiles, ErrorsAreRefusedWithTheirLocation) {
   expect_table_refused("", {"empty"});
   expect_table_refused(header + "\n", {"no muscle"});
   expect_table_refused("name,origin_body" + good, {"line 1", "insertion_body"});
@@ -109,12 +109,12 @@ TEST_F(MuscleFiles, MechanicsReadBackAsWrittenAndAreChecked) {
   EXPECT_EQ(first.mandible.drag_kg_s, 60);
   EXPECT_EQ(first.mandible.inertia(1, 2), 10);
   EXPECT_EQ(first.guide->forward_mm[2], 12);
-  EXPECT_EQ(first.guide->drop_mm[1], 1.9);
+  EXPECT_EQ(first.guide->inferior_mm[1], 1.9);
   EXPECT_FALSE(first.hyoid);
   const JawMechanics again = read_mechanics(write("k.json", mechanics_json(first)));
   EXPECT_EQ(again.mandible.center, first.mandible.center);
   EXPECT_EQ(again.mandible.inertia, first.mandible.inertia);
-  EXPECT_EQ(again.guide->drop_mm, first.guide->drop_mm);
+  EXPECT_EQ(again.guide->inferior_mm, first.guide->inferior_mm);
 
   const auto refused = [&](const std::string& from, const std::string& to,
                            std::vector<std::string> words) {

@@ -13,6 +13,7 @@ namespace {
 
 using test::shift;
 using test::two_bones;
+using test::target_poses;
 
 /// A plate as thin as the walls of real maxillae.
 TriMesh thin_plate() { return test::box({-40, -40, 30}, {40, 40, 30.3}); }
@@ -46,6 +47,33 @@ TEST(ContactModel, JawsThatOverlapDeeplyAreNamedAsOfTwoPatients) {
   EXPECT_NE(note(6.5).find("of the same patient"), std::string::npos) << note(6.5);
   EXPECT_NE(note(1).find("overlap by 1.00 mm at rest"), std::string::npos) << note(1);
   EXPECT_EQ(note(1).find("of the same patient"), std::string::npos) << note(1);
+}
+
+TEST(ContactModel, MixedUpJawsStopWhereTheyMeetInsteadOfSearching) {
+  const ContactModel model(
+      two_bones(test::box({0, 0, 0}, {30, 30, 30}), test::box({0, 0, -23.5}, {30, 30, 6.5})));
+  const Pose aside = shift(3, 0, 10);
+  const auto slide = model.slide({}, target_poses(aside), &model.at_rest());
+  const auto stop = model.stop_at_contact({}, aside, &model.at_rest());
+  EXPECT_TRUE(slide.stopped);
+  EXPECT_EQ(slide.at[mandible_body].t, stop.at[mandible_body].t);
+  EXPECT_FALSE(model.slide({}, target_poses(shift(0, 0, -10)), &model.at_rest()).stopped);
+}
+
+TEST(ContactModel, WitnessesOfTouchingSurfacesAreTheDeepestPoint) {
+  // A ball that sinks 2 mm into the flat lower side of a box: the rim is 6.6 mm from its top.
+  const ContactModel model(
+      two_bones(test::box({-30, -30, 0}, {30, 30, 30}), test::sphere(5, 12, {3, -4, -13})));
+  const PairContact apart = model.at_rest().pairs[0];
+  EXPECT_NEAR((apart.witness_a - Eigen::Vector3d(3, -4, 0)).norm(), 0, 0.1);
+  EXPECT_NEAR((apart.witness_b - Eigen::Vector3d(3, -4, -1)).norm(), 0, 0.1);
+  const PairContact touching = model.find(shift(0, 0, 3), nullptr).pairs[0];
+  EXPECT_NEAR(touching.depth_mm, 2, 0.01);
+  // The ball's top is as deep in the box as the face below it is in the ball.
+  EXPECT_LT((touching.witness_a - Eigen::Vector3d(3, -4, 0)).head<2>().norm(), 0.3);
+  EXPECT_GE(touching.witness_a.z(), -1e-6);
+  EXPECT_LE(touching.witness_a.z(), 2 + 1e-6);
+  EXPECT_EQ(touching.witness_a, touching.witness_b);
 }
 
 TEST(ContactModel, PairsEveryCraniumPartWithEveryMandiblePart) {
@@ -93,7 +121,7 @@ TEST(ContactModel, ABoneWhollyInsideAnotherTouchesIt) {
   EXPECT_EQ(pair.contacts.size(), 1u);
 }
 
-TEST(ContactModel, AFreeWayIsTakenWhole) {
+TEST(ContactModel, AFreePathIsCompleted) {
   const ContactModel model(two_bones(test::sphere(3, 20), test::sphere(3, 10, {0, 0, -40})));
   std::mt19937_64 random(1);
   int taken = 0;
@@ -104,9 +132,9 @@ TEST(ContactModel, AFreeWayIsTakenWhole) {
     wanted.R = Eigen::Quaterniond::Identity().slerp(0.05, wanted.R);
     const auto stop = model.stop_at_contact(from, wanted, &last);
     EXPECT_FALSE(stop.stopped);
-    EXPECT_EQ(stop.X_CM.t, wanted.t);
-    EXPECT_EQ(stop.X_CM.R.coeffs(), wanted.R.coeffs());
-    from = stop.X_CM;
+    EXPECT_EQ(stop.at[mandible_body].t, wanted.t);
+    EXPECT_EQ(stop.at[mandible_body].R.coeffs(), wanted.R.coeffs());
+    from = stop.at[mandible_body];
     last = stop.contacts;
     ++taken;
   }
@@ -128,9 +156,9 @@ TEST(ContactModel, BodiesMovedTogetherStopAtTheSurface) {
     EXPECT_FALSE(stop.contacts.pairs[0].touching);
     EXPECT_GT(stop.contacts.min_clearance_mm(), 0);
     EXPECT_LE(stop.contacts.min_clearance_mm(), 0.01);
-    // The pose lies on the way, and a little farther the bones touch: it is the first contact.
-    EXPECT_LT(rotation_angle(stop.X_CM), rotation_angle(wanted));
-    EXPECT_EQ(model.find(stop.X_CM, nullptr).pairs[0].distance_mm,
+    // The pose lies on the path, and slightly farther the bones touch: it is the first contact.
+    EXPECT_LT(rotation_angle(stop.at[mandible_body]), rotation_angle(wanted));
+    EXPECT_EQ(model.find(stop.at[mandible_body], nullptr).pairs[0].distance_mm,
               stop.contacts.pairs[0].distance_mm);
   }
   EXPECT_GT(stopped, 6);
@@ -141,7 +169,8 @@ TEST(ContactModel, AJumpDoesNotPassThroughAThinWall) {
   for (const double jump : {22.0, 45.0, 300.0}) {
     const auto stop = model.stop_at_contact({}, shift(0, 0, jump), nullptr);
     EXPECT_TRUE(stop.stopped);
-    EXPECT_NEAR(stop.X_CM.t.z(), 20, 0.02);  // the ball's top is a vertex or within 0.01 of one
+    EXPECT_NEAR(stop.at[mandible_body].t.z(), 20,
+                0.02);  // the ball's top is a vertex or within 0.01 of one
     EXPECT_GT(stop.contacts.min_clearance_mm(), 0);
     EXPECT_LE(stop.contacts.min_clearance_mm(), 0.01);
   }
@@ -166,16 +195,16 @@ TEST(ContactModel, AStoppedJawMayLeaveAndSlideAlong) {
       two_bones(test::box({-30, -30, 30}, {30, 30, 40}), test::box({-5, -5, 0}, {5, 5, 10})));
   const auto at_wall = model.stop_at_contact({}, shift(0, 0, 25), nullptr);
   ASSERT_TRUE(at_wall.stopped);
-  Pose along = at_wall.X_CM, away = at_wall.X_CM;
+  Pose along = at_wall.at[mandible_body], away = at_wall.at[mandible_body];
   along.t.x() += 3;
   away.t.z() -= 5;
-  EXPECT_FALSE(model.stop_at_contact(at_wall.X_CM, along, &at_wall.contacts).stopped);
-  EXPECT_FALSE(model.stop_at_contact(at_wall.X_CM, away, &at_wall.contacts).stopped);
-  Pose into = at_wall.X_CM;
+  EXPECT_FALSE(model.stop_at_contact(at_wall.at[mandible_body], along, &at_wall.contacts).stopped);
+  EXPECT_FALSE(model.stop_at_contact(at_wall.at[mandible_body], away, &at_wall.contacts).stopped);
+  Pose into = at_wall.at[mandible_body];
   into.t.z() += 1;
-  const auto again = model.stop_at_contact(at_wall.X_CM, into, &at_wall.contacts);
+  const auto again = model.stop_at_contact(at_wall.at[mandible_body], into, &at_wall.contacts);
   EXPECT_TRUE(again.stopped);
-  EXPECT_LE((again.X_CM.t - at_wall.X_CM.t).norm(), 0.01);
+  EXPECT_LE((again.at[mandible_body].t - at_wall.at[mandible_body].t).norm(), 0.01);
 }
 
 TEST(ContactModel, OverlapAtRestIsTheBaseline) {
@@ -187,7 +216,7 @@ TEST(ContactModel, OverlapAtRestIsTheBaseline) {
   EXPECT_EQ(model.at_rest().max_penetration_mm(), 0);
   ASSERT_EQ(model.notes().size(), 1u);
   EXPECT_NE(model.notes()[0].find("overlap by 1.2"), std::string::npos);
-  // Out and along it goes freely.
+  // Out and along it moves freely.
   EXPECT_FALSE(model.stop_at_contact({}, shift(0, 0, -20), &model.at_rest()).stopped);
   EXPECT_FALSE(model.stop_at_contact({}, shift(4, 0, -0.5), &model.at_rest()).stopped);
   // Deeper it does not, from rest or from elsewhere, slowly or in a jump.
@@ -215,7 +244,7 @@ TEST(ContactModel, OverlapInOnePlaceDoesNotExcuseContactInAnother) {
   EXPECT_NEAR(model.find(wanted, nullptr).max_penetration_mm(), 1.1, 0.3);
   const auto stop = model.stop_at_contact({}, wanted, &model.at_rest());
   EXPECT_TRUE(stop.stopped);
-  EXPECT_NEAR(rotation_angle(stop.X_CM), 0.5 / 40, 0.002);
+  EXPECT_NEAR(rotation_angle(stop.at[mandible_body]), 0.5 / 40, 0.002);
   EXPECT_LE(stop.contacts.max_penetration_mm(), 0.02);
 }
 
@@ -226,10 +255,10 @@ TEST(ContactModel, AStartThatIsTooDeepMayLeaveButGoesNoDeeper) {
   EXPECT_FALSE(out.stopped);
   const auto deeper = model.stop_at_contact(inside, shift(0, 0, 35), nullptr);
   EXPECT_TRUE(deeper.stopped);
-  EXPECT_NEAR(deeper.X_CM.t.z(), 25, 0.01);
+  EXPECT_NEAR(deeper.at[mandible_body].t.z(), 25, 0.01);
 }
 
-TEST(ContactModel, OpenShellsAreJudgedByTheirTrianglesAndSaidToBe) {
+TEST(ContactModel, OpenShellsAreMeasuredByTheirTrianglesAndReported) {
   TriMesh sheet;  // one layer, no inside
   sheet.vertices = {{-30, -30, 30}, {30, -30, 30}, {30, 30, 30}, {-30, 30, 30}};
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -239,7 +268,7 @@ TEST(ContactModel, OpenShellsAreJudgedByTheirTrianglesAndSaidToBe) {
   EXPECT_GT(model.find(shift(0, 0, 21), nullptr).pairs[0].depth_mm, 0);
   const auto stop = model.stop_at_contact({}, shift(0, 0, 45), nullptr);
   EXPECT_TRUE(stop.stopped);
-  EXPECT_NEAR(stop.X_CM.t.z(), 20, 0.02);
+  EXPECT_NEAR(stop.at[mandible_body].t.z(), 20, 0.02);
 }
 
 TEST(ContactModel, ATurnedSceneGivesTheTurnedAnswer) {
@@ -257,14 +286,14 @@ TEST(ContactModel, ATurnedSceneGivesTheTurnedAnswer) {
     EXPECT_TRUE(b.stopped);
     // The way turns with the scene, its halvings may round differently: equal within the stop's
     // gap.
-    const Pose a_turned = turn * a.X_CM * turn.inverse();
-    EXPECT_LT((a_turned.t - b.X_CM.t).norm(), 0.01);
+    const Pose a_turned = turn * a.at[mandible_body] * turn.inverse();
+    EXPECT_LT((a_turned.t - b.at[mandible_body].t).norm(), 0.01);
     EXPECT_NEAR(there.find(turn * wanted * turn.inverse(), nullptr).pairs[0].depth_mm,
                 here.find(wanted, nullptr).pairs[0].depth_mm, 1e-9);
   }
 }
 
-TEST(ContactModel, OneAndTwoThreadsGiveTheSameBits) {
+TEST(ContactModel, OneAndTwoThreadsAreBitIdentical) {
   Case patient =
       two_bones(test::sphere(4, 20, {0, 0, 0}, 0.05), test::sphere(4, 10, {0, 0, -29}, 0.05));
   patient.parts.push_back({"upper", Role::upper_teeth, test::sphere(3, 5, {8, 0, -21}), {}});
@@ -281,11 +310,11 @@ TEST(ContactModel, OneAndTwoThreadsGiveTheSameBits) {
     const auto one = model.stop_at_contact(from, wanted, &last, 1);
     const auto two = model.stop_at_contact(from, wanted, &last, 2);
     EXPECT_EQ(one.stopped, two.stopped);
-    EXPECT_EQ(one.X_CM.t, two.X_CM.t);
-    EXPECT_EQ(one.X_CM.R.coeffs(), two.X_CM.R.coeffs());
+    EXPECT_EQ(one.at[mandible_body].t, two.at[mandible_body].t);
+    EXPECT_EQ(one.at[mandible_body].R.coeffs(), two.at[mandible_body].R.coeffs());
     expect_same_bits(one.contacts, two.contacts);
     stopped += one.stopped;
-    from = one.X_CM;
+    from = one.at[mandible_body];
     last = one.contacts;
   }
   EXPECT_GT(stopped, 0);

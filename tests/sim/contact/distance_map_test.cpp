@@ -20,10 +20,10 @@ using test::sphere;
 /// The patient of boxes with a graft on the mandible and a piece beside it.
 Case patient_with_pieces() {
   Case patient = test::box_patient();
-  patient.parts.push_back({"graft", Role::transplant, box({-10, -80, -41}, {10, -60, -40.4}), {}});
-  patient.parts.back().carrier = Body::mandible;
-  patient.parts.push_back({"piece", Role::segment, box({35, -80, -30}, {45, -60, -20}), {}});
-  patient.parts.back().carrier = Body::cranium;
+  patient.add_piece({"graft", Role::transplant, box({-10, -80, -41}, {10, -60, -40.4}), {}},
+                    mandible_body);
+  patient.add_piece({"piece", Role::segment, box({35, -80, -30}, {45, -60, -20}), {}},
+                    cranium_body);
   return patient;
 }
 
@@ -43,8 +43,8 @@ std::vector<float> oracle(const Case& patient, const std::vector<std::string>& o
   for (std::size_t k = 0; k < patient.parts.size(); ++k) {
     if (std::find(others.begin(), others.end(), patient.parts[k].name) == others.end()) continue;
     const SignedSurface other(patient.parts[k].mesh);
-    const Pose X = pose_of(patient.parts, k, poses).inverse() *
-                   pose_of(patient.parts, static_cast<std::size_t>(surface.part), poses);
+    const Pose X = pose_of(patient.parts[k], poses).inverse() *
+                   pose_of(patient.parts[static_cast<std::size_t>(surface.part)], poses);
     for (std::size_t v = 0; v < least.size(); ++v)
       least[v] =
           std::min(least[v], static_cast<float>(other.distance(X * surface.mesh.vertices[v])));
@@ -54,7 +54,7 @@ std::vector<float> oracle(const Case& patient, const std::vector<std::string>& o
   return least;
 }
 
-/// gives: the number of vertices beyond the reach.
+/// Returns the number of vertices beyond the reach.
 int expect_equal(const std::vector<float>& found, const std::vector<float>& truth,
                  double reach_mm) {
   EXPECT_EQ(found.size(), truth.size());
@@ -75,16 +75,15 @@ int expect_equal(const std::vector<float>& found, const std::vector<float>& trut
   return beyond;
 }
 
-TEST(DistanceMap, IsTheExactDistanceToWhatAPartMayMeet) {
+TEST(DistanceMap, IsTheExactDistanceToPartsThatMayTouch) {
   const Case patient = patient_with_pieces();
   const DistanceMap map(patient, {.reach_mm = 3}, 2);
   ASSERT_EQ(map.surfaces().size(), 4u);
-  BodyPoses poses;
-  poses.X_CM.t = {0.5, 1, 1.5};  // half a millimetre into the maxilla
-  poses.X_CM.R = Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitX());
-  poses.X_CF.resize(2);
-  poses.X_CF[0] = poses.X_CM;
-  poses.X_CF[1].t = {-7, 0, 2};  // into the maxilla, that carries it
+  Pose X_CM, X_CP;
+  X_CM.t = {0.5, 1, 1.5};  // half a millimetre into the maxilla
+  X_CM.R = Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitX());
+  X_CP.t = {-7, 0, 2};  // into the maxilla, its parent
+  const BodyPoses poses({Pose{}, X_CM, X_CM, X_CP});
   const auto values = map.at(poses, 2);
   const std::vector<std::pair<std::string, std::vector<std::string>>> meets = {
       {"maxilla", {"mandible", "graft"}},
@@ -108,9 +107,7 @@ TEST(DistanceMap, ARuleBringsInAPairThatIsLeftOutAsCut) {
   const Case patient = patient_with_pieces();
   const DistanceMap map(patient,
                         {.pair_rules = {{"piece", "maxilla", PairPolicy::forbidden, {}, 0}}});
-  BodyPoses poses;
-  poses.X_CF.resize(2);
-  poses.X_CF[1].t = {-4, 0, 0};
+  const BodyPoses poses({Pose{}, Pose{}, Pose{}, {Eigen::Quaterniond::Identity(), {-4, 0, 0}}});
   std::size_t s = 0;
   surface_of(map, patient, "piece", s);
   const auto values = map.at(poses)[s];
@@ -136,13 +133,13 @@ TEST(DistanceMap, SurfacesAreThePartsWithSmallerTrianglesWhereTheyMayMeet) {
   }
 }
 
-TEST(DistanceMap, SameBitsForOneAndTwoThreadsAndWhateverCameBefore) {
+TEST(DistanceMap, IsBitIdenticalForOneAndTwoThreadsAndAnyPreviousMap) {
   const Case patient = patient_with_pieces();
   const DistanceMap map(patient);
   std::mt19937_64 random(3);
   std::vector<BodyPoses> poses(6);
-  for (auto& at : poses) at.X_CM = test::any_pose(random, 1.5);
-  for (auto& at : poses) at.X_CM.R = Eigen::Quaterniond::Identity().slerp(0.01, at.X_CM.R);
+  for (auto& at : poses) at = test::any_pose(random, 1.5);
+  for (auto& at : poses) at.X_CB[1].R = Eigen::Quaterniond::Identity().slerp(0.01, at.X_CB[1].R);
   std::vector<DistanceMap::Values> forward;
   for (const auto& at : poses) forward.push_back(map.at(at, 1));
   EXPECT_NE(forward[0], forward[1]);
@@ -166,7 +163,7 @@ TEST(DistanceMap, NearOpenShellsDistanceHasNoSign) {
   EXPECT_FALSE(map.surfaces()[0].unsigned_near_open);
   EXPECT_TRUE(map.surfaces()[1].unsigned_near_open);
   BodyPoses poses;
-  poses.X_CM.t = {0, 0, 2};
+  poses = Pose{Eigen::Quaterniond::Identity(), {0, 0, 2}};
   const auto values = map.at(poses);
   int near = 0;
   for (const float d : values[1]) {

@@ -23,9 +23,9 @@ const TriMesh& surface(const Case& patient, Role role) {
   throw std::runtime_error("no such part");
 }
 
-/// Closes from 6 mm below and grinds sideways, to and fro, turning about the vertical, while it
-/// presses the arches up to 0.8 mm past their bite.
-Pose wanted_at(double s) {
+/// Closes from 6 mm below and grinds sideways in both directions, rotating about the vertical,
+/// while it presses the arches up to 0.8 mm past their bite.
+Pose target_at(double s) {
   const Vector3d condyles(0, 30, 75);
   const double round = 2 * std::numbers::pi * s;
   Pose X;
@@ -41,7 +41,8 @@ Pose wanted_at(double s) {
 /// The lower crowns against the upper ones.
 SlidingContact arches(const Case& patient) {
   const auto body = [&](Role role) {
-    return std::make_shared<const SlideBody>(make_slide_body(surface(patient, role), {}, 2));
+    return std::make_shared<const ContactSurface>(
+        make_contact_surface(surface(patient, role), {}, 2));
   };
   return SlidingContact({body(Role::upper_teeth)}, {body(Role::lower_teeth)});
 }
@@ -56,12 +57,12 @@ TEST(Grinding, CrownsSlideOnCrownsWithoutOverlap) {
   const test::OverlapOracle upper_oracle(upper), lower_oracle(lower);
   const Solid upper_solid(upper), lower_solid(lower);
 
-  SlideMemory memory;
+  SlideCache memory;
   Pose X{Eigen::Quaterniond::Identity(), {0, 0, -6}};
   std::vector<double> depths, proved;
   constexpr int frames = 330;
   for (int f = 0; f < frames; ++f) {
-    const Pose wanted = wanted_at(static_cast<double>(f) / frames);
+    const Pose wanted = target_at(static_cast<double>(f) / frames);
     const SlideResult result = model.slide(X, wanted, &memory);
     X = result.X_FM;
     if (contacts(upper_mesh, {}, lower_mesh, wanted).size() < 50) continue;
@@ -111,20 +112,20 @@ TEST(Grinding, ArchesOfFiftyThousandTrianglesSlideWithManyContactsAndWithoutOver
   EXPECT_GE(upper.triangles.size(), 49000u);
   EXPECT_GE(lower.triangles.size(), 49000u);
   const auto body = [](const TriMesh& mesh) {
-    return std::make_shared<const SlideBody>(make_slide_body(mesh, {}, 2));
+    return std::make_shared<const ContactSurface>(make_contact_surface(mesh, {}, 2));
   };
   const SlidingContact model({body(upper)}, {body(lower)});
   const CollisionMesh upper_mesh(upper), lower_mesh(lower);
   const test::OverlapOracle upper_oracle(upper), lower_oracle(lower);
   const Solid upper_solid(upper), lower_solid(lower);
 
-  SlideMemory memory;
+  SlideCache memory;
   Pose X{Eigen::Quaterniond::Identity(), {0, 0, -6}};
   std::vector<double> depths, proved;
   int counted = 0;
   constexpr int frames = 540;
   for (int f = 0; f < frames && counted < 300; ++f) {
-    const SlideResult result = model.slide(X, wanted_at(static_cast<double>(f) / frames), &memory);
+    const SlideResult result = model.slide(X, target_at(static_cast<double>(f) / frames), &memory);
     X = result.X_FM;
     const std::size_t n = result.touching ? pairs_in_touch(upper_mesh, lower_mesh, result) : 0;
     if (n < 50) continue;
@@ -147,7 +148,7 @@ TEST(Grinding, CrownsRubWithFrictionWithoutOverlapAndRestWhereTheHandRests) {
   const TriMesh &upper = surface(patient, Role::upper_teeth),
                 &lower = surface(patient, Role::lower_teeth);
   const auto body = [](const TriMesh& mesh) {
-    return std::make_shared<const SlideBody>(make_slide_body(mesh, {}, 2));
+    return std::make_shared<const ContactSurface>(make_contact_surface(mesh, {}, 2));
   };
   SlideSettings settings;
   settings.friction = 0.3;
@@ -159,7 +160,7 @@ TEST(Grinding, CrownsRubWithFrictionWithoutOverlapAndRestWhereTheHandRests) {
   double rough_way = 0, free_way = 0;
   constexpr int frames = 120;
   for (int f = 0; f < frames; ++f) {
-    const Pose wanted = wanted_at(static_cast<double>(f) / frames);
+    const Pose wanted = target_at(static_cast<double>(f) / frames);
     const SlideResult result = rough.slide(X, wanted);
     const Pose smooth = free.slide(Y, wanted).X_FM;
     if (f > 0) {
@@ -179,7 +180,7 @@ TEST(Grinding, CrownsRubWithFrictionWithoutOverlapAndRestWhereTheHandRests) {
   EXPECT_LT(rough_way, 0.98 * free_way) << "friction holds it back";
 }
 
-/// Farthest that any point of the lower crowns lies apart at two poses.
+/// Largest distance of any point of the lower crowns between two poses.
 double crowns_apart(const TriMesh& lower, const Pose& a, const Pose& b) {
   double most = 0;
   for (std::size_t i = 0; i < lower.vertices.size(); i += 37)
@@ -187,16 +188,16 @@ double crowns_apart(const TriMesh& lower, const Pose& a, const Pose& b) {
   return most;
 }
 
-/// A wanted pose of the grinding is reached in one jump, in steps from the side, and backwards.
+/// A target of the grinding is reached in one jump, in steps from the side, and backward.
 void expect_one_answer(const Case& patient) {
   const SlidingContact model = arches(patient);
   const TriMesh& lower = surface(patient, Role::lower_teeth);
-  SlideMemory memory;
+  SlideCache memory;
   Pose X{Eigen::Quaterniond::Identity(), {0, 0, -6}};
   int compared = 0;
   constexpr int frames = 330;
   for (int f = 0; f < frames; f += 2) {
-    const Pose wanted = wanted_at(static_cast<double>(f) / frames);
+    const Pose wanted = target_at(static_cast<double>(f) / frames);
     const SlideResult result = model.slide(X, wanted, &memory);
     X = result.X_FM;
     EXPECT_EQ(model.slide(X, wanted).X_FM.t, X.t) << f;  // at rest, with nothing remembered
@@ -214,26 +215,26 @@ void expect_one_answer(const Case& patient) {
     }
     Pose back = X;
     for (int k = 6; k >= 0; k -= 2)
-      back = model.slide(back, wanted_at(static_cast<double>(f + k) / frames)).X_FM;
+      back = model.slide(back, target_at(static_cast<double>(f + k) / frames)).X_FM;
     EXPECT_LE(crowns_apart(lower, back, X), 0.05) << f << " backwards";
   }
   EXPECT_GE(compared, 8);
 }
 
-TEST(Grinding, RealCrownsEndAtTheSamePlaceByAnyWay) {
+TEST(Grinding, RealCrownsEndAtTheSamePoseOnAnyPath) {
   const auto patient = test::case_ubc();
   if (!patient) GTEST_SKIP() << "real anatomy absent";
   expect_one_answer(*patient);
 }
 
-TEST(Grinding, BuiltInCrownsEndAtTheSamePlaceByAnyWay) { expect_one_answer(builtin_patient()); }
+TEST(Grinding, BuiltInCrownsEndAtTheSamePoseOnAnyPath) { expect_one_answer(builtin_patient()); }
 
-TEST(Grinding, CrownsSlideToTheSameBitsOnOneAndTwoThreads) {
+TEST(Grinding, CrownsSlideBitIdenticallyOnOneAndTwoThreads) {
   const SlidingContact model = arches(builtin_patient());
   Pose one{Eigen::Quaterniond::Identity(), {0, 0, -6}}, two = one;
   int touching = 0;
   for (int f = 0; f < 330; f += 10) {
-    const Pose wanted = wanted_at(f / 330.0);
+    const Pose wanted = target_at(f / 330.0);
     const SlideResult result = model.slide(one, wanted, nullptr, 1);
     touching += result.touching;
     one = result.X_FM;

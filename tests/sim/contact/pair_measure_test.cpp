@@ -13,7 +13,7 @@
 namespace condyle::test {
 namespace {
 
-TEST(PairMeasure, CapOfABallInABoxWhereverTheyStand) {
+TEST(PairMeasure, CapOfABallInABoxAtAnyPose) {
   // The mandible is a ball that sinks into the maxilla, a box; the measure must not care how its
   // mesh stands at rest.
   std::mt19937_64 random(5);
@@ -22,7 +22,7 @@ TEST(PairMeasure, CapOfABallInABoxWhereverTheyStand) {
     Case patient = box_patient();
     patient.parts[1].mesh = moved(sphere(5, 12, {15, -65, -50}), X_rest);
     BodyPoses at;
-    at.X_CM = X_rest.inverse();  // puts the ball 2 mm into the box
+    at = X_rest.inverse();  // puts the ball 2 mm into the box
     const ContactModel model(patient);
     const PairMeasures measures(patient);
     const auto set = model.find(at, nullptr);
@@ -66,10 +66,10 @@ TEST(NearTriangles, KeepsAllThatAreInReachAndFewOthers) {
   EXPECT_LT(kept, all / 3);
 }
 
-TEST(Places, NamesOfTheJawsRegions) {
+TEST(AnatomicalRegions, NamesOfTheJawsRegions) {
   Case patient = box_patient();
   patient.landmarks.points["right_coronoid_tip"] = {-46, -40, -10};
-  const Places places(patient);
+  const AnatomicalRegions places(patient);
   EXPECT_EQ(places.midline_mm(), 0);
   EXPECT_EQ(places.name(1, {47, -6, -10}), "left condyle");
   EXPECT_EQ(places.name(0, {47, -6, -6}), "left joint fossa");
@@ -80,11 +80,11 @@ TEST(Places, NamesOfTheJawsRegions) {
   EXPECT_EQ(places.name(0, {60, -50, -10}), "left zygomatic bone or arch");
   EXPECT_EQ(places.name(0, {-25, -35, -40}), "right half of the upper jaw");  // the back teeth
   EXPECT_EQ(places.name(0, {-25, -35, -5}), "right half of the skull base");
-  EXPECT_EQ(both_places("tooth 26", "tooth 36"), "teeth 26 and 36");
-  EXPECT_EQ(both_places("tooth 26", "chin"), "tooth 26 and chin");
+  EXPECT_EQ(join_regions("tooth 26", "tooth 36"), "teeth 26 and 36");
+  EXPECT_EQ(join_regions("tooth 26", "chin"), "tooth 26 and chin");
 }
 
-TEST(Places, CoronoidTipIsNamedOrFoundInFrontOfTheNotch) {
+TEST(AnatomicalRegions, CoronoidTipIsNamedOrFoundInFrontOfTheNotch) {
   Case patient = box_patient();
   // A ramus whose upper border falls from the condyle to a notch and rises again.
   const auto ramus = [](double side) {

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "sim/contact/free_way.h"
+#include "sim/contact/motion_sweep.h"
 #include "tests/support/boxes.h"
 #include "tests/support/shapes.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A row of small boxes: parts of it have ways of their own.
+/// A row of small boxes: its parts have different paths.
 TriMesh rod() {
   TriMesh rod;
   for (double x = -30; x < 30; x += 2)
@@ -20,20 +20,20 @@ TriMesh rod() {
   return rod;
 }
 
-TEST(Passage, ToldClearFromItsEndItIsClearOnTheWholeWayWhicheverSideMoves) {
+TEST(SweptPair, ReportedClearFromItsEndItIsClearOnTheWholePathWhicheverSideMoves) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> any(-1, 1);
   const auto direction = [&] { return Vector3d(any(random), any(random), any(random)); };
   const TriMesh bumpy = test::sphere(2, 20, {0, 0, 0}, 0.05), long_one = rod();
-  const Collider ball{0, 0, cranium_body, false, CollisionMesh(bumpy), Solid(bumpy)};
-  const Collider lever{1, 1, mandible_body, false, CollisionMesh(long_one), Solid(long_one)};
+  const Collider ball{0, 0, cranium_body, false, std::make_shared<ColliderShape>(bumpy)};
+  const Collider lever{1, 1, mandible_body, false, std::make_shared<ColliderShape>(long_one)};
   int clear = 0, not_clear = 0, clear_by_parts = 0;
   for (int trial = 0; trial < 400; ++trial) {
     ColliderPair pair;
     const bool a_moves = trial % 2 == 1;
     pair.a = a_moves ? &lever : &ball;
     pair.b = a_moves ? &ball : &lever;
-    Passage p;
+    SweptPair p;
     p.pair = &pair;
     p.a_moves = a_moves;
     p.X_CS = test::any_pose(random, 10);
@@ -61,23 +61,23 @@ TEST(Passage, ToldClearFromItsEndItIsClearOnTheWholeWayWhicheverSideMoves) {
   EXPECT_GT(clear_by_parts, 15);
 }
 
-TEST(Passage, WithValuesThatAreNoNumbersIsNotToldClear) {
+TEST(SweptPair, WithNaNsIsNotReportedClear) {
   const TriMesh mesh = test::box({-1, -1, -1}, {1, 1, 1});
-  const Collider one{0, 0, cranium_body, false, CollisionMesh(mesh), Solid(mesh)};
-  const Collider other{1, 1, mandible_body, false, CollisionMesh(mesh), Solid(mesh)};
+  const Collider one{0, 0, cranium_body, false, std::make_shared<ColliderShape>(mesh)};
+  const Collider other{1, 1, mandible_body, false, std::make_shared<ColliderShape>(mesh)};
   ColliderPair pair;
   pair.a = &one;
   pair.b = &other;
-  Passage p;
+  SweptPair p;
   p.pair = &pair;
   p.pivot_D = Vector3d::Zero();
   p.to.t = {5, 0, 0};
   const PairContact at_end = p.judged(p.to, {}, {});
   p.measure();
-  EXPECT_FALSE(p.clear(at_end));  // it came out of the other
+  EXPECT_FALSE(p.clear(at_end));  // it emerged from the other
   p.from.t = {9, 0, 0};
   p.measure();
-  EXPECT_FALSE(p.clear(at_end));  // its way is longer than it is far
+  EXPECT_FALSE(p.clear(at_end));  // its path is longer than its distance
   p.from.t = {6, 0, 0};
   p.measure();
   EXPECT_TRUE(p.clear(at_end));

@@ -41,20 +41,20 @@ Box around(const Vector3d& p, double reach) {
   return {p - Vector3d::Constant(reach), p + Vector3d::Constant(reach)};
 }
 
-/// A body that slides on another, judged by exact distances.
+/// A body that slides on another, measured by exact distances.
 struct Scene {
   Scene(const TriMesh& fixed, const TriMesh& moving, const SlideSettings& settings = {})
       : Scene(fixed, moving, test::OverlapOracle(fixed), test::OverlapOracle(moving), settings) {}
-  /// Of bodies that are only a part each of what they are judged by: an open part has no inside.
+  /// For bodies that are only part of the reference surfaces: an open part has no inside.
   Scene(const TriMesh& fixed, const TriMesh& moving, test::OverlapOracle fixed_judge,
         test::OverlapOracle moving_judge, const SlideSettings& settings = {})
-      : fixed_body(std::make_shared<const SlideBody>(make_slide_body(fixed, {}, 2))),
-        moving_body(std::make_shared<const SlideBody>(make_slide_body(moving, {}, 2))),
+      : fixed_body(std::make_shared<const ContactSurface>(make_contact_surface(fixed, {}, 2))),
+        moving_body(std::make_shared<const ContactSurface>(make_contact_surface(moving, {}, 2))),
         model({fixed_body}, {moving_body}, settings),
         fixed_oracle(std::move(fixed_judge)),
         moving_oracle(std::move(moving_judge)) {}
 
-  /// Farthest that any point of the moving body lies apart at two poses.
+  /// Largest distance of any point of the moving body between two poses.
   double apart(const Pose& a, const Pose& b) const {
     double most = 0;
     for (std::size_t i = 0; i < moving_body->samples.points.size(); i += 23) {
@@ -64,7 +64,7 @@ struct Scene {
     return most;
   }
 
-  std::shared_ptr<const SlideBody> fixed_body, moving_body;
+  std::shared_ptr<const ContactSurface> fixed_body, moving_body;
   SlidingContact model;
   test::OverlapOracle fixed_oracle, moving_oracle;
 };
@@ -74,15 +74,15 @@ struct Outcome {
   double median_depth = 0, deepest_mm = 0, rest_mm = 0, path_mm = 0;
 };
 
-/// Follows the wanted poses and judges where the body is.
+/// Follows the targets and measures the pose of the body.
 template <class Wanted>
-Outcome follow(const Scene& scene, const Pose& start, int frames, const Wanted& wanted_at) {
+Outcome follow(const Scene& scene, const Pose& start, int frames, const Wanted& target_at) {
   Outcome out;
   std::vector<double> depths;
   Pose X = start;
-  SlideMemory memory;
+  SlideCache memory;
   for (int f = 0; f < frames; ++f) {
-    const Pose wanted = wanted_at(static_cast<double>(f) / (frames - 1));
+    const Pose wanted = target_at(static_cast<double>(f) / (frames - 1));
     const SlideResult result = scene.model.slide(X, wanted, &memory);
     EXPECT_TRUE(result.settled) << f;
     // Nothing but the poses counts, and what rests stays.
@@ -94,7 +94,7 @@ Outcome follow(const Scene& scene, const Pose& start, int frames, const Wanted& 
     ++out.touching;
     depths.push_back(deepest(scene.fixed_oracle, scene.moving_oracle, X));
     if (f % 10 != 0) continue;
-    // In one jump, and in ten and a hundred steps of another way.
+    // In one jump, and in ten and a hundred steps along another path.
     ++out.compared;
     out.path_mm = std::max(out.path_mm, scene.apart(scene.model.slide(start, wanted).X_FM, X));
     for (const int steps : {10, 100}) {

@@ -101,7 +101,7 @@ TEST(MuscleJaw, AnySuddenExcitationStaysInBounds) {
     }
 }
 
-TEST(MuscleJaw, TheSameBitsOnTwoThreads) {
+TEST(MuscleJaw, IsBitIdenticalOnTwoThreads) {
   MuscleJaw one(builtin(), {}, 1), two(builtin(), {}, 2);
   const auto open = excite(one.muscles(), {{"opener", 0.2}, {"protruder_opener", 0.1}});
   const auto close = excite(one.muscles(), {{"closer", 0.1}});

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "engine/core/error.h"
-#include "sim/muscles/usual_muscles.h"
+#include "sim/muscles/default_muscles.h"
 #include "sim/phantom/phantom.h"
 
 namespace condyle {
@@ -57,14 +57,14 @@ class MuscleMotion : public ::testing::Test {
 Case* MuscleMotion::patient_ = nullptr;
 ContactModel* MuscleMotion::contacts_ = nullptr;
 
-TEST_F(MuscleMotion, MusclesFollowAWantedOpening) {
+TEST_F(MuscleMotion, MusclesFollowAGivenOpening) {
   const Motion wanted = make("opening"), found = make("inverse:opening");
   ASSERT_EQ(found.muscle_names.size(), 34u);
   EXPECT_NEAR(found.duration_s, wanted.duration_s, 1e-3);
   double squares = 0, effort = 0, apart = 0;
   int count = 0;
   for (double t = 0; t <= wanted.duration_s; t += 0.01, ++count) {
-    squares += (found.wanted(t) * incisor() - wanted.wanted(t) * incisor()).squaredNorm();
+    squares += (found.target(t) * incisor() - wanted.target(t) * incisor()).squaredNorm();
     const MuscleStates states = found.muscles(t);
     for (std::size_t m = 0; m < states.size(); m += 2) {
       EXPECT_GE(states[m].excitation, 0);
@@ -82,7 +82,7 @@ TEST_F(MuscleMotion, MusclesFollowAWantedOpening) {
   const Motion again = make("muscles:" + write("found.csv", excitations_csv(found)));
   EXPECT_NEAR(again.duration_s, found.duration_s, 1e-9);
   for (double t = 0; t <= again.duration_s; t += 0.01)
-    ASSERT_LT((again.wanted(t) * incisor() - found.wanted(t) * incisor()).norm(), 1e-6) << t;
+    ASSERT_LT((again.target(t) * incisor() - found.target(t) * incisor()).norm(), 1e-6) << t;
 }
 
 TEST_F(MuscleMotion, FromAFileOfGroupsItOpensAndCloses) {
@@ -92,13 +92,13 @@ TEST_F(MuscleMotion, FromAFileOfGroupsItOpensAndCloses) {
   EXPECT_TRUE(motion.recorded);
   EXPECT_EQ(motion.name, "chew");
   EXPECT_NEAR(motion.duration_s, 1, 1e-9);
-  EXPECT_GT(incisor().z() - (motion.wanted(0.45) * incisor()).z(), 8);
-  EXPECT_LT((motion.wanted(1) * incisor() - incisor()).norm(), 1);
+  EXPECT_GT(incisor().z() - (motion.target(0.45) * incisor()).z(), 8);
+  EXPECT_LT((motion.target(1) * incisor() - incisor()).norm(), 1);
   EXPECT_NEAR(motion.muscles(0.3)[16].excitation, 0.15, 0.02);  // an opener
   EXPECT_FALSE(motion.notes.empty());
 }
 
-TEST_F(MuscleMotion, AMuscleIsAsLongAsItsEndsAreApartTheHyoidsToo) {
+TEST_F(MuscleMotion, AMusclesLengthIsTheDistanceOfItsEndsAlsoAtTheHyoid) {
   const auto file = write("open.csv", "time_s,open,close\n0,0,0\n0.1,0.15,0\n0.4,0.15,0\n");
   const std::string way =
       write("way.csv", "time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.2,2,5,-9\n1,2,5,-9\n");
@@ -111,14 +111,14 @@ TEST_F(MuscleMotion, AMuscleIsAsLongAsItsEndsAreApartTheHyoidsToo) {
     for (const double t : {0.0, 0.1, 0.2, 0.4}) {
       const MuscleStates states = motion.muscles(t);
       const auto now = [&](MuscleBody body, const Vector3d& rest) -> Vector3d {
-        if (body == MuscleBody::mandible) return motion.wanted(t) * rest;
+        if (body == MuscleBody::mandible) return motion.target(t) * rest;
         if (body == MuscleBody::hyoid) return motion.hyoid(t) * rest;
         return rest;
       };
       for (std::size_t m = 0; m < muscles.size(); ++m) {
         ASSERT_EQ(motion.muscle_names[m], muscles[m].name);
         of_the_hyoid += muscles[m].moves(MuscleBody::hyoid);
-        // What is kept of the muscles is of the beginning of its step of a millisecond.
+        // Stored muscle states are those at the beginning of their step of a millisecond.
         EXPECT_NEAR((now(muscles[m].origin_body, muscles[m].origin) -
                      now(muscles[m].insertion_body, muscles[m].insertion))
                         .norm(),
@@ -130,7 +130,7 @@ TEST_F(MuscleMotion, AMuscleIsAsLongAsItsEndsAreApartTheHyoidsToo) {
   }
 }
 
-TEST_F(MuscleMotion, BadInputIsRefusedWithItsPlace) {
+TEST_F(MuscleMotion, BadInputIsRefusedWithItsLocation) {
   expect_refused("muscles:" + (folder_ / "absent.csv").string(), {"absent.csv"});
   expect_refused("muscles:" + write("empty.csv", ""), {"empty.csv", "empty"});
   expect_refused("muscles:" + write("a.csv", "time_s,biceps\n0,1\n"),

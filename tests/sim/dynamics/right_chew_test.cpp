@@ -19,7 +19,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The recorded run had one mylohyoid a side; its closers pull with a tone of 0.001 from the start.
+// The recorded run had one mylohyoid per side; its closers pull with a tone of 0.001 from the
+// start.
 constexpr const char* sidecar = R"({"tone": {"close": 0.001}, "without": ["pm"], "until_s": 1})";
 
 NumberTable table(const std::filesystem::path& file) {
@@ -59,7 +60,7 @@ class RightChew : public ::testing::Test {
     for (int k = 1; k <= 1000; ++k) {
       const double t = k * 0.001;
       const Vector3d here = pose_at(t) * incisor_;
-      squares += (here - recorded_.wanted(t) * incisor_).squaredNorm();
+      squares += (here - recorded_.target(t) * incisor_).squaredNorm();
       out.drop_mm = std::max(out.drop_mm, incisor_.z() - here.z());
       out.lateral_mm = std::max(out.lateral_mm, -here.x());
     }
@@ -73,7 +74,7 @@ class RightChew : public ::testing::Test {
     settings.hyoid = hyoid;
     settings.teeth = teeth;
     const Motion motion = muscles_from_file(knots_, chewer_, settings);
-    return compared(motion.wanted);
+    return compared(motion.target);
   }
   std::string recorded_hyoid() const {
     return (recorded_files_ / "rightchew_marker_disp.csv").string();
@@ -98,7 +99,7 @@ TEST_F(RightChew, ClosersPullAsRecordedWhereTheJawWasRecorded) {
         std::find(forces.names.begin(), forces.names.end(), muscle.name) - forces.names.begin());
     ASSERT_LT(column, forces.names.size()) << muscle.name;
     const auto length = [&](double t) {
-      return (recorded_.wanted(t) * muscle.insertion - muscle.origin).norm();
+      return (recorded_.target(t) * muscle.insertion - muscle.origin).norm();
     };
     double squares = 0, peak = 0, recorded_peak = 0;
     for (std::size_t r = 0; r < forces.rows(); ++r) {
@@ -118,7 +119,7 @@ TEST_F(RightChew, ClosersPullAsRecordedWhereTheJawWasRecorded) {
   EXPECT_EQ(closers, 12);
 }
 
-TEST_F(RightChew, ExcitationsAloneLeadTheJawAlongTheRecordedPath) {
+TEST_F(RightChew, ExcitationsAloneMoveTheJawAlongTheRecordedPath) {
   ASSERT_EQ(chewer_.mechanics->mandible.drag_kg_s, 20);  // as in the file
   const Chewed on_crowns = chew(recorded_hyoid());
   EXPECT_LT(on_crowns.rms_mm, 1.5);

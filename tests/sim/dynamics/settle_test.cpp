@@ -6,11 +6,12 @@
 
 #include "engine/core/error.h"
 #include "sim/dynamics/jaw_world.h"
-#include "sim/dynamics/let_go.h"
+#include "sim/dynamics/release_body.h"
 #include "tests/support/boxes.h"
 #include "tests/support/builtin.h"
 #include "tests/support/overlap_oracle.h"
 #include "tests/support/real_cases.h"
+#include "tests/support/shapes.h"
 
 namespace condyle {
 namespace {
@@ -18,12 +19,13 @@ namespace {
 using Eigen::Vector3d;
 using test::builtin;
 
-/// How far points up to a radius from the origin (80 mm: of a jaw) move between two poses.
+/// Largest displacement of points up to a radius from the origin (80 mm: of a jaw) between two
+/// poses.
 double apart(const Pose& a, const Pose& b, double radius_mm = 80) {
   return (a.t - b.t).norm() + radius_mm * rotation_angle(a.inverse() * b);
 }
 
-/// The mandible turned open about its condyles.
+/// The mandible opened about its condyles.
 Pose opened(const Case& of, double degrees) {
   const Vector3d c =
       0.5 * (*of.landmarks.find("left_condyle") + *of.landmarks.find("right_condyle"));
@@ -37,7 +39,7 @@ struct Closed {
   Pose X_CM;
   double deepest_mm = 0;
 };
-/// Closes from an opening, and watches it at rest for ten seconds.
+/// Closes from an opening, and observes it at rest for ten seconds.
 Closed close(const Case& of) {
   JawWorld jaw = make_jaw_world(of, {.X_CM = opened(of, 8)}, 2);
   double error = 0;
@@ -72,6 +74,22 @@ TEST(Jaw, ClosesUnderAForceIntoTheBuiltInBite) {
   EXPECT_LT(closed.deepest_mm, 0.06);
 }
 
+TEST(Jaw, ClosesTheSameOnTheCrownsOfABoneThatCarriesThem) {
+  Case merged = builtin();
+  const TriMesh crowns = merged.find(Role::upper_teeth)->mesh;
+  std::erase_if(merged.parts, [](const Part& part) { return part.role == Role::upper_teeth; });
+  int bones = 0;
+  for (Part& part : merged.parts)
+    if (part.role == Role::skull) part.mesh = test::joined(part.mesh, crowns), ++bones;
+  ASSERT_EQ(bones, 1);
+  const auto at_rest = [](const Case& of) {
+    JawWorld jaw = make_jaw_world(of, {.X_CM = opened(of, 8)}, 2);
+    EXPECT_TRUE(run_to_rest(jaw.world, jaw.mandible).reached);
+    return jaw.world.pose(jaw.mandible);
+  };
+  EXPECT_LT(apart(at_rest(merged), at_rest(builtin())), 0.1);
+}
+
 TEST(Jaw, ClosesOnRealCrownsThatOverlapAtRest) {
   const auto real = test::case_ubc();
   if (!real) GTEST_SKIP() << "real anatomy absent";
@@ -84,7 +102,7 @@ TEST(Jaw, ClosesOnRealCrownsThatOverlapAtRest) {
 /// against its outer side.
 Case with_graft(Pose& start) {
   Case out = builtin();
-  Part graft{"graft", Role::transplant, test::box({-9, -1.5, -4}, {9, 1.5, 4}), {}, Body::mandible};
+  Part graft{"graft", Role::transplant, test::box({-9, -1.5, -4}, {9, 1.5, 4}), {}};
   // Bent about the vertical, finer along its length.
   TriMesh bent;
   const int n = 24;
@@ -108,7 +126,7 @@ Case with_graft(Pose& start) {
   if (signed_volume(bent) < 0)
     for (auto& t : bent.triangles) std::swap(t[0], t[1]);
   graft.mesh = bent;
-  out.parts.push_back(graft);
+  out.add_piece(graft, mandible_body);
   // In front of the chin, facing it.
   const Vector3d chin = *out.landmarks.find("pogonion");
   start.R = Eigen::AngleAxisd(0.15, Vector3d(1, 0.4, 0.2).normalized()) *
@@ -117,13 +135,13 @@ Case with_graft(Pose& start) {
   return out;
 }
 
-TEST(LetGo, AGraftSettlesOnTheMandibleAndStays) {
+TEST(Release, AGraftSettlesOnTheMandibleAndStays) {
   Pose start;
   const Case with = with_graft(start);
   const std::size_t part = with.parts.size() - 1;
-  const BodyPoses from({}, {start});
-  const LetGoSettings settings{.push_N = {0, 5, 0}};
-  const LetGo settled = let_go(with, part, from, settings, 2);
+  const BodyPoses from({Pose{}, Pose{}, start});
+  const ReleaseSettings settings{.push_N = {0, 5, 0}};
+  const Release settled = release_body(with, BodyId{2}, from, settings, 2);
   EXPECT_TRUE(settled.rest.reached);
   EXPECT_LT(settled.rest.depth_mm, 0.05);
   EXPECT_GE(settled.contacts.size(), 3u);
@@ -133,66 +151,65 @@ TEST(LetGo, AGraftSettlesOnTheMandibleAndStays) {
     push += contact.push_N * contact.normal;
   }
   EXPECT_NEAR(push.y(), -5, 1.5);  // the rest is friction's
-  const Pose& X = settled.poses.X_CF[0];
+  const Pose& X = settled.poses[BodyId{2}];
   EXPECT_GT((X.t - start.t).norm(), 1);
   const test::OverlapOracle bone(with.find(Role::mandible)->mesh), graft(with.parts[part].mesh);
   EXPECT_LT(deepest(bone, graft, X), 0.06);
-  // Let go again where it lies, it stays.
-  const LetGo again = let_go(with, part, settled.poses, settings, 1);
-  EXPECT_LT(apart(again.poses.X_CF[0], X, 10), 0.02);
-  // The same bits on one thread.
-  const LetGo alone = let_go(with, part, from, settings, 1);
-  EXPECT_EQ(alone.poses.X_CF[0].t, X.t);
-  EXPECT_EQ(alone.poses.X_CF[0].R.coeffs(), X.R.coeffs());
+  // Released again where it lies, it stays.
+  const Release again = release_body(with, BodyId{2}, settled.poses, settings, 1);
+  EXPECT_LT(apart(again.poses[BodyId{2}], X, 10), 0.02);
+  // Bit-identical on one thread.
+  const Release alone = release_body(with, BodyId{2}, from, settings, 1);
+  EXPECT_EQ(alone.poses[BodyId{2}].t, X.t);
+  EXPECT_EQ(alone.poses[BodyId{2}].R.coeffs(), X.R.coeffs());
 }
 
-TEST(LetGo, GraftsPushEachOtherOntoTheMandible) {
+TEST(Release, GraftsPushEachOtherOntoTheMandible) {
   Pose start;
   Case with = with_graft(start);
   Part another = with.parts.back();
   another.name = "another";
-  with.parts.push_back(another);
+  with.add_piece(another, mandible_body);
   const std::size_t first = with.parts.size() - 2, second = first + 1;
   const Pose behind = Pose{Eigen::Quaterniond::Identity(), {1, -5, 0}} * start;
-  const BodyPoses from({}, {start, behind});
-  LetGoSettings settings{.push_N = {0, 5, 0}};
-  settings.yielding = {first};
-  const LetGo settled = let_go(with, second, from, settings, 2);
+  const BodyPoses from({Pose{}, Pose{}, start, behind});
+  ReleaseSettings settings{.push_N = {0, 5, 0}};
+  settings.yielding = {BodyId{2}};
+  const Release settled = release_body(with, BodyId{3}, from, settings, 2);
   EXPECT_TRUE(settled.rest.reached);
   EXPECT_LT(settled.rest.depth_mm, 0.05);
   const int jaw = static_cast<int>(with.find(Role::mandible) - with.parts.data());
-  std::map<std::pair<int, int>, double> push;  // backwards; by what lies on what
+  std::map<std::pair<int, int>, double> push;  // backward; by supporting part
   for (const auto& contact : settled.contacts)
     push[{contact.lies, contact.part}] -= contact.push_N * contact.normal.y();
-  // The hand's push goes through the first to the bone.
+  // The hand's push is transmitted through the first to the bone.
   const int a = static_cast<int>(first), b = static_cast<int>(second);
   EXPECT_GT((push[{b, a}]), 1);
   EXPECT_GT((push[{a, jaw}]), 1);
   EXPECT_NEAR((push[{b, a}] + push[{b, jaw}]), 5, 1.5);  // the rest is friction's
   EXPECT_NEAR((push[{a, jaw}] + push[{b, jaw}]), 5, 1.5);
-  const Pose &A = settled.poses.X_CF[0], &B = settled.poses.X_CF[1];
+  const Pose &A = settled.poses[BodyId{2}], &B = settled.poses[BodyId{3}];
   EXPECT_GT((A.t - start.t).norm(), 1);
   EXPECT_GT((B.t - behind.t).norm(), 1);
   const test::OverlapOracle bone(with.find(Role::mandible)->mesh), graft(another.mesh);
   EXPECT_LT(deepest(bone, graft, A), 0.06);
   EXPECT_LT(deepest(bone, graft, B), 0.06);
   EXPECT_LT(deepest(graft, graft, A.inverse() * B), 0.06);
-  const LetGo alone = let_go(with, second, from, settings, 1);
-  EXPECT_EQ(alone.poses.X_CF[1].t, B.t);
-  EXPECT_EQ(alone.poses.X_CF[0].R.coeffs(), A.R.coeffs());
-  settings.yielding = {first, second};
-  EXPECT_THROW(let_go(with, second, from, settings), InputError);
+  const Release alone = release_body(with, BodyId{3}, from, settings, 1);
+  EXPECT_EQ(alone.poses[BodyId{3}].t, B.t);
+  EXPECT_EQ(alone.poses[BodyId{2}].R.coeffs(), A.R.coeffs());
+  settings.yielding = {BodyId{2}, BodyId{3}};
+  EXPECT_THROW(release_body(with, BodyId{3}, from, settings), InputError);
 }
 
-TEST(LetGo, WhatCannotSettleIsRefused) {
+TEST(Release, ABodyThatCannotComeToRestIsRefused) {
   Pose start;
   const Case with = with_graft(start);
-  const std::size_t part = with.parts.size() - 1;
-  const BodyPoses from({}, {start});
-  EXPECT_THROW(let_go(with, 0, from, {.push_N = {0, 5, 0}}), InputError);
-  EXPECT_THROW(let_go(with, part, from, {}), InputError);
-  const BodyPoses far({}, {{start.R, start.t - Vector3d(0, 200, 0)}});
-  EXPECT_THROW(let_go(with, part, far, {.push_N = {0, 5, 0}}), InputError);
+  const BodyPoses from({Pose{}, Pose{}, start});
+  EXPECT_THROW(release_body(with, cranium_body, from, {.push_N = {0, 5, 0}}), InputError);
+  EXPECT_THROW(release_body(with, BodyId{2}, from, {}), InputError);
+  const BodyPoses far({Pose{}, Pose{}, Pose{start.R, start.t - Vector3d(0, 200, 0)}});
+  EXPECT_THROW(release_body(with, BodyId{2}, far, {.push_N = {0, 5, 0}}), InputError);
 }
 
 }  // namespace

@@ -1,14 +1,14 @@
-#include "sim/frame/plot_places.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "sim/frame/label_placement.h"
+
 namespace condyle {
 namespace {
 
-TEST(Ticks, AreRoundNeverFewerThanThreeAndElseNoMoreThanAsked) {
+TEST(Ticks, AreRoundAtLeastThreeAndAtMostTheRequestedNumber) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(-3, 3);
   int at_most = 0;
@@ -40,9 +40,9 @@ bool apart(const DrawnArea& a, const DrawnArea& b) {
   return a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
 }
 
-TEST(WordPlaces, AreBesideCurvesWordsAndOutlinesAsNearAsTheyCan) {
+TEST(LabelPlacement, AreAsNearAsPossibleClearOfCurvesTextAndOutlines) {
   const DrawnArea axes{10, 20, 210, 140};
-  WordPlaces places(axes, 1);
+  LabelPlacement places(axes, 1);
   places.add_curve({{110, 0}, {110, 200}});  // up through the middle
   const DrawnArea box{90, 60, 104, 70};
   places.add_outline({{90, 60}, {104, 60}, {104, 70}, {90, 70}});
@@ -62,8 +62,8 @@ TEST(WordPlaces, AreBesideCurvesWordsAndOutlinesAsNearAsTheyCan) {
   EXPECT_TRUE(!apart(taken[0], {84, 54, 110, 76})) << "beside what it names";
 }
 
-TEST(WordPlaces, CoverTheLeastWhereThereIsNoRoom) {
-  WordPlaces places({0, 0, 50, 40}, 1);
+TEST(LabelPlacement, CoverTheLeastWhereNoSpaceIsFree) {
+  LabelPlacement places({0, 0, 50, 40}, 1);
   for (int x = 0; x <= 50; x += 4) places.add_curve({{double(x), 0}, {double(x), 30}});
   const auto at = places.take(40, 12, {0, 0, 4, 4});
   EXPECT_GE(at.y + 12, 36);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include "sim/case/case.h"
 #include "tests/support/boxes.h"
@@ -8,7 +9,7 @@
 
 namespace condyle::test {
 
-/// A jaw of the usual size with a known joint and nothing in its way.
+/// A jaw of average size with a known joint and no obstacles.
 inline Case free_jaw() {
   Case patient;
   patient.name = "free jaw";
@@ -23,7 +24,7 @@ inline Case free_jaw() {
   return patient;
 }
 
-/// Two spherical condyles in hollow boxes of roof and slope: a joint with 2 mm of room.
+/// Two spherical condyles in hollow boxes of roof and slope: a joint with 2 mm of clearance.
 inline Case jaw_in_fossae() {
   Case patient = free_jaw();
   patient.condylar_path.reset();
@@ -32,7 +33,8 @@ inline Case jaw_in_fossae() {
     const Eigen::Vector3d center(50.5 * side, -13, -7.5);
     condyles = joined(condyles, sphere(3, 5, center));
     // A slab 7 mm above the centre, leaning 35 degrees down toward the front.
-    const Eigen::Quaterniond lean(Eigen::AngleAxisd(35 * M_PI / 180, Eigen::Vector3d::UnitX()));
+    const Eigen::Quaterniond lean(
+        Eigen::AngleAxisd(35 * std::numbers::pi / 180, Eigen::Vector3d::UnitX()));
     roofs = joined(roofs, moved(box({-15, -40, 7}, {15, 10, 12}), {lean, center}));
   }
   patient.parts[0].mesh = joined(patient.parts[0].mesh, condyles);
@@ -46,7 +48,7 @@ inline Case jaw_with_teeth() {
   Case patient = free_jaw();
   TriMesh upper = box({-30, -75, -45}, {30, -50, -40});
   TriMesh lower = box({-30, -75, -50}, {30, -50, -45.1});
-  const Eigen::Quaterniond lean(Eigen::AngleAxisd(-M_PI / 4, Eigen::Vector3d::UnitX()));
+  const Eigen::Quaterniond lean(Eigen::AngleAxisd(-std::numbers::pi / 4, Eigen::Vector3d::UnitX()));
   upper = joined(upper, moved(box({-10, -3, 0}, {10, 0, 12}), {lean, {0, -95.65, -53}}));
   lower = joined(lower, box({-10, -93.5, -60}, {10, -91, -51}));
   patient.parts.push_back({"upper_teeth", Role::upper_teeth, upper, {}});

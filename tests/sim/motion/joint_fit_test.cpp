@@ -4,14 +4,15 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 #include <random>
+
+#include "engine/core/units.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double degree = M_PI / 180;
 
 struct Truth {
   double inclination[2], bennett[2], shift[2];  // left, right; deg, mm
@@ -53,12 +54,12 @@ Pose pose(const Truth& truth, double turn_deg, double left_mm, double right_mm) 
   return X;
 }
 
-/// Opens, then goes aside to either side, seen by markers with noise.
+/// Opens, then moves to either side, recorded by markers with noise.
 Motion recording(const Truth& truth, double noise_mm) {
   std::mt19937 random(11);
   std::normal_distribution<double> normal(0, noise_mm);
   auto poses = std::make_shared<std::vector<Pose>>();
-  const auto bump = [](double u) { return 0.5 * (1 - std::cos(2 * M_PI * u)); };
+  const auto bump = [](double u) { return 0.5 * (1 - std::cos(2 * std::numbers::pi * u)); };
   for (int k = 0; k < 200; ++k) {
     const double turn = 30 * bump(k / 200.0);
     const double forward = std::max(0.0, turn - truth.hinge_deg) / truth.deg_per_mm;
@@ -76,13 +77,13 @@ Motion recording(const Truth& truth, double noise_mm) {
     motion.sample_times.push_back(0.01 * static_cast<double>(motion.sample_times.size()));
   }
   motion.duration_s = motion.sample_times.back();
-  motion.wanted = [poses](double t) {
+  motion.target = [poses](double t) {
     return (*poses)[static_cast<std::size_t>(std::lround(t / 0.01))];
   };
   return motion;
 }
 
-TEST(JointFit, GivesBackWhatASyntheticRecordingWasMadeWith) {
+TEST(JointFit, RecoversTheParametersOfASyntheticRecording) {
   const Truth truth{{42, 33}, {8, 14}, {0.3, 0.8}, 12, 1.5};
   for (const double noise : {0.0, 0.1}) {
     const auto fit = fit_joint(jaw(), recording(truth, noise));
@@ -102,10 +103,10 @@ TEST(JointFit, GivesBackWhatASyntheticRecordingWasMadeWith) {
   }
 }
 
-TEST(JointFit, TellsOnlyWhatTheMotionShows) {
+TEST(JointFit, ReportsOnlyWhatTheMotionShows) {
   Motion still;
   still.duration_s = 1;
-  still.wanted = [](double) { return Pose{}; };
+  still.target = [](double) { return Pose{}; };
   const auto fit = fit_joint(jaw(), still);
   ASSERT_TRUE(fit);
   EXPECT_FALSE(fit->left.inclination_deg || fit->right.bennett_deg || fit->hinge_deg);

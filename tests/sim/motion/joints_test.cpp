@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.h"
-#include "sim/motion/condylar_path.h"
+#include "sim/motion/condylar_kinematics.h"
 #include "sim/motion/jaw_joints.h"
 #include "tests/sim/motion/jaws.h"
 #include "tests/support/real_cases.h"
@@ -24,7 +24,7 @@ std::vector<JawInputs> many_inputs(const JawJoints& joints) {
 
 }  // namespace
 
-TEST(JawJoints, CondylesKeepTheirDistanceAndGoForwardAsTold) {
+TEST(JawJoints, CondylesKeepTheirDistanceAndAdvanceAsRequested) {
   Case patient = free_jaw();
   patient.landmarks.points["left_condyle"] += Vector3d(1.5, 2, -1);  // no jaw is symmetric
   const JawJoints joints(patient, {}, JointReach::straight, 1);
@@ -34,16 +34,17 @@ TEST(JawJoints, CondylesKeepTheirDistanceAndGoForwardAsTold) {
     EXPECT_NEAR((X_CM * left - X_CM * right).norm(), (left - right).norm(), 1e-9);
     EXPECT_NEAR(left.y() - (X_CM * left).y(), in.left_mm, 1e-9);
     EXPECT_NEAR(right.y() - (X_CM * right).y(), in.right_mm, 1e-9);
-    EXPECT_NEAR(left.z() - (X_CM * left).z(), joints.drop_mm(JawSide::left, in.left_mm), 1e-9);
+    EXPECT_NEAR(left.z() - (X_CM * left).z(),
+                joints.inferior_translation_mm(JawSide::left, in.left_mm), 1e-9);
   }
   EXPECT_LT(joints.pose({}).t.norm(), 1e-12);
 }
 
-TEST(JawJoints, OrbitingCondyleGoesMediallyByBennettAngleAndSideShift) {
+TEST(JawJoints, OrbitingCondyleMovesMediallyByBennettAngleAndSideShift) {
   const JawJoints joints(free_jaw(), {.bennett_deg = 10, .side_shift_mm = 0.6},
                          JointReach::straight, 1);
   for (const double s : {4.0, 8.0, 12.0}) {
-    const double wanted = 0.6 * (1 - std::exp(-s)) + s * std::tan(10 * radian_per_degree);
+    const double wanted = 0.6 * (1 - std::exp(-s)) + s * std::tan(10 * degree);
     const Vector3d left = joints.condyle(JawSide::left), right = joints.condyle(JawSide::right);
     const Pose to_right = joints.pose({0, s, 0, joints.bennett_shift_mm(s, 0)});
     EXPECT_NEAR(left.x() - (to_right * left).x(), wanted, 1e-9);
@@ -53,13 +54,13 @@ TEST(JawJoints, OrbitingCondyleGoesMediallyByBennettAngleAndSideShift) {
   EXPECT_EQ(joints.bennett_shift_mm(5, 5), 0);
 }
 
-TEST(JawJoints, TenMillimetresOfOneCondyleYawTheJawBySomeFiveDegrees) {
+TEST(JawJoints, TenMillimetresOfOneCondyleYawTheJawByAboutFiveDegrees) {
   const MotionParameters level = {
       .inclination_left_deg = 0, .inclination_right_deg = 0, .bennett_deg = 0, .side_shift_mm = 0};
   const JawJoints joints(free_jaw(), level, JointReach::straight, 1);
   const Pose X_CM = joints.pose({0, 10, 0, 0});
   const Vector3d across = X_CM.R * Vector3d::UnitX();
-  EXPECT_NEAR(std::atan2(-across.y(), across.x()) / radian_per_degree, 5.6, 0.2);
+  EXPECT_NEAR(std::atan2(-across.y(), across.x()) / degree, 5.6, 0.2);
   EXPECT_NEAR((X_CM * joints.incisor()).x() - joints.incisor().x(), -7.7, 0.5);
 }
 
@@ -81,11 +82,11 @@ TEST(JawJoints, GivenInclinationIsTheSecantOfFiveMillimetresOnEachSide) {
         JointReach::straight, 1);
     EXPECT_NEAR(joints.inclination_deg(JawSide::left), 30, 1e-6);
     EXPECT_NEAR(joints.inclination_deg(JawSide::right), 52, 1e-6);
-    EXPECT_NEAR(joints.drop_mm(JawSide::left, 5), 5 * std::tan(30 * radian_per_degree), 1e-6);
+    EXPECT_NEAR(joints.inferior_translation_mm(JawSide::left, 5), 5 * std::tan(30 * degree), 1e-6);
   }
 }
 
-TEST(JawJoints, CondylesInAFossaKeepTheDiscsGapWhereverTheyGo) {
+TEST(JawJoints, CondylesInAFossaKeepTheDiscGapEverywhere) {
   const JawJoints joints(jaw_in_fossae(), {.disc_gap_front_mm = 1.3}, JointReach::aside, 2);
   ASSERT_TRUE(joints.surfaces());
   TrianglePair left, right;
@@ -103,7 +104,8 @@ TEST(JawJoints, SeatsAreTheSameForOneAndTwoThreads) {
   const JawJoints one(jaw_in_fossae(), {}, JointReach::aside, 1);
   const JawJoints two(jaw_in_fossae(), {}, JointReach::aside, 2);
   for (double s = 0.3; s < 17; s += 1.1)
-    EXPECT_EQ(one.drop_mm(JawSide::left, s, 0.3, 0.4), two.drop_mm(JawSide::left, s, 0.3, 0.4));
+    EXPECT_EQ(one.inferior_translation_mm(JawSide::left, s, 0.3, 0.4),
+              two.inferior_translation_mm(JawSide::left, s, 0.3, 0.4));
 }
 
 TEST(JawJoints, ImportedJointsKeepTheirMeasuredGap) {
@@ -119,7 +121,7 @@ TEST(JawJoints, ImportedJointsKeepTheirMeasuredGap) {
         << s;
 }
 
-TEST(JawJoints, BonwillAndBalkwillPlaceTheCondyles) {
+TEST(JawJoints, BonwillAndBalkwillLocateTheCondyles) {
   const Case patient = free_jaw();
   const JawJoints own(patient, {}, JointReach::straight, 1);
   const Vector3d across = own.condyle(JawSide::left) - own.incisor();

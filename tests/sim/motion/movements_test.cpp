@@ -1,10 +1,11 @@
-// Movements end where they were told to, on the teeth where teeth are.
+// Movements end at their targets, on the teeth where there are teeth.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "engine/core/error.h"
-#include "sim/motion/measures.h"
+#include "sim/motion/measure_pose.h"
 #include "sim/motion/motion.h"
 #include "tests/sim/motion/jaws.h"
 #include "tests/support/real_cases.h"
@@ -25,7 +26,7 @@ struct Moved {
         contacts(patient),
         motion(make_motion(spec, patient, contacts, settings)),
         start(*patient.landmarks.find("lower_incisal_point")) {}
-  Vector3d incisor(double time_s) const { return motion.wanted(time_s) * start - start; }
+  Vector3d incisor(double time_s) const { return motion.target(time_s) * start - start; }
   double end_of(const std::string& phase) const {
     for (const auto& p : motion.phases)
       if (p.name == phase) return p.end_s;
@@ -37,7 +38,7 @@ struct Moved {
     double deepest = 0, widest = 0;
     ContactSet last = contacts.at_rest();
     for (int i = 0; i <= 80; ++i) {
-      last = contacts.find(motion.wanted(t0 + (t1 - t0) * i / 80), &last);
+      last = contacts.find(motion.target(t0 + (t1 - t0) * i / 80), &last);
       deepest = std::max(deepest, last.max_penetration_mm());
       for (const auto& pair : last.pairs)
         if (pair.policy == PairPolicy::allowed) widest = std::max(widest, pair.distance_mm);
@@ -57,7 +58,7 @@ void expect_refused(const Case& jaw, const std::string& spec, const std::string&
 
 }  // namespace
 
-TEST(Movements, GoAsFarAsTold) {
+TEST(Movements, ReachTheirTargets) {
   const Moved moved(jaw_with_teeth(),
                     "open 30; close; protrude 6; close; left 7; close; right 5; close; rest 3");
   EXPECT_NEAR(-moved.incisor(moved.end_of("opening")).z(), 30, 1e-3);
@@ -80,7 +81,7 @@ TEST(Movements, ContactMovementsGlideOnTheTeethAndOpenOverTheIncisors) {
 TEST(Movements, AnIncisalTableGuidesWhereItIsSteeperThanTheTeeth) {
   const Moved moved(jaw_with_teeth(), "protrude 5", {.parameters = {.incisal_guidance_deg = 40}});
   const Vector3d end = moved.incisor(moved.motion.duration_s);
-  EXPECT_NEAR(-end.z(), 5 * std::tan(40 * M_PI / 180), 0.05);
+  EXPECT_NEAR(-end.z(), 5 * std::tan(40 * std::numbers::pi / 180), 0.05);
 }
 
 TEST(Movements, FollowEachOtherWithoutJumps) {
@@ -89,10 +90,10 @@ TEST(Movements, FollowEachOtherWithoutJumps) {
       "open 25; left 6; protrude 3; close; chew right 2; rest; hinge 6; open 12 at 80; retrude; "
       "posselt; hold 0.1; chew left 1; right 3");
   const int steps = static_cast<int>(moved.motion.duration_s * 500);
-  Pose before = moved.motion.wanted(0);
+  Pose before = moved.motion.target(0);
   EXPECT_LT(before.t.norm(), 1e-9);
   for (int i = 1; i <= steps; ++i) {
-    const Pose now = moved.motion.wanted(moved.motion.duration_s * i / steps);
+    const Pose now = moved.motion.target(moved.motion.duration_s * i / steps);
     EXPECT_LT((now * moved.start - before * moved.start).norm(), 0.6) << i;
     before = now;
   }
@@ -105,7 +106,7 @@ TEST(Movements, FollowEachOtherWithoutJumps) {
   EXPECT_NEAR(last, moved.motion.duration_s, 1e-9);
 }
 
-TEST(Movements, TakeTheTimeTheyAreGiven) {
+TEST(Movements, TakeTheSpecifiedTime) {
   const Moved moved(jaw_with_teeth(), "open 20 over 2; close at 50; hold 0.7");
   EXPECT_NEAR(moved.end_of("opening"), 2, 1e-9);
   EXPECT_NEAR(moved.end_of("hold") - moved.end_of("closing"), 0.7, 1e-9);
@@ -116,14 +117,15 @@ TEST(Movements, TakeTheTimeTheyAreGiven) {
   EXPECT_NEAR(whole.motion.phases.back().end_s, 6, 1e-9);
 }
 
-TEST(Movements, RefuseWhatThisJawCannotReachAndSayWhatItCan) {
+TEST(Movements, RefuseUnreachableTargetsAndStateTheLimit) {
   expect_refused(jaw_with_teeth(), "left 19", "reaches");
   expect_refused(jaw_with_teeth(), "open 70", "opens to");
   expect_refused(jaw_with_teeth(), "close\nopen 75", "line 2");
-  expect_refused(jaw_with_teeth(), "set opening 20; chew left 2 size 30", "higher");
+  expect_refused(jaw_with_teeth(), "set opening 20; chew left 2 size 30",
+                 "exceeds the maximum opening");
 }
 
-TEST(Movements, OpenAsFarAsTheyAskForAsIfThatWereSetFirst) {
+TEST(Movements, OpenToTheirTargetAsIfItWereAParameter) {
   // Unasked this jaw opens by some 45 mm.
   const Moved unasked(free_jaw(), "open over 1; close"), asked(free_jaw(), "open 50 over 1; close"),
       set(free_jaw(), "set opening 50; open 50 over 1; close");
@@ -132,13 +134,13 @@ TEST(Movements, OpenAsFarAsTheyAskForAsIfThatWereSetFirst) {
   EXPECT_EQ(asked.incisor(1), set.incisor(1));
   const auto& notes = asked.motion.notes;
   EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
-    return note.find("unasked this jaw opens to 4") != std::string::npos;
+    return note.find("by default this jaw opens to 4") != std::string::npos;
   }));
-  // A plain opening goes no farther for another that asks for more.
+  // A plain opening is not affected by another one with a larger target.
   const Moved both(free_jaw(), "open over 1; close over 1; open 50 over 1; close");
   EXPECT_NEAR(both.incisor(1).z(), unasked.incisor(1).z(), 0.01);
   EXPECT_NEAR(-both.incisor(3).z(), 50, 1e-3);
-  // What the patient's own opening is stays what it is; one that was set is kept to.
+  // The patient's own opening is unchanged; an explicit one is respected.
   const auto own = [](const Moved& moved) {
     for (const MotionInput& found : moved.motion.found)
       if (found.name == "opening") return found.value;
@@ -177,7 +179,7 @@ TEST(Chewing, CyclesAreRoundsOfTheRightSizeAndSideWithAPause) {
   }
 }
 
-TEST(Posselt, BordersEncloseWhatTheJawDoesOtherwise) {
+TEST(Posselt, BordersEncloseAllOtherMovements) {
   const Moved moved(jaw_with_teeth(), "posselt");
   const auto& round = moved.motion.borders;
   ASSERT_GT(round.sagittal.size(), 50u);
@@ -225,7 +227,7 @@ TEST(RealMovements, BadinClosesUntilItMeets) {
   if (!patient) GTEST_SKIP() << "real anatomy absent";
   const Moved moved(*patient, "close; protrude 6; close");
   const ContactSet shut =
-      moved.contacts.find(moved.motion.wanted(moved.end_of("closing")), nullptr);
+      moved.contacts.find(moved.motion.target(moved.end_of("closing")), nullptr);
   EXPECT_LT(shut.min_clearance_mm(), 0.05);
   EXPECT_LT(shut.max_penetration_mm(), 0.05);
   EXPECT_GT(moved.incisor(moved.end_of("closing")).z(), 3);  // its rest pose is open

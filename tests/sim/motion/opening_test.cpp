@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.h"
-#include "sim/motion/condylar_path.h"
+#include "sim/motion/condylar_kinematics.h"
 #include "sim/motion/joint_surfaces.h"
-#include "sim/motion/measures.h"
+#include "sim/motion/measure_pose.h"
 #include "sim/motion/motion.h"
 #include "tests/sim/motion/jaws.h"
 #include "tests/support/real_cases.h"
@@ -22,32 +22,33 @@ double largest(double Measures::*value, const Motion& motion, const Case& patien
   constexpr int frames = 360;
   double most = 0;
   for (int i = 0; i <= frames; ++i)
-    most = std::max(most, measure(patient, motion.wanted(motion.duration_s * i / frames)).*value);
+    most = std::max(most, measure(patient, motion.target(motion.duration_s * i / frames)).*value);
   return most;
 }
 double largest_opening(const Motion& motion, const Case& patient) {
   return largest(&Measures::opening_mm, motion, patient);
 }
 
-TEST(Opening, OpensAsFarAsAskedAndClosesAgain) {
+TEST(Opening, OpensToItsTargetAndClosesAgain) {
   const Case patient = free_jaw();
-  // Unasked, as far as adults: Woelfel's mean of the incisal point's way.
-  EXPECT_NEAR(largest(&Measures::incisal_way_mm, opening_of(patient), patient), 51.2, 1e-3);
+  // By default the mean of adults: Woelfel's displacement of the incisal point.
+  EXPECT_NEAR(largest(&Measures::incisal_displacement_mm, opening_of(patient), patient), 51.2,
+              1e-3);
   for (const double asked : {5.0, 20.0, 42.0})
     EXPECT_NEAR(largest_opening(opening_of(patient, opening_by(asked)), patient), asked, 1e-3);
   const Motion motion = opening_of(patient);
   EXPECT_EQ(motion.name, "opening");
   EXPECT_FALSE(motion.recorded);
   for (const double time : {0.0, motion.duration_s, -1.0, 99.0}) {
-    EXPECT_EQ(motion.wanted(time).t.norm(), 0);
-    EXPECT_EQ(rotation_angle(motion.wanted(time)), 0);
+    EXPECT_EQ(motion.target(time).t.norm(), 0);
+    EXPECT_EQ(rotation_angle(motion.target(time)), 0);
   }
 }
 
 TEST(Opening, StaysInTheBandsOfAdults) {
   const Case patient = free_jaw();
   const Motion motion = opening_of(patient);
-  const Measures open = measure(patient, motion.wanted(0.5 * motion.duration_s));
+  const Measures open = measure(patient, motion.target(0.5 * motion.duration_s));
   EXPECT_GT(open.rotation_deg, 28);
   EXPECT_LT(open.rotation_deg, 45);
   const double travel = (open.left_condyle - *patient.landmarks.find("left_condyle")).norm();
@@ -62,7 +63,7 @@ TEST(Opening, StartsAndStopsSmoothly) {
   const double widest = largest_opening(motion, patient);
   std::vector<double> drop;
   for (int i = 0; i <= frames; ++i)
-    drop.push_back(measure(patient, motion.wanted(motion.duration_s * i / frames)).opening_mm);
+    drop.push_back(measure(patient, motion.target(motion.duration_s * i / frames)).opening_mm);
   const double dt = motion.duration_s / frames;
   double fastest = 0, sharpest = 0;
   for (int i = 1; i < frames; ++i) {
@@ -88,7 +89,7 @@ TEST(Opening, StartsAndStopsSmoothly) {
   }
 }
 
-TEST(Opening, IsAHingeFirstUnlessTranslationIsAskedForEarly) {
+TEST(Opening, RotatesFirstUnlessEarlyTranslationIsRequested) {
   const Case patient = free_jaw();
   const Eigen::Vector3d seat = *patient.landmarks.find("left_condyle");
   double before = -1;
@@ -96,7 +97,7 @@ TEST(Opening, IsAHingeFirstUnlessTranslationIsAskedForEarly) {
     const Motion motion = opening_of(patient, early(share));
     double forward = -1;  // when the jaw has turned by 8 degrees
     for (int i = 0; forward < 0; ++i) {
-      const Measures now = measure(patient, motion.wanted(motion.duration_s * i / 2000));
+      const Measures now = measure(patient, motion.target(motion.duration_s * i / 2000));
       if (now.rotation_deg >= 8) forward = seat.y() - now.left_condyle.y();
     }
     EXPECT_GT(forward, before);
@@ -111,10 +112,10 @@ TEST(Opening, IsAHingeFirstUnlessTranslationIsAskedForEarly) {
 TEST(Opening, CondylesFollowTheKnownPathAndKeepTheirDistance) {
   const Case patient = free_jaw();
   const Motion motion = opening_of(patient);
-  const Pchip path = known_path(*patient.condylar_path);
+  const Pchip path = path_of_case(*patient.condylar_path);
   const Eigen::Vector3d seat = *patient.landmarks.find("left_condyle");
   for (int i = 0; i <= 100; ++i) {
-    const Measures now = measure(patient, motion.wanted(motion.duration_s * i / 100));
+    const Measures now = measure(patient, motion.target(motion.duration_s * i / 100));
     EXPECT_NEAR(seat.z() - now.left_condyle.z(), path(seat.y() - now.left_condyle.y()), 1e-9);
     EXPECT_NEAR(now.left_condyle.z(), now.right_condyle.z(), 1e-9);
     EXPECT_NEAR((now.left_condyle - now.right_condyle).norm(), 101, 1e-9);
@@ -123,9 +124,9 @@ TEST(Opening, CondylesFollowTheKnownPathAndKeepTheirDistance) {
 
 TEST(Opening, CouplingIsOneAndAHalfDegreesPerMillimetreAfterTheHinge) {
   const Coupling coupling;
-  EXPECT_EQ(coupling.forward_mm(5 * radian_per_degree), 0);
-  EXPECT_NEAR(coupling.forward_mm(33 * radian_per_degree), 21 / 1.5, 1e-12);
-  EXPECT_NEAR(coupling.forward_mm(45 * radian_per_degree), longest_forward_mm, 1e-12);
+  EXPECT_EQ(coupling.forward_mm(5 * degree), 0);
+  EXPECT_NEAR(coupling.forward_mm(33 * degree), 21 / 1.5, 1e-12);
+  EXPECT_NEAR(coupling.forward_mm(45 * degree), longest_forward_mm, 1e-12);
   for (const double early : {0.0, 0.3, 1.0}) {
     const Coupling mixed{.early = early};
     for (double forward = 0.5; forward < 16; forward += 0.7)
@@ -135,7 +136,7 @@ TEST(Opening, CouplingIsOneAndAHalfDegreesPerMillimetreAfterTheHinge) {
 
 TEST(Opening, AverageJointHasItsInclinationAndAFlatEnd) {
   const Pchip path = average_path();
-  EXPECT_NEAR(std::atan2(path(5), 5) / radian_per_degree, 40, 1e-6);
+  EXPECT_NEAR(std::atan2(path(5), 5) / degree, 40, 1e-6);
   EXPECT_EQ(path(0), 0);
   EXPECT_NEAR(path.derivative(18), 0, 1e-9);
   for (double s = 0.25; s <= 20; s += 0.25) EXPECT_GE(path(s), path(s - 0.25) - 1e-12);
@@ -147,21 +148,21 @@ TEST(Opening, CondylesInAFossaKeepTheirRestGap) {
   ASSERT_TRUE(joint);
   EXPECT_NEAR(joint->rest_gap_mm(), 2, 0.05);
   const Motion motion = opening_of(patient);
-  EXPECT_NEAR(largest(&Measures::incisal_way_mm, motion, patient), 46.6, 1e-3);
+  EXPECT_NEAR(largest(&Measures::incisal_displacement_mm, motion, patient), 46.6, 1e-3);
   double widest = 0;
   for (int i = 0; i <= 120; ++i) {
-    const Pose X_CM = motion.wanted(0.5 * motion.duration_s * i / 120);
+    const Pose X_CM = motion.target(0.5 * motion.duration_s * i / 120);
     EXPECT_GE(joint->slack_mm(X_CM), -0.1);
     widest = std::max(widest, joint->slack_mm(X_CM));
   }
   EXPECT_LT(widest, 0.3);  // guided, not merely clear
   // The path leans as the roof does: a slab at 35 degrees.
-  const Measures open = measure(patient, motion.wanted(0.5 * motion.duration_s));
+  const Measures open = measure(patient, motion.target(0.5 * motion.duration_s));
   const Eigen::Vector3d way = *patient.landmarks.find("left_condyle") - open.left_condyle;
-  EXPECT_NEAR(std::atan2(way.z(), way.y()) / radian_per_degree, 35, 1.5);
+  EXPECT_NEAR(std::atan2(way.z(), way.y()) / degree, 35, 1.5);
 }
 
-TEST(Opening, AJawThatMeetsBoneOpensOnlySoFarUnlessAsked) {
+TEST(Opening, AJawThatMeetsBoneStopsUnlessAnOpeningIsRequested) {
   Case patient = free_jaw();
   patient.condylar_path.reset();
   // A bar behind the chin: the body meets it at some 20 mm of opening.
@@ -174,7 +175,7 @@ TEST(Opening, AJawThatMeetsBoneOpensOnlySoFarUnlessAsked) {
   EXPECT_LT(reached, 40);
   ContactSet last = contacts.at_rest();
   for (int i = 0; i <= 120; ++i) {
-    last = contacts.find(motion.wanted(motion.duration_s * i / 120), &last);
+    last = contacts.find(motion.target(motion.duration_s * i / 120), &last);
     EXPECT_FALSE(last.pairs[0].touching);
   }
   EXPECT_GT(motion.notes.size(), 1u);
@@ -183,7 +184,7 @@ TEST(Opening, AJawThatMeetsBoneOpensOnlySoFarUnlessAsked) {
               40, 1e-3);
 }
 
-TEST(Opening, RefusesWhatCannotBe) {
+TEST(Opening, RefusesImpossibleValues) {
   Case patient = free_jaw();
   const ContactModel contacts(patient);
   const auto refused = [&](const MotionSettings& settings, const std::string& word) {
@@ -206,7 +207,7 @@ TEST(Opening, RefusesWhatCannotBe) {
   refused({}, "left_condyle");
 }
 
-TEST(MakeMotion, KnowsItsNamesAndListsThemWhenAskedForAnother) {
+TEST(MakeMotion, KnowsItsNamesAndListsThemForAnUnknownOne) {
   const Case patient = free_jaw();
   const ContactModel contacts(patient);
   for (const auto& name : builtin_motions())
@@ -232,7 +233,7 @@ void expect_free_opening(const Case& patient, double at_least_mm) {
   ContactSet last = contacts.at_rest();
   double largest = 0;
   for (int i = 0; i <= 360; ++i) {
-    const Pose X_CM = motion.wanted(motion.duration_s * i / 360);
+    const Pose X_CM = motion.target(motion.duration_s * i / 360);
     last = contacts.find(X_CM, &last, 2);
     for (std::size_t k = 0; k < last.pairs.size(); ++k) {
       const PairContact &now = last.pairs[k], &rest = contacts.at_rest().pairs[k];

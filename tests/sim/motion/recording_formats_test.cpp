@@ -6,6 +6,7 @@
 #include <array>
 #include <fstream>
 #include <functional>
+#include <numbers>
 #include <random>
 
 #include "engine/core/error.h"
@@ -66,10 +67,10 @@ void expect_jaw(const Motion& motion, double tolerance_mm = 1e-6) {
   ASSERT_NEAR(motion.duration_s, 1, 1e-9);
   for (const double time : {0.0, 0.1, 0.5, 0.7, 1.0})
     for (const Vector3d& p : {Vector3d(0, -80, -40), Vector3d(50, 0, 0), Vector3d(0, 0, 0)})
-      EXPECT_LT((motion.wanted(time) * p - jaw_at(time) * p).norm(), tolerance_mm) << time;
+      EXPECT_LT((motion.target(time) * p - jaw_at(time) * p).norm(), tolerance_mm) << time;
 }
 
-/// Eleven rows of what `row` tells of a time.
+/// Eleven rows, each given by `row` for a time.
 std::string rows(const std::function<std::string(double)>& row) {
   std::string text;
   for (int k = 0; k <= 10; ++k) text += row(k / 10.0) + "\n";
@@ -100,7 +101,7 @@ TEST_F(RecordingFormats, ASidecarNamesColumnsUnitsAxesAndOrigin) {
     const Pose X = jaw_at(time);
     const Matrix3d R = A.transpose() * X.R.toRotationMatrix() * A;
     const Vector3d t = A.transpose() * (X.t - origin + X.R * origin);
-    const Vector3d angles = R.eulerAngles(2, 1, 0) * 180 / M_PI;
+    const Vector3d angles = R.eulerAngles(2, 1, 0) * 180 / std::numbers::pi;
     return fmt::format("{};{:.14g};{:.14g};{:.14g};noise;{:.14g};{:.14g};{:.14g}", 1000 * time,
                        angles[0], angles[1], angles[2], t.x() / 1000, t.y() / 1000, t.z() / 1000);
   };
@@ -113,7 +114,7 @@ TEST_F(RecordingFormats, AnglesAboutFixedAxesAreTheReverseOrder) {
                 fmt::format(R"({{"mandible": {{"translation": ["tx_mm", "ty_mm", "tz_mm"],
                               "euler": ["a", "b", "c"], "order": "{}"}}}})",
                             letters))
-        .wanted(0)
+        .target(0)
         .R;
   };
   EXPECT_LT(order("XYZ", "0.1,0.2,0.3\n").angularDistance(order("zyx", "0.3,0.2,0.1\n")), 1e-12);
@@ -124,7 +125,7 @@ TEST_F(RecordingFormats, AnglesAboutFixedAxesAreTheReverseOrder) {
   EXPECT_LT(order("XYX", "0.1,0.2,0.3\n").angularDistance(by_hand), 1e-12);
 }
 
-TEST_F(RecordingFormats, MatricesComeWithTimesOrARateByRowsOrByColumns) {
+TEST_F(RecordingFormats, MatricesHaveTimesOrARateByRowsOrByColumns) {
   const auto with_time =
       rows([](double t) { return fmt::format("{} ", t) + matrix(jaw_at(t), " "); });
   expect_jaw(read("jawPose.raw", with_time));
@@ -158,11 +159,11 @@ TEST_F(RecordingFormats, RoundedMatricesBecomeRotationsAndOthersAreRefused) {
     rounded += " 0.00 0.00 0.00 1.00\n";
   }
   const Motion motion = read("jawPose.raw", rounded);
-  EXPECT_NEAR(motion.wanted(0.6).R.norm(), 1, 1e-12);
-  EXPECT_LT(motion.wanted(0.6).R.angularDistance(jaw_at(0.6).R), 0.01);
+  EXPECT_NEAR(motion.target(0.6).R.norm(), 1, 1e-12);
+  EXPECT_LT(motion.target(0.6).R.angularDistance(jaw_at(0.6).R), 0.01);
   const std::string end = " 0 0 0 1\n";
   expect_refused("a.raw", "0 1 0 0 0 0 1.2 0 0 0 0 1 0" + end, "", {"line 1", "rotation", "0.44"});
-  expect_refused("a.raw", "0 1 0 0 0 0 1 0 0 0 0 -1 0" + end, "", {"line 1", "mirrors"});
+  expect_refused("a.raw", "0 1 0 0 0 0 1 0 0 0 0 -1 0" + end, "", {"line 1", "reflection"});
   expect_refused("a.raw", "0 1 0 0 2 0 1 0 0 0 0 1 0 0 0 5 1\n", "",
                  {"line 1", "0 0 0 1", "0 0 5 1"});
   expect_refused("a.raw", "0 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n0 1 0\n", "", {"line 2", "cut off"});
@@ -181,13 +182,13 @@ TEST_F(RecordingFormats, OpenSimStorageIsInItsAxesAndUnits) {
              const Vector3d t = A.transpose() * X.t / 1000;
              const Vector3d angles =
                  (A.transpose() * X.R.toRotationMatrix() * A).eulerAngles(0, 1, 2);
-             // The other solution of the same rotation where Eigen takes it.
+             // The other solution of the same rotation where Eigen chooses it.
              return fmt::format("{}\t7\t{:.14g}\t{:.14g}\t{:.14g}\t{:.14g}\t{:.14g}\t{:.14g}", time,
                                 angles[0] * unit, angles[1] * unit, angles[2] * unit, t.x(), t.y(),
                                 t.z());
            });
   };
-  expect_jaw(read("jaw.mot", content("yes", 180 / M_PI)));
+  expect_jaw(read("jaw.mot", content("yes", 180 / std::numbers::pi)));
   expect_jaw(read("jaw.sto", content("no", 1)));
   std::string old = content("no", 1);
   old.replace(0, old.find("endheader"), "name x\ndatacolumns 8\ndatarows 11\n");
@@ -242,17 +243,17 @@ std::string trc(const std::vector<Vector3d>& markers, const std::vector<Vector3d
   return text;
 }
 
-TEST_F(RecordingFormats, MarkersAreFittedAndTheirResidualIsTold) {
+TEST_F(RecordingFormats, MarkersAreFittedAndTheirResidualIsReported) {
   const std::vector<Vector3d> jaw = {{0, -90, -50}, {30, -60, -60}, {-30, -60, -60}, {0, -80, -70}};
   const std::vector<Vector3d> head = {{0, -80, 60}, {40, -60, 80}, {-40, -60, 80}};
   // As the lab has it the jaw turns about other axes; with the lab's axes given, it is the jaw.
   const Motion alone = read("jaw.trc", trc(jaw, {}, 0), R"({"axes": "LPS"})");
   EXPECT_LT(alone.recording->residual_max_mm, 1e-9);
-  EXPECT_NEAR(rotation_angle(alone.wanted(1)), rotation_angle(jaw_at(1)), 1e-9);
+  EXPECT_NEAR(rotation_angle(alone.target(1)), rotation_angle(jaw_at(1)), 1e-9);
   const std::string both = R"({"axes": "LPS",
     "mandible": {"markers": ["m0", "m1", "m2", "m3"]}, "cranium": {"markers": ["m4", "m5", "m6"]}})";
   const Motion against = read("jaw.trc", trc(jaw, head, 0), both);
-  EXPECT_NEAR(rotation_angle(against.wanted(0.7)), rotation_angle(jaw_at(0.7)), 1e-9);
+  EXPECT_NEAR(rotation_angle(against.target(0.7)), rotation_angle(jaw_at(0.7)), 1e-9);
   const Motion noisy = read("jaw.trc", trc(jaw, head, 0.2), both);
   EXPECT_GT(noisy.recording->residual_rms_mm, 0.1);
   EXPECT_LT(noisy.recording->residual_rms_mm, 0.6);
@@ -269,7 +270,7 @@ TEST_F(RecordingFormats, MarkersAreFittedAndTheirResidualIsTold) {
   expect_refused("jaw.trc", trc({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}}, {}, 0), "", {"line"});
 }
 
-TEST_F(RecordingFormats, JitterIsTakenOutOnlyOnRequest) {
+TEST_F(RecordingFormats, JitterIsRemovedOnlyOnRequest) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0, 0.1);
   std::string text = "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n";
@@ -283,7 +284,7 @@ TEST_F(RecordingFormats, JitterIsTakenOutOnlyOnRequest) {
   }
   const auto rms = [&](const Motion& motion) {
     double sum = 0;
-    for (const double t : motion.sample_times) sum += (motion.wanted(t).t - truth(t)).squaredNorm();
+    for (const double t : motion.sample_times) sum += (motion.target(t).t - truth(t)).squaredNorm();
     return std::sqrt(sum / static_cast<double>(motion.sample_times.size()));
   };
   const double raw = rms(read("a.csv", text)),
@@ -292,13 +293,13 @@ TEST_F(RecordingFormats, JitterIsTakenOutOnlyOnRequest) {
   EXPECT_LT(smooth, 0.35 * raw);
 }
 
-TEST_F(RecordingFormats, MistakenUnitsAndAxesAreTold) {
+TEST_F(RecordingFormats, MistakenUnitsAndAxesAreReported) {
   const Case patient = test::box_patient();
   const auto notes = [&](const std::string& name, const std::string& rows,
                          const std::string& sidecar = "") {
     Motion motion =
         read(name, "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n" + rows, sidecar);
-    note_what_looks_wrong(patient, motion);
+    note_implausible_values(patient, motion);
     std::string all;
     for (const auto& note : motion.notes) all += note + "\n";
     return all;
@@ -307,7 +308,7 @@ TEST_F(RecordingFormats, MistakenUnitsAndAxesAreTold) {
     for (const char* word : words) EXPECT_NE(text.find(word), std::string::npos) << text;
   };
   EXPECT_EQ(notes("good.csv", "1,0,-3,-30,1,0,0,0\n"), "");
-  // Metres read as millimetres, without and with a turn, and with the unit told.
+  // Metres read as millimetres, without and with a rotation, and with the unit declared.
   expect_in(notes("m.csv", "1,0,0,-0.04,1,0,0,0\n"),
             {"m.csv", "motion is tiny, 0.04 mm", "{\"length_unit\": \"m\"}", "m.csv.json"});
   const std::string turn = "0.98480775,0.17364818,0,0\n";  // 20 degrees
@@ -321,14 +322,48 @@ TEST_F(RecordingFormats, MistakenUnitsAndAxesAreTold) {
                  R"({"length_unit": "m"})",
                  {"mm.csv", "line 3", "tz_mm", "-40000 mm", "in metres", "length_unit"});
   expect_in(notes("far.csv", "1,0,0,-0.8,1,0,0,0\n", R"({"length_unit": "m"})"),
-            {"far.csv", "goes 800 mm away at 1.00 s", "length_unit"});
-  expect_in(notes("up.csv", "1,0,0,30,1,0,0,0\n"), {"up.csv", "goes up 30.0 mm", "\"axes\""});
+            {"far.csv", "is 800 mm from rest at 1.00 s", "length_unit"});
+  expect_in(notes("up.csv", "1,0,0,30,1,0,0,0\n"), {"up.csv", "rises 30.0 mm", "\"axes\""});
+}
+
+TEST_F(RecordingFormats, LengthsInCentimetresAreRecognizedByTheCondyles) {
+  Case patient = test::box_patient();
+  for (auto& [name, point] : patient.landmarks.points) point += Vector3d(0, 65, 112);
+  const auto notes = [&](double unit_mm, const std::string& sidecar = "") {
+    const Vector3d hinge(0, 60, 100);
+    std::string rows = "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n";
+    for (int k = 0; k <= 10; ++k) {
+      const Eigen::Quaterniond R(Eigen::AngleAxisd(0.021 * k, Vector3d::UnitX()));  // to 12 degrees
+      const Vector3d t = (hinge - R * hinge) / unit_mm;
+      rows += fmt::format("{},{},{},{},{},{},{},{}\n", 0.1 * k, t.x(), t.y(), t.z(), R.w(), R.x(),
+                          R.y(), R.z());
+    }
+    Motion motion = read("turn.csv", rows, sidecar);
+    note_implausible_values(patient, motion);
+    std::string all;
+    for (const auto& note : motion.notes) all += note + "\n";
+    return all;
+  };
+  EXPECT_EQ(notes(1), "");
+  const std::string in_cm = notes(10);
+  for (const char* words : {"turn.csv", "condyles leave their joints", "turns by 12 degrees",
+                            "turn.csv.json", "{\"length_unit\": \"cm\"}"})
+    EXPECT_NE(in_cm.find(words), std::string::npos) << in_cm;
+  EXPECT_EQ(notes(10, R"({"length_unit": "cm"})"), "");
+}
+
+TEST_F(RecordingFormats, PositionsAloneAreRefusedWithTheColumnsThatAreNeeded) {
+  for (const std::string text : {"x,y,z\n0,0,0\n0,-1,-2\n", "time_s,x,y,z\n0,0,0,0\n1,0,-1,-2\n",
+                                 "0 0 0\n0 -1 -2\n", "0,0,0,0\n1,0,-1,-2\n"})
+    expect_refused("path.csv", text, "",
+                   {"line 1", "rotation of the jaw", "tx_mm,ty_mm,tz_mm,qw,qx,qy,qz", ".trc",
+                    "path.csv.json"});
 }
 
 TEST_F(RecordingFormats, SidecarsAreReadStrictly) {
   const std::string csv = "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n";
   expect_refused("a.csv", csv, "{", {"a.csv.json"});
-  expect_refused("a.csv", csv, R"({"colour": 1})", {"colour", "known are"});
+  expect_refused("a.csv", csv, R"({"colour": 1})", {"colour", "valid keys"});
   expect_refused("a.csv", csv, R"({"axes": "XYZ"})", {"axes", "XYZ"});
   expect_refused("a.csv", csv, R"({"length_unit": "furlong"})", {"length_unit", "furlong", "mm"});
   expect_refused("a.csv", csv, R"({"mandible": {"translation": ["a", "b"]}})",
@@ -350,7 +385,7 @@ TEST(RealFormats, TheRoundedMatricesOfACasePlayLikeItsPoses) {
   const Motion exact = read_recording(folder / "rightchew_jaw_pose.csv"),
                rounded = read_recording(folder / "rightchew_jaw_pose_raw2dp.csv");
   for (double t = 0; t < 0.8; t += 0.05)
-    EXPECT_LT((exact.wanted(t + 0.001).t - rounded.wanted(t).t).norm(), 0.05);
+    EXPECT_LT((exact.target(t + 0.001).t - rounded.target(t).t).norm(), 0.05);
   EXPECT_TRUE(exact.recording->gaps.empty());
 }
 

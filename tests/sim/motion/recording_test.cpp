@@ -12,7 +12,7 @@
 namespace condyle {
 namespace {
 
-/// A file of its own that goes away again.
+/// A temporary file.
 class Recording : public testing::Test {
  protected:
   Recording()
@@ -56,17 +56,17 @@ TEST_F(Recording, IsExactAtItsSamplesAndStraightBetween) {
   EXPECT_TRUE(motion.recorded);
   EXPECT_EQ(motion.name, "poses");
   EXPECT_DOUBLE_EQ(motion.duration_s, 2.0);
-  EXPECT_EQ(motion.wanted(0).t, Eigen::Vector3d(0, 0, 0));
-  EXPECT_EQ(motion.wanted(0.5).t, Eigen::Vector3d(1, 2, 3));
-  EXPECT_NEAR(motion.wanted(0.5).R.x(), 0.8, 1e-15);
-  EXPECT_EQ(motion.wanted(2.0).t, Eigen::Vector3d(5, 2, 3));
-  EXPECT_LT((motion.wanted(0.25).t - Eigen::Vector3d(0.5, 1, 1.5)).norm(), 1e-15);
+  EXPECT_EQ(motion.target(0).t, Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(motion.target(0.5).t, Eigen::Vector3d(1, 2, 3));
+  EXPECT_NEAR(motion.target(0.5).R.x(), 0.8, 1e-15);
+  EXPECT_EQ(motion.target(2.0).t, Eigen::Vector3d(5, 2, 3));
+  EXPECT_LT((motion.target(0.25).t - Eigen::Vector3d(0.5, 1, 1.5)).norm(), 1e-15);
   // Halfway in angle: slerp.
-  const double whole = rotation_angle(motion.wanted(0.5));
-  EXPECT_NEAR(rotation_angle(motion.wanted(0.25)), whole / 2, 1e-12);
+  const double whole = rotation_angle(motion.target(0.5));
+  EXPECT_NEAR(rotation_angle(motion.target(0.25)), whole / 2, 1e-12);
   // Clamped beyond both ends.
-  EXPECT_EQ(motion.wanted(-1).t, motion.wanted(0).t);
-  EXPECT_EQ(motion.wanted(99).t, motion.wanted(2.0).t);
+  EXPECT_EQ(motion.target(-1).t, motion.target(0).t);
+  EXPECT_EQ(motion.target(99).t, motion.target(2.0).t);
 }
 
 TEST_F(Recording, TakesColumnsInAnyOrderWithOthersBetweenAndWindowsLineEnds) {
@@ -75,28 +75,28 @@ TEST_F(Recording, TakesColumnsInAnyOrderWithOthersBetweenAndWindowsLineEnds) {
       "\xEF\xBB\xBFqz, qy ,QX,qw,note,tz_mm,ty_mm,tx_mm,Time_s\r\n"
       "0,0.8,0,0.6,hello,3,2,1,0\r\n\r\n0.8,0,0,0.6,,6,5,4,+1\r\n");
   for (const double time : {0.0, 0.3, 1.0}) {
-    EXPECT_EQ(plain.wanted(time).t, odd.wanted(time).t);
-    EXPECT_EQ(plain.wanted(time).R.coeffs(), odd.wanted(time).R.coeffs());
+    EXPECT_EQ(plain.target(time).t, odd.target(time).t);
+    EXPECT_EQ(plain.target(time).R.coeffs(), odd.target(time).R.coeffs());
   }
   // A last line without an end is whole.
-  EXPECT_EQ(read(header + "0,0,0,0,1,0,0,0\n1,7,0,0,1,0,0,0").wanted(1).t.x(), 7);
+  EXPECT_EQ(read(header + "0,0,0,0,1,0,0,0\n1,7,0,0,1,0,0,0").target(1).t.x(), 7);
 }
 
 TEST_F(Recording, QuaternionsMayBeRoundedAndChangeSign) {
   const Motion motion = read(header + "0,0,0,0,0.9995,0,0,0\n1,0,0,0,-0.9998,-0.02,0,0\n");
-  EXPECT_NEAR(motion.wanted(0).R.norm(), 1, 1e-15);
-  EXPECT_NEAR(motion.wanted(0.5).R.norm(), 1, 1e-15);
-  EXPECT_LT(rotation_angle(motion.wanted(0.5)), 0.021);  // not the long way round
-  EXPECT_NEAR(rotation_angle(motion.wanted(1)), 0.04, 1e-4);
+  EXPECT_NEAR(motion.target(0).R.norm(), 1, 1e-15);
+  EXPECT_NEAR(motion.target(0.5).R.norm(), 1, 1e-15);
+  EXPECT_LT(rotation_angle(motion.target(0.5)), 0.021);  // not the long arc
+  EXPECT_NEAR(rotation_angle(motion.target(1)), 0.04, 1e-4);
 }
 
 TEST_F(Recording, OneRowIsAStillPose) {
   const Motion motion = read(header + "5,1,2,3,1,0,0,0\n");
   EXPECT_EQ(motion.duration_s, 0);
-  EXPECT_EQ(motion.wanted(0.7).t, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(motion.target(0.7).t, Eigen::Vector3d(1, 2, 3));
 }
 
-TEST_F(Recording, RefusesWhatIsWrongAndSaysWhere) {
+TEST_F(Recording, RefusesErrorsWithTheirLocation) {
   const std::string good = "0,0,0,0,1,0,0,0\n";
   expect_refused("", {"empty"});
   expect_refused("\r\n \n", {"empty"});
@@ -132,7 +132,7 @@ TEST_F(Recording, AJsonFileIsNoMotion) {
     FAIL();
   } catch (const InputError& error) {
     const std::string words = error.what();
-    EXPECT_NE(words.find("foo.json: is no motion"), std::string::npos) << words;
+    EXPECT_NE(words.find("foo.json: is not a motion"), std::string::npos) << words;
     EXPECT_EQ(words.find("json.json"), std::string::npos) << words;
   }
 }
@@ -143,12 +143,12 @@ TEST(RealRecording, RightChewPlaysBackAsWritten) {
   const Motion motion = read_recording(path);
   EXPECT_NEAR(motion.duration_s, 1.002, 1e-9);
   const Eigen::Vector3d incisor(0, -46.9584, 41.7642);
-  // The file read again, in the plainest way: pose times marker.
+  // The file read again in the simplest way: pose times marker.
   std::ifstream in(path);
   std::string line;
   std::getline(in, line);
   int rows = 0;
-  double largest_drop = 0;
+  double max_drop = 0;
   while (std::getline(in, line)) {
     double time, x, y, z, w, a, b, c;
     ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &time, &x, &y, &z, &w,
@@ -156,12 +156,12 @@ TEST(RealRecording, RightChewPlaysBackAsWritten) {
               8);
     const Eigen::Vector3d expected =
         Eigen::Quaterniond(w, a, b, c).normalized() * incisor + Eigen::Vector3d(x, y, z);
-    ASSERT_LT((motion.wanted(time) * incisor - expected).norm(), 1e-9) << time;
-    largest_drop = std::max(largest_drop, incisor.z() - expected.z());
+    ASSERT_LT((motion.target(time) * incisor - expected).norm(), 1e-9) << time;
+    max_drop = std::max(max_drop, incisor.z() - expected.z());
     ++rows;
   }
   EXPECT_EQ(rows, 1003);
-  EXPECT_NEAR(largest_drop, 20.09, 0.02);
+  EXPECT_NEAR(max_drop, 20.09, 0.02);
 }
 
 }  // namespace

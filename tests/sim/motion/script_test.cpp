@@ -6,7 +6,7 @@
 namespace condyle::test {
 namespace {
 
-/// The complaint about a text.
+/// The error message for a text.
 std::string refusal(const std::string& text) {
   try {
     parse_motion_script(text, "a.motion");
@@ -44,14 +44,14 @@ TEST(MotionScript, ReadsMovementsOnLinesAndBetweenSemicolons) {
   EXPECT_EQ(script.statements[7].duration_s, 8);
 }
 
-TEST(MotionScript, NamesLineAndWordOfWhatItDoesNotUnderstand) {
+TEST(MotionScript, NamesLineAndWordOfASyntaxError) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> wrong = {
       {"open forty", {"line 1", "word 2", "\"forty\"", "open"}},
-      {"close\n\nopne 40", {"line 3", "\"opne\"", "no movement", "protrude"}},
+      {"close\n\nopne 40", {"line 3", "\"opne\"", "not a movement", "protrude"}},
       {"open 400", {"\"400\"", "range", "80 mm"}},
       {"open -3", {"\"-3\"", "range"}},
       {"open nan", {"\"nan\""}},
-      {"open 4 cm", {"\"cm\"", "mm is meant"}},
+      {"open 4 cm", {"\"cm\"", "mm is expected"}},
       {"open 40 quickly", {"word 3", "\"quickly\"", "over"}},
       {"open 40 over", {"\"over\"", "followed by"}},
       {"open 40 over 0", {"\"0\"", "0.05"}},
@@ -78,7 +78,7 @@ TEST(MotionScript, NamesLineAndWordOfWhatItDoesNotUnderstand) {
   }
 }
 
-TEST(MotionScript, TextsOfNoiseAreTakenOrRefusedButNeverMore) {
+TEST(MotionScript, RandomTextIsAcceptedOrRefusedWithoutCrashing) {
   const std::vector<std::string> words = {"open", "40",   "close", ";",  "\n", "over", "1e9",  "-",
                                           "set",  "chew", "left",  "mm", "#",  "at",   "1e-9", ""};
   unsigned state = 7;

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "engine/core/error.h"
-#include "sim/muscles/usual_muscles.h"
+#include "sim/muscles/default_muscles.h"
 #include "sim/phantom/phantom.h"
 
 namespace condyle {
@@ -73,11 +73,11 @@ TEST_F(ExcitationFile, IsExactAtItsRowsAndNeverBeyondThem) {
   EXPECT_EQ(e.at(9)[0], 0);
 }
 
-TEST_F(ExcitationFile, RefusesWhatIsWrongAndSaysWhere) {
+TEST_F(ExcitationFile, RefusesErrorsWithTheirLocation) {
   expect_refused("", {"empty"});
   expect_refused("# only words\n", {"empty"});
   expect_refused("time_s,lat\n", {"no excitation"});
-  expect_refused("time_s\n0\n", {"line 1", "no muscle"});
+  expect_refused("time_s\n0\n", {"line 1", "names a muscle"});
   expect_refused("lat\n0\n", {"line 1", "time_s"});
   expect_refused("time_s,biceps\n0,0\n", {"line 1", "biceps", "lat", "stiffenjaw"});
   expect_refused("time_s,xclose\n0,0\n", {"line 1", "xclose"});
@@ -114,11 +114,11 @@ TEST_F(ExcitationFile, KnotsOfEachMuscleHaveTimesOfTheirOwn) {
   expect_refused(header + "lat,0,0,Cubist,1\n", {"line 2", "interpolation", "Cubist", "linear"});
   expect_refused(header + "lat,-1,0,step,1\n", {"line 2", "time_s", "-1"});
   expect_refused(header + "lat,1,0,step,1\nrat,0,0,step,1\nlat,1,0,step,1\n",
-                 {"line 4", "time_s", "after 1"});
+                 {"line 4", "time_s", "later than 1"});
   expect_refused(header + "lat,0,0,step,1\nlat,1,0,linear,1\n", {"line 3", "lat"});
 }
 
-TEST_F(ExcitationFile, HoldsOrJoinsItsRowsAsToldInItOrBesideIt) {
+TEST_F(ExcitationFile, HoldsOrInterpolatesItsRowsAsItsHeaderOrSidecarSays) {
   const std::string rows = "time_s,lat\n0,0\n0.3,0.6\n0.6,0.2\n";
   const Excitations held = read("# interpolation: step\n" + rows);
   EXPECT_EQ(held.at(0.299)[0], 0);
@@ -132,7 +132,7 @@ TEST_F(ExcitationFile, HoldsOrJoinsItsRowsAsToldInItOrBesideIt) {
                  R"({"interpolation": "wild"})");
 }
 
-TEST_F(ExcitationFile, ASidecarGivesAToneAndTakesMusclesOut) {
+TEST_F(ExcitationFile, ASidecarSetsToneAndRemovesMuscles) {
   const std::string rows = "time_s,lat,rmy,lpm\n0,0.1,0.3,0.4\n";
   const Excitations e =
       read(rows, R"({"tone": {"t": 0.01, "lat": 0.02}, "without": ["pm"], "until_s": 0.4})");
@@ -150,9 +150,9 @@ TEST_F(ExcitationFile, ASidecarGivesAToneAndTakesMusclesOut) {
   expect_refused(rows, {"excite.csv.json", "line 1"}, "{");
 }
 
-TEST(UsualMuscles, AreMirroredAndPullWhereTheirGroupSays) {
+TEST(DefaultMuscles, AreMirroredAndPullWhereTheirGroupSays) {
   const Case patient = builtin_patient();
-  const auto muscles = usual_muscles(patient);
+  const auto muscles = default_muscles(patient);
   ASSERT_EQ(muscles.size(), 34u);
   const Eigen::Vector3d condyle = *patient.landmarks.find("left_condyle");
   double closers_N = 0;

@@ -5,7 +5,7 @@
 namespace condyle {
 namespace {
 
-TEST(MuscleNames, ShortOnesSayTheSideFirst) {
+TEST(MuscleNames, ShortNamesBeginWithTheSide) {
   Muscle m;
   m.name = "lsp";
   m.kind = "sp";

@@ -26,7 +26,7 @@ const Case& builtin() {
 }
 
 OcclusionSettings kept() {
-  static const Folder folder;  // fields are made once
+  static const Folder folder;  // fields are built once
   OcclusionSettings settings;
   settings.cache = folder.path();
   return settings;
@@ -72,7 +72,7 @@ bool mentions(const std::string& text, const std::string& word) {
 
 }  // namespace
 
-TEST(SettleBite, BuiltBiteIsFoundFromTwentyStartsUpToThreeMillimetresAndDegreesAway) {
+TEST(CloseBite, BuiltBiteIsFoundFromTwentyStartsUpToThreeMillimetresAndDegreesAway) {
   constexpr std::size_t seeds = 20;
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
@@ -82,10 +82,10 @@ TEST(SettleBite, BuiltBiteIsFoundFromTwentyStartsUpToThreeMillimetresAndDegreesA
   };
   std::vector<Pose> starts;
   for (std::size_t i = 0; i < seeds; ++i) {
-    // Half of them as far as it goes.
+    // Half of them at the limit.
     const double mm = i % 2 ? 3 : 3 * share(random), deg = i % 2 ? 3 : 3 * share(random);
     const Vector3d way = direction(), axis = direction();
-    starts.push_back(pose_beside_rest(builtin(), mm * way, deg * axis));
+    starts.push_back(displaced_from_rest(builtin(), mm * way, deg * axis));
   }
   std::vector<Bite> bites(seeds);
   parallel_for(seeds, 2, [&](std::size_t i) { bites[i] = finder().find(starts[i]); });
@@ -105,15 +105,15 @@ TEST(SettleBite, BuiltBiteIsFoundFromTwentyStartsUpToThreeMillimetresAndDegreesA
   EXPECT_GE(far, 10);
 }
 
-TEST(SettleBite, BuiltBiteHasManyBalancedContacts) {
+TEST(CloseBite, BuiltBiteHasManyBalancedContacts) {
   const Bite bite = finder().find({});
   ASSERT_TRUE(bite.stable) << bite.unstable_because;
   EXPECT_LE(exact_overlap(builtin(), bite, bite.rest.X_CM), 0.05);
   EXPECT_GE(bite.contacts.size(), 12u);
-  EXPECT_NEAR(bite.left_share, 0.5, 0.03);
+  EXPECT_NEAR(bite.left_fraction, 0.5, 0.03);
   double all = 0;
   for (const auto& contact : bite.contacts) {
-    all += contact.load_share;
+    all += contact.load_fraction;
     // The opponents of the built-in patient are as in a textbook: same side, neighbours.
     EXPECT_EQ(contact.left, contact.lower_fdi / 10 == 3);
     EXPECT_EQ(contact.upper_fdi / 10, contact.left ? 2 : 1);
@@ -124,7 +124,7 @@ TEST(SettleBite, BuiltBiteHasManyBalancedContacts) {
   }
   EXPECT_NEAR(all, 1, 1e-9);
   double upper = 0, lower = 0;
-  for (const auto& tooth : bite.teeth) (tooth.fdi < 30 ? upper : lower) += tooth.load_share;
+  for (const auto& tooth : bite.teeth) (tooth.fdi < 30 ? upper : lower) += tooth.load_fraction;
   EXPECT_EQ(bite.teeth.size(), 28u);
   EXPECT_NEAR(upper, 1, 1e-9);
   EXPECT_NEAR(lower, 1, 1e-9);
@@ -134,42 +134,43 @@ TEST(SettleBite, BuiltBiteHasManyBalancedContacts) {
   EXPECT_LT((*bite.condyle_moved)[0].norm(), 0.1);
 }
 
-TEST(SettleBite, StartInDeepOverlapIsOpenedFirst) {
-  const Pose deep = pose_beside_rest(builtin(), {0, 0, 3}, {0, 0, 0});
+TEST(CloseBite, StartInDeepOverlapIsOpenedFirst) {
+  const Pose deep = displaced_from_rest(builtin(), {0, 0, 3}, {0, 0, 0});
   const Bite bite = finder().find(deep);
   ASSERT_GT(exact_overlap(builtin(), bite, deep), 1);
   EXPECT_TRUE(bite.stable);
   EXPECT_LT(farthest(builtin().find(Role::lower_teeth)->mesh, bite.rest.X_CM, {}), 0.1);
 }
 
-TEST(SettleBite, SameBitsForOneAndTwoThreads) {
+TEST(CloseBite, IsBitIdenticalForOneAndTwoThreads) {
   auto settings = kept();
-  const Pose start = pose_beside_rest(builtin(), {1, -2, 0.5}, {1, 1, -2});
+  const Pose start = displaced_from_rest(builtin(), {1, -2, 0.5}, {1, 1, -2});
   const Bite one = finder().find(start);
   settings.threads = 2;
   const Bite two = settled(builtin(), start, settings);
   EXPECT_EQ(one.rest.X_CM.t, two.rest.X_CM.t);
   EXPECT_EQ(one.rest.X_CM.R.coeffs(), two.rest.X_CM.R.coeffs());
   EXPECT_EQ(one.rest.work, two.rest.work);
-  EXPECT_EQ(one.left_share, two.left_share);
+  EXPECT_EQ(one.left_fraction, two.left_fraction);
   EXPECT_EQ(one.load_center, two.load_center);
 }
 
-TEST(SettleBite, FlatArchesPressTheFoilByTheForceOverTheirArea) {
+TEST(CloseBite, FlatArchesCompressTheFilmByForceOverArea) {
   const Case patient = box_patient();
   OcclusionSettings settings;
   settings.joint_N_per_mm = 1;
-  settings.foil_MPa = 0.5;
+  settings.layer_stiffness_MPa = 0.5;
   const Bite bite = settled(patient, {}, settings);
   EXPECT_TRUE(bite.stable) << bite.unstable_because;
   // Under the load, half of the force on each side.
   double area = 0;
   for (const auto& contact : bite.contacts) area += contact.area_mm2;
   ASSERT_GT(area, 2000);
-  EXPECT_NEAR(bite.gap_mm,
-              settings.paper_mm / (1 + settings.closing_force_N / (area * settings.foil_MPa)),
-              0.01);
-  EXPECT_NEAR(bite.left_share, 0.5, 1e-3);
+  EXPECT_NEAR(
+      bite.gap_mm,
+      settings.paper_mm / (1 + settings.closing_force_N / (area * settings.layer_stiffness_MPa)),
+      0.01);
+  EXPECT_NEAR(bite.left_fraction, 0.5, 1e-3);
   EXPECT_NEAR(bite.load_center.x(), 0, 0.05);
   const double molar_y = -92 + 28;
   EXPECT_NEAR(bite.load_center.y(), molar_y, 2.5);
@@ -177,7 +178,7 @@ TEST(SettleBite, FlatArchesPressTheFoilByTheForceOverTheirArea) {
   EXPECT_NEAR(bite.before.overbite_mm, -1, 1e-6);
 }
 
-TEST(SettleBite, TeethOfOneSideAloneAreNoStableBite) {
+TEST(CloseBite, TeethOfOneSideAloneAreNoStableBite) {
   Case patient = box_patient();
   patient.parts[0].mesh = box({2, -90, -40}, {30, -40, 0});
   patient.landmarks.points["upper_incisal_point"] = {2, -90, -40};
@@ -187,7 +188,7 @@ TEST(SettleBite, TeethOfOneSideAloneAreNoStableBite) {
       << bite.unstable_because;
 }
 
-TEST(SettleBite, MissingArchesAndImpossibleStartsAreRefused) {
+TEST(CloseBite, MissingArchesAndImpossibleStartsAreRefused) {
   Case patient = box_patient();
   patient.landmarks.points.erase("lower_incisal_point");
   EXPECT_TRUE(mentions(complaint(patient), "no lower teeth")) << complaint(patient);
@@ -210,7 +211,7 @@ TEST(SettleBite, MissingArchesAndImpossibleStartsAreRefused) {
   EXPECT_TRUE(mentions(complaint(patient, start), "at most 25 mm"));
 }
 
-TEST(SettleBite, RealCrownsThatOverlapEndInABiteWithoutOverlap) {
+TEST(CloseBite, RealCrownsThatOverlapEndInABiteWithoutOverlap) {
   const auto patient = case_ubc();
   if (!patient) GTEST_SKIP() << "real anatomy absent";
   const BiteFinder ubc(*patient, kept());
@@ -220,13 +221,13 @@ TEST(SettleBite, RealCrownsThatOverlapEndInABiteWithoutOverlap) {
   EXPECT_LE(exact_overlap(*patient, bite, bite.rest.X_CM), 0.05);
   EXPECT_LE(bite.overlap_mm, 0.05);
   EXPECT_GE(bite.contacts.size(), 4u);
-  EXPECT_NEAR(bite.left_share, 0.5, 0.1);
+  EXPECT_NEAR(bite.left_fraction, 0.5, 0.1);
   EXPECT_LT(bite.moved_from_rest_mm, 3);
-  const Bite again = ubc.find(pose_beside_rest(*patient, {1, 2, 1}, {-1, 2, 1}));
+  const Bite again = ubc.find(displaced_from_rest(*patient, {1, 2, 1}, {-1, 2, 1}));
   EXPECT_LT(farthest(patient->find(Role::lower_teeth)->mesh, bite.rest.X_CM, again.rest.X_CM), 0.1);
 }
 
-TEST(SettleBite, RealBonesWithCrownsThatDoNotTouchAreClosed) {
+TEST(CloseBite, RealBonesWithCrownsThatDoNotTouchAreClosed) {
   const auto patient = case_badin();
   if (!patient) GTEST_SKIP() << "real anatomy absent";
   const Bite bite = settled(*patient, {}, kept());
@@ -234,7 +235,7 @@ TEST(SettleBite, RealBonesWithCrownsThatDoNotTouchAreClosed) {
   EXPECT_LE(exact_overlap(*patient, bite, bite.rest.X_CM), 0.05);
   EXPECT_GE(bite.contacts.size(), 3u);
   EXPECT_GT(bite.moved_from_rest_mm, 3.5);
-  EXPECT_FALSE(bite.notes.empty());  // that the bones stand for the arches
+  EXPECT_FALSE(bite.notes.empty());  // notes state that the bones replace the arches
 }
 
 }  // namespace condyle::test

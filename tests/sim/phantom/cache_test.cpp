@@ -21,7 +21,7 @@ class Cache : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   Case get(const std::string& name = "someone") {
-    return kept_case(folder_, name, [&] {
+    return cached_case(folder_, name, [&] {
       ++made_;
       Case one;
       one.name = name;
@@ -42,12 +42,12 @@ class Cache : public testing::Test {
   int made_ = 0;
 };
 
-TEST_F(Cache, GivesBackTheSameBits) {
+TEST_F(Cache, RoundTripsBitIdentically) {
   const Case first = get(), second = get();
   EXPECT_EQ(made_, 1);
   EXPECT_EQ(mesh_hash(first.parts[0].mesh), mesh_hash(second.parts[0].mesh));
   EXPECT_EQ(first.landmarks.points, second.landmarks.points);
-  EXPECT_EQ(first.condylar_path->drop_mm, second.condylar_path->drop_mm);
+  EXPECT_EQ(first.condylar_path->inferior_mm, second.condylar_path->inferior_mm);
   EXPECT_EQ(second.name, "someone");
 }
 
@@ -57,7 +57,7 @@ TEST_F(Cache, AnotherNameIsAnotherCase) {
   EXPECT_EQ(made_, 2);
 }
 
-TEST_F(Cache, DamageOfAnyFileMakesItAnew) {
+TEST_F(Cache, AnyDamagedFileIsRebuilt) {
   get();
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder_))
@@ -95,9 +95,9 @@ TEST_F(Cache, UnwritableFolderIsNoError) {
   EXPECT_EQ(made_, 2);
 }
 
-TEST_F(Cache, WhatTheMakerThrowsGoesThrough) {
+TEST_F(Cache, ExceptionsOfTheBuilderPropagate) {
   EXPECT_THROW(
-      kept_case(folder_, "nobody", []() -> Case { throw std::runtime_error("cancelled"); }),
+      cached_case(folder_, "nobody", []() -> Case { throw std::runtime_error("cancelled"); }),
       std::runtime_error);
 }
 

@@ -100,7 +100,7 @@ void expect_mirror_symmetry() {
   }
 }
 
-/// A living face is not its own mirror image, but by no more than is hardly seen.
+/// A natural face is not its own mirror image, but the difference is barely visible.
 void expect_a_slightly_uneven_face() {
   const TriMesh& face = mesh_of(Role::face);
   const TriangleTree tree(face);
@@ -113,7 +113,7 @@ void expect_a_slightly_uneven_face() {
   EXPECT_GT(off[off.size() * 95 / 100], 0.2);
   EXPECT_GT(off.back(), 1);
   EXPECT_LT(off.back(), 3);
-  // How far the middle of a region is on the left: both halves had the same vertices.
+  // Displacement of the centre of a region on the left: both halves had the same vertices.
   const auto leans = [&](double half_width, double behind, double low, double high) {
     double sum = 0;
     int count = 0;
@@ -212,7 +212,7 @@ TEST(Phantom, IsAWholePatient) {
   EXPECT_GE(patient().condylar_path->forward_mm.back(), 19);
 }
 
-TEST(Phantom, HasTheSameBitsOnOneAndTwoThreads) {
+TEST(Phantom, IsBitIdenticalOnTheseThreadCounts) {
   const Case alone = build_phantom_on(1);
   ASSERT_EQ(alone.parts.size(), patient().parts.size());
   for (std::size_t i = 0; i < alone.parts.size(); ++i)

@@ -81,11 +81,11 @@ TEST(CheckedPair, OpenSurfaceHasNoVolume) {
   EXPECT_TRUE(pair.worst.measure.open_a);
   EXPECT_FALSE(pair.worst.measure.volume_known);
   EXPECT_GT(pair.worst.measure.area_mm2, 0);
-  // The ball still has an inside, and the deepest place of the sheet in it is known.
+  // The ball still has an inside, and the sheet's deepest point in it is known.
   EXPECT_LT((pair.worst.measure.place - Eigen::Vector3d(15, -65, -40)).norm(), 0.3);
   const auto json = nlohmann::json::parse(check.json(scene, bite(3)));
   EXPECT_TRUE(json["pairs"][0]["worst"]["penetration_volume_mm3"].is_null());
-  EXPECT_NE(check_page(check, {"p", "m", {"x.png"}, {}}).find("without sign"), std::string::npos);
+  EXPECT_NE(check_page(check, {"p", "m", {"x.png"}, {}}).find("unsigned"), std::string::npos);
 }
 
 TEST(WorstView, DistancesOnTheBallAreItsHeights) {
@@ -131,11 +131,34 @@ TEST(Coronoid, ClearanceFromABeamBesideTheTip) {
     side.mm.push_back(clearance.distance_mm(0, pose, start));
   }
   EXPECT_NEAR(side.mm[0], 6, 1e-9);
-  EXPECT_NEAR(side.least_mm(), 3.5, 1e-9);
-  EXPECT_EQ(side.least_frame(), 1);
+  EXPECT_NEAR(side.min_mm(), 3.5, 1e-9);
+  EXPECT_EQ(side.min_frame(), 1);
 }
 
-TEST(CheckPage, TellsVerdictFirstAndEscapesNames) {
+TEST(CheckPage, SaysEachSentenceOnceAndNamesProgramDateAndSurfaces) {
+  const Scene scene = make_scene(ball_patient());
+  const auto check = check_clearance(scene, bite(0.5), at_120_hz(0), {});
+  ASSERT_FALSE(check.violated());
+  CheckPage of{scene.patient.name, "bite", {"worst.png"}, {}};
+  EXPECT_EQ(check_page(check, of).find("Made by"), std::string::npos);
+  of.program = "Condyle 1.2";
+  of.date = "2026-11-24 10:00 UTC";
+  of.surfaces = {"maxilla 0123", "mandible 4567"};
+  const std::string page = check_page(check, of);
+  const auto count = [&](const std::string& words) {
+    int found = 0;
+    for (std::size_t at = 0; (at = page.find(words, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  EXPECT_EQ(count(worst_caption(check.pairs.at(0))), 1);
+  EXPECT_EQ(count("Made by Condyle 1.2 on 2026-11-24 10:00 UTC."), 1);
+  EXPECT_EQ(count("maxilla 0123, mandible 4567."), 1);
+  EXPECT_EQ(count("closest first"), 1);
+  EXPECT_EQ(count("worst first"), 0);
+  EXPECT_EQ(count("@media print"), 1);
+}
+
+TEST(CheckPage, StatesTheVerdictFirstAndEscapesNames) {
   const Scene scene = make_scene(ball_patient());
   const auto bad = check_clearance(scene, bite(3), at_120_hz(0.5), {});
   const auto page = check_page(bad, {scene.patient.name, "bite", {"worst.png"}, {"a < b"}});

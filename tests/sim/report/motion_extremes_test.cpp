@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sim/motion/measures.h"
-#include "sim/report/bite_place.h"
+#include "sim/motion/measure_pose.h"
+#include "sim/report/bite_position.h"
 #include "sim/report/report.h"
 #include "tests/support/boxes.h"
 
@@ -36,12 +36,13 @@ TEST(Extremes, AreTheLargestOfEachMeasureAndWhen) {
   for (int i = 0; i <= 150; ++i) {
     FrameState frame = rest_frame(scene);
     frame.time_s = 0.01 * i;
-    frame.X_CM = frame.X_CM_wanted = motion.wanted(frame.time_s);
+    frame.poses = motion.target(frame.time_s);
+    frame.X_PB_target = frame.poses.X_CB;
     if (i == 100) {
       frame.stopped = true;
-      frame.X_CM_wanted.t.z() -= 2;
+      frame.X_PB_target[1].t.z() -= 2;
     }
-    frame.measures = measure(scene.patient, frame.X_CM);
+    frame.measures = measure(scene.patient, frame.poses);
     series.add(frame);
     report.add(frame);
   }
@@ -61,11 +62,11 @@ TEST(Extremes, AreTheLargestOfEachMeasureAndWhen) {
   const auto json = nlohmann::json::parse(report.json());
   EXPECT_NEAR(json["measures"]["opening"]["value"], 30, 1e-9);
   EXPECT_EQ(json["measures"]["opening"]["unit"], "mm");
-  EXPECT_NEAR(json["contact"]["kept_from_where_wanted_mm"], 2, 1e-9);
+  EXPECT_NEAR(json["contact"]["contact_deviation_mm"], 2, 1e-9);
   EXPECT_NE(report.text().find("by up to 2.00 mm at the incisors"), std::string::npos);
 }
 
-TEST(BitePlace, IsWhereBordersBeginOrAGlideCloses) {
+TEST(BiteFrame, IsWhereBordersBeginOrAGlideCloses) {
   const Scene scene = make_scene(box_patient());
   Motion motion = down_and_back();
   const auto bite = [&] {
@@ -73,10 +74,10 @@ TEST(BitePlace, IsWhereBordersBeginOrAGlideCloses) {
     for (int i = 0; i <= 150; ++i) {
       FrameState frame = rest_frame(scene);
       frame.time_s = 0.01 * i;
-      frame.measures = measure(scene.patient, motion.wanted(frame.time_s));
+      frame.measures = measure(scene.patient, motion.target(frame.time_s));
       series.add(frame);
     }
-    return Eigen::Vector3d(bite_place(series) - series.rest.incisor);
+    return Eigen::Vector3d(bite_position(series) - series.rest.incisor);
   };
   EXPECT_LT(bite().norm(), 1e-12);
   motion.phases = {{"protrusion", 0, 0.2}, {"closing", 0.2, 0.3}, {"back to the start", 0.3, 1.5}};

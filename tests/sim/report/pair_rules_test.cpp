@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "sim/report/check_page.h"
@@ -13,7 +14,7 @@
 namespace condyle::test {
 namespace {
 
-/// A ball that stands 1 mm below a plate, or as far in it when `gap_mm` is negative.
+/// A ball 1 mm below a plate, or as far in it when `gap_mm` is negative.
 Case ball_below(double gap_mm = 1) {
   Case patient = box_patient();
   patient.parts[1].mesh = sphere(4, 10, {15, -65, -50 - gap_mm});
@@ -32,38 +33,38 @@ PairVerdict verdict(const PairRule& rule, double height_mm, double margin_mm = 0
 }
 
 std::string breaks(const PairVerdict& pair) {
-  return std::string(pair.collides ? "collides " : "") + (pair.too_near ? "too near " : "") +
+  return std::string(pair.collides ? "collides " : "") + (pair.too_close ? "too close " : "") +
          (pair.at_rest ? "at rest " : "");
 }
 
 bool says(const PairVerdict& pair, const char* words) {
-  return verdict_words(pair).find(words) != std::string::npos;
+  return verdict_text(pair).find(words) != std::string::npos;
 }
 
-TEST(PairRules, ForbiddenKeepsItsOwnMarginElseTheOneAskedFor) {
+TEST(PairRules, ForbiddenKeepsItsOwnMarginOtherwiseTheRequestedOne) {
   const PairRule plain{"*", "*", PairPolicy::forbidden, std::nullopt, 0};
   PairRule own = plain;
   own.margin_mm = 0.5;
   EXPECT_EQ(breaks(verdict(plain, 0.4, 0.5)), "");
-  EXPECT_EQ(breaks(verdict(plain, 0.6, 0.5)), "too near ");
-  EXPECT_EQ(breaks(verdict(plain, 1.2, 0.5)), "collides too near ");
+  EXPECT_EQ(breaks(verdict(plain, 0.6, 0.5)), "too close ");
+  EXPECT_EQ(breaks(verdict(plain, 1.2, 0.5)), "collides too close ");
   EXPECT_EQ(breaks(verdict(own, 0.4, 0.9)), "");
-  EXPECT_EQ(breaks(verdict(own, 0.6, 0)), "too near ");
+  EXPECT_EQ(breaks(verdict(own, 0.6, 0)), "too close ");
 }
 
-TEST(PairRules, WhatIsTooNearAtRestIsToldApartFromWhatTheMotionDoes) {
+TEST(PairRules, TooNearAtRestIsDistinguishedFromTooNearInMotion) {
   const PairRule rule{"*", "*", PairPolicy::forbidden, std::nullopt, 0};
   const auto away = verdict(rule, -3, 2);
   EXPECT_EQ(breaks(away), "at rest ");
-  EXPECT_TRUE(says(away, "nearer than the margin of 2.00 mm already at rest (1.00 mm)"));
-  EXPECT_TRUE(says(away, "no worse"));
+  EXPECT_TRUE(says(away, "closer than the margin of 2.00 mm at rest (1.00 mm)"));
+  EXPECT_TRUE(says(away, "does not make it worse"));
   const auto nearer = verdict(rule, 0.5, 2);
   EXPECT_EQ(breaks(nearer), "at rest ");
   EXPECT_TRUE(says(nearer, "brings them to 0.50 mm"));
   EXPECT_EQ(breaks(verdict(rule, 1.5, 2)), "collides at rest ");
   const auto overlapping = verdict(rule, -3, 2, -0.3);
   EXPECT_EQ(breaks(overlapping), "at rest ");
-  EXPECT_TRUE(says(overlapping, "overlap already at rest (0.30 mm)"));
+  EXPECT_TRUE(says(overlapping, "overlap at rest (0.30 mm)"));
   // Without a margin the overlap at rest is the baseline.
   EXPECT_EQ(breaks(verdict(rule, -3, 0, -0.3)), "");
   EXPECT_EQ(breaks(verdict(rule, 0.2, 0, -0.3)), "collides ");
@@ -77,17 +78,17 @@ TEST(PairRules, AllowedMayTouchButNotOverlapMoreThanAtRest) {
   EXPECT_EQ(breaks(verdict(rule, -1, 3, -0.3)), "");
 }
 
-TEST(PairRules, GuidedKeepsItsGapAndTellsItsRange) {
+TEST(PairRules, GuidedKeepsItsGapAndReportsItsRange) {
   const PairRule rule{"mandible", "maxilla", PairPolicy::guided, std::nullopt, 0.3};
   const auto kept = verdict(rule, 0.5, 5);
   EXPECT_EQ(breaks(kept), "");
-  EXPECT_NEAR(kept.least_distance_mm, 0.5, 1e-6);
-  EXPECT_NEAR(kept.most_distance_mm, 1, 1e-6);
-  EXPECT_NEAR(kept.least_at.time_s, 0.5, 1e-9);
-  EXPECT_EQ(kept.most_at.time_s, 0);
+  EXPECT_NEAR(kept.min_distance_mm, 0.5, 1e-6);
+  EXPECT_NEAR(kept.max_distance_mm, 1, 1e-6);
+  EXPECT_NEAR(kept.min_distance_at.time_s, 0.5, 1e-9);
+  EXPECT_EQ(kept.max_distance_at.time_s, 0);
   EXPECT_TRUE(says(kept, "gap of 0.50 mm"));
-  EXPECT_EQ(breaks(verdict(rule, 0.8)), "too near ");
-  EXPECT_EQ(breaks(verdict(rule, 1.2)), "collides too near ");
+  EXPECT_EQ(breaks(verdict(rule, 0.8)), "too close ");
+  EXPECT_EQ(breaks(verdict(rule, 1.2)), "collides too close ");
   EXPECT_EQ(breaks(verdict({"*", "*", PairPolicy::guided, std::nullopt, 1.5}, 0)), "at rest ");
 }
 
@@ -99,17 +100,16 @@ TEST(PairRules, CutFacesMayLieOnEachOtherButNotSinkIn) {
   EXPECT_EQ(breaks(verdict(rule, -1, 0, -0.3)), "at rest ");
 }
 
-TEST(PairRules, CopiesInOnePlaceAreNotTakenForTouching) {
+TEST(PairRules, CoincidentCopiesAreNotReportedAsContact) {
   // No point of either is deep in the other.
   for (const double aside : {0.0, 0.05}) {
     Case patient = ball_below();
     const auto graft = [&](const char* name, double x) {
-      Part part{name, Role::transplant, box({x, -70, -56}, {x + 10, -60, -46}), {}};
-      part.carrier = Body::cranium;
-      return part;
+      patient.add_piece({name, Role::transplant, box({x, -70, -56}, {x + 10, -60, -46}), {}},
+                        cranium_body);
     };
-    patient.parts.push_back(graft("graft", -20));
-    patient.parts.push_back(graft("graft-2", -20 + aside));
+    graft("graft", -20);
+    graft("graft-2", -20 + aside);
     const Scene scene = make_scene(patient);
     const auto check = check_clearance(scene, lift(0.1), {.sampling = {.frames = 2}}, {});
     int found = 0;
@@ -118,8 +118,7 @@ TEST(PairRules, CopiesInOnePlaceAreNotTakenForTouching) {
       ++found;
       EXPECT_TRUE(pair.coincide);
       EXPECT_TRUE(pair.violated());
-      EXPECT_NE(verdict_words(pair).find("belong to both"), std::string::npos)
-          << verdict_words(pair);
+      EXPECT_NE(verdict_text(pair).find("in common"), std::string::npos) << verdict_text(pair);
     }
     EXPECT_EQ(found, 1);
   }
@@ -128,8 +127,7 @@ TEST(PairRules, CopiesInOnePlaceAreNotTakenForTouching) {
 TEST(PairRules, SegmentsAndTransplantsAreCheckedWithAllOtherBodies) {
   Case patient = ball_below();
   Part segment{"graft", Role::transplant, box({-20, -70, -46}, {-10, -60, -40.5}), {}};
-  segment.carrier = Body::mandible;
-  patient.parts.push_back(segment);
+  patient.add_piece(segment, mandible_body);
   const Scene scene = make_scene(patient);
   const auto check = check_clearance(scene, lift(0.8), {.sampling = {.frames = 4}}, {});
   ASSERT_EQ(check.pairs.size(), 3u);
@@ -139,7 +137,7 @@ TEST(PairRules, SegmentsAndTransplantsAreCheckedWithAllOtherBodies) {
     ++found;
     EXPECT_EQ(pair.rule.policy,
               pair.a == "mandible" ? PairPolicy::cut_face : PairPolicy::forbidden);
-    // It goes along with the mandible: 0.5 mm below the maxilla, lifted by 0.8 mm.
+    // It moves with the mandible: 0.5 mm below the maxilla, lifted by 0.8 mm.
     EXPECT_EQ(pair.collides, pair.a == "maxilla");
     EXPECT_NEAR(pair.worst.sample.depth_mm, pair.a == "maxilla" ? 0.3 : 0, 1e-6);
     EXPECT_EQ(pair.worst.measure.region_b, "graft");
@@ -179,7 +177,7 @@ TEST(PairsTable, HasARowForEachPairAndFrameAndTheReportsNumbers) {
 TEST(ToothUse, CountsFramesAndTimesOfEachTooth) {
   Case patient = box_patient();
   patient.parts[0] = {"upper", Role::upper_teeth, box({-30, -70, -40}, {30, -60, -30}), {}};
-  // The left molar stands 1 mm below its antagonists, the right one 2 mm.
+  // The left molar is 1 mm below its antagonists, the right one 2 mm.
   patient.parts[1] = {
       "lower",
       Role::lower_teeth,
@@ -192,7 +190,7 @@ TEST(ToothUse, CountsFramesAndTimesOfEachTooth) {
                       true,
                       [](double t) {
                         Pose pose;
-                        pose.t = {0, 0, 2 - 2 * std::cos(4 * M_PI * t)};
+                        pose.t = {0, 0, 2 - 2 * std::cos(4 * std::numbers::pi * t)};
                         return pose;
                       },
                       {}};

@@ -29,7 +29,7 @@ TEST(Trace, HasTheColumnsOfTheContractAndAnEarlierTraceStaysUntilFinish) {
   EXPECT_EQ(read_text(file), "earlier");
   TraceWriter trace(file);
   FrameState frame;
-  frame.X_CM.t = {1.0 / 3, 0, 0};
+  frame.poses = Pose{Eigen::Quaterniond::Identity(), {1.0 / 3, 0, 0}};
   trace.add(0, frame);
   trace.finish();
   std::istringstream text(read_text(file));
@@ -75,15 +75,15 @@ TEST(Trace, SaysWhetherTheTissueWasKeptBecauseItsSolveFailed) {
   }
 }
 
-TEST(Clearance, MarginAndPenetrationAreToldApart) {
+TEST(Clearance, MarginAndPenetrationAreDistinguished) {
   const Scene scene = make_scene(box_patient());
   const auto verdict = [&](double height, double margin) {
     return check_clearance(scene, lift(height), {.margin_mm = margin, .sampling = {7, 0}}, {})
         .pairs.at(0);
   };
-  EXPECT_NEAR(verdict(0.4, 0).least_distance_mm, 0.6, 1e-9);
+  EXPECT_NEAR(verdict(0.4, 0).min_distance_mm, 0.6, 1e-9);
   EXPECT_FALSE(verdict(0.4, 0.5).violated());
-  EXPECT_TRUE(verdict(0.6, 0.5).too_near);
+  EXPECT_TRUE(verdict(0.6, 0.5).too_close);
   EXPECT_FALSE(verdict(0.6, 0.5).collides);
   const auto deep = verdict(3, 0);
   EXPECT_TRUE(deep.collides);
@@ -91,7 +91,7 @@ TEST(Clearance, MarginAndPenetrationAreToldApart) {
   EXPECT_NEAR(deep.first_touch->time_s, 1.0 / 6, 0.02 / 6);  // 1 mm of the 6 mm/s
 }
 
-TEST(Report, CountsWhatTheFramesDid) {
+TEST(Report, CountsEventsOfTheFrames) {
   const Scene scene = make_scene(box_patient());
   Playback playback(scene, lift(3), {});
   MotionReport report(scene, playback.motion(), {});

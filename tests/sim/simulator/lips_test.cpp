@@ -8,10 +8,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/core/units.h"
 #include "sim/case/case_io.h"
 #include "sim/phantom/phantom.h"
 #include "sim/tissue/tissue.h"
 #include "tests/support/face_overlap.h"
+#include "tests/support/jaw_pose.h"
 #include "tests/support/real_cases.h"
 
 namespace condyle {
@@ -19,9 +21,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Turned about the condyles, which slide forward and down; the jaw goes aside.
+/// Rotated about the condyles, which translate forward and down; the jaw moves aside.
 Pose moved(const Case& patient, double open_deg, double aside_mm) {
-  constexpr double degree = std::numbers::pi / 180;
   const Vector3d condyles =
       0.5 * (*patient.landmarks.find("left_condyle") + *patient.landmarks.find("right_condyle"));
   const double slide = std::max(0.0, open_deg - 4) * 0.4;
@@ -47,11 +48,12 @@ Way travel(const Case& patient, double open_deg, double aside_mm, int frames) {
   const test::FaceOverlap faces(patient, *model);
   EXPECT_GT(faces.samples(), 10000u);
   TissueState state = rest;
+  TissueWarmStart warm;
   Way way;
   for (int i = 1; i <= frames; ++i) {
     const double part = 0.5 * (1 - std::cos(2 * std::numbers::pi * i / frames));
     const Pose X_CM = moved(patient, part * open_deg, part * aside_mm);
-    state = follow(*model, state, X_CM);
+    state = solve_tissue(*model, state, test::jaw_at(X_CM), {}, warm);
     way.penetration_mm = std::max(way.penetration_mm, state.penetration_mm);
     way.slip_mm = std::max(way.slip_mm, state.slip_mm);
     if (i % measured_every == 0) {
@@ -60,7 +62,7 @@ Way travel(const Case& patient, double open_deg, double aside_mm, int frames) {
     }
     way.bad += !state.converged || state.kept || state.inverted_prisms > 0;
   }
-  state = follow(*model, state, Pose{});
+  state = solve_tissue(*model, state, {}, {}, warm);
   for (std::size_t i = 0; i < rest.nodes.size(); ++i)
     way.left_behind_mm = std::max(way.left_behind_mm, (state.nodes[i] - rest.nodes[i]).norm());
   return way;

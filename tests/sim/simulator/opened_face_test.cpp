@@ -5,20 +5,19 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "engine/core/units.h"
 #include "engine/mesh/topology.h"
 #include "sim/phantom/phantom.h"
 #include "sim/tissue/lips.h"
 #include "sim/tissue/tissue.h"
+#include "tests/support/jaw_pose.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-
-constexpr double degree = std::numbers::pi / 180;
 
 class OpenedFace : public testing::Test {
  protected:
@@ -27,9 +26,11 @@ class OpenedFace : public testing::Test {
     part_lips(*patient_);
     const auto model = build_tissue(*patient_);
     TissueState state = rest_tissue(*model);
+    TissueWarmStart warm;
     constexpr int steps = 24;
-    for (int i = 1; i <= steps; ++i) state = follow(*model, state, opened(44.0 * i / steps));
-    pose_ = state.X_CM;
+    for (int i = 1; i <= steps; ++i)
+      state = solve_tissue(*model, state, test::jaw_at(opened(44.0 * i / steps)), {}, warm);
+    pose_ = opened(44.0);
     opened_ = new std::vector<Vector3f>;
     deform_face(*model, state, *opened_);
   }
@@ -38,7 +39,7 @@ class OpenedFace : public testing::Test {
     delete opened_;
   }
 
-  /// 50 mm of drop at the incisors for 44 degrees.
+  /// 50 mm of descent at the incisors for 44 degrees.
   static Pose opened(double degrees) {
     const Vector3d condyles = 0.5 * (*patient_->landmarks.find("left_condyle") +
                                      *patient_->landmarks.find("right_condyle"));
@@ -51,7 +52,7 @@ class OpenedFace : public testing::Test {
 
   static const TriMesh& face() { return patient_->find(Role::face)->mesh; }
 
-  /// By how much neighbouring triangles within a box at rest bend more than at rest, at most.
+  /// Largest increase of the angle between neighbouring triangles within a box at rest.
   static double sharpest_fold(const Vector3d& low, const Vector3d& high) {
     const auto normal = [](const auto& vertices, const Eigen::Vector3i& t) -> Vector3d {
       const Vector3d a = vertices[t[0]].template cast<double>(),

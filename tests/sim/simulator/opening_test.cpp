@@ -6,20 +6,20 @@
 #include <limits>
 
 #include "sim/case/case_io.h"
-#include "sim/motion/measures.h"
+#include "sim/motion/measure_pose.h"
 #include "sim/phantom/phantom.h"
 #include "sim/simulator/simulator.h"
+#include "tests/support/places.h"
 
 namespace condyle::test {
 namespace {
 
-const std::filesystem::path real_anatomy =
-    std::filesystem::path(CONDYLE_SOURCE_DIR) / "../shared/data";
+const std::filesystem::path real_anatomy = source_folder() / "../shared/data";
 
 struct Opening {
-  double widest_mm = 0;  // way of the lower incisal point
+  double widest_mm = 0;  // displacement of the lower incisal point
   double rotation_deg = 0, travel_mm = 0;
-  double least_bone_gap_mm = 1e9, largest_bone_gap_mm = 0;  // of the first pair: skull and mandible
+  double min_bone_gap_mm = 1e9, max_bone_gap_mm = 0;  // of the first pair: skull and mandible
   double penetration_mm = 0;
   int stopped = 0, inverted = 0, unconverged = 0;
   double fastest_end_mm_s = 0;  // incisal speed in the first and last step
@@ -38,16 +38,15 @@ Opening open_mouth(const Scene& scene) {
     if (i == 1 || i == steps)
       seen.fastest_end_mm_s = std::max(seen.fastest_end_mm_s, (m.incisor - last).norm() * 120);
     last = m.incisor;
-    if (m.incisal_way_mm > seen.widest_mm) {
-      seen.widest_mm = m.incisal_way_mm;
+    if (m.incisal_displacement_mm > seen.widest_mm) {
+      seen.widest_mm = m.incisal_displacement_mm;
       seen.widest = frame;
     }
     seen.rotation_deg = std::max(seen.rotation_deg, m.rotation_deg);
     seen.travel_mm = std::max(seen.travel_mm, (m.left_condyle - condyle).norm());
     const auto& pair = frame.contacts.pairs.front();
-    seen.least_bone_gap_mm =
-        std::min(seen.least_bone_gap_mm, pair.touching ? 0.0 : pair.distance_mm);
-    seen.largest_bone_gap_mm = std::max(seen.largest_bone_gap_mm, pair.distance_mm);
+    seen.min_bone_gap_mm = std::min(seen.min_bone_gap_mm, pair.touching ? 0.0 : pair.distance_mm);
+    seen.max_bone_gap_mm = std::max(seen.max_bone_gap_mm, pair.distance_mm);
     seen.penetration_mm = std::max(seen.penetration_mm, frame.contacts.max_penetration_mm());
     seen.stopped += frame.stopped;
     seen.inverted += frame.tissue.inverted_prisms;
@@ -56,14 +55,14 @@ Opening open_mouth(const Scene& scene) {
   return seen;
 }
 
-/// Soft landmarks at full opening, as a surgeon would judge them.
+/// Soft landmarks at full opening, as a surgeon would assess them.
 void expect_the_face_follows(const Scene& scene, const Opening& opening) {
   const auto& marks = scene.patient.landmarks;
   const auto carried = [&](const char* name) {
     return carried_point(*scene.tissue, opening.widest.tissue, *marks.find(name));
   };
   const Eigen::Vector3d bone = *marks.find("pogonion"), soft = *marks.find("soft_pogonion");
-  const Eigen::Vector3d bone_move = opening.widest.X_CM * bone - bone;
+  const Eigen::Vector3d bone_move = opening.widest.poses[mandible_body] * bone - bone;
   ASSERT_GT(bone_move.norm(), 30);
   EXPECT_GE((carried("soft_pogonion") - soft).dot(bone_move) / bone_move.squaredNorm(), 0.9);
   EXPECT_LT((carried("pronasale") - *marks.find("pronasale")).norm(), 0.5);
@@ -88,8 +87,8 @@ TEST(BuiltInPatient, OpensAsFarAsAdultsWithinTheBandsOfAdults) {
   EXPECT_LE(opening.rotation_deg, 45);
   EXPECT_GE(opening.travel_mm, 10);
   EXPECT_LE(opening.travel_mm, 20);
-  EXPECT_GE(opening.least_bone_gap_mm, 1);
-  EXPECT_LE(opening.largest_bone_gap_mm, 3);
+  EXPECT_GE(opening.min_bone_gap_mm, 1);
+  EXPECT_LE(opening.max_bone_gap_mm, 3);
   EXPECT_LE(opening.penetration_mm, 0);
   EXPECT_EQ(opening.stopped, 0);
   EXPECT_LT(opening.fastest_end_mm_s, 1);

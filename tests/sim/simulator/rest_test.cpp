@@ -10,6 +10,7 @@
 #include "sim/tissue/lips.h"
 #include "sim/tissue/model.h"
 #include "sim/tissue/tissue.h"
+#include "tests/support/jaw_pose.h"
 #include "tests/support/scan_case.h"
 
 namespace condyle::test {
@@ -25,7 +26,7 @@ struct AtRest {
 
 const Vector3d upright(0, 0, -1), lying(0, 1, 0), oblique(0.5, 0.6, -0.6), none(0, 0, 0);
 
-bool told(const TissueSummary& summary, const char* words) {
+bool reported(const TissueSummary& summary, const char* words) {
   for (const auto& note : summary.notes)
     if (note.find(words) != std::string::npos) return true;
   return false;
@@ -42,10 +43,11 @@ void expect_still(Case patient, const std::vector<AtRest>& rows, int surface_nod
     const TissueSummary& made = summary(*model);
     EXPECT_LT(made.rest_move_mm, 1e-4);
     EXPECT_LT(made.rest_force_N, 1e-8);
-    EXPECT_TRUE(turgor < 0.8 || !told(made, "constant forces of up to"));  // strains do it alone
-    EXPECT_FALSE(told(made, "a touch would move it"));
+    EXPECT_TRUE(turgor < 0.8 ||
+                !reported(made, "constant forces of up to"));  // strains do it alone
+    EXPECT_FALSE(reported(made, "is unstable at rest"));
 
-    // It does not only stand still, it comes back.
+    // Not only is it at rest, it returns to rest.
     TissueBudget budget;
     budget.tolerance_mm = 1e-4;
     budget.max_iterations = 100;
@@ -54,12 +56,12 @@ void expect_still(Case patient, const std::vector<AtRest>& rows, int surface_nod
     std::mt19937 random(4);
     std::uniform_real_distribution<double> uniform(-0.01, 0.01);
     for (auto& p : shaken.nodes) p += Vector3d(uniform(random), uniform(random), uniform(random));
-    const TissueState back = follow(*model, shaken, Pose{}, budget);
+    const TissueState back = solve_tissue(*model, shaken, {}, budget);
     EXPECT_FALSE(back.kept);
     double most = 0;
     for (std::size_t i = 0; i < rest.nodes.size(); ++i)
       most = std::max(most, (back.nodes[i] - rest.nodes[i]).norm());
-    EXPECT_LT(most, 0.005);  // slivers at the lips' edges come last
+    EXPECT_LT(most, 0.005);  // slivers at the lips' edges converge last
   }
 }
 
@@ -76,24 +78,26 @@ TEST(NothingMovesBeforeSurgery, OnARealFace) {
                220);
 }
 
-TEST(NothingMovesBeforeSurgery, WhatStrainsCannotBalanceIsHeldByForcesThatTurnWithTheJaw) {
+TEST(NothingMovesBeforeSurgery, ForcesThatStrainsCannotBalanceTurnWithTheJaw) {
   TissuePlan plan{.turgor = 0.1};
-  plan.layers = {{.share = 1.0}};
+  plan.layers = {{.fraction = 1.0}};
   const auto model = build_tissue(builtin_patient(), {.plan = plan});
-  ASSERT_FALSE(model->held_force.empty());
+  ASSERT_FALSE(model->support.held_force.empty());
   Pose X_CM;
   X_CM.R = Eigen::AngleAxisd(0.4, Vector3d::UnitX());
   X_CM.t = Vector3d(0, -8, -4);
-  const NetLoads at_rest = loads_at(*model, Pose{}), opened = loads_at(*model, X_CM);
+  const MeshLoads at_rest = loads_at(*model, {}), opened = loads_at(*model, jaw_at(X_CM));
   int with_jaw = 0, with_skull = 0;
-  for (std::size_t i = 0; i < model->rest.size(); ++i) {
+  for (std::size_t i = 0; i < model->mesh->rest.size(); ++i) {
     const Vector3d& held = at_rest.node_force[i];
     if (held.norm() < 1e-3) continue;
-    const double share = model->node_share[i];
-    const Vector3d wanted = share > 0.5 ? X_CM.R * held : held;
-    const double most = 2 * std::sin(rotation_angle(X_CM) / 2) * held.norm();  // a turn's way
-    EXPECT_LE((opened.node_force[i] - wanted).norm(), std::min(share, 1 - share) * most + 1e-9);
-    (share > 0.5 ? with_jaw : with_skull) += 1;
+    const double fraction = model->support.node.sum(i);
+    const Vector3d wanted = fraction > 0.5 ? X_CM.R * held : held;
+    // largest displacement by the rotation
+    const double most = 2 * std::sin(rotation_angle(X_CM) / 2) * held.norm();
+    EXPECT_LE((opened.node_force[i] - wanted).norm(),
+              std::min(fraction, 1 - fraction) * most + 1e-9);
+    (fraction > 0.5 ? with_jaw : with_skull) += 1;
   }
   EXPECT_GT(with_jaw, 0);
   EXPECT_GT(with_skull, 0);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "engine/mesh/slit_seam.h"
 #include "engine/mesh/topology.h"
@@ -14,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A wall facing the front (-y), 80 x 40 mm, pressed in along its middle to a pocket of `depth` mm
-/// between x = -25 and 25 whose walls touch but for `gap`.
+/// A wall facing the front (-y), 80 x 40 mm, indented along its middle to a pocket of `depth` mm
+/// between x = -25 and 25 whose walls touch except for `gap`.
 TriMesh wall(double depth, double gap) {
   constexpr int columns = 80, rows = 40;
   TriMesh mesh;
@@ -55,8 +56,8 @@ TEST(LipPocket, ItsBottomIsFoundFromCornerToCorner) {
   }
 }
 
-// Such as the inside of a thick skin: it hangs together with the front only far away.
-TEST(LipPocket, AWallBehindTheFaceIsNone) {
+// As the inner side of a thick skin: it is connected to the front only far away.
+TEST(LipPocket, AWallBehindTheFaceIsNoPocket) {
   TriMesh face = wall(3, 0.2);
   const TriMesh front = face;
   const int count = static_cast<int>(front.vertices.size());
@@ -66,7 +67,7 @@ TEST(LipPocket, AWallBehindTheFaceIsNone) {
   EXPECT_TRUE(pocket_bottom(face, line).empty());
 }
 
-/// A wall with a pocket whose bottom is gone in the middle, from this depth on.
+/// A wall with a pocket whose bottom is missing in the middle, from this depth on.
 TriMesh wall_with_hole(double from_mm) {
   TriMesh face = wall(14, 0.2);
   std::erase_if(face.triangles, [&](const Eigen::Vector3i& t) {
@@ -76,24 +77,25 @@ TriMesh wall_with_hole(double from_mm) {
   return face;
 }
 
-TEST(LipPocket, AHoleInTheWayIsGoneRoundOrLeavesItToOthers) {
+TEST(LipPocket, PathsGoAroundAHoleOrAreRefused) {
   TriMesh face = wall_with_hole(13);
   const std::size_t loops = border_loops(face).size();
   const auto run = pocket_bottom(face, line);
   ASSERT_FALSE(run.empty());
   cut_along(run, face);
   EXPECT_EQ(border_loops(face).size(), loops + 1);
-  EXPECT_TRUE(pocket_bottom(wall_with_hole(5), line).empty());  // what is left is not deep
+  EXPECT_TRUE(pocket_bottom(wall_with_hole(5), line).empty());  // the remainder is not deep
 }
 
-/// A wall with a slit between lips 3 mm thick, and behind them a mouth, closed behind.
+/// A wall with a slit between lips 3 mm thick, and behind them an oral cavity, closed behind.
 TriMesh wall_with_mouth(double height_mm = 30, int depth_mm = 30) {
   constexpr int around = 96, outside = 30;
   const int deep = 2 * depth_mm;
   TriMesh mesh;
   for (int ring = 0; ring <= outside + deep; ++ring)
     for (int i = 0; i < around; ++i) {
-      const double angle = 2 * M_PI * i / around, in = 0.5 * std::max(0, ring - outside);
+      const double angle = 2 * std::numbers::pi * i / around,
+                   in = 0.5 * std::max(0, ring - outside);
       const double wider =
           std::max(0, outside - ring) + std::clamp(2 * (in - 3), 0.0, 0.5 * height_mm);
       mesh.vertices.emplace_back((22 + wider) * std::cos(angle), in,
@@ -130,7 +132,7 @@ TEST(LipPocket, AMouthBehindTheLipsIsOpenedAtItsOwnCorners) {
   EXPECT_LT(back, 16);
 }
 
-TEST(LipPocket, AGapBetweenLipsOrAWayThroughTheHeadIsNoMouth) {
+TEST(LipPocket, AGapBetweenLipsOrATunnelThroughTheHeadIsNoMouth) {
   for (TriMesh face : {wall_with_mouth(5), wall_with_mouth(30, 120)}) {
     const auto whole = face.triangles;
     const std::vector<int> deep = {static_cast<int>(face.vertices.size()) - 1};
@@ -140,12 +142,12 @@ TEST(LipPocket, AGapBetweenLipsOrAWayThroughTheHeadIsNoMouth) {
   }
 }
 
-TEST(LipPocket, AFaceWithoutOneHasNone) {
+TEST(LipPocket, AFaceWithoutAPocketHasNone) {
   EXPECT_TRUE(pocket_bottom(wall(0, 0), line).empty());
   EXPECT_TRUE(pocket_bottom(wall(3, 0.2), line).empty());
 }
 
-TEST(LipPocket, ACutAlongARunOfEdgesOpensItAndNothingElse) {
+TEST(LipPocket, ACutAlongAChainOfEdgesOpensOnlyThatChain) {
   TriMesh face = wall(14, 0.2);
   face.colors.assign(face.vertices.size(), Eigen::Vector3f(0.5f, 0.2f, 0.1f));
   const TriMesh whole = face;
@@ -161,7 +163,7 @@ TEST(LipPocket, ACutAlongARunOfEdgesOpensItAndNothingElse) {
   ASSERT_EQ(loops.size(), 2u);  // the wall's own, and the cut
   const auto& cut = loops[0].size() < loops[1].size() ? loops[0] : loops[1];
   EXPECT_EQ(cut.size(), 2 * (run.size() - 1));
-  // Twins belong to what lies to the right of the run: below it, seen from the front.
+  // Duplicates belong to the triangles right of the chain: below it, viewed from the front.
   for (std::size_t t = 0; t < face.triangles.size(); ++t)
     for (int v : face.triangles[t])
       if (v >= static_cast<int>(whole.vertices.size())) {

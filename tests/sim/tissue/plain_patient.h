@@ -9,7 +9,7 @@
 
 namespace condyle::test {
 
-/// Closed box standing for a bone.
+/// Closed box as a bone.
 inline TriMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   TriMesh mesh;
   for (int k = 0; k < 8; ++k)
@@ -27,7 +27,7 @@ inline TriMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   return mesh;
 }
 
-/// A plain patient: half a tube of skin with closed lips before two blocks of bone.
+/// A plain patient: half a tube of skin with closed lips in front of two blocks of bone.
 inline Case plain_patient() {
   Case patient;
   TriMesh face;
@@ -54,7 +54,7 @@ inline Case plain_patient() {
   return patient;
 }
 
-/// Opening about the condyles, which slide forward and down.
+/// Opening about the condyles, which translate forward and down.
 inline Pose opening(const Case& patient, double degrees) {
   const Eigen::Vector3d condyles =
       0.5 * (*patient.landmarks.find("left_condyle") + *patient.landmarks.find("right_condyle"));

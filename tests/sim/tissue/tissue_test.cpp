@@ -11,6 +11,8 @@
 #include "sim/case/case_io.h"
 #include "sim/tissue/lips.h"
 #include "tests/sim/tissue/plain_patient.h"
+#include "tests/support/jaw_pose.h"
+#include "tests/support/places.h"
 
 namespace condyle {
 namespace {
@@ -20,7 +22,7 @@ using Eigen::Vector3f;
 using test::opening;
 using test::plain_patient;
 
-double drop_of(const Case& patient, const Pose& X_CM) {
+double opening_of_pose(const Case& patient, const Pose& X_CM) {
   const Vector3d incisor = *patient.landmarks.find("lower_incisal_point");
   return incisor.z() - (X_CM * incisor).z();
 }
@@ -31,26 +33,26 @@ TEST(Tissue, NoFaceNoTissue) {
   EXPECT_EQ(build_tissue(patient), nullptr);
 }
 
-TEST(Tissue, IsTheSameToTheBitForAnyNumberOfBuildingThreads) {
+TEST(Tissue, IsBitIdenticalForAnyNumberOfBuildingThreads) {
   Case patient = plain_patient();
   part_lips(patient);
   const auto one = build_tissue(patient, {.threads = 1}),
              two = build_tissue(patient, {.threads = 2});
   const Pose X_CM = opening(patient, 12);
-  const TissueState first = follow(*one, rest_tissue(*one), X_CM);
-  const TissueState second = follow(*two, rest_tissue(*two), X_CM);
+  const TissueState first = solve_tissue(*one, rest_tissue(*one), test::jaw_at(X_CM));
+  const TissueState second = solve_tissue(*two, rest_tissue(*two), test::jaw_at(X_CM));
   EXPECT_GT(first.iterations, 0);
   EXPECT_EQ(first.iterations, second.iterations);
   EXPECT_EQ(first.nodes, second.nodes);
 }
 
-TEST(Tissue, RestIsAnEquilibriumAndGivesTheFaceBack) {
+TEST(Tissue, RestIsAnEquilibriumAndReproducesTheFace) {
   Case patient = plain_patient();
   part_lips(patient);
   const auto model = build_tissue(patient);
   ASSERT_TRUE(model);
   const TissueState rest = rest_tissue(*model);
-  const TissueState still = follow(*model, rest, Pose{});
+  const TissueState still = solve_tissue(*model, rest, {});
   EXPECT_TRUE(still.converged);
   EXPECT_EQ(still.inverted_prisms, 0);
   EXPECT_LT(still.residual, 1e-9);
@@ -75,26 +77,27 @@ TEST(Tissue, ClosedLipsAreCutOnceAndPart) {
   const auto model = build_tissue(patient);
   ASSERT_TRUE(summary(*model).lips_cut);
   TissueState state = rest_tissue(*model);
+  TissueWarmStart warm;
   for (int degrees = 1; degrees <= 20; ++degrees) {
-    state = follow(*model, state, opening(patient, degrees));
+    state = solve_tissue(*model, state, test::jaw_at(opening(patient, degrees)), {}, warm);
     EXPECT_EQ(state.inverted_prisms, 0) << degrees;
     EXPECT_TRUE(state.converged) << degrees;
   }
   const Vector3d upper(0, -102, -47), lower(0, -102, -54);
   const double gap =
       carried_point(*model, state, upper).z() - carried_point(*model, state, lower).z() - 7;
-  EXPECT_GT(gap, 0.7 * drop_of(patient, opening(patient, 20)));
+  EXPECT_GT(gap, 0.7 * opening_of_pose(patient, opening(patient, 20)));
 }
 
-TEST(Tissue, SameBitsForOneAndTwoThreads) {
+TEST(Tissue, IsBitIdenticalForOneAndTwoThreads) {
   Case patient = plain_patient();
   part_lips(patient);
   const auto model = build_tissue(patient, {.surface_nodes = 260});
   const Pose X_CM = opening(patient, 6);
-  const TissueState one = follow(*model, rest_tissue(*model), X_CM);
+  const TissueState one = solve_tissue(*model, rest_tissue(*model), test::jaw_at(X_CM));
   TissueBudget budget;
   budget.threads = 2;
-  const TissueState two = follow(*model, rest_tissue(*model), X_CM, budget);
+  const TissueState two = solve_tissue(*model, rest_tissue(*model), test::jaw_at(X_CM), budget);
   EXPECT_GT(one.iterations, 0);
   EXPECT_EQ(one.nodes, two.nodes);
   std::vector<Vector3f> face_one, face_two;
@@ -112,11 +115,14 @@ TEST(Tissue, TenSmallStepsEqualOneLarge) {
     X_CM.t = Vector3d(0, 0.6, -0.8) * mm;
     return X_CM;
   };
-  TissueBudget tight;  // what differs is what the stop test leaves
+  TissueBudget tight;  // differences are below the tolerance of the stop test
   tight.tolerance_mm = 1e-3;
   TissueState small = rest_tissue(*model);
-  for (int i = 1; i <= 10; ++i) small = follow(*model, small, moved(0.1 * i), tight);
-  const TissueState large = follow(*model, rest_tissue(*model), moved(1.0), tight);
+  TissueWarmStart warm;
+  for (int i = 1; i <= 10; ++i)
+    small = solve_tissue(*model, small, test::jaw_at(moved(0.1 * i)), tight, warm);
+  const TissueState large =
+      solve_tissue(*model, rest_tissue(*model), test::jaw_at(moved(1.0)), tight);
   double moved_most = 0;
   for (std::size_t i = 0; i < small.nodes.size(); ++i) {
     const double difference = (small.nodes[i] - large.nodes[i]).norm();
@@ -133,7 +139,8 @@ TEST(Tissue, LayersOtherThanThreeWorkToo) {
     const auto model =
         build_tissue(patient, {.surface_nodes = 200, .plan = {.layer_count = layers}});
     EXPECT_EQ(summary(*model).nodes % (layers + 1), 0);
-    const TissueState state = follow(*model, rest_tissue(*model), opening(patient, 5));
+    const TissueState state =
+        solve_tissue(*model, rest_tissue(*model), test::jaw_at(opening(patient, 5)));
     EXPECT_EQ(state.inverted_prisms, 0);
     EXPECT_TRUE(state.converged);
   }
@@ -141,7 +148,7 @@ TEST(Tissue, LayersOtherThanThreeWorkToo) {
 
 // What a surgeon expects of an opened mouth, on a real patient.
 TEST(Tissue, TheBadinFaceOpensItsMouth) {
-  const auto folder = std::filesystem::path(CONDYLE_SOURCE_DIR) / "../shared/data/case-badin";
+  const auto folder = test::source_folder() / "../shared/data/case-badin";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "real anatomy absent";
   ImportRequest request;
   request.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
@@ -154,17 +161,18 @@ TEST(Tissue, TheBadinFaceOpensItsMouth) {
   EXPECT_NEAR(summary(*model).nodes, 2080, 200);
 
   TissueState state = rest_tissue(*model);
+  TissueWarmStart warm;
   Pose X_CM;
-  int warm = 0;
+  int iterations = 0;
   constexpr int frames = 90;
   for (int i = 1; i <= frames; ++i) {
     X_CM = opening(patient, 19 * (1 - std::cos(std::numbers::pi * i / frames)));
-    state = follow(*model, state, X_CM);
-    warm += state.iterations;
+    state = solve_tissue(*model, state, test::jaw_at(X_CM), {}, warm);
+    iterations += state.iterations;
     EXPECT_EQ(state.inverted_prisms, 0) << i;
     EXPECT_TRUE(state.converged) << i;
   }
-  const double drop = drop_of(patient, X_CM);
+  const double drop = opening_of_pose(patient, X_CM);
   EXPECT_GT(drop, 40);
 
   const auto moved = [&](const char* name) {
@@ -177,10 +185,10 @@ TEST(Tissue, TheBadinFaceOpensItsMouth) {
   EXPECT_LT(moved("pronasale").norm(), 0.5);
   EXPECT_GT(moved("labrale_superius").z() - moved("labrale_inferius").z(), 0.7 * drop);
 
-  const TissueState cold = follow(*model, rest_tissue(*model), X_CM);
-  const double ratio = static_cast<double>(warm) / frames / cold.iterations;
+  const TissueState cold = solve_tissue(*model, rest_tissue(*model), test::jaw_at(X_CM));
+  const double ratio = static_cast<double>(iterations) / frames / cold.iterations;
   std::printf("iterations: warm %.1f a frame, cold %d, ratio %.3f\n",
-              static_cast<double>(warm) / frames, cold.iterations, ratio);
+              static_cast<double>(iterations) / frames, cold.iterations, ratio);
   EXPECT_LT(ratio, 1);
 }
 

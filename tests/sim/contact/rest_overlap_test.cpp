@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "sim/contact/contact.h"
+#include "tests/support/boxes.h"
+#include "tests/support/overlap_oracle.h"
+#include "tests/support/real_cases.h"
+#include "tests/support/shapes.h"
+
+namespace condyle {
+namespace {
+
+using test::shift;
+
+/// Axis along z, its caps at +-(radius + half) from the middle.
+TriMesh capsule(double radius, double half) {
+  TriMesh mesh = test::sphere(5, radius);
+  for (auto& v : mesh.vertices) v.z() += v.z() > 0 ? half : -half;
+  return mesh;
+}
+
+/// A cube that stands on one corner; the opposite one, its tip, is at `tip`.
+TriMesh cube_on_corner(double edge, const Eigen::Vector3d& tip) {
+  TriMesh mesh = test::box({-edge, -edge, -edge}, {0, 0, 0});
+  const auto up =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d(1, 1, 1), Eigen::Vector3d::UnitZ());
+  return test::moved(std::move(mesh), {up, tip});
+}
+
+struct NamedMesh {
+  std::string name;
+  TriMesh mesh;
+};
+
+/// All 40 mm high about the origin.
+std::vector<NamedMesh> lower_bodies() {
+  return {{"sphere", test::sphere(5, 20)},
+          {"box", test::box({-20, -20, -20}, {20, 20, 20})},
+          {"capsule", capsule(12, 8)}};
+}
+
+/// Their tops are at z = -22.
+std::vector<NamedMesh> intruders() {
+  return {{"sphere", test::sphere(5, 10, {0, 0, -32})},
+          {"box", test::box({-8, -8, -40}, {8, 8, -22})},
+          {"corner", cube_on_corner(12, {0, 0, -22})},
+          {"capsule", test::moved(capsule(5, 6), shift(0, 0, -33))}};
+}
+
+TEST(RestOverlap, DepthOnTheOtherSideIsTheTrueOne) {
+  int judged = 0;
+  for (const auto& body : lower_bodies())
+    for (const auto& intruder : intruders()) {
+      SCOPED_TRACE(body.name + " on " + intruder.name);
+      // 1 mm deep in a block above, 2 mm above the intruder.
+      const ContactModel model(test::two_bones(
+          test::joined(test::box({-30, -30, 19}, {30, 30, 40}), intruder.mesh), body.mesh));
+      EXPECT_NEAR(model.at_rest().pairs[0].depth_mm, 1, 0.01);
+      EXPECT_EQ(model.at_rest().max_penetration_mm(), 0);
+      for (const double depth : {0.5, 1.0, 3.0}) {
+        const ContactSet set = model.find(shift(0, 0, -2 - depth), nullptr);
+        ASSERT_EQ(set.away_from_rest.size(), 1u);
+        EXPECT_NEAR(set.away_from_rest[0].depth_mm, depth, 0.01 * depth);
+        EXPECT_NEAR(set.max_penetration_mm(), depth, 0.01 * depth);
+        EXPECT_LE(set.pairs[0].witness_a.z(), -22 + 1e-6);
+        EXPECT_GE(set.pairs[0].witness_a.z(), -22 - depth - 1e-6);
+        ++judged;
+      }
+    }
+  EXPECT_EQ(judged, 36);
+}
+
+/// The crowns overlap at rest by 1.2 mm; the condyles are then driven into their fossae.
+TEST(RestOverlap, CondylesOfARealJawPushedUpAreAsDeepAsIfNothingOverlapped) {
+  auto patient = test::case_ubc();
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  const Eigen::Vector3d condyles(0, 31.4501, 79.6370);
+  const Eigen::Quaterniond R(Eigen::AngleAxisd(12 * M_PI / 180, Eigen::Vector3d::UnitX()));
+  const Pose opened{R, condyles - R * condyles + Eigen::Vector3d(0, 0, 1.2)};
+  const ContactSet overlapping = ContactModel(*patient).find(opened, nullptr);
+
+  // The same surfaces in the same pose, but 2 mm apart at rest.
+  for (auto& part : patient->parts)
+    if (part.body == mandible_body) part.mesh = test::moved(std::move(part.mesh), shift(0, 0, -2));
+  const ContactSet apart = ContactModel(*patient).find(opened * shift(0, 0, 2), nullptr);
+  const PairContact& most =
+      *std::max_element(apart.pairs.begin(), apart.pairs.end(),
+                        [](const auto& x, const auto& y) { return x.depth_mm < y.depth_mm; });
+  const Pose X_AB = opened * shift(0, 0, 2);
+  const auto oracle = [&](int part, const Eigen::Vector3d& about) {
+    constexpr double around_mm = 15;
+    Box region;
+    region.add(about - Eigen::Vector3d::Constant(around_mm));
+    region.add(about + Eigen::Vector3d::Constant(around_mm));
+    return test::OverlapOracle(patient->parts[static_cast<std::size_t>(part)].mesh, region);
+  };
+  const double sampled_mm = deepest(oracle(most.part_a, most.witness_a),
+                                    oracle(most.part_b, X_AB.inverse() * most.witness_a), X_AB);
+  EXPECT_GT(sampled_mm, 1);
+  EXPECT_NEAR(apart.max_penetration_mm(), sampled_mm, 0.02 * sampled_mm);
+  EXPECT_NEAR(overlapping.max_penetration_mm(), apart.max_penetration_mm(),
+              0.01 * apart.max_penetration_mm());
+}
+
+}  // namespace
+}  // namespace condyle
