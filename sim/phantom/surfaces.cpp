@@ -18,6 +18,7 @@ Part teeth_part(const PhantomSolid& solid, bool upper) {
   Part part;
   part.name = upper ? "upper_teeth" : "lower_teeth";
   part.role = upper ? Role::upper_teeth : Role::lower_teeth;
+  part.body = default_body(part.role);
   std::vector<std::pair<int, TriMesh>> meshes;
   for (const auto& tooth : solid.teeth) {
     if ((tooth.fdi < 30) != upper) continue;

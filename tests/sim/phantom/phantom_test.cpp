@@ -212,6 +212,11 @@ TEST(Phantom, IsAWholePatient) {
   EXPECT_GE(patient().condylar_path->forward_mm.back(), 19);
 }
 
+TEST(Phantom, EachPartBelongsToTheBodyOfItsRole) {
+  for (const Part& part : build_phantom().parts)
+    EXPECT_EQ(part.body, default_body(part.role)) << part.name;
+}
+
 TEST(Phantom, IsBitIdenticalOnTheseThreadCounts) {
   const Case alone = build_phantom_on(1);
   ASSERT_EQ(alone.parts.size(), patient().parts.size());
