@@ -6,8 +6,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "sim/case/case_format.h"
 #include "sim/case/case_io.h"
 #include "sim/contact/push_out_parts.h"
+#include "sim/motion/closed_position.h"
 #include "tools/commands.h"
 #include "tools/pair_options.h"
 
@@ -28,6 +30,7 @@ int run_import(const ImportOptions& options, const CommonOptions& common) {
   request.source = source_frame(options.units, options.frame);
   if (request.name.empty()) request.name = (options.out / "").parent_path().filename().string();
   Case patient = import_meshes(request);
+  report_scan_opening(patient);
   if (options.push_out) push_out_pieces(patient);
   save_case(patient, options.out);
   if (common.json) {
@@ -95,6 +98,13 @@ void add_meshes(Commands& commands, CLI::App& import) {
       .add_option("--landmarks", request.landmarks,
                   "CSV with name,x_mm,y_mm,z_mm, or 3D Slicer .mrk.json")
       ->type_name("FILE");
+  command
+      .add_option(
+          "--scan-opening", request.scan_opening_mm,
+          "Scanned with the mouth open: mm that the lower incisal point lies below its closed "
+          "position, 0 to 60; default: found from the teeth")
+      ->check(CLI::Range(0.0, max_scan_opening_mm))
+      ->type_name("MM");
   add_surfaces(command, *options);
   begin_group(command, "Segments and transplants");
   command

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/math/pose.h"
 #include "sim/case/condylar_path.h"
 #include "sim/case/jaw_mechanics.h"
 #include "sim/case/landmarks.h"
@@ -32,6 +33,12 @@ struct Case {
   std::vector<PairRule> pair_rules;  // deviations from the default rules; the last match
                                      // applies
   MotionParameters motion;           // deviations of its motion from the default
+
+  // Scanned with the mouth open: descent of the lower incisal point from the closed position to the
+  // rest pose, where declared (0: closed at rest); else it is found from the teeth.
+  std::optional<double> scan_opening_mm = std::nullopt;
+  // The closed position, from which openings count: X_CM. Found by make_scene(), not stored.
+  Pose X_CM_closed = {};
 
   std::vector<Muscle> muscles = {};  // empty: default muscles fitted to its landmarks
   std::optional<JawMechanics> mechanics = std::nullopt;  // where measured

@@ -21,6 +21,7 @@ struct ImportRequest {
   std::filesystem::path landmarks;  // CSV or .mrk.json; empty = none
   SourceFrame source = {};          // unit and axes of the files
   std::string name;
+  std::optional<double> scan_opening_mm = {};  // see Case
   // Parent bodies of pieces, by the piece's name (segment, segment-2, ...): the cranium, the
   // mandible or another piece; by default the cranium or mandible, whichever is nearer.
   std::map<std::string, std::string> parents = {};

@@ -310,6 +310,7 @@ Case import_meshes(const ImportRequest& request) {
   Case patient;
   patient.name = request.name;
   patient.source = frame;
+  patient.scan_opening_mm = request.scan_opening_mm;
   patient.landmarks = import_landmarks(request, box, patient.notes);
   patient.parts = make_parts(surfaces, patient.notes);
   if (face) lay_texture(face->file, frame, patient);

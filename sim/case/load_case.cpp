@@ -271,6 +271,8 @@ Case load_case(const fs::path& given) {
         throw InputError(points, row.where, "the landmark \"" + row.name + "\" comes twice");
   }
   if (const auto path = root.find("condylar_path")) patient.condylar_path = load_path(*path);
+  if (const auto opening = root.find("scan_opening_mm"))
+    patient.scan_opening_mm = opening->number(0, max_scan_opening_mm);
   if (const auto muscles = root.find("muscles"))
     patient.muscles = read_muscles(inside(folder, *muscles), patient.notes);
   if (const auto mechanics = root.find("mechanics"))

@@ -78,6 +78,7 @@ Json to_json(const Case& patient) {
   if (patient.condylar_path)
     root["condylar_path"] = {{"forward_mm", patient.condylar_path->forward_mm},
                              {"drop_mm", patient.condylar_path->inferior_mm}};
+  if (patient.scan_opening_mm) root["scan_opening_mm"] = *patient.scan_opening_mm;
   if (!patient.muscles.empty()) root["muscles"] = muscles_file;
   if (patient.mechanics) root["mechanics"] = mechanics_file;
   for (const auto& rule : patient.pair_rules) root["contact_pairs"].push_back(to_json(rule));

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double contact_mm = 0.01;
-constexpr double closed_limit = -10 * degree, open_limit = 25 * degree;
+constexpr double closed_limit = -20 * degree, open_limit = 25 * degree;
 constexpr double same_bite_mm = 0.4;  // teeth closer than this are in their bite
 constexpr double fade_mm = 3;
 constexpr double default_table_deg = 20;
@@ -51,27 +51,51 @@ bool has_teeth(const Case& patient) {
   return patient.find(Role::upper_teeth) && patient.find(Role::lower_teeth);
 }
 
+struct OccludingSurfaces {
+  TriMesh upper, lower;
+};
+
+/// The teeth. Where they are no parts of their own, the surfaces in front of the rami within 20 mm
+/// of the height of the incisal points.
+OccludingSurfaces occluding_surfaces(const Case& patient, const Vector3d& hinge,
+                                     const Vector3d& incisor) {
+  const Vector3d upper_incisor = patient.landmarks.find("upper_incisal_point").value_or(incisor);
+  const double behind = hinge.y() + 0.4 * (incisor.y() - hinge.y());
+  constexpr double beside_mm = 20;
+  return {gathered(patient, patient.jaw.upper_arch, has_teeth(patient),
+                   [&](const Vector3d& p) {
+                     return p.y() < behind && p.z() < upper_incisor.z() + beside_mm;
+                   }),
+          gathered(patient, patient.jaw.lower_arch, has_teeth(patient), [&](const Vector3d& p) {
+            return p.y() < behind && p.z() > incisor.z() - beside_mm;
+          })};
+}
+
 }  // namespace
+
+bool teeth_meet_at_rest(const Case& patient) {
+  const auto left = patient.landmarks.find("left_condyle");
+  const auto right = patient.landmarks.find("right_condyle");
+  const auto incisor = patient.landmarks.find("lower_incisal_point");
+  const bool has_crowns = has_teeth(patient) || patient.landmarks.find("upper_incisal_point");
+  if (!left || !right || !incisor || !has_crowns) return true;
+  const auto teeth = occluding_surfaces(patient, 0.5 * (*left + *right), *incisor);
+  if (teeth.upper.empty() || teeth.lower.empty()) return true;
+  TrianglePair start;
+  return distance(CollisionMesh(teeth.upper), {}, CollisionMesh(teeth.lower), {}, start)
+             .distance_mm <= same_bite_mm;
+}
 
 BiteGuide::BiteGuide(const Case& patient, const JawJoints& joints,
                      const MotionParameters& parameters)
     : joints_(joints) {
-  // Without separate teeth, the occluding surfaces are those in front of the rami within 20 mm of
-  // the height of the incisal points.
   const Vector3d hinge = 0.5 * (joints.condyle(JawSide::left) + joints.condyle(JawSide::right));
-  const Vector3d& incisor = joints.incisor();
-  const Vector3d upper_incisor = patient.landmarks.find("upper_incisal_point").value_or(incisor);
-  const double behind = hinge.y() + 0.4 * (incisor.y() - hinge.y());
-  constexpr double beside_mm = 20;
-  const TriMesh lower = gathered(
-      patient, patient.jaw.lower_arch, has_teeth(patient),
-      [&](const Vector3d& p) { return p.y() < behind && p.z() > incisor.z() - beside_mm; });
-  const TriMesh upper = gathered(
-      patient, patient.jaw.upper_arch, has_teeth(patient),
-      [&](const Vector3d& p) { return p.y() < behind && p.z() < upper_incisor.z() + beside_mm; });
+  const auto [upper, lower] = occluding_surfaces(patient, hinge, joints.incisor());
   if (parameters.incisal_guidance_deg || lower.empty() || upper.empty() || !has_teeth(patient))
     table_slope_ = std::tan(parameters.incisal_guidance_deg.value_or(default_table_deg) * degree);
+  bite_theta_ = joints.closed_theta();
   if (lower.empty() || upper.empty()) {
+    known_[{0, 0, 0}] = bite_theta_;
     notes_ = "without teeth, an incisal table guides protrusion and laterotrusion";
     return;
   }
@@ -83,14 +107,20 @@ BiteGuide::BiteGuide(const Case& patient, const JawJoints& joints,
   const double at_rest = contact_theta({});
   TrianglePair start;
   const double apart = distance(*upper_, {}, *lower_, {}, start).distance_mm;
-  if (at_rest <= closed_limit) {
+  if (patient.scan_opening_mm) {
+    baseline_ = at_rest - bite_theta_;
+    notes_ = fmt::format(
+        "scan_opening_mm declares the patient scanned {:.1f} mm open: the jaw is closed at {:.1f} "
+        "deg, from where openings and rotations count",
+        *patient.scan_opening_mm, bite_theta_ / degree);
+  } else if (at_rest <= closed_limit) {
     notes_ =
         "the teeth of the case do not meet when the jaw closes: its rest pose is taken as the bite";
   } else if (apart > same_bite_mm) {
     bite_theta_ = at_rest;
     notes_ = fmt::format(
         "the teeth of the case are {:.1f} mm apart at rest; they meet when the jaw closes by "
-        "{:.1f} deg",
+        "{:.1f} deg, the closed position, from where openings and rotations count",
         apart, -at_rest / degree);
   } else {
     baseline_ = at_rest;

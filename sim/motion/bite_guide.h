@@ -11,6 +11,11 @@
 
 namespace condyle {
 
+/// Whether the teeth, or the surfaces in their place, meet in the rest pose of the case; true also
+/// where they or the landmarks of the jaw are missing. Bones carry crowns where the
+/// upper_incisal_point is marked.
+bool teeth_meet_at_rest(const Case& patient);
+
 /// Tooth guidance: for given condylar positions, the rotation at which the teeth (or the occluding
 /// surfaces in their place) first touch as the jaw closes. Where the crowns overlap at rest, that
 /// overlap is the baseline, faded out over the first 3 mm. An incisal table, if present, also

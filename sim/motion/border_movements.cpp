@@ -41,7 +41,7 @@ Coupling Movements::hinge_border() const {
   constexpr double min_fraction = 0.5;
   TrianglePair left, right;
   for (double theta = 0; theta < hinge.hinge; theta += degree) {
-    const Pose X_CM = joints_->pose({theta, 0, 0, 0});
+    const Pose X_CM = joints_->pose({joints_->closed_theta() + theta, 0, 0, 0});
     const auto& joint = *joints_->surfaces();
     if (joint.gap_mm(JawSide::left, X_CM, left) < min_fraction * joint.rest_gap_mm(JawSide::left) ||
         joint.gap_mm(JawSide::right, X_CM, right) <
@@ -56,7 +56,7 @@ Coupling Movements::hinge_border() const {
 JawInputs Movements::lateral_border(bool to_left, double forward_mm, double bite,
                                     double progress) const {
   const double widest = limits_.widest_theta, theta = bite + (widest - bite) * progress;
-  const double behind = limits_.coupling.forward_mm(std::max(theta, 0.0));
+  const double behind = limits_.coupling.forward_mm(theta);
   const double open = limits_.coupling.forward_mm(widest);
   const double ahead = std::max(forward_mm + (open - forward_mm) * progress, behind);
   JawInputs in = to_left ? at_condyles(behind, ahead) : at_condyles(ahead, behind);
@@ -102,8 +102,7 @@ std::vector<std::pair<std::string, Movements::Leg>> Movements::border_legs() {
                                             [=](double p) {
                                               const double theta = start + (widest - start) * p;
                                               const double s =
-                                                  ratio * hinge.forward_mm(std::max(theta, 0.0)) -
-                                                  back * (1 - p);
+                                                  ratio * hinge.forward_mm(theta) - back * (1 - p);
                                               return inputs(theta, s, s);
                                             },
                                             false));

@@ -36,12 +36,12 @@ JawInputs Movements::chewing_inputs(double opening_mm, double aside_mm,
   Coupling coupling = limits_.coupling;
   coupling.early = std::max(coupling.early, min_early);
   const auto inputs = [&](const Eigen::Vector2d& x) {
-    const double forward = coupling.forward_mm(std::max(x[0], 0.0));
+    const double forward = coupling.forward_mm(x[0]);
     // Towards the left, the right condyle moves forward.
     const double left = forward + std::max(-x[1], 0.0), right = forward + std::max(x[1], 0.0);
     return JawInputs{x[0], left, right, joints_->bennett_shift_mm(left, right)};
   };
-  const Eigen::Vector3d start = joints_->incisor();
+  const Eigen::Vector3d start = joints_->closed_incisor();
   Eigen::Vector2d x(guess.theta, guess.right_mm - guess.left_mm);
   const auto missed = [&](const Eigen::Vector2d& at) {
     const Eigen::Vector3d d = joints_->incisor(inputs(at)) - start;

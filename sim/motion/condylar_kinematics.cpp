@@ -16,7 +16,8 @@ double rounded_ramp(double x, double w) {
 
 }  // namespace
 
-double Coupling::forward_mm(double theta) const {
+double Coupling::forward_mm(double turned) const {
+  const double theta = std::max(turned - closed, 0.0);
   constexpr double corner = 3 * degree;  // keeps the speed of the condyles continuous
   constexpr double full_travel_mm = 15;
   const double hinge_first = rounded_ramp(theta - hinge, corner) / rad_per_mm;
@@ -31,7 +32,7 @@ double Coupling::theta(double forward) const {
   double low = 0, high = 2;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    (forward_mm(middle) < forward ? low : high) = middle;
+    (forward_mm(closed + middle) < forward ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }

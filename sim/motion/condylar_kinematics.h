@@ -11,14 +11,15 @@ constexpr double longest_forward_mm = 16.5;
 
 /// Coupling of rotation and translation: forward travel of the condyles at rotation theta. A hinge
 /// first, then rotation with translation, and a hinge again at the end of travel; `early` blends in
-/// translation from the start.
+/// translation from the start. No travel at less rotation than `closed`.
 struct Coupling {
   double hinge = 12 * degree;        // rad, rotation before translation begins
   double rad_per_mm = 1.5 * degree;  // of forward travel thereafter
   double early = 0;                  // 0 hinge first, 1 in proportion from the start
+  double closed = 0;                 // rotation of the closed position, at which the hinge starts
 
   double forward_mm(double theta) const;
-  /// Inverse, for 0 up to less than longest_forward_mm; 0 for 0.
+  /// Inverse, from the closed position, for 0 up to less than longest_forward_mm; 0 for 0.
   double theta(double forward_mm) const;
 };
 

@@ -28,6 +28,11 @@ Vector3d needed(const Case& patient, const char* name) {
   return *point;
 }
 
+/// Rotation of X about an axis, rad.
+double turn_about(const Vector3d& axis, const Pose& X) {
+  return 2 * std::atan2(X.R.vec().dot(axis.normalized()), X.R.w());
+}
+
 }  // namespace
 
 void JawJoints::set_condyles(const Case& patient, const MotionParameters& parameters) {
@@ -63,6 +68,8 @@ void JawJoints::set_condyles(const Case& patient, const MotionParameters& parame
 JawJoints::JawJoints(const Case& patient, const MotionParameters& parameters, JointReach reach,
                      int threads) {
   set_condyles(patient, parameters);
+  closed_incisor_ = patient.X_CM_closed * incisor_;
+  closed_theta_ = turn_about(left_ - right_, patient.X_CM_closed);
   bennett_slope_ = std::tan(parameters.bennett_deg.value_or(default_bennett_deg) * degree);
   side_shift_mm_ = parameters.side_shift_mm.value_or(default_side_shift_mm);
   // Condyles placed as in an articulator have no fossae.

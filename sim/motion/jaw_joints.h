@@ -53,12 +53,18 @@ class JawJoints {
   double inclination_deg(JawSide side) const;
 
   const Eigen::Vector3d& incisor() const { return incisor_; }  // lower incisal point at rest
+  /// Lower incisal point in the closed position, and the rotation of that position, rad; the rest
+  /// pose and 0 unless the patient was scanned with the mouth open.
+  const Eigen::Vector3d& closed_incisor() const { return closed_incisor_; }
+  double closed_theta() const { return closed_theta_; }
   const Eigen::Vector3d& condyle(JawSide side) const {
     return side == JawSide::left ? left_ : right_;
   }
   Eigen::Vector3d incisor(const JawInputs& inputs) const { return pose(inputs) * incisor_; }
-  /// Downward displacement of the lower incisal point from rest, mm.
-  double opening_mm(const JawInputs& inputs) const { return incisor_.z() - incisor(inputs).z(); }
+  /// Descent of the lower incisal point from the closed position, mm.
+  double opening_mm(const JawInputs& inputs) const {
+    return closed_incisor_.z() - incisor(inputs).z();
+  }
 
   /// Condyle centre to lower incisal point, mean of both sides, mm; and the angle of the triangle
   /// of these three points to the horizontal, deg.
@@ -80,7 +86,8 @@ class JawJoints {
   };
   const Side& side(JawSide which) const { return sides_[which == JawSide::left ? 0 : 1]; }
 
-  Eigen::Vector3d left_, right_, incisor_;
+  Eigen::Vector3d left_, right_, incisor_, closed_incisor_;
+  double closed_theta_ = 0;
   double bennett_slope_ = 0, side_shift_mm_ = 0;
   std::array<Side, 2> sides_;
   std::optional<JointSurfaces> surfaces_;

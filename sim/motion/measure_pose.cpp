@@ -29,14 +29,16 @@ Measures measure(const Case& patient, const BodyPoses& given) {
   const BodyPoses at = completed(patient.bodies, given);
   const JawBodies& jaw = patient.jaw;
   const Pose& X_CM = at[jaw.lower_arch];
+  const Pose from_closed = composed(X_CM, patient.X_CM_closed.inverse());
   const Landmarks& landmarks = patient.landmarks;
   Measures out;
   if (const auto p = landmarks.find("lower_incisal_point")) {
+    const Eigen::Vector3d closed = patient.X_CM_closed * *p;
     out.incisor = X_CM * *p;
-    out.opening_mm = p->z() - out.incisor.z();
-    out.incisal_displacement_mm = (out.incisor - *p).norm();
-    out.protrusion_mm = p->y() - out.incisor.y();
-    out.laterotrusion_mm = out.incisor.x() - p->x();
+    out.opening_mm = closed.z() - out.incisor.z();
+    out.incisal_displacement_mm = (out.incisor - closed).norm();
+    out.protrusion_mm = closed.y() - out.incisor.y();
+    out.laterotrusion_mm = out.incisor.x() - closed.x();
     if (const auto at_rest = landmarks.find("upper_incisal_point")) {
       const Eigen::Vector3d upper = at[jaw.upper_arch] * *at_rest;
       out.interincisal_mm = (out.incisor - upper).norm();
@@ -52,9 +54,10 @@ Measures measure(const Case& patient, const BodyPoses& given) {
     out.right_condyle = at[jaw.right_condyle] * *right;
     out.right_condyle_travel_mm = (out.right_condyle - *right).norm();
   }
-  out.rotation_deg = rotation_angle(X_CM) * degrees_per_radian;
-  out.helical_axis = helical_axis(
-      X_CM, left && right ? Eigen::Vector3d(0.5 * (*left + *right)) : Eigen::Vector3d(X_CM.t));
+  out.rotation_deg = rotation_angle(from_closed) * degrees_per_radian;
+  out.helical_axis =
+      helical_axis(from_closed, left && right ? Eigen::Vector3d(0.5 * (*left + *right))
+                                              : Eigen::Vector3d(X_CM.t));
   return out;
 }
 

@@ -62,7 +62,7 @@ JawInputs Movements::biting(double left_mm, double right_mm) {
 }
 
 JawInputs Movements::opened(double theta) const {
-  const double forward = limits_.coupling.forward_mm(std::max(theta, 0.0));
+  const double forward = limits_.coupling.forward_mm(theta);
   JawInputs in = at_condyles(forward, forward);
   in.theta = theta;
   return in;
@@ -137,7 +137,7 @@ void Movements::hold(double seconds) {
 void Movements::swing(const JawInputs& target, const Pace& pace) {
   const JawInputs from = here_;
   const auto by_theta = [=, joints = joints_, coupling = limits_.coupling](double theta, double w) {
-    const auto forward = [&](double at) { return coupling.forward_mm(std::max(at, 0.0)); };
+    const auto forward = [&](double at) { return coupling.forward_mm(at); };
     const auto travel = [&](double start, double end) {
       return forward(theta) + (start - forward(from.theta)) * (1 - w) +
              (end - forward(target.theta)) * w;
@@ -187,7 +187,7 @@ void Movements::glide(double left_mm, double right_mm, const Pace& pace) {
 }
 
 void Movements::open_to(double opening_mm, const Pace& pace) {
-  double low = 0, high = limits_.widest_theta;
+  double low = joints_->closed_theta(), high = limits_.widest_theta;
   if (joints_->opening_mm(opened(high)) <= opening_mm) low = high;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);

@@ -38,7 +38,7 @@ struct OpeningPath {
   }
   double opening_mm(double theta) const { return joints.opening_mm(inputs(theta)); }
   double displacement_mm(double theta) const {
-    return (joints.incisor(inputs(theta)) - joints.incisor()).norm();
+    return (joints.incisor(inputs(theta)) - joints.closed_incisor()).norm();
   }
   double travel_mm(double theta, const Target& target) const {
     return target.drop ? opening_mm(theta) : displacement_mm(theta);
@@ -46,8 +46,9 @@ struct OpeningPath {
 
   /// Rotation at which the incisal point reaches the target; at most the largest rotation.
   double theta_for(const Target& target) const {
-    if (travel_mm(largest_rotation, target) <= target.mm) return largest_rotation;
-    double low = 0, high = largest_rotation;
+    const double widest = joints.closed_theta() + largest_rotation;
+    if (travel_mm(widest, target) <= target.mm) return widest;
+    double low = joints.closed_theta(), high = widest;
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (low + high);
       (travel_mm(middle, target) < target.mm ? low : high) = middle;
@@ -90,8 +91,8 @@ double free_rotation(const OpeningPath& path, double end, double min_gap,
   return end;
 }
 
-std::vector<Coupling> couplings_to_try(const MotionParameters& parameters) {
-  Coupling standard;
+std::vector<Coupling> couplings_to_try(const MotionParameters& parameters, double closed) {
+  Coupling standard{.closed = closed};
   if (parameters.hinge_deg) standard.hinge = *parameters.hinge_deg * degree;
   std::vector<Coupling> all;
   if (parameters.early_translation) {
@@ -141,7 +142,7 @@ OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contac
     double end = 0, free_end = 0, free_mm = 0;
   };
   std::optional<Choice> best;
-  for (const Coupling& coupling : couplings_to_try(parameters)) {
+  for (const Coupling& coupling : couplings_to_try(parameters, joints.closed_theta())) {
     const OpeningPath path{joints, coupling};
     Choice choice{coupling, path.theta_for(target)};
     choice.free_end = free_rotation(path, choice.end, min_gap, contacts);
@@ -170,8 +171,8 @@ OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contac
       "maximum opening {:.1f} mm (displacement of the incisal point {:.1f} mm); rotation {:.1f} "
       "deg, condyles {:.1f} mm forward and {:.1f} mm down, early translation {:.2f}, {:.2f} "
       "deg/mm; {}",
-      path.opening_mm(end), path.displacement_mm(end), end / degree, forward,
-      joints.inferior_translation_mm(JawSide::left, forward, end), best->coupling.early,
+      path.opening_mm(end), path.displacement_mm(end), (end - joints.closed_theta()) / degree,
+      forward, joints.inferior_translation_mm(JawSide::left, forward, end), best->coupling.early,
       best->coupling.rad_per_mm / degree, joints.guide()));
   return {best->coupling, end};
 }

@@ -220,7 +220,7 @@ class MotionAssessment {
   void rest_position(const MotionPhase& phase) {
     const auto [first, last] = series_.frames_of(phase);
     (void)first;
-    if (at(last).opening_mm <= 0) return;  // a case whose teeth are apart at rest
+    if (at(last).opening_mm <= 0) return;
     add({"freeway space", "mm", at(last).opening_mm, 2, 3, "2 to 3", built_in(), "prescribed"});
   }
 

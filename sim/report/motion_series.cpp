@@ -8,10 +8,11 @@ namespace condyle {
 
 MotionSeries::MotionSeries(const Scene& scene, const Motion& motion)
     : muscle_names(motion.muscle_names),
-      rest(measure(scene.patient, {})),
+      rest(measure(scene.patient, BodyPoses(scene.patient.X_CM_closed))),
       phases(motion.phases),
       borders(motion.borders) {
   jaw_ = scene.patient.jaw;
+  scanned_open = !bit_identical(scene.patient.X_CM_closed, {});
   known_landmarks = true;
   for (const char* name : {"lower_incisal_point", "left_condyle", "right_condyle"})
     known_landmarks &= scene.patient.landmarks.find(name).has_value();

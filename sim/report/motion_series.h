@@ -20,7 +20,8 @@ struct MotionSeries {
   double tooth_overlap_at_rest_mm = 0;
   std::vector<std::string> muscle_names;  // of a muscle-driven motion
   std::vector<MuscleStates> muscles;      // of each frame of such a motion
-  Measures rest;
+  Measures rest;                          // in the closed position
+  bool scanned_open = false;              // the closed position is not the rest pose of the case
   std::vector<MotionPhase> phases;
   MotionBorders borders;  // of the incisal point, where the motion has them
   bool known_landmarks =
@@ -41,7 +42,7 @@ struct MotionSeries {
  private:
   bool bites(const PairContact& pair) const;
 
-  std::vector<BodyId> bodies_;    // of the case's parts
+  std::vector<BodyId> bodies_;  // of the case's parts
   JawBodies jaw_;
   std::optional<double> bite_y_;  // of cases without teeth: bone in front of it occludes
 };

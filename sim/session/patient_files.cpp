@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/case/case_io.h"
+#include "sim/motion/closed_position.h"
 
 namespace condyle {
 namespace fs = std::filesystem;
@@ -124,7 +125,9 @@ Case import_files(const std::vector<FileRole>& files, const std::string& units,
   }
   if (!request.files.empty())
     request.name = request.files.front().file.parent_path().filename().string();
-  return import_meshes(request);
+  Case patient = import_meshes(request);
+  report_scan_opening(patient);
+  return patient;
 }
 
 }  // namespace condyle

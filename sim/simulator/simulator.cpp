@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/frame/state_hash.h"
+#include "sim/motion/closed_position.h"
 #include "sim/motion/measure_pose.h"
 #include "sim/tissue/lips.h"
 
@@ -13,6 +14,7 @@ namespace condyle {
 
 Scene make_scene(Case patient, const SimulatorSettings& settings, const Progress& progress) {
   report(progress, "building the collision models", 0.0);
+  locate_closed_position(patient);
   ContactModel contacts(patient, settings.contact);
   std::shared_ptr<const TissueModel> tissue;
   if (settings.tissue) {
@@ -55,6 +57,7 @@ bool same_for_tissue(const Case& a, const Case& b) {
 Scene edited_scene(const Scene& before, Case patient, const SimulatorSettings& settings,
                    const Progress& progress) {
   report(progress, "building the collision models", 0.0);
+  locate_closed_position(patient);
   ContactModel contacts(patient, settings.contact, &before.contacts);
   std::shared_ptr<const TissueModel> tissue;
   if (settings.tissue) {

@@ -13,6 +13,7 @@ namespace condyle::test {
 inline Case free_jaw() {
   Case patient;
   patient.name = "free jaw";
+  patient.scan_opening_mm = 0;  // without teeth that could meet
   patient.parts.push_back({"mandible", Role::mandible, box({-50, -90, -60}, {50, -10, -50}), {}});
   patient.parts.push_back({"maxilla", Role::maxilla, box({-20, -90, -40}, {20, -60, -30}), {}});
   patient.landmarks.points = {{"lower_incisal_point", {0, -92.5, -50.9}},

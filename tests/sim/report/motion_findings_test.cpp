@@ -15,6 +15,8 @@
 #include "sim/report/report.h"
 #include "tests/sim/motion/jaws.h"
 #include "tests/support/boxes.h"
+#include "tests/support/builtin.h"
+#include "tests/support/scanned_open.h"
 
 namespace condyle::test {
 namespace {
@@ -49,6 +51,19 @@ TEST(FrontalArea, IsThatOfThePolygonProjectedToTheFront) {
   EXPECT_NEAR(frontal_area({{0, 5, 0}, {4, -9, 0}, {4, 0, 3}, {0, 2, 3}}), 12, 1e-12);
   EXPECT_NEAR(frontal_area({{0, 0, 3}, {4, 0, 3}, {4, 0, 0}, {0, 0, 0}}), 12, 1e-12);
   EXPECT_EQ(frontal_area({}), 0);
+}
+
+TEST(Findings, OfAPatientScannedWithTheMouthOpenCountFromTheClosedPosition) {
+  SimulatorSettings settings;
+  settings.tissue = false;
+  const Scene scene = make_scene(scanned_open(builtin(), 5), settings);
+  const Motion motion = make_motion("opening", scene.patient, scene.contacts);
+  for (const Finding& one : findings(scene, motion, series_of(scene, motion)))
+    if (one.name == "maximum opening") {
+      EXPECT_NEAR(one.value, 51.2, 0.5);
+      return;
+    }
+  ADD_FAILURE() << "no maximum opening";
 }
 
 TEST(Findings, DistinguishInputsFromEmergentQuantities) {
