@@ -48,6 +48,20 @@ struct Case {
       if (part.role == role) return &part;
     return nullptr;
   }
+  /// The first part of this role on a body, such as the maxilla of jaw.upper_arch.
+  const Part* find(Role role, BodyId body) const {
+    for (const auto& part : parts)
+      if (part.role == role && part.body == body) return &part;
+    return nullptr;
+  }
+  /// The teeth that a body carries; null where it has none.
+  const Part* teeth_of(BodyId body) const {
+    for (const auto& part : parts)
+      if (is_teeth(part.role) && part.body == body) return &part;
+    return nullptr;
+  }
+  /// Whether both arches of the jaw have teeth.
+  bool has_both_arches() const { return teeth_of(jaw.upper_arch) && teeth_of(jaw.lower_arch); }
   bool has_parts(BodyId body) const {
     for (const auto& part : parts)
       if (part.body == body) return true;

@@ -44,9 +44,10 @@ std::optional<CoronoidTip> coronoid_tip(const Case& patient, const std::string& 
   constexpr std::size_t bins = 30;
   constexpr double min_rise_mm = 2;  // of the tip above the notch
   const double middle = midline_of(patient), outward = side == "left" ? 1 : -1;
+  const BodyId ramus = side == "left" ? patient.jaw.left_condyle : patient.jaw.right_condyle;
   std::array<std::optional<Vector3d>, bins> top;
   for (const auto& part : patient.parts) {
-    if (part.role != Role::mandible) continue;
+    if (part.body != ramus || !collides(part.role) || is_teeth(part.role)) continue;
     for (const auto& p : part.mesh.vertices) {
       const double forward = condyle->y() - p.y();
       if (forward < 0 || outward * (p.x() - middle) < 0.6 * half) continue;

@@ -51,7 +51,7 @@ BitePlane bite_plane(const Case& patient) {
                      ": condyles and the lower incisal point are needed to locate the bite");
   std::optional<Vector3d> left = landmark(patient, {"left_bite", "lbite"}),
                           right = landmark(patient, {"right_bite", "rbite"});
-  if (const Part* lower = patient.find(Role::lower_teeth); lower && !lower->mesh.empty()) {
+  if (const Part* lower = patient.teeth_of(patient.jaw.lower_arch); lower && !lower->mesh.empty()) {
     if (!left) left = molar(*lower, incisor->x(), 1);
     if (!right) right = molar(*lower, incisor->x(), -1);
   }

@@ -34,11 +34,11 @@ struct BitingSurfaces {
 };
 
 BitingSurfaces biting_surfaces(const Case& patient) {
-  const auto teeth = [&](Role role) {
-    const Part* part = patient.find(role);
+  const auto teeth = [&](BodyId arch) {
+    const Part* part = patient.teeth_of(arch);
     return part && !part->mesh.empty() ? &part->mesh : nullptr;
   };
-  BitingSurfaces found{teeth(Role::upper_teeth), teeth(Role::lower_teeth), {}, {}};
+  BitingSurfaces found{teeth(patient.jaw.upper_arch), teeth(patient.jaw.lower_arch), {}, {}};
   if (found.upper && found.lower) return found;
   const Arches arches = find_arches(patient);
   if (!found.upper)
@@ -67,7 +67,7 @@ std::array<Surfaces, 2> make_bones(const Case& patient, const BodyPoses& given, 
                                    const Progress& progress) {
   const BodyPoses at = completed(patient.bodies, given);
   constexpr double spacing_mm = 0.5, sample_mm = 0.6, reach_mm = 20;
-  const bool bites = patient.find(Role::upper_teeth) && patient.find(Role::lower_teeth);
+  const bool bites = patient.has_both_arches();
   std::array<std::vector<TriMesh>, 2> meshes;
   std::array<Box, 2> boxes;
   for (const Part& part : patient.parts) {

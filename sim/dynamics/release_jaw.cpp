@@ -31,7 +31,8 @@ Progress at_fraction(const Progress& progress, double fraction) {
 }
 
 bool has_teeth(const Case& patient) {
-  const Part *upper = patient.find(Role::upper_teeth), *lower = patient.find(Role::lower_teeth);
+  const Part *upper = patient.teeth_of(patient.jaw.upper_arch),
+             *lower = patient.teeth_of(patient.jaw.lower_arch);
   return upper && lower && !upper->mesh.empty() && !lower->mesh.empty();
 }
 

@@ -47,9 +47,7 @@ TriMesh gathered(const Case& patient, BodyId body, bool teeth_alone,
   return out;
 }
 
-bool has_teeth(const Case& patient) {
-  return patient.find(Role::upper_teeth) && patient.find(Role::lower_teeth);
-}
+bool has_teeth(const Case& patient) { return patient.has_both_arches(); }
 
 struct OccludingSurfaces {
   TriMesh upper, lower;

@@ -27,10 +27,14 @@ constexpr double steepest_cos = 0.8;  // limit of the inclination of the occlusa
 class ArchReader {
  public:
   ArchReader(const Case& patient, bool upper, double midline_mm, std::vector<std::string>& notes)
-      : patient_(patient), upper_(upper), midline_mm_(midline_mm), notes_(notes) {}
+      : patient_(patient),
+        upper_(upper),
+        body_(upper ? patient.jaw.upper_arch : patient.jaw.lower_arch),
+        midline_mm_(midline_mm),
+        notes_(notes) {}
 
   Arch read() {
-    arch_.part = patient_.find(upper_ ? Role::upper_teeth : Role::lower_teeth);
+    arch_.part = patient_.teeth_of(body_);
     const auto landmark =
         patient_.landmarks.find(upper_ ? "upper_incisal_point" : "lower_incisal_point");
     const bool teeth = arch_.part && !arch_.part->mesh.empty();
@@ -142,9 +146,8 @@ class ArchReader {
 
   void take_bone(const std::optional<Vector3d>& landmark) {
     const char* name = upper_ ? "upper" : "lower";
-    for (const Role role : upper_ ? std::vector<Role>{Role::maxilla, Role::skull}
-                                  : std::vector<Role>{Role::mandible}) {
-      const Part* bone = patient_.find(role);
+    for (const Role role : {Role::maxilla, Role::skull, Role::mandible, Role::segment}) {
+      const Part* bone = patient_.find(role, body_);
       if (!landmark || !bone || bone->mesh.empty()) continue;
       if (TriangleTree(bone->mesh).nearest(*landmark, on_bone_mm).triangle < 0) continue;
       arch_.part = bone;
@@ -161,6 +164,7 @@ class ArchReader {
 
   const Case& patient_;
   const bool upper_;
+  const BodyId body_;
   const double midline_mm_;
   std::vector<std::string>& notes_;
   Arch arch_;
@@ -183,7 +187,7 @@ Arches find_arches(const Case& patient) {
         "displacement of the condyles is not reported");
     if (const auto edge = patient.landmarks.find("upper_incisal_point"))
       arches.midline_mm = edge->x();
-    else if (const Part* teeth = patient.find(Role::upper_teeth))
+    else if (const Part* teeth = patient.teeth_of(patient.jaw.upper_arch))
       arches.midline_mm = bounding_box(teeth->mesh).center().x();
   }
   arches.upper = ArchReader(patient, true, arches.midline_mm, arches.notes).read();

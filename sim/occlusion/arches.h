@@ -32,8 +32,9 @@ struct Arches {
   std::vector<std::string> notes;                          // how they were found, as sentences
 };
 
-/// The teeth of the case; where an arch has none, the bone on whose surface its incisal landmark
-/// lies. The case must outlive the result. throws: InputError naming what is missing.
+/// The teeth of the bodies that carry the arches (see JawBodies); where a body has none, that bone
+/// of it on whose surface the incisal landmark lies. The case must outlive the result. throws:
+/// InputError naming what is missing.
 Arches find_arches(const Case& patient);
 
 }  // namespace condyle

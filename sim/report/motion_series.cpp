@@ -17,9 +17,7 @@ MotionSeries::MotionSeries(const Scene& scene, const Motion& motion)
   for (const char* name : {"lower_incisal_point", "left_condyle", "right_condyle"})
     known_landmarks &= scene.patient.landmarks.find(name).has_value();
   for (const auto& part : scene.patient.parts) bodies_.push_back(part.body);
-  const bool has_teeth =
-      scene.patient.find(Role::upper_teeth) && scene.patient.find(Role::lower_teeth);
-  if (known_landmarks && !has_teeth) {
+  if (known_landmarks && !scene.patient.has_both_arches()) {
     constexpr double front_fraction = 0.4;  // of the distance from the condyles to the incisors
     const double hinge_y = 0.5 * (rest.left_condyle.y() + rest.right_condyle.y());
     bite_y_ = hinge_y + front_fraction * (rest.incisor.y() - hinge_y);
