@@ -99,20 +99,20 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
   postorder(rows_below(ring, order.at, inverse_of(order.at)), order);
   place = inverse_of(order.at);
   const auto below = rows_below(ring, order.at, place);
-  const int count = static_cast<int>(order.at.size());
+  make_fronts(merge_columns(below), below);
+  link_to_parents();
+  place_updates();
+}
 
-  // Columns are merged into the preceding front where that stores few zeros.
+std::vector<FrontTree::ColumnRange> FrontTree::merge_columns(
+    const std::vector<std::vector<int>>& below) {
   constexpr double zeros_fraction = 0.1;
-  struct Range {
-    int first, last;
-    long entries;
-  };
-  std::vector<Range> ranges;
+  std::vector<ColumnRange> ranges;
   for (int p = 0; p < 3; ++p) {
     for (int j = order.part[p]; j < order.part[p + 1]; ++j) {
-      Range now{j, j, static_cast<long>(below[j].size()) + 1};
+      ColumnRange now{j, j, static_cast<long>(below[j].size()) + 1};
       while (!ranges.empty()) {
-        const Range& before = ranges.back();
+        const ColumnRange& before = ranges.back();
         if (before.first < order.part[p] || below[before.last].empty() ||
             below[before.last].front() > j)
           break;
@@ -127,9 +127,13 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
     }
     part[p + 1] = static_cast<int>(ranges.size());
   }
+  return ranges;
+}
 
-  front_of.resize(count);
-  for (const Range& range : ranges) {
+void FrontTree::make_fronts(const std::vector<ColumnRange>& ranges,
+                            const std::vector<std::vector<int>>& below) {
+  front_of.resize(order.at.size());
+  for (const ColumnRange& range : ranges) {
     if (range.first == order.part[1] || range.first == order.part[2]) panel_floats += beyond;
     Front front;
     front.first = range.first;
@@ -145,6 +149,10 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
     for (int j = range.first; j <= range.last; ++j) front_of[j] = static_cast<int>(fronts.size());
     fronts.push_back(std::move(front));
   }
+  panel_floats += beyond;
+}
+
+void FrontTree::link_to_parents() {
   seat.resize(rows.size());
   run_end.resize(rows.size());
   row_end.resize(rows.size());
@@ -171,7 +179,9 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
     for (int r = front.rows_end - 1; r >= front.rows_begin; --r)
       run_end[r] = r + 1 < front.rows_end && seat[r + 1] == seat[r] + 1 ? run_end[r + 1] : r + 1;
   }
-  // Both halves run concurrently and leave their updates to the last part: one region for each.
+}
+
+void FrontTree::place_updates() {
   std::array<Shelf, 3> shelves;
   const auto update_floats = [&](const Front& f) {
     return static_cast<std::size_t>(update_height(f)) * update_height(f);
@@ -187,7 +197,6 @@ FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder
     for (int f = part[p]; f < part[p + 1]; ++f) fronts[f].update += work_floats;
     work_floats += shelves[p].most + beyond;
   }
-  panel_floats += beyond;
 }
 
 std::ptrdiff_t FrontTree::find(int row, int column) const {

@@ -45,6 +45,23 @@ struct FrontTree {
   std::vector<int> row_end;  // per entry of `rows`: end of the range of consecutive places
   std::size_t panel_floats = 0, work_floats = 0, tiles = 0;
   int most_height = 0;  // of any front
+
+ private:
+  /// Consecutive columns that become one front.
+  struct ColumnRange {
+    int first, last;
+    long entries;  // of the factor in these columns
+  };
+  /// Merges a column into the preceding ones where that stores few zeros; counts the fronts of each
+  /// part. `below`: the rows below the diagonal of each column, ascending.
+  std::vector<ColumnRange> merge_columns(const std::vector<std::vector<int>>& below);
+  void make_fronts(const std::vector<ColumnRange>& ranges,
+                   const std::vector<std::vector<int>>& below);
+  /// Parents and children of the fronts, and where the rows of each lie in its parent.
+  void link_to_parents();
+  /// Offsets of the update matrices in work space. Both halves run concurrently and leave their
+  /// updates to the last part: one region for each.
+  void place_updates();
 };
 
 }  // namespace condyle

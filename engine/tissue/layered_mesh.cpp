@@ -1,8 +1,10 @@
 #include "engine/tissue/layered_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/tissue/spring_map.h"
@@ -35,9 +37,127 @@ double bulk_modulus_of_prisms(const LayerMaterial& layer) {
   return shear * (4 * layer.poisson - 1) / (1 - 2 * layer.poisson);
 }
 
+namespace {
+
+/// Builds a layered mesh: prisms first, whose volumes and weights the springs and masses share out.
+class LayeredMeshBuilder {
+ public:
+  LayeredMeshBuilder(const std::vector<Eigen::Vector3i>& triangles, int sheets, const Nodes& nodes,
+                     const std::vector<LayerMaterial>& layers, double compression_ratio)
+      : sheets_(sheets),
+        last_(sheets - 1),
+        columns_(static_cast<int>(nodes.size()) / sheets),
+        nodes_(nodes),
+        layers_(layers),
+        edges_(edges_of(triangles)),
+        fraction_(of_layer(columns_, 0), 0.0),
+        across_(fraction_),
+        along_(of_sheet(edges_.size(), 0), 0.0),
+        diagonal_(of_layer(edges_.size(), 0), 0.0) {
+    mesh_.node_count = static_cast<int>(nodes.size());
+    mesh_.compression_ratio = compression_ratio;
+    for (const auto& t : triangles)
+      for (int layer = 0; layer < last_; ++layer) add_prism(t, layer);
+    add_springs();
+    add_masses();
+  }
+
+  SpringPrismMesh take() { return std::move(mesh_); }
+
+ private:
+  std::size_t of_layer(std::size_t i, int layer) const { return i * last_ + layer; }
+  std::size_t of_sheet(std::size_t i, int sheet) const { return i * sheets_ + sheet; }
+  std::ptrdiff_t edge_at(int a, int b) const {
+    const std::array<int, 2> edge{std::min(a, b), std::max(a, b)};
+    return std::lower_bound(edges_.begin(), edges_.end(), edge) - edges_.begin();
+  }
+
+  void add_prism(const Eigen::Vector3i& t, int layer) {
+    const double shear = layers_[layer].modulus_MPa / (2 * (1 + layers_[layer].poisson));
+    const double mean_shear = 2 * shear / (1 + mesh_.compression_ratio);
+    std::array<int, 6> prism;
+    std::array<Eigen::Vector3d, 6> corners;
+    for (int k = 0; k < 3; ++k) {
+      prism[k] = node_of(t[k], layer, sheets_);
+      prism[k + 3] = node_of(t[k], layer + 1, sheets_);
+    }
+    for (int k = 0; k < 6; ++k) corners[k] = nodes_[prism[k]];
+    const double volume = prism_volume(nodes_, prism);
+    mesh_.prisms.push_back(prism);
+    mesh_.rest_volume.push_back(volume);
+    mesh_.volume_weight.push_back(0.5 * bulk_modulus_of_prisms(layers_[layer]) / volume);
+    const PrismWeights weights = isotropic_weights(corners, volume);
+    for (int k = 0; k < 3; ++k) {
+      fraction_[of_layer(t[k], layer)] += volume / 3;
+      across_[of_layer(t[k], layer)] += mean_shear * weights.across;
+      const auto edge = edge_at(t[k], t[(k + 1) % 3]);
+      along_[of_sheet(edge, layer)] += mean_shear * weights.along[k];
+      along_[of_sheet(edge, layer + 1)] += mean_shear * weights.along[k];
+      diagonal_[of_layer(edge, layer)] += mean_shear * weights.diagonal[k];
+    }
+  }
+
+  void add_spring(int a, int b, int layer, int sheet, double resists) {
+    const double length = (nodes_[b] - nodes_[a]).norm();
+    mesh_.spring_a.push_back(a);
+    mesh_.spring_b.push_back(b);
+    mesh_.rest_length.push_back(length);
+    mesh_.stiffness.push_back(0.5 * resists / (length * length));
+    mesh_.spring_layer.push_back(layer);
+    mesh_.spring_sheet.push_back(sheet);
+  }
+
+  void add_springs() {
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      const auto [a, b] = edges_[e];
+      for (int sheet = 0; sheet < sheets_; ++sheet)
+        add_spring(node_of(a, sheet, sheets_), node_of(b, sheet, sheets_),
+                   std::min(sheet, last_ - 1), sheet, along_[of_sheet(e, sheet)]);
+      // One direction, then the other: consecutive springs form a batch (ElementBatches).
+      for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}})
+        for (int layer = 0; layer < last_; ++layer)
+          add_spring(node_of(from, layer, sheets_), node_of(to, layer + 1, sheets_), layer, -1,
+                     diagonal_[of_layer(e, layer)]);
+    }
+    for (int column = 0; column < columns_; ++column)
+      for (int layer = 0; layer < last_; ++layer)
+        add_spring(node_of(column, layer, sheets_), node_of(column, layer + 1, sheets_), layer, -1,
+                   across_[of_layer(column, layer)]);
+  }
+
+  /// Those of a layer at a column, half at the node above and half at the node below.
+  void add_masses() {
+    mesh_.node_mass_kg.assign(nodes_.size(), 0.0);
+    for (int layer = 0; layer < last_; ++layer) {
+      double volume = 0;
+      for (int column = 0; column < columns_; ++column)
+        volume += fraction_[of_layer(column, layer)];
+      for (int column = 0; column < columns_; ++column)
+        for (int sheet : {layer, layer + 1})
+          mesh_.node_mass_kg[node_of(column, sheet, sheets_)] +=
+              0.5 * layers_[layer].mass_kg * fraction_[of_layer(column, layer)] / volume;
+    }
+  }
+
+  const int sheets_, last_, columns_;
+  const Nodes& nodes_;
+  const std::vector<LayerMaterial>& layers_;
+  const std::vector<std::array<int, 2>> edges_;
+  // Volume of a layer at each column.
+  std::vector<double> fraction_;
+  // Weight of each spring in N mm, shear modulus times the volume that it represents: across a
+  // layer at a column, along a sheet at an edge, and of both diagonals of a layer at an edge.
+  std::vector<double> across_, along_, diagonal_;
+  SpringPrismMesh mesh_;
+};
+
+}  // namespace
+
 SpringPrismMesh layered_mesh(const std::vector<Eigen::Vector3i>& triangles, int sheets,
                              const Nodes& nodes, const std::vector<LayerMaterial>& layers,
                              double compression_ratio) {
+  assert(sheets >= 2 && layers.size() + 1 == static_cast<std::size_t>(sheets));
+  assert(nodes.size() % static_cast<std::size_t>(sheets) == 0);
   for (const auto& layer : layers) {
     require(layer.modulus_MPa > 0 && layer.modulus_MPa < 1e6,
             "a layer's modulus must be above 0 and below 1e6 MPa", layer.modulus_MPa);
@@ -49,85 +169,7 @@ SpringPrismMesh layered_mesh(const std::vector<Eigen::Vector3i>& triangles, int 
   require(compression_ratio > 0 && compression_ratio <= 1,
           "the stiffness of shortened springs must be above 0 and at most 1 of the stretched ones'",
           compression_ratio);
-  SpringPrismMesh mesh;
-  mesh.node_count = static_cast<int>(nodes.size());
-  mesh.compression_ratio = compression_ratio;
-  const int columns = mesh.node_count / sheets, last = sheets - 1;
-  const auto edges = edges_of(triangles);
-  const auto edge_at = [&](int a, int b) {
-    const std::array<int, 2> edge{std::min(a, b), std::max(a, b)};
-    return std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin();
-  };
-
-  // Prisms, the volume of a layer at each column, and the weight of each spring in N mm: shear
-  // modulus times the volume it represents.
-  const auto of_layer = [&](std::size_t i, int layer) { return i * last + layer; };
-  const auto of_sheet = [&](std::size_t i, int sheet) { return i * sheets + sheet; };
-  std::vector<double> fraction(of_layer(columns, 0), 0.0), across(fraction);
-  std::vector<double> along(of_sheet(edges.size(), 0), 0.0);
-  std::vector<double> diagonal(of_layer(edges.size(), 0), 0.0);
-  for (const auto& t : triangles)
-    for (int layer = 0; layer < last; ++layer) {
-      const double shear = layers[layer].modulus_MPa / (2 * (1 + layers[layer].poisson));
-      const double mean_shear = 2 * shear / (1 + compression_ratio);
-      std::array<int, 6> prism;
-      std::array<Eigen::Vector3d, 6> corners;
-      for (int k = 0; k < 3; ++k) {
-        prism[k] = node_of(t[k], layer, sheets);
-        prism[k + 3] = node_of(t[k], layer + 1, sheets);
-      }
-      for (int k = 0; k < 6; ++k) corners[k] = nodes[prism[k]];
-      const double volume = prism_volume(nodes, prism);
-      mesh.prisms.push_back(prism);
-      mesh.rest_volume.push_back(volume);
-      mesh.volume_weight.push_back(0.5 * bulk_modulus_of_prisms(layers[layer]) / volume);
-      const PrismWeights weights = isotropic_weights(corners, volume);
-      for (int k = 0; k < 3; ++k) {
-        fraction[of_layer(t[k], layer)] += volume / 3;
-        across[of_layer(t[k], layer)] += mean_shear * weights.across;
-        const auto edge = edge_at(t[k], t[(k + 1) % 3]);
-        along[of_sheet(edge, layer)] += mean_shear * weights.along[k];
-        along[of_sheet(edge, layer + 1)] += mean_shear * weights.along[k];
-        diagonal[of_layer(edge, layer)] += mean_shear * weights.diagonal[k];
-      }
-    }
-
-  const auto add_spring = [&](int a, int b, int layer, int sheet, double resists) {
-    const double length = (nodes[b] - nodes[a]).norm();
-    mesh.spring_a.push_back(a);
-    mesh.spring_b.push_back(b);
-    mesh.rest_length.push_back(length);
-    mesh.stiffness.push_back(0.5 * resists / (length * length));
-    mesh.spring_layer.push_back(layer);
-    mesh.spring_sheet.push_back(sheet);
-  };
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto [a, b] = edges[e];
-    for (int sheet = 0; sheet < sheets; ++sheet)
-      add_spring(node_of(a, sheet, sheets), node_of(b, sheet, sheets), std::min(sheet, last - 1),
-                 sheet, along[of_sheet(e, sheet)]);
-    // One direction, then the other: consecutive springs form a batch (ElementBatches).
-    for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}})
-      for (int layer = 0; layer < last; ++layer)
-        add_spring(node_of(from, layer, sheets), node_of(to, layer + 1, sheets), layer, -1,
-                   diagonal[of_layer(e, layer)]);
-  }
-  for (int column = 0; column < columns; ++column)
-    for (int layer = 0; layer < last; ++layer)
-      add_spring(node_of(column, layer, sheets), node_of(column, layer + 1, sheets), layer, -1,
-                 across[of_layer(column, layer)]);
-
-  // Masses: those of a layer at a column, half at the node above and half at the node below.
-  mesh.node_mass_kg.assign(nodes.size(), 0.0);
-  for (int layer = 0; layer < last; ++layer) {
-    double volume = 0;
-    for (int column = 0; column < columns; ++column) volume += fraction[of_layer(column, layer)];
-    for (int column = 0; column < columns; ++column)
-      for (int sheet : {layer, layer + 1})
-        mesh.node_mass_kg[node_of(column, sheet, sheets)] +=
-            0.5 * layers[layer].mass_kg * fraction[of_layer(column, layer)] / volume;
-  }
-  return mesh;
+  return LayeredMeshBuilder(triangles, sheets, nodes, layers, compression_ratio).take();
 }
 
 void use_paper_form(SpringPrismMesh& mesh, const PaperForm& form) {
