@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "engine/mesh/repair.h"
 #include "engine/mesh/topology.h"
@@ -142,153 +143,203 @@ std::optional<LipLine> find_lip_line(const Landmarks& landmarks, const Vector3d&
   return line;
 }
 
+/// Opens the pocket between the lips, if there is one; empty, with the face unchanged, otherwise.
+MouthOutline open_pocket(TriMesh& face, const LipLine& line, const Landmarks& landmarks,
+                         const Vector3d& incisors, std::vector<std::string>& notes) {
+  auto bottom = pocket_bottom(face, line);
+  if (bottom.empty()) return {};
+  TriMesh parted = face;
+  if (open_pouch(parted, line, bottom)) {
+    if (MouthOutline mouth = find_mouth(parted, landmarks, incisors); mouth.found()) {
+      face = std::move(parted);
+      notes.push_back(
+          "the face has a mouth behind its lips: it was opened, and removed except for a seam");
+      return mouth;
+    }
+    parted = face;
+  }
+  if (!faces_outward(face)) std::reverse(bottom.begin(), bottom.end());
+  cut_along(bottom, parted);
+  MouthOutline mouth = find_mouth(parted, landmarks, incisors);
+  if (!mouth.found()) return {};
+  face = std::move(parted);
+  notes.push_back(
+      "the lips were one surface: separated along the bottom of the pocket between them");
+  return mouth;
+}
+
+/// The triangle cut along its edges: `outline` has its corners and the new vertices between them,
+/// one or two.
+std::vector<Eigen::Vector3i> pieces_of(const Eigen::Vector3i& triangle,
+                                       const std::vector<int>& outline) {
+  const int n = static_cast<int>(outline.size());
+  const auto at = [&](int i) { return outline[(i + n) % n]; };
+  const auto is_new = [&](int k) {
+    return at(k) != triangle[0] && at(k) != triangle[1] && at(k) != triangle[2];
+  };
+  int i = 0;
+  if (n == 4) {  // one edge crossed: from the new vertex to the corner across
+    while (!is_new(i)) ++i;
+    return {{at(i), at(i + 1), at(i + 2)}, {at(i), at(i + 2), at(i + 3)}};
+  }
+  // Two edges crossed: the lone corner, between both new vertices, and a quad.
+  while (!(is_new(i - 1) && is_new(i + 1))) ++i;
+  return {{at(i - 1), at(i), at(i + 1)},
+          {at(i + 1), at(i + 2), at(i + 3)},
+          {at(i + 1), at(i + 3), at(i + 4)}};
+}
+
+/// Cuts the front of a face along the lip line.
+class LipLineCut {
+ public:
+  LipLineCut(TriMesh& face, const LipLine& line)
+      : face_(face), line_(line), in_zone_(face.triangles.size()) {
+    height_.assign(face.vertices.size(), 1e9);
+  }
+
+  /// Returns false where too few vertices lie on the line.
+  bool cut() {
+    measure_heights();
+    snap_to_line();
+    split_triangles();
+    return part_line();
+  }
+
+ private:
+  /// Only the front of the face near the line, not the nape behind it.
+  bool is_near(const Eigen::Vector3i& t) const {
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d& p = face_.vertices[t[k]];
+      if (p.x() < line_.right.x() - 8 || p.x() > line_.left.x() + 8 ||
+          std::abs(line_.height(p)) > 15 || p.y() > line_.middle.y() + 40)
+        return false;
+    }
+    const Vector3d &a = face_.vertices[t[0]], &b = face_.vertices[t[1]], &c = face_.vertices[t[2]];
+    return (b - a).cross(c - a).y() < 0;
+  }
+
+  void measure_heights() {
+    for (std::size_t t = 0; t < face_.triangles.size(); ++t) {
+      in_zone_[t] = is_near(face_.triangles[t]);
+      if (!in_zone_[t]) continue;
+      for (int k = 0; k < 3; ++k)
+        height_[face_.triangles[t][k]] = line_.height(face_.vertices[face_.triangles[t][k]]);
+    }
+  }
+
+  /// Fraction of an edge where the line crosses it.
+  double crossing(int a, int b) const { return height_[a] / (height_[a] - height_[b]); }
+
+  /// A vertex close to where the line crosses one of its edges counts as lying on it: the first of
+  /// each edge, then, after all of those, the second.
+  void snap_to_line() {
+    for (std::size_t t = 0; t < face_.triangles.size(); ++t)
+      for (int k = 0; in_zone_[t] && k < 3; ++k) {
+        const int a = face_.triangles[t][k], b = face_.triangles[t][(k + 1) % 3];
+        if (height_[a] * height_[b] < 0 && crossing(a, b) < 0.15) height_[a] = 0;
+      }
+    for (std::size_t t = 0; t < face_.triangles.size(); ++t)
+      for (int k = 0; in_zone_[t] && k < 3; ++k) {
+        const int a = face_.triangles[t][k], b = face_.triangles[t][(k + 1) % 3];
+        if (height_[a] * height_[b] < 0 && crossing(a, b) > 0.85) height_[b] = 0;
+      }
+  }
+
+  /// The vertex where the line crosses an edge, inserted if it is new; -1 if it does not cross.
+  int cut_vertex(int a, int b) {
+    if (height_[a] * height_[b] >= 0) return -1;
+    const auto key = std::minmax(a, b);
+    const double s = crossing(key.first, key.second);
+    const Vector3d p =
+        face_.vertices[key.first] + s * (face_.vertices[key.second] - face_.vertices[key.first]);
+    if (!line_.spans(p.x())) return -1;
+    const auto [it, fresh] =
+        on_edge_.try_emplace({key.first, key.second}, static_cast<int>(face_.vertices.size()));
+    if (fresh) {
+      face_.vertices.push_back(p);
+      height_.push_back(0);
+      if (colored_)
+        face_.colors.push_back(face_.colors[key.first] +
+                               static_cast<float>(s) *
+                                   (face_.colors[key.second] - face_.colors[key.first]));
+    }
+    return it->second;
+  }
+
+  /// Inserts a vertex on every edge that the line crosses and splits the triangles there.
+  void split_triangles() {
+    const std::size_t before = face_.triangles.size();
+    for (std::size_t t = 0; t < before; ++t) {
+      if (!in_zone_[t]) continue;
+      std::vector<int> outline;
+      const Eigen::Vector3i tri = face_.triangles[t];
+      for (int k = 0; k < 3; ++k) {
+        outline.push_back(tri[k]);
+        const int cut = cut_vertex(tri[k], tri[(k + 1) % 3]);
+        if (cut >= 0) outline.push_back(cut);
+      }
+      if (outline.size() == 3) continue;
+      const auto pieces = pieces_of(tri, outline);
+      face_.triangles[t] = pieces[0];
+      for (std::size_t k = 1; k < pieces.size(); ++k) {
+        face_.triangles.push_back(pieces[k]);
+        in_zone_.push_back(1);
+      }
+    }
+  }
+
+  /// Duplicates every vertex on the line except the two ends; the triangles below use the
+  /// duplicates.
+  bool part_line() {
+    std::vector<int> on_line;
+    for (std::size_t v = 0; v < height_.size(); ++v)
+      if (height_[v] == 0 && line_.spans(face_.vertices[v].x()))
+        on_line.push_back(static_cast<int>(v));
+    if (on_line.size() < 5) return false;
+    const auto by_x = [&](int a, int b) { return face_.vertices[a].x() < face_.vertices[b].x(); };
+    const int right_end = *std::min_element(on_line.begin(), on_line.end(), by_x);
+    const int left_end = *std::max_element(on_line.begin(), on_line.end(), by_x);
+    std::map<int, int> twin;
+    for (int v : on_line) {
+      if (v == right_end || v == left_end) continue;
+      twin[v] = static_cast<int>(face_.vertices.size());
+      const Vector3d p = face_.vertices[v];
+      face_.vertices.push_back(p);
+      if (colored_) {
+        const Eigen::Vector3f c = face_.colors[v];
+        face_.colors.push_back(c);
+      }
+    }
+    for (std::size_t t = 0; t < face_.triangles.size(); ++t) {
+      auto& tri = face_.triangles[t];
+      if (!in_zone_[t]) continue;
+      double sum = 0;
+      for (int k = 0; k < 3; ++k)
+        if (tri[k] < static_cast<int>(height_.size())) sum += height_[tri[k]];
+      if (sum >= 0) continue;
+      for (int k = 0; k < 3; ++k)
+        if (const auto it = twin.find(tri[k]); it != twin.end()) tri[k] = it->second;
+    }
+    return true;
+  }
+
+  TriMesh& face_;
+  const LipLine& line_;
+  const bool colored_ = !face_.colors.empty();
+  std::vector<char> in_zone_;   // per triangle: near the line
+  std::vector<double> height_;  // per vertex: above the line, in the zone
+  std::map<std::pair<int, int>, int> on_edge_;
+};
+
 }  // namespace
 
 MouthOutline cut_lip_line(TriMesh& face, const Landmarks& landmarks, const Vector3d& incisors,
                           std::vector<std::string>& notes) {
   const auto line = find_lip_line(landmarks, incisors, notes);
   if (!line) return {};
-  if (auto bottom = pocket_bottom(face, *line); !bottom.empty()) {
-    TriMesh parted = face;
-    if (open_pouch(parted, *line, bottom)) {
-      if (const MouthOutline mouth = find_mouth(parted, landmarks, incisors); mouth.found()) {
-        face = std::move(parted);
-        notes.push_back(
-            "the face has a mouth behind its lips: it was opened, and removed except for a seam");
-        return mouth;
-      }
-      parted = face;
-    }
-    if (!faces_outward(face)) std::reverse(bottom.begin(), bottom.end());
-    cut_along(bottom, parted);
-    if (const MouthOutline mouth = find_mouth(parted, landmarks, incisors); mouth.found()) {
-      face = std::move(parted);
-      notes.push_back(
-          "the lips were one surface: separated along the bottom of the pocket between them");
-      return mouth;
-    }
-  }
-  // Only the front of the face near the line, not the nape behind it.
-  const auto near = [&](const Eigen::Vector3i& t) {
-    for (int k = 0; k < 3; ++k) {
-      const Vector3d& p = face.vertices[t[k]];
-      if (p.x() < line->right.x() - 8 || p.x() > line->left.x() + 8 ||
-          std::abs(line->height(p)) > 15 || p.y() > line->middle.y() + 40)
-        return false;
-    }
-    const Vector3d &a = face.vertices[t[0]], &b = face.vertices[t[1]], &c = face.vertices[t[2]];
-    return (b - a).cross(c - a).y() < 0;
-  };
-  std::vector<char> in_zone(face.triangles.size());
-  std::vector<double> height(face.vertices.size(), 1e9);
-  for (std::size_t t = 0; t < face.triangles.size(); ++t) {
-    in_zone[t] = near(face.triangles[t]);
-    if (!in_zone[t]) continue;
-    for (int k = 0; k < 3; ++k)
-      height[face.triangles[t][k]] = line->height(face.vertices[face.triangles[t][k]]);
-  }
-  // A vertex close to where the line crosses one of its edges counts as lying on it.
-  const auto crossing = [&](int a, int b) { return height[a] / (height[a] - height[b]); };
-  for (std::size_t t = 0; t < face.triangles.size(); ++t)
-    for (int k = 0; in_zone[t] && k < 3; ++k) {
-      const int a = face.triangles[t][k], b = face.triangles[t][(k + 1) % 3];
-      if (height[a] * height[b] < 0 && crossing(a, b) < 0.15) height[a] = 0;
-    }
-  for (std::size_t t = 0; t < face.triangles.size();
-       ++t)  // in the opposite direction, after all of those
-    for (int k = 0; in_zone[t] && k < 3; ++k) {
-      const int a = face.triangles[t][k], b = face.triangles[t][(k + 1) % 3];
-      if (height[a] * height[b] < 0 && crossing(a, b) > 0.85) height[b] = 0;
-    }
-
-  // Inserts a vertex on every edge that the line crosses and splits the triangles there.
-  const bool colored = !face.colors.empty();
-  std::map<std::pair<int, int>, int> on_edge;
-  const auto cut_vertex = [&](int a, int b) {
-    if (height[a] * height[b] >= 0) return -1;
-    const auto key = std::minmax(a, b);
-    const double s = crossing(key.first, key.second);
-    const Vector3d p =
-        face.vertices[key.first] + s * (face.vertices[key.second] - face.vertices[key.first]);
-    if (!line->spans(p.x())) return -1;
-    const auto [it, fresh] =
-        on_edge.try_emplace({key.first, key.second}, static_cast<int>(face.vertices.size()));
-    if (fresh) {
-      face.vertices.push_back(p);
-      height.push_back(0);
-      if (colored)
-        face.colors.push_back(face.colors[key.first] +
-                              static_cast<float>(s) *
-                                  (face.colors[key.second] - face.colors[key.first]));
-    }
-    return it->second;
-  };
-  const std::size_t before = face.triangles.size();
-  for (std::size_t t = 0; t < before; ++t) {
-    if (!in_zone[t]) continue;
-    // Each crossed edge cuts a corner off the remaining triangle.
-    std::vector<int> outline;
-    const Eigen::Vector3i tri = face.triangles[t];
-    for (int k = 0; k < 3; ++k) {
-      outline.push_back(tri[k]);
-      const int cut = cut_vertex(tri[k], tri[(k + 1) % 3]);
-      if (cut >= 0) outline.push_back(cut);
-    }
-    if (outline.size() == 3) continue;
-    const int n = static_cast<int>(outline.size());
-    const auto at = [&](int i) { return outline[(i + n) % n]; };
-    const auto is_new = [&](int k) {
-      return at(k) != tri[0] && at(k) != tri[1] && at(k) != tri[2];
-    };
-    std::vector<Eigen::Vector3i> pieces;
-    if (n == 4) {  // one edge crossed: from the new vertex to the corner across
-      int i = 0;
-      while (!is_new(i)) ++i;
-      pieces = {{at(i), at(i + 1), at(i + 2)}, {at(i), at(i + 2), at(i + 3)}};
-    } else {      // two edges crossed: the lone corner, and a quad
-      int i = 0;  // the corner between both new vertices
-      while (!(is_new(i - 1) && is_new(i + 1))) ++i;
-      pieces = {{at(i - 1), at(i), at(i + 1)},
-                {at(i + 1), at(i + 2), at(i + 3)},
-                {at(i + 1), at(i + 3), at(i + 4)}};
-    }
-    face.triangles[t] = pieces[0];
-    for (std::size_t k = 1; k < pieces.size(); ++k) {
-      face.triangles.push_back(pieces[k]);
-      in_zone.push_back(1);
-    }
-  }
-
-  // Every vertex on the line except the two ends is duplicated; the triangles below it use the
-  // duplicate.
-  std::vector<int> on_line;
-  for (std::size_t v = 0; v < height.size(); ++v)
-    if (height[v] == 0 && line->spans(face.vertices[v].x())) on_line.push_back(static_cast<int>(v));
-  if (on_line.size() < 5) return {};
-  const auto by_x = [&](int a, int b) { return face.vertices[a].x() < face.vertices[b].x(); };
-  const int right_end = *std::min_element(on_line.begin(), on_line.end(), by_x);
-  const int left_end = *std::max_element(on_line.begin(), on_line.end(), by_x);
-  std::map<int, int> twin;
-  for (int v : on_line) {
-    if (v == right_end || v == left_end) continue;
-    twin[v] = static_cast<int>(face.vertices.size());
-    const Vector3d p = face.vertices[v];
-    face.vertices.push_back(p);
-    if (colored) {
-      const Eigen::Vector3f c = face.colors[v];
-      face.colors.push_back(c);
-    }
-  }
-  for (std::size_t t = 0; t < face.triangles.size(); ++t) {
-    auto& tri = face.triangles[t];
-    if (!in_zone[t]) continue;
-    double sum = 0;
-    for (int k = 0; k < 3; ++k)
-      if (tri[k] < static_cast<int>(height.size())) sum += height[tri[k]];
-    if (sum >= 0) continue;
-    for (int k = 0; k < 3; ++k)
-      if (const auto it = twin.find(tri[k]); it != twin.end()) tri[k] = it->second;
-  }
+  if (MouthOutline mouth = open_pocket(face, *line, landmarks, incisors, notes); mouth.found())
+    return mouth;
+  if (!LipLineCut(face, *line).cut()) return {};
   notes.push_back("the lips were one surface: separated along the lip line");
   return find_mouth(face, landmarks, incisors);
 }
