@@ -2,6 +2,7 @@
 // prediction.
 #include <fmt/format.h>
 
+#include "engine/core/units.h"
 #include "engine/tissue/refactorization.h"
 #include "sim/tissue/lips.h"
 #include "tools/bench/baseline/baseline_minimizers.h"
@@ -88,7 +89,7 @@ Json ten_steps(const TissueTarget& target, const HessianFactor& factor, Method m
           {"unit", "mm"},
           {"method", name},
           {"opening", at},
-          {"opening_deg", opening_rad * 57.29578},
+          {"opening_deg", opening_rad * degrees_per_radian},
           {"limit_mm", 0.01},
           {"converged", converged}};
 }
@@ -108,7 +109,7 @@ void ten_steps_of_patient(const BenchOptions& options, const CommonOptions& comm
                 {"unit", "mm"},
                 {"method", patient.name},
                 {"opening", at},
-                {"opening_deg", opening_rad * 57.29578},
+                {"opening_deg", opening_rad * degrees_per_radian},
                 {"limit_mm", 0.01},
                 {"converged", steps.settled},
                 {"of_frames_mm", steps.of_frames_mm},
