@@ -12,7 +12,7 @@ using namespace condyle::test;
 namespace {
 constexpr int max_function_lines = 90, max_file_lines = 600;
 // Functions and files that were longer when the law was written. Parting one lowers its number.
-constexpr std::size_t longer_functions = 7, longer_files = 2;
+constexpr std::size_t longer_functions = 0, longer_files = 2;
 }  // namespace
 
 TEST(SourceSize, FunctionsHaveAtMost90Lines) {
