@@ -94,7 +94,10 @@ struct Broadphase::State {
 
 Broadphase::Broadphase(std::span<const CollisionMesh* const> bodies)
     : state_(std::make_unique<State>()) {
-  for (const CollisionMesh* body : bodies) state_->boxes.push_back(body->box());
+  for (const CollisionMesh* body : bodies) {
+    assert(body);
+    state_->boxes.push_back(body->box());
+  }
 }
 
 Broadphase::~Broadphase() = default;

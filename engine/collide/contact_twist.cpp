@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -212,6 +213,7 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
 
 ContactRow contact_row(const Vector3d& arm, const Vector3d& gradient, double gap_mm,
                        double rotation_length_mm) {
+  assert(rotation_length_mm > 0);
   ContactRow row;
   row.along = row_of(arm, gradient, rotation_length_mm);
   row.gap_mm = gap_mm;
@@ -222,6 +224,7 @@ ContactRow contact_row(const Vector3d& arm, const Vector3d& gradient, double gap
 
 TwistSolution nearest_allowed(const Twist& wanted, const std::vector<ContactRow>& rows,
                               const TwistSettings& settings) {
+  assert(settings.friction >= 0 && settings.rotation_length_mm > 0);
   if (!(settings.friction > 0)) return nearest_without_friction(wanted, rows, settings);
   TwistSolution solution;
   solution.x = wanted;

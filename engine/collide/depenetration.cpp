@@ -1,6 +1,7 @@
 #include "engine/collide/depenetration.h"
 
 #include <Eigen/Geometry>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -83,6 +84,7 @@ class Way {
 
 Depenetration push_out(const DepenetrationBody& a, const Pose& X_WA, const DepenetrationBody& b,
                        const Pose& X_WB, const DepenetrationSettings& settings) {
+  assert(settings.directions > 0 && settings.precision_mm > 0);
   Depenetration out;
   if (a.solid.open_shell_count() > 0 || b.solid.open_shell_count() > 0) return out;
   const Way way(a, X_WA, b, X_WB, settings.precision_mm);

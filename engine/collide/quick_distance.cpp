@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 
@@ -210,6 +211,7 @@ class QuickDistance::Builder {
 };
 
 QuickDistance::QuickDistance(const TriMesh& mesh) : origin_(bounding_box(mesh).center()) {
+  assert(!mesh.empty());
   Builder(mesh, *this);
 }
 

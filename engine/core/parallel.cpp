@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <mutex>
 
@@ -24,6 +25,7 @@ tbb::task_arena& arena_of(int threads) {
 }  // namespace
 
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
+  assert(body);
   threads = std::min(threads, tbb::info::default_concurrency());
   if (threads <= 1 || count < 2) {
     for (std::size_t i = 0; i < count; ++i) body(i);

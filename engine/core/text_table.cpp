@@ -1,6 +1,7 @@
 #include "engine/core/text_table.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -111,6 +112,7 @@ NumberTable read_rows(const std::filesystem::path& file, TextLines& lines,
   NumberTable table;
   table.names = std::move(names);
   const std::size_t columns = table.names.size();
+  assert(std::all_of(wanted.begin(), wanted.end(), [&](std::size_t c) { return c < columns; }));
   const std::size_t needed =
       wanted.empty() ? columns : *std::max_element(wanted.begin(), wanted.end()) + 1;
   while (lines.next_filled()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -52,6 +53,7 @@ struct NumberTable {
 
   std::size_t rows() const { return lines.size(); }
   double at(std::size_t row, std::size_t column) const {
+    assert(row < rows() && column < names.size());
     return values[row * names.size() + column];
   }
   std::string where(std::size_t row, std::size_t column) const;  // "line 3, tx_mm"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <map>
 
 #include "engine/mesh/topology.h"
@@ -120,6 +121,8 @@ class EdgeVertices {
 }  // namespace
 
 TriMesh isosurface(const SampledField& field) {
+  assert(field.size().minCoeff() >= 2);
+  assert(field.values.size() == field.axes[0].size() * field.axes[1].size() * field.axes[2].size());
   static const auto loops = make_loops();
   TriMesh mesh;
   EdgeVertices vertices(field);
@@ -228,6 +231,7 @@ TriMesh largest_piece(const TriMesh& mesh) {
 }
 
 TriMesh clipped(const TriMesh& mesh, const std::vector<double>& values) {
+  assert(values.size() == mesh.vertices.size());
   TriMesh out;
   std::vector<int> kept(mesh.vertices.size(), -1);
   std::map<std::pair<int, int>, int> cuts;

@@ -62,6 +62,7 @@ Eigen::Matrix3d axis_rotation(char axis, double angle_deg) {
 
 Primitive ellipsoid(const Vector3d& center, const Vector3d& semi_axes,
                     const Eigen::Matrix3d& axes) {
+  assert(semi_axes.minCoeff() > 0);
   const Eigen::Matrix3d to_unit = semi_axes.cwiseInverse().asDiagonal() * axes.transpose();
   const Vector3d inverse = semi_axes.cwiseInverse();
   const double deep = -semi_axes.minCoeff();
@@ -77,6 +78,7 @@ Primitive ellipsoid(const Vector3d& center, const Vector3d& semi_axes,
 }
 
 Primitive rounded_box(const Vector3d& center, const Vector3d& half, double radius) {
+  assert(radius >= 0 && half.minCoeff() >= radius);
   const Vector3d core = half.array() - radius;
   return {[=](const Vector3d& p) {
             const Vector3d q = (p - center).cwiseAbs() - core;
@@ -172,6 +174,7 @@ std::vector<Eigen::Vector2d> closed_outline(const std::vector<Eigen::Vector2d>& 
 }
 
 double polygon_distance(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& p) {
+  assert(polygon.size() >= 3);
   double best = 1e18;
   bool inside = false;
   for (std::size_t i = 0; i < polygon.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "engine/field/sampled_field.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "engine/core/parallel.h"
@@ -56,6 +57,7 @@ void fill_block(const FieldRecipe& recipe, const SamplingOptions& options, Sampl
 }  // namespace
 
 GridAxis even_axis(double low, double high, double spacing) {
+  assert(low <= high && spacing > 0);
   const int steps = static_cast<int>(std::ceil((high - low) / spacing - 1e-9));
   GridAxis axis;
   for (int i = 0; i <= steps; ++i) axis.push_back(low + spacing * i);
@@ -64,6 +66,7 @@ GridAxis even_axis(double low, double high, double spacing) {
 
 GridAxis graded_axis(double low, double high, double coarse, double fine_low, double fine_high,
                      double fine) {
+  assert(fine > 0 && coarse >= fine && fine_low <= fine_high);
   GridAxis axis{low};
   while (axis.back() < high) {
     const double outside = std::max({fine_low - axis.back(), axis.back() - fine_high, 0.0});
@@ -79,6 +82,8 @@ std::array<GridAxis, 3> even_grid(const Eigen::AlignedBox3d& box, double spacing
 }
 
 double SampledField::operator()(const Vector3d& p) const {
+  assert(size().minCoeff() >= 2);
+  assert(values.size() == axes[0].size() * axes[1].size() * axes[2].size());
   Vector3i cell;
   Vector3d part;
   for (int a = 0; a < 3; ++a) {

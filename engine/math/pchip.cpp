@@ -21,6 +21,8 @@ Pchip::Pchip(std::span<const double> x, std::span<const double> y)
     : x_(x.begin(), x.end()), y_(y.begin(), y.end()), slope_(x.size(), 0.0) {
   const std::size_t n = x_.size();
   assert(n >= 2 && y_.size() == n);
+  assert(std::adjacent_find(x_.begin(), x_.end(), [](double a, double b) { return !(a < b); }) ==
+         x_.end());
   std::vector<double> h(n - 1), m(n - 1);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     h[i] = x_[i + 1] - x_[i];
@@ -45,6 +47,7 @@ std::size_t Pchip::interval(double x) const {
 }
 
 double Pchip::operator()(double x) const {
+  assert(!x_.empty());
   if (x <= x_.front()) return y_.front();
   if (x >= x_.back()) return y_.back();
   const std::size_t i = interval(x);
@@ -55,6 +58,7 @@ double Pchip::operator()(double x) const {
 }
 
 double Pchip::derivative(double x) const {
+  assert(!x_.empty());
   if (x < x_.front() || x > x_.back()) return 0;
   const std::size_t i = interval(x);
   const double h = x_[i + 1] - x_[i], t = (x - x_[i]) / h, t2 = t * t;

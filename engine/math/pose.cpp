@@ -1,5 +1,6 @@
 #include "engine/math/pose.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace condyle {
@@ -9,6 +10,7 @@ double rotation_angle(const Pose& pose) {
 }
 
 Pose interpolate(const Pose& a, const Pose& b, double s, const Eigen::Vector3d& pivot) {
+  assert(std::abs(a.R.norm() - 1) < 1e-6 && std::abs(b.R.norm() - 1) < 1e-6);
   if (s <= 0.0) return a;
   if (s >= 1.0) return b;
   const Eigen::Quaterniond R = a.R.slerp(s, b.R).normalized();

@@ -1,6 +1,7 @@
 #include "engine/mesh/loop_subdivision.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -53,6 +54,7 @@ VertexSums composed(const VertexSums& outer, const VertexSums& inner) {
     for (int i = outer.first[v]; i < outer.first[v + 1]; ++i) {
       const Share& through = outer.shares[static_cast<std::size_t>(i)];
       const auto from = static_cast<std::size_t>(through.of);
+      assert(from < inner.size());
       for (int k = inner.first[from]; k < inner.first[from + 1]; ++k) {
         const Share& fraction = inner.shares[static_cast<std::size_t>(k)];
         sum.push_back({fraction.of, through.weight * fraction.weight});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct VertexSums {
   /// Of the first `count` vertices.
   template <class T>
   std::vector<T> of(std::span<const T> values, std::size_t count) const {
+    assert(count <= size());
     std::vector<T> sums(count);
     for (std::size_t v = 0; v < sums.size(); ++v) {
       auto at = static_cast<std::size_t>(first[v]);

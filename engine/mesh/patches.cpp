@@ -2,10 +2,13 @@
 
 #include <meshoptimizer.h>
 
+#include <cassert>
+
 namespace condyle {
 
 Patches cut_into_patches(std::span<const Eigen::Vector3f> positions,
                          std::span<const Eigen::Vector3i> triangles, int most_triangles) {
+  assert(most_triangles >= 4 && most_triangles <= 512 && most_triangles % 4 == 0);
   // Compact patches hide together, even ones face away together: a little of both.
   constexpr float even_weight = 0.25f;
   constexpr std::size_t most_vertices = 255;

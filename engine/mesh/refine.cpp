@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <unordered_map>
 
@@ -79,6 +80,7 @@ class Middles {
 
 TriMesh refine_near(TriMesh mesh, const Eigen::Vector3d& center, double radius_mm, double edge_mm,
                     int most_triangles) {
+  assert(radius_mm >= 0 && edge_mm > 0);
   while (true) {
     Middles middles(mesh);
     const auto wanted = [&](int a, int b) {
@@ -128,6 +130,7 @@ TriMesh refine_near(TriMesh mesh, const Eigen::Vector3d& center, double radius_m
 }
 
 TriMesh refine(TriMesh mesh, std::vector<double> edge_mm, int most_triangles) {
+  assert(edge_mm.size() == mesh.vertices.size());
   while (true) {
     Middles middles(mesh);
     for (const auto& t : mesh.triangles)

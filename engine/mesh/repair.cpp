@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -115,6 +116,7 @@ bool split_neighbour(TriMesh& mesh, const EdgeList& list, int flat, int neighbou
 }  // namespace
 
 int weld(TriMesh& mesh, double tolerance_mm) {
+  assert(tolerance_mm >= 0);
   const std::size_t count = mesh.vertices.size();
   std::vector<int> first(count), new_index(count, -1);
   CellTable table(count);

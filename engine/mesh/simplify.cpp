@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 #include "engine/mesh/measure.h"
 #include "engine/mesh/repair.h"
@@ -81,6 +82,7 @@ TriMesh simplify(const TriMesh& mesh, int target_triangles) {
 std::vector<Eigen::Vector3i> coarser(std::span<const Eigen::Vector3f> positions,
                                      std::span<const Eigen::Vector3i> triangles,
                                      int target_triangles, double error_mm) {
+  assert(error_mm >= 0);
   std::vector<Eigen::Vector3i> result(triangles.begin(), triangles.end());
   if (static_cast<int>(triangles.size()) <= target_triangles) return result;
   std::vector<unsigned int> indices, kept(3 * triangles.size());

@@ -94,8 +94,10 @@ TriangleTree::TriangleTree(const TriMesh& mesh) {
   std::vector<Vector3d> centers(mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto& t = mesh.triangles[i];
+    assert(t.minCoeff() >= 0 && t.maxCoeff() < static_cast<int>(mesh.vertices.size()));
     const Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     centers[i] = (a + b + c) / 3;
+    assert(centers[i].allFinite());
     if ((b - a).cross(c - a).squaredNorm() > 0) order.push_back(static_cast<int>(i));
   }
   if (order.empty()) return;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cassert>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -35,6 +36,8 @@ class TriangleTree {
 
   /// Corners of a triangle that has area, such as every answer has.
   const std::array<Eigen::Vector3d, 3>& corners(int triangle) const {
+    assert(static_cast<std::size_t>(triangle) < slot_.size());
+    assert(slot_[static_cast<std::size_t>(triangle)] >= 0);
     return corners_[static_cast<std::size_t>(slot_[static_cast<std::size_t>(triangle)])];
   }
 

@@ -1,5 +1,6 @@
 #include "engine/minimize/minimize.h"
 
+#include <cassert>
 #include <optional>
 
 #include "engine/minimize/minimizer_parts.h"
@@ -203,6 +204,7 @@ class ConjugateGradients {
 
 MinimizeResult minimize(Objective& objective, const Preconditioner& preconditioner,
                         const MinimizeSettings& settings, Points& x) {
+  assert(settings.tolerance_mm >= 0 && settings.max_step_mm > 0);
   return ConjugateGradients(objective, preconditioner, settings, x).run();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,7 @@
 namespace condyle::minimizers {
 
 inline double dot(const Points& a, const Points& b) {
+  assert(a.size() == b.size());
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of each axis: three sums under way at once
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].cwiseProduct(b[i]);
   return sum.sum();
@@ -23,6 +25,7 @@ inline double largest_norm(const Points& a) {
 
 /// to = x + t d
 inline void step_along(const Points& x, double t, const Points& d, Points& to) {
+  assert(d.size() == x.size() && to.size() == x.size());
   for (std::size_t i = 0; i < x.size(); ++i) to[i] = x[i] + t * d[i];
 }
 

@@ -1,6 +1,7 @@
 #include "engine/rigid/guide_curve.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -54,6 +55,7 @@ void GuideCurve::at(double s, Vector3d& point, Vector3d& slope) const {
 
 GuideCurve::Place GuideCurve::nearest(const Vector3d& p,
                                       const std::optional<Vector3d>& sideways) const {
+  assert(!sideways || std::abs(sideways->norm() - 1) < 1e-6);
   const auto across = [&](const Vector3d& v) {
     return sideways ? Vector3d(v - v.dot(*sideways) * *sideways) : v;
   };

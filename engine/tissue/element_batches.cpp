@@ -1,6 +1,7 @@
 #include "engine/tissue/element_batches.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -89,6 +90,10 @@ void cut_edge(const ElementBatches::Edge& edge,
 
 ElementBatches::ElementBatches(const SpringPrismMesh& mesh) {
   const auto &a = mesh.spring_a, &b = mesh.spring_b;
+  assert(b.size() == a.size() && mesh.rest_length.size() == a.size() &&
+         mesh.stiffness.size() == a.size());
+  assert(mesh.rest_volume.size() == mesh.prisms.size() &&
+         mesh.volume_weight.size() == mesh.prisms.size());
   std::vector<EdgeGroups> of_edges;
   std::vector<Group> of_verticals, of_springs;
   const std::vector<Group> groups = spring_groups(mesh);

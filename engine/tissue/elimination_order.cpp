@@ -1,6 +1,7 @@
 #include "engine/tissue/elimination_order.h"
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <set>
 #include <utility>
@@ -45,6 +46,7 @@ void eliminate(const std::vector<int>& part, Rings& ring, std::vector<int>& at) 
 
 EliminationOrder elimination_order(const Rings& ring,
                                    const std::vector<Eigen::Vector3d>& position) {
+  assert(!ring.empty() && position.size() == ring.size());
   const int count = static_cast<int>(ring.size());
   Eigen::Vector3d low = position.front(), high = low;
   for (const auto& p : position) {

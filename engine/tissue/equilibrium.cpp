@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace condyle {
@@ -309,6 +310,9 @@ Nodes forces(const SpringPrismMesh& mesh, const MeshLoads& loads, const Nodes& x
 
 Equilibrium balance_strains(SpringPrismMesh& mesh, const MeshLoads& loads, const Nodes& x,
                             const EquilibriumSettings& settings) {
+  assert(x.size() == static_cast<std::size_t>(mesh.node_count));
+  assert(mesh.spring_sheet.size() == mesh.spring_a.size());
+  assert(settings.max_pull < 1 && settings.max_volume < 1);
   Equilibrium result;
   for (std::size_t s = 0; s < mesh.spring_a.size(); ++s)
     if (mesh.spring_sheet[s] != 0)

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cassert>
 
 #include "engine/tissue/layered_mesh.h"
 
@@ -59,6 +60,7 @@ Matrix3d limited(const Matrix3d& stretched) {
 }  // namespace
 
 HandleMotion handle_motion(const HandleSet& handles, const Nodes& rest, const Nodes& now) {
+  assert(rest.size() == now.size());
   const std::size_t count = handles.node.size();
   HandleMotion motion;
   motion.moved.resize(count);
@@ -86,6 +88,7 @@ HandleMotion handle_motion(const HandleSet& handles, const Nodes& rest, const No
 
 CarriedPoint carry(const std::vector<int>& candidates, const BodyDistance& distance,
                    double reach_fraction) {
+  assert(!candidates.empty() && reach_fraction > 0);
   std::vector<std::pair<double, int>> order;
   order.reserve(candidates.size());
   for (int h : candidates) order.emplace_back(distance(h), h);

@@ -1,6 +1,7 @@
 #include "engine/tissue/front_tree.h"
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <utility>
 
@@ -96,6 +97,7 @@ class Shelf {
 
 FrontTree::FrontTree(const std::vector<std::vector<int>>& ring, EliminationOrder given, int size)
     : block(size), order(std::move(given)) {
+  assert(block > 0 && order.at.size() == ring.size());
   postorder(rows_below(ring, order.at, inverse_of(order.at)), order);
   place = inverse_of(order.at);
   const auto below = rows_below(ring, order.at, place);

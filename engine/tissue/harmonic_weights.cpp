@@ -2,11 +2,13 @@
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
+#include <cassert>
 
 namespace condyle {
 
 std::vector<double> harmonic_weights(const SpringPrismMesh& mesh, const std::vector<int>& given,
                                      const std::vector<double>& value) {
+  assert(given.size() == value.size());
   std::vector<double> fraction(mesh.node_count, 0.0);
   std::vector<char> fixed(mesh.node_count, 0);
   for (std::size_t i = 0; i < given.size(); ++i) {

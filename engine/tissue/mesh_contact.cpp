@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "engine/mesh/measure.h"
@@ -124,6 +125,8 @@ void find_obstacle_contacts(const std::vector<MeshPoint>& points,
                             const Pose& X_WO, const Nodes& x, const PointContactSettings& settings,
                             std::vector<PointContact>& contacts, const Nodes& shift,
                             NearPoints* known) {
+  assert(allowance.size() == points.size());
+  assert(shift.empty() || shift.size() == points.size());
   const Pose X_OW = X_WO.inverse();
   const Eigen::Matrix3d R_OW = X_OW.R.toRotationMatrix(), R_WO = X_WO.R.toRotationMatrix();
   const auto look = [&](int i) {
@@ -151,6 +154,7 @@ void find_obstacle_contacts(const std::vector<MeshPoint>& points,
 }
 
 Vector3d limit_angle(const Vector3d& normal, const Vector3d& front, double least) {
+  assert(std::abs(front.norm() - 1) < 1e-6 && std::abs(least) <= 1);
   const double cosine = normal.dot(front);
   if (cosine >= least) return normal;
   const Vector3d across = normal - cosine * front;
@@ -162,6 +166,7 @@ void find_surface_contacts(const std::vector<MeshPoint>& points,
                            const std::vector<double>& allowance, const MeshSurface& surface,
                            const Nodes& x, const PointContactSettings& settings,
                            std::vector<PointContact>& contacts, const Vector3d& facing) {
+  assert(allowance.size() == points.size());
   constexpr double least_facing = 0.5;
   const double reach = std::max(settings.reach_mm, deepest_of_surface_mm);
   Box box;

@@ -1,6 +1,7 @@
 #include "engine/tissue/mesh_point.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "engine/tissue/layered_mesh.h"
@@ -9,6 +10,7 @@ namespace condyle {
 
 void spread(const std::vector<Eigen::Vector3i>& triangles, const Nodes& rest, double spacing_mm,
             std::vector<MeshPoint>& points) {
+  assert(spacing_mm > 0);
   const auto parts_of = [&](int a, int b) {
     return static_cast<int>(std::ceil((rest[a] - rest[b]).norm() / spacing_mm));
   };

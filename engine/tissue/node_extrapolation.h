@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cassert>
+
 #include "engine/minimize/objective.h"
 
 namespace condyle {
@@ -12,6 +14,7 @@ class NodeExtrapolator {
   /// Records a frame that ended at `reached`; with the bones' motion alone it would have ended at
   /// `carried`.
   void add_frame(const Points& reached, const Points& carried) {
+    assert(reached.size() == carried.size());
     before_.swap(last_);
     last_.resize(reached.size());
     for (std::size_t i = 0; i < reached.size(); ++i) last_[i] = reached[i] - carried[i];

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -298,6 +299,7 @@ void smooth(EdgeMesh& mesh, const TriangleTree& surface, const Outline& outline)
 }  // namespace
 
 Remeshed remesh(const TriMesh& fine, const RemeshSettings& settings) {
+  assert(settings.edge_length);
   EdgeMesh mesh(fine);
   for (int v : settings.pinned) mesh.pinned[v] = 1;
   const TriangleTree surface(fine);

@@ -1,6 +1,7 @@
 #include "engine/tissue/spring_prism.h"
 
 #include <Eigen/Geometry>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -165,6 +166,9 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, bool with_grad
 }
 
 double SpringPrismEnergy::energy(const Nodes& x, bool with_gradient) {
+  assert(x.size() == static_cast<std::size_t>(mesh_.node_count));
+  assert(loads_.anchor_target.size() == mesh_.anchor_node.size());
+  assert(loads_.node_force.empty() || loads_.node_force.size() == x.size());
   set_rows(x, x_);
   std::array<double, chunks_> energy{};
   parallel_for(chunks_, threads_, [&](std::size_t c) {
@@ -211,6 +215,7 @@ Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& 
 }
 
 Objective::Curvature SpringPrismEnergy::curvature(const Nodes& x, const Nodes& d) {
+  assert(x.size() == static_cast<std::size_t>(mesh_.node_count) && d.size() == x.size());
   set_rows(d, d_);
   std::array<Curvature, chunks_> parts;
   parallel_for(chunks_, threads_,
