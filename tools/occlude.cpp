@@ -93,7 +93,7 @@ Image picture_of(const Case& patient, const Bite& bite, double paper_mm, int thr
       .moved = bite.lower,
       .fixed_values = view.upper_gap,
       .moved_values = view.lower_gap,
-      .at = bite.rest.X_CM,
+      .at = with_jaw_at(patient.bodies, bite.rest.X_CM),
       .place = heaviest,
       .middle = arches.center(),
       .normal = -bite.up,

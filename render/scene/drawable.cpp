@@ -10,6 +10,7 @@
 #include "render/mesh/cut_cover.h"
 #include "render/mesh/vertex_normals.h"
 #include "render/shaders/skin_table.h"
+#include "sim/frame/body_poses.h"
 
 namespace condyle {
 namespace {

@@ -73,6 +73,10 @@ std::vector<Pose> motion_target_poses(const BodyTree& tree, const Pose& X_CM,
   return X_PB;
 }
 
+BodyPoses with_jaw_at(const BodyTree& tree, const Pose& X_CM) {
+  return placed(tree, motion_target_poses(tree, X_CM));
+}
+
 BodyPoses with_jaw_at(const BodyTree& tree, const BodyPoses& at, const Pose& X_CM) {
   const BodyPoses before = completed(tree, at);
   return placed(tree, motion_target_poses(tree, X_CM, in_parents(tree, before)));

@@ -15,7 +15,8 @@ struct BodyPoses {
 
   BodyPoses() = default;
   explicit BodyPoses(std::vector<Pose> poses) : X_CB(std::move(poses)) {}
-  /// A native mandible at a pose (see completed()).
+  /// A native mandible at a pose (see completed()). Where the body tree is known, use
+  /// with_jaw_at().
   BodyPoses(const Pose& X_CM) : X_CB{Pose{}, X_CM} {}  // NOLINT: a pose of the jaw alone is one
 
   const Pose& operator[](BodyId body) const;
@@ -48,6 +49,8 @@ std::vector<Pose> motion_target_poses(const BodyTree& tree, const Pose& X_CM,
 
 /// `at` with the bodies that a motion drives at X_CM, and all their descendants carried along.
 BodyPoses with_jaw_at(const BodyTree& tree, const BodyPoses& at, const Pose& X_CM);
+/// The same with all other bodies at rest.
+BodyPoses with_jaw_at(const BodyTree& tree, const Pose& X_CM);
 
 /// X_CP * X_PB, exact where one of them is at rest.
 Pose composed(const Pose& X_CP, const Pose& X_PB);

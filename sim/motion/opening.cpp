@@ -85,7 +85,7 @@ double free_rotation(const OpeningPath& path, double end, double min_gap,
   for (int i = 1; i <= steps; ++i) {
     const Pose X_CM = path.joints.pose(path.inputs(end * i / steps));
     if (crushes(path.joints, X_CM, min_gap, left, right)) return end * (i - 1) / steps;
-    last = contacts.find(X_CM, &last, 2);
+    last = contacts.find(BodyPoses(X_CM), &last, 2);
     if (!is_free(last, contacts.at_rest())) return end * (i - 1) / steps;
   }
   return end;
@@ -114,7 +114,7 @@ std::vector<Coupling> couplings_to_try(const MotionParameters& parameters, doubl
 }  // namespace
 
 bool bones_free(const Case& patient, const ContactModel& contacts, const Pose& X_CM) {
-  const ContactSet now = contacts.find(X_CM, &contacts.at_rest(), 2);
+  const ContactSet now = contacts.find(with_jaw_at(patient.bodies, X_CM), &contacts.at_rest(), 2);
   for (std::size_t i = 0; i < now.pairs.size(); ++i) {
     const PairContact& pair = now.pairs[i];
     const auto teeth = [&](int part) {

@@ -130,7 +130,8 @@ Bite BiteFinder::find(const Pose& start, const Progress& progress) const {
     bite.load_center += contact.load_fraction * contact.place;
   }
   bite.joint_fraction = model.joint_force_N(X_CM) / settings.closing_force_N;
-  inspect_pairs(patient, all_contacts.find(X_CM, nullptr, settings.threads),
+  inspect_pairs(patient,
+                all_contacts.find(with_jaw_at(patient.bodies, X_CM), nullptr, settings.threads),
                 settings.max_overlap_mm, bite);
   bite.before = incisors(arches, {});
   bite.after = incisors(arches, X_CM);

@@ -5,6 +5,7 @@
 
 #include "engine/collide/collision_mesh.h"
 #include "sim/case/case.h"
+#include "sim/frame/body_poses.h"
 
 namespace condyle {
 

@@ -70,14 +70,15 @@ ReleasedJaw release_jaw(const SessionPatient& patient, const SessionMotion& moti
   if (by_tone) released.X_CM_rest = rest_position(motion.choice, patient, settings);
   JawRelease course =
       condyle::release_jaw(of, patient.scene.contacts, from, released, threads, progress);
-  std::string words =
-      fmt::format("{} the jaw {} after {:.2f} s{}",
-                  by_tone ? "At its muscles' resting tone" : "Moved by its muscles",
-                  end_of(course, measure(of, course.X_CM.back()).opening_mm), course.rest.seconds,
-                  course.rest.reached ? ""
-                  : course.rest.depth_mm > jaw_rest_depth_mm
-                      ? fmt::format(", {:.2f} mm deep in bone", course.rest.depth_mm)
-                      : ", not still yet");
+  std::string words = fmt::format(
+      "{} the jaw {} after {:.2f} s{}",
+      by_tone ? "At its muscles' resting tone" : "Moved by its muscles",
+      end_of(course, measure(of, with_jaw_at(of.bodies, course.X_CM.back())).opening_mm),
+      course.rest.seconds,
+      course.rest.reached ? ""
+      : course.rest.depth_mm > jaw_rest_depth_mm
+          ? fmt::format(", {:.2f} mm deep in bone", course.rest.depth_mm)
+          : ", not still yet");
   return {std::move(course), std::move(words)};
 }
 

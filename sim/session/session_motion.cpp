@@ -88,7 +88,7 @@ SessionMotion make_session_motion(const MotionChoice& choice, const SessionPatie
   constexpr int samples = 200;
   for (int i = 0; i <= samples; ++i) {
     const Pose X_CM = made.opening.target(made.opening.duration_s * i / samples);
-    made.widest_mm = std::max(made.widest_mm, measure(of, X_CM).opening_mm);
+    made.widest_mm = std::max(made.widest_mm, measure(of, with_jaw_at(of.bodies, X_CM)).opening_mm);
   }
   made.settings = motion_settings(choice, motion, of.motion, made.widest_mm);
   if (!motion.muscles) return made;

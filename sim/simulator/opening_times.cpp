@@ -10,7 +10,7 @@ constexpr int opening_samples = 200, bisections = 40;
 }  // namespace
 
 double OpeningTimes::opening_at(double time_s) const {
-  return measure(patient_, motion_.target(time_s)).opening_mm;
+  return measure(patient_, with_jaw_at(patient_.bodies, motion_.target(time_s))).opening_mm;
 }
 
 double OpeningTimes::sampled_opening(int sample) {
