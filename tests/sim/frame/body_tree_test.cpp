@@ -5,6 +5,7 @@
 #include <random>
 
 #include "engine/core/error.h"
+#include "sim/frame/body_poses.h"
 
 using namespace condyle;
 
@@ -80,4 +81,21 @@ TEST(BodyTree, CyclesAndUnknownParentsAreRefused) {
   EXPECT_THROW(tree.remove(cranium_body), InputError);
   EXPECT_THROW(tree.reparent(cranium_body, BodyId{1}), InputError);
   EXPECT_EQ(tree, operated());
+}
+
+TEST(BodyPoses, AMotionOfTheJawMovesItsBodiesWhereverTheyAreInTheTree) {
+  const Pose X_CM{Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX())),
+                  Eigen::Vector3d(1, -4, -7)};
+  const BodyPoses at = with_jaw_at(operated(), X_CM);
+  ASSERT_EQ(at.X_CB.size(), 5u);
+  for (const int body : {0, 1}) EXPECT_TRUE(bit_identical(at[BodyId{body}], {})) << body;
+  for (const int body : {2, 3, 4}) EXPECT_TRUE(bit_identical(at[BodyId{body}], X_CM)) << body;
+
+  // The same bits as a native mandible with all that hangs on it.
+  BodyTree native = native_bodies();
+  native.add({.name = "chin", .parent = mandible_body, .driver = BodyDriver::hand});
+  native.add({.name = "graft", .driver = BodyDriver::hand});
+  const BodyPoses moved = with_jaw_at(native, X_CM), expected = completed(native, BodyPoses(X_CM));
+  for (int body = 0; body < native.size(); ++body)
+    EXPECT_TRUE(bit_identical(moved[BodyId{body}], expected[BodyId{body}])) << body;
 }

@@ -9,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "sim/occlusion/arches.h"
 #include "sim/phantom/phantom.h"
 #include "tests/support/boxes.h"
 #include "tests/support/overlap_oracle.h"
@@ -103,6 +104,32 @@ TEST(CloseBite, BuiltBiteIsFoundFromTwentyStartsUpToThreeMillimetresAndDegreesAw
   }
   RecordProperty("worst_um", static_cast<int>(1000 * worst));
   EXPECT_GE(far, 10);
+}
+
+TEST(Arches, OfASplitJawAreThoseOfTheBodiesThatCarryThem) {
+  const Arches native = find_arches(builtin());
+  Case split = builtin();
+  const BodyId tooth_segment = split.bodies.add(
+      {.name = "tooth segment", .parent = mandible_body, .driver = BodyDriver::hand});
+  split.jaw.lower_arch = tooth_segment;
+  for (Part& part : split.parts)
+    if (part.role == Role::lower_teeth) part.body = tooth_segment;
+  // Teeth that stay on the ramus are none of the arch, whatever their place in the list.
+  Part wisdom = *builtin().find(Role::lower_teeth);
+  wisdom.name = "wisdom teeth";
+  for (auto& p : wisdom.mesh.vertices) p.y() += 30;
+  split.parts.insert(split.parts.begin(), wisdom);
+  const Arches arches = find_arches(split);
+  EXPECT_EQ(arches.lower.part, split.teeth_of(tooth_segment));
+  EXPECT_EQ(arches.lower.part->name, native.lower.part->name);
+  EXPECT_EQ(arches.lower.edge, native.lower.edge);
+  EXPECT_EQ(arches.lower.molars, native.lower.molars);
+  EXPECT_EQ(arches.upper.edge, native.upper.edge);
+
+  EXPECT_TRUE(split.has_both_arches());
+  split.jaw.lower_arch = split.jaw.left_condyle;
+  split.parts.erase(split.parts.begin());
+  EXPECT_FALSE(split.has_both_arches());
 }
 
 TEST(CloseBite, BuiltBiteHasManyBalancedContacts) {
