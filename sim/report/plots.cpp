@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "sim/frame/covered_curves.h"
 #include "sim/frame/label_placement.h"
 
 namespace condyle {
@@ -75,17 +76,6 @@ std::vector<LabelPlacement::Point> places_of(const Curve& curve, const auto& px,
   std::vector<LabelPlacement::Point> run;
   for (std::size_t i = 0; i < curve.x.size(); ++i) run.push_back({px(curve.x[i]), py(curve.y[i])});
   return run;
-}
-
-/// Whether one curve covers most of another with the same sample times.
-bool hides(const std::vector<LabelPlacement::Point>& upper,
-           const std::vector<LabelPlacement::Point>& lower) {
-  constexpr double near = 1.5;
-  if (upper.size() != lower.size()) return false;
-  std::size_t hidden = 0;
-  for (std::size_t i = 0; i < upper.size(); ++i)
-    hidden += std::hypot(upper[i].x - lower[i].x, upper[i].y - lower[i].y) < near;
-  return 2 * hidden > upper.size();
 }
 
 }  // namespace
@@ -222,9 +212,7 @@ class PlotWriter {
     const auto& curve = curves_[c];
     const auto& run = runs_[c];
     // Wide enough to show on both sides of a curve drawn over it.
-    double stroke = 2;
-    for (std::size_t on = c + 1; on < curves_.size() && stroke < 8; ++on)
-      if (hides(runs_[on], run)) stroke += 3;
+    const double stroke = 2 + 3 * curves_over(runs_, c);
     const std::size_t number = curve.colour < 0 ? c : static_cast<std::size_t>(curve.colour);
     const char* colour = colours[number % colours.size()];
     const char* dashes = curve.dashed ? " stroke-dasharray=\"6 4\"" : "";

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/frame/covered_curves.h"
 #include "sim/frame/label_placement.h"
 
 namespace condyle {
@@ -254,11 +255,10 @@ void draw_names(Pen& pen, ImDrawList& list, const PlotPanel& panel, const Axes& 
 }
 
 void draw_curve(const Pen& pen, ImDrawList& list, const Curve& curve, const Axes& axes,
-                double y_most, ImU32 ink) {
+                double y_most, ImU32 ink, float width) {
   std::vector<ImVec2> run;
   const auto stroke = [&] {
-    if (run.size() > 1)
-      list.AddPolyline(run.data(), static_cast<int>(run.size()), ink, 0, pen.px(1.6f));
+    if (run.size() > 1) list.AddPolyline(run.data(), static_cast<int>(run.size()), ink, 0, width);
     run.clear();
   };
   const std::size_t count = std::min(curve.x.size(), curve.y.size());
@@ -349,9 +349,16 @@ void draw_plot(Pen& pen, const PlotPanel& panel, const std::vector<double>& time
   draw_axes(pen, list, axes, panel.settings);
   list.PushClipRect({axes.left, axes.top}, {axes.right, axes.bottom}, true);
   draw_bands(pen, list, panel, axes);
+  std::vector<std::vector<LabelPlacement::Point>> runs(panel.curves.size());
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    for (std::size_t k = 0; k < std::min(panel.curves[i].x.size(), panel.curves[i].y.size()); ++k) {
+      const ImVec2 p = axes.at(panel.curves[i].x[k], panel.curves[i].y[k]);
+      runs[i].push_back({p.x, p.y});
+    }
   for (std::size_t i = 0; i < panel.curves.size(); ++i)
     draw_curve(pen, list, panel.curves[i], axes, panel.settings.y_most,
-               ink_of(panel.curves[i], i, theme.light));
+               ink_of(panel.curves[i], i, theme.light),
+               pen.px(1.6f + 2.4f * static_cast<float>(curves_over(runs, i))));
   draw_names(pen, list, panel, axes);
   bool over_time = false;
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {

@@ -230,6 +230,30 @@ TEST_P(Instrument, PlotsStandBelowThePictureAndFollowTheClock) {
   EXPECT_FALSE(stage.has("plots"));
 }
 
+TEST_P(Instrument, CurvesThatCoincideAreBothSeen) {
+  Curve left{"left", {}, {}};
+  for (int i = 0; i <= 60; ++i) {
+    left.x.push_back(i);
+    left.y.push_back(20 * std::sin(0.1 * i));
+  }
+  Curve right = left;
+  right.name = "right";
+  stage.plots = {{"Condyles", {PlotPanel{{left, right}, {.title = "path", .legend = false}}}}};
+  stage.click("plots-tool");
+  stage.rest();
+  const Image image = stage.image();
+  const ViewRect& plot = stage.item("plot:path").rect;
+  int blue = 0, orange = 0;  // the first two colours of curves
+  for (int y = static_cast<int>(plot.y); y < plot.y + plot.height; ++y)
+    for (int x = static_cast<int>(plot.x); x < plot.x + plot.width; ++x) {
+      const auto* p = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + x)];
+      blue += p[2] > p[0] + 60 && p[2] > p[1] + 25;
+      orange += p[0] > p[2] + 60 && p[0] > p[1] + 25;
+    }
+  EXPECT_GT(blue, 300);
+  EXPECT_GT(orange, 300);
+}
+
 TEST_P(Instrument, PlotsHaveAScaleAndTheirNamesStandClearOfTheCurves) {
   const auto box = [](const char* name, double x0, double x1, double y0, double y1) {
     return PlotBand{name, {x0, x1, x1, x0}, {y0, y0, y1, y1}};
