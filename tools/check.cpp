@@ -42,7 +42,7 @@ std::string overview_of(const PairMeasure& measure) {
 }
 
 Image picture_of(const Scene& scene, const PairVerdict& pair, int threads) {
-  constexpr double least_mm = 45, most_mm = 90;
+  constexpr double min_mm = 45, max_mm = 90;
   const WorstView view = worst_view(scene, pair, threads);
   const auto& worst = pair.worst;
   ContactView place{.parts = view.parts,
@@ -54,7 +54,7 @@ Image picture_of(const Scene& scene, const PairVerdict& pair, int threads) {
                     .place = worst.measure.place,
                     .middle = worst.measure.middle,
                     .normal = worst.measure.normal,
-                    .seen_mm = std::clamp(1.3 * worst.measure.size_mm, least_mm, most_mm),
+                    .seen_mm = std::clamp(1.3 * worst.measure.size_mm, min_mm, max_mm),
                     .overview = overview_of(worst.measure),
                     .title = display_name(pair.a) + " and " + readable_name(pair.b),
                     .lines = {worst_caption(pair)}};

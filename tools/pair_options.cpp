@@ -9,7 +9,7 @@
 
 namespace condyle {
 PairRule parse_pair(const std::string& text) {
-  constexpr double most_mm = 1000;
+  constexpr double max_mm = 1000;
   const auto refuse = [&](const std::string& problem) {
     throw InputError("--pair " + text + ": " + problem);
   };
@@ -31,7 +31,7 @@ PairRule parse_pair(const std::string& text) {
     const std::string number = fields[i].substr(equals + 1);
     char* end = nullptr;
     const double value = std::strtod(number.c_str(), &end);
-    if (number.empty() || *end != '\0' || !(value >= 0 && value <= most_mm))
+    if (number.empty() || *end != '\0' || !(value >= 0 && value <= max_mm))
       refuse("the " + key + " \"" + number + "\" is not a number from 0 to 1000 mm");
     if (key == "gap")
       rule.gap_mm = value;

@@ -88,7 +88,7 @@ void add_pictures(CLI::App& command, PictureOptions& picture) {
   command
       .add_option("--show", picture.show,
                   "What to draw: all (the default), bones, teeth, segments, transplants, skin, "
-                  "mouth, contacts or names of parts, each with an opacity if wanted, e.g. "
+                  "mouth, contacts or names of parts, each with an optional opacity, e.g. "
                   "bones,teeth,skin:0.4; distance colours bones and teeth by their distance from "
                   "what they may meet, displacement the skin by its displacement from rest")
       ->type_name("PARTS");

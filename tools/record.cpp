@@ -49,12 +49,12 @@ struct FrameTimes {
 };
 
 FrameTimes frame_times(const RecordOptions& options, double duration_s) {
-  constexpr double most_frames = 1e6;
-  const double wanted = std::floor(duration_s * options.fps + 0.5) + 1;
-  if (options.frames == 0 && !(wanted <= most_frames))
+  constexpr double max_frames = 1e6;
+  const double rounded = std::floor(duration_s * options.fps + 0.5) + 1;
+  if (options.frames == 0 && !(rounded <= max_frames))
     throw InputError(fmt::format("--fps {}: makes {} frames of {} s; at most {} are recorded",
-                                 options.fps, wanted, duration_s, most_frames));
-  return {options.frames > 0 ? options.frames : static_cast<int>(wanted), duration_s};
+                                 options.fps, rounded, duration_s, max_frames));
+  return {options.frames > 0 ? options.frames : static_cast<int>(rounded), duration_s};
 }
 
 /// The report, with what its pictures were drawn with.

@@ -26,14 +26,14 @@ struct ViewOptions {
 /// As the window was left, but for what the command line asks for.
 WindowOptions window_options(const ViewOptions& options, const Arrangement& kept) {
   WindowOptions window{.title = "Condyle", .arrangement = kept, .default_scale = options.ui_scale};
-  Arrangement& wanted = window.arrangement;
+  Arrangement& start = window.arrangement;
   window.fit_screen = options.size.empty();
   if (!options.size.empty()) {
-    std::tie(wanted.width, wanted.height) = parse_size(options.size);
-    wanted.maximized = false;
+    std::tie(start.width, start.height) = parse_size(options.size);
+    start.maximized = false;
   }
-  if (options.ui_scale) wanted.ui_scale = options.ui_scale;
-  if (options.light) wanted.light = *options.light;
+  if (options.ui_scale) start.ui_scale = options.ui_scale;
+  if (options.light) start.light = *options.light;
   return window;
 }
 

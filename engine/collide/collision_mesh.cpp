@@ -197,26 +197,26 @@ class NearestPair {
 
 /// The same traversal for parts of B that may have met A on their path. All in the coordinates of
 /// A, except the path of B.
-class MetOnWay {
+class PathContactTest {
  public:
-  MetOnWay(const Surface& a, const Surface& b, const fcl::Transform3d& X, const BodyPath& way,
-           double kept_mm)
+  PathContactTest(const Surface& a, const Surface& b, const fcl::Transform3d& X,
+                  const BodyPath& path, double min_distance_mm)
       : a_(a.model),
         b_(b.model),
         boxes_a_(a.boxes.data()),
         boxes_b_(b.boxes.data()),
         X_(X),
         turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm),
-        way_(way),
-        kept_mm_(kept_mm) {}
+        path_(path),
+        min_distance_mm_(min_distance_mm) {}
 
   bool found() const { return look({boxes_a_, 0, 1}, {boxes_b_, 0, 1}); }
   bool found_at(TrianglePair pair) const {
     if (pair.a < 0 || pair.a >= a_.num_tris || pair.b < 0 || pair.b >= b_.num_tris) return false;
     double longest = 0;
     for (const Eigen::Vector3d& p : corners(b_, pair.b))
-      longest = std::max(longest, way_.length(p));
-    const double reach = longest + kept_mm_;
+      longest = std::max(longest, path_.length(p));
+    const double reach = longest + min_distance_mm_;
     const double gap2 =
         triangle_distance(corners(a_, pair.a), corners(b_, pair.b, X_), reach * reach).squared_mm2;
     return gap2 < reach * reach;
@@ -226,7 +226,7 @@ class MetOnWay {
   bool look(const ChildRange& a, const ChildRange& b) const {
     const FourFloats gaps = gap_bounds(*a.boxes, *b.boxes, turned_);
     for (int k = b.from; k < b.to; ++k) {
-      const double reach = longest(b, k) + kept_mm_;
+      const double reach = longest(b, k) + min_distance_mm_;
       for (int i = a.from; i < a.to; ++i)
         if (!(static_cast<double>(gaps[2 * i + k]) > reach) && open(a.one(i), b.one(k)))
           return true;
@@ -245,7 +245,7 @@ class MetOnWay {
     const auto which = static_cast<std::size_t>(k);
     const auto& center = b.boxes->center;
     const double radius = std::sqrt(static_cast<double>(b.boxes->squared_radius(k)));
-    return way_.length({center[0][which], center[1][which], center[2][which]}, radius) +
+    return path_.length({center[0][which], center[1][which], center[2][which]}, radius) +
            static_cast<double>(turned_.uncertain_mm);
   }
 
@@ -254,8 +254,8 @@ class MetOnWay {
   const BoxPair *boxes_a_, *boxes_b_;
   fcl::Transform3d X_;  // of B in A
   BoxTransform turned_;
-  const BodyPath& way_;
-  double kept_mm_;
+  const BodyPath& path_;
+  double min_distance_mm_;
 };
 
 /// Collects crossing triangles, in each region of A at most `per_region`.
@@ -358,8 +358,10 @@ bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, 
 }
 
 bool clear_on_path(const CollisionMesh& stays, const Pose& X_WS, const CollisionMesh& moves,
-                   const Pose& X_WM, const BodyPath& way, double kept_mm, TrianglePair start) {
-  const MetOnWay met(stays.tree(), moves.tree(), transform(X_WS.inverse() * X_WM), way, kept_mm);
+                   const Pose& X_WM, const BodyPath& path, double min_distance_mm,
+                   TrianglePair start) {
+  const PathContactTest met(stays.tree(), moves.tree(), transform(X_WS.inverse() * X_WM), path,
+                            min_distance_mm);
   return !met.found_at(start) && !met.found();
 }
 

@@ -84,12 +84,13 @@ struct BodyPath {
   }
 };
 
-/// Whether the moving surface kept a distance of at least `kept_mm` along its whole path to X_WM.
-/// The test is conservative and uses the final pose: each part must be farther away than its own
-/// path is long. False means undecided. `start`: triangles of the fixed and of the moving surface
-/// that are tested first.
+/// Whether the moving surface kept a distance of at least `min_distance_mm` along its whole path to
+/// X_WM. The test is conservative and uses the final pose: each part must be farther away than its
+/// own path is long. False means undecided. `start`: triangles of the fixed and of the moving
+/// surface that are tested first.
 bool clear_on_path(const CollisionMesh& stays, const Pose& X_WS, const CollisionMesh& moves,
-                   const Pose& X_WM, const BodyPath& way, double kept_mm, TrianglePair start = {});
+                   const Pose& X_WM, const BodyPath& path, double min_distance_mm,
+                   TrianglePair start = {});
 
 /// Deep overlap gives very many crossing triangles; a report needs a limited number, spread over
 /// the surface.

@@ -132,10 +132,10 @@ class Violated {
   std::size_t next_ = 0;
 };
 
-/// The motion nearest to `wanted` that keeps every gap non-negative, exactly: constraints are added
-/// and dropped one at a time and at most six are active. source: Goldfarb and Idnani 1983, with the
-/// unit matrix.
-TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<ContactRow>& rows,
+/// The motion nearest to `requested` that keeps every gap non-negative, exactly: constraints are
+/// added and dropped one at a time and at most six are active. source: Goldfarb and Idnani 1983,
+/// with the unit matrix.
+TwistSolution nearest_without_friction(const Twist& requested, const std::vector<ContactRow>& rows,
                                        const TwistSettings& settings) {
   constexpr int max_changes = 200;
   // After this many infeasible constraints in sequence, the worst first, the overlap is so deep
@@ -145,7 +145,7 @@ TwistSolution nearest_without_friction(const Twist& wanted, const std::vector<Co
       1e-9;  // fraction of a constraint's squared norm that is independent of the others
   TwistSolution solution;
   Twist& x = solution.x;
-  x = wanted;
+  x = requested;
   std::vector<Push>& active = solution.pushes;
   Violated violated(rows, settings.tolerance_mm);
   using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>;
@@ -222,12 +222,12 @@ ContactRow contact_row(const Vector3d& arm, const Vector3d& gradient, double gap
   return row;
 }
 
-TwistSolution nearest_allowed(const Twist& wanted, const std::vector<ContactRow>& rows,
+TwistSolution nearest_allowed(const Twist& requested, const std::vector<ContactRow>& rows,
                               const TwistSettings& settings) {
   assert(settings.friction >= 0 && settings.rotation_length_mm > 0);
-  if (!(settings.friction > 0)) return nearest_without_friction(wanted, rows, settings);
+  if (!(settings.friction > 0)) return nearest_without_friction(requested, rows, settings);
   TwistSolution solution;
-  solution.x = wanted;
+  solution.x = requested;
   std::vector<Joined> joined;
   std::vector<bool> has_joined(rows.size(), false);
   std::vector<std::pair<double, int>> worst;  // gap, row

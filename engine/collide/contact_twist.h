@@ -42,11 +42,11 @@ struct TwistSolution {
   double violation_mm = 0;   // largest remaining penetration
 };
 
-/// The motion nearest to `wanted` that keeps every gap non-negative. Contacts are activated a few
-/// at a time, the worst first; the active ones are solved by projected Gauss-Seidel. With friction
-/// each active contact opposes the tangential motion of its point by at most the friction
+/// The motion nearest to `requested` that keeps every gap non-negative. Contacts are activated a
+/// few at a time, the worst first; the active ones are solved by projected Gauss-Seidel. With
+/// friction each active contact opposes the tangential motion of its point by at most the friction
 /// coefficient times its normal displacement.
-TwistSolution nearest_allowed(const Twist& wanted, const std::vector<ContactRow>& rows,
+TwistSolution nearest_allowed(const Twist& requested, const std::vector<ContactRow>& rows,
                               const TwistSettings& settings);
 
 }  // namespace condyle

@@ -26,10 +26,10 @@ std::vector<Vector3d> all_around(int count) {
   return directions;
 }
 
-class Way {
+class SeparationSearch {
  public:
-  Way(const DepenetrationBody& a, const Pose& X_WA, const DepenetrationBody& b, const Pose& X_WB,
-      double precision_mm)
+  SeparationSearch(const DepenetrationBody& a, const Pose& X_WA, const DepenetrationBody& b,
+                   const Pose& X_WB, double precision_mm)
       : a_(a), b_(b), X_WA_(X_WA), X_WB_(X_WB), precision_mm_(precision_mm) {}
 
   bool overlap(const Vector3d& shift) const {
@@ -56,7 +56,7 @@ class Way {
   }
 
   /// Result of repeated translation along the normal at the deepest point; may fail.
-  Vector3d uphill() const {
+  Vector3d follow_normals() const {
     Vector3d shift = Vector3d::Zero();
     for (int step = 0; step < 40 && overlap(shift); ++step) {
       const OverlapDepth found = depth(shift);
@@ -66,7 +66,7 @@ class Way {
   }
 
   /// After this length a plane separates them in any case.
-  double parted_by_plane(const Vector3d& direction) const {
+  double length_to_plane(const Vector3d& direction) const {
     const Vector3d in_a = X_WA_.R.conjugate() * direction, in_b = X_WB_.R.conjugate() * direction;
     return std::max(0.0, a_.solid.extent(in_a) + direction.dot(X_WA_.t) + b_.solid.extent(-in_b) -
                              direction.dot(X_WB_.t));
@@ -87,32 +87,32 @@ Depenetration push_out(const DepenetrationBody& a, const Pose& X_WA, const Depen
   assert(settings.directions > 0 && settings.precision_mm > 0);
   Depenetration out;
   if (a.solid.open_shell_count() > 0 || b.solid.open_shell_count() > 0) return out;
-  const Way way(a, X_WA, b, X_WB, settings.precision_mm);
-  if (!way.overlap(Vector3d::Zero())) {
+  const SeparationSearch search(a, X_WA, b, X_WB, settings.precision_mm);
+  if (!search.overlap(Vector3d::Zero())) {
     out.status = Depenetration::Status::apart;
     return out;
   }
 
   double best = infinity;
   const auto offer = [&](const Vector3d& direction) {
-    const double length = way.length(direction, best);
+    const double length = search.length(direction, best);
     if (length < best) best = length, out.direction = direction;
   };
   // Promising directions first: the others are then abandoned early.
-  if (const Vector3d hint = way.uphill(); hint.norm() > 0) offer(hint.normalized());
-  offer(way.depth(Vector3d::Zero()).normal);
+  if (const Vector3d hint = search.follow_normals(); hint.norm() > 0) offer(hint.normalized());
+  offer(search.depth(Vector3d::Zero()).normal);
   std::vector<Vector3d> directions = all_around(settings.directions);
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)})
     for (const Pose& X : {X_WA, X_WB})
       for (const double sign : {1.0, -1.0}) directions.push_back(X.R * (sign * axis));
   Vector3d widest = directions.front();
   for (const auto& direction : directions)
-    if (way.parted_by_plane(direction) < way.parted_by_plane(widest)) widest = direction;
+    if (search.length_to_plane(direction) < search.length_to_plane(widest)) widest = direction;
   offer(widest);
   for (const auto& direction : directions) offer(direction);
   // In that direction a plane certainly separates them, even if all others were abandoned.
   if (best == infinity) {
-    best = way.parted_by_plane(widest) + settings.precision_mm;
+    best = search.length_to_plane(widest) + settings.precision_mm;
     out.direction = widest;
   }
 

@@ -239,8 +239,8 @@ class FieldBuilder {
     for (int z = child.z; z < std::min(child.z + edge, field_.size_[2]); ++z)
       for (int y = child.y; y < std::min(child.y + edge, field_.size_[1]); ++y)
         for (int x = child.x; x < std::min(child.x + edge, field_.size_[0]); ++x) {
-          const double way = (place_center(x, y, z) - center).norm();
-          bound(x, y, z, (inside ? found.closed : outside) - (inside ? 0.0 : way));
+          const double shift = (place_center(x, y, z) - center).norm();
+          bound(x, y, z, (inside ? found.closed : outside) - (inside ? 0.0 : shift));
           // Inside, the magnitude of the bound is not used: any negative value suffices.
         }
     return false;

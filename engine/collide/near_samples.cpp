@@ -99,9 +99,9 @@ std::vector<int> samples_around(const SurfaceSamples& samples, const std::vector
 }
 
 double clearance_bound(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS,
-                       double most_mm) {
-  if (!samples.balls.empty()) lower(samples, field, X_FS, 0, most_mm);
-  return most_mm;
+                       double max_mm) {
+  if (!samples.balls.empty()) lower(samples, field, X_FS, 0, max_mm);
+  return max_mm;
 }
 
 SampleDistance query_sample(const DistanceField& field, const Vector3d& p_F,

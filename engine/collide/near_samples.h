@@ -28,9 +28,9 @@ void collect_near(const SurfaceSamples& samples, const DistanceField& field, con
 std::vector<int> samples_around(const SurfaceSamples& samples,
                                 const std::vector<Eigen::Vector3d>& places, double reach_mm);
 
-/// Lower bound of the distance of the surfaces, at most `most_mm`: for bodies that are far apart.
+/// Lower bound of the distance of the surfaces, at most `max_mm`: for bodies that are far apart.
 double clearance_bound(const SurfaceSamples& samples, const DistanceField& field, const Pose& X_FS,
-                       double most_mm);
+                       double max_mm);
 
 /// Distance of one sample in the field.
 struct SampleDistance {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double reach_rounding_mm = 1e-9;
 constexpr double touching_mm2 = 1e-20;
-constexpr std::size_t most_inside = 500;  // faces examined individually
+constexpr std::size_t max_inside = 500;  // faces examined individually
 
 }  // namespace
 
@@ -148,15 +148,15 @@ class DepthSearch {
   /// there, and at most the distance to any one triangle of the shell; the latter is largest at a
   /// corner of t and exceeds the depth by a term quadratic in the size of t.
   double bound(Into into, const Triangle& t, const Place& near) const {
-    double way2 = 0;
-    for (const auto& corner : t) way2 = std::max(way2, (corner - near.at).squaredNorm());
-    const double by_way = near.depth + std::sqrt(way2);
-    if (by_way <= enough() || near.triangle < 0) return by_way;
+    double distance2 = 0;
+    for (const auto& corner : t) distance2 = std::max(distance2, (corner - near.at).squaredNorm());
+    const double by_distance = near.depth + std::sqrt(distance2);
+    if (by_distance <= enough() || near.triangle < 0) return by_distance;
     const Triangle& opposite = shell(into).tree.corners(near.triangle);
     double farthest2 = 0;
     for (const auto& corner : t)
       farthest2 = std::max(farthest2, (nearest_point(corner, opposite) - corner).squaredNorm());
-    return std::min(by_way, std::sqrt(farthest2));
+    return std::min(by_distance, std::sqrt(farthest2));
   }
 
   /// A face with one point outside lies entirely outside unless the shell crosses it.
@@ -283,7 +283,7 @@ class DepthSearch {
       spread(face, near);
     }
     for (std::size_t i = 0; i < inside.size(); ++i) {
-      if (inside.size() > most_inside) return false;
+      if (inside.size() > max_inside) return false;
       near = offer_face(into, inside[i], near);
       spread(inside[i], near);
     }

@@ -38,9 +38,10 @@ SamplePoints thinned(const SamplePoints& all, double reach_mm, double rise_mm) {
   std::vector<int> next(count, -1);
   std::vector<bool> kept(count, false);
   const auto stands_for = [&](int q, int p, double reach) {
-    const Vector3d way = all.points[p] - all.points[q];
-    return way.squaredNorm() <= reach * reach && all.normals[p].dot(all.normals[q]) >= alike_cos &&
-           std::abs(way.dot(all.normals[q])) <= 0.5 * rise_mm;
+    const Vector3d offset = all.points[p] - all.points[q];
+    return offset.squaredNorm() <= reach * reach &&
+           all.normals[p].dot(all.normals[q]) >= alike_cos &&
+           std::abs(offset.dot(all.normals[q])) <= 0.5 * rise_mm;
   };
   for (const int p : order) {
     const double cosine = std::min(1.0, static_cast<double>(all.spread[p]));

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int max_walks = 8;
-constexpr int most_rubs = 12;
+constexpr int max_restarts = 12;
 constexpr double rest_mm = 0.005;
 // Fraction of the band: between poses this near each other nothing can be passed through.
 constexpr double near_fraction = 0.5;
@@ -138,9 +138,9 @@ double SlidingContact::allowed_fraction(const Pair& pair, const Pose& X_FM) cons
   if (balls.empty()) return 1;
   const Pose now = pair.between(X_FM);
   const Vector3d center = balls[0].center.cast<double>();
-  const double way = (now * center - pair.rest * center).norm() +
-                     rotation_angle(pair.rest.inverse() * now) * balls[0].radius;
-  const double fraction = way / fade_mm_;
+  const double displacement = (now * center - pair.rest * center).norm() +
+                              rotation_angle(pair.rest.inverse() * now) * balls[0].radius;
+  const double fraction = displacement / fade_mm_;
   return std::max(0.0, 1 - fraction * fraction);
 }
 
@@ -171,11 +171,11 @@ double SlidingContact::depth(const Pose& X_FM, int threads) const {
   return std::max(0.0, -probe.worst_gap());
 }
 
-SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideCache* memory,
+SlideResult SlidingContact::slide(const Pose& from, const Pose& target, SlideCache* memory,
                                   int threads) const {
   SlideResult out;
   out.X_FM = from;
-  if (!is_finite(from) || !is_finite(wanted)) return out;
+  if (!is_finite(from) || !is_finite(target)) return out;
   SlideCache own;
   SlideCache& kept = memory ? *memory : own;
   if (!kept.state_ || kept.state_->id != id_)
@@ -188,15 +188,16 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideCac
     // Constraints kept from earlier steps of a walk may hold it back: the result is valid where a
     // new walk does not move.
     const auto rests = [&](const Pose& before, const SlideResult& after) {
-      return after.touching && here.way_of(here.between(before, after.X_FM)) <= rest_mm;
+      return after.touching &&
+             here.max_displacement_mm(here.between(before, after.X_FM)) <= rest_mm;
     };
-    SlideResult result = walk(from, wanted);
+    SlideResult result = walk(from, target);
     if (rests(from, result) && !here.overlaps_at(from, settings_.slop_mm)) {
       result.X_FM = from;
       return result;
     }
-    for (int again = 0; again < most_rubs && result.touching; ++again) {
-      SlideResult more = walk(result.X_FM, wanted);
+    for (int again = 0; again < max_restarts && result.touching; ++again) {
+      SlideResult more = walk(result.X_FM, target);
       if (rests(result.X_FM, more)) break;
       more.steps += result.steps;
       more.reached &= result.reached;
@@ -205,18 +206,18 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideCac
     return result;
   }
 
-  if (there.overlaps_at(wanted, settings_.slop_mm)) {
+  if (there.overlaps_at(target, settings_.slop_mm)) {
     auto& nodes = kept.state_->nodes;
-    const SlideLattice::Node start = nodes.nearest(wanted);
+    const SlideLattice::Node start = nodes.nearest(target);
     SlideResult answer;
     std::atomic<bool> answered =
         false;  // the amount of prefetching meanwhile does not change any answer
     parallel_for(2, threads, [&](std::size_t job) {
-      if (job == 1) return nodes.prefetch(wanted, [&] { return !answered; });
+      if (job == 1) return nodes.prefetch(target, [&] { return !answered; });
       if (start.found) {
-        answer = SlideWalk(*this, there, nodes.carried(start, wanted), wanted).run();
+        answer = SlideWalk(*this, there, nodes.carried(start, target), target).run();
         if (!answer.settled || !answer.reached)
-          answer = SlideWalk(*this, there, start.X, wanted).run();
+          answer = SlideWalk(*this, there, start.X, target).run();
       }
       answered = true;
     });
@@ -224,9 +225,10 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideCac
     const double near = near_fraction * band_mm_;
     const auto reach =
         [&](const Pose& to) {  // whether it arrives there without passing through anything
-          if (here.way_of(here.between(from, to)) <= near) return std::pair(true, true);
+          if (here.max_displacement_mm(here.between(from, to)) <= near)
+            return std::pair(true, true);
           const SlideResult there_by_walk = walk(from, to);
-          return std::pair(here.way_of(here.between(there_by_walk.X_FM, to)) <= near,
+          return std::pair(here.max_displacement_mm(here.between(there_by_walk.X_FM, to)) <= near,
                            there_by_walk.reached);
         };
     if (answer.settled) {
@@ -243,7 +245,7 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& wanted, SlideCac
   int steps = 0;
   bool reached = true;
   for (int k = 0; k < max_walks; ++k) {
-    out = walk(X, wanted);
+    out = walk(X, target);
     steps += out.steps;
     reached &= out.reached;
     if (same_bits(out.X_FM, X)) break;

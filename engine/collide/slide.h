@@ -122,7 +122,7 @@ class SlidingContact {
   /// band. A start with overlap is moved out; an answer maps to itself. Poses that are not finite
   /// leave the body in place and are not settled. Deterministic: bit-identical for any number of
   /// threads.
-  SlideResult slide(const Pose& from, const Pose& wanted, SlideCache* memory = nullptr,
+  SlideResult slide(const Pose& from, const Pose& target, SlideCache* memory = nullptr,
                     int threads = 1) const;
 
   /// Largest penetration depth beyond the baseline, measured by the fields; 0 when free.

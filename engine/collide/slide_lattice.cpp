@@ -14,12 +14,12 @@ using Eigen::Vector3d;
 constexpr double part_fraction[2] = {1, 0.5};
 constexpr double cell_fraction = 0.5;     // of the band: between lattice positions of the lattice
 constexpr double node_settled_mm = 0.02;  // they only serve as starting points
-constexpr std::size_t most_kept = 20000;
+constexpr std::size_t max_nodes = 20000;
 constexpr int longest_chain = 400;
 constexpr double farthest_carried_mm = 0.3;
 constexpr double ahead_frames[] = {2, 4, 8};
-constexpr double farthest_ahead = 4;            // cells
-constexpr int least_ahead = 2, most_ahead = 8;  // steps per frame
+constexpr double farthest_ahead = 4;         // cells
+constexpr int min_ahead = 2, max_ahead = 8;  // steps per frame
 constexpr double rest_reach_mm = 5;
 constexpr double free_mm = 0.05;        // clearance of a body that has been moved out
 constexpr double drawn_fraction = 0.7;  // of the depth, per step
@@ -75,8 +75,8 @@ SlideLattice::ExitDirection SlideLattice::exit_direction(const Pose& X) {
 }
 
 /// A free pose: the body is moved out by a fraction of its depth at a time.
-std::optional<Pose> SlideLattice::moved_out(const Pose& wanted) {
-  Pose X = wanted;
+std::optional<Pose> SlideLattice::moved_out(const Pose& target) {
+  Pose X = target;
   Vector3d last = Vector3d::Zero();
   for (int k = 0; k < max_draws; ++k) {
     const ExitDirection way = exit_direction(X);
@@ -165,7 +165,7 @@ std::pair<std::vector<SlideLattice::Key>, SlideLattice::Node> SlideLattice::chai
 
 bool SlideLattice::near_rest(const Key& key) const {
   return model_.rest_ &&
-         probe_.way_of(probe_.between(*model_.rest_, place_of(key))) < rest_reach_mm;
+         probe_.max_displacement_mm(probe_.between(*model_.rest_, place_of(key))) < rest_reach_mm;
 }
 
 /// A pose that overlaps at rest may be reachable from rest only.
@@ -201,28 +201,28 @@ SlideLattice::Node SlideLattice::solve(Tree& tree, const std::pair<std::vector<K
   return node;
 }
 
-SlideLattice::Node SlideLattice::nearest(const Pose& wanted) {
-  if (outside_.size() + rest_.size() > most_kept) {
+SlideLattice::Node SlideLattice::nearest(const Pose& target) {
+  if (outside_.size() + rest_.size() > max_nodes) {
     prefetch_.reset();
     outside_.clear();
     rest_.clear();
   }
-  const Key key = key_of(wanted);
+  const Key key = key_of(target);
   const Node node = solve(outside_, chain_outside(key));
   if (!near_rest(key)) return node;
   const Node other = solve(rest_, chain_to_rest(key));
   return !node.found || other.left < node.left ? other : node;
 }
 
-Pose SlideLattice::carried(const Node& node, const Pose& wanted) const {
+Pose SlideLattice::carried(const Node& node, const Pose& target) const {
   TwistSettings settings;
   settings.rotation_length_mm = model_.rotation_length_mm_;
   std::vector<ContactRow> rows;
   for (const SlideContact& contact : node.contacts)
     rows.push_back(contact_row(contact.point - node.X * model_.pivot_, contact.normal,
                                std::max(0.0, contact.gap_mm), model_.rotation_length_mm_));
-  const Twist way = nearest_allowed(probe_.between(node.X, wanted), rows, settings).x;
-  const double length = probe_.way_of(way);
+  const Twist way = nearest_allowed(probe_.between(node.X, target), rows, settings).x;
+  const double length = probe_.max_displacement_mm(way);
   return probe_.moved(node.X, way * std::min(1.0, farthest_carried_mm / length));
 }
 
@@ -247,23 +247,23 @@ void SlideLattice::continue_prefetch(int steps) {
 }
 
 /// True while a walk is in progress.
-bool SlideLattice::find_prefetch(const Pose& wanted, const Twist& way) {
+bool SlideLattice::find_prefetch(const Pose& target, const Twist& way) {
   for (const double frames : ahead_frames) {
     if (prefetch_) return true;
     if (!(frames * way.norm() < farthest_ahead * cell_mm_)) return false;
-    const Key key = key_of(probe_.moved(wanted, frames * way));
+    const Key key = key_of(probe_.moved(target, frames * way));
     if (!begin_prefetch(outside_, chain_outside(key)) && near_rest(key))
       begin_prefetch(rest_, chain_to_rest(key));
   }
   return prefetch_.has_value();
 }
 
-void SlideLattice::prefetch(const Pose& wanted, const std::function<bool()>& more) {
-  const auto last = std::exchange(last_wanted_, wanted);
+void SlideLattice::prefetch(const Pose& target, const std::function<bool()>& more) {
+  const auto last = std::exchange(last_target_, target);
   if (std::exchange(asked_, false) || !last) return;
-  const Twist way = probe_.between(*last, wanted);
-  for (int steps = 0; steps < least_ahead || (more() && steps < most_ahead); ++steps) {
-    if (!find_prefetch(wanted, way)) return;
+  const Twist way = probe_.between(*last, target);
+  for (int steps = 0; steps < min_ahead || (more() && steps < max_ahead); ++steps) {
+    if (!find_prefetch(target, way)) return;
     continue_prefetch(1);
   }
 }

@@ -34,16 +34,16 @@ class SlideLattice {
   SlideLattice(const SlidingContact& model, int threads);
 
   /// The solution to start from towards a target pose that overlaps.
-  Node nearest(const Pose& wanted);
+  Node nearest(const Pose& target);
 
   /// A node's answer, displaced within its contacts by the offset of the target pose from the
   /// node's position.
-  Pose carried(const Node& node, const Pose& wanted) const;
+  Pose carried(const Node& node, const Pose& target) const;
 
   /// Performs some steps of the walks that the next target poses will need, extrapolated from the
   /// last two, so that no frame has to do a whole walk: a few steps, and further ones while `more`
   /// returns true.
-  void prefetch(const Pose& wanted, const std::function<bool()>& more);
+  void prefetch(const Pose& target, const std::function<bool()>& more);
 
  private:
   using Tree = std::map<Key, Node>;
@@ -65,7 +65,7 @@ class SlideLattice {
   Pose place_of(const Key& key) const;
   bool near_rest(const Key& key) const;
   ExitDirection exit_direction(const Pose& X);
-  std::optional<Pose> moved_out(const Pose& wanted);
+  std::optional<Pose> moved_out(const Pose& target);
   SlideWalk walk(const Node& parent, const Pose& to);
   Node finish(const Node& parent, SlideWalk&& walk, const Pose& to);
   Node slid(const Node& parent, const Pose& to) { return finish(parent, walk(parent, to), to); }
@@ -77,7 +77,7 @@ class SlideLattice {
   Node solve(Tree& tree, const std::pair<std::vector<Key>, Node>& chain);
   bool begin_prefetch(Tree& tree, const std::pair<std::vector<Key>, Node>& chain);
   void continue_prefetch(int steps);
-  bool find_prefetch(const Pose& wanted, const Twist& way);
+  bool find_prefetch(const Pose& target, const Twist& way);
 
   const SlidingContact& model_;
   SlideProbe probe_;
@@ -87,7 +87,7 @@ class SlideLattice {
   Tree outside_, rest_;
   std::optional<Prefetch> prefetch_;
   bool asked_ = false;               // a missing node was requested since the last prefetch
-  std::optional<Pose> last_wanted_;  // at the last prefetch
+  std::optional<Pose> last_target_;  // at the last prefetch
 };
 
 }  // namespace condyle

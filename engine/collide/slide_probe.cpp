@@ -60,13 +60,13 @@ struct SlideProbe::Search {
     }
     const Vector3d center = in_field(here.center);
     Seen& last = seen[b];
-    const double way = (center - Vector3d(last.x, last.y, last.z)).norm() +
-                       (turned - last.turned) * here.radius + look_rounding_mm;
-    if (last.gap - way > within) return last.gap - way;
+    const double displacement = (center - Vector3d(last.x, last.y, last.z)).norm() +
+                                (turned - last.turned) * here.radius + look_rounding_mm;
+    if (last.gap - displacement > within) return last.gap - displacement;
     double gap = -infinity;
     // A ball that moved by less than its size is about as near as before: its children have better
     // bounds.
-    if (way > here.radius) {
+    if (displacement > here.radius) {
       const DistanceField& field = pair.field->field;
       const DistanceField::Spot at = field.spot(center);
       // Within the band the field is more accurate than its bounds.
@@ -86,7 +86,7 @@ struct SlideProbe::Search {
     const SurfaceSamples& s = pair.samples->samples;
     const DistanceField& field = pair.field->field;
     std::array<float, 16> gap;
-    const unsigned told = field.distances(s.blocks[leaf.block], R_float, center, gap);
+    const unsigned known = field.distances(s.blocks[leaf.block], R_float, center, gap);
     double least = infinity;
     unsigned near = 0;  // a bit for each sample to examine
     for (int k = 0; k < leaf.count; ++k) {
@@ -94,7 +94,7 @@ struct SlideProbe::Search {
       const double allowed = fraction > 0 ? fraction * static_cast<double>(pair.allowed[i]) : 0.0;
       if (allowed == -infinity) continue;
       double here = static_cast<double>(gap[k]), at_least = here - field_bend_mm;
-      if (!(told >> k & 1)) {
+      if (!(known >> k & 1)) {
         const DistanceField::Spot at = field.spot(in_field(s.points[i]));
         here = at_least = at.distance_mm;
         if (at.known)
@@ -283,7 +283,7 @@ Pose SlideProbe::moved(const Pose& X, const Twist& x) const {
   return out;
 }
 
-double SlideProbe::way_of(const Twist& x) const {
+double SlideProbe::max_displacement_mm(const Twist& x) const {
   return x.head<3>().norm() + x.tail<3>().norm() / model_.rotation_length_mm_ * model_.radius_mm_;
 }
 

@@ -53,7 +53,7 @@ class SlideProbe {
   Twist between(const Pose& X, const Pose& to) const;
   Pose moved(const Pose& X, const Twist& x) const;
   /// Upper bound of the displacement of any point of the moving body.
-  double way_of(const Twist& x) const;
+  double max_displacement_mm(const Twist& x) const;
 
  private:
   struct Seen {                 // a ball of samples at its last query

@@ -23,20 +23,20 @@ constexpr double still_mm = 1e-4;  // shorter steps make no progress
 // Contradictory contacts (bodies of two patients in one place, surfaces turned inside out) request
 // displacements larger than any head; after this many such steps the walk is abandoned.
 constexpr double senseless_mm = 1000;
-constexpr int most_senseless = 3;
+constexpr int max_senseless = 3;
 // After this many successive steps that neither reduce the overlap nor bring the body nearer, more
 // would not either.
-constexpr int most_idle = 80;
+constexpr int max_idle = 80;
 constexpr double parted_mm = 1e-3;  // least reduction of the overlap
 
 }  // namespace
 
 SlideWalk::SlideWalk(const SlidingContact& model, SlideProbe& probe, const Pose& from,
-                     const Pose& wanted, double settled_mm)
+                     const Pose& target, double settled_mm)
     : model_(model),
       probe_(probe),
       from_(from),
-      wanted_(wanted),
+      target_(target),
       settled_mm_(settled_mm),
       X_(from) {
   const SlideSettings& settings = model_.settings_;
@@ -46,11 +46,11 @@ SlideWalk::SlideWalk(const SlidingContact& model, SlideProbe& probe, const Pose&
   solver_.rotation_length_mm = model_.rotation_length_mm_;
   solver_.max_contacts = settings.max_contacts;
   solver_.thinning_mm = settings.thinning_mm;
-  const double whole = probe_.way_of(probe_.between(from, wanted));
+  const double whole = probe_.max_displacement_mm(probe_.between(from, target));
   max_steps_ = 24 + static_cast<int>(3 * whole / longest_);
   radius_ = std::min(longest_, first_radius_mm);
   lately_.fill(infinity);
-  least_depth_ = least_left_ = infinity;
+  min_depth_ = min_left_ = infinity;
   out_.reached = true;
 }
 
@@ -67,11 +67,11 @@ bool SlideWalk::go_on(int steps) {
 /// Whether the body overlaps and the walk does not part it: the contacts contradict each other.
 bool SlideWalk::gets_nowhere(double left) {
   const bool gains = out_.depth_mm <= model_.settings_.slop_mm ||
-                     out_.depth_mm < least_depth_ - parted_mm || left < least_left_ - gained_mm;
-  least_depth_ = std::min(least_depth_, out_.depth_mm);
-  least_left_ = std::min(least_left_, left);
+                     out_.depth_mm < min_depth_ - parted_mm || left < min_left_ - gained_mm;
+  min_depth_ = std::min(min_depth_, out_.depth_mm);
+  min_left_ = std::min(min_left_, left);
   idle_ = gains ? 0 : idle_ + 1;
-  return idle_ >= most_idle;
+  return idle_ >= max_idle;
 }
 
 /// True where it was the last step.
@@ -81,31 +81,31 @@ bool SlideWalk::step() {
     end();
     return true;
   }
-  const Twist left = probe_.between(X_, wanted_);
-  const double way = probe_.way_of(left);
+  const Twist left = probe_.between(X_, target_);
+  const double distance = probe_.max_displacement_mm(left);
   const double active = radius_ + (settings.friction > 0 ? rubbing_margin_mm : margin_mm);
   probe_.look_at(X_, active);
   if (probe_.deepest_gap() > active) {
     const double clear = probe_.clearance(X_);
-    if (clear >= way) {
-      out_ = {wanted_, false, true, 0, {}, out_.steps, out_.reached};
+    if (clear >= distance) {
+      out_ = {target_, false, true, 0, {}, out_.steps, out_.reached};
       return true;
     }
-    X_ = probe_.moved(X_, left * (std::max(clear, radius_) / way));
+    X_ = probe_.moved(X_, left * (std::max(clear, radius_) / distance));
     radius_ = longest_;
     ++out_.steps;
     return false;
   }
   out_.reached &= probe_.deepest_gap() >= -(longest_ + settings.slop_mm);
   make_rows();
-  const TwistSolution solution = nearest_allowed(share_ * left, rows_, solver_);
+  const TwistSolution solution = nearest_allowed(step_fraction_ * left, rows_, solver_);
   Twist x = solution.x;
-  const double length = probe_.way_of(x);
+  const double length = probe_.max_displacement_mm(x);
   report(solution);
   double& before = lately_[static_cast<std::size_t>(out_.steps) % lately_.size()];
   const bool stalls = settings.friction == 0 && before - left.norm() < gained_mm;
   before = left.norm();
-  out_.settled = (length <= settled_mm_ * share_ || length <= still_mm || stalls) &&
+  out_.settled = (length <= settled_mm_ * step_fraction_ || length <= still_mm || stalls) &&
                  out_.depth_mm <= settings.slop_mm;
   if (out_.steps == 0) start_ = out_;
   if (out_.settled || gets_nowhere(left.norm())) {
@@ -113,24 +113,24 @@ bool SlideWalk::step() {
     return true;
   }
   senseless_ = length > senseless_mm ? senseless_ + 1 : 0;
-  if (senseless_ >= most_senseless && start_.X_FM.t == from_.t) {  // the body stays at its start
+  if (senseless_ >= max_senseless && start_.X_FM.t == from_.t) {  // the body stays at its start
     start_.steps = out_.steps;
     out_ = std::move(start_);
     return true;
   }
   if (length > radius_) x *= radius_ / length;
-  const bool arrives = length <= radius_ && share_ == 1 && solution.pushes.empty();
+  const bool arrives = length <= radius_ && step_fraction_ == 1 && solution.pushes.empty();
   // Alternating steps are too long: at a crease of the surface each step encounters only one side.
   // The constraints of the other side are kept. Steps in a consistent direction may grow.
   const double agree = x.dot(last_);
   if (agree < 0) {
-    share_ = std::max(0.5 * share_, 1e-3);
+    step_fraction_ = std::max(0.5 * step_fraction_, 1e-3);
     keep_cuts(solution);
   } else if (agree > 0.5 * x.norm() * last_.norm()) {
-    share_ = std::min(2 * share_, 1.0);
+    step_fraction_ = std::min(2 * step_fraction_, 1.0);
   }
   last_ = x;
-  X_ = arrives ? wanted_ : probe_.moved(X_, x);
+  X_ = arrives ? target_ : probe_.moved(X_, x);
   radius_ = std::min(longest_, std::max(2 * std::min(length, radius_), min_radius_mm));
   ++out_.steps;
   return false;
@@ -141,7 +141,7 @@ void SlideWalk::end() {
   const SlideSettings& settings = model_.settings_;
   const bool start_is_free = start_.X_FM.t == from_.t && start_.depth_mm <= settings.slop_mm;
   if (out_.steps == 0 || !start_is_free || settings.friction > 0 ||
-      probe_.between(from_, wanted_).norm() > probe_.between(out_.X_FM, wanted_).norm() + gained_mm)
+      probe_.between(from_, target_).norm() > probe_.between(out_.X_FM, target_).norm() + gained_mm)
     return;
   start_.steps = out_.steps;
   start_.settled = start_.reached = true;
@@ -165,7 +165,7 @@ void SlideWalk::make_rows() {
   }
   for (const Cut& cut : cuts_) {
     const Twist since = probe_.between(cut.X, X_);
-    if (probe_.way_of(since) > cut_reach_mm) continue;
+    if (probe_.max_displacement_mm(since) > cut_reach_mm) continue;
     rows_.push_back(cut.row);
     rows_.back().gap_mm = std::max(0.0, cut.row.gap_mm + cut.row.along.dot(since));
     row_candidate_.push_back(-1);
@@ -181,7 +181,8 @@ void SlideWalk::report(const TwistSolution& solution) {
     const int index = row_candidate_[push.row];
     if (index < 0) continue;
     const SlideCandidate& c = probe_.candidates()[index];
-    out_.contacts.push_back({c.point, rows_[push.row].normal, c.gap, push.length_mm / share_});
+    out_.contacts.push_back(
+        {c.point, rows_[push.row].normal, c.gap, push.length_mm / step_fraction_});
   }
 }
 

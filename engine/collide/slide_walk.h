@@ -15,7 +15,7 @@ class SlideWalk {
  public:
   static constexpr double default_settled_mm = 0.002;
 
-  SlideWalk(const SlidingContact& model, SlideProbe& probe, const Pose& from, const Pose& wanted,
+  SlideWalk(const SlidingContact& model, SlideProbe& probe, const Pose& from, const Pose& target,
             double settled_mm = default_settled_mm);
 
   /// Runs to the end.
@@ -41,21 +41,21 @@ class SlideWalk {
 
   const SlidingContact& model_;
   SlideProbe& probe_;
-  Pose from_, wanted_;
+  Pose from_, target_;
   double settled_mm_;
   TwistSettings solver_;
   double longest_;  // step
   int max_steps_ = 0;
-  Pose X_;             // where it is
-  double radius_ = 0;  // no step is longer
-  double share_ = 1;   // fraction of the remaining displacement that is requested
+  Pose X_;                    // where it is
+  double radius_ = 0;         // no step is longer
+  double step_fraction_ = 1;  // fraction of the remaining displacement that is requested
   Twist last_ = Twist::Zero();
   std::array<double, 5> lately_;  // recent distances from the target pose
   bool ended_ = false;
   SlideResult out_, start_;
   int senseless_ = 0;  // number of successive infeasible steps
   int idle_ = 0;       // number of successive steps that gained nothing
-  double least_depth_, least_left_;
+  double min_depth_, min_left_;
   std::vector<ContactRow> rows_;
   std::vector<int> row_candidate_;  // per constraint; -1 for a cut
   std::vector<Cut> cuts_;

@@ -7,7 +7,7 @@
 
 namespace condyle {
 
-/// Arrays of one length that are wanted again and again: what is given back is used next, for new
+/// Arrays of one length that are needed repeatedly: a returned one is used next, for new
 /// memory costs more than filling it. From any thread.
 template <class T>
 class BufferPool {

@@ -12,7 +12,7 @@
 namespace condyle {
 namespace {
 
-constexpr std::size_t most_shown = 40;
+constexpr std::size_t max_shown = 40;
 constexpr double longest_s = 86400;
 
 std::string text_of(double value) {
@@ -33,10 +33,10 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::string shortened(std::string_view text) {
-  std::string out(text.substr(0, most_shown));
+  std::string out(text.substr(0, max_shown));
   for (char& c : out)
     if (!std::isprint(static_cast<unsigned char>(c))) c = '?';
-  return text.size() <= most_shown ? out : out + "...";
+  return text.size() <= max_shown ? out : out + "...";
 }
 
 std::string lower_case(std::string_view text) {
@@ -108,13 +108,13 @@ std::string NumberTable::where(std::size_t row, std::size_t column) const {
 
 NumberTable read_rows(const std::filesystem::path& file, TextLines& lines,
                       std::vector<std::string> names, char separator,
-                      std::span<const std::size_t> wanted) {
+                      std::span<const std::size_t> selected) {
   NumberTable table;
   table.names = std::move(names);
   const std::size_t columns = table.names.size();
   assert(std::all_of(wanted.begin(), wanted.end(), [&](std::size_t c) { return c < columns; }));
   const std::size_t needed =
-      wanted.empty() ? columns : *std::max_element(wanted.begin(), wanted.end()) + 1;
+      selected.empty() ? columns : *std::max_element(selected.begin(), selected.end()) + 1;
   while (lines.next_filled()) {
     const auto fields = fields_of(lines.line(), separator);
     if (fields.size() < needed)
@@ -128,10 +128,10 @@ NumberTable read_rows(const std::filesystem::path& file, TextLines& lines,
       table.values[first + c] =
           parse_number(file, lines.where() + ", " + shortened(table.names[c]), fields[c]);
     };
-    if (wanted.empty())
+    if (selected.empty())
       for (std::size_t c = 0; c < columns; ++c) take(c);
     else
-      for (const std::size_t c : wanted) take(c);
+      for (const std::size_t c : selected) take(c);
     table.lines.push_back(lines.number());
   }
   return table;

@@ -60,10 +60,11 @@ struct NumberTable {
 };
 
 /// Reads the rows that follow in `lines`, all of them as wide as `names`; what stands in columns
-/// whose number is not among `wanted` is passed over (0 in the table); all count when it is empty.
+/// whose number is not among `selected` is passed over (0 in the table); all count when it is
+/// empty.
 NumberTable read_rows(const std::filesystem::path& file, TextLines& lines,
                       std::vector<std::string> names, char separator,
-                      std::span<const std::size_t> wanted = {});
+                      std::span<const std::size_t> selected = {});
 
 /// Refuses times (column `time`) that do not increase, or that span more than a day.
 void check_times(const std::filesystem::path& file, const NumberTable& table, std::size_t time);

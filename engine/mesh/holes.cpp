@@ -12,7 +12,7 @@
 namespace condyle {
 namespace {
 
-constexpr std::size_t most_edges = 64;
+constexpr std::size_t max_edges = 64;
 constexpr int none = -1;
 constexpr double hole_fraction = 0.25;  // of its piece's area, at most
 
@@ -109,9 +109,9 @@ double rim_length(const TriMesh& mesh, const std::vector<int>& hole) {
 }
 
 /// The triangles of least area over the polygon, if there are any that use no edge of the mesh and
-/// are together at most `most_area`.
+/// are together at most `max_area`.
 std::optional<std::vector<Eigen::Vector3i>> cover(const TriMesh& mesh, const Rims& rims,
-                                                  const std::vector<int>& hole, double most_area) {
+                                                  const std::vector<int>& hole, double max_area) {
   const int n = static_cast<int>(hole.size());
   constexpr double never = std::numeric_limits<double>::infinity();
   std::vector<double> least(static_cast<std::size_t>(n) * n, 0);
@@ -134,7 +134,7 @@ std::optional<std::vector<Eigen::Vector3i>> cover(const TriMesh& mesh, const Rim
         }
       }
     }
-  if (!(least[at(0, n - 1)] <= most_area)) return std::nullopt;
+  if (!(least[at(0, n - 1)] <= max_area)) return std::nullopt;
   std::vector<Eigen::Vector3i> triangles;
   std::vector<std::pair<int, int>> open = {{0, n - 1}};
   while (!open.empty()) {
@@ -167,7 +167,7 @@ ClosedHoles close_small_holes(TriMesh& mesh, const SmallHole& small) {
   ClosedHoles closed;
   std::vector<Eigen::Vector3i> added;
   for (const auto& hole : rims.holes()) {
-    if (hole.size() < 3 || hole.size() > most_edges) continue;
+    if (hole.size() < 3 || hole.size() > max_edges) continue;
     const double length = rim_length(mesh, hole);
     const bool few = hole.size() <= static_cast<std::size_t>(small.few_edges);
     if (length > small.rim_mm && !(few && length <= small.few_edges_rim_mm)) continue;

@@ -10,7 +10,7 @@
 namespace condyle {
 namespace {
 
-using Share = VertexSums::Share;
+using Term = VertexSums::Term;
 
 /// What is opposite to an edge in a triangle.
 int third_of(const Eigen::Vector3i& t, int a, int b) {
@@ -23,8 +23,8 @@ struct Around {
   std::vector<int> all, along_rim;  // neighbours; those by edges of other than two triangles
 };
 
-std::vector<Share> moved(int vertex, const Around& around) {
-  std::vector<Share> sum;
+std::vector<Term> moved(int vertex, const Around& around) {
+  std::vector<Term> sum;
   if (around.along_rim.size() == 2) {
     sum = {{vertex, 0.75f}, {around.along_rim[0], 0.125f}, {around.along_rim[1], 0.125f}};
   } else if (!around.along_rim.empty() || around.all.empty()) {
@@ -41,27 +41,27 @@ std::vector<Share> moved(int vertex, const Around& around) {
 
 }  // namespace
 
-void VertexSums::add(std::span<const Share> sum) {
-  shares.insert(shares.end(), sum.begin(), sum.end());
-  first.push_back(static_cast<int>(shares.size()));
+void VertexSums::add(std::span<const Term> sum) {
+  terms.insert(terms.end(), sum.begin(), sum.end());
+  first.push_back(static_cast<int>(terms.size()));
 }
 
 VertexSums composed(const VertexSums& outer, const VertexSums& inner) {
   VertexSums sums;
-  std::vector<Share> sum;
+  std::vector<Term> sum;
   for (std::size_t v = 0; v < outer.size(); ++v) {
     sum.clear();
     for (int i = outer.first[v]; i < outer.first[v + 1]; ++i) {
-      const Share& through = outer.shares[static_cast<std::size_t>(i)];
+      const Term& through = outer.terms[static_cast<std::size_t>(i)];
       const auto from = static_cast<std::size_t>(through.of);
       assert(from < inner.size());
       for (int k = inner.first[from]; k < inner.first[from + 1]; ++k) {
-        const Share& fraction = inner.shares[static_cast<std::size_t>(k)];
+        const Term& fraction = inner.terms[static_cast<std::size_t>(k)];
         sum.push_back({fraction.of, through.weight * fraction.weight});
       }
     }
     std::stable_sort(sum.begin(), sum.end(),
-                     [](const Share& a, const Share& b) { return a.of < b.of; });
+                     [](const Term& a, const Term& b) { return a.of < b.of; });
     std::size_t kept = 0;
     for (std::size_t i = 1; i < sum.size(); ++i)
       if (sum[i].of == sum[kept].of)
@@ -92,14 +92,14 @@ Subdivision subdivide(int vertex_count, std::span<const Eigen::Vector3i> triangl
     result.vertices.add(moved(v, around[static_cast<std::size_t>(v)]));
   for (const auto& edge : list.edges) {
     if (edge.count != 2) {
-      result.vertices.add(std::vector<Share>{{edge.low, 0.5f}, {edge.high, 0.5f}});
+      result.vertices.add(std::vector<Term>{{edge.low, 0.5f}, {edge.high, 0.5f}});
       continue;
     }
     const auto beside = [&](int side) {
       const auto t = list.sides[static_cast<std::size_t>(edge.first + side)].triangle;
       return third_of(mesh.triangles[static_cast<std::size_t>(t)], edge.low, edge.high);
     };
-    result.vertices.add(std::vector<Share>{
+    result.vertices.add(std::vector<Term>{
         {edge.low, 0.375f}, {edge.high, 0.375f}, {beside(0), 0.125f}, {beside(1), 0.125f}});
   }
 

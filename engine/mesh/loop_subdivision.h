@@ -7,18 +7,18 @@
 
 namespace condyle {
 
-/// Vertices as weighted sums of others: of vertex v, the shares first[v] up to first[v + 1], which
+/// Vertices as weighted sums of others: of vertex v, the terms first[v] up to first[v + 1], which
 /// add up to 1.
 struct VertexSums {
-  struct Share {
+  struct Term {
     int of;
     float weight;
   };
   std::vector<int> first = {0};
-  std::vector<Share> shares;
+  std::vector<Term> terms;
 
   std::size_t size() const { return first.size() - 1; }
-  void add(std::span<const Share> sum);
+  void add(std::span<const Term> sum);
 
   /// Of the first `count` vertices.
   template <class T>
@@ -28,8 +28,8 @@ struct VertexSums {
     for (std::size_t v = 0; v < sums.size(); ++v) {
       auto at = static_cast<std::size_t>(first[v]);
       const auto end = static_cast<std::size_t>(first[v + 1]);
-      T sum = shares[at].weight * values[static_cast<std::size_t>(shares[at].of)];
-      while (++at < end) sum += shares[at].weight * values[static_cast<std::size_t>(shares[at].of)];
+      T sum = terms[at].weight * values[static_cast<std::size_t>(terms[at].of)];
+      while (++at < end) sum += terms[at].weight * values[static_cast<std::size_t>(terms[at].of)];
       sums[v] = sum;
     }
     return sums;

@@ -49,12 +49,12 @@ int make_consistent(TriMesh& mesh, const EdgeList& list, std::vector<char>& turn
       (turned[t] ? turned_area : kept_area) += area_of(mesh, t);
       for (int k = 0; k < used[t]; ++k) {
         const auto [n, agrees] = neighbours[3 * t + k];
-        const char wanted = agrees ? turned[t] : !turned[t];
+        const char consistent = agrees ? turned[t] : !turned[t];
         if (!seen[n]) {
           seen[n] = 1;
-          turned[n] = wanted;
+          turned[n] = consistent;
           patch.push_back(n);
-        } else if (turned[n] != wanted && t < n) {
+        } else if (turned[n] != consistent && t < n) {
           ++contradictions;
         }
       }

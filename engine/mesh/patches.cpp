@@ -7,11 +7,11 @@
 namespace condyle {
 
 Patches cut_into_patches(std::span<const Eigen::Vector3f> positions,
-                         std::span<const Eigen::Vector3i> triangles, int most_triangles) {
-  assert(most_triangles >= 4 && most_triangles <= 512 && most_triangles % 4 == 0);
+                         std::span<const Eigen::Vector3i> triangles, int max_triangles) {
+  assert(max_triangles >= 4 && max_triangles <= 512 && max_triangles % 4 == 0);
   // Compact patches hide together, even ones face away together: a little of both.
   constexpr float even_weight = 0.25f;
-  constexpr std::size_t most_vertices = 255;
+  constexpr std::size_t max_vertices = 255;
   Patches patches;
   patches.first.push_back(0);
   if (triangles.empty()) return patches;
@@ -19,14 +19,14 @@ Patches cut_into_patches(std::span<const Eigen::Vector3f> positions,
   indices.reserve(3 * triangles.size());
   for (const auto& t : triangles)
     for (const int v : t) indices.push_back(static_cast<unsigned>(v));
-  const auto most = static_cast<std::size_t>(most_triangles);
-  const std::size_t bound = meshopt_buildMeshletsBound(indices.size(), most_vertices, most);
+  const auto most = static_cast<std::size_t>(max_triangles);
+  const std::size_t bound = meshopt_buildMeshletsBound(indices.size(), max_vertices, most);
   std::vector<meshopt_Meshlet> meshlets(bound);
-  std::vector<unsigned> vertices(bound * most_vertices);
+  std::vector<unsigned> vertices(bound * max_vertices);
   std::vector<unsigned char> corners(bound * most * 3);
   meshlets.resize(meshopt_buildMeshlets(meshlets.data(), vertices.data(), corners.data(),
                                         indices.data(), indices.size(), positions[0].data(),
-                                        positions.size(), sizeof(Eigen::Vector3f), most_vertices,
+                                        positions.size(), sizeof(Eigen::Vector3f), max_vertices,
                                         most, even_weight));
   patches.triangles.reserve(triangles.size());
   for (const auto& meshlet : meshlets) {

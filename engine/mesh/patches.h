@@ -13,8 +13,8 @@ struct Patches {
   std::vector<int> first;                  // one more than there are patches; {0} for no triangles
 };
 
-/// most_triangles: of a patch, a multiple of 4 from 4 to 512.
+/// max_triangles: of a patch, a multiple of 4 from 4 to 512.
 Patches cut_into_patches(std::span<const Eigen::Vector3f> positions,
-                         std::span<const Eigen::Vector3i> triangles, int most_triangles);
+                         std::span<const Eigen::Vector3i> triangles, int max_triangles);
 
 }  // namespace condyle

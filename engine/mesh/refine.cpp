@@ -79,11 +79,11 @@ class Middles {
 }  // namespace
 
 TriMesh refine_near(TriMesh mesh, const Eigen::Vector3d& center, double radius_mm, double edge_mm,
-                    int most_triangles) {
+                    int max_triangles) {
   assert(radius_mm >= 0 && edge_mm > 0);
   while (true) {
     Middles middles(mesh);
-    const auto wanted = [&](int a, int b) {
+    const auto too_long = [&](int a, int b) {
       const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b];
       return (p - q).norm() > edge_mm && distance_to_edge(p, q, center) <= radius_mm;
     };
@@ -97,7 +97,7 @@ TriMesh refine_near(TriMesh mesh, const Eigen::Vector3d& center, double radius_m
           length = l;
           longest = k;
         }
-        if (wanted(a, b)) {
+        if (too_long(a, b)) {
           middles.halve(a, b);
           any = true;
         }
@@ -121,7 +121,7 @@ TriMesh refine_near(TriMesh mesh, const Eigen::Vector3d& center, double radius_m
     }
     if (middles.empty()) return mesh;
     auto finer = middles.divided();
-    if (static_cast<int>(finer.size()) > most_triangles) {
+    if (static_cast<int>(finer.size()) > max_triangles) {
       middles.undo();
       return mesh;
     }
@@ -129,7 +129,7 @@ TriMesh refine_near(TriMesh mesh, const Eigen::Vector3d& center, double radius_m
   }
 }
 
-TriMesh refine(TriMesh mesh, std::vector<double> edge_mm, int most_triangles) {
+TriMesh refine(TriMesh mesh, std::vector<double> edge_mm, int max_triangles) {
   assert(edge_mm.size() == mesh.vertices.size());
   while (true) {
     Middles middles(mesh);
@@ -142,7 +142,7 @@ TriMesh refine(TriMesh mesh, std::vector<double> edge_mm, int most_triangles) {
       }
     if (middles.empty()) return mesh;
     auto finer = middles.divided();
-    if (static_cast<int>(finer.size()) > most_triangles) {
+    if (static_cast<int>(finer.size()) > max_triangles) {
       middles.undo();
       return mesh;
     }

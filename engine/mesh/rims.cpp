@@ -22,10 +22,10 @@ std::vector<std::vector<int>> rims_of(const TriMesh& mesh) {
     while (!next[static_cast<std::size_t>(start)].empty()) {
       walk = {start};
       on_walk[static_cast<std::size_t>(start)] = 1;
-      for (auto* ways = &next[static_cast<std::size_t>(start)]; !ways->empty();
-           ways = &next[static_cast<std::size_t>(walk.back())]) {
-        const int to = ways->back();
-        ways->pop_back();
+      for (auto* open = &next[static_cast<std::size_t>(start)]; !open->empty();
+           open = &next[static_cast<std::size_t>(walk.back())]) {
+        const int to = open->back();
+        open->pop_back();
         if (on_walk[static_cast<std::size_t>(to)]) {
           const auto first = std::find(walk.begin(), walk.end(), to);
           if (walk.end() - first > 2) rims.emplace_back(first, walk.end());

@@ -70,11 +70,11 @@ class FrontView {
     if (high.x() < 0 || high.y() < 0 || low.x() > columns_ || low.y() > rows_) return;
     const Eigen::Matrix2d sides = (Eigen::Matrix2d() << b - a, c - a).finished();
     if (std::abs(sides.determinant()) < 1e-12) return;
-    const Eigen::Matrix2d to_shares = sides.inverse();
+    const Eigen::Matrix2d to_barycentric = sides.inverse();
     const auto first = [](double v) { return std::max(0, static_cast<int>(std::ceil(v))); };
     for (int row = first(low.y()); row < rows_ && row <= high.y(); ++row)
       for (int column = first(low.x()); column < columns_ && column <= high.x(); ++column) {
-        const Vector2d fraction = to_shares * (Vector2d(column, row) - a);
+        const Vector2d fraction = to_barycentric * (Vector2d(column, row) - a);
         if (fraction.minCoeff() < 0 || fraction.sum() > 1) continue;
         double& kept = nearest_[static_cast<std::size_t>(row * columns_ + column)];
         kept =
@@ -89,14 +89,14 @@ class FrontView {
 
 struct Inside {
   std::vector<double>
-      way;  // of each vertex from what is not hidden, along edges; below 0: it is not
+      distance;  // of each vertex from what is not hidden, along edges; below 0: it is not
   double right = infinity, left = -infinity;  // ends of the slit
 };
 
 /// What hangs together with these vertices and is hidden in the front view.
 Inside find_inside(const TriMesh& surface, const Around& around, std::span<const int> from,
                    const FrontView& front_view) {
-  std::vector<double> way(surface.vertices.size(), -1);
+  std::vector<double> distance(surface.vertices.size(), -1);
   std::vector<char> seen(surface.vertices.size(), 0);
   std::vector<int> front(from.begin(), from.end()), edge;
   for (const int v : from) seen[static_cast<std::size_t>(v)] = 1;
@@ -107,7 +107,7 @@ Inside find_inside(const TriMesh& surface, const Around& around, std::span<const
       edge.push_back(v);
       continue;
     }
-    way[static_cast<std::size_t>(v)] = infinity;
+    distance[static_cast<std::size_t>(v)] = infinity;
     for (const int t : around[v])
       for (const int n : surface.triangles[static_cast<std::size_t>(t)])
         if (!seen[static_cast<std::size_t>(n)]) {
@@ -126,10 +126,10 @@ Inside find_inside(const TriMesh& surface, const Around& around, std::span<const
   while (!waiting.empty()) {
     const auto [so_far, v] = waiting.top();
     waiting.pop();
-    if (so_far > way[static_cast<std::size_t>(v)] && so_far > 0) continue;
+    if (so_far > distance[static_cast<std::size_t>(v)] && so_far > 0) continue;
     for (const int t : around[v])
       for (const int n : surface.triangles[static_cast<std::size_t>(t)]) {
-        double& known = way[static_cast<std::size_t>(n)];
+        double& known = distance[static_cast<std::size_t>(n)];
         const double next = so_far + (surface.vertices[static_cast<std::size_t>(n)] -
                                       surface.vertices[static_cast<std::size_t>(v)])
                                          .norm();
@@ -138,7 +138,7 @@ Inside find_inside(const TriMesh& surface, const Around& around, std::span<const
         waiting.push({next, n});
       }
   }
-  found.way = std::move(way);
+  found.distance = std::move(distance);
   return found;
 }
 
@@ -156,7 +156,7 @@ std::vector<Eigen::Vector3i> without_deep_inside(const TriMesh& surface,
     const double x = surface.vertices[static_cast<std::size_t>(v)].x();
     const double from_end = std::min(x - found.right, found.left - x);
     const double t = std::clamp(from_end / to_end_mm, 0.0, 1.0);
-    return found.way[static_cast<std::size_t>(v)] >
+    return found.distance[static_cast<std::size_t>(v)] >
            seam.at_ends_mm + (seam.at_sides_mm - seam.at_ends_mm) * t * t * t;
   };
   std::vector<char> dropped(surface.triangles.size(), 0), seen(surface.vertices.size(), 0);

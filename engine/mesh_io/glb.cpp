@@ -268,17 +268,17 @@ class GlbReader {
     view.stride = index_or(buffer, "byteStride", buffer_item, 1024, 0);
     if (view.stride == 0) view.stride = size * components;
     const std::size_t inner = index_or(accessor, "byteOffset", item, most, 0);
-    const double wanted = view.count == 0 ? 0
+    const double needed = view.count == 0 ? 0
                                           : static_cast<double>(inner) +
                                                 static_cast<double>(view.count - 1) *
                                                     static_cast<double>(view.stride) +
                                                 static_cast<double>(size * components);
-    if (wanted > static_cast<double>(length))
+    if (needed > static_cast<double>(length))
       refuse(
           item,
           fmt::format(
               "promises {} values, which takes {:.0f} bytes, but {} are there: the file is damaged",
-              view.count, wanted, length));
+              view.count, needed, length));
     view.data = bytes_.data() + offset + inner;
     return view;
   }

@@ -44,16 +44,16 @@ class Soup {
 TriMesh read_binary(const fs::path& file, std::string_view content) {
   std::uint32_t count = 0;
   std::memcpy(&count, content.data() + 80, 4);
-  const std::uint64_t wanted = 84 + 50 * static_cast<std::uint64_t>(count);
+  const std::uint64_t expected = 84 + 50 * static_cast<std::uint64_t>(count);
   if (count == 0)
     throw InputError(file, "header", "promises 0 triangles; export the surface again");
-  if (wanted != content.size())
+  if (expected != content.size())
     throw InputError(
         file, "header",
         fmt::format("promises {} triangles, which takes {} bytes, but the file has {}: "
                     "it is {}; export or copy it again",
-                    count, wanted, content.size(),
-                    wanted > content.size() ? "cut short or damaged" : "damaged"));
+                    count, expected, content.size(),
+                    expected > content.size() ? "cut short or damaged" : "damaged"));
   check_count(file, "triangles", count, max_mesh_triangles);
   Soup soup(count);
   const char* at = content.data() + 84;

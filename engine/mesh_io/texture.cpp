@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::uint32_t max_side = 16384;
-constexpr std::size_t most_bytes = std::size_t{1} << 30;
+constexpr std::size_t max_texture_bytes = std::size_t{1} << 30;
 
 /// Sides as a PNG's header tells them; none if it is no PNG.
 std::optional<std::array<std::uint32_t, 2>> png_sides(std::string_view bytes) {
@@ -263,7 +263,7 @@ std::optional<Texture> read_texture(const fs::path& file) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   Texture texture;
   if (extension == ".glb") {
-    const std::string content = read_file(file, most_bytes);
+    const std::string content = read_file(file, max_texture_bytes);
     std::string_view picture;
     try {
       picture = GlbTexture(content).read(texture);
@@ -273,9 +273,9 @@ std::optional<Texture> read_texture(const fs::path& file) {
     if (picture.empty()) return std::nullopt;
     decode(file, picture, texture);
   } else if (extension == ".obj") {
-    const fs::path picture = read_obj_texture(file, read_file(file, most_bytes), texture);
+    const fs::path picture = read_obj_texture(file, read_file(file, max_texture_bytes), texture);
     if (picture.empty() || texture.corners.empty()) return std::nullopt;
-    decode(picture, read_file(picture, most_bytes), texture);
+    decode(picture, read_file(picture, max_texture_bytes), texture);
   } else {
     return std::nullopt;
   }

@@ -45,7 +45,7 @@ class RowsConstraint : public btTypedConstraint {
         info->m_J2linearAxis[at + k] = row.along[k];
         info->m_J2angularAxis[at + k] = row.turn_b[k];
       }
-      info->m_constraintError[at] = row.wanted;
+      info->m_constraintError[at] = row.target_velocity;
       info->m_lowerLimit[at] = row.low;
       info->m_upperLimit[at] = row.high;
     }
@@ -303,9 +303,9 @@ struct ConstraintSolver::State : btSequentialImpulseConstraintSolver {
                row.turn_b.dot(shifts[free(row.b)].spin);
         }
         double& total = impulse[at++];
-        const double wanted = -settings->undone * row.error;
+        const double target = -settings->undone * row.error;
         double sum =
-            total + ((wanted - x) / mobility - shift_softness * total) / (1 + shift_softness);
+            total + ((target - x) / mobility - shift_softness * total) / (1 + shift_softness);
         if (row.low >= 0) sum = std::max(sum, 0.0);
         const double step = sum - total;
         total = sum;

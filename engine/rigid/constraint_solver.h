@@ -23,12 +23,12 @@ struct SolverBody {
 };
 
 /// One constrained direction of a joint: along . (v_b - v_a) + turn_b . spin_b - turn_a . spin_a
-/// becomes `wanted`, or at least `wanted` where the impulse is limited to one sign.
+/// becomes `target_velocity`, or at least that where the impulse is limited to one sign.
 struct JointRow {
   int a = -1, b = -1;
   Eigen::Vector3d along = Eigen::Vector3d::Zero();
   Eigen::Vector3d turn_a = Eigen::Vector3d::Zero(), turn_b = Eigen::Vector3d::Zero();
-  double wanted = 0;
+  double target_velocity = 0;
   double error = 0;          // position error in this direction, to be corrected
   double low = 0, high = 0;  // limits of the impulse
   double impulse = 0;        // in: initial value; out: result

@@ -19,9 +19,9 @@ const Pose nowhere = {Eigen::Quaterniond::Identity(),
 // Fractions of the band beyond the gap: distance up to which samples are collected for several
 // steps, and up to which they can be contacts.
 constexpr double collect_fraction = 0.65, active_fraction = 0.3;
-constexpr double least_band_mm = 0.2;  // that must remain beyond the gap
-constexpr double flat_cos = 0.985;     // between the faces at a sample: within 10 degrees
-constexpr double sift_mm = 0.02;       // displacement after which samples are selected again
+constexpr double min_band_mm = 0.2;  // that must remain beyond the gap
+constexpr double flat_cos = 0.985;   // between the faces at a sample: within 10 degrees
+constexpr double sift_mm = 0.02;     // displacement after which samples are selected again
 constexpr double slope =
     1.25;  // largest gradient of interpolated distances over short displacements
 constexpr double within_fraction = 1.5, widest_fraction = 8;  // relative to the requested gap
@@ -120,14 +120,14 @@ void ContactFinder::add_pair(int a, int b, std::span<const Surface> of_a,
       std::fill_n(query.group.begin() + ball.first, ball.count, groups++);
     }
     const double room = field->field.settings().band_mm - gap_mm;
-    if (!(room >= least_band_mm))
+    if (!(room >= min_band_mm))
       throw InputError(
           "a gap of " + std::to_string(gap_mm) + " mm cannot be kept by a distance field of " +
           std::to_string(field->field.settings().band_mm) + " mm: give the surface a wider band");
     query.gap_mm = gap_mm;
     query.reach_mm = gap_mm + collect_fraction * room;
     query.reserve_mm = (collect_fraction - active_fraction) * room - field_bend_mm;
-    most_active_mm_ = std::min(most_active_mm_, active_fraction * room);
+    max_active_mm_ = std::min(max_active_mm_, active_fraction * room);
     queries_.push_back(std::move(query));
     keys_.push_back({nowhere, nowhere});
   };
@@ -274,7 +274,7 @@ double ContactFinder::max_displacement(std::span<const Pose> X_WB,
         step_s * ((velocity(s) - velocity(f)).norm() +
                   (motions[s].spin - motions[f].spin).norm() * query.radius_mm);
     if (displacement <= std::max(longest, counts_mm)) continue;
-    if (query.near.empty() || displacement > most_active_mm_) {
+    if (query.near.empty() || displacement > max_active_mm_) {
       // All other samples are at least this far from the surface.
       const double away = query.reach_mm - query.walked_mm - field_bend_mm;
       if (query.near.empty() && away > query.gap_mm + displacement) continue;

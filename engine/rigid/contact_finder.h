@@ -51,7 +51,7 @@ class ContactFinder {
   void narrow(double active_mm);
 
   /// Largest active distance, and so the largest displacement of nearby bodies in a step.
-  double max_active_mm() const { return most_active_mm_; }
+  double max_active_mm() const { return max_active_mm_; }
 
   /// Upper bound of the displacement of any sample relative to the other body's field in the given
   /// time, over all pairs that could meet.
@@ -94,7 +94,7 @@ class ContactFinder {
 
   std::vector<SampleQuery> queries_;
   std::vector<SampleCacheKey> keys_;  // of each query
-  double most_active_mm_ = 1e9;
+  double max_active_mm_ = 1e9;
 
   // Work space of a call.
   std::vector<Eigen::Matrix3d> R_FS_, R_WF_;

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int marks_per_span = 8;
-constexpr double least_span_mm = 1e-6;
+constexpr double min_span_mm = 1e-6;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ GuideCurve::GuideCurve(std::vector<Vector3d> points) : points_(std::move(points)
   if (points_.size() < 2) throw InputError("a guide needs at least two points");
   for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
     length_.push_back((points_[i + 1] - points_[i]).norm());
-    if (!(length_.back() > least_span_mm) || !std::isfinite(length_.back()))
+    if (!(length_.back() > min_span_mm) || !std::isfinite(length_.back()))
       throw InputError("points " + std::to_string(i) + " and " + std::to_string(i + 1) +
                        " of a guide coincide or are not finite");
   }

@@ -76,8 +76,10 @@ double JointRows::append(const JointBody& a, const JointBody& b, double step_s,
     row.error = error;
     row.low = -limit;
     row.high = limit;
-    if (a.solver < 0) row.wanted += along.dot(a.motion.velocity) + turn_a.dot(a.motion.spin);
-    if (b.solver < 0) row.wanted -= along.dot(b.motion.velocity) + turn_b.dot(b.motion.spin);
+    if (a.solver < 0)
+      row.target_velocity += along.dot(a.motion.velocity) + turn_a.dot(a.motion.spin);
+    if (b.solver < 0)
+      row.target_velocity -= along.dot(b.motion.velocity) + turn_b.dot(b.motion.spin);
     row.impulse = impulses.empty() ? 0.0 : impulses[rows.size() - first];
     rows.push_back(row);
   };
@@ -90,7 +92,7 @@ double JointRows::append(const JointBody& a, const JointBody& b, double step_s,
   const Vector3d bending = 0.5 * step_s * (bend(b) - bend(a));
   const auto hold = [&](const Vector3d& along, double error) {
     add(along, (p_WB - a.center).cross(along), (p_WB - b.center).cross(along), error);
-    rows.back().wanted -= along.dot(bending);
+    rows.back().target_velocity -= along.dot(bending);
   };
   const auto turn = [&](const Vector3d& axis, double error) {
     add(Vector3d::Zero(), axis, axis, error);
@@ -99,7 +101,7 @@ double JointRows::append(const JointBody& a, const JointBody& b, double step_s,
   const auto stop = [&](const Vector3d& along, double room) {
     hold(along, std::min(room, 0.0));
     rows.back().low = 0;
-    rows.back().wanted -= std::max(room, 0.0) / step_s;
+    rows.back().target_velocity -= std::max(room, 0.0) / step_s;
     rows.back().impulse = std::max(rows.back().impulse, 0.0);
   };
 

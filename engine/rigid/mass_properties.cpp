@@ -55,7 +55,7 @@ MassProperties joined(const MassProperties& a, const MassProperties& b) {
   return out;
 }
 
-double least_moment(const MassProperties& mass) {
+double min_moment(const MassProperties& mass) {
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(mass.inertia, Eigen::EigenvaluesOnly)
       .eigenvalues()[0];
 }

@@ -23,6 +23,6 @@ MassProperties mass_properties(const TriMesh& mesh, double density_kg_mm3);
 MassProperties joined(const MassProperties& a, const MassProperties& b);
 
 /// Smallest principal moment of inertia, kg mm^2.
-double least_moment(const MassProperties& mass);
+double min_moment(const MassProperties& mass);
 
 }  // namespace condyle

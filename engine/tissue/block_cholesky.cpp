@@ -18,7 +18,7 @@ void subtract_product(const FloatKernels::Product& p, int threads) {
   constexpr int width = 48;
   constexpr double worth = 2e6;  // products
   const double size = static_cast<double>(p.rows) * p.columns * p.depth;
-  if (size < worth || (threads < 2 && p.depth <= FloatKernels::most_whole_depth))
+  if (size < worth || (threads < 2 && p.depth <= FloatKernels::max_whole_depth))
     return float_kernels().subtract_product(p);
   parallel_for((p.columns + width - 1) / width, threads, [&](std::size_t chunk) {
     FloatKernels::Product part = p;

@@ -48,7 +48,7 @@ struct FloatKernels {
     bool lower, anew = false;
   };
   /// Up to this depth, computing a product in parts of its columns gives bit-identical results.
-  static constexpr int most_whole_depth = 240;
+  static constexpr int max_whole_depth = 240;
   void (*subtract_product)(const Product& product);
   /// to += from
   void (*add)(float* to, const float* from, int count);

@@ -25,7 +25,7 @@ constexpr double beside_mm = 6;
 /// cosine. With a flat extension a point far beside the rim would react strongly to small rotations
 /// of the surface.
 constexpr double round_mm = 8;
-constexpr double least_cosine = 0.5;
+constexpr double min_cosine = 0.5;
 /// Below this distance the direction to the nearest point is not a reliable normal.
 constexpr double close_mm = 0.02;
 
@@ -106,10 +106,10 @@ Vector3d ContactObstacle::patch_normal(const Vector3d& p, const Vector3d& own) c
   static const std::array<Vector3d, 4> tetrahedron{
       {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
   Vector3d sum = Vector3d::Zero();
-  for (const Vector3d& way : tetrahedron) {
-    const DistanceField::Spot spot = field_.spot(p + patch_mm * way);
+  for (const Vector3d& direction : tetrahedron) {
+    const DistanceField::Spot spot = field_.spot(p + patch_mm * direction);
     if (!spot.known) return own;
-    sum += spot.distance_mm * way;
+    sum += spot.distance_mm * direction;
   }
   return sum.norm() > least * 4 * patch_mm ? Vector3d(sum.normalized()) : own;
 }
@@ -167,7 +167,7 @@ void find_surface_contacts(const std::vector<MeshPoint>& points,
                            const Nodes& x, const PointContactSettings& settings,
                            std::vector<PointContact>& contacts, const Vector3d& facing) {
   assert(allowance.size() == points.size());
-  constexpr double least_facing = 0.5;
+  constexpr double min_facing = 0.5;
   const double reach = std::max(settings.reach_mm, deepest_of_surface_mm);
   Box box;
   for (int node : surface.nodes()) box.add(x[node]);
@@ -188,7 +188,7 @@ void find_surface_contacts(const std::vector<MeshPoint>& points,
     Vector3d normal = Vector3d::Zero();
     for (int k = 0; k < 3; ++k) normal += found.barycentric[k] * normals[corners[k]];
     normal.normalize();
-    if (!facing.isZero()) normal = limit_angle(normal, facing, least_facing);
+    if (!facing.isZero()) normal = limit_angle(normal, facing, min_facing);
     double distance = normal.dot(p - found.point);
     const Vector3d beyond = p - found.point - distance * normal;
     const double beside = beyond.norm();
@@ -196,7 +196,7 @@ void find_surface_contacts(const std::vector<MeshPoint>& points,
     if (beside > 0 && surface.on_rim(found.triangle, found.barycentric)) {
       const Vector3d middle = found.point - round_mm * normal;
       const double far = std::hypot(distance + round_mm, beside);
-      const double cosine = std::max((distance + round_mm) / far, least_cosine);
+      const double cosine = std::max((distance + round_mm) / far, min_cosine);
       normal = cosine * normal + std::sqrt(1 - cosine * cosine) / beside * beyond;
       distance = normal.dot(p - middle) - round_mm;
       if (distance > settings.reach_mm) continue;
@@ -285,9 +285,9 @@ void move_contacts(const Pose& X, std::vector<PointContact>& contacts) {
   }
 }
 
-void set_contacts(const ContactLists& looks, MeshLoads& loads) {
+void set_contacts(const ContactLists& lists, MeshLoads& loads) {
   loads.contacts.clear();
-  for (const auto& contacts : looks)
+  for (const auto& contacts : lists)
     for (const auto& contact : contacts) {
       loads.contacts.push_back(contact.spring);
       loads.contacts.back().offset += contact.push;

@@ -117,7 +117,7 @@ void move_contacts(const Pose& X, std::vector<PointContact>& contacts);
 
 /// All contacts at x: one list per obstacle or surface.
 using ContactLists = std::vector<std::vector<PointContact>>;
-void set_contacts(const ContactLists& looks, MeshLoads& loads);
+void set_contacts(const ContactLists& lists, MeshLoads& loads);
 
 /// Repeated solution with tangent planes updated at each result, until the planes agree with the
 /// surfaces there: the result is then a minimum of the energy with the surfaces themselves.

@@ -20,26 +20,26 @@ NearPoints::Runs::Runs(const std::vector<MeshPoint>& points) : point{0}, first_n
 void NearPoints::moved(const std::vector<MeshPoint>& points, Nodes x) {
   if (last_.size() != x.size()) {  // first call for this mesh
     runs_ = std::make_shared<const Runs>(points);
-    way_.assign(x.size(), 0.0);
-    way_then_.assign(runs_->node.size(), 0.0);
-    least_.assign(points.size(), -far_mm);
-    least_of_run_.assign(runs_->point.size() - 1, -far_mm);
+    path_.assign(x.size(), 0.0);
+    path_then_.assign(runs_->node.size(), 0.0);
+    bound_.assign(points.size(), -far_mm);
+    bound_of_run_.assign(runs_->point.size() - 1, -far_mm);
   } else {
-    for (std::size_t n = 0; n < x.size(); ++n) way_[n] += (x[n] - last_[n]).norm();
+    for (std::size_t n = 0; n < x.size(); ++n) path_[n] += (x[n] - last_[n]).norm();
   }
   last_ = std::move(x);
 }
 
-double NearPoints::way_of_run(std::size_t run) const {
+double NearPoints::path_of_run(std::size_t run) const {
   double most = 0;
   for (int k = runs_->first_node[run]; k < runs_->first_node[run + 1]; ++k)
-    most = std::max(most, way_[runs_->node[k]] - way_then_[k]);
+    most = std::max(most, path_[runs_->node[k]] - path_then_[k]);
   return most;
 }
 
 void NearPoints::seen(std::size_t run) {
   for (int k = runs_->first_node[run]; k < runs_->first_node[run + 1]; ++k)
-    way_then_[k] = way_[runs_->node[k]];
+    path_then_[k] = path_[runs_->node[k]];
 }
 
 }  // namespace condyle

@@ -21,17 +21,17 @@ class NearPoints {
   /// order that may be nearer than `reach`.
   template <class Look>
   void each(double reach, const Look& look) {
-    for (std::size_t r = 0; r < least_of_run_.size(); ++r) {
-      const double way = way_of_run(r);
-      if (least_of_run_[r] - way > reach) continue;
+    for (std::size_t r = 0; r < bound_of_run_.size(); ++r) {
+      const double path = path_of_run(r);
+      if (bound_of_run_[r] - path > reach) continue;
       double least = far_mm;
       for (int i = runs_->point[r]; i < runs_->point[r + 1]; ++i) {
-        double& here = least_[i];
-        here -= way;
+        double& here = bound_[i];
+        here -= path;
         if (here <= reach) here = std::min(look(i), far_mm);
         least = std::min(least, here);
       }
-      least_of_run_[r] = least;
+      bound_of_run_[r] = least;
       seen(r);
     }
   }
@@ -43,15 +43,15 @@ class NearPoints {
     explicit Runs(const std::vector<MeshPoint>& points);
   };
   static constexpr double far_mm = 1e6;
-  double way_of_run(std::size_t run) const;
+  double path_of_run(std::size_t run) const;
   void seen(std::size_t run);
 
   std::shared_ptr<const Runs> runs_;
   Nodes last_;
-  std::vector<double> way_;       // path length of each node so far, mm
-  std::vector<double> way_then_;  // of each range's nodes, at the last query of its points
-  std::vector<double> least_;     // lower bound per point at its last query
-  std::vector<double> least_of_run_;
+  std::vector<double> path_;       // path length of each node so far, mm
+  std::vector<double> path_then_;  // of each range's nodes, at the last query of its points
+  std::vector<double> bound_;      // lower bound per point at its last query
+  std::vector<double> bound_of_run_;
 };
 
 }  // namespace condyle

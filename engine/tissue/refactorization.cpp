@@ -71,9 +71,9 @@ MinimizeResult minimize_with_refactorization(const SpringPrismMesh& mesh, const 
   MinimizeSettings renewing = settings;
   renewing.renew = renew;
   MinimizeResult result = minimize(energy, factor, renewing, x);
-  constexpr int most_rounds = 20;
+  constexpr int max_rounds = 20;
   bool confirmed = !schedule.confirm;
-  for (int round = 0; result.converged() && !confirmed && round < most_rounds; ++round) {
+  for (int round = 0; result.converged() && !confirmed && round < max_rounds; ++round) {
     MinimizeSettings rest = settings;
     rest.max_iterations -= result.iterations;
     const MinimizeResult more = go_on_exactly(mesh, loads, energy, factor, rest, fresh, x);

@@ -48,8 +48,8 @@ PrismWeights isotropic_weights(const std::array<Vector3d, 6>& c, double volume) 
     add(3 + k, next, k + 3);
     add(6, k, k + 3);
   }
-  Tensor wanted = Tensor::Zero();
-  wanted.head<6>() << 3, 3, 3 * through, six, six, six;  // dd + dd + dd
+  Tensor target = Tensor::Zero();
+  target.head<6>() << 3, 3, 3 * through, six, six, six;  // dd + dd + dd
 
   // Least squares with weights >= least, regularised towards equal weights; coordinate descent,
   // which always converges.
@@ -57,7 +57,7 @@ PrismWeights isotropic_weights(const std::array<Vector3d, 6>& c, double volume) 
   const Eigen::Matrix<double, 7, 7> normal =
       springs.transpose() * springs + pull * Eigen::Matrix<double, 7, 7>::Identity();
   const Eigen::Matrix<double, 7, 1> right =
-      springs.transpose() * wanted + Eigen::Matrix<double, 7, 1>::Constant(pull * even);
+      springs.transpose() * target + Eigen::Matrix<double, 7, 1>::Constant(pull * even);
   Eigen::Matrix<double, 7, 1> w = Eigen::Matrix<double, 7, 1>::Constant(even);
   for (int sweep = 0; sweep < 400; ++sweep) {
     double change = 0;

@@ -79,12 +79,12 @@ std::array<Vector3d, 15> prism_volume_bend(const Nodes& nodes, const std::array<
   return prism_volume_bends(relative_corners(nodes, prism), 1.0 / 12.0);
 }
 
-double volume_pressure(double share_of_rest, double barrier_fraction, double barrier_weight) {
-  return volume_law(share_of_rest, barrier_fraction, barrier_weight).de;
+double volume_pressure(double volume_ratio, double barrier_fraction, double barrier_weight) {
+  return volume_law(volume_ratio, barrier_fraction, barrier_weight).de;
 }
 
-double volume_stiffness(double share_of_rest, double barrier_fraction, double barrier_weight) {
-  return volume_law(share_of_rest, barrier_fraction, barrier_weight).dde;
+double volume_stiffness(double volume_ratio, double barrier_fraction, double barrier_weight) {
+  return volume_law(volume_ratio, barrier_fraction, barrier_weight).dde;
 }
 
 Nodes weight_of_nodes(const SpringPrismMesh& mesh, const Vector3d& down) {
@@ -193,11 +193,11 @@ double SpringPrismEnergy::value_and_gradient(const Nodes& x, Nodes& gradient) {
 
 Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& x, const Nodes& d) {
   const ElementKernels& kernels = element_kernels();
-  const AxisRows at = rows(x_), way = rows(d_);
-  const auto springs = kernels.springs_bend(*batches_, chunk, mesh_.compression_ratio, at, way,
-                                            inverse_length_.data());
-  const auto prisms =
-      kernels.prisms_bend(*batches_, chunk, mesh_.barrier_fraction, mesh_.barrier_weight, at, way);
+  const AxisRows at = rows(x_), direction = rows(d_);
+  const auto springs = kernels.springs_bend(*batches_, chunk, mesh_.compression_ratio, at,
+                                            direction, inverse_length_.data());
+  const auto prisms = kernels.prisms_bend(*batches_, chunk, mesh_.barrier_fraction,
+                                          mesh_.barrier_weight, at, direction);
   double linear = 0;  // terms with exact, non-negative curvature
   const Range anchors = fraction(mesh_.anchor_node.size(), chunk, chunks_);
   for (std::size_t i = anchors.first; i < anchors.last; ++i)

@@ -166,7 +166,7 @@ void DrawnFace::close_openings(std::span<const Vector3d> eyes, const Vector3f& c
     }
     const int n = static_cast<int>(opening.rim.size());
     const int own = static_cast<int>(mesh_.vertices.size()) - n;
-    std::vector<VertexSums::Share> sum;
+    std::vector<VertexSums::Term> sum;
     for (Eigen::Index v = 0; v < cover.of_knots.rows(); ++v) {
       sum.clear();
       Vector3f skin = Vector3f::Zero();

@@ -78,7 +78,7 @@ void Ceiling::add(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const Eigen::Matrix2d sides =
       (Eigen::Matrix2d() << (b - a).head<2>(), (c - a).head<2>()).finished();
   if (std::abs(sides.determinant()) < 1e-9) return;
-  const Eigen::Matrix2d to_shares = sides.inverse();
+  const Eigen::Matrix2d to_barycentric = sides.inverse();
   const auto within = [&](double cell, int k) {
     return static_cast<int>(std::clamp(cell, -1.0, static_cast<double>(k == 0 ? columns_ : rows_)));
   };
@@ -94,7 +94,7 @@ void Ceiling::add(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     for (int k = first(std::min({a.x(), b.x(), c.x()}), 0);
          k <= last(std::max({a.x(), b.x(), c.x()}), 0); ++k) {
       const Eigen::Vector2d barycentric =
-          to_shares * (low_ + cell_mm * Eigen::Vector2d(k, r) - a.head<2>());
+          to_barycentric * (low_ + cell_mm * Eigen::Vector2d(k, r) - a.head<2>());
       if (barycentric.minCoeff() < -1e-9 || barycentric.sum() > 1 + 1e-9) continue;
       const double z = a.z() + barycentric.x() * (b - a).z() + barycentric.y() * (c - a).z();
       double& kept = heights_[static_cast<std::size_t>(r * columns_ + k)];

@@ -28,7 +28,7 @@ class Mouth {
   const Eigen::AlignedBox3d& box() const { return box_; }
 
   /// mm from the rim.
-  double way_to(const Vector3d& p) const {
+  double distance_to(const Vector3d& p) const {
     double nearest = infinity;
     for (std::size_t i = 0; i < rim_.size(); ++i) {
       const Vector3d &a = place(rim_[i]), along = place(rim_[(i + 1) % rim_.size()]) - a;
@@ -96,7 +96,7 @@ void tint_skin(const TriMesh& face, std::span<const int> rim, std::vector<Vector
     // The rim itself is red up to its corners.
     const double reach =
         std::max(0.02, red_of_lip(mouth.across(p), p.z() > mouth.height_at(p.x()))) * width;
-    const double fraction = 1 - smooth((mouth.way_to(p) - reach + 0.8) / 1.6);
+    const double fraction = 1 - smooth((mouth.distance_to(p) - reach + 0.8) / 1.6);
     colors[v] = colors[v].cwiseProduct(Vector3f::Ones() +
                                        static_cast<float>(fraction) * (red - Vector3f::Ones()));
   }

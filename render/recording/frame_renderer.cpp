@@ -123,10 +123,10 @@ FrameRenderer::FrameRenderer(const PicturePlan& plan, const RecordingFiles& file
   // A map has its own threads for its values.
   const bool mapped = distance || plan_.patches || plan_.map == SurfaceMap::displacement;
   // Large pictures would need twice the memory.
-  constexpr double most_pixels_for_two = 1.7e7;
+  constexpr double max_pixels_for_two = 1.7e7;
   const double pixels = static_cast<double>(plan_.settings.width) * plan_.settings.height *
                         plan_.settings.supersampling * plan_.settings.supersampling;
-  drawers_.emplace(patient.parts, mapped || pixels > most_pixels_for_two ? 1 : 2);
+  drawers_.emplace(patient.parts, mapped || pixels > max_pixels_for_two ? 1 : 2);
   const PictureSettings& size = plan_.settings;
   if (const int most = drawers_->max_side() / size.supersampling;
       size.width > most || size.height > most)
@@ -161,7 +161,7 @@ void FrameRenderer::prepare(SceneRenderer& renderer, Desk& desk) const {
                            DistanceMapSettings{.reach_mm = distance ? plan_.near_mm + 1 : 1,
                                                .teeth_edge_mm = 0.4,
                                                .bone_edge_mm = 1,
-                                               .most_triangles = 400000,
+                                               .max_triangles = 400000,
                                                .pair_rules = subject_.settings.contact.pair_rules},
                            subject_.settings.threads, renderer,
                            distance ? distance_colours({.near_mm = plan_.near_mm})

@@ -12,16 +12,16 @@ std::vector<MapSurface> map_surfaces(const DistanceMap& map) {
   return surfaces;
 }
 
-/// Sends the simulation what the hands want otherwise than before. A body that is reset and that
-/// no motion drives is wanted where it was loaded.
+/// Sends the simulation the targets of hands that have changed. A body that is reset and that
+/// no motion drives has its target where it was loaded.
 void send_hands(const Hands& now, const Hands& before, std::span<const MovableBody> bodies,
                 LiveSimulation& simulation) {
   for (const auto& body : bodies) {
     if (body.is_skull()) continue;  // all poses are relative to it
-    const auto wanted = now.of(body);
-    if (same(wanted, before.of(body))) continue;
-    if (wanted || body.roams())
-      simulation.drag(body.body, wanted.value_or(Pose{}));
+    const auto target = now.of(body);
+    if (same(target, before.of(body))) continue;
+    if (target || body.roams())
+      simulation.drag(body.body, target.value_or(Pose{}));
     else
       simulation.release(body.body);
   }
@@ -53,15 +53,15 @@ void LiveSession::request(const ViewState& view, const std::optional<Pose>& X_CM
   Hands hands = view.hands;
   if (X_CM_released) hands.hold_jaw(*X_CM_released);
   if (hands == applied_) return;
-  state_.guarded("Cannot move the body",
-                 [&] { send_hands(hands, applied_, state_.scene.bodies, *simulation_); });
+  state_.try_or_report("Cannot move the body",
+                       [&] { send_hands(hands, applied_, state_.scene.bodies, *simulation_); });
   applied_ = std::move(hands);
 }
 
 /// Gives whether there is a new frame.
 bool LiveSession::take_frame(const ViewState& view) {
   std::optional<FrameState> frame;
-  state_.guarded("Cannot simulate the motion", [&] { frame = simulation_->take(); });
+  state_.try_or_report("Cannot simulate the motion", [&] { frame = simulation_->take(); });
   if (!frame) return false;
   state_.newest = std::move(frame);
   const Motion& motion = state_.motion->motion;

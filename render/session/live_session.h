@@ -10,7 +10,7 @@
 
 namespace condyle {
 
-/// The live simulation of a session: what it is asked for, and its frames on their way to the front
+/// The live simulation of a session: its requests, and the delivery of its frames to the front
 /// end with overlays and colours.
 class LiveSession {
  public:
@@ -21,7 +21,7 @@ class LiveSession {
   /// Ends it; the patient changes.
   void stop();
   bool running() const { return simulation_ != nullptr; }
-  /// Once a turn. `X_CM_released`: of a jaw on its way; `paths`: of the motion, if they are known.
+  /// Once a turn. `X_CM_released`: of a released jaw in motion; `paths`: of the motion, if known.
   void update(const ViewState& view, const std::optional<Pose>& X_CM_released,
               const std::shared_ptr<const LineSet>& paths);
 

@@ -26,10 +26,10 @@ void PatientLoader::open(const std::filesystem::path& folder) {
       folder, folder.empty() ? "loading the patient" : "loading " + folder.filename().string());
 }
 
-void PatientLoader::import(const request::Import& wanted) {
-  start(
-      [wanted](const Progress&) { return import_files(wanted.files, wanted.units, wanted.frame); },
-      {}, "reading the surfaces");
+void PatientLoader::import(const request::Import& request) {
+  start([request](
+            const Progress&) { return import_files(request.files, request.units, request.frame); },
+        {}, "reading the surfaces");
 }
 
 void PatientLoader::renew(std::vector<Landmark> landmarks) {
@@ -43,7 +43,7 @@ std::optional<PatientLoader::Loaded> PatientLoader::take() {
   if (!job_.done()) return {};
   auto renewed = std::exchange(renewing_, std::nullopt);
   std::optional<Loaded> loaded;
-  state_.guarded(renewed ? "Cannot use these landmarks" : "Cannot open the patient", [&] {
+  state_.try_or_report(renewed ? "Cannot use these landmarks" : "Cannot open the patient", [&] {
     if (auto patient = job_.take()) loaded = {std::move(*patient), std::move(renewed)};
   });
   return loaded;

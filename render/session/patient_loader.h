@@ -25,7 +25,7 @@ class PatientLoader {
   /// The case in a folder, or the built-in patient when it is empty.
   void open(const std::filesystem::path& folder);
   /// Surfaces, landmarks and muscles with their roles.
-  void import(const request::Import& wanted);
+  void import(const request::Import& request);
   /// The session's patient with other landmarks.
   void renew(std::vector<Landmark> landmarks);
   void drop() { job_.drop(); }

@@ -50,7 +50,7 @@ void PreviewSession::update(bool may_start) {
   if (due_ && may_start && state_.motion) start();
   if (!job_.active()) return;
   if (job_.done())
-    return state_.guarded("Cannot draw the plots", [&] {
+    return state_.try_or_report("Cannot draw the plots", [&] {
       if (auto preview = job_.take()) show(std::move(*preview));
     });
   const std::lock_guard lock(post_->mutex);

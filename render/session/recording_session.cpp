@@ -8,7 +8,8 @@
 
 namespace condyle {
 
-void RecordingSession::record(const request::Record& wanted, std::shared_ptr<const LineSet> paths) {
+void RecordingSession::record(const request::Record& request,
+                              std::shared_ptr<const LineSet> paths) {
   if (job_.active() || !state_.motion) return;
   const ViewState& view = state_.front_end.view();
   std::optional<Pose> held_jaw = view.hands.X_CM_target();
@@ -16,7 +17,7 @@ void RecordingSession::record(const request::Record& wanted, std::shared_ptr<con
     const Case& patient = state_.patient->scene.patient;
     held_jaw = placed(patient.bodies, state_.newest->X_PB_target)[patient.jaw.lower_arch];
   }
-  start(std::make_shared<ViewRecording>(ViewRecording{.wanted = wanted,
+  start(std::make_shared<ViewRecording>(ViewRecording{.record = request,
                                                       .view = view,
                                                       .bodies = state_.scene.bodies,
                                                       .held_jaw = held_jaw,
@@ -35,8 +36,8 @@ void RecordingSession::start(std::shared_ptr<const ViewRecording> subject, Exist
   });
 }
 
-void RecordingSession::quit(const request::Quit& wanted) {
-  if (job_.active() && wanted.when_recorded) {
+void RecordingSession::quit(const request::Quit& request) {
+  if (job_.active() && request.when_recorded) {
     quit_when_recorded_ = true;
     return;
   }
@@ -58,7 +59,7 @@ bool RecordingSession::may_close() {
        .words = fmt::format(
            "Now: {}. Its pictures go to {} and stay there: once stopped, it goes on when "
            "the same is recorded into the same folder.",
-           job_.progress().first, recorded_->wanted.folder.string()),
+           job_.progress().first, recorded_->record.folder.string()),
        .answers = {{"question:keep", "Keep recording"},
                    {"question:when-done", "Quit when done", request::Quit{true}},
                    {"question:quit", "Stop and quit", request::Quit{}}}});
@@ -70,7 +71,7 @@ void RecordingSession::ask_about(const ViewRecorded& found) {
   const bool same = found.there.differs.empty();
   // What was stopped there goes on as it was begun, though the view is another by now.
   const bool goes_on =
-      same || (unfinished_ && unfinished_->wanted.folder == recorded_->wanted.folder);
+      same || (unfinished_ && unfinished_->record.folder == recorded_->record.folder);
   if (same) unfinished_ = recorded_;
   Question question{
       .title = "The folder holds a recording", .words = found.words + ".", .answers = {}};
@@ -91,7 +92,7 @@ void RecordingSession::update() {
 void RecordingSession::take() {
   const bool quits = std::exchange(quit_when_recorded_, false);
   state_.front_end.show_recording("", 0);
-  state_.guarded("Cannot record the motion", [&] {
+  state_.try_or_report("Cannot record the motion", [&] {
     using End = ViewRecorded::End;
     const auto ended = job_.take();
     if (!ended) return state_.front_end.say("The recording was stopped before its first picture");
@@ -104,7 +105,7 @@ void RecordingSession::take() {
         : ended->end == End::stopped
             ? ended->words + "."
             : fmt::format("{} pictures of the recording that failed are in {}.",
-                          ended->there.pictures, recorded_->wanted.folder.string()));
+                          ended->there.pictures, recorded_->record.folder.string()));
     if (ended->end == End::failed)
       return state_.front_end.report_error("Cannot record the motion",
                                            in_window_words(ended->words));

@@ -15,14 +15,14 @@ class RecordingSession {
       : state_(state), job_(state.retired, state.waker()) {}
 
   /// Records the motion as the view shows it. `paths`: of the motion, as far as they are known.
-  void record(const request::Record& wanted, std::shared_ptr<const LineSet> paths);
+  void record(const request::Record& request, std::shared_ptr<const LineSet> paths);
   void stop() { job_.cancel(); }
   /// Continues the recording that was stopped or asked about.
   void resume() { start(unfinished_, Existing::resume); }
   /// Replaces what is in the folder of the recording that was asked about.
   void replace() { start(recorded_, Existing::replace); }
   /// Closes the front end, now or when the recording is made.
-  void quit(const request::Quit& wanted);
+  void quit(const request::Quit& request);
   /// Whether the front end may close; asks the person while a recording is made.
   bool may_close();
   /// Once a turn: shows progress and takes the result that is ready.

@@ -93,7 +93,7 @@ void ReleaseSession::drop(std::string_view why) {
 }
 
 void ReleaseSession::update() {
-  // What is edited meanwhile counts: the result would belong to what was wanted before.
+  // An edit made meanwhile takes precedence: the result belongs to the state before it.
   if (const std::string why = job_.active() ? overtaken_by() : ""; !why.empty())
     drop(why + " before it had come to rest");
   if (job_.done()) take();
@@ -101,7 +101,7 @@ void ReleaseSession::update() {
 }
 
 void ReleaseSession::take() {
-  state_.guarded("Cannot release the " + subject_.name, [&] {
+  state_.try_or_report("Cannot release the " + subject_.name, [&] {
     std::optional<Result> result;
     try {
       result = job_.take();

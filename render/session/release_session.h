@@ -10,8 +10,8 @@
 
 namespace condyle {
 
-/// Releases a body that a hand holds to the dynamics: a segment or transplant comes to rest on bone, a jaw
-/// moves as its muscles and joints let it. What the person moves meanwhile ends it.
+/// Releases a body that a hand holds to the dynamics: a segment or transplant comes to rest on
+/// bone, a jaw moves as its muscles and joints let it. What the person moves meanwhile ends it.
 class ReleaseSession {
  public:
   explicit ReleaseSession(SessionState& state)
@@ -27,7 +27,7 @@ class ReleaseSession {
   void hold();
   /// Ends the course of a jaw that belongs to a patient who is gone.
   void end();
-  /// Where a released jaw is by now; none: no jaw is on its way.
+  /// Where a released jaw is by now; none: no jaw is in motion.
   std::optional<Pose> X_CM() const;
   const auto& job() const { return job_; }
 
@@ -38,7 +38,7 @@ class ReleaseSession {
     std::string words;
     JawRelease course;  // of a jaw
   };
-  /// What was released, and what the person wants of the patient meanwhile.
+  /// What was released, and the state in which it was.
   struct Subject {
     MovableBody body;
     std::string name;
@@ -46,9 +46,9 @@ class ReleaseSession {
     MotionChoice motion;
     std::optional<double> opening_mm;
     double time_s = 0;
-    std::optional<Hands> before = {};  // where it is wanted again if it cannot be released
+    std::optional<Hands> before = {};  // targets to restore if it cannot be released
   };
-  /// A jaw on its way, as time runs.
+  /// A jaw in motion, as time runs.
   struct Falling {
     Result of;
     std::vector<double> shown_s;  // of each of its poses

@@ -17,7 +17,7 @@ struct Overloaded : Ts... {
 };
 
 /// Of the dialog that says why it was not carried out.
-std::string title_of_failure(const Request& wanted) {
+std::string title_of_failure(const Request& request) {
   return std::visit(
       Overloaded{[](const request::Open&) { return "Cannot open this"; },
                  [](const request::Import&) { return "Cannot make a patient of these surfaces"; },
@@ -30,17 +30,17 @@ std::string title_of_failure(const Request& wanted) {
                  [](const request::Release&) { return "Cannot release this"; },
                  [](const request::SaveCase&) { return "Cannot save the patient"; },
                  [](const request::UseLandmarks&) { return "Cannot use these landmarks"; }},
-      wanted);
+      request);
 }
 
 }  // namespace
 
 void ViewSession::open(const fs::path& path) {
   if (path.empty()) return loader_.open({});
-  state_.guarded("Cannot open this", [&] { open_files({path}); });
+  state_.try_or_report("Cannot open this", [&] { open_files({path}); });
 }
 
-void ViewSession::carry_out(const Request& wanted) {
+void ViewSession::carry_out(const Request& request) {
   const Overloaded act{
       [&](const request::Open& open) { open_files(open.files); },
       [&](const request::Import& files) { loader_.import(files); },
@@ -56,7 +56,7 @@ void ViewSession::carry_out(const Request& wanted) {
         if (state_.patient) loader_.renew(state_.front_end.view().landmarks);
       },
   };
-  state_.guarded(title_of_failure(wanted), [&] { std::visit(act, wanted); });
+  state_.try_or_report(title_of_failure(request), [&] { std::visit(act, request); });
 }
 
 void ViewSession::open_files(const std::vector<fs::path>& files) {
@@ -130,7 +130,7 @@ void ViewSession::save(const fs::path& folder) {
 
 void ViewSession::take_save() {
   if (!saving_.done()) return;
-  state_.guarded("Cannot save the patient", [&] {
+  state_.try_or_report("Cannot save the patient", [&] {
     const auto saved = saving_.take();
     if (!saved) return;
     WindowScene& shown = state_.scene;

@@ -34,7 +34,7 @@ struct SessionState {
 
   /// Runs a piece of work; what it throws is reported under the title ("Cannot save the patient").
   template <class Work>
-  void guarded(const std::string& title, const Work& work) {
+  void try_or_report(const std::string& title, const Work& work) {
     try {
       work();
     } catch (const std::exception& error) {

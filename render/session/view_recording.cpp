@@ -30,7 +30,7 @@ Motion seen_motion(const ViewRecording& subject) {
   return motion;
 }
 
-/// Where bodies that the motion does not drive are wanted in their parents' frames; as at rest
+/// Targets of bodies that the motion does not drive, in their parents' frames; as at rest
 /// where no hand has them.
 std::vector<Pose> hand_poses(const ViewRecording& subject) {
   std::vector<Pose> X_PB(subject.patient->scene.patient.bodies.bodies().size());
@@ -86,17 +86,17 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
 
 /// What a command line would say, from what the window shows and its panel asks for.
 PicturePlan plan_of(const ViewRecording& subject) {
-  const request::Record& wanted = subject.wanted;
+  const request::Record& record = subject.record;
   const Look& look = subject.view.look;
-  check_cameras(wanted.cameras);
-  caption_lines(wanted.caption, 0, {}, "");
+  check_cameras(record.cameras);
+  caption_lines(record.caption, 0, {}, "");
   PicturePlan plan;
   plan.annotations = {.scale_bar = look.scale_bar, .letters = look.letters, .caption = {}};
   plan.near_mm = DistanceBands{}.near_mm;
-  plan.caption = wanted.caption;
-  plan.cameras = wanted.cameras;
+  plan.caption = record.caption;
+  plan.cameras = record.cameras;
   plan.window =
-      WindowPicture{.camera = wanted.camera, .upright = wanted.upright, .before = wanted.kept};
+      WindowPicture{.camera = record.camera, .upright = record.upright, .before = record.kept};
   plan.window->overlays = [&subject](const FrameState& frame) {
     return view_overlays(*subject.patient, subject.motion->motion, frame, subject.view,
                          subject.paths);
@@ -105,13 +105,13 @@ PicturePlan plan_of(const ViewRecording& subject) {
   if (subject.view.distances) plan.map = SurfaceMap::distance;
   if (look.displacement) plan.map = SurfaceMap::displacement;
   PictureSettings& settings = plan.settings;
-  settings = wanted.picture;
-  settings.width = wanted.width;
-  settings.height = wanted.height;
-  settings.samples = wanted.edges == RecordEdges::msaa ? 4 : 1;
-  settings.smooth_edges = wanted.edges == RecordEdges::fxaa;
-  settings.supersampling = wanted.supersampling;
-  settings.transparent = wanted.transparent;
+  settings = record.picture;
+  settings.width = record.width;
+  settings.height = record.height;
+  settings.samples = record.edges == RecordEdges::msaa ? 4 : 1;
+  settings.smooth_edges = record.edges == RecordEdges::fxaa;
+  settings.supersampling = record.supersampling;
+  settings.transparent = record.transparent;
   plan.annotations.backdrop = settings.backdrop;
   plan.words = {{"picture", fmt::format("as in a window {:016x}", shown_hash(subject, plan))}};
   return plan;
@@ -168,22 +168,22 @@ ViewRecorded record_view(const ViewRecording& subject, Existing existing,
                          const SimulatorSettings& settings, const Progress& progress) {
   using End = ViewRecorded::End;
   report(progress, "preparing the recording", 0);
-  const request::Record& wanted = subject.wanted;
+  const request::Record& record = subject.record;
   const Scene& scene = subject.patient->scene;
   const Motion motion = seen_motion(subject);
-  const std::vector<double> times_s = times_of(motion, wanted.frames_per_second);
+  const std::vector<double> times_s = times_of(motion, record.frames_per_second);
   SimulatorSettings recorded = settings;
   recorded.face = true;
   const PicturePlan plan = plan_of(subject);
-  const RecordingFiles files = {.out = fs::absolute(wanted.folder).lexically_normal(),
-                                .film = wanted.film,
+  const RecordingFiles files = {.out = fs::absolute(record.folder).lexically_normal(),
+                                .film = record.film,
                                 .resume = existing == Existing::resume};
   const RecordingSubject of = {
       .scene = scene,
       .motion = motion,
       .settings = recorded,
       .frames = static_cast<int>(times_s.size()),
-      .frames_per_second = wanted.frames_per_second,
+      .frames_per_second = record.frames_per_second,
       .identity = recording_identity(scene, motion, times_s, recorded, subject.view.obey_contact)};
   const std::size_t all = plan.cameras.size() * times_s.size();
   const std::string folder = files.out.string();

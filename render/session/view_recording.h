@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "render/overlay/overlays.h"
 #include "render/output/recorder.h"
+#include "render/overlay/overlays.h"
 #include "render/window/view/view_state.h"
 #include "sim/session/session_motion.h"
 #include "sim/session/session_patient.h"
@@ -16,7 +16,7 @@ namespace condyle {
 
 /// What a window recorded from shows when the recording begins.
 struct ViewRecording {
-  request::Record wanted;
+  request::Record record;
   ViewState view;
   std::vector<MovableBody> bodies;
   std::optional<Pose> held_jaw;  // where a hand or the slider wants it; none: as the motion does

@@ -134,7 +134,7 @@ void ViewSession::keep_motion() {
 void ViewSession::take_motion() {
   if (!moving_.done()) return;
   std::optional<std::shared_ptr<const SessionMotion>> made;
-  state_.guarded("Cannot make this motion", [&] { made = moving_.take(); });
+  state_.try_or_report("Cannot make this motion", [&] { made = moving_.take(); });
   if (!made) return keep_motion();
   preview_.restart();
   const bool was_playing = state_.front_end.view().playing;
@@ -177,13 +177,13 @@ void ViewSession::show_progress() {
 
 void ViewSession::turn() {
   const ViewState& view = state_.front_end.poll();
-  for (const Request& wanted : state_.front_end.take_requests()) carry_out(wanted);
+  for (const Request& request : state_.front_end.take_requests()) carry_out(request);
   state_.retired.sweep();
   take_patient();
   if (state_.patient && !loader_.job().active() && !(view.motion == asked_))
     want_motion(view.motion);
   take_motion();
-  if (readying_.done()) state_.guarded("Cannot prepare contact", [&] { readying_.take(); });
+  if (readying_.done()) state_.try_or_report("Cannot prepare contact", [&] { readying_.take(); });
   preview_.update(!readying_.active());
   recording_.update();
   release_.update();

@@ -44,7 +44,7 @@ class ViewSession {
   };
 
   // session_requests.cpp:
-  void carry_out(const Request& wanted);
+  void carry_out(const Request& request);
   void open_files(const std::vector<std::filesystem::path>& files);
   void open_file(const std::filesystem::path& file);
   void cancel();

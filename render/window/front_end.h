@@ -18,7 +18,7 @@ class FrontEnd {
  public:
   virtual ~FrontEnd() = default;
 
-  /// Handles the person's input, moves the playing clock and gives what is wanted now.
+  /// Handles the person's input, moves the playing clock and returns the requests.
   virtual const ViewState& poll() = 0;
   virtual const ViewState& view() const = 0;
   /// What was asked for once, since the last call.

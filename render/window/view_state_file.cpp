@@ -19,12 +19,12 @@ nlohmann::json edits_of(const ViewState& view) {
     return list;
   };
   // All of a look: one that has more does not compile until it is written here, too.
-  const auto& [clip, clip_skin, clip_from, clip_share, cut_away, cut_at, cut_radius_mm, ghost,
+  const auto& [clip, clip_skin, clip_from, clip_fraction, cut_away, cut_at, cut_radius_mm, ghost,
                wireframe, patches, paths, axes, springs, prisms, bone_springs, displacement,
                scale_bar, side_letters, wipe, wipe_at] = view.look;
   return {{"clip", clip},
           {"clip_from", std::string(1, clip_from)},
-          {"clip_share", clip_share},
+          {"clip_share", clip_fraction},
           {"clip_skin", clip_skin},
           {"cut_away", cut_away},
           {"cut_at", static_cast<int>(cut_at)},

@@ -7,8 +7,8 @@
 
 namespace condyle {
 
-/// Keeps a JSON file up to date with what a window shows: what is wanted, what is, and where each
-/// thing that can be used stands. So that programs can use the window as people do.
+/// Keeps a JSON file up to date with what a window shows: the targets, the current state, and where
+/// each thing that can be used stands. So that programs can use the window as people do.
 class ViewStateFile {
  public:
   /// Empty: none is kept.

@@ -40,8 +40,7 @@ void fit_to_screen(int& width, int& height) {
 
 }  // namespace
 
-Window::State::State(const WindowOptions& wanted)
-    : options(wanted), arrangement(wanted.arrangement) {
+Window::State::State(const WindowOptions& given) : options(given), arrangement(given.arrangement) {
   static_cast<PanelChoice&>(view) = arrangement.panels;
   if (options.fit_screen) fit_to_screen(arrangement.width, arrangement.height);
   ask_for_opengl();

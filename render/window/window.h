@@ -10,10 +10,10 @@
 
 #include "render/camera/camera.h"
 #include "render/image/image.h"
-#include "render/window/settings/arrangement.h"
 #include "render/window/front_end.h"
 #include "render/window/panels/panels.h"
 #include "render/window/picture/render_request.h"
+#include "render/window/settings/arrangement.h"
 #include "render/window/view/view_state.h"
 #include "sim/frame/frame_state.h"
 
@@ -61,7 +61,7 @@ class Window : public FrontEnd {
   /// The person has closed it, but it stays: there is something to ask.
   void keep_open() override;
 
-  /// Handles events, moves the playing clock and gives what is wanted now. Waits for the next
+  /// Handles events, moves the playing clock and returns the requests. Waits for the next
   /// picture's time while something moves (at most 1/60 s) and up to 1/4 s when nothing does.
   const ViewState& poll() override;
 

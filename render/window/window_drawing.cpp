@@ -57,19 +57,19 @@ PictureSettings Window::State::settings() const {
   int pixels = 0, ignored = 0;
   glfwGetFramebufferSize(window, &pixels, &ignored);
   const double density = std::max(1, pixels) / static_cast<double>(size().first);
-  PictureSettings wanted;
-  wanted.width = std::max(1, static_cast<int>(std::lround(rect.width * density)));
-  wanted.height = std::max(1, static_cast<int>(std::lround(rect.height * density)));
-  wanted.shadows = view.shadows;
-  wanted.contacts = view.mark_contacts;
-  wanted.backdrop = arrangement.light ? Backdrop::light : Backdrop::dark;
-  wanted.skin_opacity = view.skin_opacity;
-  wanted.part_opacity = part_opacities(scene, view);
-  if (render_request.parts) apply_look(wanted);
-  return wanted;
+  PictureSettings picture_settings;
+  picture_settings.width = std::max(1, static_cast<int>(std::lround(rect.width * density)));
+  picture_settings.height = std::max(1, static_cast<int>(std::lround(rect.height * density)));
+  picture_settings.shadows = view.shadows;
+  picture_settings.contacts = view.mark_contacts;
+  picture_settings.backdrop = arrangement.light ? Backdrop::light : Backdrop::dark;
+  picture_settings.skin_opacity = view.skin_opacity;
+  picture_settings.part_opacity = part_opacities(scene, view);
+  if (render_request.parts) apply_look(picture_settings);
+  return picture_settings;
 }
 
-void Window::State::apply_look(PictureSettings& wanted) const {
+void Window::State::apply_look(PictureSettings& picture_settings) const {
   const Look& look = view.look;
   if (look.clip) {
     const Eigen::Vector3d low = box.min(), high = box.max();
@@ -81,23 +81,24 @@ void Window::State::apply_look(PictureSettings& wanted) const {
     plane.normal = sign * Eigen::Vector3d::Unit(axis);
     const double from = sign > 0 ? high[axis] : low[axis];
     plane.point =
-        Eigen::Vector3d::Unit(axis) * (from - sign * look.clip_share * (high - low)[axis]);
+        Eigen::Vector3d::Unit(axis) * (from - sign * look.clip_fraction * (high - low)[axis]);
     if (look.clip_skin)
       for (const Part& part : scene.parts)
         if (part.role == Role::face) plane.parts.push_back(part.name);
-    wanted.clip = plane;
+    picture_settings.clip = plane;
   }
   if (look.cut_away) {
     constexpr std::array names = {"left_condyle", "right_condyle", "stomion"};
     const std::string name = names[static_cast<std::size_t>(look.cut_at)];
     for (const Landmark& landmark : view.landmarks)
       if (landmark.name == name)
-        wanted.cut_away = CutAway{.center = landmark.at_rest, .radius_mm = look.cut_radius_mm};
+        picture_settings.cut_away =
+            CutAway{.center = landmark.at_rest, .radius_mm = look.cut_radius_mm};
   }
-  if (look.ghost) wanted.ghost = Ghost{};
-  if (look.wireframe) wanted.wireframe = {"*"};
+  if (look.ghost) picture_settings.ghost = Ghost{};
+  if (look.wireframe) picture_settings.wireframe = {"*"};
   constexpr float touching_mm = 0.1f;
-  if (look.patches && view.distances) wanted.mapped_up_to = touching_mm;
+  if (look.patches && view.distances) picture_settings.mapped_up_to = touching_mm;
 }
 
 bool Window::State::moving() const {

@@ -15,43 +15,43 @@ constexpr double attentive_s = 0.5;  // after an event answers may come without 
 
 void Window::State::install_callbacks() {
   glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
-    guarded(w, [&](State& s) { s.on_button(button, action == GLFW_PRESS, mods); });
+    catch_errors(w, [&](State& s) { s.on_button(button, action == GLFW_PRESS, mods); });
   });
   glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
-    guarded(w, [&](State& s) { s.on_move(x, y); });
+    catch_errors(w, [&](State& s) { s.on_move(x, y); });
   });
   glfwSetScrollCallback(window, [](GLFWwindow* w, double, double clicks) {
-    guarded(w, [&](State& s) { s.on_wheel(clicks); });
+    catch_errors(w, [&](State& s) { s.on_wheel(clicks); });
   });
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) {
-    guarded(w, [](State& s) {
+    catch_errors(w, [](State& s) {
       s.pacing.scene_changed = true;
       s.note_size();
     });
   });
   glfwSetWindowMaximizeCallback(
-      window, [](GLFWwindow* w, int) { guarded(w, [](State& s) { s.note_size(); }); });
+      window, [](GLFWwindow* w, int) { catch_errors(w, [](State& s) { s.note_size(); }); });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-    guarded(w,
-            [&](State& s) { s.input.dropped.insert(s.input.dropped.end(), paths, paths + count); });
+    catch_errors(
+        w, [&](State& s) { s.input.dropped.insert(s.input.dropped.end(), paths, paths + count); });
   });
-  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { guarded(w, [](State&) {}); });
-  glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { guarded(w, [](State&) {}); });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { catch_errors(w, [](State&) {}); });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { catch_errors(w, [](State&) {}); });
 }
 
 /// Instead of ImGui's own: keys and letters wait in one row, each for its pass over the panels, or
 /// they would overtake each other.
 void Window::State::install_key_callbacks() {
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
-    guarded(w, [&](State& s) {
+    catch_errors(w, [&](State& s) {
       if (action != GLFW_REPEAT && key >= 0 && key <= GLFW_KEY_LAST &&
           (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput))
         s.input.keys.push_back({key, action == GLFW_PRESS, mods});
     });
-    if (action != GLFW_RELEASE) guarded(w, [&](State& s) { s.on_key(key, scancode, mods); });
+    if (action != GLFW_RELEASE) catch_errors(w, [&](State& s) { s.on_key(key, scancode, mods); });
   });
   glfwSetCharCallback(window, [](GLFWwindow* w, unsigned letter) {
-    guarded(w, [&](State& s) {
+    catch_errors(w, [&](State& s) {
       if (ImGui::GetIO().WantTextInput) s.input.keys.push_back({.letter = letter});
     });
   });

@@ -88,13 +88,13 @@ void Window::State::move_body(const Eigen::Vector2d& at) {
   const MovableBody& body = scene.bodies[input.held->body];
   const Pose& X_CM = frame()->poses[view.hands.jaw];
   // The skull's handles are expressed in its own frame at the moment of the grip.
-  const Pose wanted = body.is_skull()
+  const Pose target = body.is_skull()
                           ? input.held->start * gripped(input.held->view, input.held->grip, {},
                                                         input.held->from, at)
                           : frame()->poses[body.parent].inverse() *
                                 gripped(input.held->view, input.held->grip, input.held->start,
                                         input.held->from, at);
-  view.move(body, wanted, X_CM);
+  view.move(body, target, X_CM);
   pacing.last_change = Clock::now();
   pacing.frames_due = 3;
 }

@@ -148,7 +148,7 @@ struct Window::State {
   void wait_for_events();
   /// GLFW is C: nothing may be thrown through it.
   template <class Work>
-  static void guarded(GLFWwindow* w, Work&& handle) {
+  static void catch_errors(GLFWwindow* w, Work&& handle) {
     State& state = *static_cast<State*>(glfwGetWindowUserPointer(w));
     state.noticed();
     try {
@@ -164,7 +164,7 @@ struct Window::State {
   ViewRect view_rect() const;
   Camera seen() const;
   PictureSettings settings() const;
-  void apply_look(PictureSettings& wanted) const;
+  void apply_look(PictureSettings& picture_settings) const;
   bool drawn() const;  // the picture on show is of this scene
   bool moving() const;
   double screen_scale() const;

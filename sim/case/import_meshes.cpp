@@ -203,7 +203,7 @@ Part join_teeth(Role role, const std::vector<Surface>& surfaces, std::vector<std
 /// Colours the face by its file's own texture, if it has one, with triangles small enough to
 /// preserve the detail.
 void lay_texture(const fs::path& file, const SourceFrame& frame, Case& patient) {
-  constexpr int most_triangles = 150000;
+  constexpr int max_triangles = 150000;
   const auto part = std::find_if(patient.parts.begin(), patient.parts.end(),
                                  [](const Part& p) { return p.role == Role::face; });
   if (part == patient.parts.end() || !part->mesh.colors.empty()) return;
@@ -211,9 +211,9 @@ void lay_texture(const fs::path& file, const SourceFrame& frame, Case& patient) 
   if (!texture) return;
   // Estimated number of uniform triangles; only longer edges are halved.
   const double edge_mm =
-      1.3 * std::sqrt(4 / std::sqrt(3.0) * surface_area(part->mesh) / most_triangles);
+      1.3 * std::sqrt(4 / std::sqrt(3.0) * surface_area(part->mesh) / max_triangles);
   const std::vector<double> edges(part->mesh.vertices.size(), edge_mm);
-  part->mesh = refine(std::move(part->mesh), edges, most_triangles);
+  part->mesh = refine(std::move(part->mesh), edges, max_triangles);
   paint(part->mesh, *texture, Eigen::Affine3d(frame.to_lps_mm()));
   patient.notes.push_back(fmt::format(
       "{}: coloured by the texture of {} ({}x{}), in {} triangles to keep it sharp", part->name,

@@ -23,11 +23,11 @@ constexpr double incisal_edges_mm = 15;  // deepest overbites are some 12 mm
 
 bool is_upper_bone(Role role) { return role == Role::maxilla || role == Role::skull; }
 
-template <class Wanted>
-std::vector<const Part*> parts_of(const Case& patient, const Wanted& wanted) {
+template <class Matches>
+std::vector<const Part*> parts_of(const Case& patient, const Matches& matches) {
   std::vector<const Part*> parts;
   for (const auto& part : patient.parts)
-    if (wanted(part.role)) parts.push_back(&part);
+    if (matches(part.role)) parts.push_back(&part);
   return parts;
 }
 

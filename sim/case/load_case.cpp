@@ -130,7 +130,7 @@ void give_native_body(Case& patient, Part& part, const JsonItem& item) {
 }
 
 PairRule load_rule(const Case& patient, const JsonItem& item) {
-  constexpr double most_mm = 1000;
+  constexpr double max_mm = 1000;
   PairRule rule;
   rule.a = item.at("a").text();
   rule.b = item.at("b").text();
@@ -144,8 +144,8 @@ PairRule load_rule(const Case& patient, const JsonItem& item) {
   else
     item.at("policy").refuse("the policy \"" + policy + "\" is unknown; known are " +
                              known_policies());
-  if (const auto margin = item.find("margin_mm")) rule.margin_mm = margin->number(0, most_mm);
-  if (const auto gap = item.find("gap_mm")) rule.gap_mm = gap->number(0, most_mm);
+  if (const auto margin = item.find("margin_mm")) rule.margin_mm = margin->number(0, max_mm);
+  if (const auto gap = item.find("gap_mm")) rule.gap_mm = gap->number(0, max_mm);
   return rule;
 }
 

@@ -58,15 +58,15 @@ BodyId nearer_jaw(Case& patient, const Part& part) {
   const bool deep = inside.depth_mm > deep_mm;
   const std::string where = deep ? fmt::format("{:.1f} mm deep inside", inside.depth_mm)
                                  : fmt::format("{:.1f} mm from", std::min(to_cranium, to_mandible));
-  const std::string way_out = !deep         ? ""
-                              : inside.open ? "; that surface is open, so no exit can be "
-                                              "found: close it, or move the part by hand"
-                                            : ", --push-out moves it out";
+  const std::string exit_text = !deep         ? ""
+                                : inside.open ? "; that surface is open, so no exit can be "
+                                                "found: close it, or move the part by hand"
+                                              : ", --push-out moves it out";
   const char *name = lower ? "mandible" : "cranium", *other = lower ? "cranium" : "mandible";
   patient.notes.push_back(
       fmt::format("{}: lies {} the {} and moves with it; --carrier-of {}={} would change "
                   "that{}",
-                  part.name, where, name, part.name, other, way_out));
+                  part.name, where, name, part.name, other, exit_text));
   return parent;
 }
 

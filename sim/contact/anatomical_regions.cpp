@@ -171,9 +171,9 @@ std::string AnatomicalRegions::name(int part, const Vector3d& p_rest) const {
     const Anchor* nearest = nullptr;
     double least = 1;  // fraction of the reach
     for (const auto& anchor : anchors_) {
-      const double share = (anchor.point - p_rest).norm() / anchor.reach_mm;
-      if (anchor.body != of.body || share >= least) continue;
-      least = share;
+      const double ratio = (anchor.point - p_rest).norm() / anchor.reach_mm;
+      if (anchor.body != of.body || ratio >= least) continue;
+      least = ratio;
       nearest = &anchor;
     }
     if (nearest) return nearest->name;

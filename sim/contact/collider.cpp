@@ -22,10 +22,10 @@ constexpr double excused_mm = 10;
 /// `count` of the contacts, spread evenly over their order.
 std::vector<ContactPoint> thin(const std::vector<MeshContact>& all, int count) {
   std::vector<ContactPoint> kept;
-  const std::size_t wanted = std::min(all.size(), static_cast<std::size_t>(std::max(count, 0)));
-  kept.reserve(wanted);
-  for (std::size_t i = 0; i < wanted; ++i) {
-    const MeshContact& contact = all[i * all.size() / wanted];
+  const std::size_t number = std::min(all.size(), static_cast<std::size_t>(std::max(count, 0)));
+  kept.reserve(number);
+  for (std::size_t i = 0; i < number; ++i) {
+    const MeshContact& contact = all[i * all.size() / number];
     kept.push_back({contact.point, contact.normal});
   }
   return kept;
@@ -74,16 +74,16 @@ PairContact far_apart(const ColliderPair& pair, double at_least_mm) {
   return out;
 }
 
-PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, TrianglePair start,
-                  const Looking& looking, OverlapDepth* deepest_out) {
+PairContact query_pair(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB,
+                       TrianglePair start, const QueryOptions& options, OverlapDepth* deepest_out) {
   const Collider &a = *pair.a, &b = *pair.b;
   PairContact out = about(pair);
   const double balls_apart = (X_CB * b.solid.center() - X_CA * a.solid.center()).norm() -
                              a.solid.radius() - b.solid.radius();
-  const auto found = looking.far_mm < nowhere_mm
-                         ? distance_within(looking.far_mm, a.surface, X_CA, b.surface, X_CB, start)
+  const auto found = options.far_mm < nowhere_mm
+                         ? distance_within(options.far_mm, a.surface, X_CA, b.surface, X_CB, start)
                          : distance(a.surface, X_CA, b.surface, X_CB, start);
-  if (!found) return far_apart(pair, std::max(looking.far_mm, balls_apart));
+  if (!found) return far_apart(pair, std::max(options.far_mm, balls_apart));
   const MeshDistance& nearest = *found;
   out.distance_mm = nearest.distance_mm;
   out.witness_a = nearest.witness_a;
@@ -96,7 +96,7 @@ PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, 
 
   out.touching = true;
   out.distance_mm = 0;
-  if (!looking.need_depth) return out;
+  if (!options.need_depth) return out;
   std::vector<MeshContact> light;
   CrossingFaces crossing_faces;
   bool is_light = crossing && a.solid.face_count() + b.solid.face_count() > many_faces;
@@ -123,12 +123,12 @@ PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, 
   // longest translation that separates one pair of crossing triangles (bounded by their size).
   const bool by_triangles =
       out.depth_mm == 0 || a.solid.open_shell_count() > 0 || b.inside().open_shell_count() > 0;
-  if (by_triangles || looking.max_contacts > 0) {
+  if (by_triangles || options.max_contacts > 0) {
     const auto all = is_light ? std::move(light)
                               : contacts(a.surface, X_CA, b.surface, X_CB,
                                          by_triangles ? all_crossings : some_crossings);
-    out.contacts = thin(all, looking.max_contacts);
-    if (all.empty() && looking.max_contacts > 0)  // they touch in a point
+    out.contacts = thin(all, options.max_contacts);
+    if (all.empty() && options.max_contacts > 0)  // they touch in a point
       out.contacts.push_back({nearest.witness_a, deepest.normal});
     if (by_triangles)
       for (const auto& contact : all)

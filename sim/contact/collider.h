@@ -29,12 +29,12 @@ struct Collider {
   int number = 0;  // among the model's colliders
   int part = 0;    // index in the case
   BodyId body = cranium_body;
-  bool guard = false;  // only the part away from an overlap at rest
+  bool complement = false;  // only the part away from an overlap at rest
   std::shared_ptr<const ColliderShape> shape;
   const CollisionMesh& surface = shape->surface;
   const Solid& solid = shape->solid;
-  // Of a guard: the solid of which its surface, which is cut open and has no inside, is a part;
-  // and a tree of that surface.
+  // Of a complement: the solid of which its surface, which is cut open and has no inside, is a
+  // part; and a tree of that surface.
   const Solid* whole = nullptr;
   std::unique_ptr<const TriangleTree> part_tree = nullptr;
 
@@ -48,8 +48,8 @@ struct ColliderPair {
   PairPolicy policy = PairPolicy::forbidden;
   bool apart_at_rest = true;
   double rest_depth_mm = 0;
-  double kept_mm = 0;  // distance that a guided pair keeps: its gap, or less where it was less at
-                       // rest
+  double min_distance_mm = 0;  // distance that a guided pair keeps: its gap, or less where it was
+                               // less at rest
 };
 
 /// Surfaces deeper in each other than this at rest are held there by their depth as well as by
@@ -59,15 +59,16 @@ constexpr double deep_mm = 0.1;
 constexpr double nowhere_mm = std::numeric_limits<double>::infinity();
 
 /// Requested accuracy of a query.
-struct Looking {
+struct QueryOptions {
   int max_contacts = 0;
   double far_mm = nowhere_mm;  // beyond this a lower bound of the distance suffices
   bool need_depth = true;      // otherwise only whether they touch
 };
 
 /// Result for one pair at one pose. `deepest`: where the depth was measured, if at all.
-PairContact judge(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB, TrianglePair start,
-                  const Looking& looking, OverlapDepth* deepest = nullptr);
+PairContact query_pair(const ColliderPair& pair, const Pose& X_CA, const Pose& X_CB,
+                       TrianglePair start, const QueryOptions& options,
+                       OverlapDepth* deepest = nullptr);
 
 /// Result for a pair that is known only to be apart.
 PairContact far_apart(const ColliderPair& pair, double at_least_mm);

@@ -9,7 +9,7 @@ namespace condyle {
 std::vector<std::size_t> concerned_pairs(const ContactModel::State& state, const BodyMove& move) {
   std::vector<std::size_t> list;
   for (std::size_t i = 0; i < state.count(); ++i)
-    if (move.concerns(state.judged(i))) list.push_back(i);
+    if (move.concerns(state.pair_or_complement(i))) list.push_back(i);
   return list;
 }
 
@@ -25,8 +25,8 @@ SweptPair swept_pair(const ContactModel::State& state, const BodyMove& move,
   swept.from = move.from();
   swept.to = to;
   swept.pivot_D = state.pivot[index_of(move.body)];
-  swept.limit_mm = pair.apart_at_rest ? -1.0 : pair.rest_depth_mm + state.settings.slack_mm;
-  swept.kept_mm = pair.kept_mm;
+  swept.max_depth_mm = pair.apart_at_rest ? -1.0 : pair.rest_depth_mm + state.settings.slack_mm;
+  swept.min_distance_mm = pair.min_distance_mm;
   swept.measure();
   return swept;
 }
@@ -39,12 +39,12 @@ BodyPoses BodyMove::poses_at(const Pose& X_CD) const {
 }
 
 BodyMove make_move(const ContactModel::State& state, BodyPoses at, BodyId body,
-                   const Pose& wanted) {
+                   const Pose& target) {
   BodyMove move;
   move.body = body;
   move.moves.assign(at.X_CB.size(), false);
   move.X_DM.resize(at.X_CB.size());
-  move.wanted = wanted;
+  move.target = target;
   for (const BodyId b : state.bodies.subtree(body)) {
     move.moves[index_of(b)] = true;
     if (!bit_identical(at[b], at[body])) move.X_DM[index_of(b)] = at[body].inverse() * at[b];
@@ -56,26 +56,26 @@ BodyMove make_move(const ContactModel::State& state, BodyPoses at, BodyId body,
 MoveResult stop(const ContactModel::State& state, const BodyMove& move, ContactSet& set, bool exact,
                 int threads) {
   const auto pairs = concerned_pairs(state, move);
-  const auto poses_look = [&](const Pose& X_CD, const ContactSet& warm) {
+  const auto query_pairs = [&](const Pose& X_CD, const ContactSet& warm) {
     std::vector<PairContact> found(pairs.size());
     parallel_for(pairs.size(), threads, [&](std::size_t k) {
-      const SweptPair swept = swept_pair(state, move, state.judged(pairs[k]), X_CD);
-      found[k] = swept.judged(X_CD, state.start(&warm, pairs[k]), state.full_look(pairs[k]));
+      const SweptPair swept = swept_pair(state, move, state.pair_or_complement(pairs[k]), X_CD);
+      found[k] = swept.query(X_CD, state.start(&warm, pairs[k]), state.full_query(pairs[k]));
     });
     return found;
   };
-  const auto put = [&](std::vector<PairContact>&& found) {
+  const auto store = [&](std::vector<PairContact>&& found) {
     for (std::size_t k = 0; k < pairs.size(); ++k) state.slot(set, pairs[k]) = std::move(found[k]);
   };
-  std::vector<PairContact> at_wanted = poses_look(move.wanted, set);
-  if (bit_identical(move.from(), move.wanted)) {
-    put(std::move(at_wanted));
-    return {move.wanted, false};
+  std::vector<PairContact> at_target = query_pairs(move.target, set);
+  if (bit_identical(move.from(), move.target)) {
+    store(std::move(at_target));
+    return {move.target, false};
   }
   std::vector<double> reached(pairs.size(), 1.0);
   parallel_for(reached.size(), threads, [&](std::size_t k) {
-    SweptPair swept = swept_pair(state, move, state.judged(pairs[k]), move.wanted);
-    const PairContact& end = at_wanted[k];
+    SweptPair swept = swept_pair(state, move, state.pair_or_complement(pairs[k]), move.target);
+    const PairContact& end = at_target[k];
     if (swept.clear(end)) return;
     if (swept.length_mm < 1e-12) {
       reached[k] = 0;
@@ -83,18 +83,18 @@ MoveResult stop(const ContactModel::State& state, const BodyMove& move, ContactS
     }
     const PairContact start = exact
                                   ? state.slot(set, pairs[k])
-                                  : swept.judged(move.from(), {end.triangle_a, end.triangle_b}, {});
+                                  : swept.query(move.from(), {end.triangle_a, end.triangle_b}, {});
     swept.start_at(start);
     reached[k] = free_fraction(swept, start, end, 0.5 * state.settings.stop_gap_mm);
   });
   const double s = reached.empty() ? 1.0 : *std::min_element(reached.begin(), reached.end());
   if (s >= 1) {
-    put(std::move(at_wanted));
-    return {move.wanted, false};
+    store(std::move(at_target));
+    return {move.target, false};
   }
-  const Pose X_CD = interpolate(move.from(), move.wanted, s, state.pivot[index_of(move.body)]);
-  put(std::move(at_wanted));
-  put(poses_look(X_CD, set));
+  const Pose X_CD = interpolate(move.from(), move.target, s, state.pivot[index_of(move.body)]);
+  store(std::move(at_target));
+  store(query_pairs(X_CD, set));
   return {X_CD, true};
 }
 

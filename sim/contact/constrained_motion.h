@@ -15,7 +15,7 @@ struct BodyMove {
   std::vector<bool> moves;                // of every body
   std::vector<std::optional<Pose>> X_DM;  // of bodies that hang on it, in its frame, where they
                                           // are not as at rest there
-  Pose wanted;
+  Pose target;
 
   const Pose& from() const { return at[body]; }
   BodyPoses poses_at(const Pose& X_CD) const;
@@ -25,7 +25,7 @@ struct BodyMove {
 };
 
 /// Move of a body with its descendants.
-BodyMove make_move(const ContactModel::State& state, BodyPoses at, BodyId body, const Pose& wanted);
+BodyMove make_move(const ContactModel::State& state, BodyPoses at, BodyId body, const Pose& target);
 
 struct MoveResult {
   Pose X_CD;
@@ -43,7 +43,7 @@ MoveResult stop(const ContactModel::State& state, const BodyMove& move, ContactS
 MoveResult slide_move(const ContactModel::State& state, const BodyMove& move, ContactSet& set,
                       bool exact, bool bound_far, int threads);
 
-/// Pairs and guards with one moving side.
+/// Pairs and complements with one moving side.
 std::vector<std::size_t> concerned_pairs(const ContactModel::State& state, const BodyMove& move);
 
 /// The swept pair from the move's start to a pose.

@@ -71,17 +71,17 @@ std::string deep_start_note(const ColliderPair& pair, const Case& patient, doubl
       fmt::format("{} starts {:.1f} mm deep inside {}", name(*pair.b), depth_mm, name(*pair.a));
   if (out.status != Depenetration::Status::found)
     return start + "; no exit is defined, because one of them is an open surface";
-  const Eigen::Vector3d way = out.length_mm * out.direction;
+  const Eigen::Vector3d shift = out.length_mm * out.direction;
   return start + fmt::format(
                      "; moved by ({:.1f}, {:.1f}, {:.1f}) mm it would be clear of this "
                      "one; to have it clear of all, import it again with --push-out",
-                     way.x(), way.y(), way.z());
+                     shift.x(), shift.y(), shift.z());
 }
 
-/// Overlap at rest becomes the pairs' baseline; a guard monitors the surface outside it.
+/// Overlap at rest becomes the pairs' baseline; a complement monitors the surface outside it.
 void find_baseline(ContactModel::State& state, const Case& patient) {
   const BodyPoses at_rest = completed(state.bodies, {});
-  state.rest = state.judge_all(at_rest, nullptr, 1);
+  state.rest = state.query_all(at_rest, nullptr, 1);
   state.mixed.assign(state.bodies.bodies().size(), false);
   for (std::size_t i = 0; i < state.pairs.size(); ++i) {
     ColliderPair& pair = state.pairs[i];
@@ -89,7 +89,7 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
     pair.apart_at_rest = !rest.touching;
     pair.rest_depth_mm = rest.rest_depth_mm = rest.depth_mm;
     if (pair.policy == PairPolicy::guided)
-      pair.kept_mm = std::min(state.rules[i].gap_mm, rest.distance_mm);
+      pair.min_distance_mm = std::min(state.rules[i].gap_mm, rest.distance_mm);
     if (!rest.touching) continue;
     const TriMesh& mesh = patient.parts[static_cast<std::size_t>(rest.part_b)].mesh;
     const bool mixed = state.in_joint(pair) && rest.depth_mm > mixed_bones_mm;
@@ -111,11 +111,11 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
                  std::make_shared<const ColliderShape>(away)}));
     state.colliders.back()->whole = &pair.b->solid;
     state.colliders.back()->part_tree = std::make_unique<const TriangleTree>(away);
-    const ColliderPair guard{pair.a, state.colliders.back().get(), pair.policy, true, 0, 0};
-    if (judge(guard, {}, {}, {}, {.need_depth = false}).touching)
-      continue;  // entirely inside at rest: nothing to guard
-    state.guards.push_back(guard);
-    state.guarded.push_back(i);
+    const ColliderPair complement{pair.a, state.colliders.back().get(), pair.policy, true, 0, 0};
+    if (query_pair(complement, {}, {}, {}, {.need_depth = false}).touching)
+      continue;  // entirely inside at rest: nothing remains
+    state.complements.push_back(complement);
+    state.complement_of.push_back(i);
   }
   const bool joints_alone = std::all_of(state.pairs.begin(), state.pairs.end(),
                                         [&](const auto& pair) { return state.in_joint(pair); });
@@ -124,7 +124,7 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
     for (const auto& collider : state.colliders) surfaces.push_back(&collider->surface);
     state.broadphase.emplace(surfaces);
   }
-  state.rest = state.judge_all(at_rest, &state.rest, 1);
+  state.rest = state.query_all(at_rest, &state.rest, 1);
 }
 
 }  // namespace
@@ -145,7 +145,7 @@ std::vector<bool> ContactModel::State::far_pairs(const BodyPoses& at) const {
   for (const auto& collider : colliders) poses.push_back(at[collider->body]);
   const std::vector<BodyPair> near = broadphase->near(poses, settings.far_mm);
   for (std::size_t i = 0; i < far.size(); ++i) {
-    const ColliderPair& pair = judged(i);
+    const ColliderPair& pair = pair_or_complement(i);
     const BodyPair sought{std::min(pair.a->number, pair.b->number),
                           std::max(pair.a->number, pair.b->number)};
     far[i] = !in_joint(pair) && !std::binary_search(near.begin(), near.end(), sought);
@@ -153,20 +153,20 @@ std::vector<bool> ContactModel::State::far_pairs(const BodyPoses& at) const {
   return far;
 }
 
-ContactSet ContactModel::State::judge_all(const BodyPoses& at, const ContactSet* previous,
+ContactSet ContactModel::State::query_all(const BodyPoses& at, const ContactSet* previous,
                                           int threads) const {
   ContactSet set;
   set.at = at;
   set.pairs.resize(pairs.size());
-  set.away_from_rest.resize(guards.size());
+  set.outside_rest_overlap.resize(complements.size());
   const std::vector<bool> far = far_pairs(at);
   parallel_for(count(), threads, [&](std::size_t i) {
-    const ColliderPair& pair = judged(i);
+    const ColliderPair& pair = pair_or_complement(i);
     if (far[i])
       slot(set, i) = far_apart(pair, settings.far_mm);
     else
       slot(set, i) =
-          judge(pair, at[pair.a->body], at[pair.b->body], start(previous, i), full_look(i));
+          query_pair(pair, at[pair.a->body], at[pair.b->body], start(previous, i), full_query(i));
   });
   return set;
 }
@@ -174,18 +174,18 @@ ContactSet ContactModel::State::judge_all(const BodyPoses& at, const ContactSet*
 void ContactModel::State::measure_bounds(const BodyPoses& at, ContactSet& set) const {
   for (std::size_t i = 0; i < count(); ++i) {
     PairContact& found = slot(set, i);
-    if (!found.distance_is_bound || found.distance_mm >= full_look(i).far_mm) continue;
-    const ColliderPair& pair = judged(i);
-    found = judge(pair, at[pair.a->body], at[pair.b->body], {found.triangle_a, found.triangle_b},
-                  full_look(i));
+    if (!found.distance_is_bound || found.distance_mm >= full_query(i).far_mm) continue;
+    const ColliderPair& pair = pair_or_complement(i);
+    found = query_pair(pair, at[pair.a->body], at[pair.b->body],
+                       {found.triangle_a, found.triangle_b}, full_query(i));
   }
 }
 
-ContactSet ContactModel::State::with_guards(ContactSet set) const {
-  for (std::size_t g = 0; g < guards.size(); ++g) {
-    if (!set.away_from_rest[g].touching) continue;
-    PairContact& pair = set.pairs[guarded[g]];
-    const PairContact& away = set.away_from_rest[g];
+ContactSet ContactModel::State::with_complements(ContactSet set) const {
+  for (std::size_t g = 0; g < complements.size(); ++g) {
+    if (!set.outside_rest_overlap[g].touching) continue;
+    PairContact& pair = set.pairs[complement_of[g]];
+    const PairContact& away = set.outside_rest_overlap[g];
     if (pair.rest_depth_mm + away.depth_mm <= pair.depth_mm) continue;
     pair.depth_mm = pair.rest_depth_mm + away.depth_mm;
     pair.witness_a = away.witness_a;
@@ -223,16 +223,16 @@ ContactModel::~ContactModel() = default;
 ContactModel::ContactModel(ContactModel&&) noexcept = default;
 
 ContactSet ContactModel::find(const BodyPoses& at, const ContactSet* previous, int threads) const {
-  return state_->with_guards(state_->judge_all(state_->complete(at), previous, threads));
+  return state_->with_complements(state_->query_all(state_->complete(at), previous, threads));
 }
 
 namespace {
 
-/// Whether the set was taken at these poses, without the guards included in its depths.
+/// Whether the set was taken at these poses, without the complements included in its depths.
 bool taken_at(const ContactModel::State& state, const ContactSet* set, const BodyPoses& at) {
   if (!state.fits(set)) return false;
-  for (const auto& guard : set->away_from_rest)
-    if (guard.touching) return false;
+  for (const auto& complement : set->outside_rest_overlap)
+    if (complement.touching) return false;
   return std::equal(set->at.X_CB.begin(), set->at.X_CB.end(), at.X_CB.begin(), at.X_CB.end(),
                     bit_identical);
 }
@@ -243,22 +243,22 @@ bool is_one_joint(const ContactModel::State& state) { return state.bodies.size()
 
 }  // namespace
 
-ContactModel::Slide ContactModel::stop_at_contact(const BodyPoses& from, const Pose& wanted,
+ContactModel::Slide ContactModel::stop_at_contact(const BodyPoses& from, const Pose& target,
                                                   const ContactSet* previous, int threads,
                                                   BodyId body) const {
   const State& state = *state_;
-  state.complete(BodyPoses(wanted));  // refuses values that are not finite
+  state.complete(BodyPoses(target));  // refuses values that are not finite
   const BodyPoses start = state.complete(from);
   // An answer from another pose still accelerates the queries.
   const bool known = taken_at(state, previous, start);
   const bool near = is_one_joint(state) && state.fits(previous);
-  ContactSet set = known || near ? *previous : state.judge_all(start, previous, threads);
+  ContactSet set = known || near ? *previous : state.query_all(start, previous, threads);
   const bool exact = known || !near;
-  const BodyMove move = make_move(state, start, body, wanted);
+  const BodyMove move = make_move(state, start, body, target);
   const MoveResult reached = stop(state, move, set, exact, threads);
   set.at = move.poses_at(reached.X_CD);
   BodyPoses there = set.at;
-  return {std::move(there), reached.stopped, state.with_guards(std::move(set))};
+  return {std::move(there), reached.stopped, state.with_complements(std::move(set))};
 }
 
 BodyPoses ContactModel::placed(std::span<const Pose> X_PB_target) const {
@@ -279,7 +279,7 @@ ContactModel::Slide ContactModel::slide(const BodyPoses& from, std::span<const P
   state.complete(placed(X_PB_target));  // refuses invalid poses
   bool exact = taken_at(state, previous, at);
   const bool near = is_one_joint(state) && state.fits(previous);
-  ContactSet set = exact || near ? *previous : state.judge_all(at, previous, threads);
+  ContactSet set = exact || near ? *previous : state.query_all(at, previous, threads);
   exact = exact || !near;
   for (int b = 1; b < state.bodies.size(); ++b) {
     const BodyId body{b};
@@ -296,7 +296,7 @@ ContactModel::Slide ContactModel::slide(const BodyPoses& from, std::span<const P
   }
   if (!bound_far) state.measure_bounds(at, set);
   set.at = at;
-  result.contacts = state.with_guards(std::move(set));
+  result.contacts = state.with_complements(std::move(set));
   return result;
 }
 

@@ -17,11 +17,11 @@ struct ContactModel::State {
   BodyTree bodies;
   std::vector<std::unique_ptr<Collider>> colliders;
   std::vector<ColliderPair> pairs;
-  std::vector<ColliderPair> guards;      // see ContactSet::away_from_rest
-  std::vector<std::size_t> guarded;      // the pair of each guard
-  std::vector<Eigen::Vector3d> pivot;    // of each body, near its centre
-  std::vector<PairRule> rules;           // of each pair
-  std::optional<Broadphase> broadphase;  // of the colliders, where bodies roam
+  std::vector<ColliderPair> complements;   // see ContactSet::outside_rest_overlap
+  std::vector<std::size_t> complement_of;  // the pair of each complement
+  std::vector<Eigen::Vector3d> pivot;      // of each body, near its centre
+  std::vector<PairRule> rules;             // of each pair
+  std::optional<Broadphase> broadphase;    // of the colliders, where bodies roam
   std::unique_ptr<Slider> slider;
   ContactSet rest;
   std::vector<bool> mixed;  // per body: overlaps its joint at rest more than in one patient
@@ -32,26 +32,27 @@ struct ContactModel::State {
     return bodies.link(pair.a->body, pair.b->body) == BodyLink::joint;
   }
 
-  /// Pairs, then guards, in one numbering.
-  std::size_t count() const { return pairs.size() + guards.size(); }
-  const ColliderPair& judged(std::size_t i) const {
-    return i < pairs.size() ? pairs[i] : guards[i - pairs.size()];
+  /// Pairs, then complements, in one numbering.
+  std::size_t count() const { return pairs.size() + complements.size(); }
+  const ColliderPair& pair_or_complement(std::size_t i) const {
+    return i < pairs.size() ? pairs[i] : complements[i - pairs.size()];
   }
   PairContact& slot(ContactSet& set, std::size_t i) const {
-    return i < pairs.size() ? set.pairs[i] : set.away_from_rest[i - pairs.size()];
+    return i < pairs.size() ? set.pairs[i] : set.outside_rest_overlap[i - pairs.size()];
   }
   const PairContact& slot(const ContactSet& set, std::size_t i) const {
-    return i < pairs.size() ? set.pairs[i] : set.away_from_rest[i - pairs.size()];
+    return i < pairs.size() ? set.pairs[i] : set.outside_rest_overlap[i - pairs.size()];
   }
   bool fits(const ContactSet* set) const {
-    return set && set->pairs.size() == pairs.size() && set->away_from_rest.size() == guards.size();
+    return set && set->pairs.size() == pairs.size() &&
+           set->outside_rest_overlap.size() == complements.size();
   }
   TrianglePair start(const ContactSet* previous, std::size_t i) const {
     if (!fits(previous)) return {};
     return {slot(*previous, i).triangle_a, slot(*previous, i).triangle_b};
   }
-  Looking full_look(std::size_t i) const {
-    const ColliderPair& pair = judged(i);
+  QueryOptions full_query(std::size_t i) const {
+    const ColliderPair& pair = pair_or_complement(i);
     return {.max_contacts = i < pairs.size() ? settings.max_contacts : 0,
             .far_mm = in_joint(pair) ? nowhere_mm : settings.far_mm};
   }
@@ -63,9 +64,9 @@ struct ContactModel::State {
   std::vector<bool> far_pairs(const BodyPoses& at) const;
   /// Measures pairs that are only bounded there.
   void measure_bounds(const BodyPoses& at, ContactSet& set) const;
-  ContactSet judge_all(const BodyPoses& at, const ContactSet* previous, int threads) const;
-  /// Includes the depths of the guards in those of their pairs.
-  ContactSet with_guards(ContactSet set) const;
+  ContactSet query_all(const BodyPoses& at, const ContactSet* previous, int threads) const;
+  /// Includes the depths of the complements in those of their pairs.
+  ContactSet with_complements(ContactSet set) const;
 };
 
 }  // namespace condyle

@@ -27,24 +27,24 @@ ContactVerifier::ContactVerifier(const ContactModel::State& state, const BodyMov
       threads_(threads),
       pairs_(concerned_pairs(state, move)) {
   for (const std::size_t i : pairs_) {
-    const ColliderPair& pair = state_.judged(i);
+    const ColliderPair& pair = state_.pair_or_complement(i);
     deep_at_rest_ |= pair.rest_depth_mm > deep_mm;
-    limit_.push_back((pair.apart_at_rest ? 0 : pair.rest_depth_mm) + state_.settings.slack_mm);
-    kept_.push_back(pair.kept_mm);
+    max_depth_.push_back((pair.apart_at_rest ? 0 : pair.rest_depth_mm) + state_.settings.slack_mm);
+    min_distance_.push_back(pair.min_distance_mm);
   }
 }
 
 void ContactVerifier::start_at(const Found& at_start) {
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     if (allowed(at_start[k], k)) continue;
-    if (at_start[k].touching) limit_[k] = std::max(limit_[k], at_start[k].depth_mm);
-    kept_[k] = std::min(kept_[k], at_start[k].distance_mm);
+    if (at_start[k].touching) max_depth_[k] = std::max(max_depth_[k], at_start[k].depth_mm);
+    min_distance_[k] = std::min(min_distance_[k], at_start[k].distance_mm);
   }
 }
 
 bool ContactVerifier::allowed(const PairContact& contact, std::size_t k) const {
-  return contact.touching ? contact.depth_mm <= limit_[k] && kept_[k] == 0
-                          : contact.distance_mm >= kept_[k] - state_.settings.slack_mm;
+  return contact.touching ? contact.depth_mm <= max_depth_[k] && min_distance_[k] == 0
+                          : contact.distance_mm >= min_distance_[k] - state_.settings.slack_mm;
 }
 
 bool ContactVerifier::allowed(const Found& found) const {
@@ -53,57 +53,58 @@ bool ContactVerifier::allowed(const Found& found) const {
   return true;
 }
 
-bool ContactVerifier::allowed(const std::vector<Look>& looks) const {
-  for (std::size_t k = 0; k < looks.size(); ++k)
-    if (!allowed(looks[k].contact, k)) return false;
+bool ContactVerifier::allowed(const std::vector<PairResult>& results) const {
+  for (std::size_t k = 0; k < results.size(); ++k)
+    if (!allowed(results[k].contact, k)) return false;
   return true;
 }
 
 SweptPair ContactVerifier::swept(std::size_t k, const Pose& from, const Pose& to) const {
-  SweptPair p = swept_pair(state_, move_, state_.judged(pairs_[k]), to);
+  SweptPair p = swept_pair(state_, move_, state_.pair_or_complement(pairs_[k]), to);
   p.from = from;
   p.measure();
   return p;
 }
 
-ContactVerifier::Look ContactVerifier::look_at(std::size_t k, const Pose& X_CD, bool rough) const {
+ContactVerifier::PairResult ContactVerifier::query(std::size_t k, const Pose& X_CD,
+                                                   bool rough) const {
   const std::size_t i = pairs_[k];
-  Looking looking = state_.full_look(i);
-  looking.need_depth = !rough || !state_.judged(i).apart_at_rest;
-  Look look;
-  look.contact =
-      swept(k, move_.from(), X_CD).judged(X_CD, state_.start(&set_, i), looking, &look.deepest);
-  return look;
+  QueryOptions options = state_.full_query(i);
+  options.need_depth = !rough || !state_.pair_or_complement(i).apart_at_rest;
+  PairResult result;
+  result.contact =
+      swept(k, move_.from(), X_CD).query(X_CD, state_.start(&set_, i), options, &result.deepest);
+  return result;
 }
 
-ContactVerifier::Found ContactVerifier::look(const Pose& X_CD) const {
+ContactVerifier::Found ContactVerifier::query_all(const Pose& X_CD) const {
   Found found(pairs_.size());
   parallel_for(pairs_.size(), threads_,
-               [&](std::size_t k) { found[k] = look_at(k, X_CD, false).contact; });
+               [&](std::size_t k) { found[k] = query(k, X_CD, false).contact; });
   return found;
 }
 
-std::vector<ContactVerifier::Look> ContactVerifier::looks(const Pose& X_CD) const {
-  std::vector<Look> all(pairs_.size());
-  parallel_for(pairs_.size(), threads_, [&](std::size_t k) { all[k] = look_at(k, X_CD, false); });
+std::vector<ContactVerifier::PairResult> ContactVerifier::results_at(const Pose& X_CD) const {
+  std::vector<PairResult> all(pairs_.size());
+  parallel_for(pairs_.size(), threads_, [&](std::size_t k) { all[k] = query(k, X_CD, false); });
   return all;
 }
 
-bool ContactVerifier::clear(const PairContact& at_wanted, std::size_t k) const {
-  return swept(k, move_.from(), move_.wanted).clear(at_wanted);
+bool ContactVerifier::clear(const PairContact& at_target, std::size_t k) const {
+  return swept(k, move_.from(), move_.target).clear(at_target);
 }
 
-std::optional<PairContact> ContactVerifier::bounded(std::size_t k) const {
+std::optional<PairContact> ContactVerifier::far_bound(std::size_t k) const {
   PairContact bound = state_.slot(set_, pairs_[k]);
-  if (!bound_far_ || bound.touching || kept_[k] > 0) return std::nullopt;
-  bound.distance_mm -= swept(k, move_.from(), move_.wanted).length_mm;
+  if (!bound_far_ || bound.touching || min_distance_[k] > 0) return std::nullopt;
+  bound.distance_mm -= swept(k, move_.from(), move_.target).length_mm;
   if (bound.distance_mm < far_mm) return std::nullopt;
   bound.distance_is_bound = true;
   bound.witness_a = bound.witness_b = Vector3d::Zero();
   return bound;
 }
 
-bool ContactVerifier::clear(Found& at_wanted) const {
+bool ContactVerifier::clear(Found& at_target) const {
   // The pair that last obstructed the motion, or was nearest to it, probably does so again: then no
   // other pair need be measured.
   std::size_t likely = 0;
@@ -113,35 +114,35 @@ bool ContactVerifier::clear(Found& at_wanted) const {
   for (std::size_t k = 1; k < pairs_.size(); ++k) {
     const PairContact &a = before(k), &b = before(likely);
     if (a.touching != b.touching ? a.touching
-        : a.touching             ? a.depth_mm - limit_[k] > b.depth_mm - limit_[likely]
-                                 : a.distance_mm - kept_[k] < b.distance_mm - kept_[likely])
+        : a.touching             ? a.depth_mm - max_depth_[k] > b.depth_mm - max_depth_[likely]
+                     : a.distance_mm - min_distance_[k] < b.distance_mm - min_distance_[likely])
       likely = k;
   }
-  const bool near = before(likely).touching ||
-                    before(likely).distance_mm - kept_[likely] < way(move_.from(), move_.wanted);
-  at_wanted.resize(pairs_.size());
+  const bool near = before(likely).touching || before(likely).distance_mm - min_distance_[likely] <
+                                                   max_displacement_mm(move_.from(), move_.target);
+  at_target.resize(pairs_.size());
   std::vector<char> is_clear(pairs_.size(), 0);
-  const auto look_there = [&](std::size_t k) {
-    at_wanted[k] = look_at(k, move_.wanted, true).contact;
-    is_clear[k] = clear(at_wanted[k], k);
+  const auto query_target = [&](std::size_t k) {
+    at_target[k] = query(k, move_.target, true).contact;
+    is_clear[k] = clear(at_target[k], k);
   };
   if (near) {
-    look_there(likely);
+    query_target(likely);
     if (!is_clear[likely]) return false;
   }
   parallel_for(pairs_.size(), threads_, [&](std::size_t k) {
     if (is_clear[k]) return;
-    if (const auto bound = bounded(k); bound && clear(*bound, k)) {
-      at_wanted[k] = *bound;
+    if (const auto bound = far_bound(k); bound && clear(*bound, k)) {
+      at_target[k] = *bound;
       is_clear[k] = 1;
     } else {
-      look_there(k);
+      query_target(k);
     }
   });
   return std::all_of(is_clear.begin(), is_clear.end(), [](char one) { return one != 0; });
 }
 
-double ContactVerifier::way(const Pose& X, const Pose& to) const {
+double ContactVerifier::max_displacement_mm(const Pose& X, const Pose& to) const {
   double longest = 0;
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     longest = std::max(longest, swept(k, X, to).length_mm);
@@ -151,22 +152,22 @@ double ContactVerifier::way(const Pose& X, const Pose& to) const {
 double ContactVerifier::clearance(const Found& found) const {
   double least = nowhere_mm;
   for (std::size_t k = 0; k < found.size(); ++k)
-    least = std::min(least, found[k].touching ? 0.0 : found[k].distance_mm - kept_[k]);
+    least = std::min(least, found[k].touching ? 0.0 : found[k].distance_mm - min_distance_[k]);
   return least;
 }
 
 double ContactVerifier::free_part(const Pose& from, const Found& at_from, const Pose& to,
                                   const Found& at_to) const {
-  std::vector<double> share(pairs_.size(), 1.0);
+  std::vector<double> fraction(pairs_.size(), 1.0);
   parallel_for(pairs_.size(), threads_, [&](std::size_t k) {
     SweptPair p = swept(k, from, to);
-    p.limit_mm = limit_[k];
-    p.kept_mm = kept_[k];
+    p.max_depth_mm = max_depth_[k];
+    p.min_distance_mm = min_distance_[k];
     if (p.length_mm < 1e-12) return;
     p.start_at(at_from[k]);
-    share[k] = free_fraction(p, at_from[k], at_to[k], 0.5 * state_.settings.stop_gap_mm);
+    fraction[k] = free_fraction(p, at_from[k], at_to[k], 0.5 * state_.settings.stop_gap_mm);
   });
-  return *std::min_element(share.begin(), share.end());
+  return *std::min_element(fraction.begin(), fraction.end());
 }
 
 Pose ContactVerifier::moved(const Pose& X, const Twist& x) const {
@@ -181,22 +182,22 @@ Pose ContactVerifier::moved(const Pose& X, const Twist& x) const {
 }
 
 /// Constraints at X of pairs that are too deep or too near, including those found at earlier poses.
-void ContactVerifier::add_rows(const Pose& X, const std::vector<Look>& looks, const Twist& so_far,
-                               std::vector<ContactRow>& rows) const {
+void ContactVerifier::add_rows(const Pose& X, const std::vector<PairResult>& results,
+                               const Twist& so_far, std::vector<ContactRow>& rows) const {
   const Vector3d pivot = X * state_.slider->pivot(move_.body);
-  for (std::size_t k = 0; k < looks.size(); ++k) {
-    const PairContact& contact = looks[k].contact;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    const PairContact& contact = results[k].contact;
     if (allowed(contact, k)) continue;
-    Vector3d point = looks[k].deepest.point, normal = looks[k].deepest.normal;
-    double gap = limit_[k] - 0.5 * state_.settings.slack_mm - contact.depth_mm;
+    Vector3d point = results[k].deepest.point, normal = results[k].deepest.normal;
+    double gap = max_depth_[k] - 0.5 * state_.settings.slack_mm - contact.depth_mm;
     if (!contact.touching) {
       point = contact.witness_b;
       normal = (contact.witness_b - contact.witness_a).normalized();
-      gap = contact.distance_mm - kept_[k];
+      gap = contact.distance_mm - min_distance_[k];
     } else if (contact.depth_mm == 0) {
       continue;
     }
-    if (move_.moves[index_of(state_.judged(pairs_[k]).a->body)]) normal = -normal;
+    if (move_.moves[index_of(state_.pair_or_complement(pairs_[k]).a->body)]) normal = -normal;
     rows.push_back(
         contact_row(point - pivot, normal, gap, state_.slider->rotation_length_mm(move_.body)));
     rows.back().gap_mm -= rows.back().along.dot(so_far);
@@ -216,9 +217,9 @@ Pose ContactVerifier::project_to_valid(const SlideResult& slid, Found& found) co
                                settings.rotation_length_mm));
   Pose X = slid.X_FM;
   Twist corrected = Twist::Zero();
-  std::vector<Look> here;
+  std::vector<PairResult> here;
   for (int k = 0;; ++k) {
-    here = looks(X);
+    here = results_at(X);
     if (k == max_corrections || allowed(here)) break;
     add_rows(X, here, corrected, rows);
     const Twist x = nearest_allowed(Twist::Zero(), rows, settings).x;

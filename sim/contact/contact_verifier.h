@@ -22,11 +22,11 @@ class ContactVerifier {
 
   const std::vector<std::size_t>& pairs() const { return pairs_; }
 
-  Found look(const Pose& X_CD) const;
+  Found query_all(const Pose& X_CD) const;
 
-  /// Whether no pair is within reach of the whole path to the target; then `at_wanted` has the
+  /// Whether no pair is within reach of the whole path to the target; then `at_target` has the
   /// result there.
-  bool clear(Found& at_wanted) const;
+  bool clear(Found& at_target) const;
 
   /// Limits are as at rest. A start beyond them is tolerated, but must not deepen.
   void start_at(const Found& at_start);
@@ -42,7 +42,7 @@ class ContactVerifier {
                    const Found& at_to) const;
 
   /// Upper bound of the displacement of any point between two poses.
-  double way(const Pose& X, const Pose& to) const;
+  double max_displacement_mm(const Pose& X, const Pose& to) const;
 
   /// Smallest remaining distance before a pair holds the body.
   double clearance(const Found& found) const;
@@ -51,20 +51,20 @@ class ContactVerifier {
   bool deep_at_rest() const { return deep_at_rest_; }
 
  private:
-  struct Look {
+  struct PairResult {
     PairContact contact;
     OverlapDepth deepest;
   };
   SweptPair swept(std::size_t k, const Pose& from, const Pose& to) const;
   /// `rough`: without the depth of pairs that were apart at rest.
-  Look look_at(std::size_t k, const Pose& X_CD, bool rough) const;
+  PairResult query(std::size_t k, const Pose& X_CD, bool rough) const;
   /// Lower bound for a far pair at the target.
-  std::optional<PairContact> bounded(std::size_t k) const;
-  std::vector<Look> looks(const Pose& X_CD) const;
-  bool clear(const PairContact& at_wanted, std::size_t k) const;
+  std::optional<PairContact> far_bound(std::size_t k) const;
+  std::vector<PairResult> results_at(const Pose& X_CD) const;
+  bool clear(const PairContact& at_target, std::size_t k) const;
   bool allowed(const PairContact& contact, std::size_t k) const;
-  bool allowed(const std::vector<Look>& looks) const;
-  void add_rows(const Pose& X, const std::vector<Look>& looks, const Twist& so_far,
+  bool allowed(const std::vector<PairResult>& results) const;
+  void add_rows(const Pose& X, const std::vector<PairResult>& results, const Twist& so_far,
                 std::vector<ContactRow>& rows) const;
   Pose moved(const Pose& X, const Twist& x) const;
 
@@ -74,7 +74,7 @@ class ContactVerifier {
   bool bound_far_;
   int threads_;
   std::vector<std::size_t> pairs_;
-  std::vector<double> limit_, kept_;  // allowed depth and distance of each pair
+  std::vector<double> max_depth_, min_distance_;  // allowed depth and distance of each pair
   bool deep_at_rest_ = false;
 };
 

@@ -146,10 +146,10 @@ class Search {
   void run(int index, Known known) {
     const Ball& ball = balls_.ball(index);
     const Vector3d c = X_TV_ * ball.center;
-    const double wanted = farthest(ball);
-    if (target_.to_box(c) > wanted + ball.radius) return;
-    if (!ask(c, wanted + ball.radius, known)) return;
-    if (std::abs(known.distance_mm) > wanted + ball.radius) {
+    const double search_mm = farthest(ball);
+    if (target_.to_box(c) > search_mm + ball.radius) return;
+    if (!ask(c, search_mm + ball.radius, known)) return;
+    if (std::abs(known.distance_mm) > search_mm + ball.radius) {
       // The surface is outside the ball: all of the ball lies on one side of it.
       if (known.distance_mm > 0) return;
       for (int i = ball.first; i < ball.first + ball.count; ++i)
@@ -164,8 +164,8 @@ class Search {
 
   void vertex(int i, Known& known) {
     const Vector3d p = X_TV_ * balls_.point(i);
-    const double wanted = std::clamp(static_cast<double>(value(i)), 0.0, reach_mm_);
-    if (target_.to_box(p) > wanted || !ask(p, wanted, known)) return;
+    const double search_mm = std::clamp(static_cast<double>(value(i)), 0.0, reach_mm_);
+    if (target_.to_box(p) > search_mm || !ask(p, search_mm, known)) return;
     if (std::abs(known.distance_mm) <= reach_mm_)
       lower(i, static_cast<float>(known.distance_mm));
     else if (known.distance_mm < 0)
@@ -173,15 +173,15 @@ class Search {
   }
 
   /// Computes the distance of p, from that of a nearby point, into `known`. False, without change
-  /// of `known`, when p is outside and farther than `wanted`.
-  bool ask(const Vector3d& p, double wanted, Known& known) const {
+  /// of `known`, when p is outside and farther than `search_mm`.
+  bool ask(const Vector3d& p, double search_mm, Known& known) const {
     double limit = infinity;
     if (known.any) {
       const double step = (p - known.point).norm() + rounding_mm;
       limit = std::abs(known.distance_mm) + step;
       if (known.distance_mm > step) {  // p is outside as well
-        if (known.distance_mm - step > wanted) return false;
-        limit = std::min(limit, wanted + rounding_mm);
+        if (known.distance_mm - step > search_mm) return false;
+        limit = std::min(limit, search_mm + rounding_mm);
       }
     }
     const double distance = target_.distance(p, limit, known.start);
@@ -220,11 +220,11 @@ bool may_meet(const Case& patient, std::span<const PairRule> more, const Part& a
 
 /// The part's surface without very large triangles; its normals are processed as colours, so that
 /// new vertices are interpolated.
-TriMesh with_normals(const TriMesh& part, int most_triangles) {
+TriMesh with_normals(const TriMesh& part, int max_triangles) {
   TriMesh mesh{part.vertices, part.triangles, {}};
   for (const auto& n : vertex_normals(mesh)) mesh.colors.push_back(n.cast<float>());
   const std::vector<double> edge_mm(mesh.vertices.size(), coarsest_mm);
-  return refine(std::move(mesh), edge_mm, most_triangles);
+  return refine(std::move(mesh), edge_mm, max_triangles);
 }
 
 /// Smaller triangles where parts may touch.
@@ -235,7 +235,7 @@ void divide(DistanceMap::Surface& surface, Role role, const std::vector<float>& 
   for (std::size_t v = 0; v < edge_mm.size(); ++v)
     if (std::isfinite(rest_mm[v]) || rest_mm[v] < 0)
       edge_mm[v] = is_teeth(role) ? settings.teeth_edge_mm : settings.bone_edge_mm;
-  mesh = refine(std::move(mesh), std::move(edge_mm), settings.most_triangles);
+  mesh = refine(std::move(mesh), std::move(edge_mm), settings.max_triangles);
   surface.normals = std::move(mesh.colors);
   mesh.colors.clear();
   for (auto& n : surface.normals) {
@@ -309,7 +309,7 @@ DistanceMap::DistanceMap(const Case& patient, const DistanceMapSettings& setting
     met.push_back(i);
     state.meets.push_back(std::move(meets));
     state.surfaces.push_back(
-        {static_cast<int>(i), with_normals(part.mesh, settings.most_triangles), {}, false});
+        {static_cast<int>(i), with_normals(part.mesh, settings.max_triangles), {}, false});
   }
   parallel_for(met.size(), threads,
                [&](std::size_t i) { state.targets[met[i]] = targets_of(parts[met[i]].mesh); });

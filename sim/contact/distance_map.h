@@ -14,7 +14,7 @@ struct DistanceMapSettings {
   // vertices.
   double teeth_edge_mm = 1.0;
   double bone_edge_mm = 2.0;
-  int most_triangles = 150000;  // of one part
+  int max_triangles = 150000;  // of one part
   // In addition to the case's own; the last match applies.
   std::vector<PairRule> pair_rules = {};
 };

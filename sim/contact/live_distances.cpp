@@ -19,7 +19,7 @@ LiveDistances::~LiveDistances() {
 void LiveDistances::request(FrameState frame) {
   {
     const std::lock_guard lock(mutex_);
-    wanted_ = std::move(frame);
+    requested_ = std::move(frame);
   }
   changed_.notify_all();
 }
@@ -42,9 +42,9 @@ void LiveDistances::work() {
       Answer answer;
       {
         std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] { return stop_ || wanted_; });
+        changed_.wait(lock, [&] { return stop_ || requested_; });
         if (stop_) return;
-        answer.frame = *std::exchange(wanted_, std::nullopt);
+        answer.frame = *std::exchange(requested_, std::nullopt);
       }
       answer.values = map_->at(answer.frame.poses);
       const std::lock_guard lock(mutex_);

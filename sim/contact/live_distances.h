@@ -41,7 +41,7 @@ class LiveDistances {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<DistanceMap> map_;
-  std::optional<FrameState> wanted_;
+  std::optional<FrameState> requested_;
   std::optional<Answer> newest_;
   std::exception_ptr failure_;
   bool answered_ = false, stop_ = false;

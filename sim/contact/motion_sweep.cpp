@@ -37,7 +37,7 @@ class MotionSweep {
  private:
   double margin_at(double s) {
     const Pose X = interpolate(swept_.from, swept_.to, s, swept_.pivot_D);
-    const PairContact contact = swept_.judged(X, start_, {.need_depth = swept_.limit_mm >= 0});
+    const PairContact contact = swept_.query(X, start_, {.need_depth = swept_.max_depth_mm >= 0});
     start_ = {contact.triangle_a, contact.triangle_b};
     return swept_.margin(contact);
   }
@@ -69,21 +69,21 @@ void SweptPair::measure() {
 
 void SweptPair::start_at(const PairContact& start) {
   if (start.touching)
-    limit_mm = std::max(limit_mm, start.depth_mm + kept_mm);
+    max_depth_mm = std::max(max_depth_mm, start.depth_mm + min_distance_mm);
   else
-    kept_mm = std::min(kept_mm, start.distance_mm);
+    min_distance_mm = std::min(min_distance_mm, start.distance_mm);
 }
 
-PairContact SweptPair::judged(const Pose& X_CD, TrianglePair start, const Looking& looking,
-                              OverlapDepth* deepest) const {
+PairContact SweptPair::query(const Pose& X_CD, TrianglePair start, const QueryOptions& options,
+                             OverlapDepth* deepest) const {
   const Pose X_CM = X_DM ? X_CD * *X_DM : X_CD;
-  return a_moves ? judge(*pair, X_CM, X_CS, start, looking, deepest)
-                 : judge(*pair, X_CS, X_CM, start, looking, deepest);
+  return a_moves ? query_pair(*pair, X_CM, X_CS, start, options, deepest)
+                 : query_pair(*pair, X_CS, X_CM, start, options, deepest);
 }
 
 double SweptPair::margin(const PairContact& contact) const {
-  if (!contact.touching) return contact.distance_mm - kept_mm + std::max(limit_mm, 0.0);
-  return limit_mm < 0 ? -1.0 : limit_mm - contact.depth_mm - kept_mm;
+  if (!contact.touching) return contact.distance_mm - min_distance_mm + std::max(max_depth_mm, 0.0);
+  return max_depth_mm < 0 ? -1.0 : max_depth_mm - contact.depth_mm - min_distance_mm;
 }
 
 bool SweptPair::clear(const PairContact& at_end) const {
@@ -93,15 +93,15 @@ bool SweptPair::clear(const PairContact& at_end) const {
   if (at_end.touching || !(margin(at_end) > 0) || !std::isfinite(length_mm)) return false;
   const Pose X_MD = X_DM ? X_DM->inverse() : Pose{};
   const Eigen::AngleAxisd turn((from.R.conjugate() * to.R).normalized());
-  const BodyPath way{.pivot = X_MD * pivot_D,
-                     .shift = X_MD.R * (to.R.conjugate() * (to * pivot_D - from * pivot_D)),
-                     .turn = X_MD.R * (turn.angle() * turn.axis())};
+  const BodyPath path{.pivot = X_MD * pivot_D,
+                      .shift = X_MD.R * (to.R.conjugate() * (to * pivot_D - from * pivot_D)),
+                      .turn = X_MD.R * (turn.angle() * turn.axis())};
   const Pose X_CM = X_DM ? to * *X_DM : to;
   const CollisionMesh &moves = (a_moves ? pair->a : pair->b)->surface,
                       &stays = (a_moves ? pair->b : pair->a)->surface;
   const TrianglePair start = a_moves ? TrianglePair{at_end.triangle_b, at_end.triangle_a}
                                      : TrianglePair{at_end.triangle_a, at_end.triangle_b};
-  return clear_on_path(stays, X_CS, moves, X_CM, way, kept_mm, start);
+  return clear_on_path(stays, X_CS, moves, X_CM, path, min_distance_mm, start);
 }
 
 double free_fraction(const SweptPair& swept, const PairContact& at_start, const PairContact& at_end,

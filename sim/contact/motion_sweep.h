@@ -9,21 +9,21 @@ namespace condyle {
 /// A pair with one side moved along a straight path, as s goes from 0 to 1.
 struct SweptPair {
   const ColliderPair* pair = nullptr;
-  bool a_moves = false;      // else b
-  Pose X_CS;                 // of the fixed side
-  std::optional<Pose> X_DM;  // of the moving surface in its driver's frame, if it is carried
-  Pose from, to;             // of the driver, X_CD
-  Eigen::Vector3d pivot_D;   // centre of rotation
-  double length_mm = 0;      // upper bound of the displacement of the moving surface
-  double limit_mm = -1;      // allowed depth; negative: may not touch
-  double kept_mm = 0;        // allowed distance, of a guided pair
+  bool a_moves = false;        // else b
+  Pose X_CS;                   // of the fixed side
+  std::optional<Pose> X_DM;    // of the moving surface in its driver's frame, if it is carried
+  Pose from, to;               // of the driver, X_CD
+  Eigen::Vector3d pivot_D;     // centre of rotation
+  double length_mm = 0;        // upper bound of the displacement of the moving surface
+  double max_depth_mm = -1;    // allowed depth; negative: may not touch
+  double min_distance_mm = 0;  // allowed distance, of a guided pair
 
   /// Sets length_mm.
   void measure();
   /// A start that is already too deep, or too near, may be left, but not deepened.
   void start_at(const PairContact& start);
-  PairContact judged(const Pose& X_CD, TrianglePair start, const Looking& looking,
-                     OverlapDepth* deepest = nullptr) const;
+  PairContact query(const Pose& X_CD, TrianglePair start, const QueryOptions& options,
+                    OverlapDepth* deepest = nullptr) const;
   /// Remaining approach or deepening before the pair is blocked: changes by at most a millimetre
   /// per millimetre of motion. Negative: blocked.
   double margin(const PairContact& contact) const;

@@ -72,11 +72,11 @@ void push(Part& part, const std::vector<Bone>& others, Case& patient) {
                     part.name, in.depth_mm, in.bone->part->name));
     return;
   }
-  const Eigen::Vector3d way = out.length_mm * out.direction;
-  for (auto& v : part.mesh.vertices) v += way;
+  const Eigen::Vector3d shift = out.length_mm * out.direction;
+  for (auto& v : part.mesh.vertices) v += shift;
   patient.notes.push_back(fmt::format(
       "{}: was {:.1f} mm deep inside {} and was moved out by ({:.2f}, {:.2f}, {:.2f}) mm",
-      part.name, in.depth_mm, in.bone->part->name, way.x(), way.y(), way.z()));
+      part.name, in.depth_mm, in.bone->part->name, shift.x(), shift.y(), shift.z()));
 }
 
 }  // namespace

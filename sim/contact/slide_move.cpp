@@ -41,7 +41,7 @@ class SlidingMove {
   MoveResult arrive(const Pose& X, Found&& found) {
     for (std::size_t k = 0; k < found.size(); ++k)
       state_.slot(set_, verifier_.pairs()[k]) = std::move(found[k]);
-    return {X, !bit_identical(X, move_.wanted)};
+    return {X, !bit_identical(X, move_.target)};
   }
 
   const ContactModel::State& state_;
@@ -55,8 +55,8 @@ class SlidingMove {
 /// Distance of a pose from the target.
 double SlidingMove::left(const Pose& X) const {
   return std::hypot(
-      (X * pivot() - move_.wanted * pivot()).norm(),
-      rotation_angle(X.inverse() * move_.wanted) * state_.slider->rotation_length_mm(move_.body));
+      (X * pivot() - move_.target * pivot()).norm(),
+      rotation_angle(X.inverse() * move_.target) * state_.slider->rotation_length_mm(move_.body));
 }
 
 /// Slides by the fields and, if their result is not allowed, as far towards it as possible. `found`
@@ -64,11 +64,11 @@ double SlidingMove::left(const Pose& X) const {
 Pose SlidingMove::advance(const Pose& X, const Pose& to, Found& found) const {
   Found next;
   const Pose there = verifier_.project_to_valid(state_.slider->slide(move_, X, to, threads_), next);
-  const double share = verifier_.free_part(X, found, there, next);
+  const double fraction = verifier_.free_part(X, found, there, next);
   found = std::move(next);
-  if (share >= 1) return there;
-  const Pose end = interpolate(X, there, share, pivot());
-  found = verifier_.look(end);
+  if (fraction >= 1) return there;
+  const Pose end = interpolate(X, there, fraction, pivot());
+  found = verifier_.query_all(end);
   return end;
 }
 
@@ -76,7 +76,7 @@ Pose SlidingMove::advance(const Pose& X, const Pose& to, Found& found) const {
 Pose SlidingMove::stretch(const Pose& X, const Pose& to, Found& found) const {
   Found next = found;
   const Pose there = advance(X, to, next);
-  if (left(there) > left(X) - gained_mm && !bit_identical(there, move_.wanted)) return X;
+  if (left(there) > left(X) - gained_mm && !bit_identical(there, move_.target)) return X;
   found = std::move(next);
   return there;
 }
@@ -84,10 +84,10 @@ Pose SlidingMove::stretch(const Pose& X, const Pose& to, Found& found) const {
 /// In short steps, each of them proved.
 Pose SlidingMove::creep(Found& found) const {
   Pose X = move_.from();
-  for (int step = 0; step < max_steps && !bit_identical(X, move_.wanted); ++step) {
-    const double share =
-        std::max(longest_step_mm, verifier_.clearance(found)) / verifier_.way(X, move_.wanted);
-    const Pose to = share >= 1 ? move_.wanted : interpolate(X, move_.wanted, share, pivot());
+  for (int step = 0; step < max_steps && !bit_identical(X, move_.target); ++step) {
+    const double fraction = std::max(longest_step_mm, verifier_.clearance(found)) /
+                            verifier_.max_displacement_mm(X, move_.target);
+    const Pose to = fraction >= 1 ? move_.target : interpolate(X, move_.target, fraction, pivot());
     const Pose next = stretch(X, to, found);
     if (bit_identical(next, X)) break;
     X = next;
@@ -101,7 +101,7 @@ Pose SlidingMove::creep(Found& found) const {
 std::vector<SlideResult> SlidingMove::proposals() const {
   std::vector<SlideResult> found;
   const auto propose = [&](const Pose& from) {
-    SlideResult slid = state_.slider->slide(move_, from, move_.wanted, threads_);
+    SlideResult slid = state_.slider->slide(move_, from, move_.target, threads_);
     if (slid.reached) found.push_back(std::move(slid));
   };
   if (const auto outside = state_.slider->outside(move_)) {
@@ -117,19 +117,20 @@ std::vector<SlideResult> SlidingMove::proposals() const {
 }
 
 MoveResult SlidingMove::run() {
-  const Pose &from = move_.from(), &wanted = move_.wanted;
-  if (verifier_.pairs().empty()) return {wanted, false};
-  Found at_wanted;
-  if (verifier_.clear(at_wanted)) return arrive(wanted, std::move(at_wanted));
+  const Pose &from = move_.from(), &target = move_.target;
+  if (verifier_.pairs().empty()) return {target, false};
+  Found at_target;
+  if (verifier_.clear(at_target)) return arrive(target, std::move(at_target));
 
   state_.slider->prepare({}, threads_);
   if (state_.slider->covers(move_)) {
     // The fields' result depends on the target alone, and so does its correction.
     for (const SlideResult& slid : proposals()) {
       // Fields are unreliable for surfaces that overlap deeply at rest, as crowns may.
-      if (verifier_.deep_at_rest() && verifier_.way(slid.X_FM, wanted) <= unseen_mm) {
-        at_wanted = verifier_.look(wanted);
-        if (verifier_.allowed(at_wanted)) return arrive(wanted, std::move(at_wanted));
+      if (verifier_.deep_at_rest() &&
+          verifier_.max_displacement_mm(slid.X_FM, target) <= unseen_mm) {
+        at_target = verifier_.query_all(target);
+        if (verifier_.allowed(at_target)) return arrive(target, std::move(at_target));
       }
       Found found;
       const Pose X = verifier_.project_to_valid(slid, found);
@@ -142,7 +143,7 @@ MoveResult SlidingMove::run() {
     found[k] = state_.slot(set_, verifier_.pairs()[k]);
     known = known && !found[k].distance_is_bound;
   }
-  if (!known) found = verifier_.look(from);
+  if (!known) found = verifier_.query_all(from);
   verifier_.start_at(found);
   const Pose X = creep(found);
   return arrive(X, std::move(found));

@@ -17,8 +17,8 @@ constexpr double widest_gap_mm = 4;
 constexpr double slop_mm = 0.01;
 constexpr double fade_mm = 2;  // distance from rest over which the overlap at rest fades
 // Between samples along a path, for points as far from the centre as those of a jaw.
-constexpr double sight_step_mm = 5, turning_mm = 80;
-constexpr double ways_out_mm[] = {4, 8, 16};
+constexpr double coverage_step_mm = 5, turning_mm = 80;
+constexpr double exit_distances_mm[] = {4, 8, 16};
 constexpr std::size_t max_settings = 24;
 
 double spacing_of(const BodyTree& bodies, const Part& part) {
@@ -35,15 +35,16 @@ Slider::Slider(const Case& patient, const ContactModel::State& state, Slider* ea
   for (const auto& collider : state.colliders)
     boxes[index_of(collider->body)].add(collider->surface.box());
   for (const auto& collider : state.colliders) {
-    if (collider->guard) continue;
+    if (collider->complement) continue;
     const Part& part = patient.parts[static_cast<std::size_t>(collider->part)];
     Surface surface{collider->number, part.mesh, {}, nullptr, {}};
     FieldSettings& field = surface.settings.field;
     field.spacing_mm = spacing_of(state.bodies, part);
     field.band_mm = band_mm;
     for (const auto& pair : state.pairs)
-      if ((pair.a == collider.get() || pair.b == collider.get()) && pair.kept_mm <= widest_gap_mm)
-        field.band_mm = std::max(field.band_mm, 2 * pair.kept_mm + 0.5 * band_mm);
+      if ((pair.a == collider.get() || pair.b == collider.get()) &&
+          pair.min_distance_mm <= widest_gap_mm)
+        field.band_mm = std::max(field.band_mm, 2 * pair.min_distance_mm + 0.5 * band_mm);
     if (!state.bodies.roams(collider->body)) {  // a roaming body may be anywhere, and is small
       field.region.emplace();
       for (std::size_t body = 0; body < boxes.size(); ++body)
@@ -55,7 +56,7 @@ Slider::Slider(const Case& patient, const ContactModel::State& state, Slider* ea
     }
     surface.settings.samples.spacing_mm = is_teeth(part.role) ? tooth_sample_mm : bone_sample_mm;
     surface.settings.cache = field_cache_folder();
-    surface.sight = field_coverage(collider->surface.box(), field.region);
+    surface.coverage = field_coverage(collider->surface.box(), field.region);
     surfaces_.push_back(std::move(surface));
   }
   if (earlier) take_over(*earlier);
@@ -78,7 +79,7 @@ void Slider::take_over(Slider& earlier) {
           surface.settings.samples.spacing_mm != other.settings.samples.spacing_mm)
         continue;
       surface.body = other.body;
-      surface.sight.thin = other.sight.thin;
+      surface.coverage.thin = other.coverage.thin;
       surface.mesh = {};
     }
 }
@@ -92,12 +93,12 @@ void Slider::prepare(const Progress& progress, int threads) {
     Surface& surface = surfaces_[i];
     if (surface.body) continue;
     surface.body = std::make_shared<const ContactSurface>(make_contact_surface(
-        surface.mesh, surface.settings, threads, [&](std::string_view, double share) {
+        surface.mesh, surface.settings, threads, [&](std::string_view, double fraction) {
           report(progress, "making the bones ready to slide",
-                 (static_cast<double>(i) + share) / static_cast<double>(surfaces_.size()));
+                 (static_cast<double>(i) + fraction) / static_cast<double>(surfaces_.size()));
         }));
     surface.mesh = {};
-    surface.sight.thin = is_thin(*surface.body);
+    surface.coverage.thin = is_thin(*surface.body);
   }
   contacts_.resize(state_.bodies.bodies().size());
   outside_.resize(contacts_.size());
@@ -121,11 +122,11 @@ std::unique_ptr<SlidingContact> Slider::make_contact(BodyId body) const {
   }
   std::vector<SlidePair> pairs;
   for (const auto& pair : state_.pairs) {
-    if (!move.concerns(pair) || pair.kept_mm > widest_gap_mm) continue;
+    if (!move.concerns(pair) || pair.min_distance_mm > widest_gap_mm) continue;
     int a = place[static_cast<std::size_t>(pair.a->number)],
         b = place[static_cast<std::size_t>(pair.b->number)];
     if (move.moves[index_of(pair.a->body)]) std::swap(a, b);
-    pairs.push_back({a, b, pair.kept_mm});
+    pairs.push_back({a, b, pair.min_distance_mm});
   }
   auto contact = std::make_unique<SlidingContact>(
       std::move(fixed), std::move(moving), pairs,
@@ -144,8 +145,8 @@ std::optional<Pose> Slider::find_outside(BodyId body) const {
     for (const ContactPoint& contact : state_.rest.pairs[i].contacts) out += sign * contact.normal;
   }
   if (!(out.norm() > 0)) return std::nullopt;
-  for (const double way_mm : ways_out_mm) {
-    const Pose X{Eigen::Quaterniond::Identity(), way_mm * out.normalized()};
+  for (const double distance_mm : exit_distances_mm) {
+    const Pose X{Eigen::Quaterniond::Identity(), distance_mm * out.normalized()};
     if (contact(body).depth(X) == 0) return X;
   }
   return std::nullopt;
@@ -161,25 +162,25 @@ std::optional<Pose> Slider::outside(const BodyMove& move) const {
 bool Slider::covers(const BodyMove& move) const {
   std::vector<const FieldCoverage*> of(state_.colliders.size(), nullptr);
   for (const Surface& surface : surfaces_)
-    of[static_cast<std::size_t>(surface.collider)] = &surface.sight;
-  const double way_mm = (move.wanted.t - move.from().t).norm() +
-                        rotation_angle(move.from().inverse() * move.wanted) * turning_mm;
-  const int looks = 1 + static_cast<int>(way_mm / sight_step_mm);
+    of[static_cast<std::size_t>(surface.collider)] = &surface.coverage;
+  const double path_mm = (move.target.t - move.from().t).norm() +
+                         rotation_angle(move.from().inverse() * move.target) * turning_mm;
+  const int steps = 1 + static_cast<int>(path_mm / coverage_step_mm);
   std::vector<BodyPoses> at;
-  for (int i = 0; i <= looks; ++i)
+  for (int i = 0; i <= steps; ++i)
     at.push_back(move.poses_at(
-        interpolate(move.from(), move.wanted, static_cast<double>(i) / looks, pivot(move.body))));
+        interpolate(move.from(), move.target, static_cast<double>(i) / steps, pivot(move.body))));
   return std::none_of(state_.pairs.begin(), state_.pairs.end(), [&](const ColliderPair& pair) {
     if (!move.concerns(pair)) return false;
     const FieldCoverage &a = *of[static_cast<std::size_t>(pair.a->number)],
                         &b = *of[static_cast<std::size_t>(pair.b->number)];
-    if ((a.thin && b.thin) || pair.kept_mm > widest_gap_mm) return true;
+    if ((a.thin && b.thin) || pair.min_distance_mm > widest_gap_mm) return true;
     // A jaw does not leave its joints far enough to bring other parts to the outside regions.
     if (state_.in_joint(pair)) return a.blind || b.blind;
     return std::any_of(at.begin(), at.end(), [&](const BodyPoses& X) {
       const Pose X_AB = X[pair.a->body].inverse() * X[pair.b->body];
       const auto meets = [&](const Box& box_a, const Box& box_b) {
-        return boxes_meet(box_a, box_b, X_AB, 0.5 * sight_step_mm + pair.kept_mm);
+        return boxes_meet(box_a, box_b, X_AB, 0.5 * coverage_step_mm + pair.min_distance_mm);
       };
       return std::any_of(a.outside.begin(), a.outside.end(),
                          [&](const Box& box) { return meets(box, b.box); }) ||
@@ -231,10 +232,10 @@ void Slider::keep_setting(std::unique_ptr<Setting> setting) const {
   if (settings_.size() > max_settings) settings_.erase(settings_.begin());
 }
 
-SlideResult Slider::slide(const BodyMove& move, const Pose& from, const Pose& wanted,
+SlideResult Slider::slide(const BodyMove& move, const Pose& from, const Pose& target,
                           int threads) const {
   auto setting = take_setting(move);
-  SlideResult result = setting->contact.slide(from, wanted, &setting->memory, threads);
+  SlideResult result = setting->contact.slide(from, target, &setting->memory, threads);
   keep_setting(std::move(setting));
   return result;
 }

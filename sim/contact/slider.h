@@ -32,7 +32,7 @@ class Slider {
 
   /// By the fields alone, all other bodies at their poses in the move. prepare() must have been
   /// called. Independent of earlier calls.
-  SlideResult slide(const BodyMove& move, const Pose& from, const Pose& wanted, int threads) const;
+  SlideResult slide(const BodyMove& move, const Pose& from, const Pose& target, int threads) const;
 
   /// A free pose near rest of a body that overlaps deeply at rest, and may be held there. None
   /// without such overlap, or where others have been moved.
@@ -48,7 +48,7 @@ class Slider {
     TriMesh mesh;
     ContactSurfaceSettings settings;
     std::shared_ptr<const ContactSurface> body;
-    FieldCoverage sight;
+    FieldCoverage coverage;
   };
   /// A driven body among others at given poses, with its slide cache.
   struct Setting {

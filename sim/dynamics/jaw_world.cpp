@@ -170,7 +170,7 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
   const double per_step = settings.lost_in_step / world_settings.step_s;
   mandible.drag_N_s_mm = settings.drag_kg_s.value_or(per_step * mandible.mass.mass_kg) / mm_per_m;
   mandible.turning_drag_N_mm_s =
-      settings.turning_drag_kg_mm2_s.value_or(per_step * least_moment(mandible.mass)) / mm_per_m;
+      settings.turning_drag_kg_mm2_s.value_or(per_step * min_moment(mandible.mass)) / mm_per_m;
   mandible.drag_at = settings.drag_at;
   jaw.mandible = jaw.world.add_body(mandible);
   if (settings.teeth)

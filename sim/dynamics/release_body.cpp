@@ -98,7 +98,7 @@ DynamicBody loose(const Piece& piece, const Pose& X_CB, double step_s,
   body.mass.inertia *= mass_kg / body.mass.mass_kg;
   body.mass.mass_kg = mass_kg;
   body.drag_N_s_mm = lost_in_step * mass_kg / step_s / 1000;
-  body.turning_drag_N_mm_s = lost_in_step * least_moment(body.mass) / step_s / 1000;
+  body.turning_drag_N_mm_s = lost_in_step * min_moment(body.mass) / step_s / 1000;
   body.X_WB = X_CB;
   body.surfaces = {std::make_shared<const ContactSurface>(
       make_contact_surface(piece.mesh, {}, threads, progress))};

@@ -53,7 +53,7 @@ struct ContactSet {
 
   // Of pairs that overlap at rest, in their order: B's surface outside that overlap, where no
   // contact is allowed. Its depth is included in that of the pairs.
-  std::vector<PairContact> away_from_rest;
+  std::vector<PairContact> outside_rest_overlap;
 };
 
 }  // namespace condyle

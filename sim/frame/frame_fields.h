@@ -90,7 +90,8 @@ void visit_frame(Frame& frame, Visitor&& visit) {
   visit(frame.stopped);
   visit_list(frame.contacts.pairs, visit, [&](auto& pair) { visit_contact(pair, visit); });
   visit_poses(frame.contacts.at.X_CB, visit);
-  visit_list(frame.contacts.away_from_rest, visit, [&](auto& pair) { visit_contact(pair, visit); });
+  visit_list(frame.contacts.outside_rest_overlap, visit,
+             [&](auto& pair) { visit_contact(pair, visit); });
   visit_tissue(frame.tissue, visit);
   visit_measures(frame.measures, visit);
   visit_list(frame.muscles, visit, [&](auto& muscle) {

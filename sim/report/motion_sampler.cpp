@@ -49,7 +49,7 @@ std::vector<PairSample> samples_of(const ContactSet& set) {
     sample.to_go_mm = pair.rest_depth_mm + (pair.touching ? -pair.depth_mm : pair.distance_mm);
     // Where the pair is apart at rest, ContactSet adds the depth at rest; reported is the depth at
     // the point itself.
-    for (const auto& away : set.away_from_rest) {
+    for (const auto& away : set.outside_rest_overlap) {
       if (away.part_a != pair.part_a || away.part_b != pair.part_b) continue;
       sample.to_go_mm = std::min(sample.to_go_mm, away.signed_distance_mm());
       if (!away.touching || pair.rest_depth_mm + away.depth_mm < pair.depth_mm) continue;

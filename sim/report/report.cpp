@@ -168,9 +168,9 @@ void MotionReport::add(const FrameState& frame) {
     if (first_stopped_ < 0) first_stopped_ = frames_;
     const auto incisor = rest.find("lower_incisal_point").value_or(Eigen::Vector3d::Zero());
     const BodyId jaw = scene_.patient.jaw.lower_arch;
-    const Eigen::Vector3d wanted = placed(scene_.patient.bodies, frame.X_PB_target)[jaw] * incisor;
+    const Eigen::Vector3d target = placed(scene_.patient.bodies, frame.X_PB_target)[jaw] * incisor;
     contact_deviation_mm_ =
-        std::max(contact_deviation_mm_, (frame.poses[jaw] * incisor - wanted).norm());
+        std::max(contact_deviation_mm_, (frame.poses[jaw] * incisor - target).norm());
   }
   if (frame.tissue.inverted_prisms > 0) ++inverted_frames_;
   if (!frame.tissue.converged) ++unconverged_frames_;

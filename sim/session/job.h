@@ -11,8 +11,8 @@
 
 namespace condyle {
 
-/// Things that are not wanted any more and end on threads of their own; nobody waits for them
-/// before the session ends.
+/// Objects that are no longer needed and are destroyed on threads of their own; nobody waits for
+/// them before the session ends.
 class RetiredWork {
  public:
   /// Cancels the work.

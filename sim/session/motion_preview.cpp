@@ -35,7 +35,7 @@ class ClearanceCurves {
   }
 
   PlotSet plots() const {
-    constexpr std::size_t most_curves = 6;
+    constexpr std::size_t max_curves = 6;
     constexpr double far_mm = 20;
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t i = 0; i < distance_.size(); ++i)
@@ -45,7 +45,7 @@ class ClearanceCurves {
         {}, {.title = "Clearance (negative: overlap)", .x_label = "time, s", .y_label = "mm"}};
     panel.settings.levels = {{"contact", 0}};
     panel.settings.y_most = far_mm;
-    for (std::size_t k = 0; k < std::min(order.size(), most_curves); ++k)
+    for (std::size_t k = 0; k < std::min(order.size(), max_curves); ++k)
       if (order[k].first < far_mm)
         panel.curves.push_back({names_[order[k].second], time_s_, distance_[order[k].second]});
     return {"Clearance", {std::move(panel)}, time_s_};
@@ -88,7 +88,7 @@ MotionPreview preview_motion(const SessionPatient& patient, const Motion& motion
                              const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   constexpr double each_s = 1.0 / 30;
-  constexpr long most_frames = 1800;
+  constexpr long max_frames = 1800;
   constexpr std::chrono::milliseconds news_every(400);
   settings.tissue = settings.face = false;
   settings.threads = 1;  // beside the simulation that is watched
@@ -96,7 +96,7 @@ MotionPreview preview_motion(const SessionPatient& patient, const Motion& motion
   MotionSeries series(patient.scene, motion);
   if (!series.known_landmarks) return {};
   ClearanceCurves clearance(patient.scene.patient);
-  const long frames = std::clamp(std::lround(motion.duration_s / each_s), 1L, most_frames);
+  const long frames = std::clamp(std::lround(motion.duration_s / each_s), 1L, max_frames);
   auto reported = Clock::now();
   for (long i = 0; i <= frames; ++i) {
     report(progress, "walking through the motion",

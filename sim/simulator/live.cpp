@@ -45,13 +45,13 @@ LiveSimulation::~LiveSimulation() {
   thread_.join();
 }
 
-void LiveSimulation::request(const LiveRequest& asked) {
-  LiveRequest wanted = asked;
-  wanted.time_s = std::round(asked.time_s / settings_.step_s) * settings_.step_s;
+void LiveSimulation::request(const LiveRequest& request) {
+  LiveRequest rounded = request;
+  rounded.time_s = std::round(request.time_s / settings_.step_s) * settings_.step_s;
   {
     const std::lock_guard lock(mutex_);
-    if (wanted == wanted_) return;
-    wanted_ = wanted;
+    if (rounded == request_) return;
+    request_ = rounded;
   }
   changed_.notify_all();
 }
@@ -63,14 +63,15 @@ void LiveSimulation::require_movable(BodyId body) const {
                      ": only the mandible, segments and transplants can be moved");
 }
 
-void LiveSimulation::drag(BodyId body, const Pose& wanted) {
+void LiveSimulation::drag(BodyId body, const Pose& X_PB_target) {
   require_movable(body);
-  if (!wanted.R.coeffs().allFinite() || !wanted.t.allFinite() || !(wanted.R.norm() > 0.5))
+  if (!X_PB_target.R.coeffs().allFinite() || !X_PB_target.t.allFinite() ||
+      !(X_PB_target.R.norm() > 0.5))
     throw InputError(scene_.patient.bodies[body].name +
                      ": cannot be moved to a pose with values that are no numbers");
   {
     const std::lock_guard lock(mutex_);
-    held_[index_of(body)] = Pose{wanted.R.normalized(), wanted.t};
+    held_[index_of(body)] = Pose{X_PB_target.R.normalized(), X_PB_target.t};
     ++grips_;
   }
   changed_.notify_all();
@@ -99,15 +100,15 @@ double LiveSimulation::steps_per_second() const {
 
 std::optional<LiveTarget> LiveSimulation::next_target(LiveSteps& steps) {
   std::unique_lock lock(mutex_);
-  const auto is_due = [&] { return stop_ || steps.due(wanted_, grips_); };
+  const auto is_due = [&] { return stop_ || steps.due(request_, grips_); };
   if (steps.settling() == 0) {
     changed_.wait(lock, is_due);
   } else {
-    const bool first = steps.settling() == LiveSteps::most_settling;
+    const bool first = steps.settling() == LiveSteps::max_settling;
     if (changed_.wait_for(lock, first ? calm : calm.zero(), is_due)) steps.stop_settling();
   }
   if (stop_) return std::nullopt;
-  return LiveTarget{wanted_, held_, grips_};
+  return LiveTarget{request_, held_, grips_};
 }
 
 void LiveSimulation::publish(const FrameState* shown, bool settled_only, double seconds) {

@@ -14,10 +14,10 @@ namespace condyle {
 struct LiveTarget;
 class LiveSteps;
 
-/// What a person at the window wants simulated.
+/// What the window requests of a live simulation.
 struct LiveRequest {
   double time_s = 0;                                // of the motion
-  std::optional<double> opening_mm = std::nullopt;  // wanted instead of the motion's pose
+  std::optional<double> opening_mm = std::nullopt;  // instead of the pose of the motion
   bool obey_contact = true;
   bool face = true;  // the face is seen: its tissue is stepped, and it is carried
   bool operator==(const LiveRequest&) const = default;
@@ -35,7 +35,7 @@ SimulatorSettings live_settings(SimulatorSettings settings);
 /// most.
 class LiveSimulation {
  public:
-  /// The scene must outlive the simulation. A wanted opening is found along a motion of its own;
+  /// The scene must outlive the simulation. A requested opening is found along a motion of its own;
   /// none: along the motion.
   LiveSimulation(const Scene& scene, Motion motion, const SimulatorSettings& settings,
                  std::optional<Motion> opening = std::nullopt);
@@ -43,13 +43,13 @@ class LiveSimulation {
   LiveSimulation(const LiveSimulation&) = delete;
   LiveSimulation& operator=(const LiveSimulation&) = delete;
 
-  void request(const LiveRequest& wanted);
+  void request(const LiveRequest& request);
 
-  /// A hand holds a body and wants it at a pose, rest to now, in its parent's frame, until the next
-  /// call or until release(). It slides along what is in between if contact is obeyed. Where the
-  /// target is discontinuous (undo, a typed number) and was asked before, the bodies are where they
-  /// came to then; see TeleportStart. Released, a body that the motion drives follows the motion
-  /// again; another stays where it came to in its parent's frame. From any thread. throws:
+  /// Sets the target of a body that a hand holds, rest to now, in its parent's frame, until the
+  /// next call or until release(). It slides along what is in between if contact is obeyed. Where
+  /// the target is discontinuous (undo, a typed number) and was asked before, the bodies are where
+  /// they came to then; see TeleportStart. Released, a body that the motion drives follows the
+  /// motion again; another stays where it came to in its parent's frame. From any thread. throws:
   /// InputError for the cranium and for values that are no numbers.
   void drag(BodyId body, const Pose& X_PB_target);
   void release(BodyId body);
@@ -75,7 +75,7 @@ class LiveSimulation {
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  LiveRequest wanted_;
+  LiveRequest request_;
   std::vector<std::optional<Pose>> held_;  // X_PB of each body that a hand holds
   long grips_ = 0;                         // how often a hand moved
   std::optional<FrameState> newest_;

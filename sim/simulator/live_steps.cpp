@@ -60,7 +60,8 @@ void LiveSteps::begin_at(const BodyPoses& poses) {
 }
 
 TeleportStart::Asked LiveSteps::asked(const LiveTarget& target, const StepInput& input) const {
-  TeleportStart::Asked asked{target.request, input.X_PB_target, std::vector<bool>(X_PB_moved_.size())};
+  TeleportStart::Asked asked{target.request, input.X_PB_target,
+                             std::vector<bool>(X_PB_moved_.size())};
   for (std::size_t b = 0; b < X_PB_moved_.size(); ++b)
     asked.follows_motion[b] =
         !target.X_PB_held[b] && scene_.patient.bodies.moved_by_motion(BodyId{static_cast<int>(b)});
@@ -72,8 +73,8 @@ SimulatorSettings LiveSteps::settings_for(const LiveTarget& target, const StepIn
   SimulatorSettings settings = settings_;
   // Soft tissue that nobody sees waits; it follows from where it was left.
   settings.tissue = settings.tissue && target.request.face;
-  const bool jaw_leaps =
-      is_teleport(pose_in(now_.tissue.X_CB, jaw), placed(scene_.patient.bodies, input.X_PB_target)[jaw]);
+  const bool jaw_leaps = is_teleport(pose_in(now_.tissue.X_CB, jaw),
+                                     placed(scene_.patient.bodies, input.X_PB_target)[jaw]);
   settings.tissue_budget =
       live_budget(settings.tissue_budget, settling_ > 0, jaw_leaps, now_.tissue.kept);
   return settings;
@@ -89,12 +90,12 @@ void LiveSteps::keep_moved(const LiveTarget& target) {
 void LiveSteps::count_settling(bool tissue) {
   const bool settles = settling_ > 0;
   const bool settled = !tissue || now_.tissue.converged || (settles && now_.tissue.kept);
-  settling_ = settled ? 0 : settles ? settling_ - 1 : most_settling;
+  settling_ = settled ? 0 : settles ? settling_ - 1 : max_settling;
 }
 
 void LiveSteps::step(const LiveTarget& target, bool shown) {
-  const bool on_the_way = runs_on(target.request);
-  const double time_s = on_the_way ? now_.time_s + settings_.step_s : target.request.time_s;
+  const bool under_way = runs_on(target.request);
+  const double time_s = under_way ? now_.time_s + settings_.step_s : target.request.time_s;
   StageTimes motion_time;
   StepInput step_input;
   {
@@ -109,7 +110,7 @@ void LiveSteps::step(const LiveTarget& target, bool shown) {
   now_.times[Stage::motion] = motion_time[Stage::motion];
   keep_moved(target);
   count_settling(settings.tissue);
-  caught_up_ = !on_the_way;
+  caught_up_ = !under_way;
   if (caught_up_) {
     answered_ = target.request;
     answered_grips_ = target.grips;

@@ -3,13 +3,13 @@
 #include <optional>
 #include <vector>
 
-#include "sim/simulator/teleport_start.h"
 #include "sim/simulator/live.h"
 #include "sim/simulator/opening_times.h"
+#include "sim/simulator/teleport_start.h"
 
 namespace condyle {
 
-/// What is wanted of a live simulation at one moment.
+/// The target of a live simulation at one moment.
 struct LiveTarget {
   LiveRequest request;
   std::vector<std::optional<Pose>> X_PB_held;  // of each body that a hand holds
@@ -25,7 +25,7 @@ TissueBudget live_budget(TissueBudget keeping_up, bool settles, bool jaw_leaps, 
 /// but for the times of stages.
 class LiveSteps {
  public:
-  /// All must outlive it. A wanted opening is found along `opening`.
+  /// All must outlive it. A requested opening is found along `opening`.
   LiveSteps(const Scene& scene, const Motion& motion, const Motion& opening,
             const SimulatorSettings& settings);
 
@@ -33,9 +33,9 @@ class LiveSteps {
   bool due(const LiveRequest& request, long grips) const {
     return !caught_up_ || request != answered_ || grips != answered_grips_;
   }
-  /// Steps that are left to settle tissue after the target was reached; at first most_settling.
+  /// Steps that are left to settle tissue after the target was reached; at first max_settling.
   int settling() const { return settling_; }
-  static constexpr int most_settling = 20;
+  static constexpr int max_settling = 20;
   void stop_settling() { settling_ = 0; }
 
   /// Whether the next step is one of several toward the target, as while time runs on.

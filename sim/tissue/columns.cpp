@@ -224,7 +224,7 @@ void relax_folds(CoarseSkin& skin, const std::vector<char>& folded) {
 }
 
 void unfold_ears(CoarseSkin& skin, const std::vector<char>& folded) {
-  constexpr double least_height = 0.3;  // over the edge's length
+  constexpr double min_height = 0.3;  // over the edge's length
   const TriMesh& mesh = skin.mesh;
   std::vector<int> uses(folded.size(), 0);
   for (const auto& t : mesh.triangles)
@@ -240,7 +240,7 @@ void unfold_ears(CoarseSkin& skin, const std::vector<char>& folded) {
           const Vector3d edge = pb - pa, across = mesh.vertices[t[(i + 2) % 3]] - pa;
           const Vector3d away =
               (edge.dot(across) / edge.squaredNorm() * edge - across).normalized();
-          skin.mesh.vertices[tip] = 0.5 * (pa + pb) + least_height * edge.norm() * away;
+          skin.mesh.vertices[tip] = 0.5 * (pa + pb) + min_height * edge.norm() * away;
         }
     }
 }

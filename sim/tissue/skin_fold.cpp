@@ -12,10 +12,10 @@ using Eigen::Vector3d;
 
 // Skin folds between columns that a wide opening brings together from afar.
 constexpr double afar_mm = 15, close_mm = 20, nearer = 0.6;
-constexpr double lips_mm = 25;             // from the mouth: lips are treated separately
-constexpr double beside_mm = 12;           // at rest, of points from the other flap
-constexpr double spacing_mm = 6;           // of points
-constexpr std::size_t most_others = 1000;  // columns that each is compared with
+constexpr double lips_mm = 25;            // from the mouth: lips are treated separately
+constexpr double beside_mm = 12;          // at rest, of points from the other flap
+constexpr double spacing_mm = 6;          // of points
+constexpr std::size_t max_others = 1000;  // columns that each is compared with
 
 /// For each column: number of columns that would fold onto it and follow the mandible less, minus
 /// the number that follow it more.
@@ -34,7 +34,7 @@ Votes votes_of(const ContactSource& from) {
     open[c] = rest[c] + lower[c] * (from.wide_open * rest[c] - rest[c]);
   }
   Votes votes{std::vector<int>(columns, 0), std::vector<char>(columns, 0)};
-  const std::size_t every = 1 + columns / most_others;
+  const std::size_t every = 1 + columns / max_others;
   for (std::size_t a = 0; a < columns; ++a) {
     if (from.columns[a].to_mouth < lips_mm) continue;
     for (std::size_t b = 0; b < columns; b += every) {

@@ -7,7 +7,7 @@
 
 namespace condyle::test {
 
-/// What is wanted of the mandible, and of the bodies after it in their parents' frames.
+/// Targets of the mandible, and of the bodies after it in their parents' frames.
 inline std::vector<Pose> target_poses(const Pose& X_CM, const std::vector<Pose>& others = {}) {
   std::vector<Pose> X_PB{Pose{}, X_CM};
   X_PB.insert(X_PB.end(), others.begin(), others.end());

@@ -30,7 +30,7 @@ testing::AssertionResult failed(const Picture& a, const Picture& b, const char* 
   return testing::AssertionFailure() << words << ": " << seen << ", " << keep(b, b_is);
 }
 
-constexpr int most_alike = 12;  // levels of a channel
+constexpr int max_alike = 12;  // levels of a channel
 
 /// Of the pixels of a region, told by the place of their first channel.
 template <class Is>
@@ -76,7 +76,7 @@ double difference(const Picture& a, const Picture& b, const Region& region) {
   if (a.empty() || a.width != b.width || a.height != b.height) return 1;
   return fraction(a, region, [&](std::size_t pixel) {
     for (std::size_t k = pixel; k < pixel + 4; ++k)
-      if (std::abs(a.rgba[k] - b.rgba[k]) > most_alike) return true;
+      if (std::abs(a.rgba[k] - b.rgba[k]) > max_alike) return true;
     return false;
   });
 }
@@ -84,7 +84,7 @@ double difference(const Picture& a, const Picture& b, const Region& region) {
 double colour_fraction(const Picture& picture, unsigned rgb, const Region& region) {
   return fraction(picture, region, [&](std::size_t pixel) {
     for (std::size_t k = 0; k < 3; ++k)
-      if (std::abs(picture.rgba[pixel + k] - int(rgb >> (16 - 8 * k) & 0xff)) > most_alike)
+      if (std::abs(picture.rgba[pixel + k] - int(rgb >> (16 - 8 * k) & 0xff)) > max_alike)
         return false;
     return true;
   });

@@ -51,8 +51,8 @@ TEST_F(WindowSession, ARecordingThatIsStoppedOrQuitGoesOnToTheSameBits) {
   ready();
   record(whole);
   ASSERT_TRUE(said("Recorded " + whole)) << state()["said"];
-  const Files wanted = files_of(whole);
-  ASSERT_EQ(wanted.size(), 61u + 2u);  // with film and hashes
+  const Files expected = files_of(whole);
+  ASSERT_EQ(expected.size(), 61u + 2u);  // with film and hashes
 
   // Quitting asks, and loses nothing when the person thinks better of it.
   record(stopped);
@@ -82,7 +82,7 @@ TEST_F(WindowSession, ARecordingThatIsStoppedOrQuitGoesOnToTheSameBits) {
   // It goes on as it was begun.
   click("record-resume");
   ASSERT_TRUE(said("Recorded " + stopped)) << state()["said"];
-  EXPECT_EQ(files_of(stopped), wanted);
+  EXPECT_EQ(files_of(stopped), expected);
   EXPECT_TRUE(wait_for_item("record-resume", false));
 
   // Quit, and taken up by the next run with the same view.

@@ -150,9 +150,9 @@ void measure_pair(const Jaws& jaws, int triangles, int threads, bool baselines, 
     Pose X = grinding(jaws, 0);
     X.t.z() -= 3;
     for (int frame = 0; frame < frames + warm_up; ++frame) {
-      const Pose wanted = grinding(jaws, frame);
+      const Pose target = grinding(jaws, frame);
       SlideResult result;
-      const double took = timed([&] { result = model.slide(X, wanted, &memory, count); });
+      const double took = timed([&] { result = model.slide(X, target, &memory, count); });
       X = result.X_FM;
       if (frame < warm_up) continue;
       ms.push_back(took);
@@ -160,7 +160,7 @@ void measure_pair(const Jaws& jaws, int triangles, int threads, bool baselines, 
       depths.push_back(result.depth_mm);
       if (count > 1 || frame % look_every != 0) continue;
       PlainQuery found;
-      fcl.push_back(timed([&] { found = plain_query(surface_a, {}, surface_b, wanted, 256); }));
+      fcl.push_back(timed([&] { found = plain_query(surface_a, {}, surface_b, target, 256); }));
       fewest = std::min(fewest, found.contacts);
       // Where they were stopped they do not cross: then it looks for their distance.
       fcl.push_back(timed([&] { plain_query(surface_a, {}, surface_b, X, 256); }));
@@ -328,7 +328,7 @@ void measure_blocked_jaw(const Case& patient, const Jaws& jaws, int threads, Res
   const std::pair<const char*, std::function<Pose(int)>> drags[] = {
       {"circling in the bite", circling}, {"grinding", grinding_jaw}, {"pushed up", pushed_up}};
   for (const int count : thread_counts(threads))
-    for (const auto& [name, wanted] : drags) {
+    for (const auto& [name, target] : drags) {
       std::vector<double> ms;
       double deepest = 0;
       BodyPoses at = model.placed({});
@@ -336,7 +336,7 @@ void measure_blocked_jaw(const Case& patient, const Jaws& jaws, int threads, Res
       for (int f = 0; f < frames; ++f) {
         ContactModel::Slide slide;
         const double took = timed([&] {
-          slide = model.slide(at, std::vector{Pose{}, wanted(f)}, &last, count);
+          slide = model.slide(at, std::vector{Pose{}, target(f)}, &last, count);
         });
         at = slide.at;
         last = std::move(slide.contacts);

@@ -90,13 +90,13 @@ Eigen::Map<const Vector> flat(const Nodes& x) {
 int solve_equally(const LowerTriangle& lower, const DirectSolver& solver, const Nodes& g,
                   Nodes& z) {
   const auto A = lower.selfadjointView<Eigen::Lower>();
-  const double wanted = equal_residual * flat(g).norm();
+  const double allowed = equal_residual * flat(g).norm();
   solver.solve(g, z);
   Vector x = flat(z), r = flat(g) - A * x, d;
   Nodes rest = g, step;
   double before = 1;
   int solves = 1;
-  for (; r.norm() > wanted && solves < 200; ++solves) {
+  for (; r.norm() > allowed && solves < 200; ++solves) {
     Eigen::Map<Vector>(rest.front().data(), r.size()) = r;
     solver.solve(rest, step);
     const double now = r.dot(flat(step));

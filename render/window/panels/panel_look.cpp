@@ -61,10 +61,10 @@ void Panels::Drawing::look_cuts() {
         look.clip_from = side;
     }
     tooltip(pen, "The side that is taken away");
-    const double deep_mm = look.clip_share * extent_mm(input.box, look.clip_from);
+    const double deep_mm = look.clip_fraction * extent_mm(input.box, look.clip_from);
     named_slider(pen, "clip-depth", "Depth",
-                 fmt::format("{:.0f} mm, {:.0f} %", deep_mm, 100 * look.clip_share),
-                 look.clip_share, {.width = ImGui::GetContentRegionAvail().x, .typed = 100});
+                 fmt::format("{:.0f} mm, {:.0f} %", deep_mm, 100 * look.clip_fraction),
+                 look.clip_fraction, {.width = ImGui::GetContentRegionAvail().x, .typed = 100});
     tooltip(pen, "How deep from that side, and how much that is of the patient's whole extent");
     const bool has_face = std::any_of(input.scene.parts.begin(), input.scene.parts.end(),
                                       [](const Part& part) { return part.role == Role::face; });

@@ -134,11 +134,11 @@ void Panels::Drawing::motion_muscles() {
   heading(pen, "Muscles", "excitation");
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 1));
   const float row = 2 * ImGui::GetFrameHeight();
-  const float wanted = row * static_cast<float>(input.scene.excitations.size());
+  const float needed = row * static_cast<float>(input.scene.excitations.size());
   const float most = input.scene.motion_settings.empty()
                          ? ImGui::GetContentRegionAvail().y - pen.px(4)
                          : 0.5f * ImGui::GetContentRegionAvail().y;
-  ImGui::BeginChild("muscle-list", {0, std::min(wanted, most)});
+  ImGui::BeginChild("muscle-list", {0, std::min(needed, most)});
   for (const ExcitationSetting& muscle : input.scene.excitations) {
     const auto mine = view.motion.excitations.find(muscle.name);
     double value = mine != view.motion.excitations.end() ? mine->second : muscle.value;

@@ -23,7 +23,7 @@ constexpr std::array turn_tips = {
     "About the axis to the patient's left: positive lowers the chin's front",
     "About the axis to the back", "About the upward axis: positive turns to the left"};
 // Of the table of numbers, at scale 1.
-constexpr float wanted_column = 58, wanted_width = 92;
+constexpr float target_column = 58, target_width = 92;
 
 ImVec2 point(const Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
 
@@ -77,13 +77,13 @@ std::string number_words(double value, const char* unit) {
 /// One row of the table: a name, the target, which can be edited, and what was reached. `draft`:
 /// what is written and not entered yet. gives: true when another target was entered.
 bool target_row(Pen& pen, std::optional<NumberEntry>& draft, const std::string& name,
-                const char* label, const char* unit, double& wanted, double reached,
+                const char* label, const char* unit, double& target, double reached,
                 double held_from) {
-  const std::string shown = number_words(wanted, unit);
+  const std::string shown = number_words(target, unit);
   ImGui::AlignTextToFramePadding();
   text(pen.theme.small, palette().text_dim, label);
-  ImGui::SameLine(pen.px(wanted_column));
-  ImGui::SetNextItemWidth(pen.px(wanted_width));
+  ImGui::SameLine(pen.px(target_column));
+  ImGui::SetNextItemWidth(pen.px(target_width));
   // The number shown is rounded: entering it unchanged changes nothing.
   double entered = std::stod(shown);
   const bool another =
@@ -91,10 +91,10 @@ bool target_row(Pen& pen, std::optional<NumberEntry>& draft, const std::string& 
   ImGui::SameLine();
   ImGui::AlignTextToFramePadding();
   const std::string words = number_words(reached, unit);
-  const bool held = std::abs(wanted - reached) > held_from;
+  const bool held = std::abs(target - reached) > held_from;
   text_right(pen.theme.regular, held ? palette().warning : palette().text, words);
   pen.mark("reached:" + name, words);
-  if (another) wanted = entered;
+  if (another) target = entered;
   return another;
 }
 
@@ -174,40 +174,40 @@ void Panels::Drawing::body_choice(const MovableBody& body) {
           "the lower jaw stays where it is in the picture");
 }
 
-/// The body's place in numbers: wanted, which can be edited, and reached.
+/// The body's place in numbers: its target, which can be edited, and the pose reached.
 void Panels::Drawing::body_placement(const MovableBody& body) {
   const Theme& theme = panels.theme_;
   const Pose& X_CM = input.frame->poses[view.hands.jaw];
   const Pose reached =
       body.is_skull() ? view.hands.X_RC(X_CM) : pose_in(body.parent, body.body, input.frame->poses);
   const std::optional<Pose> hand = view.hands.of(body);
-  Placement wanted = placement_of(hand.value_or(reached), body.center);
+  Placement target = placement_of(hand.value_or(reached), body.center);
   const Placement there = placement_of(reached, body.center);
   Shortfall shortfall;
   if (hand)
-    shortfall = {(wanted.shift_mm - there.shift_mm).norm(),
+    shortfall = {(target.shift_mm - there.shift_mm).norm(),
                  hand->R.angularDistance(reached.R) * 180 / std::numbers::pi};
   bool edited = false;
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, pen.px(8, 2));
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 3));
   text(theme.small, palette().text_faint, "");
-  ImGui::SameLine(pen.px(wanted_column) + pen.px(8));
-  text(theme.small, palette().text_faint, "wanted");
+  ImGui::SameLine(pen.px(target_column) + pen.px(8));
+  text(theme.small, palette().text_faint, "target");
   ImGui::SameLine();
   text_right(theme.small, palette().text_faint, "reached");
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     edited |= target_row(pen, panels.form_.number, fmt::format("shift:{}", axis_letters[k]),
-                         shift_names[k], " mm", wanted.shift_mm[i], there.shift_mm[i], held_mm);
+                         shift_names[k], " mm", target.shift_mm[i], there.shift_mm[i], held_mm);
   }
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     edited |= target_row(pen, panels.form_.number, fmt::format("turn:{}", axis_letters[k]),
-                         turn_names[k], "\u00b0", wanted.turn_deg[i], there.turn_deg[i], held_deg);
+                         turn_names[k], "\u00b0", target.turn_deg[i], there.turn_deg[i], held_deg);
     tooltip(pen, turn_tips[k]);
   }
   ImGui::PopStyleVar(2);
-  if (edited) view.move(body, pose_at(wanted, body.center), X_CM);
+  if (edited) view.move(body, pose_at(target, body.center), X_CM);
   body_state(body, hand.has_value(), shortfall);
 }
 
@@ -225,7 +225,7 @@ void Panels::Drawing::body_state(const MovableBody& body, bool held, const Short
                  : fmt::format("held by contact, {:.1f} mm short", shortfall.shift_mm);
     tint = palette().warning;
   } else if (held) {
-    state = "where it is wanted";
+    state = "at its target";
     tint = palette().good;
   }
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + pen.px(3));

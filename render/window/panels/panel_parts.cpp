@@ -69,10 +69,10 @@ float Panels::Drawing::notes_room(float left) const {
   if (input.scene.notes.empty()) return 0;
   const ImFont& font = *panels.theme_.small;
   const float gaps = (lines - 1) * ImGui::GetStyle().ItemSpacing.y;
-  const float wanted =
+  const float needed =
       std::min(lines * font.FontSize + gaps,
                height_of(panels.theme_.small, input.scene.notes, ImGui::GetContentRegionAvail().x));
-  return std::clamp(left, pen.px(74), std::max(pen.px(74), pen.px(38) + wanted));
+  return std::clamp(left, pen.px(74), std::max(pen.px(74), pen.px(38) + needed));
 }
 
 void Panels::Drawing::part_list() {

@@ -134,11 +134,11 @@ void Panels::Drawing::opening_slider(double live) {
   const double most = std::max(min_mm, input.scene.max_opening_mm);
   const float width = ImGui::GetContentRegionAvail().x, knob = pen.px(6.5f);
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  double wanted = held ? *view.opening_mm : std::clamp(live, 0.0, most);
+  double shown_mm = held ? *view.opening_mm : std::clamp(live, 0.0, most);
   ImGui::BeginDisabled(!opens);
-  if (slider(pen, "opening", wanted, {.high = most, .width = width, .held = held})) {
+  if (slider(pen, "opening", shown_mm, {.high = most, .width = width, .held = held})) {
     view.hands.release_jaw(panels.X_CM_);
-    view.opening_mm = wanted;
+    view.opening_mm = shown_mm;
     view.playing = false;
   }
   ImGui::EndDisabled();

@@ -50,12 +50,12 @@ int width_of_screen(int height) { return static_cast<int>(std::lround(height * 1
 
 }  // namespace
 
-std::vector<std::string> RecordChoice::wanted_cameras() const {
-  std::vector<std::string> wanted;
+std::vector<std::string> RecordChoice::selected_cameras() const {
+  std::vector<std::string> selected;
   for (const NamedCamera& one : named_cameras)
-    if (cameras.contains(one.name)) wanted.emplace_back(one.name);
-  if (camera_from_file && !camera_file.empty()) wanted.push_back(camera_file);
-  return wanted;
+    if (cameras.contains(one.name)) selected.emplace_back(one.name);
+  if (camera_from_file && !camera_file.empty()) selected.push_back(camera_file);
+  return selected;
 }
 
 /// Label at the start of a line. gives: the width that is left for the field.
@@ -105,7 +105,8 @@ void Panels::Drawing::record_cameras() {
   text_field(pen, "record-camera-file", fields.camera_file, record_label("File"), "camera.json");
   tooltip(pen,
           "A JSON file with a view or a path of views, e.g. {\"path\": [{\"view\": \"front\"}, "
-          "{\"at\": 0.4, \"view\": \"left\", \"distance_mm\": 400}]}; condyle help pictures describes them");
+          "{\"at\": 0.4, \"view\": \"left\", \"distance_mm\": 400}]}; condyle help pictures "
+          "describes them");
 }
 
 void Panels::Drawing::record() {
@@ -240,7 +241,7 @@ void Panels::Drawing::record_button() {
   const RecordChoice& choice = panels.record_;
   const std::string& folder = panels.form_.record.folder;
   const double duration = input.scene.duration_s;
-  const std::vector<std::string> cameras = choice.wanted_cameras();
+  const std::vector<std::string> cameras = choice.selected_cameras();
   ImGui::BeginDisabled(duration <= 0 || folder.empty() || cameras.empty());
   if (word_button(pen, "record", "Record", {ImGui::GetContentRegionAvail().x, pen.px(32)}, true))
     panels.requests_.push_back(request::Record{.folder = folder,

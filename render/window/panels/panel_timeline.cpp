@@ -108,7 +108,7 @@ void Panels::Drawing::timeline() {
   std::string message = !panels.said_.empty() ? panels.said_ : input.loop.message;
   ImU32 tint = palette().text_dim;
   if (message.empty() && input.frame && input.frame->stopped) {
-    message = "Stopped at the contact: the bones cannot follow the wanted motion any further";
+    message = "Stopped at the contact: the bones cannot follow the motion any further";
     tint = palette().warning;
   }
   ImGui::SetCursorPos({pen.px(14), foot});

@@ -104,13 +104,13 @@ void Panels::Drawing::view_signs() {
     const std::string words = direction_letters(direction);
     const ImVec2 size = theme.bold->CalcTextSizeA(theme.bold->FontSize, 1e6f, 0, words.c_str());
     float x = centre.x + ax * (static_cast<float>(r.width) / 2 - margin - size.x / 2) - size.x / 2;
-    const auto in_way = [&](const ViewRect& pane) {
+    const auto overlaps = [&](const ViewRect& pane) {
       return pane.width > 0 && ay == 0 && pane.y < centre.y + size.y &&
              pane.y + pane.height > centre.y - size.y;
     };
-    if (ax < 0 && in_way(legend_pane))
+    if (ax < 0 && overlaps(legend_pane))
       x = static_cast<float>(legend_pane.x + legend_pane.width) + margin;
-    if (ax > 0 && in_way(key_pane)) x = static_cast<float>(key_pane.x) - margin - size.x;
+    if (ax > 0 && overlaps(key_pane)) x = static_cast<float>(key_pane.x) - margin - size.x;
     // Beside the line between two states, which is drawn from top to bottom.
     const float beside = margin / 2;
     if (view.look.wipe && x - beside < wiped_at && wiped_at < x + size.x + beside)

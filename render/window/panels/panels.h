@@ -91,7 +91,7 @@ class Panels {
   /// and quit.
   bool takes(Command command) const;
 
-  /// An edit begins: what is wanted now comes back by undo.
+  /// An edit begins: undo restores the present state.
   void remember(const ViewState& view) { history_.remember(view.edits()); }
   /// Another patient: edits of the previous one cannot be undone, and the content of fields
   /// was meant for that one.

@@ -14,7 +14,7 @@ namespace condyle {
 
 /// One pass over all panels. Only for this module: each function is defined in the file named.
 struct Panels::Drawing {
-  /// How far a body is from where it is wanted; 0 where no hand holds it.
+  /// Distance of a body from its target; 0 where no hand holds it.
   struct Shortfall {
     double shift_mm = 0, turn_deg = 0;
   };

@@ -36,8 +36,8 @@ struct Range {
     high = std::max(high, v);
   }
   double span() const { return high - low; }
-  void grow_to(double wanted) {
-    const double more = std::max(0.0, wanted - span()) / 2;
+  void grow_to(double min_span) {
+    const double more = std::max(0.0, min_span - span()) / 2;
     low -= more;
     high += more;
   }

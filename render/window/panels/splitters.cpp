@@ -9,7 +9,7 @@ namespace condyle {
 
 /// A line to grip between two panels. `size`: of the one that it makes larger, pixels; `direction`:
 /// 1 where that grows with the mouse's coordinate, -1 where it shrinks. gives: the size that is
-/// wanted at scale 1, or `reset` after a double click.
+/// new_size at scale 1, or `reset` after a double click.
 std::optional<double> Panels::Drawing::edge(const char* name, const ViewRect& place, double size,
                                             double direction, double reset) {
   const bool upright = place.height > place.width;
@@ -30,20 +30,21 @@ std::optional<double> Panels::Drawing::edge(const char* name, const ViewRect& pl
                                               palette().accent);
   }
   if (!held) tooltip(pen, "Drag to change the size; double-click to reset it");
-  std::optional<double> wanted;
+  std::optional<double> new_size;
   const double scale = panels.theme_.scale;
   if (ImGui::IsItemActivated()) panels.gripped_size_ = size / scale;
   if (held && ImGui::IsMouseDoubleClicked(0)) {
-    wanted = panels.gripped_size_ = reset;
+    new_size = panels.gripped_size_ = reset;
   } else if (held && ImGui::IsMouseDragging(0, 1)) {
     const ImVec2 mouse = ImGui::GetIO().MousePos, from = ImGui::GetIO().MouseClickedPos[0];
-    wanted = panels.gripped_size_ +
-             direction * static_cast<double>(upright ? mouse.x - from.x : mouse.y - from.y) / scale;
+    new_size =
+        panels.gripped_size_ +
+        direction * static_cast<double>(upright ? mouse.x - from.x : mouse.y - from.y) / scale;
   }
   end_panel();
   ImGui::PopStyleVar(2);
   ImGui::PopStyleColor();
-  return wanted;
+  return new_size;
 }
 
 void Panels::Drawing::edges() {

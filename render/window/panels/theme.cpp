@@ -73,9 +73,9 @@ double default_scale(double screen_scale, int framebuffer_width) {
   return screen_scale == 1 && framebuffer_width >= fine_width ? 1.5 : 1;
 }
 
-float fitting_scale(double wanted, int width, int height) {
+float fitting_scale(double preferred, int width, int height) {
   const double most = std::min(width / min_width, height / min_height);
-  const double scale = std::floor(std::min(wanted, most) * 20 + 1e-6) / 20;
+  const double scale = std::floor(std::min(preferred, most) * 20 + 1e-6) / 20;
   return static_cast<float>(std::clamp(scale, 0.5, 6.0));
 }
 

@@ -94,9 +94,9 @@ inline const colour::Palette& palette() { return *colour::in_use; }
 /// The scale where none is given: larger on a 4K screen that does not report its own.
 double default_scale(double screen_scale, int framebuffer_width);
 
-/// The scale to use in a window of this size, pixels: the wanted one, or less where the panels
+/// The scale to use in a window of this size, pixels: the preferred one, or less where the panels
 /// would not fit; in steps of 0.05, so that resizing does not load fonts at every pixel.
-float fitting_scale(double wanted, int width, int height);
+float fitting_scale(double preferred, int width, int height);
 
 /// Loads the fonts at this scale and sets colours and spacing of the current ImGui context. The
 /// renderer's font texture must be made anew afterwards. Looks for Inter, Noto Sans and DejaVu Sans

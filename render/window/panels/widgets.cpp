@@ -363,11 +363,11 @@ bool slider(Pen& pen, const char* name, double& value, const SliderLook& look) {
   bool changed = false;
   if (ImGui::IsItemActive()) {
     const double f = std::clamp((ImGui::GetIO().MousePos.x - low.x - knob) / span, 0.0f, 1.0f);
-    const double wanted = look.logarithmic ? look.low * std::pow(look.high / look.low, f)
+    const double chosen = look.logarithmic ? look.low * std::pow(look.high / look.low, f)
                                            : look.low + f * (look.high - look.low);
     // A click that does not move must still count: the hand takes over.
-    changed = wanted != value || ImGui::IsItemActivated();
-    value = wanted;
+    changed = chosen != value || ImGui::IsItemActivated();
+    value = chosen;
   }
   const bool lit = ImGui::IsItemHovered() || ImGui::IsItemActive();
   const float y = low.y + height / 2, x = low.x + knob + span * fraction_of(value);

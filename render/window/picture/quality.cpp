@@ -6,7 +6,7 @@
 namespace condyle {
 namespace {
 
-constexpr double wanted_ms = 33;  // 30 pictures a second
+constexpr double target_ms = 33;  // 30 pictures a second
 
 // From the best down. Without a GPU multisampling costs most, then triangles, then the shadow map,
 // then pixels.
@@ -37,15 +37,15 @@ Quality QualityGovernor::choose(bool moving) const {
 void QualityGovernor::measured(bool moving, double picture_ms) {
   if (!moving) {
     // The first picture at rest already shows how fast this machine is.
-    if (!known_ && picture_ms > 3 * wanted_ms) level_ = 3;
+    if (!known_ && picture_ms > 3 * target_ms) level_ = 3;
     known_ = true;
     return;
   }
   known_ = true;
   // Down at once when far too slow, up only after a long calm: the picture must not flicker.
-  const double limit_ms = level_ + 1 < last ? wanted_ms : standstill_ms;
+  const double limit_ms = level_ + 1 < last ? target_ms : standstill_ms;
   slow_ = picture_ms > limit_ms ? slow_ + 1 : 0;
-  fast_ = picture_ms < 0.3 * wanted_ms ? fast_ + 1 : 0;
+  fast_ = picture_ms < 0.3 * target_ms ? fast_ + 1 : 0;
   if (slow_ >= 3 || picture_ms > 3 * limit_ms) {
     level_ = std::min(level_ + 1, last);
     slow_ = 0;

@@ -15,7 +15,7 @@ struct Quality {
 /// simulation. At rest the picture is always the best.
 class QualityGovernor {
  public:
-  /// Best picture when nothing moves, else the best that kept to the wanted time so far.
+  /// Best picture when nothing moves, else the best that has kept to the target time so far.
   Quality choose(bool moving) const;
 
   /// Reports the duration of the last picture, ms.

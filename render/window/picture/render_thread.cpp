@@ -20,64 +20,64 @@ struct RenderThread::Drawing {
   RenderRequest applied;  // what the renderer has
 
   /// Gives the renderer what the request has otherwise than the last one.
-  void apply(const RenderRequest& wanted) {
-    const bool other = wanted.parts != applied.parts;
+  void apply(const RenderRequest& request) {
+    const bool other = request.parts != applied.parts;
     if (other) {
       renderer.reset();
       displacement.reset();
       overlays = {};
-      applied = {.parts = wanted.parts};  // also where it cannot be uploaded: once is enough
-      if (wanted.parts) {
-        renderer.emplace(wanted.parts->parts);
-        if (wanted.parts->colours) renderer->set_colour_map(*wanted.parts->colours);
+      applied = {.parts = request.parts};  // also where it cannot be uploaded: once is enough
+      if (request.parts) {
+        renderer.emplace(request.parts->parts);
+        if (request.parts->colours) renderer->set_colour_map(*request.parts->colours);
       }
     }
     if (!renderer) return;
     const auto name = [&](const MapSurface& surface) {
-      return wanted.parts->parts[surface.part].name;
+      return request.parts->parts[surface.part].name;
     };
-    if (wanted.map && wanted.map != applied.map)
-      for (const auto& surface : wanted.map->surfaces)
+    if (request.map && request.map != applied.map)
+      for (const auto& surface : request.map->surfaces)
         renderer->set_finer(name(surface), *surface.mesh, surface.normals);
-    const bool moved = wanted.frame != applied.frame || applied.beside;
-    const bool tinted = wanted.map != applied.map || wanted.values != applied.values ||
-                        wanted.displacement != applied.displacement ||
-                        (wanted.displacement && moved) || applied.beside;
-    if (wanted.frame && moved) renderer->update(*wanted.frame);
-    if (tinted) tint(wanted, wanted.frame.get(), wanted.values.get());
-    if (wanted.overlays != applied.overlays)
-      overlays.send(*renderer, wanted.overlays ? *wanted.overlays : Overlays{});
-    applied = wanted;
+    const bool moved = request.frame != applied.frame || applied.beside;
+    const bool tinted = request.map != applied.map || request.values != applied.values ||
+                        request.displacement != applied.displacement ||
+                        (request.displacement && moved) || applied.beside;
+    if (request.frame && moved) renderer->update(*request.frame);
+    if (tinted) tint(request, request.frame.get(), request.values.get());
+    if (request.overlays != applied.overlays)
+      overlays.send(*renderer, request.overlays ? *request.overlays : Overlays{});
+    applied = request;
   }
 
   /// Shows the state beside, or the request's own.
-  void turn_to(const RenderRequest& wanted, bool beside) {
-    const FrameState& frame = beside ? *wanted.beside : *wanted.frame;
+  void turn_to(const RenderRequest& request, bool beside) {
+    const FrameState& frame = beside ? *request.beside : *request.frame;
     renderer->update(frame);
-    tint(wanted, &frame, beside ? wanted.beside_values.get() : wanted.values.get());
-    if (!wanted.overlays) return;
+    tint(request, &frame, beside ? request.beside_values.get() : request.values.get());
+    if (!request.overlays) return;
     // Lines and sheets are of the request's own state; paths are of the whole motion.
     Overlays lasting;
-    if (const auto paths = wanted.overlays->lines.find("paths");
-        paths != wanted.overlays->lines.end())
+    if (const auto paths = request.overlays->lines.find("paths");
+        paths != request.overlays->lines.end())
       lasting.lines.insert(*paths);
-    overlays.send(*renderer, beside ? lasting : *wanted.overlays);
+    overlays.send(*renderer, beside ? lasting : *request.overlays);
   }
 
  private:
   /// Colours by values, of a frame (none: at rest).
-  void tint(const RenderRequest& wanted, const FrameState* frame, const MapValues* values) {
-    if (wanted.map)
-      for (std::size_t i = 0; i < wanted.map->surfaces.size(); ++i)
-        renderer->color_part(wanted.parts->parts[wanted.map->surfaces[i].part].name,
+  void tint(const RenderRequest& request, const FrameState* frame, const MapValues* values) {
+    if (request.map)
+      for (std::size_t i = 0; i < request.map->surfaces.size(); ++i)
+        renderer->color_part(request.parts->parts[request.map->surfaces[i].part].name,
                              values && i < values->size() ? (*values)[i] : std::vector<float>{});
-    if (wanted.displacement) {
-      if (!displacement) displacement.emplace(wanted.parts->parts);
+    if (request.displacement) {
+      if (!displacement) displacement.emplace(request.parts->parts);
       displacement->color(*renderer, frame ? *frame : FrameState{});
     } else if (displacement) {
       displacement->clear(*renderer);
       displacement.reset();
-      if (wanted.parts->colours) renderer->set_colour_map(*wanted.parts->colours);
+      if (request.parts->colours) renderer->set_colour_map(*request.parts->colours);
     }
   }
 };
@@ -96,10 +96,10 @@ RenderThread::~RenderThread() {
   thread_.join();
 }
 
-void RenderThread::request(RenderRequest wanted) {
+void RenderThread::request(RenderRequest request) {
   {
     const std::lock_guard lock(mutex_);
-    requested_ = std::move(wanted);
+    requested_ = std::move(request);
   }
   changed_.notify_all();
 }
@@ -183,7 +183,7 @@ void RenderThread::work() {
   }
 }
 
-void RenderThread::draw(std::optional<Drawing>& drawing, const RenderRequest& wanted) {
+void RenderThread::draw(std::optional<Drawing>& drawing, const RenderRequest& request) {
   try {
     if (!drawing) {
       ContextMaker maker;
@@ -196,10 +196,10 @@ void RenderThread::draw(std::optional<Drawing>& drawing, const RenderRequest& wa
       const std::lock_guard lock(mutex_);
       lacks_context_ = false;
     }
-    drawing->apply(wanted);
+    drawing->apply(request);
     if (!drawing->renderer) return;
     auto picture = drawing->view.draw(
-        *drawing->renderer, wanted, [&](bool beside) { drawing->turn_to(wanted, beside); },
+        *drawing->renderer, request, [&](bool beside) { drawing->turn_to(request, beside); },
         [this] { return given_up(); });
     const std::lock_guard lock(mutex_);
     if (picture) newest_ = std::move(picture);
@@ -210,15 +210,15 @@ void RenderThread::draw(std::optional<Drawing>& drawing, const RenderRequest& wa
 }
 
 void RenderThread::save(std::optional<Drawing>& drawing, const RenderRequest& shown,
-                        SaveRequest wanted) {
+                        SaveRequest request) {
   Saved saved;
   try {
-    if (!wanted.image) {
+    if (!request.image) {
       if (!drawing || !drawing->renderer) return;
-      wanted.image = drawing->renderer->picture(shown.camera, shown.settings);
+      request.image = drawing->renderer->picture(shown.camera, shown.settings);
     }
-    saved.file = next_picture_file(wanted.folder);
-    write_png(saved.file, *wanted.image);
+    saved.file = next_picture_file(request.folder);
+    write_png(saved.file, *request.image);
   } catch (const std::exception& error) {
     saved.trouble = error.what();
   }

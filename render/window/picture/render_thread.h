@@ -32,7 +32,7 @@ class RenderThread {
   RenderThread& operator=(const RenderThread&) = delete;
 
   /// What the next picture shows; replaces an earlier request that was not begun.
-  void request(RenderRequest wanted);
+  void request(RenderRequest request);
   /// The newest picture, if it has not been taken yet.
   /// Rethrows what a picture failed of: MachineError.
   std::optional<DrawnPicture> take();
@@ -62,8 +62,8 @@ class RenderThread {
     std::optional<Image> image;  // none: the view
   };
   void work();
-  void draw(std::optional<Drawing>& drawing, const RenderRequest& wanted);
-  void save(std::optional<Drawing>& drawing, const RenderRequest& shown, SaveRequest wanted);
+  void draw(std::optional<Drawing>& drawing, const RenderRequest& request);
+  void save(std::optional<Drawing>& drawing, const RenderRequest& shown, SaveRequest request);
   bool given_up() const;
 
   std::function<void()> notify_;

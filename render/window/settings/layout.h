@@ -5,8 +5,8 @@
 namespace condyle {
 
 /// Where the panels stand, pixels: a bar on top, a column on each side, the timeline below, and the
-/// 3-D view in what is left; a tool, while one is in use, at its left and plots, where they are
-/// wanted, below it. Without panels the view and a tool have the whole window.
+/// 3-D view in what is left; a tool, while one is in use, at its left and plots, if
+/// shown, below it. Without panels the view and a tool have the whole window.
 struct Layout {
   ViewRect top, left, right, bottom, view, plots, tool;
 };

@@ -5,7 +5,7 @@
 
 namespace condyle {
 
-/// What was wanted before and after each edit.
+/// The state before and after each edit.
 template <class State>
 class EditHistory {
  public:

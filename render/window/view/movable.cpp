@@ -66,9 +66,9 @@ std::optional<Pose> Hands::at(BodyId body) const {
   return index_of(body) < X_PB.size() ? X_PB[index_of(body)] : std::nullopt;
 }
 
-void Hands::set(BodyId body, const std::optional<Pose>& wanted) {
+void Hands::set(BodyId body, const std::optional<Pose>& target) {
   if (X_PB.size() <= index_of(body)) X_PB.resize(index_of(body) + 1);
-  X_PB[index_of(body)] = wanted;
+  X_PB[index_of(body)] = target;
 }
 
 std::optional<Pose> Hands::X_CM_target() const {
@@ -83,13 +83,13 @@ std::optional<Pose> Hands::of(const MovableBody& body) const {
   return body.body == jaw ? X_CM_target() : at(body.body);
 }
 
-void Hands::move(const MovableBody& body, const Pose& wanted, const Pose& X_CM) {
+void Hands::move(const MovableBody& body, const Pose& target, const Pose& X_CM) {
   if (body.is_skull()) {
     if (!X_RM) X_RM = X_RC(X_CM) * X_CM;
   } else if (body.body == jaw) {
     release_jaw(X_CM);
   }
-  set(body.body, wanted);
+  set(body.body, target);
 }
 
 void Hands::hold_jaw(const Pose& X_CM) {

@@ -43,7 +43,7 @@ struct Hands {
   BodyId jaw = mandible_body;  // of the lower arch
 
   std::optional<Pose> at(BodyId body) const;
-  void set(BodyId body, const std::optional<Pose>& wanted);
+  void set(BodyId body, const std::optional<Pose>& target);
 
   /// Of a jaw that is held by hand.
   std::optional<Pose> X_CM_target() const;
@@ -54,13 +54,13 @@ struct Hands {
   /// The target of a body as its numbers show it; none: it is not held by hand.
   std::optional<Pose> of(const MovableBody& body) const;
   /// An edit; the jaw is at X_CM.
-  void move(const MovableBody& body, const Pose& wanted, const Pose& X_CM);
+  void move(const MovableBody& body, const Pose& target, const Pose& X_CM);
   void put_back(const MovableBody& body, const Pose& X_CM);
-  /// The jaw is wanted at X_CM, whatever was wanted of the skull.
+  /// Sets the jaw's target to X_CM and discards the skull's.
   void hold_jaw(const Pose& X_CM);
   /// Of the hand that has it; the skull stays where it has come to.
   void release_jaw(const Pose& X_CM);
-  /// Both jaws are wanted where the others want them.
+  /// Whether both have the same targets for both jaws.
   bool same_jaws(const Hands& other) const;
   bool operator==(const Hands& other) const;
 };

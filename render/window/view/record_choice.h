@@ -27,7 +27,7 @@ struct RecordChoice {
   std::string camera_file = {}, caption = {};
 
   /// Those that are chosen, in the order of the list; a file without a name is none.
-  std::vector<std::string> wanted_cameras() const;
+  std::vector<std::string> selected_cameras() const;
   bool operator==(const RecordChoice&) const = default;
 };
 

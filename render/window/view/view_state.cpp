@@ -27,13 +27,13 @@ void ViewState::fit(const WindowScene& scene) {
   layers.resize(scene.layers.size(), layer);
 }
 
-void ViewState::move(const MovableBody& body, const Pose& wanted, const Pose& X_CM) {
+void ViewState::move(const MovableBody& body, const Pose& target, const Pose& X_CM) {
   if (!body.roams()) {
     if (body.is_skull() && opening_mm) hands.set(hands.jaw, X_CM);
     opening_mm.reset();
     playing = false;
   }
-  hands.move(body, wanted, X_CM);
+  hands.move(body, target, X_CM);
 }
 
 void ViewState::return_skin() {

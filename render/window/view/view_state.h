@@ -47,7 +47,7 @@ struct WindowScene {
   std::vector<std::filesystem::path> recent = {};  // opened before, the last one first
 };
 
-/// How one part is wanted.
+/// How one part is drawn.
 struct PartView {
   bool shown = true;
   double opacity = 1;  // 0 to 1
@@ -61,9 +61,9 @@ enum class Tool { look, move, measure, landmarks };
 /// What the picture shows in addition to the surfaces, and how they are cut.
 struct Look {
   bool clip = false;
-  bool clip_skin = false;   // and nothing but the face
-  char clip_from = 'L';     // side that is taken away: L R A P S I
-  double clip_share = 0.5;  // of the patient's extent, from that side
+  bool clip_skin = false;      // and nothing but the face
+  char clip_from = 'L';        // side that is taken away: L R A P S I
+  double clip_fraction = 0.5;  // of the patient's extent, from that side
   bool cut_away = false;
   enum class Window { left_joint, right_joint, mouth } cut_at = Window::left_joint;
   double cut_radius_mm = 35;
@@ -102,10 +102,10 @@ struct Edits {
   bool shadows = true;
   bool distances = false;                  // colour parts by their distance from what they may meet
   std::vector<PinnedPoint> measured = {};  // points that were clicked, in their order
-  std::optional<double> opening_mm = {};   // wanted while set, instead of the motion's
-  Hands hands = {};                        // where bodies are wanted instead of where they would be
+  std::optional<double> opening_mm = {};   // target, instead of the motion's pose
+  Hands hands = {};                        // targets of bodies held by hand
   std::vector<Landmark> landmarks = {};    // where the person has them; the scene's at first
-  MotionChoice motion = {};                // wanted; the scene's at first
+  MotionChoice motion = {};                // requested; the scene's at first
   Look look = {};
   double skin_opacity = 1;                    // of parts with the role `face`, on top of their own
   std::optional<double> skin_to_return = {};  // its opacity before distances took it away
@@ -132,7 +132,7 @@ struct ViewState : Edits, PanelChoice {
   bool jaw_is_held() const { return opening_mm || hands.X_CM_target(); }
   /// Moves a body by hand; the jaw is at X_CM. Moving the jaw or skull ends the motion; a mouth
   /// that the slider held open stays open once the skull is reset.
-  void move(const MovableBody& body, const Pose& wanted, const Pose& X_CM);
+  void move(const MovableBody& body, const Pose& target, const Pose& X_CM);
   /// After distances are switched off: restores the skin's opacity, unless the user has set it
   /// since.
   void return_skin();
@@ -147,7 +147,7 @@ struct ViewState : Edits, PanelChoice {
   void fit(const WindowScene& scene);
 };
 
-/// Opacity of every part by name, hidden ones 0: what a SceneRenderer wants.
+/// Opacity of every part by name, hidden ones 0, as a SceneRenderer takes it.
 std::map<std::string, double> part_opacities(const WindowScene& scene, const ViewState& view);
 
 /// Performance of the simulation loop. Zero where unknown.
@@ -160,8 +160,8 @@ struct LoopStatistics {
 struct PictureStatistics {
   double pictures_per_second = 0;
   double picture_ms = 0;  // the 3-D picture alone
-  bool finished = false;  // it shows all that is wanted, in full quality
-  // Longest time between two looks at mouse and keyboard, waiting for them not counted.
+  bool finished = false;  // it shows all that is requested, in full quality
+  // Longest time between two readings of mouse and keyboard, without waiting for them.
   double longest_away_ms = 0;
   double render_scale = 1;  // 1 is full resolution
   int samples = 1;          // of multisampling

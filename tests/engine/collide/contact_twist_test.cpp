@@ -33,12 +33,12 @@ TEST(NearestAllowed, FulfilsTheConditionsOfTheNearestPoint) {
   int held = 0;
   for (int k = 0; k < 300; ++k) {
     const auto rows = any_rows(random, 200, 15);
-    const Twist wanted = any_twist(random);
+    const Twist requested = any_twist(random);
     const TwistSettings settings{.rotation_length_mm = 15};
-    const TwistSolution solution = nearest_allowed(wanted, rows, settings);
+    const TwistSolution solution = nearest_allowed(requested, rows, settings);
     EXPECT_LE(solution.violation_mm, settings.tolerance_mm);
     // What keeps it off is a sum of pushes, each along a contact that is closed.
-    Twist rest = solution.x - wanted;
+    Twist rest = solution.x - requested;
     for (const Push& push : solution.pushes) {
       EXPECT_GE(push.length_mm, 0);
       EXPECT_NEAR(rows[push.row].gap_mm + rows[push.row].along.dot(solution.x), 0,
@@ -57,24 +57,24 @@ TEST(NearestAllowed, RelaxationAgreesWithTheExactAnswer) {
   double apart = 0;
   for (int k = 0; k < 50; ++k) {
     const auto rows = any_rows(random, 20, 15);
-    const Twist wanted = 0.2 * any_twist(random);
+    const Twist requested = 0.2 * any_twist(random);
     // No row rubs: the solver of friction solves the same problem.
-    const Twist exact = nearest_allowed(wanted, rows, {.rotation_length_mm = 15}).x;
+    const Twist exact = nearest_allowed(requested, rows, {.rotation_length_mm = 15}).x;
     const Twist relaxed =
-        nearest_allowed(wanted, rows, {.friction = 0.5, .rotation_length_mm = 15}).x;
+        nearest_allowed(requested, rows, {.friction = 0.5, .rotation_length_mm = 15}).x;
     apart = std::max(apart, (exact - relaxed).norm());
-    EXPECT_GT(wanted.norm(), 0.01);
+    EXPECT_GT(requested.norm(), 0.01);
   }
   EXPECT_LE(apart, 0.02);
 }
 
 TEST(NearestAllowed, FreeMotionIsCompleted) {
   std::mt19937_64 random(13);
-  const Twist wanted = any_twist(random);
+  const Twist requested = any_twist(random);
   auto rows = any_rows(random, 50, 10);
   for (auto& row : rows) row.gap_mm = 100;
-  EXPECT_EQ(nearest_allowed(wanted, rows, {}).x, wanted);
-  EXPECT_EQ(nearest_allowed(wanted, {}, {.friction = 0.3}).x, wanted);
+  EXPECT_EQ(nearest_allowed(requested, rows, {}).x, requested);
+  EXPECT_EQ(nearest_allowed(requested, {}, {.friction = 0.3}).x, requested);
 }
 
 TEST(NearestAllowed, PointSticksWithinTheConeOfFrictionAndSlidesBeyond) {
@@ -86,9 +86,10 @@ TEST(NearestAllowed, PointSticksWithinTheConeOfFrictionAndSlidesBeyond) {
     row.rubs = true;
     const double mu = 0.4, press = 0.2;
     for (const double sideways : {0.5, 0.9, 1.1, 2.0}) {  // times what friction holds
-      Twist wanted = Twist::Zero();
-      wanted.head<3>() = -press * n + sideways * mu * press * t;
-      const Twist x = nearest_allowed(wanted, {row}, {.friction = mu, .rotation_length_mm = 10}).x;
+      Twist requested = Twist::Zero();
+      requested.head<3>() = -press * n + sideways * mu * press * t;
+      const Twist x =
+          nearest_allowed(requested, {row}, {.friction = mu, .rotation_length_mm = 10}).x;
       const double slip = std::max(0.0, sideways - 1) * mu * press;
       EXPECT_NEAR(x.head<3>().dot(t), slip, 1e-4);
       EXPECT_NEAR(x.head<3>().dot(n), 0, 1e-3);

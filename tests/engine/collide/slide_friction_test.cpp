@@ -40,9 +40,9 @@ TEST(SlideFriction, AnInclineHoldsBelowTheFrictionAngleAndSlidesAboveIt) {
       const Vector3d up = lean.R * Vector3d::UnitZ(), downhill = lean.R * Vector3d::UnitX();
       const Pose start{lean.R, 0.01 * up};
       const double pull = 1;  // straight down
-      Pose wanted = start;
-      wanted.t.z() -= pull;
-      const SlideResult result = model.slide(start, wanted);
+      Pose target = start;
+      target.t.z() -= pull;
+      const SlideResult result = model.slide(start, target);
       const double angle = degrees * std::numbers::pi / 180;
       const double coulomb = std::max(0.0, pull * (std::sin(angle) - friction * std::cos(angle)));
       EXPECT_NEAR((result.X_FM.t - start.t).dot(downhill), coulomb, 0.03)
@@ -88,16 +88,16 @@ TEST(SlideFriction, OnBumpsItNeitherTremblesNorCreepsWhileTheTargetRests) {
     settings.friction = friction;
     const SlidingContact model({crown}, {other}, settings);
     for (const double sideways : {0.0, 0.1, 0.6}) {
-      const Pose wanted = placed({0.5 + sideways, 0.3, 13.2});
+      const Pose target = placed({0.5 + sideways, 0.3, 13.2});
       SlideCache memory;
       Pose X = model.slide(placed({0.5, 0.3, 16}), placed({0.5, 0.3, 13.2}), &memory).X_FM;
-      X = model.slide(X, wanted, &memory).X_FM;
+      X = model.slide(X, target, &memory).X_FM;
       const auto way = [](const Pose& a, const Pose& b) {
         return (a.t - b.t).norm() + 5 * rotation_angle(a.inverse() * b);
       };
       const Pose first = X;
       for (int frame = 0; frame < 100; ++frame) {
-        const SlideResult result = model.slide(X, wanted, &memory);
+        const SlideResult result = model.slide(X, target, &memory);
         EXPECT_TRUE(result.touching);
         ASSERT_LE(way(result.X_FM, X), 0.02) << friction << ' ' << sideways << ' ' << frame;
         X = result.X_FM;

@@ -32,10 +32,10 @@ double apart(const Pose& a, const Pose& b) {
 
 TEST(Slide, FreeMotionReachesTheTargetExactly) {
   const SlidingContact model({body(plate())}, {body(test::sphere(4, 5))});
-  const Pose wanted = turned({1, 2, 3}, 20, {3, 1, 5.5});
-  const SlideResult result = model.slide(shift(-8, 0, 12), wanted);
-  EXPECT_EQ(result.X_FM.t, wanted.t);
-  EXPECT_EQ(result.X_FM.R.coeffs(), wanted.R.coeffs());
+  const Pose target = turned({1, 2, 3}, 20, {3, 1, 5.5});
+  const SlideResult result = model.slide(shift(-8, 0, 12), target);
+  EXPECT_EQ(result.X_FM.t, target.t);
+  EXPECT_EQ(result.X_FM.R.coeffs(), target.R.coeffs());
   EXPECT_FALSE(result.touching);
   EXPECT_TRUE(result.settled);
 }
@@ -141,7 +141,7 @@ TEST(Slide, TurnedSceneGivesTheTurnedAnswer) {
     const SlideResult here = corner.slide(from, in_corner);
     EXPECT_TRUE(here.touching);
     const Pose there = X.inverse() * turned_corner.slide(X * from, X * in_corner).X_FM;
-    // Both are as near to the wanted pose as the slop lets them be. What is less than 0.01 mm
+    // Both are as near to the target pose as the slop lets them be. What is less than 0.01 mm
     // nearer, of 2.9 mm, may lie sqrt(2 * 2.9 * 0.01) mm beside it: a ball that turns in a corner
     // finds many such places, and which one hangs on the lattice it comes from.
     const auto left = [&](const Pose& Y) {
@@ -167,10 +167,10 @@ TEST(Slide, DifferentPathsEndAtTheSamePose) {
   const TriMesh wall =
       test::moved(test::box({-4, -15, -5}, {0, 15, 15}), turned({0, 1, 0}, 10, {0, 0, 0}));
   const SlidingContact model({body(floor), body(wall)}, {body(test::sphere(4, 4))});
-  const Pose wanted = shift(3, 1, 2);
-  const Pose first = model.slide(shift(8, -3, 8), wanted).X_FM;
+  const Pose target = shift(3, 1, 2);
+  const Pose first = model.slide(shift(8, -3, 8), target).X_FM;
   for (const Pose& from : {shift(12, 8, 5), shift(6, 0, 12), shift(9, 9, 9), shift(5.5, -8, 4.5)}) {
-    const SlideResult result = model.slide(from, wanted);
+    const SlideResult result = model.slide(from, target);
     EXPECT_TRUE(result.settled);
     EXPECT_LT(apart(result.X_FM, first), 0.05);
   }
@@ -184,13 +184,13 @@ TEST(Slide, AnAnswerIsItsOwnAnswer) {
   for (int k = 0; k < 20; ++k) {
     const Vector3d way = test::any_pose(random, 1).R * Vector3d::UnitX();
     SlideCache memory;
-    const Pose wanted = turned(way, 10, 12.5 * way);
-    SlideResult result = model.slide({Quaterniond::Identity(), 20 * way}, wanted, &memory);
+    const Pose target = turned(way, 10, 12.5 * way);
+    SlideResult result = model.slide({Quaterniond::Identity(), 20 * way}, target, &memory);
     touching += result.touching;
     for (int again = 0; again < 3; ++again) {
-      const SlideResult next = model.slide(result.X_FM, wanted, &memory);
+      const SlideResult next = model.slide(result.X_FM, target, &memory);
       EXPECT_EQ(next.X_FM.t, result.X_FM.t);
-      EXPECT_LT(apart(model.slide(result.X_FM, wanted).X_FM, result.X_FM), 0.05);
+      EXPECT_LT(apart(model.slide(result.X_FM, target).X_FM, result.X_FM), 0.05);
       result = next;
     }
   }
@@ -242,8 +242,8 @@ TEST(Slide, SurfacesAtOtherPosesSlideThere) {
   placed.place({{}, X_wall}, {X_ball});
   const SlidingContact made({body(floor), body(test::moved(wall, X_wall))}, {ball},
                             {.rotation_length_mm = 3, .pivot = Vector3d(0, 0, 0)});
-  for (const Vector3d& wanted : {Vector3d(1, 1, 2), Vector3d(0, -2, 3.5), Vector3d(6, 3, 9)}) {
-    const Pose there = turned({0, 0, 1}, 4, wanted), from = shift(4, 0, 9);
+  for (const Vector3d& target : {Vector3d(1, 1, 2), Vector3d(0, -2, 3.5), Vector3d(6, 3, 9)}) {
+    const Pose there = turned({0, 0, 1}, 4, target), from = shift(4, 0, 9);
     const SlideResult a = placed.slide(from * X_ball.inverse(), there * X_ball.inverse()),
                       b = made.slide(from, there);
     EXPECT_EQ(a.touching, b.touching);
@@ -313,9 +313,9 @@ std::vector<Pose> grind(int frames, int threads, const TriMesh& a, const TriMesh
   std::vector<Pose> poses;
   for (int f = 0; f < frames; ++f) {
     const double s = 0.06 * f;
-    const Pose wanted = turned({0.2, 1, 0.4}, 12 * std::sin(1.7 * s),
+    const Pose target = turned({0.2, 1, 0.4}, 12 * std::sin(1.7 * s),
                                {2 * std::sin(s), 2 * std::sin(1.3 * s), 13.2 + 6 * std::exp(-s)});
-    const SlideResult result = model.slide(X, wanted, &memory, threads);
+    const SlideResult result = model.slide(X, target, &memory, threads);
     X = result.X_FM;
     poses.push_back(X);
     if (depths && result.touching) depths->push_back(deepest(fixed, moving, X));

@@ -73,10 +73,10 @@ TEST(TriangleTree, NearestIsRightWhenTheTrianglesHaveMoved) {
   const TriangleTree tree = before.moved(mesh), fresh(mesh);
   for (const auto& local : points_around(6, 500, 15)) {
     const Vector3d p = pose * local;
-    const SurfacePoint found = tree.nearest(p), wanted = fresh.nearest(p);
-    ASSERT_NEAR(found.distance, wanted.distance, 1e-11);
+    const SurfacePoint found = tree.nearest(p), expected = fresh.nearest(p);
+    ASSERT_NEAR(found.distance, expected.distance, 1e-11);
     ASSERT_LT((found.point - p).norm() - found.distance, 1e-11);
-    ASSERT_EQ(tree.nearest(p, 0.5 * wanted.distance).triangle, -1);
+    ASSERT_EQ(tree.nearest(p, 0.5 * expected.distance).triangle, -1);
   }
 }
 
@@ -107,9 +107,9 @@ TEST(TriangleTree, SignedDistanceOfABoxEqualsItsFormula) {
   int inside = 0;
   for (const auto& p : points_around(5, 2000, 9)) {
     const Vector3d d = p.cwiseAbs() - half;
-    const double wanted = d.cwiseMax(0).norm() + std::min(d.maxCoeff(), 0.0);
-    inside += wanted < 0;
-    ASSERT_NEAR(tree.signed_distance(pose * p), wanted, 1e-10);
+    const double expected = d.cwiseMax(0).norm() + std::min(d.maxCoeff(), 0.0);
+    inside += expected < 0;
+    ASSERT_NEAR(tree.signed_distance(pose * p), expected, 1e-10);
   }
   EXPECT_GT(inside, 100);
 }
@@ -149,9 +149,9 @@ TEST(TriangleTree, WindingNumberCountsShellsAndAgreesWithTheSign) {
     const Vector3d p = pose * local;
     const double a = one.signed_distance(p), b = other.signed_distance(p);
     if (std::min(std::abs(a), std::abs(b)) < 0.05) continue;
-    const int wanted = (a < 0) + (b < 0);
-    inside_both += wanted == 2;
-    ASSERT_NEAR(tree.winding_number(p), wanted, 0.02);
+    const int expected = (a < 0) + (b < 0);
+    inside_both += expected == 2;
+    ASSERT_NEAR(tree.winding_number(p), expected, 0.02);
   }
   EXPECT_GT(inside_both, 50);
 }

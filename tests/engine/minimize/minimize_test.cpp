@@ -44,7 +44,7 @@ class Chain final : public Objective {
     return sum;
   }
   Curvature curvature(const Points& x, const Points& d) override {
-    ++looks;
+    ++line_evaluations;
     Points up = x, down = x, g_up, g_down;
     double sum = 0, size = 0;
     for (const auto& v : d) size = std::max(size, v.norm());
@@ -64,7 +64,7 @@ class Chain final : public Objective {
   }
 
   double floor = -1;
-  int looks = 0;  // along line searches
+  int line_evaluations = 0;  // along line searches
   std::size_t max_memory = 0;
 };
 
@@ -205,11 +205,11 @@ TEST(Preconditioned, SearchesALineOnlyWhereNecessary) {
       Points x = expected;
       for (auto& p : x) p.z() += 5 * settings.tolerance_mm;
       settings.fresh = fresh;
-      chain.looks = 0;
+      chain.line_evaluations = 0;
       EXPECT_TRUE(minimize(chain, unit, settings, x).converged());
       for (std::size_t i = 0; i < x.size(); ++i)
         EXPECT_LT((x[i] - expected[i]).norm(), settings.tolerance_mm) << too_stiff << fresh;
-      EXPECT_EQ(chain.looks == 0, fresh) << too_stiff;
+      EXPECT_EQ(chain.line_evaluations == 0, fresh) << too_stiff;
     }
 }
 

@@ -94,8 +94,8 @@ TEST(SurfaceContact, FrictionHoldsBelowItsCoefficientAndSlidesAboveWithTheRightA
     if (fraction < 1) {
       EXPECT_NEAR(world.pose(block).t.x(), place, 1e-6) << fraction;
     } else {
-      const double wanted = 9810 * (std::sin(slope) - friction * std::cos(slope));
-      EXPECT_NEAR(acceleration / wanted, 1, 0.03) << fraction;
+      const double expected = 9810 * (std::sin(slope) - friction * std::cos(slope));
+      EXPECT_NEAR(acceleration / expected, 1, 0.03) << fraction;
     }
     EXPECT_NEAR(world.motion(block).velocity.y(), 0, 1e-3);
   }
@@ -310,21 +310,21 @@ TEST(SurfaceContact, IsBitIdenticalOnTwoThreadsAndFromAnySavedState) {
   const auto bumpy = test::surface(mesh), ground = test::surface(plate());
   RigidWorld one = busy_world(bumpy, mesh, ground), two = busy_world(bumpy, mesh, ground),
              again = busy_world(bumpy, mesh, ground);
-  RigidState on_the_way;
+  RigidState midway;
   std::size_t touching = 0;
   for (int k = 0; k < 600; ++k) {
-    if (k == 150) on_the_way = one.state();
+    if (k == 150) midway = one.state();
     one.step(1);
     two.step(2);
     touching += one.contacts().size();
     ASSERT_TRUE(same_bits(one, two)) << k;
   }
   EXPECT_GT(touching, 1000u);
-  EXPECT_FALSE(on_the_way.contact_forces.empty());
-  again.set_state(on_the_way);
+  EXPECT_FALSE(midway.contact_forces.empty());
+  again.set_state(midway);
   for (int k = 150; k < 600; ++k) again.step(1);
   EXPECT_TRUE(same_bits(one, again));
-  EXPECT_THROW(RigidWorld().set_state(on_the_way), InputError);
+  EXPECT_THROW(RigidWorld().set_state(midway), InputError);
 }
 
 TEST(SurfaceContact, TurnedSceneGivesTheTurnedAnswer) {

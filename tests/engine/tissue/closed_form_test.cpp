@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr LayerMaterial soft{0.02, 0.45, 0}, softer{0.02, 0.3, 0};
-constexpr double both_ways = 1;  // springs push as they pull: the energy of an elastic body
+constexpr double symmetric = 1;  // springs push as they pull: the energy of an elastic body
 
 /// Mean displacement of the nodes at one coordinate along an axis of the box, in the box's frame.
 Vector3d mean_moved(const ElasticBlock& block, const Settled& settled, int axis, double at) {
@@ -93,7 +93,7 @@ TEST_P(Bar, StretchesByForceOverModulusAndSectionAndNarrowsByPoissonsRatio) {
   const double section = bar.size.mm().prod() / bar.size.mm()[bar.axis];
   for (const LayerMaterial& material : {soft, softer})
     for (double strain : {0.01, -0.001}) {
-      const auto got = pull(bar, material, both_ways, strain * material.modulus_MPa * section);
+      const auto got = pull(bar, material, symmetric, strain * material.modulus_MPa * section);
       EXPECT_NEAR(got.strain / strain, 1, 0.08);  // half triangles end each second row
       EXPECT_NEAR(got.narrowing / material.poisson, 1, 0.12);
     }
@@ -130,7 +130,7 @@ TEST_P(Shear, StoresTheEnergyOfAnElasticBlockAndStaysEven) {
   constexpr double gamma = 0.04;
   const ShearCase& shear = GetParam();
   for (const LayerMaterial& material : {soft, softer})
-    for (double fraction : {both_ways, 0.05}) {
+    for (double fraction : {symmetric, 0.05}) {
       ElasticBlock block = make_block(shear.size, material, fraction);
       MeshLoads loads;
       const auto sheared = [&](const Vector3d& place) {
@@ -168,7 +168,7 @@ TEST(ClosedForm, ABarHangsDownByItsWeight) {
   const BoxSize size{24, 6, 3, 3, 3};
   LayerMaterial material = soft;
   material.mass_kg = 1e-6 * size.mm().prod() / size.layers;  // per layer, of water
-  ElasticBlock block = make_block(size, material, both_ways);
+  ElasticBlock block = make_block(size, material, symmetric);
   MeshLoads loads;
   loads.node_force = weight_of_nodes(block.mesh, (block.pose.R * Vector3d::UnitX()));
   block.each_node([&](int node, const Vector3d& at) {
@@ -187,7 +187,7 @@ TEST(ClosedForm, ABarHangsDownByItsWeight) {
 /// The reference itself: uniform strain is exact, and a suspended bar has its analytic length.
 TEST(ClosedForm, FiniteElementsAgreeToo) {
   const BoxSize size{24, 6, 3, 3, 3};
-  const ElasticBlock block = make_block(size, soft, both_ways);
+  const ElasticBlock block = make_block(size, soft, symmetric);
   fe::Body body = fe::body_of(block.mesh, block.rest, {0.02, 0.3});
   fe::Given even;
   Eigen::Matrix3d stretch;

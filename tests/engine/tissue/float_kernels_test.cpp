@@ -71,10 +71,10 @@ TEST_P(FloatKernelsTest, FrontsKeepEachNumberToEightBits) {
     const RandomFront front(fronts(size), size, 3, 4);
     for (int c = 0; c < front.pivots * size; ++c)
       for (int r = c / size * size / 16 * 16; r < front.height; ++r) {
-        const double wanted = front.target(r, c);
-        EXPECT_NEAR(front.held(r, c), wanted, std::ldexp(std::abs(wanted), -8) + 1e-6)
+        const double reference = front.target(r, c);
+        EXPECT_NEAR(front.held(r, c), reference, std::ldexp(std::abs(reference), -8) + 1e-6)
             << size << ' ' << r << ' ' << c;
-        if (wanted == 0) {
+        if (reference == 0) {
           EXPECT_LE(std::abs(front.held(r, c)), std::ldexp(1.0, -39));
         }
       }
@@ -208,7 +208,7 @@ TEST_P(FloatKernelsTest, AProductIntoAnyTargetEqualsOneIntoZeros) {
 }
 
 TEST_P(FloatKernelsTest, ProductsOfLimitedDepthAreBitIdenticalInParts) {
-  constexpr int rows = 200, columns = 200, depth = FloatKernels::most_whole_depth, width = 48;
+  constexpr int rows = 200, columns = 200, depth = FloatKernels::max_whole_depth, width = 48;
   const std::vector<float> A = random_numbers(static_cast<std::size_t>(rows) * depth + 16);
   std::vector<float> whole(static_cast<std::size_t>(rows) * columns + 16, 0.0f), parts = whole;
   kernels.subtract_product(
@@ -235,9 +235,9 @@ TEST_P(FloatKernelsTest, LargeProductsAreThoseOfPlainLoops) {
         double sum = 0;
         for (int k = 0; k < depth; ++k)
           sum += static_cast<double>(A[k * ld + i]) * static_cast<double>(A[k * ld + j]);
-        const double wanted = static_cast<double>(before[j * rows + i]) - sum;
-        error = std::max(error, std::abs(static_cast<double>(C[j * rows + i]) - wanted));
-        most = std::max(most, std::abs(wanted));
+        const double reference = static_cast<double>(before[j * rows + i]) - sum;
+        error = std::max(error, std::abs(static_cast<double>(C[j * rows + i]) - reference));
+        most = std::max(most, std::abs(reference));
       }
     EXPECT_LT(error, 1e-5 * most);
     EXPECT_GT(most, 10);

@@ -160,13 +160,13 @@ TEST(MeshContact, CachedPointDistancesChangeNoResult) {
   int looked = 0, touched = 0;
   for (int look = 0; look < 200; ++look) {
     // Both move about each other at random, sometimes far in one step.
-    const double leap = look % 20 == 0 ? 2 : 0.1;
+    const double scale = look % 20 == 0 ? 2 : 0.1;
     X_WO =
-        Pose{Eigen::Quaterniond(Eigen::AngleAxisd(0.02 * leap * some(random), Vector3d::UnitX())),
-             leap * vector()} *
+        Pose{Eigen::Quaterniond(Eigen::AngleAxisd(0.02 * scale * some(random), Vector3d::UnitX())),
+             scale * vector()} *
         X_WO;
     X_WO.t *= 0.97;
-    for (auto& p : x) p += 0.2 * leap * vector();
+    for (auto& p : x) p += 0.2 * scale * vector();
     std::vector<PointContact> with, without;
     find_obstacle_contacts(slab.below, allowance, ball, X_WO, x, {}, with, {}, &known);
     find_obstacle_contacts(slab.below, allowance, ball, X_WO, x, {}, without);
@@ -196,9 +196,9 @@ TEST(MeshContact, ASlabDrapesOverABallItDoesNotEnter) {
   const HeldSlab slab(15, Vector3d(-21, -21, 22));  // lowest sheet at 16 mm
   const std::vector<double> none(slab.below.size(), 0.0);
   const auto look = [&](const Nodes& x) {
-    ContactLists looks(1);
-    find_obstacle_contacts(slab.below, none, ball, Pose{}, x, {.stiffness = 0.1}, looks[0]);
-    return looks;
+    ContactLists lists(1);
+    find_obstacle_contacts(slab.below, none, ball, Pose{}, x, {.stiffness = 0.1}, lists[0]);
+    return lists;
   };
   MeshLoads loads = slab.held_at({2, 0, -8});
   Nodes x = slab.rest, through = slab.rest;
@@ -258,9 +258,9 @@ TEST(MeshContact, OverlapAtRestMayRemainButNotDeepen) {
   allow_depths(at_rest, allowance);
   EXPECT_NEAR(*std::max_element(allowance.begin(), allowance.end()), 1.5, 0.05);
   const auto look = [&](const Nodes& x) {
-    ContactLists looks(1);
-    find_obstacle_contacts(slab.below, allowance, ball, Pose{}, x, {}, looks[0]);
-    return looks;
+    ContactLists lists(1);
+    find_obstacle_contacts(slab.below, allowance, ball, Pose{}, x, {}, lists[0]);
+    return lists;
   };
   Nodes x = slab.rest;
   MeshLoads loads = slab.held_at(Vector3d::Zero());
@@ -313,9 +313,9 @@ TEST(MeshContact, TwoSurfacesOfOneMeshPushEachOtherEqually) {
   const std::vector<double> none(points.size(), 0.0);
   const MeshSurface surface(top, rest);
   const auto look = [&](const Nodes& x) {
-    ContactLists looks(1);
-    find_surface_contacts(points, none, surface, x, {.reach_mm = 6, .stiffness = 1}, looks[0]);
-    return looks;
+    ContactLists lists(1);
+    find_surface_contacts(points, none, surface, x, {.reach_mm = 6, .stiffness = 1}, lists[0]);
+    return lists;
   };
   Nodes x = rest;
   const auto result = settle(mesh, HeldSlab::sheets, loads, look, x);

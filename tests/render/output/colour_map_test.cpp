@@ -64,7 +64,7 @@ struct Sight {
 };
 /// source: Machado, Oliveira and Fernandes 2009, severity 1
 std::vector<Sight> sights() {
-  return {{"usual", Eigen::Matrix3f::Identity()},
+  return {{"normal", Eigen::Matrix3f::Identity()},
           {"protanopia", Eigen::Matrix3f{{0.152286f, 1.052583f, -0.204868f},
                                          {0.114503f, 0.786281f, 0.099216f},
                                          {-0.003882f, -0.048116f, 1.051998f}}},

@@ -138,9 +138,9 @@ TEST_F(Recording, PicturesAreEncodedWhileDrawing) {
   ::setenv("PATH", path.c_str(), 1);
   EXPECT_TRUE(fs::exists(top / "reads"));
   const auto beside = content(top / "a");
-  auto usual = s;
-  usual.folder = top / "b";
-  record(usual);
+  auto by_default = s;
+  by_default.folder = top / "b";
+  record(by_default);
   EXPECT_EQ(beside, content(top / "b"));
 }
 

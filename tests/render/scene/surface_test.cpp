@@ -47,10 +47,10 @@ TEST(Normals, ASurfaceIsClosedUntilOneTriangleIsTakenOrTurned) {
 
 TEST(Occlusion, NothingShadesABallFromOutsideAndAllFromInside) {
   const Surface outward(ball({5, 5, 5}, 40)), inward(ball({5, 5, 5}, 40), true);
-  for (const auto& [surface, wanted] : {std::pair{&outward, 1.f}, {&inward, 0.f}}) {
+  for (const auto& [surface, expected] : {std::pair{&outward, 1.f}, {&inward, 0.f}}) {
     const OcclusionSurface one[] = {surface->of(0, 1, 1)};
     const auto result = bake_occlusion(one, 48, 2);
-    for (const float value : result[0].alone) ASSERT_NEAR(value, wanted, 0.06f);
+    for (const float value : result[0].alone) ASSERT_NEAR(value, expected, 0.06f);
   }
 }
 

@@ -12,8 +12,8 @@ namespace condyle {
 namespace {
 
 using test::shift;
-using test::two_bones;
 using test::target_poses;
+using test::two_bones;
 
 /// A plate as thin as the walls of real maxillae.
 TriMesh thin_plate() { return test::box({-40, -40, 30}, {40, 40, 30.3}); }
@@ -128,12 +128,12 @@ TEST(ContactModel, AFreePathIsCompleted) {
   Pose from;
   ContactSet last = model.at_rest();
   for (int k = 0; k < 30; ++k) {
-    Pose wanted = test::any_pose(random, 3);
-    wanted.R = Eigen::Quaterniond::Identity().slerp(0.05, wanted.R);
-    const auto stop = model.stop_at_contact(from, wanted, &last);
+    Pose target = test::any_pose(random, 3);
+    target.R = Eigen::Quaterniond::Identity().slerp(0.05, target.R);
+    const auto stop = model.stop_at_contact(from, target, &last);
     EXPECT_FALSE(stop.stopped);
-    EXPECT_EQ(stop.at[mandible_body].t, wanted.t);
-    EXPECT_EQ(stop.at[mandible_body].R.coeffs(), wanted.R.coeffs());
+    EXPECT_EQ(stop.at[mandible_body].t, target.t);
+    EXPECT_EQ(stop.at[mandible_body].R.coeffs(), target.R.coeffs());
     from = stop.at[mandible_body];
     last = stop.contacts;
     ++taken;
@@ -147,17 +147,17 @@ TEST(ContactModel, BodiesMovedTogetherStopAtTheSurface) {
   std::mt19937_64 random(2);
   int stopped = 0;
   for (int k = 0; k < 12; ++k) {
-    Pose wanted = test::any_pose(random, 8);
-    wanted.R = Eigen::Quaterniond::Identity().slerp(0.2, wanted.R);
-    wanted.t.z() += 22;
-    const auto stop = model.stop_at_contact({}, wanted, nullptr);
+    Pose target = test::any_pose(random, 8);
+    target.R = Eigen::Quaterniond::Identity().slerp(0.2, target.R);
+    target.t.z() += 22;
+    const auto stop = model.stop_at_contact({}, target, nullptr);
     if (!stop.stopped) continue;
     ++stopped;
     EXPECT_FALSE(stop.contacts.pairs[0].touching);
     EXPECT_GT(stop.contacts.min_clearance_mm(), 0);
     EXPECT_LE(stop.contacts.min_clearance_mm(), 0.01);
     // The pose lies on the path, and slightly farther the bones touch: it is the first contact.
-    EXPECT_LT(rotation_angle(stop.at[mandible_body]), rotation_angle(wanted));
+    EXPECT_LT(rotation_angle(stop.at[mandible_body]), rotation_angle(target));
     EXPECT_EQ(model.find(stop.at[mandible_body], nullptr).pairs[0].distance_mm,
               stop.contacts.pairs[0].distance_mm);
   }
@@ -182,9 +182,9 @@ TEST(ContactModel, AnArmDoesNotSwingThroughAThinWall) {
       two_bones(test::box({20, -40, -5}, {60, 40, -4.7}), test::box({-50, -2, -30}, {50, 2, -26})));
   const Eigen::Vector3d hinge(-50, 0, -28);
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(-0.9, Eigen::Vector3d::UnitY()));
-  const Pose wanted{turn, hinge - turn * hinge};
-  ASSERT_FALSE(model.find(wanted, nullptr).pairs[0].touching);
-  const auto stop = model.stop_at_contact({}, wanted, nullptr);
+  const Pose target{turn, hinge - turn * hinge};
+  ASSERT_FALSE(model.find(target, nullptr).pairs[0].touching);
+  const auto stop = model.stop_at_contact({}, target, nullptr);
   EXPECT_TRUE(stop.stopped);
   EXPECT_GT(stop.contacts.min_clearance_mm(), 0);
   EXPECT_LE(stop.contacts.min_clearance_mm(), 0.01);
@@ -240,9 +240,9 @@ TEST(ContactModel, OverlapInOnePlaceDoesNotExcuseContactInAnother) {
   // Turning about the first ball leaves its depth as it is and drives the other up.
   const Eigen::Vector3d center(-20, 0, 2);
   const Eigen::Quaterniond R(Eigen::AngleAxisd(-0.04, Eigen::Vector3d::UnitY()));
-  const Pose wanted{R, center - R * center};
-  EXPECT_NEAR(model.find(wanted, nullptr).max_penetration_mm(), 1.1, 0.3);
-  const auto stop = model.stop_at_contact({}, wanted, &model.at_rest());
+  const Pose target{R, center - R * center};
+  EXPECT_NEAR(model.find(target, nullptr).max_penetration_mm(), 1.1, 0.3);
+  const auto stop = model.stop_at_contact({}, target, &model.at_rest());
   EXPECT_TRUE(stop.stopped);
   EXPECT_NEAR(rotation_angle(stop.at[mandible_body]), 0.5 / 40, 0.002);
   EXPECT_LE(stop.contacts.max_penetration_mm(), 0.02);
@@ -279,17 +279,17 @@ TEST(ContactModel, ATurnedSceneGivesTheTurnedAnswer) {
   for (int k = 0; k < 4; ++k) {
     const Pose turn = test::any_pose(random, 30);
     const ContactModel there(two_bones(test::moved(upper, turn), test::moved(lower, turn)));
-    const Pose wanted = shift(1, -2, 25);
-    const auto a = here.stop_at_contact({}, wanted, nullptr);
-    const auto b = there.stop_at_contact({}, turn * wanted * turn.inverse(), nullptr);
+    const Pose target = shift(1, -2, 25);
+    const auto a = here.stop_at_contact({}, target, nullptr);
+    const auto b = there.stop_at_contact({}, turn * target * turn.inverse(), nullptr);
     EXPECT_TRUE(a.stopped);
     EXPECT_TRUE(b.stopped);
     // The way turns with the scene, its halvings may round differently: equal within the stop's
     // gap.
     const Pose a_turned = turn * a.at[mandible_body] * turn.inverse();
     EXPECT_LT((a_turned.t - b.at[mandible_body].t).norm(), 0.01);
-    EXPECT_NEAR(there.find(turn * wanted * turn.inverse(), nullptr).pairs[0].depth_mm,
-                here.find(wanted, nullptr).pairs[0].depth_mm, 1e-9);
+    EXPECT_NEAR(there.find(turn * target * turn.inverse(), nullptr).pairs[0].depth_mm,
+                here.find(target, nullptr).pairs[0].depth_mm, 1e-9);
   }
 }
 
@@ -304,11 +304,11 @@ TEST(ContactModel, OneAndTwoThreadsAreBitIdentical) {
   ContactSet last = model.at_rest();
   int stopped = 0;
   for (int k = 0; k < 20; ++k) {
-    Pose wanted = test::any_pose(random, 4);
-    wanted.R = Eigen::Quaterniond::Identity().slerp(0.05, wanted.R);
-    expect_same_bits(model.find(wanted, &last, 1), model.find(wanted, &last, 2));
-    const auto one = model.stop_at_contact(from, wanted, &last, 1);
-    const auto two = model.stop_at_contact(from, wanted, &last, 2);
+    Pose target = test::any_pose(random, 4);
+    target.R = Eigen::Quaterniond::Identity().slerp(0.05, target.R);
+    expect_same_bits(model.find(target, &last, 1), model.find(target, &last, 2));
+    const auto one = model.stop_at_contact(from, target, &last, 1);
+    const auto two = model.stop_at_contact(from, target, &last, 2);
     EXPECT_EQ(one.stopped, two.stopped);
     EXPECT_EQ(one.at[mandible_body].t, two.at[mandible_body].t);
     EXPECT_EQ(one.at[mandible_body].R.coeffs(), two.at[mandible_body].R.coeffs());

@@ -19,7 +19,7 @@ namespace {
 using Eigen::Vector3d;
 using test::builtin;
 using test::shift;
-using Wanted = std::vector<Pose>;  // X_PB
+using Targets = std::vector<Pose>;  // X_PB
 using test::target_poses;
 
 const ContactModel& builtin_model() {
@@ -49,7 +49,7 @@ struct Drag {
   const ContactModel& model;
   std::size_t still, moving;
   double allowed_mm = 0;  // overlap at rest
-  Wanted outside = target_poses(shift(0, 0, -8));
+  Targets outside = target_poses(shift(0, 0, -8));
 
   Pose pose(const BodyPoses& at) const { return pose_of(patient.parts[moving], at); }
 };
@@ -66,8 +66,8 @@ int expect_lawful(const Drag& drag, int frames, const TargetAt& target_at) {
   std::vector<double> depths;
   int held = 0;
   for (int f = 0; f < frames; ++f) {
-    const Wanted wanted = target_at(static_cast<double>(f) / (frames - 1));
-    const auto slide = drag.model.slide(at, wanted, &last, 2);
+    const Targets target = target_at(static_cast<double>(f) / (frames - 1));
+    const auto slide = drag.model.slide(at, target, &last, 2);
     at = slide.at;
     last = slide.contacts;
     EXPECT_LE(last.max_penetration_mm(), 0.02) << f;
@@ -79,17 +79,17 @@ int expect_lawful(const Drag& drag, int frames, const TargetAt& target_at) {
     const auto expect_here = [&](const ContactModel::Slide& other, const char* way) {
       EXPECT_LE(apart(mesh, drag.pose(other.at), X), 0.05) << f << " " << way;
     };
-    const auto again = drag.model.slide(at, wanted, &last, 1);
+    const auto again = drag.model.slide(at, target, &last, 1);
     EXPECT_LE(apart(mesh, drag.pose(again.at), X), 0.02) << f << " at rest";
-    expect_here(drag.model.slide(rest, wanted, nullptr, 2), "from rest");
+    expect_here(drag.model.slide(rest, target, nullptr, 2), "from rest");
     const BodyPoses open = drag.model.placed(drag.outside);
-    expect_here(drag.model.slide(open, wanted, nullptr, 2), "from outside");
+    expect_here(drag.model.slide(open, target, nullptr, 2), "from outside");
     BodyPoses other = open;
     for (const double back : {-0.2, -0.1, 0.0}) {
       const double s = std::clamp(static_cast<double>(f) / (frames - 1) + back, 0.0, 1.0);
       other = drag.model.slide(other, target_at(s), nullptr, 2).at;
     }
-    expect_here(drag.model.slide(other, wanted, nullptr, 2), "by another way");
+    expect_here(drag.model.slide(other, target, nullptr, 2), "by another way");
   }
   std::sort(depths.begin(), depths.end());
   EXPECT_GE(depths.size(), 3u);

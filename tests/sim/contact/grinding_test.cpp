@@ -62,16 +62,16 @@ TEST(Grinding, CrownsSlideOnCrownsWithoutOverlap) {
   std::vector<double> depths, proved;
   constexpr int frames = 330;
   for (int f = 0; f < frames; ++f) {
-    const Pose wanted = target_at(static_cast<double>(f) / frames);
-    const SlideResult result = model.slide(X, wanted, &memory);
+    const Pose target = target_at(static_cast<double>(f) / frames);
+    const SlideResult result = model.slide(X, target, &memory);
     X = result.X_FM;
-    if (contacts(upper_mesh, {}, lower_mesh, wanted).size() < 50) continue;
+    if (contacts(upper_mesh, {}, lower_mesh, target).size() < 50) continue;
     EXPECT_TRUE(result.touching);
     depths.push_back(deepest(upper_oracle, lower_oracle, X));
     const OverlapDepth exact = overlap_depth(upper_solid, {}, lower_solid, X);
     proved.push_back(exact.depth_mm + exact.error_mm);
     // At rest it stays.
-    EXPECT_EQ(model.slide(X, wanted, &memory).X_FM.t, X.t);
+    EXPECT_EQ(model.slide(X, target, &memory).X_FM.t, X.t);
   }
   ASSERT_GE(depths.size(), 300u);
   for (auto* sorted : {&depths, &proved}) {
@@ -160,9 +160,9 @@ TEST(Grinding, CrownsRubWithFrictionWithoutOverlapAndRestWhereTheHandRests) {
   double rough_way = 0, free_way = 0;
   constexpr int frames = 120;
   for (int f = 0; f < frames; ++f) {
-    const Pose wanted = target_at(static_cast<double>(f) / frames);
-    const SlideResult result = rough.slide(X, wanted);
-    const Pose smooth = free.slide(Y, wanted).X_FM;
+    const Pose target = target_at(static_cast<double>(f) / frames);
+    const SlideResult result = rough.slide(X, target);
+    const Pose smooth = free.slide(Y, target).X_FM;
     if (f > 0) {
       rough_way += (result.X_FM.t - X.t).norm();
       free_way += (smooth.t - Y.t).norm();
@@ -171,7 +171,7 @@ TEST(Grinding, CrownsRubWithFrictionWithoutOverlapAndRestWhereTheHandRests) {
     Y = smooth;
     if (!result.touching) continue;
     depths.push_back(deepest(upper_oracle, lower_oracle, X));
-    EXPECT_LE((rough.slide(X, wanted).X_FM.t - X.t).norm(), 0.02) << f;
+    EXPECT_LE((rough.slide(X, target).X_FM.t - X.t).norm(), 0.02) << f;
   }
   ASSERT_GT(depths.size(), 60u);
   std::sort(depths.begin(), depths.end());
@@ -197,20 +197,20 @@ void expect_one_answer(const Case& patient) {
   int compared = 0;
   constexpr int frames = 330;
   for (int f = 0; f < frames; f += 2) {
-    const Pose wanted = target_at(static_cast<double>(f) / frames);
-    const SlideResult result = model.slide(X, wanted, &memory);
+    const Pose target = target_at(static_cast<double>(f) / frames);
+    const SlideResult result = model.slide(X, target, &memory);
     X = result.X_FM;
-    EXPECT_EQ(model.slide(X, wanted).X_FM.t, X.t) << f;  // at rest, with nothing remembered
+    EXPECT_EQ(model.slide(X, target).X_FM.t, X.t) << f;  // at rest, with nothing remembered
     if (!result.touching || f % 30 != 0) continue;
     ++compared;
     const Pose open{Eigen::Quaterniond::Identity(), {0, 0, -8}};
-    EXPECT_LE(crowns_apart(lower, model.slide(open, wanted, nullptr, 2).X_FM, X), 0.05) << f;
+    EXPECT_LE(crowns_apart(lower, model.slide(open, target, nullptr, 2).X_FM, X), 0.05) << f;
     for (const int steps : {10, 100}) {
-      Pose side = wanted;
+      Pose side = target;
       side.t += Vector3d(1.5, 1, -5);
       Pose Y = side;
       for (int k = 1; k <= steps; ++k)
-        Y = model.slide(Y, interpolate(side, wanted, static_cast<double>(k) / steps), &memory).X_FM;
+        Y = model.slide(Y, interpolate(side, target, static_cast<double>(k) / steps), &memory).X_FM;
       EXPECT_LE(crowns_apart(lower, Y, X), 0.05) << f << " in " << steps;
     }
     Pose back = X;
@@ -234,11 +234,11 @@ TEST(Grinding, CrownsSlideBitIdenticallyOnOneAndTwoThreads) {
   Pose one{Eigen::Quaterniond::Identity(), {0, 0, -6}}, two = one;
   int touching = 0;
   for (int f = 0; f < 330; f += 10) {
-    const Pose wanted = target_at(f / 330.0);
-    const SlideResult result = model.slide(one, wanted, nullptr, 1);
+    const Pose target = target_at(f / 330.0);
+    const SlideResult result = model.slide(one, target, nullptr, 1);
     touching += result.touching;
     one = result.X_FM;
-    two = model.slide(two, wanted, nullptr, 2).X_FM;
+    two = model.slide(two, target, nullptr, 2).X_FM;
     EXPECT_EQ(one.t, two.t) << f;
     EXPECT_EQ(one.R.coeffs(), two.R.coeffs()) << f;
   }

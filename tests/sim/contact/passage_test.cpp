@@ -43,17 +43,17 @@ TEST(SweptPair, ReportedClearFromItsEndItIsClearOnTheWholePathWhicheverSideMoves
     const Eigen::AngleAxisd turn(0.2 * any(random), direction().normalized());
     p.from = {p.to.R * turn, p.to.t + 4 * direction()};
     p.pivot_D = 30 * direction();
-    p.kept_mm = trial % 3;
+    p.min_distance_mm = trial % 3;
     p.measure();
-    const PairContact at_end = p.judged(p.to, {}, {});
+    const PairContact at_end = p.query(p.to, {}, {});
     if (at_end.touching) continue;
     const bool told = p.clear(at_end);
     ++(told ? clear : not_clear);
     clear_by_parts += told && p.margin(at_end) <= p.length_mm;
     for (int k = 0; told && k < 25; ++k) {
-      const PairContact on_way = p.judged(interpolate(p.from, p.to, k / 25.0, p.pivot_D), {}, {});
-      EXPECT_FALSE(on_way.touching) << trial;
-      EXPECT_GE(on_way.distance_mm, p.kept_mm) << trial;
+      const PairContact on_path = p.query(interpolate(p.from, p.to, k / 25.0, p.pivot_D), {}, {});
+      EXPECT_FALSE(on_path.touching) << trial;
+      EXPECT_GE(on_path.distance_mm, p.min_distance_mm) << trial;
     }
   }
   EXPECT_GT(clear, 50);
@@ -72,7 +72,7 @@ TEST(SweptPair, WithNaNsIsNotReportedClear) {
   p.pair = &pair;
   p.pivot_D = Vector3d::Zero();
   p.to.t = {5, 0, 0};
-  const PairContact at_end = p.judged(p.to, {}, {});
+  const PairContact at_end = p.query(p.to, {}, {});
   p.measure();
   EXPECT_FALSE(p.clear(at_end));  // it emerged from the other
   p.from.t = {9, 0, 0};

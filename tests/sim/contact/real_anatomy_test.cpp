@@ -79,11 +79,11 @@ TEST(RealAnatomy, JawsOfTwoPatientsDoNotDriftIntoEachOther) {
   EXPECT_GT(deep_at_rest, 5);
   for (int i = 1; i <= 6; ++i) {
     const Eigen::Quaterniond R(Eigen::AngleAxisd(0.004 * i, Eigen::Vector3d::UnitX()));
-    const Pose wanted{R, condyles - R * condyles};
-    const auto slide = model.slide(at, test::target_poses(wanted), &last, 2);
+    const Pose target{R, condyles - R * condyles};
+    const auto slide = model.slide(at, test::target_poses(target), &last, 2);
     for (const auto& vertex : mixed.parts.back().mesh.vertices)
       ASSERT_LT((slide.at[mandible_body] * vertex - vertex).norm(),
-                (wanted * vertex - vertex).norm() + 0.5);
+                (target * vertex - vertex).norm() + 0.5);
     at = slide.at;
     last = slide.contacts;
     EXPECT_LT(last.pairs.front().depth_mm, deep_at_rest + 0.5);

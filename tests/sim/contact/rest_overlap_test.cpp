@@ -52,7 +52,7 @@ std::vector<NamedMesh> intruders() {
 }
 
 TEST(RestOverlap, DepthOnTheOtherSideIsTheTrueOne) {
-  int judged = 0;
+  int compared = 0;
   for (const auto& body : lower_bodies())
     for (const auto& intruder : intruders()) {
       SCOPED_TRACE(body.name + " on " + intruder.name);
@@ -63,15 +63,15 @@ TEST(RestOverlap, DepthOnTheOtherSideIsTheTrueOne) {
       EXPECT_EQ(model.at_rest().max_penetration_mm(), 0);
       for (const double depth : {0.5, 1.0, 3.0}) {
         const ContactSet set = model.find(shift(0, 0, -2 - depth), nullptr);
-        ASSERT_EQ(set.away_from_rest.size(), 1u);
-        EXPECT_NEAR(set.away_from_rest[0].depth_mm, depth, 0.01 * depth);
+        ASSERT_EQ(set.outside_rest_overlap.size(), 1u);
+        EXPECT_NEAR(set.outside_rest_overlap[0].depth_mm, depth, 0.01 * depth);
         EXPECT_NEAR(set.max_penetration_mm(), depth, 0.01 * depth);
         EXPECT_LE(set.pairs[0].witness_a.z(), -22 + 1e-6);
         EXPECT_GE(set.pairs[0].witness_a.z(), -22 - depth - 1e-6);
-        ++judged;
+        ++compared;
       }
     }
-  EXPECT_EQ(judged, 36);
+  EXPECT_EQ(compared, 36);
 }
 
 /// The crowns overlap at rest by 1.2 mm; the condyles are then driven into their fossae.

@@ -54,10 +54,10 @@ TEST(Slide, FarSurfacesMayBeBoundedAndNothingElseChanges) {
   ContactSet last = model.at_rest(), last_measured = model.at_rest();
   int bounds = 0, held = 0;
   for (int k = 0; k <= 120; ++k) {  // far down and up again, until it is held
-    const Pose wanted = shift(0.1 * k, 0, 3 - 15 * std::sin(std::numbers::pi * k / 60));
+    const Pose target = shift(0.1 * k, 0, 3 - 15 * std::sin(std::numbers::pi * k / 60));
     const bool bound_far = k % 4 != 0;  // as a window, which shows some steps
-    const auto slide = model.slide(X, test::target_poses(wanted), &last, 1, bound_far);
-    const auto measured = model.slide(X_measured, test::target_poses(wanted), &last_measured);
+    const auto slide = model.slide(X, test::target_poses(target), &last, 1, bound_far);
+    const auto measured = model.slide(X_measured, test::target_poses(target), &last_measured);
     EXPECT_EQ(slide.at[mandible_body].t, measured.at[mandible_body].t) << k;
     EXPECT_EQ(slide.stopped, measured.stopped) << k;
     for (std::size_t i = 0; i < slide.contacts.pairs.size(); ++i) {
@@ -87,14 +87,14 @@ TEST(Slide, BoundedDistancesAreMeasuredWhereNothingMoves) {
   patient.add_piece({"segment", Role::segment, test::box({-3, -3, 12}, {3, 3, 13}), {}},
                     cranium_body);
   const ContactModel model(patient);
-  const std::vector<Pose> wanted{shift(0.5, 0, 0)};
-  const auto moved = model.slide(Pose{}, test::target_poses({}, wanted), &model.at_rest(), 1, true);
+  const std::vector<Pose> target{shift(0.5, 0, 0)};
+  const auto moved = model.slide(Pose{}, test::target_poses({}, target), &model.at_rest(), 1, true);
   const auto bounds = [](const ContactSet& set) {
     return std::count_if(set.pairs.begin(), set.pairs.end(),
                          [](const PairContact& pair) { return pair.distance_is_bound; });
   };
   EXPECT_GT(bounds(moved.contacts), 0);
-  const auto still = model.slide(moved.at, test::target_poses({}, wanted), &moved.contacts);
+  const auto still = model.slide(moved.at, test::target_poses({}, target), &moved.contacts);
   EXPECT_EQ(bounds(still.contacts), 0);
   const ContactSet anew = model.find(moved.at, nullptr);
   for (std::size_t i = 0; i < anew.pairs.size(); ++i)
@@ -105,12 +105,12 @@ TEST(Slide, WithoutContactThePoseIsExactlyTheTarget) {
   const ContactModel model(ball_under_block());
   std::mt19937_64 random(3);
   for (int k = 0; k < 20; ++k) {
-    Pose wanted = test::any_pose(random, 0.6);
-    wanted.R = Eigen::Quaterniond::Identity().slerp(0.1, wanted.R);
-    const auto slide = model.slide(Pose{}, test::target_poses(wanted), nullptr);
+    Pose target = test::any_pose(random, 0.6);
+    target.R = Eigen::Quaterniond::Identity().slerp(0.1, target.R);
+    const auto slide = model.slide(Pose{}, test::target_poses(target), nullptr);
     EXPECT_FALSE(slide.stopped);
-    EXPECT_EQ(slide.at[mandible_body].t, wanted.t);
-    EXPECT_EQ(slide.at[mandible_body].R.coeffs(), wanted.R.coeffs());
+    EXPECT_EQ(slide.at[mandible_body].t, target.t);
+    EXPECT_EQ(slide.at[mandible_body].R.coeffs(), target.R.coeffs());
   }
 }
 
@@ -154,10 +154,10 @@ TEST(Slide, AFixedTargetGivesAFixedPose) {
   const ContactModel model(ball_under_block());
   Pose X;
   ContactSet last = model.at_rest();
-  const Pose wanted{Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Vector3d(1, 2, 0).normalized())),
+  const Pose target{Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Vector3d(1, 2, 0).normalized())),
                     {3, 1, 6}};
   for (int k = 0; k < 30; ++k) {
-    const auto slide = model.slide(X, test::target_poses(wanted), &last);
+    const auto slide = model.slide(X, test::target_poses(target), &last);
     if (k > 1) {
       EXPECT_LE((slide.at[mandible_body].t - X.t).norm(), 0.02);
     }
@@ -213,10 +213,10 @@ TEST(Slide, OneAndTwoThreadsAreBitIdentical) {
   ContactSet last = model.at_rest();
   int held = 0;
   for (int k = 0; k < 15; ++k) {
-    Pose wanted = test::any_pose(random, 5);
-    wanted.R = Eigen::Quaterniond::Identity().slerp(0.05, wanted.R);
-    const auto one = model.slide(X, test::target_poses(wanted), &last, 1),
-               two = model.slide(X, test::target_poses(wanted), &last, 2);
+    Pose target = test::any_pose(random, 5);
+    target.R = Eigen::Quaterniond::Identity().slerp(0.05, target.R);
+    const auto one = model.slide(X, test::target_poses(target), &last, 1),
+               two = model.slide(X, test::target_poses(target), &last, 2);
     EXPECT_EQ(one.at[mandible_body].t, two.at[mandible_body].t);
     EXPECT_EQ(one.at[mandible_body].R.coeffs(), two.at[mandible_body].R.coeffs());
     EXPECT_EQ(one.contacts.pairs[0].depth_mm, two.contacts.pairs[0].depth_mm);

@@ -82,13 +82,13 @@ Outcome follow(const Scene& scene, const Pose& start, int frames, const Wanted& 
   Pose X = start;
   SlideCache memory;
   for (int f = 0; f < frames; ++f) {
-    const Pose wanted = target_at(static_cast<double>(f) / (frames - 1));
-    const SlideResult result = scene.model.slide(X, wanted, &memory);
+    const Pose target = target_at(static_cast<double>(f) / (frames - 1));
+    const SlideResult result = scene.model.slide(X, target, &memory);
     EXPECT_TRUE(result.settled) << f;
     // Nothing but the poses counts, and what rests stays.
-    EXPECT_EQ(scene.model.slide(X, wanted).X_FM.t, result.X_FM.t) << f;
+    EXPECT_EQ(scene.model.slide(X, target).X_FM.t, result.X_FM.t) << f;
     out.rest_mm = std::max(out.rest_mm,
-                           scene.apart(scene.model.slide(result.X_FM, wanted).X_FM, result.X_FM));
+                           scene.apart(scene.model.slide(result.X_FM, target).X_FM, result.X_FM));
     X = result.X_FM;
     if (!result.touching) continue;
     ++out.touching;
@@ -96,11 +96,11 @@ Outcome follow(const Scene& scene, const Pose& start, int frames, const Wanted& 
     if (f % 10 != 0) continue;
     // In one jump, and in ten and a hundred steps along another path.
     ++out.compared;
-    out.path_mm = std::max(out.path_mm, scene.apart(scene.model.slide(start, wanted).X_FM, X));
+    out.path_mm = std::max(out.path_mm, scene.apart(scene.model.slide(start, target).X_FM, X));
     for (const int steps : {10, 100}) {
       Pose Y = start;
       for (int k = 1; k <= steps; ++k)
-        Y = scene.model.slide(Y, interpolate(start, wanted, static_cast<double>(k) / steps)).X_FM;
+        Y = scene.model.slide(Y, interpolate(start, target, static_cast<double>(k) / steps)).X_FM;
       out.path_mm = std::max(out.path_mm, scene.apart(Y, X));
     }
   }
@@ -115,8 +115,8 @@ Outcome follow(const Scene& scene, const Pose& start, int frames, const Wanted& 
   return out;
 }
 
-void expect_lawful(const Outcome& out, int least_touching) {
-  EXPECT_GE(out.touching, least_touching);
+void expect_lawful(const Outcome& out, int min_touching) {
+  EXPECT_GE(out.touching, min_touching);
   EXPECT_GT(out.compared, 2);
   EXPECT_LE(out.deepest_mm, 0.1);
   EXPECT_LE(out.median_depth, 0.05);

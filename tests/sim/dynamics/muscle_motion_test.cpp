@@ -58,13 +58,13 @@ Case* MuscleMotion::patient_ = nullptr;
 ContactModel* MuscleMotion::contacts_ = nullptr;
 
 TEST_F(MuscleMotion, MusclesFollowAGivenOpening) {
-  const Motion wanted = make("opening"), found = make("inverse:opening");
+  const Motion prescribed = make("opening"), found = make("inverse:opening");
   ASSERT_EQ(found.muscle_names.size(), 34u);
-  EXPECT_NEAR(found.duration_s, wanted.duration_s, 1e-3);
+  EXPECT_NEAR(found.duration_s, prescribed.duration_s, 1e-3);
   double squares = 0, effort = 0, apart = 0;
   int count = 0;
-  for (double t = 0; t <= wanted.duration_s; t += 0.01, ++count) {
-    squares += (found.target(t) * incisor() - wanted.target(t) * incisor()).squaredNorm();
+  for (double t = 0; t <= prescribed.duration_s; t += 0.01, ++count) {
+    squares += (found.target(t) * incisor() - prescribed.target(t) * incisor()).squaredNorm();
     const MuscleStates states = found.muscles(t);
     for (std::size_t m = 0; m < states.size(); m += 2) {
       EXPECT_GE(states[m].excitation, 0);

@@ -53,8 +53,8 @@ TEST(BodyTree, ParentsPrecedeChildrenAfterAnyChange) {
         const BodyId old{i}, now = number[static_cast<std::size_t>(i)];
         EXPECT_EQ(tree[now].name, before[old].name);
         EXPECT_LT(tree[now].parent, now);
-        const BodyId wanted = old == body ? parent : before[old].parent;
-        EXPECT_EQ(tree[tree[now].parent].name, before[wanted].name);
+        const BodyId expected = old == body ? parent : before[old].parent;
+        EXPECT_EQ(tree[tree[now].parent].name, before[expected].name);
       }
       ++moved;
     }

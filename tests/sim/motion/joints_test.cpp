@@ -44,12 +44,12 @@ TEST(JawJoints, OrbitingCondyleMovesMediallyByBennettAngleAndSideShift) {
   const JawJoints joints(free_jaw(), {.bennett_deg = 10, .side_shift_mm = 0.6},
                          JointReach::straight, 1);
   for (const double s : {4.0, 8.0, 12.0}) {
-    const double wanted = 0.6 * (1 - std::exp(-s)) + s * std::tan(10 * degree);
+    const double expected = 0.6 * (1 - std::exp(-s)) + s * std::tan(10 * degree);
     const Vector3d left = joints.condyle(JawSide::left), right = joints.condyle(JawSide::right);
     const Pose to_right = joints.pose({0, s, 0, joints.bennett_shift_mm(s, 0)});
-    EXPECT_NEAR(left.x() - (to_right * left).x(), wanted, 1e-9);
+    EXPECT_NEAR(left.x() - (to_right * left).x(), expected, 1e-9);
     const Pose to_left = joints.pose({0, 0, s, joints.bennett_shift_mm(0, s)});
-    EXPECT_NEAR((to_left * right).x() - right.x(), wanted, 1e-9);
+    EXPECT_NEAR((to_left * right).x() - right.x(), expected, 1e-9);
   }
   EXPECT_EQ(joints.bennett_shift_mm(5, 5), 0);
 }

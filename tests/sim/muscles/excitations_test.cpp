@@ -57,8 +57,8 @@ class ExcitationFile : public ::testing::Test {
 
 TEST_F(ExcitationFile, ColumnsNameMusclesKindsAndGroupsAndAddUp) {
   const auto at = read("# who pulls\ntime_s,lat,bi_mt,rmy,t\n0,0.1,0.2,0.3,0.05\n").at(7);
-  const std::vector<double> wanted = {0.15, 0.05, 0.25, 0.25, 0, 0.3, 0, 0.3};
-  for (std::size_t m = 0; m < wanted.size(); ++m) EXPECT_NEAR(at[m], wanted[m], 1e-12) << m;
+  const std::vector<double> expected = {0.15, 0.05, 0.25, 0.25, 0, 0.3, 0, 0.3};
+  for (std::size_t m = 0; m < expected.size(); ++m) EXPECT_NEAR(at[m], expected[m], 1e-12) << m;
   EXPECT_EQ(read("LAT,TIME_S,t\r\n0.7,0,0.6\r\n").at(0)[0], 1);  // never above 1
 }
 
@@ -138,10 +138,10 @@ TEST_F(ExcitationFile, ASidecarSetsToneAndRemovesMuscles) {
       read(rows, R"({"tone": {"t": 0.01, "lat": 0.02}, "without": ["pm"], "until_s": 0.4})");
   EXPECT_EQ(e.duration_s, 0.4);
   EXPECT_EQ(e.without, (std::vector<std::string>{"lpm", "rpm"}));
-  const std::vector<double> wanted = {0.13, 0.01, 0.01, 0.01, 0, 0.3};  // lat rat lmt rmt lam ram
+  const std::vector<double> expected = {0.13, 0.01, 0.01, 0.01, 0, 0.3};  // lat rat lmt rmt lam ram
   const auto at = e.at(0);
-  ASSERT_EQ(at.size(), wanted.size());
-  for (std::size_t m = 0; m < wanted.size(); ++m) EXPECT_NEAR(at[m], wanted[m], 1e-12) << m;
+  ASSERT_EQ(at.size(), expected.size());
+  for (std::size_t m = 0; m < expected.size(); ++m) EXPECT_NEAR(at[m], expected[m], 1e-12) << m;
   expect_refused(rows, {"excite.csv.json", "without", "biceps"}, R"({"without": ["biceps"]})");
   expect_refused(rows, {"excite.csv.json", "without", "no muscle"},
                  R"({"without": ["at", "mt", "my"]})");

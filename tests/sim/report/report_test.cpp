@@ -64,14 +64,14 @@ TEST(Trace, SaysWhetherTheTissueWasKeptBecauseItsSolveFailed) {
     return all;
   };
   const auto names = cells();
-  for (const char* wanted : {"0", "1"}) {
+  for (const char* expected : {"0", "1"}) {
     const auto row = cells();
     const auto value = [&](const char* name) {
       return row.at(
           static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()));
     };
-    EXPECT_EQ(value("tissue_kept"), wanted);
-    EXPECT_NE(value("tissue_converged"), wanted);
+    EXPECT_EQ(value("tissue_kept"), expected);
+    EXPECT_NE(value("tissue_converged"), expected);
   }
 }
 

@@ -90,8 +90,8 @@ TEST(Drag, UndoReturnsAJawThatWasPushedOutOfItsJoints) {
   constexpr BodyId jaw = mandible_body;
   LiveSimulation live(scene, resting(), without_tissue());
   await_start(live);
-  const auto at = [&](const Pose& wanted) {
-    live.drag(jaw, wanted);
+  const auto at = [&](const Pose& target) {
+    live.drag(jaw, target);
     const FrameState frame = next_frame(live);
     EXPECT_LE(frame.contacts.max_penetration_mm(), 0.02);
     return frame.poses[mandible_body];
@@ -114,9 +114,9 @@ TEST(Drag, ATargetThatJumpsTakesNoJawFromUnderItsGraftNorThroughAPart) {
   constexpr BodyId jaw = mandible_body;
   LiveSimulation live(scene, resting(), without_tissue());
   await_start(live);
-  const auto expect_apart = [&](BodyId body, const Pose& wanted) {
-    live.drag(body, wanted);
-    EXPECT_LE(next_frame(live).contacts.max_penetration_mm(), 0.02) << wanted.t.transpose();
+  const auto expect_apart = [&](BodyId body, const Pose& target) {
+    live.drag(body, target);
+    EXPECT_LE(next_frame(live).contacts.max_penetration_mm(), 0.02) << target.t.transpose();
   };
   expect_apart(jaw, shift(0, 0, -60));
   expect_apart(BodyId{3}, shift(-40, 35, -20));  // the jaw's old pose

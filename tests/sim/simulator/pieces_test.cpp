@@ -96,7 +96,7 @@ class Face {
 };
 
 void expect_the_chin_takes_the_skin_along(Case patient, double above_mm) {
-  constexpr double open_mm = 40, forward_mm = 8, least_mm = 6;
+  constexpr double open_mm = 40, forward_mm = 8, min_mm = 6;
   part_lips(patient);
   const auto uncut = build_tissue(patient);
   const std::array cuts{cut_chin(patient, above_mm)};
@@ -116,7 +116,7 @@ void expect_the_chin_takes_the_skin_along(Case patient, double above_mm) {
   moved.move(poses({}, forward));
   const double at_rest_mm =
       parted.on_mandible(soft_pogonion).y() - moved.on_mandible(soft_pogonion).y();
-  EXPECT_GT(at_rest_mm, least_mm);
+  EXPECT_GT(at_rest_mm, min_mm);
   Face back = moved;
   back.move(poses({}, stays));
   const double left_mm = largest_displacement(back.state().nodes, whole.state().nodes);
@@ -127,7 +127,7 @@ void expect_the_chin_takes_the_skin_along(Case patient, double above_mm) {
   whole.open(angle, stays);
   const double open_forward_mm =
       parted.on_mandible(soft_pogonion).y() - moved.on_mandible(soft_pogonion).y();
-  EXPECT_GT(open_forward_mm, least_mm);
+  EXPECT_GT(open_forward_mm, min_mm);
   const double difference_mm = largest_displacement(whole.state().nodes, parted.state().nodes);
   EXPECT_LT(difference_mm, 1);
   std::printf(

@@ -92,10 +92,10 @@ TEST(NothingMovesBeforeSurgery, ForcesThatStrainsCannotBalanceTurnWithTheJaw) {
     const Vector3d& held = at_rest.node_force[i];
     if (held.norm() < 1e-3) continue;
     const double fraction = model->support.node.sum(i);
-    const Vector3d wanted = fraction > 0.5 ? X_CM.R * held : held;
+    const Vector3d expected = fraction > 0.5 ? X_CM.R * held : held;
     // largest displacement by the rotation
     const double most = 2 * std::sin(rotation_angle(X_CM) / 2) * held.norm();
-    EXPECT_LE((opened.node_force[i] - wanted).norm(),
+    EXPECT_LE((opened.node_force[i] - expected).norm(),
               std::min(fraction, 1 - fraction) * most + 1e-9);
     (fraction > 0.5 ? with_jaw : with_skull) += 1;
   }

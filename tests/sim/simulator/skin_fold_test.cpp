@@ -66,9 +66,9 @@ TEST(SkinFold, TheChinComesToLieOnTheThroatAndLeavesItAgain) {
   EXPECT_GT(throat.points.size(), 50u);
   TissueWarmStart warm;
   const auto touches = [&] {
-    const ContactLists& looks = warm.last->touches;
+    const ContactLists& lists = warm.last->touches;
     const std::size_t obstacles = model->contact->obstacles.size();
-    return looks[obstacles + chin_on_throat].size() + looks[obstacles + throat_on_chin].size();
+    return lists[obstacles + chin_on_throat].size() + lists[obstacles + throat_on_chin].size();
   };
 
   constexpr double step = 0.75 * degree;
@@ -78,7 +78,7 @@ TEST(SkinFold, TheChinComesToLieOnTheThroatAndLeavesItAgain) {
     state = solve_tissue(*model, state,
                          test::jaw_at(model->opening.path->pose(share * begin * step)), {}, warm);
   EXPECT_EQ(touches(), 0u);
-  double leap = 0, deepest = 0;
+  double max_step = 0, deepest = 0;
   Nodes opening;
   const auto go_to = [&](int i) {
     const TissueState next =
@@ -86,7 +86,7 @@ TEST(SkinFold, TheChinComesToLieOnTheThroatAndLeavesItAgain) {
     EXPECT_TRUE(next.converged) << i;
     EXPECT_LT(next.penetration_mm, 0.1) << i;
     if (state.X_CB[1].R.coeffs() != next.X_CB[1].R.coeffs() && i != begin)
-      leap = std::max(leap, farthest(state.nodes, next.nodes));
+      max_step = std::max(max_step, farthest(state.nodes, next.nodes));
     state = next;
     deepest = std::max(deepest, deepest_crossing(*model, state.nodes));
   };
@@ -99,9 +99,9 @@ TEST(SkinFold, TheChinComesToLieOnTheThroatAndLeavesItAgain) {
   std::printf(
       "skin crosses by up to %.2f mm; longest way of a step %.2f mm; opening and closing "
       "%.2f mm apart\n",
-      deepest, leap, farthest(opening, state.nodes));
+      deepest, max_step, farthest(opening, state.nodes));
   EXPECT_LT(deepest, 0.6);  // between points 6 mm apart
-  EXPECT_LT(leap, 4);
+  EXPECT_LT(max_step, 4);
   EXPECT_LT(farthest(opening, state.nodes), 1);
 }
 

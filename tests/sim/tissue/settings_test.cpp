@@ -103,9 +103,9 @@ TEST(TissueSettings, LayersDividedInAFineMeshKeepMassAndStiffness) {
     for (const auto& f : model.support.node_force) sum -= f.z();
     return sum;
   };
-  const auto usual = build_tissue(patient, {.plan = plan});
+  const auto by_default = build_tissue(patient, {.plan = plan});
   const auto fine = build_tissue(patient, {.surface_nodes = 700, .plan = plan});
-  EXPECT_EQ(usual->mesh->sheets, 3);
+  EXPECT_EQ(by_default->mesh->sheets, 3);
   EXPECT_GT(fine->mesh->sheets, 3);
   EXPECT_EQ(summary(*fine).layers, 2);
   bool reported = false;
@@ -119,9 +119,9 @@ TEST(TissueSettings, LayersDividedInAFineMeshKeepMassAndStiffness) {
       if (prism[0] % model.mesh->sheets > 0) volume += prism_volume(model.mesh->rest, prism);
     return 9.81 * (0.05 + 1e-6 * volume);
   };
-  EXPECT_NEAR(weight(*usual), due(*usual), 1e-6);
+  EXPECT_NEAR(weight(*by_default), due(*by_default), 1e-6);
   EXPECT_NEAR(weight(*fine), due(*fine), 1e-6);
-  EXPECT_NEAR(weight(*fine), weight(*usual), 0.02 * weight(*usual));
+  EXPECT_NEAR(weight(*fine), weight(*by_default), 0.02 * weight(*by_default));
   // The supports of the finer mesh have the same total, distributed over more nodes.
   const auto held = [](const TissueModel& model) {
     double sum = 0;
@@ -131,19 +131,19 @@ TEST(TissueSettings, LayersDividedInAFineMeshKeepMassAndStiffness) {
     return sum;
   };
   EXPECT_GT(fine->mesh->elements.anchor_node.size(),
-            1.2 * usual->mesh->elements.anchor_node.size());
-  EXPECT_NEAR(held(*fine), held(*usual), 0.15 * held(*usual));
+            1.2 * by_default->mesh->elements.anchor_node.size());
+  EXPECT_NEAR(held(*fine), held(*by_default), 0.15 * held(*by_default));
 }
 
 TEST(TissueSettings, AttachmentsAreChosenByLandmarkOrPointAndBone) {
-  const auto usual = plain_model({});
+  const auto by_default = plain_model({});
   TissuePlan loose;
   loose.attachments = {
       {.bone = mandible_body, .attached = false, .landmark = "", .radius_mm = 200}};
   const auto without = plain_model(loose);
-  EXPECT_GT(summary(*usual).attached_to_mandible, 0);
+  EXPECT_GT(summary(*by_default).attached_to_mandible, 0);
   EXPECT_EQ(summary(*without).attached_to_mandible, 0);
-  EXPECT_EQ(summary(*without).attached_to_cranium, summary(*usual).attached_to_cranium);
+  EXPECT_EQ(summary(*without).attached_to_cranium, summary(*by_default).attached_to_cranium);
   bool reported = false;
   for (const auto& note : summary(*without).notes)
     reported = reported || note.find("no tissue is attached to the mandible") != std::string::npos;

@@ -65,12 +65,12 @@ MinimizeResult conjugate_gradient(LineSearch search, Objective& objective,
     g.swap(g_new);
     gg = dot(g, g);
     if (found.t > 0) {
-      const double way = found.t * reach;
-      if (settled(settings, way, before, f)) {
+      const double step = found.t * reach;
+      if (settled(settings, step, before, f)) {
         result.status = MinimizeResult::Status::converged;
         break;
       }
-      moved = way;
+      moved = step;
     }
     steepest = beta == 0;
     for (std::size_t i = 0; i < x.size(); ++i) d[i] = beta * d[i] - g[i];

@@ -25,10 +25,10 @@ LinePoint brent(const std::function<double(double)>& value, const Bracket& brack
   double a = std::min(bracket.low.t, bracket.high.t), b = std::max(bracket.low.t, bracket.high.t);
   LinePoint x = bracket.middle, w = bracket.low, v = bracket.high;  // best, second, third
   if (v.value < w.value) std::swap(v, w);
-  const double least_width = 1e-3 * tolerance * (b - a);
+  const double min_width = 1e-3 * tolerance * (b - a);
   double before_last = b - a, last = b - a;
   for (; evaluations > 0; --evaluations) {
-    const double width = tolerance * std::abs(x.t) + least_width, middle = 0.5 * (a + b);
+    const double width = tolerance * std::abs(x.t) + min_width, middle = 0.5 * (a + b);
     if (std::abs(x.t - middle) <= 2 * width - 0.5 * (b - a)) break;
     double step = vertex(w, x, v) - x.t;
     const bool good = std::isfinite(step) && std::abs(step) < 0.5 * std::abs(before_last) &&

@@ -23,11 +23,11 @@ MinimizeResult powell(Objective& objective, const BaselineSettings& settings, Po
   }
   MatrixXd direction = MatrixXd::Identity(n, n);
   VectorXd reach = VectorXd::Constant(n, 0.1);  // how far to look first along each direction
-  VectorXd before = at, way(n);
-  result.bytes =
-      static_cast<std::size_t>(direction.size() + reach.size() + before.size() + way.size()) *
-          sizeof(double) +
-      bytes_of(trial_points);
+  VectorXd before = at, total_step(n);
+  result.bytes = static_cast<std::size_t>(direction.size() + reach.size() + before.size() +
+                                          total_step.size()) *
+                     sizeof(double) +
+                 bytes_of(trial_points);
 
   // Moves to the minimum along `d`; true when that was lower.
   const auto along = [&](const auto& d, double& look) {
@@ -65,30 +65,30 @@ MinimizeResult powell(Objective& objective, const BaselineSettings& settings, Po
         biggest_at = i;
       }
     }
-    way = at - before;
+    total_step = at - before;
     double moved = 0;
-    for (Index i = 0; i < n; i += 3) moved = std::max(moved, way.segment<3>(i).norm());
+    for (Index i = 0; i < n; i += 3) moved = std::max(moved, total_step.segment<3>(i).norm());
     if (settled(settings, moved, f_before, f)) {
       result.status = MinimizeResult::Status::converged;
       break;
     }
     if (counted.spent()) break;
-    // Powell's rule: the way as a whole takes the place of the direction of the greatest fall,
+    // Powell's rule: the total step takes the place of the direction of the greatest fall,
     // unless that would make the directions dependent.
-    trial = at + way;
+    trial = at + total_step;
     const double f_on = counted.value(trial_points);
     if (f_on >= f_before) continue;
     const double gain = f_before - f - biggest;
     if (2 * (f_before - 2 * f + f_on) * gain * gain >=
         biggest * (f_before - f_on) * (f_before - f_on))
       continue;
-    const double length = way.norm();
+    const double length = total_step.norm();
     double look = length;
-    way /= length;
-    along(way, look);
+    total_step /= length;
+    along(total_step, look);
     direction.col(biggest_at) = direction.col(n - 1);
     reach[biggest_at] = reach[n - 1];
-    direction.col(n - 1) = way;
+    direction.col(n - 1) = total_step;
     reach[n - 1] = look;
   }
   result.energy = f;

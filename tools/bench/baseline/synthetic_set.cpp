@@ -165,9 +165,10 @@ MeshLoads synthetic_loads(const SyntheticSet& set, const Pose& lower_bone) {
 }
 
 Nodes carried(const SyntheticSet& set, const Nodes& x, const Pose& from, const Pose& to) {
-  const Pose way = to * from.inverse();
+  const Pose motion = to * from.inverse();
   Nodes next = x;
-  for (std::size_t i = 0; i < x.size(); ++i) next[i] += set.node_fraction[i] * (way * x[i] - x[i]);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    next[i] += set.node_fraction[i] * (motion * x[i] - x[i]);
   return next;
 }
 

@@ -163,7 +163,7 @@ TEST_P(Instrument, SlidersThatCutAndCompareSayHowFar) {
   stage.click("left-tab:Look");
   stage.view.look.clip = stage.view.look.cut_away = stage.view.look.wipe = true;
   stage.view.look.clip_from = 'S';
-  stage.view.look.clip_share = 0.25;
+  stage.view.look.clip_fraction = 0.25;
   stage.rest();
   EXPECT_EQ(stage.item("number:clip-depth").words, "55 mm, 25 %");  // of 220 mm
   EXPECT_EQ(stage.item("number:cut-radius").words, "35 mm");
@@ -857,7 +857,7 @@ TEST_P(Instrument, DisplayTabSetsWhatThePictureShows) {
   keep("look");
   EXPECT_TRUE(stage.view.look.clip && stage.view.look.cut_away && stage.view.look.ghost);
   EXPECT_EQ(stage.view.look.clip_from, 'S');
-  EXPECT_NEAR(stage.view.look.clip_share, 0.25, 0.03);
+  EXPECT_NEAR(stage.view.look.clip_fraction, 0.25, 0.03);
   EXPECT_NEAR(stage.view.look.wipe_at, 0.75, 0.03);
   EXPECT_EQ(stage.view.look.cut_at, Look::Window::mouth);
 }

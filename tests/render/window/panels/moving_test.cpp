@@ -49,10 +49,10 @@ TEST(Movable, AreTheJawTheSkullAndFreeParts) {
 
 TEST(Movable, PlacementIsThePoseInNumbers) {
   const Vector3d center(3, -40, -60);
-  const Placement wanted{{1.5, -2, 7}, {20, -35, 110}};
-  const Placement read = placement_of(pose_at(wanted, center), center);
-  EXPECT_LT((read.shift_mm - wanted.shift_mm).norm(), 1e-12);
-  EXPECT_LT((read.turn_deg - wanted.turn_deg).norm(), 1e-10);
+  const Placement requested{{1.5, -2, 7}, {20, -35, 110}};
+  const Placement read = placement_of(pose_at(requested, center), center);
+  EXPECT_LT((read.shift_mm - requested.shift_mm).norm(), 1e-12);
+  EXPECT_LT((read.turn_deg - requested.turn_deg).norm(), 1e-10);
   // Turning alone leaves the centre where it is.
   EXPECT_LT((pose_at({Vector3d::Zero(), {0, 0, 30}}, center) * center - center).norm(), 1e-12);
 }
@@ -71,10 +71,10 @@ TEST(Movable, TheSkullMovesInSpaceAgainstAFixedJaw) {
   const Hands before = hands;
   hands.move(skull, up, opened);
   ASSERT_TRUE(hands.X_CM_target());
-  // Where the jaw gets there, both are as wanted, and the jaw has not moved in the room.
+  // Where the jaw gets there, both are at their targets, and the jaw has not moved in the room.
   EXPECT_TRUE(near(up * *hands.X_CM_target(), opened));
   EXPECT_TRUE(near(hands.X_RC(*hands.X_CM_target()), up));
-  // Where contact holds them apart, it is the skull that is short of where it is wanted.
+  // Where contact holds them apart, it is the skull that is short of its target.
   const Pose held = pose_at({{0, -4, -12}, {12, 0, 3}}, jaw.center);
   EXPECT_TRUE(near(hands.X_RC(held) * held, opened));
   EXPECT_FALSE(near(hands.X_RC(held), up));
@@ -331,7 +331,7 @@ TEST(MovePanel, NumbersMoveAndResetTheSkull) {
   EXPECT_EQ(stage.item("move-state").words, "held by contact, 7.0 mm short");
   stage.frame.poses[mandible_body] = *stage.view.hands.X_CM_target();
   stage.rest();
-  EXPECT_EQ(stage.item("move-state").words, "where it is wanted");
+  EXPECT_EQ(stage.item("move-state").words, "at its target");
   EXPECT_EQ(stage.item("reached:shift:S").words, "7.00 mm");
   stage.click("reset-position");
   EXPECT_FALSE(stage.view.hands.at(cranium_body));
@@ -340,7 +340,7 @@ TEST(MovePanel, NumbersMoveAndResetTheSkull) {
   EXPECT_TRUE(stage.view.hands.at(cranium_body));
 }
 
-/// A jaw that is wanted 12 mm up and turned, and is held by contact at rest.
+/// A jaw whose target is 12 mm up and turned, and is held by contact at rest.
 class HeldJaw : public testing::Test {
  protected:
   HeldJaw() {
@@ -368,7 +368,7 @@ TEST_F(HeldJaw, ShowsTheTargetBesideThePoseReached) {
   stage.frame.poses[mandible_body] = *stage.view.hands.at(mandible_body);
   stage.rest();
   EXPECT_EQ(stage.item("reached:shift:S").words, "12.00 mm");
-  EXPECT_EQ(stage.item("move-state").words, "where it is wanted");
+  EXPECT_EQ(stage.item("move-state").words, "at its target");
   // Without a hand both are where the jaw is.
   stage.view.hands.set(mandible_body, std::nullopt);
   stage.frame = box_frame(1, 20);
