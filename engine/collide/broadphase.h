@@ -20,7 +20,7 @@ struct BodyPair {
 /// DynamicAABBTreeCollisionManager) that is updated from query to query.
 class Broadphase {
  public:
-  /// Bodies are numbered in the given order. Only their boxes are kept; the surfaces may be
+  /// Bodies are numbered in the given order. Only their boxes are stored; the surfaces may be
   /// destroyed.
   explicit Broadphase(std::span<const CollisionMesh* const> bodies);
   ~Broadphase();

@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 AtomicOutput::AtomicOutput(const fs::path& folder) : folder_(folder), stage_(folder / ".new.part") {
   make_folder(folder);
   std::error_code none;
-  fs::remove_all(stage_, none);  // of a run that was cut off
+  fs::remove_all(stage_, none);  // left by an interrupted run
   make_folder(stage_);
 }
 

@@ -7,21 +7,21 @@
 
 namespace condyle {
 
-/// Files that belong together: written into a folder of their own beside those of an earlier run,
-/// which stay whole until all new ones are there.
+/// A set of output files: written to a temporary folder beside those of an earlier run, which stay
+/// intact until all new ones are complete.
 class AtomicOutput {
  public:
-  /// Makes `folder` when it is not there. throws: MachineError.
+  /// Creates `folder` if it does not exist. throws: MachineError.
   explicit AtomicOutput(const std::filesystem::path& folder);
   ~AtomicOutput();
   AtomicOutput(const AtomicOutput&) = delete;
   AtomicOutput& operator=(const AtomicOutput&) = delete;
 
-  /// Where to write the file of this name.
+  /// Path to which the file of this name is written.
   std::filesystem::path path(const std::string& name);
   void write(const std::string& name, std::string_view content);
 
-  /// Puts all files in place, in the order in which they were written.
+  /// Moves all files to their final paths, in the order in which they were written.
   void finish();
 
  private:

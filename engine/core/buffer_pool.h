@@ -7,8 +7,8 @@
 
 namespace condyle {
 
-/// Arrays of one length that are needed repeatedly: a returned one is used next, for new
-/// memory costs more than filling it. From any thread.
+/// Arrays of one length that are needed repeatedly. Returned ones are reused, because allocation
+/// costs more than filling. Thread-safe.
 template <class T>
 class BufferPool {
   struct Shelf {
@@ -27,10 +27,10 @@ class BufferPool {
       shelf->arrays.push_back(std::move(owned));
     }
   };
-  /// Goes back when it is let go, also after the pool.
+  /// Returns to the pool on destruction; may outlive the pool.
   using Buffer = std::unique_ptr<T[], GiveBack>;
 
-  /// Zeros when new, else as it was left.
+  /// Zeros when new, else with its last contents.
   Buffer take() const {
     {
       const std::lock_guard lock(shelf_->mutex);

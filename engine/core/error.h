@@ -9,7 +9,7 @@ namespace condyle {
 /// The user's file, plan or command line is wrong. The program ends with exit code 2.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
-  /// "FILE: ITEM: what is wrong and what to do"; `item` may be empty.
+  /// Message "FILE: ITEM: problem and remedy"; `item` may be empty.
   InputError(const std::filesystem::path& file, const std::string& item, const std::string& problem)
       : std::runtime_error(file.string() + ": " + (item.empty() ? "" : item + ": ") + problem) {}
 };

@@ -14,7 +14,7 @@
 namespace condyle {
 namespace {
 
-/// Kept for good: to make one costs more than most loops.
+/// Never destroyed: creating an arena costs more than most loops.
 tbb::task_arena& arena_of(int threads) {
   static std::mutex mutex;
   static std::map<int, tbb::task_arena> arenas;

@@ -5,8 +5,8 @@
 
 namespace condyle {
 
-/// Told what is being done and how far it is, 0 to 1. May be empty. Throwing from it cancels the
-/// work.
+/// Receives the current stage of the work and its progress, 0 to 1. May be empty. An exception
+/// thrown from it cancels the work.
 using Progress = std::function<void(std::string_view what, double fraction)>;
 
 inline void report(const Progress& progress, std::string_view what, double fraction) {

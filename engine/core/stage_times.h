@@ -19,7 +19,7 @@ struct StageTimes {
   double operator[](Stage stage) const { return ms[static_cast<std::size_t>(stage)]; }
 };
 
-/// Adds the life time of the object to one stage.
+/// Adds the lifetime of the object to one stage.
 class StageTimer {
  public:
   StageTimer(StageTimes& times, Stage stage) : times_(times), stage_(stage) {}

@@ -8,12 +8,11 @@
 
 namespace condyle {
 
-/// A place for a file or folder among the machine's passing ones; what was put there goes with the
-/// object.
+/// A unique path in the system's temporary folder; its contents are deleted with the object.
 class TemporaryPath {
  public:
   explicit TemporaryPath(const std::string& what) {
-    static std::atomic<int> made = 0;  // several threads may want one at a time
+    static std::atomic<int> made = 0;  // several threads may create one at the same time
     path_ = std::filesystem::temp_directory_path() /
             ("condyle-" + what + "-" + std::to_string(::getpid()) + "-" + std::to_string(made++));
   }

@@ -5,7 +5,7 @@
 
 namespace condyle {
 
-/// "a,b,c" by its commas; an empty text is one empty item.
+/// The items of "a,b,c"; an empty text is one empty item.
 std::vector<std::string> split_list(const std::string& text);
 
 /// throws: InputError naming the option unless the whole text is a finite number.

@@ -9,31 +9,31 @@
 
 namespace condyle {
 
-// Reading of tables of numbers in text, one row a line. Every problem is an InputError that names
+// Reading of tables of numbers in text, one row per line. Every problem is an InputError that names
 // the file, the line, the column and the value.
 
-/// Without blanks, line ends and quotes round it.
+/// The text without surrounding blanks, line ends and quotes.
 std::string_view trimmed(std::string_view text);
 
-/// At most 40 characters, printable: for messages.
+/// At most 40 printable characters of the text, for messages.
 std::string shortened(std::string_view text);
 
 std::string lower_case(std::string_view text);
 
-/// Separated by `separator`, each trimmed; by any run of blanks where it is ' '.
+/// The fields of a line between `separator`s, trimmed; ' ' stands for any run of blanks.
 std::vector<std::string_view> fields_of(std::string_view line, char separator);
 
 /// A finite number, the whole text. throws: InputError.
 double parse_number(const std::filesystem::path& file, const std::string& item,
                     std::string_view text);
 
-/// The lines of a text, counted from 1; a byte order mark is passed over.
+/// The lines of a text, counted from 1; a byte order mark is skipped.
 class TextLines {
  public:
   explicit TextLines(std::string_view text);
-  /// False at the end. Line ends are not part of the line.
+  /// Goes to the next line; false at the end. Line ends are not part of the line.
   bool next();
-  /// The next line that is not blank.
+  /// Goes to the next line that is not blank.
   bool next_filled();
   std::string_view line() const { return line_; }
   std::size_t number() const { return number_; }
@@ -48,8 +48,8 @@ class TextLines {
 struct NumberTable {
   std::vector<std::string> names;
   std::vector<double> values;
-  std::vector<std::size_t> lines;  // where each row stands
-  std::size_t header_line = 1;     // where the names stand
+  std::vector<std::size_t> lines;  // line number of each row
+  std::size_t header_line = 1;     // line number of the names
 
   std::size_t rows() const { return lines.size(); }
   double at(std::size_t row, std::size_t column) const {
@@ -59,9 +59,8 @@ struct NumberTable {
   std::string where(std::size_t row, std::size_t column) const;  // "line 3, tx_mm"
 };
 
-/// Reads the rows that follow in `lines`, all of them as wide as `names`; what stands in columns
-/// whose number is not among `selected` is passed over (0 in the table); all count when it is
-/// empty.
+/// Reads the remaining rows of `lines`, each as wide as `names`. Columns that are not in `selected`
+/// are skipped (0 in the table); an empty `selected` means all.
 NumberTable read_rows(const std::filesystem::path& file, TextLines& lines,
                       std::vector<std::string> names, char separator,
                       std::span<const std::size_t> selected = {});

@@ -36,8 +36,8 @@ struct Quadric {
 struct Candidate {
   double cost;
   int a, b;
-  unsigned stamp;                                 // of both ends when it was made
-  bool operator<(const Candidate& other) const {  // the queue serves the largest first
+  unsigned stamp;                                 // of both ends when it was created
+  bool operator<(const Candidate& other) const {  // the priority queue returns the largest first
     if (cost != other.cost) return cost > other.cost;
     return std::pair(a, b) > std::pair(other.a, other.b);
   }
@@ -126,7 +126,7 @@ class Decimator {
       }
   }
 
-  /// Where the two ends meet, and the error there.
+  /// The merged position of both ends, and its error.
   double best_position(int a, int b, Vector3d& p) {
     Quadric q = quadric(a);
     q += quadric(b);
@@ -163,7 +163,7 @@ class Decimator {
     if (static_cast<int>(common_.size()) != faces) return false;
     if (ring_a.size() + ring_b.size() - common_.size() - 2 < 3) return false;
     if (border(a) == border(b)) return true;
-    // The border end stays: no other neighbour of the vanishing one may lie on a border too.
+    // The border end stays: no other neighbour of the removed one may lie on a border too.
     const auto& ring = border(a) ? ring_b : ring_a;
     const int stays = border(a) ? a : b;
     for (const int v : ring)
@@ -172,7 +172,7 @@ class Decimator {
     return true;
   }
 
-  /// No triangle around v (except those that vanish with `other`) may turn over or become a needle.
+  /// No triangle around v (except those removed with `other`) may flip or become a needle.
   bool keeps_shape(int v, int other, const Vector3d& p) {
     for (const int t : around(v)) {
       const auto& corner = triangle(t);

@@ -9,10 +9,10 @@ namespace condyle {
 
 struct DecimationOptions {
   int target_triangles = 50000;
-  /// How much finer than elsewhere the surface stays at a point: edges shrink with the fourth root.
+  /// Refinement of the surface at a point, relative to elsewhere: edges shrink with the fourth
+  /// root.
   std::function<double(const Eigen::Vector3d&)> importance = {};  // empty = 1 everywhere
-  double evenness =
-      1e-3;  // weight of edge length against shape error; more gives rounder triangles
+  double evenness = 1e-3;  // weight of edge length against shape error; larger: rounder triangles
 };
 
 /// Collapses edges by quadric error (Garland and Heckbert 1997) until few enough triangles remain.

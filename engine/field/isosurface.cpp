@@ -50,7 +50,7 @@ bool share_face(int e, int f) {
 }
 
 /// A closed polygon through cell edges; `fan` is the corner its triangles start from, or -1 when
-/// every fan would lay a diagonal into a cell face (the neighbour might lay the same one): then a
+/// every fan would have a diagonal in a cell face (the neighbour might have the same one): then a
 /// middle vertex is used.
 struct Loop {
   std::vector<int> edges;
@@ -58,7 +58,7 @@ struct Loop {
 };
 
 /// Polygons of each of the 256 sign patterns. On faces with two inside corners across, the inside
-/// corners are kept apart; the rule looks at the face alone, so neighbours agree.
+/// corners are kept apart; the rule depends on the face alone, so neighbours agree.
 std::vector<std::vector<Loop>> make_loops() {
   std::vector<std::vector<Loop>> table(256);
   for (int pattern = 0; pattern < 256; ++pattern) {

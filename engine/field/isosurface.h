@@ -10,10 +10,10 @@ namespace condyle {
 /// in the border planes stay exactly in them, so that halves can be mirrored.
 TriMesh isosurface(const SampledField& field);
 
-/// A half mesh (x >= 0) and its mirror image in one; vertices at exactly x = 0 are shared.
+/// A half mesh (x >= 0) joined with its mirror image; vertices at exactly x = 0 are shared.
 TriMesh with_mirror_image(const TriMesh& half);
 
-/// The mirror image alone (x negated, triangles turned).
+/// The mirror image alone (x negated, triangles flipped).
 TriMesh mirror_image(const TriMesh& mesh);
 
 /// The component with the most triangles; the others and loose vertices are dropped.

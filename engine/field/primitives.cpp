@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// One straight piece of a tube, with what its distance needs worked out beforehand.
+/// One straight piece of a tube, with the precomputed terms of its distance.
 struct Piece {
   Vector3d start, edge;
   double inverse_length2;
@@ -66,7 +66,7 @@ Primitive ellipsoid(const Vector3d& center, const Vector3d& semi_axes,
   const Eigen::Matrix3d to_unit = semi_axes.cwiseInverse().asDiagonal() * axes.transpose();
   const Vector3d inverse = semi_axes.cwiseInverse();
   const double deep = -semi_axes.minCoeff();
-  Vector3d half;  // of the turned ellipsoid's box
+  Vector3d half;  // of the rotated ellipsoid's box
   for (int i = 0; i < 3; ++i) half[i] = axes.row(i).transpose().cwiseProduct(semi_axes).norm();
   return {[=](const Vector3d& p) {
             const Vector3d q = to_unit * (p - center);

@@ -8,18 +8,18 @@
 
 namespace condyle {
 
-/// Signed distance of a solid at a point, mm: negative inside. A near distance: its gradient stays
-/// between about 0.8 and 1.2 near the surface, so that smooth unions and clearances keep their
-/// size.
+/// Signed distance of a solid at a point, mm: negative inside. It is approximate: its gradient
+/// stays between about 0.8 and 1.2 near the surface, so that smooth unions and clearances keep
+/// their size.
 using Distance = std::function<double(const Eigen::Vector3d&)>;
 
-/// One solid, with the box outside which it does not reach.
+/// One solid, with its bounding box.
 struct Primitive {
   Distance distance;
   Eigen::AlignedBox3d box;
 };
 
-/// Box that holds everything, for primitives that act everywhere.
+/// Unbounded box, for primitives that act everywhere.
 Eigen::AlignedBox3d unbounded_box();
 
 /// Rotation by an angle in degrees about the x, y or z axis.
@@ -32,8 +32,8 @@ Primitive ellipsoid(const Eigen::Vector3d& center, const Eigen::Vector3d& semi_a
 /// Box with edges rounded by `radius`; `half` is measured to the faces. mm.
 Primitive rounded_box(const Eigen::Vector3d& center, const Eigen::Vector3d& half, double radius);
 
-/// Round tube along a Catmull-Rom spline; one radius per point. A radius that falls below zero lets
-/// the tube fade out.
+/// Round tube along a Catmull-Rom spline; one radius per point. The tube ends where the radius
+/// falls below zero.
 Primitive tube(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& radii,
                int pieces_per_span = 5);
 
@@ -46,7 +46,7 @@ Primitive flat_tube(const std::vector<Eigen::Vector3d>& points, const std::vecto
 std::vector<Eigen::VectorXd> catmull_rom(const std::vector<Eigen::VectorXd>& points,
                                          int pieces_per_span);
 
-/// Closed Catmull-Rom outline through the points, `pieces` a span.
+/// Closed Catmull-Rom outline through the points, `pieces` per span.
 std::vector<Eigen::Vector2d> closed_outline(const std::vector<Eigen::Vector2d>& points, int pieces);
 
 /// Signed distance to a closed polygon, negative inside.

@@ -16,7 +16,7 @@ Eigen::AlignedBox3d grown(const Eigen::AlignedBox3d& box, double margin) {
 
 void FieldRecipe::push(Act act, Primitive primitive, double k) {
   const double margin = k + 3;
-  // A later wide rounding still feels an earlier primitive from that far away.
+  // A later wide rounding still depends on an earlier primitive at that distance.
   const Eigen::AlignedBox3d wide = grown(primitive.box, margin);
   for (auto& step : steps_)
     if (step.margin < margin && grown(step.primitive.box, margin).intersects(wide)) {
@@ -52,7 +52,7 @@ double FieldRecipe::operator()(const Eigen::Vector3d& at) const {
       d = apply(step, d, p);
       continue;
     }
-    // Far away its box stands in for it, so that the distance has no jumps.
+    // Far away its box replaces it, so that the distance is continuous.
     const double far = step.primitive.box.exteriorDistance(p);
     d = step.act == Act::add ? std::min(d, far) : std::max(d, -far);
   }

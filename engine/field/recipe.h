@@ -6,12 +6,12 @@
 
 namespace condyle {
 
-/// Which half of space a solid is described in.
+/// The half of space in which a solid is described.
 enum class Symmetry { none, mirror_x };  // mirror_x: the field at x is the field at |x|
 
 /// A solid made by joining and cutting primitives in order, each with its own rounding k (mm).
-/// Farther from a primitive than the widest rounding it meets, only its box counts, which leaves
-/// the surface as it is.
+/// Farther from a primitive than the widest rounding applied to it, only its box counts, which does
+/// not change the surface.
 class FieldRecipe {
  public:
   explicit FieldRecipe(Symmetry symmetry = Symmetry::none) : symmetry_(symmetry) {}
@@ -23,7 +23,7 @@ class FieldRecipe {
   /// Signed distance, mm; `nothing` far from every primitive.
   double operator()(const Eigen::Vector3d& p) const;
 
-  /// Indices of the steps that can matter inside a box.
+  /// Indices of the steps that can affect the inside of a box.
   std::vector<int> steps_near(const Eigen::AlignedBox3d& box) const;
   std::vector<int> steps_near(const Eigen::AlignedBox3d& box, const std::vector<int>& among) const;
   /// Signed distance by these steps only.
@@ -45,7 +45,7 @@ class FieldRecipe {
   };
   static bool act_everywhere(Act act) { return act == Act::keep; }
   void push(Act act, Primitive primitive, double k);
-  /// The box that |x| runs through, where the recipe is mirrored.
+  /// The box in |x|, where the recipe is mirrored.
   Eigen::AlignedBox3d folded(Eigen::AlignedBox3d box) const;
   static double apply(const Step& step, double d, const Eigen::Vector3d& p);
 

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// Fills samples [low, high) of one block: whole when the surface is out of reach, else by parts.
+/// Fills samples [low, high) of one block: at once when the surface is out of reach, else by parts.
 void fill_block(const FieldRecipe& recipe, const SamplingOptions& options, SampledField& field,
                 const Vector3i& low, const Vector3i& high, const std::vector<int>& among) {
   const Eigen::AlignedBox3d box(field.position(low.x(), low.y(), low.z()),

@@ -8,13 +8,13 @@
 
 namespace condyle {
 
-/// Places of the samples along one axis, mm, increasing.
+/// Positions of the samples along one axis, mm, increasing.
 using GridAxis = std::vector<double>;
 
 /// Evenly spaced, from `low` to `high` or just beyond.
 GridAxis even_axis(double low, double high, double spacing);
 
-/// Finer inside a stretch: steps grow smoothly from `fine` inside [fine_low, fine_high] to
+/// Finer inside an interval: steps grow smoothly from `fine` inside [fine_low, fine_high] to
 /// `coarse`.
 GridAxis graded_axis(double low, double high, double coarse, double fine_low, double fine_high,
                      double fine);
@@ -22,7 +22,7 @@ GridAxis graded_axis(double low, double high, double coarse, double fine_low, do
 /// Signed distances on a grid of straight lines; sample (i, j, k) lies at axes x[i], y[j], z[k].
 struct SampledField {
   std::array<GridAxis, 3> axes;
-  std::vector<float> values;  // mm; k runs fastest
+  std::vector<float> values;  // mm; k varies fastest
 
   Eigen::Vector3i size() const {
     return {static_cast<int>(axes[0].size()), static_cast<int>(axes[1].size()),
@@ -42,9 +42,10 @@ struct SampledField {
 };
 
 struct SamplingOptions {
-  double band = 0;  // mm: values are exact this near to the surface, farther ones keep the sign
-  double steepest = 1.3;  // largest gradient of the recipe: what may be skipped depends on it
-  int threads = 1;        // the samples have the same bits for any number
+  double band =
+      0;  // mm: values are exact within this distance of the surface; beyond, their sign is right
+  double steepest = 1.3;  // largest gradient of the recipe; decides which blocks are skipped
+  int threads = 1;        // the samples are bit-identical for any number
 };
 
 /// Samples a recipe. Blocks that the surface cannot reach are filled with one value.

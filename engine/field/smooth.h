@@ -7,8 +7,8 @@
 
 namespace condyle {
 
-/// Smaller of two distances with the crease rounded where they differ by less than k (mm).
-/// Two equal distances come out k/4 smaller.
+/// Smaller of two distances, with the crease rounded where they differ by less than k (mm).
+/// Two equal distances give a result that is k/4 smaller.
 inline double smooth_min(double a, double b, double k) {
   if (k <= 0) return std::min(a, b);
   const double h = std::max(k - std::abs(a - b), 0.0) / k;

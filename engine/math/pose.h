@@ -19,7 +19,7 @@ struct Pose {
 /// Rotation angle of the pose, rad, in [0, pi].
 double rotation_angle(const Pose& pose);
 
-/// Pose a fraction s of the way from `a` to `b`: rotation by slerp, and the point `pivot` (given in
+/// Pose at the fraction s between `a` and `b`: rotation by slerp, and the point `pivot` (given in
 /// the moving body's coordinates) along a straight line.
 Pose interpolate(const Pose& a, const Pose& b, double s,
                  const Eigen::Vector3d& pivot = Eigen::Vector3d::Zero());

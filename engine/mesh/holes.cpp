@@ -16,7 +16,7 @@ constexpr std::size_t max_edges = 64;
 constexpr int none = -1;
 constexpr double hole_fraction = 0.25;  // of its piece's area, at most
 
-/// The edges with one triangle, and how each goes on along its rim.
+/// The edges with one triangle, each with its successor along the rim.
 class Rims {
  public:
   explicit Rims(const TriMesh& mesh) : mesh_(mesh) {
@@ -43,7 +43,7 @@ class Rims {
       if (across_[h] == none && !knotted[h]) next_[h] = following(h, knotted);
   }
 
-  /// Vertices of each hole as its triangles will run, so against the rim's own sense.
+  /// Vertices of each hole in the order of its new triangles, opposite to the rim's own.
   std::vector<std::vector<int>> holes() const {
     std::vector<std::vector<int>> found;
     std::vector<char> seen(next_.size(), 0);
@@ -72,7 +72,7 @@ class Rims {
  private:
   static int next_in_triangle(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
 
-  /// The rim's edge after `h`: about its end, through the triangles there.
+  /// The rim's edge after `h`, found through the triangles around its end.
   int following(int h, const std::vector<char>& knotted) const {
     int at = next_in_triangle(h);
     for (std::size_t turn = 0; turn < across_.size(); ++turn) {
@@ -83,7 +83,7 @@ class Rims {
     return none;
   }
 
-  /// A walk that meets a vertex again has gone round a hole of its own in between.
+  /// A walk that meets a vertex again has closed a separate hole in between.
   static void part(std::vector<int> walk, std::vector<std::vector<int>>& found) {
     std::vector<int> open;
     for (const int v : walk) {
@@ -108,8 +108,8 @@ double rim_length(const TriMesh& mesh, const std::vector<int>& hole) {
   return length;
 }
 
-/// The triangles of least area over the polygon, if there are any that use no edge of the mesh and
-/// are together at most `max_area`.
+/// The triangulation of least area of the polygon, if one exists that uses no edge of the mesh and
+/// has at most `max_area`.
 std::optional<std::vector<Eigen::Vector3i>> cover(const TriMesh& mesh, const Rims& rims,
                                                   const std::vector<int>& hole, double max_area) {
   const int n = static_cast<int>(hole.size());
@@ -171,7 +171,7 @@ ClosedHoles close_small_holes(TriMesh& mesh, const SmallHole& small) {
     const double length = rim_length(mesh, hole);
     const bool few = hole.size() <= static_cast<std::size_t>(small.few_edges);
     if (length > small.rim_mm && !(few && length <= small.few_edges_rim_mm)) continue;
-    // The outer rim of a small loose sheet is none of a hole.
+    // The outer rim of a small loose sheet is not a hole.
     const auto triangles = cover(mesh, rims, hole, hole_fraction * area[piece_of[hole[0]]]);
     if (!triangles) continue;
     added.insert(added.end(), triangles->begin(), triangles->end());

@@ -9,7 +9,7 @@ struct ClosedHoles {
   double longest_rim_mm = 0;
 };
 
-/// What counts as a small hole: a short rim (of at most 64 edges), or one of few edges, where a
+/// Definition of a small hole: a short rim (of at most 64 edges), or one of few edges, where a
 /// coarse surface lacks a few triangles.
 struct SmallHole {
   double rim_mm = 15;
@@ -17,11 +17,10 @@ struct SmallHole {
   double few_edges_rim_mm = 30;
 };
 
-/// Closes small holes, each by the triangles of
-/// least area between its corners (Barequet and Sharir 1995); no vertex is added and no edge gets a
-/// third triangle. The cover is at most a quarter of its piece's area. Rims that meet in a vertex
-/// are holes of their own. Neighbours must agree on outside (`orient_outward`); a rim where they do
-/// not is left open.
+/// Closes small holes, each by the triangulation of least area between its corners (Barequet and
+/// Sharir 1995); no vertex is added and no edge gets a third triangle. The cover has at most a
+/// quarter of its component's area. Rims that meet in a vertex are separate holes. Neighbours must
+/// agree on outside (`orient_outward`); a rim where they do not is left open.
 ClosedHoles close_small_holes(TriMesh& mesh, const SmallHole& small = {});
 
 }  // namespace condyle

@@ -12,7 +12,7 @@ namespace {
 
 using Term = VertexSums::Term;
 
-/// What is opposite to an edge in a triangle.
+/// The vertex opposite to an edge in a triangle.
 int third_of(const Eigen::Vector3i& t, int a, int b) {
   for (const int v : t)
     if (v != a && v != b) return v;
@@ -20,7 +20,7 @@ int third_of(const Eigen::Vector3i& t, int a, int b) {
 }
 
 struct Around {
-  std::vector<int> all, along_rim;  // neighbours; those by edges of other than two triangles
+  std::vector<int> all, along_rim;  // neighbours; those along edges that do not have two triangles
 };
 
 std::vector<Term> moved(int vertex, const Around& around) {

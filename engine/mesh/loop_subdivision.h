@@ -7,8 +7,8 @@
 
 namespace condyle {
 
-/// Vertices as weighted sums of others: of vertex v, the terms first[v] up to first[v + 1], which
-/// add up to 1.
+/// Vertices as weighted sums of others. Vertex v has the terms first[v] up to first[v + 1], whose
+/// weights add up to 1.
 struct VertexSums {
   struct Term {
     int of;
@@ -20,7 +20,7 @@ struct VertexSums {
   std::size_t size() const { return first.size() - 1; }
   void add(std::span<const Term> sum);
 
-  /// Of the first `count` vertices.
+  /// The sums of the first `count` vertices.
   template <class T>
   std::vector<T> of(std::span<const T> values, std::size_t count) const {
     assert(count <= size());
@@ -40,11 +40,11 @@ struct VertexSums {
   }
 };
 
-/// The same as sums of what the inner ones are sums of.
+/// The outer sums expressed in the vertices of the inner ones.
 VertexSums composed(const VertexSums& outer, const VertexSums& inner);
 
-/// Each triangle as four, and where their vertices are for the surface to be smooth: those there
-/// were first, then one for each edge. Rims are smooth curves of their own.
+/// Each triangle split into four, with the positions of their vertices on the smooth surface: the
+/// given ones first, then one for each edge. Rims become smooth curves.
 /// source: Loop, Smooth Subdivision Surfaces Based on Triangles, 1987
 struct Subdivision {
   std::vector<Eigen::Vector3i> triangles;

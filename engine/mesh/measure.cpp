@@ -26,7 +26,7 @@ double surface_area(const TriMesh& mesh) {
 
 double signed_volume(const TriMesh& mesh) {
   if (mesh.empty()) return 0;
-  // About a point of the mesh: far from the origin the tetrahedra would cancel digits away.
+  // Relative to a point of the mesh: far from the origin the tetrahedra would lose digits.
   const Vector3d o = mesh.vertices[mesh.triangles[0][0]];
   double sum = 0;
   for (const auto& t : mesh.triangles)

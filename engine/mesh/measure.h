@@ -38,8 +38,8 @@ Box bounding_box(const TriMesh& mesh);
 /// mm^2
 double surface_area(const TriMesh& mesh);
 
-/// mm^3; of a closed mesh positive when its triangles face outward. Of an open mesh it depends on
-/// where the hole lies and means nothing.
+/// mm^3; positive for a closed mesh whose triangles face outward. For an open mesh it depends on
+/// the position of the hole and has no meaning.
 double signed_volume(const TriMesh& mesh);
 
 /// Unit normals weighted by corner angles; zero at vertices without a triangle that has area.

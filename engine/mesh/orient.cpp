@@ -19,8 +19,8 @@ double area_of(const TriMesh& mesh, int triangle) {
                    .norm();
 }
 
-/// Turns triangles so that those at a shared edge agree, patch by patch; a patch's majority by area
-/// stays. Returns how many edges still contradict.
+/// Flips triangles so that those at a shared edge agree, patch by patch; a patch's majority by area
+/// stays. Returns the number of edges that still contradict.
 int make_consistent(TriMesh& mesh, const EdgeList& list, std::vector<char>& turned) {
   const std::size_t count = mesh.triangles.size();
   struct Neighbour {
@@ -101,8 +101,8 @@ std::vector<Shell> shells_of(const TriMesh& mesh) {
   return shells;
 }
 
-/// Finds which closed shell holds another. Only the largest shells are asked: a scan may hold
-/// thousands of specks, which contain nothing.
+/// Finds the closed shell that contains another. Only the largest shells are tested: a scan may
+/// have thousands of specks, which contain nothing.
 class Containers {
  public:
   explicit Containers(const std::vector<Shell>& shells) : shells_(shells) {
@@ -115,7 +115,7 @@ class Containers {
     trees_.resize(largest_.size());
   }
 
-  /// The largest shell with the whole of `inner` inside, -1 when there is none.
+  /// The largest shell that contains all of `inner`, -1 when there is none.
   int of(int inner) {
     const Shell& shell = shells_[inner];
     for (std::size_t i = 0; i < largest_.size(); ++i) {
@@ -123,7 +123,7 @@ class Containers {
       if (std::abs(outer.volume) <= std::abs(shell.volume)) break;
       if (!outer.box.contains(shell.box.low) || !outer.box.contains(shell.box.high)) continue;
       if (!trees_[i]) trees_[i] = std::make_unique<TriangleTree>(outer.mesh);
-      // A few vertices tell: shells that cross are not nested.
+      // A few vertices suffice: shells that cross are not nested.
       const auto& vertices = shell.mesh.vertices;
       bool inside = true;
       for (std::size_t v = 0; v < vertices.size() && inside; v += 1 + vertices.size() / 16)

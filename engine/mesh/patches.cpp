@@ -9,7 +9,7 @@ namespace condyle {
 Patches cut_into_patches(std::span<const Eigen::Vector3f> positions,
                          std::span<const Eigen::Vector3i> triangles, int max_triangles) {
   assert(max_triangles >= 4 && max_triangles <= 512 && max_triangles % 4 == 0);
-  // Compact patches hide together, even ones face away together: a little of both.
+  // Compact patches are hidden as a whole, flat ones face away as a whole: a compromise.
   constexpr float even_weight = 0.25f;
   constexpr std::size_t max_vertices = 255;
   Patches patches;

@@ -6,8 +6,8 @@
 
 namespace condyle {
 
-/// The triangles of a surface, cut into patches of neighbours that face nearly the same way: patch
-/// k is the run from `first[k]` to `first[k + 1]`.
+/// The triangles of a surface, cut into patches of neighbours with similar normals: patch k is the
+/// range from `first[k]` to `first[k + 1]`.
 struct Patches {
   std::vector<Eigen::Vector3i> triangles;  // each once, its corners in their order
   std::vector<int> first;                  // one more than there are patches; {0} for no triangles

@@ -26,7 +26,7 @@ class Middles {
  public:
   explicit Middles(TriMesh& mesh) : mesh_(mesh) {}
 
-  /// Whether the edge had no middle yet.
+  /// Whether the edge had no midpoint yet.
   bool halve(int a, int b) {
     const auto [it, made] =
         vertex_.try_emplace(key_of(a, b), static_cast<int>(mesh_.vertices.size()));
@@ -41,7 +41,7 @@ class Middles {
     if (!mesh_.colors.empty()) mesh_.colors.resize(mesh_.vertices.size());
   }
 
-  /// The triangles with their halved edges joined up.
+  /// The triangles subdivided at their halved edges.
   std::vector<Eigen::Vector3i> divided() const {
     std::vector<Eigen::Vector3i> finer;
     finer.reserve(mesh_.triangles.size());
@@ -73,7 +73,7 @@ class Middles {
 
  private:
   TriMesh& mesh_;
-  std::unordered_map<std::uint64_t, int> vertex_;  // looked up only, never walked
+  std::unordered_map<std::uint64_t, int> vertex_;  // for lookup only, never iterated
 };
 
 }  // namespace
@@ -103,7 +103,7 @@ TriMesh refine_near(TriMesh mesh, const Eigen::Vector3d& center, double radius_m
         }
       }
       if (any || length <= edge_mm) continue;
-      // Its edges all pass by the ball, but the face may go through it.
+      // All its edges miss the ball, but the face may intersect it.
       const Eigen::Vector3d middle =
           (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
       if ((middle - center).norm() <= radius_mm + length) {

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-/// Open-addressing table of vertices by cell; looked up only, so its order reaches no result.
+/// Open-addressing table of vertices by cell; for lookup only, so its order affects no result.
 class CellTable {
  public:
   using Key = std::array<double, 3>;
@@ -58,7 +58,7 @@ class CellTable {
 };
 
 void keep_vertices(TriMesh& mesh, const std::vector<int>& new_index) {
-  // new_index is -1 for vertices that go, else increasing.
+  // new_index is -1 for removed vertices, else increasing.
   const bool colored = mesh.colors.size() == mesh.vertices.size();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < new_index.size(); ++i) {
@@ -77,7 +77,8 @@ bool is_flat(const TriMesh& mesh, const Vector3i& t) {
   const Vector3d u = mesh.vertices[t[1]] - mesh.vertices[t[0]],
                  v = mesh.vertices[t[2]] - mesh.vertices[t[0]],
                  w = mesh.vertices[t[2]] - mesh.vertices[t[1]];
-  // Height over the longest edge below 1e-9 of that edge: beyond the digits of any scanner's file.
+  // Height over the longest edge below 1e-9 of that edge: beyond the precision of any scanner's
+  // file.
   const double longest = std::max({u.squaredNorm(), v.squaredNorm(), w.squaredNorm()});
   return u.cross(v).norm() <= 1e-9 * longest;
 }
@@ -92,7 +93,8 @@ std::vector<Edge>::const_iterator find_edge(const EdgeList& list, int a, int b) 
 }
 
 /// Replaces flat triangle `flat` and the one across its longest edge by two across the other
-/// diagonal. False when it has no single neighbour there or the new pair would be flat as well.
+/// diagonal. False if it does not have exactly one neighbour there or the new pair would be flat
+/// too.
 bool split_neighbour(TriMesh& mesh, const EdgeList& list, int flat, int neighbour,
                      int apex_corner) {
   const Vector3i t = mesh.triangles[flat];
@@ -125,7 +127,7 @@ int weld(TriMesh& mesh, double tolerance_mm) {
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3d& v = mesh.vertices[i];
     CellTable::Key home;
-    // Adding 0.0 turns -0.0 into 0.0: the two are one place.
+    // Adding 0.0 turns -0.0 into 0.0: both are the same position.
     for (int k = 0; k < 3; ++k) home[k] = (cell > 0 ? std::floor(v[k] / cell) : v[k]) + 0.0;
     int found = -1;
     if (cell > 0) {
@@ -160,7 +162,7 @@ int drop_degenerate(TriMesh& mesh) {
   const std::size_t before = mesh.triangles.size();
   std::erase_if(mesh.triangles, repeats_corner);
 
-  // A flat triangle is split away into its neighbour; the neighbour may be flat too: a few rounds.
+  // A flat triangle is merged into its neighbour, which may be flat too: hence a few rounds.
   for (int round = 0; round < 8; ++round) {
     std::vector<int> flat;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)

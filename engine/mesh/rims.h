@@ -6,8 +6,8 @@
 
 namespace condyle {
 
-/// Rims of an open surface, each its vertices one after the other as the missing triangles would
-/// run; those that share a vertex are told apart. A walk that does not come back is none.
+/// Rims of an open surface, each as its vertices in the order of the missing triangles; rims that
+/// share a vertex are separated. A walk that does not close is not a rim.
 std::vector<std::vector<int>> rims_of(const TriMesh& mesh);
 
 }  // namespace condyle

@@ -14,7 +14,7 @@ namespace condyle {
 namespace {
 
 /// Edge collapses can leave two triangles back to back on the same corners: a flap without
-/// thickness. Both go; dropping one would leave a hole.
+/// thickness. Both are removed; dropping one would leave a hole.
 void cancel_flaps(TriMesh& mesh) {
   std::vector<std::array<int, 4>> keys(mesh.triangles.size());
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -59,7 +59,7 @@ TriMesh simplify(const TriMesh& mesh, int target_triangles) {
   if (count <= target_triangles || count < 4) return mesh;
   int target = std::max(target_triangles, 4);
 
-  // Relative to the middle: floats far from the origin would lose the detail.
+  // Relative to the centre: floats far from the origin would lose detail.
   const Eigen::Vector3d middle = bounding_box(mesh).center();
   std::vector<float> positions;
   positions.reserve(3 * mesh.vertices.size());

@@ -13,8 +13,8 @@ namespace condyle {
 /// manifold: where the edge collapses would break it, the result keeps more triangles.
 TriMesh simplify(const TriMesh& mesh, int target_triangles);
 
-/// Coarser triangles on the same vertices, down to about `target_triangles` but nowhere farther off
-/// than about `error_mm`; the given ones when there are few enough. Rims stay.
+/// Coarser triangles on the same vertices, about `target_triangles`, with a deviation of at most
+/// about `error_mm`; the given ones when there are few enough. Rims stay.
 std::vector<Eigen::Vector3i> coarser(std::span<const Eigen::Vector3f> positions,
                                      std::span<const Eigen::Vector3i> triangles,
                                      int target_triangles, double error_mm);

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double to_end_mm = 20;  // from a seam's full breadth to its end
+constexpr double to_end_mm = 20;  // from a seam's full width to its end
 
 /// Triangles at each vertex.
 class Around {
@@ -38,7 +38,7 @@ class Around {
   std::vector<int> triangles_;
 };
 
-/// How far to the front the surface reaches, over a part of the front view, mm.
+/// Depth map of the frontmost surface, over a part of the front view, mm.
 class FrontView {
  public:
   FrontView(const TriMesh& surface, const Eigen::AlignedBox3d& region) : low_(view(region.min())) {
@@ -89,11 +89,11 @@ class FrontView {
 
 struct Inside {
   std::vector<double>
-      distance;  // of each vertex from what is not hidden, along edges; below 0: it is not
+      distance;  // of each vertex from the visible ones, along edges; negative: not hidden
   double right = infinity, left = -infinity;  // ends of the slit
 };
 
-/// What hangs together with these vertices and is hidden in the front view.
+/// The vertices that are connected with these and hidden in the front view.
 Inside find_inside(const TriMesh& surface, const Around& around, std::span<const int> from,
                    const FrontView& front_view) {
   std::vector<double> distance(surface.vertices.size(), -1);

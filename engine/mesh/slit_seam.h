@@ -8,15 +8,16 @@
 
 namespace condyle {
 
-/// What stays of a slit's inside.
+/// The part of a slit's inside that stays.
 struct SlitSeam {
   double at_ends_mm = 1, at_sides_mm = 14;
 };
 
-/// Triangles of a surface without what lies deep behind a slit in it, as seen along +y: of its long
-/// sides a broad seam of the inside stays, at its ends a narrow one, which would be drawn out to a
-/// curtain where the sides part. `inside`: vertices there, such as a rim's; what hangs together
-/// with them and is hidden in that view counts, up to `beside_mm` from `middle` in x and z.
+/// Triangles of a surface without those that lie deep behind a slit in it, as seen along +y. A
+/// broad seam of the inside stays along its long sides and a narrow one at its ends, where it would
+/// be stretched to a curtain when the sides part. `inside`: vertices there, such as a rim's; those
+/// that are connected with them and hidden in that view count, up to `beside_mm` from `middle` in x
+/// and z.
 std::vector<Eigen::Vector3i> without_deep_inside(const TriMesh& surface,
                                                  std::span<const int> inside,
                                                  const Eigen::Vector3d& middle, double beside_mm,

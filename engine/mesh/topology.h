@@ -15,15 +15,15 @@ struct BoundaryLoop {
   Box box;
 };
 
-/// How the triangles of a welded mesh hang together.
+/// Connectivity of the triangles of a welded mesh.
 struct Topology {
   int components = 0;                  // joined by shared vertices
   int boundary_edges = 0;              // with one triangle
   std::vector<BoundaryLoop> boundary;  // longest first
   int nonmanifold_edges = 0;           // with three triangles or more
   Box nonmanifold_box;                 // where those lie
-  int misoriented_edges = 0;           // whose two triangles run the same way along it
-  double volume_mm3 = 0;               // signed; has a meaning when closed
+  int misoriented_edges = 0;           // whose two triangles traverse it in the same direction
+  double volume_mm3 = 0;               // signed; meaningful if closed
 
   /// Every edge has two triangles that agree on outside.
   bool closed() const {

@@ -79,7 +79,7 @@ double entry(const Vector3d& low, const Vector3d& high, const Vector3d& origin,
   for (int k = 0; k < 3; ++k) {
     double a = (low[k] - origin[k]) * inverse[k], b = (high[k] - origin[k]) * inverse[k];
     if (a > b) std::swap(a, b);
-    // A ray in the plane of a slab gives 0 * infinity: such a slab does not limit it.
+    // A ray in the plane of a slab yields 0 * infinity: such a slab does not limit it.
     if (!std::isnan(a)) from = std::max(from, a);
     if (!std::isnan(b)) to = std::min(to, b);
   }
@@ -185,7 +185,7 @@ int TriangleTree::build(std::vector<int>& order, const std::vector<Vector3d>& ce
 }
 
 void TriangleTree::make_pseudonormals(const TriMesh& mesh) {
-  // One id per place: the neighbours of an edge are found even where the file repeats vertices.
+  // One id per position: the neighbours of an edge are found even where the file repeats vertices.
   std::vector<int> by_place(mesh.vertices.size()), id(mesh.vertices.size());
   std::iota(by_place.begin(), by_place.end(), 0);
   const auto less = [&](int a, int b) {

@@ -19,22 +19,22 @@ struct SurfacePoint {
   int triangle = -1;                                          // index into the mesh's triangles
 };
 
-/// Box tree over the triangles of a surface. It copies what it needs: the mesh may go away.
-/// Queries are const, may run on several threads at once, and give the same bits each time.
-/// Triangles without area are never an answer.
+/// Box tree over the triangles of a surface. It copies its data: the mesh need not outlive it.
+/// Queries are const, thread-safe and bitwise deterministic. Triangles without area are never
+/// returned.
 class TriangleTree {
  public:
   /// Indices must be valid and coordinates finite. Corners at equal coordinates count as one
   /// vertex.
   explicit TriangleTree(const TriMesh& mesh);
 
-  /// The tree of the same triangles elsewhere, as this one was split: made much sooner, and for
-  /// `nearest` alone. Those that have lost their area may be an answer or not.
+  /// The tree of the same triangles with other vertex positions, split as this one: built much
+  /// faster, and for `nearest` alone. Triangles that have lost their area may be returned or not.
   TriangleTree moved(const TriMesh& mesh) const;
 
   bool empty() const { return corners_.empty(); }
 
-  /// Corners of a triangle that has area, such as every answer has.
+  /// Corners of a triangle that has area, such as every returned one.
   const std::array<Eigen::Vector3d, 3>& corners(int triangle) const {
     assert(static_cast<std::size_t>(triangle) < slot_.size());
     assert(slot_[static_cast<std::size_t>(triangle)] >= 0);
@@ -46,8 +46,8 @@ class TriangleTree {
                        double reach = std::numeric_limits<double>::infinity()) const;
 
   /// The same with the distance negative on the inner side of the nearest surface (angle-weighted
-  /// pseudonormals): inside a closed mesh. Of overlapping closed shells the nearest one decides;
-  /// `winding_number` tells the inside of their union.
+  /// pseudonormals): inside a closed mesh. Where closed shells overlap, the nearest one decides;
+  /// `winding_number` detects the inside of their union.
   SurfacePoint signed_nearest(const Eigen::Vector3d& p,
                               double reach = std::numeric_limits<double>::infinity()) const;
 
@@ -85,9 +85,9 @@ class TriangleTree {
       const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
       double max_t = std::numeric_limits<double>::infinity()) const;
 
-  /// How often the surface goes round p: 1 inside, 0 outside a closed mesh, n inside n shells; in
-  /// between where shells are open. Exact sum over the triangles, with far ones lumped by clusters
-  /// (error below 0.02). source: Barill et al. 2018, first order.
+  /// Winding number of the surface about p: 1 inside, 0 outside a closed mesh, n inside n shells;
+  /// in between where shells are open. Exact sum over the triangles, with far ones lumped by
+  /// clusters (error below 0.02). source: Barill et al. 2018, first order.
   double winding_number(const Eigen::Vector3d& p) const;
 
  private:

@@ -199,7 +199,7 @@ class GlbReader {
     return place;
   }
 
-  /// Walks the tree with a stack of its own: a deep file must not run the program's stack out.
+  /// Traverses the tree with an explicit stack: a deep file must not overflow the program's stack.
   void visit(const json& nodes, std::size_t root, const Affine3d& start,
              std::vector<char>& visited) {
     std::vector<std::pair<std::size_t, Affine3d>> waiting = {{root, start}};
@@ -225,7 +225,7 @@ class GlbReader {
       add_primitive((*primitives)[p], fmt::format("meshes {} primitive {}", m, p), place);
   }
 
-  /// A run of values in the binary chunk, checked to lie within it.
+  /// A range of values in the binary chunk, checked to lie within it.
   struct View {
     const char* data;
     std::size_t count, stride, components;

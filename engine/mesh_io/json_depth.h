@@ -5,11 +5,11 @@
 
 namespace condyle {
 
-/// Deepest nesting of lists and objects that our JSON files have need of. Parsers and copies of
-/// deeper texts could run the stack out.
+/// Deepest nesting of lists and objects that the program's JSON files need. Parsing or copying
+/// deeper texts could overflow the stack.
 constexpr int max_json_depth = 64;
 
-/// How deep lists and objects of a JSON text are nested.
+/// Nesting depth of the lists and objects of a JSON text.
 inline int json_depth(std::string_view text) {
   int depth = 0, deepest = 0;
   bool in_string = false;

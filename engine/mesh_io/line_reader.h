@@ -10,7 +10,7 @@
 
 namespace condyle {
 
-/// Walks over a text line by line and word by word, without copies; LF, CRLF and CR end a line.
+/// Reads a text line by line and word by word, without copies; LF, CRLF and CR end a line.
 class LineReader {
  public:
   explicit LineReader(std::string_view text) : rest_(text) {}
@@ -42,7 +42,7 @@ class LineReader {
     line_.remove_prefix(end);
     return found;
   }
-  std::string_view line() const { return line_; }  // what is left of it
+  std::string_view line() const { return line_; }  // the rest of the line
   std::string_view rest() const { return rest_; }  // the lines after it
   long number() const { return number_; }
   std::string where() const { return "line " + std::to_string(number_); }
@@ -52,14 +52,14 @@ class LineReader {
   long number_ = 0;
 };
 
-/// The whole word as a number, nothing when it is none ("nan" and "inf" are numbers here).
+/// The whole word as a number, absent if it is none ("nan" and "inf" are numbers here).
 template <class T>
 std::optional<T> to_number(std::string_view word) {
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
   T value{};
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || word.empty()) return std::nullopt;
-  // Too large or small for a double: keep the sense, the range check speaks of it.
+  // Too large or small for a double: an infinity or zero, which the range check reports.
   if (error == std::errc::result_out_of_range && std::is_floating_point_v<T>)
     return word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos
                ? T{0}
@@ -68,7 +68,7 @@ std::optional<T> to_number(std::string_view word) {
   return value;
 }
 
-/// A word of the file as it may stand in a message: printable, short.
+/// A word of the file for a message: printable and short.
 std::string in_quotes(std::string_view word);
 
 }  // namespace condyle

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Keywords that say nothing about the surface.
+/// Keywords that do not affect the surface.
 constexpr std::array<std::string_view, 22> ignored = {
     "vt",     "vn",         "vp",        "g",   "o",      "s",     "mg",       "usemtl",
     "mtllib", "usemap",     "maplib",    "l",   "p",      "bevel", "c_interp", "d_interp",
@@ -112,7 +112,7 @@ class ObjReader {
     faces_.push_back({lines_.number(), corners_.size()});
   }
 
-  /// Faces may come before their vertices: they are checked and cut when all are there.
+  /// Faces may precede their vertices: they are checked and triangulated when all have been read.
   TriMesh finish() {
     const auto count = static_cast<int>(mesh_.vertices.size());
     if (mesh_.colors.size() != mesh_.vertices.size()) mesh_.colors.clear();

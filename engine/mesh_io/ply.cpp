@@ -99,7 +99,7 @@ class TextBody {
     const auto number = to_number<double>(word_);
     if (!number) refuse("has " + in_quotes(word_) + " where a number should be");
     word_ = lines_.word();
-    // As single precision where the header says so: text and binary give the same bits.
+    // In single precision where the header says so: text and binary yield the same bits.
     return type == PlyType::f32 ? static_cast<double>(static_cast<float>(*number)) : *number;
   }
   void end() {
@@ -124,7 +124,7 @@ class TextBody {
   std::string_view word_;
 };
 
-/// What each property of the vertices is for.
+/// The use of each vertex property.
 struct VertexLayout {
   std::array<int, 3> place{-1, -1, -1}, color{-1, -1, -1};
   double color_scale = 1;
@@ -271,7 +271,7 @@ TriMesh read_body(const fs::path& file, Body& body, const PlyHeader& header) {
                      fmt::format("{} bytes follow after the last element: the header "
                                  "does not fit the data; export it again",
                                  rest));
-  // Polygons may come before the vertices: they are cut when both are there.
+  // Polygons may precede the vertices: they are triangulated when both have been read.
   mesh.triangles.reserve(ends.size());
   std::size_t first = 0;
   for (const int end : ends) {

@@ -88,14 +88,14 @@ void read_property(const fs::path& file, LineReader& lines, PlyHeader& header) {
   header.elements.back().properties.push_back(std::move(property));
 }
 
-/// The least the body must hold; a promise beyond it is refused before memory is asked for.
+/// Minimum size of the body; a count that needs more is refused before memory is allocated.
 void check_promise(const fs::path& file, const PlyHeader& header, std::size_t body) {
   double total = 0;
   for (const auto& element : header.elements) {
     double least = 0;
     for (const auto& property : element.properties) {
       if (header.format == PlyHeader::Format::ascii)
-        least += 2;  // a digit and what parts it from the next
+        least += 2;  // a digit and a separator
       else
         least += static_cast<double>(property.list ? size_of(property.count_type)
                                                    : size_of(property.type));
@@ -106,7 +106,7 @@ void check_promise(const fs::path& file, const PlyHeader& header, std::size_t bo
                        "the element " + in_quotes(element.name) + " has no properties");
     total += least * static_cast<double>(element.count);
     const double spare =
-        header.format == PlyHeader::Format::ascii ? 1 : 0;  // the last needs no end
+        header.format == PlyHeader::Format::ascii ? 1 : 0;  // the last needs no separator
     if (total > static_cast<double>(body) + spare)
       throw InputError(
           file, "header",

@@ -38,7 +38,7 @@ struct PlyHeader {
   long lines = 0;
 };
 
-/// Parses the header and holds each promised count against the size of the body.
+/// Parses the header and checks each stated count against the size of the body.
 /// throws: InputError naming the header's line.
 PlyHeader read_ply_header(const std::filesystem::path& file, std::string_view content);
 

@@ -19,7 +19,7 @@ bool in_triangle(const Vector2d& p, const Vector2d& a, const Vector2d& b, const 
 void cut_quad(std::span<const int> q, const std::vector<Vector3d>& vertices,
               std::vector<Eigen::Vector3i>& triangles) {
   const Vector3d &a = vertices[q[0]], &b = vertices[q[1]], &c = vertices[q[2]], &d = vertices[q[3]];
-  // A cut is sound when its two triangles face the same way; of two sound ones the shorter.
+  // A diagonal is valid if its two triangles face the same side; the shorter of two valid ones.
   const bool ac_sound = (b - a).cross(c - a).dot((c - a).cross(d - a)) > 0;
   const bool bd_sound = (c - b).cross(d - b).dot((d - b).cross(a - b)) > 0;
   const bool along_bd = bd_sound && (!ac_sound || (d - b).squaredNorm() < (c - a).squaredNorm());
@@ -63,8 +63,8 @@ void triangulate(std::span<const int> corners, const std::vector<Vector3d>& vert
   while (left.size() > 3) {
     const std::size_t m = left.size();
     const std::size_t a = left[(at + m - 1) % m], b = left[at % m], c = left[(at + 1) % m];
-    // A whole round without an ear: the polygon crosses itself. Then it is cut anywhere, as is one
-    // that takes too long.
+    // A full round without an ear: the polygon intersects itself. It is then cut anywhere, as is
+    // one that takes too long.
     bool ear = misses >= m || all_misses > 50 * n;
     if (!ear && cross(flat[a], flat[b], flat[c]) > 0) {
       ear = true;

@@ -8,8 +8,8 @@ namespace condyle {
 
 constexpr std::size_t max_polygon_corners = 1000;
 
-/// Cuts a polygon into corners - 2 triangles with its own sense: a quad along the better diagonal,
-/// others by clipping ears in the plane of their mean normal. Appended to `triangles`.
+/// Triangulates a polygon with its own orientation: a quad along the better diagonal, others by ear
+/// clipping in the plane of their mean normal. Appends corners - 2 triangles to `triangles`.
 void triangulate(std::span<const int> corners, const std::vector<Eigen::Vector3d>& vertices,
                  std::vector<Eigen::Vector3i>& triangles);
 

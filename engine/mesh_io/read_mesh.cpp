@@ -58,7 +58,7 @@ TriMesh read_mesh(const fs::path& file) {
   if (std::error_code error; fs::is_directory(file, error))
     throw InputError(file, "", "is a folder; name one .stl, .ply, .obj or .glb file");
   if (std::error_code error; !fs::exists(file, error)) throw InputError(file, "", "no such file");
-  reader_for(file);  // a wrong extension is told before a large file is read
+  reader_for(file);  // a wrong extension is reported before a large file is read
   try {
     return parse_mesh(file, read_file(file, max_bytes));
   } catch (const std::bad_alloc&) {

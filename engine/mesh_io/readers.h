@@ -17,7 +17,7 @@ TriMesh read_glb(const std::filesystem::path& file, std::string_view content);
 /// The reader that the file's extension asks for, and the checks that all formats share.
 TriMesh parse_mesh(const std::filesystem::path& file, std::string_view content);
 
-/// "an STL file", "text" ...: what the first bytes look like, for messages.
+/// "an STL file", "text" ...: the apparent format of the first bytes, for messages.
 std::string looks_like(std::string_view content);
 
 /// Checks a count read from a header before anything is allocated. throws: InputError.

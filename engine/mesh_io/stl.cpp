@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-/// Welds as it goes, so that at most a part of the corners stands unwelded in memory.
+/// Welds while reading, so that only a part of the corners is unwelded in memory.
 class Soup {
  public:
   explicit Soup(std::size_t triangles) {
@@ -75,7 +75,7 @@ TriMesh read_ascii(const fs::path& file, std::string_view content) {
     throw InputError(file, lines.where(), problem + "; export the surface again");
   };
   Soup soup(content.size() / 250);
-  // Each facet must go through its steps in this order; several solids may follow one another.
+  // The lines of each facet must follow in this order; a file may have several solids.
   enum class Step { solid, facet, loop, corners, end_facet } step = Step::solid;
   int corner = 0;
   while (lines.next()) {

@@ -34,7 +34,7 @@ using nlohmann::json;
 constexpr std::uint32_t max_side = 16384;
 constexpr std::size_t max_texture_bytes = std::size_t{1} << 30;
 
-/// Sides as a PNG's header tells them; none if it is no PNG.
+/// Width and height from a PNG's header; absent if it is not a PNG.
 std::optional<std::array<std::uint32_t, 2>> png_sides(std::string_view bytes) {
   if (!bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.size() < 24) return {};
   const auto number = [&](std::size_t at) {
@@ -69,7 +69,7 @@ void decode(const fs::path& file, std::string_view bytes, Texture& texture) {
   texture.rgb.assign(pixels.get(), pixels.get() + count);
 }
 
-/// A GLB that read_mesh has accepted, as far as its one textured surface goes.
+/// The one textured surface of a GLB that read_mesh has accepted.
 class GlbTexture {
  public:
   explicit GlbTexture(std::string_view content) {
@@ -176,7 +176,7 @@ class GlbTexture {
   std::string_view bytes_;
 };
 
-/// Name of the picture that an OBJ's material speaks of; fills surface and corners.
+/// Name of the picture that an OBJ's material refers to; fills surface and corners.
 fs::path read_obj_texture(const fs::path& file, const std::string& content, Texture& texture) {
   std::istringstream lines(content);
   std::vector<Eigen::Vector2f> places;
@@ -225,7 +225,7 @@ fs::path read_obj_texture(const fs::path& file, const std::string& content, Text
     std::istringstream words(line);
     std::string key, name;
     words >> key;
-    // Options may stand before the name, which comes last.
+    // Options may precede the name, which is last.
     if (key == "map_Kd")
       while (words >> key) name = key;
     if (name.empty()) continue;
@@ -235,7 +235,7 @@ fs::path read_obj_texture(const fs::path& file, const std::string& content, Text
   return {};
 }
 
-/// Bilinear, the picture going on at its borders.
+/// Bilinear; the picture repeats at its borders.
 Eigen::Vector3f color_at(const Texture& texture, const Eigen::Vector2f& place) {
   const auto wrapped = [](int i, int n) { return ((i % n) + n) % n; };
   const float x = (place.x() - std::floor(place.x())) * static_cast<float>(texture.width) - 0.5f;

@@ -11,11 +11,11 @@
 
 namespace condyle {
 
-/// A picture that is laid over a surface.
+/// A picture mapped onto a surface.
 struct Texture {
   TriMesh surface;                       // as in the file, in its unit and axes
-  std::vector<Eigen::Vector2f> corners;  // three a triangle: place in the picture, 0 to 1, from the
-                                         // left and from the top
+  std::vector<Eigen::Vector2f> corners;  // three per triangle: position in the picture, 0 to 1,
+                                         // from the left and from the top
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;  // sRGB, rows from the top
 };
@@ -25,7 +25,7 @@ struct Texture {
 /// throws: InputError when the picture is damaged or larger than 16384 a side.
 std::optional<Texture> read_texture(const std::filesystem::path& file);
 
-/// Gives each vertex the colour of the nearest place of the textured surface, after `to_mesh`.
+/// Gives each vertex the colour of the nearest point of the textured surface, after `to_mesh`.
 void paint(TriMesh& mesh, const Texture& texture, const Eigen::Affine3d& to_mesh);
 
 }  // namespace condyle

@@ -19,7 +19,7 @@ void put(std::string& out, T value) {
 
 std::uint8_t byte_of(float c) { return static_cast<std::uint8_t>(std::lround(255.0f * c)); }
 
-/// Bytes hold the colours without loss, as when they came from a picture.
+/// Whether bytes store the colours without loss, as when they came from a picture.
 bool fits_bytes(const TriMesh& mesh) {
   for (const auto& color : mesh.colors)
     for (int k = 0; k < 3; ++k)

@@ -9,7 +9,7 @@ namespace condyle {
 /// Batch16 rows of two columns of a factor, in half precision (bfloat16: the range of floats and 8
 /// bits of their digits). The first column's are the lower halves of the words. The second's are
 /// the whole words, read as floats: the upper halves are chosen so that they are the nearest,
-/// whatever stands below. So neither has to be unpacked by more than a shift.
+/// whatever is below. So neither has to be unpacked by more than a shift.
 struct alignas(64) PairTile {
   std::uint32_t word[16];
 };

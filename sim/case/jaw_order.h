@@ -5,9 +5,9 @@
 
 namespace condyle {
 
-/// Refuses upper and lower jaws, teeth or incisal points that are exchanged, judged by their
-/// heights where one lies above the other; the message has the options to write instead. Adds a
-/// note where the teeth leave a doubt. `patient`: as converted by the request, in a frame that has
+/// Refuses upper and lower jaws, teeth or incisal points that are exchanged, by their heights where
+/// one lies above the other; the message states the right options. Adds a note where the teeth are
+/// inconclusive. `patient`: as converted by the request, in a frame that has
 /// been checked. throws: InputError.
 void check_jaw_order(Case& patient, const ImportRequest& request);
 

@@ -5,12 +5,12 @@
 
 namespace condyle {
 
-/// A surface, a list of landmarks or a table of muscles that shall become part of a patient.
+/// A surface, a list of landmarks or a table of muscles to import into a patient.
 struct FileRole {
   std::filesystem::path file;
   // "mandible", "upper-teeth", ..., "landmarks", "muscles", or empty: leave it out
   std::string role;
-  // The role that its name suggests, where another file of the same thing has it.
+  // The role that its name suggests, where another file of the same object has it.
   std::string taken = {};
 };
 

@@ -27,7 +27,8 @@ Vector3d landmark(const Case& patient, const char* name) {
   return *point;
 }
 
-/// What meets what: the teeth; where an arch has none, the crowns of the bone that carries them.
+/// The surfaces that bite: the teeth; where an arch has none, the crowns of the bone that carries
+/// them.
 struct BitingSurfaces {
   const TriMesh *upper = nullptr, *lower = nullptr;
   std::optional<Box> upper_crowns, lower_crowns;  // of a bone: only there does it bite

@@ -37,7 +37,7 @@ Motion motion_of(const std::string& spec, const Case& patient, const ContactMode
                  const MotionSettings& opening = {}, const MuscleMotionSettings& muscles = {},
                  int threads = 1);
 
-/// Checks what can be wrong with such a motion without a patient: names, words, files and settings.
+/// Checks of such a motion what needs no patient: names, words, files and settings.
 /// throws: InputError as motion_of().
 void check_motion(const std::string& spec, const MotionSettings& settings,
                   const MuscleMotionSettings& muscles);

@@ -6,8 +6,7 @@
 namespace condyle {
 namespace {
 
-/// Whether a word ends at this position: at punctuation or a space, not within a path or a file
-/// name.
+/// Whether a word ends at this position: at punctuation or a space, not within a path or file name.
 bool ends_word(std::string_view sentence, std::size_t at) {
   constexpr std::string_view signs = " ,;:)\"'?!";
   if (at >= sentence.size() || signs.find(sentence[at]) != std::string_view::npos) return true;

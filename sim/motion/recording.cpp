@@ -197,8 +197,10 @@ bool joints_hold(const Vector3d& left, const Vector3d& right, const Motion& moti
     Pose X = motion.target(time);
     X.t *= scale;
     for (const Vector3d& condyle : {left, right}) {
-      const Vector3d way = X * condyle - condyle;
-      if (way.norm() > longest_mm || way.z() > highest_mm || way.y() > hindmost_mm) return false;
+      const Vector3d displacement = X * condyle - condyle;
+      if (displacement.norm() > longest_mm || displacement.z() > highest_mm ||
+          displacement.y() > hindmost_mm)
+        return false;
     }
   }
   return true;

@@ -15,8 +15,8 @@ namespace condyle {
 /// side (bi_ before any name: both). Empty: the name is unknown.
 std::vector<std::size_t> muscles_named(std::string_view name, std::span<const Muscle> muscles);
 
-/// Abbreviated full name, side first: "L Ant. Temporal" for "Anterior Temporal" of the
-/// left, "L" and "R" being the patient's sides. Without a side: the name alone.
+/// Abbreviated full name, with the patient's side first: "L Ant. Temporal" for the left "Anterior
+/// Temporal". Without a side: the name alone.
 std::string short_name(const Muscle& muscle);
 
 /// All valid names, for a message.

@@ -9,8 +9,8 @@ namespace condyle {
 inline const Eigen::Vector3d condyle_center(50.5, -13, -7.5);
 Primitive condyle_shape();
 
-/// What the moving condyle needs, cut from the temporal bone: the condyle along its path, grown by
-/// the thickness of disc and cartilage.
+/// The space of the moving condyle, cut from the temporal bone: the condyle along its path, grown
+/// by the thickness of disc and cartilage.
 Primitive fossa_cut();
 
 /// Brain case without its cavity, moved out by `outward` mm.

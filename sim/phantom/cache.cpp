@@ -43,7 +43,7 @@ std::optional<Case> stored_case(const fs::path& folder, const fs::path& seal) {
     Case patient = load_case(folder);
     if (read_file(seal, 64) == fmt::format("{:016x}\n", content_hash(patient))) return patient;
   } catch (const std::exception&) {
-    // Damaged: as good as none.
+    // A damaged case is ignored.
   }
   return std::nullopt;
 }

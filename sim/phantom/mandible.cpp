@@ -18,7 +18,7 @@ const std::vector<Vector2d> ramus_outline = {
     {-46, -72},    {-48, -58},   {-45, -50},   {-40, -43},   {-38.8, -36}, {-40.5, -28},
     {-43.2, -20},  {-44.6, -13}};
 
-/// Where the ramus' mid-plane lies, x at (y, z).
+/// Mid-plane of the ramus: x at (y, z).
 double ramus_middle(double y, double z) {
   const double q = z + 50;
   return 46 + (.42 - .27 * smooth_step((z + 58) / 50)) * (y + 14) +

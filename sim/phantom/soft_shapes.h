@@ -21,8 +21,8 @@ FieldRecipe skin_recipe(Lips lips);
 Primitive face_base();
 void add_ear(FieldRecipe& head);
 
-/// Mouth. Height of the surface on which the lips meet; it rises inward, so that no straight look
-/// goes between them.
+/// Mouth. Height of the surface on which the lips meet; it rises inward, so that no straight line
+/// of sight passes between them.
 double lip_line(double x, double y);
 constexpr double mouth_corner_x = 24.5;  // mm
 /// Space behind the lips and cheeks, around both arches.

@@ -13,11 +13,10 @@
 
 namespace condyle {
 
-/// Thrown inside work that was cancelled.
+/// Thrown inside cancelled work.
 struct Cancelled {};
 
-/// Long work on a thread of its own, with progress. A cancelled one ends where it next reports
-/// progress.
+/// Long work on its own thread, with progress. Cancelled work ends when it next reports progress.
 template <class Result>
 class BackgroundWork {
  public:
@@ -43,7 +42,7 @@ class BackgroundWork {
     done_.wait(false);
     return take();
   }
-  /// Of work that is done: its result, none when it was cancelled. throws: what stopped it.
+  /// The result of finished work, none if it was cancelled. Rethrows the exception that ended it.
   std::optional<Result> take() {
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
     return std::exchange(result_, std::nullopt);

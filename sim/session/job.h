@@ -21,7 +21,7 @@ class RetiredWork {
     work->cancel();
     keep(std::shared_ptr<BackgroundWork<Result>>(std::move(work)));
   }
-  /// Destroys what runs, or is large; `keeper`, which it works on, is released after it.
+  /// Destroys running or large work; `keeper`, on which it works, is released after it.
   template <class Thing>
   void add(std::shared_ptr<Thing> thing, std::shared_ptr<const void> keeper) {
     auto both = std::make_shared<std::pair<std::shared_ptr<const void>, std::shared_ptr<Thing>>>(
@@ -34,7 +34,7 @@ class RetiredWork {
         },
         [] {}));
   }
-  /// Forgets what has ended.
+  /// Discards work that has ended.
   void sweep() {
     std::erase_if(ending_, [](const auto& has_ended) { return has_ended(); });
   }
@@ -57,7 +57,7 @@ class Job {
   Job(RetiredWork& retired, std::function<void()> notify)
       : retired_(retired), notify_(std::move(notify)) {}
 
-  /// Work that runs already is dropped.
+  /// Starts work; running work is dropped.
   void start(Work work) {
     drop();
     work_ = std::make_unique<BackgroundWork<Result>>(std::move(work), notify_);
@@ -67,7 +67,7 @@ class Job {
     if (work_) retired_.add(std::move(work_));
     work_.reset();
   }
-  /// Ends it where it next reports progress; its result, if any, can be taken.
+  /// Ends it when it next reports progress; its result, if any, can be taken.
   void cancel() {
     if (work_) work_->cancel();
   }
@@ -78,8 +78,8 @@ class Job {
   std::pair<std::string, double> progress() const {
     return work_ ? work_->progress() : std::pair<std::string, double>{};
   }
-  /// Of work that is done: its result, none when it was cancelled. The job is idle afterwards.
-  /// throws: what stopped the work.
+  /// The result of finished work, none if it was cancelled. The job is idle afterwards. Rethrows
+  /// the exception that ended the work.
   std::optional<Result> take() { return std::exchange(work_, nullptr)->take(); }
   /// Waits for the end, then as `take`.
   std::optional<Result> finish() { return std::exchange(work_, nullptr)->finish(); }

@@ -91,7 +91,7 @@ MotionPreview preview_motion(const SessionPatient& patient, const Motion& motion
   constexpr long max_frames = 1800;
   constexpr std::chrono::milliseconds news_every(400);
   settings.tissue = settings.face = false;
-  settings.threads = 1;  // beside the simulation that is watched
+  settings.threads = 1;  // it runs beside the live simulation
   Playback playback(patient.scene, motion, settings, obey_contact);
   MotionSeries series(patient.scene, motion);
   if (!series.known_landmarks) return {};

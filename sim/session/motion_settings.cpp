@@ -8,8 +8,8 @@
 namespace condyle {
 namespace {
 
-/// A parameter as the panel shows it: what was published of adults, and what is used where neither
-/// the case nor the person says anything (none: what the patient's joints and teeth give).
+/// A parameter as the panel shows it: the published range of adults, and the value used where
+/// neither the case nor the user states one (none: it follows from the patient's joints and teeth).
 struct ShownParameter {
   const char* name;
   const char* label;
@@ -17,7 +17,8 @@ struct ShownParameter {
   std::optional<double> default_value = std::nullopt;
 };
 constexpr std::array shown_parameters = {
-    // The drop of an incisal point that goes 42 to 58 mm, forward and down as in Posselt's diagram.
+    // The descent of an incisal point that moves 42 to 58 mm, forward and down as in Posselt's
+    // diagram.
     ShownParameter{"opening", "Max. opening (drop)", 38, 52},
     ShownParameter{"protrusion", "Protrusion", 6, 11, 8},
     ShownParameter{"laterotrusion", "Laterotrusion", 7, 12, 9},

@@ -8,7 +8,7 @@
 
 namespace condyle {
 
-/// The numbers that shape a motion and where each comes from; none of a recorded one. `widest_mm`:
+/// The parameters of a motion and the source of each; none for a recorded one. `widest_mm`:
 /// the largest opening along the patient's opening movement.
 std::vector<MotionSetting> motion_settings(const MotionChoice& choice, const Motion& motion,
                                            const MotionParameters& of_case, double widest_mm);

@@ -9,7 +9,7 @@
 
 namespace condyle {
 
-/// Muscles that are excited together: as a file of excitations names them, and what they are.
+/// Muscles that are excited together: their name in a file of excitations, and their description.
 struct MuscleGroup {
   const char* name;
   const char* label;

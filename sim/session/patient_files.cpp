@@ -26,8 +26,8 @@ std::string first_line(const fs::path& file) {
   return {};
 }
 
-/// Of the others a patient may well have several.
-bool is_had_once(const std::string& role) {
+/// Whether a patient has at most one part of this role.
+bool occurs_once(const std::string& role) {
   return !role.empty() && role != "segment" && role != "transplant";
 }
 
@@ -89,7 +89,7 @@ std::vector<FileRole> proposed_roles(const std::vector<fs::path>& files) {
     const bool again = std::any_of(plainest_first.begin(), one, [&](const FileRole* plainer) {
       return plainer->role == (*one)->role && stem(**one).starts_with(stem(*plainer));
     });
-    if (again && is_had_once((*one)->role)) (*one)->taken = std::exchange((*one)->role, {});
+    if (again && occurs_once((*one)->role)) (*one)->taken = std::exchange((*one)->role, {});
   }
   return roles;
 }

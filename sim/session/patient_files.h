@@ -9,17 +9,17 @@
 
 namespace condyle {
 
-/// What a dropped or opened file is, by its name and first line.
+/// The kind of a dropped or opened file, by its name and first line.
 enum class FileKind { patient, motion, excitations, surface, landmarks, muscles, unknown };
 FileKind kind_of(const std::filesystem::path& path);
 
-/// Whether a patient is made of such files.
+/// Whether a patient can be imported from such files.
 constexpr bool makes_patient(FileKind kind) {
   return kind == FileKind::surface || kind == FileKind::landmarks || kind == FileKind::muscles;
 }
 
-/// The same files, but a folder that is no case replaced by the surfaces, landmarks and muscles in
-/// it, if there are any.
+/// The same files, with each folder that is no case replaced by the surfaces, landmarks and muscles
+/// in it, if there are any.
 std::vector<std::filesystem::path> with_loose_surfaces(
     const std::vector<std::filesystem::path>& files);
 

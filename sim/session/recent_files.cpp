@@ -30,7 +30,7 @@ void RecentFiles::add(const fs::path& opened) {
   std::error_code ignored;
   fs::path whole = fs::weakly_canonical(opened, ignored);
   if (whole.empty()) whole = opened;
-  if (whole.string().find('\n') != std::string::npos) return;  // the list has a path a line
+  if (whole.string().find('\n') != std::string::npos) return;  // the list has one path per line
   std::erase(list_, whole);
   list_.insert(list_.begin(), whole);
   if (list_.size() > most) list_.resize(most);
@@ -50,7 +50,7 @@ void RecentFiles::write() const {
     make_folder(file_.parent_path());
     write_file(file_, text);
   } catch (const MachineError&) {
-    // The list lasts as long as the window then.
+    // The list then lasts only as long as the window.
   }
 }
 

@@ -7,17 +7,17 @@
 
 namespace condyle {
 
-/// What was opened before, the last one first; kept in a file of the person's settings.
+/// The files opened before, the last one first; stored in a file of the user's settings.
 class RecentFiles {
  public:
-  /// `file`: a path a line. A missing or unreadable one is an empty list.
+  /// `file`: one path per line. A missing or unreadable one is an empty list.
   explicit RecentFiles(std::filesystem::path file = settings_file("recent"));
 
   const std::vector<std::filesystem::path>& list() const { return list_; }
-  /// Puts it first and writes the list beside and renamed; ten are kept. A list that cannot be
-  /// written is no error: it lasts as long as the window.
+  /// Puts the path first and writes the list atomically; ten are kept. A list that cannot be
+  /// written is no error: it lasts only as long as the window.
   void add(const std::filesystem::path& opened);
-  /// What is not there any more.
+  /// Removes a path that no longer exists.
   void forget(const std::filesystem::path& gone);
 
  private:

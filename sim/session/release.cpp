@@ -11,7 +11,7 @@
 namespace condyle {
 namespace {
 
-/// One newton from the body, with what hangs on it, towards the nearest other bone; down when no
+/// A force of 1 N from the body and its descendants towards the nearest other bone; down when no
 /// bone is near.
 Eigen::Vector3d push_toward_bone(const Case& patient, const FrameState& frame, BodyId body) {
   double nearest_mm = std::numeric_limits<double>::max();

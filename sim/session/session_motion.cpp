@@ -41,9 +41,9 @@ Motion make(const MotionChoice& choice, const Scene& scene, const SessionSetting
   return scaled;
 }
 
-/// The opening of a recording along itself; else the patient's own opening, whatever the motion
-/// does. Where that is impossible a note says so, and the mouth opens to the patient's default
-/// maximum or, if that is impossible too, along the motion.
+/// The motion along which the mouth opens: the recording itself, else the patient's own opening,
+/// regardless of the motion. Where that is impossible a note says so, and the mouth opens to the
+/// patient's default maximum or, if that is impossible too, along the motion.
 Motion opening_of(const MotionChoice& choice, const Motion& motion, const Scene& scene,
                   SessionSettings options, std::vector<std::string>& notes) {
   if (choice.spec == "opening" || motion.recording) return motion;

@@ -14,8 +14,8 @@ namespace condyle {
 struct SessionMotion {
   MotionChoice choice;
   Motion motion;
-  Motion opening;        // what a hand opens the mouth along
-  double widest_mm = 0;  // of it
+  Motion opening;        // along which a hand opens the mouth
+  double widest_mm = 0;  // of the opening
   std::vector<MotionSetting> settings;
   std::vector<ExcitationSetting> excitations;
 };
@@ -27,8 +27,8 @@ std::vector<std::string> motion_names();
 SessionMotion make_session_motion(const MotionChoice& choice, const SessionPatient& patient,
                                   const SessionSettings& settings);
 
-/// Excitations by muscle that a motion by muscles has at a time, or holds where they are set by
-/// hand; none for another motion.
+/// Excitations by muscle of a muscle-driven motion at a time, or the levels set by hand; none for
+/// another motion.
 std::map<std::string, double> excitations_at(const SessionMotion& motion, double time_s);
 
 /// The rest position of the mandible with the parameters that were chosen. throws: InputError.

@@ -29,7 +29,7 @@ std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
   try {
     made->muscles = muscles_of(made->scene.patient);
   } catch (const InputError&) {
-    // Nobody asked for them; a motion by muscles says what is missing.
+    // They were not requested; a muscle-driven motion states what is missing.
   }
   return made;
 }

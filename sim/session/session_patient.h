@@ -10,13 +10,13 @@
 
 namespace condyle {
 
-/// A patient of a session: what is simulated, and what is reported of it.
+/// A patient of a session: the simulated scene, and what is reported of it.
 struct SessionPatient {
-  std::filesystem::path folder;  // none: not kept in files
+  std::filesystem::path folder;  // empty: not stored in files
   Scene scene;
   FrameState at_rest;           // with its face
   std::vector<Muscle> muscles;  // the case's, or default ones; none where landmarks are missing
-  std::string trouble;          // what had to be left out, as a sentence
+  std::string trouble;          // what had to be omitted, as a sentence
 };
 
 /// Builds the scene of a patient, without soft tissue when the face does not allow any: the bones

@@ -7,12 +7,12 @@
 
 namespace condyle {
 
-/// What a session begins with, as values: a front end has parsed them.
+/// Initial settings of a session, already parsed by the front end.
 struct SessionSettings {
   std::string first_motion = "opening";  // of the first patient; a name, a file or movements
-  MotionSettings motion = {};            // of every motion, before what is chosen for one
+  MotionSettings motion = {};            // of every motion; choices for one override them
   MuscleMotionSettings muscles = {};
-  bool respect_contact = false;  // recorded motion, too, slides where bones meet
+  bool respect_contact = false;  // recorded motion also slides where bones meet
   SimulatorSettings simulator = {};
 };
 

@@ -10,13 +10,13 @@
 namespace condyle {
 namespace {
 
-/// Steps toward a target are shown only as often as a screen wants pictures; more rarely where
-/// steps take so much of the time that pictures give way to them.
+/// Steps toward a target are shown at most at the rate of a screen, and less often where the steps
+/// take most of the time.
 constexpr std::chrono::milliseconds picture_interval(33), sparing_interval(50);
 constexpr double sparing_step_s = 1.0 / 90;
 constexpr double step_s = 1.0 / 60;
 constexpr int step_iterations = 3;
-/// After so long without a new request tissue settles.
+/// Time without a new request after which tissue settles.
 constexpr std::chrono::milliseconds calm(60);
 
 }  // namespace

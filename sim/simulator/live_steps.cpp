@@ -5,7 +5,7 @@
 namespace condyle {
 namespace {
 
-/// A time farther ahead than this is a jump of the scrub bar, not time running on.
+/// A time farther ahead than this is a jump of the scrub bar.
 constexpr double jump_s = 0.25;
 constexpr int settling_iterations = 30;
 
@@ -50,7 +50,7 @@ StepInput LiveSteps::input(const LiveTarget& target, double time_s, bool shown) 
 
 void LiveSteps::begin_at(const BodyPoses& poses) {
   const BodyId jaw = scene_.patient.jaw.lower_arch;
-  // No path leads there on which tissue could follow.
+  // The tissue has no path on which it could follow.
   if (scene_.tissue && is_teleport(now_.poses[jaw], poses[jaw])) {
     now_.tissue = rest_tissue(*scene_.tissue);
     warm_ = {};
@@ -71,7 +71,7 @@ TeleportStart::Asked LiveSteps::asked(const LiveTarget& target, const StepInput&
 SimulatorSettings LiveSteps::settings_for(const LiveTarget& target, const StepInput& input) const {
   const BodyId jaw = scene_.patient.jaw.lower_arch;
   SimulatorSettings settings = settings_;
-  // Soft tissue that nobody sees waits; it follows from where it was left.
+  // Invisible soft tissue is not stepped; it continues later from its last state.
   settings.tissue = settings.tissue && target.request.face;
   const bool jaw_leaps = is_teleport(pose_in(now_.tissue.X_CB, jaw),
                                      placed(scene_.patient.bodies, input.X_PB_target)[jaw]);

@@ -13,16 +13,16 @@ namespace condyle {
 struct LiveTarget {
   LiveRequest request;
   std::vector<std::optional<Pose>> X_PB_held;  // of each body that a hand holds
-  long grips = 0;                              // how often a hand has moved
+  long grips = 0;                              // number of hand movements
 };
 
-/// The effort for the tissue of one live step, from the one of a step that keeps up with the clock:
-/// more for tissue that settles after the last request; all that it needs where the jaw's target
-/// is far away, or where the last solve failed and kept the state before.
+/// The tissue's budget in one live step, from that of a step in real time: larger for tissue that
+/// settles after the last request; the full one where the jaw's target is far away, or where the
+/// last solve failed and kept the earlier state.
 TissueBudget live_budget(TissueBudget keeping_up, bool settles, bool jaw_leaps, bool kept_before);
 
-/// The steps of a live simulation toward its targets, one at a time. Knows no threads and no clock
-/// but for the times of stages.
+/// The steps of a live simulation toward its targets, one at a time; without threads, and without a
+/// clock except for the times of stages.
 class LiveSteps {
  public:
   /// All must outlive it. A requested opening is found along `opening`.
@@ -61,7 +61,7 @@ class LiveSteps {
   TeleportStart leap_start_;
   FrameState now_;
   TissueWarmStart warm_;
-  std::vector<Pose> X_PB_moved_;  // where hands have brought bodies
+  std::vector<Pose> X_PB_moved_;  // poses to which hands have moved bodies
   LiveRequest answered_;
   long answered_grips_ = 0;
   bool caught_up_ = false;  // with the answered target

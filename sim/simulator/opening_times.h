@@ -7,8 +7,8 @@
 
 namespace condyle {
 
-/// When a motion has opened the mouth so far. Samples of the motion are kept, so that only the
-/// first questions cost as much as sampling it.
+/// Finds the time at which a motion has opened the mouth to an amount. Samples of the motion are
+/// cached, so that only the first queries cost as much as sampling it.
 class OpeningTimes {
  public:
   /// Patient and motion must outlive it.
@@ -24,7 +24,7 @@ class OpeningTimes {
 
   const Case& patient_;
   const Motion& motion_;
-  std::vector<double> sampled_mm_;  // at equal intervals from the start, as far as it was asked for
+  std::vector<double> sampled_mm_;  // at equal intervals from the start, as far as requested
 };
 
 }  // namespace condyle

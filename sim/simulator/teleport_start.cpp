@@ -51,7 +51,7 @@ void TeleportStart::ended(const Asked& asked, const FrameState& now) {
   for (std::size_t b = 1; b < followed_.size(); ++b)
     if (const BodyId body{static_cast<int>(b)}; asked.follows_motion[b])
       followed_[b] = pose_in(bodies[body].parent, body, now.poses);
-  // Of a continuing motion, only the newest.
+  // A continuing motion is recorded only at its newest pose.
   if (!places_.empty() && by_same_hands(places_.back().asked, asked)) places_.pop_back();
   if (places_.size() == most) places_.pop_front();
   places_.push_back({asked, now.poses});

@@ -101,7 +101,7 @@ class Anchoring {
 
   /// Tissue that does not grow on bone is connected to both jaws by loose tissue: one weak spring
   /// to each, with the node's weights. Without it the inner sheet of a stretched cheek can fold
-  /// either way.
+  /// in either direction.
   std::vector<char> loosely() {
     const auto weight = harmonic_weights(mesh_.elements, given_, given_weight_);
     for (double of_node : weight) support_.node.add(lower_, of_node);

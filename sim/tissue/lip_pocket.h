@@ -23,7 +23,7 @@ struct LipLine {
 /// Scans of closed mouths often have a pocket between the lips, whose walls belong to either lip:
 /// the lips separate along its bottom, not where a plane cuts the walls. Returns the vertices along
 /// edges, from the right corner of the mouth to the left, where the pocket is deepest; empty
-/// without a pocket, or when a hole interrupts it. The face looks to -y.
+/// without a pocket, or when a hole interrupts it. The face points to -y.
 std::vector<int> pocket_bottom(const TriMesh& face, const LipLine& line);
 
 /// Modelled faces often have an oral cavity behind the lips, a pouch: they are open there, and its

@@ -137,8 +137,8 @@ struct ColumnShifts {
 /// Cosine between the contact normal of a guided point and its front direction.
 constexpr double min_front_cos = 0.5;
 
-/// Where the edges of the teeth would push a lip's point either way, its normal is limited to the
-/// front.
+/// Where the edges of the teeth would push a lip's point in either direction, its normal is limited
+/// to the front.
 void guide_lips(const TissueContact& contact, const Obstacle& obstacle, std::span<const Pose> X_CB,
                 const Nodes& x, std::vector<PointContact>& touches) {
   const Pose X_CU = pose_in(X_CB, contact.upper.body), X_CL = pose_in(X_CB, contact.lower.body);
