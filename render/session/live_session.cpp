@@ -58,7 +58,7 @@ void LiveSession::request(const ViewState& view, const std::optional<Pose>& X_CM
   applied_ = std::move(hands);
 }
 
-/// Gives whether there is a new frame.
+/// Returns whether there is a new frame.
 bool LiveSession::take_frame(const ViewState& view) {
   std::optional<FrameState> frame;
   state_.try_or_report("Cannot simulate the motion", [&] { frame = simulation_->take(); });

@@ -18,7 +18,7 @@ class LiveSession {
 
   /// Simulates the session's patient along its motion, from rest.
   void start();
-  /// Ends it; the patient changes.
+  /// Ends the simulation before the patient changes.
   void stop();
   bool running() const { return simulation_ != nullptr; }
   /// Once a turn. `X_CM_released`: of a released jaw in motion; `paths`: of the motion, if known.
@@ -31,7 +31,7 @@ class LiveSession {
   void show(const ViewState& view, bool is_new);
 
   SessionState& state_;
-  Hands applied_;  // what the simulation was asked for
+  Hands applied_;  // targets sent to the simulation
   std::optional<OverlayInputs> overlaid_;
   bool map_sent_ = false, coloured_ = false;
   std::shared_ptr<LiveDistances> distances_;

@@ -11,10 +11,10 @@
 
 namespace condyle {
 
-/// Loads patients beside a session.
+/// Loads patients concurrently with a session.
 class PatientLoader {
  public:
-  /// A patient that is ready; `renewed`: the one that was there, made anew with these landmarks.
+  /// A loaded patient; `renewed`: the present one, rebuilt with these landmarks.
   struct Loaded {
     std::shared_ptr<const SessionPatient> patient;
     std::optional<std::vector<Landmark>> renewed;
@@ -22,15 +22,15 @@ class PatientLoader {
 
   explicit PatientLoader(SessionState& state) : state_(state), job_(state.retired, state.waker()) {}
 
-  /// The case in a folder, or the built-in patient when it is empty.
+  /// Loads the case in a folder, or the built-in patient if it is empty.
   void open(const std::filesystem::path& folder);
-  /// Surfaces, landmarks and muscles with their roles.
+  /// Imports surfaces, landmarks and muscles with their roles.
   void import(const request::Import& request);
-  /// The session's patient with other landmarks.
+  /// Rebuilds the session's patient with other landmarks.
   void renew(std::vector<Landmark> landmarks);
   void drop() { job_.drop(); }
   const auto& job() const { return job_; }
-  /// The patient that was loaded; none when it is not ready or failed, which is reported.
+  /// The loaded patient; none if it is not ready, or if loading failed, which is reported.
   std::optional<Loaded> take();
 
  private:

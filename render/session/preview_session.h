@@ -10,23 +10,23 @@
 
 namespace condyle {
 
-/// Plots and paths of the session's motion, made beside it and shown as far as they are known.
+/// Plots and paths of the session's motion, computed in the background and shown as they appear.
 class PreviewSession {
  public:
   explicit PreviewSession(SessionState& state)
       : state_(state), job_(state.retired, state.waker()) {}
 
-  /// Another motion: what was known of the last one is dropped.
+  /// Starts with another motion; the results of the last one are discarded.
   void restart();
-  /// Another patient.
+  /// Discards all results; the patient changes.
   void forget();
-  /// Once a turn. `may_start`: nothing more urgent is at work.
+  /// Called once per turn. `may_start`: no more urgent work is running.
   void update(bool may_start);
-  /// Of the motion, as far as they are known; none before.
+  /// The paths of the motion computed so far; none before the first.
   const std::shared_ptr<const LineSet>& paths() const { return paths_; }
 
  private:
-  /// The newest part of a preview, from the thread that makes it.
+  /// The newest part of a preview, from the thread that computes it.
   struct Post {
     std::mutex mutex;
     std::optional<MotionPreview> preview;

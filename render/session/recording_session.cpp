@@ -69,7 +69,7 @@ bool RecordingSession::may_close() {
 /// Its folder holds pictures already.
 void RecordingSession::ask_about(const ViewRecorded& found) {
   const bool same = found.there.differs.empty();
-  // What was stopped there goes on as it was begun, though the view is another by now.
+  // A stopped recording is resumed with its own settings, even if the view has changed.
   const bool goes_on =
       same || (unfinished_ && unfinished_->record.folder == recorded_->record.folder);
   if (same) unfinished_ = recorded_;

@@ -8,29 +8,29 @@
 
 namespace condyle {
 
-/// The recording that is made beside a session, and what becomes of one that is not complete.
+/// The background recording of a session, and the handling of an incomplete one.
 class RecordingSession {
  public:
   explicit RecordingSession(SessionState& state)
       : state_(state), job_(state.retired, state.waker()) {}
 
-  /// Records the motion as the view shows it. `paths`: of the motion, as far as they are known.
+  /// Records the motion as the view shows it. `paths`: of the motion, as far as known.
   void record(const request::Record& request, std::shared_ptr<const LineSet> paths);
   void stop() { job_.cancel(); }
-  /// Continues the recording that was stopped or asked about.
+  /// Resumes the recording that was stopped or found in the folder.
   void resume() { start(unfinished_, Existing::resume); }
-  /// Replaces what is in the folder of the recording that was asked about.
+  /// Replaces the recording that was found in the folder.
   void replace() { start(recorded_, Existing::replace); }
-  /// Closes the front end, now or when the recording is made.
+  /// Closes the front end, now or when the recording is complete.
   void quit(const request::Quit& request);
-  /// Whether the front end may close; asks the person while a recording is made.
+  /// Whether the front end may close; asks the user while a recording runs.
   bool may_close();
-  /// Once a turn: shows progress and takes the result that is ready.
+  /// Called once per turn: shows progress and takes a finished result.
   void update();
-  /// Another patient is loaded: a stopped recording cannot continue.
+  /// Discards a stopped recording, since another patient is loaded.
   void forget();
   bool active() const { return job_.active(); }
-  /// Ends it, waiting. gives: what there is of it, as a sentence; empty when there was none.
+  /// Ends the recording and waits. Returns its state as a sentence; empty if there was none.
   std::string finish();
 
  private:
@@ -39,7 +39,7 @@ class RecordingSession {
   void ask_about(const ViewRecorded& found);
 
   SessionState& state_;
-  // The recording that is made or was asked about, and one that can continue.
+  // The recording in progress or in question, and one that can be resumed.
   std::shared_ptr<const ViewRecording> recorded_, unfinished_;
   bool quit_when_recorded_ = false, quits_ = false;
   Job<ViewRecorded> job_;

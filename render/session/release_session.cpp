@@ -10,8 +10,8 @@
 namespace condyle {
 namespace {
 
-/// When each pose of a course is shown, s: what joints draw in at once is slowed down so that it
-/// can be followed.
+/// Display time of each pose of the path, s: the sudden pull of the joints is slowed down so that
+/// the eye can follow.
 std::vector<double> times_shown(const JawRelease& course, const Eigen::Vector3d& center) {
   constexpr double fastest_mm_s = 250, arm_mm = 80;
   std::vector<double> shown_s = {0};
@@ -41,7 +41,7 @@ void ReleaseSession::release(std::size_t body) {
 
 void ReleaseSession::release_part(std::size_t number) {
   const MovableBody& body = state_.scene.bodies[number];
-  // All else stands still until it lies.
+  // Everything else is paused until it is at rest.
   state_.front_end.change([&](ViewState& view) {
     if (std::exchange(view.playing, false)) view.time_s = state_.newest->time_s;
   });
@@ -53,7 +53,7 @@ void ReleaseSession::release_part(std::size_t number) {
   });
 }
 
-/// The jaw is caught where it is, and moves from there.
+/// The jaw is held at its present pose and moves from there.
 void ReleaseSession::release_jaw(std::size_t number) {
   const MovableBody& body = state_.scene.bodies[number];
   const BodyPoses from = state_.newest->poses;
@@ -125,7 +125,7 @@ void ReleaseSession::take() {
 void ReleaseSession::start_course(Result result) {
   const MovableBody& body = state_.scene.bodies.at(result.body);
   const JawRelease& course = result.course;
-  // Wanted is where it comes to rest: what is edited meanwhile has nothing of the course.
+  // The target is the pose at rest, so that edits made meanwhile contain no intermediate pose.
   const Pose start = course.X_CM.front(), end = course.X_CM.back();
   state_.front_end.change([&](ViewState& view) {
     view.hands.move(body, body.is_skull() ? *view.hands.X_RM * end.inverse() : end, end);
@@ -139,7 +139,7 @@ void ReleaseSession::start_course(Result result) {
                      .X_CM = start};
 }
 
-/// Moves the jaw to where it is by now; what moves the patient otherwise ends its course.
+/// Moves the jaw to its present pose; any other motion of the patient ends the release.
 void ReleaseSession::follow_course() {
   if (const std::string why = overtaken_by(); !why.empty()) {
     hold();

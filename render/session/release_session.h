@@ -11,7 +11,7 @@
 namespace condyle {
 
 /// Releases a body that a hand holds to the dynamics: a segment or transplant comes to rest on
-/// bone, a jaw moves as its muscles and joints let it. What the person moves meanwhile ends it.
+/// bone, a jaw moves under its muscles and joints. Moving the patient meanwhile ends the release.
 class ReleaseSession {
  public:
   explicit ReleaseSession(SessionState& state)
@@ -19,15 +19,15 @@ class ReleaseSession {
 
   /// `body`: number among the scene's.
   void release(std::size_t body);
-  /// Once a turn: takes the result that is ready, and moves a jaw along its course.
+  /// Called once per turn: takes a finished result, and moves a jaw along its path.
   void update();
-  /// Ends the work on what is released, and says why.
+  /// Cancels the release and reports why.
   void drop(std::string_view why);
-  /// Ends the course of a jaw; a jaw that nobody has taken stays where it is by now.
+  /// Ends the motion of a released jaw; one that no hand holds stays at its present pose.
   void hold();
-  /// Ends the course of a jaw that belongs to a patient who is gone.
+  /// Ends the motion of a released jaw, since another patient is loaded.
   void end();
-  /// Where a released jaw is by now; none: no jaw is in motion.
+  /// Present pose of a released jaw; none: no jaw is in motion.
   std::optional<Pose> X_CM() const;
   const auto& job() const { return job_; }
 
@@ -48,12 +48,12 @@ class ReleaseSession {
     double time_s = 0;
     std::optional<Hands> before = {};  // targets to restore if it cannot be released
   };
-  /// A jaw in motion, as time runs.
+  /// A released jaw in motion.
   struct Falling {
     Result of;
-    std::vector<double> shown_s;  // of each of its poses
+    std::vector<double> shown_s;  // display time of each of its poses
     std::chrono::steady_clock::time_point start;
-    Pose X_CM;  // by now
+    Pose X_CM;  // present pose
   };
 
   void release_part(std::size_t body);
@@ -62,7 +62,7 @@ class ReleaseSession {
   void start_course(Result result);
   void follow_course();
   Subject subject_now(const MovableBody& body) const;
-  /// What the person has moved of the patient since the release, as words; empty for nothing.
+  /// What the user has moved since the release, as text; empty for nothing.
   std::string overtaken_by() const;
 
   SessionState& state_;

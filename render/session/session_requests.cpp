@@ -5,7 +5,7 @@
 #include "sim/case/case_io.h"
 #include "sim/session/patient_files.h"
 
-// Of a ViewSession: what the person asks for once, and what comes of it.
+// One-time requests of the user to a ViewSession.
 
 namespace condyle {
 namespace fs = std::filesystem;
@@ -16,7 +16,7 @@ struct Overloaded : Ts... {
   using Ts::operator()...;
 };
 
-/// Of the dialog that says why it was not carried out.
+/// Title of the dialog that reports why the request failed.
 std::string title_of_failure(const Request& request) {
   return std::visit(
       Overloaded{[](const request::Open&) { return "Cannot open this"; },
@@ -89,7 +89,7 @@ void ViewSession::open_files(const std::vector<fs::path>& files) {
   open_file(one);
 }
 
-/// A case, or a motion for the patient that is there.
+/// Opens a case, or a motion for the present patient.
 void ViewSession::open_file(const fs::path& file) {
   switch (kind_of(file)) {
     case FileKind::patient:

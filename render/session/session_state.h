@@ -11,19 +11,19 @@
 
 namespace condyle {
 
-/// What the pieces of a session share: the front end, and what is loaded.
+/// State shared by the components of a session: the front end, and the loaded patient.
 struct SessionState {
   FrontEnd& front_end;
   SessionSettings settings;
 
   std::shared_ptr<const SessionPatient> patient = {};  // none before the first is loaded
   std::shared_ptr<const SessionMotion> motion = {};    // none before the patient's first
-  WindowScene scene = {};                              // as the front end has it
+  WindowScene scene = {};                              // as the front end shows it
   std::optional<FrameState> newest = {};               // the newest frame
   RetiredWork retired = {};
 
   int threads() const { return settings.simulator.threads; }
-  /// What background work calls when it has news.
+  /// The callback with which background work reports news.
   auto waker() const {
     return [&front_end = front_end] { front_end.wake_up(); };
   }
@@ -32,7 +32,7 @@ struct SessionState {
   std::string in_words(std::string sentence) const;
   std::string name_of(const MovableBody& body) const;
 
-  /// Runs a piece of work; what it throws is reported under the title ("Cannot save the patient").
+  /// Runs work and reports its exceptions under the title ("Cannot save the patient").
   template <class Work>
   void try_or_report(const std::string& title, const Work& work) {
     try {

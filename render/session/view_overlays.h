@@ -10,13 +10,12 @@
 
 namespace condyle {
 
-/// What stands beside the parts in a view, of one frame: axes, paths of the motion, what the tissue
-/// is made of, lines of action of muscles. `paths`: where incisor and condyles go; none: not known
-/// yet.
+/// Overlays of a view at one frame: axes, paths of the motion, elements of the tissue, lines of
+/// action of muscles. `paths`: of incisor and condyles; none: not known yet.
 Overlays view_overlays(const SessionPatient& patient, const Motion& motion, const FrameState& frame,
                        const ViewState& view, const std::shared_ptr<const LineSet>& paths);
 
-/// The part of a view that the overlays follow from: the same while nothing of it changes.
+/// The settings of a view that determine the overlays; equal while none of them changes.
 struct OverlayInputs {
   bool springs = false, prisms = false, bone_springs = false, axes = false, paths = false;
   std::vector<PartView> muscles = {}, layers = {};
@@ -30,7 +29,7 @@ struct OverlayInputs {
   }
 };
 
-/// What a tree lists of a patient's muscles, and of the layers of the soft tissue.
+/// Entries of the tree for a patient's muscles, and for the layers of the soft tissue.
 std::vector<TreeItem> muscle_items(const SessionPatient& patient);
 std::vector<TreeItem> layer_items(const SessionPatient& patient);
 

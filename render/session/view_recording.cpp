@@ -21,7 +21,7 @@ namespace condyle {
 namespace fs = std::filesystem;
 namespace {
 
-/// The motion as it is seen in the window: where a hand or the slider holds the jaw, it stays.
+/// The motion as the window shows it: constant where a hand or the slider holds the jaw.
 Motion seen_motion(const ViewRecording& subject) {
   Motion motion = subject.motion->motion;
   if (!subject.held_jaw) return motion;
@@ -30,8 +30,8 @@ Motion seen_motion(const ViewRecording& subject) {
   return motion;
 }
 
-/// Targets of bodies that the motion does not drive, in their parents' frames; as at rest
-/// where no hand has them.
+/// Targets of bodies that the motion does not drive, in their parents' frames; at rest where no
+/// hand has moved them.
 std::vector<Pose> hand_poses(const ViewRecording& subject) {
   std::vector<Pose> X_PB(subject.patient->scene.patient.bodies.bodies().size());
   for (const MovableBody& body : subject.bodies)
@@ -39,7 +39,7 @@ std::vector<Pose> hand_poses(const ViewRecording& subject) {
   return X_PB;
 }
 
-/// Of all that a window shows beside the parts at their poses.
+/// Overlays and other settings of the window beside the parts at their poses.
 std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) {
   using Json = nlohmann::json;
   const auto list = [](const auto& v) { return Json(std::vector(v.data(), v.data() + v.size())); };
@@ -55,7 +55,7 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
     return all;
   };
   Json shown;
-  // All of these: what has more does not compile until it is written here, too.
+  // Complete: a new field does not compile until it is added here.
   const auto& [width, height, samples, shadows, coarse, contacts, backdrop, transparent,
                skin_opacity, part_opacity, clip, cut_away, ghost, wireframe, mapped_up_to, from_x,
                to_x, smooth_edges, supersampling] = plan.settings;
@@ -84,7 +84,7 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
   return hash_bytes(text.data(), text.size());
 }
 
-/// What a command line would say, from what the window shows and its panel asks for.
+/// The picture plan that a command line would state, from the window and its panel.
 PicturePlan plan_of(const ViewRecording& subject) {
   const request::Record& record = subject.record;
   const Look& look = subject.view.look;
@@ -117,7 +117,7 @@ PicturePlan plan_of(const ViewRecording& subject) {
   return plan;
 }
 
-/// The pictures' times, the first and the last of the motion included.
+/// Times of the pictures, including the first and the last of the motion.
 std::vector<double> times_of(const Motion& motion, double frames_per_second) {
   const int count =
       std::max(1, static_cast<int>(std::lround(motion.duration_s * frames_per_second)) + 1);
@@ -128,7 +128,7 @@ std::vector<double> times_of(const Motion& motion, double frames_per_second) {
 
 std::string draw(const PicturePlan& plan, const RecordingFiles& files, const RecordingSubject& of,
                  Playback& playback, const std::vector<double>& times_s, const Progress& progress) {
-  // The pictures' folders first: one that cannot be written ends it at once.
+  // The pictures' folders first: one that cannot be written fails at once.
   FrameRenderer pictures(plan, files, of);
   for (int i = 0; i < of.frames; ++i) {
     report(progress, fmt::format("picture {} of {}", i + 1, of.frames),
@@ -143,7 +143,7 @@ std::string draw(const PicturePlan& plan, const RecordingFiles& files, const Rec
   return "Recorded " + made.string() + (lacks.empty() ? "" : " (" + lacks + ")");
 }
 
-/// What differs, in a person's words.
+/// The differences in readable words.
 std::string words_of(const std::vector<std::string>& entries) {
   static const std::map<std::string, std::string> words = {
       {"camera", "camera"},
@@ -198,7 +198,7 @@ ViewRecorded record_view(const ViewRecording& subject, Existing existing,
     if (there.pictures > 0) return {End::asks, what_is_there(there), there};
   }
   Motion as_played = motion;
-  as_played.recorded = !subject.view.obey_contact;  // then contact alters nothing
+  as_played.recorded = !subject.view.obey_contact;  // contact does not alter it
   ViewRecorded ended;
   try {
     Playback playback(scene, as_played, recorded, false, hand_poses(subject));

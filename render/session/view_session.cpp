@@ -122,7 +122,7 @@ void ViewSession::want_motion(const MotionChoice& choice) {
   });
 }
 
-/// What was asked for cannot be: the motion stays as it was, or the jaw at rest.
+/// The requested motion is impossible: the previous one stays, or the jaw at rest.
 void ViewSession::keep_motion() {
   const MotionChoice rest{.spec = "rest", .parameters = {}, .excitations = {}};
   const MotionChoice back = state_.motion ? state_.motion->choice : rest;
@@ -148,7 +148,7 @@ void ViewSession::take_motion() {
   prepare_sliding();
 }
 
-/// Sliding is felt at once when a hand moves the jaw: its fields are made before.
+/// Prepares the distance fields in advance, so that a hand can move the jaw without delay.
 void ViewSession::prepare_sliding() {
   if (ready_for_ && ready_for_ == state_.patient) return;
   ready_for_ = state_.patient;

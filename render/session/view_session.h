@@ -14,26 +14,25 @@
 
 namespace condyle {
 
-/// A patient in a front end: loading, simulating, plotting, recording and saving, each on threads
-/// of its own, so that the front end answers at all times.
+/// A patient in a front end: loading, simulation, plots, recording and saving, each on its own
+/// threads, so that the front end always responds.
 class ViewSession {
  public:
   /// The front end must outlive the session.
   ViewSession(FrontEnd& front_end, const SessionSettings& settings);
 
-  /// Opens what is named as if it were dropped into the front end; the built-in patient when it is
-  /// empty.
+  /// Opens a path as if it were dropped onto the front end; the built-in patient if it is empty.
   void open(const std::filesystem::path& path);
-  /// One turn: what the person wants goes out, what is ready comes in, the picture is drawn.
+  /// One turn: carries out requests, takes finished results, draws the picture.
   void turn();
 
   /// The newest frame; none before the first.
   const FrameState* frame() const { return state_.newest ? &*state_.newest : nullptr; }
-  /// What runs beside and is shown as progress; empty for nothing.
+  /// Background work shown as progress; empty for none.
   const std::string& busy_with() const { return busy_with_; }
-  /// Whether the front end may close as the person wants; asks them while a recording is made.
+  /// Whether the front end may close as requested; asks the user while a recording runs.
   bool may_close() { return recording_.may_close(); }
-  /// Ends a recording. gives: what there is of it, as a sentence; empty when there was none.
+  /// Ends a recording. Returns its state as a sentence; empty if there was none.
   std::string stop_recording() { return recording_.finish(); }
 
  private:
@@ -60,14 +59,14 @@ class ViewSession {
   void prepare_sliding();
   bool obeys_contact() const;
   WindowScene scene_of_patient() const;
-  void show_scene();  // once more, with what is new
+  void show_scene();  // again, after changes
   void show_progress();
 
   SessionState state_;
   RecentFiles recent_;
-  int opened_ = 0;      // patients so far; one that is made anew is the same
-  MotionChoice asked_;  // the motion that is being made, or was made last
-  std::shared_ptr<const SessionPatient> ready_for_;  // whose bones are, or are being made, ready
+  int opened_ = 0;      // number of patients so far; a rebuilt one is the same
+  MotionChoice asked_;  // the motion in preparation, or the last one
+  std::shared_ptr<const SessionPatient> ready_for_;  // whose bones are, or are being, prepared
   std::string busy_with_;
 
   PatientLoader loader_;

@@ -4,8 +4,8 @@
 
 namespace condyle {
 
-/// A sentence of an error or a note as the window says it: with what the window offers in place of
-/// the command line's options, and with signs of units.
+/// A sentence of an error or a note for the window: with the window's controls in place of the
+/// command line's options, and with unit symbols.
 std::string in_window_words(std::string sentence);
 
 }  // namespace condyle

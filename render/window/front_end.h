@@ -12,59 +12,59 @@
 
 namespace condyle {
 
-/// What a session asks of whoever shows it to a person: the window, or another front end. All calls
+/// Interface of a session to what shows it to the user: the window, or another front end. All calls
 /// come from one thread, except wake_up().
 class FrontEnd {
  public:
   virtual ~FrontEnd() = default;
 
-  /// Handles the person's input, moves the playing clock and returns the requests.
+  /// Handles the user's input, moves the playing clock and returns the requests.
   virtual const ViewState& poll() = 0;
   virtual const ViewState& view() const = 0;
-  /// What was asked for once, since the last call.
+  /// One-time requests since the last call.
   virtual std::vector<Request> take_requests() = 0;
-  /// An edit that the person did not make by hand; with `remember` it can be undone.
+  /// Applies an edit that the user did not make by hand; with `remember` it can be undone.
   virtual void change(const std::function<void(ViewState&)>& edit, bool remember = false) = 0;
 
   /// Shows another case, from its first view. `keeper` keeps the parts for as long as they are
   /// needed.
   virtual void set_scene(const WindowScene& scene, const ViewState& start = {},
                          std::shared_ptr<const void> keeper = {}) = 0;
-  /// The same patient made anew: its surfaces, in other memory. View and edits stay.
+  /// Shows the same patient rebuilt, with its surfaces in other memory. View and edits stay.
   virtual void renew_scene(const WindowScene& scene, std::shared_ptr<const void> keeper = {}) = 0;
-  /// Another motion, other words or lists of the same case; its parts are the same.
+  /// Shows another motion, other texts or lists of the same case; its parts are the same.
   virtual void update_scene(const WindowScene& scene) = 0;
-  /// Surfaces that frames may come with values for; kept as the parts are.
+  /// Sets the surfaces for which frames may have values; they are kept alive like the parts.
   virtual void set_map_surfaces(std::vector<MapSurface> surfaces,
                                 std::shared_ptr<const void> keeper = {}) = 0;
 
-  /// A new frame. `values`: one per vertex of each map surface; none: parts have their own colours.
+  /// Shows a new frame. `values`: one per vertex of each map surface; none: the parts' own colours.
   virtual void show(FrameState frame, const LoopStatistics& loop = {}, MapValues values = {}) = 0;
-  /// There is no new frame.
+  /// Called when there is no new frame.
   virtual void draw() = 0;
-  /// Lines and sheets in space, of the newest frame, instead of those before.
+  /// Replaces the lines and sheets in space by those of the newest frame.
   virtual void show_overlays(Overlays overlays) = 0;
   virtual void show_plots(std::vector<PlotSet> plots) = 0;
 
-  /// What is being prepared, 0 to 1; empty when it is done.
+  /// Progress of preparation, 0 to 1; an empty text when it is done.
   virtual void show_progress(const std::string& what, double fraction, bool can_cancel = false) = 0;
-  /// The recording that is being made, 0 to 1; none when `what` is empty.
+  /// Progress of the recording, 0 to 1; none if `what` is empty.
   virtual void show_recording(const std::string& what, double fraction) = 0;
-  /// A sentence on a recording that can be resumed; empty: there is none.
+  /// Sets the sentence on a recording that can be resumed; empty: there is none.
   virtual void show_unfinished(const std::string& sentence) = 0;
-  /// A sentence for some seconds.
+  /// Shows a sentence for some seconds.
   virtual void say(const std::string& sentence) = 0;
-  /// What could not be done ("Cannot open the patient") and why, until the person closes it.
+  /// Reports a failure ("Cannot open the patient") and its reason, until the user closes it.
   virtual void report_error(const std::string& title, const std::string& sentence) = 0;
-  /// Asks for the roles of surfaces that were dropped or opened.
+  /// Asks for the roles of dropped or opened surfaces.
   virtual void ask_roles(const request::Import& files) = 0;
   /// Asks a question whose answers are requests.
   virtual void ask(Question question) = 0;
 
-  /// The person has closed the front end, but it stays: there is something to ask.
+  /// Keeps the front end open after the user has closed it, to ask a question.
   virtual void keep_open() = 0;
   virtual void close() = 0;
-  /// Ends the wait of poll(), e.g. when a frame is ready. From any thread.
+  /// Ends the wait of poll(), e.g. when a frame is ready. Thread-safe.
   virtual void wake_up() = 0;
 };
 

@@ -4,7 +4,7 @@
 
 namespace condyle {
 
-/// GLFW from start to end, with its errors as sentences.
+/// Lifetime of GLFW, with its errors as sentences.
 class GlfwSession {
  public:
   /// throws: MachineError when there is no display.
@@ -14,7 +14,7 @@ class GlfwSession {
   GlfwSession& operator=(const GlfwSession&) = delete;
 };
 
-/// What GLFW last complained about, and forgets it; empty when all is well.
+/// Returns and clears GLFW's last error; empty if there was none.
 std::string take_glfw_error();
 
 }  // namespace condyle

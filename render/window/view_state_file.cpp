@@ -11,14 +11,14 @@ namespace condyle {
 
 namespace {
 
-/// What the tree and the look of the picture are set to.
+/// Settings of the tree and of the picture's appearance.
 nlohmann::json edits_of(const ViewState& view) {
   const auto parts = [](const std::vector<PartView>& views) {
     nlohmann::json list = nlohmann::json::array();
     for (const PartView& one : views) list.push_back(one.shown ? one.opacity : 0);
     return list;
   };
-  // All of a look: one that has more does not compile until it is written here, too.
+  // Complete: a new field of Look does not compile until it is added here.
   const auto& [clip, clip_skin, clip_from, clip_fraction, cut_away, cut_at, cut_radius_mm, ghost,
                wireframe, patches, paths, axes, springs, prisms, bone_springs, displacement,
                scale_bar, side_letters, wipe, wipe_at] = view.look;
@@ -62,7 +62,7 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
                            const std::string& busy_with) {
   if (file_.empty()) return;
   const auto list = [](const Eigen::Vector3d& v) { return nlohmann::json{v.x(), v.y(), v.z()}; };
-  // Named by frames: the room R, the cranium C, the mandible M.
+  // Coordinate frames: the room R, the cranium C, the mandible M.
   const auto pose = [&](const Pose& X) {
     return nlohmann::json{{"mm", list(X.t)},
                           {"quaternion_wxyz", {X.R.w(), X.R.x(), X.R.y(), X.R.z()}}};

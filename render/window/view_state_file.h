@@ -7,13 +7,13 @@
 
 namespace condyle {
 
-/// Keeps a JSON file up to date with what a window shows: the targets, the current state, and where
-/// each thing that can be used stands. So that programs can use the window as people do.
+/// Keeps a JSON file up to date with the state of a window: the targets, the current state, and the
+/// position of each control, so that programs can use the window as people do.
 class ViewStateFile {
  public:
-  /// Empty: none is kept.
+  /// An empty path: no file.
   explicit ViewStateFile(std::filesystem::path file) : file_(std::move(file)) {}
-  /// Called once a turn of the window's loop.
+  /// Called once per turn of the window's loop.
   void update(const Window& window, const FrameState* frame, const std::string& busy_with);
 
  private:

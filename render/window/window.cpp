@@ -17,7 +17,7 @@ namespace condyle {
 
 namespace {
 
-constexpr int min_window_width = 800, min_window_height = 500;  // that the panels need
+constexpr int min_window_width = 800, min_window_height = 500;  // required by the panels
 
 void ask_for_opengl() {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -26,7 +26,7 @@ void ask_for_opengl() {
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
 }
 
-/// The screen may be a smaller one than the last time.
+/// The screen may be smaller than in the last run.
 void fit_to_screen(int& width, int& height) {
   GLFWmonitor* monitor = glfwGetPrimaryMonitor();
   if (!monitor) return;
@@ -64,7 +64,7 @@ Window::State::State(const WindowOptions& given) : options(given), arrangement(g
   install_callbacks();
 
   imgui = ImGui::CreateContext();
-  ImGui::GetIO().IniFilename = nullptr;  // leave no files behind
+  ImGui::GetIO().IniFilename = nullptr;  // write no files
   ImGui::GetIO().LogFilename = nullptr;
   panels.emplace(1.0f, arrangement.light);
   panels->arrange(arrangement.sizes, arrangement.open_groups, arrangement.record);
@@ -80,7 +80,7 @@ Window::State::State(const WindowOptions& given) : options(given), arrangement(g
 }
 
 Window::State::~State() {
-  if (window) glfwHideWindow(window);  // it is gone at once, though a picture is being drawn
+  if (window) glfwHideWindow(window);  // hidden at once, even while a picture is being drawn
   render_thread.reset();
   texture.reset();
   if (imgui) {
@@ -92,7 +92,7 @@ Window::State::~State() {
   if (window) glfwDestroyWindow(window);
 }
 
-/// The render_thread found no context through EGL: it gets one of the display's. gives: whether
+/// Gives the render_thread, which found no context through EGL, one of the display. Returns whether
 /// there is one.
 bool Window::State::lend_context() {
   if (spare) return false;

@@ -18,11 +18,11 @@ namespace condyle {
 namespace {
 
 constexpr const char* preparing = "Preparing the picture";
-constexpr double calm_s = 0.25;  // nothing has moved for so long: full quality
+constexpr double calm_s = 0.25;  // time without motion before full quality
 
-constexpr double clock_interval_s = 0.05;  // the time line's while pictures come slower
+constexpr double clock_interval_s = 0.05;  // update of the timeline while pictures are slower
 
-/// Whether they give the same picture.
+/// Whether both yield the same picture.
 bool same(const Camera& a, const Camera& b) {
   return a.target == b.target && a.direction == b.direction && a.up == b.up &&
          a.distance_mm == b.distance_mm;
@@ -73,7 +73,7 @@ void Window::State::apply_look(PictureSettings& picture_settings) const {
   const Look& look = view.look;
   if (look.clip) {
     const Eigen::Vector3d low = box.min(), high = box.max();
-    const std::string_view sides = "LRPASI";  // of the axes left, back, up: to and fro
+    const std::string_view sides = "LRPASI";  // axes left, back, up: both directions
     const auto which = sides.find(look.clip_from);
     const auto axis = static_cast<Eigen::Index>(which / 2);
     const double sign = which % 2 == 0 ? 1 : -1;
@@ -130,7 +130,7 @@ void Window::State::fit_scale() {
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
-/// A tenth more or less than what is seen, so that each step but the last that fits shows.
+/// A tenth more or less than the displayed scale, so that each step up to the last has an effect.
 void Window::State::scale_panels(Command command) {
   constexpr double step = 0.1, least = 0.5, most = 4;
   std::optional<double>& ui_scale = arrangement.ui_scale;
@@ -153,9 +153,9 @@ void Window::State::interface_frame() {
   fit_scale();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  // The backend only knows where the mouse is now; the queue knows each press and where it was;
-  // so it is with keys. What was typed goes first: it is for a field that was clicked before, and a
-  // click on a button beside the field must find it written.
+  // The backend only has the mouse's present position; the queue has each press with its position,
+  // and likewise each key. Typed characters are processed first: they belong to a field that was
+  // clicked before, and a click on a button beside the field requires its complete text.
   const bool look_at_mouse = input.keys.empty();
   if (look_at_mouse) input.mouse_shown = input.mouse.take();
   const MouseMoment& moment = input.mouse_shown;
@@ -225,9 +225,9 @@ void Window::State::interface_frame() {
   for (const Command command : commands) run(command);
 }
 
-/// The part under the mouse and its distance, while distances are shown.
+/// Text for the part under the mouse and its distance, while distances are shown.
 std::string Window::State::hover_text() const {
-  constexpr double seen_through = 0.5;  // what is paler does not hide what is pointed at
+  constexpr double seen_through = 0.5;  // paler surfaces do not obstruct picking
   const MouseMoment& now = input.mouse.now();
   if (!view.distances || !render_request.values || !render_request.map ||
       input.drag != CameraDrag::none || !over_view(now.x, now.y))
@@ -259,7 +259,7 @@ bool Window::State::drawn() const {
   return render_request.parts && texture->parts() == render_request.parts;
 }
 
-/// Asks for the picture as everything is now.
+/// Requests a picture of the present state.
 void Window::State::request_picture() {
   if (!render_request.parts) return;
   render_request.camera = seen();
@@ -277,10 +277,10 @@ void Window::State::request_picture() {
   render_thread->request(render_request);
   pacing.pictures.finished = false;
   requested_look = view.look;
-  pacing.scene_changed = false;  // also when it fails: the next change tries again
+  pacing.scene_changed = false;  // also on failure: the next change tries again
 }
 
-/// Shows the newest picture if there is one. gives: whether there was.
+/// Shows the newest picture, if any. Returns whether there was one.
 bool Window::State::take_picture() {
   const auto picture = render_thread->take();
   if (!picture || picture->parts != render_request.parts) return false;
@@ -288,12 +288,12 @@ bool Window::State::take_picture() {
   cannot_draw = false;
   pacing.governor.measured(picture->moving, picture->ms);
   pacing.pictures.picture_ms = picture->ms;
-  // A quick machine draws no better at rest than while things move: then none follows.
+  // On a fast machine the moving picture already has full quality: no other follows.
   pacing.pictures.finished = picture->number == render_request.number && !pacing.scene_changed &&
                              picture->quality == pacing.governor.choose(false);
   pacing.pictures.render_scale = picture->quality.render_scale;
   pacing.pictures.samples = picture->samples;
-  // Pictures a second only mean something while things move.
+  // The rate of pictures is meaningful only during motion.
   const double counted_s = seconds_since(pacing.counted_from);
   ++pacing.counted_pictures;
   if (picture->moving && counted_s < 0.5) return true;
@@ -337,7 +337,7 @@ void Window::State::draw(bool always, Image* copy) {
   }
   const bool clock_due = view.playing && seconds_since(pacing.last_draw) > clock_interval_s;
   const bool due = news || pacing.frames_due > 0 || clock_due || save_window || panels->talking();
-  // A hair early is in time: the wait before was for this picture.
+  // Slightly early counts as due: the wait before was for this picture.
   if (!always && (!due || seconds_since(pacing.last_draw) < 0.9 * picture_interval_s)) {
     if (news) pacing.frames_due = std::max(pacing.frames_due, 1);
     return;

@@ -9,7 +9,7 @@ namespace condyle {
 namespace {
 
 constexpr double idle_wait_s = 0.25;
-constexpr double attentive_s = 0.5;  // after an event answers may come without wake()
+constexpr double attentive_s = 0.5;  // after an event, results may arrive without wake()
 
 }  // namespace
 
@@ -39,8 +39,8 @@ void Window::State::install_callbacks() {
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { catch_errors(w, [](State&) {}); });
 }
 
-/// Instead of ImGui's own: keys and letters wait in one row, each for its pass over the panels, or
-/// they would overtake each other.
+/// Replaces ImGui's callbacks: keys and letters are queued together, each for its own pass over the
+/// panels, so that their order is preserved.
 void Window::State::install_key_callbacks() {
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
     catch_errors(w, [&](State& s) {
@@ -58,12 +58,12 @@ void Window::State::install_key_callbacks() {
 }
 
 void Window::State::on_key(int key, int scancode, int mods) {
-  // What is typed into a field is no command; Esc, the F keys and Ctrl+Q are.
+  // Keys typed into a field are not commands; Esc, the F keys and Ctrl+Q are.
   const bool command_anyway = key == GLFW_KEY_ESCAPE ||
                               (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12) ||
                               (key == GLFW_KEY_Q && (mods & GLFW_MOD_CONTROL) != 0);
   if (ImGui::GetIO().WantTextInput && !command_anyway) return;
-  // Letters are meant as they are written on the keys, whatever the layout.
+  // Letters are taken as printed on the keys, regardless of the layout.
   if (const char* name = glfwGetKeyName(key, scancode);
       name && name[0] >= 'a' && name[0] <= 'z' && name[1] == 0)
     key = GLFW_KEY_A + (name[0] - 'a');
@@ -159,7 +159,7 @@ void Window::State::run(Command command) {
   }
 }
 
-/// A maximized window keeps the size that it comes back to.
+/// A maximized window keeps the size to restore.
 void Window::State::note_size() {
   arrangement.maximized = glfwGetWindowAttrib(window, GLFW_MAXIMIZED) == GLFW_TRUE;
   if (arrangement.maximized || glfwGetWindowAttrib(window, GLFW_ICONIFIED) == GLFW_TRUE) return;
@@ -200,7 +200,8 @@ void Window::State::wait_for_events() {
     glfwPollEvents();
   }
   pacing.last_look = Clock::now();
-  // Each press and release has its own pass over the panels, so that none is lost between pictures.
+  // Each press and release gets its own pass over the panels, so that none is lost between
+  // pictures.
   while (input.waits()) interface_frame();
 }
 

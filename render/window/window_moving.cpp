@@ -5,11 +5,11 @@ namespace condyle {
 namespace {
 
 constexpr double reach_px = 9;
-constexpr double seen_through = 0.5;  // what is paler does not hide what is pointed at
+constexpr double seen_through = 0.5;  // paler surfaces do not obstruct picking
 
 }  // namespace
 
-/// The surface that is seen there; its number is the part's.
+/// The visible surface at that position; its number is the part's.
 std::optional<PickedPoint> Window::State::surface_under(const Eigen::Vector2d& at,
                                                         bool with_face) const {
   const bool skinned = view.shows_face(scene) && view.skin_opacity > seen_through;
@@ -38,7 +38,7 @@ std::optional<PickedPoint> Window::State::surface_under(const Eigen::Vector2d& a
   return found;
 }
 
-/// Measuring, placing a landmark: a point of the surface that is clicked. gives: whether there is
+/// Sets a point of the clicked surface to measure or to place a landmark. Returns whether there is
 /// one.
 bool Window::State::set_point(const Eigen::Vector2d& at) {
   const bool places = view.tool == Tool::landmarks && view.landmark;
@@ -57,7 +57,7 @@ bool Window::State::set_point(const Eigen::Vector2d& at) {
   return true;
 }
 
-/// Grips a handle of the selected body, else the body under the mouse. gives: whether one is held.
+/// Grips a handle of the selected body, else the body under the mouse. Returns whether one is held.
 bool Window::State::grip_body(const Eigen::Vector2d& at) {
   if (view.tool != Tool::move || !frame() || view.chosen >= scene.bodies.size()) return false;
   const auto pose = [&](const MovableBody& body) { return frame()->poses[body.body]; };
@@ -74,7 +74,7 @@ bool Window::State::grip_body(const Eigen::Vector2d& at) {
     const auto found = surface_under(at, false);
     if (!found) return false;
     const auto body = movable_body_of(scene.bodies, scene.parts, found->surface);
-    // The skull fills the picture: it goes along only where it is chosen, else the view turns.
+    // The skull fills the picture: it is gripped only when selected, else the view turns.
     if (!body || scene.bodies[*body].is_skull()) return false;
     gizmo_view.center = found->place;
     view.chosen = *body;

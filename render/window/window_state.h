@@ -26,11 +26,11 @@ struct ImGuiContext;
 
 namespace condyle {
 
-/// The state that the wipe shows at its left: the first frame, or the one that the user kept.
+/// The state shown left of the wipe: the first frame, or the one that the user kept.
 struct WindowComparison {
   std::shared_ptr<const FrameState> frame;
   bool by_hand = false;
-  std::shared_ptr<const MapValues> values;  // its distances; none: they were not shown
+  std::shared_ptr<const MapValues> values;  // its distances; none if they were not shown
 };
 
 /// Background work and recordings, as the panels report them.
@@ -40,16 +40,16 @@ struct WorkProgress {
   bool can_cancel = false;
 };
 
-/// Events of mouse and keyboard that the panels have not seen, and what is dragged.
+/// Mouse and keyboard events not yet processed by the panels, and what is dragged.
 struct WindowInput {
-  /// Keys and letters for a text field, in their order, each with its own pass over the panels.
+  /// Keys and letters for a text field, in order, each with its own pass over the panels.
   struct KeyMoment {
     int key = 0;
     bool down = false;
     int mods = 0;
-    unsigned letter = 0;  // that was typed; 0: a key
+    unsigned letter = 0;  // typed character; 0: a key
   };
-  /// A body moved by hand, as it was at the moment of the grip.
+  /// A body moved by hand, with its state at the moment of the grip.
   struct Held {
     Grip grip;
     std::size_t body;
@@ -59,31 +59,31 @@ struct WindowInput {
   };
 
   MouseQueue mouse;
-  MouseMoment mouse_shown;  // to the panels
+  MouseMoment mouse_shown;  // given to the panels
   std::deque<KeyMoment> keys;
   CameraDrag drag = CameraDrag::none;
   int drag_button = -1;
   std::optional<Held> held;
-  std::vector<std::filesystem::path> dropped;  // on the window, not taken yet
+  std::vector<std::filesystem::path> dropped;  // onto the window, not taken yet
 
   bool waits() const { return mouse.waiting() || !keys.empty(); }
 };
 
-/// When pictures and panels are drawn, and in which quality.
+/// Schedule and quality of pictures and panels.
 struct WindowPacing {
   using Clock = std::chrono::steady_clock;
 
   QualityGovernor governor;
   PictureStatistics pictures;
-  bool scene_changed = true;  // the last request is out of date
+  bool scene_changed = true;  // the last request is outdated
   int frames_due = 3;         // passes over the panels still to draw
   int counted_pictures = 0;   // since counted_from
-  bool polled = false;        // events, at least once
+  bool polled = false;        // whether events have been polled
   Clock::time_point last_request{};
   Clock::time_point last_poll = Clock::now(), last_look = last_poll, last_draw = last_poll,
                     last_change = last_poll, last_event = last_poll, counted_from = last_poll;
 
-  /// An event came: ImGui needs some passes to settle what is hovered and held.
+  /// Called at an event: ImGui needs some passes to update what is hovered and held.
   void noticed() {
     frames_due = 3;
     last_event = Clock::now();
@@ -97,14 +97,14 @@ struct Window::State {
   explicit State(const WindowOptions& options);
   ~State();
 
-  // In the order of their making; undone backwards.
+  // In order of construction; destroyed in reverse order.
   GlfwSession session;
   GLFWwindow* window = nullptr;
   ImGuiContext* imgui = nullptr;
   std::optional<Panels> panels;
   std::optional<PictureTexture> texture;
   GLFWwindow* spare =
-      nullptr;  // never seen: lends its context to the render_thread where EGL has none
+      nullptr;  // invisible: provides a context to the render_thread where EGL has none
   std::optional<RenderThread> render_thread;
 
   WindowOptions options;
@@ -165,7 +165,7 @@ struct Window::State {
   Camera seen() const;
   PictureSettings settings() const;
   void apply_look(PictureSettings& picture_settings) const;
-  bool drawn() const;  // the picture on show is of this scene
+  bool drawn() const;  // the displayed picture is of this scene
   bool moving() const;
   double screen_scale() const;
   float panel_scale() const;
@@ -185,6 +185,6 @@ inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-constexpr double picture_interval_s = 1.0 / 60;  // no more pictures than this
+constexpr double picture_interval_s = 1.0 / 60;  // minimum interval between pictures
 
 }  // namespace condyle

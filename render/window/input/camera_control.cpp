@@ -40,7 +40,7 @@ CameraDrag drag_of(const DragKeys& keys) {
 Eigen::Matrix3d picture_axes(const Camera& camera) {
   const Vector3d toward = camera.direction.normalized();
   Vector3d right = camera.up.cross(toward);
-  // `up` along the direction says nothing: take any right.
+  // `up` along the direction is undetermined: take any right.
   if (right.norm() < 1e-9) right = toward.unitOrthogonal();
   right.normalize();
   Eigen::Matrix3d axes;
@@ -56,7 +56,7 @@ CameraAngles camera_angles(const Camera& camera) {
   if (std::hypot(toward.x(), toward.y()) > 1e-6) {
     angles.azimuth = std::atan2(toward.x(), -toward.y());
   } else {
-    // At a pole the picture's up shows where the front is, and there is no roll left over.
+    // At a pole the picture's up direction defines the azimuth, and the roll is 0.
     const double side = toward.z() > 0 ? -1 : 1;
     angles.azimuth = std::atan2(side * up.x(), -side * up.y());
   }
@@ -85,7 +85,7 @@ Camera dragged(const Camera& camera, CameraDrag drag, const Vector2d& from, cons
     case CameraDrag::orbit: {
       CameraAngles angles = camera_angles(camera);
       const double gain = pi / view.height;  // half a turn over the height of the view
-      // In a rolled picture the mouse's path is turned back, so that the surface still follows it.
+      // In a rolled picture the mouse's path is rotated back, so that the surface still follows it.
       const double c = std::cos(angles.roll), s = std::sin(angles.roll);
       angles.azimuth -= gain * (c * delta.x() + s * delta.y());
       angles.elevation =

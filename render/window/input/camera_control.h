@@ -6,18 +6,18 @@
 
 namespace condyle {
 
-/// What a mouse drag does to the camera.
+/// Effect of a mouse drag on the camera.
 enum class CameraDrag { none, orbit, pan, zoom, roll };
 
-/// Which drag the buttons and keys that are held mean: left orbits, middle or Shift+left pans,
-/// right zooms, Ctrl+left rolls.
+/// The drag for the held buttons and keys: left orbits, middle or Shift+left pans, right zooms,
+/// Ctrl+left rolls.
 struct DragKeys {
   bool left = false, middle = false, right = false;
   bool shift = false, ctrl = false;
 };
 CameraDrag drag_of(const DragKeys& keys);
 
-/// Place of the 3-D view in the window, pixels from the top left.
+/// Position of the 3-D view in the window, pixels from the top left.
 struct ViewRect {
   double x = 0, y = 0, width = 1, height = 1;
   bool contains(double px, double py) const {
@@ -25,7 +25,7 @@ struct ViewRect {
   }
 };
 
-/// The camera may come this near and go this far, mm.
+/// Limits of the camera's distance, mm.
 struct ZoomLimits {
   double nearest_mm = 20;
   double farthest_mm = 4000;
@@ -37,10 +37,11 @@ struct CameraAngles {
   double azimuth = 0, elevation = 0, roll = 0;
 };
 CameraAngles camera_angles(const Camera& camera);
-/// The camera with these angles; target and distance stay. Its `up` is square to its direction.
+/// The camera with these angles; target and distance stay. Its `up` is perpendicular to its
+/// direction.
 Camera with_angles(Camera camera, const CameraAngles& angles);
 
-/// The camera after the mouse went from one place to another, pixels. Orbit turns about the
+/// The camera after the mouse has moved between two positions, pixels. Orbit turns about the
 /// vertical (the surface follows the mouse) and keeps target, distance and roll; pan moves the
 /// target in the plane of the picture so that it stays under the mouse; zoom changes only the
 /// distance; roll only the roll.

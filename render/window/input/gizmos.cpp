@@ -28,7 +28,7 @@ int axis_of(Grip grip) {
   }
 }
 
-/// mm that one pixel is wide at this depth.
+/// Width of one pixel at this depth, mm.
 double pixel_at(const GizmoView& view) {
   const Eigen::Matrix3d axes = picture_axes(view.camera);
   const double depth = view.camera.distance_mm - axes.row(2).dot(view.center - view.camera.target);
@@ -87,7 +87,7 @@ std::optional<Grip> grip_at(const GizmoView& view, const Vector2d& mouse, double
   for (const bool arrow : {true, false}) {
     for (const auto& handle : all) {
       if ((handle.line.size() == 2) != arrow) continue;
-      // Near the centre all arrows meet: there the body itself is meant.
+      // Near the centre, where all arrows meet, the body itself is gripped.
       std::vector<Vector2d> line = handle.line;
       if (arrow) line[0] += 0.3 * (line[1] - line[0]);
       const double distance = distance_to(mouse, line);
@@ -112,7 +112,7 @@ Pose gripped(const GizmoView& view, Grip grip, const Pose& start, const Vector2d
   const Vector3d axis = Vector3d::Unit(axis_of(grip));
   const Vector2d center = screen_place(view.camera, view.view, view.center);
   if (std::find(arrows.begin(), arrows.end(), grip) != arrows.end()) {
-    // Pixels that one mm along the axis is long; an arrow toward the eye moves at most tenfold.
+    // Pixels per mm along the axis; an arrow toward the eye moves at most tenfold.
     const Vector2d per_mm = (screen_place(view.camera, view.view, view.center + 0.5 * axis) -
                              screen_place(view.camera, view.view, view.center - 0.5 * axis));
     const double least = 0.01 / (mm * mm);
@@ -123,10 +123,10 @@ Pose gripped(const GizmoView& view, Grip grip, const Pose& start, const Vector2d
   double angle = 0;
   const double facing = axes.row(2).dot(axis);
   if (std::abs(facing) > 0.3) {
-    // y runs down on the screen.
+    // y points down on the screen.
     angle = -std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)) * (facing > 0 ? 1 : -1);
   } else {
-    // Seen from its edge: as a wheel that is rolled across its axis.
+    // Viewed edge-on: like a wheel rolled across its axis.
     const Vector2d along = (axes.topRows<2>() * axis).cwiseProduct(Vector2d(1, -1)).normalized();
     const Vector2d across(-along.y(), along.x());
     angle = moved.dot(across) / view.ring_px;

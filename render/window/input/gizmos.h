@@ -32,8 +32,8 @@ std::vector<GizmoHandle> gizmo_handles(const GizmoView& view);
 /// The handle under the mouse: arrows before rings.
 std::optional<Grip> grip_at(const GizmoView& view, const Eigen::Vector2d& mouse, double reach_px);
 
-/// Pose of the body, in the cranium's frame, after the mouse went from one place to another.
-/// `view` and `start` are those of the moment when it was gripped.
+/// Pose of the body, in the cranium's frame, after the mouse has moved between two positions.
+/// `view` and `start` are those at the moment of the grip.
 Pose gripped(const GizmoView& view, Grip grip, const Pose& start, const Eigen::Vector2d& from,
              const Eigen::Vector2d& to);
 

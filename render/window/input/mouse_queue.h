@@ -6,21 +6,21 @@
 
 namespace condyle {
 
-/// Where the mouse is and which buttons are down.
+/// Position of the mouse and state of its buttons.
 struct MouseMoment {
   double x = -1e6, y = -1e6;
   std::array<bool, 3> down{};        // left, right, middle, as GLFW and ImGui number them
   bool ctrl = false, shift = false;  // held while this button went down
 };
 
-/// Presses and releases in their order, each with its own place. On a slow driver a click and the
-/// next move arrive within one picture; the panels must still see them one after the other.
+/// Presses and releases in order, each with its position. On a slow driver a click and the next
+/// move arrive within one picture; the panels must still receive them one after the other.
 class MouseQueue {
  public:
   void moved(double x, double y) {
     now_.x = x;
     now_.y = y;
-    // Of several moves in a row only the last matters; a press keeps its place.
+    // Only the last of successive moves counts; a press keeps its position.
     if (moved_last_ && !moments_.empty())
       moments_.back() = now_;
     else
@@ -36,7 +36,7 @@ class MouseQueue {
     moved_last_ = false;
   }
   bool waiting() const { return !moments_.empty(); }
-  /// The next moment, or where the mouse stays when none is waiting.
+  /// The next event, or the last position when none is waiting.
   MouseMoment take() {
     if (moments_.empty()) return now_;
     const MouseMoment next = moments_.front();

@@ -28,7 +28,7 @@ std::optional<PickedPoint> pick_point(const Camera& camera, const ViewRect& view
     for (const auto& t : mesh->triangles) {
       const Vector3d a = mesh->vertices[t[0]] - from, b = mesh->vertices[t[1]] - from,
                      c = mesh->vertices[t[2]] - from;
-      // Signed volumes of the ray with each edge; of one sign when it passes through.
+      // Signed volumes of the ray with each edge; all of one sign if it passes through.
       const double u = along.dot(c.cross(b)), v = along.dot(a.cross(c)), w = along.dot(b.cross(a));
       if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) continue;
       const double sum = u + v + w;

@@ -18,8 +18,8 @@ struct PickableSurface {
   std::span<const float> values = {};
 };
 
-/// Where the mouse points at the nearest surface: its triangle, the barycentric coordinates there,
-/// and the place, in the frame of the camera.
+/// The point of the nearest surface under the mouse: its triangle, the barycentric coordinates, and
+/// the position in the frame of the camera.
 struct PickedPoint {
   std::size_t surface = 0;
   Eigen::Vector3i triangle = Eigen::Vector3i::Zero();
@@ -33,8 +33,8 @@ std::optional<PickedPoint> pick_point(const Camera& camera, const ViewRect& view
                                       const Eigen::Vector2d& mouse,
                                       std::span<const PickableSurface> surfaces);
 
-/// The nearest surface under the mouse, and its value there, between those of the triangle's
-/// corners; infinite where one of them is.
+/// The nearest surface under the mouse, and its interpolated value there; infinite where a corner's
+/// value is.
 struct PickedValue {
   std::size_t surface = 0;
   float value = 0;

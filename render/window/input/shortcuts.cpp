@@ -7,7 +7,7 @@
 namespace condyle {
 namespace {
 
-// A key, the same key with Shift. Keys with Ctrl are apart: there are few.
+// A key, the same key with Shift. The few keys with Ctrl are separate.
 struct Binding {
   int key;
   Command plain, shifted;
@@ -82,8 +82,10 @@ constexpr std::array window_lines = {
     HelpLine{"Ctrl+Q", "quit"},
 };
 constexpr std::array show_lines = {
-    HelpLine{"K", "skin on, off"},          HelpLine{"D", "distances on, off"},
-    HelpLine{"N, Shift+M", "measure: click points"}, HelpLine{"B", "landmarks: choose, click"},
+    HelpLine{"K", "skin on, off"},
+    HelpLine{"D", "distances on, off"},
+    HelpLine{"N, Shift+M", "measure: click points"},
+    HelpLine{"B", "landmarks: choose, click"},
     HelpLine{"G", "plots on, off"},
 };
 constexpr std::array groups = {

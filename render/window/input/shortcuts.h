@@ -6,7 +6,7 @@
 
 namespace condyle {
 
-/// What a key or a button asks for.
+/// Command of a key or a button.
 enum class Command {
   toggle_play,
   step_back,
@@ -39,22 +39,21 @@ enum class Command {
   redo,
   help,
   close_dialog,
-  accept,  // what a box says: it closes
+  accept,  // accepts and closes a box
   quit
 };
 
-/// Keys by their GLFW numbers, so that this stays free of GLFW.
+/// Keys by their GLFW numbers, so that this module does not depend on GLFW.
 struct KeyPress {
   int key = 0;
   bool shift = false, ctrl = false;
 };
 std::optional<Command> command_of(const KeyPress& press);
 
-/// Name of the camera (render/camera/camera.h) that a view command asks for; empty for other
-/// commands.
+/// Name of the camera (render/camera/camera.h) of a view command; empty for other commands.
 std::string_view camera_of(Command command);
 
-/// The lines of the help: keys and mouse, and what they do.
+/// The lines of the help: keys and mouse actions with their effects.
 struct HelpLine {
   std::string_view keys, meaning;
 };

@@ -8,7 +8,7 @@
 
 namespace condyle {
 
-// Centred, above everything, with the rest dimmed. ImGui needs a width or it draws nothing useful.
+// Centred, above everything, with the rest dimmed. ImGui needs a width for a usable layout.
 bool begin_dialog(Pen& pen, const char* name, float dialog_width, double width, double height) {
   if (!ImGui::IsPopupOpen(name)) ImGui::OpenPopup(name);
   ImGui::SetNextWindowPos({static_cast<float>(width) / 2, static_cast<float>(height) / 2}, 0,
@@ -68,7 +68,7 @@ void help_columns(const Theme& theme, Pen& pen) {
 
 }  // namespace
 
-/// Beside the button of a dialog: what it waits for, once a key was pressed that it does not take.
+/// Hint beside the button of a dialog, once a key was pressed that it does not accept.
 void Panels::Drawing::key_hint(const char* words) {
   if (!panels.key_refused_) return;
   const float y = ImGui::GetCursorPosY();
@@ -103,8 +103,8 @@ void Panels::Drawing::question_dialog() {
 
 void Panels::Drawing::dialogs() {
   const Theme& theme = panels.theme_;
-  // An error comes before the help. A dialog that was left by its key must still be drawn once
-  // more, or ImGui would go on waiting for it.
+  // An error precedes the help. A dialog closed by its key must be drawn once more, or ImGui would
+  // keep waiting for it.
   const bool error = !panels.errors_.empty();
   if ((error || ImGui::IsPopupOpen("error")) &&
       begin_dialog(pen, "error", pen.px(460), display_width, display_height)) {

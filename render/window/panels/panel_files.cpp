@@ -10,7 +10,7 @@ namespace condyle {
 namespace fs = std::filesystem;
 
 void PanelFormState::OpenFields::choose(std::size_t file, bool ctrl, bool shift) {
-  path.clear();  // one or the other is opened
+  path.clear();  // only one of them is opened
   if (!ctrl) chosen.clear();
   if (shift) {
     for (std::size_t i = std::min(anchor, file); i <= std::max(anchor, file); ++i) chosen.insert(i);
@@ -28,7 +28,7 @@ std::vector<fs::path> PanelFormState::OpenFields::chosen_files() const {
 
 namespace {
 
-/// Reads a folder: its folders, and its files that may be opened, each in order.
+/// Reads a folder: its subfolders, and the files that can be opened, each sorted.
 void list_folder(PanelFormState::OpenFields& fields) {
   fields.listed = fields.folder;
   fields.folders.clear();
@@ -77,7 +77,7 @@ const char* role_words(const std::string& role) {
   return role.empty() ? "leave out" : role.c_str();
 }
 
-/// What is to be said of the roles, and whether no patient can be made of them yet.
+/// Message on the roles, and whether they are not yet sufficient for a patient.
 struct RoleRemark {
   std::string words;
   bool hinders = false;
@@ -228,7 +228,7 @@ void Panels::Drawing::folder_list(float column, OpenChoice& chosen) {
   ImGui::EndGroup();
 }
 
-/// A path that is typed, and the buttons.
+/// The field for a path, and the buttons.
 void Panels::Drawing::open_path(OpenChoice& chosen) {
   PanelFormState::OpenFields& fields = panels.form_.files;
   const float button = pen.px(96), gap = pen.px(list_gap);
@@ -250,7 +250,7 @@ void Panels::Drawing::open_path(OpenChoice& chosen) {
     if (typed.empty()) {
       chosen.files = listed;
     } else if (fs::is_directory(typed, ignored) && !is_case(typed)) {
-      fields.folder = typed;  // to look into
+      fields.folder = typed;  // to be listed
       fields.path.clear();
     } else {
       chosen.files = {typed};

@@ -11,7 +11,7 @@
 
 namespace condyle {
 
-/// In the number_field that is written in.
+/// Text in the number_field being edited.
 struct NumberEntry {
   std::string field;
   double number = 0;
@@ -20,25 +20,26 @@ struct NumberEntry {
 /// The content of input fields that has not been submitted. Only for this module.
 struct PanelFormState {
   std::string motion_words;
-  std::map<std::string, double> parameters, excitations;  // under the mouse
+  std::map<std::string, double> parameters, excitations;  // being dragged
   struct RecordFields {
     std::string folder;
-    bool running = false;  // a recording, in the pass before
+    bool running = false;  // whether a recording ran in the previous pass
   } record;
   std::string landmark_words, case_folder;
   std::optional<NumberEntry> number;
   struct OpenFields {
     bool open = false;
     std::string path;
-    std::filesystem::path folder, listed;  // open; and the one that is listed
+    std::filesystem::path folder, listed;  // current one; the one that is listed
     std::vector<std::filesystem::path> folders, files;
-    std::set<std::size_t> chosen;  // of the files
-    std::size_t anchor = 0;        // where Shift+click begins
-    bool accepted = false;         // Enter: what is chosen shall be opened
+    std::set<std::size_t> chosen;  // indices of selected files
+    std::size_t anchor = 0;        // start of a Shift+click range
+    bool accepted = false;         // Enter: open the selection
 
-    /// A click on a file: it alone, with Ctrl it too or not any more, with Shift all up to it.
+    /// Selects a clicked file: it alone; with Ctrl it is toggled, with Shift all up to it are
+    /// added.
     void choose(std::size_t file, bool ctrl, bool shift);
-    /// Those that are chosen, in the order of the list.
+    /// The selected files, in the order of the list.
     std::vector<std::filesystem::path> chosen_files() const;
   } files;
   std::optional<Question> question;

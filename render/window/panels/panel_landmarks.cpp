@@ -30,7 +30,7 @@ void Panels::Drawing::landmarks() {
   end_panel();
 }
 
-/// On the picture: all as dots, with a name where the mouse or the choice is.
+/// On the picture: all as dots, with a name at the hovered and the selected one.
 void Panels::Drawing::landmark_marks() {
   const Theme& theme = panels.theme_;
   const ViewRect& r = layout.view;
@@ -81,7 +81,7 @@ void Panels::Drawing::landmark_list() {
   ImGui::EndChild();
 }
 
-/// A name, and what can be done with it.
+/// A name and its buttons.
 void Panels::Drawing::landmark_edits() {
   PanelFormState& form = panels.form_;
   const float button = pen.px(landmark_button_high), gap = pen.px(button_gap);
@@ -94,7 +94,7 @@ void Panels::Drawing::landmark_edits() {
   const float third = width_of_each(pen, whole, 3);
   ImGui::BeginDisabled(name.empty() || taken);
   if (word_button(pen, "landmark-add", "Add", {third, button}, false)) {
-    // In the middle of what is there until it is placed by a click.
+    // At the centre of the others until a click places it.
     view.landmarks.push_back(landmark_at(name, input.camera.target, input.scene.parts));
     view.landmark = view.landmarks.size() - 1;
   }
@@ -116,7 +116,7 @@ void Panels::Drawing::landmark_edits() {
   ImGui::EndDisabled();
 }
 
-/// The simulation with these landmarks, and the case that is saved with them.
+/// Buttons to simulate with these landmarks and to save the case with them.
 void Panels::Drawing::landmark_uses() {
   PanelFormState& form = panels.form_;
   const ImVec2 button = {ImGui::GetContentRegionAvail().x, pen.px(landmark_button_high)};

@@ -16,7 +16,8 @@ ImU32 ink_of(const Eigen::Vector3f& c) {
   return ImGui::ColorConvertFloat4ToU32({c.x(), c.y(), c.z(), 1});
 }
 
-/// In a width, its left end's middle given; with the border that lines have on the light view.
+/// Draws a mark of the given width from the middle of its left end, with the border that lines have
+/// on a light view.
 void key_mark(ImDrawList& list, const KeyEntry& entry, const ImVec2& from, float width, float px,
               bool bordered) {
   const ImVec2 to = {from.x + width, from.y};
@@ -45,7 +46,7 @@ void key_mark(ImDrawList& list, const KeyEntry& entry, const ImVec2& from, float
 
 }  // namespace
 
-/// While something is coloured by values.
+/// Shown while a surface is coloured by values.
 ViewRect Panels::Drawing::legend() {
   const bool distances = view.distances && input.scene.distance_colours;
   if (!distances && !view.look.displacement) return {};
@@ -110,7 +111,7 @@ ViewRect Panels::Drawing::legend() {
   return pane;
 }
 
-/// Marks of overlays and what they are; in columns, down to the cube.
+/// Marks of overlays with their meanings, in columns, down to the cube.
 ViewRect Panels::Drawing::key() {
   std::vector<KeyEntry> entries(input.key.begin(), input.key.end());
   if (view.look.ghost) entries.push_back(ghost_key({}));

@@ -10,7 +10,7 @@
 namespace condyle {
 namespace {
 
-/// A slider under its name and its number.
+/// A slider below its name and number.
 void named_slider(Pen& pen, const char* item, const char* label, const std::string& number,
                   double& value, const SliderLook& look) {
   text(pen.theme.small, palette().text_dim, label);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr ImU32 measure_colour = colour::rgb(0xf0e442), measure_edge = colour::rgb(0x0f1215, 200);
 
-/// What the points give, and the points themselves, for a spreadsheet: fields separated by tabs.
+/// The measures and the points for a spreadsheet: fields separated by tabs.
 std::string measured_table(const Measured& measured, std::span<const Eigen::Vector3d> points) {
   std::string table = fmt::format("length_mm\t{:.3f}\n", measured.length_mm);
   if (measured.angle_deg) table += fmt::format("angle_deg\t{:.3f}\n", *measured.angle_deg);
@@ -37,7 +37,7 @@ void Panels::Drawing::measuring() {
   if (in_use && layout.tool.width > 0) measure_panel(result, places);
 }
 
-/// Points, line and number on the picture. One point alone has words of what comes next.
+/// Points, line and number on the picture. A single point has a hint on the next step.
 void Panels::Drawing::measured_line(const Measured& result) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const ViewRect& r = layout.view;
@@ -67,7 +67,7 @@ void Panels::Drawing::measured_line(const Measured& result) {
   list.PopClipRect();
 }
 
-/// Beside the point that the words are about, where no line passes behind them.
+/// Position of the text beside its point, where no line passes behind it.
 void Panels::Drawing::measure_label(std::span<const ImVec2> line, const std::string& words) {
   const Theme& theme = panels.theme_;
   const ViewRect& r = layout.view;
@@ -124,7 +124,7 @@ void Panels::Drawing::measure_buttons(const Measured& result,
   const float gap = pen.px(button_gap), room = ImGui::GetContentRegionAvail().x - 2 * gap;
   const ImVec2 wide = {std::floor(0.44f * room), pen.px(26)},
                size = {std::floor(0.28f * room), wide.y};
-  ImGui::SetCursorPosY(pen.px(136));  // below the longest words: buttons do not move
+  ImGui::SetCursorPosY(pen.px(136));  // below the longest text, so that the buttons do not move
   ImGui::BeginDisabled(places.empty());
   if (word_button(pen, "measure-back", "Remove last", wide, false)) view.measured.pop_back();
   ImGui::SameLine(0, gap);

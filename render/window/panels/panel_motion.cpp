@@ -10,23 +10,23 @@
 namespace condyle {
 namespace {
 
-/// Percent are set and shown to a tenth.
+/// Percentages are set and shown to a tenth.
 double tenths(double percent) { return std::round(10 * percent) / 10; }
 
-/// A named number with its unit, and what was published of it as a bar under the slider.
+/// A named number with its unit, and its published range as a bar below the slider.
 struct Setting {
   std::string item, label, unit, help;
   double low, high, default_low = 0, default_high = 0;
   bool known = true;
-  std::optional<double> patients = {};  // what holds while nothing is known
+  std::optional<double> patients = {};  // value from the patient while none is set
 };
 
-/// gives: true when a changed value is released.
+/// Returns true when a changed value is released.
 bool setting_slider(Pen& pen, const Setting& setting, std::map<std::string, double>& edited,
                     const std::string& name, double& value, bool set_by_hand) {
   const auto draft = edited.find(name);
   const bool known = setting.known || draft != edited.end();
-  // The value that the patient's own joints give has no fill; where it is unknown, the middle of
+  // A value from the patient's own joints has no fill; where it is unknown, the middle of
   // the published range is shown.
   const double middle = setting.default_low < setting.default_high
                             ? (setting.default_low + setting.default_high) / 2
@@ -96,7 +96,7 @@ void Panels::Drawing::motion() {
   if (!input.scene.motion_settings.empty()) motion_parameters();
 }
 
-/// One of the motions that come with the program, or one in words.
+/// Choice of a built-in motion, or of one written as a script.
 void Panels::Drawing::motion_choice() {
   PanelFormState& form = panels.form_;
   const std::string now = view.motion.spec;

@@ -22,12 +22,12 @@ constexpr std::array turn_names = {"Pitch", "Roll", "Yaw"};
 constexpr std::array turn_tips = {
     "About the axis to the patient's left: positive lowers the chin's front",
     "About the axis to the back", "About the upward axis: positive turns to the left"};
-// Of the table of numbers, at scale 1.
+// Columns of the table of numbers, at scale 1.
 constexpr float target_column = 58, target_width = 92;
 
 ImVec2 point(const Vector2d& p) { return {static_cast<float>(p.x()), static_cast<float>(p.y())}; }
 
-/// Texts about a body: what moves with it, and what resetting and releasing it do.
+/// Texts about a body: what moves with it, and the effects of resetting and releasing it.
 struct BodyWords {
   const char *goes_along, *reset, *release, *release_tip;
 };
@@ -53,7 +53,7 @@ BodyWords words_of(const MovableBody& body) {
           "or other bone. Moving anything meanwhile, the timeline or another motion end this"};
 }
 
-/// What a handle does: "Mandible: to the left or right, with its teeth".
+/// Effect of a handle: "Mandible: to the left or right, with its teeth".
 std::string words_of(Grip grip, const MovableBody& body, const std::string& name) {
   constexpr std::array directions = {"to the left or right",
                                      "forward or back",
@@ -69,13 +69,13 @@ std::string words_of(Grip grip, const MovableBody& body, const std::string& name
 constexpr double held_mm = 0.05,
                  held_deg = 0.05;  // farther from the target: contact holds the body
 
-/// "-1.25 mm"; what rounds to nothing has no sign.
+/// "-1.25 mm"; values that round to zero have no sign.
 std::string number_words(double value, const char* unit) {
   return fmt::format("{:.2f}{}", std::abs(value) < 5e-3 ? 0 : value, unit);
 }
 
-/// One row of the table: a name, the target, which can be edited, and what was reached. `draft`:
-/// what is written and not entered yet. gives: true when another target was entered.
+/// One row of the table: a name, the target, which can be edited, and the value reached. `draft`:
+/// text not yet entered. Returns true when another target was entered.
 bool target_row(Pen& pen, std::optional<NumberEntry>& draft, const std::string& name,
                 const char* label, const char* unit, double& target, double reached,
                 double held_from) {

@@ -16,7 +16,7 @@ struct SkinChoice {
 constexpr SkinChoice skin_choices[] = {
     {"skin:off", "Off", 0}, {"skin:glass", "Glass", 0.35}, {"skin:full", "Full", 1}};
 
-/// As much of a height as ends between two lines of the sentences.
+/// The largest height within the given one that ends between two lines of the sentences.
 float whole_lines(ImFont* font, const std::vector<std::string>& sentences, float room,
                   float width) {
   const float between = ImGui::GetStyle().ItemSpacing.y,
@@ -62,8 +62,8 @@ void Panels::Drawing::parts() {
   end_panel();
 }
 
-/// Height that the notes take with their heading: six lines where the list of parts leaves `left`
-/// for them, two at least.
+/// Height of the notes with their heading: six lines if the list of parts leaves `left` for them,
+/// at least two.
 float Panels::Drawing::notes_room(float left) const {
   constexpr float lines = 6;
   if (input.scene.notes.empty()) return 0;

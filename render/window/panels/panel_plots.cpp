@@ -7,13 +7,13 @@
 
 namespace condyle {
 
-/// Below the picture: tabs, and the panels of the chosen set beside each other.
+/// Below the picture: tabs, and the panels of the selected set side by side.
 void Panels::Drawing::plots() {
   if (layout.plots.height <= 0) return;
   const Theme& theme = panels.theme_;
   begin_panel(pen, "plots", layout.plots);
-  const std::size_t sets = input.plots.size() + 1;  // and the stage times, which every frame brings
-  // While the plots of a new motion are made there are fewer; the choice waits for them.
+  const std::size_t sets = input.plots.size() + 1;  // and the stage times, which are in every frame
+  // There are fewer while the plots of a new motion are computed; the selection is kept.
   const std::size_t chosen = std::min(view.plot_set, sets - 1);
   const float gap = pen.px(4), high = pen.px(24);
   for (std::size_t i = 0; i < sets; ++i) {

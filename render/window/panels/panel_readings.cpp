@@ -13,10 +13,10 @@ namespace condyle {
 namespace {
 
 constexpr double step_budget_ms = 1000.0 / 60;
-constexpr double default_high_mm = 58;  // accepted for the largest distance between incisal edges
+constexpr double default_high_mm = 58;  // upper limit for the largest interincisal distance
 constexpr float bar_row = 16, curve_height = 22;  // at scale 1
 constexpr const char* performance_group = "performance";
-constexpr double deeper_mm = 0.02;  // overlap beyond the one at rest, more than contact lets be
+constexpr double deeper_mm = 0.02;  // overlap beyond rest above the tolerance of contact
 
 // A line with a dim name at the left and a value at the right.
 void reading(const Theme& theme, const std::string& name, const std::string& value,
@@ -77,9 +77,9 @@ void Panels::Drawing::side() {
 void Panels::Drawing::readings() {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, pen.px(8, 4));
   opening();
-  // Contacts get the height that tissue and performance leave.
+  // Contacts get the height left by tissue and performance.
   const float line = ImGui::GetTextLineHeightWithSpacing();
-  const float head = pen.px(38);  // a heading with its line and air
+  const float head = pen.px(38);  // a heading with its line and spacing
   const bool has_tissue = input.frame && !input.frame->tissue.nodes.empty();
   const float times = unfolded(performance_group)
                           ? static_cast<float>(stage_names.size()) * pen.px(bar_row) +
@@ -125,7 +125,7 @@ void Panels::Drawing::opening() {
   opening_measures();
 }
 
-/// Slider with ticks; a mark shows where the jaw really is while the hand holds it.
+/// Slider with ticks; a mark shows the actual opening while the hand holds the jaw.
 void Panels::Drawing::opening_slider(double live) {
   const Theme& theme = panels.theme_;
   const bool held = view.opening_mm.has_value();

@@ -27,7 +27,7 @@ constexpr std::array<NamedCamera, 11> named_cameras = {{{own_camera, "This view"
                                                         {"upper-arch", "Upper arch"},
                                                         {"lower-arch", "Lower arch"}}};
 
-/// A row of choices over `width`. gives: true when another one is chosen.
+/// A row of choices over `width`. Returns true when another one is chosen.
 template <class Value, class Choices>
 bool choice_row(Pen& pen, const char* item, Value& value, const Choices& choices, float width,
                 const char* help) {
@@ -58,7 +58,7 @@ std::vector<std::string> RecordChoice::selected_cameras() const {
   return selected;
 }
 
-/// Label at the start of a line. gives: the width that is left for the field.
+/// Label at the start of a line. Returns the remaining width for the field.
 float Panels::Drawing::record_label(const char* words) {
   const float left = ImGui::GetStyle().WindowPadding.x, wide = pen.px(84);
   const float whole = ImGui::GetContentRegionAvail().x, y = ImGui::GetCursorPosY();
@@ -212,7 +212,7 @@ void Panels::Drawing::record_contents() {
   tooltip(pen, "Beside the pictures; made by the program ffmpeg when the last picture is there");
 }
 
-/// The next recording has a folder of its own, unless the person names one or is asked about it.
+/// The next recording gets a new folder, unless the user names one or a question about it is open.
 void Panels::Drawing::record_folder() {
   PanelFormState::RecordFields& fields = panels.form_.record;
   if (fields.running && !input.recording && !panels.question()) fields.folder.clear();

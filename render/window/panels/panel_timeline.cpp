@@ -10,7 +10,7 @@
 namespace condyle {
 namespace {
 
-// Ticks below the scrub bar at a round step, so that no more than twelve stand there.
+// Ticks below the scrub bar at a round step, at most twelve.
 void draw_ticks(const Pen& pen, ImVec2 low, float width, float y, double duration_s) {
   if (duration_s <= 0) return;
   double step = 0.1;
@@ -71,7 +71,7 @@ void Panels::Drawing::timeline() {
   ImGui::SameLine(0, pen.px(5));
   text(theme.regular, palette().text_dim, fmt::format("of {:.2f} s", duration));
 
-  // The scrub bar takes what the speed at the right leaves.
+  // The scrub bar takes the width left of the speed control.
   ImGui::SameLine(0, pen.px(14));
   const float speed_width = pen.px(96), speed_label = text_width(theme.regular, "0.00\u00d7");
   const float end = static_cast<float>(layout.bottom.width) - pen.px(14);
@@ -94,7 +94,7 @@ void Panels::Drawing::timeline() {
   ImGui::SetCursorPos({speed_x + speed_title + pen.px(8), slider_y});
   if (slider(pen, "speed", view.speed,
              {.low = 0.1, .high = 2, .width = speed_width, .logarithmic = true, .filled = false})) {
-    // Real time is easy to find again.
+    // Snaps to real time.
     if (std::abs(std::log(view.speed)) < 0.06) view.speed = 1;
   }
   tooltip(pen, "0.1 to 2 times real time");
@@ -102,7 +102,7 @@ void Panels::Drawing::timeline() {
   text(theme.regular, palette().text, fmt::format("{:.2f}\u00d7", view.speed));
   ImGui::EndDisabled();
 
-  // The foot: what happens, and what this is for.
+  // The foot: status, and the intended use.
   const float foot = static_cast<float>(layout.bottom.height) - theme.small->FontSize - pen.px(9);
   const float purpose_width = text_width(theme.small, purpose);
   std::string message = !panels.said_.empty() ? panels.said_ : input.loop.message;

@@ -47,7 +47,7 @@ GroupNumber group_of(Role role) {
   }
 }
 
-/// All that can be shown, in groups; empty ones are left out.
+/// Everything that can be shown, in groups; empty groups are omitted.
 std::vector<TreeGroup> groups_of(const PanelInput& input, ViewState& view) {
   std::vector<TreeGroup> groups = {
       {"bones", "Bones", "Skull and jaws"},

@@ -95,7 +95,7 @@ void Panels::Drawing::view_signs() {
   }
 
   const ViewRect legend_pane = legend(), key_pane = key();
-  // The patient's sides at the edges of the view; beside what is drawn there.
+  // The patient's sides at the edges of the view, beside other drawings.
   const Eigen::Matrix3d axes = picture_axes(input.camera);
   const Vector3d right = axes.row(0), up = axes.row(1);
   const float margin = pen.px(12);
@@ -153,8 +153,7 @@ void Panels::Drawing::view_signs() {
   hover_text();
 }
 
-/// What is being prepared: in the middle while there is nothing else to see, else above the
-/// picture.
+/// Progress of preparation: in the middle of an empty view, else above the picture.
 void Panels::Drawing::progress() {
   if (input.progress.empty()) return;
   const Theme& theme = panels.theme_;
@@ -186,7 +185,7 @@ void Panels::Drawing::progress() {
   end_panel();
 }
 
-/// A round length at the depth of what the camera looks at, in the lower middle of the view.
+/// A scale bar of a round length at the depth of the camera's target, at the bottom of the view.
 void Panels::Drawing::scale() {
   const Theme& theme = panels.theme_;
   const ViewRect& r = layout.view;

@@ -50,7 +50,7 @@ void Panels::set_light(bool light) {
 }
 
 void Panels::report_error(const Trouble& trouble) {
-  // The same trouble in every frame is one dialog.
+  // An error repeated in every frame is shown once.
   if (errors_.empty() || errors_.back() != trouble) errors_.push_back(trouble);
 }
 
@@ -112,8 +112,8 @@ bool Panels::run_showing(Command command, const WindowScene& scene, ViewState& v
       remember(view);
       view.distances = !view.distances;
       if (view.distances) view.look.displacement = false;  // one scale of colours at a time
-      // They are seen on bones and teeth alone: the skin goes, and comes back with them. Key K
-      // brings it back before.
+      // They are shown on bones and teeth only: the skin is hidden until they are switched off. Key
+      // K restores it earlier.
       if (view.distances && view.skin_opacity > 0.5) {
         view.skin_to_return = skin_before_ = view.skin_opacity;
         view.skin_opacity = 0;
@@ -159,13 +159,13 @@ bool Panels::run_dialog(Command command) {
   switch (command) {
     case Command::open_files:
       form_.files.open = true;
-      form_.files.listed.clear();  // files may have come and gone
+      form_.files.listed.clear();  // files may have changed
       return true;
     case Command::help:
       help_open_ = !help_open_;
       return true;
     case Command::accept:
-      // Boxes with fields have a button of their own for it.
+      // Boxes with fields have a separate button for it.
       if (!errors_.empty()) {
         errors_.pop_front();
       } else if (form_.question) {
@@ -233,7 +233,7 @@ bool Panels::undo(ViewState& view, bool back) {
   return true;
 }
 
-/// Whatever a pass over the panels has changed is an edit; while one thing is held, one edit.
+/// All changes of a pass over the panels form an edit; all during one drag form a single edit.
 void Panels::remember_edits(const Edits& before, const ViewState& view) {
   const bool changed = !(view.edits() == before);
   if (changed && !undone_ && !editing_) history_.remember(before);
@@ -249,7 +249,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
   view.fit(input.scene);
   undone_ = false;
   const Edits before = view.edits();
-  // It stands in the timeline, which comes with the patient.
+  // It is in the timeline, which appears with the patient.
   if (said_until_ < 0 && !input.scene.parts.empty()) said_until_ = ImGui::GetTime() + said_for_s;
   if (said_until_ >= 0 && ImGui::GetTime() > said_until_) said_.clear();
   X_CM_ = input.frame ? input.frame->poses[view.hands.jaw] : Pose{};
@@ -269,7 +269,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
   }
 
   ImGui::PushFont(theme_.regular);
-  // Until there is a patient there is nothing to set: only what is being prepared.
+  // Without a patient only the progress of preparation is shown.
   const bool preparing = input.scene.parts.empty();
   Drawing drawing{
       *this,

@@ -28,26 +28,26 @@ struct PanelInput {
   const WindowScene& scene;
   const FrameState* frame = nullptr;  // none until the first is simulated
   std::span<const Eigen::Vector3f> displayed_face =
-      {};  // its face's vertices, where seen elsewhere
+      {};  // its face's vertices, where displayed elsewhere
   LoopStatistics loop = {};
   PictureStatistics pictures = {};
   Camera camera = {};
   Eigen::AlignedBox3d box = {};        // of the scene at rest
-  std::string progress = {};           // what is being prepared; empty when nothing is
+  std::string progress = {};           // description of preparation; empty for none
   double progress_fraction = 0;        // 0 to 1
-  bool can_cancel = false;             // whether what is prepared can be ended
+  bool can_cancel = false;             // whether preparation can be cancelled
   std::span<const KeyEntry> key = {};  // to overlays
   std::string hover_text = {};         // text shown beside the mouse; empty for none
   std::span<const PlotSet> plots = {};
-  bool kept = false;       // a state was kept to compare with; else it is the rest state
-  bool recording = false;  // a recording is being made
+  bool kept = false;       // whether a state was kept for comparison; else the rest state is used
+  bool recording = false;  // whether a recording is running
   std::string recording_what = {};
   double recording_fraction = 0;
-  std::string unfinished = {};                 // of a recording that can go on, as a sentence
+  std::string unfinished = {};                 // sentence on a recording that can be resumed
   std::filesystem::path picture_folder = ".";  // of pictures and recordings
 };
 
-/// A panel, or a thing in it that can be used, as last drawn. Names: panels "top", "left", "right",
+/// A panel, or a control in it, as last drawn. Names: panels "top", "left", "right",
 /// "bottom", "cube", "legend", "key", "help", "error"; items "play", "scrub", "opening", "speed",
 /// "show:mandible", ...
 struct DrawnItem {
@@ -62,52 +62,51 @@ struct TooltipWait {
   float x = -1, y = -1;  // corner of the item
   double since_s = 0;
   int last_pass = -2;     // over the panels, in which it was under the mouse
-  bool put_away = false;  // it was clicked: the tooltip must not cover what the click reveals
-  int passes = 0;         // that have drawn a tooltip
-  bool due = false;       // a tooltip is still to come, or to be seen
+  bool put_away = false;  // clicked: the tooltip must not cover what the click reveals
+  int passes = 0;         // number that have drawn a tooltip
+  bool due = false;       // a tooltip is pending or visible
 };
 
-/// What could not be done, and why.
+/// A failure and its reason.
 struct Trouble {
   std::string title, sentence;
   bool operator==(const Trouble&) const = default;
 };
 
 /// Panels of the window, drawn into the current ImGui frame (between NewFrame and Render). They
-/// know neither GLFW nor GL, so tests draw them with scripted input.
+/// depend on neither GLFW nor GL, so tests draw them with scripted input.
 class Panels {
  public:
   /// Loads the theme into the current ImGui context.
   explicit Panels(float scale, bool light = false);
 
-  /// Draws all panels over a display of this size; changes `view` by what the person does.
-  /// gives: commands that the window must carry out (views, pictures, quit).
+  /// Draws all panels over a display of this size; applies the user's input to `view`.
+  /// Returns the commands that the window must carry out (views, pictures, quit).
   std::vector<Command> draw(const PanelInput& input, ViewState& view, double width, double height);
 
-  /// Carries out what concerns playing, panels and dialogs. gives: false for the window's commands.
+  /// Carries out commands on playback, panels and dialogs. Returns false for the window's commands.
   bool run(Command command, const WindowScene& scene, ViewState& view);
 
-  /// Whether a key may ask for it now: behind a dialog keys do nothing but close it, save pictures
+  /// Whether a key may trigger it now: while a dialog is open, keys only close it, save pictures
   /// and quit.
   bool takes(Command command) const;
 
   /// An edit begins: undo restores the present state.
   void remember(const ViewState& view) { history_.remember(view.edits()); }
-  /// Another patient: edits of the previous one cannot be undone, and the content of fields
-  /// was meant for that one.
+  /// Called for another patient: discards the edit history and the content of fields.
   void forget_patient();
 
-  /// Shows it in a dialog until that is closed; several wait in a row.
+  /// Shows a failure in a dialog until that is closed; several are queued.
   void report_error(const Trouble& trouble);
-  /// The one that is on show; empty without one.
+  /// The text on show; empty without one.
   Trouble trouble() const { return errors_.empty() ? Trouble{} : errors_.front(); }
-  /// A key was pressed that the open dialog does not take: the dialog says how it is closed.
+  /// Called for a key that the open dialog does not accept: the dialog then shows how to close it.
   void refuse_key() { key_refused_ = true; }
   /// Shows a sentence at the foot of the window for a few seconds.
   void say(const std::string& sentence);
   const std::string& said() const { return said_; }
 
-  /// Loads fonts and sizes for another scale; the renderer's font texture must be made anew.
+  /// Loads fonts and sizes for another scale; the renderer's font texture must be rebuilt.
   void set_scale(float scale);
   void set_light(bool light);
   const Theme& theme() const { return theme_; }
@@ -117,20 +116,20 @@ class Panels {
   /// Asks in a box; the answer is a request.
   void ask(Question question) { form_.question = std::move(question); }
   const Question* question() const { return form_.question ? &*form_.question : nullptr; }
-  /// What was asked for once, since the last call.
+  /// One-time requests since the last call.
   std::vector<Request> take_requests() { return std::exchange(requests_, {}); }
 
   bool dialog_open() const {
     return help_open_ || !errors_.empty() || form_.question || form_.files.open || form_.import;
   }
-  /// Whether something will come or go by itself in time: a sentence, a tooltip.
+  /// Whether something will appear or disappear with time: a sentence, a tooltip.
   bool talking() const { return !said_.empty() || tooltip_.due; }
   bool shown() const { return shown_; }
   Layout layout(double width, double height, const ViewState& view = {}) const {
     return lay_out(width, height, theme_.scale, shown_,
                    {.plots = view.plots, .tool = view.tool != Tool::look}, sizes_);
   }
-  /// Sizes that a person has drawn, and groups of the tree that are unfolded.
+  /// Sizes set by dragging splitters, and unfolded groups of the tree.
   const PanelSizes& sizes() const { return sizes_; }
   const std::vector<std::string>& open_groups() const { return open_groups_; }
   const RecordChoice& record_choice() const { return record_; }
@@ -146,7 +145,7 @@ class Panels {
   struct Drawing;  // one pass over all panels: panels_*.cpp
   PlotSet stage_plots() const;
   void answer(std::size_t which);
-  // Parts of run(); each gives false for the commands of the others.
+  // Parts of run(); each returns false for the commands of the others.
   bool run_playing(Command command, const WindowScene& scene, ViewState& view);
   bool run_showing(Command command, const WindowScene& scene, ViewState& view);
   bool run_tool(Command command, const WindowScene& scene, ViewState& view);
@@ -154,12 +153,12 @@ class Panels {
   Theme theme_;
   bool shown_ = true, help_open_ = false;
   PanelSizes sizes_;
-  double gripped_size_ = 0;  // of what is being drawn larger, as it was gripped
-  double skin_before_ = 1;   // opacity to come back to
+  double gripped_size_ = 0;  // size at the grip of the panel being resized
+  double skin_before_ = 1;   // opacity to restore
   std::vector<std::string> open_groups_ = default_groups();  // of the tree
-  std::string to_sight_;                                     // a group that was just unfolded
+  std::string to_sight_;  // a group that was just unfolded, to scroll to
   std::deque<Trouble> errors_;
-  bool key_refused_ = false;  // since the dialog is open
+  bool key_refused_ = false;  // since the dialog was opened
   std::string said_;
   TooltipWait tooltip_;
   double said_until_ = 0;
@@ -167,12 +166,12 @@ class Panels {
   bool undo(ViewState& view, bool back);
   void remember_edits(const Edits& before, const ViewState& view);
   bool undone_ = false;     // in this pass
-  bool fold_list_ = false;  // the list that is unfolded: in the next pass
-  bool editing_ = false;    // something is held that has changed the view already
+  bool fold_list_ = false;  // fold the open list in the next pass
+  bool editing_ = false;    // the control being dragged has changed the view
   PanelFormState form_;
   RecordChoice record_;
   std::vector<Request> requests_;
-  // The last steps' times, for the curves; of bounded length.
+  // Times of the last steps, for the curves; of bounded length.
   std::vector<float> step_ms_;
   std::vector<std::array<double, stage_names.size()>> stage_ms_;
   std::uint64_t last_step_ = 0;

@@ -18,7 +18,7 @@ struct Panels::Drawing {
   struct Shortfall {
     double shift_mm = 0, turn_deg = 0;
   };
-  /// What the dialog Open was left with.
+  /// Result of the dialog Open.
   struct OpenChoice {
     std::vector<std::filesystem::path> files;
     bool builtin = false, close = false;
@@ -36,11 +36,11 @@ struct Panels::Drawing {
   void timeline();    // panel_timeline.cpp
   void parts();       // panel_parts.cpp
   void side();        // panel_readings.cpp
-  void moving();      // panel_move.cpp: handles, and the chosen body's place in numbers
-  void measuring();   // panel_measure.cpp: points and lines until they are cleared; its tool
+  void moving();      // panel_move.cpp: handles, and the selected body's pose in numbers
+  void measuring();   // panel_measure.cpp: points and lines, and the tool
   void landmarks();   // panel_landmarks.cpp
   void plots();       // panel_plots.cpp
-  void edges();       // panel_edges.cpp: between panels, to draw them wider or higher
+  void edges();       // splitters.cpp: between panels, to resize them
   void view_signs();  // panel_view.cpp: letters at the edges, cube, progress
   void dialogs();     // panel_dialogs.cpp
   void question_dialog();
@@ -109,27 +109,27 @@ struct Panels::Drawing {
   void opening_measures();
   void contacts(float list_height);
   void tissue();
-  void performance();  // times of a step and of pictures; their details under a fold
+  void performance();  // times of a step and of pictures; details are folded
   void stage_bars(const StageTimes& times, double full_ms);
   void step_curve();
   void progress();
   std::optional<double> edge(const char* name, const ViewRect& place, double size, double direction,
                              double reset);
   void cube();
-  // panel_legend.cpp; each gives its pane, empty without one:
+  // panel_legend.cpp; each returns its pane, empty without one:
   ViewRect legend();  // of a map, in the lower left corner of the view
   ViewRect key();     // to overlays, in its upper right corner
-  void hover_text();  // what the mouse is on
+  void hover_text();  // of the hovered surface
   void beside_mouse(const std::string& words);
 };
 
-/// Stands in the window at all times.
+/// Always visible in the window.
 constexpr const char* purpose = "For research and education, not for clinical use";
 
-/// Centred, above everything, with the rest dimmed; pair with EndPopup when it gives true.
+/// Centred, above everything, with the rest dimmed; pair with EndPopup if it returns true.
 bool begin_dialog(Pen& pen, const char* name, float dialog_width, double width, double height);
 
-/// The motion of a scene for people: "Chewing right"; words and files as they are.
+/// Readable name of a scene's motion: "Chewing right"; scripts and files unchanged.
 std::string motion_title(const WindowScene& scene);
 
 }  // namespace condyle

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Okabe-Ito; the light ones are darker where yellow and sky blue would be lost on white.
+// Okabe-Ito; for the light theme, yellow and sky blue are darker, to be visible on white.
 constexpr std::array on_dark = {colour::rgb(0x56b4e9), colour::rgb(0xe69f00), colour::rgb(0x2fbf93),
                                 colour::rgb(0xe8713a), colour::rgb(0xcc79a7), colour::rgb(0xf0e442),
                                 colour::rgb(0xa0aab4), colour::rgb(0x8f9bff)};
@@ -43,7 +43,7 @@ struct Range {
   }
 };
 
-/// The part of the screen that holds the curves, and what it shows.
+/// The rectangle of the curves on the screen, and its range.
 struct Axes {
   Range x, y;
   float left, top, right, bottom;
@@ -77,7 +77,7 @@ void find_ranges(const PlotPanel& panel, Axes& axes) {
   axes.y.grow_to(per_pixel * high);
 }
 
-constexpr float tick_room = 36;  // for the numbers of the axis that goes up, at scale 1
+constexpr float tick_room = 36;  // for the numbers of the vertical axis, at scale 1
 
 /// "0.5" and never "-0".
 std::string number_text(double value, double step) {
@@ -91,8 +91,8 @@ std::string replaced(std::string words, const std::string& what, const std::stri
   return words;
 }
 
-/// The words of an axis, "inferior  -  mm  -  superior", with shorter directions where they do not
-/// fit.
+/// The label of an axis, "inferior  -  mm  -  superior", with abbreviated directions where it does
+/// not fit.
 std::string fitting_label(ImFont* font, std::string words, float room) {
   constexpr std::array<std::pair<const char*, const char*>, 5> shorter = {{{"  ", " "},
                                                                            {"inferior", "inf."},
@@ -104,10 +104,10 @@ std::string fitting_label(ImFont* font, std::string words, float room) {
   return fitted(font, words, room);
 }
 
-/// Words that run upward from this place, their tops to the left.
+/// Text rotated upward from this position.
 void draw_upward(ImDrawList& list, ImFont* font, ImVec2 from, ImU32 ink, const std::string& words) {
   const int first = list.VtxBuffer.Size;
-  list.PushClipRectFullScreen();  // ImGui leaves out letters that would be cut before they turn
+  list.PushClipRectFullScreen();  // ImGui omits letters that would be clipped before the rotation
   list.AddText(font, font->FontSize, from, ink, words.c_str());
   list.PopClipRect();
   for (int i = first; i < list.VtxBuffer.Size; ++i) {
@@ -116,7 +116,7 @@ void draw_upward(ImDrawList& list, ImFont* font, ImVec2 from, ImU32 ink, const s
   }
 }
 
-/// Tells where words of a plot stand.
+/// Reports the position of a plot's text.
 void note(Pen& pen, const std::string& plot, const char* what, ImVec2 at,
           const std::string& words) {
   pen.items.push_back({fmt::format("{}:{}:{}", what, plot, words),
@@ -170,7 +170,7 @@ void draw_axes(Pen& pen, ImDrawList& list, const Axes& axes, const PlotSettings&
               palette().text_dim, up);
 }
 
-/// Corners of a band's area, clockwise: ImGui wants them so to smooth their edge.
+/// Corners of a band's area, clockwise, as ImGui requires for antialiasing.
 std::vector<ImVec2> corners_of(const PlotBand& band, const Axes& axes) {
   std::vector<ImVec2> corners;
   if (band.x.empty()) {
@@ -200,14 +200,14 @@ void draw_bands(const Pen& pen, ImDrawList& list, const PlotPanel& panel, const 
                  std::max(1.0f, pen.px(1)));
 }
 
-/// Names of bands and levels, beside the curves; a ground of their own keeps them readable where
-/// there is no room.
+/// Names of bands and levels, beside the curves; a background keeps them readable where space is
+/// lacking.
 void draw_names(Pen& pen, ImDrawList& list, const PlotPanel& panel, const Axes& axes) {
   ImFont* font = pen.theme.small;
   const float pad = pen.px(2), high = font->FontSize + pad;
   LabelPlacement places({axes.left + pad, axes.top, axes.right - pad, axes.bottom}, pen.px(1));
   const auto point = [](const ImVec2& p) { return LabelPlacement::Point{p.x, p.y}; };
-  const bool still = !panel.settings.x_goes_back;  // names do not jump as curves run on
+  const bool still = !panel.settings.x_goes_back;  // names do not jump as curves advance
   for (const Curve& curve : panel.curves) {
     std::vector<LabelPlacement::Point> run;
     for (std::size_t i = 0; still && i < std::min(curve.x.size(), curve.y.size()); ++i) {
@@ -278,7 +278,7 @@ void draw_curve(const Pen& pen, ImDrawList& list, const Curve& curve, const Axes
   stroke();
 }
 
-/// Names beside pieces of line, in rows above the curves. gives: the height taken.
+/// Legend in rows above the curves. Returns its height.
 float draw_legend(const Pen& pen, ImDrawList* list, const PlotPanel& panel, float left, float right,
                   float top) {
   ImFont* font = pen.theme.small;

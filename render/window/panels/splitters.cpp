@@ -7,9 +7,9 @@
 
 namespace condyle {
 
-/// A line to grip between two panels. `size`: of the one that it makes larger, pixels; `direction`:
-/// 1 where that grows with the mouse's coordinate, -1 where it shrinks. gives: the size that is
-/// new_size at scale 1, or `reset` after a double click.
+/// A splitter between two panels. `size`: of the panel that it resizes, pixels; `direction`: 1
+/// where that grows with the mouse's coordinate, -1 where it shrinks. Returns the requested size at
+/// scale 1, or `reset` after a double click.
 std::optional<double> Panels::Drawing::edge(const char* name, const ViewRect& place, double size,
                                             double direction, double reset) {
   const bool upright = place.height > place.width;

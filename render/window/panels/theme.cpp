@@ -13,7 +13,7 @@ namespace {
 struct FontFiles {
   const char* regular;
   const char* bold;
-  float size;  // pixels at scale 1: families differ in how large they look
+  float size;  // pixels at scale 1: families differ in apparent size
 };
 constexpr std::array<FontFiles, 3> font_files = {{
     {"/usr/share/fonts/opentype/inter/Inter-Regular.otf",

@@ -7,7 +7,7 @@ struct ImFont;
 
 namespace condyle {
 
-/// Fonts and the size of everything in the current ImGui context.
+/// Fonts and scale of the current ImGui context.
 struct Theme {
   bool light = false;
   float scale = 1;  // 1 is a screen of about 96 dots per inch
@@ -27,10 +27,10 @@ constexpr std::uint32_t rgb(std::uint32_t hex, std::uint32_t alpha = 255) {
 struct Palette {
   std::uint32_t window, panel, panel_edge, popup, floating;
   std::uint32_t field, field_hovered, well, track, outline;
-  std::uint32_t text, text_dim, text_faint, bright;  // bright: what the mouse is on
+  std::uint32_t text, text_dim, text_faint, bright;  // bright: hovered
   std::uint32_t accent, accent_dark, good, warning, bad;
   std::uint32_t letter, letter_edge, divider;      // on the view
-  std::uint32_t cube_lit, cube_aslant, cube_edge;  // its faces toward us, and nearly away
+  std::uint32_t cube_lit, cube_aslant, cube_edge;  // faces toward the viewer, and nearly edge-on
 };
 inline constexpr Palette dark = {
     .window = rgb(0x0f1215),
@@ -99,7 +99,7 @@ double default_scale(double screen_scale, int framebuffer_width);
 float fitting_scale(double preferred, int width, int height);
 
 /// Loads the fonts at this scale and sets colours and spacing of the current ImGui context. The
-/// renderer's font texture must be made anew afterwards. Looks for Inter, Noto Sans and DejaVu Sans
+/// renderer's font texture must be rebuilt afterwards. Searches Inter, Noto Sans and DejaVu Sans
 /// (package fonts-dejavu-core) where Debian puts them; ImGui's own font is the last resort.
 Theme apply_theme(float scale, bool light = false);
 

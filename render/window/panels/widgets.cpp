@@ -117,7 +117,7 @@ std::string fitted(ImFont* font, const std::string& words, float width) {
 
 namespace {
 
-/// Broken between words alone: ImGui breaks numbers at their point, too.
+/// Wrapped between words only: ImGui also breaks numbers at their decimal point.
 std::string broken(ImFont* font, const std::string& words, float width) {
   std::string lines, line;
   const auto add = [&](const std::string& word, char after) {
@@ -224,7 +224,7 @@ void tooltip(Pen& pen, const char* words) {
   if (ImGui::IsAnyMouseDown()) resting.put_away = true;
   if (resting.put_away) return;
   const bool waits = now_s - resting.since_s < wait_s;
-  // ImGui finds the size of a tooltip in passes that do not show it yet.
+  // ImGui determines the size of a tooltip in passes that do not show it yet.
   constexpr int unseen_passes = 3;
   if (!waits) resting.passes = std::min(resting.passes + 1, unseen_passes);
   resting.due = resting.passes < unseen_passes;
@@ -289,7 +289,7 @@ bool is_disabled() {
   return (ImGui::GetCurrentContext()->CurrentItemFlags & ImGuiItemFlags_Disabled) != 0;
 }
 
-/// Whether the slider is a field for its number now.
+/// Whether the slider is currently a field for its number.
 bool typed_into(const char* name, const ImRect& rect) {
   const ImGuiID id = ImGui::GetCurrentWindow()->GetID(name);
   const ImGuiContext& now = *ImGui::GetCurrentContext();
@@ -330,7 +330,7 @@ bool number_field(Pen& pen, const char* name, double& value, const char* format,
       ImGui::InputDouble(("##" + std::string(name)).c_str(), &written, 0, 0, format,
                          ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CharsScientific);
   const auto is_mine = [&] { return draft && draft->field == name; };
-  // It may have gone while it was written in; another one's may still be entered in this pass.
+  // The field may have disappeared while being edited; another one may be entered in this pass.
   if (ImGui::IsItemActivated() && is_mine()) draft.reset();
   if (changed) draft = NumberEntry{name, written};
   const bool left = ImGui::IsItemDeactivated();
@@ -365,7 +365,7 @@ bool slider(Pen& pen, const char* name, double& value, const SliderLook& look) {
     const double f = std::clamp((ImGui::GetIO().MousePos.x - low.x - knob) / span, 0.0f, 1.0f);
     const double chosen = look.logarithmic ? look.low * std::pow(look.high / look.low, f)
                                            : look.low + f * (look.high - look.low);
-    // A click that does not move must still count: the hand takes over.
+    // A click without motion also counts: the hand takes over.
     changed = chosen != value || ImGui::IsItemActivated();
     value = chosen;
   }

@@ -11,13 +11,13 @@
 
 namespace condyle {
 
-/// The face as displayed: a coarse one is drawn smooth, up to some millimetres from where
-/// its vertices are. A picked point is measured on the mesh, and marked on the displayed surface.
+/// The face as displayed: a coarse one is drawn smooth, up to some millimetres from its vertices.
+/// A picked point is measured on the mesh, and marked on the displayed surface.
 class DisplayedFace {
  public:
   explicit DisplayedFace(std::span<const Part> parts);
-  /// Where its vertices would have to be, each along its normal, to lie on what is seen; none where
-  /// it is seen as it is.
+  /// Its vertices projected along their normals onto the displayed surface; none where the mesh
+  /// itself is displayed.
   std::vector<Eigen::Vector3f> places(const FrameState& frame) const;
 
  private:

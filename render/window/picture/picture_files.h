@@ -4,8 +4,8 @@
 
 namespace condyle {
 
-/// A file for the next saved picture, named by the local time: condyle-20240131-140509.png, with a
-/// number where that is taken already.
+/// Path of the next saved picture, named by the local time: condyle-20240131-140509.png, with a
+/// number if that exists.
 std::filesystem::path next_picture_file(const std::filesystem::path& folder);
 
 /// The same for a folder of pictures: condyle-20240131-140509.

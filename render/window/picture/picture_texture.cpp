@@ -24,7 +24,7 @@ void PictureTexture::show(const DrawnPicture& picture) {
       glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
     for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
       glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
-    // Translucent skin leaves its alpha behind; behind it is the background, not the desktop.
+    // Translucent skin leaves its alpha in the picture: replaced by 1, or the desktop would show.
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_A, GL_ONE);
     width_ = picture.width;
     height_ = picture.height;

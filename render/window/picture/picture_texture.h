@@ -9,7 +9,7 @@ namespace condyle {
 /// without it.
 class PictureTexture {
  public:
-  /// Takes the pixels over.
+  /// Uploads the pixels.
   void show(const DrawnPicture& picture);
   /// GL texture, its first row at the bottom, opaque.
   unsigned name() const { return texture_; }

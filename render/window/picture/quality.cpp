@@ -8,8 +8,8 @@ namespace {
 
 constexpr double target_ms = 33;  // 30 pictures a second
 
-// From the best down. Without a GPU multisampling costs most, then triangles, then the shadow map,
-// then pixels.
+// In order of decreasing quality. Without a GPU multisampling costs most, then triangles, then the
+// shadow map, then pixels.
 constexpr std::array<Quality, 7> levels = {{
     {.render_scale = 1, .samples = 4, .shadows = true},
     {.render_scale = 1, .samples = 1, .shadows = true},
@@ -20,12 +20,11 @@ constexpr std::array<Quality, 7> levels = {{
     {.render_scale = 0.4, .samples = 1, .shadows = false, .coarse = true},
 }};
 
-// The last level is for a large window without a GPU: only when there would be fewer than 15
-// pictures a second.
+// The last level is for a large window without a GPU, below 15 pictures a second.
 constexpr int last = static_cast<int>(levels.size()) - 1;
 constexpr double standstill_ms = 1000.0 / 15;
 
-// Steps a second of a simulation that needs the pictures' time, and of one that no longer does.
+// Steps per second below which the simulation gets the pictures' time, and above which it does not.
 constexpr double few_steps = 60, many_steps = 90;
 
 }  // namespace
@@ -36,13 +35,13 @@ Quality QualityGovernor::choose(bool moving) const {
 
 void QualityGovernor::measured(bool moving, double picture_ms) {
   if (!moving) {
-    // The first picture at rest already shows how fast this machine is.
+    // The first picture at rest already measures the speed of the machine.
     if (!known_ && picture_ms > 3 * target_ms) level_ = 3;
     known_ = true;
     return;
   }
   known_ = true;
-  // Down at once when far too slow, up only after a long calm: the picture must not flicker.
+  // Down at once when far too slow, up only after many fast pictures, to avoid flicker.
   const double limit_ms = level_ + 1 < last ? target_ms : standstill_ms;
   slow_ = picture_ms > limit_ms ? slow_ + 1 : 0;
   fast_ = picture_ms < 0.3 * target_ms ? fast_ + 1 : 0;

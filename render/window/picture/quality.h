@@ -4,15 +4,15 @@ namespace condyle {
 
 /// Quality of a picture.
 struct Quality {
-  double render_scale = 1;  // of each side; 0.66 to 1, and 0.4 when that would stand still
+  double render_scale = 1;  // of each side; 0.66 to 1, and 0.4 where that is far too slow
   int samples = 4;
   bool shadows = true;
   bool coarse = false;  // see PictureSettings
   bool operator==(const Quality&) const = default;
 };
 
-/// Lowers the picture while things move on a slow driver, so that it stays fluent; never the
-/// simulation. At rest the picture is always the best.
+/// Lowers the quality of moving pictures on a slow driver, so that they stay fluent; never that of
+/// the simulation. At rest the picture always has full quality.
 class QualityGovernor {
  public:
   /// Best picture when nothing moves, else the best that has kept to the target time so far.
@@ -21,10 +21,10 @@ class QualityGovernor {
   /// Reports the duration of the last picture, ms.
   void measured(bool moving, double picture_ms);
 
-  /// Reports how many steps a second the simulation can take.
+  /// Reports the number of steps per second that the simulation can take.
   void simulated(double steps_per_second);
-  /// From one picture of a playing motion to the next at least, s: more than none where the
-  /// simulation needs the time.
+  /// Minimum interval between pictures of a playing motion, s: above 0 where the simulation needs
+  /// the time.
   double min_interval_s() const { return yields_ ? yielding_interval_s : 0; }
 
   static constexpr double yielding_interval_s = 1.0 / 16;

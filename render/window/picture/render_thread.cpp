@@ -17,16 +17,16 @@ struct RenderThread::Drawing {
   std::optional<SceneRenderer> renderer;
   OverlaySender overlays;
   std::optional<DisplacementDrawing> displacement;
-  RenderRequest applied;  // what the renderer has
+  RenderRequest applied;  // state of the renderer
 
-  /// Gives the renderer what the request has otherwise than the last one.
+  /// Sends the renderer the changes since the last request.
   void apply(const RenderRequest& request) {
     const bool other = request.parts != applied.parts;
     if (other) {
       renderer.reset();
       displacement.reset();
       overlays = {};
-      applied = {.parts = request.parts};  // also where it cannot be uploaded: once is enough
+      applied = {.parts = request.parts};  // also if the upload fails: it is tried once
       if (request.parts) {
         renderer.emplace(request.parts->parts);
         if (request.parts->colours) renderer->set_colour_map(*request.parts->colours);
@@ -50,13 +50,13 @@ struct RenderThread::Drawing {
     applied = request;
   }
 
-  /// Shows the state beside, or the request's own.
+  /// Switches to the state beside, or to the request's own.
   void turn_to(const RenderRequest& request, bool beside) {
     const FrameState& frame = beside ? *request.beside : *request.frame;
     renderer->update(frame);
     tint(request, &frame, beside ? request.beside_values.get() : request.values.get());
     if (!request.overlays) return;
-    // Lines and sheets are of the request's own state; paths are of the whole motion.
+    // Lines and sheets belong to the request's own state; paths to the whole motion.
     Overlays lasting;
     if (const auto paths = request.overlays->lines.find("paths");
         paths != request.overlays->lines.end())

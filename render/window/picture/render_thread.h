@@ -15,14 +15,14 @@
 
 namespace condyle {
 
-/// Makes an OpenGL 3.3 core context current on the calling thread for as long as what it gives
-/// lives. throws: MachineError.
+/// Makes an OpenGL 3.3 core context current on the calling thread for the lifetime of the result.
+/// throws: MachineError.
 using ContextMaker = std::function<std::shared_ptr<void>()>;
 
-/// Draws the patient on a thread of its own, with an OpenGL context of its own, so that the
-/// window's panels never wait for a picture: not for the first one of a patient, for which all is
-/// prepared and uploaded, nor for a large one. Pixels come back through memory: two contexts of one
-/// software driver would wait for each other.
+/// Draws the patient on a separate thread with its own OpenGL context, so that the window's panels
+/// never wait for a picture: neither for the first one of a patient, for which everything is
+/// prepared and uploaded, nor for a large one. Pixels are returned through memory: two contexts of
+/// one software driver would wait for each other.
 class RenderThread {
  public:
   /// `notify`: called from that thread when there is news. Draws off-screen, through EGL.
@@ -31,32 +31,32 @@ class RenderThread {
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
 
-  /// What the next picture shows; replaces an earlier request that was not begun.
+  /// Requests the next picture; replaces an earlier request that was not begun.
   void request(RenderRequest request);
   /// The newest picture, if it has not been taken yet.
-  /// Rethrows what a picture failed of: MachineError.
+  /// Rethrows the error of a failed picture: MachineError.
   std::optional<DrawnPicture> take();
-  /// Whether the last picture failed because there is no context to draw it with.
+  /// Whether the last picture failed for lack of a context.
   bool lacks_context() const;
-  /// Where the context comes from at the next picture, if there is none yet.
+  /// Sets the source of the context for the next picture, if there is none yet.
   void use_context(ContextMaker maker);
   /// Waits until every request is drawn and everything is saved.
   void finish();
 
-  /// Draws what was requested last in full quality and saves it as PNG under a free name in the
-  /// folder; or saves an image.
+  /// Draws the last request in full quality and saves it as PNG under a free name in the folder; or
+  /// saves an image.
   void save_picture(std::filesystem::path folder);
   void save(Image image, std::filesystem::path folder);
 
   struct Saved {
     std::filesystem::path file;
-    std::string trouble;  // why it is not there; empty: it is
+    std::string trouble;  // reason of a failure; empty: saved
   };
-  /// What was saved since the last call, one at a time.
+  /// Pictures saved since the last call, one at a time.
   std::optional<Saved> take_saved();
 
  private:
-  struct Drawing;  // what lives as long as the context
+  struct Drawing;  // data with the lifetime of the context
   struct SaveRequest {
     std::filesystem::path folder;
     std::optional<Image> image;  // none: the view

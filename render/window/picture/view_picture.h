@@ -8,8 +8,8 @@
 
 namespace condyle {
 
-/// Draws pictures of the window's 3-D view and keeps what pictures of one size share. Needs a
-/// current OpenGL 3.3 core context for its whole life.
+/// Draws pictures of the window's 3-D view and keeps buffers for pictures of one size. Needs a
+/// current OpenGL 3.3 core context for its lifetime.
 class ViewPicture {
  public:
   ViewPicture();
@@ -17,11 +17,11 @@ class ViewPicture {
   ViewPicture(const ViewPicture&) = delete;
   ViewPicture& operator=(const ViewPicture&) = delete;
 
-  /// Draws what the renderer has, at the request's quality; the settings give the full size. For a
-  /// wipe `turn_to` shows the state beside (true) and the request's own, which is left. Large
-  /// pictures of the best quality, at rest, are drawn column by column: none when `given_up` says,
-  /// between two, that nobody waits for it any more. throws: MachineError when the driver cannot
-  /// make a picture of this size.
+  /// Draws the renderer's state at the request's quality; the settings state the full size. For a
+  /// wipe `turn_to` switches to the state beside (true) and back to the request's own. Large
+  /// pictures of the best quality, at rest, are drawn column by column: none is returned if
+  /// `given_up` reports between two columns that the picture is no longer needed. throws:
+  /// MachineError when the driver cannot draw a picture of this size.
   std::optional<DrawnPicture> draw(SceneRenderer& renderer, const RenderRequest& request,
                                    const std::function<void(bool beside)>& turn_to,
                                    const std::function<bool()>& given_up = {});

@@ -48,7 +48,7 @@ json json_of(const Arrangement& a) {
           {"recording", json_of(a.record)}};
 }
 
-/// Fields of the file; one that is missing leaves the value as it is.
+/// Fields of the file; a missing one leaves the value unchanged.
 class FieldReader {
  public:
   FieldReader(const fs::path& file, const json& all) : file_(file), all_(all) {
@@ -147,7 +147,7 @@ Arrangement arrangement_in(const fs::path& file, const std::string& text) {
   return a;
 }
 
-/// What differs between the window before and now goes into what is kept; the rest stays.
+/// Copies the fields that differ between the window before and now into those to be stored.
 void merge(Arrangement& kept, const Arrangement& before, const Arrangement& now) {
   const auto take = [](auto& into, const auto& was, const auto& is) {
     if (!(was == is)) into = is;
@@ -177,7 +177,7 @@ KeptArrangement::KeptArrangement(fs::path file) : file_(std::move(file)) {
     trouble_ =
         std::string("The settings of the window could not be read, so it opens as at first: ") +
         error.what();
-    // What can be read comes in place of what is wrong, but not of what is only out of reach.
+    // A readable file replaces an invalid one, but not one that is only inaccessible.
     if (is_read)
       due_ = true;
     else
@@ -199,7 +199,7 @@ void KeptArrangement::update(const Arrangement& now, bool at_once) {
     make_folder(file_.parent_path());
     write_file(file_, json_of(kept_).dump(2) + "\n");
   } catch (const MachineError&) {
-    // It lasts as long as the window then.
+    // The arrangement then lasts only as long as the window.
   }
 }
 

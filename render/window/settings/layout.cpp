@@ -6,12 +6,12 @@
 namespace condyle {
 namespace {
 
-// What the picture keeps however wide the columns and however high the plots are drawn, at scale 1.
+// Minimum size of the picture, regardless of the columns and plots, at scale 1.
 constexpr double min_view_width = 320, min_view_height = 160, min_plots_height = 150;
-// Of a tool; as high as the highest of them needs.
+// Size of a tool; as high as the highest one requires.
 constexpr double tool_width = 252, min_tool_height = 306;
 
-/// A column for the tool at the view's left, unless the window is too small for both.
+/// Reserves a column for the tool left of the view, unless the window is too small for both.
 void dock_tool(Layout& layout, double scale, double gap) {
   ViewRect& view = layout.view;
   const double wide = std::round(tool_width * scale);
@@ -44,7 +44,7 @@ Layout lay_out(double width, double height, double scale, bool with_panels, cons
     if (beside.tool) dock_tool(layout, scale, std::max(1.0, std::round(scale)));
     return layout;
   }
-  // Whole pixels, and a hair's breadth between neighbours.
+  // Whole pixels, and a thin gap between neighbours.
   const auto px = [&](double units) { return std::round(units * scale); };
   const double gap = std::max(1.0, px(1));
   const double min_width = min_view_width + (beside.tool ? tool_width + 1 : 0);

@@ -14,9 +14,9 @@ class EditHistory {
     before_.push_back(before);
     after_.clear();
   }
-  /// Both exchange `now`; false when there is nothing.
+  /// Both replace `now`; false if there is no edit.
   bool undo(State& now) {
-    // An edit that changed nothing is none.
+    // An edit without a change is ignored.
     while (!before_.empty() && before_.back() == now) before_.pop_back();
     return exchange(before_, after_, now);
   }

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The nearest vertex of a part; what is not nearer than `nearest` is left alone.
+/// The nearest vertex of a part, if it is nearer than `nearest`.
 void look(std::span<const Part> parts, std::size_t part, const Vector3d& p, double& nearest,
           Landmark& landmark) {
   const auto& vertices = parts[part].mesh.vertices;

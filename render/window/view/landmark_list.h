@@ -28,7 +28,7 @@ Landmark landmark_at(const std::string& name, const Eigen::Vector3d& at_rest,
 Landmark landmark_on(const std::string& name, const PinnedPoint& point,
                      std::span<const Part> parts);
 
-/// Where it is now, in the cranium's frame, mm.
+/// Its present position in the cranium's frame, mm.
 Eigen::Vector3d place_of(const Landmark& landmark, std::span<const Part> parts,
                          const FrameState& frame);
 /// The same with the face's vertices elsewhere (see DisplayedFace), where there are any.

@@ -11,7 +11,7 @@
 
 namespace condyle {
 
-/// A point that stays on its place of a surface while that moves or deforms.
+/// A point fixed to a surface that moves or deforms.
 struct PinnedPoint {
   std::size_t part = 0;
   Eigen::Vector3i triangle = Eigen::Vector3i::Zero();
@@ -19,17 +19,17 @@ struct PinnedPoint {
   bool operator==(const PinnedPoint&) const = default;
 };
 
-/// Where it is now, in the cranium's frame, mm.
+/// Its present position in the cranium's frame, mm.
 Eigen::Vector3d place_of(const PinnedPoint& point, std::span<const Part> parts,
                          const FrameState& frame);
 /// The same with the face's vertices elsewhere (see DisplayedFace), where there are any.
 Eigen::Vector3d place_of(const PinnedPoint& point, std::span<const Part> parts,
                          const FrameState& frame, std::span<const Eigen::Vector3f> face);
 
-/// What points in a row say. Angle: at the second of three. Area: of the polygon through three or
-/// more, as seen along its own normal.
+/// Measures of a sequence of points. Angle: at the second of three. Area: of the polygon through
+/// three or more, as seen along its own normal.
 struct Measured {
-  double length_mm = 0;  // along the row
+  double length_mm = 0;  // along the sequence
   std::optional<double> angle_deg, area_mm2;
 };
 Measured measured(std::span<const Eigen::Vector3d> points);

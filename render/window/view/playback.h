@@ -4,13 +4,13 @@
 
 namespace condyle {
 
-/// How far the clock may be ahead of the last simulated frame when the loop comes around every
-/// `loop_s`: the steps in flight, and no more. So a slow simulation slows the playback instead of
-/// losing its steps, and slow pictures do not.
+/// Maximum lead of the clock over the last simulated frame for a loop period of `loop_s`: the steps
+/// in progress. So a slow simulation slows the playback instead of skipping steps; slow pictures do
+/// not.
 double allowed_lead_s(double loop_s);
 
-/// Moves the playing clock on by `elapsed_s` of real time, since the last call. At the end it
-/// starts over, or stops there when `loop` is off. `shown_s` is the time of the last simulated
+/// Advances the playing clock by `elapsed_s` of real time since the last call. At the end it starts
+/// over, or stops if `loop` is off. `shown_s` is the time of the last simulated
 /// frame.
 void advance_clock(ViewState& view, double elapsed_s, double duration_s, double shown_s);
 

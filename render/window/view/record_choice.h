@@ -26,7 +26,7 @@ struct RecordChoice {
   bool camera_from_file = false;
   std::string camera_file = {}, caption = {};
 
-  /// Those that are chosen, in the order of the list; a file without a name is none.
+  /// The selected cameras, in the order of the list; a file without a name is ignored.
   std::vector<std::string> selected_cameras() const;
   bool operator==(const RecordChoice&) const = default;
 };

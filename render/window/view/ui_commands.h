@@ -19,9 +19,9 @@
 
 namespace condyle {
 
-/// What the person asks for once. Whoever runs the window does it.
+/// One-time requests of the user, carried out by the owner of the window.
 namespace request {
-/// Whatever it is: a case folder, a motion; several may be surfaces. None: the built-in patient.
+/// Opens paths of any kind: a case folder, a motion, surfaces. None: the built-in patient.
 struct Open {
   std::vector<std::filesystem::path> files;
 };
@@ -35,9 +35,9 @@ struct Record {
   int width = 1920, height = 1080;
   double frames_per_second = 30;
   bool film = true;
-  // Names as a command line has them, files of a view or a path of views, and the window's own two.
+  // Names as on the command line, files of a view or a path of views, and the window's own two.
   std::vector<std::string> cameras = {own_camera};
-  std::string caption = {};  // with braces to fill in
+  std::string caption = {};  // with placeholders in braces
   bool transparent = false;
   int supersampling = 1;
   RecordEdges edges = RecordEdges::msaa;
@@ -48,11 +48,11 @@ struct Record {
   std::shared_ptr<const FrameState> kept = {};  // left of the wipe, if there is one
 };
 struct StopRecording {};
-/// The recording that was stopped or asked about goes on with the pictures that are there.
+/// Resumes the recording that was stopped or found, with its existing pictures.
 struct ResumeRecording {};
-/// The recording that was asked about takes the place of what is in its folder.
+/// Replaces the recording found in the folder.
 struct ReplaceRecording {};
-/// Quits while a recording is being made: it is stopped, or awaited.
+/// Quits while a recording runs: it is stopped or completed first.
 struct Quit {
   bool when_recorded = false;
 };
@@ -81,7 +81,7 @@ struct Question {
     std::optional<Request> request = {};  // none: nothing is done
   };
   std::string title, words;
-  std::vector<Answer> answers;  // Enter gives the first, which loses nothing; Esc gives none
+  std::vector<Answer> answers;  // Enter chooses the first, which loses nothing; Esc none
 };
 
 }  // namespace condyle

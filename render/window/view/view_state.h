@@ -15,33 +15,33 @@
 
 namespace condyle {
 
-/// What the tree lists beside the parts.
+/// An entry of the tree other than a part.
 struct TreeItem {
   std::string name, label;
   std::string short_label = {};  // in the tree, where the label is long; empty: the label
 };
 
-/// What a window shows. Plain data; the parts must outlive the window or the next scene.
+/// The content of a window. Plain data; the parts must outlive the window or the next scene.
 struct WindowScene {
   std::span<const Part> parts = {};
   std::string case_name = {};
   std::string motion_name = {};
   double duration_s = 0;       // of the motion; 0 when there is none
-  double step_s = 1.0 / 30;    // what one press of an arrow key moves
+  double step_s = 1.0 / 30;    // for one press of an arrow key
   double max_opening_mm = 50;  // end of the opening slider; below 1: the slider is disabled
   std::vector<std::string> notes = {};  // sentences about this case, e.g. overlap at rest
-  // Colours for distances, where the loop behind the window can compute them; beside them in the
-  // legend stand the remarks.
+  // Colours for distances, where the loop behind the window can compute them, and remarks for
+  // their legend.
   std::optional<ColourMap> distance_colours = {};
   std::vector<std::string> distance_remarks = {};
-  std::vector<MovableBody> bodies = {};    // that a hand may move
-  std::filesystem::path case_folder = {};  // none: not kept in files
+  std::vector<MovableBody> bodies = {};    // movable by hand
+  std::filesystem::path case_folder = {};  // empty: not stored in files
   std::vector<std::string> motions = {};   // names to choose from
-  MotionChoice motion = {};                // what the motion was made from
+  MotionChoice motion = {};                // source of the motion
   std::vector<MotionSetting> motion_settings = {};
   std::vector<ExcitationSetting> excitations = {};  // of a motion that muscles drive
   std::vector<Landmark> landmarks = {};             // of the case, as it was loaded or saved
-  std::vector<Landmark> landmarks_in_use = {};      // what is simulated was made with these
+  std::vector<Landmark> landmarks_in_use = {};      // those of the simulation
   std::vector<TreeItem> muscles = {};  // lines of action that can be shown, in the case's order
   std::vector<TreeItem> layers = {};   // sheets of the soft tissue, from the skin inward
   std::vector<std::filesystem::path> recent = {};  // opened before, the last one first
@@ -54,15 +54,15 @@ struct PartView {
   bool operator==(const PartView&) const = default;
 };
 
-/// What the left button does in the picture: turn it, move bodies, set points to measure or place
+/// Function of the left button in the picture: turn it, move bodies, set points to measure or place
 /// landmarks.
 enum class Tool { look, move, measure, landmarks };
 
-/// What the picture shows in addition to the surfaces, and how they are cut.
+/// Additions to the surfaces in the picture, and their cuts.
 struct Look {
   bool clip = false;
-  bool clip_skin = false;      // and nothing but the face
-  char clip_from = 'L';        // side that is taken away: L R A P S I
+  bool clip_skin = false;      // only the face is cut
+  char clip_from = 'L';        // removed side: L R A P S I
   double clip_fraction = 0.5;  // of the patient's extent, from that side
   bool cut_away = false;
   enum class Window { left_joint, right_joint, mouth } cut_at = Window::left_joint;
@@ -79,10 +79,10 @@ struct Look {
   bool operator==(const Look&) const = default;
 };
 
-/// What the left column shows.
+/// Content of the left column.
 enum class LeftTab { parts, look };
 
-/// What the right column shows.
+/// Content of the right column.
 enum class SideTab { readings, motion, record };
 
 /// Which panels are in use.
@@ -90,7 +90,7 @@ struct PanelChoice {
   SideTab tab = SideTab::readings;
   LeftTab left_tab = LeftTab::parts;
   bool plots = false;        // below the picture
-  std::size_t plot_set = 0;  // the one that is shown, while there are so many
+  std::size_t plot_set = 0;  // the set shown, if there are so many
   bool operator==(const PanelChoice&) const = default;
 };
 
@@ -100,17 +100,17 @@ struct Edits {
   bool obey_contact = true;  // false plays the motion through the contact
   bool mark_contacts = true;
   bool shadows = true;
-  bool distances = false;                  // colour parts by their distance from what they may meet
-  std::vector<PinnedPoint> measured = {};  // points that were clicked, in their order
+  bool distances = false;                  // colour parts by distance from what they may touch
+  std::vector<PinnedPoint> measured = {};  // clicked points, in order
   std::optional<double> opening_mm = {};   // target, instead of the motion's pose
   Hands hands = {};                        // targets of bodies held by hand
-  std::vector<Landmark> landmarks = {};    // where the person has them; the scene's at first
-  MotionChoice motion = {};                // requested; the scene's at first
+  std::vector<Landmark> landmarks = {};    // as edited; initially the scene's
+  MotionChoice motion = {};                // requested; initially the scene's
   Look look = {};
   double skin_opacity = 1;                    // of parts with the role `face`, on top of their own
-  std::optional<double> skin_to_return = {};  // its opacity before distances took it away
+  std::optional<double> skin_to_return = {};  // its opacity before distances hid it
   std::vector<PartView> parts = {};           // one per part of the scene, in its order
-  // The same of muscles and layers of tissue; not shown at first.
+  // The same for muscles and layers of tissue; initially hidden.
   std::vector<PartView> muscles = {}, layers = {};
   bool operator==(const Edits&) const = default;
 };
@@ -123,9 +123,9 @@ struct ViewState : Edits, PanelChoice {
   bool loop = true;
   double speed = 1;                          // times real time, 0.1 to 2
   double time_s = 0;                         // of the motion, 0 to duration
-  Tool tool = Tool::look;                    // what the left button does
-  std::size_t chosen = 0;                    // the body that has the handles, of the scene's
-  std::optional<std::size_t> landmark = {};  // the one that the next click places
+  Tool tool = Tool::look;                    // function of the left button
+  std::size_t chosen = 0;                    // index of the body with handles
+  std::optional<std::size_t> landmark = {};  // to be placed by the next click
 
   const Edits& edits() const { return *this; }
   /// Whether the jaw is held by hand instead of following the motion.
