@@ -109,7 +109,7 @@ void add_meshes(Commands& commands, CLI::App& import) {
   begin_group(command, "Segments and transplants");
   command
       .add_option("--carrier-of", options->carriers,
-                  "The body that a segment or transplant goes along with, e.g. segment-2=mandible; "
+                  "The body with which a segment or transplant moves, e.g. segment-2=mandible; "
                   "default the nearer one")
       ->type_name("NAME=BODY");
   command.add_flag("--push-out", options->push_out,

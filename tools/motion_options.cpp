@@ -75,7 +75,7 @@ void add_motion(CLI::App& command, MotionOptions& motion) {
                       "that follow it): condyle help motions, recordings, muscles")
       ->type_name("MOTION");
   in_range(command.add_option("--duration", motion.settings.duration_s,
-                              "Time of the whole motion, s; default its own (opening: 3)"),
+                              "Duration of the whole motion, s; default: its own (opening: 3)"),
            0.2, 3600);
 }
 

@@ -105,9 +105,9 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
                                                         options.motion.respect_contact)});
   std::optional<Interruption> interruption;
   if (options.pictures)
-    interruption.emplace("condyle: interrupted; the pictures made so far stay in " +
+    interruption.emplace("condyle: interrupted; the finished pictures stay in " +
                          fs::absolute(options.out).lexically_normal().string() +
-                         ", and the same command with --resume makes the others");
+                         ", and the same command with --resume draws the others");
   for (int i = 0; i < times.count; ++i) {
     FrameState frame = playback.at(times[i]);
     const auto done = [&](int number, const FrameState& drawn) {

@@ -122,7 +122,7 @@ int run_release(const ReleaseOptions& options, const CommonOptions& common) {
   const std::vector<Moved> moved = moved_parts(released, patient, settled);
   if (settled.rest.reached && !options.out.empty()) {
     for (const auto& [p, X] : moved) {
-      patient.notes.push_back(fmt::format("{}: {}, it came to lie {:.1f} mm away",
+      patient.notes.push_back(fmt::format("{}: {}, now {:.1f} mm from its earlier place",
                                           patient.parts[p].name, p == part ? "released" : "pushed",
                                           X.t.norm()));
     }

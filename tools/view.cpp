@@ -75,7 +75,7 @@ void add_view(Commands& commands) {
                    [options](const CommonOptions& common) { return run_view(*options, common); });
   add_motion(command, options->motion);
   command.get_option("CASE")->description(
-      "Folder with case.json, or of loose surfaces: the window asks what each is (default: the "
+      "Folder with case.json, or of loose surfaces, whose roles the window asks (default: the "
       "built-in patient)");
   begin_group(command, "Window");
   in_range(command.add_option("--ui-scale", options->ui_scale,

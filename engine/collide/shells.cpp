@@ -71,7 +71,7 @@ std::vector<Shell> split(const TriMesh& mesh) {
 
 void require_sound(const TriMesh& mesh) {
   if (mesh.triangles.empty())
-    throw InputError("a surface without triangles cannot take part in collision; leave it out");
+    throw InputError("a surface without triangles cannot collide; omit it");
   const int count = static_cast<int>(mesh.vertices.size());
   for (int v = 0; v < count; ++v)
     if (!mesh.vertices[v].allFinite())

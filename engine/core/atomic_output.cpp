@@ -33,7 +33,7 @@ void AtomicOutput::finish() {
     fs::rename(stage_ / name, folder_ / name, error);
     if (error)
       throw MachineError((folder_ / name).string() +
-                         ": cannot be put in place: " + error.message());
+                         ": cannot be moved into place: " + error.message());
   }
 }
 

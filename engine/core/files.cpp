@@ -59,15 +59,15 @@ void write_file(const fs::path& file, std::string_view content) {
     content.remove_prefix(static_cast<std::size_t>(written));
   }
   if (::close(descriptor) != 0) fail("cannot be written");
-  if (::rename(beside.c_str(), file.c_str()) != 0) fail("cannot be put in place");
+  if (::rename(beside.c_str(), file.c_str()) != 0) fail("cannot be moved into place");
 }
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder))
-    throw MachineError(folder.string() + ": the folder cannot be made: " +
-                       (error ? error.message() : "a file is in the way"));
+    throw MachineError(folder.string() + ": the folder cannot be created: " +
+                       (error ? error.message() : "a file has this name"));
 }
 
 }  // namespace condyle

@@ -274,11 +274,9 @@ class GlbReader {
                                                     static_cast<double>(view.stride) +
                                                 static_cast<double>(size * components);
     if (needed > static_cast<double>(length))
-      refuse(
-          item,
-          fmt::format(
-              "promises {} values, which takes {:.0f} bytes, but {} are there: the file is damaged",
-              view.count, needed, length));
+      refuse(item, fmt::format(
+                       "states {} values, which need {:.0f} bytes, but has {}: the file is damaged",
+                       view.count, needed, length));
     view.data = bytes_.data() + offset + inner;
     return view;
   }
@@ -360,7 +358,7 @@ class GlbReader {
     std::optional<View> view;
     if (primitive.contains("indices"))
       view = view_of(index(primitive, "indices", item, count_of("accessors")), 1, "index", item);
-    if (view && view->type == 5126) refuse(item, "has indices that are no whole numbers");
+    if (view && view->type == 5126) refuse(item, "has indices that are not integers");
     const std::size_t count = view ? view->count : vertices;
     const std::size_t triangles = mode == 4 ? count / 3 : count < 3 ? 0 : count - 2;
     if (mode == 4 && count % 3 != 0)

@@ -64,13 +64,13 @@ void read_element(const fs::path& file, LineReader& lines, PlyHeader& header) {
   for (const auto& other : header.elements)
     if (other.name == element.name)
       throw InputError(file, "header " + lines.where(),
-                       "the element " + in_quotes(element.name) + " comes twice");
+                       "the element " + in_quotes(element.name) + " occurs twice");
   header.elements.push_back(std::move(element));
 }
 
 void read_property(const fs::path& file, LineReader& lines, PlyHeader& header) {
   if (header.elements.empty())
-    throw InputError(file, "header " + lines.where(), "a property comes before the first element");
+    throw InputError(file, "header " + lines.where(), "a property precedes the first element");
   PlyProperty property;
   std::string_view word = lines.word();
   if (word == "list") {

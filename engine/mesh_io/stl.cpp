@@ -48,12 +48,11 @@ TriMesh read_binary(const fs::path& file, std::string_view content) {
   if (count == 0)
     throw InputError(file, "header", "promises 0 triangles; export the surface again");
   if (expected != content.size())
-    throw InputError(
-        file, "header",
-        fmt::format("promises {} triangles, which takes {} bytes, but the file has {}: "
-                    "it is {}; export or copy it again",
-                    count, expected, content.size(),
-                    expected > content.size() ? "cut short or damaged" : "damaged"));
+    throw InputError(file, "header",
+                     fmt::format("states {} triangles, which need {} bytes, but the file has {}: "
+                                 "it is {}; export or copy it again",
+                                 count, expected, content.size(),
+                                 expected > content.size() ? "cut short or damaged" : "damaged"));
   check_count(file, "triangles", count, max_mesh_triangles);
   Soup soup(count);
   const char* at = content.data() + 84;

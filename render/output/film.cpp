@@ -148,7 +148,7 @@ struct Film::State {
       return "ffmpeg was stopped by signal " + std::to_string(WTERMSIG(status));
     if (WEXITSTATUS(status) == 0) return {};
     const std::string said = last_words();
-    return "ffmpeg says: " +
+    return "ffmpeg reports: " +
            (said.empty() ? "nothing, exit code " + std::to_string(WEXITSTATUS(status)) : said);
   }
 };

@@ -55,11 +55,11 @@ bool RecordingSession::may_close() {
   if (!job_.active() || quits_) return true;
   state_.front_end.keep_open();
   state_.front_end.ask(
-      {.title = "A recording is being made",
-       .words = fmt::format(
-           "Now: {}. Its pictures go to {} and stay there: once stopped, it goes on when "
-           "the same is recorded into the same folder.",
-           job_.progress().first, recorded_->record.folder.string()),
+      {.title = "A recording is running",
+       .words =
+           fmt::format("Now: {}. Its pictures in {} are kept: once stopped, it can be resumed by "
+                       "recording the same into the same folder.",
+                       job_.progress().first, recorded_->record.folder.string()),
        .answers = {{"question:keep", "Keep recording"},
                    {"question:when-done", "Quit when done", request::Quit{true}},
                    {"question:quit", "Stop and quit", request::Quit{}}}});
@@ -123,7 +123,7 @@ std::string RecordingSession::finish() {
   if (!ended || ended->words.empty()) return {};
   if (ended->end != ViewRecorded::End::stopped) return ended->words;
   return "the recording was stopped: " + ended->words +
-         "; the same recording into the same folder goes on from there";
+         "; the same recording into the same folder resumes it";
 }
 
 }  // namespace condyle

@@ -26,7 +26,7 @@ void ViewSession::take_patient() {
   if (!loaded) return;
   moving_.drop();
   readying_.drop();
-  release_.drop(loaded->renewed ? "the patient was made anew" : "another patient was opened");
+  release_.drop(loaded->renewed ? "the patient was rebuilt" : "another patient was opened");
   release_.end();
   live_.stop();
   preview_.forget();

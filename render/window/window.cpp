@@ -51,7 +51,7 @@ Window::State::State(const WindowOptions& given) : options(given), arrangement(g
                             options.title.c_str(), nullptr, nullptr);
   if (!window) {
     const std::string words = take_glfw_error();
-    throw MachineError("the display gives no window with OpenGL 3.3 (" +
+    throw MachineError("the display has no window with OpenGL 3.3 (" +
                        (words.empty() ? "no reason given" : words) +
                        "); install libgl1-mesa-dri or the graphics card's driver. Pictures and "
                        "films need no window: condyle record --motion opening --out DIR");

@@ -186,7 +186,7 @@ Part join_teeth(Role role, const std::vector<Surface>& surfaces, std::vector<std
     if (is_upper(fdi) != (role == Role::upper_teeth))
       throw InputError(
           surface.source.file, "",
-          fmt::format("is tooth {}, which is no {} tooth; give it to --{}-teeth", fdi,
+          fmt::format("is tooth {}, which is no {} tooth; use --{}-teeth", fdi,
                       is_upper(fdi) ? "lower" : "upper", is_upper(fdi) ? "upper" : "lower"));
     if (!numbers.insert(fdi).second)
       throw InputError(surface.source.file, "",

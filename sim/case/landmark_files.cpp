@@ -217,11 +217,10 @@ Landmarks name_landmarks(const fs::path& file, const LandmarkTable& table) {
     const std::string name = canonical_landmark(row.name);
     const auto [other, is_new] = first.try_emplace(name, &row);
     if (!is_new && other->second->point != row.point)
-      throw InputError(
-          file, row.where,
-          fmt::format("{} repeats the landmark {}, which {} gives at another position; "
-                      "delete one of them",
-                      in_quotes(row.name), name, other->second->where));
+      throw InputError(file, row.where,
+                       fmt::format("{} repeats the landmark {}, which {} has at another position; "
+                                   "delete one of them",
+                                   in_quotes(row.name), name, other->second->where));
     landmarks.points[name] = row.point;
   }
   return landmarks;

@@ -261,14 +261,14 @@ Case load_case(const fs::path& given) {
     else
       part.body = body_named(patient.bodies, parts.at(i).at("body"));
     if (!names.insert(patient.parts.back().name).second)
-      parts.at(i).at("name").refuse("the part \"" + patient.parts.back().name + "\" comes twice");
+      parts.at(i).at("name").refuse("the part \"" + patient.parts.back().name + "\" occurs twice");
   }
   if (const auto landmarks = root.find("landmarks")) {
     // The names are canonical already.
     const fs::path points = inside(folder, *landmarks);
     for (const auto& row : read_landmark_table(points).rows)
       if (!patient.landmarks.points.try_emplace(row.name, row.point).second)
-        throw InputError(points, row.where, "the landmark \"" + row.name + "\" comes twice");
+        throw InputError(points, row.where, "the landmark \"" + row.name + "\" occurs twice");
   }
   if (const auto path = root.find("condylar_path")) patient.condylar_path = load_path(*path);
   if (const auto opening = root.find("scan_opening_mm"))

@@ -158,7 +158,7 @@ Vector3d landmark(const Case& patient, const char* name) {
   const auto point = patient.landmarks.find(name);
   if (!point)
     throw InputError(patient.name + ": the landmark " + name +
-                     " is missing; muscles cannot be put to the jaw without it");
+                     " is missing; muscles cannot be fitted to the jaw without it");
   return *point;
 }
 

@@ -58,7 +58,7 @@ Motion opening_of(const MotionChoice& choice, const Motion& motion, const Scene&
     try {
       return make(opening, scene, options);
     } catch (const InputError& error) {
-      notes.push_back(fmt::format("the opening slider cannot go as asked: {}", error.what()));
+      notes.push_back(fmt::format("the opening slider cannot open as requested: {}", error.what()));
     }
   }
   return motion;

@@ -14,16 +14,17 @@ void balance(TissueMesh& mesh, TissueModel& model) {
   model.support.anchor_offset = balanced.anchor_offset;
   if (!balanced.stable)
     model.summary.notes.push_back(
-        "with this turgor and weight the tissue is unstable at rest: turgor nearer "
-        "to 1 or more layers are more stable");
+        "with this skin pretension (turgor) and weight the tissue is unstable at rest: turgor "
+        "closer to 1 or more layers are more stable");
   model.support.held_force = balanced.held;
   if (balanced.held.empty()) return;
   constexpr double noted_N = 1e-4;
   if (balanced.force_held < noted_N) return;
-  model.summary.notes.push_back(fmt::format(
-      "strains alone cannot balance this turgor and weight everywhere: constant forces of up to "
-      "{:.2g} N hold the rest at {} of {} points",
-      balanced.force_held, balanced.nodes_held, mesh.rest.size()));
+  model.summary.notes.push_back(
+      fmt::format("strains alone cannot balance skin pretension and weight everywhere: constant "
+                  "forces of up to "
+                  "{:.2g} N hold the rest at {} of {} points",
+                  balanced.force_held, balanced.nodes_held, mesh.rest.size()));
 }
 
 void measure_rest(TissueModel& model, int threads) {
@@ -42,7 +43,7 @@ void measure_rest(TissueModel& model, int threads) {
     summary.notes.push_back("the unmoved tissue could not be solved: it may move without a load");
   else if (summary.rest_move_mm > 1e-4)
     summary.notes.push_back("the unmoved tissue moves by " + std::to_string(summary.rest_move_mm) +
-                            " mm: turgor and weight could not be balanced everywhere");
+                            " mm: skin pretension and weight could not be balanced everywhere");
   summary.lip_points_left_out = model.contact->lip_points_left_out;
   summary.rest_overlap_mm =
       measure_contact(*model.contact, ContactLists(contact_lists(*model.contact)), {}, mesh.rest,

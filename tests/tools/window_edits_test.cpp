@@ -182,7 +182,8 @@ TEST_F(WindowSession, AnOpeningThatCannotBeIsToldBesideMusclesAndTheSliderOpensA
   start({"--motion", "by-muscles", "--opening", "75"});
   ASSERT_TRUE(wait_until(idle, 120));
   const std::string notes = state()["notes"].dump();
-  EXPECT_NE(notes.find("the opening slider cannot go as asked: opening 75 mm"), std::string::npos)
+  EXPECT_NE(notes.find("the opening slider cannot open as requested: opening 75 mm"),
+            std::string::npos)
       << notes;
   const auto r = rect("opening");
   drag(r[0] + 0.02 * r[2], r[1] + r[3] / 2, r[0] + 0.99 * r[2], r[1] + r[3] / 2);

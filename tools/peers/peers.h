@@ -6,7 +6,7 @@
 /// and returns the energy there; `tolerance` is the library's own, as named.
 namespace condyle::peers {
 
-/// The energy over 3 N doubles. Infinite energies are told as such.
+/// The energy over 3 N doubles. Infinite energies are reported as such.
 class FlatEnergy {
  public:
   FlatEnergy(const TissueTarget& target)

@@ -66,7 +66,7 @@ constexpr std::array play_lines = {
 };
 constexpr std::array move_lines = {
     HelpLine{"M", "move bones, on and off"},
-    HelpLine{"drag a bone", "it goes along, and slides on contact"},
+    HelpLine{"drag a bone", "move it; it slides on contact"},
     HelpLine{"drag an arrow, a ring", "along or about one axis"},
     HelpLine{"Release, in its panel", "joints and muscles, or bone, move it"},
 };

@@ -136,7 +136,7 @@ void Panels::Drawing::landmark_uses() {
   ImGui::EndDisabled();
   tooltip(pen,
           "Writes the patient with these landmarks; an earlier case there is replaced when the new "
-          "one is whole");
+          "one is complete");
 }
 
 }  // namespace condyle

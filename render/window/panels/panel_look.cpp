@@ -60,18 +60,18 @@ void Panels::Drawing::look_cuts() {
                       look.clip_from == side))
         look.clip_from = side;
     }
-    tooltip(pen, "The side that is taken away");
+    tooltip(pen, "The side that is removed");
     const double deep_mm = look.clip_fraction * extent_mm(input.box, look.clip_from);
     named_slider(pen, "clip-depth", "Depth",
                  fmt::format("{:.0f} mm, {:.0f} %", deep_mm, 100 * look.clip_fraction),
                  look.clip_fraction, {.width = ImGui::GetContentRegionAvail().x, .typed = 100});
-    tooltip(pen, "How deep from that side, and how much that is of the patient's whole extent");
+    tooltip(pen, "Depth from that side, in mm and as a percentage of the patient's extent");
     const bool has_face = std::any_of(input.scene.parts.begin(), input.scene.parts.end(),
                                       [](const Part& part) { return part.role == Role::face; });
     if (has_face) {
       ImGui::SetCursorPosX(ImGui::GetCursorPosX() + pen.px(16));
       tick_box(pen, "clip-skin", "only the skin", look.clip_skin);
-      tooltip(pen, "Bones and teeth stay whole");
+      tooltip(pen, "Bones and teeth are not cut");
     }
   }
   tick_box(pen, "cut-away", "Window in the skin", look.cut_away);
@@ -117,7 +117,7 @@ void Panels::Drawing::look_overlays() {
   const bool has_tissue = input.frame && !input.frame->tissue.nodes.empty();
   if (has_tissue) look_displacement();
   tick_box(pen, "paths", "Paths of incisor and condyles", look.paths);
-  tooltip(pen, "Where the lower incisal point and the condyles go in the whole motion");
+  tooltip(pen, "Paths of the lower incisal point and of the condyles over the whole motion");
   if (has_tissue) look_springs();
   tick_box(pen, "wireframe", "Triangles", look.wireframe);
   tick_box(pen, "axes", "Axes", look.axes);

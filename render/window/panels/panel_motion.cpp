@@ -146,7 +146,7 @@ void Panels::Drawing::motion_muscles() {
     const Setting setting{"excitation:" + muscle.name,
                           muscle.label,
                           "%",
-                          muscle.high > 1 ? "Percentage of what the motion's file says"
+                          muscle.high > 1 ? "Percentage of the value in the motion's file"
                                           : "How much the muscle is excited while it lasts",
                           0,
                           100 * muscle.high};

@@ -168,10 +168,11 @@ void Panels::Drawing::body_choice(const MovableBody& body) {
     ImGui::EndCombo();
   }
   pen.mark("body");
-  tooltip(pen,
-          "What the handles and numbers move; in the picture, press on a jaw or a free part to "
-          "take it. The skull with the upper jaw moves by its handles while it is chosen here: "
-          "the lower jaw stays where it is in the picture");
+  tooltip(
+      pen,
+      "The body that the handles and numbers move; in the picture, press on a jaw or a free part "
+      "to select it. The skull with the upper jaw moves by its handles while it is selected "
+      "here: the lower jaw stays in place in the picture");
 }
 
 /// The body's place in numbers: its target, which can be edited, and the pose reached.
@@ -218,7 +219,7 @@ void Panels::Drawing::body_state(const MovableBody& body, bool held, const Short
   ImU32 tint = palette().text_dim;
   const bool turn = shortfall.turn_deg > held_deg;
   if (view.falling && !body.roams()) {
-    state = "on its way";
+    state = "moving";
   } else if (turn || shortfall.shift_mm > held_mm) {
     state = turn ? fmt::format("held by contact, {:.1f} mm and {:.1f}\u00b0 short",
                                shortfall.shift_mm, shortfall.turn_deg)

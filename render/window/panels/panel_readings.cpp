@@ -110,10 +110,11 @@ void Panels::Drawing::opening() {
        top + (theme.large->FontSize - theme.regular->FontSize) * 0.78f});
   text(theme.regular, palette().text_dim, "mm drop");
   pen.mark("opening-number", number);
-  tooltip(pen,
-          "How far the lower incisal point has dropped from rest, straight down. It goes back as "
-          "well, so between the incisal edges a ruler finds another length: the interincisal "
-          "distance below");
+  tooltip(
+      pen,
+      "Vertical displacement of the lower incisal point from rest. The point also moves back, so "
+      "the distance between the incisal edges is different: see the interincisal distance "
+      "below");
   if (held) {
     const float wide = pen.px(76), high = pen.px(26);
     ImGui::SetCursorPos({ImGui::GetWindowContentRegionMax().x - wide, top + pen.px(3)});
@@ -314,10 +315,9 @@ void Panels::Drawing::performance() {
     text_right(theme.small, palette().text_faint, words);
     pen.mark("quality", words);
     tooltip(pen,
-            limited
-                ? "The graphics driver offers too few samples per pixel for fully smooth edges"
-                : "On a slow machine the picture is drawn at a lower resolution while things move, "
-                  "and at full resolution at rest");
+            limited ? "The graphics driver offers too few samples per pixel for fully smooth edges"
+                    : "On a slow machine the picture is drawn at a lower resolution during motion, "
+                      "and at full resolution at rest");
   }
   if (!open) return;
   if (input.frame && view.simulates_tissue(input.scene) && !input.frame->tissue.nodes.empty())

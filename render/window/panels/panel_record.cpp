@@ -98,9 +98,9 @@ void Panels::Drawing::record_cameras() {
   pen.mark("record-cameras", shown);
   tooltip(
       pen,
-      "Where the motion is seen from. Several cameras record at once, a folder for each. Front, "
-      "Left, arches and the like look along the skull's own axes; only This view shows a skull "
-      "that was moved as it stands in the picture");
+      "Views of the motion. Several cameras record at once, each into its own folder. Front, Left, "
+      "the arches and so on are aligned with the skull's axes; only This view shows a skull that "
+      "was moved as in the picture");
   if (!fields.camera_from_file) return;
   text_field(pen, "record-camera-file", fields.camera_file, record_label("File"), "camera.json");
   tooltip(pen,
@@ -182,8 +182,8 @@ void Panels::Drawing::record_quality() {
   choice_row(
       pen, "record-finer", choice.supersampling,
       FourChoices{{{1, "1x"}, {2, "2x"}, {3, "3x"}, {4, "4x"}}}, record_label("Supersampling"),
-      "Supersampling: draws the picture 2 to 4 times as wide and high, then averages. Gives the "
-      "finest lines and edges, but takes longer. At 1x edges are smoothed as chosen below");
+      "Supersampling: draws the picture 2 to 4 times as wide and high, then averages: the finest "
+      "lines and edges, but slower. At 1x edges are smoothed as selected below");
   int edges = static_cast<int>(choice.edges);
   choice_row(
       pen, "record-edges", edges,
@@ -200,16 +200,16 @@ void Panels::Drawing::record_contents() {
              "Opening {opening} mm");
   tooltip(
       pen,
-      "Words under the picture. Filled in: {time} in s, {opening} in mm (how far the lower "
-      "incisal point has dropped), {interincisal} in mm (between the incisal edges), {rotation} "
-      "in \u00b0, {motion}, {frame}. A | begins a new line");
+      "Text under the picture. Placeholders: {time} in s, {opening} in mm (descent of the lower "
+      "incisal point), {interincisal} in mm (between the incisal edges), {rotation} in \u00b0, "
+      "{motion}, {frame}. A | begins a new line");
   const float whole = ImGui::GetContentRegionAvail().x;
   tick_box(pen, "record-transparent", "No background", choice.transparent);
   tooltip(pen,
           "PNG pictures with a transparent background, to lay over others; in a film it is black");
   ImGui::SameLine(std::floor(whole * 0.56f));
   tick_box(pen, "record-film", "Film (MP4)", choice.film);
-  tooltip(pen, "Beside the pictures; made by the program ffmpeg when the last picture is there");
+  tooltip(pen, "Beside the pictures; encoded by the program ffmpeg while they are drawn");
 }
 
 /// The next recording gets a new folder, unless the user names one or a question about it is open.
@@ -218,7 +218,7 @@ void Panels::Drawing::record_folder() {
   if (fields.running && !input.recording && !panels.question()) fields.folder.clear();
   fields.running = input.recording;
   if (fields.folder.empty()) fields.folder = next_recording_folder(input.picture_folder).string();
-  text_field(pen, "record-folder", fields.folder, record_label("Folder"), "where the pictures go");
+  text_field(pen, "record-folder", fields.folder, record_label("Folder"), "folder of the pictures");
   tooltip(pen, fields.folder.c_str());
 }
 
@@ -234,7 +234,7 @@ void Panels::Drawing::record_progress() {
   text(pen.theme.small, palette().text, fitted(pen.theme.small, input.recording_what, whole));
   if (word_button(pen, "record-cancel", "Stop recording", {whole, pen.px(32)}, false))
     panels.requests_.emplace_back(request::StopRecording{});
-  tooltip(pen, "The pictures made so far stay in the folder; the recording can be resumed");
+  tooltip(pen, "The finished pictures stay in the folder; the recording can be resumed");
 }
 
 void Panels::Drawing::record_button() {
@@ -268,17 +268,18 @@ void Panels::Drawing::record_button() {
 void Panels::Drawing::record_note() {
   if (input.unfinished.empty() || input.recording) {
     text(pen.theme.small, palette().text_dim,
-         "Pictures are drawn in full quality beside the window, which stays usable. They show what "
-         "the view shows now, bones moved by hand and its light or dark background (T) included.");
+         "Pictures are drawn in full quality in the background; the window stays usable. They show "
+         "the present view, including bones moved by hand and its light or dark background (T).");
     return;
   }
   text(pen.theme.small, palette().text, input.unfinished);
   if (word_button(pen, "record-resume", "Resume this recording",
                   {ImGui::GetContentRegionAvail().x, pen.px(28)}, false))
     panels.requests_.emplace_back(request::ResumeRecording{});
-  tooltip(pen,
-          "Draws the pictures that are missing as the recording was begun, whatever the view "
-          "shows now. It ends bit-identical to one that was never stopped");
+  tooltip(
+      pen,
+      "Draws the missing pictures with the settings of the recording, regardless of the present "
+      "view. The result is bit-identical to an uninterrupted one");
 }
 
 }  // namespace condyle

@@ -52,7 +52,7 @@ std::vector<TreeGroup> groups_of(const PanelInput& input, ViewState& view) {
   std::vector<TreeGroup> groups = {
       {"bones", "Bones", "Skull and jaws"},
       {"teeth", "Teeth", "Both arches"},
-      {"soft", "Face and mouth", "Skin, eyes, gums, tongue. How dense the skin is stands above"},
+      {"soft", "Face and mouth", "Skin, eyes, gums, tongue. The opacity of the skin is set above"},
       {"free", "Free parts", "Segments and transplants, which a hand can move (key M)"},
       {"muscles", "Muscles",
        "Their lines of action: dark red at rest, bright yellow when fully excited"},

@@ -185,7 +185,7 @@ TEST_F(Malformed, Glb) {
        {"version.glb",
         replaced(good, std::string("glTF\2", 5), std::string("glTF\1", 5)),
         {"version 1"}},
-       {"count.glb", changed("\"count\":36", "\"count\":99"), {"accessors 1", "promises 99"}},
+       {"count.glb", changed("\"count\":36", "\"count\":99"), {"accessors 1", "states 99"}},
        {"type.glb", changed("5125", "5199"), {"component type 5199"}},
        {"node.glb", test::glb(mesh_, "[{\"mesh\":7}]"), {"nodes 0", "7"}},
        {"scene.glb", test::glb(mesh_, "[{\"mesh\":0}]", "[5]"), {"scenes 0", "5"}},

@@ -517,7 +517,7 @@ TEST_P(Instrument, AStoppedRecordingIsResumedAndAQuestionAnsweredByButtonOrKey) 
   stage.recording.clear();
 
   const Question question = {
-      .title = "A recording is being made",
+      .title = "A recording is running",
       .words = stage.unfinished,
       .answers = {{"question:keep", "Keep recording"},
                   {"question:when-done", "Quit when done", request::Quit{true}},
