@@ -9,7 +9,7 @@
 
 namespace condyle::test {
 
-/// Gives each segment and transplant a body of its own, which hangs on the cranium or as told here
+/// Gives each segment and transplant its own body, a child of the cranium or of the body given here
 /// by name. The tree that the parts belong to.
 inline BodyTree bodies_for(std::vector<Part>& parts,
                            const std::map<std::string, BodyId>& parents = {}) {

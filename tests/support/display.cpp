@@ -35,7 +35,7 @@ TestDisplay::TestDisplay(int width, int height) {
   const std::string report_to = std::to_string(ends[1]);
   process_ = fork();
   if (process_ == 0) {
-    // The screen goes when the test goes, however it ends.
+    // The screen ends with the test, however that ends.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);
     fcntl(ends[1], F_SETFD, 0);  // this end stays open across exec

@@ -32,7 +32,7 @@ testing::AssertionResult failed(const Picture& a, const Picture& b, const char* 
 
 constexpr int max_alike = 12;  // levels of a channel
 
-/// Of the pixels of a region, told by the place of their first channel.
+/// Fraction of the pixels of a region, given by the index of their first channel.
 template <class Is>
 double fraction(const Picture& picture, const Region& region, const Is& is) {
   const int left = std::max(0, static_cast<int>(region.x)),

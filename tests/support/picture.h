@@ -38,7 +38,7 @@ struct Region {
   double x = 0, y = 0, width = 1e9, height = 1e9;
 };
 
-/// The measure of how far two pictures differ: the share of the pixels of which any channel differs
+/// Difference of two pictures: the fraction of the pixels of which any channel differs
 /// by more than 12 of 255 (what antialiasing and rounding never do). 1 for pictures of two sizes.
 double difference(const Picture& a, const Picture& b, const Region& region = {});
 
@@ -48,10 +48,10 @@ double colour_fraction(const Picture& picture, unsigned rgb, const Region& regio
 // Expectations by that measure: EXPECT_TRUE(alike(seen, expected, 0.003)). One that is not met
 // keeps both pictures in kept_pictures()/failed and names them.
 
-/// No more than this share of the pixels differs.
+/// At most this fraction of the pixels differs.
 testing::AssertionResult alike(const Picture& seen, const Picture& expected, double most,
                                const Region& region = {});
-/// More than this share of the pixels differs.
+/// More than this fraction of the pixels differs.
 testing::AssertionResult unlike(const Picture& seen, const Picture& before, double least,
                                 const Region& region = {});
 /// The same to the byte.

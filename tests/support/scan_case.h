@@ -48,7 +48,7 @@ inline std::optional<Case> scan_over_scaled_bones() {
       part.mesh = scan;
     else
       for (auto& p : part.mesh.vertices) p = scaled(p);
-  // Soft landmarks belong to the face that is gone.
+  // Soft landmarks belong to the removed face.
   for (auto it = patient.landmarks.points.begin(); it != patient.landmarks.points.end();) {
     const bool bony = it->first == "left_condyle" || it->first == "right_condyle" ||
                       it->first == "upper_incisal_point" || it->first == "lower_incisal_point";

@@ -12,7 +12,7 @@
 namespace condyle::test {
 
 /// Closed sphere of 20 * 4^level triangles with all vertices on it; `bumps` presses it in and out
-/// by that share of the radius.
+/// by that fraction of the radius.
 inline TriMesh sphere(int level, double radius, const Eigen::Vector3d& center = {0, 0, 0},
                       double bumps = 0) {
   const double g = (1 + std::sqrt(5.0)) / 2;

@@ -86,7 +86,7 @@ const Library* library_of(const std::string& header) {
 }
 
 /// The two modules in which simulation and drawing meet: a recording renders a simulated motion, a
-/// session shows a simulation in a front end. All other drawing sees frames alone.
+/// session shows a simulation in a front end. All other drawing reads frames alone.
 bool joins_sim_and_render(const std::string& folder) {
   return folder == "render/recording" || folder == "render/session";
 }

@@ -17,13 +17,13 @@ int lines(const std::string& text) {
 }
 
 void expect_refused(const std::vector<std::string>& arguments, int code,
-                    const std::vector<std::string>& told, const Limits& limits = {}) {
+                    const std::vector<std::string>& expected, const Limits& limits = {}) {
   const auto outcome = condyle(arguments, limits);
   std::string command;
   for (const auto& argument : arguments) command += argument + " ";
   EXPECT_EQ(outcome.code, code) << command << "\n" << outcome.err;
   EXPECT_EQ(lines(outcome.err), 1) << command << "\n" << outcome.err;
-  for (const auto& word : told)
+  for (const auto& word : expected)
     EXPECT_NE(outcome.err.find(word), std::string::npos)
         << command << "\nmisses " << word << " in\n"
         << outcome.err;
@@ -34,9 +34,9 @@ class BadMesh : public ::testing::Test {
  protected:
   BadMesh() { write_box_patient(folder.path()); }
   void refused(const std::string& name, const std::string& content,
-               const std::vector<std::string>& told) {
+               const std::vector<std::string>& expected) {
     write_text(folder.path() / name, content);
-    auto words = told;
+    auto words = expected;
     words.push_back(name);
     expect_refused({"import", "meshes", "--maxilla", folder / "maxilla.stl", "--mandible",
                     folder / name, "--out", folder / "case"},
@@ -183,16 +183,16 @@ TEST(BadCommand, RefusedWithTheValue) {
     expect_refused({"run", patient, "--motion", "opening", "--out", out, option, "nan"}, 2,
                    {option, "nan"});
   expect_refused({"check", patient, "--margin", "nan"}, 2, {"--margin", "nan"});
-  for (const auto& [rule, told] : std::map<std::string, std::string>{
+  for (const auto& [rule, expected] : std::map<std::string, std::string>{
            {"maxilla,mandible", "A,B,POLICY"},
            {"maxilla,mandible,maybe", "forbidden, allowed, guided, cut-face"},
            {"maxilla,mandible,guided,gap=nan", "nan"},
            {"maxilla,mandible,forbidden,margin=-1", "-1"},
            {"maxilla,mandible,forbidden,width=1", "width=1"},
            {"maxilla,mandibel,forbidden", "maxilla, mandible"}}) {
-    expect_refused({"check", patient, "--pair", rule}, 2, {"mandib", told});
+    expect_refused({"check", patient, "--pair", rule}, 2, {"mandib", expected});
     expect_refused({"run", patient, "--motion", "opening", "--out", out, "--pair", rule}, 2,
-                   {told});
+                   {expected});
   }
   for (const auto& [carrier, reported] : std::map<std::string, std::string>{
            {"transplant", "NAME=mandible"},

@@ -31,7 +31,7 @@ std::string bite(const Folder& folder, double height_mm) {
 
 }  // namespace
 
-TEST(Check, ExitCodeTellsAViolation) {
+TEST(Check, ExitCodeReportsAViolation) {
   const Folder folder;
   const std::string patient = box_case(folder), motion = folder / "bite.csv";
   write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n1,0,0,6,1,0,0,0\n");
@@ -78,7 +78,7 @@ TEST(Check, DrawsTheWorstFrameAndWithoutEglSaysThatItCannot) {
             std::string::npos);
 }
 
-TEST(Check, SeesTheEndOfAMotionShorterThanAStep) {
+TEST(Check, ChecksTheEndOfAMotionShorterThanAStep) {
   const Folder folder;
   const std::string patient = box_case(folder), motion = folder / "quick.csv";
   write_text(motion, pose_header + "0,0,0,0,1,0,0,0\n0.004,0,0,6,1,0,0,0\n");
@@ -101,7 +101,7 @@ TEST(Check, RulesOfPairsDecide) {
   EXPECT_EQ(code(0.5, "maxilla,*,forbidden"), 3);
 }
 
-TEST(Check, FramesAreThoseAskedForAndAJumpBetweenTwoIsSeen) {
+TEST(Check, FramesAreThoseRequestedAndAJumpBetweenTwoIsDetected) {
   const Folder folder;
   const std::string patient = box_case(folder);
   const auto frames = [&](const std::vector<std::string>& options) {
@@ -122,7 +122,7 @@ TEST(Check, FramesAreThoseAskedForAndAJumpBetweenTwoIsSeen) {
   EXPECT_NEAR(pair["first_contact"]["time_s"].get<double>(), 1.0 / 250, 0.03 / 250);
 }
 
-TEST(Check, ATransplantThatOverlapsItsBoneAtRestIsToldAndDrawn) {
+TEST(Check, ATransplantThatOverlapsItsBoneAtRestIsReportedAndDrawn) {
   const Folder folder;
   write_box_patient(folder.path());
   // A block that reaches 1 mm into the mandible's upper face.
@@ -141,13 +141,13 @@ TEST(Check, ATransplantThatOverlapsItsBoneAtRestIsToldAndDrawn) {
       {"check", patient, "--motion", bite(folder, -20), "--frames", "3", "--out", folder / "out"});
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   const auto report = nlohmann::json::parse(read_text(folder / "out/report.json"));
-  int told = 0;
+  int expected = 0;
   for (const auto& pair : report["pairs"]) {
     const bool own = pair["a"] == "mandible";
     EXPECT_EQ(pair["violation_at_rest"].get<bool>(), own);
     EXPECT_FALSE(pair["penetrates"].get<bool>());
     if (!own) continue;
-    ++told;
+    ++expected;
     EXPECT_EQ(pair["policy"], "cut-face");
     EXPECT_NEAR(pair["overlap_at_rest_mm"].get<double>(), 1, 1e-6);
     EXPECT_NEAR(pair["worst"]["penetration_volume_mm3"].get<double>(), 100, 1);
@@ -162,18 +162,18 @@ TEST(Check, ATransplantThatOverlapsItsBoneAtRestIsToldAndDrawn) {
       EXPECT_TRUE(fs::exists(folder.path() / "out" / pair["worst"]["picture"].get<std::string>()));
     }
   }
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(expected, 1);
 }
 
 TEST(Check, BadRulesAndNumbersAreRefusedBeforeAnythingIsWritten) {
   const Folder folder;
   const std::string patient = box_case(folder), out = folder / "out";
   const auto refused = [&](const std::string& option, const std::string& value,
-                           const std::vector<std::string>& told) {
+                           const std::vector<std::string>& expected) {
     const auto outcome = condyle({"check", patient, "--out", out, option, value});
     EXPECT_EQ(outcome.code, 2) << option << " " << value << "\n" << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    for (const auto& word : told)
+    for (const auto& word : expected)
       EXPECT_NE(outcome.err.find(word), std::string::npos) << word << "\n" << outcome.err;
     EXPECT_FALSE(fs::exists(out + "/report.json"));
     EXPECT_FALSE(fs::exists(out + "/.new.part"));

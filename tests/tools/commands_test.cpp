@@ -248,7 +248,7 @@ TEST(Record, KilledAtAnyMomentLeavesWholeFramesAndResumesToTheSameBits) {
   EXPECT_GT(interrupted, 0);
 }
 
-TEST(Record, InterruptedFromTheKeyboardItTellsHowToGoOn) {
+TEST(Record, InterruptedFromTheKeyboardItStatesHowToResume) {
   const Folder folder;
   const std::string patient = box_case(folder);
   const auto command = [&](bool resume) {
@@ -272,7 +272,7 @@ TEST(Record, InterruptedFromTheKeyboardItTellsHowToGoOn) {
   EXPECT_EQ(resumed.err.find("--resume"), std::string::npos) << resumed.err;
 }
 
-TEST(Info, TellsWhatAFileHolds) {
+TEST(Info, ListsTheContentsOfAFile) {
   const Folder folder;
   write_box_patient(folder.path());
   const auto outcome = condyle({"info", folder / "mandible.stl", "--json"});

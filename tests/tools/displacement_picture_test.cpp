@@ -9,7 +9,7 @@
 namespace condyle::test {
 namespace {
 
-TEST(Record, ColoursTheSkinByItsWayFromRest) {
+TEST(Record, ColoursTheSkinByItsDisplacementFromRest) {
   const Folder folder;
   const auto outcome =
       condyle({"record", "--motion", "open 30 over 0.25", "--frames", "2", "--out", folder / "out",
@@ -18,7 +18,7 @@ TEST(Record, ColoursTheSkinByItsWayFromRest) {
   const Picture rest(folder / "out/frames/000000.png"), open(folder / "out/frames/000001.png");
   ASSERT_FALSE(rest.empty());
   ASSERT_FALSE(open.empty());
-  open.save(kept_pictures() / "ColoursTheSkinByItsWayFromRest.png");
+  open.save(kept_pictures() / "ColoursTheSkinByItsDisplacementFromRest.png");
   // Nothing has moved: all is of the colour for 0, dark violet. Opened, the chin is green, the
   // forehead is as it was.
   const auto violet = [](const std::uint8_t* p) { return p[2] > p[1] + 20 && p[1] < 60; };

@@ -64,7 +64,7 @@ TEST(Occlude, SameBytesForOneAndTwoThreads) {
   EXPECT_TRUE(contains(one, "\"stable\": true"));
 }
 
-TEST(Occlude, NoStableBiteIsAFailureThatTellsWhatWasReached) {
+TEST(Occlude, NoStableBiteIsAFailureThatReportsWhatWasReached) {
   const Folder folder;
   write_box_patient(folder.path());
   // The maxilla bears the right side's landmark only: everything lies left of the condyles' middle.

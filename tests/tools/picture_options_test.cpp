@@ -59,7 +59,7 @@ TEST_F(PictureOptions, EachOfThemChangesThePicture) {
     for (const auto& word : more) words += word + " ";
     EXPECT_TRUE(unlike(opened("other" + std::to_string(number++), more), plain, 1e-4)) << words;
   }
-  // Other ways to smooth edges: nearly the same picture.
+  // Other antialiasing: nearly the same picture.
   for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
            {"--edges", "fxaa"}, {"--edges", "none", "--supersample", "2"}}) {
     const Picture smooth = opened("smooth" + std::to_string(number++), more);
@@ -132,7 +132,7 @@ TEST_F(PictureOptions, WhatTheDriverCannotDrawIsSaidInASentence) {
 }
 
 /// `condyle` with one of Mesa's software drivers, whatever card there is: softpipe, or zink, which
-/// goes through Vulkan as a card's would.
+/// uses Vulkan as that of a card would.
 Outcome condyle_with(const std::string& driver, const std::vector<std::string>& arguments) {
   const std::map<std::string, std::string> forced = {
       {"__EGL_VENDOR_LIBRARY_FILENAMES", "/usr/share/glvnd/egl_vendor.d/50_mesa.json"},
@@ -149,7 +149,8 @@ nlohmann::json drawn_with(const std::string& folder) {
 }
 
 TEST(Drivers, ThreeDrawThePatientAlike) {
-  // The usual one (a card's, if there is one) and two others: bones, teeth, glassy skin, shadows.
+  // The by_default one (a card's, if there is one) and two others: bones, teeth, glassy skin,
+  // shadows.
   const Folder folder;
   const auto record = [&](const std::string& out) {
     return std::vector<std::string>{"record",
@@ -167,23 +168,23 @@ TEST(Drivers, ThreeDrawThePatientAlike) {
                                     "--out",
                                     folder / out};
   };
-  const auto usual = condyle(record("usual"));
-  ASSERT_EQ(usual.code, 0) << usual.err;
+  const auto by_default = condyle(record("by_default"));
+  ASSERT_EQ(by_default.code, 0) << by_default.err;
   for (const std::string driver : {"softpipe", "zink"}) {
     const auto other = condyle_with(driver, record(driver));
     ASSERT_EQ(other.code, 0) << other.err;
     EXPECT_NE(drawn_with(folder / driver)["driver"].dump().find(driver), std::string::npos);
-    EXPECT_EQ(drawn_with(folder / "usual")["driver"].dump().find(driver), std::string::npos);
+    EXPECT_EQ(drawn_with(folder / "by_default")["driver"].dump().find(driver), std::string::npos);
     for (const std::string frame : {"/frames/000000.png", "/frames/000001.png"})
-      EXPECT_TRUE(
-          alike(Picture(folder / ("usual" + frame)), Picture(folder / (driver + frame)), 0.0005))
+      EXPECT_TRUE(alike(Picture(folder / ("by_default" + frame)),
+                        Picture(folder / (driver + frame)), 0.0005))
           << driver;
   }
-  EXPECT_TRUE(unlike(Picture(folder / "usual/frames/000000.png"),
-                     Picture(folder / "usual/frames/000001.png"), 0.01));
+  EXPECT_TRUE(unlike(Picture(folder / "by_default/frames/000000.png"),
+                     Picture(folder / "by_default/frames/000001.png"), 0.01));
 }
 
-TEST_F(PictureOptions, ResumedWithAnotherDriverTheReportTellsBoth) {
+TEST_F(PictureOptions, ResumedWithAnotherDriverTheReportNamesBoth) {
   ASSERT_EQ(condyle_with("softpipe", command("resumed", {"--edges", "fxaa"})).code, 0);
   const std::string before = drawn_with(folder_ / "resumed")["driver"];
   ASSERT_NE(before.find("softpipe"), std::string::npos);
@@ -196,7 +197,7 @@ TEST_F(PictureOptions, ResumedWithAnotherDriverTheReportTellsBoth) {
   EXPECT_TRUE(both.starts_with(before + "; ")) << both;
 }
 
-TEST_F(PictureOptions, SamplesThatTheDriverDoesNotGiveAreTold) {
+TEST_F(PictureOptions, SamplesThatTheDriverLacksAreReported) {
   const auto sampled = condyle_with("softpipe", command("sampled", {}));
   ASSERT_EQ(sampled.code, 0) << sampled.err;
   EXPECT_NE(sampled.err.find("requested 4 samples per pixel, the graphics driver (softpipe"),
@@ -205,9 +206,9 @@ TEST_F(PictureOptions, SamplesThatTheDriverDoesNotGiveAreTold) {
   EXPECT_EQ(drawn_with(folder_ / "sampled")["samples"], 1);
   const auto smoothed = condyle_with("softpipe", command("smoothed", {"--edges", "fxaa"}));
   EXPECT_EQ(smoothed.err.find("samples per pixel"), std::string::npos) << smoothed.err;
-  const auto usual = condyle(command("usual", {}));
-  EXPECT_EQ(usual.err.find("samples per pixel"), std::string::npos) << usual.err;
-  EXPECT_EQ(drawn_with(folder_ / "usual")["samples"], 4);
+  const auto by_default = condyle(command("by_default", {}));
+  EXPECT_EQ(by_default.err.find("samples per pixel"), std::string::npos) << by_default.err;
+  EXPECT_EQ(drawn_with(folder_ / "by_default")["samples"], 4);
   // Of what check draws, too.
   const std::vector<std::string> check = {
       "check", box_case(folder_), "--motion", "rest", "--margin", "5", "--out", folder_ / "check"};

@@ -1,4 +1,4 @@
-// What a run tells of glued and of sliding tissue.
+// Results of a run with glued and with sliding tissue.
 #include <gtest/gtest.h>
 
 #include <cmath>

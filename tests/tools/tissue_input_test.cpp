@@ -1,5 +1,5 @@
 // Soft-tissue settings that cannot be: one clear line with the option or file, the item and the
-// value; exit code 2. Those that can be come back from a case as they went in.
+// value; exit code 2. Valid ones round-trip through a case.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,11 +11,11 @@ namespace condyle::test {
 namespace {
 
 void expect_refused(const std::vector<std::string>& arguments,
-                    const std::vector<std::string>& told) {
+                    const std::vector<std::string>& expected) {
   const auto outcome = condyle(arguments);
   EXPECT_EQ(outcome.code, 2) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  for (const auto& word : told)
+  for (const auto& word : expected)
     EXPECT_NE(outcome.err.find(word), std::string::npos)
         << "misses " << word << " in " << outcome.err;
 }
@@ -24,9 +24,9 @@ TEST(TissueInput, OptionsOutOfRangeAreNamed) {
   const Folder folder;
   const std::string patient = box_case(folder);
   const auto refused = [&](const std::string& option, const std::string& value,
-                           const std::vector<std::string>& told) {
+                           const std::vector<std::string>& expected) {
     expect_refused({"run", patient, "--motion", "opening", "--out", folder / "out", option, value},
-                   told);
+                   expected);
   };
   refused("--turgor", "1.5", {"turgor", "1.5"});
   refused("--turgor", "nan", {"turgor", "nan"});
@@ -51,10 +51,10 @@ TEST(TissueInput, CasesNameTheFileTheItemAndTheValue) {
   const auto with = [&](const std::string& tissue) {
     write_text(file, "{\n \"tissue\": " + tissue + "," + json.substr(json.find('{') + 1));
   };
-  const auto refused = [&](const std::string& tissue, std::vector<std::string> told) {
+  const auto refused = [&](const std::string& tissue, std::vector<std::string> expected) {
     with(tissue);
-    told.push_back("case.json");
-    expect_refused({"info", good}, told);
+    expected.push_back("case.json");
+    expect_refused({"info", good}, expected);
   };
   refused("{\"turgor\": 7}", {"tissue.turgor", "7"});
   refused("{\"turgor\": 0}", {"turgor", "above 0"});

@@ -1,4 +1,4 @@
-// What report.json tells of the soft tissue of a motion, against the trace of the same motion.
+// The soft tissue of a motion in report.json, against the trace of the same motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace condyle::test {
 namespace {
 
 struct TissueOf {
-  nlohmann::json told;                                // of the report
+  nlohmann::json report;                              // of the report
   std::map<std::string, std::vector<double>> traced;  // columns
 };
 
@@ -24,7 +24,7 @@ TissueOf opened(const std::vector<std::string>& more) {
   const auto outcome = condyle(arguments);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   TissueOf tissue;
-  tissue.told = nlohmann::json::parse(read_text(folder / "out/report.json"))["tissue"];
+  tissue.report = nlohmann::json::parse(read_text(folder / "out/report.json"))["tissue"];
   std::istringstream trace(read_text(folder / "out/trace.csv"));
   const auto cells = [&] {
     std::vector<std::string> list;
@@ -40,23 +40,23 @@ TissueOf opened(const std::vector<std::string>& more) {
   return tissue;
 }
 
-TEST(TissueReport, TellsHowStillTheTissueStandsAndHowFarItSlips) {
+TEST(TissueReport, ReportsTheTissuesForcesAtRestAndItsSlip) {
   const TissueOf sliding = opened({}), glued = opened({"--glued"});
   for (const TissueOf* one : {&sliding, &glued}) {
     // It stands still at rest, to rounding: less than the weight of a grain of dust.
-    const double force_N = one->told["at_rest"]["largest_force_N"];
+    const double force_N = one->report["at_rest"]["largest_force_N"];
     EXPECT_GT(force_N, 0);
     EXPECT_LT(force_N, 1e-9);
     const auto& slips = one->traced.at("tissue_slip_mm");
     ASSERT_EQ(slips.size(), 4u);
     EXPECT_EQ(slips.front(), 0);
-    EXPECT_DOUBLE_EQ(one->told["max_slip_mm"], *std::max_element(slips.begin(), slips.end()));
+    EXPECT_DOUBLE_EQ(one->report["max_slip_mm"], *std::max_element(slips.begin(), slips.end()));
   }
-  // No farther than the bone goes below it.
-  const double slip_mm = sliding.told["max_slip_mm"];
+  // No farther than the bone moves below it.
+  const double slip_mm = sliding.report["max_slip_mm"];
   EXPECT_GT(slip_mm, 3);
   EXPECT_LT(slip_mm, 20);
-  EXPECT_LT(glued.told["max_slip_mm"], 0.6 * slip_mm);
+  EXPECT_LT(glued.report["max_slip_mm"], 0.6 * slip_mm);
 }
 
 }  // namespace

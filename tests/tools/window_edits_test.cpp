@@ -105,7 +105,7 @@ TEST_F(WindowSession, EverySettingOfThePictureIsUndoneAndRedone) {
   click_it("obey-contact");
   set("key K", [&] { EXPECT_TRUE(press("k")); });
 
-  // The mouth opened by hand and let go, by its button or by the clock.
+  // The mouth opened by hand and released, by its button or by the clock.
   slide("opening", 0.7, 0.4);
   ASSERT_TRUE(wait_until([](const Json& s) { return s["edits"]["opening_mm"].is_number(); }));
   const double held_mm = state()["edits"]["opening_mm"];
@@ -178,7 +178,7 @@ TEST_F(WindowSession, TheMouthIsOpenedByHandThoughTheMotionRests) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
-TEST_F(WindowSession, AnOpeningThatCannotBeIsToldBesideMusclesAndTheSliderOpensAsThePatientDoes) {
+TEST_F(WindowSession, AnImpossibleOpeningIsReportedBesideMusclesAndTheSliderOpensAsThePatientDoes) {
   start({"--motion", "by-muscles", "--opening", "75"});
   ASSERT_TRUE(wait_until(idle, 120));
   const std::string notes = state()["notes"].dump();
@@ -317,18 +317,18 @@ TEST_F(WindowSession, APatientSavedWhileAnotherIsOpenedKeepsItsFolderToItself) {
   EXPECT_EQ(now["case"]["folder"], fs::weakly_canonical(boxes).string());
   ASSERT_EQ(now["recent"].size(), 2u) << now["recent"].dump();
   EXPECT_EQ(now["recent"][0], fs::weakly_canonical(boxes).string());
-  // What would be saved now goes where this patient is from, not where the other one went.
+  // Saving now writes to this patient's folder, not to the other one's.
   EXPECT_TRUE(press("b"));
   click("case-save");
   ASSERT_TRUE(wait_until([&](const Json& s) { return idle(s); }));
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  const auto told = condyle({"info", folder_ / "first", "--json"});
-  EXPECT_NE(told.out.find("face"), std::string::npos) << told.out;
+  const auto info = condyle({"info", folder_ / "first", "--json"});
+  EXPECT_NE(info.out.find("face"), std::string::npos) << info.out;
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }
 
-TEST_F(WindowSession, ATextureThatIsTooLargeIsToldAndTheWindowStays) {
+TEST_F(WindowSession, ATextureThatIsTooLargeIsReportedAndTheWindowStays) {
   const std::string boxes = box_case(folder_);
   // The head of a PNG says 24,576 x 2 pixels.
   std::string picture("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x60\0\0\0\0\x02\x08\x02\0\0\0", 29);

@@ -1,4 +1,4 @@
-// Files that come into the window and go out of it, and bones that are let go.
+// Files that the window reads and writes, and bones that are released.
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
@@ -88,7 +88,7 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
            std::abs(double(s["landmark_mm"]["pogonion"][0]) - double(placed[0])) < 1e-3;
   }));
 
-  // One bone alone: it can be looked at and moved. A face without any bone is refused.
+  // One bone alone: it can be viewed and moved. A face without any bone is refused.
   EXPECT_TRUE(drop_files("Condyle", {folder_ / "mandible.stl"}));
   click("import-go");
   ASSERT_TRUE(
@@ -145,7 +145,7 @@ TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
   start({"--motion", "rest"});
   ASSERT_TRUE(wait_until(idle, 120));
   EXPECT_TRUE(press("ctrl+o"));
-  write_into("open-path", folder_.path());  // no patient's folder: it is looked into
+  write_into("open-path", folder_.path());  // no patient's folder: its files are listed
   ASSERT_TRUE(wait_for_item("file:mandible.stl"));
   const auto click_with = [&](const std::string& key, const std::string& item) {
     EXPECT_TRUE(xdotool({"keydown", key}));
@@ -215,7 +215,7 @@ TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
   see("two-mandibles");
   click("import-close");
   ASSERT_TRUE(wait_for_item("import", false));
-  // The same bone once more, as its name tells, is left out unless the person says otherwise.
+  // A second file of the same bone, by its name, is omitted unless the user chooses otherwise.
   for (const char* copy : {"mandible_8k.stl", "Mandible_with_teeth_wrap.stl"})
     fs::copy_file(folder_ / "mandible.stl", fs::path(folder_ / "again") / copy);
   EXPECT_TRUE(drop_files(
@@ -334,7 +334,7 @@ TEST_F(WindowSession, ARecordingFromThePanelHasTheBitsOfTheCommandWithTheSameCho
   EXPECT_EQ(wait_for_end(), 0);
 }
 
-TEST_F(WindowSession, ATransplantIsMovedLetGoAndTheDiskIsFull) {
+TEST_F(WindowSession, ATransplantIsMovedReleasedAndTheDiskIsFull) {
   write_box_patient(folder_.path());
   std::string strut;
   for (int i = 0; i < 8; ++i)
@@ -400,7 +400,7 @@ TEST_F(WindowSession, ATransplantIsMovedLetGoAndTheDiskIsFull) {
   EXPECT_TRUE(unlike(Picture(folder_ / "lifted/frames/000000.png"),
                      Picture(folder_ / "reset-position/frames/000000.png"), 2e-4));
 
-  // The disk is full in the middle of a recording: a sentence, and the window goes on.
+  // The disk is full in the middle of a recording: a sentence, and the window continues.
   if (!disk.mounted()) {
     const rlimit limit{400000, 400000};
     ASSERT_EQ(prlimit(program(), RLIMIT_FSIZE, &limit, nullptr), 0);

@@ -17,7 +17,7 @@ std::string obj_line(const char* kind, const Three& v) {
   return line.str();
 }
 
-TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
+TEST_F(WindowSession, AReleasedJawFallsBackToWhereItsMusclesHoldIt) {
   start({"--motion", "open 20 over 0.3; close"});
   ASSERT_TRUE(wait_until(idle, 120));
   click("skin:off");
@@ -31,7 +31,7 @@ TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   click("release-body");
   EXPECT_TRUE(wait_until([&](const Json& s) {
     return opening_mm(s) < held_mm - 4 && opening_mm(s) > 3;
-  })) << "it is seen on its way";
+  })) << "its motion is shown";
   EXPECT_TRUE(press("k"));  // an edit meanwhile
   // The rest position: 2.5 mm of freeway space, in the middle.
   const auto hangs = [](const Json& s) {
@@ -49,7 +49,7 @@ TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   EXPECT_TRUE(press("ctrl+y"));
   EXPECT_TRUE(wait_until(hangs)) << state()["frame"].dump();
 
-  // A hand that takes it on its way has it from there on.
+  // A hand that grips it in motion holds it from there on.
   EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(wait_until([&](const Json& s) { return std::abs(opening_mm(s) - held_mm) < 1e-6; }));
   click("release-body");
@@ -91,14 +91,14 @@ TEST_F(WindowSession, TheJawThatIsLetGoFallsBackToWhereItsMusclesHoldIt) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
-TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
+TEST_F(WindowSession, AnEditDuringAReleaseTakesPrecedenceAndIsReported) {
   start({"--motion", "open 20 over 0.3; close"});
   ASSERT_TRUE(wait_until(idle, 120));
   EXPECT_TRUE(press("m"));
   write_into("shift:S", "-30");
   ASSERT_TRUE(wait_until([](const Json& s) { return opening_mm(s) > 29.9; }));
   const auto computes = [](const Json& s) { return s["busy_with"] == "Releasing"; };
-  const auto told = [](const Json& s) {
+  const auto reported = [](const Json& s) {
     return s["busy_with"] == "" &&
            s.value("said", "").find("it was moved before it had come to rest") != std::string::npos;
   };
@@ -109,7 +109,7 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   click("release-body");
   ASSERT_TRUE(wait_until(computes));
   write_into("shift:S", "-12");
-  EXPECT_TRUE(wait_until(told)) << state().value("said", "nothing was said");
+  EXPECT_TRUE(wait_until(reported)) << state().value("said", "nothing was said");
   std::this_thread::sleep_for(std::chrono::seconds(3));
   EXPECT_NEAR(opening_mm(state()), 12, 0.1) << "where the number has it";
   see("entered-meanwhile");
@@ -161,9 +161,9 @@ TEST_F(WindowSession, AnEditWhileALetGoIsComputedWinsAndIsTold) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
-TEST_F(WindowSession, WhatMovesAPatientMeanwhileEndsTheLetGoOfAPartAndIsTold) {
+TEST_F(WindowSession, MovingThePatientEndsTheReleaseOfAPartAndIsReported) {
   write_box_patient(folder_.path());
-  // So fine that it takes seconds to be let go.
+  // So fine that a release takes seconds.
   const TriMesh ball = sphere(6, 14, {0, -60, 16});
   std::string obj;
   for (const auto& v : ball.vertices) obj += obj_line("v", v);
@@ -230,13 +230,13 @@ TEST_F(WindowSession, WhatMovesAPatientMeanwhileEndsTheLetGoOfAPartAndIsTold) {
     return s.value("trouble", "").find("left cheek ball: nothing lies within 15 mm") !=
            std::string::npos;
   })) << state().value("trouble", "nothing was said");
-  see("told-by-its-name");
+  see("reported-by-its-name");
   EXPECT_TRUE(press("Return"));
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }
 
-TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsLetGo) {
+TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsReleased) {
   start({"--motion", "open 20 over 0.3; hold 0.2"});
   ASSERT_TRUE(wait_until(idle, 120));
   click("skin:off");

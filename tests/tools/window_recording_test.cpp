@@ -1,4 +1,4 @@
-// A recording that is stopped, quit or asked for once more: nothing is lost, and it goes on to the
+// A recording that is stopped, quit or requested again: nothing is lost, and it is resumed to the
 // same bits.
 #include <map>
 
@@ -18,7 +18,7 @@ Files files_of(const fs::path& folder) {
   return files;
 }
 
-TEST_F(WindowSession, ARecordingThatIsStoppedOrQuitGoesOnToTheSameBits) {
+TEST_F(WindowSession, AStoppedOrQuitRecordingIsResumedBitIdentically) {
   const std::vector<std::string> command = {box_case(folder_), "--motion",
                                             "open 8 over 1; close over 1"};
   const auto ready = [&] {
@@ -79,7 +79,7 @@ TEST_F(WindowSession, ARecordingThatIsStoppedOrQuitGoesOnToTheSameBits) {
   EXPECT_TRUE(press("Escape"));
   ASSERT_TRUE(not_asked());
   EXPECT_EQ(files_of(stopped), parts);
-  // It goes on as it was begun.
+  // It is resumed with its own settings.
   click("record-resume");
   ASSERT_TRUE(said("Recorded " + stopped)) << state()["said"];
   EXPECT_EQ(files_of(stopped), expected);
@@ -95,7 +95,7 @@ TEST_F(WindowSession, ARecordingThatIsStoppedOrQuitGoesOnToTheSameBits) {
   ASSERT_FALSE(fs::exists(left + "/film.mp4"));
   ready();
   record(left);
-  ASSERT_TRUE(asked("it differs in: camera")) << "the next run begins with the usual view";
+  ASSERT_TRUE(asked("it differs in: camera")) << "the next run begins with the default view";
   EXPECT_TRUE(press("Return"));
   ASSERT_TRUE(not_asked());
   EXPECT_TRUE(press("l"));

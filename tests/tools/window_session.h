@@ -127,7 +127,7 @@ class WindowSession : public testing::Test {
     return {view[0], view[1], view[2], view[3]};
   }
   /// Keeps the picture of a step (SESSION-NUMBER-STEP.png), also of one that fails. gives: the
-  /// share of the 3-D view that differs from the step before; 1 for the first.
+  /// fraction of the 3-D view that differs from the step before; 1 for the first.
   double see(const std::string& step) { return keep(step, settled_picture()); }
   /// The same of what moves.
   double see_now(const std::string& step) {

@@ -128,7 +128,7 @@ TEST_F(WindowSession, ATooltipIsSeenThoughNothingElseMoves) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
-TEST_F(WindowSession, TroubleIsToldAsASentenceAndTheWindowStays) {
+TEST_F(WindowSession, AFailureIsReportedAsASentenceAndTheWindowStays) {
   const std::string patient = box_case(folder_);
   write_text(folder_ / "bad.csv", "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n0,nothing,0,0,1,0,0,0\n");
   start({patient, "--motion", "rest"});
@@ -156,7 +156,7 @@ TEST_F(WindowSession, TroubleIsToldAsASentenceAndTheWindowStays) {
   click("record");
   ASSERT_TRUE(wait_for_item("error"));
   click("close-error");
-  // Loading, simulating and failing went on beside: the window never stood still.
+  // Loading, simulation and failures were in the background: the window never froze.
   EXPECT_LT(double(state()["longest_away_ms"]), 800);
   // Resized to almost nothing.
   EXPECT_TRUE(xdotool({"search", "--name", "Condyle", "windowsize", "--sync", "800", "500"}));
@@ -192,7 +192,7 @@ TEST_F(WindowSession, ThemeScaleSizesAndTabsAreKeptBetweenRunsAndTheCommandLineW
   EXPECT_LT(corner_of_view(), 80);
   EXPECT_FALSE(fs::exists(kept)) << "nothing was changed";
   EXPECT_TRUE(press("t"));
-  EXPECT_GT(corner_of_view(), 170) << "the view goes with its panels";
+  EXPECT_GT(corner_of_view(), 170) << "the view changes with its panels";
   const auto wide = [](const Json& s, const char* panel) { return double(s["items"][panel][2]); };
   const auto edge = rect("edge:left");
   drag(edge[0] + 2, edge[1] + 90, edge[0] + 62, edge[1] + 90);
@@ -261,7 +261,7 @@ TEST_F(WindowSession, ThemeScaleSizesAndTabsAreKeptBetweenRunsAndTheCommandLineW
   quit();
 }
 
-TEST(OldOpenGl, IsToldWithWhatToDoInstead) {
+TEST(OldOpenGl, IsReportedWithARemedy) {
   ASSERT_TRUE(has_program("Xvfb")) << "install xvfb";
   const TestDisplay display;
   ASSERT_TRUE(display.running());
@@ -273,7 +273,7 @@ TEST(OldOpenGl, IsToldWithWhatToDoInstead) {
   EXPECT_NE(outcome.err.find("condyle record"), std::string::npos) << outcome.err;
 }
 
-TEST(NoDisplay, IsToldWithWhatToDoInstead) {
+TEST(NoDisplay, IsReportedWithARemedy) {
   unsetenv("DISPLAY");
   unsetenv("WAYLAND_DISPLAY");
   const Outcome outcome = condyle({"view"});

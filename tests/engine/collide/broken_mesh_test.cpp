@@ -160,7 +160,7 @@ TEST(BrokenMesh, UnusableSurfacesAreRefusedByName) {
   refused(mesh, "triangle 4");
 }
 
-TEST(BrokenMesh, BroadphaseSeesTheTrianglesNotTheUnusedVertices) {
+TEST(BrokenMesh, BroadphaseUsesTheTrianglesNotTheUnusedVertices) {
   const CollisionMesh a(with_unused_vertices(test::sphere(2, 10))), b(test::sphere(2, 10));
   const std::vector<const CollisionMesh*> bodies = {&a, &b};
   const std::vector<Pose> poses = {{}, {Eigen::Quaterniond::Identity(), {300, 0, 0}}};

@@ -41,23 +41,23 @@ TEST(ClearOnPath, ABodyReportedClearKeptItsDistanceOnTheWholePath) {
     const Eigen::AngleAxisd turn(0.3 * any(random), direction().normalized());
     const Pose to{from.R * turn, from.t + 4 * direction()};
     const Vector3d pivot = 20 * direction();
-    const double kept = trial % 3;
+    const double min_distance = trial % 3;
     double least = distance(stays, {}, moves, to).distance_mm;
     const double at_end = least;
     if (at_end == 0) continue;
-    const BodyPath way = distance_between(from, to, pivot);
-    const bool told = clear_on_path(stays, {}, moves, to, way, kept);
+    const BodyPath path = distance_between(from, to, pivot);
+    const bool reported = clear_on_path(stays, {}, moves, to, path, min_distance);
     for (int k = 0; k < 25; ++k)
       least = std::min(
           least, distance(stays, {}, moves, interpolate(from, to, k / 25.0, pivot)).distance_mm);
-    if (told) {
-      EXPECT_GE(least, kept) << trial;
+    if (reported) {
+      EXPECT_GE(least, min_distance) << trial;
     }
-    ++(told ? clear : met);
+    ++(reported ? clear : met);
     double longest = 0;
     for (const Vector3d& p : test::box({-30, -4, -4}, {30, 4, 4}).vertices)
-      longest = std::max(longest, way.length(p));
-    clear_by_parts += told && at_end < longest + kept;
+      longest = std::max(longest, path.length(p));
+    clear_by_parts += reported && at_end < longest + min_distance;
   }
   EXPECT_GT(clear, 100);
   EXPECT_GT(met, 50);
@@ -71,11 +71,11 @@ TEST(ClearOnPath, ABodyTurningOnTheSpotMayBeNearWhileItsFarEndSwings) {
   const Pose to;
   const Pose from{Eigen::Quaterniond(Eigen::AngleAxisd(6 * degree, Vector3d::UnitY())),
                   Vector3d::Zero()};
-  const BodyPath way = distance_between(from, to, {0, 0, 0});
-  EXPECT_GT(way.length({100, 0, 0}), 10);
-  EXPECT_TRUE(clear_on_path(wall, {}, lever, to, way, 0));
-  EXPECT_TRUE(clear_on_path(wall, {}, lever, to, way, 0.5));
-  EXPECT_FALSE(clear_on_path(wall, {}, lever, to, way, 1.001));
+  const BodyPath path = distance_between(from, to, {0, 0, 0});
+  EXPECT_GT(path.length({100, 0, 0}), 10);
+  EXPECT_TRUE(clear_on_path(wall, {}, lever, to, path, 0));
+  EXPECT_TRUE(clear_on_path(wall, {}, lever, to, path, 0.5));
+  EXPECT_FALSE(clear_on_path(wall, {}, lever, to, path, 1.001));
   // The same with a distant pivot, as a jaw's condyles: rotation and translation cancel there.
   const Vector3d middle(60, 0, 0);
   const Pose half{Eigen::Quaterniond(Eigen::AngleAxisd(3 * degree, Vector3d::UnitY())),
@@ -84,7 +84,7 @@ TEST(ClearOnPath, ABodyTurningOnTheSpotMayBeNearWhileItsFarEndSwings) {
   // A wall beside the long end was passed through.
   const CollisionMesh beside(test::box({80, -50, 4}, {90, 50, 5}));
   EXPECT_GT(distance(beside, {}, lever, to).distance_mm, 1.9);
-  EXPECT_FALSE(clear_on_path(beside, {}, lever, to, way, 0));
+  EXPECT_FALSE(clear_on_path(beside, {}, lever, to, path, 0));
 }
 
 TEST(ClearOnPath, AnyStartGivesTheSameAnswer) {
@@ -94,10 +94,10 @@ TEST(ClearOnPath, AnyStartGivesTheSameAnswer) {
   int clear = 0;
   for (int trial = 0; trial < 100; ++trial) {
     const Pose to{Eigen::Quaterniond::Identity(), {30.0 + 0.08 * trial, 0, 0}};
-    const BodyPath way{.shift = {2, 0, 0}, .turn = {0, 0, 0.05}};
-    const bool cold = clear_on_path(stays, {}, moves, to, way, 0);
+    const BodyPath path{.shift = {2, 0, 0}, .turn = {0, 0, 0.05}};
+    const bool cold = clear_on_path(stays, {}, moves, to, path, 0);
     const TrianglePair near = distance(stays, {}, moves, to).triangles;
-    EXPECT_EQ(clear_on_path(stays, {}, moves, to, way, 0, near), cold);
+    EXPECT_EQ(clear_on_path(stays, {}, moves, to, path, 0, near), cold);
     clear += cold;
   }
   EXPECT_GT(clear, 10);

@@ -45,8 +45,8 @@ TEST(Depenetration, ABallInABallLeavesThroughTheNearestSide) {
   for (const double off : {1.0, 6.0, 11.0, 16.0}) {  // wholly inside, and crossing
     const Pose X_WA = test::any_pose(random, 40);
     Pose X_WB = test::any_pose(random, 1);
-    const Vector3d way = X_WB.t.normalized();
-    X_WB.t = X_WA.t + off * way;
+    const Vector3d direction = X_WB.t.normalized();
+    X_WB.t = X_WA.t + off * direction;
     const double expected = R + r - off;
     const double length = expect_parts(a, X_WA, b, X_WB);
     EXPECT_LE(length, 1.01 * expected + 0.02);
@@ -60,9 +60,9 @@ TEST(Depenetration, ABoxInABoxTakesTheShortestOfSixExits) {
   const Body a(test::box({-10, -8, -6}, {10, 8, 6})), b(test::box({-2, -2, -2}, {2, 2, 2}));
   for (const Vector3d& place : {Vector3d(8, 3, 1), Vector3d(1, -5, 0), Vector3d(0, 1, 2.5)}) {
     const Pose X_WA = test::any_pose(random, 40);
-    const Vector3d ways = Vector3d(12, 10, 8) - place.cwiseAbs();
+    const Vector3d exits = Vector3d(12, 10, 8) - place.cwiseAbs();
     const double length = expect_parts(a, X_WA, b, X_WA * Pose{Quaterniond::Identity(), place});
-    EXPECT_NEAR(length, ways.minCoeff(), 0.02);
+    EXPECT_NEAR(length, exits.minCoeff(), 0.02);
   }
 }
 

@@ -230,16 +230,16 @@ TEST_F(FieldCache, RoundTripsBitIdenticallyAndRebuildsDamagedFiles) {
 TEST_F(FieldCache, CancelledWorkStopsAtItsNextReport) {
   struct GivenUp {};
   const TriMesh mesh = test::sphere(4, 12);
-  std::vector<double> told;
-  const Progress listen = [&](std::string_view, double fraction) { told.push_back(fraction); };
+  std::vector<double> reported;
+  const Progress listen = [&](std::string_view, double fraction) { reported.push_back(fraction); };
   EXPECT_EQ(cached_field(folder_, mesh, {}, 2, listen).hash(), DistanceField(mesh, {}).hash());
-  ASSERT_GT(told.size(), 8u);
-  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  ASSERT_GT(reported.size(), 8u);
+  EXPECT_TRUE(std::is_sorted(reported.begin(), reported.end()));
   fs::remove_all(folder_);
   std::size_t calls = 0;
   EXPECT_THROW(cached_field(folder_, mesh, {}, 2,
                             [&](std::string_view, double) {
-                              if (++calls == told.size()) throw GivenUp{};
+                              if (++calls == reported.size()) throw GivenUp{};
                             }),
                GivenUp);
   EXPECT_FALSE(fs::exists(folder_)) << "nothing half made is kept";

@@ -128,10 +128,10 @@ TEST(Overlap, OfSpheresIsTheirLens) {
       // Facets press in by edge^2 / (6 r): by less than a thousandth of these depths.
       const double lens =
           depth * depth * pi * (d * d + 2 * d * (R + r) - 3 * (R - r) * (R - r)) / (12 * d);
-      const Vector3d way = test::any_pose(random, 1).t.normalized();
+      const Vector3d direction = test::any_pose(random, 1).t.normalized();
       SCOPED_TRACE(testing::Message() << R << " mm, depth " << depth);
-      expect_overlap(test::sphere(6, R), test::sphere(6, r), {test::any_pose(random, 1).R, d * way},
-                     depth, lens, random);
+      expect_overlap(test::sphere(6, R), test::sphere(6, r),
+                     {test::any_pose(random, 1).R, d * direction}, depth, lens, random);
     }
 }
 

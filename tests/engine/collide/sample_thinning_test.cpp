@@ -24,10 +24,10 @@ TEST(SampleThinning, EachSampleThatIsDroppedHasOneNearbyThatStandsForIt) {
   for (std::size_t i = 0; i < all.points.size(); ++i) {
     double nearest = 1, rise = 1;
     for (std::size_t k = 0; k < few.points.size(); ++k) {
-      const Vector3d way = all.points[i] - few.points[k];
-      if (way.norm() > reach || all.normals[i].dot(few.normals[k]) < 0.95) continue;
-      nearest = std::min(nearest, way.norm());
-      rise = std::min(rise, std::abs(way.dot(few.normals[k])));
+      const Vector3d offset = all.points[i] - few.points[k];
+      if (offset.norm() > reach || all.normals[i].dot(few.normals[k]) < 0.95) continue;
+      nearest = std::min(nearest, offset.norm());
+      rise = std::min(rise, std::abs(offset.dot(few.normals[k])));
     }
     EXPECT_LE(nearest, reach) << i;
     EXPECT_LE(rise, settings.edge_rise_mm) << i;

@@ -92,17 +92,18 @@ TEST(SlideFriction, OnBumpsItNeitherTremblesNorCreepsWhileTheTargetRests) {
       SlideCache memory;
       Pose X = model.slide(placed({0.5, 0.3, 16}), placed({0.5, 0.3, 13.2}), &memory).X_FM;
       X = model.slide(X, target, &memory).X_FM;
-      const auto way = [](const Pose& a, const Pose& b) {
+      const auto displacement = [](const Pose& a, const Pose& b) {
         return (a.t - b.t).norm() + 5 * rotation_angle(a.inverse() * b);
       };
       const Pose first = X;
       for (int frame = 0; frame < 100; ++frame) {
         const SlideResult result = model.slide(X, target, &memory);
         EXPECT_TRUE(result.touching);
-        ASSERT_LE(way(result.X_FM, X), 0.02) << friction << ' ' << sideways << ' ' << frame;
+        ASSERT_LE(displacement(result.X_FM, X), 0.02)
+            << friction << ' ' << sideways << ' ' << frame;
         X = result.X_FM;
       }
-      EXPECT_LE(way(X, first), 0.05) << friction << ' ' << sideways;
+      EXPECT_LE(displacement(X, first), 0.05) << friction << ' ' << sideways;
     }
   }
 }

@@ -182,10 +182,10 @@ TEST(Slide, AnAnswerIsItsOwnAnswer) {
   std::mt19937_64 random(33);
   int touching = 0;
   for (int k = 0; k < 20; ++k) {
-    const Vector3d way = test::any_pose(random, 1).R * Vector3d::UnitX();
+    const Vector3d direction = test::any_pose(random, 1).R * Vector3d::UnitX();
     SlideCache memory;
-    const Pose target = turned(way, 10, 12.5 * way);
-    SlideResult result = model.slide({Quaterniond::Identity(), 20 * way}, target, &memory);
+    const Pose target = turned(direction, 10, 12.5 * direction);
+    SlideResult result = model.slide({Quaterniond::Identity(), 20 * direction}, target, &memory);
     touching += result.touching;
     for (int again = 0; again < 3; ++again) {
       const SlideResult next = model.slide(result.X_FM, target, &memory);

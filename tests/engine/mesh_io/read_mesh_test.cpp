@@ -132,7 +132,7 @@ TEST(ReadMesh, ObjPolygonsNegativeNumbersAndContinuedLines) {
   TriMesh mesh = read_mesh(folder.write("cube.obj", cube));
   EXPECT_EQ(mesh.triangles.size(), 12u);
   EXPECT_EQ(mesh.colors[0], Eigen::Vector3f(0.5f, 0.25f, 1));
-  // -6 -5 -1 -2 is 3 4 8 7, the same face as 4 8 7 3 the other way round: swap it for 2 3 7 6.
+  // -6 -5 -1 -2 is 3 4 8 7, the same face as 4 8 7 3 reversed: swap it for 2 3 7 6.
   std::string right = cube;
   right.replace(right.find("f -6 -5 -1 -2"), 13, "f -7 -6 -2 -3");
   mesh = read_mesh(folder.write("right.obj", right));

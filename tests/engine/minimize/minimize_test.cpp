@@ -129,7 +129,7 @@ TEST_P(EachMethod, ABudgetLeavesTheBestSoFarAndReportsTheResidual) {
   }
 }
 
-TEST_P(EachMethod, NeverGoesWhereTheValueIsInfinite) {
+TEST_P(EachMethod, NeverStepsWhereTheValueIsInfinite) {
   Chain chain;
   const Unit unit;
   chain.floor = -0.01;  // the path down to y < 0 passes close to it

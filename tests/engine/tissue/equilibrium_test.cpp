@@ -47,7 +47,7 @@ Prestressed prestressed(int layers, double c_turgor, const Vector3d& down,
 
 class EachLayerCount : public testing::TestWithParam<int> {};
 
-TEST_P(EachLayerCount, NothingMovesBeforeSurgeryUnderTurgorAndGravityInAnyDirection) {
+TEST_P(EachLayerCount, NothingMovesBeforeSurgeryUnderPretensionAndGravityInAnyDirection) {
   for (const Vector3d& down : {Vector3d(0, 0, -1), Vector3d(0, 1, 0), Vector3d(0.6, 0, -0.8)})
     for (double c_turgor : {0.95, 0.5, 0.05}) {
       const Prestressed p = prestressed(GetParam(), c_turgor, down);

@@ -157,7 +157,7 @@ TEST(MeshContact, CachedPointDistancesChangeNoResult) {
   Pose X_WO;
   NearPoints known;
   NearPoints counted;
-  int looked = 0, touched = 0;
+  int queried = 0, touched = 0;
   for (int look = 0; look < 200; ++look) {
     // Both move about each other at random, sometimes far in one step.
     const double scale = look % 20 == 0 ? 2 : 0.1;
@@ -174,7 +174,7 @@ TEST(MeshContact, CachedPointDistancesChangeNoResult) {
     for (const auto& p : x) seen.push_back(X_WO.inverse() * p);
     counted.moved(slab.below, seen);
     counted.each(1.5, [&](int i) {
-      ++looked;
+      ++queried;
       ContactObstacle::Near near;
       ball.near(slab.below[static_cast<std::size_t>(i)].at(seen), 1.5, near);
       return near.distance;
@@ -186,7 +186,7 @@ TEST(MeshContact, CachedPointDistancesChangeNoResult) {
       EXPECT_EQ(with[i].gap, without[i].gap);
     }
   }
-  EXPECT_LT(looked, 0.5 * 200 * static_cast<double>(slab.below.size()));  // most are passed over
+  EXPECT_LT(queried, 0.5 * 200 * static_cast<double>(slab.below.size()));  // most are passed over
   EXPECT_GT(touched, 100);
 }
 

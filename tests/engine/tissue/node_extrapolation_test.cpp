@@ -16,7 +16,7 @@ TEST(NodeExtrapolator, ExtrapolatesTheLastChange) {
   Points next{{1, 2, 3}};
   own.add_frame({{0.10, 0, 0}}, {{0, 0, 0}});
   own.extrapolate(next);
-  EXPECT_EQ(next[0].x(), 1) << "one frame tells of no change";
+  EXPECT_EQ(next[0].x(), 1) << "one frame has no rate of change";
   own.add_frame({{0.15, 0, 0}}, {{0, 0, 0}});
   own.extrapolate(next);
   EXPECT_NEAR(next[0].x(), 1.20, 1e-12);

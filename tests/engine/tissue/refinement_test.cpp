@@ -56,11 +56,11 @@ FacePatch make_patch(int cells, const LayerStack& layers) {
     for (int i = 0; i < n; ++i) {
       const bool rim = i == 0 || j == 0 || i == cells || j == cells;
       if (!rim && 3 * j > cells && 3 * j < 2 * cells) continue;
-      const double way = std::clamp(3.0 * j / cells - 1, 0.0, 1.0);
+      const double position = std::clamp(3.0 * j / cells - 1, 0.0, 1.0);
       for (int s = rim ? 0 : patch.sheets - 1; s < patch.sheets; ++s) {
         patch.mesh.anchor_node.push_back(node_of(j * n + i, s, patch.sheets));
         patch.mesh.anchor_stiffness.push_back(2);
-        patch.fraction.push_back(way * way * (3 - 2 * way));
+        patch.fraction.push_back(position * position * (3 - 2 * position));
       }
     }
   return patch;

@@ -76,7 +76,7 @@ TEST(Camera, AFullTurnComesBackAndAQuarterShowsTheSide) {
   EXPECT_TRUE(
       turned(front, std::numbers::pi / 2).direction.isApprox(Eigen::Vector3d(1, 0, 0), 1e-12));
   EXPECT_DOUBLE_EQ(turned(front, 1).distance_mm, front.distance_mm);
-  // Told in another frame it turns about the same axis.
+  // Expressed in another frame it turns about the same axis.
   const Pose X{Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized())),
                Eigen::Vector3d(5, 6, 7)};
   const Camera there = turned(expressed_in(X, front), 1, X.R * Eigen::Vector3d::UnitZ());

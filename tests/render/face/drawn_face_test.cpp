@@ -113,12 +113,12 @@ TEST(DrawnFace, ClosesEyesAndNostrilsAndFollowsTheirRims) {
   EXPECT_EQ(open({{0, 80, 35}}), 0u);
 
   std::vector<Eigen::Vector3f> there;
-  const Eigen::Vector3f way(1, -2, 3);
-  for (const auto& v : face.vertices) there.push_back(v.cast<float>() + way);
+  const Eigen::Vector3f shift(1, -2, 3);
+  for (const auto& v : face.vertices) there.push_back(v.cast<float>() + shift);
   const auto moved = drawn.places(there);
   ASSERT_EQ(moved.size(), drawn.mesh().vertices.size());
   for (std::size_t v = 0; v < moved.size(); ++v)
-    EXPECT_NEAR((moved[v] - drawn.mesh().vertices[v].cast<float>() - way).norm(), 0, 1e-3f) << v;
+    EXPECT_NEAR((moved[v] - drawn.mesh().vertices[v].cast<float>() - shift).norm(), 0, 1e-3f) << v;
   for (const float value : drawn.values(std::vector<float>(face.vertices.size(), 7.f)))
     EXPECT_NEAR(value, 7, 1e-3f);
 }

@@ -66,11 +66,11 @@ TEST(MouthLining, FollowsTheLipsInFrontAndItsJawBehindThem) {
   const std::size_t back = lining->rest.size() - 1 - lining->rim.size();
   int with_skull = 0, with_jaw = 0;
   for (std::size_t v = back; v + 1 < now.size(); ++v) {
-    const Eigen::Vector3f way = now[v] - lining->rest[v];
-    EXPECT_NEAR(way.z(), -25 * lining->jaw[v], 1e-3f);
-    EXPECT_NEAR(way.y(), 0, 1e-3f);
-    with_skull += way.z() > -0.5f;
-    with_jaw += way.z() < -24.5f;
+    const Eigen::Vector3f displacement = now[v] - lining->rest[v];
+    EXPECT_NEAR(displacement.z(), -25 * lining->jaw[v], 1e-3f);
+    EXPECT_NEAR(displacement.y(), 0, 1e-3f);
+    with_skull += displacement.z() > -0.5f;
+    with_jaw += displacement.z() < -24.5f;
     EXPECT_EQ(lining->rest[v].z() > lining->mid_z + 0.5f, lining->jaw[v] < 0.46f) << v;
   }
   EXPECT_GT(with_skull, 5);
@@ -118,8 +118,8 @@ TEST(MouthLining, FollowsAThinLipBackwardBeforeItTurnsAside) {
   ASSERT_TRUE(lining);
   const std::size_t n = lining->rim.size();
   for (std::size_t v = n; v < 2 * n; ++v) {
-    const Eigen::Vector3f way = lining->rest[v] - lining->rest[v - n];
-    EXPECT_GT(way.y(), std::abs(way.z())) << v;
+    const Eigen::Vector3f displacement = lining->rest[v] - lining->rest[v - n];
+    EXPECT_GT(displacement.y(), std::abs(displacement.z())) << v;
   }
 }
 

@@ -87,11 +87,11 @@ TEST(ColourMap, DisplacementsBeyondTheRangeHaveNoPositionOnTheScale) {
   EXPECT_EQ(color_of(map, 75), map.beyond);
   float least = 1000;
   for (const auto& [name, sight] : sights())
-    for (float way = 0; way < 75; way += 0.5f) {
+    for (float mm = 0; mm < 75; mm += 0.5f) {
       const float difference =
-          (lab_as_seen(color_of(map, way), sight) - lab_as_seen(map.beyond, sight)).norm();
+          (lab_as_seen(color_of(map, mm), sight) - lab_as_seen(map.beyond, sight)).norm();
       least = std::min(least, difference);
-      EXPECT_GT(difference, 25) << name << ": " << way << " mm";
+      EXPECT_GT(difference, 25) << name << ": " << mm << " mm";
     }
   EXPECT_LT(least, 100);  // they were compared
 }
@@ -162,7 +162,7 @@ TEST_F(Mapped, PartShowsItsValuesAndBecomesItselfAgain) {
   for (const auto& v : parts[0].mesh.vertices) values.push_back(static_cast<float>(v.z()) / 5);
   renderer.color_part("ball", values);
   const Image image = renderer.picture(front_camera(), settings);
-  int looked = 0;
+  int checked = 0;
   for (int y = 50; y < 150; y += 5) {
     const double height = (100 - (y + 0.5)) * 0.5;  // mm; the ball bulges toward the eye a little
     const float value = static_cast<float>(height) / 5;
@@ -173,9 +173,9 @@ TEST_F(Mapped, PartShowsItsValuesAndBecomesItselfAgain) {
     EXPECT_EQ(p.r > p.b, expected.x() > expected.z()) << value;
     EXPECT_LE(p.r, 255 * expected.x() + 14) << value;
     EXPECT_GE(p.r, 0.6f * 255 * expected.x() - 14) << value;
-    ++looked;
+    ++checked;
   }
-  EXPECT_GT(looked, 12);
+  EXPECT_GT(checked, 12);
   const auto top = pixel(image, 100, 43);  // value above 5
   EXPECT_NEAR(top.r, top.b, 14);
   renderer.color_part("ball", {});

@@ -122,15 +122,16 @@ TriMesh head(double radius_mm, double mouth_deg, unsigned seed, double noise_mm)
   TriMesh mesh = ball({0, 0, 0}, radius_mm, 40);
   std::mt19937 random(seed);
   const auto uniform = [&] { return random() / 4294967296.0 - 0.5; };
-  std::vector<char> gone;
+  std::vector<char> removed;
   for (auto& v : mesh.vertices) {
     const Eigen::Vector3d d = v.normalized();
-    gone.push_back(-d.y() > std::cos(mouth_deg * std::numbers::pi / 180));
+    removed.push_back(-d.y() > std::cos(mouth_deg * std::numbers::pi / 180));
     v *= 1 + 0.12 * std::sin(5 * d.x()) * std::cos(4 * d.z());
     v += noise_mm * Eigen::Vector3d(uniform(), uniform(), uniform());
   }
-  std::erase_if(mesh.triangles,
-                [&](const Eigen::Vector3i& t) { return gone[t[0]] && gone[t[1]] && gone[t[2]]; });
+  std::erase_if(mesh.triangles, [&](const Eigen::Vector3i& t) {
+    return removed[t[0]] && removed[t[1]] && removed[t[2]];
+  });
   return mesh;
 }
 

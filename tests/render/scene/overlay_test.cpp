@@ -29,7 +29,7 @@ TEST_F(Overlays, AClippingPlaneLeavesHalfAndTheCapClosesIt) {
   auto settings = mask_settings();
   settings.shadows = false;
   const double whole = blob_of(renderer.picture(front_camera(), settings)).area;
-  // All beyond x = 0 to the patient's left, right in a front view, is gone.
+  // All beyond x = 0 to the patient's left, right in a front view, is removed.
   settings.clip = {.point = {0, 0, 0}, .normal = {2, 0, 0}};
   const Blob half = blob_of(renderer.picture(front_camera(), settings));
   EXPECT_NEAR(half.area, whole / 2, 0.01 * whole);

@@ -331,7 +331,7 @@ TEST_F(Scene, ShadowsDarkenOnlyWhatIsShaded) {
 }
 
 TEST_F(Scene, WhereTheSkyIsNoLongerSeenNoPixelIsLost) {
-  // What lies in the second ball, which is not drawn, sees no sky at all.
+  // What lies in the second ball, which is not drawn, is completely shaded.
   TriMesh askew = ball({0, 0, 0}, 30);
   const Eigen::Quaterniond turned = Eigen::Quaterniond(0.8, 0.3, -0.4, 0.2).normalized();
   for (auto& p : askew.vertices) p = turned * p;

@@ -66,7 +66,7 @@ class RealWindow : public testing::Test {
                       .bodies = movable_bodies(parts_, native_bodies()),
                       .motions = motions_,
                       .motion = {.spec = "opening", .parameters = {}, .excitations = {}}});
-    // The lower teeth are told their height as a distance.
+    // The lower teeth have their height as distance values.
     const TriMesh& teeth = parts_[3].mesh;
     const std::vector<Eigen::Vector3f> normals(teeth.vertices.size(), {0, -1, 0});
     window.set_map_surfaces({{.part = 3, .mesh = &teeth, .normals = normals}});
@@ -127,7 +127,7 @@ class RealWindow : public testing::Test {
     }
     return last;
   }
-  /// Where the hand wants the jaw, once every event of a drag has arrived.
+  /// The hand's target for the jaw, once every event of a drag has arrived.
   Eigen::Vector3d settled_jaw() {
     const auto jaw = [&] {
       const auto hand = seen().view.hands.at(mandible_body);
@@ -288,7 +288,7 @@ TEST_F(RealWindow, HandsMoveTheJawByHandlesByItselfAndByNumbers) {
     const Eigen::Vector3d down = settled_jaw();
     EXPECT_EQ(down.head<2>().norm(), 0);
     EXPECT_EQ(moved_mm(settled_camera(), before), 0) << "the camera stays";
-    // Grasped itself it goes along.
+    // Gripped itself it moves.
     const ViewRect rest = place("handle:S");
     const double x = rest.x + 3 + 85, y = rest.y + 3 + 78 + 12;  // beside the rings
     drag(x, y, x + 30, y, "1");

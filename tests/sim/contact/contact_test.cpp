@@ -248,7 +248,7 @@ TEST(ContactModel, OverlapInOnePlaceDoesNotExcuseContactInAnother) {
   EXPECT_LE(stop.contacts.max_penetration_mm(), 0.02);
 }
 
-TEST(ContactModel, AStartThatIsTooDeepMayLeaveButGoesNoDeeper) {
+TEST(ContactModel, AStartThatIsTooDeepMayLeaveButNotDeepen) {
   const ContactModel model(two_bones(test::box({-30, -30, 30}, {30, 30, 60}), test::sphere(3, 10)));
   const Pose inside = shift(0, 0, 25);  // 5 mm deep
   const auto out = model.stop_at_contact(inside, shift(0, 0, 10), nullptr);
@@ -284,7 +284,7 @@ TEST(ContactModel, ATurnedSceneGivesTheTurnedAnswer) {
     const auto b = there.stop_at_contact({}, turn * target * turn.inverse(), nullptr);
     EXPECT_TRUE(a.stopped);
     EXPECT_TRUE(b.stopped);
-    // The way turns with the scene, its halvings may round differently: equal within the stop's
+    // The path turns with the scene, its halvings may round differently: equal within the stop's
     // gap.
     const Pose a_turned = turn * a.at[mandible_body] * turn.inverse();
     EXPECT_LT((a_turned.t - b.at[mandible_body].t).norm(), 0.01);

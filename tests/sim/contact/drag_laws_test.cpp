@@ -1,5 +1,5 @@
 // What must hold of bodies that a hand drags about, as the simulator moves them: they end at the
-// same place by any way, rest where the hand rests, and do not overlap.
+// same place by any route, rest where the hand rests, and do not overlap.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -76,8 +76,8 @@ int expect_lawful(const Drag& drag, int frames, const TargetAt& target_at) {
     const Pose X = drag.pose(at);
     depths.push_back(
         deepest(still, moving, pose_of(drag.patient.parts[drag.still], at).inverse() * X));
-    const auto expect_here = [&](const ContactModel::Slide& other, const char* way) {
-      EXPECT_LE(apart(mesh, drag.pose(other.at), X), 0.05) << f << " " << way;
+    const auto expect_here = [&](const ContactModel::Slide& other, const char* route) {
+      EXPECT_LE(apart(mesh, drag.pose(other.at), X), 0.05) << f << " " << route;
     };
     const auto again = drag.model.slide(at, target, &last, 1);
     EXPECT_LE(apart(mesh, drag.pose(again.at), X), 0.02) << f << " at rest";
@@ -89,7 +89,7 @@ int expect_lawful(const Drag& drag, int frames, const TargetAt& target_at) {
       const double s = std::clamp(static_cast<double>(f) / (frames - 1) + back, 0.0, 1.0);
       other = drag.model.slide(other, target_at(s), nullptr, 2).at;
     }
-    expect_here(drag.model.slide(other, target, nullptr, 2), "by another way");
+    expect_here(drag.model.slide(other, target, nullptr, 2), "by another route");
   }
   std::sort(depths.begin(), depths.end());
   EXPECT_GE(depths.size(), 3u);

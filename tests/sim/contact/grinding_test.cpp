@@ -157,15 +157,15 @@ TEST(Grinding, CrownsRubWithFrictionWithoutOverlapAndRestWhereTheHandRests) {
   const test::OverlapOracle upper_oracle(upper), lower_oracle(lower);
   Pose X{Eigen::Quaterniond::Identity(), {0, 0, -6}}, Y = X;
   std::vector<double> depths;
-  double rough_way = 0, free_way = 0;
+  double rough_path = 0, free_path = 0;
   constexpr int frames = 120;
   for (int f = 0; f < frames; ++f) {
     const Pose target = target_at(static_cast<double>(f) / frames);
     const SlideResult result = rough.slide(X, target);
     const Pose smooth = free.slide(Y, target).X_FM;
     if (f > 0) {
-      rough_way += (result.X_FM.t - X.t).norm();
-      free_way += (smooth.t - Y.t).norm();
+      rough_path += (result.X_FM.t - X.t).norm();
+      free_path += (smooth.t - Y.t).norm();
     }
     X = result.X_FM;
     Y = smooth;
@@ -177,7 +177,7 @@ TEST(Grinding, CrownsRubWithFrictionWithoutOverlapAndRestWhereTheHandRests) {
   std::sort(depths.begin(), depths.end());
   EXPECT_LE(depths.back(), 0.1);
   EXPECT_LE(depths[depths.size() / 2], 0.05);
-  EXPECT_LT(rough_way, 0.98 * free_way) << "friction holds it back";
+  EXPECT_LT(rough_path, 0.98 * free_path) << "friction holds it back";
 }
 
 /// Largest distance of any point of the lower crowns between two poses.

@@ -111,7 +111,7 @@ TEST(PairMeasure, RealCrownsThatOverlapAtRest) {
   if (!patient) GTEST_SKIP() << "real anatomy absent";
   const ContactModel model(*patient);
   const PairMeasures measures(*patient);
-  int looked = 0;
+  int checked = 0;
   for (const auto& pair : model.at_rest().pairs) {
     const auto measure = measures.measure(pair, Pose{});
     EXPECT_TRUE(measure.volume_known);
@@ -120,9 +120,9 @@ TEST(PairMeasure, RealCrownsThatOverlapAtRest) {
     EXPECT_LT(measure.volume_error_mm3, 0.05 * measure.volume_mm3);
     EXPECT_EQ(measure.side, "both");
     EXPECT_FALSE(measure.region_a.empty());
-    ++looked;
+    ++checked;
   }
-  EXPECT_EQ(looked, 4);
+  EXPECT_EQ(checked, 4);
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ TEST(SlidingScenes, CondyleGlidesOnTheEminence) {
     return at({0.5 * std::sin(6 * s), -12 * s, 2.5 - 6 * s});
   });
   expect_lawful(out, 30);
-  EXPECT_GT(out.deepest_mm, 1e-3) << "a sum of roundings at least: the measure sees something";
+  EXPECT_GT(out.deepest_mm, 1e-3) << "at least the sum of roundings: the measure is effective";
 }
 
 TEST(SlidingScenes, AGraftIsDraggedAlongTheMandible) {

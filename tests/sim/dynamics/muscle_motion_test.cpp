@@ -100,10 +100,10 @@ TEST_F(MuscleMotion, FromAFileOfGroupsItOpensAndCloses) {
 
 TEST_F(MuscleMotion, AMusclesLengthIsTheDistanceOfItsEndsAlsoAtTheHyoid) {
   const auto file = write("open.csv", "time_s,open,close\n0,0,0\n0.1,0.15,0\n0.4,0.15,0\n");
-  const std::string way =
-      write("way.csv", "time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.2,2,5,-9\n1,2,5,-9\n");
+  const std::string path =
+      write("path.csv", "time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.2,2,5,-9\n1,2,5,-9\n");
   const std::vector<Muscle> muscles = muscles_of(*patient_);
-  for (const std::string& hyoid : {way, std::string("free")}) {
+  for (const std::string& hyoid : {path, std::string("free")}) {
     const Motion motion = make("muscles:" + file, {.hyoid = hyoid});
     ASSERT_TRUE(motion.hyoid);
     EXPECT_GT(motion.hyoid(0.4).t.norm(), 0.5) << "it moves";

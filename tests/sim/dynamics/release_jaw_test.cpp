@@ -107,13 +107,13 @@ TEST(JawRelease, CanBeCancelledWhileItsBonesAreMeasured) {
   const std::string kept = before ? before : "";
   ::setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
   int calls = 0;
-  double share = 1;
+  double fraction = 1;
   const auto give_up = [&](std::string_view, double at) {
-    share = at;
+    fraction = at;
     if (++calls == 40) throw GivenUp{};
   };
   EXPECT_THROW(release_jaw(builtin(), bones(), Pose{}, {}, 2, give_up), GivenUp);
-  EXPECT_EQ(share, 0) << "its first jaw is not even made";
+  EXPECT_EQ(fraction, 0) << "its first jaw is not even made";
   if (before)
     ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
   else
@@ -133,13 +133,13 @@ TEST(JawRelease, RefusesACondyleThatNoLigamentWouldHold) {
 
 /// Its deepest penetration on the path, and where it ends.
 struct Depths {
-  double way_mm = 0, end_mm = 0;
+  double path_mm = 0, end_mm = 0;
 };
 Depths depths_of(const JawRelease& course, const ContactModel& contacts) {
   Depths depths;
   for (std::size_t k = 0; k < course.X_CM.size(); k += 10)
-    depths.way_mm =
-        std::max(depths.way_mm, contacts.find(course.X_CM[k], nullptr, 2).max_penetration_mm());
+    depths.path_mm =
+        std::max(depths.path_mm, contacts.find(course.X_CM[k], nullptr, 2).max_penetration_mm());
   depths.end_mm = contacts.find(course.X_CM.back(), nullptr, 2).max_penetration_mm();
   return depths;
 }
@@ -151,7 +151,7 @@ TEST(JawRelease, IsStoppedByTheRestOfTheSkull) {
   ASSERT_LT(bones().find(from, nullptr, 2).max_penetration_mm(), 0.03);
   const JawRelease course = release_jaw(builtin(), bones(), from, {.X_CM_rest = Pose{}}, 2);
   const Depths depths = depths_of(course, bones());
-  EXPECT_LT(depths.way_mm, 0.2);
+  EXPECT_LT(depths.path_mm, 0.2);
   EXPECT_LT(depths.end_mm, jaw_rest_depth_mm);
   EXPECT_TRUE(course.rest.reached);
 }

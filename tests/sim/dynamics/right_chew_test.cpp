@@ -1,5 +1,5 @@
 // A published model's chew to the right, played as a user plays it: its table of muscles, mechanics
-// and knots as they came, and beside the knots a file that tells what they do not.
+// and knots as they came, and beside the knots a file with the data that they lack.
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -43,9 +43,10 @@ Pose pose(const Truth& truth, double turn_deg, double left_mm, double right_mm) 
                                  f * std::tan(truth.bennett[orbiting] * degree);
   const double inward = orbiting == 0 ? -1 : 1, outward = orbiting == 0 ? 50 : -50;
   at[orbiting].x() = outward + inward * aside;
-  const Vector3d way = at[1 - orbiting] - at[orbiting];
+  const Vector3d between = at[1 - orbiting] - at[orbiting];
   at[1 - orbiting].x() =
-      at[orbiting].x() + inward * std::sqrt(100 * 100 - way.y() * way.y() - way.z() * way.z());
+      at[orbiting].x() +
+      inward * std::sqrt(100 * 100 - between.y() * between.y() - between.z() * between.z());
   const Vector3d axis = (at[0] - at[1]).normalized();
   Pose X;
   X.R = Eigen::AngleAxisd(turn_deg * degree, axis) *

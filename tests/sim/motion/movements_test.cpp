@@ -110,8 +110,8 @@ TEST(Movements, TakeTheSpecifiedTime) {
   const Moved moved(jaw_with_teeth(), "open 20 over 2; close at 50; hold 0.7");
   EXPECT_NEAR(moved.end_of("opening"), 2, 1e-9);
   EXPECT_NEAR(moved.end_of("hold") - moved.end_of("closing"), 0.7, 1e-9);
-  const double way = moved.incisor(2).norm();
-  EXPECT_NEAR(moved.end_of("closing") - 2, way / 50, 0.05 * way / 50);
+  const double distance = moved.incisor(2).norm();
+  EXPECT_NEAR(moved.end_of("closing") - 2, distance / 50, 0.05 * distance / 50);
   const Moved whole(jaw_with_teeth(), "open 20 over 2; close", {.duration_s = 6});
   EXPECT_NEAR(whole.motion.duration_s, 6, 1e-9);
   EXPECT_NEAR(whole.motion.phases.back().end_s, 6, 1e-9);

@@ -12,7 +12,7 @@ namespace condyle::test {
 namespace {
 
 MotionSettings opening_by(double mm) { return {.parameters = {.opening_mm = mm}}; }
-MotionSettings early(double share) { return {.parameters = {.early_translation = share}}; }
+MotionSettings early(double fraction) { return {.parameters = {.early_translation = fraction}}; }
 
 Motion opening_of(const Case& patient, const MotionSettings& settings = {}) {
   return make_motion("opening", patient, ContactModel(patient), settings);
@@ -93,15 +93,15 @@ TEST(Opening, RotatesFirstUnlessEarlyTranslationIsRequested) {
   const Case patient = free_jaw();
   const Eigen::Vector3d seat = *patient.landmarks.find("left_condyle");
   double before = -1;
-  for (const double share : {0.0, 0.5, 1.0}) {
-    const Motion motion = opening_of(patient, early(share));
+  for (const double fraction : {0.0, 0.5, 1.0}) {
+    const Motion motion = opening_of(patient, early(fraction));
     double forward = -1;  // when the jaw has turned by 8 degrees
     for (int i = 0; forward < 0; ++i) {
       const Measures now = measure(patient, motion.target(motion.duration_s * i / 2000));
       if (now.rotation_deg >= 8) forward = seat.y() - now.left_condyle.y();
     }
     EXPECT_GT(forward, before);
-    if (share == 0) {
+    if (fraction == 0) {
       EXPECT_LT(forward, 1e-9);
     }
     before = forward;
@@ -158,8 +158,8 @@ TEST(Opening, CondylesInAFossaKeepTheirRestGap) {
   EXPECT_LT(widest, 0.3);  // guided, not merely clear
   // The path leans as the roof does: a slab at 35 degrees.
   const Measures open = measure(patient, motion.target(0.5 * motion.duration_s));
-  const Eigen::Vector3d way = *patient.landmarks.find("left_condyle") - open.left_condyle;
-  EXPECT_NEAR(std::atan2(way.z(), way.y()) / degree, 35, 1.5);
+  const Eigen::Vector3d displacement = *patient.landmarks.find("left_condyle") - open.left_condyle;
+  EXPECT_NEAR(std::atan2(displacement.z(), displacement.y()) / degree, 35, 1.5);
 }
 
 TEST(Opening, AJawThatMeetsBoneStopsUnlessAnOpeningIsRequested) {

@@ -143,7 +143,7 @@ TEST(RealRecording, RightChewPlaysBackAsWritten) {
   const Motion motion = read_recording(path);
   EXPECT_NEAR(motion.duration_s, 1.002, 1e-9);
   const Eigen::Vector3d incisor(0, -46.9584, 41.7642);
-  // The file read again in the simplest way: pose times marker.
+  // The file read again by the simplest method: pose times marker.
   std::ifstream in(path);
   std::string line;
   std::getline(in, line);

@@ -43,9 +43,9 @@ Bite settled(const Case& patient, const Pose& start, const OcclusionSettings& se
 }
 
 double farthest(const TriMesh& mesh, const Pose& a, const Pose& b) {
-  double way = 0;
-  for (const auto& p : mesh.vertices) way = std::max(way, (a * p - b * p).norm());
-  return way;
+  double largest = 0;
+  for (const auto& p : mesh.vertices) largest = std::max(largest, (a * p - b * p).norm());
+  return largest;
 }
 
 /// Deepest overlap of both arches by an independent exact measure.
@@ -77,16 +77,16 @@ TEST(CloseBite, BuiltBiteIsFoundFromTwentyStartsUpToThreeMillimetresAndDegreesAw
   constexpr std::size_t seeds = 20;
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> share(0, 1);
+  std::uniform_real_distribution<double> fraction(0, 1);
   const auto direction = [&] {
     return Vector3d(normal(random), normal(random), normal(random)).normalized();
   };
   std::vector<Pose> starts;
   for (std::size_t i = 0; i < seeds; ++i) {
     // Half of them at the limit.
-    const double mm = i % 2 ? 3 : 3 * share(random), deg = i % 2 ? 3 : 3 * share(random);
-    const Vector3d way = direction(), axis = direction();
-    starts.push_back(displaced_from_rest(builtin(), mm * way, deg * axis));
+    const double mm = i % 2 ? 3 : 3 * fraction(random), deg = i % 2 ? 3 : 3 * fraction(random);
+    const Vector3d shift = direction(), axis = direction();
+    starts.push_back(displaced_from_rest(builtin(), mm * shift, deg * axis));
   }
   std::vector<Bite> bites(seeds);
   parallel_for(seeds, 2, [&](std::size_t i) { bites[i] = finder().find(starts[i]); });

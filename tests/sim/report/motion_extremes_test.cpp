@@ -14,13 +14,13 @@ namespace {
 
 /// Down by 30 mm in a second, aside by 3 mm to the right in the middle, and back in half a second.
 Motion down_and_back() {
-  return {"told",
+  return {"prescribed",
           1.5,
           false,
           [](double t) {
-            const double share = t < 1 ? t : 1 - 2 * (t - 1);
+            const double fraction = t < 1 ? t : 1 - 2 * (t - 1);
             const double aside = t > 0.4 && t < 0.6 ? -3 : 0;
-            return Pose{Eigen::Quaterniond::Identity(), {aside, 0, -30 * share}};
+            return Pose{Eigen::Quaterniond::Identity(), {aside, 0, -30 * fraction}};
           },
           {}};
 }

@@ -22,8 +22,8 @@ namespace condyle::test {
 namespace {
 
 /// A jaw that moves to a pose and back in a second.
-Motion there_and_back(const std::function<Pose(double share)>& pose, std::string phase = "") {
-  Motion motion{"told",
+Motion there_and_back(const std::function<Pose(double fraction)>& pose, std::string phase = "") {
+  Motion motion{"found",
                 1.0,
                 false,
                 [pose](double t) { return pose(0.5 - 0.5 * std::cos(2 * std::numbers::pi * t)); },
@@ -68,11 +68,11 @@ TEST(Findings, OfAPatientScannedWithTheMouthOpenCountFromTheClosedPosition) {
 
 TEST(Findings, DistinguishInputsFromEmergentQuantities) {
   const Scene scene = make_scene(box_patient());
-  const auto down = [](double share) {
-    return Pose{Eigen::Quaterniond::Identity(), {0, 0, -45 * share}};
+  const auto down = [](double fraction) {
+    return Pose{Eigen::Quaterniond::Identity(), {0, 0, -45 * fraction}};
   };
   Motion motion = there_and_back(down, "opening");
-  const auto told = findings(scene, motion, series_of(scene, motion));
+  const auto found = findings(scene, motion, series_of(scene, motion));
   motion.recorded = true;
   const auto recorded = findings(scene, motion, series_of(scene, motion));
   const auto named = [](const std::vector<Finding>& all, const std::string& name) {
@@ -81,15 +81,15 @@ TEST(Findings, DistinguishInputsFromEmergentQuantities) {
     ADD_FAILURE() << name;
     return Finding{};
   };
-  EXPECT_TRUE(named(told, "maximum opening").input);
+  EXPECT_TRUE(named(found, "maximum opening").input);
   EXPECT_FALSE(named(recorded, "maximum opening").input);
-  EXPECT_NEAR(named(told, "maximum opening").value, 45, 1e-9);
+  EXPECT_NEAR(named(found, "maximum opening").value, 45, 1e-9);
   // A jaw that sinks without turning is no living jaw's.
-  const Finding turned = named(told, "rotation at maximum opening");
+  const Finding turned = named(found, "rotation at maximum opening");
   EXPECT_FALSE(turned.input);
   EXPECT_FALSE(turned.within());
   EXPECT_FALSE(turned.why.empty());
-  EXPECT_FALSE(named(told, "left condylar travel at maximum opening").within());
+  EXPECT_FALSE(named(found, "left condylar travel at maximum opening").within());
 }
 
 /// Name and whether it is an input of each finding.
@@ -145,9 +145,9 @@ TEST(Findings, OfFewFramesLeaveOutTheLengthOfTheCondylarPath) {
 
 TEST(Warnings, NameWhatNoJawCanDoAndAreAbsentOtherwise) {
   const Scene scene = make_scene(box_patient());
-  const auto by = [&](const Eigen::Vector3d& way) {
-    const Motion motion = there_and_back([way](double share) {
-      return Pose{Eigen::Quaterniond::Identity(), way * share};
+  const auto by = [&](const Eigen::Vector3d& displacement) {
+    const Motion motion = there_and_back([displacement](double fraction) {
+      return Pose{Eigen::Quaterniond::Identity(), displacement * fraction};
     });
     return physiology_warnings(series_of(scene, motion));
   };
@@ -166,17 +166,18 @@ TEST(Warnings, NameWhatNoJawCanDoAndAreAbsentOtherwise) {
   expect_warning(by({0, -18, 0}), "protrusion");
   expect_warning(by({0, -15, -20}), "the left condyle travels 25.0 mm");
   expect_warning(by({0, -15, -20}), "the right condyle travels 25.0 mm");
-  const auto turned = [&](double degrees, const Eigen::Vector3d& axis, const Eigen::Vector3d& way) {
-    const Motion motion = there_and_back([=](double share) {
-      const double angle = share * degrees * std::numbers::pi / 180;
-      return Pose{Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), way * share};
+  const auto turned = [&](double degrees, const Eigen::Vector3d& axis,
+                          const Eigen::Vector3d& displacement) {
+    const Motion motion = there_and_back([=](double fraction) {
+      const double angle = fraction * degrees * std::numbers::pi / 180;
+      return Pose{Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), displacement * fraction};
     });
     return physiology_warnings(series_of(scene, motion));
   };
   expect_warning(turned(55, Eigen::Vector3d::UnitX(), {0, 0, 0}), "the jaw rotates by 55.0 deg");
-  const auto fast = [&](double way) {  // there in a twentieth of a second
-    Motion motion = there_and_back([way](double share) {
-      return Pose{Eigen::Quaterniond::Identity(), {0, 0, -way * share}};
+  const auto fast = [&](double displacement) {  // there in a twentieth of a second
+    Motion motion = there_and_back([displacement](double fraction) {
+      return Pose{Eigen::Quaterniond::Identity(), {0, 0, -displacement * fraction}};
     });
     motion.duration_s = 0.1;
     motion.target = [slow = motion.target](double t) { return slow(10 * t); };
@@ -184,10 +185,10 @@ TEST(Warnings, NameWhatNoJawCanDoAndAreAbsentOtherwise) {
   };
   expect_warning(fast(40), "the incisors open at");
   expect_warning(fast(40), "the incisors close at");
-  const auto opened = [&](double way) {
+  const auto opened = [&](double displacement) {
     const Motion motion = there_and_back(
-        [way](double share) {
-          return Pose{Eigen::Quaterniond::Identity(), {0, 0, -way * share}};
+        [displacement](double fraction) {
+          return Pose{Eigen::Quaterniond::Identity(), {0, 0, -displacement * fraction}};
         },
         "opening");
     return physiology_warnings(series_of(scene, motion));
@@ -217,8 +218,8 @@ TEST(Warnings, ReportUnequalCondylarTravelInAStraightOpening) {
 TEST(Report, PrintsFindingsWithTheirBands) {
   const Scene scene = make_scene(box_patient());
   const Motion motion = there_and_back(
-      [](double share) {
-        return Pose{Eigen::Quaterniond::Identity(), {0, 0, -45 * share}};
+      [](double fraction) {
+        return Pose{Eigen::Quaterniond::Identity(), {0, 0, -45 * fraction}};
       },
       "opening");
   MotionReport report(scene, motion, {});
@@ -313,8 +314,8 @@ int expect_names_clear(const std::string& svg, const std::string& title) {
 TEST(MotionPlots, HaveAxesUnitsAndBandsAndKeepAllPointsInside) {
   const Scene scene = make_scene(box_patient());
   Motion motion = there_and_back(
-      [](double share) {
-        return Pose{Eigen::Quaterniond::Identity(), {9 * share, -8 * share, -45 * share}};
+      [](double fraction) {
+        return Pose{Eigen::Quaterniond::Identity(), {9 * fraction, -8 * fraction, -45 * fraction}};
       },
       "chewing left");
   motion.borders.frontal = {{0, -90, -50}, {9, -90, -55}, {0, -80, -95}, {-9, -90, -55}};
@@ -347,8 +348,8 @@ TEST(MotionPlots, HaveAxesUnitsAndBandsAndKeepAllPointsInside) {
 TEST(MotionPlots, ShowWhatTheMusclesOfEachSideDo) {
   const Scene scene = make_scene(box_patient());
   Motion motion = there_and_back(
-      [](double share) {
-        return Pose{Eigen::Quaterniond::Identity(), {0, 0, -20 * share}};
+      [](double fraction) {
+        return Pose{Eigen::Quaterniond::Identity(), {0, 0, -20 * fraction}};
       },
       "opening");
   motion.muscle_names = {"lat", "rat", "lad", "rad", "ta"};

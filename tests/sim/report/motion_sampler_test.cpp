@@ -62,7 +62,7 @@ TEST(MotionSampler, AJumpThroughASheetWithoutThicknessIsSeen) {
   EXPECT_NEAR(pair.first_touch->time_s * 45, 20, 0.021);
 }
 
-TEST(MotionSampler, PassingNearerThanTheMarginBetweenFramesIsSeenAndFartherNeedsNoLook) {
+TEST(MotionSampler, PassingNearerThanTheMarginBetweenFramesIsDetectedAndFartherNeedsNoSample) {
   const Scene scene = make_scene(plate_patient(1));
   // Past the plate's edge at x = 30, the ball's side 0.5 mm from it.
   const auto past = jump(shifted({32.5, 0, 0}), shifted({32.5, 0, 45}));
@@ -105,7 +105,7 @@ TEST(MotionSampler, TheLeastDistanceDependsOnNeitherMarginNorFrames) {
 }
 
 TEST(MotionSampler, FewFramesFindWhatManyFind) {
-  // Any ways of a bumpy ball past another: the deepest, or nearest, of 800 poses is found from two
+  // Any paths of a bumpy ball past another: the deepest, or nearest, of 800 poses is found from two
   // frames to a tenth of a millimetre, and the first touch as well.
   std::mt19937_64 random(3);
   int touched = 0;

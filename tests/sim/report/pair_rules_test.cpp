@@ -204,8 +204,8 @@ TEST(ToothUse, CountsFramesAndTimesOfEachTooth) {
   EXPECT_EQ(check.pairs.at(0).touches, 2);
   const auto chart = teeth_svg(check);
   EXPECT_NE(chart.find(">36<"), std::string::npos);
-  const long share = std::lround(100.0 * check.teeth[0].touching_frames / 121);
-  EXPECT_NE(chart.find(">" + std::to_string(share) + " %<"), std::string::npos);
+  const long percent = std::lround(100.0 * check.teeth[0].touching_frames / 121);
+  EXPECT_NE(chart.find(">" + std::to_string(percent) + " %<"), std::string::npos);
 }
 
 }  // namespace

@@ -33,14 +33,14 @@ Pose moved(const Case& patient, double open_deg, double aside_mm) {
   return X_CM;
 }
 
-struct Way {
+struct PathResult {
   double penetration_mm = 0, slip_mm = 0, left_behind_mm = 0;
   double faces_in_jaws_mm = 0, lip_in_lip_mm = 0;  // deepest samples of whole faces, beyond rest
   int bad = 0;  // frames that did not converge, or with a prism turned inside out
 };
 
 /// There and back.
-Way travel(const Case& patient, double open_deg, double aside_mm, int frames) {
+PathResult travel(const Case& patient, double open_deg, double aside_mm, int frames) {
   constexpr int measured_every = 5;
   const auto model = build_tissue(patient);
   EXPECT_EQ(summary(*model).lip_points_left_out, 0);
@@ -49,32 +49,33 @@ Way travel(const Case& patient, double open_deg, double aside_mm, int frames) {
   EXPECT_GT(faces.samples(), 10000u);
   TissueState state = rest;
   TissueWarmStart warm;
-  Way way;
+  PathResult result;
   for (int i = 1; i <= frames; ++i) {
     const double part = 0.5 * (1 - std::cos(2 * std::numbers::pi * i / frames));
     const Pose X_CM = moved(patient, part * open_deg, part * aside_mm);
     state = solve_tissue(*model, state, test::jaw_at(X_CM), {}, warm);
-    way.penetration_mm = std::max(way.penetration_mm, state.penetration_mm);
-    way.slip_mm = std::max(way.slip_mm, state.slip_mm);
+    result.penetration_mm = std::max(result.penetration_mm, state.penetration_mm);
+    result.slip_mm = std::max(result.slip_mm, state.slip_mm);
     if (i % measured_every == 0) {
-      way.faces_in_jaws_mm = std::max(way.faces_in_jaws_mm, faces.in_jaws(X_CM, state.nodes));
-      way.lip_in_lip_mm = std::max(way.lip_in_lip_mm, faces.in_other_lip(state.nodes));
+      result.faces_in_jaws_mm = std::max(result.faces_in_jaws_mm, faces.in_jaws(X_CM, state.nodes));
+      result.lip_in_lip_mm = std::max(result.lip_in_lip_mm, faces.in_other_lip(state.nodes));
     }
-    way.bad += !state.converged || state.kept || state.inverted_prisms > 0;
+    result.bad += !state.converged || state.kept || state.inverted_prisms > 0;
   }
   state = solve_tissue(*model, state, {}, {}, warm);
   for (std::size_t i = 0; i < rest.nodes.size(); ++i)
-    way.left_behind_mm = std::max(way.left_behind_mm, (state.nodes[i] - rest.nodes[i]).norm());
-  return way;
+    result.left_behind_mm =
+        std::max(result.left_behind_mm, (state.nodes[i] - rest.nodes[i]).norm());
+  return result;
 }
 
-void expect_good(const Way& way) {
-  EXPECT_LT(way.penetration_mm, 0.2);
-  EXPECT_LT(way.faces_in_jaws_mm, 0.2);
-  EXPECT_LT(way.lip_in_lip_mm, 0.2);
-  EXPECT_GT(way.slip_mm, 2);
-  EXPECT_LT(way.left_behind_mm, 0.02);
-  EXPECT_EQ(way.bad, 0);
+void expect_good(const PathResult& result) {
+  EXPECT_LT(result.penetration_mm, 0.2);
+  EXPECT_LT(result.faces_in_jaws_mm, 0.2);
+  EXPECT_LT(result.lip_in_lip_mm, 0.2);
+  EXPECT_GT(result.slip_mm, 2);
+  EXPECT_LT(result.left_behind_mm, 0.02);
+  EXPECT_EQ(result.bad, 0);
 }
 
 Case builtin() {

@@ -131,7 +131,8 @@ void expect_the_chin_takes_the_skin_along(Case patient, double above_mm) {
   const double difference_mm = largest_displacement(whole.state().nodes, parted.state().nodes);
   EXPECT_LT(difference_mm, 1);
   std::printf(
-      "soft pogonion goes %.2f mm forward at rest, %.2f mm at %.0f mm of opening; deepest %.2f mm; "
+      "soft pogonion moves %.2f mm forward at rest, %.2f mm at %.0f mm of opening; deepest %.2f "
+      "mm; "
       "%d solves unfinished; put back %.3f mm remain; the cut alone changes the open face by %.3f "
       "mm\n",
       at_rest_mm, open_forward_mm, open_mm, moved.penetration_mm(), moved.unconverged(), left_mm,

@@ -74,9 +74,9 @@ TEST(SkinFold, TheChinComesToLieOnTheThroatAndLeavesItAgain) {
   constexpr double step = 0.75 * degree;
   constexpr int begin = 26, widest = 50, looked_at = 48;  // steps
   TissueState state = rest_tissue(*model);
-  for (const double share : {0.25, 0.5, 0.75})
-    state = solve_tissue(*model, state,
-                         test::jaw_at(model->opening.path->pose(share * begin * step)), {}, warm);
+  for (const double fraction : {0.25, 0.5, 0.75})
+    state = solve_tissue(
+        *model, state, test::jaw_at(model->opening.path->pose(fraction * begin * step)), {}, warm);
   EXPECT_EQ(touches(), 0u);
   double max_step = 0, deepest = 0;
   Nodes opening;
@@ -97,7 +97,7 @@ TEST(SkinFold, TheChinComesToLieOnTheThroatAndLeavesItAgain) {
   EXPECT_GT(touches(), 8u);
   for (int i = widest - 1; i >= looked_at; --i) go_to(i);
   std::printf(
-      "skin crosses by up to %.2f mm; longest way of a step %.2f mm; opening and closing "
+      "skin crosses by up to %.2f mm; largest displacement of a step %.2f mm; opening and closing "
       "%.2f mm apart\n",
       deepest, max_step, farthest(opening, state.nodes));
   EXPECT_LT(deepest, 0.6);  // between points 6 mm apart

@@ -60,12 +60,12 @@ void expect_same_tissue(TissueBond bond, Finer finer = {1400, 8400}) {
   }
   for (std::size_t v = 0; v < area.size(); ++v) {
     const double apart = (coarse[v] - fine[v]).squaredNorm();
-    const double way = (fine[v] - face.vertices[v].cast<float>()).squaredNorm();
+    const double squared = (fine[v] - face.vertices[v].cast<float>()).squaredNorm();
     difference += area[v] * apart;
-    whole += area[v] * way;
+    whole += area[v] * squared;
     plain_difference += apart;
-    plain_whole += way;
-    farthest = std::max(farthest, std::sqrt(way));
+    plain_whole += squared;
+    farthest = std::max(farthest, std::sqrt(squared));
   }
   std::printf(
       "refined from 2,080 to %d nodes: %.1f %% of the displacement by area, %.1f %% by vertex\n",

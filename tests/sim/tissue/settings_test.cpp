@@ -32,7 +32,7 @@ double farthest(const Nodes& a, const Nodes& b) {
   return most;
 }
 
-TEST(TissueSettings, NothingMovesBeforeSurgeryUnderTurgorAndWeightInAnyDirection) {
+TEST(TissueSettings, NothingMovesBeforeSurgeryUnderPretensionAndWeightInAnyDirection) {
   const auto plain = plain_model({});
   for (const Vector3d& down : {Vector3d(0, 0, -1), Vector3d(0, 3, 0), Vector3d(-1, 2, 0.5)}) {
     const auto model = plain_model({.turgor = 0.9, .down = down});

@@ -107,8 +107,8 @@ TEST(CameraControl, SurfaceFollowsTheMouseInOrbit) {
     for (const Vector2d& move : {Vector2d(9, 0), Vector2d(0, 9), Vector2d(-6, 7)}) {
       const Camera after = dragged(before, CameraDrag::orbit, {600, 300}, Vector2d(600, 300) + move,
                                    window_view, limits);
-      const Vector2d went = pixel_of(after, nearest) - pixel_of(before, nearest);
-      EXPECT_GT(went.normalized().dot(move.normalized()), 0.9);
+      const Vector2d moved = pixel_of(after, nearest) - pixel_of(before, nearest);
+      EXPECT_GT(moved.normalized().dot(move.normalized()), 0.9);
       ++compared;
     }
   }
@@ -120,7 +120,7 @@ TEST(CameraControl, OrbitStopsAtThePoles) {
   for (int i = 0; i < 20; ++i)
     camera = dragged(camera, CameraDrag::orbit, {600, 100}, {600, 250}, window_view, limits);
   EXPECT_NEAR(camera.direction.z(), 1, 1e-9);
-  // And comes down again on the side it went up.
+  // And comes down again on the side it moved up.
   camera = dragged(camera, CameraDrag::orbit, {600, 250}, {600, 100}, window_view, limits);
   EXPECT_NEAR(camera_angles(camera).azimuth, 1, 1e-6);
 }
@@ -131,12 +131,12 @@ TEST(CameraControl, PanKeepsThePointUnderTheMouse) {
     const Camera before = any_camera(generator);
     const Camera after =
         dragged(before, CameraDrag::pan, {400, 300}, {437, 279}, window_view, limits);
-    // In the plane of the picture, and exactly as far as the mouse went.
+    // In the plane of the picture, and exactly as far as the mouse moved.
     EXPECT_NEAR((after.target - before.target).dot(before.direction), 0, 1e-9);
     EXPECT_EQ(after.distance_mm, before.distance_mm);
     EXPECT_EQ(after.direction, before.direction);
-    const Vector2d went = pixel_of(after, before.target) - pixel_of(before, before.target);
-    EXPECT_NEAR((went - Vector2d(37, -21)).norm(), 0, 0.01);
+    const Vector2d moved = pixel_of(after, before.target) - pixel_of(before, before.target);
+    EXPECT_NEAR((moved - Vector2d(37, -21)).norm(), 0, 0.01);
   }
 }
 

@@ -37,7 +37,7 @@ TEST(Pointing, FindsTheNearestSurfaceAndTheValueThere) {
   std::normal_distribution<double> normal;
   int near_hits = 0;
   for (int i = 0; i < 200; ++i) {
-    // A place on the front of the small ball, told in its own coordinates.
+    // A point on the front of the small ball, in its own coordinates.
     Vector3d q = 20 * Vector3d(normal(random), normal(random), normal(random)).normalized();
     const Vector3d p = X_near * q;
     if ((X_near.R * q).normalized().dot((eye - p).normalized()) < 0.3) continue;

@@ -318,7 +318,7 @@ TEST_P(Instrument, PlotsHaveAScaleAndTheirNamesStandClearOfTheCurves) {
       }
   }
   EXPECT_EQ(words, 9);
-  EXPECT_GT(ink, 300);  // curves are told from words by their colour
+  EXPECT_GT(ink, 300);  // curves are distinguished from text by their colour
   ASSERT_EQ(ticks.size(), 6u);
   for (const auto& [axis, count] : ticks) EXPECT_GE(count, 3) << axis;
 }
@@ -404,7 +404,7 @@ TEST_P(Instrument, TheKeyNamesTheGhost) {
   EXPECT_TRUE(stage.has("key"));
 }
 
-TEST_P(Instrument, WhatIsUnfoldedComesIntoSight) {
+TEST_P(Instrument, AnUnfoldedGroupScrollsIntoView) {
   for (int i = 0; i < 24; ++i)
     stage.scene.muscles.push_back({"m" + std::to_string(i), "Muscle " + std::to_string(i)});
   stage.rest();
@@ -974,7 +974,7 @@ TEST_F(ArrangementFile, OnlyThePersonsChangesAreRestored) {
   left.height = 160;
   run(expected, left);
   EXPECT_EQ(kept(), left);
-  // Back to the usual scale.
+  // Back to the default scale.
   left = expected;
   left.ui_scale.reset();
   run(expected, left);
@@ -995,7 +995,7 @@ TEST_F(ArrangementFile, ABrokenOrForeignFileIsOneSentenceAndAllIsAsAtFirst) {
     KeptArrangement kept(file_);
     EXPECT_EQ(kept.arrangement(), Arrangement{});
     EXPECT_NE(kept.trouble().find(file_.string()), std::string::npos) << kept.trouble();
-    // It is told once: what can be read comes in its place.
+    // It is reported once: a readable file then replaces it.
     kept.begin({});
     kept.update({}, true);
     EXPECT_TRUE(KeptArrangement(file_).trouble().empty()) << KeptArrangement(file_).trouble();

@@ -62,8 +62,8 @@ TEST(Measuring, OnACoarseFaceMarksLieOnWhatIsSeen) {
   std::vector<Part> parts = {make_part("face", Role::face, mesh)};
   ASSERT_TRUE(DrawnFace::smooths(mesh));
   FrameState frame;
-  const Vector3d way(3, -2, -9);
-  for (const auto& v : mesh.vertices) frame.face.push_back((v + way).cast<float>());
+  const Vector3d shift(3, -2, -9);
+  for (const auto& v : mesh.vertices) frame.face.push_back((v + shift).cast<float>());
   const auto seen = DisplayedFace(parts).places(frame);
   ASSERT_EQ(seen.size(), mesh.vertices.size());
   const TriangleTree tree(DrawnFace(mesh, {}, Eigen::Vector3f::Ones()).mesh());
@@ -71,10 +71,10 @@ TEST(Measuring, OnACoarseFaceMarksLieOnWhatIsSeen) {
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
     const PinnedPoint point{0, mesh.triangles[t], {1, 0, 0}};
     const Landmark landmark = landmark_on("pronasale", point, parts);
-    const Vector3d mark = place_of(point, parts, frame, seen) - way;
-    EXPECT_LT((place_of(landmark, parts, frame, seen) - way - mark).norm(), 1e-4);
+    const Vector3d mark = place_of(point, parts, frame, seen) - shift;
+    EXPECT_LT((place_of(landmark, parts, frame, seen) - shift - mark).norm(), 1e-4);
     const Vector3d vertex = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][0])];
-    EXPECT_LT((place_of(point, parts, frame) - way - vertex).norm(), 1e-4);
+    EXPECT_LT((place_of(point, parts, frame) - shift - vertex).norm(), 1e-4);
     measured_off = std::max(measured_off, tree.nearest(vertex).distance);
     seen_off = std::max(seen_off, tree.nearest(mark).distance);
   }

@@ -43,7 +43,7 @@ TEST(Movable, AreTheJawTheSkullAndFreeParts) {
   EXPECT_EQ(of(4), 0u);
   EXPECT_EQ(of(6), 2u);
   EXPECT_EQ(of(0), 1u);
-  EXPECT_EQ(of(1), 1u) << "the maxilla goes with the skull";
+  EXPECT_EQ(of(1), 1u) << "the maxilla moves with the skull";
   EXPECT_FALSE(of(5)) << "the face deforms";
 }
 
@@ -132,9 +132,9 @@ TEST(Handles, ArrowKeepsToItsAxisAndItsTipToTheMouse) {
     const Pose pose = gripped(view, grip, {}, tip, tip + 12 * along);
     EXPECT_GT(pose.t[axis], 0);
     EXPECT_NEAR(pose.t.norm(), pose.t[axis], 1e-12);
-    const Vector2d went = screen_place(view.camera, view.view, view.center + pose.t) -
-                          screen_place(view.camera, view.view, view.center);
-    EXPECT_LT((went - 12 * along).norm(), 0.5);
+    const Vector2d moved = screen_place(view.camera, view.view, view.center + pose.t) -
+                           screen_place(view.camera, view.view, view.center);
+    EXPECT_LT((moved - 12 * along).norm(), 0.5);
     // Across its axis an arrow does not go.
     const Vector2d across(-along.y(), along.x());
     EXPECT_LT(gripped(view, grip, {}, tip, tip + 30 * across).t.norm(), 1e-9);
@@ -157,7 +157,7 @@ TEST(Handles, RingTurnsWithTheMouseFromEitherSide) {
     EXPECT_NEAR((now - c).x(), 0, 1e-6);
     EXPECT_LT((now - c).y(), 0);
   }
-  // A ring seen from its edge rolls: what is near goes with the mouse.
+  // A ring seen edge-on rolls: its near side follows the mouse.
   const GizmoView view = front_view();
   const Vector2d c = screen_place(view.camera, view.view, view.center);
   const Pose rolled = gripped(view, Grip::turn_up, {}, c, c + Vector2d(20, 0));
@@ -225,23 +225,23 @@ TEST(MovePanel, DescribesGizmosAndReleaseOfEachBody) {
   stage.scene.bodies = movable_bodies(stage.parts, test::bodies_for(stage.parts));
   ASSERT_EQ(stage.scene.bodies.size(), 3u);
   stage.view.tool = Tool::move;
-  struct Told {
-    const char *handle, *let_go;
+  struct Texts {
+    const char *handle, *release;
   };
-  const Told told[] = {{"Mandible: up or down, with its teeth", "Joints draw the condyles in"},
-                       {"Skull: up or down, the lower jaw stays", "The lower jaw stays"},
-                       {"Left bone 2: up or down, alone", "It is pushed gently"}};
+  const Texts texts[] = {{"Mandible: up or down, with its teeth", "Joints draw the condyles in"},
+                         {"Skull: up or down, the lower jaw stays", "The lower jaw stays"},
+                         {"Left bone 2: up or down, alone", "It is pushed gently"}};
   for (std::size_t body = 0; body < 3; ++body) {
     stage.view.chosen = body;
     stage.rest();
     EXPECT_FALSE(stage.has("beside-mouse"));
     const ViewRect tip = stage.item("handle:S").rect;
     stage.step(tip.x + 3, tip.y + 3, false);
-    EXPECT_EQ(stage.item("beside-mouse").words, told[body].handle);
+    EXPECT_EQ(stage.item("beside-mouse").words, texts[body].handle);
     const ViewRect button = stage.item("release-body").rect;
     for (int i = 0; i < 60 && !stage.has("tooltip"); ++i)
       stage.step(button.x + 20, button.y + 10, false);
-    EXPECT_TRUE(stage.item("tooltip").words.starts_with(told[body].let_go));
+    EXPECT_TRUE(stage.item("tooltip").words.starts_with(texts[body].release));
     EXPECT_TRUE(stage.item("tooltip").words.ends_with("another motion end this"));
   }
 }
@@ -257,13 +257,13 @@ TEST(MovePanel, PlayStepsAndTheSliderLeaveASkullThatContactHolds) {
     stage.rest();
     return stage.view.hands.X_RC(stage.frame.poses[mandible_body]);
   };
-  using Way = void (*)(PanelStage&);
-  const Way ways[] = {
+  using Action = void (*)(PanelStage&);
+  const Action actions[] = {
       [](PanelStage& stage) { stage.click("play"); },
       [](PanelStage& stage) { stage.panels->run(Command::step_forward, stage.scene, stage.view); },
       [](PanelStage& stage) { stage.click("scrub"); },
       [](PanelStage& stage) { stage.click("opening"); }};
-  for (const Way take_jaw : ways) {
+  for (const Action take_jaw : actions) {
     PanelStage stage(1280, 720, 1);
     const Pose held = start(stage);
     EXPECT_NEAR(held.t.z(), -40, 1e-9);

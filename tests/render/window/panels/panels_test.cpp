@@ -71,7 +71,7 @@ int PanelsOn::expect_apart(const std::string& state) {
 }
 
 TEST_P(PanelsOn, NothingOverlapsOrLeavesTheScreen) {
-  stage.view.opening_mm = 20;  // the fullest state: with the button to let go
+  stage.view.opening_mm = 20;  // the fullest state: with the button to release
   stage.rest();
   const int panels = 7;  // top, left, right, bottom, cube, two edges to grip
   EXPECT_EQ(expect_apart("held"), panels);
@@ -215,7 +215,7 @@ TEST_P(PanelsOn, TheKeyToOverlaysStandsClearOfLegendAndPanels) {
 
 TEST_P(PanelsOn, DistancesShowTheirLegendAndHideTheSkin) {
   stage.click("left-tab:Look");
-  EXPECT_FALSE(stage.has("distances"));  // this loop cannot tell them
+  EXPECT_FALSE(stage.has("distances"));  // this loop cannot compute them
   stage.scene.distance_colours = distance_colours();
   stage.scene.distance_remarks = {"to the opposing jaw",
                                   "open surfaces have no inside:", "no sign near them"};

@@ -1,9 +1,10 @@
+#include "sim/contact/motion_sweep.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <random>
 
-#include "sim/contact/motion_sweep.h"
 #include "tests/support/boxes.h"
 #include "tests/support/shapes.h"
 
@@ -47,10 +48,10 @@ TEST(SweptPair, ReportedClearFromItsEndItIsClearOnTheWholePathWhicheverSideMoves
     p.measure();
     const PairContact at_end = p.query(p.to, {}, {});
     if (at_end.touching) continue;
-    const bool told = p.clear(at_end);
-    ++(told ? clear : not_clear);
-    clear_by_parts += told && p.margin(at_end) <= p.length_mm;
-    for (int k = 0; told && k < 25; ++k) {
+    const bool reported = p.clear(at_end);
+    ++(reported ? clear : not_clear);
+    clear_by_parts += reported && p.margin(at_end) <= p.length_mm;
+    for (int k = 0; reported && k < 25; ++k) {
       const PairContact on_path = p.query(interpolate(p.from, p.to, k / 25.0, p.pivot_D), {}, {});
       EXPECT_FALSE(on_path.touching) << trial;
       EXPECT_GE(on_path.distance_mm, p.min_distance_mm) << trial;

@@ -1,3 +1,5 @@
+#include "sim/dynamics/release_body.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -6,7 +8,6 @@
 
 #include "engine/core/error.h"
 #include "sim/dynamics/jaw_world.h"
-#include "sim/dynamics/release_body.h"
 #include "tests/support/boxes.h"
 #include "tests/support/builtin.h"
 #include "tests/support/overlap_oracle.h"
