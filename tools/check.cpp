@@ -35,7 +35,7 @@ struct CheckOptions {
 
 const std::string picture_start = "worst-", picture_end = ".png";
 
-/// Overview from the side on which it happens.
+/// Standard view from the side of the contact.
 std::string overview_of(const PairMeasure& measure) {
   if (measure.side == "left" || measure.side == "right") return measure.side;
   return measure.side == "middle" ? "front" : "three-quarter";
@@ -59,13 +59,13 @@ Image picture_of(const Scene& scene, const PairVerdict& pair, int threads) {
                     .title = display_name(pair.a) + " and " + readable_name(pair.b),
                     .lines = {worst_caption(pair)}};
   if (const auto words = open_surface_text(pair); !words.empty()) place.lines.push_back(words);
-  // Pairs that stay far apart have a wider scale, so that where they are nearest is seen.
+  // Distant pairs get a wider scale, so that their nearest regions are visible.
   const double least = std::abs(worst.sample.signed_distance_mm());
   const double near_mm = least < 4 ? 5 : least < 9 ? 10 : least < 18 ? 20 : 50;
   return contact_picture(place, distance_colours({.near_mm = near_mm, .deepest_mm = 2}));
 }
 
-/// A name that every file system takes.
+/// A name that is valid on every file system.
 std::string file_of(const PairVerdict& pair) {
   std::string name = pair.a + "-" + pair.b;
   for (char& c : name)
@@ -73,7 +73,7 @@ std::string file_of(const PairVerdict& pair) {
   return picture_start + name + picture_end;
 }
 
-/// Draws each pair worth a picture; gives its file's name, or empty, for every pair.
+/// Draws the pairs that need a picture. Returns the file name for each pair, or an empty one.
 std::vector<std::string> write_pictures(AtomicOutput& files, const Scene& scene,
                                         const ClearanceCheck& check, int threads,
                                         std::vector<std::string>& notes, const Progress& progress) {
@@ -129,7 +129,7 @@ std::vector<std::string> surface_hashes(const Case& patient) {
   return hashes;
 }
 
-/// Pictures of an earlier check must not be taken for this one's.
+/// Removes pictures of an earlier check.
 void remove_other_pictures(const std::filesystem::path& folder,
                            const std::vector<std::string>& kept) {
   const std::set<std::string> names(kept.begin(), kept.end());
@@ -148,7 +148,7 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   auto settings = simulator_settings(options.motion, common);
   settings.contact.far_mm = std::numeric_limits<double>::infinity();  // every distance is plotted
   std::optional<AtomicOutput> files;
-  if (!options.out.empty()) files.emplace(options.out);  // fails before the long work
+  if (!options.out.empty()) files.emplace(options.out);  // fails before the computation
   Case patient = open_patient(options.motion.patient, common, bar);
   check_motion(options.motion, patient);
   const Scene scene = make_scene(std::move(patient), settings, bar.callback());

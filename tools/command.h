@@ -23,21 +23,21 @@ struct CommonOptions {
   bool prints_summary() const { return summary && !quiet; }
 };
 
-/// The commands of the program. Each declares its options beside the function that it runs, which
-/// keeps their values.
+/// The commands of the program. Each declares its options next to the function that it runs, which
+/// owns their values.
 class Commands {
  public:
-  /// gives: the program's exit code.
+  /// Returns the program's exit code.
   using Run = std::function<int(const CommonOptions&)>;
 
   explicit Commands(CLI::App& app) : app_(app) {}
 
-  /// A command of the program, or a command below another one. Its options belong to the group
-  /// "Basics" until begin_group().
+  /// Adds a command of the program, or a subcommand. Its options belong to the group "Basics" until
+  /// begin_group().
   CLI::App& add(const char* name, const char* what, const char* example, Run run);
   CLI::App& add_below(CLI::App& parent, const char* name, const char* what, const char* example,
                       Run run);
-  /// A command that does nothing without one of those below it.
+  /// Adds a command that requires a subcommand.
   CLI::App& add_parent(const char* name, const char* what, const char* example);
 
   /// Runs the command that was parsed; the first one where none is named.
@@ -48,13 +48,13 @@ class Commands {
   std::vector<std::pair<CLI::App*, Run>> runs_;
 };
 
-/// Options that are added from now on stand under this heading of the command's help.
+/// Puts the options added from now on under this heading of the command's help.
 void begin_group(CLI::App& command, const char* name);
 
-/// The option takes a number in this range, which its help shows; "nan" is none.
+/// Restricts the option to numbers in this range, which its help shows; "nan" is refused.
 CLI::Option* in_range(CLI::Option* option, double low, double high);
 
-/// A word and what it stands for.
+/// A keyword and its value.
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
@@ -70,7 +70,7 @@ std::string words_of(const Choices<T>& choices) {
 [[noreturn]] void refuse_word(const std::string& option, const std::string& word,
                               const std::string& known);
 
-/// What a word stands for. throws: CLI::ValidationError.
+/// The value of a keyword. throws: CLI::ValidationError.
 template <class T>
 const T& chosen(const Choices<T>& choices, const std::string& option, const std::string& word) {
   for (const auto& [known, value] : choices)

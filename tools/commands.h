@@ -2,7 +2,7 @@
 
 #include "tools/command.h"
 
-/// Each declares a command with its options; its run function stands in the same file.
+/// Each declares a command with its options; its run function is in the same file.
 namespace condyle {
 
 void add_view(Commands& commands);

@@ -51,7 +51,7 @@ Progress ProgressBar::callback() {
 Case open_patient(const std::filesystem::path& folder, const CommonOptions& common,
                   ProgressBar& bar, const Progress& progress) {
   if (!folder.empty()) return load_case(folder);
-  // Making the patient takes some seconds once; a reader of a log should know what is going on.
+  // Generating the patient takes some seconds once; a log should say so.
   bool announced = false;
   return builtin_patient([&](std::string_view what, double fraction) {
     if (!announced && !common.quiet)

@@ -14,8 +14,8 @@
 
 namespace condyle {
 
-/// Progress on standard error: a bar where that is a terminal, elsewhere a line from time to time
-/// in work that takes long; nothing with --quiet.
+/// Progress on standard error: a bar on a terminal, elsewhere occasional lines during long work;
+/// nothing with --quiet.
 class ProgressBar {
  public:
   explicit ProgressBar(const CommonOptions& common);
@@ -35,28 +35,28 @@ class ProgressBar {
   std::chrono::steady_clock::time_point last_line_ = std::chrono::steady_clock::now();
 };
 
-/// The case in the folder, or the built-in patient when it is empty.
-/// `progress` is called instead of the bar when it is given.
+/// The case in the folder, or the built-in patient if it is empty. `progress`, if given, is called
+/// instead of the bar.
 Case open_patient(const std::filesystem::path& folder, const CommonOptions& common,
                   ProgressBar& bar, const Progress& progress = {});
 
-/// Prints what a user should know of a scene before the long work: surfaces that overlap or are
-/// open, and simplifications of the soft tissue. Those of the built-in patient (no folder) are
+/// Prints notes on a scene before the computation: surfaces that overlap or are open, and
+/// simplifications of the soft tissue. Those of the built-in patient (no folder) are
 /// printed with --verbose alone; report.json has them.
 void print_notes(const Scene& scene, const std::filesystem::path& folder,
                  const CommonOptions& common, ProgressBar& bar);
 
-/// The machine's processor, by its own name.
+/// Model name of the machine's processor.
 std::string processor();
 
 /// "1280x720". throws: InputError unless both are between 16 and 8192.
 std::pair<int, int> parse_size(const std::string& text);
 
-/// What "bones", "teeth", "skin" and so on mean.
+/// The roles in the groups "bones", "teeth", "skin" and so on.
 const std::map<std::string, std::set<Role>>& part_groups();
 
 /// Fills opacities from a list such as "bones,teeth,skin:0.4"; "all" shows every part.
-/// gives: the map of numbers on the surfaces that is in the list, if one is. throws: InputError for
+/// Returns the colour map in the list, if there is one. throws: InputError for
 /// an unknown name, listing the known ones.
 SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
                            PictureSettings& settings);

@@ -11,7 +11,7 @@
 namespace condyle {
 namespace {
 
-/// The first line of a page without its mark of a heading.
+/// The first line of a page without the heading mark.
 std::string title_of(const ManualPage& page) {
   const std::string line(page.text.substr(0, page.text.find('\n')));
   return line.starts_with("# ") ? line.substr(2) : line;

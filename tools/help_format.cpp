@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t line_width = 90, name_width = 28;
 
-/// Breaks a text between words into lines of `width` characters; each but the first begins with
+/// Wraps a text between words to lines of `width` characters; each but the first begins with
 /// `indent` spaces.
 std::string wrapped(const std::string& text, std::size_t width, std::size_t indent) {
   std::istringstream words(text);
@@ -62,7 +62,7 @@ class HelpFormat : public CLI::Formatter {
   }
 
  private:
-  /// What the library calls the types of C++.
+  /// The library's names of C++ types.
   static std::string value_of(const std::string& type) {
     if (type == "FLOAT") return "NUMBER";
     if (type == "INT" || type == "UINT") return "N";

@@ -17,7 +17,7 @@ namespace condyle {
 namespace {
 
 struct ImportOptions {
-  std::string units = "mm", frame = "LPS";  // of the files, as the user wrote them
+  std::string units = "mm", frame = "LPS";  // of the files, unparsed
   ImportRequest request;
   std::vector<std::string> carriers;
   bool push_out = false;  // pieces that start deep inside others

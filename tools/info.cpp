@@ -44,7 +44,7 @@ Json describe(const Case& patient, BodyId id) {
     json["parts"].push_back(part.name);
     bone = bone || (collides(part.role) && !part.mesh.empty());
   }
-  // The cranium is fixed, so its mass is of no use.
+  // The cranium is fixed, so its mass is irrelevant.
   if (bone && id != cranium_body) json["mass_g"] = 1000 * body_mass(patient, id).mass_kg;
   return json;
 }

@@ -4,8 +4,8 @@
 
 namespace condyle {
 
-/// While it lives, Ctrl-C and a polite kill say a sentence on standard error before they end the
-/// program as they always do. One at a time.
+/// During its lifetime SIGINT and SIGTERM print a sentence on standard error before they end the
+/// program as by default. One instance at a time.
 class Interruption {
  public:
   explicit Interruption(const std::string& sentence);

@@ -49,7 +49,7 @@ void add_common(CLI::App& app, CommonOptions& common) {
            1, 64);
 }
 
-/// CLI11 calls an unknown command an unexpected argument; a person wants to know which there are.
+/// CLI11 calls an unknown command an unexpected argument; this message lists the valid ones.
 std::string unknown_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
   std::vector<std::string> known;

@@ -5,7 +5,7 @@
 
 namespace condyle {
 
-/// A page of the manual, made part of the program from tools/manual/SUBJECT.md.
+/// A page of the manual, embedded in the program from tools/manual/SUBJECT.md.
 struct ManualPage {
   std::string_view subject, text;
 };

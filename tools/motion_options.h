@@ -11,37 +11,37 @@
 
 namespace condyle {
 
-/// Who moves, and how.
+/// Patient and motion.
 struct MotionOptions {
   std::filesystem::path patient = {};  // case folder; empty: the built-in patient
   std::string motion = {};
   MotionSettings settings = {};
   MuscleMotionSettings muscles = {};
-  bool respect_contact = false;  // a recorded motion, too, slides where bones meet
+  bool respect_contact = false;  // a recorded motion also slides where bones meet
   double friction = 0;
-  std::vector<std::string> pairs = {};  // rules as the user wrote them
+  std::vector<std::string> pairs = {};  // rules, unparsed
   TissueOptions tissue = {};
 };
 
-// Each adds options to a command and lets them write into the values, which must outlive it.
+// Each adds options to a command and binds them to the values, which must outlive it.
 
 /// Case and motion, in the group "Basics".
 void add_motion(CLI::App& command, MotionOptions& motion);
 /// Rules of pairs of parts, in the group "Contact".
 void add_pairs(CLI::App& command, MotionOptions& motion);
-/// How contact bends a motion, in the group "Contact".
+/// Response of a motion to contact, in the group "Contact".
 void add_sliding(CLI::App& command, MotionOptions& motion);
 /// The parameters of the motion in the group "Motion", and the group "Muscles".
 void add_motion_details(CLI::App& command, MotionOptions& motion);
 
 SimulatorSettings simulator_settings(const MotionOptions& options, const CommonOptions& common);
 
-/// What needs no patient to be wrong: words, files and numbers. throws: InputError.
+/// Checks words, files and numbers that need no patient. throws: InputError.
 void check_motion(const MotionOptions& options);
-/// What is wrong for this patient, before any model of it is built. throws: InputError.
+/// Checks the options for this patient, before any model of it is built. throws: InputError.
 void check_motion(const MotionOptions& options, const Case& patient);
 
-/// The motion that the command line asks for.
+/// The motion of the command line.
 Motion motion_of(const MotionOptions& options, const Scene& scene, int threads);
 
 }  // namespace condyle

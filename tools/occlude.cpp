@@ -27,7 +27,7 @@ struct OccludeOptions {
   std::filesystem::path patient;  // case folder; empty: the built-in patient
   std::filesystem::path out;
   std::string start;      // pose file or offsets; empty: the pose of the case
-  double paper_mm = 0.1;  // what is marked when bitten on
+  double paper_mm = 0.1;  // thickness of the articulating film
 };
 
 constexpr const char* picture_name = "arches.png";
@@ -37,7 +37,7 @@ struct Start {
   std::string words;
 };
 
-/// The start as numbers, where the text is nothing but numbers and commas.
+/// The start as numbers, if the text consists of numbers and commas.
 std::vector<double> numbers_in(const std::string& text) {
   std::vector<double> numbers;
   for (const char* at = text.c_str();; ++at) {
@@ -108,12 +108,12 @@ Image picture_of(const Case& patient, const Bite& bite, double paper_mm, int thr
   return contact_picture(place, gap_colours(paper_mm));
 }
 
-/// Name of the picture's file, or empty with a note where there can be none.
+/// Name of the picture's file, or empty with a note where drawing is impossible.
 std::string write_picture(const std::filesystem::path& folder, const Case& patient,
                           const Bite& bite, double paper_mm, int threads,
                           std::vector<std::string>& notes) {
   std::error_code none;
-  std::filesystem::remove(folder / picture_name, none);  // one of an earlier bite
+  std::filesystem::remove(folder / picture_name, none);  // of an earlier bite
   try {
     const OffscreenContext context;
     if (const auto lacks = default_render_metadata(context).shortfall(); !lacks.empty())

@@ -9,10 +9,10 @@
 
 namespace condyle {
 
-/// "A,B,POLICY[,gap=MM][,margin=MM]". throws: InputError naming what is wrong with it.
+/// "A,B,POLICY[,gap=MM][,margin=MM]". throws: InputError naming the error.
 PairRule parse_pair(const std::string& text);
 
-/// "NAME=BODY" each: on which body a piece hangs. throws: InputError.
+/// "NAME=BODY" each: the parent body of a piece. throws: InputError.
 std::map<std::string, std::string> parse_parents(const std::vector<std::string>& texts);
 
 }  // namespace condyle

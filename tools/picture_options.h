@@ -12,10 +12,10 @@ class App;
 
 namespace condyle {
 
-/// What is cut, laid over and written on pictures, as the user wrote it.
+/// Cuts, overlays and texts of pictures, unparsed.
 struct PictureOptions {
   std::string size = "1280x720";
-  std::string camera = "three-quarter";  // several by commas
+  std::string camera = "three-quarter";  // several separated by commas
   std::string show = "all";
   double distance_near_mm = 2;  // end of the map of distances
   std::string clip = {}, clip_parts = {}, cut_away = {}, overlay = {};
@@ -32,13 +32,13 @@ struct PictureOptions {
 /// The groups "Camera" and "Look".
 void add_pictures(CLI::App& command, PictureOptions& picture);
 
-/// throws: InputError saying which option is wrong and what is known.
+/// throws: InputError naming the wrong option and the known values.
 PicturePlan parse_pictures(const PictureOptions& options, const Case& patient);
 
-/// What needs no patient to be wrong.
+/// Checks that need no patient.
 void check_pictures(const PictureOptions& options);
 
-/// All that decides the pictures but size and camera, for a recording's sheet.
+/// Everything that determines the pictures except size and camera, for a recording's sheet.
 std::string describe(const PictureOptions& options);
 
 }  // namespace condyle

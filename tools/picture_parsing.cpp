@@ -15,10 +15,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// What gap is marked as contact: the thickness of articulating paper.
+// Gap marked as contact: the thickness of articulating film.
 constexpr float patch_mm = 0.1f;
 
-/// Names of the parts that a list of groups and parts means.
+/// Names of the parts in a list of groups and parts.
 std::vector<std::string> parts_of(const std::vector<std::string>& items, const Case& patient,
                                   const std::string& option) {
   std::vector<std::string> names;
@@ -38,7 +38,7 @@ std::vector<std::string> parts_of(const std::vector<std::string>& items, const C
       throw InputError(option + ": " + item + " is unknown; known are " + all);
     }
   }
-  // A group that this patient has nothing of cuts nothing, which an empty list would not mean.
+  // A group without parts in this patient cuts nothing; an empty list would cut everything.
   if (names.empty() && !items.empty()) names.emplace_back();
   return names;
 }
@@ -134,7 +134,7 @@ void add_overlay(const std::string& item, const Case* patient, PicturePlan& plan
   }
 }
 
-/// Without a patient only what can be checked without one.
+/// Without a patient, checks only what needs none.
 PicturePlan parse(const PictureOptions& options, const Case* patient) {
   PicturePlan plan;
   auto& settings = plan.settings;

@@ -35,7 +35,7 @@ struct RecordOptions {
   bool resume = false;
 };
 
-/// Times of the frames: the whole motion, first and last included.
+/// Times of the frames over the whole motion, both ends included.
 struct FrameTimes {
   int count = 1;
   double duration_s = 0;
@@ -57,7 +57,7 @@ FrameTimes frame_times(const RecordOptions& options, double duration_s) {
   return {options.frames > 0 ? options.frames : static_cast<int>(rounded), duration_s};
 }
 
-/// The report, with what its pictures were drawn with.
+/// The report with the metadata of its pictures.
 std::string with_pictures(const std::string& report, const RenderMetadata& facts) {
   auto json = nlohmann::ordered_json::parse(report);
   json["pictures"] = {
@@ -65,7 +65,7 @@ std::string with_pictures(const std::string& report, const RenderMetadata& facts
   return json.dump(2) + "\n";
 }
 
-/// Fails before the long work when the command line is wrong in a way that needs no patient.
+/// Checks the command line as far as possible without a patient.
 void check_early(const RecordOptions& options) {
   check_motion(options.motion);
   if (options.pictures) check_pictures(options.picture);
@@ -92,7 +92,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   TraceWriter trace(options.out / "trace.csv", motion.muscle_names, scene.patient.bodies,
                     scene.patient.jaw);
   MotionReport report(scene, motion, settings);
-  std::optional<FrameRenderer> pictures;  // ends first: it gives frames to the trace
+  std::optional<FrameRenderer> pictures;  // destroyed first: it passes frames to the trace
   if (options.pictures)
     pictures.emplace(
         *plan, RecordingFiles{.out = options.out, .film = options.film, .resume = options.resume},
@@ -145,7 +145,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   return 0;
 }
 
-/// Options of `record` and `run` alike but for the pictures.
+/// Options of `record` and `run`; the latter has none for pictures.
 CLI::App& add_recording(Commands& commands, const char* name, const char* what, const char* example,
                         const std::shared_ptr<RecordOptions>& options) {
   CLI::App& command = commands.add(name, what, example, [options](const CommonOptions& common) {

@@ -20,13 +20,13 @@ using Json = nlohmann::ordered_json;
 
 struct ReleaseOptions {
   std::filesystem::path patient, out;
-  std::string part;  // empty: the only one that may be released
+  std::string part;  // empty: the only one that can be released
   std::vector<double> push_N;
   double friction = 0.3;
-  std::vector<std::string> yielding;  // parts that are pushed along
+  std::vector<std::string> yielding;  // parts that yield when pushed
 };
 
-/// The first part of each body that may be released.
+/// The first part of each body that can be released.
 std::vector<std::size_t> pieces_of(const Case& patient) {
   std::vector<std::size_t> pieces;
   for (std::size_t i = 0; i < patient.parts.size(); ++i)
@@ -50,7 +50,7 @@ std::size_t piece_named(const Case& patient, const std::string& name, const char
                                name, known));
 }
 
-/// A part whose body was released, and how it moved.
+/// A part whose body was released, and its displacement.
 struct Moved {
   std::size_t part;
   Pose X;
@@ -87,7 +87,7 @@ Json report_of(const Case& patient, const std::vector<Moved>& moved, const Relea
   return json;
 }
 
-/// The places where a part touches, and what is there.
+/// Contacts of a part, with the parts and regions that it touches.
 std::string places_of(const Case& patient, int part, const Release& settled) {
   std::map<std::string, int> on;
   for (const auto& contact : settled.contacts) {
@@ -187,7 +187,7 @@ CLI::App& add_release(Commands& commands, const char* name) {
 
 void add_release(Commands& commands) {
   add_release(commands, "release");
-  add_release(commands, "let-go").group("");  // hidden: its name up to version 0.1.7
+  add_release(commands, "let-go").group("");  // hidden alias: its name up to version 0.1.7
 }
 
 }  // namespace condyle

@@ -27,7 +27,7 @@ constexpr std::array surfaces = {
     SampleFile{"upper.stl", Role::upper_teeth}, SampleFile{"lower.stl", Role::lower_teeth},
     SampleFile{"skin.ply", Role::face}};
 
-/// A block of bone in front of the chin, which a push to the back settles on it.
+/// A block of bone in front of the chin, which a posterior push brings to rest on it.
 Part chin_transplant(const Case& patient) {
   const Vector3d half(6, 2, 3), gap(0, -1.5 - half.y(), 0);
   const Vector3d middle = patient.landmarks.find("pogonion").value_or(Vector3d::Zero()) + gap;
@@ -43,7 +43,7 @@ Part chin_transplant(const Case& patient) {
   return part;
 }
 
-/// A motion as a recording has it: poses of the mandible, 50 a second.
+/// A motion as a recording: poses of the mandible, 50 per second.
 std::string recording_of(const Motion& motion) {
   constexpr double rate_hz = 50;
   std::string csv = "time_s,tx_mm,ty_mm,tz_mm,qw,qx,qy,qz\n";

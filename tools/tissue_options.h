@@ -12,7 +12,7 @@ class App;
 
 namespace condyle {
 
-/// How the soft tissue differs from the case's own, as the user wrote it.
+/// Deviations of the soft tissue from the case's own, unparsed.
 struct TissueOptions {
   bool simulated = true;
   int surface_nodes = 520;
@@ -26,7 +26,7 @@ struct TissueOptions {
 /// The group "Tissue".
 void add_tissue(CLI::App& command, TissueOptions& tissue);
 
-/// What the command line says of the soft tissue. throws: InputError naming option and value.
+/// The command line's plan of the soft tissue. throws: InputError naming option and value.
 TissuePlan parse_tissue(const TissueOptions& options);
 
 }  // namespace condyle

@@ -23,7 +23,7 @@ struct ViewOptions {
   std::filesystem::path state_file;     // kept up to date with what the window shows; empty: none
 };
 
-/// As the window was left, but for what the command line asks for.
+/// The stored arrangement of the window, overridden by the command line.
 WindowOptions window_options(const ViewOptions& options, const Arrangement& kept) {
   WindowOptions window{.title = "Condyle", .arrangement = kept, .default_scale = options.ui_scale};
   Arrangement& start = window.arrangement;

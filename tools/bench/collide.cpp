@@ -105,12 +105,12 @@ Jaws find_jaws(const Case& patient) {
   return jaws;
 }
 
-/// One thread, and as many as may be used.
+/// One thread, and the maximum.
 std::vector<int> thread_counts(int threads) {
   return threads > 1 ? std::vector<int>{1, threads} : std::vector<int>{1};
 }
 
-/// Around the crowns, with room for the ways of the bench.
+/// Around the crowns, with a margin for the displacements of the benchmark.
 ContactSurfaceSettings near_bite(const Jaws& jaws) {
   ContactSurfaceSettings settings;
   settings.field.region =
@@ -118,7 +118,7 @@ ContactSurfaceSettings near_bite(const Jaws& jaws) {
   return settings;
 }
 
-/// Pose of the mandible that grinding teeth are asked for: pressed up to 1.5 mm into each other.
+/// Target pose of the mandible for grinding teeth: pressed up to 1.5 mm into each other.
 Pose grinding(const Jaws& jaws, int frame) {
   const double s = 0.06 * frame;
   const Eigen::Quaterniond turn(
@@ -127,8 +127,8 @@ Pose grinding(const Jaws& jaws, int frame) {
   return {turn, jaws.center + shift - turn * jaws.center};
 }
 
-/// Two bones that grind on each other: the nearest poses that touch, and what FCL and Bullet take
-/// to find the contacts alone.
+/// Two bones that grind on each other: time for the nearest touching poses, and of FCL and Bullet
+/// for the contacts alone.
 void measure_pair(const Jaws& jaws, int triangles, int threads, bool baselines, Results& results) {
   const TriMesh upper = sized(jaws.upper, triangles, jaws.center),
                 lower = sized(jaws.lower, triangles, jaws.center);
@@ -162,7 +162,7 @@ void measure_pair(const Jaws& jaws, int triangles, int threads, bool baselines, 
       PlainQuery found;
       fcl.push_back(timed([&] { found = plain_query(surface_a, {}, surface_b, target, 256); }));
       fewest = std::min(fewest, found.contacts);
-      // Where they were stopped they do not cross: then it looks for their distance.
+      // At contact they do not cross: then it computes their distance.
       fcl.push_back(timed([&] { plain_query(surface_a, {}, surface_b, X, 256); }));
     }
     results.add("collide.pair", ms,
@@ -208,7 +208,7 @@ TriMesh bumpy_block(int triangles) {
   return block;
 }
 
-/// Ten blocks in a row, squeezed and shaken: each pushes its neighbours.
+/// Ten blocks in a row, compressed and shaken: each pushes its neighbours.
 void measure_segments(int threads, Results& results) {
   constexpr int count = 10, warm_up = 300, steps = 600;
   constexpr double bone_kg_mm3 = 1.9e-6, squeeze_N = 0.5, shake_N = 5e-3;
@@ -257,7 +257,7 @@ void measure_segments(int threads, Results& results) {
                {"pair_steps_apart", apart}});
 }
 
-/// The mandible closes under a force and grinds: a simulated second at a time.
+/// The mandible closes under a force and grinds: timed per simulated second.
 void measure_dynamics(const Jaws& jaws, int threads, Results& results) {
   constexpr int seconds = 3, triangles = 50000;
   constexpr double bone_kg_mm3 = 1.9e-6;
@@ -303,8 +303,8 @@ void measure_dynamics(const Jaws& jaws, int threads, Results& results) {
   }
 }
 
-/// Blocked frames as the window's loop has them: the jaw is dragged into the bite, slides on all
-/// that its bones may meet, and the exact surfaces judge where it ends.
+/// Blocked frames as in the window's loop: the jaw is dragged into the bite, slides on all bones in
+/// contact, and the exact surfaces verify the result.
 void measure_blocked_jaw(const Case& patient, const Jaws& jaws, int threads, Results& results) {
   constexpr int frames = 240;
   constexpr double round = 2 * std::numbers::pi / frames;
@@ -349,7 +349,8 @@ void measure_blocked_jaw(const Case& patient, const Jaws& jaws, int threads, Res
     }
 }
 
-/// Muscles chew on food with the patient's own crowns: a simulated second at a time, one thread.
+/// Muscle-driven chewing on food with the patient's own crowns: timed per simulated second, one
+/// thread.
 void measure_chewing(const Case& patient, Results& results) {
   constexpr int seconds = 5;
   constexpr double cycle_s = 0.7;
@@ -378,7 +379,7 @@ void measure_chewing(const Case& patient, Results& results) {
                {"threads", 1}});
 }
 
-/// Joints and contacts of the engine beside plain Bullet's, one thread.
+/// Joints and contacts of the engine compared with plain Bullet's, one thread.
 void measure_rigid(Results& results) {
   using Scene = std::pair<const char*, RigidRun (*)(RigidMethod)>;
   for (const auto& [scene, run] :

@@ -1,4 +1,4 @@
-// The two decimators on the surfaces that the built-in patient is made of.
+// The two decimators on the built-in patient's surfaces.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -76,7 +76,7 @@ Json measure(const Surface& surface, const char* method, int repeats,
   for (int i = 0; i <= repeats; ++i) {
     const Stopwatch watch;
     coarse = decimate();
-    if (i == 0) continue;  // warms up
+    if (i == 0) continue;  // warm-up
     wall.push_back(watch.wall_ms());
     cpu.push_back(watch.cpu_ms());
   }

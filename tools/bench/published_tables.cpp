@@ -1,4 +1,4 @@
-// The published tables, measured again: table 1 compares minimisers, table 2 gives the time of a
+// The published tables, measured again: table 1 compares minimisers, table 2 states the time of a
 // prediction.
 #include <fmt/format.h>
 
@@ -16,8 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Equation (1) raw, with constants chosen here: the publication gives none. Lambda has to fall as
-/// the mesh gets finer (volumes count as mm^6), or prisms give way altogether.
+/// Equation (1) unmodified, with constants chosen here, since the publication states none. Lambda
+/// must decrease as the mesh is refined (volumes count as mm^6), or prisms collapse.
 SyntheticSet paper_set(const SyntheticSize& size, double lambda) {
   SyntheticSet set = make_synthetic_set(size);
   use_paper_form(set.mesh, {std::vector<double>(size.layers, 0.05), lambda});
@@ -43,7 +43,7 @@ Published published(Method method) {
   }
 }
 
-/// One solve by a method; the preconditioned one with factors made on the way.
+/// One solve by a method; the preconditioned one with factors computed during the solve.
 MinimizeResult solve(Method method, const TissueTarget& target, const MeshLoads& loads,
                      const HessianFactor& factor, double tolerance, Nodes& x) {
   SpringPrismEnergy energy(target.set.mesh, loads, 1, target.batches);
@@ -55,7 +55,7 @@ MinimizeResult solve(Method method, const TissueTarget& target, const MeshLoads&
   return minimize_with(method, energy, settings, x);
 }
 
-/// Memory at 3,000 positions: a few evaluations, after which all of it is held.
+/// Memory at 3,000 positions: after a few evaluations, when all of it is allocated.
 std::size_t bytes_at_3000(Method method) {
   const SyntheticSet set = paper_set({1000, 124, 2, 400, {0, 1, 2}}, 0.99);
   const MeshLoads loads = synthetic_loads(set, bench_movement());
@@ -69,10 +69,10 @@ std::size_t bytes_at_3000(Method method) {
   return minimize_with(method, energy, settings, x).bytes;
 }
 
-/// Largest difference between a movement of 1 mm made at once and in ten steps, at an opening.
+/// Largest difference between a movement of 1 mm in one step and in ten, at an opening.
 Json ten_steps(const TissueTarget& target, const HessianFactor& factor, Method method,
                const char* name, const char* at, double opening_rad) {
-  // The plain method cannot tell smaller steps from rounding.
+  // The plain method cannot distinguish smaller steps from rounding.
   const double tolerance = method == Method::preconditioned ? 1e-7 : 1e-6;
   const auto to = [&](double moved_mm, Nodes& x) {
     const MeshLoads loads =

@@ -12,8 +12,8 @@
 #include "engine/core/temporary_path.h"
 #include "render/output/parallel_renderers.h"
 #include "render/output/recorder.h"
-#include "render/window/settings/layout.h"
 #include "render/window/picture/render_thread.h"
+#include "render/window/settings/layout.h"
 #include "render/window/view/playback.h"
 #include "sim/simulator/live.h"
 
@@ -34,8 +34,9 @@ std::vector<BenchRow> play(const Scene& scene, const Motion& motion,
   LiveSimulation simulation(scene, motion, live_settings(settings));
   RenderThread render_thread([] {});
   QualityGovernor governor;
-  RenderRequest order{.parts = std::make_shared<DrawnParts>(DrawnParts{scene.patient.parts, {}, {}}),
-                     .camera = camera};
+  RenderRequest order{
+      .parts = std::make_shared<DrawnParts>(DrawnParts{scene.patient.parts, {}, {}}),
+      .camera = camera};
   order.settings.width = width;
   order.settings.height = height;
   order.moving = true;
@@ -44,8 +45,8 @@ std::vector<BenchRow> play(const Scene& scene, const Motion& motion,
   BenchRow pictures{name + "_pictures", "1/s", {}, {}}, steps{name + "_steps", "1/s", {}, {}};
   double scale = 1;
   int counted = 0;
-  // Time counts from the first picture on: before it all is uploaded.
-  bool begun = false, due = false;  // due: a frame of which no picture was ordered
+  // Timed from the first picture on, after all uploads.
+  bool begun = false, due = false;  // due: a frame without a picture request
   Clock::time_point start = Clock::now(), last = start, span = start, ordered{};
   while (!begun || seconds(start, Clock::now()) < settle_s + measure_s) {
     const auto now = Clock::now();
@@ -131,7 +132,7 @@ std::vector<BenchRow> bench_film(std::span<const Part> parts, const std::vector<
   BenchRow ratio{"frame.record_with_film", "times as long", {}, {}},
       plain{"frame.record", "pictures/s", {}, {}}, fine{"frame.record_msaa", "pictures/s", {}, {}};
   try {
-    record(smoothed, true);  // the first has all to prepare
+    record(smoothed, true);  // the first prepares everything
     for (int i = 0; i < rounds; ++i) {
       const double without = record(smoothed, false);
       plain.samples.push_back(1 / without);
@@ -139,7 +140,7 @@ std::vector<BenchRow> bench_film(std::span<const Part> parts, const std::vector<
       fine.samples.push_back(1 / record(sampled, false));
     }
   } catch (const MachineError&) {
-    return {};  // no ffmpeg, or no room
+    return {};  // no ffmpeg, or no space
   }
   for (BenchRow* row : {&plain, &fine, &ratio})
     row->parameters = {{"width", smoothed.width},

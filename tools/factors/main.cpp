@@ -1,6 +1,6 @@
-// condyle-factors [NODES...]: the engine's Cholesky factor beside CHOLMOD's and Eigen's, on one
-// matrix of one tissue, as JSON. A program of its own because parts of CHOLMOD are under the GPL;
-// nothing of it is in condyle.
+// condyle-factors [NODES...]: the engine's Cholesky factor compared with CHOLMOD's and Eigen's, on
+// one matrix of one tissue, as JSON. A separate program because parts of CHOLMOD are under the GPL;
+// condyle contains nothing of it.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -213,7 +213,7 @@ void compare(int nodes, Json& rows) {
     reference->solve(p.gradient, z);
     exact = flat(z);
   }
-  // In turn, so that a busy moment of the machine meets all of them; the first turn warms up.
+  // In turn, so that load of the machine affects all of them; the first turn is a warm-up.
   for (int turn = 0; turn <= repeats; ++turn)
     for (auto& c : all) {
       run(p, lower, exact, turn <= 3, c);

@@ -26,7 +26,7 @@ std::unique_ptr<DirectSolver> make_cholmod(CholmodKind kind, const LowerTriangle
 std::unique_ptr<DirectSolver> make_eigen_double(const LowerTriangle& lower);
 std::unique_ptr<DirectSolver> make_eigen_float(const LowerTriangle& lower);
 
-/// The library that gives the dense products of CHOLMOD's supernodes: "OpenBLAS" or "BLAS".
+/// The library for the dense products of CHOLMOD's supernodes: "OpenBLAS" or "BLAS".
 std::string blas_name();
 
 }  // namespace condyle::factors

@@ -8,7 +8,7 @@
 namespace condyle::peers {
 namespace {
 
-// GSL's line searches know no infinite values: a wall as high as any start.
+// GSL's line searches do not support infinite values: a large finite one replaces them.
 double finite(double value) { return std::isfinite(value) ? value : 1e12; }
 
 double solve(const gsl_multimin_fdfminimizer_type* type, double line_tolerance,

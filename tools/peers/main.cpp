@@ -104,7 +104,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "condyle-peers: the set must be table1 or table2, not %s\n", argv[1]);
     return 2;
   }
-  FLAGS_minloglevel = google::GLOG_ERROR;  // Ceres would tell each restart
+  FLAGS_minloglevel = google::GLOG_ERROR;  // Ceres would log each restart
   try {
     return condyle::peers::run(which);
   } catch (const std::exception& error) {

@@ -2,8 +2,8 @@
 
 #include "tools/bench/baseline/tissue_target.h"
 
-/// Other people's minimisers on the same energy, from the same start. Each leaves its answer in x
-/// and returns the energy there; `tolerance` is the library's own, as named.
+/// Minimisers of other libraries on the same energy, from the same start. Each leaves its result in
+/// x and returns the energy there; `tolerance` is the library's own, as named.
 namespace condyle::peers {
 
 /// The energy over 3 N doubles. Infinite energies are reported as such.

@@ -13,7 +13,7 @@ namespace condyle {
 /// source: Press et al., Numerical Recipes, for the first four.
 enum class Method { cg_parabolic, cg_derivative, powell, quasi_newton, preconditioned };
 
-/// What is known of a method without running it.
+/// Static description of a method.
 struct MethodFacts {
   Method method;
   const char* name;          // as in the benchmarks
@@ -23,8 +23,8 @@ struct MethodFacts {
 };
 std::span<const MethodFacts> all_methods();
 
-/// Of the common settings the first four methods read tolerance_mm (displacement of any point in
-/// one iteration), both budgets and max_step_mm (not powell).
+/// The first four methods use these common settings: tolerance_mm (displacement of any point in one
+/// iteration), both budgets and max_step_mm (not powell).
 struct BaselineSettings : MinimizeSettings {
   BaselineSettings(const MinimizeSettings& common = {}) : MinimizeSettings(common) {}
   /// They also stop where an iteration lowers the value by less than this fraction; 0: never.
@@ -32,8 +32,8 @@ struct BaselineSettings : MinimizeSettings {
   double line_tolerance = 0.1;  // of the line searches: interval width over position
 };
 
-/// Moves `x` downhill to a minimum, as minimize() does. `preconditioner`: for Method::preconditioned
-/// only. throws: std::logic_error without it.
+/// Moves `x` downhill to a minimum, as minimize() does. `preconditioner`: for
+/// Method::preconditioned only. throws: std::logic_error without it.
 MinimizeResult minimize_with(Method method, Objective& objective, const BaselineSettings& settings,
                              Points& x, const Preconditioner* preconditioner = nullptr);
 

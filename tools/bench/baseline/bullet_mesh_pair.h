@@ -7,8 +7,8 @@
 
 namespace condyle {
 
-/// Bullet's own contact of two triangle meshes (GImpact), as it comes: what ours is measured
-/// against, and used for nothing else.
+/// Bullet's own contact of two triangle meshes (GImpact), unmodified: a reference for measurements
+/// only.
 class BulletMeshPair {
  public:
   BulletMeshPair(const TriMesh& a, const TriMesh& b);

@@ -19,7 +19,7 @@ MinimizeResult conjugate_gradient(LineSearch search, Objective& objective,
   }
   for (std::size_t i = 0; i < x.size(); ++i) d[i] = -g[i];
 
-  // The first look along a direction is as far as the last iteration moved.
+  // The first trial step along a direction has the length of the last iteration's.
   double moved = 0.1 * settings.max_step_mm;
   bool steepest = true;  // d is minus the gradient
   result.status = MinimizeResult::Status::budget_spent;
@@ -49,7 +49,7 @@ MinimizeResult conjugate_gradient(LineSearch search, Objective& objective,
                                       },
                                       start, line);
     if (!(found.value < f)) {
-      // Conjugacy may have been lost; steepest descent decides.
+      // Conjugacy may have been lost: restart with steepest descent.
       if (steepest) {
         result.status = MinimizeResult::Status::stalled;
         break;

@@ -9,8 +9,8 @@
 
 namespace condyle {
 
-/// The Hessian of a mesh at one state as other libraries take it, with the values that the
-/// engine's own factor gets: assembled in single precision, stored here in double.
+/// The Hessian of a mesh at one state in the format of other libraries, with the values of the
+/// engine's own factor: assembled in single precision, stored here in double.
 class HessianSystem {
  public:
   /// The Gauss-Newton matrix, which is positive definite. Does not keep its arguments.

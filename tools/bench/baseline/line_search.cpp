@@ -8,7 +8,7 @@ namespace {
 
 constexpr double golden = 0.381966;
 
-/// Where the parabola through three points has its vertex; NaN where it has none.
+/// Position of the vertex of the parabola through three points; NaN where it has none.
 double vertex(const LinePoint& a, const LinePoint& b, const LinePoint& c) {
   const double p = (b.t - a.t) * (b.value - c.value), q = (b.t - c.t) * (b.value - a.value);
   return b.t - ((b.t - a.t) * p - (b.t - c.t) * q) / (2 * (p - q));
@@ -82,7 +82,7 @@ LinePoint search_by_parabolas(const std::function<double(double)>& value, const 
       bracket.middle = other;
     }
   }
-  // Too far already: back towards the start.
+  // Too far: back towards the start.
   while (!bracket.found && !(bracket.middle.value < start.value) && left > 0) {
     bracket.high = bracket.middle;
     const double t = bracket.high.t;
@@ -92,7 +92,7 @@ LinePoint search_by_parabolas(const std::function<double(double)>& value, const 
     bracket.found = bracket.middle.value < start.value;
   }
   if (!bracket.found && !(bracket.middle.value < start.value)) return start;
-  // Still falling: on, by the parabola through the last three where it says something.
+  // Still decreasing: extrapolate by the parabola through the last three where it is valid.
   while (!bracket.found && left > 0) {
     const double t = bracket.middle.t, span = std::abs(t - bracket.low.t);
     if (t * direction >= settings.greatest) return bracket.middle;
@@ -134,7 +134,7 @@ LinePoint search_by_slopes(const std::function<LinePoint(double)>& value_and_slo
     const LinePoint before = low;
     if (!finite || here.slope > 0 || here.value > low.value) {
       high = here;
-      if (!finite) high.slope = 0;  // says nothing: halve
+      if (!finite) high.slope = 0;  // no information: halve
       bracketed = true;
       ++highs;
       lows = 0;
@@ -150,7 +150,7 @@ LinePoint search_by_slopes(const std::function<LinePoint(double)>& value_and_slo
       const bool good = secant > here.t && secant < here.t + 10 * (here.t - before.t);
       next = std::min(good ? secant : ahead, settings.greatest);
     } else {
-      // An end that stays while the other creeps counts half, again and again (Illinois).
+      // The slope of an end that stays is halved repeatedly (Illinois).
       const double width = high.t - low.t;
       const double low_slope = std::ldexp(low.slope, -std::max(0, highs - 1));
       const double high_slope = std::ldexp(high.slope, -std::max(0, lows - 1));

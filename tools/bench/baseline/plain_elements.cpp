@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-// CMakeLists.txt gives the options with which the compiler vectorises these loops.
+// CMakeLists.txt has the options with which the compiler vectorises these loops.
 #ifdef __x86_64__
 #define FOR_EACH_PROCESSOR \
   __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))

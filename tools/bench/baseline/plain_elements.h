@@ -4,8 +4,8 @@
 
 namespace condyle {
 
-/// Springs and prisms of a mesh as plain loops over arrays, which the compiler vectorises: what the
-/// element batches are measured against. Each block of elements is gathered, evaluated and added to
+/// Springs and prisms of a mesh as plain loops over arrays, which the compiler vectorises: the
+/// reference for the element batches. Each block of elements is gathered, evaluated and added to
 /// the nodes.
 class PlainElements {
  public:

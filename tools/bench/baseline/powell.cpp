@@ -22,14 +22,14 @@ MinimizeResult powell(Objective& objective, const BaselineSettings& settings, Po
     return result;
   }
   MatrixXd direction = MatrixXd::Identity(n, n);
-  VectorXd reach = VectorXd::Constant(n, 0.1);  // how far to look first along each direction
+  VectorXd reach = VectorXd::Constant(n, 0.1);  // first trial step along each direction
   VectorXd before = at, total_step(n);
   result.bytes = static_cast<std::size_t>(direction.size() + reach.size() + before.size() +
                                           total_step.size()) *
                      sizeof(double) +
                  bytes_of(trial_points);
 
-  // Moves to the minimum along `d`; true when that was lower.
+  // Moves to the minimum along `d`; true if that is lower.
   const auto along = [&](const auto& d, double& look) {
     LineSettings line;
     line.first_step = look;
@@ -49,7 +49,7 @@ MinimizeResult powell(Objective& objective, const BaselineSettings& settings, Po
     return true;
   };
 
-  const double floor = 0.01 * settings.tolerance_mm;  // no line search looks closer
+  const double floor = 0.01 * settings.tolerance_mm;  // resolution of the line searches
   while (result.iterations < settings.max_iterations && !counted.spent()) {
     ++result.iterations;
     before = at;
@@ -93,7 +93,7 @@ MinimizeResult powell(Objective& objective, const BaselineSettings& settings, Po
   }
   result.energy = f;
   Points g;
-  objective.value_and_gradient(x, g);  // only to tell the residual
+  objective.value_and_gradient(x, g);  // only for the residual
   result.residual = largest_norm(g);
   return result;
 }

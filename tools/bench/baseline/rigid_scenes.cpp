@@ -200,9 +200,9 @@ RigidRun swing_chain(RigidMethod method) {
     return sum;
   };
   const double start = energy();
-  double set_free = 0;  // potential energy between the start and hanging straight down
+  double fall_energy = 0;  // potential energy between the start and hanging straight down
   for (int k = 1; k <= planks; ++k)
-    set_free += weight_N * (k - 0.5) * plank.z() * (1 - std::cos(40 * degree));
+    fall_energy += weight_N * (k - 0.5) * plank.z() * (1 - std::cos(40 * degree));
   run(*scene, 2000, result.step_ms, [&] {
     for (int k = 0; k < planks; ++k) {
       const Pose above = scene->pose(bodies[static_cast<std::size_t>(k)]),
@@ -210,9 +210,9 @@ RigidRun swing_chain(RigidMethod method) {
       const Vector3d hook = k == 0 ? Vector3d(0, 0, 0) : Vector3d(above * Vector3d(-top));
       result.joint_error_mm = std::max(result.joint_error_mm, (here * top - hook).norm());
     }
-    result.energy_gain = std::max(result.energy_gain, (energy() - start) / set_free);
+    result.energy_gain = std::max(result.energy_gain, (energy() - start) / fall_energy);
   });
-  result.energy_loss = (start - energy()) / set_free;
+  result.energy_loss = (start - energy()) / fall_energy;
   return result;
 }
 

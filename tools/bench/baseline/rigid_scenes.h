@@ -5,12 +5,13 @@
 
 namespace condyle {
 
-/// One scene of rigid bodies, by the engine's own constraint rows or by plain Bullet: its joints,
-/// contacts and sequential impulses in double precision, as they come, at the same step of 1 ms.
+/// One scene of rigid bodies, by the engine's own constraint rows or by plain Bullet: its
+/// unmodified joints, contacts and sequential impulses in double precision, at the same step of 1
+/// ms.
 struct RigidRun {
   std::vector<double> step_ms;  // processor time of each step
   double joint_error_mm = 0;    // largest distance of two hooks that belong together
-  double energy_gain = 0;       // largest, of the energy that the fall sets free
+  double energy_gain = 0;       // largest, relative to the potential energy of the fall
   double energy_loss = 0;       // at the end
   double depth_mm = 0;          // of the deepest corner below the plane, after settling
   double drift_mm = 0;          // displacement of a block that friction should hold

@@ -10,7 +10,7 @@
 namespace condyle {
 namespace {
 
-/// Tissue with what makes its next solve short.
+/// Tissue with the warm start of its next solve.
 struct WarmTissue {
   TissueState state;
   TissueWarmStart warm;

@@ -29,7 +29,7 @@ struct SyntheticSet {
   int columns = 0, sheets = 0;
   Nodes rest;  // mm
   SpringPrismMesh mesh;
-  std::vector<char> anchor_moves;     // per anchor: whether it goes with the lower bone
+  std::vector<char> anchor_moves;     // per anchor: whether it moves with the lower bone
   std::vector<double> node_fraction;  // per node: smooth, 1 with the lower bone, 0 at rest
   Nodes anchor_offset;                // per anchor, from balance_strains; zero without
 
@@ -43,7 +43,7 @@ Pose synthetic_pose(double opening_rad, const Eigen::Vector3d& moved_mm);
 
 MeshLoads synthetic_loads(const SyntheticSet& set, const Pose& lower_bone);
 
-/// x with each node taken its fraction of the way from one pose of the lower bone to another.
+/// x with each node moved by its fraction of the motion from one pose of the lower bone to another.
 Nodes carried(const SyntheticSet& set, const Nodes& x, const Pose& from, const Pose& to);
 
 }  // namespace condyle

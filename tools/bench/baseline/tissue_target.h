@@ -8,8 +8,8 @@
 
 namespace condyle {
 
-/// One minimisation that every method gets: the same energy and start, and the converged answer
-/// that tells how near each came.
+/// The minimisation for every method: the same energy and start, and the converged result as the
+/// reference for errors.
 struct TissueTarget {
   SyntheticSet set;
   MeshLoads rest_loads = {}, loads = {};  // the lower bone at rest; moved
@@ -27,23 +27,23 @@ TissueTarget make_target(SyntheticSet set, const Pose& lower_bone);
 /// The movement of the benchmarks: opened by 5 degrees, 2 mm forward and 2 mm down.
 Pose bench_movement();
 
-/// The farthest that one iteration may take a node: from rest at once to where the bones are.
+/// Largest displacement of a node in one iteration: from rest directly to the present bones.
 constexpr double bench_step_mm = 30;
 
-/// Where a solve from nothing may begin: the tissue solved once with the lower bone opened, and the
-/// factor there. Made in the setup of a patient, as the simulator does along the path of opening.
+/// Start of a cold solve: the tissue solved once with the lower bone opened, and the factor there.
+/// Computed in the setup of a patient, as the simulator does along the path of opening.
 struct StoredOpening {
   StoredOpening(const TissueTarget& target, const HessianFactor& at_rest, int threads);
   static constexpr double opened_rad = 0.1;
   Nodes nodes;
   HessianFactor factor;
-  /// The part of the way to `nodes` that belongs to the opening of `lower_bone`.
+  /// The part of the displacement to `nodes` that corresponds to the opening of `lower_bone`.
   Nodes start(const TissueTarget& target, const Pose& lower_bone) const;
 };
 
 double largest_distance(const Nodes& a, const Nodes& b);  // mm, of any node
 
-/// What counts as solved: error of the worst node and of the energy (relative).
+/// Criterion of a solution: error of the worst node and of the energy (relative).
 constexpr double target_mm = 0.01, target_energy = 1e-6;
 
 struct Race {
@@ -62,7 +62,7 @@ struct Quantiles {
 };
 Quantiles quantiles(std::vector<double> values);
 
-/// Wall and processor time since it was made, ms.
+/// Wall and processor time since construction, ms.
 class Stopwatch {
  public:
   Stopwatch();
@@ -82,7 +82,7 @@ struct TimingLine {
 nlohmann::ordered_json timing_json(const TimingLine& line, const Quantiles& times, double cpu_ms,
                                    double error_mm);
 
-/// {"processor", "cores"}: where the figures come from.
+/// {"processor", "cores"}: the machine of the figures.
 nlohmann::ordered_json machine_json();
 
 }  // namespace condyle
