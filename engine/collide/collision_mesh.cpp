@@ -120,7 +120,7 @@ class NearestPair {
     best_mm = std::sqrt(bound_mm2);
     if (start.a >= 0 && start.a < a_.num_tris && start.b >= 0 && start.b < b_.num_tris)
       measure(start);
-    look({boxes_a_, 0, 1}, {boxes_b_, 0, 1});
+    visit({boxes_a_, 0, 1}, {boxes_b_, 0, 1});
   }
 
   TriangleGap best;
@@ -128,12 +128,12 @@ class NearestPair {
   TrianglePair triangles;
 
  private:
-  void look(const ChildRange& a, const ChildRange& b) {
+  void visit(const ChildRange& a, const ChildRange& b) {
     const auto limit = static_cast<float>(best_mm);
     const bool facing = best_mm > facing_mm;
     FourFloats along;
     if (facing) {
-      along = gaps_along(*a.boxes, *b.boxes, sight_, turned_.uncertain_mm);
+      along = gaps_along(*a.boxes, *b.boxes, direction_, turned_.uncertain_mm);
       bool any = false;
       for (int i = a.from; i < a.to; ++i)
         for (int k = b.from; k < b.to; ++k) any |= along[2 * i + k] < limit;
@@ -159,7 +159,7 @@ class NearestPair {
     if (holds_triangle(held_a) && holds_triangle(held_b))
       return measure({held_triangle(held_a), held_triangle(held_b)});
     const auto [in_a, in_b] = opened(a, b, boxes_a_, boxes_b_);
-    look(in_a, in_b);
+    visit(in_a, in_b);
   }
   void measure(TrianglePair pair) {
     const Triangle in_a = corners(a_, pair.a), in_b = corners(b_, pair.b, X_);
@@ -172,7 +172,7 @@ class NearestPair {
     const Eigen::Vector3d between = gap.q - gap.p;
     if (between.squaredNorm() <= 0) return;
     across_ = between.normalized();
-    sight_ = BoxDirection(across_, X_.linear(), X_.translation());
+    direction_ = BoxDirection(across_, X_.linear(), X_.translation());
   }
   /// Lower bound of the gap of two triangles.
   double gap_along(const Triangle& a, const Triangle& b) const {
@@ -192,7 +192,7 @@ class NearestPair {
   // Direction between the nearest points found so far, from A to B: for most of the surroundings it
   // proves a larger distance by itself.
   Eigen::Vector3d across_ = Eigen::Vector3d::Zero();  // unit; zero before the first result
-  BoxDirection sight_;
+  BoxDirection direction_;
 };
 
 /// The same traversal for parts of B that may have met A on their path. All in the coordinates of
@@ -210,7 +210,7 @@ class PathContactTest {
         path_(path),
         min_distance_mm_(min_distance_mm) {}
 
-  bool found() const { return look({boxes_a_, 0, 1}, {boxes_b_, 0, 1}); }
+  bool found() const { return visit({boxes_a_, 0, 1}, {boxes_b_, 0, 1}); }
   bool found_at(TrianglePair pair) const {
     if (pair.a < 0 || pair.a >= a_.num_tris || pair.b < 0 || pair.b >= b_.num_tris) return false;
     double longest = 0;
@@ -223,7 +223,7 @@ class PathContactTest {
   }
 
  private:
-  bool look(const ChildRange& a, const ChildRange& b) const {
+  bool visit(const ChildRange& a, const ChildRange& b) const {
     const FourFloats gaps = gap_bounds(*a.boxes, *b.boxes, turned_);
     for (int k = b.from; k < b.to; ++k) {
       const double reach = longest(b, k) + min_distance_mm_;
@@ -238,7 +238,7 @@ class PathContactTest {
     if (holds_triangle(held_a) && holds_triangle(held_b))
       return found_at({held_triangle(held_a), held_triangle(held_b)});
     const auto [in_a, in_b] = opened(a, b, boxes_a_, boxes_b_);
-    return look(in_a, in_b);
+    return visit(in_a, in_b);
   }
   /// Upper bound of the path length of any point of a box.
   double longest(const ChildRange& b, int k) const {

@@ -40,7 +40,7 @@ class SeparationSearch {
   OverlapDepth depth(const Vector3d& shift) const {
     // An underestimated depth only shortens the step.
     return overlap_depth(a_.solid, X_WA_, b_.solid, moved(shift),
-                         {.tolerance_mm = 5 * precision_mm_, .max_looks = 2000});
+                         {.tolerance_mm = 5 * precision_mm_, .max_evaluations = 2000});
   }
 
   /// Length of the translation in this direction until the bodies are separated; infinite from

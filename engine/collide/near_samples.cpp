@@ -110,14 +110,14 @@ SampleDistance query_sample(const DistanceField& field, const Vector3d& p_F,
 }
 
 SampleDistance classified(const FieldSample& here, const Vector3d& normal_F, double spread) {
-  SampleDistance look{here.distance_mm, here.gradient, here.known, false};
+  SampleDistance result{here.distance_mm, here.gradient, here.known, false};
   // Where two faces are equally near the gradient is not reliable; the sample's own face decides.
-  if (look.gradient.squaredNorm() < 0.1 && look.distance_mm < 0) look.gradient = -normal_F;
-  const double cosine = -look.gradient.dot(normal_F) / look.gradient.norm();
+  if (result.gradient.squaredNorm() < 0.1 && result.distance_mm < 0) result.gradient = -normal_F;
+  const double cosine = -result.gradient.dot(normal_F) / result.gradient.norm();
   const double least =
       spread * facing_cos - std::sqrt(std::max(0.0, 1 - spread * spread)) * facing_sin;
-  look.faces = look.distance_mm < -faces_below_mm || spread < -facing_cos || cosine >= least;
-  return look;
+  result.faces = result.distance_mm < -faces_below_mm || spread < -facing_cos || cosine >= least;
+  return result;
 }
 
 }  // namespace condyle

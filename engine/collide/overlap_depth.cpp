@@ -39,7 +39,8 @@ class DepthSearch {
     for (int i = 0; i < 2; ++i)
       for (std::size_t k = 0; k < sides_[i].solid.shells_.size(); ++k)
         if (!spreads || !offer_inside({i, k})) offer_ball({i, k}, 0, {});
-    while (!waiting_.empty() && waiting_.top().bound > enough() && looks_ < settings_.max_looks) {
+    while (!waiting_.empty() && waiting_.top().bound > enough() &&
+           evaluations_ < settings_.max_evaluations) {
       const Waiting next = waiting_.top();
       waiting_.pop();
       const Item item = items_[next.item];
@@ -128,7 +129,7 @@ class DepthSearch {
     if (near.triangle >= 0)
       reach = (nearest_point(p, tree.corners(near.triangle)) - p).norm() + reach_rounding_mm;
     const SurfacePoint found = tree.signed_nearest(p, reach);
-    ++looks_;
+    ++evaluations_;
     return {p, -found.distance, found.triangle};
   }
 
@@ -319,7 +320,7 @@ class DepthSearch {
   std::vector<Item> items_;
   std::vector<std::size_t> free_;  // slots of items_ for reuse
   std::priority_queue<Waiting> waiting_;
-  int looks_ = 0, number_ = 0;
+  int evaluations_ = 0, number_ = 0;
 };
 
 namespace {

@@ -138,9 +138,9 @@ OverlapVolume overlap_volume(const TriMesh& a, const Pose& X_WA, const TriMesh& 
   // Bones overlap in a small part of their common box: further passes resolve that part more
   // finely, long and narrow parts equally in both directions. Where a pass finds nothing, a finer
   // one may.
-  constexpr int looks = 6, finest = 512;
+  constexpr int max_passes = 6, finest = 512;
   int along = std::max(8, columns_along);
-  for (int look = 0; look < looks; ++look) {
+  for (int pass = 0; pass < max_passes; ++pass) {
     const Eigen::Vector2d size = high - low;
     if (!(size.minCoeff() > 0)) break;
     columns.low = low;

@@ -140,16 +140,16 @@ struct SlideProbe::Search {
     const DistanceField& field = pair.field->field;
     const Vector3d p = in_field(s.points[sample]);
     const DistanceField::Spot at = field.spot(p);
-    const SampleDistance look = classified({at.distance_mm, gradient(p, at), at.known},
-                                           R_FS * s.normals[sample], s.spread[sample]);
+    const SampleDistance result = classified({at.distance_mm, gradient(p, at), at.known},
+                                             R_FS * s.normals[sample], s.spread[sample]);
     SlideCandidate c;
     c.pair = index;
     c.sample = sample;
-    c.known = look.known;
-    c.faces = look.faces;
+    c.known = result.known;
+    c.faces = result.faces;
     c.gap = at.distance_mm - pair.gap_mm;
     if (fraction > 0) c.gap -= fraction * static_cast<double>(pair.allowed[sample]);
-    c.gradient = R_FD * look.gradient;
+    c.gradient = R_FD * result.gradient;
     if (!pair.samples_move) c.gradient = -c.gradient;
     c.point = X_fixed * s.points[sample];
     return c;

@@ -85,7 +85,7 @@ struct DepthSettings {
   // The answer may be too small by this much, or by a thousandth of itself if that is more.
   double tolerance_mm = 2e-4;
   // Limit of points evaluated; the search then ends and `error_mm` bounds the remaining error.
-  int max_looks = 20000;
+  int max_evaluations = 20000;
 };
 
 /// The triangles of each mesh that cross the other mesh: all of them, in any order. A connected

@@ -129,7 +129,7 @@ void find_obstacle_contacts(const std::vector<MeshPoint>& points,
   assert(shift.empty() || shift.size() == points.size());
   const Pose X_OW = X_WO.inverse();
   const Eigen::Matrix3d R_OW = X_OW.R.toRotationMatrix(), R_WO = X_WO.R.toRotationMatrix();
-  const auto look = [&](int i) {
+  const auto query = [&](int i) {
     ContactObstacle::Near near;
     const Vector3d at = points[i].at(x);
     Vector3d here = R_OW * at + X_OW.t;
@@ -144,13 +144,13 @@ void find_obstacle_contacts(const std::vector<MeshPoint>& points,
     return near.distance - 2 * field_error_mm;  // margin for this and the next query
   };
   if (!known) {
-    for (std::size_t i = 0; i < points.size(); ++i) look(static_cast<int>(i));
+    for (std::size_t i = 0; i < points.size(); ++i) query(static_cast<int>(i));
     return;
   }
   Nodes seen(x.size());  // from the obstacle
   for (std::size_t i = 0; i < x.size(); ++i) seen[i] = R_OW * x[i] + X_OW.t;
   known->moved(points, std::move(seen));
-  known->each(settings.reach_mm, look);
+  known->each(settings.reach_mm, query);
 }
 
 Vector3d limit_angle(const Vector3d& normal, const Vector3d& front, double least) {
@@ -308,19 +308,19 @@ double gap_left(const std::vector<PointContact>& contacts, const Nodes& x) {
 
 }  // namespace
 
-ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>& look,
+ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>& query,
                                  const std::function<Solved()>& solve, MeshLoads& loads, Nodes& x,
                                  const ContactSolveSettings& settings, const ContactLists& before) {
   // Planes that have not converged by then may oscillate between two directions.
   constexpr int undamped_searches = 2;
   ContactSolveResult result;
-  ContactLists used = look(x);
+  ContactLists used = query(x);
   for (std::size_t i = 0; i < before.size(); ++i) used[i] = with_history(before[i], used[i], x);
   while (true) {
     set_contacts(used, loads);
     const Solved solved = solve();
     ++result.solves;
-    result.contacts = look(x);
+    result.contacts = query(x);
     result.error_mm = result.gap_mm = 0;
     const double fraction = result.solves > undamped_searches ? 0.5 : 0.0;
     for (std::size_t i = 0; i < used.size(); ++i) {

@@ -139,7 +139,7 @@ struct ContactSolveResult {
 enum class Solved { at_minimum, in_progress, budget_spent };
 /// `solve` moves x downhill under `loads`, whose contacts are set before each call. `before`: the
 /// contacts of an earlier solve, or empty.
-ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>& look,
+ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>& query,
                                  const std::function<Solved()>& solve, MeshLoads& loads, Nodes& x,
                                  const ContactSolveSettings& settings = {},
                                  const ContactLists& before = {});

@@ -17,10 +17,10 @@ class NearPoints {
   /// Sets the present nodes, in obstacle coordinates.
   void moved(const std::vector<MeshPoint>& points, Nodes x);
 
-  /// Calls `look(i)`, which returns a lower bound of the distance (mm), for each point in ascending
-  /// order that may be nearer than `reach`.
-  template <class Look>
-  void each(double reach, const Look& look) {
+  /// Calls `query(i)`, which returns a lower bound of the distance (mm), for each point in
+  /// ascending order that may be nearer than `reach`.
+  template <class Query>
+  void each(double reach, const Query& query) {
     for (std::size_t r = 0; r < bound_of_run_.size(); ++r) {
       const double path = path_of_run(r);
       if (bound_of_run_[r] - path > reach) continue;
@@ -28,7 +28,7 @@ class NearPoints {
       for (int i = runs_->point[r]; i < runs_->point[r + 1]; ++i) {
         double& here = bound_[i];
         here -= path;
-        if (here <= reach) here = std::min(look(i), far_mm);
+        if (here <= reach) here = std::min(query(i), far_mm);
         least = std::min(least, here);
       }
       bound_of_run_[r] = least;

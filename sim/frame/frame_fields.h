@@ -53,7 +53,7 @@ void visit_tissue(Tissue& tissue, Visitor&& visit) {
   visit(tissue.iterations);
   visit(tissue.evaluations);
   visit(tissue.converged);
-  visit(tissue.kept);
+  visit(tissue.reused);
   visit(tissue.energy);
   visit(tissue.residual);
   visit(tissue.inverted_prisms);

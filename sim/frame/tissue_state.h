@@ -15,7 +15,7 @@ struct TissueState {
   int iterations = 0;
   int evaluations = 0;    // of energy or gradient
   bool converged = true;  // the minimizer and the contact planes, see contact_error_mm
-  bool kept = false;      // the solve failed: the nodes are those of an earlier frame
+  bool reused = false;    // the solve failed: the nodes are those of an earlier frame
   double energy = 0;      // relative to rest
   double residual = 0;    // largest nodal gradient
   int inverted_prisms = 0;

@@ -358,9 +358,9 @@ class MotionAssessment {
           rest, std::max(0.0, rest - min_mm),
           min_mm > 0 ? "without contact of bone" : "down to contact of bone");
       // A condyle guided by its fossa keeps the disc gap, which is an input.
-      const bool kept = built_in() && !motion_.muscles && on_fossa(name);
-      add({name + " condyle to fossa, minimum", "mm", min_mm, low, 3.2, published, kept, why});
-      add({name + " condyle to fossa, maximum", "mm", max_mm, low, 3.2, published, kept, why});
+      const bool is_input = built_in() && !motion_.muscles && on_fossa(name);
+      add({name + " condyle to fossa, minimum", "mm", min_mm, low, 3.2, published, is_input, why});
+      add({name + " condyle to fossa, maximum", "mm", max_mm, low, 3.2, published, is_input, why});
     }
   }
 

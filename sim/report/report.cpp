@@ -174,7 +174,7 @@ void MotionReport::add(const FrameState& frame) {
   }
   if (frame.tissue.inverted_prisms > 0) ++inverted_frames_;
   if (!frame.tissue.converged) ++unconverged_frames_;
-  if (frame.tissue.kept) ++reused_frames_;
+  if (frame.tissue.reused) ++reused_frames_;
   tissue_penetration_mm_ = std::max(tissue_penetration_mm_, frame.tissue.penetration_mm);
   tissue_slip_mm_ = std::max(tissue_slip_mm_, frame.tissue.slip_mm);
   tissue_contact_error_mm_ = std::max(tissue_contact_error_mm_, frame.tissue.contact_error_mm);

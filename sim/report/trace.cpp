@@ -100,7 +100,7 @@ void TraceWriter::add(int frame, const FrameState& s) {
   incisor_before_ = m.incisor;
   ++rows_;
   numbers({s.tissue.penetration_mm, s.tissue.slip_mm});
-  count(s.tissue.kept ? 1 : 0);
+  count(s.tissue.reused ? 1 : 0);
   count(s.tissue.converged ? 1 : 0);
   numbers({s.tissue.contact_error_mm});
   for (const MuscleState& muscle : s.muscles)

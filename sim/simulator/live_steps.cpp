@@ -11,9 +11,10 @@ constexpr int settling_iterations = 30;
 
 }  // namespace
 
-TissueBudget live_budget(TissueBudget keeping_up, bool settles, bool jaw_leaps, bool kept_before) {
+TissueBudget live_budget(TissueBudget keeping_up, bool settles, bool jaw_leaps,
+                         bool reused_before) {
   if (settles) keeping_up.max_iterations = std::max(keeping_up.max_iterations, settling_iterations);
-  if (jaw_leaps || kept_before) keeping_up.max_iterations = TissueBudget{}.max_iterations;
+  if (jaw_leaps || reused_before) keeping_up.max_iterations = TissueBudget{}.max_iterations;
   return keeping_up;
 }
 
@@ -76,7 +77,7 @@ SimulatorSettings LiveSteps::settings_for(const LiveTarget& target, const StepIn
   const bool jaw_leaps = is_teleport(pose_in(now_.tissue.X_CB, jaw),
                                      placed(scene_.patient.bodies, input.X_PB_target)[jaw]);
   settings.tissue_budget =
-      live_budget(settings.tissue_budget, settling_ > 0, jaw_leaps, now_.tissue.kept);
+      live_budget(settings.tissue_budget, settling_ > 0, jaw_leaps, now_.tissue.reused);
   return settings;
 }
 
@@ -89,7 +90,7 @@ void LiveSteps::keep_moved(const LiveTarget& target) {
 
 void LiveSteps::count_settling(bool tissue) {
   const bool settles = settling_ > 0;
-  const bool settled = !tissue || now_.tissue.converged || (settles && now_.tissue.kept);
+  const bool settled = !tissue || now_.tissue.converged || (settles && now_.tissue.reused);
   settling_ = settled ? 0 : settles ? settling_ - 1 : max_settling;
 }
 

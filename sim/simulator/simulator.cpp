@@ -68,8 +68,8 @@ Scene edited_scene(const Scene& before, Case patient, const SimulatorSettings& s
     report(progress, "building the soft tissue", 0.3);
     TissueSettings of_tissue = settings.tissue_model;
     of_tissue.threads = settings.threads;
-    const bool kept = before.tissue && same_for_tissue(before.patient, patient);
-    tissue = kept ? before.tissue : build_tissue(patient, of_tissue, progress);
+    const bool unchanged = before.tissue && same_for_tissue(before.patient, patient);
+    tissue = unchanged ? before.tissue : build_tissue(patient, of_tissue, progress);
   }
   report(progress, "building the soft tissue", 1.0);
   return {std::move(patient), std::move(contacts), std::move(tissue)};

@@ -39,7 +39,7 @@ void measure_rest(TissueModel& model, int threads) {
   budget.threads = threads;
   const TissueState still = solve_tissue(model, rest_tissue(model), {}, budget);
   summary.rest_move_mm = largest_displacement(mesh.rest, still.nodes);
-  if (still.kept || !still.converged)
+  if (still.reused || !still.converged)
     summary.notes.push_back("the unmoved tissue could not be solved: it may move without a load");
   else if (summary.rest_move_mm > 1e-4)
     summary.notes.push_back("the unmoved tissue moves by " + std::to_string(summary.rest_move_mm) +

@@ -158,12 +158,12 @@ bool usable(const TissueState& state) {
 }
 
 /// The state of a frame whose solve failed: that of the previous frame.
-TissueState kept(const TissueState& previous, const TissueState& failed) {
+TissueState previous_state(const TissueState& previous, const TissueState& failed) {
   TissueState state = previous;
   state.iterations = failed.iterations;
   state.evaluations = failed.evaluations;
   state.converged = false;
-  state.kept = true;
+  state.reused = true;
   return state;
 }
 
@@ -208,7 +208,7 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
   state.penetration_mm = measured.penetration_mm;
   state.slip_mm = measured.slip_mm;
   state.inverted_prisms = count_inverted(mesh.elements, state.nodes);
-  if (!usable(state)) return kept(previous, state);
+  if (!usable(state)) return previous_state(previous, state);
   warm.last =
       std::make_shared<const SolverCache>(SolverCache{.X_CB = state.X_CB,
                                                       .mesh = model.mesh,
@@ -226,7 +226,7 @@ TissueState solve_tissue(const TissueModel& model, const TissueState& previous,
                          TissueWarmStart& warm) {
   assert(previous.nodes.size() == model.mesh->rest.size());
   assert(budget.tolerance_mm > 0 && budget.max_iterations > 0);
-  if (!all_finite(X_CB)) return kept(previous, {});
+  if (!all_finite(X_CB)) return previous_state(previous, {});
   TissueState state = previous;
   TissueWarmStart reached = warm;
   int iterations = 0, evaluations = 0;
@@ -234,7 +234,7 @@ TissueState solve_tissue(const TissueModel& model, const TissueState& previous,
     state = solve_step(model, state, X_CB_step, budget, reached);
     state.iterations = iterations += state.iterations;
     state.evaluations = evaluations += state.evaluations;
-    if (state.kept) return kept(previous, state);
+    if (state.reused) return previous_state(previous, state);
   }
   warm = std::move(reached);
   return state;

@@ -26,7 +26,7 @@ TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& st
         model, reached, reached.X_CB,
         {.tolerance_mm = finer * tolerance_mm, .contact_firmness = firmness, .threads = threads},
         warm);
-    if (next.kept) break;
+    if (next.reused) break;
     const double moved = largest_displacement(reached.nodes, next.nodes);
     // If each round shortens the displacement by a factor, the remaining sum is a geometric series.
     // A single round may be shorter by chance.

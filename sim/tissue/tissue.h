@@ -74,7 +74,7 @@ struct TissueWarmStart {
 /// The tissue of minimum energy (quasi-static, without inertia) with the bodies at X_CB, each a
 /// pose in the cranium's frame from rest to now, by number; bodies beyond the end are at rest.
 /// Starts from `previous`, moved with the bodies. `warm` belongs to the solve that gave `previous`;
-/// it is replaced. status: `converged` and `kept` of the result.
+/// it is replaced. status: `converged` and `reused` of the result.
 TissueState solve_tissue(const TissueModel& model, const TissueState& previous,
                          std::span<const Pose> X_CB, const TissueBudget& budget,
                          TissueWarmStart& warm);

@@ -20,7 +20,7 @@ using Triangle = std::array<int, 3>;
 /// at rest.
 constexpr double near_mm = 1.5;  // near the mouth, where teeth have edges
 constexpr double far_mm = 2;
-constexpr double kept_mm = 0.25;
+constexpr double min_gap_mm = 0.25;
 constexpr double slack_mm = 0.1;  // so that little presses at rest when it is perturbed
 constexpr double near_mouth_mm = 18;
 constexpr double teeth_lip_edge_mm = 7;  // of the points that may touch teeth from the front
@@ -186,11 +186,11 @@ Obstacle make_obstacle(const TissueContact& contact, const Nodes& rest, const Bo
   find_obstacle_contacts(contact.points, made.allowance, *made.surface, Pose{}, rest, {}, touches,
                          made.shift);
   allow_depths(touches, made.allowance);
-  std::vector<double> kept(count, kept_mm);
+  std::vector<double> min_gap(count, min_gap_mm);
   for (const auto& touch : touches)
-    kept[touch.point] = std::clamp(touch.gap - slack_mm, 0.0, kept_mm);
+    min_gap[touch.point] = std::clamp(touch.gap - slack_mm, 0.0, min_gap_mm);
   for (std::size_t i = 0; i < count; ++i)
-    if (contact.points[i].count > 1) made.allowance[i] -= kept[i];
+    if (contact.points[i].count > 1) made.allowance[i] -= min_gap[i];
   return made;
 }
 

@@ -273,9 +273,9 @@ void Panels::Drawing::tissue() {
   reading(theme, "Iterations",
           fmt::format("{}{}", state.iterations,
                       state.converged ? ""
-                      : state.kept    ? ", failed: as before"
+                      : state.reused  ? ", failed: as before"
                                       : ", not settled"),
-          state.kept ? palette().warning : palette().text);
+          state.reused ? palette().warning : palette().text);
   if (state.inverted_prisms)
     reading(theme, "Inverted prisms", fmt::format("{}", state.inverted_prisms), palette().bad);
   else

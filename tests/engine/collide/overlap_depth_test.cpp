@@ -229,7 +229,7 @@ TEST(OverlapDepth, OfFlatFacesOfManyTrianglesEndsSoon) {
   const Solid a(slab);
   for (const double depth : {0.02, 0.5}) {
     const Pose X{Quaterniond(Eigen::AngleAxisd(pi, Vector3d::UnitX())), {0.2, 29.7, -depth}};
-    const OverlapDepth found = overlap_depth(a, {}, a, X, {.max_looks = 5000});
+    const OverlapDepth found = overlap_depth(a, {}, a, X, {.max_evaluations = 5000});
     EXPECT_NEAR(found.depth_mm, depth, 1e-9);
     EXPECT_LT(found.error_mm, 0.75);
   }

@@ -132,7 +132,7 @@ TEST(Grinding, ArchesOfFiftyThousandTrianglesSlideWithManyContactsAndWithoutOver
     ++counted;
     depths.push_back(deepest(upper_oracle, lower_oracle, X));
     const OverlapDepth exact =
-        overlap_depth(upper_solid, {}, lower_solid, X, {.max_looks = 200000});
+        overlap_depth(upper_solid, {}, lower_solid, X, {.max_evaluations = 200000});
     proved.push_back(exact.depth_mm + exact.error_mm);
   }
   EXPECT_EQ(counted, 300);

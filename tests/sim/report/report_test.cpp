@@ -46,7 +46,7 @@ TEST(Trace, SaysWhetherTheTissueWasKeptBecauseItsSolveFailed) {
   const auto file = folder.path() / "trace.csv";
   TraceWriter trace(file);
   FrameState good, failed;
-  failed.tissue.kept = true;
+  failed.tissue.reused = true;
   failed.tissue.converged = false;
   failed.tissue.energy = std::nan("");
   trace.add(0, good);

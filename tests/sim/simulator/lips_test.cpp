@@ -60,7 +60,7 @@ PathResult travel(const Case& patient, double open_deg, double aside_mm, int fra
       result.faces_in_jaws_mm = std::max(result.faces_in_jaws_mm, faces.in_jaws(X_CM, state.nodes));
       result.lip_in_lip_mm = std::max(result.lip_in_lip_mm, faces.in_other_lip(state.nodes));
     }
-    result.bad += !state.converged || state.kept || state.inverted_prisms > 0;
+    result.bad += !state.converged || state.reused || state.inverted_prisms > 0;
   }
   state = solve_tissue(*model, state, {}, {}, warm);
   for (std::size_t i = 0; i < rest.nodes.size(); ++i)

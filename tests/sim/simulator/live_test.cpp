@@ -91,7 +91,7 @@ TEST(Live, APlayingFaceIsNearTheConvergedOneAndConvergesWhenIdle) {
     goal = converged.at(t).tissue;
     iterations += state.iterations;
     cut_short += !state.converged;
-    EXPECT_FALSE(state.kept);
+    EXPECT_FALSE(state.reused);
     EXPECT_LT(state.penetration_mm, 0.1 + 1e-9) << t;
     EXPECT_LT(distance_of_all_but_a_hundredth(state, goal), 0.5) << t;
   }

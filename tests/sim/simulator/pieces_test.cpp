@@ -68,7 +68,7 @@ class Face {
 
   void move(std::span<const Pose> X_CB) {
     state_ = solve_tissue(model_, state_, X_CB, {}, warm_);
-    EXPECT_FALSE(state_.kept);
+    EXPECT_FALSE(state_.reused);
     EXPECT_EQ(state_.inverted_prisms, 0);
     penetration_mm_ = std::max(penetration_mm_, state_.penetration_mm);
     unconverged_ += !state_.converged;

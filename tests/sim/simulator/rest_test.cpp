@@ -57,7 +57,7 @@ void expect_still(Case patient, const std::vector<AtRest>& rows, int surface_nod
     std::uniform_real_distribution<double> uniform(-0.01, 0.01);
     for (auto& p : shaken.nodes) p += Vector3d(uniform(random), uniform(random), uniform(random));
     const TissueState back = solve_tissue(*model, shaken, {}, budget);
-    EXPECT_FALSE(back.kept);
+    EXPECT_FALSE(back.reused);
     double most = 0;
     for (std::size_t i = 0; i < rest.nodes.size(); ++i)
       most = std::max(most, (back.nodes[i] - rest.nodes[i]).norm());

@@ -68,7 +68,7 @@ TEST(FaceScan, OfAnotherPersonOverScaledBonesIsBuiltAndOpens) {
   TissueWarmStart warm;
   for (int degrees = 1; degrees <= 30; ++degrees) {
     state = solve_tissue(*model, state, test::jaw_at(scan_opened(patient, degrees)), {}, warm);
-    EXPECT_FALSE(state.kept) << degrees;
+    EXPECT_FALSE(state.reused) << degrees;
     EXPECT_EQ(state.inverted_prisms, 0) << degrees;
   }
   EXPECT_GT(state.slip_mm, 0.2);
@@ -113,7 +113,7 @@ TEST(FaceScan, TheDefaultMeshIsBuiltOnItAndSlides) {
   TissueWarmStart warm;
   for (int degrees = 1; degrees <= 30; ++degrees) {
     state = solve_tissue(*model, state, test::jaw_at(scan_opened(patient, degrees)), {}, warm);
-    EXPECT_TRUE(state.converged && !state.kept) << degrees;
+    EXPECT_TRUE(state.converged && !state.reused) << degrees;
     EXPECT_EQ(state.inverted_prisms, 0) << degrees;
     EXPECT_LT(state.penetration_mm, 0.2) << degrees;
   }

@@ -41,7 +41,7 @@ OpenedFace open_wide(const Case& patient, TissueBond bond) {
         Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Vector3d::UnitX()));
     X_CM.t = condyles - X_CM.R * condyles + Vector3d(0, -slide, -0.5 * slide);
     state = solve_tissue(*model, state, jaw_at(X_CM), {}, warm);
-    seen.unconverged += !state.converged || state.kept;
+    seen.unconverged += !state.converged || state.reused;
     seen.inverted += state.inverted_prisms;
     seen.penetration_mm = std::max(seen.penetration_mm, state.penetration_mm);
     seen.error_mm = std::max(seen.error_mm, state.contact_error_mm);

@@ -179,16 +179,16 @@ TEST(TissueSettings, ASolveThatFailsKeepsTheLastGoodStateAndSaysSo) {
   TissueWarmStart warm;
   const TissueState good =
       solve_tissue(*model, rest_tissue(*model), jaw_at(opening(plain_patient(), 2)), {}, warm);
-  ASSERT_FALSE(good.kept);
+  ASSERT_FALSE(good.reused);
   Pose nowhere;
   nowhere.t = Vector3d(std::nan(""), 0, 0);
   const TissueState bad = solve_tissue(*model, good, jaw_at(nowhere), {}, warm);
-  EXPECT_TRUE(bad.kept);
+  EXPECT_TRUE(bad.reused);
   EXPECT_FALSE(bad.converged);
   EXPECT_EQ(bad.nodes, good.nodes);
   const TissueState later =
       solve_tissue(*model, bad, jaw_at(opening(plain_patient(), 2.2)), {}, warm);
-  EXPECT_FALSE(later.kept);
+  EXPECT_FALSE(later.reused);
   EXPECT_LT(farthest(later.nodes, good.nodes), 2);
 }
 
@@ -311,7 +311,7 @@ TEST(TissueSettings, AFaceThatPassesThroughItselfMovesWithoutInversion) {
   for (double degrees : {4.0, 8.0, 12.0}) {
     state = solve_tissue(*model, state, jaw_at(opening(patient, degrees)), {}, warm);
     EXPECT_EQ(state.inverted_prisms, 0);
-    EXPECT_FALSE(state.kept);
+    EXPECT_FALSE(state.reused);
     std::vector<Eigen::Vector3f> face;
     deform_face(*model, state, face);
     ASSERT_EQ(face.size(), patient.find(Role::face)->mesh.vertices.size());

@@ -64,7 +64,7 @@ TEST(TissueWarmStart, AFailedSolveLeavesItAsItWas) {
   const auto before = at.warm.last;
   Pose nowhere;
   nowhere.t.x() = std::nan("");
-  EXPECT_TRUE(solve_tissue(*model, at.state, jaw_at(nowhere), {}, at.warm).kept);
+  EXPECT_TRUE(solve_tissue(*model, at.state, jaw_at(nowhere), {}, at.warm).reused);
   EXPECT_EQ(at.warm.last, before);
 }
 
