@@ -30,7 +30,7 @@ class TestDisplay {
 /// Whether a program is found along PATH.
 bool has_program(const std::string& name);
 
-/// Real mouse and keyboard events through the program xdotool. gives: whether it succeeded.
+/// Real mouse and keyboard events through the program xdotool. Returns whether it succeeded.
 bool xdotool(std::vector<std::string> arguments);
 
 }  // namespace condyle

@@ -13,7 +13,7 @@
 
 namespace condyle::test {
 
-/// How deep the tissue's faces, not their nodes alone, stand in bone, teeth and the other lip: 36
+/// Depth of the tissue's faces, not their nodes alone, in bone, teeth and the other lip: 36
 /// samples on each face of the inner side that may slide, and of the lips' edges. Every bone and
 /// row of teeth is asked by itself: inside by the winding number, as deep as its nearest surface.
 /// What overlaps at rest is taken off for each sample: its own depth in the same jaw or lip then.

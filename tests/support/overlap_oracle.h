@@ -12,7 +12,7 @@ namespace condyle::test {
 /// millimetre apart, on sharp edges a twentieth.
 class OverlapOracle {
  public:
-  /// `region`: only there is its surface asked for in the other.
+  /// `region`: only there is its surface tested against the other.
   explicit OverlapOracle(const TriMesh& mesh, const std::optional<Box>& region = {})
       : solid_(mesh),
         samples_(sample_surface(mesh, {.spacing_mm = 0.17,

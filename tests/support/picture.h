@@ -10,7 +10,7 @@
 
 namespace condyle::test {
 
-/// A picture to look at: RGBA of 8 bits, rows from the top.
+/// A picture to examine: 8-bit RGBA, rows from the top.
 struct Picture {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;

@@ -48,7 +48,7 @@ inline std::vector<std::array<int, 3>> ears(std::vector<int> loop,
                       sign * turn(at[b], at[c], at[p]) >= 0 &&
                       sign * turn(at[c], at[a], at[p]) >= 0;
       }
-      // Flat corners go last resort only: an ear of no area is better than a crossing one.
+      // Flat corners as a last resort only: an ear of no area is better than a crossing one.
       const double worth = holds_other ? here - 1e6 : here;
       if (worth > best_turn) {
         best_turn = worth;

@@ -70,7 +70,7 @@ Outcome condyle(const std::vector<std::string>& arguments, const Limits& limits)
                          static_cast<rlim_t>(limits.file_mb) << 20};
       ::setrlimit(RLIMIT_FSIZE, &limit);
     }
-    ::setenv("XDG_CONFIG_HOME", streams.path().c_str(), 1);  // the settings of nobody
+    ::setenv("XDG_CONFIG_HOME", streams.path().c_str(), 1);  // no user's settings
     std::vector<char*> argv = {const_cast<char*>(program.c_str())};
     for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);

@@ -16,7 +16,7 @@ struct Outcome {
 struct Limits {
   long memory_mb = 0;                    // of address space; 0 = none
   long file_mb = -1;                     // largest file that may be written; -1 = none
-  std::function<bool()> kill_when = {};  // asked all the time; killed as soon as it says so
+  std::function<bool()> kill_when = {};  // polled; the program is killed when it returns true
   int kill_signal = SIGKILL;
 };
 

@@ -11,7 +11,7 @@ namespace condyle::test {
 /// Folder of real anatomy beside the checkout; it may be absent.
 inline std::filesystem::path real_data() { return source_folder() / ".." / "shared" / "data"; }
 
-/// Its muscles and mechanics only where they are asked for: they change how its joints are guided.
+/// Its muscles and mechanics only on request: they change the guidance of its joints.
 enum class Driven { no, by_muscles };
 inline std::optional<Case> case_ubc(Driven driven = Driven::no) {
   const auto folder = real_data() / "case-ubc";

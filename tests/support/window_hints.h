@@ -5,7 +5,7 @@
 
 namespace condyle {
 
-/// The least width and height that the window of this title asks window managers for; 0 without
+/// Minimum width and height that the window of this title requests from window managers; 0 without
 /// such a window.
 std::pair<int, int> min_window_size(const std::string& title);
 

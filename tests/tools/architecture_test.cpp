@@ -1,4 +1,4 @@
-// Which file may include which: modules as in CMakeLists.txt, and a home for each foreign library.
+// Permitted includes: modules as in CMakeLists.txt, and the modules of each third-party library.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,8 +34,8 @@ std::string target_of(const std::map<std::string, Module>& all, const std::strin
   return "";
 }
 
-/// A foreign library: its headers begin so; the folders that may include it; whether headers of
-/// ours may show it; the CMake target that a module must link ("" for libraries of headers alone).
+/// A third-party library: prefix of its headers; folders that may include it; whether our headers
+/// may expose it; the CMake target that a module must link ("" for libraries of headers alone).
 struct Library {
   std::string header;
   std::vector<std::string> homes;
@@ -85,13 +85,13 @@ const Library* library_of(const std::string& header) {
   return found == libraries.end() ? nullptr : &*found;
 }
 
-/// The two modules in which simulation and drawing meet: a recording renders a simulated motion, a
+/// The two modules that combine simulation and drawing: a recording renders a simulated motion, a
 /// session shows a simulation in a front end. All other drawing reads frames alone.
 bool joins_sim_and_render(const std::string& folder) {
   return folder == "render/recording" || folder == "render/session";
 }
 
-/// Whether the floor `from` may link the module in `folder`.
+/// Whether the layer `from` may link the module in `folder`.
 bool may_link(const std::string& from, const std::string& folder) {
   if (is_below(from, "engine")) return is_below(folder, "engine");
   if (is_below(from, "sim")) return is_below(folder, "engine") || is_below(folder, "sim");

@@ -1,5 +1,5 @@
 // Bad input: one clear line that names the file, the item and the value; the right exit code;
-// bounded memory; earlier output whole.
+// bounded memory; earlier output intact.
 #include <gtest/gtest.h>
 
 #include <cstring>

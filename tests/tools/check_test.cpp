@@ -67,7 +67,7 @@ TEST(Check, DrawsTheWorstFrameAndWithoutEglSaysThatItCannot) {
     EXPECT_NE(page.find("src=\"worst-maxilla-mandible.png\""), std::string::npos);
   else
     EXPECT_NE(page.find("pictures are left out"), std::string::npos);
-  // Vendors that are not there leave EGL without a driver.
+  // Nonexistent vendors leave EGL without a driver.
   ::setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere.json", 1);
   const auto blind = condyle({"check", patient, "--motion", motion, "--out", folder / "blind"});
   ::unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
@@ -151,7 +151,7 @@ TEST(Check, ATransplantThatOverlapsItsBoneAtRestIsReportedAndDrawn) {
     EXPECT_EQ(pair["policy"], "cut-face");
     EXPECT_NEAR(pair["overlap_at_rest_mm"].get<double>(), 1, 1e-6);
     EXPECT_NEAR(pair["worst"]["penetration_volume_mm3"].get<double>(), 100, 1);
-    // A millimetre up parts them.
+    // A millimetre up separates them.
     EXPECT_NEAR(pair["push_out"][2].get<double>(), 1, 0.03);
     EXPECT_NEAR(pair["push_out"][0].get<double>(), 0, 0.1);
     EXPECT_NE(read_text(folder / "out/report.html").find("separates the two"), std::string::npos);
@@ -224,7 +224,7 @@ TEST(Check, KilledWhileItWritesTheEarlierReportStaysWhole) {
       condyle({"check", patient, "--motion", bite(folder, 2), "--frames", "3", "--out", out}).code,
       3);
   const auto before = files_of(out);
-  // As soon as there is a folder for the new files: long before they are all there.
+  // As soon as the folder for the new files exists: long before they are complete.
   const auto killed =
       condyle(command, {.kill_when = [&] { return fs::exists(out + "/.new.part"); }});
   EXPECT_NE(killed.code, 3);

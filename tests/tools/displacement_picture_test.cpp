@@ -1,4 +1,4 @@
-// The map of how far the skin has come, as it is recorded.
+// The displacement map of the skin in a recording.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -19,8 +19,8 @@ TEST(Record, ColoursTheSkinByItsDisplacementFromRest) {
   ASSERT_FALSE(rest.empty());
   ASSERT_FALSE(open.empty());
   open.save(kept_pictures() / "ColoursTheSkinByItsDisplacementFromRest.png");
-  // Nothing has moved: all is of the colour for 0, dark violet. Opened, the chin is green, the
-  // forehead is as it was.
+  // At rest everything has the colour for 0, dark violet. Opened, the chin is green, the forehead
+  // unchanged.
   const auto violet = [](const std::uint8_t* p) { return p[2] > p[1] + 20 && p[1] < 60; };
   constexpr double forehead[] = {0.5, 0.25}, chin[] = {0.5, 0.72};
   EXPECT_TRUE(violet(rest.at(forehead[0], forehead[1])));

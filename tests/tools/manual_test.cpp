@@ -62,7 +62,7 @@ bool has(const std::vector<std::string>& words, const std::string& word) {
                      [&](const std::string& each) { return each.find(word) != std::string::npos; });
 }
 
-/// The same command on few and small pictures, without tissue where it does not ask for any.
+/// The same command with few and small pictures, without tissue unless it requests some.
 std::vector<std::string> shortened(std::vector<std::string> words, const Folder& folder) {
   const std::string verb = words.front();
   for (std::size_t i = 1; i < words.size(); ++i)

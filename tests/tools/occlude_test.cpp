@@ -1,4 +1,4 @@
-// The bite as people settle it: exit codes, files, and what other commands make of them.
+// `condyle occlude`: exit codes, files, and their use by other commands.
 #include <gtest/gtest.h>
 
 #include <cmath>

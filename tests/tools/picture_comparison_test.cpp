@@ -1,4 +1,4 @@
-// The measure by which the tests compare pictures, and what is left of a comparison that fails.
+// The measure with which tests compare pictures, and the files of a failed comparison.
 #include <gtest/gtest.h>
 
 #include <filesystem>

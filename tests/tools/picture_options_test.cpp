@@ -1,5 +1,4 @@
-// What `record` can leave out of pictures, lay over them and write on them, as a person asks for
-// it.
+// Options of `record`: hidden parts, overlays and texts of pictures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -131,7 +130,7 @@ TEST_F(PictureOptions, WhatTheDriverCannotDrawIsSaidInASentence) {
   EXPECT_NE(none.err.find("install libegl1"), std::string::npos) << none.err;
 }
 
-/// `condyle` with one of Mesa's software drivers, whatever card there is: softpipe, or zink, which
+/// `condyle` with one of Mesa's software drivers, regardless of any card: softpipe, or zink, which
 /// uses Vulkan as that of a card would.
 Outcome condyle_with(const std::string& driver, const std::vector<std::string>& arguments) {
   const std::map<std::string, std::string> forced = {
@@ -149,7 +148,7 @@ nlohmann::json drawn_with(const std::string& folder) {
 }
 
 TEST(Drivers, ThreeDrawThePatientAlike) {
-  // The by_default one (a card's, if there is one) and two others: bones, teeth, glassy skin,
+  // The default driver (a card's, if there is one) and two others: bones, teeth, glassy skin,
   // shadows.
   const Folder folder;
   const auto record = [&](const std::string& out) {
@@ -188,7 +187,7 @@ TEST_F(PictureOptions, ResumedWithAnotherDriverTheReportNamesBoth) {
   ASSERT_EQ(condyle_with("softpipe", command("resumed", {"--edges", "fxaa"})).code, 0);
   const std::string before = drawn_with(folder_ / "resumed")["driver"];
   ASSERT_NE(before.find("softpipe"), std::string::npos);
-  // All pictures are there: today's driver has none of them.
+  // All pictures exist already: the present driver drew none of them.
   ASSERT_EQ(condyle(command("resumed", {"--edges", "fxaa", "--resume"})).code, 0);
   EXPECT_EQ(drawn_with(folder_ / "resumed")["driver"], before);
   std::filesystem::remove(folder_ / "resumed/frames/000000.png");
@@ -209,7 +208,7 @@ TEST_F(PictureOptions, SamplesThatTheDriverLacksAreReported) {
   const auto by_default = condyle(command("by_default", {}));
   EXPECT_EQ(by_default.err.find("samples per pixel"), std::string::npos) << by_default.err;
   EXPECT_EQ(drawn_with(folder_ / "by_default")["samples"], 4);
-  // Of what check draws, too.
+  // Also for pictures of check.
   const std::vector<std::string> check = {
       "check", box_case(folder_), "--motion", "rest", "--margin", "5", "--out", folder_ / "check"};
   EXPECT_NE(condyle_with("softpipe", check).err.find("requested 4 samples"), std::string::npos);

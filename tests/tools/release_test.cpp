@@ -1,4 +1,4 @@
-// A transplant that is released over the command line.
+// Release of a transplant on the command line.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -49,7 +49,7 @@ TEST(Release, ATransplantComesToLieOnBoneAndItsCaseIsSaved) {
   EXPECT_LT(json["depth_mm"], 0.05);
   EXPECT_GE(json["contacts"].size(), 3u);
   EXPECT_TRUE(std::filesystem::exists(out + "/case.json"));
-  // Where it lies now, it stays.
+  // Released again, it stays.
   // By the command's earlier name.
   const auto again = condyle({"let-go", out, "--push", "0,0,-5", "--json", "--quiet"});
   ASSERT_EQ(again.code, 0) << again.err;

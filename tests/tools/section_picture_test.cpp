@@ -1,4 +1,4 @@
-// A section through the built-in patient, as it is recorded.
+// A section through the built-in patient in a recording.
 #include <gtest/gtest.h>
 
 #include <cstdint>

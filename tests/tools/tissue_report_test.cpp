@@ -43,7 +43,7 @@ TissueOf opened(const std::vector<std::string>& more) {
 TEST(TissueReport, ReportsTheTissuesForcesAtRestAndItsSlip) {
   const TissueOf sliding = opened({}), glued = opened({"--glued"});
   for (const TissueOf* one : {&sliding, &glued}) {
-    // It stands still at rest, to rounding: less than the weight of a grain of dust.
+    // In equilibrium at rest, to rounding: less than the weight of a grain of dust.
     const double force_N = one->report["at_rest"]["largest_force_N"];
     EXPECT_GT(force_N, 0);
     EXPECT_LT(force_N, 1e-9);

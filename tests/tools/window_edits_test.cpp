@@ -1,4 +1,4 @@
-// Whatever a person sets in the window can be taken back; two patients are not mixed up.
+// Every edit in the window can be undone; two patients are not mixed up.
 #include <sstream>
 
 #include "tests/support/file_drop.h"
@@ -18,7 +18,7 @@ TEST_F(WindowSession, EverySettingOfThePictureIsUndoneAndRedone) {
   ASSERT_TRUE(wait_for_item("clip"));
   const auto edits = [&] { return state()["edits"]; };
   int settings = 0;
-  // Sets something, takes it back, and sets it again.
+  // Makes an edit, undoes it, and makes it again.
   const auto set = [&](const std::string& what, const std::function<void()>& edit) {
     SCOPED_TRACE(what);
     const Json before = edits();
@@ -141,7 +141,7 @@ TEST_F(WindowSession, NumbersThatShapeTheMotionAreUndoneAndRedoneAndQuittingWait
   };
   number("parameter:opening", 0.5, 0.4);
   number("parameter:bennett", 0.2, 0.6);
-  // A motion by muscles, and how much they are excited.
+  // A muscle-driven motion, and its excitations.
   click("motion");
   click("motion:by-muscles");
   ASSERT_TRUE(wait_until(
@@ -221,7 +221,7 @@ TEST_F(WindowSession, APatientWhoseLoadingIsCancelledLeavesTheOtherAsHeWas) {
   EXPECT_TRUE(alike(seen_, at_first, 0.001, view_region()));
   EXPECT_TRUE(press("l"));
   EXPECT_TRUE(wait_until([](const Json& s) { return double(s["camera_direction"][0]) > 0.99; }));
-  // Asked for again, it comes.
+  // Requested again, it appears.
   open_builtin();
   ASSERT_TRUE(wait_until([](const Json& s) { return idle(s) && s["case"]["folder"] == ""; }, 120));
   EXPECT_TRUE(press("ctrl+q"));
@@ -284,7 +284,7 @@ TEST_F(WindowSession, LandmarksThatAreUsedMoveTheJawAsTheSavedCaseDoes) {
   EXPECT_GE(row[1], time_s - 1e-9);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(used[k], row[2 + k], 0.01) << last;
 
-  // Taken back, it is to be used again; the jaw stays until then.
+  // After undo it must be applied again; the jaw stays until then.
   EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(
       wait_until([&](const Json& s) { return s["landmark_mm"]["left_condyle"] == marked; }));

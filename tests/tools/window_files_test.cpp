@@ -11,7 +11,7 @@
 namespace condyle::test {
 namespace {
 
-/// A folder on a disk of 1 MB of its own, seen by this process and its children alone; where the
+/// A folder on a separate disk of 1 MB, visible to this process and its children alone; where the
 /// system forbids that, a folder like any other.
 class SmallDisk {
  public:
@@ -41,7 +41,7 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
   start({patient, "--motion", "rest"});
   ASSERT_TRUE(wait_until(idle));
 
-  // A motion, something that is nothing, a patient, a bone without anything else.
+  // A motion, an unusable file, a patient, a single bone.
   EXPECT_TRUE(drop_files("Condyle", {folder_ / "down.csv"}));
   EXPECT_TRUE(wait_until(
       [&](const Json& s) { return idle(s) && std::string(s["motion"]).ends_with("down.csv"); }));
@@ -54,7 +54,7 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
   EXPECT_TRUE(drop_files("Condyle", {patient}));
   EXPECT_TRUE(wait_until([](const Json& s) { return idle(s) && s["motion"] == "opening"; }));
 
-  // A landmark: added, placed on the bone by a click, renamed, taken back, saved.
+  // A landmark: added, placed on the bone by a click, renamed, undone, saved.
   EXPECT_TRUE(press("a"));
   EXPECT_TRUE(press("b"));
   const int known = state()["landmarks"];
@@ -81,7 +81,7 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
   click("case-save");
   EXPECT_TRUE(wait_until(
       [&](const Json& s) { return idle(s) && fs::exists(folder_ / "saved/case.json"); }));
-  // What was saved is what is opened.
+  // The saved case opens with the same landmarks.
   EXPECT_TRUE(drop_files("Condyle", {folder_ / "saved"}));
   EXPECT_TRUE(wait_until([&](const Json& s) {
     return idle(s) && s["landmark_mm"].contains("pogonion") &&
@@ -167,7 +167,7 @@ TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
   ASSERT_TRUE(wait_until([](const Json& s) {
     return idle(s) && s["edits"]["parts"].size() == 2 && s["landmark_mm"].contains("left_condyle");
   })) << state().dump();
-  // Its folder, dropped, is the same but for what is no surface.
+  // Its folder, dropped, has the same effect, without the files that are no surfaces.
   EXPECT_TRUE(drop_files("Condyle", {folder_.path()}));
   EXPECT_TRUE(wait_for_item("import-role:3"));
   EXPECT_FALSE(state()["items"].contains("import-role:4"));
@@ -201,12 +201,12 @@ TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
     return idle(s) && s["notes"].dump().find("2 from face_muscles.csv") != std::string::npos;
   })) << state()["notes"].dump()
       << state().value("trouble", "");
-  // Notes have the signs of units that people read.
+  // Notes have unit symbols.
   const std::string notes = state()["notes"].dump();
   EXPECT_NE(notes.find("rotation 28.1\u00b0"), std::string::npos) << notes;
   EXPECT_NE(notes.find("358.8 cm\u00b3"), std::string::npos) << notes;
   EXPECT_EQ(notes.find(" deg"), std::string::npos) << notes;
-  // Impossible roles are refused before the patient is made, with what to do.
+  // Impossible roles are refused before the patient is built, with a remedy.
   fs::create_directories(folder_ / "again");
   for (const char* name : {"mandible.stl", "marks.csv"})
     fs::copy_file(folder_ / name, fs::path(folder_ / "again") / name);
@@ -298,7 +298,7 @@ TEST_F(WindowSession, ARecordingFromThePanelHasTheBitsOfTheCommandWithTheSameCho
   const Picture front(folder_ / "window/front/frames/000002.png");
   EXPECT_EQ(front.rgba[3], 0) << "no background";
 
-  // What cannot be is a sentence: an unknown brace, a camera's file that is none.
+  // Invalid choices are reported: an unknown placeholder, an invalid camera file.
   const auto refused = [&](const std::string& words) {
     click("record");
     EXPECT_TRUE(wait_until([&](const Json& s) {
@@ -380,7 +380,7 @@ TEST_F(WindowSession, ATransplantIsMovedReleasedAndTheDiskIsFull) {
   EXPECT_TRUE(wait_until(
       [&](const Json& s) { return std::abs(double(s["body_mm"][2][2]) - lifted) < 1e-3; }));
 
-  // The recording has the strut where the hand has it.
+  // The recording has the strut at the hand's target.
   const auto record = [&](const std::string& folder) {
     write_into("record-folder", folder);
     click("record");

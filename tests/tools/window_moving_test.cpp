@@ -1,4 +1,4 @@
-// Bones that a hand moves in the window, and lets go of.
+// Bones that a hand moves and releases in the window.
 #include <sstream>
 
 #include "tests/support/shapes.h"
@@ -72,7 +72,7 @@ TEST_F(WindowSession, AReleasedJawFallsBackToWhereItsMusclesHoldIt) {
 
   write_into("shift:S", "-30");
   ASSERT_TRUE(wait_until([](const Json& s) { return opening_mm(s) > 29.9; }));
-  // So far from its joints nothing would hold it.
+  // So far from its joints nothing holds it.
   write_into("shift:P", "-60");
   ASSERT_TRUE(wait_until([](const Json& s) { return double(s["frame"]["mandible_mm"][1]) < -50; }));
   write_into("shift:S", "20");
@@ -102,7 +102,7 @@ TEST_F(WindowSession, AnEditDuringAReleaseTakesPrecedenceAndIsReported) {
     return s["busy_with"] == "" &&
            s.value("said", "").find("it was moved before it had come to rest") != std::string::npos;
   };
-  // A number that is entered.
+  // An entered number.
   click("shift:S");
   ASSERT_TRUE(wait_for_item("writing"));
   EXPECT_TRUE(press("Escape"));
@@ -114,7 +114,7 @@ TEST_F(WindowSession, AnEditDuringAReleaseTakesPrecedenceAndIsReported) {
   EXPECT_NEAR(opening_mm(state()), 12, 0.1) << "where the number has it";
   see("entered-meanwhile");
 
-  // What is taken back.
+  // An undone edit.
   click("release-body");
   ASSERT_TRUE(wait_until(computes));
   EXPECT_TRUE(press("ctrl+z"));
@@ -122,7 +122,7 @@ TEST_F(WindowSession, AnEditDuringAReleaseTakesPrecedenceAndIsReported) {
   std::this_thread::sleep_for(std::chrono::seconds(3));
   EXPECT_NEAR(opening_mm(state()), 30, 0.1) << "as it was before the number";
 
-  // And what is cancelled.
+  // And a cancelled release.
   click("release-body");
   click("cancel");
   EXPECT_TRUE(wait_until([](const Json& s) {
@@ -131,7 +131,7 @@ TEST_F(WindowSession, AnEditDuringAReleaseTakesPrecedenceAndIsReported) {
   }));
   EXPECT_NEAR(opening_mm(state()), 30, 0.1);
 
-  // The timeline takes the jaw.
+  // The timeline releases the jaw.
   const auto scrub = rect("scrub");
   click("release-body");
   ASSERT_TRUE(wait_until(computes));
@@ -175,7 +175,7 @@ TEST_F(WindowSession, MovingThePatientEndsTheReleaseOfAPartAndIsReported) {
   import.insert(import.end(), {"--landmarks", folder_ / "marks.csv", "--transplant",
                                folder_ / "ball.obj", "--out", folder_ / "case"});
   ASSERT_EQ(condyle(import).code, 0);
-  // Names of parts have signs that people do not read.
+  // Names of parts have characters that are replaced in texts.
   std::string text = read_text(folder_ / "case/case.json");
   // The part and its body, not the role.
   const std::string role = "\"role\": ";
@@ -214,7 +214,7 @@ TEST_F(WindowSession, MovingThePatientEndsTheReleaseOfAPartAndIsReported) {
   begin();
   EXPECT_TRUE(press("space"));
   ended("the motion was played");
-  // Left alone while the motion plays, it stops it and lies down.
+  // Released during the motion, it stops the motion and comes to rest.
   begin();
   EXPECT_TRUE(wait_until([](const Json& s) {
     return s["playing"] == false && s["busy_with"] == "" &&
@@ -222,7 +222,7 @@ TEST_F(WindowSession, MovingThePatientEndsTheReleaseOfAPartAndIsReported) {
            std::abs(double(s["body_mm"][2][2]) + 2) < 0.1;
   })) << state().value("said", "nothing was said")
       << state()["body_mm"];
-  // Nothing within reach: the sentence has the name as people read it.
+  // Nothing within reach: the sentence has the readable name.
   write_into("shift:S", "40");
   ASSERT_TRUE(wait_until([](const Json& s) { return double(s["body_mm"][2][2]) > 39; }));
   click("release-body");
@@ -250,7 +250,7 @@ TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsReleased) {
   click("body:skull");
   see("opened");
   const double opened_mm = opening_mm(state());
-  // Up by its number: the jaw stays in the picture, and is by so much farther away.
+  // Up by its number: the jaw stays in the picture, and its distance grows by that amount.
   write_into("shift:S", "10");
   ASSERT_TRUE(wait_until([&](const Json& s) {
     return std::abs(opening_mm(s) - opened_mm - 10) < 1e-6 &&
@@ -267,14 +267,14 @@ TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsReleased) {
   ASSERT_TRUE(wait_until([](const Json& s) { return double(s["X_RC_wanted"]["mm"][0]) > 5; }));
   EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(wait_until([](const Json& s) { return double(s["X_RC_wanted"]["mm"][0]) == 0; }));
-  // Down onto the jaw: contact keeps it up.
+  // Down onto the jaw: contact stops it.
   write_into("shift:S", "-60");
   ASSERT_TRUE(wait_until([](const Json& s) {
     return s["frame"]["stopped"] == true && double(s["frame"]["penetration_mm"]) < 0.1 &&
            double(s["X_RC_wanted"]["mm"][2]) == -60;
   })) << state()["frame"].dump();
   see("skull-on-the-jaw");
-  // Play takes the jaw alone: the skull stays where contact stopped it.
+  // Play moves the jaw alone: the skull stays where contact stopped it.
   const double stopped_mm = state()["X_RC"]["mm"][2];
   EXPECT_GT(stopped_mm, -55);
   EXPECT_TRUE(press("space"));
@@ -288,7 +288,7 @@ TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsReleased) {
   const double motion_mm = opening_mm(state());
   EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(wait_until([](const Json& s) { return double(s["X_RC_wanted"]["mm"][2]) == -60; }));
-  // Let go, joints and muscles bring both together; the motion has the jaw when it plays.
+  // Once released, joints and muscles bring both together; the motion drives the jaw when it plays.
   click("release-body");
   EXPECT_TRUE(wait_until([](const Json& s) {
     return idle(s) && std::abs(opening_mm(s) - 2.5) < 0.3;

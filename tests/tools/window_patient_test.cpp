@@ -103,7 +103,7 @@ TEST_F(WindowSession, ThePatientIsUsedFromOpeningToQuitting) {
   // Every step is undone.
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(wait_until([](const Json& s) {
-    // Home within what contact leaves open: the teeth touch there.
+    // Home as far as contact permits: the teeth touch there.
     return !s.contains("X_CM_wanted") && std::abs(double(s["frame"]["mandible_mm"][2])) < 1e-3;
   }));
   see("undone");
@@ -161,8 +161,8 @@ TEST_F(WindowSession, ThePatientIsUsedFromOpeningToQuitting) {
   EXPECT_TRUE(alike(frame("8"), frame("0"), 0.005)) << "and closes";
   frame("4").save(kept_pictures() / "ThePatientIsUsedFromOpeningToQuitting-film.png");
 
-  // The interface answered all the time. On a quiet machine about a tenth of a second; a shared one
-  // takes the processor away for longer.
+  // The interface responded all the time: within about 0.1 s on an idle machine; a shared one takes
+  // longer.
   RecordProperty("longest_away_ms", int(state()["longest_away_ms"]));
   std::printf("longest time away from mouse and keyboard: %d ms\n",
               int(state()["longest_away_ms"]));

@@ -54,7 +54,7 @@ TEST_F(WindowSession, AStoppedOrQuitRecordingIsResumedBitIdentically) {
   const Files expected = files_of(whole);
   ASSERT_EQ(expected.size(), 61u + 2u);  // with film and hashes
 
-  // Quitting asks, and loses nothing when the person thinks better of it.
+  // Quitting asks, and loses nothing when the user declines.
   record(stopped);
   ASSERT_TRUE(begun(stopped));
   EXPECT_TRUE(press("ctrl+q"));
@@ -71,7 +71,7 @@ TEST_F(WindowSession, AStoppedOrQuitRecordingIsResumedBitIdentically) {
   see("stopped");
   const Files parts = files_of(stopped);
   ASSERT_LT(parts.size(), 61u);
-  // From another view another recording would take its place: only if the person says so.
+  // Another view would replace the recording: only if the user confirms.
   EXPECT_TRUE(press("l"));
   record(stopped);
   ASSERT_TRUE(asked("it differs in: camera")) << state();
@@ -85,7 +85,7 @@ TEST_F(WindowSession, AStoppedOrQuitRecordingIsResumedBitIdentically) {
   EXPECT_EQ(files_of(stopped), expected);
   EXPECT_TRUE(wait_for_item("record-resume", false));
 
-  // Quit, and taken up by the next run with the same view.
+  // Quit, and resumed in the next run with the same view.
   const std::string left = folder_ / "left";
   record(left);
   ASSERT_TRUE(begun(left));

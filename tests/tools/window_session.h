@@ -23,7 +23,7 @@ namespace condyle::test {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// `condyle view` running on a screen of its own.
+/// `condyle view` running on its own virtual screen.
 class WindowSession : public testing::Test {
  protected:
   void SetUp() override {
@@ -101,7 +101,7 @@ class WindowSession : public testing::Test {
     return -1;
   }
 
-  /// Writes words into a field instead of what it held.
+  /// Replaces the text of a field.
   void write_into(const std::string& field, const std::string& words) {
     click(field);
     ASSERT_TRUE(wait_for_item("writing"));
@@ -109,7 +109,7 @@ class WindowSession : public testing::Test {
     EXPECT_TRUE(xdotool({"type", "--", words}));
     EXPECT_TRUE(press("Return"));
   }
-  /// What the screen shows once it has come to rest.
+  /// The screen once nothing changes any more.
   Picture settled_picture() {
     Picture last = display_->picture();
     int calm = 0;
@@ -126,10 +126,10 @@ class WindowSession : public testing::Test {
     const std::array<double, 4> view = state()["view"];
     return {view[0], view[1], view[2], view[3]};
   }
-  /// Keeps the picture of a step (SESSION-NUMBER-STEP.png), also of one that fails. gives: the
+  /// Stores the picture of a step (SESSION-NUMBER-STEP.png), also of one that fails. Returns the
   /// fraction of the 3-D view that differs from the step before; 1 for the first.
   double see(const std::string& step) { return keep(step, settled_picture()); }
-  /// The same of what moves.
+  /// The same for a moving picture.
   double see_now(const std::string& step) {
     std::this_thread::sleep_for(std::chrono::milliseconds(150));  // until it is on the screen
     return keep(step, display_->picture());
@@ -160,7 +160,7 @@ class WindowSession : public testing::Test {
   pid_t program_ = -1;
 };
 
-/// The patient is loaded and nothing runs beside.
+/// Whether the patient is loaded and no background work runs.
 inline bool idle(const Json& s) { return s["busy_with"] == "" && s.contains("frame"); }
 
 }  // namespace condyle::test

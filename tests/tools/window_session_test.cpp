@@ -44,7 +44,7 @@ TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
   }));
   click("to-start");
 
-  // A recorded motion is played as it is until contact is asked for.
+  // A recorded motion is played unaltered until contact is enabled.
   click("obey-contact");
   // Drag the mandible up by its handle until it meets the maxilla, 1 mm above.
   EXPECT_TRUE(press("a"));
@@ -200,13 +200,13 @@ TEST_F(WindowSession, ThemeScaleSizesAndTabsAreKeptBetweenRunsAndTheCommandLineW
   click("tab:Motion");
   EXPECT_TRUE(press("g"));
   ASSERT_TRUE(wait_for_item("plots"));
-  // A person's window of another size.
+  // A window of another size.
   EXPECT_TRUE(xdotool({"search", "--name", "Condyle", "windowsize", "--sync", "1200", "700"}));
   ASSERT_TRUE(wait_until([&](const Json& s) { return std::abs(wide(s, "bottom") - 1200) < 2; }));
   EXPECT_TRUE(press("ctrl+minus"));
   ASSERT_TRUE(wait_until([&](const Json& s) { return std::abs(wide(s, "left") - 274) < 2; }));
   see("arranged");
-  // What is kept is there while the window runs, too.
+  // Settings are stored while the window runs, too.
   for (int i = 0; i < 100 && !fs::exists(kept); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_TRUE(fs::exists(kept));
@@ -228,7 +228,7 @@ TEST_F(WindowSession, ThemeScaleSizesAndTabsAreKeptBetweenRunsAndTheCommandLineW
       [&](const Json& s) { return idle(s) && s["case"]["folder"] == "" && as_left(s); }, 120));
   quit();
 
-  // The command line is for its own run.
+  // The command line applies to its own run.
   const std::string before = read_text(kept);
   start({patient, "--motion", "rest", "--dark", "--size", "1280x720", "--ui-scale", "1"});
   ASSERT_TRUE(wait_until(idle));
@@ -246,7 +246,7 @@ TEST_F(WindowSession, ThemeScaleSizesAndTabsAreKeptBetweenRunsAndTheCommandLineW
   quit();
   EXPECT_EQ(read_text(kept), before);
 
-  // A broken file: a sentence, and a window as at first.
+  // A damaged file: a sentence, and the default window.
   write_text(kept, before.substr(0, before.size() / 2));
   start({patient, "--motion", "rest"});
   ASSERT_TRUE(wait_for_item("error"));

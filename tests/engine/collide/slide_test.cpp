@@ -265,7 +265,7 @@ TEST(Slide, AllowedOverlapFadesWithDistanceFromItsPose) {
   model.allow_overlap_at(shift(0, 0, 5 - deep), 2.0);
   EXPECT_NEAR(model.depth(shift(0, 0, 5 - deep)), 0, 1e-6);
   EXPECT_NEAR(model.depth(shift(0, 4, 5 - deep)), deep, 0.03);
-  // Pressed down it stays; dragged along it comes out, and stays out.
+  // Pressed down it stays; dragged sideways it leaves the overlap and stays outside.
   EXPECT_NEAR(model.slide(shift(0, 0, 5 - deep), shift(0, 0, 4)).X_FM.t.z(), 5 - deep, 0.05);
   double last = 5 - deep - 0.02;
   Pose X = shift(0, 0, 5 - deep);

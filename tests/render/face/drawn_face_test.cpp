@@ -57,7 +57,7 @@ TEST(FaceOpenings, AreRecognizedByPositionAndShape) {
     EXPECT_NEAR(opening.outward.norm(), 1, 1e-9);
     EXPECT_LT(opening.outward.y(), 0);
   }
-  // Holes in the forehead or the cheeks are what they are.
+  // Holes in the forehead or the cheeks are not closed.
   for (const double up : {45.0, -70.0})
     EXPECT_TRUE(find_openings(head_with_openings({0, 0, up})).empty()) << up;
 }

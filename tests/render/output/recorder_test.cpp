@@ -101,7 +101,7 @@ TEST_F(Recording, ExistingFilesAreReportedBeforeItBegins) {
   EXPECT_TRUE(recording_there(s).differs.empty());
   record(s, 7, false);
   fs::resize_file(top / "a/frames/000003.png", 40);
-  EXPECT_EQ(recording_there(s).pictures, 6) << "whole ones";
+  EXPECT_EQ(recording_there(s).pictures, 6) << "complete ones";
   EXPECT_TRUE(recording_there(s).differs.empty());
   auto other = s;
   other.identity["camera"] = "left";

@@ -21,28 +21,28 @@ Part box_part(const std::string& name, Role role, const Eigen::Vector3d& low,
 /// A small patient of boxes: skull, maxilla, teeth, mandible and face.
 std::vector<Part> box_patient();
 
-/// A frame of the box patient with the mouth open by so much, every reading filled in.
+/// A frame of the box patient with the mouth open by this amount, with all readings.
 FrameState box_frame(double time_s, double opening_mm);
 
-/// Panels drawn off the screen, with a scripted mouse.
+/// Panels drawn off-screen, with a scripted mouse.
 class PanelStage {
  public:
   PanelStage(int width, int height, float scale);
   ~PanelStage();
 
-  /// One picture of the panels with the mouse there.
+  /// Draws the panels once with the mouse at a position.
   void step(double x, double y, bool down);
   void rest(int pictures = 3);
   void set_light(bool light);
-  /// Presses and releases the middle of an item; or slides from one part of its width to another.
+  /// Clicks the middle of an item; or drags between two fractions of its width.
   void click(const std::string& item);
   void slide(const std::string& item, double from, double to);
-  /// Keys that are held from now on.
+  /// Sets the keys that are held from now on.
   void hold(bool ctrl, bool shift);
-  /// Clicks the field, or with Ctrl the slider, and enters words there.
+  /// Clicks the field, or with Ctrl the slider, and enters a text.
   void enter(const std::string& item, const std::string& words, bool ctrl = false);
 
-  /// The item as last drawn; fails the test when it is not there.
+  /// The item as last drawn; fails the test when it is absent.
   DrawnItem item(const std::string& name) const;
   bool has(const std::string& name) const;
   /// The last panels as pixels.

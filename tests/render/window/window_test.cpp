@@ -26,8 +26,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// A window on a virtual screen with a simulation of boxes behind it. The window runs on the test's
-/// thread; a script with real events runs beside it.
+/// A window on a virtual screen with a simulation of boxes. The window runs on the test's thread; a
+/// script with real events runs on another one.
 class RealWindow : public testing::Test {
  protected:
   struct Seen {
@@ -154,7 +154,7 @@ class RealWindow : public testing::Test {
     EXPECT_TRUE(
         xdotool({"mousemove", px(r.x + r.width / 2), px(r.y + r.height / 2), "click", "1"}));
   }
-  /// Presses at one place, moves in steps, lets go at the other.
+  /// Presses at one position, moves in steps, releases at the other.
   void drag(double x0, double y0, double x1, double y1, const std::string& button,
             const std::string& key = {}) {
     if (!key.empty()) {
@@ -409,7 +409,7 @@ TEST_F(RealWindow, KeyDShowsDistancesAndTheLegendIsNoPartOfTheView) {
     std::this_thread::sleep_for(milliseconds(300));
   });
   EXPECT_FALSE(closed_);
-  // Red, white and blue stand in the picture's view, from the teeth.
+  // The view has red, white and blue, from the teeth.
   const ViewRect view = seen().rect;
   const ViewRect legend = place("legend");
   int red = 0, blue = 0;
@@ -428,7 +428,7 @@ TEST_F(RealWindow, ClicksAreNotLostWhenTheMouseHurriesOn) {
   run([&] {
     const ViewRect play = place("play"), mandible = place("show:mandible");
     const Camera before = seen().camera;
-    // All in one go: far faster than pictures are drawn.
+    // All at once: far faster than pictures are drawn.
     EXPECT_TRUE(
         xdotool({"mousemove", px(mandible.x + 8), px(mandible.y + 8), "click", "1", "mousemove",
                  px(play.x + 8), px(play.y + 8), "click", "1", "mousemove", "640", "300"}));
@@ -590,7 +590,7 @@ TEST_F(RealWindow, AnIdleWindowRests) {
       return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
              1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
     };
-    // Until the full picture is drawn, beside the window, and all has come to rest.
+    // Until the full picture is drawn in the background and nothing moves.
     for (int i = 0; i < 40; ++i) {
       const double start = cpu_s();
       std::this_thread::sleep_for(milliseconds(1000));
@@ -680,7 +680,7 @@ TEST_F(RealWindow, CtrlKeysAndButtonsScaleThePanels) {
     EXPECT_TRUE(becomes(0.9 * standard)) << wide();
     EXPECT_TRUE(press("ctrl+0"));
     EXPECT_TRUE(becomes(standard)) << wide();
-    // What does not fit leaves all as it is, and one step down is seen at once.
+    // A scale that does not fit changes nothing, and one step down is visible at once.
     for (int i = 0; i < 4; ++i) EXPECT_TRUE(press("ctrl+equal"));
     std::this_thread::sleep_for(milliseconds(300));
     EXPECT_TRUE(becomes(standard)) << wide();

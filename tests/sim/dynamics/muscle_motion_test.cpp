@@ -77,7 +77,7 @@ TEST_F(MuscleMotion, MusclesFollowAGivenOpening) {
   EXPECT_LT(std::sqrt(squares / count), 1);
   EXPECT_GT(effort, 0.02);
   EXPECT_LT(apart, 0.05);
-  // The same excitations from a file, with nobody to correct them, do the same: an open jaw would
+  // The same excitations from a file, without feedback, have the same result: an open jaw would
   // magnify the least difference.
   const Motion again = make("muscles:" + write("found.csv", excitations_csv(found)));
   EXPECT_NEAR(again.duration_s, found.duration_s, 1e-9);

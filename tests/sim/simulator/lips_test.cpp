@@ -1,4 +1,4 @@
-// Lips slide on teeth and on each other, enter neither with nodes or faces, and come back to where
+// Lips slide on teeth and on each other, enter neither with nodes or faces, and return to where
 // they rested.
 #include "sim/tissue/lips.h"
 

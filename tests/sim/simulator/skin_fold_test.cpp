@@ -1,4 +1,4 @@
-// Below the chin skin comes to lie on skin as the mouth opens wide.
+// Below the chin skin rests on skin as the mouth opens wide.
 #include "sim/tissue/skin_fold.h"
 
 #include <gtest/gtest.h>

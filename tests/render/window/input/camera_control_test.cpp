@@ -26,7 +26,7 @@ Camera any_camera(std::mt19937& generator) {
                      {.azimuth = 3 * random(), .elevation = 1.4 * random(), .roll = 3 * random()});
 }
 
-/// Where a point of the case is in the window, pixels.
+/// Position of a point of the case in the window, pixels.
 Vector2d pixel_of(const Camera& camera, const Vector3d& point) {
   const Eigen::Vector4f clip =
       projection_matrix(camera, window_view.width / window_view.height, 1, 10000) *

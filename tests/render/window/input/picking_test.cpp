@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Where a point of the world is in the view, pixels.
+/// Position of a point of the world in the view, pixels.
 Eigen::Vector2d pixel_of(const Camera& camera, const ViewRect& view, const Vector3d& p) {
   const Eigen::Vector4f q = projection_matrix(camera, view.width / view.height, 1, 3000) *
                             view_matrix(camera) * p.cast<float>().homogeneous();

@@ -1,4 +1,4 @@
-// Plots, motions, recordings, landmarks, files and what the picture shows, through the panels.
+// Plots, motions, recordings, landmarks, files and the content of the picture, through the panels.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -101,7 +101,7 @@ class Instrument : public testing::TestWithParam<LitScreen> {
                                                (GetParam().light ? "-light" : "-dark") + ".png");
     test::Picture(stage.image()).save(file);
   }
-  /// Everything that is drawn lies in its panel, and panels lie beside each other.
+  /// Expects everything drawn inside its panel, and panels that do not overlap.
   void expect_tidy() {
     for (const DrawnItem& a : stage.panels->items()) {
       if (!a.panel.empty()) {
@@ -143,7 +143,7 @@ TEST_P(Instrument, NumbersOfTheMotionCanBeTypedAndThePatientsOwnAreShown) {
   EXPECT_EQ(stage.item("number:bennett").words, "12.5\u00b0");
   stage.enter("parameter:bennett", "900", true);
   EXPECT_DOUBLE_EQ(given.at("bennett"), 40) << "within the slider's ends";
-  // What is no number, or the number that stands there, is no edit.
+  // A text that is no number, or an unchanged number, is no edit.
   const MotionChoice before = stage.view.motion;
   for (const char* words : {"abc", "", "-", "40"}) {
     stage.enter("parameter:bennett", words, true);
@@ -689,7 +689,7 @@ TEST_P(Instrument, SeveralFilesAreChosenAndOpenedAtOnce) {
   EXPECT_EQ(opened(), (Names{"b.stl", "d.obj", "marks.csv"}));
   EXPECT_FALSE(stage.panels->dialog_open());
 
-  // Enter does the same; a double click opens one; a click alone forgets the others.
+  // Enter does the same; a double click opens one file; a single click deselects the others.
   open();
   EXPECT_EQ(chosen(), NameSet{});
   click("a.stl", false, false);
@@ -706,7 +706,7 @@ TEST_P(Instrument, SeveralFilesAreChosenAndOpenedAtOnce) {
   for (const bool down : {false, true, false, true, false})
     stage.step(row.x + 20, row.y + row.height / 2, down);
   EXPECT_EQ(opened(), Names{"b.stl"});
-  // What is typed is meant instead.
+  // A typed path takes precedence.
   open();
   click("a.stl", false, false);
   stage.enter("open-path", "/data/case");
@@ -807,7 +807,7 @@ TEST_P(Instrument, TooltipsWaitAndCoverNothingThatAClickReveals) {
   rest_on("record-cameras", half_a_second);
   ASSERT_TRUE(stage.has("tooltip"));
   EXPECT_FALSE(stage.panels->talking());
-  // Another item: another wait.
+  // Another item restarts the wait.
   rest_on("record-caption", 10);
   EXPECT_FALSE(stage.has("tooltip"));
   rest_on("record-caption", half_a_second);
@@ -816,7 +816,7 @@ TEST_P(Instrument, TooltipsWaitAndCoverNothingThatAClickReveals) {
   keep("tooltip");
   EXPECT_TRUE(lies_within(stage.item("tooltip").rect,
                           {0, 0, double(GetParam().width), double(GetParam().height)}));
-  // A click unfolds the list: nothing lies over it, however long the mouse rests.
+  // A click opens the list: no tooltip covers it, however long the mouse rests.
   const ViewRect list = stage.item("record-cameras").rect;
   for (const bool down : {false, true, false})
     stage.step(list.x + list.width / 2, list.y + list.height / 2, down);
@@ -826,7 +826,7 @@ TEST_P(Instrument, TooltipsWaitAndCoverNothingThatAClickReveals) {
   keep("record-cameras");
   stage.panels->run(Command::close_dialog, stage.scene, stage.view);
   stage.rest();
-  // A button that was clicked is quiet until the mouse has left it.
+  // A clicked button shows no tooltip until the mouse has left it.
   rest_on("record-transparent", half_a_second);
   EXPECT_TRUE(stage.has("tooltip"));
   const ViewRect box = stage.item("record-transparent").rect;
@@ -931,7 +931,7 @@ TEST_F(ArrangementFile, OnlyThePersonsChangesAreRestored) {
   EXPECT_TRUE(KeptArrangement(file_).trouble().empty()) << "none yet";
   run({}, {});
   EXPECT_FALSE(std::filesystem::exists(file_)) << "nothing was changed";
-  // Everything, each other than at first.
+  // Every setting differs from its default.
   const Arrangement all{
       .light = true,
       .ui_scale = 1.25,
@@ -949,7 +949,7 @@ TEST_F(ArrangementFile, OnlyThePersonsChangesAreRestored) {
                  .film = false,
                  .transparent = true,
                  .cameras = {"front", "left"}}};
-  // What was meant for one patient is not kept.
+  // Settings of one patient are not stored.
   Arrangement of_a_patient = all;
   of_a_patient.record.camera_from_file = true;
   of_a_patient.record.camera_file = "path.json";
@@ -1000,7 +1000,7 @@ TEST_F(ArrangementFile, ABrokenOrForeignFileIsOneSentenceAndAllIsAsAtFirst) {
     kept.update({}, true);
     EXPECT_TRUE(KeptArrangement(file_).trouble().empty()) << KeptArrangement(file_).trouble();
   }
-  // What is out of reach is left as it is.
+  // An inaccessible file is not changed.
   std::filesystem::remove(file_);
   std::filesystem::create_directory(file_);
   KeptArrangement out_of_reach(file_);

@@ -80,7 +80,7 @@ TEST(Measuring, OnACoarseFaceMarksLieOnWhatIsSeen) {
   }
   EXPECT_GT(measured_off, 1);
   EXPECT_LT(seen_off, 0.4 * measured_off);
-  // A fine one is seen as it is.
+  // A fine one is displayed unchanged.
   parts[0].mesh = ball({0, 0, 0}, 70, 120);
   EXPECT_TRUE(DisplayedFace(parts).places(frame).empty());
 }

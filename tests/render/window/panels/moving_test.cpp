@@ -53,7 +53,7 @@ TEST(Movable, PlacementIsThePoseInNumbers) {
   const Placement read = placement_of(pose_at(requested, center), center);
   EXPECT_LT((read.shift_mm - requested.shift_mm).norm(), 1e-12);
   EXPECT_LT((read.turn_deg - requested.turn_deg).norm(), 1e-10);
-  // Turning alone leaves the centre where it is.
+  // Rotation alone does not move the centre.
   EXPECT_LT((pose_at({Vector3d::Zero(), {0, 0, 30}}, center) * center - center).norm(), 1e-12);
 }
 
@@ -78,13 +78,13 @@ TEST(Movable, TheSkullMovesInSpaceAgainstAFixedJaw) {
   const Pose held = pose_at({{0, -4, -12}, {12, 0, 3}}, jaw.center);
   EXPECT_TRUE(near(hands.X_RC(held) * held, opened));
   EXPECT_FALSE(near(hands.X_RC(held), up));
-  // A hand that takes the jaw now leaves the skull where it is.
+  // A hand that grips the jaw now does not move the skull.
   Hands further = hands;
   further.move(jaw, held, held);
   EXPECT_TRUE(near(further.X_RC(held), hands.X_RC(held)));
   EXPECT_TRUE(near(further.X_RC(Pose{}), hands.X_RC(held)));
   EXPECT_TRUE(near(*further.X_CM_target(), held));
-  // So does the motion; and to put the skull back takes back that it was moved.
+  // So does the motion; resetting the skull clears its displacement.
   further = hands;
   further.release_jaw(held);
   EXPECT_FALSE(further.X_CM_target());
@@ -135,7 +135,7 @@ TEST(Handles, ArrowKeepsToItsAxisAndItsTipToTheMouse) {
     const Vector2d moved = screen_place(view.camera, view.view, view.center + pose.t) -
                            screen_place(view.camera, view.view, view.center);
     EXPECT_LT((moved - 12 * along).norm(), 0.5);
-    // Across its axis an arrow does not go.
+    // An arrow does not move across its axis.
     const Vector2d across(-along.y(), along.x());
     EXPECT_LT(gripped(view, grip, {}, tip, tip + 30 * across).t.norm(), 1e-9);
   }
@@ -151,7 +151,7 @@ TEST(Handles, RingTurnsWithTheMouseFromEitherSide) {
     EXPECT_EQ(grip_at(view, from, 8), Grip::turn_back);
     const Pose pose = gripped(view, Grip::turn_back, {}, from, to);
     EXPECT_LT((pose * view.center - view.center).norm(), 1e-9);
-    // What was at the first place is at the second one.
+    // The point at the first position is now at the second.
     const Vector3d right = picture_axes(view.camera).row(0);
     const Vector2d now = screen_place(view.camera, view.view, pose * (view.center + 10 * right));
     EXPECT_NEAR((now - c).x(), 0, 1e-6);
@@ -184,7 +184,7 @@ TEST(EditHistory, UndoAndRedoGoThroughAllEdits) {
     EXPECT_TRUE(now == states[i]);
   }
   EXPECT_FALSE(history.redo(now));
-  // Another edit after an undo ends what could be redone; a grip that moved nothing is no edit.
+  // An edit after an undo discards the redo history; a grip without motion is no edit.
   EXPECT_TRUE(history.undo(now));
   history.remember(now);
   EXPECT_FALSE(history.can_redo());
@@ -213,7 +213,7 @@ TEST(MovePanel, ButtonsUndoAndReset) {
   stage.rest();
   stage.click("redo");
   EXPECT_TRUE(stage.view.hands.at(mandible_body));
-  // Playing takes the jaw from the hand.
+  // Playing releases the jaw from the hand.
   stage.click("play");
   EXPECT_FALSE(stage.view.hands.at(mandible_body));
 }

@@ -18,8 +18,8 @@ class PanelsOn : public testing::TestWithParam<Screen> {
   PanelStage stage{GetParam().width, GetParam().height,
                    fitting_scale(GetParam().scale, GetParam().width, GetParam().height)};
 
-  /// Panels lie apart on the screen, and so do things in them, each within its own. gives: how many
-  /// panels there are.
+  /// Expects that panels do not overlap, nor items, each within its panel. Returns the number of
+  /// panels.
   int expect_apart(const std::string& state);
 
   void keep(const std::string& what) {
@@ -55,7 +55,7 @@ int PanelsOn::expect_apart(const std::string& state) {
       EXPECT_TRUE(within(a.rect, stage.item(a.panel).rect)) << state << ": " << a.name;
     }
     for (const DrawnItem& b : items) {
-      // Panels are compared with panels and what is written on the view, items with items.
+      // Panels are compared with panels and with text on the view, items with items.
       if (&a == &b || b.panel == "handles" || (on_view && b.panel == a.panel && &a > &b)) continue;
       if (!on_view && (a.panel.empty() != b.panel.empty() || b.panel == "view")) continue;
       if (on_view && !b.panel.empty() && !(b.panel == "view")) continue;
@@ -268,7 +268,7 @@ TEST_P(PanelsOn, TheSkinIsRestoredWhenDistancesAreTurnedOff) {
     run(Command::toggle_distances);
     EXPECT_EQ(stage.view.skin_opacity, 0.8);
   }
-  // What the person sets meanwhile stays: thin, or none.
+  // The user's settings made meanwhile stay: thin, or none.
   run(Command::toggle_distances);
   stage.view.skin_opacity = 0.3;
   run(Command::toggle_distances);
@@ -392,7 +392,7 @@ TEST_P(PanelsOn, ColumnsAndPlotsCanBeResizedAndReset) {
   EXPECT_NEAR(size("plots").height, plots.height + by / 2, 1.01);
   EXPECT_NEAR(size("plots").width, plots.width - 2 * by, 2.01);
   EXPECT_NEAR(stage.panels->sizes().left, left.width / scale + 40, 1);
-  // Words keep their room, and the picture its own.
+  // Texts keep their space, and so does the picture.
   pull("edge:left", -5 * by, 0);
   EXPECT_NEAR(size("left").width, left.width, 1);
   pull("edge:left", 1e4, 0);
@@ -402,7 +402,7 @@ TEST_P(PanelsOn, ColumnsAndPlotsCanBeResizedAndReset) {
   EXPECT_GE(drawn.view.height, std::floor(150 * scale));
   EXPECT_NEAR(size("right").x + size("right").width, GetParam().width, 0.5);
   EXPECT_LE(size("left").x + size("left").width, size("right").x);
-  // A double click brings each back.
+  // A double click restores each.
   for (const char* edge : {"edge:left", "edge:right", "edge:plots"}) {
     const ViewRect r = stage.item(edge).rect;
     for (const bool down : {false, true, false, true, false})

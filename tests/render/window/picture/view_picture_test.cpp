@@ -1,4 +1,4 @@
-// The window's picture at rest is drawn column by column, so that it can be given up.
+// The window's picture at rest is drawn column by column, so that it can be cancelled.
 #include "render/window/picture/view_picture.h"
 
 #include "tests/render/scene_fixture.h"

@@ -25,7 +25,7 @@ TEST(Playback, ClockWaitsForASlowSimulation) {
   view.time_s = 1.0;
   for (int i = 0; i < 60; ++i) advance_clock(view, 1.0 / 60, 4, 1.0);
   EXPECT_NEAR(view.time_s, 1.0 + allowed_lead_s(1.0 / 60), 1e-9);
-  // Also when the clock has begun anew and the frame is still at the end.
+  // Also when the clock has wrapped and the frame is still at the end.
   view.time_s = 0.02;
   advance_clock(view, 1, 4, 3.95);
   EXPECT_NEAR(view.time_s, 3.95 + allowed_lead_s(1) - 4, 1e-9);
