@@ -95,8 +95,8 @@ std::vector<std::string> write_pictures(AtomicOutput& files, const Scene& scene,
     names[shown[k]] = file_of(pair);
     write_png(files.path(names[shown[k]]), picture_of(scene, pair, threads));
   }
-  if (const auto worth = pairs_to_show(check, check.pairs.size()).size(); worth > shown.size())
-    notes.push_back(fmt::format("the {} worst of {} pairs are drawn", shown.size(), worth));
+  if (const auto total = pairs_to_show(check, check.pairs.size()).size(); total > shown.size())
+    notes.push_back(fmt::format("the {} worst of {} pairs are drawn", shown.size(), total));
   return names;
 }
 

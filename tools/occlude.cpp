@@ -26,8 +26,8 @@ namespace {
 struct OccludeOptions {
   std::filesystem::path patient;  // case folder; empty: the built-in patient
   std::filesystem::path out;
-  std::string start;      // pose file or offsets; empty: the pose of the case
-  double paper_mm = 0.1;  // thickness of the articulating film
+  std::string start;     // pose file or offsets; empty: the pose of the case
+  double film_mm = 0.1;  // thickness of the articulating film
 };
 
 constexpr const char* picture_name = "arches.png";
@@ -78,7 +78,7 @@ Start parse_start(const std::string& text, const Case& patient) {
                       moved.x(), moved.y(), moved.z(), turned.x(), turned.y(), turned.z())};
 }
 
-Image picture_of(const Case& patient, const Bite& bite, double paper_mm, int threads) {
+Image picture_of(const Case& patient, const Bite& bite, double film_mm, int threads) {
   const BiteView view = bite_view(patient, bite, threads);
   const Eigen::Vector3d heaviest =
       bite.contacts.empty() ? bite.upper_edge : bite.contacts.front().place;
@@ -102,15 +102,15 @@ Image picture_of(const Case& patient, const Bite& bite, double paper_mm, int thr
       .title = "Settled bite: " + patient.name,
       .lines = {fmt::format("{} contacts at {:g} mm paper; load {:.0f} % left, {:.0f} % right; "
                             "overjet {:.1f} mm, overbite {:.1f} mm",
-                            bite.contacts.size(), paper_mm, 100 * bite.left_fraction,
+                            bite.contacts.size(), film_mm, 100 * bite.left_fraction,
                             bite.contacts.empty() ? 0.0 : 100 * (1 - bite.left_fraction),
                             bite.after.overjet_mm, bite.after.overbite_mm)}};
-  return contact_picture(place, gap_colours(paper_mm));
+  return contact_picture(place, gap_colours(film_mm));
 }
 
 /// Name of the picture's file, or empty with a note where drawing is impossible.
 std::string write_picture(const std::filesystem::path& folder, const Case& patient,
-                          const Bite& bite, double paper_mm, int threads,
+                          const Bite& bite, double film_mm, int threads,
                           std::vector<std::string>& notes) {
   std::error_code none;
   std::filesystem::remove(folder / picture_name, none);  // of an earlier bite
@@ -118,7 +118,7 @@ std::string write_picture(const std::filesystem::path& folder, const Case& patie
     const OffscreenContext context;
     if (const auto lacks = default_render_metadata(context).shortfall(); !lacks.empty())
       notes.push_back(lacks);
-    write_png(folder / picture_name, picture_of(patient, bite, paper_mm, threads));
+    write_png(folder / picture_name, picture_of(patient, bite, film_mm, threads));
   } catch (const MachineError& error) {
     notes.push_back(fmt::format("the picture is left out: {}", error.what()));
     return "";
@@ -132,7 +132,7 @@ int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
   const Case patient = open_patient(options.patient, common, bar);
   const Start start = parse_start(options.start, patient);
   OcclusionSettings settings;
-  settings.paper_mm = options.paper_mm;
+  settings.film_mm = options.film_mm;
   settings.cache = field_cache_folder();
   settings.threads = common.threads;
   OcclusionReport report{
@@ -143,7 +143,7 @@ int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
     make_folder(options.out);
     bar.show("drawing", 0.95);
     report.picture =
-        write_picture(options.out, patient, bite, options.paper_mm, common.threads, report.notes);
+        write_picture(options.out, patient, bite, options.film_mm, common.threads, report.notes);
     write_file(options.out / "pose.csv", bite_pose_csv(bite));
     write_file(options.out / "motion.csv", bite_motion_csv(bite, start.X_CM));
     write_file(options.out / "report.html", report.page());
@@ -175,7 +175,7 @@ void add_occlude(Commands& commands) {
                   "the case in mm to the left, back and up, optionally with rotations about these "
                   "axes in degrees; default the pose of the case")
       ->type_name("FILE|X,Y,Z[,RX,RY,RZ]");
-  in_range(command.add_option("--paper", options->paper_mm,
+  in_range(command.add_option("--paper", options->film_mm,
                               "Thickness of the articulating paper, mm; default 0.1"),
            0.02, 0.3);
   command

@@ -22,8 +22,8 @@ constexpr std::size_t max_cuts = 24;
 constexpr double still_mm = 1e-4;  // shorter steps make no progress
 // Contradictory contacts (bodies of two patients in one place, surfaces turned inside out) request
 // displacements larger than any head; after this many such steps the walk is abandoned.
-constexpr double senseless_mm = 1000;
-constexpr int max_senseless = 3;
+constexpr double infeasible_mm = 1000;
+constexpr int max_infeasible = 3;
 // After this many successive steps that neither reduce the overlap nor bring the body nearer, more
 // would not either.
 constexpr int max_idle = 80;
@@ -112,8 +112,8 @@ bool SlideWalk::step() {
     end();
     return true;
   }
-  senseless_ = length > senseless_mm ? senseless_ + 1 : 0;
-  if (senseless_ >= max_senseless && start_.X_FM.t == from_.t) {  // the body stays at its start
+  infeasible_ = length > infeasible_mm ? infeasible_ + 1 : 0;
+  if (infeasible_ >= max_infeasible && start_.X_FM.t == from_.t) {  // the body stays at its start
     start_.steps = out_.steps;
     out_ = std::move(start_);
     return true;

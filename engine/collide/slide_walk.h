@@ -53,8 +53,8 @@ class SlideWalk {
   std::array<double, 5> lately_;  // recent distances from the target pose
   bool ended_ = false;
   SlideResult out_, start_;
-  int senseless_ = 0;  // number of successive infeasible steps
-  int idle_ = 0;       // number of successive steps that gained nothing
+  int infeasible_ = 0;  // number of successive infeasible steps
+  int idle_ = 0;        // number of successive steps that gained nothing
   double min_depth_, min_left_;
   std::vector<ContactRow> rows_;
   std::vector<int> row_candidate_;  // per constraint; -1 for a cut

@@ -16,9 +16,9 @@ using BlockBuffer = std::array<float, largest_block * largest_block>;
 /// would change the rounding, it is also made with one thread.
 void subtract_product(const FloatKernels::Product& p, int threads) {
   constexpr int width = 48;
-  constexpr double worth = 2e6;  // products
+  constexpr double min_products = 2e6;  // products
   const double size = static_cast<double>(p.rows) * p.columns * p.depth;
-  if (size < worth || (threads < 2 && p.depth <= FloatKernels::max_whole_depth))
+  if (size < min_products || (threads < 2 && p.depth <= FloatKernels::max_whole_depth))
     return float_kernels().subtract_product(p);
   parallel_for((p.columns + width - 1) / width, threads, [&](std::size_t chunk) {
     FloatKernels::Product part = p;

@@ -9,8 +9,8 @@ const Eigen::Vector3f overlap(0.30f, 0.0f, 0.10f), marked(0.70f, 0.0f, 0.15f);
 
 }  // namespace
 
-ColourMap gap_colours(double paper_mm) {
-  const auto paper = static_cast<float>(std::clamp(paper_mm, 0.01, 0.5));
+ColourMap gap_colours(double film_mm) {
+  const auto paper = static_cast<float>(std::clamp(film_mm, 0.01, 0.5));
   const Eigen::Vector3f near(0.99f, 0.70f, 0.30f), far(1.0f, 1.0f, 0.88f);
   ColourMap map;
   map.title = "gap";
@@ -22,8 +22,8 @@ ColourMap gap_colours(double paper_mm) {
   return map;
 }
 
-ColourMap patch_colours(double paper_mm) {
-  const auto paper = static_cast<float>(paper_mm);
+ColourMap patch_colours(double film_mm) {
+  const auto paper = static_cast<float>(film_mm);
   ColourMap map;
   map.title = "gap";
   map.unit = "mm";

@@ -17,27 +17,27 @@ constexpr std::size_t stride = 7;
 }  // namespace
 
 FieldCoverage field_coverage(const Box& surface, const std::optional<Box>& region) {
-  FieldCoverage sight;
-  sight.box = surface;
-  if (!region) return sight;
+  FieldCoverage coverage;
+  coverage.box = surface;
+  if (!region) return coverage;
   Box rest = surface;  // excluding the parts outside the region
   for (int axis = 0; axis < 3; ++axis) {
     if (rest.low[axis] < region->low[axis]) {
       Box below = rest;
       below.high[axis] = std::min(rest.high[axis], region->low[axis]);
-      sight.outside.push_back(below);
+      coverage.outside.push_back(below);
       rest.low[axis] = below.high[axis];
     }
     if (rest.high[axis] > region->high[axis] && rest.low[axis] < rest.high[axis]) {
       Box above = rest;
       above.low[axis] = std::max(rest.low[axis], region->high[axis]);
-      sight.outside.push_back(above);
+      coverage.outside.push_back(above);
       rest.high[axis] = above.low[axis];
     }
-    sight.blind = !(rest.low[axis] < rest.high[axis]);
-    if (sight.blind) break;
+    coverage.uncovered = !(rest.low[axis] < rest.high[axis]);
+    if (coverage.uncovered) break;
   }
-  return sight;
+  return coverage;
 }
 
 bool is_thin(const ContactSurface& body) {

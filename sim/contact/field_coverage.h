@@ -13,7 +13,7 @@ namespace condyle {
 struct FieldCoverage {
   Box box;                   // of the whole surface, its own coordinates
   std::vector<Box> outside;  // boxes of it outside the field's region
-  bool blind = false;        // all of it is outside
+  bool uncovered = false;    // all of it is outside
   bool thin = false;         // walls thinner than the field's spacing
 };
 

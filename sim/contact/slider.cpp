@@ -176,7 +176,7 @@ bool Slider::covers(const BodyMove& move) const {
                         &b = *of[static_cast<std::size_t>(pair.b->number)];
     if ((a.thin && b.thin) || pair.min_distance_mm > widest_gap_mm) return true;
     // A jaw does not leave its joints far enough to bring other parts to the outside regions.
-    if (state_.in_joint(pair)) return a.blind || b.blind;
+    if (state_.in_joint(pair)) return a.uncovered || b.uncovered;
     return std::any_of(at.begin(), at.end(), [&](const BodyPoses& X) {
       const Pose X_AB = X[pair.a->body].inverse() * X[pair.b->body];
       const auto meets = [&](const Box& box_a, const Box& box_b) {

@@ -53,9 +53,9 @@ BiteModel::BiteModel(const Arches& arches, const OcclusionSettings& settings,
       coarse_lower_(
           make_layer_surface(arches.lower.part->mesh, arches.lower.crowns, coarse_spacing_mm)),
       fine_({&fine_upper_, &upper_field_}, {&fine_lower_, &lower_field_},
-            {settings.paper_mm, settings.layer_stiffness_MPa}),
+            {settings.film_mm, settings.layer_stiffness_MPa}),
       coarse_({&coarse_upper_, &upper_field_}, {&coarse_lower_, &lower_field_},
-              {std::max(coarse_layer_mm, settings.paper_mm), settings.layer_stiffness_MPa}) {
+              {std::max(coarse_layer_mm, settings.film_mm), settings.layer_stiffness_MPa}) {
   pivot_ = arches.lower.middle();
   Box crowns;
   for (const auto& piece : coarse_lower_.pieces) crowns.add(piece.point);

@@ -15,7 +15,7 @@
 namespace condyle {
 
 struct OcclusionSettings {
-  double paper_mm = 0.1;         // thickness of the articulating film; a mark on it is a contact
+  double film_mm = 0.1;          // thickness of the articulating film; a mark on it is a contact
   double closing_force_N = 200;  // both sides together, at the first molars
   double joint_N_per_mm = 20;    // stiffness of the spring at each condyle's rest position
   double layer_stiffness_MPa = 200;      // pressure that halves the film's thickness

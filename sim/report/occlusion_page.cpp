@@ -28,7 +28,7 @@ class OcclusionPage {
     html_.add(
         "<h1>Maximum intercuspation</h1>\n<p>Patient <strong>{}</strong>, closed from {} on "
         "articulating film {:g} mm thick with {:.0f} N.</p>\n",
-        escaped(report_.patient), escaped(report_.start), report_.settings.paper_mm,
+        escaped(report_.patient), escaped(report_.start), report_.settings.film_mm,
         report_.settings.closing_force_N);
     verdict();
     measures();
@@ -100,7 +100,7 @@ class OcclusionPage {
         "{:g} mm). "
         "Yellow to pale: close. Grey: more than 1 mm apart. The ring marks the largest "
         "load.</figcaption></figure>\n",
-        escaped(report_.picture), report_.settings.paper_mm);
+        escaped(report_.picture), report_.settings.film_mm);
   }
 
   /// One bar per tooth in frontal view, upper teeth upward.

@@ -61,7 +61,7 @@ std::string OcclusionReport::json() const {
   Json json = {{"about", "Condyle; for research and education, not for clinical use"},
                {"case", patient},
                {"start", start},
-               {"paper_mm", settings.paper_mm},
+               {"paper_mm", settings.film_mm},
                {"closing_force_N", settings.closing_force_N},
                {"joint_N_per_mm", settings.joint_N_per_mm},
                {"stable", bite.stable}};
@@ -130,7 +130,7 @@ std::string OcclusionReport::text() const {
   std::string text =
       bite.stable ? "stable bite" : "NO stable bite: " + bite.unstable_because + "; pose reached";
   text += fmt::format(": {} contacts at {:g} mm paper, load {:.0f} % left and {:.0f} % right\n",
-                      bite.contacts.size(), settings.paper_mm, 100 * bite.left_fraction,
+                      bite.contacts.size(), settings.film_mm, 100 * bite.left_fraction,
                       bite.contacts.empty() ? 0.0 : 100 * (1 - bite.left_fraction));
   if (bite.overlap_mm > 0)
     text += fmt::format("arches overlap by {:.3f} mm; ", bite.overlap_mm);

@@ -11,10 +11,10 @@ constexpr int settling_iterations = 30;
 
 }  // namespace
 
-TissueBudget live_budget(TissueBudget keeping_up, bool settles, bool jaw_leaps,
+TissueBudget live_budget(TissueBudget keeping_up, bool settles, bool jaw_teleports,
                          bool reused_before) {
   if (settles) keeping_up.max_iterations = std::max(keeping_up.max_iterations, settling_iterations);
-  if (jaw_leaps || reused_before) keeping_up.max_iterations = TissueBudget{}.max_iterations;
+  if (jaw_teleports || reused_before) keeping_up.max_iterations = TissueBudget{}.max_iterations;
   return keeping_up;
 }
 
@@ -25,7 +25,7 @@ LiveSteps::LiveSteps(const Scene& scene, const Motion& motion, const Motion& ope
       opening_(opening),
       settings_(settings),
       opening_times_(scene.patient, opening),
-      leap_start_(scene, settings.threads),
+      teleport_start_(scene, settings.threads),
       now_(rest_frame(scene)),
       X_PB_moved_(scene.patient.bodies.bodies().size()) {}
 
@@ -74,10 +74,10 @@ SimulatorSettings LiveSteps::settings_for(const LiveTarget& target, const StepIn
   SimulatorSettings settings = settings_;
   // Invisible soft tissue is not stepped; it continues later from its last state.
   settings.tissue = settings.tissue && target.request.face;
-  const bool jaw_leaps = is_teleport(pose_in(now_.tissue.X_CB, jaw),
-                                     placed(scene_.patient.bodies, input.X_PB_target)[jaw]);
+  const bool jaw_teleports = is_teleport(pose_in(now_.tissue.X_CB, jaw),
+                                         placed(scene_.patient.bodies, input.X_PB_target)[jaw]);
   settings.tissue_budget =
-      live_budget(settings.tissue_budget, settling_ > 0, jaw_leaps, now_.tissue.reused);
+      live_budget(settings.tissue_budget, settling_ > 0, jaw_teleports, now_.tissue.reused);
   return settings;
 }
 
@@ -104,7 +104,7 @@ void LiveSteps::step(const LiveTarget& target, bool shown) {
     step_input = input(target, time_s, shown);
   }
   const TeleportStart::Asked question = asked(target, step_input);
-  if (const auto start = leap_start_.of(question, now_, target.grips != answered_grips_))
+  if (const auto start = teleport_start_.of(question, now_, target.grips != answered_grips_))
     begin_at(*start);
   const SimulatorSettings settings = settings_for(target, step_input);
   now_ = condyle::step(scene_, now_, step_input, settings, warm_);
@@ -115,7 +115,7 @@ void LiveSteps::step(const LiveTarget& target, bool shown) {
   if (caught_up_) {
     answered_ = target.request;
     answered_grips_ = target.grips;
-    leap_start_.ended(question, now_);
+    teleport_start_.ended(question, now_);
   }
   if (shown && target.request.face) carry_face(scene_, now_, settings_.threads);
 }

@@ -19,7 +19,8 @@ struct LiveTarget {
 /// The tissue's budget in one live step, from that of a step in real time: larger for tissue that
 /// settles after the last request; the full one where the jaw's target is far away, or where the
 /// last solve failed and kept the earlier state.
-TissueBudget live_budget(TissueBudget keeping_up, bool settles, bool jaw_leaps, bool reused_before);
+TissueBudget live_budget(TissueBudget keeping_up, bool settles, bool jaw_teleports,
+                         bool reused_before);
 
 /// The steps of a live simulation toward its targets, one at a time; without threads, and without a
 /// clock except for the times of stages.
@@ -58,7 +59,7 @@ class LiveSteps {
   const Motion& opening_;
   const SimulatorSettings& settings_;
   OpeningTimes opening_times_;
-  TeleportStart leap_start_;
+  TeleportStart teleport_start_;
   FrameState now_;
   TissueWarmStart warm_;
   std::vector<Pose> X_PB_moved_;  // poses to which hands have moved bodies

@@ -38,9 +38,9 @@ bool is_teleport(const Pose& from, const Pose& to) {
 
 std::optional<BodyPoses> TeleportStart::of(const Asked& asked, const FrameState& now,
                                            bool by_hand) {
-  const bool leapt = by_hand && last_ && is_teleport(*last_, asked);
+  const bool teleports = by_hand && last_ && is_teleport(*last_, asked);
   last_ = asked;
-  if (!leapt || !asked.request.obey_contact) return {};
+  if (!teleports || !asked.request.obey_contact) return {};
   if (const BodyPoses* place = before(asked)) return *place;
   return now.stopped ? from_the_motion(asked, now) : std::nullopt;
 }

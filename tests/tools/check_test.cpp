@@ -69,11 +69,12 @@ TEST(Check, DrawsTheWorstFrameAndWithoutEglSaysThatItCannot) {
     EXPECT_NE(page.find("pictures are left out"), std::string::npos);
   // Nonexistent vendors leave EGL without a driver.
   ::setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nowhere.json", 1);
-  const auto blind = condyle({"check", patient, "--motion", motion, "--out", folder / "blind"});
+  const auto without_egl =
+      condyle({"check", patient, "--motion", motion, "--out", folder / "blind"});
   ::unsetenv("__EGL_VENDOR_LIBRARY_FILENAMES");
-  EXPECT_EQ(blind.code, 3);
+  EXPECT_EQ(without_egl.code, 3);
   EXPECT_FALSE(picture("blind"));
-  EXPECT_NE(blind.err.find("pictures are left out"), std::string::npos) << blind.err;
+  EXPECT_NE(without_egl.err.find("pictures are left out"), std::string::npos) << without_egl.err;
   EXPECT_NE(read_text(folder / "blind/report.html").find("pictures are left out"),
             std::string::npos);
 }
@@ -156,9 +157,9 @@ TEST(Check, ATransplantThatOverlapsItsBoneAtRestIsReportedAndDrawn) {
     EXPECT_NEAR(pair["push_out"][0].get<double>(), 0, 0.1);
     EXPECT_NE(read_text(folder / "out/report.html").find("separates the two"), std::string::npos);
     const std::string page = read_text(folder / "out/report.html");
-    const bool blind = page.find("pictures are left out") != std::string::npos;
-    EXPECT_EQ(pair["worst"].contains("picture"), !blind);
-    if (!blind) {
+    const bool without_egl = page.find("pictures are left out") != std::string::npos;
+    EXPECT_EQ(pair["worst"].contains("picture"), !without_egl);
+    if (!without_egl) {
       EXPECT_TRUE(fs::exists(folder.path() / "out" / pair["worst"]["picture"].get<std::string>()));
     }
   }

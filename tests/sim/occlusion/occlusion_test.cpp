@@ -195,7 +195,7 @@ TEST(CloseBite, FlatArchesCompressTheFilmByForceOverArea) {
   ASSERT_GT(area, 2000);
   EXPECT_NEAR(
       bite.gap_mm,
-      settings.paper_mm / (1 + settings.closing_force_N / (area * settings.layer_stiffness_MPa)),
+      settings.film_mm / (1 + settings.closing_force_N / (area * settings.layer_stiffness_MPa)),
       0.01);
   EXPECT_NEAR(bite.left_fraction, 0.5, 1e-3);
   EXPECT_NEAR(bite.load_center.x(), 0, 0.05);

@@ -50,13 +50,13 @@ std::array<Pose, 3> poses(const Pose& X_CM, const Vector3d& chin_mm) {
   return {Pose{}, X_CM, X_CM * X_MS};
 }
 
-/// Angle of the plain opening at which the lower incisal point has descended by `drop_mm`.
-double angle_of(const Case& patient, const OpeningPath& path, double drop_mm) {
+/// Angle of the plain opening at which the lower incisal point has descended by `descent_mm`.
+double angle_of(const Case& patient, const OpeningPath& path, double descent_mm) {
   const Vector3d incisal = *patient.landmarks.find("lower_incisal_point");
   double low = 0, high = 0.75;
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);
-    (incisal.z() - (path.pose(middle) * incisal).z() < drop_mm ? low : high) = middle;
+    (incisal.z() - (path.pose(middle) * incisal).z() < descent_mm ? low : high) = middle;
   }
   return high;
 }
