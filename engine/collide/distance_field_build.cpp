@@ -111,7 +111,7 @@ class FieldBuilder {
     int face = -1;
     Vector3d at;
 
-    /// Of equally near faces the first is kept.
+    /// Keeps the first of equally near faces.
     void consider(const std::vector<FieldFace>& faces, int other, const Vector3d& p) {
       Vector3d there;
       const double square_there = nearest(faces[other], p, there);

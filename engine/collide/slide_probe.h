@@ -29,7 +29,7 @@ class SlideProbe {
   /// Neighbours that are not close are represented by one sample.
   void look_at(const Pose& X, double within_mm);
 
-  /// Of the last query, by pair.
+  /// Samples of the last query, by pair.
   const std::vector<SlideCandidate>& candidates() const { return candidates_; }
   /// Smallest known gap; infinite when there is none.
   double worst_gap() const { return worst_gap_; }

@@ -30,7 +30,7 @@ struct Equilibrium {
 
 /// Chooses strains of all springs but those of the outermost sheet, pressures of the prisms and
 /// offsets of the anchors, so that the force on every node is zero at `x` under `loads`: the model
-/// does not move before surgery. Of all such strains, those of least energy within the bounds;
+/// does not move before surgery. Among such strains, those of least energy within the bounds;
 /// constant forces hold the remainder, which is reported. Where prestress would make the state
 /// unstable (slivers buckle under very little) none is chosen. `loads.anchor_target`: targets
 /// without the offsets. Changes mesh.rest_length and mesh.rest_volume.

@@ -37,7 +37,7 @@ class HessianFactor final : public Preconditioner {
   void solve(const Nodes& g, Nodes& z) const override;
   void set_threads(int threads) { threads_ = threads; }  // of solve
 
-  /// Of the factor and the work space of a solve.
+  /// Memory of the factor and the work space of a solve.
   std::size_t bytes() const override;
 
  private:

@@ -26,7 +26,7 @@ constexpr int max_knots = 64;
 struct Cover {
   std::vector<int> knots;                  // indices in the rim
   std::vector<Eigen::Vector3i> triangles;  // of the rim, then of the interior
-  // Of the interior, ring by ring, with as many vertices as knots in each:
+  // The interior, ring by ring, with as many vertices as knots in each:
   Eigen::MatrixXd of_knots;      // one row per vertex: weights
   std::vector<Vector3d> offset;  // mm
   std::vector<Vector3f> color;   // relative to the skin's

@@ -64,7 +64,7 @@ class GlProgram {
   GlProgram& operator=(const GlProgram&) = delete;
 
   void use() const;
-  // Of the program in use:
+  // Uniforms of the program in use:
   void set(const char* uniform, int value);
   void set(const char* uniform, float value);
   void set(const char* uniform, const Eigen::Vector2i& value);

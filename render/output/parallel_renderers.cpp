@@ -38,7 +38,7 @@ struct ParallelRenderers::State {
 
   explicit State(std::span<const Part> all) : parts(all) {}
 
-  /// Of several errors, that of the earliest picture.
+  /// The error of the earliest failed picture.
   void keep_trouble(std::int64_t number) {
     if (!trouble || number < trouble_at) trouble = std::current_exception();
     trouble_at = std::min(trouble_at, number);

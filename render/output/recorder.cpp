@@ -109,7 +109,7 @@ struct Recorder::State {
   std::exception_ptr trouble;
   std::thread writer;
 
-  // Of the writer while it runs, and after it is idle:
+  // Used by the writer while it runs, and by others once it is idle:
   std::optional<Film> film;
   int film_frames = 0;       // the film has the frames before this
   std::string film_trouble;  // frames continue without a film

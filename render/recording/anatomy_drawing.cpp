@@ -17,7 +17,7 @@ using Eigen::Vector3f;
 const std::array<Vector3f, 4> layer_colors = {
     {{0.88f, 0.67f, 0.56f}, {0.94f, 0.83f, 0.45f}, {0.72f, 0.24f, 0.20f}, {0.62f, 0.68f, 0.74f}}};
 
-// Of a muscle; distinguishable by lightness alone.
+// Colours of a muscle; distinguishable by lightness alone.
 const Vector3f idle(0.50f, 0.12f, 0.11f), excited(1.0f, 0.88f, 0.25f);
 
 Vector3f excited_color(double excitation) {

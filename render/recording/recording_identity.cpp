@@ -41,7 +41,7 @@ std::uint64_t case_hash(const Case& patient) {
   return hash;
 }
 
-/// Of every pose that the recording uses: at the fixed steps and at the frames.
+/// Hash of every pose that the recording uses: at the fixed steps and at the frames.
 std::uint64_t motion_hash(const Motion& motion, std::span<const double> times, double step_s) {
   std::uint64_t hash = hash_start;
   const auto add = [&](double time_s) {

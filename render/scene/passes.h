@@ -89,7 +89,7 @@ class Passes {
  public:
   Passes();
 
-  /// Of all parts coloured by values.
+  /// Draws all parts coloured by values.
   void set_colour_map(const ColourMap& map);
 
   void shadow_map(std::span<const DrawItem> items, const PictureView& view);

@@ -68,7 +68,7 @@ struct SceneRenderer::State {
   std::map<std::size_t, std::optional<Drawable>> beneath;
   std::optional<MouthCavity> mouth;  // from the first picture of an opaque face on
   GpuPoints contacts;
-  // Of the last frame:
+  // State of the last frame:
   std::vector<Pose> poses;  // of each drawable
   BodyId lower_jaw;
   Pose X_CM;                    // of the lower jaw

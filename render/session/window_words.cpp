@@ -30,8 +30,7 @@ constexpr std::array phrases = {
     Phrase{"import it again with --push-out", "move it by hand (key M)"},
     Phrase{", --push-out moves it out", "; move it out by hand (key M)"},
     Phrase{"(--attach, or \"attachments\" in case.json)", "(\"attachments\" in case.json)"},
-    Phrase{"; give the same options, another --out, or omit --resume",
-           "; choose another folder"},
+    Phrase{"; give the same options, another --out, or omit --resume", "; choose another folder"},
     Phrase{"continue with --resume", "resume the recording"}};
 
 }  // namespace
@@ -45,7 +44,7 @@ std::string in_window_words(std::string sentence) {
   // The window has no such choice.
   static const std::regex carrier("; --carrier-of \\S+ would change that");
   sentence = std::regex_replace(sentence, carrier, "");
-  // Of other options only the name is left; in a path two hyphens follow no space.
+  // Other options are reduced to their names; in a path two hyphens follow no space.
   static const std::regex option("(^|[ (])--([a-z][a-z-]*)(?=[ ,;:)]|\\.( |$)|$)");
   sentence = std::regex_replace(sentence, option, "$1$2");
   static const std::regex degrees("([0-9]) deg(rees?)?(?=[ ,;:)]|/mm|\\.( |$)|$)");

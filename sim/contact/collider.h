@@ -33,7 +33,7 @@ struct Collider {
   std::shared_ptr<const ColliderShape> shape;
   const CollisionMesh& surface = shape->surface;
   const Solid& solid = shape->solid;
-  // Of a complement: the solid of which its surface, which is cut open and has no inside, is a
+  // For a complement: the solid of which its surface, which is cut open and has no inside, is a
   // part; and a tree of that surface.
   const Solid* whole = nullptr;
   std::unique_ptr<const TriangleTree> part_tree = nullptr;

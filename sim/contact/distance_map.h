@@ -39,7 +39,7 @@ class DistanceMap {
     bool unsigned_near_open = false;       // something it may meet has open shells, which have no
                                            // inside: near them distance has no sign
   };
-  /// Of parts that may touch another, in the case's order.
+  /// Surfaces of parts that may touch another, in the case's order.
   const std::vector<Surface>& surfaces() const;
 
   /// One value per vertex of each surface, mm: exact signed distance within the reach, negative

@@ -51,7 +51,7 @@ struct ContactSet {
 
   BodyPoses at;  // poses of the query
 
-  // Of pairs that overlap at rest, in their order: B's surface outside that overlap, where no
+  // For pairs that overlap at rest, in their order: B's surface outside that overlap, where no
   // contact is allowed. Its depth is included in that of the pairs.
   std::vector<PairContact> outside_rest_overlap;
 };

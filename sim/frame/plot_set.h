@@ -11,7 +11,7 @@ namespace condyle {
 struct PlotSet {
   std::string name;  // on its tab
   std::vector<PlotPanel> panels;
-  /// Of curves with as many points: the time of each. The current time is marked on them.
+  /// Time of each point of curves with this number of points. The current time is marked on them.
   std::vector<double> time_s = {};
 };
 

@@ -20,7 +20,7 @@ struct ToothSolid {
 struct PhantomSolid {
   FieldRecipe skull, mandible;
   FieldRecipe skin;          // everything inside the skin, eyeballs and mouth included
-  FieldRecipe oral_cavity;   // between lips, cheeks and throat; teeth and tongue stand in it
+  FieldRecipe oral_cavity;   // between lips, cheeks and throat; contains teeth and tongue
   FieldRecipe nasal_cavity;  // air inside the bony nose, as cut from the skull
   FieldRecipe upper_gums, lower_gums, tongue;
   std::vector<ToothSolid> teeth;  // 14; lower ones carved to leave 0.10 mm to the upper ones

@@ -59,7 +59,7 @@ std::string summary_text(const ClearanceCheck& check) {
   add(collide, "collides", "collide");
   add(near, "comes too close", "come too close");
   add(rest, "breaks its rule at rest", "break their rule at rest");
-  return fmt::format("Violation. Of {} {}, {}.", check.pairs.size(),
+  return fmt::format("Violation. Among {} {}, {}.", check.pairs.size(),
                      check.pairs.size() == 1 ? "pair" : "pairs", words);
 }
 

@@ -11,8 +11,8 @@
 
 namespace condyle {
 
-/// Objects that are no longer needed and are destroyed on threads of their own; nobody waits for
-/// them before the session ends.
+/// Objects that are no longer needed, destroyed on separate threads; only the end of the session
+/// waits for them.
 class RetiredWork {
  public:
   /// Cancels the work.

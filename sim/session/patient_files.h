@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> with_loose_surfaces(
     const std::vector<std::filesystem::path>& files);
 
 /// Guesses roles from the files' names: "mandible" for Lower_Jaw.stl; none where a name suggests
-/// nothing. Of mandible.ply, mandible_8k.ply and mandible_with_teeth.ply, the same bone three
+/// nothing. Among mandible.ply, mandible_8k.ply and mandible_with_teeth.ply, the same bone three
 /// times, only the first has the role.
 std::vector<FileRole> proposed_roles(const std::vector<std::filesystem::path>& files);
 

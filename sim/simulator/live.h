@@ -35,8 +35,8 @@ SimulatorSettings live_settings(SimulatorSettings settings);
 /// most.
 class LiveSimulation {
  public:
-  /// The scene must outlive the simulation. A requested opening is found along a motion of its own;
-  /// none: along the motion.
+  /// The scene must outlive the simulation. A requested opening is found along the motion
+  /// `opening`; none: along the motion.
   LiveSimulation(const Scene& scene, Motion motion, const SimulatorSettings& settings,
                  std::optional<Motion> opening = std::nullopt);
   ~LiveSimulation();

@@ -9,7 +9,7 @@
 
 namespace condyle {
 
-/// A bone that has been cut into pieces, each a body of its own.
+/// A bone that has been cut into pieces, each a separate body.
 struct CutBone {
   BodyId whole;                     // body of the uncut bone; a piece may keep its number
   TriMesh surface;                  // of the uncut bone with its teeth, mm, at rest

@@ -14,8 +14,8 @@ double largest_displacement(const Nodes& from, const Nodes& to) {
 TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& state,
                                  double tolerance_mm, int threads, TissueWarmStart warm) {
   constexpr int max_rounds = 100;
-  // Of a round. Where tissue slides along a curved surface, soft contact and its normal can
-  // oscillate.
+  // Settings of a round. Where tissue slides along a curved surface, soft contact and its normal
+  // can oscillate.
   constexpr double firmness = 10, finer = 0.01;
   constexpr double first_contraction = 0.5, max_contraction = 0.98;
   TissueState reached = state;

@@ -30,7 +30,7 @@ struct Obstacle {
 struct TissueContact {
   std::vector<MeshPoint> points;
   std::vector<Obstacle> obstacles;  // one for each body with bone
-  /// Of each point of the lips, the direction out of the mouth at rest (unit); 0 for others. Lips
+  /// For each point of the lips, the direction out of the mouth at rest (unit); 0 for others. Lips
   /// lie in front of the teeth: at edges their normals are limited to this direction, so that no
   /// point is caught behind a tooth, unless it rests there.
   std::vector<Eigen::Vector3d> front;

@@ -14,7 +14,7 @@ LayerStack layers_of(const TissuePlan& plan);
 /// that the response is unchanged.
 double firmness_over_default(const LayerStack& layers);
 
-/// The elements of these layers. With weight, a layer without a mass of its own has a density of 1
+/// The elements of these layers. With weight, a layer without its own mass has a density of 1
 /// kg/l.
 SpringPrismMesh make_elements(const TissuePlan& plan, const LayerStack& layers,
                               const std::vector<Eigen::Vector3i>& triangles, const Nodes& rest);

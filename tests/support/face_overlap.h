@@ -56,7 +56,7 @@ class FaceOverlap {
 
   std::size_t samples() const { return samples_.size(); }
 
-  /// Of any sample in a jaw, mm beyond rest.
+  /// Largest depth of a sample in a jaw, mm beyond rest.
   double in_jaws(const Pose& X_CM, const Nodes& x) const {
     const Pose X_MC = X_CM.inverse();
     double deepest = 0;
@@ -68,7 +68,7 @@ class FaceOverlap {
     return deepest;
   }
 
-  /// Of any sample of one lip's edge in the other lip, mm beyond rest.
+  /// Largest depth of a sample of one lip's edge in the other lip, mm beyond rest.
   double in_other_lip(const Nodes& x) const {
     double deepest = 0;
     for (const Lip lip : {upper, lower}) {

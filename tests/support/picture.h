@@ -16,9 +16,9 @@ struct Picture {
   std::vector<std::uint8_t> rgba;
 
   Picture() = default;
-  /// Of a PNG file; empty when it cannot be read.
+  /// The picture of a PNG file; empty when it cannot be read.
   explicit Picture(const std::string& file);
-  /// Of anything with such pixels.
+  /// From any type with such pixels.
   template <class Image>
   requires requires(const Image& image) { image.rgba; }
   explicit Picture(const Image& image)

@@ -26,7 +26,7 @@ std::vector<BenchRow> bench_window(const Scene& scene, const Motion& motion,
                                    const SimulatorSettings& settings, const Camera& camera);
 
 /// Recorded pictures per second, with edges smoothed and sampled, and the ratio of the times with
-/// and without a film; empty without ffmpeg. Of the same size.
+/// and without a film; empty without ffmpeg. Same picture size.
 std::vector<BenchRow> bench_film(std::span<const Part> parts, const std::vector<FrameState>& frames,
                                  const Camera& camera, const PictureSettings& smoothed,
                                  const PictureSettings& sampled);

@@ -14,7 +14,7 @@ double allowed_lead_s(double loop_s);
 /// frame.
 void advance_clock(ViewState& view, double elapsed_s, double duration_s, double shown_s);
 
-/// Starts or stops playing; starting at the end begins anew, and releases a held
+/// Starts or stops playing; starting at the end restarts, and releases a held
 /// opening or jaw, which is at X_CM.
 void toggle_playing(ViewState& view, double duration_s, const Pose& X_CM);
 

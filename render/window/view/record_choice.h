@@ -22,7 +22,7 @@ struct RecordChoice {
   RecordEdges edges = RecordEdges::msaa;
   bool film = true, transparent = false;
   std::set<std::string> cameras = {own_camera};
-  // Of this patient alone:
+  // Choices for this patient alone:
   bool camera_from_file = false;
   std::string camera_file = {}, caption = {};
 

@@ -40,7 +40,7 @@ struct WindowScene {
   MotionChoice motion = {};                // source of the motion
   std::vector<MotionSetting> motion_settings = {};
   std::vector<ExcitationSetting> excitations = {};  // of a motion that muscles drive
-  std::vector<Landmark> landmarks = {};             // of the case, as it was loaded or saved
+  std::vector<Landmark> landmarks = {};             // of the loaded or saved case
   std::vector<Landmark> landmarks_in_use = {};      // those of the simulation
   std::vector<TreeItem> muscles = {};  // lines of action that can be shown, in the case's order
   std::vector<TreeItem> layers = {};   // sheets of the soft tissue, from the skin inward

@@ -27,7 +27,7 @@ std::vector<int> shuffled(std::size_t count, std::mt19937& random) {
   return order;
 }
 
-/// Of `layers` in one bent slab.
+/// A bent slab of `layers`.
 SyntheticSet set_of(int layers) {
   SyntheticSize size = table1_size();
   size.layers = layers;

@@ -106,7 +106,7 @@ TEST(DrawnFace, ClosesEyesAndNostrilsAndFollowsTheirRims) {
   const auto open = [&](const std::vector<Eigen::Vector3d>& eyes) {
     return inspect(DrawnFace(face, eyes, {.8f, .6f, .5f}).mesh()).boundary.size();
   };
-  // Of a head of radius 75 about (0, 0, 20).
+  // On a head of radius 75 about (0, 0, 20).
   const Eigen::Vector3d left(32, -60, 35), right(-32, -60, 35);
   EXPECT_EQ(open({left, right}), 2u);
   EXPECT_EQ(open({left}), 1u);

@@ -90,7 +90,7 @@ class BulletScene final : public Scene {
     shapes_.push_back(std::make_unique<btBoxShape>(btVector3(half.x(), half.y(), half.z())));
     const double mass = is_free ? mass_of(size) : 0;
     btVector3 inertia(0, 0, 0);
-    // Of the box itself; the shape's own includes its margin.
+    // Inertia of the box itself; the shape's own includes its margin.
     if (is_free)
       inertia = mass / 12 *
                 btVector3(size.y() * size.y() + size.z() * size.z(),
