@@ -12,7 +12,7 @@ namespace condyle::minimizers {
 
 inline double dot(const Points& a, const Points& b) {
   assert(a.size() == b.size());
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of each axis: three sums under way at once
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // of each axis: three sums at once
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].cwiseProduct(b[i]);
   return sum.sum();
 }

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Evaluates energy and gradient in one way.
+/// Evaluates energy and gradient with one kernel.
 struct ElementMethod {
   const char *name, *method;
   std::function<double(const AxisRows& x, const AxisRows& gradient)> evaluate;

@@ -11,8 +11,8 @@ namespace condyle {
 nlohmann::ordered_json tolerance_rows(const TissueTarget& target, int repeats);
 
 /// One prediction from nothing, in a tissue of about that many nodes: springs and prisms, factor
-/// and solve, each with its time. The error is the way to a solve that goes on from there to a
-/// tenth of the tolerance.
+/// and solve, each with its time. The error is the distance to a solution that is computed from
+/// there to a tenth of the tolerance.
 nlohmann::ordered_json static_prediction(int nodes, int threads);
 
 }  // namespace condyle

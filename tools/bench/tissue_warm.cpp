@@ -49,17 +49,18 @@ class FaceMotion {
         loads_(synthetic_loads(set, pose_at(-lead))),
         energy_(set.mesh, loads_, threads) {}
 
-  static constexpr int lead = 8;  // frames before the clock starts, after which it is under way
+  static constexpr int lead =
+      8;  // frames before the clock starts, so that warm starts are measured
   struct Frame {
     double wall_ms = 0, cpu_ms = 0, waited_ms = 0, between_ms = 0;
     MinimizeResult result;
   };
   Frame step(int frame) {
-    Frame told;
+    Frame measured;
     const Stopwatch watch;
     loads_ = synthetic_loads(set_, pose_at(frame));
     rolling_.advance();
-    told.waited_ms = watch.wall_ms();
+    measured.waited_ms = watch.wall_ms();
     const Nodes taken = carried(set_, x_, pose_at(frame - 1), pose_at(frame));
     Nodes next = taken;
     own_.extrapolate(next);
@@ -67,14 +68,14 @@ class FaceMotion {
     settings.tolerance_mm = 5e-3;
     settings.max_iterations = plan_.budget;
     settings.fresh = true;
-    const auto solve = [&] { told.result = minimize(energy_, rolling_.now(), settings, next); };
+    const auto solve = [&] { measured.result = minimize(energy_, rolling_.now(), settings, next); };
     solve();
-    if (told.result.status == MinimizeResult::Status::bad_start) {
+    if (measured.result.status == MinimizeResult::Status::bad_start) {
       next = x_;
       solve();
     }
-    told.wall_ms = watch.wall_ms();
-    told.cpu_ms = watch.cpu_ms();
+    measured.wall_ms = watch.wall_ms();
+    measured.cpu_ms = watch.cpu_ms();
 
     const Stopwatch between;
     own_.add_frame(next, taken);
@@ -83,8 +84,8 @@ class FaceMotion {
     own_.extrapolate(ahead);
     rolling_.begin(set_.mesh, loads_, std::move(ahead), threads_, nullptr);
     if (threads_ == 1) rolling_.finish();
-    told.between_ms = between.wall_ms();
-    return told;
+    measured.between_ms = between.wall_ms();
+    return measured;
   }
   const Nodes& nodes() const { return x_; }
 
@@ -155,17 +156,17 @@ nlohmann::ordered_json warm_frames(const SyntheticSet& set, int threads) {
   for (int frame = -FaceMotion::lead; frame < plan.frames; ++frame) {
     std::this_thread::sleep_until(next_frame);
     next_frame = std::max(next_frame + pace, std::chrono::steady_clock::now());
-    const FaceMotion::Frame told = motion.step(frame);
+    const FaceMotion::Frame measured = motion.step(frame);
     if (frame < 0) continue;
-    wall.push_back(told.wall_ms);
-    cpu.push_back(told.cpu_ms);
-    waited.push_back(told.waited_ms);
-    between.push_back(told.between_ms);
-    iterations.push_back(told.result.iterations);
-    cut_short += !told.result.converged();
-    residual = std::max(residual, told.result.residual);
+    wall.push_back(measured.wall_ms);
+    cpu.push_back(measured.cpu_ms);
+    waited.push_back(measured.waited_ms);
+    between.push_back(measured.between_ms);
+    iterations.push_back(measured.result.iterations);
+    cut_short += !measured.result.converged();
+    residual = std::max(residual, measured.result.residual);
     if (frame % plan.samples_every == plan.samples_every - 1)
-      samples.push_back({frame, motion.nodes(), told.result.energy});
+      samples.push_back({frame, motion.nodes(), measured.result.energy});
   }
   double worst_mm = 0, worst_energy = 0;
   for (const auto& [frame, nodes, reached] : samples) {
