@@ -238,7 +238,10 @@ TEST_P(Instrument, CurvesThatCoincideAreBothSeen) {
   }
   Curve right = left;
   right.name = "right";
-  stage.plots = {{"Condyles", {PlotPanel{{left, right}, {.title = "path", .legend = false}}}}};
+  stage.plots = {
+      {"Condyles",
+       {PlotPanel{{left, right},
+                  {.title = "path", .x_label = "mm", .y_label = "mm", .legend = false}}}}};
   stage.click("plots-tool");
   stage.rest();
   const Image image = stage.image();
