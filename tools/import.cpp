@@ -98,13 +98,10 @@ void add_meshes(Commands& commands, CLI::App& import) {
       .add_option("--landmarks", request.landmarks,
                   "CSV with name,x_mm,y_mm,z_mm, or 3D Slicer .mrk.json")
       ->type_name("FILE");
-  command
-      .add_option(
-          "--scan-opening", request.scan_opening_mm,
-          "Scanned with the mouth open: mm that the lower incisal point lies below its closed "
-          "position, 0 to 60; default: found from the teeth")
-      ->check(CLI::Range(0.0, max_scan_opening_mm))
-      ->type_name("MM");
+  in_range(command.add_option("--scan-opening", request.scan_opening_mm,
+                              "Scanned with the mouth open: depth of the lower incisal point below "
+                              "its closed position, mm; default: found from the teeth"),
+           0, max_scan_opening_mm);
   add_surfaces(command, *options);
   begin_group(command, "Segments and transplants");
   command

@@ -1,5 +1,6 @@
 #include "sim/frame/state_hash.h"
 
+#include <array>
 #include <bit>
 #include <cstring>
 #include <type_traits>
@@ -33,19 +34,28 @@ class Hasher {
   std::uint64_t value() const { return hash_; }
 
  private:
-  /// Eight bytes at a time: a face has several hundred thousand.
+  /// Eight bytes at a time, in four independent chains: a face has several hundred thousand bytes.
   void add(const void* data, std::size_t size) {
     const auto* bytes = static_cast<const unsigned char*>(data);
-    for (; size >= 8; bytes += 8, size -= 8) {
-      std::uint64_t word;
-      std::memcpy(&word, bytes, 8);
-      mix(word);
+    if (size >= 32) {
+      std::array<std::uint64_t, 4> chains = {hash_, hash_ + 1, hash_ + 2, hash_ + 3};
+      for (; size >= 32; bytes += 32, size -= 32)
+        for (std::size_t k = 0; k < 4; ++k) chains[k] = mixed(chains[k], word_at(bytes + 8 * k));
+      for (const std::uint64_t chain : chains) hash_ = mixed(hash_, chain);
     }
+    for (; size >= 8; bytes += 8, size -= 8) hash_ = mixed(hash_, word_at(bytes));
     std::uint64_t rest = 0;
     std::memcpy(&rest, bytes, size);
-    if (size > 0) mix(rest);
+    if (size > 0) hash_ = mixed(hash_, rest);
   }
-  void mix(std::uint64_t word) { hash_ = std::rotl(hash_ ^ word, 29) * 0x9E3779B97F4A7C15ull; }
+  static std::uint64_t word_at(const unsigned char* bytes) {
+    std::uint64_t word;
+    std::memcpy(&word, bytes, 8);
+    return word;
+  }
+  static std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
+    return std::rotl(hash ^ word, 29) * 0x9E3779B97F4A7C15ull;
+  }
 
   std::uint64_t hash_ = hash_start;
 };

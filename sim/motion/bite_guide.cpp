@@ -71,17 +71,17 @@ OccludingSurfaces occluding_surfaces(const Case& patient, const Vector3d& hinge,
 
 }  // namespace
 
-bool teeth_meet_at_rest(const Case& patient) {
+double teeth_apart_at_rest_mm(const Case& patient) {
   const auto left = patient.landmarks.find("left_condyle");
   const auto right = patient.landmarks.find("right_condyle");
   const auto incisor = patient.landmarks.find("lower_incisal_point");
   const bool has_crowns = has_teeth(patient) || patient.landmarks.find("upper_incisal_point");
-  if (!left || !right || !incisor || !has_crowns) return true;
+  if (!left || !right || !incisor || !has_crowns) return 0;
   const auto teeth = occluding_surfaces(patient, 0.5 * (*left + *right), *incisor);
-  if (teeth.upper.empty() || teeth.lower.empty()) return true;
+  if (teeth.upper.empty() || teeth.lower.empty()) return 0;
   TrianglePair start;
   return distance(CollisionMesh(teeth.upper), {}, CollisionMesh(teeth.lower), {}, start)
-             .distance_mm <= same_bite_mm;
+      .distance_mm;
 }
 
 BiteGuide::BiteGuide(const Case& patient, const JawJoints& joints,
@@ -118,8 +118,11 @@ BiteGuide::BiteGuide(const Case& patient, const JawJoints& joints,
     bite_theta_ = at_rest;
     notes_ = fmt::format(
         "the teeth of the case are {:.1f} mm apart at rest; they meet when the jaw closes by "
-        "{:.1f} deg, the closed position, from where openings and rotations count",
-        apart, -at_rest / degree);
+        "{:.1f} deg{}",
+        apart, -at_rest / degree,
+        joints.closed_theta() == 0
+            ? ""
+            : ", the closed position, from where openings and rotations count");
   } else {
     baseline_ = at_rest;
     if (at_rest > 0.1 * degree)

@@ -11,10 +11,10 @@
 
 namespace condyle {
 
-/// Whether the teeth, or the surfaces in their place, meet in the rest pose of the case; true also
-/// where they or the landmarks of the jaw are missing. Bones carry crowns where the
+/// Distance between the teeth, or the surfaces in their place, in the rest pose of the case, mm; 0
+/// also where they or the landmarks of the jaw are missing. Bones carry crowns where the
 /// upper_incisal_point is marked.
-bool teeth_meet_at_rest(const Case& patient);
+double teeth_apart_at_rest_mm(const Case& patient);
 
 /// Tooth guidance: for given condylar positions, the rotation at which the teeth (or the occluding
 /// surfaces in their place) first touch as the jaw closes. Where the crowns overlap at rest, that

@@ -12,6 +12,8 @@ namespace condyle {
 namespace {
 
 constexpr int threads = 2;
+// Teeth that are closer than this are closed: segmented and decimated crowns are no more exact.
+constexpr double closed_mm = 1.5;
 constexpr double max_closing = 45 * degree;
 
 /// Rotation that raises the lower incisal point by `opening_mm`.
@@ -44,7 +46,7 @@ bool has_joints(const Case& patient) {
 void locate_closed_position(Case& patient) {
   patient.X_CM_closed = {};
   if (!has_joints(patient) || patient.scan_opening_mm == 0.0) return;
-  if (!patient.scan_opening_mm && teeth_meet_at_rest(patient)) return;
+  if (!patient.scan_opening_mm && teeth_apart_at_rest_mm(patient) <= closed_mm) return;
   const JawJoints joints(patient, {}, JointReach::straight, threads);
   const double theta = patient.scan_opening_mm
                            ? declared_theta(patient, joints, *patient.scan_opening_mm)

@@ -55,7 +55,6 @@ inline Case box_patient() {
   patient.name = "boxes";
   patient.parts.push_back({"maxilla", Role::maxilla, box({-30, -90, -40}, {30, -40, 0}), {}});
   patient.parts.push_back({"mandible", Role::mandible, box({-50, -92, -80}, {50, 0, -41}), {}});
-  patient.scan_opening_mm = 0;
   patient.landmarks.points = {{"upper_incisal_point", {0, -90, -40}},
                               {"lower_incisal_point", {0, -92, -41}},
                               {"left_condyle", {48, -5, -12}},

@@ -110,11 +110,11 @@ void Panels::Drawing::opening() {
        top + (theme.large->FontSize - theme.regular->FontSize) * 0.78f});
   text(theme.regular, palette().text_dim, "mm drop");
   pen.mark("opening-number", number);
-  tooltip(
-      pen,
-      "Vertical displacement of the lower incisal point from rest. The point also moves back, so "
-      "the distance between the incisal edges is different: see the interincisal distance "
-      "below");
+  tooltip(pen,
+          "Vertical displacement of the lower incisal point from the closed position. The point "
+          "also moves back, so "
+          "the distance between the incisal edges is different: see the interincisal distance "
+          "below");
   if (held) {
     const float wide = pen.px(76), high = pen.px(26);
     ImGui::SetCursorPos({ImGui::GetWindowContentRegionMax().x - wide, top + pen.px(3)});

@@ -731,7 +731,7 @@ TEST_P(Instrument, VerticalOpeningAndInterincisalDistanceAreDistinguished) {
     for (int i = 0; i < 32; ++i) stage.step(r.x + r.width / 2, r.y + r.height / 2, false);
     return stage.item("tooltip").words;
   };
-  EXPECT_NE(explained("opening-number").find("straight down"), std::string::npos);
+  EXPECT_NE(explained("opening-number").find("Vertical displacement"), std::string::npos);
   EXPECT_NE(explained("reading:Interincisal distance").find("42 to 58 mm"), std::string::npos);
   EXPECT_NE(explained("opening").find("drop of the lower incisal point"), std::string::npos);
   stage.rest();
