@@ -112,7 +112,7 @@ NumberTable read_rows(const std::filesystem::path& file, TextLines& lines,
   NumberTable table;
   table.names = std::move(names);
   const std::size_t columns = table.names.size();
-  assert(std::all_of(wanted.begin(), wanted.end(), [&](std::size_t c) { return c < columns; }));
+  assert(std::all_of(selected.begin(), selected.end(), [&](std::size_t c) { return c < columns; }));
   const std::size_t needed =
       selected.empty() ? columns : *std::max_element(selected.begin(), selected.end()) + 1;
   while (lines.next_filled()) {
