@@ -140,7 +140,8 @@ class DepthSearch {
       depth_mm = place.depth;
       side = into.side;
       point = p;
-      outward = shell(into).tree.pseudonormal(shell(into).tree.signed_nearest(p, place.depth));
+      const TriangleTree& tree = shell(into).tree;
+      outward = tree.pseudonormal(tree.nearest(p, place.depth + reach_rounding_mm));
     }
     return place;
   }

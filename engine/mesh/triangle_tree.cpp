@@ -319,7 +319,7 @@ SurfacePoint TriangleTree::signed_nearest(const Vector3d& p, double reach) const
 }
 
 Vector3d TriangleTree::pseudonormal(const SurfacePoint& found) const {
-  assert(!corner_normals_.empty());
+  assert(!corner_normals_.empty() && found.triangle >= 0);
   const int s = slot_[found.triangle];
   const Vector3d& b = found.barycentric;
   const int zeros = (b[0] == 0) + (b[1] == 0) + (b[2] == 0);
