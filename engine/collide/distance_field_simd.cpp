@@ -4,7 +4,8 @@
 #include "engine/collide/distance_field.h"
 
 // The loops below are compiled once for each of these targets; all perform the same operations.
-#if defined(__x86_64__)
+// ThreadSanitizer is not ready when the program chooses a target.
+#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__)
 #define CONDYLE_FOR_EACH_PROCESSOR __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define CONDYLE_FOR_EACH_PROCESSOR

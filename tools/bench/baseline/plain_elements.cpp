@@ -5,7 +5,7 @@
 #include <limits>
 
 // CMakeLists.txt has the options with which the compiler vectorises these loops.
-#ifdef __x86_64__
+#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__)
 #define FOR_EACH_PROCESSOR \
   __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
 #else
