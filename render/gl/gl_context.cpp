@@ -2,8 +2,11 @@
 
 #include <epoxy/egl.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <map>
+#include <mutex>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -24,7 +27,34 @@ struct Candidate {
   EGLenum platform;
   void* device;
   std::string name;
+  int contexts = 0;  // of this process on its display
 };
+
+/// Number of this process's contexts on each display.
+class DisplayUse {
+ public:
+  void add(EGLDisplay display, int change) {
+    const std::lock_guard lock(mutex_);
+    contexts_[display] += change;
+  }
+  int contexts(EGLDisplay display) {
+    const std::lock_guard lock(mutex_);
+    return contexts_[display];
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<EGLDisplay, int> contexts_;
+};
+
+DisplayUse& display_use() {
+  static DisplayUse use;
+  return use;
+}
+
+EGLDisplay display_of(const Candidate& candidate) {
+  return eglGetPlatformDisplayEXT(candidate.platform, candidate.device, nullptr);
+}
 
 /// eglGetString of the client extensions, which exists before any display. On some versions epoxy's
 /// own query needs a display.
@@ -33,7 +63,9 @@ bool client_extension(const char* name) {
   return all && std::strstr(all, name);
 }
 
-/// Hardware devices, then the surfaceless platform, then software devices.
+/// Hardware devices, then the surfaceless platform, then software devices. Of the last two, the one
+/// with the fewest contexts comes first: Mesa's software renderer (22.3) reads the memory of all
+/// contexts of a display from each of them, without a lock, and crashes where two draw at a time.
 std::vector<Candidate> candidates() {
   std::vector<Candidate> hardware, software;
   if (client_extension("EGL_EXT_platform_device") &&
@@ -59,6 +91,10 @@ std::vector<Candidate> candidates() {
   if (client_extension("EGL_MESA_platform_surfaceless"))
     all.push_back({EGL_PLATFORM_SURFACELESS_MESA, nullptr, "surfaceless"});
   all.insert(all.end(), software.begin(), software.end());
+  for (Candidate& candidate : all)
+    candidate.contexts = display_use().contexts(display_of(candidate));
+  std::stable_sort(all.begin() + std::ssize(hardware), all.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.contexts < b.contexts; });
   return all;
 }
 
@@ -93,13 +129,14 @@ struct OffscreenContext::State {
     if (context != EGL_NO_CONTEXT) {
       eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
       eglDestroyContext(display, context);
+      display_use().add(display, -1);
     }
     // Displays are shared by the whole process: terminating one would destroy another's context.
   }
 
   /// Makes the context current, or returns the reason for the failure.
   std::string start(const Candidate& candidate) {
-    display = eglGetPlatformDisplayEXT(candidate.platform, candidate.device, nullptr);
+    display = display_of(candidate);
     if (display == EGL_NO_DISPLAY) return "no display (" + egl_error() + ")";
     if (!eglInitialize(display, nullptr, nullptr)) return "cannot start (" + egl_error() + ")";
     if (!epoxy_has_egl_extension(display, "EGL_KHR_no_config_context"))
@@ -115,6 +152,7 @@ struct OffscreenContext::State {
       context = EGL_NO_CONTEXT;
       return "the context cannot be used (" + reason + ")";
     }
+    display_use().add(display, 1);
     return {};
   }
 };
@@ -139,5 +177,9 @@ OffscreenContext::OffscreenContext() : state_(std::make_unique<State>()) {
 OffscreenContext::~OffscreenContext() = default;
 
 const std::string& OffscreenContext::description() const { return state_->description; }
+
+bool OffscreenContext::shares_display() const {
+  return display_use().contexts(state_->display) > 1;
+}
 
 }  // namespace condyle

@@ -9,8 +9,8 @@ namespace condyle {
 bool software_gl_requested();
 
 /// An OpenGL 3.3 core context without window or display, through EGL: hardware devices first (none
-/// where LIBGL_ALWAYS_SOFTWARE is set), then the surfaceless platform, then software devices.
-/// Current on the thread that created it.
+/// where LIBGL_ALWAYS_SOFTWARE is set), then the surfaceless platform and software devices, the one
+/// that fewer contexts use first. Current on the thread that created it.
 class OffscreenContext {
  public:
   /// throws: MachineError with EGL's reasons and the packages to install.
@@ -22,6 +22,10 @@ class OffscreenContext {
   /// GL_RENDERER and the EGL platform, for reports; the platforms tried before, and why they
   /// failed.
   const std::string& description() const;
+
+  /// Whether another context of this process uses its display. Two that do must not draw at the
+  /// same time in software: Mesa 22.3 crashes.
+  bool shares_display() const;
 
  private:
   struct State;

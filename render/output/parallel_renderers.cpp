@@ -56,6 +56,8 @@ struct ParallelRenderers::State {
     std::optional<SceneRenderer> renderer;
     try {
       context.emplace();
+      if (drawer > 0 && context->shares_display())
+        throw MachineError("no display is free for another context");
       if (drawer == 0)
         renderer.emplace(parts);
       else

@@ -11,7 +11,8 @@ namespace condyle {
 
 /// Draws pictures concurrently with its owner. Without a graphics card two threads draw in turn,
 /// each with its own context and renderer: while one prepares its picture, the other's is
-/// rasterised. Results and their order are the same as with one.
+/// rasterised. Results and their order are the same as with one. One thread draws where other
+/// contexts of the process leave no display for a second (see OffscreenContext::shares_display).
 class ParallelRenderers {
  public:
   /// Draws on one of the threads and returns the action that delivers the picture. Actions are

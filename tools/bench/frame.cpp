@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "engine/mesh/refine.h"
@@ -69,6 +70,7 @@ class FrameBench {
         scene_(make_scene(open_patient(options.patient, common, bar_), settings_, bar_.callback())),
         motion_(make_motion("opening", scene_.patient, scene_.contacts)),
         steps_(static_cast<int>(std::lround(motion_.duration_s / settings_.step_s))),
+        opengl_(context_->description()),
         renderer_(scene_.patient.parts) {
     live_.face = false;
     sampled_.width = 1920;
@@ -79,7 +81,7 @@ class FrameBench {
     moving_ = smoothed_;
     moving_.shadows = false;
     moving_.coarse = true;
-    const auto [low, high] = renderer_.bounds();
+    const auto [low, high] = renderer_->bounds();
     camera_ = standard_camera("three-quarter", low, high,
                               static_cast<double>(sampled_.width) / sampled_.height);
     if (!scene_.tissue) return;
@@ -90,6 +92,9 @@ class FrameBench {
   void measure() {
     BenchRow live_error{"frame.live_error", "mm", {}, {}};
     for (int repeat = 0; repeat < options_.repeats; ++repeat) play_live(play(repeat), live_error);
+    // The recording draws with contexts of its own.
+    renderer_.reset();
+    context_.reset();
     bar_.show("recording", 1);
     rows_ = bench_film(scene_.patient.parts, of_film_, camera_, smoothed_, sampled_);
     rows_.push_back(std::move(live_error));
@@ -103,7 +108,7 @@ class FrameBench {
     nlohmann::ordered_json json;
     json["machine"] = {{"processor", processor()},
                        {"cores", std::thread::hardware_concurrency()},
-                       {"opengl", context_.description()}};
+                       {"opengl", opengl_}};
     json["results"] = nlohmann::ordered_json::array();
     for (const char* name : {"frame.motion", "frame.contact", "frame.tissue", "frame.face",
                              "frame.face_dense", "frame.total", "frame.live_step",
@@ -139,7 +144,7 @@ class FrameBench {
         "without; frame.window: "
         "pictures and steps a second while the motion plays in a window of that size\n",
         "median and 95th percentile (of what is counted a second: 5th)", nodes(), bone_triangles(),
-        common_.threads, 1000 * live_.step_s, face_triangles_, context_.description());
+        common_.threads, 1000 * live_.step_s, face_triangles_, opengl_);
     for (const auto& result : json["results"])
       fmt::print(stderr, "  {:<28}{:>9.3f}{:>9.3f} {}\n", result["name"].get<std::string>(),
                  result["median"].get<double>(),
@@ -196,8 +201,8 @@ class FrameBench {
       StageTimes times;
       {
         const StageTimer timer(times, Stage::render);
-        renderer_.update(frame);
-        renderer_.picture(camera_, *kind);
+        renderer_->update(frame);
+        renderer_->picture(camera_, *kind);
       }
       samples_[name].push_back(times[Stage::render]);
     }
@@ -248,8 +253,9 @@ class FrameBench {
   const Scene scene_;
   const Motion motion_;
   const int steps_;
-  OffscreenContext context_;
-  SceneRenderer renderer_;
+  std::optional<OffscreenContext> context_{std::in_place};
+  const std::string opengl_;
+  std::optional<SceneRenderer> renderer_;
   PictureSettings sampled_, smoothed_;
   PictureSettings moving_;  // as the window draws while it plays
   Camera camera_;

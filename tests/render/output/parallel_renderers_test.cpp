@@ -1,7 +1,9 @@
 #include "render/output/parallel_renderers.h"
 
+#include <epoxy/egl.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <thread>
 
 #include "engine/core/error.h"
@@ -46,18 +48,44 @@ std::vector<Image> drawn(ParallelRenderers& drawers, int pictures, int samples) 
 TEST(ParallelRenderers, DeliverThePicturesOfOneRendererInOrder) {
   const auto parts = mandible_and_face();
   constexpr int pictures = 7;
-  ParallelRenderers one(parts, 1), two(parts, 2);
-  EXPECT_EQ(one.count(), 1);
-  const bool card = two.driver().find("llvmpipe") == std::string::npos;
-  EXPECT_EQ(two.count(), card || std::thread::hardware_concurrency() < 2 ? 1 : 2);
   for (const int samples : {1, 4}) {
-    const auto expected = drawn(one, pictures, samples), found = drawn(two, pictures, samples);
+    std::vector<Image> expected, found;
+    {
+      ParallelRenderers one(parts, 1);
+      EXPECT_EQ(one.count(), 1);
+      expected = drawn(one, pictures, samples);
+    }
+    {
+      ParallelRenderers two(parts, 2);
+      const bool card = two.driver().find("llvmpipe") == std::string::npos;
+      EXPECT_EQ(two.count(), card || std::thread::hardware_concurrency() < 2 ? 1 : 2);
+      found = drawn(two, pictures, samples);
+    }
     ASSERT_EQ(expected.size(), pictures);
     ASSERT_EQ(found.size(), pictures);
     for (int i = 0; i < pictures; ++i)
       EXPECT_TRUE(test::same_bytes(found[i], expected[i])) << i << ", " << samples << " samples";
     EXPECT_TRUE(test::unlike(expected[0], expected[1], 0));
   }
+}
+
+TEST(ParallelRenderers, DrawOnDisplaysThatNoOtherContextUses) {
+  const auto parts = mandible_and_face();
+  ParallelRenderers two(parts, 2), later(parts, 2);
+  if (two.driver().find("llvmpipe") == std::string::npos) return;  // a card draws one at a time
+  EXPECT_EQ(later.count(), 1) << "both displays are in use";
+  EGLDisplay displays[2] = {EGL_NO_DISPLAY, EGL_NO_DISPLAY};
+  std::atomic<int> drawing = 0;
+  for (int i = 0; i < two.count(); ++i)
+    two.add([&](SceneRenderer&, int drawer) {
+      displays[drawer] = eglGetCurrentDisplay();
+      // Both threads draw at this moment.
+      for (++drawing; drawing < two.count();) std::this_thread::yield();
+      return [] {};
+    });
+  two.finish();
+  EXPECT_NE(displays[0], EGL_NO_DISPLAY);
+  EXPECT_NE(displays[0], displays[1]);
 }
 
 TEST(ParallelRenderers, SlowAndQuickPicturesAreDeliveredInTheirOrder) {
