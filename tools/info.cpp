@@ -49,6 +49,16 @@ Json describe(const Case& patient, BodyId id) {
   return json;
 }
 
+Json describe(const Case& patient, const Canal& canal) {
+  double length = 0;
+  for (std::size_t i = 1; i < canal.points.size(); ++i)
+    length += (canal.points[i] - canal.points[i - 1]).norm();
+  return {{"name", canal.name},
+          {"body", patient.bodies[canal.body].name},
+          {"diameter_mm", canal.diameter_mm},
+          {"length_mm", length}};
+}
+
 std::string body_line(const Json& body) {
   std::string text = body["name"].get<std::string>();
   if (body.contains("parent")) {
@@ -97,6 +107,7 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
     json["bodies"].push_back(describe(patient, BodyId{i}));
   for (const auto& [name, point] : patient.landmarks.points)
     json["landmarks"][name] = {point.x(), point.y(), point.z()};
+  for (const auto& canal : patient.canals) json["canals"].push_back(describe(patient, canal));
   json["notes"] = patient.notes;
   if (common.json) {
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
@@ -106,6 +117,9 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
              patient.source.units);
   for (const auto& part : json["parts"])
     fmt::print("  {:<14}{}\n", part["name"].get<std::string>(), line(part));
+  for (const auto& canal : patient.canals)
+    fmt::print("  canal {}: {:.1f} mm wide, in the {}\n", canal.name, canal.diameter_mm,
+               patient.bodies[canal.body].name);
   for (const auto& body : json["bodies"]) fmt::print("  body {}\n", body_line(body));
   fmt::print("  {} landmarks:", patient.landmarks.points.size());
   for (const auto& [name, point] : patient.landmarks.points) fmt::print(" {}", name);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/math/pose.h"
+#include "sim/case/canal.h"
 #include "sim/case/condylar_path.h"
 #include "sim/case/jaw_mechanics.h"
 #include "sim/case/landmarks.h"
@@ -42,6 +43,7 @@ struct Case {
 
   std::vector<Muscle> muscles = {};  // empty: default muscles fitted to its landmarks
   std::optional<JawMechanics> mechanics = std::nullopt;  // where measured
+  std::vector<Canal> canals = {};                        // that cuts must avoid, where known
 
   const Part* find(Role role) const {
     for (const auto& part : parts)

@@ -7,7 +7,8 @@ namespace condyle {
 
 /// Format and version stated in case.json.
 constexpr const char* case_format = "condyle case";
-// 1: a segment or transplant names its carrier, cranium or mandible. 2: bodies and their parents.
+// 1: a segment or transplant names its carrier, cranium or mandible. 2: bodies and their parents;
+// canals, where there are any.
 constexpr int case_version = 2;
 constexpr const char* muscles_file = "muscles.csv";
 constexpr const char* mechanics_file = "mechanics.json";

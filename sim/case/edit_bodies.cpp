@@ -19,6 +19,7 @@ Case with_parent(Case patient, BodyId body, BodyId parent) {
   const std::vector<BodyId> number = patient.bodies.reparent(body, parent);
   const auto renumber = [&](BodyId& old) { old = number[index_of(old)]; };
   for (Part& part : patient.parts) renumber(part.body);
+  for (Canal& canal : patient.canals) renumber(canal.body);
   for (BodyId* jaw : {&patient.jaw.upper_arch, &patient.jaw.lower_arch, &patient.jaw.left_condyle,
                       &patient.jaw.right_condyle})
     renumber(*jaw);
@@ -39,7 +40,9 @@ Case without_body(Case patient, BodyId body) {
     });
   });
   std::erase_if(patient.parts, goes);
+  std::erase_if(patient.canals, [&](const Canal& canal) { return canal.body == body; });
   for (Part& part : patient.parts) part.body = *number[index_of(part.body)];
+  for (Canal& canal : patient.canals) canal.body = *number[index_of(canal.body)];
   for (BodyId* of_jaw : {&patient.jaw.upper_arch, &patient.jaw.lower_arch,
                          &patient.jaw.left_condyle, &patient.jaw.right_condyle})
     *of_jaw = *number[index_of(*of_jaw)];

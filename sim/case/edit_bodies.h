@@ -15,8 +15,8 @@ Case with_piece(Case patient, Part part, BodyId parent, BodyDriver driver = Body
 /// BodyTree::reparent().
 Case with_parent(Case patient, BodyId body, BodyId parent);
 
-/// Removes a body with its parts and their contact rules; its children become children of its
-/// parent. throws: InputError for the cranium and for bodies of the jaw.
+/// Removes a body with its parts, their contact rules and its canals; its children become children
+/// of its parent. throws: InputError for the cranium and for bodies of the jaw.
 Case without_body(Case patient, BodyId body);
 
 }  // namespace condyle

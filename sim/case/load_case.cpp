@@ -6,6 +6,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/mesh_io/mesh_files.h"
+#include "sim/case/canal_list.h"
 #include "sim/case/case_format.h"
 #include "sim/case/case_io.h"
 #include "sim/case/json_file.h"
@@ -270,6 +271,8 @@ Case load_case(const fs::path& given) {
       if (!patient.landmarks.points.try_emplace(row.name, row.point).second)
         throw InputError(points, row.where, "the landmark \"" + row.name + "\" occurs twice");
   }
+  if (const auto canals = root.find("canals"))
+    patient.canals = load_canals(*canals, patient.bodies);
   if (const auto path = root.find("condylar_path")) patient.condylar_path = load_path(*path);
   if (const auto opening = root.find("scan_opening_mm"))
     patient.scan_opening_mm = opening->number(0, max_scan_opening_mm);

@@ -14,6 +14,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/mesh_io/mesh_files.h"
+#include "sim/case/canal_list.h"
 #include "sim/case/case_format.h"
 #include "sim/case/case_io.h"
 #include "sim/case/landmark_files.h"
@@ -75,6 +76,7 @@ Json to_json(const Case& patient) {
                {"parts", Json::array()}};
   for (const auto& part : patient.parts) root["parts"].push_back(to_json(part, patient.bodies));
   if (!patient.landmarks.points.empty()) root["landmarks"] = "landmarks.csv";
+  if (!patient.canals.empty()) root["canals"] = canals_json(patient.canals, patient.bodies);
   if (patient.condylar_path)
     root["condylar_path"] = {{"forward_mm", patient.condylar_path->forward_mm},
                              {"drop_mm", patient.condylar_path->inferior_mm}};
@@ -109,6 +111,7 @@ void check(const Case& patient, const fs::path& folder) {
                        "the name must be of letters, digits, - and _");
     else if (!point.allFinite())
       throw InputError(folder, "landmark " + name, "its position is not finite");
+  check_canals(patient.canals, patient.bodies, folder);
 }
 
 /// Whether everything in the folder was written by an earlier save, so that it may be replaced.

@@ -28,6 +28,13 @@ std::uint64_t content_hash(const Case& patient) {
     hash = hash_bytes(name.data(), name.size(), hash);
     hash = hash_values(std::span<const double>(point.data(), 3), hash);
   }
+  for (const auto& canal : patient.canals) {
+    hash = hash_bytes(canal.name.data(), canal.name.size(), hash);
+    mix(hash, canal.body);
+    mix(hash, canal.diameter_mm);
+    for (const auto& point : canal.points)
+      hash = hash_values(std::span<const double>(point.data(), 3), hash);
+  }
   if (patient.condylar_path) {
     hash = hash_values(std::span<const double>(patient.condylar_path->forward_mm), hash);
     hash = hash_values(std::span<const double>(patient.condylar_path->inferior_mm), hash);

@@ -9,6 +9,7 @@
 #include "engine/mesh/measure.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "sim/case/case_io.h"
+#include "sim/case/edit_bodies.h"
 #include "sim/case/pair_rules.h"
 #include "tests/engine/mesh_io/samples.h"
 #include "tests/support/places.h"
@@ -149,6 +150,67 @@ TEST(CaseFiles, AFolderOfTheFirstFormatOpensWithTheSameBodies) {
   ASSERT_EQ(loaded.parts.size(), saved.parts.size());
   for (std::size_t i = 0; i < saved.parts.size(); ++i)
     EXPECT_EQ(loaded.parts[i].body, saved.parts[i].body) << i;
+}
+
+/// The sample with free parts and a canal in the mandible and in the transplant.
+Case sample_with_canals() {
+  Case patient = sample_with_free_parts();
+  patient.canals = {{"left_mandibular_canal",
+                     mandible_body,
+                     1.0 / 3 + 2.5,
+                     {{1.0 / 3, 1e-300, -0.0}, {1, 2, 3}, {-1e5, 2, 3}}},
+                    {"nerve", patient.parts[3].body, 2, {{0, 0, 0}, {0, 0, 1}}}};
+  return patient;
+}
+
+TEST(CaseFiles, CanalsRoundTrip) {
+  const TempFolder folder;
+  const Case saved = sample_with_canals();
+  save_case(saved, folder.path() / "case");
+  const Case loaded = load_case(folder.path() / "case");
+  ASSERT_EQ(loaded.canals.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(loaded.canals[i].name, saved.canals[i].name);
+    EXPECT_EQ(loaded.canals[i].body, saved.canals[i].body);
+    EXPECT_EQ(loaded.canals[i].diameter_mm, saved.canals[i].diameter_mm);
+    ASSERT_EQ(loaded.canals[i].points.size(), saved.canals[i].points.size());
+    for (std::size_t k = 0; k < saved.canals[i].points.size(); ++k) {
+      const auto &a = loaded.canals[i].points[k], &b = saved.canals[i].points[k];
+      EXPECT_EQ(std::memcmp(a.data(), b.data(), sizeof(a)), 0) << i << " " << k;
+    }
+  }
+  save_case(sample(), folder.path() / "case");
+  EXPECT_TRUE(load_case(folder.path() / "case").canals.empty());
+}
+
+TEST(CaseFiles, CanalsThatCouldNotBeLoadedAreNotSaved) {
+  const TempFolder folder;
+  const auto expect_refused = [&](const std::function<void(Canal&)>& change) {
+    Case broken = sample_with_canals();
+    change(broken.canals[0]);
+    EXPECT_THROW(save_case(broken, folder.path() / "broken"), InputError);
+  };
+  expect_refused([](Canal& canal) { canal.name = "nerve"; });
+  expect_refused([](Canal& canal) { canal.name = "a b"; });
+  expect_refused([](Canal& canal) { canal.body = BodyId{9}; });
+  expect_refused([](Canal& canal) { canal.diameter_mm = 0; });
+  expect_refused([](Canal& canal) { canal.diameter_mm = std::nan(""); });
+  expect_refused([](Canal& canal) { canal.points.resize(1); });
+  expect_refused([](Canal& canal) { canal.points[1] = canal.points[0]; });
+  expect_refused([](Canal& canal) { canal.points[1].y() = std::nan(""); });
+  EXPECT_FALSE(fs::exists(folder.path() / "broken"));
+}
+
+TEST(CaseFiles, CanalsFollowTheNumbersOfTheirBodies) {
+  const Case patient = sample_with_canals();
+  const BodyId transplant = patient.parts[3].body, segment = patient.parts[2].body;
+  // The segment precedes the transplant, so the bodies are renumbered.
+  const Case moved = with_parent(patient, segment, transplant);
+  EXPECT_EQ(moved.bodies[moved.canals[1].body].name, "transplant");
+  EXPECT_EQ(moved.canals[0].body, mandible_body);
+  const Case one = without_body(patient, segment);
+  EXPECT_EQ(one.bodies[one.canals[1].body].name, "transplant");
+  EXPECT_EQ(without_body(patient, transplant).canals.size(), 1u);
 }
 
 TEST(CaseFiles, TheLastRuleThatFitsCounts) {
@@ -323,6 +385,38 @@ TEST_F(BadCase, WrongCarriersAndRulesAreNamed) {
          {"contact_pairs[0].margin_mm", "-0.5", "from 0"});
   expect([](json& root) { root["contact_pairs"][0]["gap_mm"] = "wide"; },
          {"contact_pairs[0].gap_mm", "\"wide\"", "number"});
+}
+
+TEST_F(BadCase, WrongCanalsAreNamed) {
+  save_case(sample_with_canals(), home_);
+  expect([](json& root) { root["canals"] = 3; }, {"case.json", "canals", "list"});
+  expect([](json& root) { root["canals"][0] = 3; }, {"canals[0]", "object"});
+  expect([](json& root) { root["canals"][0]["colour"] = 3; }, {"canals[0]", "\"colour\""});
+  expect([](json& root) { root["canals"][1]["name"] = "left_mandibular_canal"; },
+         {"canals[1].name", "\"left_mandibular_canal\"", "twice"});
+  expect([](json& root) { root["canals"][0]["name"] = "a/b"; }, {"canals[0].name", "\"a/b\""});
+  expect([](json& root) { root["canals"][0]["body"] = "tibia"; },
+         {"canals[0].body", "\"tibia\"", "does not exist"});
+  expect([](json& root) { root["canals"][0].erase("diameter_mm"); },
+         {"\"diameter_mm\" is missing"});
+  expect([](json& root) { root["canals"][0]["diameter_mm"] = 0; },
+         {"canals[0].diameter_mm", "is 0"});
+  expect([](json& root) { root["canals"][0]["diameter_mm"] = 300; },
+         {"canals[0].diameter_mm", "300"});
+  expect(
+      [](json& root) {
+        root["canals"][0]["points"] = {{1, 2, 3}};
+      },
+      {"canals[0].points", "has 1 of the two or more"});
+  expect(
+      [](json& root) {
+        root["canals"][0]["points"][1] = {1, 2};
+      },
+      {"canals[0].points[1]", "2 numbers"});
+  expect([](json& root) { root["canals"][0]["points"][1][2] = "low"; },
+         {"canals[0].points[1][2]", "\"low\"", "number"});
+  expect([](json& root) { root["canals"][0]["points"][1] = root["canals"][0]["points"][0]; },
+         {"canals[0].points[1]", "repeats"});
 }
 
 TEST_F(BadCase, AFolderWithoutACaseIsRefusedWithAdvice) {

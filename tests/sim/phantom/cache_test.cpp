@@ -34,6 +34,7 @@ class Cache : public testing::Test {
       one.parts = {part};
       one.landmarks.points["menton"] = {0.1, 1.0 / 7, 3};
       one.condylar_path = CondylarPath{{0, 1}, {0, 1.0 / 3}};
+      one.canals = {{"canal", mandible_body, 3, {{0, 0, 0}, {0, 1.0 / 7, 1}}}};
       return one;
     });
   }
@@ -79,6 +80,7 @@ TEST_F(Cache, AnyDamagedFileIsRebuilt) {
       const Case again = get();
       EXPECT_EQ(again.landmarks.points.at("menton"), Eigen::Vector3d(0.1, 1.0 / 7, 3));
       EXPECT_EQ(again.parts[0].mesh.vertices[3].z(), 1.0 / 3);
+      EXPECT_EQ(again.canals.at(0).points.at(1).y(), 1.0 / 7);
       if (cut) {
         EXPECT_EQ(made_, before + 1) << file;
       }
