@@ -1,7 +1,9 @@
 #include "sim/case/landmark_names.h"
 
+#include <array>
 #include <cctype>
 #include <map>
+#include <stdexcept>
 #include <vector>
 
 namespace condyle {
@@ -62,9 +64,29 @@ const std::vector<Known>& paired_points() {
       {"endocanthion", {"en"}},
       {"alare", {"al"}},
       {"zygion", {"zy"}},
+      {"zygomaxillare", {"zm"}},
+      {"infraorbital_foramen", {"iof", "forameninfraorbitale"}},
+      {"mental_foramen", {"mf", "foramenmentale"}},
+      {"lingula", {"ling", "lingulamandibulae", "spineofspix"}},
+      {"sigmoid_notch", {"mandibularnotch"}},
+      {"coronoid_tip", {}},
   };
   return points;
 }
+
+/// Teeth of a quadrant, from the midline back.
+struct ToothPlace {
+  const char *name, *tip, *apex;
+};
+constexpr std::array<ToothPlace, 8> tooth_places = {
+    {{"central_incisor", "tip", "apex"},
+     {"lateral_incisor", "tip", "apex"},
+     {"canine", "tip", "apex"},
+     {"first_premolar", "buccal_cusp", "apex"},
+     {"second_premolar", "buccal_cusp", "apex"},
+     {"first_molar", "mesiobuccal_cusp", "mesiobuccal_apex"},
+     {"second_molar", "mesiobuccal_cusp", "mesiobuccal_apex"},
+     {"third_molar", "mesiobuccal_cusp", "mesiobuccal_apex"}}};
 
 /// Letters and digits in lower case, and ' for soft tissue: the key for comparing aliases.
 std::string key_of(std::string_view name) {
@@ -76,6 +98,38 @@ std::string key_of(std::string_view name) {
   return key;
 }
 
+/// Aliases of the points of each tooth, with the tooth written as "U3 L" or "L U3", "UL3" (Palmer),
+/// or 23 (FDI). The tooth alone, unless it is an FDI number, is its tip.
+void add_tooth_aliases(std::map<std::string, std::string>& names) {
+  for (const int quadrant : {1, 2, 3, 4})
+    for (int place = 1; place <= 8; ++place) {
+      const auto canonical = tooth_landmark_names(10 * quadrant + place);
+      const std::string jaw = quadrant <= 2 ? "u" : "l";
+      const std::string side = quadrant == 1 || quadrant == 4 ? "r" : "l";
+      const std::string number = std::to_string(place), fdi = std::to_string(quadrant) + number;
+      for (const auto& point : {canonical.tip, canonical.apex}) {
+        const bool is_tip = point == canonical.tip;
+        names.try_emplace(key_of(point), point);
+        std::vector<std::string> marks = {is_tip ? "tip" : "apex"};
+        if (place <= 2 && is_tip) marks.push_back("edge");
+        if (place >= 3 && is_tip) marks.push_back("cusp");
+        if ((place == 4 || place == 5) && is_tip) marks.push_back("buccalcusp");
+        if (place >= 6)
+          for (const std::string at : {"mb", "mesiobuccal"})
+            marks.push_back(at + (is_tip ? "cusp" : "apex"));
+        for (const auto& mark : marks) {
+          for (const auto& tooth :
+               {jaw + number + side, side + jaw + number, jaw + side + number, fdi})
+            names.try_emplace(tooth + mark, point);
+          names.try_emplace(jaw + number + mark + side, point);
+        }
+        if (is_tip)
+          for (const auto& tooth : {jaw + number + side, side + jaw + number, jaw + side + number})
+            names.try_emplace(tooth, point);
+      }
+    }
+}
+
 const std::map<std::string, std::string>& aliases() {
   static const auto table = [] {
     std::map<std::string, std::string> names;
@@ -84,7 +138,7 @@ const std::map<std::string, std::string>& aliases() {
       for (const char* alias : known.aliases) names[alias] = known.name;
     }
     for (const auto& known : paired_points()) {
-      std::vector<std::string> forms = {known.name};
+      std::vector<std::string> forms = {key_of(known.name)};
       forms.insert(forms.end(), known.aliases.begin(), known.aliases.end());
       for (const std::string side : {"left", "right"}) {
         const std::string canonical = side + "_" + known.name;
@@ -98,6 +152,7 @@ const std::map<std::string, std::string>& aliases() {
         }
       }
     }
+    add_tooth_aliases(names);
     return names;
   }();
   return table;
@@ -126,11 +181,26 @@ std::string canonical_landmark(std::string_view name) {
   return found != aliases().end() ? found->second : snake_case(name);
 }
 
+ToothLandmarkNames tooth_landmark_names(int fdi) {
+  const int quadrant = fdi / 10, place = fdi % 10;
+  if (quadrant < 1 || quadrant > 4 || place < 1 || place > 8)
+    throw std::out_of_range("no permanent tooth has this number: " + std::to_string(fdi));
+  const auto& known = tooth_places[static_cast<std::size_t>(place - 1)];
+  const std::string tooth = std::string(quadrant <= 2 ? "upper_" : "lower_") +
+                            (quadrant == 1 || quadrant == 4 ? "right_" : "left_") + known.name;
+  return {tooth + "_" + known.tip, tooth + "_" + known.apex};
+}
+
 std::vector<std::string> landmark_names() {
   std::vector<std::string> names;
   for (const auto& known : middle_points()) names.emplace_back(known.name);
   for (const auto& known : paired_points())
     for (const std::string side : {"left_", "right_"}) names.push_back(side + known.name);
+  for (const int quadrant : {1, 2, 3, 4})
+    for (int place = 1; place <= 8; ++place) {
+      const auto tooth = tooth_landmark_names(10 * quadrant + place);
+      names.insert(names.end(), {tooth.tip, tooth.apex});
+    }
   return names;
 }
 

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <set>
+#include <stdexcept>
+
 #include "engine/core/error.h"
 #include "sim/case/case_io.h"
 #include "sim/case/landmark_names.h"
@@ -48,6 +51,24 @@ TEST(LandmarkNames, AliasesAreCaseAndSeparatorBlind) {
            {"li", "labrale_inferius"},
            {"Po R", "right_porion"},
            {"orbitale_left", "left_orbitale"},
+           {"IOF L", "left_infraorbital_foramen"},
+           {"Mental foramen R", "right_mental_foramen"},
+           {"MF-L", "left_mental_foramen"},
+           {"Lingula L", "left_lingula"},
+           {"Zm R", "right_zygomaxillare"},
+           {"U6 L", "upper_left_first_molar_mesiobuccal_cusp"},
+           {"U6 mesiobuccal cusp R", "upper_right_first_molar_mesiobuccal_cusp"},
+           {"U3 R", "upper_right_canine_tip"},
+           {"L3 L", "lower_left_canine_tip"},
+           {"R L3", "lower_right_canine_tip"},
+           {"UR3", "upper_right_canine_tip"},
+           {"LL6", "lower_left_first_molar_mesiobuccal_cusp"},
+           {"L1 L", "lower_left_central_incisor_tip"},
+           {"U1 apex R", "upper_right_central_incisor_apex"},
+           {"13 tip", "upper_right_canine_tip"},
+           {"46 MB apex", "lower_right_first_molar_mesiobuccal_apex"},
+           {"Upper Left Canine Tip", "upper_left_canine_tip"},
+           {"U1", "upper_incisal_point"},
            {"upper_incisal_point", "upper_incisal_point"}})
     EXPECT_EQ(canonical_landmark(alias), name) << alias;
 }
@@ -60,8 +81,25 @@ TEST(LandmarkNames, OtherNamesStayTheirOwn) {
   EXPECT_EQ(canonical_landmark("  My  Point #2 "), "my_point_2");
   EXPECT_EQ(canonical_landmark("-- '"), "");
   // A canonical name is unchanged.
-  for (const char* name : {"left_condyle", "stomion", "hyoid_ref", "soft_pogonion", "my_point_2"})
+  for (const char* name :
+       {"left_condyle", "stomion", "hyoid_ref", "soft_pogonion", "my_point_2", "u9_l", "23"})
     EXPECT_EQ(canonical_landmark(name), name);
+}
+
+TEST(LandmarkNames, EveryKnownNameIsItsOwnAlias) {
+  std::set<std::string> names;
+  for (const auto& name : landmark_names()) {
+    EXPECT_TRUE(names.insert(name).second) << name;
+    EXPECT_EQ(canonical_landmark(name), name);
+  }
+  for (const int fdi : {11, 23, 36, 48}) {
+    EXPECT_TRUE(names.count(tooth_landmark_names(fdi).tip)) << fdi;
+    EXPECT_TRUE(names.count(tooth_landmark_names(fdi).apex)) << fdi;
+  }
+  EXPECT_EQ(tooth_landmark_names(23).apex, "upper_left_canine_apex");
+  EXPECT_EQ(tooth_landmark_names(45).tip, "lower_right_second_premolar_buccal_cusp");
+  for (const int fdi : {0, 10, 19, 51, -11})
+    EXPECT_THROW(tooth_landmark_names(fdi), std::out_of_range);
 }
 
 TEST(Landmarks, CsvColumnsInAnyOrderWithQuotesAndWindowsLineEnds) {
