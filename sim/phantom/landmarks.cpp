@@ -1,6 +1,7 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/case/landmark_names.h"
 #include "sim/phantom/bone_shapes.h"
 #include "sim/phantom/soft_shapes.h"
 #include "sim/phantom/surfaces.h"
@@ -40,6 +41,7 @@ const std::vector<Named> named_points = {
     {"hyoid", On::space, 0, -42, -98},
     {"porion", On::skull, 62, 0, 0},
     {"orbitale", On::skull, 32, -79, -0.5},
+    {"infraorbital_foramen", On::skull, 27, -82, -8.6},
     {"orbit_medial_rim", On::skull, 11, -82.4, 17.3},
     {"orbit_lateral_rim", On::skull, 46.3, -66.7, 17.3},
     {"orbit_roof_margin", On::skull, 32, -81, 33.5},
@@ -59,7 +61,8 @@ const std::vector<Named> named_points = {
     {"coronoid_tip", On::mandible, 46.6, -42.2, -7.4},
     {"sigmoid_notch", On::mandible, 46.2, -27.8, -22.5},
     {"gonion", On::mandible, 46.8, -17, -65.2},
-    {"mental_foramen", On::mandible, 34, -58, -70.4},
+    {"mental_foramen", On::mandible, 28.2, -76.9, -73.6},
+    {"lingula", On::mandible, 38.4, -30.15, -40.4},
     {"soft_glabella", On::skin, 0, -99.5, 41},
     {"sellion", On::skin, 0, -96.7, 24.6},
     {"pronasale", On::skin, 0, -118.7, -14.4},
@@ -122,6 +125,13 @@ Landmarks phantom_landmarks(const PhantomSolid& solid) {
       landmarks.points[std::string("left_") + entry.name] = p;
       landmarks.points[std::string("right_") + entry.name] = {-p.x(), p.y(), p.z()};
     }
+  }
+  for (const auto& tooth : tooth_points(solid)) {
+    const int place = tooth.fdi % 10;
+    if (place != 1 && place != 3 && place != 6) continue;
+    const auto names = tooth_landmark_names(tooth.fdi);
+    landmarks.points[names.tip] = tooth.tip;
+    landmarks.points[names.apex] = tooth.apex;
   }
   return landmarks;
 }

@@ -94,8 +94,9 @@ FieldRecipe mandible_recipe() {
            6);                                             // coronoid
   bone.add(ellipsoid({0, -82.8, -83.5}, {11, 5., 7}), 6);  // chin
   bone.add(ellipsoid({12, -80.5, -87}, {6.5, 5.5, 4.6}), 6);
-  bone.cut(ellipsoid({0, -94, -70}, {15, 5, 5.5}), 8);                  // hollow above the chin
-  bone.cut(tube({{37, -57.5, -70}, {29, -55.5, -69.5}}, {2, 1.4}), 1);  // mental foramen
+  bone.cut(ellipsoid({0, -94, -70}, {15, 5, 5.5}), 8);  // hollow above the chin
+  // Mental foramen, below the second premolar; it opens to the side, back and up.
+  bone.cut(tube({{31.5, -74.4, -71.6}, {25.2, -76.4, -74.8}}, {2, 1.4}), 1);
   return bone;
 }
 

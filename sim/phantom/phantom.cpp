@@ -72,6 +72,7 @@ Case build_phantom_on(int threads, const Progress& progress) {
   patient.name = "built-in patient";
   patient.parts = std::move(parts);
   patient.landmarks = phantom_landmarks(solid);
+  patient.canals = phantom_canals(patient.landmarks);
   patient.condylar_path = phantom_condylar_path();
   return patient;
 }

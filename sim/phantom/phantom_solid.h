@@ -32,6 +32,17 @@ struct PhantomSolid {
 
 PhantomSolid make_phantom_solid();
 
+/// Ends and direction of one tooth at rest, mm.
+struct ToothPoints {
+  int fdi = 0;
+  Eigen::Vector3d tip;   // middle of the edge, cusp, buccal or mesiobuccal cusp; on the surface
+  Eigen::Vector3d apex;  // end of the root; on the surface
+  Eigen::Vector3d axis;  // of crown and root, unit, towards the tip
+};
+
+/// Of all 28 teeth, by FDI number.
+std::vector<ToothPoints> tooth_points(const PhantomSolid& solid);
+
 /// Path of the condyle centres along the eminence.
 CondylarPath phantom_condylar_path();
 

@@ -32,6 +32,9 @@ void add_lashes(TriMesh& eye);
 /// Named points of the head; those on a surface are moved onto it.
 Landmarks phantom_landmarks(const PhantomSolid& solid);
 
+/// Mandibular canals of both sides, from the lingula to the mental foramen.
+std::vector<Canal> phantom_canals(const Landmarks& landmarks);
+
 /// build_phantom on a number of threads; bit-identical for any number.
 Case build_phantom_on(int threads, const Progress& progress = {});
 

@@ -81,6 +81,7 @@ const std::map<char, CrownSection> crown_sections = {{'I',
                                                        3.0}}};
 
 /// Cusps: distal and buccal position as fractions of half the width and depth, mm below the tip.
+/// The first one is the buccal cusp of a premolar, the mesiobuccal cusp of a molar.
 struct Cusp {
   double distal, buccal, below;
 };
@@ -166,6 +167,15 @@ std::vector<ToothFrame> make_frames() {
   return frames;
 }
 
+constexpr double apex_shift = -0.12;  // labial, as a fraction of half the depth
+
+/// The edge of front teeth lies labial of the axis by this much; the frame's tip is put on it.
+double edge_offset(const ToothFrame& f) {
+  const char kind = f.name[0];
+  if (kind != 'I' && kind != 'C') return 0;
+  return crown_sections.at(kind).shift.back() * f.depth / 2;
+}
+
 /// Outline of crown and root about the tooth's axis, without its top.
 struct Barrel {
   Barrel(const ToothFrame& frame, const CrownSection& section)
@@ -185,7 +195,7 @@ struct Barrel {
     return {x, y};
   }
   static Lookup make_shift(const ToothFrame& f, const CrownSection& s) {
-    std::vector<double> x{-f.root / f.height, 0}, y{-0.12, 0};
+    std::vector<double> x{-f.root / f.height, 0}, y{apex_shift, 0};
     x.insert(x.end(), s.at.begin() + 1, s.at.end());
     y.insert(y.end(), s.shift.begin() + 1, s.shift.end());
     x.push_back(1.3);
@@ -229,8 +239,7 @@ Primitive tooth_shape(const ToothFrame& f) {
   const char kind = f.name[0];
   const auto& section = crown_sections.at(kind);
   const bool front = kind == 'I' || kind == 'C';
-  // The edge of front teeth lies labial of the axis; the tip is put on it.
-  const double edge = front ? section.shift.back() * f.depth / 2 : 0;
+  const double edge = edge_offset(f);
   const Barrel barrel(f, section);
   const Occlusal occlusal = front ? Occlusal{} : occlusal_shapes.at((f.upper ? "u" : "l") + f.name);
   const double W = f.width / 2, B = f.depth / 2, H = f.height;
@@ -255,10 +264,22 @@ Primitive tooth_shape(const ToothFrame& f) {
           box_of(f)};
 }
 
+Vector3d tooth_tip(const ToothFrame& f) {
+  const auto shape = occlusal_shapes.find((f.upper ? "u" : "l") + f.name);
+  if (shape == occlusal_shapes.end()) return f.tip;
+  const Cusp& cusp = shape->second.cusps.front();
+  return f.tip + cusp.distal * f.width / 2 * f.distal + cusp.buccal * f.depth / 2 * f.labial -
+         cusp.below * f.axis;
+}
+
+Vector3d tooth_apex(const ToothFrame& f) {
+  return f.tip - (f.height + f.root) * f.axis +
+         (apex_shift * f.depth / 2 - edge_offset(f)) * f.labial;
+}
+
 Primitive tooth_collar(const ToothFrame& f, double thickness) {
   const auto& section = crown_sections.at(f.name[0]);
-  const bool front = f.name[0] == 'I' || f.name[0] == 'C';
-  const double edge = front ? section.shift.back() * f.depth / 2 : 0;
+  const double edge = edge_offset(f);
   const Barrel barrel(f, section);
   return {[=](const Vector3d& p) {
             const Vector3d q = p - f.tip;

@@ -27,6 +27,13 @@ std::vector<ToothFrame> tooth_frames(bool upper);
 /// Crown and root of one tooth, not yet carved by its opponents.
 Primitive tooth_shape(const ToothFrame& frame);
 
+/// Uncarved tip: middle of the incisal edge, cusp of a canine, buccal cusp of a premolar,
+/// mesiobuccal cusp of a molar.
+Eigen::Vector3d tooth_tip(const ToothFrame& frame);
+
+/// End of the root, on its surface. Molars have one root too.
+Eigen::Vector3d tooth_apex(const ToothFrame& frame);
+
 /// The same outline grown over neck and root: what the gum wraps around the tooth.
 Primitive tooth_collar(const ToothFrame& frame, double thickness);
 

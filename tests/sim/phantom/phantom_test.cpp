@@ -188,8 +188,9 @@ void expect_landmarks_on_surfaces() {
     for (const auto& tree : trees) d = std::min(d, tree.nearest(p).distance);
     EXPECT_LT(d, 0.7) << name;
     ++checked;
-    if (name.starts_with("left_")) {
-      const auto& twin = points.at("right_" + name.substr(5));
+    const auto side = name.find("left_");
+    if (side == 0 || (side != name.npos && name[side - 1] == '_')) {
+      const auto& twin = points.at(std::string(name).replace(side, 5, "right_"));
       EXPECT_EQ(twin, Vector3d(-p.x(), p.y(), p.z())) << name;
       EXPECT_GT(p.x(), 0) << name;
     }
@@ -200,6 +201,27 @@ void expect_landmarks_on_surfaces() {
     EXPECT_TRUE(points.count(name)) << name;
 }
 
+void expect_foramina_and_canals_in_bone() {
+  const TriangleTree mandible(mesh_of(Role::mandible)), skull(mesh_of(Role::skull));
+  const auto& points = patient().landmarks.points;
+  for (const std::string side : {"left_", "right_"}) {
+    EXPECT_LT(mandible.nearest(points.at(side + "lingula")).distance, 0.3);
+    EXPECT_LT(mandible.nearest(points.at(side + "mental_foramen")).distance, 0.3);
+    EXPECT_LT(skull.nearest(points.at(side + "infraorbital_foramen")).distance, 0.3);
+  }
+  ASSERT_EQ(patient().canals.size(), 2u);
+  for (const Canal& canal : patient().canals) {
+    const std::string side = canal.name.substr(0, canal.name.find("mandibular_canal"));
+    EXPECT_EQ(canal.points.front(), points.at(side + "lingula"));
+    EXPECT_EQ(canal.points.back(), points.at(side + "mental_foramen"));
+    EXPECT_EQ(canal.body, mandible_body);
+    for (const Vector3d& p : canal.points)
+      if ((p - canal.points.front()).norm() > 1 && (p - canal.points.back()).norm() > 5.5) {
+        EXPECT_GT(mandible.winding_number(p), 0.9) << canal.name << " " << p.transpose();
+      }
+  }
+}
+
 TEST(Phantom, IsAWholePatient) {
   EXPECT_EQ(patient().name, "built-in patient");
   expect_bones_closed();
@@ -208,6 +230,7 @@ TEST(Phantom, IsAWholePatient) {
   expect_a_slightly_uneven_face();
   expect_lips_that_part();
   expect_landmarks_on_surfaces();
+  expect_foramina_and_canals_in_bone();
   ASSERT_TRUE(patient().condylar_path);
   EXPECT_GE(patient().condylar_path->forward_mm.back(), 19);
 }
@@ -224,6 +247,8 @@ TEST(Phantom, IsBitIdenticalOnTheseThreadCounts) {
     EXPECT_EQ(mesh_hash(alone.parts[i].mesh), mesh_hash(patient().parts[i].mesh))
         << alone.parts[i].name;
   EXPECT_EQ(alone.landmarks.points, patient().landmarks.points);
+  for (std::size_t i = 0; i < alone.canals.size(); ++i)
+    EXPECT_EQ(alone.canals[i].points, patient().canals.at(i).points);
 }
 
 TEST(Phantom, BuildingCanBeCancelled) {
