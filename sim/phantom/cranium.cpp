@@ -150,10 +150,12 @@ void add_zygoma(FieldRecipe& bone) {
 }
 
 void add_maxilla(FieldRecipe& bone) {
-  bone.add(rounded_box({24, -64, -20}, {15.5, 17, 17}, 9), 6);
-  bone.add(ellipsoid({33, -66, -20}, {13, 10.5, 14}), 9);
-  bone.add(ellipsoid({29, -68, -31}, {9, 9, 9}), 8);
-  bone.add(tube({{30, -65, -36}, {36, -65, -27}, {44, -65, -16}}, {4.5, 5.5, 7}), 10);
+  bone.add(rounded_box({20.5, -64, -20}, {12, 17, 17}, 9), 6);
+  bone.add(rounded_box({25, -63.5, -16.5}, {12, 14.5, 13}, 9), 5);  // side wall
+  bone.add(ellipsoid({32, -66, -15}, {13, 10.5, 11}), 8);
+  bone.add(ellipsoid({25, -69, -31}, {7, 9, 8}), 6);
+  // Zygomaticoalveolar crest: from the cheek bone in to the roots of the first molar.
+  bone.add(tube({{29, -66, -28}, {35, -66, -23}, {44, -65.5, -16.2}}, {2.5, 3.5, 6.5}), 6);
   bone.add(tube({{15, -80.3, 4}, {15.6, -82, -6}, {15.5, -83.5, -16}, {13, -85, -25}},
                 {3.6, 3.6, 4, 4.5}),
            5);  // piriform margin

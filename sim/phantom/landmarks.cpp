@@ -49,7 +49,7 @@ const std::vector<Named> named_points = {
     {"frontozygomatic", On::skull, 54, -68.2, 22.5},
     {"zygion", On::skull, 66.6, -32, -6},
     {"malar", On::skull, 48, -75.6, -9.6},
-    {"zygomaxillare", On::skull, 38, -66, -39},
+    {"zygomaxillare", On::skull, 45, -66.2, -23.8},
     {"euryon", On::skull, 70.3, 12, 45},
     {"mastoidale", On::skull, 52.6, 11, -30.3},
     {"condylion", On::mandible, 50.2, -12.8, -2},

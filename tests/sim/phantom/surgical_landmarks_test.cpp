@@ -95,6 +95,30 @@ TEST(SurgicalLandmarks, InfraorbitalForamenLiesBelowTheOrbit) {
   EXPECT_GT(head().solid.skull(foramen - Vector3d(0, 1, 0)), 0);  // on the front
 }
 
+TEST(SurgicalLandmarks, ZygomaxillareLiesOnTheCrestAboveTheMolarApices) {
+  const Vector3d point = head().at("left_zygomaxillare"), orbitale = head().at("left_orbitale"),
+                 a = head().at("a_point");
+  const FieldRecipe& skull = head().solid.skull;
+  EXPECT_NEAR(skull(point), 0, 0.05);
+  EXPECT_GT(skull(point - Vector3d(0, 0, 1)), 0.5);  // on the lower border
+  EXPECT_LT(skull(point + Vector3d(0, 0, 3)), -1);
+  EXPECT_GT(point.z(), head().teeth.at(26).apex.z() + 3);
+  // Adult Europeans after Howells: breadth between both points 82 to 104 mm, height of the cheek
+  // 18 to 28 mm, the point behind subspinale by 19 to 31 mm.
+  EXPECT_NEAR(2 * point.x(), 93, 11);
+  EXPECT_NEAR(orbitale.z() - point.z(), 23, 5);
+  EXPECT_NEAR(point.y() - a.y(), 25, 6);
+  // From there the crest rises outwards to the cheek bone and is concave down to the teeth.
+  const auto lowest = [&](double x) {
+    double z = -48;
+    while (skull({x, point.y(), z}) > 0) z += 0.02;
+    return z;
+  };
+  EXPECT_GT(lowest(48), point.z() + 0.5);
+  EXPECT_LT(lowest(36), point.z() - 3);
+  EXPECT_GT(lowest(40), (lowest(34) + lowest(46)) / 2 + 1);
+}
+
 TEST(SurgicalLandmarks, CanalKeepsItsDistances) {
   const Canal& canal = head().canals.at(0);
   const double radius = canal.diameter_mm / 2;
