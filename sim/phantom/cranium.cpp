@@ -194,6 +194,7 @@ void hollow_out(FieldRecipe& bone) {
   bone.cut(tube({{70, 0, -4}, {50, 0, -4}}, {4., 3.2}), 1.5);                       // ear canal
   bone.cut(ellipsoid({45, -46, -20}, {10.5, 12.5, 19}), 3);  // space for the coronoid process
   bone.cut(fossa_cut(), .8);
+  bone.cut(tube({{26.3, -85, -9.2}, {27.3, -79.4, -7}}, {1.9, 1.2}), 1);  // infraorbital foramen
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ const std::vector<Named> named_points = {
     {"hyoid", On::space, 0, -42, -98},
     {"porion", On::skull, 62, 0, 0},
     {"orbitale", On::skull, 32, -79, -0.5},
-    {"infraorbital_foramen", On::skull, 27, -82, -8.6},
+    {"infraorbital_foramen", On::skull, 26.7, -82.2, -9.9},
     {"orbit_medial_rim", On::skull, 11, -82.4, 17.3},
     {"orbit_lateral_rim", On::skull, 46.3, -66.7, 17.3},
     {"orbit_roof_margin", On::skull, 32, -81, 33.5},

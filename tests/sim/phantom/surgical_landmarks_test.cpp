@@ -93,6 +93,11 @@ TEST(SurgicalLandmarks, InfraorbitalForamenLiesBelowTheOrbit) {
   EXPECT_GT(foramen.x(), 24);  // 25 to 30 mm beside the midline
   EXPECT_LT(foramen.x(), 31);
   EXPECT_GT(head().solid.skull(foramen - Vector3d(0, 1, 0)), 0);  // on the front
+  // It can be seen, is not a window into the sinus or the orbit, and opens down and inwards.
+  const Vector3d mouth(26.8, -82, -8);
+  EXPECT_GT(head().solid.skull(mouth), 0.5);
+  EXPECT_LT((mouth - foramen).norm(), 3);
+  EXPECT_LT(head().solid.skull({27.4, -76.3, -6.4}), -0.8);
 }
 
 TEST(SurgicalLandmarks, ZygomaxillareLiesOnTheCrestAboveTheMolarApices) {
