@@ -19,7 +19,7 @@ void expect_axes(const ClinicalFrame& frame, const Eigen::Matrix3d& axes, double
   EXPECT_NEAR((frame.up - axes.col(2)).norm(), 0, tolerance) << frame.up.transpose();
 }
 
-std::string refused(const Landmarks& marks, const HeadReference& reference = {}) {
+std::string frame_refusal(const Landmarks& marks, const HeadReference& reference = {}) {
   try {
     clinical_frame(marks, reference);
   } catch (const InputError& error) {
@@ -29,13 +29,14 @@ std::string refused(const Landmarks& marks, const HeadReference& reference = {})
   return "";
 }
 
-const HeadReference natural = {.horizontal = Horizontal::natural_head_position};
+const HeadReference natural_position = {.horizontal = Horizontal::natural_head_position};
 
 }  // namespace
 
 TEST(ClinicalFrame, AnUprightHeadHasTheAxesOfTheCase) {
   expect_axes(clinical_frame(test::upright_marks()), Eigen::Matrix3d::Identity(), 1e-15);
-  expect_axes(clinical_frame(test::upright_marks(), natural), Eigen::Matrix3d::Identity(), 1e-15);
+  expect_axes(clinical_frame(test::upright_marks(), natural_position), Eigen::Matrix3d::Identity(),
+              1e-15);
 }
 
 TEST(ClinicalFrame, FrankfortTurnsWithTheHead) {
@@ -65,13 +66,13 @@ TEST(ClinicalFrame, FrankfortFollowsTheOrbitales) {
   EXPECT_LT(frame.forward().z(), 0);
   EXPECT_NEAR(frame.left.x(), 1, 1e-15);
   // Natural head position does not depend on them.
-  expect_axes(clinical_frame(marks, natural), Eigen::Matrix3d::Identity(), 1e-15);
+  expect_axes(clinical_frame(marks, natural_position), Eigen::Matrix3d::Identity(), 1e-15);
 }
 
 TEST(ClinicalFrame, NaturalHeadPositionHasTheGivenVertical) {
   // The head is held 10 degrees chin up relative to the case's axes: v_N = R v_C lifts the face.
   const Eigen::Quaterniond R_NC(Eigen::AngleAxisd(-10 * degree, Vector3d::UnitX()));
-  HeadReference reference = natural;
+  HeadReference reference = natural_position;
   reference.R_NC = R_NC;
   const ClinicalFrame frame = clinical_frame(test::upright_marks(), reference);
   EXPECT_GT((R_NC * Vector3d(0, -1, 0)).z(), 0.17);  // forward of the case points upward
@@ -102,18 +103,18 @@ TEST(ClinicalFrame, OtherLandmarksStandInAndAreNamed) {
 TEST(ClinicalFrame, MissingLandmarksAreNamed) {
   Landmarks marks = test::upright_marks();
   marks.points.erase("nasion");
-  EXPECT_NE(refused(marks).find("nasion"), std::string::npos);  // there is no glabella
+  EXPECT_NE(frame_refusal(marks).find("nasion"), std::string::npos);  // there is no glabella
   marks = test::upright_marks();
   marks.points.erase("left_orbitale");
   marks.points.erase("right_orbitale");
-  EXPECT_NE(refused(marks).find("left_orbitale"), std::string::npos);
+  EXPECT_NE(frame_refusal(marks).find("left_orbitale"), std::string::npos);
   marks = test::upright_marks();
   marks.points.erase("left_porion");
-  EXPECT_NE(refused(marks).find("left_porion"), std::string::npos);
+  EXPECT_NE(frame_refusal(marks).find("left_porion"), std::string::npos);
 }
 
 TEST(ClinicalFrame, NaturalHeadPositionNeedsNoLandmark) {
-  const ClinicalFrame frame = clinical_frame({}, natural);
+  const ClinicalFrame frame = clinical_frame({}, natural_position);
   expect_axes(frame, Eigen::Matrix3d::Identity(), 1e-15);
   ASSERT_EQ(frame.notes.size(), 1u);
   EXPECT_NE(frame.notes[0].find("nasion"), std::string::npos);
@@ -122,15 +123,15 @@ TEST(ClinicalFrame, NaturalHeadPositionNeedsNoLandmark) {
 TEST(ClinicalFrame, ImpossibleLandmarksAreRefused) {
   Landmarks marks = test::upright_marks();
   std::swap(marks.points["left_porion"], marks.points["right_porion"]);
-  EXPECT_NE(refused(marks).find("left_porion lies to the right"), std::string::npos);
+  EXPECT_NE(frame_refusal(marks).find("left_porion lies to the right"), std::string::npos);
   marks = test::upright_marks();
   marks.points["basion"] = 0.5 * marks.points["nasion"];  // the midpoint of the porions is 0
-  EXPECT_NE(refused(marks).find("in line"), std::string::npos);
+  EXPECT_NE(frame_refusal(marks).find("in line"), std::string::npos);
   marks = test::upright_marks();
   std::swap(marks.points["left_porion"], marks.points["left_orbitale"]);
   std::swap(marks.points["right_porion"], marks.points["right_orbitale"]);
-  EXPECT_NE(refused(marks).find("exchanged"), std::string::npos);
-  HeadReference lying = natural;
+  EXPECT_NE(frame_refusal(marks).find("exchanged"), std::string::npos);
+  HeadReference lying = natural_position;
   lying.R_NC = Eigen::AngleAxisd(90 * degree, Vector3d::UnitY());
-  EXPECT_NE(refused(test::upright_marks(), lying).find("vertical"), std::string::npos);
+  EXPECT_NE(frame_refusal(test::upright_marks(), lying).find("vertical"), std::string::npos);
 }
