@@ -1,0 +1,272 @@
+#include "sim/plan/plan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "engine/core/error.h"
+#include "engine/core/similar_word.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+using Problem = std::optional<StepProblem>;
+
+constexpr double max_coordinate_mm = 1e4;
+constexpr double max_reach_mm = 1000;
+constexpr std::size_t max_text = 10000;
+
+Problem point_problem(const std::string& item, const Vector3d& p) {
+  if (p.allFinite() && p.cwiseAbs().maxCoeff() <= max_coordinate_mm) return std::nullopt;
+  return StepProblem{item, fmt::format("is ({:g}, {:g}, {:g}); each coordinate must be a number "
+                                       "from {:g} to {:g}",
+                                       p.x(), p.y(), p.z(), -max_coordinate_mm, max_coordinate_mm)};
+}
+
+Problem direction_problem(const std::string& item, const Vector3d& v) {
+  if (v.allFinite() && v.norm() > 1e-6 && v.norm() < 1e6) return std::nullopt;
+  return StepProblem{
+      item, fmt::format("is ({:g}, {:g}, {:g}), which is no direction", v.x(), v.y(), v.z())};
+}
+
+Problem length_problem(const std::string& item, double value, double least, double most) {
+  if (value >= least && value <= most) return std::nullopt;
+  return StepProblem{
+      item, fmt::format("is {:g} mm; expected a length from {:g} to {:g}", value, least, most)};
+}
+
+Problem name_problem(const std::string& item, const std::string& name) {
+  const auto printable = [](unsigned char c) { return c >= ' ' && c != 127; };
+  if (!name.empty() && name.size() <= 100 && std::all_of(name.begin(), name.end(), printable))
+    return std::nullopt;
+  return StepProblem{
+      item, "is \"" + name.substr(0, 40) + "\"; expected a name of 1 to 100 printable characters"};
+}
+
+Problem first_of(std::initializer_list<Problem> problems) {
+  for (const auto& problem : problems)
+    if (problem) return problem;
+  return std::nullopt;
+}
+
+constexpr double least_size_mm = 0.1;
+
+Problem problem_of_surface(const std::string& item, const PlanePatch& patch) {
+  if (auto found = first_of({point_problem(item + ".point", patch.point),
+                             direction_problem(item + ".normal", patch.normal)}))
+    return found;
+  if (const auto* radius = std::get_if<double>(&patch.reach))
+    return length_problem(item + ".radius_mm", *radius, least_size_mm, max_reach_mm);
+  const auto& rectangle = std::get<PatchRectangle>(patch.reach);
+  if (auto found = first_of({direction_problem(item + ".axis", rectangle.axis),
+                             length_problem(item + ".half_along_mm", rectangle.half_along_mm,
+                                            least_size_mm, max_reach_mm),
+                             length_problem(item + ".half_across_mm", rectangle.half_across_mm,
+                                            least_size_mm, max_reach_mm)}))
+    return found;
+  if (!(patch.normal.normalized().cross(rectangle.axis.normalized()).norm() > 1e-3))
+    return StepProblem{item + ".axis", "is parallel to the normal"};
+  return std::nullopt;
+}
+
+Problem problem_of_surface(const std::string& item, const BentSheet& sheet) {
+  if (sheet.polyline.size() < 2)
+    return StepProblem{item + ".polyline", fmt::format("has {} points; at least 2 are required",
+                                                       sheet.polyline.size())};
+  for (std::size_t i = 0; i < sheet.polyline.size(); ++i)
+    if (auto found = point_problem(fmt::format("{}.polyline[{}]", item, i), sheet.polyline[i]))
+      return found;
+  if (auto found =
+          first_of({direction_problem(item + ".direction", sheet.direction),
+                    length_problem(item + ".depth_mm", sheet.depth_mm, least_size_mm, max_reach_mm),
+                    length_problem(item + ".overhang_mm", sheet.overhang_mm, 0, max_reach_mm)}))
+    return found;
+  for (std::size_t i = 1; i < sheet.polyline.size(); ++i) {
+    const Vector3d along = sheet.polyline[i] - sheet.polyline[i - 1];
+    if (!(along.cross(sheet.direction.normalized()).norm() > 1e-3))
+      return StepProblem{fmt::format("{}.polyline[{}]", item, i),
+                         "repeats the point before it, or lies behind it along the direction"};
+  }
+  return std::nullopt;
+}
+
+Problem problem_in(const CutStep& cut) {
+  if (cut.osteotomy.empty() && cut.surfaces.empty())
+    return StepProblem{"osteotomy", "is empty, and so are the surfaces; one of them is required"};
+  if (!cut.osteotomy.empty())
+    if (auto found = name_problem("osteotomy", cut.osteotomy)) return found;
+  if (!cut.target.empty())
+    if (auto found = name_problem("target", cut.target)) return found;
+  if (cut.osteotomy.empty() && cut.target.empty())
+    return StepProblem{"target", "is empty; surfaces without an osteotomy need the body they cut"};
+  for (const auto& [name, value] : cut.parameters) {
+    if (auto found = name_problem("parameters", name)) return found;
+    if (!(std::abs(value) <= max_coordinate_mm))
+      return StepProblem{"parameters." + name,
+                         fmt::format("is {:g}; expected a number from {:g} to {:g}", value,
+                                     -max_coordinate_mm, max_coordinate_mm)};
+  }
+  if (auto found = length_problem("kerf_mm", cut.kerf_mm, 0, max_kerf_mm)) return found;
+  for (std::size_t i = 0; i < cut.surfaces.size(); ++i) {
+    const std::string item = fmt::format("surfaces[{}]", i);
+    if (auto found =
+            std::visit([&](const auto& surface) { return problem_of_surface(item, surface); },
+                       cut.surfaces[i]))
+      return found;
+  }
+  if (cut.pieces.empty()) return StepProblem{"pieces", "is empty; a cut names what it makes"};
+  for (std::size_t i = 0; i < cut.pieces.size(); ++i)
+    if (auto found = name_problem(fmt::format("pieces[{}]", i), cut.pieces[i])) return found;
+  return std::nullopt;
+}
+
+Problem problem_in(const MoveStep& step) {
+  if (auto found = name_problem("segment", step.segment)) return found;
+  try {
+    if (const auto* move = std::get_if<ClinicalMove>(&step.move)) {
+      if (!move->about.empty())
+        if (auto found = name_problem("about", move->about)) return found;
+      check_move(*move);
+    } else {
+      const Pose& X_CS = std::get<ExplicitMove>(step.move).X_CS;
+      check_rotation(X_CS);
+      return point_problem("translation_mm", X_CS.t);
+    }
+  } catch (const InputError& error) {
+    return StepProblem{"", error.what()};
+  }
+  return std::nullopt;
+}
+
+Problem problem_in(const NoteStep& note) {
+  if (!note.text.empty() && note.text.size() <= max_text) return std::nullopt;
+  return StepProblem{
+      "text", fmt::format("has {} characters; expected 1 to {}", note.text.size(), max_text)};
+}
+
+std::vector<PlanStep>::iterator step_with(Plan& plan, int id) {
+  const auto found = std::find_if(plan.steps.begin(), plan.steps.end(),
+                                  [&](const PlanStep& step) { return step.id == id; });
+  if (found != plan.steps.end()) return found;
+  std::vector<int> ids;
+  for (const auto& step : plan.steps) ids.push_back(step.id);
+  throw InputError(fmt::format(
+      "the plan has no step {}; {}", id,
+      ids.empty() ? "it is empty" : fmt::format("its steps are {}", fmt::join(ids, ", "))));
+}
+
+[[noreturn]] void refuse_step(const PlanStep& step, const std::string& problem) {
+  throw InputError(step_name(step) + ": " + problem);
+}
+
+/// Segments exist only after the cut that makes them, and each is made once.
+void check_order(const Plan& plan) {
+  std::map<std::string, std::size_t> made;  // by which step
+  for (std::size_t i = 0; i < plan.steps.size(); ++i)
+    if (const auto* cut = std::get_if<CutStep>(&plan.steps[i].action))
+      for (const auto& piece : cut->pieces)
+        if (const auto [known, is_new] = made.try_emplace(piece, i); !is_new)
+          refuse_step(plan.steps[i], fmt::format("the piece \"{}\" is already made by {}", piece,
+                                                 step_name(plan.steps[known->second])));
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    const auto* cut = std::get_if<CutStep>(&plan.steps[i].action);
+    const auto* move = std::get_if<MoveStep>(&plan.steps[i].action);
+    if (!cut && !move) continue;
+    const std::string& used = cut ? cut->target : move->segment;
+    const auto maker = made.find(used);
+    // A cut may give one of its pieces the name of what it cuts.
+    if (maker == made.end() || maker->second < i || (cut && maker->second == i)) continue;
+    refuse_step(plan.steps[i], fmt::format("needs \"{}\", which only {} makes", used,
+                                           step_name(plan.steps[maker->second])));
+  }
+}
+
+}  // namespace
+
+std::string step_title(const PlanAction& action) {
+  if (const auto* cut = std::get_if<CutStep>(&action))
+    return "cut " + (cut->osteotomy.empty() ? cut->target : cut->osteotomy);
+  if (const auto* move = std::get_if<MoveStep>(&action)) return "move " + move->segment;
+  return "note";
+}
+
+std::string step_name(const PlanStep& step) {
+  return fmt::format("step {} ({})", step.id, step_title(step.action));
+}
+
+std::optional<StepProblem> problem_of(const PlanAction& action) {
+  return std::visit([](const auto& step) { return problem_in(step); }, action);
+}
+
+void check_plan(const Plan& plan) {
+  if (const auto found = name_problem("name", plan.name))
+    throw InputError("the plan's " + found->item + " " + found->problem);
+  const double length = plan.reference.R_NC.norm();
+  if (!(std::abs(length - 1) <= 1e-6))
+    throw InputError(fmt::format(
+        "the rotation of the head has the length {:g}; a unit quaternion is required", length));
+  for (const auto& [name, point] : plan.geometry.landmarks.points)
+    if (const auto found = point_problem("landmark " + name, point))
+      throw InputError(found->item + " " + found->problem);
+  std::set<int> ids;
+  for (const auto& step : plan.steps) {
+    if (step.id < 1 || !ids.insert(step.id).second)
+      refuse_step(step, "its number must be positive and unique");
+    if (const auto found = problem_of(step.action))
+      refuse_step(step, found->item.empty() ? found->problem : found->item + " " + found->problem);
+  }
+  check_order(plan);
+}
+
+void check_segments(const Plan& plan, const BodyTree& bodies) {
+  std::vector<std::string> known;
+  for (const auto& body : bodies.bodies()) known.push_back(body.name);
+  for (const auto& step : plan.steps) {
+    const auto* cut = std::get_if<CutStep>(&step.action);
+    const auto* move = std::get_if<MoveStep>(&step.action);
+    const std::string used = cut ? cut->target : move ? move->segment : "";
+    if (!used.empty() && std::find(known.begin(), known.end(), used) == known.end())
+      refuse_step(step, fmt::format("\"{}\" is neither a body of the case nor made by a cut before "
+                                    "this step{}",
+                                    used, suggestion(used, known)));
+    if (cut) known.insert(known.end(), cut->pieces.begin(), cut->pieces.end());
+  }
+}
+
+Plan with_step(Plan plan, PlanAction action) {
+  int last = 0;
+  for (const auto& step : plan.steps) last = std::max(last, step.id);
+  plan.steps.push_back({last + 1, std::move(action)});
+  check_plan(plan);
+  return plan;
+}
+
+Plan with_replaced(Plan plan, int id, PlanAction action) {
+  step_with(plan, id)->action = std::move(action);
+  check_plan(plan);
+  return plan;
+}
+
+Plan without_step(Plan plan, int id) {
+  plan.steps.erase(step_with(plan, id));
+  check_plan(plan);
+  return plan;
+}
+
+Plan with_reordered(Plan plan, int id, std::size_t position) {
+  const auto from = step_with(plan, id);
+  if (position >= plan.steps.size())
+    throw InputError(fmt::format("step {} cannot be number {} of {} steps", id, position + 1,
+                                 plan.steps.size()));
+  PlanStep step = std::move(*from);
+  plan.steps.erase(from);
+  plan.steps.insert(plan.steps.begin() + static_cast<std::ptrdiff_t>(position), std::move(step));
+  check_plan(plan);
+  return plan;
+}
+
+}  // namespace condyle

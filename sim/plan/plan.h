@@ -1,0 +1,136 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/math/pose.h"
+#include "sim/frame/body_tree.h"
+#include "sim/plan/case_geometry.h"
+#include "sim/plan/clinical_frame.h"
+#include "sim/plan/move.h"
+
+namespace condyle {
+
+constexpr double max_kerf_mm = 2;
+
+/// A rectangle of a plane: half its size along `axis`, and along normal x axis. The axis is
+/// projected on the plane.
+struct PatchRectangle {
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  double half_along_mm = 0, half_across_mm = 0;
+
+  bool operator==(const PatchRectangle&) const = default;
+};
+
+/// A finite part of a plane around a point: a disc of this radius, or a rectangle.
+struct PlanePatch {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // towards the side called "above"
+  std::variant<double, PatchRectangle> reach = 0.0;
+
+  bool operator==(const PlanePatch&) const = default;
+};
+
+/// A polyline on the bone, extruded by `depth_mm` along a direction into the bone, and by
+/// `overhang_mm` against it.
+struct BentSheet {
+  std::vector<Eigen::Vector3d> polyline = {};
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitY();
+  double depth_mm = 0;
+  double overhang_mm = 5;
+
+  bool operator==(const BentSheet&) const = default;
+};
+
+using CutSurface = std::variant<PlanePatch, BentSheet>;
+
+/// An osteotomy: one that is known by name and placed from landmarks, with parameters in which it
+/// deviates from its defaults, or surfaces, which replace the placed ones.
+struct CutStep {
+  std::string osteotomy = {};  // such as "le_fort_1"; empty: the surfaces alone
+  std::string target = {};     // body or segment that is cut; empty: that of the osteotomy
+  std::map<std::string, double> parameters = {};
+  double kerf_mm = 0;
+  std::vector<CutSurface> surfaces = {};
+  std::vector<std::string> pieces = {};  // names of the segments that it makes
+
+  bool operator==(const CutStep&) const = default;
+};
+
+/// X_CS of a segment from the uncut rest.
+struct ExplicitMove {
+  Pose X_CS = {};
+
+  bool operator==(const ExplicitMove& other) const {
+    return X_CS.R.coeffs() == other.X_CS.R.coeffs() && X_CS.t == other.X_CS.t;
+  }
+};
+
+/// A move of a body or segment, always from the uncut rest: of several the last one counts.
+struct MoveStep {
+  std::string segment = {};
+  std::variant<ClinicalMove, ExplicitMove> move = {};
+
+  bool operator==(const MoveStep&) const = default;
+};
+
+struct NoteStep {
+  std::string text = {};
+
+  bool operator==(const NoteStep&) const = default;
+};
+
+using PlanAction = std::variant<CutStep, MoveStep, NoteStep>;
+
+struct PlanStep {
+  int id = 0;  // stays with the step when others are added, removed or reordered
+  PlanAction action = {};
+
+  bool operator==(const PlanStep&) const = default;
+};
+
+/// An operation as an ordered list of steps, bound to a case by its geometry.
+struct Plan {
+  std::string name = {};
+  CaseGeometry geometry = {};  // of the case that it was made for
+  HeadReference reference = {};
+  std::vector<PlanStep> steps = {};
+
+  bool operator==(const Plan&) const = default;
+};
+
+/// "cut le_fort_1", "move maxilla", "note": a step in a list or a message.
+std::string step_title(const PlanAction& action);
+
+// Edits are new plans. throws: InputError for an id that the plan lacks, naming those that it has,
+// and as check_plan() for the new plan.
+Plan with_step(Plan plan, PlanAction action);  // appended, with a new id
+Plan with_replaced(Plan plan, int id, PlanAction action);
+Plan without_step(Plan plan, int id);
+Plan with_reordered(Plan plan, int id, std::size_t position);  // 0: first
+
+/// Refuses what no case could replay: values that are not finite or out of range, cuts without
+/// osteotomy and surfaces, names of pieces that are used twice, and steps that cut or move a
+/// segment which a later step makes. throws: InputError naming step, item and value.
+void check_plan(const Plan& plan);
+
+/// Refuses steps that cut or move what is neither a body of the case nor made by an earlier cut, as
+/// after a cut was removed. throws: InputError naming the step and the segment.
+void check_segments(const Plan& plan, const BodyTree& bodies);
+
+/// A value of a step that is refused: the item's name within it ("surfaces[0].normal").
+struct StepProblem {
+  std::string item, problem;
+};
+/// The first such value of a step by itself; absent if there is none.
+std::optional<StepProblem> problem_of(const PlanAction& action);
+
+/// "step 3 (move maxilla)".
+std::string step_name(const PlanStep& step);
+
+}  // namespace condyle

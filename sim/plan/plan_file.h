@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "sim/plan/plan.h"
+
+namespace condyle {
+
+/// Format and version stated in a plan file.
+constexpr const char* plan_format = "condyle plan";
+constexpr int plan_version = 1;
+
+/// The text of a plan file: JSON, from which parse_plan() reads each number back to the bit.
+std::string plan_json(const Plan& plan);
+
+/// throws: InputError naming the file, the item and its value: text that is no JSON or only part of
+/// it, another format, a newer version, unknown keys, and whatever check_plan() refuses.
+Plan parse_plan(const std::filesystem::path& file, std::string_view text);
+Plan load_plan(const std::filesystem::path& file);
+
+/// Written beside the file and renamed: what was there stays intact on failure.
+/// throws: InputError for a plan that could not be read back; MachineError.
+void save_plan(const Plan& plan, const std::filesystem::path& file);
+
+}  // namespace condyle
