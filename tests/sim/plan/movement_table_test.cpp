@@ -113,8 +113,7 @@ TEST(MovementTable, TextHasDirectionsInWords) {
   poses[patient.maxilla] =
       move_pose({.left_mm = -1, .forward_mm = 4, .up_mm = 2, .pitch_deg = 3}, {}, u1);
   const std::string text = movement_text(patient.table(poses));
-  EXPECT_NE(text.find("U1        1.0 right   4.0 forward   2.0 up        4.6\n"),
-            std::string::npos)
+  EXPECT_NE(text.find("U1        1.0 right   4.0 forward   2.0 up        4.6\n"), std::string::npos)
       << text;
   EXPECT_NE(text.find("maxilla   0.0  3.0 front down  0.0\n"), std::string::npos) << text;
   EXPECT_NE(text.find("upper midline  0.0       1.0 right\n"), std::string::npos) << text;
