@@ -48,7 +48,7 @@ CaseGeometry geometry_of(const Case& patient) {
   return geometry;
 }
 
-CaseComparison compare(const CaseGeometry& planned, const CaseGeometry& present) {
+CaseComparison compare_geometry(const CaseGeometry& planned, const CaseGeometry& present) {
   CaseComparison result;
   for (const auto& part : planned.parts) {
     const PartGeometry* now = part_named(present, part.name);

@@ -36,6 +36,6 @@ struct CaseComparison {
 };
 
 /// Names of cases do not matter; a part of another name or shape makes it another case.
-CaseComparison compare(const CaseGeometry& planned, const CaseGeometry& present);
+CaseComparison compare_geometry(const CaseGeometry& planned, const CaseGeometry& present);
 
 }  // namespace condyle

@@ -52,6 +52,12 @@ double angle(const Vector2d& a, const Vector2d& b) {
   return std::atan2(std::abs(cross), dot) * degrees_per_radian;
 }
 
+/// The direction of unit length; not finite for one without length.
+Vector2d unit(const Vector2d& v) {
+  return v.norm() > 1e-9 ? Vector2d(v.normalized())
+                         : Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
 /// Angle by which `b` is turned clockwise from `a`, the patient facing right, degrees.
 double clockwise(const Vector2d& a, const Vector2d& b) {
   const double cross = a.x() * b.y() - a.y() * b.x();
@@ -75,7 +81,7 @@ double snb(Profile& p) { return angle(nasion_to_sella(p), p.at("b_point") - p.at
 
 /// Distance of a point in front of the line through nasion across the Frankfort plane, mm.
 double before_perpendicular(Profile& p, const char* name) {
-  return -frankfort_back(p).normalized().dot(p.at(name) - p.at("nasion"));
+  return -unit(frankfort_back(p)).dot(p.at(name) - p.at("nasion"));
 }
 
 /// A dropped on the functional occlusal plane, in front of B, mm.
@@ -83,13 +89,13 @@ double wits(Profile& p) {
   const Vector2d molars = 0.5 * (p.pair("upper_{}_first_molar_mesiobuccal_cusp") +
                                  p.pair("lower_{}_first_molar_mesiobuccal_cusp"));
   const Vector2d canines = 0.5 * (p.pair("upper_{}_canine_tip") + p.pair("lower_{}_canine_tip"));
-  return (canines - molars).normalized().dot(p.at("a_point") - p.at("b_point"));
+  return unit(canines - molars).dot(p.at("a_point") - p.at("b_point"));
 }
 
 /// Distance in front of the line from the tip of the nose to the soft chin, mm.
 double before_e_line(Profile& p, const char* lip) {
   const Vector2d nose = p.at("pronasale");
-  const Vector2d down = (p.at("soft_pogonion") - nose).normalized();
+  const Vector2d down = unit(p.at("soft_pogonion") - nose);
   const Vector2d front(-down.y(), down.x());  // a right angle anticlockwise from downward
   return front.dot(p.at(lip) - nose);
 }
@@ -244,19 +250,18 @@ std::string cephalometry_text(const std::vector<CephalometricMeasure>& measures)
       {"measure", "unit", "before", "after", "change", "norm", "source"}};
   std::string missing;
   for (const auto& measure : measures) {
-    if (!measure.before && !measure.after) {
+    if (!measure.before || !measure.after)
       missing += fmt::format("  {}: {}\n", measure.name,
                              measure.missing.empty()
                                  ? "its points coincide"
                                  : fmt::format("{}", fmt::join(measure.missing, ", ")));
-      continue;
-    }
+    if (!measure.before && !measure.after) continue;
     rows.push_back({measure.name, measure.unit, value_text(measure.before),
                     value_text(measure.after), value_text(measure.change(), true),
                     norm_text(measure.norm), measure.norm.source});
   }
   std::string text = aligned_columns(rows, "llrrrll");
-  if (!missing.empty()) text += "\nNot measured, landmarks missing\n" + missing;
+  if (!missing.empty()) text += "\nNot measured, because landmarks are missing\n" + missing;
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -276,6 +277,19 @@ HeadReference reference_in(const JsonItem& item) {
   return reference;
 }
 
+/// Of a key that an object has twice, the parser would silently take the last.
+void check_keys(const fs::path& file, std::string_view text) {
+  std::vector<std::set<std::string>> keys;
+  const auto visit = [&](int, Json::parse_event_t event, Json& value) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second)
+      throw InputError(file, value.get<std::string>().substr(0, 40), "appears twice in an object");
+    return true;
+  };
+  [[maybe_unused]] const Json parsed = Json::parse(text.begin(), text.end(), visit);
+}
+
 void check_format(const JsonItem& root) {
   if (root.at("format").text() != plan_format)
     root.at("format").refuse("is \"" + root.at("format").text().substr(0, 40) +
@@ -315,6 +329,7 @@ Plan parse_plan(const fs::path& file, std::string_view text) {
   const JsonFile json(file, text);
   const JsonItem root = json.root();
   check_format(root);
+  check_keys(file, text);
   root.only_keys({"format", "version", "name", "case", "reference", "steps"});
   Plan plan{.name = root.at("name").text(),
             .geometry = geometry_in(root.at("case")),

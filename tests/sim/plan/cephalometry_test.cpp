@@ -183,7 +183,19 @@ TEST(Cephalometry, MissingLandmarksAreNamed) {
   // Points that coincide have no angle.
   marks = drawn_profile();
   marks.points["b_point"] = marks.points["nasion"];
-  EXPECT_FALSE(measure_of(cephalometry({}, marks, marks), "SNB").before);
+  marks.points["left_orbitale"] = marks.points["left_porion"];
+  marks.points["right_orbitale"] = marks.points["right_porion"];
+  const auto coinciding = cephalometry({}, marks, marks);
+  EXPECT_FALSE(measure_of(coinciding, "SNB").before);
+  EXPECT_FALSE(measure_of(coinciding, "A to N-perpendicular").before);
+  EXPECT_TRUE(measure_of(coinciding, "A to N-perpendicular").missing.empty());
+  // A landmark that only the operated patient lacks.
+  Landmarks after = drawn_profile();
+  after.points.erase("soft_pogonion");
+  const auto half = cephalometry({}, drawn_profile(), after);
+  EXPECT_TRUE(measure_of(half, "lower lip to E line").before);
+  EXPECT_FALSE(measure_of(half, "lower lip to E line").after);
+  EXPECT_NE(cephalometry_text(half).find("lower lip to E line: soft_pogonion"), std::string::npos);
 }
 
 TEST(Cephalometry, TextAndJsonShowNormsWithTheirSource) {

@@ -148,6 +148,7 @@ TEST(PlanFile, NonsenseIsRefusedWithItemAndValue) {
   expect_refused("\"shape\": \"", "\"shape\": \"x", "case.parts[0].shape");
   expect_refused("\"note\": ", "\"remark\": ", "steps[4]: unknown key \"remark\"");
   expect_refused("\"basion\": [0.0", "\"basion\": [1e7", "landmark basion is (1e+07, 0, -27)");
+  expect_refused("\"up_mm\": 2.0", "\"up_mm\": 2.0, \"up_mm\": 3.0", "up_mm: appears twice");
   // Steps in an impossible order.
   const std::string maxilla = "\"pieces\": [\"maxilla\"]";
   expect_refused(maxilla, "\"pieces\": [\"chin\"]", "already made by step 1");

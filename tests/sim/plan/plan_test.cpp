@@ -171,29 +171,29 @@ TEST(CaseGeometry, OtherCasesAndEditedLandmarksAreToldApart) {
   const Case patient = box_patient();
   const CaseGeometry planned = geometry_of(patient);
   EXPECT_EQ(planned.parts.size(), 2u);  // eyes are only drawn
-  EXPECT_EQ(compare(planned, geometry_of(patient)).match, CaseMatch::same);
+  EXPECT_EQ(compare_geometry(planned, geometry_of(patient)).match, CaseMatch::same);
 
   Case painted = patient;
   painted.name = "renamed";
   painted.parts[0].mesh.colors.assign(4, Eigen::Vector3f(1, 0, 0));
   painted.parts[2].mesh.vertices[0].x() += 1;
-  EXPECT_EQ(compare(planned, geometry_of(painted)).match, CaseMatch::same);
+  EXPECT_EQ(compare_geometry(planned, geometry_of(painted)).match, CaseMatch::same);
 
   Case edited = patient;
   edited.landmarks.points["pogonion"] += Vector3d(0, 0.6, 0.8);
   edited.landmarks.points["menton"] = {0, 0, 0};
   edited.landmarks.points.erase("pns");
-  const CaseComparison marks = compare(planned, geometry_of(edited));
+  const CaseComparison marks = compare_geometry(planned, geometry_of(edited));
   EXPECT_EQ(marks.match, CaseMatch::landmarks_edited);
   EXPECT_EQ(marks.differences, (std::vector<std::string>{"pns is missing", "pogonion moved by 1 mm",
                                                          "menton is new"}));
 
   Case other = edited;
   other.parts[1].mesh.vertices[3].z() = std::nextafter(other.parts[1].mesh.vertices[3].z(), 99);
-  const CaseComparison shape = compare(planned, geometry_of(other));
+  const CaseComparison shape = compare_geometry(planned, geometry_of(other));
   EXPECT_EQ(shape.match, CaseMatch::other_case);
   EXPECT_EQ(shape.differences, (std::vector<std::string>{"mandible has another shape"}));
   std::swap(other.parts[1].mesh.triangles[0][0], other.parts[1].mesh.triangles[0][1]);
   other.parts.erase(other.parts.begin());
-  EXPECT_EQ(compare(planned, geometry_of(other)).differences.front(), "skull is missing");
+  EXPECT_EQ(compare_geometry(planned, geometry_of(other)).differences.front(), "skull is missing");
 }
