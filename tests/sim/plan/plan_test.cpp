@@ -193,7 +193,10 @@ TEST(CaseGeometry, OtherCasesAndEditedLandmarksAreToldApart) {
   const CaseComparison shape = compare_geometry(planned, geometry_of(other));
   EXPECT_EQ(shape.match, CaseMatch::other_case);
   EXPECT_EQ(shape.differences, (std::vector<std::string>{"mandible has another shape"}));
-  std::swap(other.parts[1].mesh.triangles[0][0], other.parts[1].mesh.triangles[0][1]);
+  Case turned = patient;
+  std::swap(turned.parts[0].mesh.triangles[0][0], turned.parts[0].mesh.triangles[0][1]);
+  EXPECT_EQ(compare_geometry(planned, geometry_of(turned)).differences,
+            (std::vector<std::string>{"skull has another shape"}));
   other.parts.erase(other.parts.begin());
   EXPECT_EQ(compare_geometry(planned, geometry_of(other)).differences.front(), "skull is missing");
 }
