@@ -1,0 +1,44 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/cut/cut.h"
+#include "sim/case/case.h"
+#include "sim/plan/plan.h"
+
+namespace condyle {
+
+/// A segment that an osteotomy makes: the pieces that lie on these sides of its cuts. `neither`
+/// accepts any side.
+struct SegmentRule {
+  std::string name;            // "maxilla", "proximal_left"
+  std::vector<CutSide> sides;  // one per cut
+};
+
+/// An osteotomy in place on a patient's bone: ready to cut.
+struct PlacedOsteotomy {
+  std::string part;                   // name of the bone that is cut
+  std::vector<Cut> cuts;              // in the cranium's frame, at rest
+  std::vector<SegmentRule> segments;  // other pieces stay with the bone's own body
+  std::vector<std::string> notes;     // what was estimated, for people
+};
+
+/// A parameter that a plan may change.
+struct OsteotomyParameter {
+  std::string name, unit, meaning;
+  double standard = 0, low = 0, high = 0;  // default and bounds
+};
+
+/// Names of all osteotomies that can be placed from landmarks: "le_fort_1", ...
+std::vector<std::string> osteotomy_names();
+/// throws: InputError for an unknown name, with similar ones.
+std::vector<OsteotomyParameter> osteotomy_parameters(const std::string& name);
+
+/// Places a plan's cut on a patient: from landmarks and the bone's shape, or where the step has
+/// surfaces from those. throws: InputError naming a missing landmark or part, an unknown parameter,
+/// or one out of its bounds.
+PlacedOsteotomy place_osteotomy(const Case& patient, const CutStep& step);
+
+}  // namespace condyle
