@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "engine/core/error.h"
+#include "engine/mesh/measure.h"
+#include "sim/operation/cut_case.h"
+#include "sim/operation/operation.h"
+#include "sim/operation/owners.h"
+#include "sim/osteotomy/osteotomy.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+std::string joined(const std::vector<std::string>& items) {
+  return fmt::format("{}", fmt::join(items, ", "));
+}
+
+/// Refuses a plan of another case; landmarks that changed are notes.
+void check_case(const Case& patient, const Plan& plan, std::vector<std::string>& notes) {
+  const CaseComparison found = compare_geometry(plan.geometry, geometry_of(patient));
+  if (found.match == CaseMatch::other_case)
+    throw InputError(fmt::format("the plan \"{}\" was made for another case, \"{}\": here {}",
+                                 plan.name, plan.geometry.name, joined(found.differences)));
+  for (const std::string& difference : found.differences)
+    notes.push_back(fmt::format("since the plan was made, the landmark {}", difference));
+}
+
+void replay_cut(Operated& operated, const PlanStep& step) {
+  const auto& cut = std::get<CutStep>(step.action);
+  if (!cut.target.empty() && !operated.patient.bodies.find(cut.target)) {
+    operated.problems.push_back(
+        fmt::format("{}: \"{}\" does not exist, so it is not cut", step_name(step), cut.target));
+    return;
+  }
+  try {
+    cut_case(operated, place_osteotomy(operated.patient, cut), step);
+  } catch (const InputError& error) {
+    throw InputError(step_name(step) + ": " + error.what());
+  }
+}
+
+/// Middle of the bones of a body and of all that was cut from it, by volume.
+Vector3d centroid_of(const Case& patient, BodyId body) {
+  double volume = 0;
+  Vector3d moment = Vector3d::Zero();
+  Box box;
+  for (const BodyId each : patient.bodies.subtree(body))
+    for (const Part& part : patient.parts) {
+      if (part.body != each || !collides(part.role) || is_teeth(part.role)) continue;
+      box.add(bounding_box(part.mesh));
+      const Vector3d middle = bounding_box(part.mesh).center();
+      for (const auto& t : part.mesh.triangles) {
+        const Vector3d a = part.mesh.vertices[t[0]] - middle, b = part.mesh.vertices[t[1]] - middle,
+                       c = part.mesh.vertices[t[2]] - middle;
+        const double six = a.dot(b.cross(c));
+        volume += six;
+        moment += six * (middle + (a + b + c) / 4);
+      }
+    }
+  if (box.empty()) return Vector3d::Zero();
+  return std::abs(volume) > 1 ? Vector3d(moment / volume) : box.center();
+}
+
+/// The planned pose of each body that a step moves, from the uncut rest: of several the last.
+std::map<BodyId, Pose> find_moves(const Plan& plan, Operated& operated) {
+  const Case& patient = operated.patient;
+  std::map<std::string, const PlanStep*> last;
+  for (const PlanStep& step : plan.steps)
+    if (const auto* move = std::get_if<MoveStep>(&step.action)) last[move->segment] = &step;
+  std::optional<ClinicalFrame> frame;
+  std::map<BodyId, Pose> moves;
+  for (const auto& [segment, step] : last) {
+    const auto body = patient.bodies.find(segment);
+    if (!body) {
+      operated.problems.push_back(
+          fmt::format("{}: \"{}\" does not exist, so it is not moved", step_name(*step), segment));
+      continue;
+    }
+    if (*body == cranium_body)
+      throw InputError(step_name(*step) +
+                       ": the cranium is the frame of all moves; cut a segment "
+                       "from it, and move that");
+    const auto& action = std::get<MoveStep>(step->action);
+    const Vector3d centroid = centroid_of(patient, *body);
+    try {
+      if (const auto* given = std::get_if<ExplicitMove>(&action.move)) {
+        check_move(given->X_CS, centroid);
+        moves[*body] = given->X_CS;
+        continue;
+      }
+      const auto& move = std::get<ClinicalMove>(action.move);
+      if (!frame) {
+        frame = clinical_frame(patient.landmarks, plan.reference);
+        operated.notes.insert(operated.notes.end(), frame->notes.begin(), frame->notes.end());
+      }
+      moves[*body] = move_pose(move, *frame, point_of(move, segment, patient.landmarks, centroid));
+    } catch (const InputError& error) {
+      throw InputError(step_name(*step) + ": " + error.what());
+    }
+  }
+  return moves;
+}
+
+void pose_bodies(const Plan& plan, Operated& operated) {
+  const auto moves = find_moves(plan, operated);
+  const BodyTree& tree = operated.patient.bodies;
+  BodyPoses& at = operated.poses;
+  at.X_CB = {Pose{}};
+  for (int b = 1; b < tree.size(); ++b) {
+    const BodyId body{b}, parent = tree[body].parent;
+    const auto move = moves.find(body);
+    at.X_CB.push_back(move == moves.end() ? at[parent] : move->second);
+    if (move != moves.end() && !bit_identical(at[parent], {}))
+      operated.notes.push_back(fmt::format(
+          "{}: its move counts from the uncut rest, not from the planned position of the {}",
+          tree[body].name, tree[parent].name));
+  }
+  operated.X_PB = in_parents(tree, at);
+}
+
+TriMesh moved_mesh(TriMesh mesh, const Pose& X) {
+  for (Vector3d& v : mesh.vertices) v = X * v;
+  return mesh;
+}
+
+}  // namespace
+
+double CutReport::volume_error_percent() const {
+  double sum = kerf_volume_mm3;
+  for (const CutPiece& piece : pieces) sum += piece.volume_mm3;
+  return volume_mm3 > 0 ? 100 * std::abs(sum - volume_mm3) / volume_mm3 : 0;
+}
+
+Operated apply_plan(const Case& patient, const Plan& plan) {
+  Operated operated;
+  check_plan(plan);
+  check_segments(plan, patient.bodies);
+  check_case(patient, plan, operated.notes);
+  operated.patient = patient;
+  for (const PlanStep& step : plan.steps)
+    if (std::holds_alternative<CutStep>(step.action)) replay_cut(operated, step);
+  const OwnerFinder finder(patient, operated.patient);
+  operated.owners = landmark_owners(patient, finder);
+  operated.muscles = muscle_owners(patient, finder);
+  operated.patient.jaw = jaw_bodies(patient, operated.patient, finder);
+  pose_bodies(plan, operated);
+  return operated;
+}
+
+Case operated_case(const Operated& operated) {
+  Case patient = operated.patient;
+  const BodyPoses& at = operated.poses;
+  const auto is_moved = [&](BodyId body) { return !bit_identical(at[body], {}); };
+  bool moved = false;
+  for (Part& part : patient.parts) {
+    if (!is_rigid(part.role) || !is_moved(part.body)) continue;
+    part.mesh = moved_mesh(std::move(part.mesh), at[part.body]);
+    moved = true;
+  }
+  if (!moved) return patient;
+  for (auto& [name, point] : patient.landmarks.points)
+    if (const auto owner = operated.owners.find(name);
+        owner != operated.owners.end() && is_moved(owner->second))
+      point = at[owner->second] * point;
+  for (Canal& canal : patient.canals)
+    if (is_moved(canal.body))
+      for (Vector3d& p : canal.points) p = at[canal.body] * p;
+  for (std::size_t i = 0; i < patient.muscles.size(); ++i) {
+    Muscle& muscle = patient.muscles[i];
+    const auto [origin, insertion] = operated.muscles[i];
+    if (is_moved(origin)) muscle.origin = at[origin] * muscle.origin;
+    if (is_moved(insertion)) muscle.insertion = at[insertion] * muscle.insertion;
+  }
+  patient.notes.push_back("the bones lie as planned; the face is as before the operation");
+  return patient;
+}
+
+}  // namespace condyle
