@@ -36,6 +36,10 @@ TEST(Help, IsWrappedAndFreeOfTheLibrarysTypes) {
                                              {"release"},
                                              {"import"},
                                              {"import", "meshes"},
+                                             {"plan", "new"},
+                                             {"plan", "cut"},
+                                             {"plan", "move"},
+                                             {"plan", "apply"},
                                              {"info"},
                                              {"phantom"},
                                              {"bench", "tissue"},
@@ -49,7 +53,7 @@ TEST(Help, IsWrappedAndFreeOfTheLibrarysTypes) {
     for (const auto& line : lines_of(outcome.out)) EXPECT_LE(line.size(), widest_line) << line;
     ++commands;
   }
-  EXPECT_EQ(commands, 12);
+  EXPECT_EQ(commands, 16);
 }
 
 TEST(Help, GroupsOptionsAndShowsTheirRanges) {

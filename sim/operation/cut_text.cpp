@@ -1,0 +1,116 @@
+#include "sim/operation/cut_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/core/infinity.h"
+#include "engine/mesh/measure.h"
+#include "engine/mesh/topology.h"
+
+namespace condyle {
+namespace {
+
+std::string place_words(const Eigen::Vector3d& p, const Landmarks& landmarks) {
+  std::string words = fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z());
+  double least = infinity;
+  std::string nearest;
+  for (const auto& [name, point] : landmarks.points)
+    if (const double distance = (point - p).norm(); distance < least) {
+      least = distance;
+      nearest = name;
+    }
+  if (!nearest.empty()) words += fmt::format(", {:.0f} mm from {}", least, nearest);
+  return words;
+}
+
+std::string outcome_words(const std::string& cut, const CutOutcome& outcome,
+                          const Landmarks& landmarks) {
+  if (!outcome.meets_bone) return cut + ": does not meet the bone";
+  if (!outcome.through)
+    return fmt::format("{}: does not go through: {:.1f} mm of bone left at {}", cut,
+                       outcome.left_mm, place_words(outcome.left_at, landmarks));
+  return fmt::format("{}: goes through, {:.0f} mm² of cut faces", cut, outcome.wall_area_mm2);
+}
+
+std::string piece_words(const CutPiece& piece) {
+  std::string words = fmt::format("{}: {:.1f} cm³{}", piece.body, piece.volume_mm3 / 1000,
+                                  piece.stays ? ", stays" : "");
+  if (piece.pieces > 1) words += fmt::format(", {} separate pieces", piece.pieces);
+  if (piece.slivers > 0) words += fmt::format(", {} below {:g} mm³", piece.slivers, sliver_mm3);
+  return words;
+}
+
+/// What a cut step says of itself besides its title: "kerf 0.7 mm; height 5".
+std::string cut_details(const CutStep& step) {
+  std::string text = fmt::format("makes {}", fmt::join(step.pieces, ", "));
+  if (!step.osteotomy.empty() && !step.target.empty()) text += "; of " + step.target;
+  if (step.kerf_mm > 0) text += fmt::format("; kerf {:g} mm", step.kerf_mm);
+  for (const auto& [name, value] : step.parameters) text += fmt::format("; {} {:g}", name, value);
+  return text;
+}
+
+std::string step_details(const PlanAction& action) {
+  if (const auto* cut = std::get_if<CutStep>(&action)) return cut_details(*cut);
+  if (const auto* note = std::get_if<NoteStep>(&action)) return note->text;
+  const auto& step = std::get<MoveStep>(action);
+  const auto* move = std::get_if<ClinicalMove>(&step.move);
+  return move ? fmt::format("{}; about {}", move_words(*move), point_name(*move, step.segment))
+              : "as a pose";
+}
+
+}  // namespace
+
+std::vector<std::string> cut_sentences(const CutReport& report, const Landmarks& landmarks) {
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < report.outcomes.size(); ++i)
+    sentences.push_back(outcome_words(report.cuts[i], report.outcomes[i], landmarks));
+  for (const auto& [a, b] : report.crossings)
+    sentences.push_back(fmt::format("{} and {} cross in the bone", report.cuts[a], report.cuts[b]));
+  for (const CutPiece& piece : report.pieces) sentences.push_back(piece_words(piece));
+  if (report.kerf_volume_mm3 > 0)
+    sentences.push_back(fmt::format("the saw removes {:.1f} cm³", report.kerf_volume_mm3 / 1000));
+  if (report.turned > 0)
+    sentences.push_back(
+        fmt::format("{} triangles of the cut faces face backward: the bone's surface crosses "
+                    "itself there",
+                    report.turned));
+  sentences.insert(sentences.end(), report.notes.begin(), report.notes.end());
+  return sentences;
+}
+
+std::vector<BoneSummary> operated_bones(const Operated& operated) {
+  const Case& patient = operated.patient;
+  const auto is_made = [&](const std::string& body) {
+    return std::any_of(operated.cuts.begin(), operated.cuts.end(), [&](const CutReport& cut) {
+      return std::any_of(cut.pieces.begin(), cut.pieces.end(),
+                         [&](const CutPiece& piece) { return piece.body == body && !piece.stays; });
+    });
+  };
+  std::vector<BoneSummary> bones;
+  for (int b = 0; b < patient.bodies.size(); ++b) {
+    const Body& body = patient.bodies[BodyId{b}];
+    BoneSummary bone{.name = body.name,
+                     .parent = b == 0 ? "" : patient.bodies[body.parent].name,
+                     .is_segment = is_made(body.name)};
+    bool any = false;
+    for (const Part& part : patient.parts) {
+      if (part.body != BodyId{b} || !operated.origin.contains(part.name)) continue;
+      any = true;
+      bone.volume_mm3 += signed_volume(part.mesh);
+      bone.closed = bone.closed && inspect(part.mesh).closed();
+    }
+    if (any) bones.push_back(std::move(bone));
+  }
+  return bones;
+}
+
+std::string steps_text(const Plan& plan) {
+  std::string text;
+  for (const PlanStep& step : plan.steps)
+    text +=
+        fmt::format("{:>3}  {}: {}\n", step.id, step_title(step.action), step_details(step.action));
+  return text;
+}
+
+}  // namespace condyle

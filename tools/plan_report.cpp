@@ -1,0 +1,130 @@
+#include "tools/plan_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "engine/core/error.h"
+#include "sim/operation/cut_text.h"
+#include "sim/plan/cephalometry.h"
+
+namespace condyle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Tables need the patient's own directions; a case without the landmarks has none.
+std::optional<ClinicalFrame> frame_of(const Plan& plan, const Operated& operated,
+                                      std::string& problem) {
+  try {
+    return clinical_frame(operated.patient.landmarks, plan.reference);
+  } catch (const InputError& error) {
+    problem = error.what();
+    return std::nullopt;
+  }
+}
+
+MovementTable table_of(const ClinicalFrame& frame, const Operated& operated) {
+  return movement_table(operated.patient.landmarks, frame, operated.patient.bodies, operated.owners,
+                        operated.poses);
+}
+
+std::vector<CephalometricMeasure> measures_of(const ClinicalFrame& frame,
+                                              const Operated& operated) {
+  const Landmarks& before = operated.patient.landmarks;
+  return cephalometry(frame, before, moved_landmarks(before, operated.owners, operated.poses));
+}
+
+Json outcome_json(const std::string& name, const CutOutcome& outcome) {
+  Json json = {{"name", name},
+               {"meets_bone", outcome.meets_bone},
+               {"through", outcome.through},
+               {"cut_face_area_mm2", outcome.wall_area_mm2}};
+  if (outcome.meets_bone && !outcome.through) {
+    json["bone_left_mm"] = outcome.left_mm;
+    json["bone_left_at_mm"] = {outcome.left_at.x(), outcome.left_at.y(), outcome.left_at.z()};
+  }
+  return json;
+}
+
+Json cut_json(const CutReport& cut) {
+  Json json = {{"step", cut.step}, {"title", cut.title}, {"bone", cut.bone}};
+  json["outcomes"] = Json::array();
+  for (std::size_t i = 0; i < cut.outcomes.size(); ++i)
+    json["outcomes"].push_back(outcome_json(cut.cuts[i], cut.outcomes[i]));
+  json["crossings"] = Json::array();
+  for (const auto& [a, b] : cut.crossings) json["crossings"].push_back({cut.cuts[a], cut.cuts[b]});
+  json["pieces"] = Json::array();
+  for (const CutPiece& piece : cut.pieces)
+    json["pieces"].push_back({{"body", piece.body},
+                              {"part", piece.part},
+                              {"stays", piece.stays},
+                              {"volume_mm3", piece.volume_mm3},
+                              {"separate_pieces", piece.pieces},
+                              {"slivers", piece.slivers}});
+  json["kerf_volume_mm3"] = cut.kerf_volume_mm3;
+  json["volume_error_percent"] = cut.volume_error_percent();
+  json["notes"] = cut.notes;
+  return json;
+}
+
+std::string cut_text(const CutReport& cut, const Landmarks& landmarks) {
+  std::string text = fmt::format("step {} ({}), {}\n", cut.step, cut.title, cut.bone);
+  for (const std::string& sentence : cut_sentences(cut, landmarks)) text += "  " + sentence + "\n";
+  return text;
+}
+
+}  // namespace
+
+Json plan_report_json(const Plan& plan, const Operated& operated) {
+  Json json = {{"plan", plan.name}, {"case", operated.patient.name}};
+  json["segments"] = Json::array();
+  json["remaining"] = Json::array();
+  for (const BoneSummary& bone : operated_bones(operated)) {
+    Json item = {{"name", bone.name}};
+    if (bone.is_segment) item["parent"] = bone.parent;
+    item["volume_mm3"] = bone.volume_mm3;
+    item["closed"] = bone.closed;
+    json[bone.is_segment ? "segments" : "remaining"].push_back(std::move(item));
+  }
+  double error = 0;
+  json["cuts"] = Json::array();
+  for (const CutReport& cut : operated.cuts) {
+    json["cuts"].push_back(cut_json(cut));
+    error = std::max(error, cut.volume_error_percent());
+  }
+  json["volume_error_percent"] = error;
+  std::string problem;
+  if (const auto frame = frame_of(plan, operated, problem)) {
+    json["movements"] = movement_json(table_of(*frame, operated));
+    json["cephalometry"] = cephalometry_json(measures_of(*frame, operated));
+  }
+  json["notes"] = operated.notes;
+  if (!problem.empty()) json["notes"].push_back("no tables: " + problem);
+  json["problems"] = operated.problems;
+  return json;
+}
+
+std::string plan_report_text(const Plan& plan, const Operated& operated) {
+  std::string text =
+      fmt::format("{}, a plan for {}\n{}", plan.name, operated.patient.name, steps_text(plan));
+  for (const CutReport& cut : operated.cuts)
+    text += "\n" + cut_text(cut, operated.patient.landmarks);
+  std::string problem;
+  if (const auto frame = frame_of(plan, operated, problem))
+    text += "\n" + movement_text(table_of(*frame, operated)) + "\nCephalometry\n" +
+            cephalometry_text(measures_of(*frame, operated));
+  else
+    text += "\nno tables: " + problem + "\n";
+  return text;
+}
+
+std::string cut_report_text(const Operated& operated, int step) {
+  std::string text;
+  for (const CutReport& cut : operated.cuts)
+    if (cut.step == step) text += cut_text(cut, operated.patient.landmarks);
+  return text;
+}
+
+}  // namespace condyle
