@@ -102,7 +102,9 @@ LandmarkOwners landmark_owners(const Case& uncut, const OwnerFinder& finder) {
   LandmarkOwners owners = default_landmark_owners(uncut.jaw);
   std::erase_if(owners, [&](const auto& item) { return !uncut.landmarks.find(item.first); });
   for (const auto& [name, point] : uncut.landmarks.points) {
-    if (!owners.contains(name)) {
+    if (name.starts_with("upper_") || name.starts_with("lower_")) {  // on a tooth
+      owners[name] = name.starts_with("upper_") ? uncut.jaw.upper_arch : uncut.jaw.lower_arch;
+    } else if (!owners.contains(name)) {
       const auto bone = bones.at(point);
       if (bone.value < 0 || bone.distance > near_mm) continue;
       if (!faces.empty() && std::abs(faces.at(point).distance) < bone.distance) continue;

@@ -56,8 +56,9 @@ class OwnerFinder {
   std::map<BodyId, NearestSurface> nearest_;  // by body of the uncut case that was cut
 };
 
-/// Owners of the landmarks after the cuts: those of the planner's table as there, others by the
-/// nearest bone or tooth, within 3 mm of it and farther from the face. Others have no owner.
+/// Owners of the landmarks after the cuts: those of the planner's table as there, those of teeth by
+/// their arch, others by the nearest bone or tooth, within 3 mm of it and farther from the face.
+/// Others have no owner.
 LandmarkOwners landmark_owners(const Case& uncut, const OwnerFinder& finder);
 
 /// The jaw's bodies after the cuts: arches by their teeth, else the incisal points, condyles by

@@ -305,7 +305,8 @@ TEST(ApplyPlan, TheBuiltInPatientsChinIsReplayedToTheSameBits) {
   const BodyId part = *once.patient.bodies.find("chin");
   for (const char* name : {"pogonion", "menton", "gnathion"})
     EXPECT_EQ(once.owners.at(name), part) << name;
-  for (const char* name : {"b_point", "left_lingula", "left_gonion", "left_condyle"})
+  for (const char* name :
+       {"b_point", "left_lingula", "left_gonion", "left_condyle", "lower_left_central_incisor_tip"})
     EXPECT_EQ(once.owners.at(name), mandible_body) << name;
   for (const char* name : {"soft_pogonion", "soft_menton", "stomion", "hyoid", "pronasale"})
     EXPECT_FALSE(once.owners.contains(name)) << name;
