@@ -44,9 +44,10 @@ class Hasher {
       for (const std::uint64_t chain : chains) hash_ = mixed(hash_, chain);
     }
     for (; size >= 8; bytes += 8, size -= 8) hash_ = mixed(hash_, word_at(bytes));
+    if (size == 0) return;  // an empty list has no address
     std::uint64_t rest = 0;
     std::memcpy(&rest, bytes, size);
-    if (size > 0) hash_ = mixed(hash_, rest);
+    hash_ = mixed(hash_, rest);
   }
   static std::uint64_t word_at(const unsigned char* bytes) {
     std::uint64_t word;

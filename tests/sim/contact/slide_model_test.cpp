@@ -256,8 +256,9 @@ TEST(Depenetration, ASegmentBetweenTwoBonesLeavesBoth) {
   push_out_pieces(patient);
   ASSERT_EQ(patient.notes.size(), 1u);
   EXPECT_NE(patient.notes[0].find("was moved out"), std::string::npos) << patient.notes[0];
-  EXPECT_EQ(ContactModel(patient).at_rest().max_penetration_mm(), 0);
-  for (const auto& pair : ContactModel(patient).at_rest().pairs) EXPECT_LE(pair.depth_mm, 0.02);
+  const ContactModel model(patient);
+  EXPECT_EQ(model.at_rest().max_penetration_mm(), 0);
+  for (const auto& pair : model.at_rest().pairs) EXPECT_LE(pair.depth_mm, 0.02);
 }
 
 TEST(SlideRealAnatomy, BadinDrivenUpSlidesOn) {
