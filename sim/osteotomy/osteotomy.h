@@ -11,7 +11,7 @@
 namespace condyle {
 
 /// A segment that an osteotomy makes: the pieces that lie on these sides of its cuts. `neither`
-/// accepts any side.
+/// accepts any side. A piece belongs to the first rule that it meets.
 struct SegmentRule {
   std::string name;            // "maxilla", "proximal_left"
   std::vector<CutSide> sides;  // one per cut
@@ -25,6 +25,9 @@ struct PlacedOsteotomy {
   std::vector<std::string> notes;     // what was estimated, for people
 };
 
+/// The segment that a piece belongs to; -1: it stays with the bone's own body.
+int segment_of(const PlacedOsteotomy& placed, const Piece& piece);
+
 /// A parameter that a plan may change.
 struct OsteotomyParameter {
   std::string name, unit, meaning;
@@ -37,8 +40,11 @@ std::vector<std::string> osteotomy_names();
 std::vector<OsteotomyParameter> osteotomy_parameters(const std::string& name);
 
 /// Places a plan's cut on a patient: from landmarks and the bone's shape, or where the step has
-/// surfaces from those. throws: InputError naming a missing landmark or part, an unknown parameter,
-/// or one out of its bounds.
+/// surfaces from those. The step's pieces name all segments in order, or some by their own names:
+/// the others then stay with the bone's body. With surfaces, the i-th piece lies above the i-th
+/// surface, and one more below all; the side above a sheet is the left of its polyline, seen
+/// from outside the bone. throws: InputError naming a missing landmark or part, an unknown
+/// parameter, or one out of its bounds.
 PlacedOsteotomy place_osteotomy(const Case& patient, const CutStep& step);
 
 }  // namespace condyle

@@ -1,0 +1,225 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/error.h"
+#include "engine/mesh/measure.h"
+#include "sim/osteotomy/recipe.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+/// What the cut is placed by: points of the left side stand for both.
+struct Midface {
+  double canine_y = 0, canine_z = 0;  // highest point of the canine's root
+  double molar_y = 0, molar_z = 0;    // of the molars' roots
+  double widest_root = 0;             // of the molars: distance from the midsagittal plane
+  double floor_z = 0;                 // of the nose
+  double front_y = 0, back_y = 0;     // anterior nasal spine, posterior nasal spine
+  double incisal_z = 0;
+  std::optional<Vector3d> crest;  // zygomaxillare
+};
+
+/// The highest point of the roots of a tooth on both sides, by mesh, else by landmark.
+std::optional<Vector3d> highest_root(const SurgicalAnatomy& jaw, std::initializer_list<int> teeth,
+                                     const std::string& apex) {
+  std::optional<Vector3d> best;
+  const auto add = [&](const Vector3d& p) {
+    if (!best || p.z() > best->z()) best = p;
+  };
+  for (const int fdi : teeth)
+    for (const auto& p : jaw.tooth_points(fdi)) add(p);
+  for (const Side side : both_sides)
+    if (const auto p = jaw.find("upper_" + name_of(side) + apex)) add(*p);
+  return best;
+}
+
+void estimate(SurgicalAnatomy& jaw, const std::string& what, const std::string& how) {
+  jaw.notes.push_back(what + " estimated: " + how);
+}
+
+Midface find_midface(SurgicalAnatomy& jaw) {
+  Midface face;
+  const Vector3d incisal = jaw.need("upper_incisal_point");
+  face.incisal_z = incisal.z();
+  if (const auto canine = highest_root(jaw, {13, 23}, "_canine_apex")) {
+    face.canine_y = canine->y(), face.canine_z = canine->z();
+  } else {
+    face.canine_y = incisal.y() + 14, face.canine_z = incisal.z() + 23;
+    estimate(jaw, "canine apices are", "23 mm above and 14 mm behind the upper incisal edges");
+  }
+  if (const auto molar = highest_root(jaw, {16, 17, 26, 27}, "_first_molar_mesiobuccal_apex")) {
+    face.molar_y = molar->y(), face.molar_z = molar->z();
+    face.widest_root = std::abs(molar->x()) + 5;
+    for (const int fdi : {16, 17, 26, 27})
+      for (const auto& p : jaw.tooth_points(fdi))
+        if (p.z() > molar->z() - 10) face.widest_root = std::max(face.widest_root, std::abs(p.x()));
+  } else {
+    face.molar_y = incisal.y() + 32, face.molar_z = incisal.z() + 21;
+    face.widest_root = 30;
+    estimate(jaw, "molar apices are", "21 mm above and 32 mm behind the upper incisal edges");
+  }
+  if (const auto ans = jaw.find("ans")) {
+    face.front_y = ans->y(), face.floor_z = ans->z();
+  } else {
+    face.front_y = incisal.y(), face.floor_z = face.canine_z;
+    estimate(jaw, "the anterior nasal spine is", "above the upper incisal edges");
+  }
+  if (const auto pns = jaw.find("pns")) {
+    face.back_y = pns->y();
+  } else {
+    face.back_y = incisal.y() + 51;
+    estimate(jaw, "the posterior nasal spine is", "51 mm behind the upper incisal edges");
+  }
+  if (const auto left = jaw.find("left_zygomaxillare"))
+    if (const auto right = jaw.find("right_zygomaxillare"))
+      face.crest = Vector3d(std::min(left->x(), -right->x()), 0.5 * (left->y() + right->y()),
+                            std::min(left->z(), right->z()));
+  return face;
+}
+
+/// The roof as a line in the midsagittal plane, from front to back.
+std::vector<Vector3d> roof_line(const Site& site, const Midface& face) {
+  const double half_kerf = 0.5 * site.kerf_mm;
+  const Vector3d front(0, face.canine_y,
+                       std::max(face.floor_z + site["above_floor_mm"],
+                                face.canine_z + site["above_canine_mm"] + half_kerf));
+  Vector3d back(0, face.molar_y, face.molar_z + site["above_molar_mm"] + half_kerf);
+  if (site["step_mm"] == 0) {
+    // Falling by 0 to 10 degrees to the back.
+    const double run = back.y() - front.y();
+    back.z() = std::clamp(back.z(), front.z() - std::tan(0.1745) * run, front.z());
+    const Vector3d along = (back - front).normalized();
+    return {front - 60 * along, back + 60 * along};
+  }
+  // Level in front, a step down at the crest, level behind it.
+  const double crest_y = face.crest ? face.crest->y() : face.molar_y;
+  const double low = std::max(front.z() - site["step_mm"], back.z());
+  if (low > front.z() - 0.5)
+    throw InputError(fmt::format("le_fort_1: no room for a step of {:g} mm above the molar roots",
+                                 site["step_mm"]));
+  return {{0, front.y() - 60, front.z()},
+          {0, crest_y, front.z()},
+          {0, crest_y, low},
+          {0, face.back_y + 60, low}};
+}
+
+double height_at(const std::vector<Vector3d>& roof, double y) {
+  double z = roof.back().z();
+  for (std::size_t i = 0; i + 1 < roof.size(); ++i)
+    if (y >= roof[i].y() && y < roof[i + 1].y())
+      z = roof[i].z() +
+          (y - roof[i].y()) / (roof[i + 1].y() - roof[i].y()) * (roof[i + 1].z() - roof[i].z());
+  return z;
+}
+
+/// Below the roof, in front of the back wall, and inside of a crest that hangs below the roof.
+Cut down_fracture(Site& site, const Midface& face, const std::vector<Vector3d>& roof) {
+  const SurgicalAnatomy& jaw = site.anatomy;
+  const Vector3d back(0, face.back_y + site["back_mm"], 0);
+  Region maxilla = both(jaw.sheet(roof, Vector3d::UnitX(), -Vector3d::UnitZ(), 0),
+                        jaw.above(back, -Vector3d::UnitY(), 8));
+  if (face.crest && face.crest->z() < height_at(roof, face.crest->y()) - 3) {
+    const double top = height_at(roof, face.crest->y()), x = face.widest_root + 3;
+    for (const Side side : both_sides) {
+      const double sign = sign_of(side);
+      const Vector3d upper(sign * x, face.crest->y(), top),
+          lower(sign * std::max(x, face.crest->x() - 1), face.crest->y(), face.crest->z());
+      Vector3d inward = (upper - lower).cross(Vector3d::UnitY());
+      if (inward.x() * sign > 0) inward = -inward;
+      maxilla = both(std::move(maxilla), jaw.above(upper, inward, side == Side::left ? 9 : 10));
+    }
+  }
+  const double wide = face.crest ? face.crest->x() + 10 : 55;
+  return {"Le Fort I", std::move(maxilla),
+          jaw.box({-wide, face.front_y - 20, face.incisal_z - 40},
+                  {wide, back.y() + 2, std::max(roof.front().z(), roof[1].z()) + 8}),
+          0};
+}
+
+/// What lies in the maxilla alone: the reach of cuts that divide it.
+std::vector<Plane> within_maxilla(const SurgicalAnatomy& jaw, const Midface& face, const Site& site,
+                                  const std::vector<Vector3d>& roof) {
+  const Vector3d along = roof[1] - roof[0];
+  Vector3d up = Vector3d::UnitX().cross(along);
+  if (up.z() < 0) up = -up;
+  return {jaw.plane(roof[0], up),
+          jaw.plane({0, face.back_y + site["back_mm"], 0}, Vector3d::UnitY()),
+          jaw.plane({0, face.front_y - 20, 0}, -Vector3d::UnitY()),
+          jaw.plane({0, 0, face.incisal_z - 40}, -Vector3d::UnitZ())};
+}
+
+/// Between lateral incisor and canine at the alveolus.
+Vector3d interdental(SurgicalAnatomy& jaw, Side side) {
+  const auto lateral = jaw.tooth_middle(side == Side::left ? 22 : 12),
+             canine = jaw.tooth_middle(side == Side::left ? 23 : 13);
+  if (lateral && canine) return 0.5 * (*lateral + *canine);
+  const auto tip = jaw.find("upper_" + name_of(side) + "_canine_tip");
+  const Vector3d incisal = jaw.need("upper_incisal_point");
+  if (!tip) jaw.notes.push_back("the gap before the " + name_of(side) + " canine is estimated");
+  return tip ? Vector3d(tip->x() - 4 * sign_of(side), tip->y() - 2, tip->z())
+             : incisal + Vector3d(13 * sign_of(side), 5, 0);
+}
+
+PlacedOsteotomy place_le_fort_1(Site& site) {
+  SurgicalAnatomy& jaw = site.anatomy;
+  const Midface face = find_midface(jaw);
+  const auto roof = roof_line(site, face);
+  PlacedOsteotomy placed;
+  placed.cuts.push_back(down_fracture(site, face, roof));
+  const double pieces = site["pieces"];
+  if (pieces != std::floor(pieces))
+    throw InputError(fmt::format("le_fort_1: pieces is {:g}; expected 1, 2 or 3", pieces));
+  if (pieces > 1 && site["step_mm"] != 0)
+    throw InputError("le_fort_1: a stepped cut has one piece; set pieces to 1 or step_mm to 0");
+  if (pieces == 1) {
+    placed.segments = {{"maxilla", {CutSide::above}}};
+    return placed;
+  }
+  auto reach = within_maxilla(jaw, face, site, roof);
+  using enum CutSide;
+  if (pieces == 2) {
+    placed.cuts.push_back({"midline", jaw.above(Vector3d::Zero(), Vector3d::UnitX(), 0), reach, 0});
+    placed.segments = {{"maxilla_left", {above, above}}, {"maxilla_right", {above, below}}};
+    return placed;
+  }
+  // The front in the angle between two planes that meet on the palate; the rest in the midline.
+  const Vector3d left = interdental(jaw, Side::left), right = interdental(jaw, Side::right);
+  const Vector3d apex(0, 0.5 * (left.y() + right.y()) + site["palate_mm"], 0);
+  const auto plane_to = [&](const Vector3d& gap, double sign, int wall) {
+    const Vector3d along(gap.x(), gap.y() - apex.y(), 0);
+    Vector3d inward = along.cross(Vector3d::UnitZ());
+    if (inward.x() * sign > 0) inward = -inward;
+    return jaw.above(apex, inward, wall);
+  };
+  placed.cuts.push_back(
+      {"interdental", both(plane_to(left, 1, 0), plane_to(right, -1, 1)), reach, 0});
+  reach.push_back(jaw.plane(apex, -Vector3d::UnitY()));
+  placed.cuts.push_back({"midline", jaw.above(Vector3d::Zero(), Vector3d::UnitX(), 0), reach, 0});
+  placed.segments = {{"maxilla_front", {above, above, neither}},
+                     {"maxilla_left", {above, below, above}},
+                     {"maxilla_right", {above, below, below}}};
+  return placed;
+}
+
+}  // namespace
+
+Recipe le_fort_1_recipe() {
+  return {
+      "le_fort_1",
+      Jaw::upper,
+      {{"above_canine_mm", "mm", "roof above the canine apices", 5, 3, 12},
+       {"above_molar_mm", "mm", "roof above the molar apices", 4.5, 3, 12},
+       {"above_floor_mm", "mm", "roof above the floor of the nose, in front", 3, 0, 10},
+       {"back_mm", "mm", "back wall behind the posterior nasal spine", 0.5, -4, 4},
+       {"step_mm", "mm", "step down at the zygomatic buttress; 0: straight", 0, 0, 8},
+       {"pieces", "", "pieces of the maxilla: 1, 2 (midline) or 3", 1, 1, 3},
+       {"palate_mm", "mm", "where the cuts of three pieces meet, behind the canines", 14, 6, 25}},
+      place_le_fort_1};
+}
+
+}  // namespace condyle
