@@ -113,8 +113,10 @@ std::string plan_report_text(const Plan& plan, const Operated& operated) {
     text += "\n" + cut_text(cut, operated.patient.landmarks);
   std::string problem;
   if (const auto frame = frame_of(plan, operated, problem))
-    text += "\n" + movement_text(table_of(*frame, operated)) + "\nCephalometry\n" +
-            cephalometry_text(measures_of(*frame, operated));
+    text +=
+        "\n" + movement_text(table_of(*frame, operated)) +
+        "\nCephalometry (of the face: before the operation; condyle predict has it afterwards)\n" +
+        cephalometry_text(measures_of(*frame, operated));
   else
     text += "\nno tables: " + problem + "\n";
   return text;

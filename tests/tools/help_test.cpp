@@ -53,7 +53,7 @@ TEST(Help, IsWrappedAndFreeOfTheLibrarysTypes) {
     for (const auto& line : lines_of(outcome.out)) EXPECT_LE(line.size(), widest_line) << line;
     ++commands;
   }
-  EXPECT_EQ(commands, 16);
+  EXPECT_EQ(commands, 17);
 }
 
 TEST(Help, GroupsOptionsAndShowsTheirRanges) {

@@ -1,0 +1,115 @@
+#include "sim/prediction/soft_ratios.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace condyle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct PublishedRatio {
+  const char *soft, *hard;
+  bool forward;
+  std::optional<double> low, high;
+};
+// Textbook values of advancements and genioplasties; no range is known for the others.
+const std::array published{
+    PublishedRatio{"pronasale", "a_point", true, 0.2, 0.35},
+    PublishedRatio{"subnasale", "a_point", true, 0.5, 0.6},
+    PublishedRatio{"labrale_superius", "upper_incisal_point", true, {}, {}},
+    PublishedRatio{"labrale_inferius", "lower_incisal_point", true, {}, {}},
+    PublishedRatio{"soft_b_point", "b_point", true, {}, {}},
+    PublishedRatio{"soft_pogonion", "pogonion", true, 0.85, 1.0},
+    PublishedRatio{"soft_pogonion", "pogonion", false, 0.6, 0.8},
+    PublishedRatio{"soft_b_point", "b_point", false, {}, {}},
+    PublishedRatio{"labrale_inferius", "lower_incisal_point", false, {}, {}},
+    PublishedRatio{"labrale_superius", "upper_incisal_point", false, {}, {}}};
+
+const SoftPoint* find_point(const Prediction& prediction, const std::string& name) {
+  for (const SoftPoint& point : prediction.points)
+    if (point.landmark == name) return &point;
+  return nullptr;
+}
+
+std::string spaced(std::string name) {
+  for (char& c : name)
+    if (c == '_') c = ' ';
+  return name;
+}
+
+}  // namespace
+
+std::vector<SoftRatio> soft_ratios(const Prediction& prediction, const ClinicalFrame& frame) {
+  constexpr double least_mm = 0.5;
+  const Landmarks& rest = prediction.operated.patient.landmarks;
+  const Landmarks moved =
+      moved_landmarks(rest, prediction.operated.owners, prediction.operated.poses);
+  std::vector<SoftRatio> ratios;
+  for (const auto& row : published) {
+    const auto before = rest.find(row.hard), after = moved.find(row.hard);
+    const SoftPoint* soft = find_point(prediction, row.soft);
+    if (!before || !after || !soft) continue;
+    const double hard_mm = -frame.back.dot(*after - *before);
+    if (std::abs(hard_mm) < least_mm || (hard_mm > 0) != row.forward) continue;
+    ratios.push_back({row.soft, row.hard, hard_mm, -frame.back.dot(soft->after - soft->before),
+                      row.low, row.high, row.low ? "textbook value" : ""});
+  }
+  return ratios;
+}
+
+std::string prediction_text(const Prediction& prediction, const ClinicalFrame& frame) {
+  std::string text = fmt::format("{:<20}{:>14}{:>14}{:>12}{:>10}\n", "soft tissue, mm",
+                                 "right-left", "back-forward", "down-up", "distance");
+  for (const auto& [name, before, after] : prediction.points) {
+    const Eigen::Vector3d step = after - before;
+    text += fmt::format("{:<20}{:>14}{:>14}{:>12}{:>10.1f}\n", spaced(name),
+                        in_words(frame.left.dot(step), "left", "right"),
+                        in_words(-frame.back.dot(step), "forward", "back"),
+                        in_words(frame.up.dot(step), "up", "down"), step.norm());
+  }
+  const auto ratios = soft_ratios(prediction, frame);
+  if (!ratios.empty())
+    text += fmt::format("\n{:<20}{:<22}{:>8}{:>8}{:>8}  {}\n", "soft to hard, forward", "  of",
+                        "hard mm", "soft mm", "ratio", "literature");
+  for (const SoftRatio& row : ratios)
+    text += fmt::format("{:<20}  {:<21}{:>8.1f}{:>8.1f}{:>8.2f}  {}\n", spaced(row.soft),
+                        spaced(row.hard), row.hard_mm, row.soft_mm, row.ratio(),
+                        row.low ? fmt::format("{:g} to {:g}", *row.low, *row.high) : "unknown");
+  text += fmt::format(
+      "\nthe face moves by at most {:.1f} mm; {} inverted prisms; solved in {:.1f} s{}\n",
+      prediction.max_displacement_mm(), prediction.state.inverted_prisms, prediction.time_s,
+      prediction.state.converged ? "" : "; not converged");
+  return text;
+}
+
+Json prediction_json(const Prediction& prediction, const ClinicalFrame& frame) {
+  Json json{{"max_displacement_mm", prediction.max_displacement_mm()},
+            {"inverted_prisms", prediction.state.inverted_prisms},
+            {"converged", prediction.state.converged},
+            {"time_s", prediction.time_s},
+            {"points", Json::array()},
+            {"ratios", Json::array()}};
+  for (const auto& [name, before, after] : prediction.points) {
+    const Eigen::Vector3d step = after - before;
+    json["points"].push_back({{"landmark", name},
+                              {"left_mm", frame.left.dot(step)},
+                              {"forward_mm", -frame.back.dot(step)},
+                              {"up_mm", frame.up.dot(step)},
+                              {"distance_mm", step.norm()}});
+  }
+  for (const SoftRatio& row : soft_ratios(prediction, frame)) {
+    Json entry{{"soft", row.soft},
+               {"hard", row.hard},
+               {"hard_mm", row.hard_mm},
+               {"soft_mm", row.soft_mm},
+               {"ratio", row.ratio()}};
+    if (row.low) entry["published"] = {{"low", *row.low}, {"high", *row.high}};
+    json["ratios"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+}  // namespace condyle

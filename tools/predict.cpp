@@ -1,0 +1,156 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/mesh_io/mesh_files.h"
+#include "render/gl/gl_context.h"
+#include "render/image/image.h"
+#include "render/overlay/legend.h"
+#include "render/scene/scene_renderer.h"
+#include "sim/plan/plan_file.h"
+#include "sim/prediction/prediction.h"
+#include "sim/prediction/soft_ratios.h"
+#include "tools/commands.h"
+#include "tools/common.h"
+
+namespace condyle {
+namespace {
+
+struct PredictOptions {
+  std::filesystem::path patient, plan, out;
+  int surface_nodes = 520;
+};
+
+constexpr std::array views{"front", "left", "three-quarter"};
+
+/// 1, 2, 5, 10, 20 ...: the end of the map's range.
+double rounded_up(double mm) {
+  double step = 1;
+  while (true) {
+    for (const double factor : {1.0, 2.0, 5.0})
+      if (factor * step >= mm) return factor * step;
+    step *= 10;
+  }
+}
+
+FrameState frame_of(const Prediction& prediction, bool planned) {
+  FrameState frame;
+  frame.poses =
+      planned ? prediction.operated.poses : completed(prediction.operated.patient.bodies, {});
+  frame.face = planned ? prediction.after : prediction.before;
+  return frame;
+}
+
+/// Before, after, the bones under a skin of glass, and the map of displacement, from each view.
+void draw_pictures(const Prediction& prediction, const std::filesystem::path& folder) {
+  const OffscreenContext context;
+  std::vector<Part> parts = prediction.operated.patient.parts;
+  std::string face;
+  for (Part& part : parts)
+    if (part.role == Role::face) {
+      part.mesh = prediction.face;
+      face = part.name;
+    }
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = 900;
+  settings.height = 1000;
+  settings.contacts = false;
+  const auto [low, high] = renderer.bounds();
+  const ColourMap map = displacement_colours(rounded_up(prediction.max_displacement_mm()));
+  renderer.set_colour_map(map);
+  std::vector<float> moved;
+  for (std::size_t i = 0; i < prediction.before.size(); ++i)
+    moved.push_back((prediction.after[i] - prediction.before[i]).norm());
+  const Glyphs words;
+  const auto save = [&](const char* what, const char* view, Image image) {
+    write_png(folder / fmt::format("{}_{}.png", what, view), image);
+  };
+  for (const char* view : views) {
+    const Camera camera = standard_camera(view, low, high, 0.9);
+    renderer.update(frame_of(prediction, false));
+    save("before", view, renderer.picture(camera, settings));
+    renderer.update(frame_of(prediction, true));
+    save("after", view, renderer.picture(camera, settings));
+    PictureSettings glass = settings;
+    glass.skin_opacity = 0.25;
+    save("bones", view, renderer.picture(camera, glass));
+    renderer.color_part(face, moved);
+    Image mapped = renderer.picture(camera, settings);
+    add_legend(mapped, words, map, {"from before to after"});
+    save("map", view, std::move(mapped));
+    renderer.color_part(face, {});
+  }
+}
+
+TriMesh face_at(const Prediction& prediction, const std::vector<Eigen::Vector3f>& vertices) {
+  TriMesh mesh = prediction.face;
+  for (std::size_t i = 0; i < vertices.size(); ++i) mesh.vertices[i] = vertices[i].cast<double>();
+  return mesh;
+}
+
+int run_predict(const PredictOptions& options, const CommonOptions& common) {
+  ProgressBar bar(common);
+  const Plan plan = load_plan(options.plan);
+  const Case patient = open_patient(options.patient, common, bar);
+  PredictionSettings settings;
+  settings.threads = common.threads;
+  settings.tissue.surface_nodes = options.surface_nodes;
+  const ClinicalFrame frame = clinical_frame(patient.landmarks, plan.reference);
+  const Prediction prediction = predict(patient, plan, settings, bar.callback());
+  std::vector<std::string> notes = prediction.operated.notes;
+  if (!options.out.empty()) {
+    make_folder(options.out);
+    write_ply(face_at(prediction, prediction.before), options.out / "face_before.ply");
+    write_ply(face_at(prediction, prediction.after), options.out / "face_after.ply");
+    bar.show("drawing", 0.95);
+    try {
+      draw_pictures(prediction, options.out);
+    } catch (const MachineError& error) {
+      notes.push_back(fmt::format("pictures are left out: {}", error.what()));
+    }
+    write_file(options.out / "report.json", prediction_json(prediction, frame).dump(2) + "\n");
+  }
+  bar.clear();
+  if (common.json) fmt::print("{}\n", prediction_json(prediction, frame).dump(2));
+  if (common.prints_summary()) {
+    for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
+    for (const auto& problem : prediction.operated.problems)
+      fmt::print(stderr, "warning: {}\n", problem);
+    fmt::print(stderr, "{}", prediction_text(prediction, frame));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_predict(Commands& commands) {
+  const auto options = std::make_shared<PredictOptions>();
+  CLI::App& command = commands.add(
+      "predict", "Predict the face after the operation of a plan",
+      "condyle predict mycase --plan plan.json --out out",
+      [options](const CommonOptions& common) { return run_predict(*options, common); });
+  command.add_option("CASE", options->patient,
+                     "Folder with case.json (default: the built-in patient)");
+  command.add_option("--plan", options->plan, "Plan file, see condyle plan")
+      ->required()
+      ->type_name("FILE");
+  in_range(command.add_option("--surface-nodes", options->surface_nodes,
+                              "Nodes of one layer, about; default 520"),
+           200, 32000);
+  command
+      .add_option("--out", options->out,
+                  "Folder for pictures before and after, a map of the displacement, "
+                  "face_before.ply, face_after.ply and report.json")
+      ->type_name("FOLDER");
+}
+
+}  // namespace condyle
