@@ -45,6 +45,10 @@ void add_bench(Commands& commands) {
                   "Contact, sliding, dynamics and distance fields, beside FCL's and Bullet's own",
                   "condyle bench collide --json", run_bench_collide),
               *options);
+  CLI::App& cut = add("cut", "Saw cuts and osteotomies of a patient's bones",
+                      "condyle bench cut --json", run_bench_cut);
+  add_patient(cut, *options);
+  in_range(cut.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1, 1000);
   CLI::App& mesh = add("mesh", "The decimators on the built-in patient's surfaces",
                        "condyle bench mesh --json", run_bench_mesh);
   in_range(mesh.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1, 1000);
