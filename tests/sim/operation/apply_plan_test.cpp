@@ -291,7 +291,7 @@ TEST(ApplyPlan, AnotherCaseIsRefusedAndEditedLandmarksAreNamed) {
 
 TEST(ApplyPlan, TheBuiltInPatientsChinIsReplayedToTheSameBits) {
   const Case& patient = builtin();
-  const CutStep chin = plane_cut("mandible", disc({0, -80, -80}, {0, 0, -1}, 45), {"chin"}, 0.7);
+  const CutStep chin = plane_cut("mandible", disc({0, -80, -80}, {0, 0, -1}, 70), {"chin"}, 0.7);
   const CutStep vault = plane_cut("cranium", disc({0, 20, 70}, {0, 0, 1}, 130), {"vault"}, 1.2);
   const MoveStep move{"chin", ClinicalMove{.forward_mm = 6, .up_mm = 1, .pitch_deg = 3}};
   const Plan plan = plan_of(patient, {chin, vault, move});
