@@ -80,7 +80,7 @@ std::vector<Eigen::Vector3d> wall_normals(const CellComplex& complex, const Cell
   return normals;
 }
 
-/// The bone that a cut which does not go through leaves: the longest way out of the bone from its
+/// The bone that a cut which does not go through leaves: the longest exit from the bone at its
 /// end, along its surface.
 void measure_left(const CellComplex& complex, const CellSides& sides, int cut, const TriMesh& bone,
                   const std::vector<Plane>& reach, CutOutcome& outcome) {

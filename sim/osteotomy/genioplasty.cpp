@@ -83,15 +83,15 @@ PlacedOsteotomy place_genioplasty(Site& site) {
   const double fall = std::tan(site["tilt_deg"] * 3.14159265358979323846 / 180);
   const double cosine = 1 / std::sqrt(1 + fall * fall), half_kerf = 0.5 * site.kerf_mm;
   double height = menton.z() + site["height_mm"];
-  const double wanted = height;
+  const double requested = height;
   for (const auto& [point, margin] : dangers_above(site, foramen))
     height =
         std::min(height, point.z() - (margin + half_kerf) / cosine + fall * (point.y() - front));
-  if (height < wanted - 0.05)
+  if (height < requested - 0.05)
     jaw.notes.push_back(
         fmt::format("the cut is {:.1f} mm above menton, below roots, foramina and "
                     "canal; {:.1f} mm were requested",
-                    height - menton.z(), wanted - menton.z()));
+                    height - menton.z(), requested - menton.z()));
   if (height < menton.z() + 4)
     throw InputError(fmt::format(
         "genioplasty: {:.1f} mm of chin are left below roots, foramina and canal; 4 are needed",

@@ -65,11 +65,11 @@ double thinnest_plate(const SurgicalAnatomy& jaw, Side side, const Vector3d& a, 
 /// Moves the sheet inward in front of the canal, at most as far, until the plate has its thickness.
 void thicken_plate(const Site& site, Side side, Stations& at, double high, double low) {
   constexpr double farthest_mm = 4, step_mm = 0.5;
-  const double wanted = site["plate_mm"] + 0.5 * site.kerf_mm;
+  const double required = site["plate_mm"] + 0.5 * site.kerf_mm;
   const double start = at.front.x();
   for (double inward = 0; inward <= farthest_mm; inward += step_mm) {
     at.front.x() = start - sign_of(side) * inward;
-    if (thinnest_plate(site.anatomy, side, at.lingula, at.front, at.rising, high, low) >= wanted)
+    if (thinnest_plate(site.anatomy, side, at.lingula, at.front, at.rising, high, low) >= required)
       break;
   }
 }
