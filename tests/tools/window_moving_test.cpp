@@ -75,7 +75,7 @@ TEST_F(WindowSession, AReleasedJawFallsBackToWhereItsMusclesHoldIt) {
   // So far from its joints nothing holds it.
   write_into("shift:P", "-60");
   ASSERT_TRUE(wait_until([](const Json& s) { return double(s["frame"]["mandible_mm"][1]) < -50; }));
-  write_into("shift:S", "20");
+  write_into("shift:S", "45");
   ASSERT_TRUE(wait_until([](const Json& s) { return s["frame"]["stopped"] == true; }));
   const Json requested = state()["X_CM_wanted"];
   double away_mm = 0;
