@@ -2,34 +2,12 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <tuple>
 
+#include "engine/cut/disjoint_sets.h"
 #include "engine/cut/edge_key.h"
 
 namespace condyle {
-namespace {
-
-/// Disjoint sets of which the smallest member is the name.
-class Sets {
- public:
-  explicit Sets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int a) {
-    while (parent_[a] != a) a = parent_[a] = parent_[parent_[a]];
-    return a;
-  }
-  void join(int a, int b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
-}  // namespace
-
 JoinedCells join_cells(const CellComplex& complex, const CellSides& sides) {
   const auto& faces = complex.faces();
   const int count = static_cast<int>(faces.size());
@@ -41,7 +19,7 @@ JoinedCells join_cells(const CellComplex& complex, const CellSides& sides) {
   };
 
   // Member 2 i is the front of face i, 2 i + 1 its back.
-  Sets sets(2 * static_cast<std::size_t>(count));
+  DisjointSets sets(2 * static_cast<std::size_t>(count));
   struct EdgeOfCell {
     std::uint64_t edge;
     int cell, member;

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "engine/cut/disjoint_sets.h"
 #include "engine/cut/edge_key.h"
 #include "engine/cut/part_faces.h"
 
@@ -81,26 +82,6 @@ std::vector<std::pair<Corner, Corner>> pair_faces(const Faces& faces,
   return pairs;
 }
 
-/// Disjoint sets of face corners.
-class CornerSets {
- public:
-  explicit CornerSets(std::size_t faces) : parent_(3 * faces) {
-    for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = static_cast<int>(i);
-  }
-  int find(int a) {
-    while (parent_[a] != a) a = parent_[a] = parent_[parent_[a]];
-    return a;
-  }
-  void join(int a, int b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
 /// Divides a face at the middle of one of its edges.
 void divide(Faces& faces, Corner corner, int middle) {
   PartFace& face = faces[corner.face];
@@ -141,7 +122,7 @@ void part_touching_sheets(Faces& faces, std::vector<Eigen::Vector3d>& vertices,
     return;
   }
   // Each fan of faces at a vertex gets its own copy of it.
-  CornerSets sets(faces.size());
+  DisjointSets sets(3 * faces.size());  // of face corners
   for (const auto& corners : edges) {
     if (corners.size() != 2) continue;
     const auto [a, b] = std::pair(corners[0], corners[1]);
