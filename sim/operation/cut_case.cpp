@@ -48,12 +48,6 @@ void append(Group& group, const Piece& piece) {
   if (piece.volume_mm3 < sliver_mm3) ++group.slivers;
 }
 
-bool matches(const SegmentRule& rule, const Piece& piece) {
-  for (std::size_t i = 0; i < rule.sides.size() && i < piece.sides.size(); ++i)
-    if (rule.sides[i] != CutSide::neither && rule.sides[i] != piece.sides[i]) return false;
-  return true;
-}
-
 /// What stays with the cut body, then one group per rule; some may be empty.
 std::vector<Group> group_pieces(const Case& patient, const Part& bone, const CutResult& cut,
                                 const PlacedOsteotomy& placed,
@@ -70,9 +64,8 @@ std::vector<Group> group_pieces(const Case& patient, const Part& bone, const Cut
     groups.push_back({.body = name, .part = name});
   }
   for (const Piece& piece : cut.pieces) {
-    std::size_t rule = 0;
-    while (rule < names.size() && !matches(placed.segments[rule], piece)) ++rule;
-    append(groups[rule < names.size() ? of_rule[rule] : 0], piece);
+    const int rule = segment_of(placed, piece);
+    append(groups[rule < 0 ? 0 : of_rule.at(rule)], piece);
   }
   return groups;
 }
