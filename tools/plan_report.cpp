@@ -40,11 +40,15 @@ Json outcome_json(const std::string& name, const CutOutcome& outcome) {
   Json json = {{"name", name},
                {"meets_bone", outcome.meets_bone},
                {"through", outcome.through},
+               {"open_on_purpose", outcome.open_on_purpose},
                {"cut_face_area_mm2", outcome.wall_area_mm2}};
   if (outcome.meets_bone && !outcome.through) {
     json["bone_left_mm"] = outcome.left_mm;
     json["bone_left_at_mm"] = {outcome.left_at.x(), outcome.left_at.y(), outcome.left_at.z()};
   }
+  for (const CutWindow& window : outcome.windows)
+    json["windows"].push_back(
+        {{"area_mm2", window.area_mm2}, {"at_mm", {window.at.x(), window.at.y(), window.at.z()}}});
   return json;
 }
 

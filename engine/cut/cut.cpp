@@ -144,7 +144,7 @@ CutResult cut_bone(const TriMesh& bone, std::span<const Cut> cuts) {
   const JoinedCells joined = join_cells(complex, sides);
   const PartSides part_sides = find_part_sides(complex, sides, joined);
   result.outcomes = find_outcomes(complex, sides, joined, part_sides, bone, cuts);
-  result.crossings = find_crossings(complex, sides);
+  result.crossings = find_crossings(complex, sides, cuts);
   result.kerf_volume_mm3 = kerf_volume(complex, sides);
   result.turned = complex.turned();
 

@@ -11,13 +11,6 @@ namespace {
 
 bool in_reach(CellSide side) { return side != CellSide::outside; }
 
-/// Whether a face is a wall of a cut: it parts two sides, or bone and kerf.
-bool is_wall_of(const CellSides& sides, const CellFace& face, int cut) {
-  if (face.front < 0 || face.back < 0) return false;
-  const CellSide front = sides.of(face.front, cut), back = sides.of(face.back, cut);
-  return in_reach(front) && in_reach(back) && front != back;
-}
-
 /// Whether a face in the bone is on the boundary of a cut's reach.
 bool ends_reach(const CellSides& sides, const CellFace& face, int cut) {
   return face.front >= 0 && face.back >= 0 &&
@@ -106,6 +99,12 @@ void measure_left(const CellComplex& complex, const CellSides& sides, int cut, c
 
 }  // namespace
 
+bool is_wall_of(const CellSides& sides, const CellFace& face, int cut) {
+  if (face.front < 0 || face.back < 0) return false;
+  const CellSide front = sides.of(face.front, cut), back = sides.of(face.back, cut);
+  return in_reach(front) && in_reach(back) && front != back;
+}
+
 PartSides find_part_sides(const CellComplex& complex, const CellSides& sides,
                           const JoinedCells& joined) {
   std::vector<std::vector<std::array<char, 2>>> seen(
@@ -148,30 +147,12 @@ std::vector<CutOutcome> find_outcomes(const CellComplex& complex, const CellSide
       outcome.wall_area_mm2 += area(complex, face) * ((front >= 0) + (back >= 0));
     }
     outcome.through = outcome.meets_bone && !parts.joins_both[cut];
+    outcome.open_on_purpose = outcome.meets_bone && !outcome.through && cuts[cut].ends_in_bone;
     if (outcome.meets_bone && !outcome.through)
       measure_left(complex, sides, cut, bone, cuts[cut].reach, outcome);
+    if (cuts[cut].stays_in_bone) outcome.windows = find_windows(complex, sides, cut);
   }
   return outcomes;
-}
-
-std::vector<std::pair<int, int>> find_crossings(const CellComplex& complex,
-                                                const CellSides& sides) {
-  std::vector<std::pair<int, int>> crossings;
-  for (int a = 0; a < sides.cuts; ++a)
-    for (int b = a + 1; b < sides.cuts; ++b) {
-      bool both_kerf = false;
-      std::array<bool, 4> quadrant{};
-      for (int cell = 0; cell < complex.cells(); ++cell) {
-        const CellSide first = sides.of(cell, a), second = sides.of(cell, b);
-        if (!in_reach(first) || !in_reach(second)) continue;
-        if (first == CellSide::kerf && second == CellSide::kerf) both_kerf = true;
-        if (first != CellSide::kerf && second != CellSide::kerf)
-          quadrant[2 * (first == CellSide::above) + (second == CellSide::above)] = true;
-      }
-      if (both_kerf || (quadrant[0] && quadrant[1] && quadrant[2] && quadrant[3]))
-        crossings.push_back({a, b});
-    }
-  return crossings;
 }
 
 }  // namespace condyle

@@ -24,7 +24,15 @@ std::vector<CutOutcome> find_outcomes(const CellComplex& complex, const CellSide
                                       const JoinedCells& joined, const PartSides& parts,
                                       const TriMesh& bone, std::span<const Cut> cuts);
 
-/// Pairs of cuts whose walls cross in the bone.
-std::vector<std::pair<int, int>> find_crossings(const CellComplex& complex, const CellSides& sides);
+/// Whether a face is a wall of a cut: it parts two sides, or bone and kerf.
+bool is_wall_of(const CellSides& sides, const CellFace& face, int cut);
+
+/// The holes in the walls of a cut, largest first.
+std::vector<CutWindow> find_windows(const CellComplex& complex, const CellSides& sides, int cut);
+
+/// Pairs of cuts that cross in the bone, or whose kerfs run into each other. Where a cut ends at
+/// another, their common kerf reaches no more than about a kerf from that end.
+std::vector<std::pair<int, int>> find_crossings(const CellComplex& complex, const CellSides& sides,
+                                                std::span<const Cut> cuts);
 
 }  // namespace condyle

@@ -27,6 +27,9 @@ std::string place_words(const Eigen::Vector3d& p, const Landmarks& landmarks) {
 std::string outcome_words(const std::string& cut, const CutOutcome& outcome,
                           const Landmarks& landmarks) {
   if (!outcome.meets_bone) return cut + ": does not meet the bone";
+  if (outcome.open_on_purpose)
+    return fmt::format("{}: ends in the bone on purpose, {:.0f} mm² of cut faces", cut,
+                       outcome.wall_area_mm2);
   if (!outcome.through)
     return fmt::format("{}: does not go through: {:.1f} mm of bone left at {}", cut,
                        outcome.left_mm, place_words(outcome.left_at, landmarks));
@@ -65,6 +68,11 @@ std::vector<std::string> cut_sentences(const CutReport& report, const Landmarks&
   std::vector<std::string> sentences;
   for (std::size_t i = 0; i < report.outcomes.size(); ++i)
     sentences.push_back(outcome_words(report.cuts[i], report.outcomes[i], landmarks));
+  for (std::size_t i = 0; i < report.outcomes.size(); ++i)
+    for (const CutWindow& window : report.outcomes[i].windows)
+      sentences.push_back(fmt::format("{}: leaves the bone through a window of {:.1f} mm² at {}",
+                                      report.cuts[i], window.area_mm2,
+                                      place_words(window.at, landmarks)));
   for (const auto& [a, b] : report.crossings)
     sentences.push_back(fmt::format("{} and {} cross in the bone", report.cuts[a], report.cuts[b]));
   for (const CutPiece& piece : report.pieces) sentences.push_back(piece_words(piece));

@@ -147,7 +147,9 @@ Cut split_cut(Site& site, Side side) {
     std::swap(low.x(), high.x());
     low.x() = -low.x(), high.x() = -high.x();
   }
-  return {"sagittal split, " + name_of(side), proximal, jaw.box(low, high), 0};
+  Cut cut{"sagittal split, " + name_of(side), proximal, jaw.box(low, high), 0};
+  cut.stays_in_bone = true;
+  return cut;
 }
 
 PlacedOsteotomy place_sagittal_split(Site& site) {

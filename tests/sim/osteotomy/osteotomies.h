@@ -76,7 +76,9 @@ inline void expect_parted(const Operated& done, const std::vector<std::string>& 
   for (std::size_t i = 0; i < done.placed.cuts.size(); ++i) {
     EXPECT_TRUE(done.result.outcomes[i].meets_bone) << done.placed.cuts[i].name;
     EXPECT_TRUE(done.result.outcomes[i].through) << done.placed.cuts[i].name;
+    EXPECT_TRUE(done.result.outcomes[i].windows.empty()) << done.placed.cuts[i].name;
   }
+  EXPECT_TRUE(done.result.crossings.empty());
   for (const auto& piece : done.result.pieces) EXPECT_TRUE(inspect(piece.mesh).closed());
   const auto volumes = done.volumes();
   EXPECT_EQ(volumes.size(), segments.size());
