@@ -14,6 +14,7 @@ void add_release(Commands& commands);
 void add_import(Commands& commands);
 void add_plan(Commands& commands);
 void add_predict(Commands& commands);
+void add_compare(Commands& commands);
 void add_info(Commands& commands);
 void add_help(Commands& commands);
 void add_phantom(Commands& commands);

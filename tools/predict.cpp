@@ -15,7 +15,9 @@
 #include "render/image/image.h"
 #include "render/overlay/legend.h"
 #include "render/scene/scene_renderer.h"
+#include "sim/case/landmark_files.h"
 #include "sim/plan/plan_file.h"
+#include "sim/prediction/predicted_landmarks.h"
 #include "sim/prediction/prediction.h"
 #include "sim/prediction/soft_ratios.h"
 #include "tools/commands.h"
@@ -111,6 +113,7 @@ int run_predict(const PredictOptions& options, const CommonOptions& common) {
     make_folder(options.out);
     write_ply(face_at(prediction, prediction.before), options.out / "face_before.ply");
     write_ply(face_at(prediction, prediction.after), options.out / "face_after.ply");
+    write_file(options.out / "landmarks_after.csv", landmarks_csv(predicted_landmarks(prediction)));
     bar.show("drawing", 0.95);
     try {
       draw_pictures(prediction, options.out);
@@ -149,7 +152,7 @@ void add_predict(Commands& commands) {
   command
       .add_option("--out", options->out,
                   "Folder for pictures before and after, a map of the displacement, "
-                  "face_before.ply, face_after.ply and report.json")
+                  "face_before.ply, face_after.ply, landmarks_after.csv and report.json")
       ->type_name("FOLDER");
 }
 

@@ -68,4 +68,23 @@ ColourMap displacement_colours(double max_mm) {
   return map;
 }
 
+ColourMap deviation_colours(double most_mm, double tolerance_mm) {
+  const auto most = static_cast<float>(most_mm), limit = static_cast<float>(tolerance_mm);
+  ColourMap map;
+  map.title = "deviation";
+  map.unit = "mm";
+  const int codes[] = {0x053061, 0x2166ac, 0x4393c3, 0x92c5de, 0xf7f7f7,
+                       0xf4a582, 0xd6604d, 0xb2182b, 0x67001f};
+  for (int i = 0; i <= 8; ++i)
+    map.stops.push_back({most * static_cast<float>(i - 4) / 4, rgb(codes[i])});
+  map.beyond = rgb(0x8f8f88);
+  map.lines = {-limit, limit};
+  for (int i = -2; i <= 2; ++i) map.ticks.push_back(most * static_cast<float>(i) / 2);
+  map.bands = {{-most, -limit, "behind"},
+               {-limit, limit, fmt::format("within {:g}", tolerance_mm)},
+               {limit, most, "in front"}};
+  map.beyond_name = "not measured";
+  return map;
+}
+
 }  // namespace condyle

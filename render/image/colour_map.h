@@ -20,7 +20,8 @@ struct ColourMap {
   std::vector<Stop> stops;  // increasing; linear in between
   // above the last stop; below the first stop its colour applies
   Eigen::Vector3f beyond = {0.62f, 0.62f, 0.62f};
-  std::vector<float> lines;  // values drawn as dark lines, at most four
+  std::string beyond_name = {};  // in the legend; empty: "more than", with the last stop
+  std::vector<float> lines;      // values drawn as dark lines, at most four
   std::vector<float> ticks;
   std::vector<Band> bands;
 
@@ -47,5 +48,10 @@ ColourMap distance_colours(const DistanceBands& bands = {});
 /// that it is readable with every kind of colour vision and without colour; dark red beyond.
 /// source: viridis.
 ColourMap displacement_colours(double max_mm);
+
+/// Signed distance of one surface from another, mm, from -most_mm to most_mm: blue behind, white,
+/// red in front, with lines at the tolerance on either side; grey where it is not known.
+/// source: ColorBrewer RdBu.
+ColourMap deviation_colours(double most_mm, double tolerance_mm);
 
 }  // namespace condyle

@@ -60,7 +60,8 @@ void draw_legend(Image& image, const Glyphs& words, const ColourMap& map,
   const int patch = static_cast<int>(std::lround(letters));
   paint_box(image, {left, bottom + patch, right, bottom + 2 * patch}, map.beyond);
   words.write(image, right + 10 * line, bottom + 1.85 * patch, 0.95 * letters,
-              fmt::format("more than {:g}", map.high()), layout.ink);
+              map.beyond_name.empty() ? fmt::format("more than {:g}", map.high()) : map.beyond_name,
+              layout.ink);
 }
 
 PixelBox add_legend(Image& image, const Glyphs& words, const ColourMap& map,

@@ -41,6 +41,7 @@ TEST(Help, IsWrappedAndFreeOfTheLibrarysTypes) {
                                              {"plan", "move"},
                                              {"plan", "apply"},
                                              {"predict"},
+                                             {"compare"},
                                              {"info"},
                                              {"phantom"},
                                              {"bench", "tissue"},
@@ -54,7 +55,7 @@ TEST(Help, IsWrappedAndFreeOfTheLibrarysTypes) {
     for (const auto& line : lines_of(outcome.out)) EXPECT_LE(line.size(), widest_line) << line;
     ++commands;
   }
-  EXPECT_EQ(commands, 17);
+  EXPECT_EQ(commands, 18);
 }
 
 TEST(Help, GroupsOptionsAndShowsTheirRanges) {
