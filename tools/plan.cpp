@@ -35,7 +35,7 @@ struct PlanOptions {
   bool natural_head = false;
   std::string osteotomy, target, pieces;
   std::vector<std::string> settings;  // NAME=VALUE
-  double kerf_mm = 0;
+  double kerf_mm = -1;                // not given: that of the osteotomy
   std::string segment;
   std::vector<std::string> words;
   int step = 0;
@@ -97,8 +97,9 @@ int run_cut(const PlanOptions& options, const CommonOptions& common) {
   step.osteotomy = options.osteotomy;
   step.target = options.target;
   step.parameters = parse_settings(options.settings);
-  step.kerf_mm = options.kerf_mm;
-  osteotomy_parameters(step.osteotomy);  // refuses an unknown name before the patient is read
+  // Refuses an unknown name before the patient is read.
+  const double default_kerf = default_kerf_mm(step.osteotomy);
+  step.kerf_mm = options.kerf_mm < 0 ? default_kerf : options.kerf_mm;
   const Case patient = open_planned(options.patient, common);
   if (!options.pieces.empty())
     step.pieces = split_list(options.pieces);
@@ -243,8 +244,10 @@ void add_cut(Commands& commands, CLI::App& plan) {
   command.add_option("--set", options->settings, "A parameter of the osteotomy; may be repeated")
       ->type_name("NAME=VALUE");
   in_range(
-      command.add_option("--kerf", options->kerf_mm, "Thickness of the saw cut, mm; default 0"), 0,
-      max_kerf_mm);
+      command.add_option(
+          "--kerf", options->kerf_mm,
+          "Thickness of the saw cut, mm; default 1.2 for the vault, 2 for barrel staves, else 0"),
+      0, max_kerf_mm);
   command
       .add_option("--target", options->target,
                   "Body or segment to cut; default that of the osteotomy")

@@ -46,7 +46,8 @@ std::string piece_words(const CutPiece& piece) {
 
 /// What a cut step says of itself besides its title: "kerf 0.7 mm; height 5".
 std::string cut_details(const CutStep& step) {
-  std::string text = fmt::format("makes {}", fmt::join(step.pieces, ", "));
+  std::string text = step.pieces.empty() ? std::string("no segments by name")
+                                         : fmt::format("makes {}", fmt::join(step.pieces, ", "));
   if (!step.osteotomy.empty() && !step.target.empty()) text += "; of " + step.target;
   if (step.kerf_mm > 0) text += fmt::format("; kerf {:g} mm", step.kerf_mm);
   for (const auto& [name, value] : step.parameters) text += fmt::format("; {} {:g}", name, value);

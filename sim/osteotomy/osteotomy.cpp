@@ -14,9 +14,11 @@ namespace condyle {
 namespace {
 
 const std::vector<Recipe>& recipes() {
-  static const std::vector<Recipe> all = {le_fort_1_recipe(),      sagittal_split_recipe(),
-                                          vertical_ramus_recipe(), inverted_l_recipe(),
-                                          body_recipe(),           genioplasty_recipe()};
+  static const std::vector<Recipe> all = {
+      le_fort_1_recipe(),      le_fort_2_recipe(),      le_fort_3_recipe(),
+      sagittal_split_recipe(), vertical_ramus_recipe(), inverted_l_recipe(),
+      body_recipe(),           genioplasty_recipe(),    vault_strip_recipe(),
+      vault_panels_recipe(),   barrel_staves_recipe(),  bandeau_recipe()};
   return all;
 }
 
@@ -114,6 +116,8 @@ std::vector<std::string> osteotomy_names() {
 std::vector<OsteotomyParameter> osteotomy_parameters(const std::string& name) {
   return recipe_named(name).parameters;
 }
+
+double default_kerf_mm(const std::string& osteotomy) { return recipe_named(osteotomy).kerf_mm; }
 
 PlacedOsteotomy place_osteotomy(const Case& patient, const CutStep& step) {
   if (const auto problem = problem_of(step); problem && problem->item != "pieces")

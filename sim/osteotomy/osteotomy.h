@@ -38,6 +38,8 @@ struct OsteotomyParameter {
 std::vector<std::string> osteotomy_names();
 /// throws: InputError for an unknown name, with similar ones.
 std::vector<OsteotomyParameter> osteotomy_parameters(const std::string& name);
+/// Thickness of the saw cut where a plan gives none: 1.2 of a craniotome, 2 of staves, else 0.
+double default_kerf_mm(const std::string& osteotomy);
 
 /// Places a plan's cut on a patient: from landmarks and the bone's shape, or where the step has
 /// surfaces from those. The step's pieces name all segments in order, or some by their own names:

@@ -27,6 +27,7 @@ struct Recipe {
   Jaw jaw;
   std::vector<OsteotomyParameter> parameters;
   PlacedOsteotomy (*place)(Site& site);
+  double kerf_mm = 0;  // default
 };
 
 Recipe genioplasty_recipe();
@@ -35,6 +36,12 @@ Recipe le_fort_1_recipe();
 Recipe vertical_ramus_recipe();
 Recipe inverted_l_recipe();
 Recipe body_recipe();
+Recipe le_fort_2_recipe();
+Recipe le_fort_3_recipe();
+Recipe vault_strip_recipe();
+Recipe vault_panels_recipe();
+Recipe barrel_staves_recipe();
+Recipe bandeau_recipe();
 
 /// The cuts that a step draws itself, on a bone of this name.
 PlacedOsteotomy place_surfaces(const CutStep& step, const std::string& part);

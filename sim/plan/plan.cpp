@@ -117,7 +117,8 @@ Problem problem_in(const CutStep& cut) {
                        cut.surfaces[i]))
       return found;
   }
-  if (cut.pieces.empty()) return StepProblem{"pieces", "is empty; a cut names what it makes"};
+  if (cut.pieces.empty() && cut.osteotomy.empty())
+    return StepProblem{"pieces", "is empty; a cut names what it makes"};
   for (std::size_t i = 0; i < cut.pieces.size(); ++i)
     if (auto found = name_problem(fmt::format("pieces[{}]", i), cut.pieces[i])) return found;
   return std::nullopt;
