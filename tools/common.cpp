@@ -50,10 +50,14 @@ Progress ProgressBar::callback() {
 
 Case open_patient(const std::filesystem::path& folder, const CommonOptions& common,
                   ProgressBar& bar, const Progress& progress) {
-  if (!folder.empty()) return load_case(folder);
+  HeadChoice choice;
+  if (is_head_name(folder.string()))
+    choice = parse_head_name(folder.string());
+  else if (!folder.empty())
+    return load_case(folder);
   // Generating the patient takes some seconds once; a log should say so.
   bool announced = false;
-  return builtin_patient([&](std::string_view what, double fraction) {
+  return builtin_patient(choice, [&](std::string_view what, double fraction) {
     if (!announced && !common.quiet)
       fmt::print(stderr, "making the built-in patient (once; then it is cached)\n");
     announced = true;

@@ -35,7 +35,8 @@ class ProgressBar {
   std::chrono::steady_clock::time_point last_line_ = std::chrono::steady_clock::now();
 };
 
-/// The case in the folder, or the built-in patient if it is empty. `progress`, if given, is called
+/// The case in the folder, the built-in patient if it is empty, or a head by its name, such as
+/// built-in:class-iii; see parse_head_name(). `progress`, if given, is called
 /// instead of the bar.
 Case open_patient(const std::filesystem::path& folder, const CommonOptions& common,
                   ProgressBar& bar, const Progress& progress = {});

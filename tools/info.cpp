@@ -9,6 +9,7 @@
 #include "engine/mesh_io/mesh_files.h"
 #include "sim/case/case_io.h"
 #include "sim/dynamics/body_mass.h"
+#include "sim/phantom/head_shape.h"
 #include "tools/commands.h"
 #include "tools/common.h"
 
@@ -85,7 +86,7 @@ std::string line(const Json& mesh) {
 }
 
 int run_info(const std::filesystem::path& what, const CommonOptions& common) {
-  if (!what.empty() && !std::filesystem::is_directory(what)) {
+  if (!what.empty() && !is_head_name(what.string()) && !std::filesystem::is_directory(what)) {
     const Json mesh = describe(read_mesh(what));
     fmt::print("{}\n", common.json ? mesh.dump(2, ' ', false, Json::error_handler_t::replace)
                                    : what.string() + ": " + line(mesh));

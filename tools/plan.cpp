@@ -43,7 +43,7 @@ struct PlanOptions {
 
 Case open_planned(const std::string& patient, const CommonOptions& common) {
   ProgressBar bar(common);
-  Case opened = open_patient(patient == "built-in" ? fs::path() : fs::path(patient), common, bar);
+  Case opened = open_patient(patient, common, bar);
   bar.clear();
   return opened;
 }

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int surface_version =
-    12;  // increment when surfaces or landmarks change without a change of the solids
+    13;  // increment when surfaces or landmarks change without a change of the solids
 
 /// Hash of the recipes' values at scattered points, so that a changed recipe changes the key.
 std::uint64_t recipe_key() {
@@ -58,6 +58,10 @@ Case builtin_patient(const Progress& progress) {
   if (!cache) return build_phantom(progress);
   return cached_case(*cache, fmt::format("built-in-patient-{:016x}", recipe_key()),
                      [&] { return build_phantom(progress); });
+}
+
+Case builtin_patient(const HeadChoice& choice, const Progress& progress) {
+  return reshaped_head(builtin_patient(progress), choice);
 }
 
 }  // namespace condyle

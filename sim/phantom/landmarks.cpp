@@ -66,6 +66,7 @@ const std::vector<Named> named_points = {
     {"soft_glabella", On::skin, 0, -99.5, 41},
     {"sellion", On::skin, 0, -96.7, 24.6},
     {"pronasale", On::skin, 0, -118.7, -14.4},
+    {"columella", On::skin, 0, -113, -24.2},
     {"subnasale", On::skin, 0, -107, -28.5},
     {"labrale_superius", On::skin, 0, -105.2, -45.6},
     {"stomion", On::space, 0, -102, -50.7},
@@ -111,6 +112,19 @@ Vector3d onto_surface(const FieldRecipe& field, Vector3d p) {
 }
 
 }  // namespace
+
+Role landmark_role(const std::string& name) {
+  if (name.starts_with("lower_")) return Role::mandible;  // incisal point and teeth
+  std::string base = name;
+  for (const char* side : {"left_", "right_"})
+    if (base.starts_with(side)) base.erase(0, std::string(side).size());
+  for (const auto& entry : named_points) {
+    if (base != entry.name) continue;
+    if (entry.on == On::mandible || base == "condyle") return Role::mandible;
+    if (entry.on == On::skin || base == "hyoid" || base == "stomion") return Role::face;
+  }
+  return Role::skull;
+}
 
 Landmarks phantom_landmarks(const PhantomSolid& solid) {
   Landmarks landmarks;

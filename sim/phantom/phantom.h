@@ -4,6 +4,7 @@
 
 #include "engine/core/progress.h"
 #include "sim/case/case.h"
+#include "sim/phantom/head_shape.h"
 
 namespace condyle {
 
@@ -15,5 +16,12 @@ Case build_phantom(const Progress& progress = {});
 /// generated again when the cache is absent, damaged or of another version. A cache that cannot be
 /// written is not an error.
 Case builtin_patient(const Progress& progress = {});
+
+/// The built-in patient, `patient`, with the shape of a chosen head; itself for the default choice.
+/// Topology, colours, joints and the shapes of teeth are kept. About 1 s.
+Case reshaped_head(Case patient, const HeadChoice& choice);
+
+/// The chosen head, from the cached built-in patient.
+Case builtin_patient(const HeadChoice& choice, const Progress& progress = {});
 
 }  // namespace condyle

@@ -32,6 +32,9 @@ void add_lashes(TriMesh& eye);
 /// Named points of the head; those on a surface are moved onto it.
 Landmarks phantom_landmarks(const PhantomSolid& solid);
 
+/// What a landmark of the built-in patient moves with: skull, mandible or face.
+Role landmark_role(const std::string& name);
+
 /// Mandibular canals of both sides, from the lingula to the mental foramen.
 std::vector<Canal> phantom_canals(const Landmarks& landmarks);
 
