@@ -10,6 +10,7 @@
 #include "engine/mesh/triangle_tree.h"
 #include "sim/tissue/anatomy.h"
 #include "sim/tissue/pieces.h"
+#include "sim/tissue/strip.h"
 
 namespace condyle {
 namespace {
@@ -78,9 +79,9 @@ std::vector<BodyId> bodies_from(const Case& uncut, BodyId whole, const Operated&
 
 }  // namespace
 
-std::shared_ptr<const TissueModel> operated_tissue(const Case& uncut,
-                                                   const std::shared_ptr<const TissueModel>& tissue,
-                                                   const Operated& operated, int threads) {
+OperatedTissue operated_tissue(const Case& uncut, const std::shared_ptr<const TissueModel>& tissue,
+                               const Operated& operated, const Plan& plan,
+                               const StrippingSettings& stripping, int threads) {
   std::vector<CutBone> cuts;
   for (const BodyId whole : {uncut.jaw.upper_arch, uncut.jaw.lower_arch}) {
     const std::vector<BodyId> bodies = bodies_from(uncut, whole, operated);
@@ -95,8 +96,11 @@ std::shared_ptr<const TissueModel> operated_tissue(const Case& uncut,
     }
     cuts.push_back(std::move(cut));
   }
-  if (cuts.empty()) return tissue;
-  return carry_to_pieces(*tissue, cuts, operated.patient.jaw, threads);
+  OperatedTissue operated_tissue{tissue, strip(*tissue, operated, plan, cuts, stripping)};
+  if (cuts.empty()) return operated_tissue;
+  operated_tissue.model = carry_to_pieces(*strip_anchors(tissue, operated_tissue.stripping.kept),
+                                          cuts, operated.patient.jaw, threads);
+  return operated_tissue;
 }
 
 }  // namespace condyle

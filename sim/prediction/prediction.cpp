@@ -60,7 +60,10 @@ Prediction predict(const Case& patient, const Plan& plan, const PredictionSettin
   of_tissue.threads = settings.threads;
   const auto whole = build_tissue(uncut, of_tissue, progress);
   const auto start = std::chrono::steady_clock::now();
-  prediction.tissue = operated_tissue(uncut, whole, prediction.operated, settings.threads);
+  OperatedTissue held = operated_tissue(uncut, whole, prediction.operated, plan,
+                                        settings.stripping, settings.threads);
+  prediction.tissue = std::move(held.model);
+  prediction.stripping = std::move(held.stripping);
 
   TissueState state = rest_tissue(*whole);
   deform_face(*whole, state, prediction.before, settings.threads);

@@ -8,6 +8,7 @@
 
 #include "engine/core/progress.h"
 #include "sim/operation/operation.h"
+#include "sim/prediction/stripping.h"
 #include "sim/tissue/tissue.h"
 
 namespace condyle {
@@ -16,6 +17,7 @@ struct PredictionSettings {
   TissueSettings tissue;
   int steps = 10;  // from rest to the planned position
   int threads = 2;
+  StrippingSettings stripping;
 };
 
 /// A soft landmark before and after, mm, in the cranium's frame.
@@ -29,6 +31,7 @@ struct Prediction {
   Operated operated;
   std::shared_ptr<const TissueModel> tissue;  // on the operated bodies
   TissueState state;
+  Stripping stripping;
   TriMesh face;                                // as displayed, with its lips parted, at rest
   std::vector<Eigen::Vector3f> before, after;  // its vertices
   std::vector<SoftPoint> points;

@@ -40,6 +40,14 @@ double border_follows(double to_mandible_mm) {
   return 1 - smooth_step((to_mandible_mm - border_full_mm) / border_reach_mm);
 }
 
+/// Whether the innermost node of a column lies on the bone that it is attached to: below most of
+/// the nose there is none.
+bool on_bone(const Column& column) {
+  constexpr double most_mm = 3;
+  return !column.cartilage ||
+         (column.support && std::abs(column.met_depth - column.depth) < most_mm);
+}
+
 /// The anchors added and the weights of the lower jaw assigned so far.
 class Anchoring {
  public:
@@ -58,11 +66,12 @@ class Anchoring {
       if (from_.skin.rim[c] || !column.attached_to) continue;
       const int inner = node(c, mesh_.sheets - 1);
       const bool lower = *column.attached_to == lower_;
-      add(inner, lower ? 1 : 0, attached_stiffness(column.firmness), AnchorKind::bone);
+      add(inner, lower ? 1 : 0, attached_stiffness(column.firmness),
+          on_bone(column) ? AnchorKind::bone : AnchorKind::cartilage);
       give(inner, lower ? 1 : 0);
       if (column.cartilage)
         for (int s = 0; s + 1 < mesh_.sheets; ++s)
-          add(node(c, s), lower ? 1 : 0, cartilage_stiffness, AnchorKind::bone);
+          add(node(c, s), lower ? 1 : 0, cartilage_stiffness, AnchorKind::cartilage);
       ++(lower ? summary_.attached_to_mandible : summary_.attached_to_cranium);
     }
     check_attachment(summary_.attached_to_cranium, summary_.attached_to_mandible, from_.bones,

@@ -29,9 +29,10 @@ struct TissueMesh {
 
 /// What an anchor represents.
 enum class AnchorKind : signed char {
-  bone,   // tissue grown on bone: it moves with one body
-  rim,    // the cut towards the rest of the face: fixed
-  other,  // borders, lips, loose tissue: carried by several bodies
+  bone,       // tissue grown on bone: it moves with one body
+  cartilage,  // the nose, where no bone is below it: carried by the bones around it
+  rim,        // the cut towards the rest of the face: fixed
+  other,      // borders, lips, loose tissue: carried by several bodies
 };
 
 /// What holds the tissue from outside, by the bodies that carry it.

@@ -37,7 +37,7 @@ class PieceFractions {
     // of each piece, of each constrained node
     std::vector<std::vector<double>> value(cut.pieces.size());
     for (std::size_t i = 0; i < support.kind.size(); ++i) {
-      if (support.kind[i] == AnchorKind::other) continue;
+      if (support.kind[i] == AnchorKind::other || support.kind[i] == AnchorKind::cartilage) continue;
       const int node = mesh_.elements.anchor_node[i];
       given.push_back(node);
       const BodyId owner =

@@ -154,43 +154,49 @@ void guide_lips(const TissueContact& contact, const Obstacle& obstacle, std::spa
 
 }  // namespace
 
+void fit_to_rest(const TissueContact& contact, const Nodes& rest,
+                 const std::vector<std::optional<Vector3d>>& shift, Obstacle& obstacle) {
+  const std::size_t count = contact.points.size();
+  obstacle.allowance.assign(count, 0.0);
+  obstacle.near_at_rest.assign(count, 0);
+  std::vector<PointContact> touches;
+  find_obstacle_contacts(contact.points, obstacle.allowance, *obstacle.surface, Pose{}, rest, {},
+                         touches);
+  obstacle.shift.assign(count, Vector3d::Zero());
+  obstacle.front_guided.resize(count);
+  for (std::size_t i = 0; i < count; ++i) obstacle.front_guided[i] = !contact.front[i].isZero();
+  for (const auto& touch : touches) {
+    const auto i = static_cast<std::size_t>(touch.point);
+    // A point that rests under a tooth's edge would not return there.
+    if (touch.spring.normal.dot(contact.front[i]) < min_front_cos) obstacle.front_guided[i] = 0;
+    obstacle.near_at_rest[i] = 1;
+    if (touch.gap < 0)
+      obstacle.shift[i] =
+          !shift.empty() && shift[i] ? *shift[i] : obstacle.surface->exit_displacement(touch.at);
+  }
+  touches.clear();
+  find_obstacle_contacts(contact.points, obstacle.allowance, *obstacle.surface, Pose{}, rest, {},
+                         touches, obstacle.shift);
+  allow_depths(touches, obstacle.allowance);
+  std::vector<double> min_gap(count, min_gap_mm);
+  for (const auto& touch : touches)
+    min_gap[touch.point] = std::clamp(touch.gap - slack_mm, 0.0, min_gap_mm);
+  for (std::size_t i = 0; i < count; ++i)
+    if (contact.points[i].count > 1) obstacle.allowance[i] -= min_gap[i];
+}
+
 Obstacle make_obstacle(const TissueContact& contact, const Nodes& rest, const BodySurface& bone,
                        int threads, const std::vector<std::optional<Vector3d>>& shift) {
-  const std::size_t count = contact.points.size();
   Obstacle made;
   made.body = bone.body;
   made.extent = bounding_box(bone.mesh);
-  made.allowance.assign(count, 0.0);
-  made.near_at_rest.assign(count, 0);
   Box region;
   for (const auto& point : contact.points) region.add(point.at(rest));
   region.low.array() -= swept_mm;
   region.high.array() += swept_mm;
   made.surface =
       std::make_shared<ContactObstacle>(bone.mesh, region, field_cache_folder(), threads);
-  std::vector<PointContact> touches;
-  find_obstacle_contacts(contact.points, made.allowance, *made.surface, Pose{}, rest, {}, touches);
-  made.shift.assign(count, Vector3d::Zero());
-  made.front_guided.resize(count);
-  for (std::size_t i = 0; i < count; ++i) made.front_guided[i] = !contact.front[i].isZero();
-  for (const auto& touch : touches) {
-    const auto i = static_cast<std::size_t>(touch.point);
-    // A point that rests under a tooth's edge would not return there.
-    if (touch.spring.normal.dot(contact.front[i]) < min_front_cos) made.front_guided[i] = 0;
-    made.near_at_rest[i] = 1;
-    if (touch.gap < 0)
-      made.shift[i] =
-          !shift.empty() && shift[i] ? *shift[i] : made.surface->exit_displacement(touch.at);
-  }
-  touches.clear();
-  find_obstacle_contacts(contact.points, made.allowance, *made.surface, Pose{}, rest, {}, touches,
-                         made.shift);
-  allow_depths(touches, made.allowance);
-  std::vector<double> min_gap(count, min_gap_mm);
-  for (const auto& touch : touches)
-    min_gap[touch.point] = std::clamp(touch.gap - slack_mm, 0.0, min_gap_mm);
-  for (std::size_t i = 0; i < count; ++i)
-    if (contact.points[i].count > 1) made.allowance[i] -= min_gap[i];
+  fit_to_rest(contact, rest, shift, made);
   return made;
 }
 

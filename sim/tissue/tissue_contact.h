@@ -81,6 +81,11 @@ Obstacle make_obstacle(const TissueContact& contact, const Nodes& rest, const Bo
                        int threads = 1,
                        const std::vector<std::optional<Eigen::Vector3d>>& shift = {});
 
+/// Fills the obstacle's values of each point from its surface and the overlap at rest; the rest as
+/// in make_obstacle().
+void fit_to_rest(const TissueContact& contact, const Nodes& rest,
+                 const std::vector<std::optional<Eigen::Vector3d>>& shift, Obstacle& obstacle);
+
 /// Pairs of nodes of both lips that are side by side at rest: see SpringPrismMesh::may_touch.
 std::vector<std::array<int, 2>> lip_contact_pairs(const TissueContact& contact, const Nodes& rest);
 

@@ -1,0 +1,118 @@
+#include "sim/prediction/stripping.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "engine/mesh/triangle_tree.h"
+#include "sim/tissue/model.h"
+
+namespace condyle {
+namespace {
+
+/// A cut of the plan as its cut faces, with the bodies of the segments that it made.
+struct CutSite {
+  std::string osteotomy;
+  TriangleTree faces;
+  std::vector<BodyId> segments;
+};
+
+TriMesh cut_faces(const Operated& operated, int step) {
+  TriMesh faces;
+  for (const Part& part : operated.patient.parts) {
+    const auto found = operated.origin.find(part.name);
+    if (found == operated.origin.end()) continue;
+    const SurfaceOrigin& origin = found->second;
+    const int first = static_cast<int>(faces.vertices.size());
+    faces.vertices.insert(faces.vertices.end(), part.mesh.vertices.begin(),
+                          part.mesh.vertices.end());
+    for (std::size_t t = 0; t < part.mesh.triangles.size(); ++t)
+      if (origin.made_by[t] == step)
+        faces.triangles.emplace_back(part.mesh.triangles[t].array() + first);
+  }
+  return faces;
+}
+
+std::string osteotomy_of(const Plan& plan, int step) {
+  for (const PlanStep& of : plan.steps)
+    if (of.id == step)
+      if (const auto* cut = std::get_if<CutStep>(&of.action)) return cut->osteotomy;
+  return "";
+}
+
+std::vector<CutSite> sites_of(const Operated& operated, const Plan& plan) {
+  std::vector<CutSite> sites;
+  for (const CutReport& cut : operated.cuts) {
+    TriMesh faces = cut_faces(operated, cut.step);
+    if (faces.triangles.empty()) continue;
+    CutSite site{osteotomy_of(plan, cut.step), TriangleTree(faces), {}};
+    for (const CutPiece& piece : cut.pieces)
+      if (const auto body = operated.patient.bodies.find(piece.body); body && !piece.stays)
+        site.segments.push_back(*body);
+    sites.push_back(std::move(site));
+  }
+  return sites;
+}
+
+/// Finds the piece of a cut bone that a point belongs to.
+class PieceFinder {
+ public:
+  explicit PieceFinder(const CutBone& cut) : cut_(cut), tree_(cut.surface) {}
+  BodyId whole() const { return cut_.whole; }
+  BodyId owner(const Eigen::Vector3d& p) const { return cut_.owner[tree_.nearest(p).triangle]; }
+
+ private:
+  const CutBone& cut_;
+  TriangleTree tree_;
+};
+
+/// The one body that carries an anchor grown on bone.
+BodyId carrier_of(const TissueSupport& support, std::size_t anchor) {
+  for (const auto& [body, weight] : support.anchor[anchor])
+    if (weight > 0.5) return body;
+  return cranium_body;
+}
+
+bool holds(const std::vector<BodyId>& bodies, BodyId body) {
+  return std::find(bodies.begin(), bodies.end(), body) != bodies.end();
+}
+
+}  // namespace
+
+Stripping strip(const TissueModel& tissue, const Operated& operated, const Plan& plan,
+                std::span<const CutBone> cuts, const StrippingSettings& settings) {
+  const TissueMesh& mesh = *tissue.mesh;
+  const TissueSupport& support = tissue.support;
+  Stripping result;
+  result.settings = settings;
+  result.kept.assign(support.kind.size(), 1.0);
+  const std::vector<CutSite> sites = sites_of(operated, plan);
+  std::vector<PieceFinder> bones(cuts.begin(), cuts.end());
+  for (std::size_t i = 0; i < support.kind.size(); ++i) {
+    if (support.kind[i] != AnchorKind::bone) continue;
+    ++result.attachments;
+    const auto bone = std::find_if(bones.begin(), bones.end(), [&](const PieceFinder& of) {
+      return of.whole() == carrier_of(support, i);
+    });
+    if (bone == bones.end()) continue;
+    const Eigen::Vector3d& p = mesh.rest[mesh.elements.anchor_node[i]];
+    const BodyId owner = bone->owner(p);
+    bool near = false, on_maxilla = false;
+    for (const CutSite& site : sites) {
+      const bool of_segment = holds(site.segments, owner);
+      if (of_segment && site.osteotomy == "le_fort_1") on_maxilla = true;
+      if (of_segment && site.osteotomy == "genioplasty") continue;
+      near = near || site.faces.nearest(p, settings.reach_mm).triangle >= 0;
+    }
+    if (on_maxilla) {
+      result.kept[i] = settings.on_maxilla;
+      ++result.on_maxilla;
+    } else if (near) {
+      result.kept[i] = settings.near_cut;
+      ++result.near_cuts;
+    }
+  }
+  return result;
+}
+
+}  // namespace condyle
