@@ -88,6 +88,7 @@ OperatedTissue operated_tissue(const Case& uncut, const std::shared_ptr<const Ti
     if (bodies.size() < 2) continue;
     CutBone cut;
     cut.whole = whole;
+    cut.septum = whole == uncut.jaw.upper_arch ? stripping.septum : 0;
     cut.surface = jaw_mesh(uncut, whole);
     cut.owner = owners_of(cut.surface, operated, bodies);
     for (const BodyId body : bodies) {

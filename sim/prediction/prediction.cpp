@@ -60,8 +60,8 @@ Prediction predict(const Case& patient, const Plan& plan, const PredictionSettin
   of_tissue.threads = settings.threads;
   const auto whole = build_tissue(uncut, of_tissue, progress);
   const auto start = std::chrono::steady_clock::now();
-  OperatedTissue held = operated_tissue(uncut, whole, prediction.operated, plan,
-                                        settings.stripping, settings.threads);
+  OperatedTissue held = operated_tissue(uncut, whole, prediction.operated, plan, settings.stripping,
+                                        settings.threads);
   prediction.tissue = std::move(held.model);
   prediction.stripping = std::move(held.stripping);
 

@@ -97,20 +97,26 @@ Stripping strip(const TissueModel& tissue, const Operated& operated, const Plan&
     if (bone == bones.end()) continue;
     const Eigen::Vector3d& p = mesh.rest[mesh.elements.anchor_node[i]];
     const BodyId owner = bone->owner(p);
-    bool near = false, on_maxilla = false;
+    bool near = false, on_maxilla = false, above_chin = false;
     for (const CutSite& site : sites) {
       const bool of_segment = holds(site.segments, owner);
-      if (of_segment && site.osteotomy == "le_fort_1") on_maxilla = true;
-      if (of_segment && site.osteotomy == "genioplasty") continue;
-      near = near || site.faces.nearest(p, settings.reach_mm).triangle >= 0;
+      const bool chin = site.osteotomy == "genioplasty";
+      on_maxilla = on_maxilla || (of_segment && site.osteotomy == "le_fort_1");
+      if (of_segment && chin) continue;
+      const double distance = site.faces.nearest(p).distance;
+      above_chin = above_chin || (chin && distance < settings.freed_mm);
+      near = near || distance < settings.reach_mm;
     }
-    if (on_maxilla) {
-      result.kept[i] = settings.on_maxilla;
-      ++result.on_maxilla;
-    } else if (near) {
-      result.kept[i] = settings.near_cut;
-      ++result.near_cuts;
-    }
+    const auto strip_to = [&](double fraction, int& count) {
+      result.kept[i] = fraction;
+      ++count;
+    };
+    if (above_chin)
+      strip_to(settings.above_chin, result.above_chin);
+    else if (on_maxilla)
+      strip_to(settings.on_maxilla, result.on_maxilla);
+    else if (near)
+      strip_to(settings.near_cut, result.near_cuts);
   }
   return result;
 }

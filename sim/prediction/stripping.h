@@ -11,11 +11,15 @@
 
 namespace condyle {
 
-/// How far the surgeon lifts the soft tissue off the bone, and how much of its attachment remains.
+/// How far a surgeon lifts the soft tissue off the bone, and what remains of its attachment.
+/// Fitted on the built-in patient to the published ratios of soft to hard tissue.
 struct StrippingSettings {
-  double reach_mm = 8;       // from a cut line along the bone
-  double near_cut = 0.05;    // fraction of the attachment's stiffness that remains there
-  double on_maxilla = 0.05;  // the same on the whole front of a Le Fort segment
+  double reach_mm = 8;        // from a cut line along the bone
+  double near_cut = 0.05;     // fraction of the attachment's stiffness that remains there
+  double on_maxilla = 0.05;   // the same on the whole front of a Le Fort I segment
+  double freed_mm = 20;       // from the cut of a genioplasty up to the vestibular incision
+  double above_chin = 0.001;  // the fraction that remains there
+  double septum = 0.4;        // of the nose over a Le Fort I segment that the septum holds back
 };
 
 /// Attachments that were stripped.
@@ -23,14 +27,15 @@ struct Stripping {
   StrippingSettings settings;
   std::vector<double> kept;  // of each anchor of the tissue: fraction of its stiffness
   int attachments = 0;       // to bone, before
-  int near_cuts = 0, on_maxilla = 0;  // number stripped
+  // Number of those stripped near cut lines, on Le Fort I segments, and above chins.
+  int near_cuts = 0, on_maxilla = 0, above_chin = 0;
 
-  int stripped() const { return near_cuts + on_maxilla; }
+  int stripped() const { return near_cuts + on_maxilla + above_chin; }
 };
 
-/// The attachments that the cuts of a plan strip. Near a cut line both sides are stripped, except
-/// that periosteum stays on the segment of a genioplasty; of a Le Fort I segment the whole front.
-/// `cuts`: of the patient of `tissue`, see operated_tissue().
+/// The attachments that the cuts of a plan strip, moved or not: near a cut line those of both
+/// sides; of a Le Fort I segment the whole front; of a genioplasty the front of the jaw above it,
+/// while periosteum stays on the chin. `cuts`: of the patient of `tissue`, see operated_tissue().
 Stripping strip(const TissueModel& tissue, const Operated& operated, const Plan& plan,
                 std::span<const CutBone> cuts, const StrippingSettings& settings = {});
 

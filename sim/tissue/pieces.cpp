@@ -37,7 +37,8 @@ class PieceFractions {
     // of each piece, of each constrained node
     std::vector<std::vector<double>> value(cut.pieces.size());
     for (std::size_t i = 0; i < support.kind.size(); ++i) {
-      if (support.kind[i] == AnchorKind::other || support.kind[i] == AnchorKind::cartilage) continue;
+      if (support.kind[i] == AnchorKind::other || support.kind[i] == AnchorKind::cartilage)
+        continue;
       const int node = mesh_.elements.anchor_node[i];
       given.push_back(node);
       const BodyId owner =
@@ -100,6 +101,23 @@ std::vector<BodyWeight> on_pieces(const BodyWeights& weights, std::size_t item, 
   return now;
 }
 
+/// The septum parts from a segment of the upper jaw, and holds the nose back on the skull.
+std::vector<BodyWeight> held_by_septum(std::vector<BodyWeight> of, std::span<const CutBone> cuts) {
+  for (const CutBone& cut : cuts) {
+    double held = 0;
+    for (auto& [body, weight] : of) {
+      const bool is_piece =
+          body != cut.whole && std::any_of(cut.pieces.begin(), cut.pieces.end(),
+                                           [&](const auto& piece) { return piece.body == body; });
+      if (!is_piece) continue;
+      held += cut.septum * weight;
+      weight *= 1 - cut.septum;
+    }
+    if (held > 0) of.push_back({cut.whole, held});
+  }
+  return of;
+}
+
 TissueSupport support_on_pieces(const TissueModel& uncut, std::span<const CutBone> cuts,
                                 std::span<const PieceFractions> fractions) {
   const TissueSupport& before = uncut.support;
@@ -108,9 +126,11 @@ TissueSupport support_on_pieces(const TissueModel& uncut, std::span<const CutBon
   for (std::size_t i = 0; i < before.kind.size(); ++i) {
     const int node = uncut.mesh->elements.anchor_node[i];
     if (before.kind[i] != AnchorKind::bone) {
-      support.anchor.add(before.kind[i] == AnchorKind::rim
-                             ? std::vector<BodyWeight>{}
-                             : on_pieces(before.anchor, i, node, cuts, fractions));
+      std::vector<BodyWeight> now;
+      if (before.kind[i] != AnchorKind::rim)
+        now = on_pieces(before.anchor, i, node, cuts, fractions);
+      support.anchor.add(
+          before.kind[i] == AnchorKind::cartilage ? held_by_septum(std::move(now), cuts) : now);
       continue;
     }
     std::vector<BodyWeight> now(before.anchor[i].begin(), before.anchor[i].end());

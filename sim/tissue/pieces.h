@@ -15,13 +15,16 @@ struct CutBone {
   TriMesh surface;                  // of the uncut bone with its teeth, mm, at rest
   std::vector<BodyId> owner;        // of each triangle of `surface`: the piece it belongs to
   std::vector<BodySurface> pieces;  // with their cut faces, at their poses in the uncut bone
+  /// Fraction of the nose that the septum holds to the piece with the body of the whole bone.
+  double septum = 0;
 };
 
 /// The tissue of an uncut patient on the pieces of its bones: the same mesh, springs, rest state
 /// and displayed face, held by other bodies, so that the face of a plan is the same model at other
 /// poses. Tissue moves with the piece that owns the nearest triangle of its bone; tissue carried by
-/// several bodies has harmonic weights over the mesh. `jaw`: the bodies of the arches after the
-/// cuts. throws: InputError for a cut whose owners do not match its surface, or name no piece.
+/// several bodies, and the cartilage of the nose, has harmonic weights over the mesh. `jaw`: the
+/// bodies of the arches after the cuts. throws: InputError for a cut whose owners do not match its
+/// surface, or name no piece.
 std::shared_ptr<const TissueModel> carry_to_pieces(const TissueModel& uncut,
                                                    std::span<const CutBone> cuts,
                                                    const JawBodies& jaw = {}, int threads = 1);
