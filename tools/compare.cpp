@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/mesh/measure.h"
 #include "engine/mesh/repair.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "render/gl/gl_context.h"
@@ -18,6 +19,7 @@
 #include "sim/case/landmark_files.h"
 #include "sim/case/source_frame.h"
 #include "sim/comparison/face_comparison_text.h"
+#include "sim/frame/body_poses.h"
 #include "tools/commands.h"
 #include "tools/common.h"
 
@@ -85,38 +87,52 @@ double range_of(const FaceComparison& comparison) {
   return 20;
 }
 
+/// The triangles whose corners all have this value, as a part that is only drawn.
+Part drawn_part(const TriMesh& mesh, const std::vector<bool>& of_vertex, bool value,
+                const std::string& name) {
+  Part part;
+  part.name = name;
+  part.mesh.vertices = mesh.vertices;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    bool all = true;
+    for (const int corner : t) all = all && of_vertex[static_cast<std::size_t>(corner)];
+    if (all == value) part.mesh.triangles.push_back(t);
+  }
+  return part;
+}
+
 void draw_map(const FaceComparison& comparison, const TriMesh& predicted, double range_mm,
               const fs::path& folder) {
   const OffscreenContext context;
-  Part face;
-  face.name = "face";
-  face.role = Role::face;
-  face.mesh = predicted;
-  const std::array parts{face};
-  SceneRenderer renderer(parts);
-  FrameState frame;
-  for (const Eigen::Vector3d& p : predicted.vertices) frame.face.push_back(p.cast<float>());
-  renderer.update(frame);
-  const ColourMap map = deviation_colours(range_mm, 2);
-  renderer.set_colour_map(map);
+  std::vector<bool> measured;
   std::vector<float> values;
+  Box box;
   for (std::size_t i = 0; i < comparison.distance_mm.size(); ++i) {
     const double distance = comparison.distance_mm[i];
-    const bool shown = comparison.regions.empty() || comparison.regions[i] != FaceRegion::none;
+    measured.push_back(std::isfinite(distance) &&
+                       (comparison.regions.empty() || comparison.regions[i] != FaceRegion::none));
     // Values at the end of the map and beyond it would have the colour of "not measured".
-    values.push_back(std::isfinite(distance) && shown
-                         ? static_cast<float>(std::min(distance, range_mm * (1 - 1e-6)))
-                         : std::numeric_limits<float>::infinity());
+    values.push_back(static_cast<float>(std::min(distance, range_mm * (1 - 1e-6))));
+    if (measured.back()) box.add(predicted.vertices[i]);
   }
-  renderer.color_part(face.name, values);
+  const std::array parts{drawn_part(predicted, measured, true, "measured"),
+                         drawn_part(predicted, measured, false, "not measured")};
+  const ColourMap map = deviation_colours(range_mm, 2);
+  SceneRenderer renderer(parts);
+  FrameState frame;
+  frame.poses = completed(native_bodies(), {});
+  renderer.update(frame);
+  renderer.set_colour_map(map);
+  renderer.color_part(parts[0].name, values);
+  renderer.color_part(parts[1].name,
+                      std::vector<float>(values.size(), std::numeric_limits<float>::infinity()));
   PictureSettings settings;
   settings.width = 900;
   settings.height = 1000;
   settings.backdrop = Backdrop::light;
   const Glyphs words;
-  const auto [low, high] = renderer.bounds();
   for (const char* view : {"front", "left", "right", "three-quarter"}) {
-    Image image = renderer.picture(standard_camera(view, low, high, 0.9), settings);
+    Image image = renderer.picture(standard_camera(view, box.low, box.high, 0.9), settings);
     add_legend(image, words, map, {"prediction against the face", "after the operation"},
                settings.backdrop);
     write_png(folder / fmt::format("deviation_{}.png", view), image);

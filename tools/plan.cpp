@@ -19,6 +19,7 @@
 #include "sim/plan/plan_file.h"
 #include "tools/commands.h"
 #include "tools/common.h"
+#include "tools/plan_compare.h"
 #include "tools/plan_report.h"
 
 namespace condyle {
@@ -310,7 +311,8 @@ void add_plan(Commands& commands) {
                                        "condyle plan new --out plan.json\n"
                                        "  condyle plan cut plan.json le_fort_1\n"
                                        "  condyle plan move plan.json maxilla forward 4 up 2");
-  for (const auto add : {add_new, add_cut, add_move, add_show, add_apply, add_remove})
+  for (const auto add :
+       {add_new, add_cut, add_move, add_show, add_apply, add_remove, add_plan_compare})
     add(commands, plan);
 }
 

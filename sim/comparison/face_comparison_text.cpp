@@ -28,7 +28,9 @@ std::string face_comparison_text(const FaceComparison& comparison) {
                                                  "max", "below 2 mm", "signed mean",
                                                  "signed median", "measured"}};
   const auto mm = [](double value) { return fmt::format("{:.2f}", value); };
-  const auto with_sign = [](double value) { return fmt::format("{:+.2f}", value); };
+  const auto with_sign = [](double value) {
+    return fmt::format("{:+.2f}", std::abs(value) < 0.005 ? 0.0 : value);
+  };
   const auto percent = [](double share) { return fmt::format("{:.0f} %", 100 * share); };
   for (const RegionDistances& row : comparison.rows)
     rows.push_back({row.region, mm(row.mean_mm), mm(row.median_mm), mm(row.p90_mm), mm(row.p95_mm),
