@@ -78,10 +78,11 @@ double entry(const Vector3d& low, const Vector3d& high, const Vector3d& origin,
   double from = 0, to = limit;
   for (int k = 0; k < 3; ++k) {
     double a = (low[k] - origin[k]) * inverse[k], b = (high[k] - origin[k]) * inverse[k];
-    if (a > b) std::swap(a, b);
     // A ray in the plane of a slab yields 0 * infinity: such a slab does not limit it.
-    if (!std::isnan(a)) from = std::max(from, a);
-    if (!std::isnan(b)) to = std::min(to, b);
+    if (std::isnan(a) || std::isnan(b)) continue;
+    if (a > b) std::swap(a, b);
+    from = std::max(from, a);
+    to = std::min(to, b);
   }
   // Rounding of the slabs must not lose a triangle that lies in the box's wall.
   return from <= to * (1 + 1e-12) ? from : infinity;

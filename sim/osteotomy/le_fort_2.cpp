@@ -54,7 +54,7 @@ PlacedOsteotomy place_le_fort_2(Site& site) {
                                       {0, crest_y, orbitale.z() - 1},
                                       {0, back_y, fissure_z},
                                       {0, back_y, fissure_z - 100}};
-  const double wide = (face.crest ? face.crest->x() : face.widest_root + 12) + 10;
+  const double wide = (face.crest ? face.crest->x() : face.widest_root + 12) + 20;
   const Vector3d down = -Vector3d::UnitZ(), forward = -Vector3d::UnitY();
   return {.part = {},
           .cuts = {{"Le Fort II",

@@ -141,6 +141,7 @@ Vault::Spot Vault::at_distance(const std::vector<Station>& stations, double dist
 }
 
 Vault::Spot Vault::spot(double along, double beside) {
+  if (beside == 0) return at_distance(midline_, along);
   return at_distance(arch(along, beside < 0 ? Side::right : Side::left), std::abs(beside));
 }
 
