@@ -53,8 +53,13 @@ Bandeau find_bandeau(const Site& site, SurgicalAnatomy& skull) {
     const auto upper = skull.crossings(side, bar.side_y - 2, bar.high_z);
     if (walls.empty() || upper.empty())
       throw InputError(fmt::format("bandeau: no bone at the {} temple", name_of(side)));
-    const double inner = walls.size() > 1 ? std::max(walls[1], walls[0] - 10) : walls[0] - 8;
-    bar.inner_x = std::min(bar.inner_x, inner - 4);
+    // Where the forehead turns to the temple its section is long.
+    for (double y = bar.back_y; y < bar.side_y + 1; y += 1)
+      for (const double z : {middle_z, bar.high_z}) {
+        const auto section = skull.crossings(side, y, z);
+        if (section.size() < 2) continue;
+        bar.inner_x = std::min(bar.inner_x, std::max(section[1], section[0] - 25) - 4);
+      }
     if (side == Side::left) bar.temple = {upper[0], bar.side_y - 2, bar.high_z};
     bar.wide = std::max(bar.wide, walls[0] + 30);
   }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "sim/dynamics/muscle_motion.h"
+#include "sim/plan/plan.h"
 #include "sim/simulator/simulator.h"
 
 namespace condyle {
@@ -12,6 +14,7 @@ struct SessionSettings {
   std::string first_motion = "opening";  // of the first patient; a name, a file or movements
   MotionSettings motion = {};            // of every motion; choices for one override them
   MuscleMotionSettings muscles = {};
+  std::optional<Plan> plan = std::nullopt;  // of the first patient's operation
   bool respect_contact = false;  // recorded motion also slides where bones meet
   SimulatorSettings simulator = {};
 };

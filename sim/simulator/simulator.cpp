@@ -72,7 +72,7 @@ Scene edited_scene(const Scene& before, Case patient, const SimulatorSettings& s
     tissue = unchanged ? before.tissue : build_tissue(patient, of_tissue, progress);
   }
   report(progress, "building the soft tissue", 1.0);
-  return {std::move(patient), std::move(contacts), std::move(tissue)};
+  return {std::move(patient), std::move(contacts), std::move(tissue), before.plan};
 }
 
 FrameState rest_frame(const Scene& scene) {

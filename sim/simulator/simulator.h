@@ -1,6 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "engine/core/progress.h"
 #include "sim/case/case.h"
@@ -21,11 +24,25 @@ struct SimulatorSettings {
   ContactSettings contact;
 };
 
+/// Length of a muscle at rest, mm.
+struct MuscleLengthChange {
+  std::string muscle;
+  double before_mm = 0, after_mm = 0;
+};
+
+/// The plan of the operation after which a scene shows its patient.
+struct ScenePlan {
+  std::string name, hash;
+  std::vector<std::string> notes = {};
+  std::vector<MuscleLengthChange> muscles = {};  // whose length the operation changes
+};
+
 /// Data that is constant while the jaw moves: the patient and the models built from it.
 struct Scene {
   Case patient;
   ContactModel contacts;
   std::shared_ptr<const TissueModel> tissue;  // null without a face, or when not requested
+  std::optional<ScenePlan> plan = std::nullopt;  // none: the patient as in its case
 };
 
 Scene make_scene(Case patient, const SimulatorSettings& settings = {},

@@ -111,14 +111,16 @@ void deform_face(const TissueModel& model, const TissueState& state,
   });
 }
 
-Vector3d carried_point(const TissueModel& model, const TissueState& state, const Vector3d& rest) {
+Vector3d carried_point(const TissueModel& model, const TissueState& state,
+                       const Vector3d& at_rest) {
   const auto& [mesh, display] = std::tie(*model.mesh, *model.display);
+  const auto& face = model.planned ? model.planned->face : display.face_rest;
   // A point on a lip belongs to the lip of the nearest vertex of the face.
   std::size_t nearest = 0;
-  for (std::size_t v = 1; v < display.face_rest.size(); ++v)
-    if ((display.face_rest[v] - rest).squaredNorm() <
-        (display.face_rest[nearest] - rest).squaredNorm())
-      nearest = v;
+  for (std::size_t v = 1; v < face.size(); ++v)
+    if ((face[v] - at_rest).squaredNorm() < (face[nearest] - at_rest).squaredNorm()) nearest = v;
+  const Vector3d rest =
+      model.planned ? Vector3d(at_rest + display.face_rest[nearest] - face[nearest]) : at_rest;
   const CarriedPoint point = carry_face_point(mesh, display, rest, display.face_side[nearest]);
   const HandleMotion motion = shown_motion(model, state);
   return carried(point, display.handles, mesh.rest, motion, rest);

@@ -65,6 +65,13 @@ struct FaceDisplay {
   std::vector<signed char> face_side;
 };
 
+/// A rest that is not the mesh's own: the patient after an operation.
+struct PlannedRest {
+  std::vector<Pose> X_CB;             // from the mesh's rest to this one
+  Nodes nodes;                        // mm, in equilibrium there
+  std::vector<Eigen::Vector3d> face;  // vertices of the displayed face there, mm
+};
+
 /// See tissue.h. Its members are read only and shared with models for the pieces of cut bones.
 struct TissueModel {
   std::shared_ptr<const TissueMesh> mesh;
@@ -73,8 +80,12 @@ struct TissueModel {
   std::vector<PathFactor> factors;  // increasing, the first from 0
   OpeningPredictor opening;
   std::shared_ptr<const FaceDisplay> display;
+  std::shared_ptr<const PlannedRest> planned;  // null: at rest as the mesh
   TissueSummary summary;
 };
+
+/// Poses of the bodies from the mesh's rest, of poses from the model's.
+std::vector<Pose> poses_from_mesh(const TissueModel& model, std::span<const Pose> X_CB);
 
 /// Loads of the bones on the tissue with the bodies at X_CB.
 MeshLoads loads_at(const TissueModel& model, std::span<const Pose> X_CB);

@@ -2,7 +2,9 @@
 #include <memory>
 #include <utility>
 
+#include "sim/frame/body_poses.h"
 #include "sim/tissue/model.h"
+#include "sim/tissue/planned_rest.h"
 #include "sim/tissue/tissue_defaults.h"
 
 namespace condyle {
@@ -23,22 +25,37 @@ void make_opening_path(const Eigen::Vector3d& condyles, TissueModel& model, int 
   TissueState state = rest_tissue(model);
   add_factor(0, state);
   TissueWarmStart warm;
-  std::vector<Nodes> nodes{mesh.rest};
+  std::vector<Nodes> nodes{state.nodes};
   TissueBudget budget;
   budget.tolerance_mm = 2e-3;
   budget.max_iterations = 300;
   budget.threads = threads;
   for (int i = 1; i < tissue_defaults::path_knots; ++i) {
     const double angle = i * path->step_rad;
-    std::vector<Pose> X_CB(index_of(model.opening.body) + 1);
-    X_CB.back() = path->pose(angle);
-    state = solve_tissue(model, state, X_CB, budget, warm);
+    BodyPoses at;
+    for (const BodyId body : model.opening.along) at[body] = path->pose(angle);
+    state = solve_tissue(model, state, at.X_CB, budget, warm);
     // the limit of opening for this tissue
     if (!state.converged || state.inverted_prisms > 0) break;
     nodes.push_back(state.nodes);
     add_factor(angle - path->step_rad / 2, state);
   }
   path->nodes = std::move(nodes);
+}
+
+std::shared_ptr<const TissueModel> with_planned_rest(const TissueModel& model,
+                                                     const TissueState& state, int threads) {
+  auto planned = std::make_shared<PlannedRest>();
+  planned->X_CB = state.X_CB;
+  planned->nodes = state.nodes;
+  std::vector<Eigen::Vector3f> face;
+  deform_face(model, state, face, threads);
+  for (const auto& vertex : face) planned->face.push_back(vertex.cast<double>());
+  auto rested = std::make_shared<TissueModel>(model);
+  rested->planned = std::move(planned);
+  rested->factors.clear();
+  make_opening_path(model.opening.path->condyles, *rested, threads);
+  return rested;
 }
 
 }  // namespace condyle

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/minimize/minimize.h"
+#include "sim/frame/body_poses.h"
 #include "sim/tissue/model.h"
 #include "sim/tissue/pose_steps.h"
 #include "sim/tissue/solver_cache.h"
@@ -14,7 +15,18 @@ namespace condyle {
 
 using Eigen::Vector3d;
 
-MeshLoads loads_at(const TissueModel& model, std::span<const Pose> X_CB) {
+std::vector<Pose> poses_from_mesh(const TissueModel& model, std::span<const Pose> X_CB) {
+  std::vector<Pose> from_mesh(X_CB.begin(), X_CB.end());
+  if (!model.planned) return from_mesh;
+  const std::vector<Pose>& planned = model.planned->X_CB;
+  from_mesh.resize(std::max(X_CB.size(), planned.size()));
+  for (std::size_t b = 0; b < planned.size(); ++b)
+    from_mesh[b] = composed(from_mesh[b], planned[b]);
+  return from_mesh;
+}
+
+MeshLoads loads_at(const TissueModel& model, std::span<const Pose> X_CB_now) {
+  const std::vector<Pose> X_CB = poses_from_mesh(model, X_CB_now);
   const auto& [elements, rest] = std::tie(model.mesh->elements, model.mesh->rest);
   const TissueSupport& support = model.support;
   MeshLoads loads;
@@ -42,7 +54,7 @@ int count_inverted(const SpringPrismMesh& elements, const Nodes& x) {
 
 MeshLoads contact_loads(const TissueModel& model, std::span<const Pose> X_CB, const Nodes& x) {
   MeshLoads loads = loads_at(model, X_CB);
-  set_contacts(find_tissue_contacts(*model.contact, X_CB, x), loads);
+  set_contacts(find_tissue_contacts(*model.contact, poses_from_mesh(model, X_CB), x), loads);
   return loads;
 }
 
@@ -77,7 +89,7 @@ std::shared_ptr<const HessianFactor> path_factor(const TissueModel& model,
 
 TissueState rest_tissue(const TissueModel& model) {
   TissueState state;
-  state.nodes = model.mesh->rest;
+  state.nodes = model.planned ? model.planned->nodes : model.mesh->rest;
   return state;
 }
 
@@ -172,6 +184,7 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
                        std::span<const Pose> X_CB, const TissueBudget& budget,
                        TissueWarmStart& warm) {
   const auto& [mesh, contact] = std::tie(*model.mesh, *model.contact);
+  const std::vector<Pose> from_mesh = poses_from_mesh(model, X_CB);
   MeshLoads loads = loads_at(model, X_CB);
   TissueState state;
   state.X_CB.assign(X_CB.begin(), X_CB.end());
@@ -192,7 +205,7 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
   FrameSolve solve(model, loads, budget, factor, state);
   ContactSolveResult touching = solve_contact(
       [&](const Nodes& x) {
-        return find_tissue_contacts(contact, X_CB, x, budget.threads, &near,
+        return find_tissue_contacts(contact, from_mesh, x, budget.threads, &near,
                                     budget.contact_firmness);
       },
       [&] { return solve(); }, loads, state.nodes, contact_settings,
@@ -202,7 +215,7 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
       (!state.converged && factor.iterations_used() > refactor_beside_loop_after_all))
     factor.begin(mesh.elements, loads, state.nodes, budget.threads, model.mesh);
   const ContactMeasure measured =
-      measure_contact(contact, touching.contacts, X_CB, mesh.rest, state.nodes);
+      measure_contact(contact, touching.contacts, from_mesh, mesh.rest, state.nodes);
   state.contact_error_mm = std::max(touching.error_mm, touching.gap_mm);
   state.converged = state.converged && state.contact_error_mm < accepted_contact_mm;
   state.penetration_mm = measured.penetration_mm;

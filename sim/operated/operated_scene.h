@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sim/operation/operation.h"
+#include "sim/simulator/simulator.h"
+
+namespace condyle {
+
+/// The patient at the planned positions, which are its rest, with muscles on their owners.
+struct OperatedPatient {
+  Case patient;
+  ScenePlan plan;
+  Operated operated;
+  bool changed = true;  // false: a plan without cuts and moves; `patient` is the one given
+};
+
+/// Replays the plan. Muscles keep their optimal lengths from before the operation; a case without
+/// muscles gets the default ones, fitted before it. The face is as before.
+/// throws: InputError as apply_plan().
+OperatedPatient operate(const Case& patient, const Plan& plan);
+
+/// The scene of a patient after the operation. The planned positions are the rest of bones, contact
+/// and motion. The tissue is the predicted one (see predict()), whose further deformation starts
+/// there. Without cuts and moves the scene is bit-identical to make_scene() but for Scene::plan.
+/// The face is predicted where the settings request tissue or face.
+/// throws: InputError as apply_plan() and make_scene(); MachineError where the tissue of the
+/// prediction has no solution.
+Scene make_operated_scene(Case patient, const Plan& plan, const SimulatorSettings& settings = {},
+                          const Progress& progress = {});
+
+/// make_operated_scene() with a plan, else make_scene().
+Scene make_scene(Case patient, const std::optional<Plan>& plan,
+                 const SimulatorSettings& settings = {}, const Progress& progress = {});
+
+}  // namespace condyle
