@@ -50,7 +50,9 @@ Bandeau find_bandeau(const Site& site, SurgicalAnatomy& skull) {
   bar.inner_x = 1e9;
   for (const Side side : both_sides) {
     const auto walls = skull.crossings(side, bar.side_y, middle_z);
-    const auto upper = skull.crossings(side, bar.side_y - 2, bar.high_z);
+    // The frontal cut passes obliquely through the temple and must meet the bar all the way.
+    const double temple_y = bar.side_y - 10;
+    const auto upper = skull.crossings(side, temple_y, bar.high_z);
     if (walls.empty() || upper.empty())
       throw InputError(fmt::format("bandeau: no bone at the {} temple", name_of(side)));
     // Where the forehead turns to the temple its section is long.
@@ -60,7 +62,7 @@ Bandeau find_bandeau(const Site& site, SurgicalAnatomy& skull) {
         if (section.size() < 2) continue;
         bar.inner_x = std::min(bar.inner_x, std::max(section[1], section[0] - 25) - 4);
       }
-    if (side == Side::left) bar.temple = {upper[0], bar.side_y - 2, bar.high_z};
+    if (side == Side::left) bar.temple = {upper[0], temple_y, bar.high_z};
     bar.wide = std::max(bar.wide, walls[0] + 30);
   }
   return bar;
