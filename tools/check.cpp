@@ -151,7 +151,7 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   if (!options.out.empty()) files.emplace(options.out);  // fails before the computation
   Case patient = open_patient(options.motion.patient, common, bar);
   check_motion(options.motion, patient);
-  const Scene scene = make_scene(std::move(patient), settings, bar.callback());
+  const Scene scene = scene_of(options.motion, std::move(patient), settings, bar.callback());
   print_notes(scene, options.motion.patient, common, bar);
   const Motion motion = motion_of(options.motion, scene, common.threads);
   const auto check = check_clearance(

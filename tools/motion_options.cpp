@@ -5,6 +5,8 @@
 
 #include "sim/case/pair_rules.h"
 #include "sim/muscles/default_muscles.h"
+#include "sim/operated/operated_scene.h"
+#include "sim/plan/plan_file.h"
 #include "tools/pair_options.h"
 
 namespace condyle {
@@ -77,6 +79,24 @@ void add_motion(CLI::App& command, MotionOptions& motion) {
   in_range(command.add_option("--duration", motion.settings.duration_s,
                               "Duration of the whole motion, s; default: its own (opening: 3)"),
            0.2, 3600);
+  add_plan_file(command, motion.plan);
+}
+
+void add_plan_file(CLI::App& command, std::filesystem::path& plan) {
+  command
+      .add_option("--plan", plan,
+                  "The patient after the operation of this plan: condyle help planning")
+      ->type_name("FILE");
+}
+
+std::optional<Plan> plan_of(const std::filesystem::path& file) {
+  if (file.empty()) return {};
+  return load_plan(file);
+}
+
+Scene scene_of(const MotionOptions& options, Case patient, const SimulatorSettings& settings,
+               const Progress& progress) {
+  return make_scene(std::move(patient), plan_of(options.plan), settings, progress);
 }
 
 void add_pairs(CLI::App& command, MotionOptions& motion) {
@@ -116,6 +136,7 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
 
 void check_motion(const MotionOptions& options) {
   check_motion(options.motion, options.settings, options.muscles);
+  plan_of(options.plan);  // refuses a file that is not a plan
 }
 
 void check_motion(const MotionOptions& options, const Case& patient) {

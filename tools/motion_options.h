@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/dynamics/muscle_motion.h"
+#include "sim/plan/plan.h"
 #include "sim/simulator/simulator.h"
 #include "tools/command.h"
 #include "tools/tissue_options.h"
@@ -14,6 +16,7 @@ namespace condyle {
 /// Patient and motion.
 struct MotionOptions {
   std::filesystem::path patient = {};  // case folder; empty: the built-in patient
+  std::filesystem::path plan = {};     // of an operation before the motion; empty: none
   std::string motion = {};
   MotionSettings settings = {};
   MuscleMotionSettings muscles = {};
@@ -40,6 +43,15 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
 void check_motion(const MotionOptions& options);
 /// Checks the options for this patient, before any model of it is built. throws: InputError.
 void check_motion(const MotionOptions& options, const Case& patient);
+
+/// --plan: the plan of an operation that the patient has undergone.
+void add_plan_file(CLI::App& command, std::filesystem::path& plan);
+/// The plan in a file; none if the path is empty. throws: InputError.
+std::optional<Plan> plan_of(const std::filesystem::path& file);
+
+/// The scene of the patient, after the operation if there is a plan.
+Scene scene_of(const MotionOptions& options, Case patient, const SimulatorSettings& settings,
+               const Progress& progress);
 
 /// The motion of the command line.
 Motion motion_of(const MotionOptions& options, const Scene& scene, int threads);

@@ -16,15 +16,18 @@
 #include "render/output/contact_picture.h"
 #include "render/recording/render_metadata.h"
 #include "sim/motion/recording.h"
+#include "sim/operated/operated_scene.h"
 #include "sim/report/occlusion_report.h"
 #include "tools/commands.h"
 #include "tools/common.h"
+#include "tools/motion_options.h"
 
 namespace condyle {
 namespace {
 
 struct OccludeOptions {
   std::filesystem::path patient;  // case folder; empty: the built-in patient
+  std::filesystem::path plan;     // of an operation before; empty: none
   std::filesystem::path out;
   std::string start;     // pose file or offsets; empty: the pose of the case
   double film_mm = 0.1;  // thickness of the articulating film
@@ -129,7 +132,9 @@ std::string write_picture(const std::filesystem::path& folder, const Case& patie
 int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
   constexpr int no_stable_bite = 1;
   ProgressBar bar(common);
-  const Case patient = open_patient(options.patient, common, bar);
+  const std::optional<Plan> plan = plan_of(options.plan);
+  Case patient = open_patient(options.patient, common, bar);
+  if (plan) patient = operate(patient, *plan).patient;
   const Start start = parse_start(options.start, patient);
   OcclusionSettings settings;
   settings.film_mm = options.film_mm;
@@ -169,6 +174,7 @@ void add_occlude(Commands& commands) {
       [options](const CommonOptions& common) { return run_occlude(*options, common); });
   command.add_option("CASE", options->patient,
                      "Folder with case.json (default: the built-in patient)");
+  add_plan_file(command, options->plan);
   command
       .add_option("--start", options->start,
                   "Where the mandible starts: a pose file, or its displacement from the pose of "

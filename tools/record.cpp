@@ -80,8 +80,10 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   Case patient = open_patient(options.motion.patient, common, bar);
   check_motion(options.motion, patient);
   std::optional<PicturePlan> plan;
-  if (options.pictures) plan = parse_pictures(options.picture, patient);
-  const Scene scene = make_scene(std::move(patient), settings, bar.callback());
+  const bool is_uncut = options.motion.plan.empty();  // else segments may be named
+  if (options.pictures && is_uncut) plan = parse_pictures(options.picture, patient);
+  const Scene scene = scene_of(options.motion, std::move(patient), settings, bar.callback());
+  if (options.pictures && !is_uncut) plan = parse_pictures(options.picture, scene.patient);
   print_notes(scene, options.motion.patient, common, bar);
   bar.show("preparing the motion", 0);
   Playback playback(scene, motion_of(options.motion, scene, common.threads), settings,

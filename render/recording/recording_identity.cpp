@@ -72,11 +72,14 @@ std::string tissue_text(const SimulatorSettings& settings, const Case& patient) 
 RecordingSheet recording_identity(const Scene& scene, const Motion& motion,
                                   std::span<const double> times_s,
                                   const SimulatorSettings& settings, bool respect_contact) {
-  return {{"condyle", CONDYLE_VERSION},
-          {"case", hash_text(case_hash(scene.patient))},
-          {"motion", motion.name + " " + hash_text(motion_hash(motion, times_s, settings.step_s))},
-          {"contact", contact_text(settings.contact, respect_contact)},
-          {"tissue", tissue_text(settings, scene.patient)}};
+  RecordingSheet sheet{
+      {"condyle", CONDYLE_VERSION},
+      {"case", hash_text(case_hash(scene.patient))},
+      {"motion", motion.name + " " + hash_text(motion_hash(motion, times_s, settings.step_s))},
+      {"contact", contact_text(settings.contact, respect_contact)},
+      {"tissue", tissue_text(settings, scene.patient)}};
+  if (scene.plan) sheet["plan"] = scene.plan->name + " " + scene.plan->hash;
+  return sheet;
 }
 
 }  // namespace condyle

@@ -9,12 +9,13 @@
 namespace condyle {
 
 void PatientLoader::start(std::function<Case(const Progress&)> read, std::filesystem::path folder,
-                          std::string words) {
+                          std::string words, std::optional<Plan> plan) {
   renewing_.reset();
   job_.start([read = std::move(read), folder = std::move(folder), words = std::move(words),
-              settings = state_.settings.simulator](const Progress& progress) {
+              settings = state_.settings.simulator,
+              plan = std::move(plan)](const Progress& progress) {
     report(progress, words, 0);
-    return make_session_patient(read(progress), folder, settings, progress);
+    return make_session_patient(read(progress), folder, settings, progress, plan);
   });
 }
 
@@ -23,7 +24,8 @@ void PatientLoader::open(const std::filesystem::path& folder) {
       [folder](const Progress& progress) {
         return folder.empty() ? builtin_patient(progress) : load_case(folder);
       },
-      folder, folder.empty() ? "loading the patient" : "loading " + folder.filename().string());
+      folder, folder.empty() ? "loading the patient" : "loading " + folder.filename().string(),
+      std::exchange(state_.settings.plan, std::nullopt));
 }
 
 void PatientLoader::import(const request::Import& request) {

@@ -35,7 +35,7 @@ class PatientLoader {
 
  private:
   void start(std::function<Case(const Progress&)> read, std::filesystem::path folder,
-             std::string words);
+             std::string words, std::optional<Plan> plan = {});
 
   SessionState& state_;
   std::optional<std::vector<Landmark>> renewing_;

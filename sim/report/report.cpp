@@ -297,10 +297,25 @@ Json MotionReport::tissue_json() const {
   return tissue;
 }
 
+namespace {
+
+/// The operation before the motion.
+Json plan_json_of(const ScenePlan& plan) {
+  Json json{{"name", plan.name}, {"hash", plan.hash}, {"notes", plan.notes}};
+  for (const auto& muscle : plan.muscles)
+    json["muscle_lengths"].push_back({{"muscle", muscle.muscle},
+                                      {"before_mm", round_to(muscle.before_mm, 1e-3)},
+                                      {"after_mm", round_to(muscle.after_mm, 1e-3)}});
+  return json;
+}
+
+}  // namespace
+
 std::string MotionReport::json() const {
   Json json;
   json["about"] = "Condyle; for research and education, not for clinical use";
   json["case"] = scene_.patient.name;
+  if (scene_.plan) json["plan"] = plan_json_of(*scene_.plan);
   json["motion"] = motion_json();
   json["frames"] = frames_;
   json["step_s"] = settings_.step_s;

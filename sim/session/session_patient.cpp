@@ -4,22 +4,24 @@
 
 #include "engine/core/error.h"
 #include "sim/muscles/default_muscles.h"
+#include "sim/operated/operated_scene.h"
 
 namespace condyle {
 
 std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
                                                            std::filesystem::path folder,
                                                            SimulatorSettings settings,
-                                                           const Progress& progress) {
+                                                           const Progress& progress,
+                                                           const std::optional<Plan>& plan) {
   std::string trouble;
   const auto build = [&]() -> Scene {
     try {
-      return make_scene(patient, settings, progress);
+      return make_scene(patient, plan, settings, progress);
     } catch (const InputError& error) {
       if (!settings.tissue) throw;
       trouble = std::string("The soft tissue is left out. ") + error.what();
       settings.tissue = false;
-      return make_scene(patient, settings, progress);
+      return make_scene(patient, plan, settings, progress);
     }
   };
   auto made = std::make_shared<SessionPatient>(

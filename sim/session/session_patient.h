@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/case/muscle.h"
+#include "sim/plan/plan.h"
 #include "sim/simulator/simulator.h"
 
 namespace condyle {
@@ -20,10 +22,12 @@ struct SessionPatient {
 };
 
 /// Builds the scene of a patient, without soft tissue when the face does not allow any: the bones
-/// can still be moved. throws: InputError.
+/// can still be moved. `plan`: of the operation after which the patient is shown.
+/// throws: InputError.
 std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
                                                            std::filesystem::path folder,
                                                            SimulatorSettings settings,
-                                                           const Progress& progress);
+                                                           const Progress& progress,
+                                                           const std::optional<Plan>& plan = {});
 
 }  // namespace condyle
