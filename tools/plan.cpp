@@ -36,7 +36,8 @@ struct PlanOptions {
   bool natural_head = false;
   std::string osteotomy, target, pieces;
   std::vector<std::string> settings;  // NAME=VALUE
-  double kerf_mm = -1;                // not given: that of the osteotomy
+  bool below_margins = false;
+  double kerf_mm = -1;  // not given: that of the osteotomy
   std::string segment;
   std::vector<std::string> words;
   int step = 0;
@@ -92,6 +93,18 @@ std::map<std::string, double> parse_settings(const std::vector<std::string>& set
   return parameters;
 }
 
+/// Refuses a cut that comes nearer to a root, canal or foramen than any surgeon would.
+void refuse_dangerous(const CutReport& report) {
+  std::vector<std::string> dangers;
+  for (const DangerFinding& finding : report.dangers)
+    if (finding.level == DangerLevel::stop) dangers.push_back(danger_text(finding));
+  if (!dangers.empty())
+    throw InputError(
+        fmt::format("{} is not added: {}. Change its parameters with --set, or add it all the same "
+                    "with --below-margins",
+                    report.title, fmt::join(dangers, "; ")));
+}
+
 int run_cut(const PlanOptions& options, const CommonOptions& common) {
   const Plan plan = load_plan(options.file);
   CutStep step;
@@ -110,6 +123,9 @@ int run_cut(const PlanOptions& options, const CommonOptions& common) {
       step.pieces.push_back(rule.name);
   const Plan edited = with_step(plan, step);
   const Operated operated = apply_plan(patient, edited);
+  if (!options.below_margins && !operated.cuts.empty() &&
+      operated.cuts.back().step == edited.steps.back().id)
+    refuse_dangerous(operated.cuts.back());
   finish_edit(edited, options.file, common);
   print_plan_notes(common, operated.notes);
   if (common.prints_summary())
@@ -253,6 +269,8 @@ void add_cut(Commands& commands, CLI::App& plan) {
       .add_option("--target", options->target,
                   "Body or segment to cut; default that of the osteotomy")
       ->type_name("NAME");
+  command.add_flag("--below-margins", options->below_margins,
+                   "Add the cut though it lies too near to a root, canal or foramen");
   command.add_option("--pieces", options->pieces, "Names of the segments, in its order")
       ->type_name("A,B,...");
 }

@@ -52,6 +52,16 @@ Json outcome_json(const std::string& name, const CutOutcome& outcome) {
   return json;
 }
 
+Json danger_json(const DangerFinding& finding) {
+  const char* level = finding.level == DangerLevel::stop   ? "stop"
+                      : finding.level == DangerLevel::warn ? "warn"
+                                                           : "clear";
+  return {{"zone", finding.zone},
+          {"distance_mm", finding.distance_mm},
+          {"at_mm", {finding.at.x(), finding.at.y(), finding.at.z()}},
+          {"level", level}};
+}
+
 Json cut_json(const CutReport& cut) {
   Json json = {{"step", cut.step}, {"title", cut.title}, {"bone", cut.bone}};
   json["outcomes"] = Json::array();
@@ -59,6 +69,9 @@ Json cut_json(const CutReport& cut) {
     json["outcomes"].push_back(outcome_json(cut.cuts[i], cut.outcomes[i]));
   json["crossings"] = Json::array();
   for (const auto& [a, b] : cut.crossings) json["crossings"].push_back({cut.cuts[a], cut.cuts[b]});
+  json["danger_zones"] = Json::array();
+  for (const DangerFinding& finding : cut.dangers)
+    json["danger_zones"].push_back(danger_json(finding));
   json["pieces"] = Json::array();
   for (const CutPiece& piece : cut.pieces)
     json["pieces"].push_back({{"body", piece.body},

@@ -312,6 +312,7 @@ void cut_case(Operated& operated, const PlacedOsteotomy& placed, const PlanStep&
   CutReport report = report_of(step, bone, placed, cut, groups);
   report.notes.insert(report.notes.end(), closed.notes.begin(), closed.notes.end());
   report.volume_mm3 = signed_volume(closed.mesh);
+  report.dangers = check_danger_zones(danger_zones(patient), cut.pieces);
   refuse_unparted(operated, step, groups);
   const bool met = std::any_of(cut.outcomes.begin(), cut.outcomes.end(),
                                [](const CutOutcome& outcome) { return outcome.meets_bone; });

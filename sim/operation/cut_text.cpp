@@ -76,6 +76,8 @@ std::vector<std::string> cut_sentences(const CutReport& report, const Landmarks&
                                       place_words(window.at, landmarks)));
   for (const auto& [a, b] : report.crossings)
     sentences.push_back(fmt::format("{} and {} cross in the bone", report.cuts[a], report.cuts[b]));
+  for (const DangerFinding& finding : report.dangers)
+    if (finding.level != DangerLevel::clear) sentences.push_back(danger_text(finding));
   for (const CutPiece& piece : report.pieces) sentences.push_back(piece_words(piece));
   if (report.kerf_volume_mm3 > 0)
     sentences.push_back(fmt::format("the saw removes {:.1f} cm³", report.kerf_volume_mm3 / 1000));

@@ -8,6 +8,7 @@
 #include "engine/cut/cut.h"
 #include "sim/case/case.h"
 #include "sim/frame/body_poses.h"
+#include "sim/osteotomy/danger_zones.h"
 #include "sim/plan/movement_table.h"
 #include "sim/plan/plan.h"
 
@@ -32,6 +33,7 @@ struct CutReport {
   std::vector<CutOutcome> outcomes;            // by cut
   std::vector<std::pair<int, int>> crossings;  // cuts whose walls cross in the bone
   std::vector<CutPiece> pieces;                // what stays comes first
+  std::vector<DangerFinding> dangers;          // zones near the cut faces, nearest first
   double volume_mm3 = 0;                       // of the bone before it
   double kerf_volume_mm3 = 0;
   int turned = 0;  // triangles of cut faces that face backward

@@ -14,6 +14,7 @@ struct PublishedRatio {
   const char *soft, *hard;
   bool forward;
   std::optional<double> low, high;
+  bool chin_alone = false;  // a genioplasty: the range does not hold where the jaw moves
 };
 // Textbook values of advancements and genioplasties; no range is known for the others.
 const std::array published{
@@ -22,8 +23,8 @@ const std::array published{
     PublishedRatio{"labrale_superius", "upper_incisal_point", true, {}, {}},
     PublishedRatio{"labrale_inferius", "lower_incisal_point", true, {}, {}},
     PublishedRatio{"soft_b_point", "b_point", true, {}, {}},
-    PublishedRatio{"soft_pogonion", "pogonion", true, 0.85, 1.0},
-    PublishedRatio{"soft_pogonion", "pogonion", false, 0.6, 0.8},
+    PublishedRatio{"soft_pogonion", "pogonion", true, 0.85, 1.0, true},
+    PublishedRatio{"soft_pogonion", "pogonion", false, 0.6, 0.8, true},
     PublishedRatio{"soft_b_point", "b_point", false, {}, {}},
     PublishedRatio{"labrale_inferius", "lower_incisal_point", false, {}, {}},
     PublishedRatio{"labrale_superius", "upper_incisal_point", false, {}, {}}};
@@ -32,6 +33,18 @@ const SoftPoint* find_point(const Prediction& prediction, const std::string& nam
   for (const SoftPoint& point : prediction.points)
     if (point.landmark == name) return &point;
   return nullptr;
+}
+
+/// What the surgeon lifts off the bone.
+std::string stripping_text(const Stripping& stripping) {
+  std::string text =
+      fmt::format("soft tissue stripped from bone: {} of {} attachments ({} within {:g} mm of cuts",
+                  stripping.stripped(), stripping.attachments, stripping.near_cuts,
+                  stripping.settings.reach_mm);
+  if (stripping.on_maxilla > 0)
+    text += fmt::format(", {} on the front of the maxilla", stripping.on_maxilla);
+  if (stripping.above_chin > 0) text += fmt::format(", {} above the chin", stripping.above_chin);
+  return text + ")";
 }
 
 std::string spaced(std::string name) {
@@ -47,6 +60,8 @@ std::vector<SoftRatio> soft_ratios(const Prediction& prediction, const ClinicalF
   const Landmarks& rest = prediction.operated.patient.landmarks;
   const Landmarks moved =
       moved_landmarks(rest, prediction.operated.owners, prediction.operated.poses);
+  const auto b_before = rest.find("b_point"), b_after = moved.find("b_point");
+  const bool jaw_moves = b_before && b_after && (*b_after - *b_before).norm() > least_mm;
   std::vector<SoftRatio> ratios;
   for (const auto& row : published) {
     const auto before = rest.find(row.hard), after = moved.find(row.hard);
@@ -54,8 +69,10 @@ std::vector<SoftRatio> soft_ratios(const Prediction& prediction, const ClinicalF
     if (!before || !after || !soft) continue;
     const double hard_mm = -frame.back.dot(*after - *before);
     if (std::abs(hard_mm) < least_mm || (hard_mm > 0) != row.forward) continue;
+    const bool has_range = row.low && !(row.chin_alone && jaw_moves);
     ratios.push_back({row.soft, row.hard, hard_mm, -frame.back.dot(soft->after - soft->before),
-                      row.low, row.high, row.low ? "textbook value" : ""});
+                      has_range ? row.low : std::nullopt, has_range ? row.high : std::nullopt,
+                      has_range ? "textbook value" : ""});
   }
   return ratios;
 }
@@ -78,6 +95,8 @@ std::string prediction_text(const Prediction& prediction, const ClinicalFrame& f
     text += fmt::format("{:<20}  {:<21}{:>8.1f}{:>8.1f}{:>8.2f}  {}\n", spaced(row.soft),
                         spaced(row.hard), row.hard_mm, row.soft_mm, row.ratio(),
                         row.low ? fmt::format("{:g} to {:g}", *row.low, *row.high) : "unknown");
+  if (const Stripping& stripping = prediction.stripping; stripping.stripped() > 0)
+    text += fmt::format("\n{}\n", stripping_text(stripping));
   text += fmt::format(
       "\nthe face moves by at most {:.1f} mm; {} inverted prisms; solved in {:.1f} s{}\n",
       prediction.max_displacement_mm(), prediction.state.inverted_prisms, prediction.time_s,
@@ -100,6 +119,17 @@ Json prediction_json(const Prediction& prediction, const ClinicalFrame& frame) {
                               {"up_mm", frame.up.dot(step)},
                               {"distance_mm", step.norm()}});
   }
+  const Stripping& stripping = prediction.stripping;
+  json["stripping"] = {{"attachments", stripping.attachments},
+                       {"near_cuts", stripping.near_cuts},
+                       {"on_maxilla", stripping.on_maxilla},
+                       {"above_chin", stripping.above_chin},
+                       {"reach_mm", stripping.settings.reach_mm},
+                       {"remains_near_cuts", stripping.settings.near_cut},
+                       {"remains_on_maxilla", stripping.settings.on_maxilla},
+                       {"remains_above_chin", stripping.settings.above_chin},
+                       {"freed_above_chin_mm", stripping.settings.freed_mm},
+                       {"remains_of_septum", stripping.settings.septum}};
   for (const SoftRatio& row : soft_ratios(prediction, frame)) {
     Json entry{{"soft", row.soft},
                {"hard", row.hard},

@@ -104,6 +104,16 @@ TEST(PlanFile, WhatIsLeftOutHasItsDefault) {
             (ClinicalMove{.forward_mm = -5}));
 }
 
+TEST(PlanFile, SegmentsOfANamedOsteotomyHaveNamesOfTheirOwn) {
+  const Plan plan = parse_plan(nowhere, edited("\"pieces\": [\"maxilla\"]", "\"pieces\": []"));
+  EXPECT_TRUE(std::get<CutStep>(plan.steps[0].action).pieces.empty());
+  CutStep unnamed;
+  unnamed.target = "mandible";
+  unnamed.surfaces = {PlanePatch{.reach = 10.0}};
+  ASSERT_TRUE(problem_of(unnamed));
+  EXPECT_EQ(problem_of(unnamed)->item, "pieces");
+}
+
 TEST(PlanFile, AnyPartOfAFileIsRefused) {
   const std::string text = plan_json(sample_plan());
   for (std::size_t size = 0; size + 2 < text.size(); size += 13)
@@ -130,7 +140,6 @@ TEST(PlanFile, NonsenseIsRefusedWithItemAndValue) {
   expect_refused("\"pitch_deg\": 0.0", "\"pitch_deg\": 80", "pitch_deg is 80");
   expect_refused("\"kerf_mm\": 0.7", "\"kerf_mm\": -1", "steps[0].cut.kerf_mm: is -1 mm");
   expect_refused("\"kerf_mm\": 0.7", "\"kerf\": 0.7", "steps[0].cut: unknown key \"kerf\"");
-  expect_refused("\"pieces\": [\"maxilla\"]", "\"pieces\": []", "steps[0].cut.pieces");
   expect_refused("\"radius_mm\": 12.5", "\"radius_mm\": 0",
                  "steps[2].cut.surfaces[1].radius_mm: is 0");
   expect_refused("\"normal\": [0.0, 0.0, 2.0]", "\"normal\": [0, 0]",
