@@ -82,4 +82,48 @@ TEST(PlanCommand, WrongInputHasExitCode2AndLeavesThePlan) {
   EXPECT_TRUE(mentions(other.err, "another case")) << other.err;
 }
 
+TEST(PlanCommand, ACutBelowTheMarginsIsRefusedUnlessItIsRequested) {
+  const Folder folder;
+  const std::string file = folder / "plan.json";
+  plan({"new", "--out", file});
+  const std::string before = read_text(file);
+  const std::vector<std::string> words{"plan",      "cut",   file,
+                                       "le_fort_2", "--set", "foramen_margin_mm=4"};
+  const Outcome refused = condyle(words);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_TRUE(mentions(refused.err, "infraorbital foramen")) << refused.err;
+  EXPECT_EQ(read_text(file), before);
+  plan({"cut", file, "le_fort_2", "--set", "foramen_margin_mm=4", "--below-margins"});
+  EXPECT_TRUE(mentions(plan({"show", file, "--case", "built-in"}).out, "infraorbital foramen"));
+}
+
+TEST(PlanCommand, TheJawMovesAfterTheOperation) {
+  const Folder folder;
+  const std::string file = folder / "plan.json", out = folder / "out";
+  plan({"new", "--out", file, "--name", "chin"});
+  plan({"cut", file, "genioplasty"});
+  plan({"move", file, "chin", "forward", "5"});
+  const Outcome run = condyle({"run", "--plan", file, "--motion", "open 20", "--frames", "3",
+                               "--out", out, "--surface-nodes", "300"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  const auto report = nlohmann::json::parse(read_text(out + "/report.json"));
+  EXPECT_EQ(report["plan"]["name"], "chin");
+  EXPECT_NEAR(report["opening"]["max_opening_mm"].get<double>(), 20, 0.5);
+  EXPECT_TRUE(mentions(read_text(out + "/trace.csv"), "chin"));
+  EXPECT_EQ(condyle({"occlude", "--plan", file}).code, 0);
+  const Outcome wrong = condyle({"check", "--plan", out + "/trace.csv", "--motion", "rest"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(mentions(wrong.err, "trace.csv")) << wrong.err;
+}
+
+TEST(PhantomCommand, WritesVariantsAndRefusesUnknownOnes) {
+  const Folder folder;
+  const std::string out = folder / "class-iii";
+  EXPECT_EQ(condyle({"phantom", "--variant", "class-iii", "--out", out}).code, 0);
+  EXPECT_TRUE(fs::exists(out + "/case.json"));
+  const Outcome unknown = condyle({"phantom", "--variant", "class-9", "--out", folder / "x"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_TRUE(mentions(unknown.err, "scaphocephaly")) << unknown.err;
+}
+
 }  // namespace condyle::test
