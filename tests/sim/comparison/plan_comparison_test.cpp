@@ -11,6 +11,7 @@ namespace {
 
 Plan chin_plan(double forward_mm, double pitch_deg) {
   Plan plan;
+  plan.name = "chin";
   plan.geometry = geometry_of(builtin());
   CutStep cut;
   cut.osteotomy = "genioplasty";
