@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 struct CompareOptions {
   fs::path predicted, after;
   fs::path landmarks, after_landmarks;
-  std::string patient;  // case folder or "built-in"; empty: none
+  fs::path patient;  // case folder or a head's name; empty: none
   std::string units = "mm", frame = "LPS";
   FaceAlignment alignment = FaceAlignment::surface;
   double range_mm = 0;  // of the map; 0: by the distances
@@ -55,10 +55,7 @@ MarkedFace read_predicted(const CompareOptions& options, const CommonOptions& co
   if (!options.landmarks.empty())
     face.landmarks = read_landmarks(options.landmarks);
   else if (!options.patient.empty())
-    face.landmarks =
-        open_patient(options.patient == "built-in" ? fs::path() : fs::path(options.patient), common,
-                     bar)
-            .landmarks;
+    face.landmarks = open_patient(options.patient, common, bar).landmarks;
   else if (is_folder && fs::exists(own_landmarks))
     face.landmarks = read_landmarks(own_landmarks);
   return face;

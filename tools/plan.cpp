@@ -37,7 +37,7 @@ struct PlanOptions {
   std::string osteotomy, target, pieces;
   std::vector<std::string> settings;  // NAME=VALUE
   bool below_margins = false;
-  double kerf_mm = -1;  // not given: that of the osteotomy
+  std::optional<double> kerf_mm;  // not given: that of the osteotomy
   std::string segment;
   std::vector<std::string> words;
   int step = 0;
@@ -112,8 +112,7 @@ int run_cut(const PlanOptions& options, const CommonOptions& common) {
   step.target = options.target;
   step.parameters = parse_settings(options.settings);
   // Refuses an unknown name before the patient is read.
-  const double default_kerf = default_kerf_mm(step.osteotomy);
-  step.kerf_mm = options.kerf_mm < 0 ? default_kerf : options.kerf_mm;
+  step.kerf_mm = options.kerf_mm.value_or(default_kerf_mm(step.osteotomy));
   const Case patient = open_planned(options.patient, common);
   if (!options.pieces.empty())
     step.pieces = split_list(options.pieces);

@@ -15,17 +15,13 @@ namespace condyle {
 namespace {
 
 struct PlanCompareOptions {
-  std::filesystem::path plan, other;
-  std::string patient;
+  std::filesystem::path plan, other, patient;
 };
 
 int run_plan_compare(const PlanCompareOptions& options, const CommonOptions& common) {
   const Plan plan = load_plan(options.plan);
   ProgressBar bar(common);
-  const Case patient =
-      open_patient(options.patient == "built-in" ? std::filesystem::path()
-                                                 : std::filesystem::path(options.patient),
-                   common, bar);
+  const Case patient = open_patient(options.patient, common, bar);
   const ClinicalFrame frame = clinical_frame(patient.landmarks, plan.reference);
   const Operated planned = apply_plan(patient, plan);
   PlanComparison comparison;

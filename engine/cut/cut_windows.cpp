@@ -3,9 +3,9 @@
 #include <map>
 #include <utility>
 
+#include "engine/core/disjoint_sets.h"
 #include "engine/cut/cap_loops.h"
 #include "engine/cut/cut_outcome.h"
-#include "engine/cut/disjoint_sets.h"
 
 namespace condyle {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <tuple>
 
-#include "engine/cut/disjoint_sets.h"
+#include "engine/core/disjoint_sets.h"
 #include "engine/cut/edge_key.h"
 
 namespace condyle {

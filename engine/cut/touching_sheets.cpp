@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "engine/cut/disjoint_sets.h"
+#include "engine/core/disjoint_sets.h"
 #include "engine/cut/edge_key.h"
 #include "engine/cut/part_faces.h"
 

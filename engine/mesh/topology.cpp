@@ -1,32 +1,14 @@
 #include "engine/mesh/topology.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "engine/core/disjoint_sets.h"
 
 namespace condyle {
 namespace {
 
-/// Disjoint sets of the vertices 0 .. count - 1; the root of a set is its lowest member.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int a, int b) {
-    a = find(a), b = find(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
 std::vector<BoundaryLoop> boundary_loops(const TriMesh& mesh, const EdgeList& list) {
-  Sets sets(mesh.vertices.size());
+  DisjointSets sets(mesh.vertices.size());
   for (const auto& edge : list.edges)
     if (edge.count == 1) sets.join(edge.low, edge.high);
   std::vector<int> loop_of(mesh.vertices.size(), -1);
@@ -96,7 +78,7 @@ EdgeList find_edges(const TriMesh& mesh) {
 }
 
 Components find_components(const TriMesh& mesh) {
-  Sets sets(mesh.vertices.size());
+  DisjointSets sets(mesh.vertices.size());
   for (const auto& t : mesh.triangles) {
     sets.join(t[0], t[1]);
     sets.join(t[0], t[2]);

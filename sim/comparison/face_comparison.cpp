@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "engine/core/error.h"
+#include "engine/core/infinity.h"
 #include "engine/core/parallel.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/repair.h"
@@ -17,8 +17,6 @@
 
 namespace condyle {
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Refuses surfaces of other sizes: the units of one of them are wrong.
 void check_sizes(const TriMesh& predicted, const TriMesh& after) {
@@ -238,7 +236,7 @@ FaceComparison compare_faces(const MarkedFace& predicted, const MarkedFace& afte
   for (Eigen::Vector3d& p : result.after.vertices) p = result.X_PO * p;
   const SurfacePairs pairs(result.after);
   const auto normals = vertex_normals(predicted.mesh);
-  result.distance_mm.assign(normals.size(), infinite);
+  result.distance_mm.assign(normals.size(), infinity);
   parallel_for(normals.size(), settings.threads, [&](std::size_t i) {
     if (const auto pair = pairs.find(predicted.mesh.vertices[i], normals[i]))
       result.distance_mm[i] = pair->distance;

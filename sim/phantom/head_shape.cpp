@@ -28,9 +28,10 @@ struct Variation {
 // women: zy-zy 4.0, go-go 4.4, n-sn 2.5, sn-me 4.2 (about half of it below the lower arch), al-al
 // 3.8. Mandibular length (Co-Gn 6.0) and midface (Co-A 5.2): McNamara 1984, of which size as a
 // whole, which does not vary here, is the larger part; the rest gives SNA and SNB their spread
-// (3 to 3.5, Steiner 1953). Overjet 1: textbook. Cant: Padwa et al. 1997 state that one below 4
-// degrees is rarely noticed; its standard deviation is our choice. Vault: Gordon et al. 1989, men,
-// head breadth 5.4, length 7.1; height our choice. Nose: sn-prn 2, Farkas 1994.
+// (3 to 3.5, Steiner 1953): how it is divided among chin, gonion and maxilla is our choice. Overjet
+// 1: textbook. Cant: Padwa et al. 1997 state that one below 4 degrees is rarely noticed; its
+// standard deviation is our choice. Vault: Gordon et al. 1989, men, head breadth 5.4, length 7.1;
+// height our choice. Nose: sn-prn 2, Farkas 1994.
 constexpr std::array variations = {
     Variation{&HeadShape::face_width, 4.0},      Variation{&HeadShape::gonial_width, 4.4},
     Variation{&HeadShape::upper_height, 2.0},    Variation{&HeadShape::chin_down, 2.0},
@@ -73,8 +74,8 @@ void make_class_iii(HeadShape& shape) {
 }
 
 /// Long, narrow, with a ridge along the suture, bossed in front and behind: the cephalic index of
-/// the bone is below 70 (AO Surgery Reference, sagittal synostosis; Skrzat et al., Folia
-/// Morphologica 2014;73:92-98, an adult).
+/// the bone is below 70, our choice. The look follows the AO Surgery Reference, sagittal
+/// synostosis, and an adult skull (Skrzat et al., Folia Morphologica 2014;73:92-98).
 void make_scaphocephaly(HeadShape& shape) {
   shape.vault_width = std::min(shape.vault_width, 0.0) * 0.5 - 14;
   shape.vault_length = std::max(shape.vault_length, 0.0) * 0.5 + 11;
