@@ -28,7 +28,7 @@ bool is_below(const std::string& path, const std::string& folder) {
 /// The target whose folder holds this file; the files of one folder are one module. The commands in
 /// tools/bench are part of the program.
 std::string target_of(const std::map<std::string, Module>& all, const std::string& folder) {
-  const std::string own = folder == "tools/bench" ? "tools" : folder;
+  const std::string own = folder == "tools/bench" || folder == "tools/plan" ? "tools" : folder;
   for (const auto& [target, module] : all)
     if (module.folder == own) return target;
   return "";

@@ -1,4 +1,4 @@
-#include "tools/plan_report.h"
+#include "tools/plan/plan_report.h"
 
 #include <fmt/format.h>
 

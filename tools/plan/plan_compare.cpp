@@ -1,5 +1,3 @@
-#include "tools/plan_compare.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,12 +8,14 @@
 #include "sim/comparison/plan_comparison.h"
 #include "sim/plan/plan_file.h"
 #include "tools/common.h"
+#include "tools/plan/plan_command.h"
 
 namespace condyle {
 namespace {
 
 struct PlanCompareOptions {
-  std::filesystem::path plan, other, patient;
+  std::filesystem::path plan, other;
+  std::string patient;
 };
 
 int run_plan_compare(const PlanCompareOptions& options, const CommonOptions& common) {
@@ -52,15 +52,12 @@ void add_plan_compare(Commands& commands, CLI::App& plan) {
       "condyle plan compare plan.json other.json --case mycase\n"
       "  condyle plan compare plan.json postoperative --case mycase",
       [options](const CommonOptions& common) { return run_plan_compare(*options, common); });
-  command.add_option("PLAN", options->plan, "File of the plan")->required();
+  add_edited_plan(command, options->plan);
   command
       .add_option("OTHER", options->other,
                   "File of the other plan, or folder of a case after the operation")
       ->required();
-  command
-      .add_option("--case", options->patient,
-                  "The case of the plan (default: the built-in patient)")
-      ->type_name("FOLDER|built-in");
+  add_plan_case(command, options->patient);
 }
 
 }  // namespace condyle

@@ -1,0 +1,71 @@
+#include "tools/plan/plan_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "engine/core/error.h"
+#include "engine/core/similar_word.h"
+#include "sim/operation/cut_text.h"
+#include "sim/plan/plan_file.h"
+#include "tools/commands.h"
+#include "tools/common.h"
+
+namespace condyle {
+
+namespace fs = std::filesystem;
+
+void add_edited_plan(CLI::App& command, fs::path& file) {
+  command.add_option("PLAN", file, "File of the plan")->required();
+}
+
+void add_plan_case(CLI::App& command, std::string& patient, const char* absent) {
+  command.add_option("--case", patient, fmt::format("The case of the plan (default: {})", absent))
+      ->type_name("FOLDER|built-in");
+}
+
+Case open_planned(const std::string& patient, const CommonOptions& common) {
+  ProgressBar bar(common);
+  Case opened = open_patient(patient, common, bar);
+  bar.clear();
+  return opened;
+}
+
+void print_plan_notes(const CommonOptions& common, const std::vector<std::string>& notes) {
+  if (!common.prints_summary()) return;
+  for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
+}
+
+void finish_edit(const Plan& plan, const fs::path& file, const CommonOptions& common) {
+  save_plan(plan, file);
+  if (common.json) fmt::print("{}", plan_json(plan));
+  if (common.prints_summary())
+    fmt::print(stderr, "{}: {}, {} step{}\n{}", file.string(), plan.name, plan.steps.size(),
+               plan.steps.size() == 1 ? "" : "s", steps_text(plan));
+}
+
+void check_segment(const Plan& plan, const std::string& segment) {
+  std::vector<std::string> known = {"mandible"};
+  for (const PlanStep& step : plan.steps)
+    if (const auto* cut = std::get_if<CutStep>(&step.action))
+      known.insert(known.end(), cut->pieces.begin(), cut->pieces.end());
+  for (const PartGeometry& part : plan.geometry.parts)
+    if (part.name.starts_with("segment") || part.name.starts_with("transplant"))
+      known.push_back(part.name);
+  if (std::find(known.begin(), known.end(), segment) != known.end()) return;
+  throw InputError(fmt::format("no step of the plan makes \"{}\"{}; known are {}", segment,
+                               suggestion(segment, known), fmt::join(known, ", ")));
+}
+
+void add_plan(Commands& commands) {
+  CLI::App& plan = commands.add_parent("plan", "Plan an operation: cuts and moves of segments",
+                                       "condyle plan new --out plan.json\n"
+                                       "  condyle plan cut plan.json le_fort_1\n"
+                                       "  condyle plan move plan.json maxilla forward 4 up 2");
+  for (const auto add : {add_plan_new, add_plan_cut, add_plan_move, add_plan_show, add_plan_apply,
+                         add_plan_remove, add_plan_compare})
+    add(commands, plan);
+}
+
+}  // namespace condyle
