@@ -10,14 +10,12 @@
 #include "engine/collide/distance_field.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "engine/mesh/measure.h"
 #include "render/gl/gl_context.h"
-#include "render/image/gap_colours.h"
-#include "render/output/contact_picture.h"
 #include "render/recording/render_metadata.h"
 #include "sim/motion/recording.h"
 #include "sim/operated/operated_scene.h"
 #include "sim/report/occlusion_report.h"
+#include "tools/bite_picture.h"
 #include "tools/commands.h"
 #include "tools/common.h"
 #include "tools/motion_options.h"
@@ -81,36 +79,6 @@ Start parse_start(const std::string& text, const Case& patient) {
                       moved.x(), moved.y(), moved.z(), turned.x(), turned.y(), turned.z())};
 }
 
-Image picture_of(const Case& patient, const Bite& bite, double film_mm, int threads) {
-  const BiteView view = bite_view(patient, bite, threads);
-  const Eigen::Vector3d heaviest =
-      bite.contacts.empty() ? bite.upper_edge : bite.contacts.front().place;
-  Box arches;
-  for (const auto& part : view.parts)
-    if (part.name == bite.upper || part.name == bite.lower)
-      for (const auto& p : part.mesh.vertices) arches.add(p);
-  constexpr double border = 1.12;  // and a panel is a little narrower than high
-  ContactView place{
-      .parts = view.parts,
-      .fixed = bite.upper,
-      .moved = bite.lower,
-      .fixed_values = view.upper_gap,
-      .moved_values = view.lower_gap,
-      .at = with_jaw_at(patient.bodies, bite.rest.X_CM),
-      .place = heaviest,
-      .middle = arches.center(),
-      .normal = -bite.up,
-      .seen_mm = border * std::max(arches.size().x(), arches.size().y()),
-      .overview = "front",
-      .title = "Settled bite: " + patient.name,
-      .lines = {fmt::format("{} contacts at {:g} mm paper; load {:.0f} % left, {:.0f} % right; "
-                            "overjet {:.1f} mm, overbite {:.1f} mm",
-                            bite.contacts.size(), film_mm, 100 * bite.left_fraction,
-                            bite.contacts.empty() ? 0.0 : 100 * (1 - bite.left_fraction),
-                            bite.after.overjet_mm, bite.after.overbite_mm)}};
-  return contact_picture(place, gap_colours(film_mm));
-}
-
 /// Name of the picture's file, or empty with a note where drawing is impossible.
 std::string write_picture(const std::filesystem::path& folder, const Case& patient,
                           const Bite& bite, double film_mm, int threads,
@@ -121,7 +89,9 @@ std::string write_picture(const std::filesystem::path& folder, const Case& patie
     const OffscreenContext context;
     if (const auto lacks = default_render_metadata(context).shortfall(); !lacks.empty())
       notes.push_back(lacks);
-    write_png(folder / picture_name, picture_of(patient, bite, film_mm, threads));
+    write_png(folder / picture_name,
+              bite_picture(patient, bite, with_jaw_at(patient.bodies, bite.rest.X_CM), film_mm,
+                           threads));
   } catch (const MachineError& error) {
     notes.push_back(fmt::format("the picture is left out: {}", error.what()));
     return "";

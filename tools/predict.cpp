@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,8 +10,7 @@
 #include "engine/mesh_io/mesh_files.h"
 #include "render/gl/gl_context.h"
 #include "render/image/image.h"
-#include "render/overlay/legend.h"
-#include "render/scene/scene_renderer.h"
+#include "render/plan/face_pictures.h"
 #include "sim/case/landmark_files.h"
 #include "sim/plan/plan_file.h"
 #include "sim/prediction/predicted_landmarks.h"
@@ -31,66 +27,10 @@ struct PredictOptions {
   int surface_nodes = 520;
 };
 
-constexpr std::array views{"front", "left", "three-quarter"};
-
-/// 1, 2, 5, 10, 20 ...: the end of the map's range.
-double rounded_up(double mm) {
-  double step = 1;
-  while (true) {
-    for (const double factor : {1.0, 2.0, 5.0})
-      if (factor * step >= mm) return factor * step;
-    step *= 10;
-  }
-}
-
-FrameState frame_of(const Prediction& prediction, bool planned) {
-  FrameState frame;
-  frame.poses =
-      planned ? prediction.operated.poses : completed(prediction.operated.patient.bodies, {});
-  frame.face = planned ? prediction.after : prediction.before;
-  return frame;
-}
-
-/// Before, after, the bones under a skin of glass, and the map of displacement, from each view.
 void draw_pictures(const Prediction& prediction, const std::filesystem::path& folder) {
   const OffscreenContext context;
-  std::vector<Part> parts = prediction.operated.patient.parts;
-  std::string face;
-  for (Part& part : parts)
-    if (part.role == Role::face) {
-      part.mesh = prediction.face;
-      face = part.name;
-    }
-  SceneRenderer renderer(parts);
-  PictureSettings settings;
-  settings.width = 900;
-  settings.height = 1000;
-  settings.contacts = false;
-  const auto [low, high] = renderer.bounds();
-  const ColourMap map = displacement_colours(rounded_up(prediction.max_displacement_mm()));
-  renderer.set_colour_map(map);
-  std::vector<float> moved;
-  for (std::size_t i = 0; i < prediction.before.size(); ++i)
-    moved.push_back((prediction.after[i] - prediction.before[i]).norm());
-  const Glyphs words;
-  const auto save = [&](const char* what, const char* view, Image image) {
-    write_png(folder / fmt::format("{}_{}.png", what, view), image);
-  };
-  for (const char* view : views) {
-    const Camera camera = standard_camera(view, low, high, 0.9);
-    renderer.update(frame_of(prediction, false));
-    save("before", view, renderer.picture(camera, settings));
-    renderer.update(frame_of(prediction, true));
-    save("after", view, renderer.picture(camera, settings));
-    PictureSettings glass = settings;
-    glass.skin_opacity = 0.25;
-    save("bones", view, renderer.picture(camera, glass));
-    renderer.color_part(face, moved);
-    Image mapped = renderer.picture(camera, settings);
-    add_legend(mapped, words, map, {"from before to after"});
-    save("map", view, std::move(mapped));
-    renderer.color_part(face, {});
-  }
+  for (const FacePicture& picture : face_pictures(prediction))
+    write_png(folder / fmt::format("{}_{}.png", picture.what, picture.view), picture.image);
 }
 
 TriMesh face_at(const Prediction& prediction, const std::vector<Eigen::Vector3f>& vertices) {

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/command.h"
+
+namespace condyle {
+
+struct DemoOptions {
+  std::filesystem::path out;
+  std::filesystem::path skull;      // mesh of a delivered skull, for the vault; empty: built-in
+  std::filesystem::path landmarks;  // of that skull; empty: estimated
+};
+
+/// One of the published cases that the program repeats on built-in patients.
+struct Demo {
+  std::string name, what;
+  int (*run)(const DemoOptions& options, const CommonOptions& common);
+};
+
+/// Class III: Le Fort I, sagittal split, the lower arch set by the bite; with the face afterwards.
+int run_class_iii(const DemoOptions& options, const CommonOptions& common);
+/// Jaw movement before and after that operation.
+int run_jaw_before_after(const DemoOptions& options, const CommonOptions& common);
+/// Craniosynostosis: the vault cut into panels and reshaped.
+int run_vault(const DemoOptions& options, const CommonOptions& common);
+/// Genioplasty, with the mouth opening afterwards.
+int run_genioplasty(const DemoOptions& options, const CommonOptions& common);
+
+}  // namespace condyle

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/progress.h"
+#include "render/image/image.h"
+#include "sim/prediction/prediction.h"
+
+namespace condyle {
+
+/// The files of one operation: plan.json, the segments as PLY, the patient after it as a case,
+/// pictures, report.json and report.html. Pictures are left out, with a note, where no OpenGL
+/// context can be created.
+class OperationOutput {
+ public:
+  /// `title` and `introduction`: of the page; the introduction is one paragraph of text.
+  OperationOutput(std::filesystem::path folder, std::string title, std::string introduction);
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+  /// Writes plan, segments and case, and adds the segments' sheet to the page.
+  void add_operation(const Plan& plan, const Operated& operated, const Progress& progress);
+  /// Writes the faces and the sheet of both.
+  void add_prediction(const Plan& plan, const Prediction& prediction, const Progress& progress);
+  /// Writes a picture and puts it on the page.
+  void add_picture(const std::string& file, const Image& image, const std::string& caption);
+  /// A heading with a paragraph.
+  void add_section(const std::string& heading, const std::string& text);
+  struct Table {
+    std::vector<std::string> head;
+    std::vector<std::vector<std::string>> rows;
+  };
+  void add_table(const std::string& heading, const Table& table, const std::string& below = "");
+  void add_link(const std::string& file, const std::string& text);
+  void add_note(const std::string& note);
+  /// Runs a function that draws, if drawing is possible.
+  void draw(const std::function<void()>& drawing);
+
+  /// Content of report.json, to be extended.
+  nlohmann::ordered_json json;
+
+  /// Writes report.json and report.html; prints the notes and where the results are.
+  void finish(bool print_summary);
+
+ private:
+  std::filesystem::path folder_;
+  std::string title_, introduction_, body_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace condyle
