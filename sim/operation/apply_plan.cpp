@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -129,6 +130,12 @@ TriMesh moved_mesh(TriMesh mesh, const Pose& X) {
 }
 
 }  // namespace
+
+bool CutReport::is_dangerous() const {
+  return std::any_of(dangers.begin(), dangers.end(), [](const DangerFinding& finding) {
+    return finding.level == DangerLevel::stop;
+  });
+}
 
 double CutReport::volume_error_percent() const {
   double sum = kerf_volume_mm3;

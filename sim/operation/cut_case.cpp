@@ -263,6 +263,7 @@ CutReport report_of(const PlanStep& step, const Part& bone, const PlacedOsteotom
   report.step = step.id;
   report.title = step_title(step.action);
   report.bone = bone.name;
+  report.below_margins = std::get<CutStep>(step.action).below_margins;
   for (const Cut& each : placed.cuts) report.cuts.push_back(each.name);
   report.outcomes = cut.outcomes;
   report.crossings = cut.crossings;

@@ -36,6 +36,16 @@ std::string outcome_words(const std::string& cut, const CutOutcome& outcome,
   return fmt::format("{}: goes through, {:.0f} mm² of cut faces", cut, outcome.wall_area_mm2);
 }
 
+/// Says of a cut below the least margins whether the plan asks for it.
+std::string margin_words(const CutReport& report) {
+  if (report.below_margins)
+    return report.is_dangerous() ? "lies below the least margins, on request"
+                                 : "keeps the least margins, although the step may lie below them";
+  return report.is_dangerous()
+             ? "lies below the least margins, although the step does not ask for it"
+             : "";
+}
+
 std::string piece_words(const CutPiece& piece) {
   std::string words = fmt::format("{}: {:.1f} cm³{}", piece.body, piece.volume_mm3 / 1000,
                                   piece.stays ? ", stays" : "");
@@ -51,6 +61,7 @@ std::string cut_details(const CutStep& step) {
   if (!step.osteotomy.empty() && !step.target.empty()) text += "; of " + step.target;
   if (step.kerf_mm > 0) text += fmt::format("; kerf {:g} mm", step.kerf_mm);
   for (const auto& [name, value] : step.parameters) text += fmt::format("; {} {:g}", name, value);
+  if (step.below_margins) text += "; below the least margins on request";
   return text;
 }
 
@@ -78,6 +89,7 @@ std::vector<std::string> cut_sentences(const CutReport& report, const Landmarks&
     sentences.push_back(fmt::format("{} and {} cross in the bone", report.cuts[a], report.cuts[b]));
   for (const DangerFinding& finding : report.dangers)
     if (finding.level != DangerLevel::clear) sentences.push_back(danger_text(finding));
+  if (const std::string words = margin_words(report); !words.empty()) sentences.push_back(words);
   for (const CutPiece& piece : report.pieces) sentences.push_back(piece_words(piece));
   if (report.kerf_volume_mm3 > 0)
     sentences.push_back(fmt::format("the saw removes {:.1f} cm³", report.kerf_volume_mm3 / 1000));

@@ -36,9 +36,12 @@ struct CutReport {
   std::vector<DangerFinding> dangers;          // zones near the cut faces, nearest first
   double volume_mm3 = 0;                       // of the bone before it
   double kerf_volume_mm3 = 0;
-  int turned = 0;  // triangles of cut faces that face backward
+  int turned = 0;              // triangles of cut faces that face backward
+  bool below_margins = false;  // allowed by the step
   std::vector<std::string> notes;
 
+  /// Whether the cut comes nearer to a root, canal or foramen than the least margin.
+  bool is_dangerous() const;
   /// Deviation of the pieces and the kerf from the bone, in percent of it.
   double volume_error_percent() const;
 };

@@ -149,14 +149,7 @@ Problem problem_in(const NoteStep& note) {
 }
 
 std::vector<PlanStep>::iterator step_with(Plan& plan, int id) {
-  const auto found = std::find_if(plan.steps.begin(), plan.steps.end(),
-                                  [&](const PlanStep& step) { return step.id == id; });
-  if (found != plan.steps.end()) return found;
-  std::vector<int> ids;
-  for (const auto& step : plan.steps) ids.push_back(step.id);
-  throw InputError(fmt::format(
-      "the plan has no step {}; {}", id,
-      ids.empty() ? "it is empty" : fmt::format("its steps are {}", fmt::join(ids, ", "))));
+  return plan.steps.begin() + (&step_of(plan, id) - plan.steps.data());
 }
 
 [[noreturn]] void refuse_step(const PlanStep& step, const std::string& problem) {
@@ -196,6 +189,16 @@ std::string step_title(const PlanAction& action) {
 
 std::string step_name(const PlanStep& step) {
   return fmt::format("step {} ({})", step.id, step_title(step.action));
+}
+
+const PlanStep& step_of(const Plan& plan, int id) {
+  for (const auto& step : plan.steps)
+    if (step.id == id) return step;
+  std::vector<int> ids;
+  for (const auto& step : plan.steps) ids.push_back(step.id);
+  throw InputError(fmt::format(
+      "the plan has no step {}; {}", id,
+      ids.empty() ? "it is empty" : fmt::format("its steps are {}", fmt::join(ids, ", "))));
 }
 
 std::optional<StepProblem> problem_of(const PlanAction& action) {
@@ -265,6 +268,32 @@ Plan with_reordered(Plan plan, int id, std::size_t position) {
   PlanStep step = std::move(*from);
   plan.steps.erase(from);
   plan.steps.insert(plan.steps.begin() + static_cast<std::ptrdiff_t>(position), std::move(step));
+  check_plan(plan);
+  return plan;
+}
+
+Plan with_recut(Plan plan, int id, const CutStep& cut) {
+  const auto at = step_with(plan, id);
+  const auto* known = std::get_if<CutStep>(&at->action);
+  if (!known) throw InputError(step_name(*at) + " is no cut");
+  std::map<std::string, std::string> renamed;
+  if (known->pieces.size() == cut.pieces.size())
+    for (std::size_t i = 0; i < cut.pieces.size(); ++i) renamed[known->pieces[i]] = cut.pieces[i];
+  at->action = cut;
+  for (PlanStep& step : plan.steps) {
+    if (step.id == id) continue;
+    auto* later = std::get_if<CutStep>(&step.action);
+    auto* move = std::get_if<MoveStep>(&step.action);
+    if (!later && !move) continue;
+    std::string& used = later ? later->target : move->segment;
+    const auto found = renamed.find(used);
+    if (found == renamed.end() || found->second == used) continue;
+    // The point that a move is about by default depends on the segment's name.
+    if (move)
+      if (auto* words = std::get_if<ClinicalMove>(&move->move))
+        words->about = point_name(*words, used);
+    used = found->second;
+  }
   check_plan(plan);
   return plan;
 }

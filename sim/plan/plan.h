@@ -58,6 +58,7 @@ struct CutStep {
   double kerf_mm = 0;
   std::vector<CutSurface> surfaces = {};
   std::vector<std::string> pieces = {};  // names of the segments that it makes
+  bool below_margins = false;  // on request: it may lie too near to a root, canal or foramen
 
   bool operator==(const CutStep&) const = default;
 };
@@ -113,6 +114,12 @@ Plan with_step(Plan plan, PlanAction action);  // appended, with a new id
 Plan with_replaced(Plan plan, int id, PlanAction action);
 Plan without_step(Plan plan, int id);
 Plan with_reordered(Plan plan, int id, std::size_t position);  // 0: first
+/// Replaces a cut. Where it makes as many segments as before under other names, the other steps
+/// follow: what moved or cut the old segment does the same to the new one.
+Plan with_recut(Plan plan, int id, const CutStep& cut);
+
+/// throws: InputError for an id that the plan lacks, naming those that it has.
+const PlanStep& step_of(const Plan& plan, int id);
 
 /// Refuses what no case could replay: values that are not finite or out of range, cuts without
 /// osteotomy and surfaces, names of pieces that are used twice, and steps that cut or move a

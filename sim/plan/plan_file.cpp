@@ -57,6 +57,7 @@ Json step_json(const CutStep& cut) {
     item["surfaces"].push_back(
         std::visit([](const auto& known) { return step_json(known); }, surface));
   item["pieces"] = cut.pieces;
+  if (cut.below_margins) item["below_margins"] = true;
   return {{"cut", item}};
 }
 
@@ -189,7 +190,8 @@ CutSurface surface_in(const JsonItem& item) {
 }
 
 CutStep cut_in(const JsonItem& item) {
-  item.only_keys({"osteotomy", "target", "parameters", "kerf_mm", "surfaces", "pieces"});
+  item.only_keys(
+      {"osteotomy", "target", "parameters", "kerf_mm", "surfaces", "pieces", "below_margins"});
   CutStep cut{.osteotomy = text_in(item, "osteotomy"), .target = text_in(item, "target")};
   if (const auto parameters = item.find("parameters")) {
     if (!parameters->value().is_object()) parameters->refuse("must be an object {...}");
@@ -201,6 +203,10 @@ CutStep cut_in(const JsonItem& item) {
     for (std::size_t i = 0; i < surfaces->size(); ++i)
       cut.surfaces.push_back(surface_in(surfaces->at(i)));
   cut.pieces = texts_in(item.at("pieces"));
+  if (const auto below = item.find("below_margins")) {
+    if (!below->value().is_boolean()) below->refuse("must be true or false");
+    cut.below_margins = below->value().get<bool>();
+  }
   return cut;
 }
 
@@ -347,12 +353,16 @@ Plan parse_plan(const fs::path& file, std::string_view text) {
 
 Plan load_plan(const fs::path& file) { return parse_plan(file, read_file(file, max_plan_bytes)); }
 
-void save_plan(const Plan& plan, const fs::path& file) {
+std::string checked_plan_json(const Plan& plan, const fs::path& file) {
   check_plan(plan);
-  const std::string text = plan_json(plan);
+  std::string text = plan_json(plan);
   if (text.size() > max_plan_bytes || parse_plan(file, text) != plan)
     throw InputError(file, "", "the plan has names or texts that could not be read back");
-  write_file(file, text);
+  return text;
+}
+
+void save_plan(const Plan& plan, const fs::path& file) {
+  write_file(file, checked_plan_json(plan, file));
 }
 
 }  // namespace condyle

@@ -20,6 +20,9 @@ std::string plan_json(const Plan& plan);
 Plan parse_plan(const std::filesystem::path& file, std::string_view text);
 Plan load_plan(const std::filesystem::path& file);
 
+/// plan_json() of a plan that can be read back from `file`. throws: InputError for any other.
+std::string checked_plan_json(const Plan& plan, const std::filesystem::path& file);
+
 /// Written beside the file and renamed: what was there stays intact on failure.
 /// throws: InputError for a plan that could not be read back; MachineError.
 void save_plan(const Plan& plan, const std::filesystem::path& file);

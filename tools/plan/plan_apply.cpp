@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <set>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -40,6 +41,35 @@ int run_plan_show(const PlanApplyOptions& options, const CommonOptions& common) 
   return 0;
 }
 
+/// Names of the files that an earlier apply wrote into the folder `segments`, by its report.
+std::set<std::string> earlier_segments(const std::filesystem::path& report) {
+  std::set<std::string> files;
+  try {
+    const auto json = nlohmann::json::parse(read_file(report));
+    if (!json.at("plan").is_string()) return files;
+    for (const auto& segment : json.at("segments"))
+      files.insert(segment.at("name").get<std::string>() + ".ply");
+  } catch (const InputError&) {                 // there is none
+  } catch (const nlohmann::json::exception&) {  // of another command
+    files.clear();
+  }
+  return files;
+}
+
+/// Removes what an earlier apply wrote and this one did not.
+void remove_earlier(const std::set<std::string>& earlier, const std::set<std::string>& written,
+                    const std::filesystem::path& folder) {
+  for (const std::string& name : earlier) {
+    const std::filesystem::path file = folder / name;
+    std::error_code ignored;
+    if (written.contains(name) || file.parent_path() != folder ||
+        !std::filesystem::is_regular_file(std::filesystem::symlink_status(file, ignored)))
+      continue;
+    std::filesystem::remove(file, ignored);
+    if (ignored) throw MachineError(file.string() + ": cannot be removed: " + ignored.message());
+  }
+}
+
 int run_plan_apply(const PlanApplyOptions& options, const CommonOptions& common) {
   const Plan plan = load_plan(options.file);
   const Operated operated = apply_plan(open_planned(options.patient, common), plan);
@@ -47,11 +77,17 @@ int run_plan_apply(const PlanApplyOptions& options, const CommonOptions& common)
     throw InputError(
         fmt::format("{}: {}", options.file.string(), fmt::join(operated.problems, "; ")));
   const Case after = operated_case(operated);
-  make_folder(options.out / "segments");
+  const std::filesystem::path segments = options.out / "segments";
+  make_folder(segments);
   save_case(after, options.out / "case");
+  std::set<std::string> written;
   for (const Part& part : after.parts)
-    if (part.role == Role::segment && operated.origin.contains(part.name))
-      write_ply(part.mesh, options.out / "segments" / (part.name + ".ply"));
+    if (part.role == Role::segment && operated.origin.contains(part.name)) {
+      write_ply(part.mesh, segments / (part.name + ".ply"));
+      written.insert(part.name + ".ply");
+    }
+  // Before the new report replaces the earlier one, which names them.
+  remove_earlier(earlier_segments(options.out / "report.json"), written, segments);
   const std::string report =
       plan_report_json(plan, operated)
           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
@@ -75,7 +111,7 @@ void add_plan_show(Commands& commands, CLI::App& plan) {
       plan, "show", "Print a plan: steps, and with the case its cuts and tables",
       "condyle plan show plan.json --case mycase",
       [options](const CommonOptions& common) { return run_plan_show(*options, common); });
-  add_edited_plan(command, options->file);
+  add_plan_argument(command, options->file);
   add_plan_case(command, options->patient, "none, the steps are printed alone");
 }
 
@@ -85,7 +121,7 @@ void add_plan_apply(Commands& commands, CLI::App& plan) {
       plan, "apply", "Write the segments and the patient after the operation",
       "condyle plan apply plan.json --case mycase --out out/operated",
       [options](const CommonOptions& common) { return run_plan_apply(*options, common); });
-  add_edited_plan(command, options->file);
+  add_plan_argument(command, options->file);
   add_plan_case(command, options->patient);
   command.add_option("--out", options->out, "Folder for segments, case and report.json")
       ->type_name("FOLDER")

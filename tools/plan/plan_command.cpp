@@ -9,6 +9,7 @@
 #include "engine/core/similar_word.h"
 #include "sim/operation/cut_text.h"
 #include "sim/plan/plan_file.h"
+#include "sim/plan/plan_history_file.h"
 #include "tools/commands.h"
 #include "tools/common.h"
 
@@ -16,8 +17,12 @@ namespace condyle {
 
 namespace fs = std::filesystem;
 
-void add_edited_plan(CLI::App& command, fs::path& file) {
+void add_plan_argument(CLI::App& command, fs::path& file) {
   command.add_option("PLAN", file, "File of the plan")->required();
+}
+
+void add_step_argument(CLI::App& command, int& step) {
+  in_range(command.add_option("STEP", step, "Number of the step")->required(), 1, 1000000);
 }
 
 void add_plan_case(CLI::App& command, std::string& patient, const char* absent) {
@@ -37,12 +42,18 @@ void print_plan_notes(const CommonOptions& common, const std::vector<std::string
   for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
 }
 
-void finish_edit(const Plan& plan, const fs::path& file, const CommonOptions& common) {
-  save_plan(plan, file);
+void print_edited(const Plan& plan, const fs::path& file, const CommonOptions& common) {
   if (common.json) fmt::print("{}", plan_json(plan));
   if (common.prints_summary())
     fmt::print(stderr, "{}: {}, {} step{}\n{}", file.string(), plan.name, plan.steps.size(),
                plan.steps.size() == 1 ? "" : "s", steps_text(plan));
+}
+
+void finish_edit(const Plan& plan, const fs::path& file, const std::string& edit,
+                 const CommonOptions& common) {
+  const auto notes = save_edit(plan, file, edit);
+  print_edited(plan, file, common);
+  print_plan_notes(common, notes);
 }
 
 void check_segment(const Plan& plan, const std::string& segment) {
@@ -63,8 +74,9 @@ void add_plan(Commands& commands) {
                                        "condyle plan new --out plan.json\n"
                                        "  condyle plan cut plan.json le_fort_1\n"
                                        "  condyle plan move plan.json maxilla forward 4 up 2");
-  for (const auto add : {add_plan_new, add_plan_cut, add_plan_move, add_plan_show, add_plan_apply,
-                         add_plan_remove, add_plan_compare})
+  for (const auto add : {add_plan_new, add_plan_cut, add_plan_edit, add_plan_move, add_plan_note,
+                         add_plan_reorder, add_plan_remove, add_plan_undo, add_plan_redo,
+                         add_plan_show, add_plan_apply, add_plan_compare})
     add(commands, plan);
 }
 

@@ -14,13 +14,20 @@ namespace condyle {
 void add_plan_new(Commands& commands, CLI::App& plan);
 void add_plan_cut(Commands& commands, CLI::App& plan);
 void add_plan_move(Commands& commands, CLI::App& plan);
+void add_plan_edit(Commands& commands, CLI::App& plan);  // in plan_cut.cpp
 void add_plan_show(Commands& commands, CLI::App& plan);  // in plan_apply.cpp
 void add_plan_apply(Commands& commands, CLI::App& plan);
-void add_plan_remove(Commands& commands, CLI::App& plan);  // in plan_steps.cpp
+void add_plan_remove(Commands& commands, CLI::App& plan);  // in plan_steps.cpp, as is the next
+void add_plan_reorder(Commands& commands, CLI::App& plan);
+void add_plan_note(Commands& commands, CLI::App& plan);
+void add_plan_undo(Commands& commands, CLI::App& plan);
+void add_plan_redo(Commands& commands, CLI::App& plan);  // in plan_undo.cpp
 void add_plan_compare(Commands& commands, CLI::App& plan);
 
 /// Adds the positional PLAN.
-void add_edited_plan(CLI::App& command, std::filesystem::path& file);
+void add_plan_argument(CLI::App& command, std::filesystem::path& file);
+/// Adds the positional STEP, the number of a step.
+void add_step_argument(CLI::App& command, int& step);
 /// Adds --case, the case of the plan; `absent` says what holds without it.
 void add_plan_case(CLI::App& command, std::string& patient,
                    const char* absent = "the built-in patient");
@@ -30,8 +37,12 @@ Case open_planned(const std::string& patient, const CommonOptions& common);
 
 void print_plan_notes(const CommonOptions& common, const std::vector<std::string>& notes);
 
-/// Saves an edited plan, and prints its steps, or all of it as JSON.
-void finish_edit(const Plan& plan, const std::filesystem::path& file, const CommonOptions& common);
+/// Prints the steps of a plan that was saved, or all of it as JSON.
+void print_edited(const Plan& plan, const std::filesystem::path& file, const CommonOptions& common);
+/// Saves and prints an edited plan. What the file held before goes to the plan's history; `edit`
+/// says what was done, such as "move maxilla".
+void finish_edit(const Plan& plan, const std::filesystem::path& file, const std::string& edit,
+                 const CommonOptions& common);
 
 /// Refuses a segment that no step makes. Pieces that were imported are known by their names.
 /// throws: InputError that lists the known ones.

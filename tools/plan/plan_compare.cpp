@@ -52,7 +52,7 @@ void add_plan_compare(Commands& commands, CLI::App& plan) {
       "condyle plan compare plan.json other.json --case mycase\n"
       "  condyle plan compare plan.json postoperative --case mycase",
       [options](const CommonOptions& common) { return run_plan_compare(*options, common); });
-  add_edited_plan(command, options->plan);
+  add_plan_argument(command, options->plan);
   command
       .add_option("OTHER", options->other,
                   "File of the other plan, or folder of a case after the operation")

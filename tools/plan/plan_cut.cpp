@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <map>
@@ -19,63 +20,153 @@ namespace {
 struct PlanCutOptions {
   std::filesystem::path file;  // of the plan
   std::string patient;
-  std::string osteotomy, target, pieces;
+  std::string osteotomy;
+  int step = 0;                       // that is changed
   std::vector<std::string> settings;  // NAME=VALUE
+  std::optional<double> kerf_mm;      // not given: that of the osteotomy, or as it is
+  std::optional<std::string> target;
+  std::string pieces;
   bool below_margins = false;
-  std::optional<double> kerf_mm;  // not given: that of the osteotomy
 };
 
-std::map<std::string, double> parse_settings(const std::vector<std::string>& settings) {
-  std::map<std::string, double> parameters;
-  for (const std::string& setting : settings) {
+/// Values by name; of a cut that is changed, "default" has none.
+std::map<std::string, std::optional<double>> parse_settings(const PlanCutOptions& options) {
+  std::map<std::string, std::optional<double>> values;
+  for (const std::string& setting : options.settings) {
     const auto equals = setting.find('=');
     if (equals == 0 || equals == std::string::npos)
       throw InputError("--set " + setting + ": expected NAME=VALUE, e.g. height_mm=6");
-    const std::string name = setting.substr(0, equals);
-    if (!parameters.emplace(name, parse_number(setting.substr(equals + 1), "--set " + name)).second)
-      throw InputError("--set " + name + ": is given twice");
+    const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
+    std::optional<double> value;
+    if (text != "default") value = parse_number(text, "--set " + name);
+    if (!values.emplace(name, value).second) throw InputError("--set " + name + ": is given twice");
   }
-  return parameters;
+  return values;
+}
+
+/// The step with the options that are given; other values stay.
+CutStep changed_cut(CutStep step, const PlanCutOptions& options) {
+  for (const auto& [name, value] : parse_settings(options)) {
+    step.parameters.erase(name);
+    if (value) step.parameters[name] = *value;
+  }
+  step.kerf_mm = options.kerf_mm.value_or(step.kerf_mm);
+  step.target = options.target.value_or(step.target);
+  if (!options.pieces.empty()) step.pieces = split_list(options.pieces);
+  step.below_margins = options.below_margins;
+  return step;
+}
+
+std::vector<std::string> own_pieces(const Case& patient, CutStep step) {
+  step.pieces.clear();
+  std::vector<std::string> names;
+  for (const SegmentRule& rule : place_osteotomy(patient, step).segments)
+    names.push_back(rule.name);
+  return names;
 }
 
 /// Refuses a cut that comes nearer to a root, canal or foramen than any surgeon would.
-void refuse_dangerous(const CutReport& report) {
+void refuse_dangerous(const CutReport& report, const char* verb) {
+  if (report.below_margins) return;
   std::vector<std::string> dangers;
   for (const DangerFinding& finding : report.dangers)
     if (finding.level == DangerLevel::stop) dangers.push_back(danger_text(finding));
   if (!dangers.empty())
     throw InputError(
-        fmt::format("{} is not added: {}. Change its parameters with --set, or add it all the same "
+        fmt::format("{} is not {}ed: {}. Change its parameters with --set, or {} it all the same "
                     "with --below-margins",
-                    report.title, fmt::join(dangers, "; ")));
+                    report.title, verb, fmt::join(dangers, "; "), verb));
+}
+
+/// Saves the plan unless the step's cut is dangerous, and prints what it cuts. `verb`: "add".
+void finish_cut(const Plan& plan, const PlanStep& step, const Case& patient, const char* verb,
+                const PlanCutOptions& options, const CommonOptions& common) {
+  const Operated operated = apply_plan(patient, plan);
+  std::vector<std::string> notes = operated.notes;
+  for (const CutReport& cut : operated.cuts) {
+    if (cut.step == step.id)
+      refuse_dangerous(cut, verb);
+    else if (cut.is_dangerous() && !cut.below_margins)
+      notes.push_back(
+          fmt::format("step {} ({}) lies below the least margins", cut.step, cut.title));
+  }
+  const std::string edit = verb == std::string("add") ? step_title(step.action)
+                                                      : fmt::format("{} {}", verb, step_name(step));
+  finish_edit(plan, options.file, edit, common);
+  print_plan_notes(common, notes);
+  if (common.prints_summary()) fmt::print(stderr, "{}", cut_report_text(operated, step.id));
+  print_plan_notes(common, operated.problems);
 }
 
 int run_plan_cut(const PlanCutOptions& options, const CommonOptions& common) {
   const Plan plan = load_plan(options.file);
-  CutStep step;
-  step.osteotomy = options.osteotomy;
-  step.target = options.target;
-  step.parameters = parse_settings(options.settings);
   // Refuses an unknown name before the patient is read.
-  step.kerf_mm = options.kerf_mm.value_or(default_kerf_mm(step.osteotomy));
+  CutStep step = changed_cut(
+      {.osteotomy = options.osteotomy, .kerf_mm = default_kerf_mm(options.osteotomy)}, options);
   const Case patient = open_planned(options.patient, common);
-  if (!options.pieces.empty())
-    step.pieces = split_list(options.pieces);
-  else
-    for (const SegmentRule& rule :
-         place_osteotomy(apply_plan(patient, plan).patient, step).segments)
-      step.pieces.push_back(rule.name);
+  if (options.pieces.empty()) step.pieces = own_pieces(apply_plan(patient, plan).patient, step);
   const Plan edited = with_step(plan, step);
-  const Operated operated = apply_plan(patient, edited);
-  if (!options.below_margins && !operated.cuts.empty() &&
-      operated.cuts.back().step == edited.steps.back().id)
-    refuse_dangerous(operated.cuts.back());
-  finish_edit(edited, options.file, common);
-  print_plan_notes(common, operated.notes);
-  if (common.prints_summary())
-    fmt::print(stderr, "{}", cut_report_text(operated, edited.steps.back().id));
-  print_plan_notes(common, operated.problems);
+  finish_cut(edited, edited.steps.back(), patient, "add", options, common);
   return 0;
+}
+
+/// The patient on which a step cuts.
+Case patient_before(const Case& patient, Plan plan, int id) {
+  const auto at = plan.steps.begin() + (&step_of(plan, id) - plan.steps.data());
+  plan.steps.erase(at, plan.steps.end());
+  std::erase_if(plan.steps, [](const PlanStep& step) {
+    return !std::holds_alternative<CutStep>(step.action);  // cuts are made at the uncut rest
+  });
+  return apply_plan(patient, plan).patient;
+}
+
+/// A step whose parameters now make other segments takes their names.
+void name_pieces(CutStep& step, const CutStep& before, const Case& patient) {
+  if (step.osteotomy.empty() || !step.surfaces.empty()) return;
+  const auto names = own_pieces(patient, step);
+  try {
+    if (own_pieces(patient, before) == names) return;
+  } catch (const InputError&) {  // the step was wrong, and is corrected now
+  }
+  step.pieces = names;
+}
+
+int run_plan_edit(const PlanCutOptions& options, const CommonOptions& common) {
+  if (options.settings.empty() && !options.kerf_mm && !options.target && options.pieces.empty() &&
+      !options.below_margins)
+    throw InputError("give what is changed: --set, --kerf, --target, --pieces or --below-margins");
+  const Plan plan = load_plan(options.file);
+  const PlanStep& known = step_of(plan, options.step);
+  const auto* before = std::get_if<CutStep>(&known.action);
+  if (!before)
+    throw InputError(fmt::format("{} is no cut; {}", step_name(known),
+                                 std::holds_alternative<MoveStep>(known.action)
+                                     ? "condyle plan move replaces the move of a segment"
+                                     : "remove it, and add another"));
+  CutStep step = changed_cut(*before, options);
+  const Case patient = open_planned(options.patient, common);
+  if (options.pieces.empty())
+    name_pieces(step, *before, patient_before(patient, plan, options.step));
+  const Plan edited = with_recut(plan, options.step, step);
+  finish_cut(edited, step_of(edited, options.step), patient, "edit", options, common);
+  return 0;
+}
+
+void add_cut_options(CLI::App& command, PlanCutOptions& options, const char* kerf,
+                     const char* target) {
+  command.add_option("--set", options.settings, "A parameter of the osteotomy; may be repeated")
+      ->type_name("NAME=VALUE");
+  in_range(command.add_option("--kerf", options.kerf_mm,
+                              fmt::format("Thickness of the saw cut, mm; default {}", kerf)),
+           0, max_kerf_mm);
+  command
+      .add_option("--target", options.target,
+                  fmt::format("Body or segment to cut; default {}", target))
+      ->type_name("NAME");
+  command.add_flag("--below-margins", options.below_margins,
+                   "Allow a cut that lies too near to a root, canal or foramen");
+  command.add_option("--pieces", options.pieces, "Names of the segments, in its order")
+      ->type_name("A,B,...");
 }
 
 }  // namespace
@@ -85,24 +176,23 @@ void add_plan_cut(Commands& commands, CLI::App& plan) {
   CLI::App& command = commands.add_below(
       plan, "cut", "Add an osteotomy", "condyle plan cut plan.json le_fort_1 --case mycase",
       [options](const CommonOptions& common) { return run_plan_cut(*options, common); });
-  add_edited_plan(command, options->file);
+  add_plan_argument(command, options->file);
   command.add_option("OSTEOTOMY", options->osteotomy, "Its name, such as le_fort_1")->required();
   add_plan_case(command, options->patient);
-  command.add_option("--set", options->settings, "A parameter of the osteotomy; may be repeated")
-      ->type_name("NAME=VALUE");
-  in_range(
-      command.add_option(
-          "--kerf", options->kerf_mm,
-          "Thickness of the saw cut, mm; default 1.2 for the vault, 2 for barrel staves, else 0"),
-      0, max_kerf_mm);
-  command
-      .add_option("--target", options->target,
-                  "Body or segment to cut; default that of the osteotomy")
-      ->type_name("NAME");
-  command.add_flag("--below-margins", options->below_margins,
-                   "Add the cut though it lies too near to a root, canal or foramen");
-  command.add_option("--pieces", options->pieces, "Names of the segments, in its order")
-      ->type_name("A,B,...");
+  add_cut_options(command, *options, "1.2 for the vault, 2 for barrel staves, else 0",
+                  "that of the osteotomy");
+}
+
+void add_plan_edit(Commands& commands, CLI::App& plan) {
+  const auto options = std::make_shared<PlanCutOptions>();
+  CLI::App& command = commands.add_below(
+      plan, "edit", "Change a cut where it stands; the steps after it stay",
+      "condyle plan edit plan.json 1 --set height_mm=6 --case mycase",
+      [options](const CommonOptions& common) { return run_plan_edit(*options, common); });
+  add_plan_argument(command, options->file);
+  add_step_argument(command, options->step);
+  add_plan_case(command, options->patient);
+  add_cut_options(command, *options, "as it is", "as it is");
 }
 
 }  // namespace condyle

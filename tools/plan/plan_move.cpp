@@ -28,7 +28,7 @@ int run_plan_move(const PlanMoveOptions& options, const CommonOptions& common) {
       if (known->segment == options.segment) earlier = step.id;
   plan =
       earlier ? with_replaced(std::move(plan), *earlier, move) : with_step(std::move(plan), move);
-  finish_edit(plan, options.file, common);
+  finish_edit(plan, options.file, step_title(move), common);
   return 0;
 }
 
@@ -40,7 +40,7 @@ void add_plan_move(Commands& commands, CLI::App& plan) {
       plan, "move", "Move a segment, from where it lay before the operation",
       "condyle plan move plan.json maxilla forward 4 up 2 pns up 4",
       [options](const CommonOptions& common) { return run_plan_move(*options, common); });
-  add_edited_plan(command, options->file);
+  add_plan_argument(command, options->file);
   command.add_option("SEGMENT", options->segment, "Its name")->required();
   command
       .add_option("WORDS", options->words,

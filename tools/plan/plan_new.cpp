@@ -29,7 +29,7 @@ int run_plan_new(const PlanNewOptions& options, const CommonOptions& common) {
     print_plan_notes(common, {fmt::format("moves in words are not possible: {}", error.what())});
   }
   if (options.out.has_parent_path()) make_folder(options.out.parent_path());
-  finish_edit(plan, options.out, common);
+  finish_edit(plan, options.out, "new plan", common);
   return 0;
 }
 

@@ -72,6 +72,7 @@ Json cut_json(const CutReport& cut) {
   json["danger_zones"] = Json::array();
   for (const DangerFinding& finding : cut.dangers)
     json["danger_zones"].push_back(danger_json(finding));
+  json["below_margins"] = cut.below_margins;
   json["pieces"] = Json::array();
   for (const CutPiece& piece : cut.pieces)
     json["pieces"].push_back({{"body", piece.body},
