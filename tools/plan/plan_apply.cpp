@@ -16,10 +16,12 @@
 namespace condyle {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct PlanApplyOptions {
-  std::filesystem::path file;
+  fs::path file;
   std::string patient;
-  std::filesystem::path out;
+  fs::path out;
 };
 
 int run_plan_show(const PlanApplyOptions& options, const CommonOptions& common) {
@@ -41,32 +43,35 @@ int run_plan_show(const PlanApplyOptions& options, const CommonOptions& common) 
   return 0;
 }
 
-/// Names of the files that an earlier apply wrote into the folder `segments`, by its report.
-std::set<std::string> earlier_segments(const std::filesystem::path& report) {
+/// Files in `segments` that an earlier apply wrote, by its report: "segments/chin.ply".
+std::set<std::string> earlier_files(const fs::path& report) {
   std::set<std::string> files;
   try {
     const auto json = nlohmann::json::parse(read_file(report));
     if (!json.at("plan").is_string()) return files;
+    // Reports had no list of files at first.
     for (const auto& segment : json.at("segments"))
-      files.insert(segment.at("name").get<std::string>() + ".ply");
-  } catch (const InputError&) {                 // there is none
-  } catch (const nlohmann::json::exception&) {  // of another command
-    files.clear();
+      files.insert("segments/" + segment.at("name").get<std::string>() + ".ply");
+    if (json.contains("files"))
+      for (const auto& file : json["files"]) files.insert(file.get<std::string>());
+  } catch (const InputError&) {  // there is none
+  } catch (const nlohmann::json::exception&) {
+    files.clear();  // of another command
   }
   return files;
 }
 
-/// Removes what an earlier apply wrote and this one did not.
+/// Removes what an earlier apply wrote into `segments` and this one did not.
 void remove_earlier(const std::set<std::string>& earlier, const std::set<std::string>& written,
-                    const std::filesystem::path& folder) {
+                    const fs::path& out) {
   for (const std::string& name : earlier) {
-    const std::filesystem::path file = folder / name;
-    std::error_code ignored;
-    if (written.contains(name) || file.parent_path() != folder ||
-        !std::filesystem::is_regular_file(std::filesystem::symlink_status(file, ignored)))
+    const fs::path file = out / name;
+    std::error_code error;
+    if (written.contains(name) || file.parent_path() != out / "segments" ||
+        file.extension() != ".ply" || !fs::is_regular_file(fs::symlink_status(file, error)))
       continue;
-    std::filesystem::remove(file, ignored);
-    if (ignored) throw MachineError(file.string() + ": cannot be removed: " + ignored.message());
+    fs::remove(file, error);
+    if (error) throw MachineError(file.string() + ": cannot be removed: " + error.message());
   }
 }
 
@@ -77,21 +82,21 @@ int run_plan_apply(const PlanApplyOptions& options, const CommonOptions& common)
     throw InputError(
         fmt::format("{}: {}", options.file.string(), fmt::join(operated.problems, "; ")));
   const Case after = operated_case(operated);
-  const std::filesystem::path segments = options.out / "segments";
-  make_folder(segments);
+  make_folder(options.out / "segments");
   save_case(after, options.out / "case");
   std::set<std::string> written;
   for (const Part& part : after.parts)
     if (part.role == Role::segment && operated.origin.contains(part.name)) {
-      write_ply(part.mesh, segments / (part.name + ".ply"));
-      written.insert(part.name + ".ply");
+      const std::string file = "segments/" + part.name + ".ply";
+      write_ply(part.mesh, options.out / file);
+      written.insert(file);
     }
   // Before the new report replaces the earlier one, which names them.
-  remove_earlier(earlier_segments(options.out / "report.json"), written, segments);
+  remove_earlier(earlier_files(options.out / "report.json"), written, options.out);
+  auto json = plan_report_json(plan, operated);
+  json["files"] = written;
   const std::string report =
-      plan_report_json(plan, operated)
-          .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-      "\n";
+      json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   write_file(options.out / "report.json", report);
   if (common.json) fmt::print("{}", report);
   print_plan_notes(common, operated.notes);

@@ -65,3 +65,22 @@ TEST(CutText, ListsSteps) {
   expect_sentence(text, "  1  cut mandible: makes chin; kerf 0.5 mm\n");
   expect_sentence(text, "  2  move chin: forward 5.0 mm; about pogonion\n");
 }
+
+TEST(CutText, SaysOfACutBelowTheMarginsWhetherItWasRequested) {
+  const Case patient = operable_patient();
+  CutStep near = chin_step(), far = chin_step();
+  near.surfaces = {disc({0, -92, -60}, {0, 0, -1})};  // through the mental foramen
+  Operated operated = apply_plan(patient, plan_of(patient, {near}));
+  EXPECT_TRUE(operated.cuts[0].is_dangerous());
+  expect_sentence(all_sentences(operated), "although the step does not ask for it");
+  near.below_margins = far.below_margins = true;
+  operated = apply_plan(patient, plan_of(patient, {near}));
+  expect_sentence(all_sentences(operated), "lies below the least margins, on request\n");
+  expect_sentence(steps_text(plan_of(patient, {near})), "below the least margins on request");
+  operated = apply_plan(patient, plan_of(patient, {far}));
+  EXPECT_FALSE(operated.cuts[0].is_dangerous());
+  expect_sentence(all_sentences(operated), "keeps the least margins");
+  far.below_margins = false;
+  EXPECT_EQ(all_sentences(apply_plan(patient, plan_of(patient, {far}))).find("margins"),
+            std::string::npos);
+}

@@ -114,6 +114,20 @@ TEST(PlanFile, SegmentsOfANamedOsteotomyHaveNamesOfTheirOwn) {
   EXPECT_EQ(problem_of(unnamed)->item, "pieces");
 }
 
+TEST(PlanFile, ACutBelowTheMarginsIsRememberedWhereItWasRequested) {
+  EXPECT_EQ(plan_json(sample_plan()).find("below_margins"), std::string::npos);
+  Plan plan = sample_plan();
+  std::get<CutStep>(plan.steps[0].action).below_margins = true;
+  EXPECT_NE(plan, sample_plan());
+  EXPECT_NE(plan_json(plan).find("\"below_margins\": true"), std::string::npos);
+  EXPECT_EQ(parse_plan(nowhere, plan_json(plan)), plan);
+  EXPECT_EQ(
+      parse_plan(nowhere, edited("\"kerf_mm\": 0.7", "\"kerf_mm\": 0.7, \"below_margins\": false")),
+      sample_plan());
+  expect_refused("\"kerf_mm\": 0.7", "\"kerf_mm\": 0.7, \"below_margins\": 1",
+                 "steps[0].cut.below_margins: must be true or false");
+}
+
 TEST(PlanFile, AnyPartOfAFileIsRefused) {
   const std::string text = plan_json(sample_plan());
   for (std::size_t size = 0; size + 2 < text.size(); size += 13)

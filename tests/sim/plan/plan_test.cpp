@@ -139,6 +139,36 @@ TEST(Plan, ImpossibleStepsAreRefusedWithItemAndValue) {
               "surfaces[0].depth_mm is 0");
 }
 
+TEST(Plan, ACutIsChangedWhereItStands) {
+  Plan plan = sample_plan();
+  CutStep cut = le_fort();
+  cut.kerf_mm = 1;
+  Plan changed = with_recut(plan, 1, cut);
+  EXPECT_EQ(std::get<CutStep>(changed.steps[0].action), cut);
+  EXPECT_EQ(changed, with_replaced(plan, 1, cut));
+  // Other steps follow the new names of segments; a move keeps its point.
+  cut.pieces = {"upper jaw"};
+  changed = with_recut(plan, 1, cut);
+  const auto& move = std::get<MoveStep>(changed.steps[1].action);
+  EXPECT_EQ(move.segment, "upper jaw");
+  EXPECT_EQ(std::get<ClinicalMove>(move.move),
+            (ClinicalMove{.about = "upper_incisal_point", .forward_mm = 4, .up_mm = 2}));
+  CutStep chin = chin_cut();
+  chin.pieces = {"chin", "mandible rest"};
+  changed = with_recut(plan, 3, chin);
+  EXPECT_EQ(std::get<MoveStep>(changed.steps[3].action).segment, "mandible rest");
+  EXPECT_EQ(std::get<MoveStep>(changed.steps[3].action).move,
+            std::get<MoveStep>(plan.steps[3].action).move);
+  // With another number of segments they keep the names that they have.
+  cut.pieces = {"left", "right"};
+  EXPECT_EQ(std::get<MoveStep>(with_recut(plan, 1, cut).steps[1].action).segment, "maxilla");
+  expect_says(edit_refusal([&] { return with_recut(plan, 2, cut); }),
+              "step 2 (move maxilla) is no cut");
+  cut.pieces = {"chin"};
+  expect_says(edit_refusal([&] { return with_recut(plan, 1, cut); }), "already made by step 1");
+  expect_says(edit_refusal([&] { return with_recut(plan, 9, cut); }), "no step 9");
+}
+
 TEST(PlanHistory, UndoAndRedoNameTheEdit) {
   PlanHistory history{Plan{.name = "p"}};
   EXPECT_FALSE(history.undo());
