@@ -130,13 +130,16 @@ TEST_F(PlanEdit, ACutIsChangedInPlaceAndTheMovesStay) {
 TEST_F(PlanEdit, ACutThatMakesOtherSegmentsNamesThem) {
   const std::string other = folder / "other.json";
   done({"new", "--out", other});
-  done({"cut", other, "le_fort_1"});
-  has_words(done({"edit", other, "1", "--set", "pieces=2"}), "makes maxilla_left, maxilla_right");
-  done({"edit", other, "1", "--set", "pieces=1"});
-  done({"move", other, "maxilla", "forward", "3"});
-  const Outcome wrong = run({"edit", other, "1", "--set", "pieces=2"});
+  done({"cut", other, "vault_panels"});
+  has_words(done({"edit", other, "1", "--set", "columns=2"}),
+            "makes strip, panel_left_1, panel_left_2, panel_right_1, panel_right_2;");
+  done({"edit", other, "1", "--set", "columns=1"});
+  done({"move", other, "panel_left", "up", "3"});
+  const std::string before = read_text(other);
+  const Outcome wrong = run({"edit", other, "1", "--set", "columns=2"});
   EXPECT_EQ(wrong.code, 2);
-  has_words(wrong.err, "step 2 (move maxilla)");
+  has_words(wrong.err, "step 2 (move panel_left)");
+  EXPECT_EQ(read_text(other), before);
 }
 
 TEST_F(PlanEdit, ACutBelowTheMarginsIsRememberedAndReported) {
