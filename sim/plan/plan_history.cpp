@@ -56,13 +56,13 @@ std::optional<std::string> PlanHistory::redoable() const {
 }
 
 std::optional<std::string> PlanHistory::undo() {
-  const auto edit = undoable();
+  auto edit = undoable();
   if (edit) --now_;
   return edit;
 }
 
 std::optional<std::string> PlanHistory::redo() {
-  const auto edit = redoable();
+  auto edit = redoable();
   if (edit) ++now_;
   return edit;
 }
