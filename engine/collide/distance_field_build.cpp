@@ -168,7 +168,9 @@ class FieldBuilder {
       Four least = Four::Constant(std::numeric_limits<float>::infinity());
       for (; run.last < faces.size() && faces_[faces[run.last]].shell == shell; ++run.last) {
         squares[run.last] = planes_[faces[run.last]].square_distances(x, y, z);
-        least = least.min(squares[run.last]);
+        // The bound 0 of a sliver says nothing about the nearest face.
+        least = least.min((squares[run.last] > 0)
+                              .select(squares[run.last], std::numeric_limits<float>::infinity()));
       }
       Four limit;
       for (int k = 0; k < 4; ++k) limit[k] = square_limit(std::sqrt(least[k]) + rounding_mm_);

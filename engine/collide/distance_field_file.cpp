@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t format_version = 1;
+constexpr std::uint64_t format_version = 2;
 
 /// Eight bytes at a time: the checksum of some ten megabytes should not take longer than reading
 /// them.

@@ -73,6 +73,38 @@ TEST(DistanceField, IsTheExactDistanceOfTheMesh) {
   EXPECT_LE(sum / near, 0.003);
 }
 
+/// A triangle divided at a point just inside of one edge: the triangle at that edge is a sliver.
+TriMesh with_sliver(TriMesh mesh, int triangle) {
+  const Eigen::Vector3i t = mesh.triangles[triangle];
+  const Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+  const Vector3d middle = 0.5 * (a + b), inside = middle + 1e-7 * (c - middle);
+  const int m = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.push_back(inside);
+  mesh.triangles[triangle] = {t[0], t[1], m};
+  mesh.triangles.emplace_back(t[1], t[2], m);
+  mesh.triangles.emplace_back(t[2], t[0], m);
+  return mesh;
+}
+
+TEST(DistanceField, SliversHideNoOtherFace) {
+  const TriMesh plain = test::sphere(3, 9);
+  TriMesh mesh = plain;
+  for (int t = 0; t < static_cast<int>(plain.triangles.size()); t += 3) mesh = with_sliver(mesh, t);
+  const DistanceField field(mesh, {}, 2), without(plain, {}, 2);
+  std::mt19937_64 random(4);
+  const Box box = bounding_box(plain);
+  int near = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Vector3d p = any_point(random, box);
+    const FieldSample sample = field.at(p), expected = without.at(p);
+    ASSERT_EQ(sample.known, expected.known);
+    if (!sample.known) continue;
+    ++near;
+    EXPECT_NEAR(sample.distance_mm, expected.distance_mm, 1e-5);
+  }
+  EXPECT_GT(near, 1000);
+}
+
 TEST(DistanceField, GradientIsTheSlopeOfTheDistance) {
   const DistanceField field(test::sphere(3, 6, {0, 0, 0}, 0.1), {});
   std::mt19937_64 random(3);
