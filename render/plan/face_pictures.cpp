@@ -12,11 +12,11 @@ namespace {
 
 constexpr std::array face_views{"front", "three-quarter", "left"};
 
-/// 1, 2, 5, 10, 20 ...: the end of the map's range.
+/// 1, 1.2, 1.5, 2, 3, 4, 5, 6, 8, 10, 12 ...: the end of the map's range.
 double rounded_up(double mm) {
   double step = 1;
   while (true) {
-    for (const double factor : {1.0, 2.0, 5.0})
+    for (const double factor : {1.0, 1.2, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
       if (factor * step >= mm) return factor * step;
     step *= 10;
   }
@@ -78,7 +78,7 @@ Image face_sheet(const std::vector<FacePicture>& pictures, const std::string& ti
   for (std::size_t row = 0; row < rows.size(); ++row)
     for (const FacePicture& picture : pictures)
       if (picture.what == rows[row])
-        grid.rows[row].push_back({picture.image, picture.what + ", " + picture.view});
+        grid.rows[row].push_back({averaged(picture.image, 2), picture.what + ", " + picture.view});
   return draw_grid(grid);
 }
 

@@ -159,6 +159,20 @@ Operated apply_plan(const Case& patient, const Plan& plan) {
   return operated;
 }
 
+Pose planned_pose(const Operated& operated, const Plan& plan, const MoveStep& step) {
+  const Case& patient = operated.patient;
+  const auto body = patient.bodies.find(step.segment);
+  if (!body) throw InputError(fmt::format("\"{}\" does not exist", step.segment));
+  const Vector3d centroid = centroid_of(patient, *body);
+  if (const auto* given = std::get_if<ExplicitMove>(&step.move)) {
+    check_move(given->X_CS, centroid);
+    return given->X_CS;
+  }
+  const auto& move = std::get<ClinicalMove>(step.move);
+  return move_pose(move, clinical_frame(patient.landmarks, plan.reference),
+                   point_of(move, step.segment, patient.landmarks, centroid));
+}
+
 Case operated_case(const Operated& operated) {
   Case patient = operated.patient;
   const BodyPoses& at = operated.poses;

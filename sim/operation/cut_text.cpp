@@ -4,25 +4,12 @@
 
 #include <algorithm>
 
-#include "engine/core/infinity.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/topology.h"
+#include "sim/operation/segment_overlaps.h"
 
 namespace condyle {
 namespace {
-
-std::string place_words(const Eigen::Vector3d& p, const Landmarks& landmarks) {
-  std::string words = fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z());
-  double least = infinity;
-  std::string nearest;
-  for (const auto& [name, point] : landmarks.points)
-    if (const double distance = (point - p).norm(); distance < least) {
-      least = distance;
-      nearest = name;
-    }
-  if (!nearest.empty()) words += fmt::format(", {:.0f} mm from {}", least, nearest);
-  return words;
-}
 
 std::string outcome_words(const std::string& cut, const CutOutcome& outcome,
                           const Landmarks& landmarks) {

@@ -79,6 +79,9 @@ struct Operated {
 /// bone that cannot be closed, and a tooth that a cut divides.
 Operated apply_plan(const Case& patient, const Plan& plan);
 
+/// X_CS of a segment of an operated patient by a move. throws: InputError as apply_plan().
+Pose planned_pose(const Operated& operated, const Plan& plan, const MoveStep& step);
+
 /// The patient after the operation: surfaces, landmarks, canals and muscles at their planned
 /// positions, which are its new rest. The face is as before.
 Case operated_case(const Operated& operated);

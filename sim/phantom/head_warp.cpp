@@ -98,7 +98,9 @@ Vector3d HeadWarp::warp_mandible(const Vector3d& p) const { return blended(mandi
 
 Vector3d HeadWarp::warp_skin(const Vector3d& p) const {
   // The lower lip goes with the mandible, the upper one mostly with the maxilla.
-  const double below = smooth_step((-40 - p.z()) / 16);
+  // Beside the mouth the cheek stretches over more height.
+  const double wider = 18 * smooth_step((std::abs(p.x()) - 22) / 20);
+  const double below = smooth_step((-40 + wider - p.z()) / (16 + 2 * wider));
   return (1 - below) * blended(skull_, p) + below * blended(mandible_, p) + vault(p) + nose(p);
 }
 

@@ -26,9 +26,10 @@ bool is_below(const std::string& path, const std::string& folder) {
 }
 
 /// The target whose folder holds this file; the files of one folder are one module. The commands in
-/// tools/bench are part of the program.
+/// folders of tools are part of the program.
 std::string target_of(const std::map<std::string, Module>& all, const std::string& folder) {
-  const std::string own = folder == "tools/bench" || folder == "tools/plan" ? "tools" : folder;
+  static const std::set<std::string> of_the_program = {"tools/bench", "tools/plan", "tools/demo"};
+  const std::string own = of_the_program.contains(folder) ? "tools" : folder;
   for (const auto& [target, module] : all)
     if (module.folder == own) return target;
   return "";
@@ -85,10 +86,11 @@ const Library* library_of(const std::string& header) {
   return found == libraries.end() ? nullptr : &*found;
 }
 
-/// The two modules that combine simulation and drawing: a recording renders a simulated motion, a
-/// session shows a simulation in a front end. All other drawing reads frames alone.
+/// The modules that combine simulation and drawing: a recording renders a simulated motion, a
+/// session shows a simulation in a front end, pictures of a plan show its segments and the
+/// predicted face. All other drawing reads frames alone.
 bool joins_sim_and_render(const std::string& folder) {
-  return folder == "render/recording" || folder == "render/session";
+  return folder == "render/recording" || folder == "render/session" || folder == "render/plan";
 }
 
 /// Whether the layer `from` may link the module in `folder`.

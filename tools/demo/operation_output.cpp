@@ -87,7 +87,7 @@ OperationOutput::OperationOutput(std::filesystem::path folder, std::string title
 }
 
 void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
-                                    const Progress& progress) {
+                                    const Progress& progress, std::vector<std::string> views) {
   if (!operated.problems.empty())
     throw InputError(fmt::format("{}", fmt::join(operated.problems, "; ")));
   json = plan_report_json(plan, operated);
@@ -100,7 +100,7 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
       write_ply(part.mesh, folder_ / "segments" / (part.name + ".ply"));
   report(progress, "drawing", 0.9);
   draw([&] {
-    add_picture("segments.png", segment_sheet(operated, {.title = title_}),
+    add_picture("segments.png", segment_sheet(operated, {.title = title_, .views = std::move(views)}),
                 "The bones before and after the operation, with the segments in colours.");
   });
   add_table("Segments", bones_table(operated),

@@ -23,7 +23,8 @@ class OperationOutput {
   const std::filesystem::path& folder() const { return folder_; }
 
   /// Writes plan, segments and case, and adds the segments' sheet to the page.
-  void add_operation(const Plan& plan, const Operated& operated, const Progress& progress);
+  void add_operation(const Plan& plan, const Operated& operated, const Progress& progress,
+                     std::vector<std::string> views = {"front", "three-quarter", "left"});
   /// Writes the faces and the sheet of both.
   void add_prediction(const Plan& plan, const Prediction& prediction, const Progress& progress);
   /// Writes a picture and puts it on the page.

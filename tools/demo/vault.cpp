@@ -110,12 +110,12 @@ int run_vault(const DemoOptions& options, const CommonOptions& common) {
       delivered ? delivered_skull(options) : scaphocephalic_patient(bar.callback());
   Plan plan = begin_plan(patient, "vault");
   plan = with_cut(patient, std::move(plan),
-                  {.osteotomy = "vault_panels", .parameters = {{"columns", 2}}, .kerf_mm = 1.2});
+                  {.osteotomy = "vault_panels", .parameters = {{"columns", 2}, {"height_mm", 88}}, .kerf_mm = 1.2});
   plan = with_move(std::move(plan), "strip", {"down", "5"});
   for (const std::string side : {"left", "right"})
     for (const std::string column : {"_1", "_2"})
       plan = with_move(std::move(plan), "panel_" + side + column,
-                       {side, "7", "down", "2", "roll", side == "left" ? "4" : "-4"});
+                       {side, "9", "down", "2"});
   const Operated operated = apply_plan(patient, plan);
   OperationOutput output(
       options.out, "Craniosynostosis: the vault reshaped",
@@ -124,7 +124,7 @@ int run_vault(const DemoOptions& options, const CommonOptions& common) {
           " is cut into a sagittal strip and two parietal panels on each side, which share their "
           "saw cuts. The panels are moved outward and the strip down, so that the vault becomes "
           "broader.");
-  output.add_operation(plan, operated, bar.callback());
+  output.add_operation(plan, operated, bar.callback(), {"above", "back", "left"});
   for (const std::string& note : notes) output.add_note(note);
   double whole = 0;
   for (const CutReport& cut : operated.cuts) whole += cut.volume_mm3;

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "sim/operation/cut_text.h"
+#include "sim/operation/segment_overlaps.h"
 #include "sim/plan/cephalometry.h"
 
 namespace condyle {
@@ -87,6 +88,25 @@ Json cut_json(const CutReport& cut) {
   return json;
 }
 
+Json overlap_json(const SegmentOverlap& overlap) {
+  const char* kind = overlap.kind == SegmentOverlap::Kind::trimmed    ? "trimmed"
+                     : overlap.kind == SegmentOverlap::Kind::occlusal ? "occlusal"
+                                                                      : "collision";
+  return {{"a", overlap.a},
+          {"b", overlap.b},
+          {"kind", kind},
+          {"depth_mm", overlap.depth_mm},
+          {"volume_mm3", overlap.volume_mm3},
+          {"at_mm", {overlap.at.x(), overlap.at.y(), overlap.at.z()}}};
+}
+
+std::string overlaps_text(const Operated& operated) {
+  std::string text;
+  for (const SegmentOverlap& overlap : segment_overlaps(operated))
+    text += overlap_text(overlap, operated.patient.landmarks) + "\n";
+  return text.empty() ? text : "\nOverlap at the planned positions\n" + text;
+}
+
 std::string cut_text(const CutReport& cut, const Landmarks& landmarks) {
   std::string text = fmt::format("step {} ({}), {}\n", cut.step, cut.title, cut.bone);
   for (const std::string& sentence : cut_sentences(cut, landmarks)) text += "  " + sentence + "\n";
@@ -113,6 +133,9 @@ Json plan_report_json(const Plan& plan, const Operated& operated) {
     error = std::max(error, cut.volume_error_percent());
   }
   json["volume_error_percent"] = error;
+  json["overlaps"] = Json::array();
+  for (const SegmentOverlap& overlap : segment_overlaps(operated))
+    json["overlaps"].push_back(overlap_json(overlap));
   std::string problem;
   if (const auto frame = frame_of(plan, operated, problem)) {
     json["movements"] = movement_json(table_of(*frame, operated));
@@ -129,6 +152,7 @@ std::string plan_report_text(const Plan& plan, const Operated& operated) {
       fmt::format("{}, a plan for {}\n{}", plan.name, operated.patient.name, steps_text(plan));
   for (const CutReport& cut : operated.cuts)
     text += "\n" + cut_text(cut, operated.patient.landmarks);
+  text += overlaps_text(operated);
   std::string problem;
   if (const auto frame = frame_of(plan, operated, problem))
     text +=
