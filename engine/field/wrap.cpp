@@ -20,14 +20,15 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-constexpr double half = 0.5;          // winding number at the border of the inside
-constexpr double clear = 0.25;        // a winding number so far from it keeps its side nearby
-constexpr double plate = 0.75;        // half thickness of the thinnest plate, in spacings
-constexpr double buried = 0.4;        // mean winding number beyond `half` of a surface inside
-constexpr double most_samples = 6e7;  // of the grid
-constexpr double fewest_mm3 = 20;     // of a part
-constexpr int smallest = 4;           // block of samples, along an edge
-constexpr int run_length = 256;       // items of a parallel task
+constexpr double half = 0.5;            // winding number at the border of the inside
+constexpr double clear = 0.25;          // a winding number so far from it keeps its side nearby
+constexpr double plate = 0.75;          // half thickness of the thinnest plate, in spacings
+constexpr double buried = 0.4;          // mean winding number beyond `half` of a surface inside
+constexpr double most_samples = 6e7;    // of the grid
+constexpr double fewest_mm3 = 20;       // of a part
+constexpr int fewest_triangles = 8000;  // a coarser surface would lose the shape of lids and plates
+constexpr int smallest = 4;             // block of samples, along an edge
+constexpr int run_length = 256;         // items of a parallel task
 
 double smooth_between(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
@@ -62,7 +63,10 @@ Walls find_walls(const TriMesh& mesh, const TriangleTree& tree, double spacing, 
     const double thinnest = plate * spacing;
     needed[i] = thinnest * smooth_between(0.3, 0.45, half - walls.mean_winding[i]);
     const auto hit = tree.ray_cast(center + 1e-6 * inward, inward, 2 * thinnest);
-    if (hit) needed[i] = std::max(needed[i], thinnest - 0.5 * hit->distance);
+    if (!hit) return;
+    const auto& [d, e, f] = tree.corners(hit->triangle);
+    if ((e - d).cross(f - d).dot(inward) > 0)  // the other side of a plate, not a wall that crosses
+      needed[i] = std::max(needed[i], thinnest - 0.5 * hit->distance);
   });
   for (std::size_t i = 0; i < needed.size(); ++i)
     for (const int v : mesh.triangles[i])
@@ -181,18 +185,19 @@ TriMesh without_crumbs(const TriMesh& mesh, int& solids) {
   return out;
 }
 
-/// Corners and centres of triangles.
+/// Centres of the triangles that count, and corners all of whose triangles do.
 std::vector<Vector3d> samples_of(const TriMesh& mesh, const auto& counts) {
   std::vector<Vector3d> samples;
-  std::vector<char> used(mesh.vertices.size(), 0);
+  std::vector<char> used(mesh.vertices.size(), 0), left_out(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (!counts(t)) continue;
     const auto& v = mesh.triangles[t];
-    samples.push_back((mesh.vertices[v[0]] + mesh.vertices[v[1]] + mesh.vertices[v[2]]) / 3);
-    for (const int corner : v) used[corner] = 1;
+    const bool is_in = counts(t);
+    if (is_in)
+      samples.push_back((mesh.vertices[v[0]] + mesh.vertices[v[1]] + mesh.vertices[v[2]]) / 3);
+    for (const int corner : v) (is_in ? used : left_out)[corner] = 1;
   }
   for (std::size_t v = 0; v < used.size(); ++v)
-    if (used[v]) samples.push_back(mesh.vertices[v]);
+    if (used[v] && !left_out[v]) samples.push_back(mesh.vertices[v]);
   return samples;
 }
 
@@ -220,12 +225,14 @@ void measure(const TriMesh& mesh, const TriangleTree& tree, const Walls& walls, 
     wrapped.opening_mm = std::max(wrapped.opening_mm, d);
 }
 
-/// The grid's spacing: coarser where the surface would give too many triangles or samples.
+/// The grid's spacing: coarser where the surface would give too many triangles or samples, finer
+/// for a small one.
 double spacing_for(const TriMesh& mesh, const WrapOptions& options) {
   const double triangles = std::max<double>(options.most_triangles, 4.0 * mesh.triangles.size()),
                by_area = std::sqrt(4 * surface_area(mesh) / triangles);
   const Vector3d size = bounding_box(mesh).size();
-  return std::max({options.spacing_mm, by_area, std::cbrt(size.prod() / most_samples)});
+  const double fine = std::min(options.spacing_mm, size.norm() / 100);  // of a small bone
+  return std::max({fine, by_area, std::cbrt(size.prod() / most_samples)});
 }
 
 }  // namespace
@@ -244,7 +251,9 @@ WrappedSurface wrap(const TriMesh& mesh, const WrapOptions& options) {
   TriMesh surface = without_crumbs(isosurface(field), wrapped.solids);
   field = {};
   if (wrapped.solids == 0) return wrapped;
-  wrapped.mesh = decimated(surface, {.target_triangles = static_cast<int>(mesh.triangles.size())});
+  wrapped.mesh = decimated(
+      surface,
+      {.target_triangles = std::max(fewest_triangles, static_cast<int>(mesh.triangles.size()))});
   measure(mesh, tree, walls, options.threads, wrapped);
   return wrapped;
 }

@@ -102,11 +102,11 @@ void wrap_bone(ClosedBone& bone, const std::string& name, int open, int left) {
     if (triangle >= 0) triangle = bone.source[triangle];
   bone.mesh = surface.mesh;
   bone.source = std::move(source);
-  bone.notes.push_back(
-      fmt::format("{}: its surface is open or turned at {} edges; it was wrapped, within {:.2f} mm "
-                  "(mean {:.2f}) "
-                  "of its outer surface, on a grid of {:.2f} mm",
-                  name, open, surface.largest_mm, surface.mean_mm, surface.spacing_mm));
+  bone.notes.push_back(fmt::format(
+      "{}: its surface is open or turned at {} edges; it was wrapped, within {:.2f} mm "
+      "(mean {:.2f}) of its outer surface; openings are closed by lids, up to {:.1f} mm "
+      "from the surface",
+      name, open, surface.largest_mm, surface.mean_mm, surface.opening_mm));
 }
 
 std::string repairs(const CappedRims& capped, const ClosedHoles& closed) {

@@ -15,6 +15,7 @@
 
 #include "engine/core/parallel.h"
 #include "engine/cut/cell_complex.h"
+#include "engine/field/wrap.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/repair.h"
 #include "engine/mesh_io/mesh_files.h"
@@ -167,6 +168,25 @@ TEST(RandomCuts, OfRealJawsGiveWholePieces) {
     EXPECT_GT(made.parted, 100);
     if (HasFailure()) return;
   }
+}
+
+TEST(RandomCuts, OfAWrappedMaxillaGiveWholePieces) {
+  const auto file = test::source_folder() / ".." / "shared" / "data" / "case-ubc" / "maxilla.ply";
+  if (!std::filesystem::exists(file))
+    GTEST_SKIP() << "a real maxilla: " << file << " does not exist";
+  TriMesh bone = read_mesh(file);
+  weld(bone);
+  drop_degenerate(bone);
+  orient_outward(bone);
+  EXPECT_GT(unbalanced_edges(bone), 2000);
+  const WrappedSurface wrapped =
+      wrap(bone, {.threads = static_cast<int>(std::thread::hardware_concurrency())});
+  EXPECT_EQ(wrapped.solids, 1);
+  EXPECT_LT(wrapped.largest_mm, 1);
+  EXPECT_LT(wrapped.mean_mm, 0.15);
+  const Made made = cut_at_random(wrapped.mesh, 72);
+  EXPECT_GE(made.cuts, enough);
+  EXPECT_GT(made.parted, 100);
 }
 
 }  // namespace

@@ -156,6 +156,33 @@ TEST(TriangleTree, WindingNumberCountsShellsAndAgreesWithTheSign) {
   EXPECT_GT(inside_both, 50);
 }
 
+TEST(TriangleTree, WindingNumbersOfNeighboursAgreeWithThoseOfEach) {
+  TriMesh open = sphere(4, 10);
+  open.triangles.resize(open.triangles.size() * 3 / 4);
+  const auto pose = arbitrary_pose(8);
+  const TriangleTree tree(moved(open, pose));
+  const auto centers = points_around(13, 200, 8);
+  for (const double radius : {0.1, 1.0, 6.0}) {
+    const auto shifts = points_around(14, 30, radius / 10);
+    for (const Vector3d& c : centers) {
+      const Vector3d center = pose * c;
+      std::vector<Vector3d> points{center};
+      double reach = 0;
+      for (const Vector3d& shift : shifts) {
+        points.push_back(center + shift);
+        reach = std::max(reach, shift.norm());
+      }
+      std::vector<double> found(points.size());
+      tree.winding_numbers(center, reach, points, found);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        ASSERT_NEAR(found[i], tree.winding_number(points[i]), 0.02);
+    }
+  }
+  std::vector<double> none(1, 7.0);
+  TriangleTree(TriMesh{}).winding_numbers({0, 0, 0}, 1, std::vector<Vector3d>{{0, 0, 0}}, none);
+  EXPECT_EQ(none[0], 0);
+}
+
 TEST(TriangleTree, RayHitsASphereWhereItsFormulaSays) {
   const TriangleTree tree(sphere(5, 10));
   int hits = 0;
