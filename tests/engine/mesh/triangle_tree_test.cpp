@@ -34,6 +34,7 @@ std::vector<Vector3d> points_around(unsigned seed, int count, double spread) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, spread);
   std::vector<Vector3d> points;
+  points.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     points.emplace_back(normal(random), normal(random), normal(random));
   return points;
