@@ -15,7 +15,7 @@ struct PartFace {
 };
 
 /// The surface of each part. Triangles of the mesh whose fragments all belong to one part are made
-/// whole again: they keep of the new vertices on their edges only those that other triangles use.
+/// whole again. Of the new vertices on edges of the mesh only corners of cut faces stay.
 std::vector<std::vector<PartFace>> part_faces(const CellComplex& complex, const JoinedCells& joined,
                                               const TriMesh& mesh);
 

@@ -82,6 +82,32 @@ std::vector<std::pair<Corner, Corner>> pair_faces(const Faces& faces,
   return pairs;
 }
 
+/// Drops faces that lie back to back on the same corners, a flap without thickness, where they
+/// share an edge with others. Returns whether there were any.
+bool drop_flaps(Faces& faces, const std::vector<std::vector<Corner>>& edges) {
+  std::vector<char> is_gone(faces.size(), false);
+  bool any = false;
+  const auto opposite = [&](const Corner& corner) {
+    return faces[corner.face].vertices[(corner.at + 2) % 3];
+  };
+  for (const auto& corners : edges) {
+    if (corners.size() <= 2) continue;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      for (std::size_t j = i + 1; j < corners.size(); ++j) {
+        const Corner &a = corners[i], &b = corners[j];
+        if (is_gone[a.face] || is_gone[b.face] || opposite(a) != opposite(b) ||
+            faces[a.face].vertices[a.at] == faces[b.face].vertices[b.at])
+          continue;
+        is_gone[a.face] = is_gone[b.face] = any = true;
+      }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    if (!is_gone[i]) faces[kept++] = faces[i];
+  faces.resize(kept);
+  return any;
+}
+
 /// Divides a face at the middle of one of its edges.
 void divide(Faces& faces, Corner corner, int middle) {
   PartFace& face = faces[corner.face];
@@ -92,12 +118,10 @@ void divide(Faces& faces, Corner corner, int middle) {
   faces.push_back(second);
 }
 
-}  // namespace
-
-void part_touching_sheets(Faces& faces, std::vector<Eigen::Vector3d>& vertices,
-                          std::vector<VertexCopy>& copies) {
-  // Edges of several sheets get a middle for each, so that none of their halves is shared.
-  auto edges = faces_by_edge(faces);
+/// Gives edges of several sheets a middle for each, so that none of their halves is shared; one
+/// edge of a face at a time. Returns whether there were such edges.
+bool divide_shared_edges(Faces& faces, const std::vector<std::vector<Corner>>& edges,
+                         std::vector<Eigen::Vector3d>& vertices, std::vector<VertexCopy>& copies) {
   std::vector<std::pair<std::pair<int, int>, std::vector<std::pair<Corner, Corner>>>> shared;
   for (const auto& corners : edges) {
     if (corners.size() <= 2) continue;
@@ -108,7 +132,6 @@ void part_touching_sheets(Faces& faces, std::vector<Eigen::Vector3d>& vertices,
   std::vector<char> was_divided(faces.size(), false);
   for (const auto& [edge, pairs] : shared)
     for (const auto& [a, b] : pairs) {
-      // A face with two such edges: the second is divided in the next round.
       if (was_divided[a.face] || was_divided[b.face]) continue;
       was_divided[a.face] = was_divided[b.face] = true;
       const int middle = static_cast<int>(vertices.size());
@@ -117,9 +140,19 @@ void part_touching_sheets(Faces& faces, std::vector<Eigen::Vector3d>& vertices,
       divide(faces, a, middle);
       divide(faces, b, middle);
     }
-  if (!shared.empty()) {
-    part_touching_sheets(faces, vertices, copies);
-    return;
+  return !shared.empty();
+}
+
+}  // namespace
+
+void part_touching_sheets(Faces& faces, std::vector<Eigen::Vector3d>& vertices,
+                          std::vector<VertexCopy>& copies) {
+  constexpr int most_rounds = 12;  // each halves the faces at an edge; one or two are usual
+  auto edges = faces_by_edge(faces);
+  for (int round = 0; round < most_rounds; ++round) {
+    if (drop_flaps(faces, edges)) edges = faces_by_edge(faces);
+    if (!divide_shared_edges(faces, edges, vertices, copies)) break;
+    edges = faces_by_edge(faces);
   }
   // Each fan of faces at a vertex gets its own copy of it.
   DisjointSets sets(3 * faces.size());  // of face corners

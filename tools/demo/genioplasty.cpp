@@ -29,6 +29,7 @@ int run_genioplasty(const DemoOptions& options, const CommonOptions& common) {
   SimulatorSettings settings;
   settings.threads = common.threads;
   settings.face = true;
+  settings.step_s = 1.0 / 60;
   output.draw([&] {
     const Scene scene = make_operated_scene(patient, plan, settings, bar.callback());
     const Motion motion = make_motion("open; close", scene.patient, scene.contacts);

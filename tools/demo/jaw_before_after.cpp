@@ -61,6 +61,7 @@ int run_jaw_before_after(const DemoOptions& options, const CommonOptions& common
   SimulatorSettings settings;
   settings.threads = common.threads;
   settings.face = true;
+  settings.step_s = 1.0 / 60;
 
   OperationOutput output(
       options.out, "Jaw movement before and after the operation of class III",

@@ -27,6 +27,7 @@ PlayedMotion play_motion(const Scene& scene, const Motion& motion,
   picture.width = play.width;
   picture.height = play.height;
   picture.skin_opacity = play.skin_opacity;
+  picture.contacts = false;
   Camera camera;
   if (draws) {
     renderer.emplace(scene.patient.parts);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/core/error.h"
+#include "engine/mesh/topology.h"
 #include "tests/engine/cut/cut_checks.h"
 #include "tests/support/boxes.h"
 #include "tests/support/shapes.h"

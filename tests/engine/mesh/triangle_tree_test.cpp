@@ -34,6 +34,7 @@ std::vector<Vector3d> points_around(unsigned seed, int count, double spread) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, spread);
   std::vector<Vector3d> points;
+  points.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     points.emplace_back(normal(random), normal(random), normal(random));
   return points;
@@ -154,6 +155,33 @@ TEST(TriangleTree, WindingNumberCountsShellsAndAgreesWithTheSign) {
     ASSERT_NEAR(tree.winding_number(p), expected, 0.02);
   }
   EXPECT_GT(inside_both, 50);
+}
+
+TEST(TriangleTree, WindingNumbersOfNeighboursAgreeWithThoseOfEach) {
+  TriMesh open = sphere(4, 10);
+  open.triangles.resize(open.triangles.size() * 3 / 4);
+  const auto pose = arbitrary_pose(8);
+  const TriangleTree tree(moved(open, pose));
+  const auto centers = points_around(13, 200, 8);
+  for (const double radius : {0.1, 1.0, 6.0}) {
+    const auto shifts = points_around(14, 30, radius / 10);
+    for (const Vector3d& c : centers) {
+      const Vector3d center = pose * c;
+      std::vector<Vector3d> points{center};
+      double reach = 0;
+      for (const Vector3d& shift : shifts) {
+        points.push_back(center + shift);
+        reach = std::max(reach, shift.norm());
+      }
+      std::vector<double> found(points.size());
+      tree.winding_numbers(center, reach, points, found);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        ASSERT_NEAR(found[i], tree.winding_number(points[i]), 0.02);
+    }
+  }
+  std::vector<double> none(1, 7.0);
+  TriangleTree(TriMesh{}).winding_numbers({0, 0, 0}, 1, std::vector<Vector3d>{{0, 0, 0}}, none);
+  EXPECT_EQ(none[0], 0);
 }
 
 TEST(TriangleTree, RayHitsASphereWhereItsFormulaSays) {

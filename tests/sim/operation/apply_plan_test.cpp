@@ -266,9 +266,36 @@ TEST(ApplyPlan, OpenBoneIsClosedOrRefused) {
   ASSERT_FALSE(operated.cuts[0].notes.empty());
   expect_has(operated.cuts[0].notes[0], "1 hole closed");
   EXPECT_TRUE(inspect(part_named(operated.patient, "mandible")->mesh).closed());
+  // A missing triangle of its upper side: a long flat rim.
   mandible = whole;
   mandible.triangles.erase(mandible.triangles.begin() + 2);
-  expect_has(plan_refusal(patient, plan_of(patient, {chin_step()})), "3 edges");
+  const Operated capped = apply_plan(patient, plan_of(patient, {chin_step()}));
+  expect_has(capped.cuts[0].notes[0], "1 flat rim");
+  EXPECT_NEAR(capped.cuts[0].volume_mm3, signed_volume(whole), 1e-6);
+}
+
+TEST(ApplyPlan, BoneWithALongBentRimIsWrappedOrRefused) {
+  Case patient = operable_patient();
+  TriMesh& mandible = patient.parts[1].mesh;
+  const double whole = signed_volume(mandible);
+  // A triangle of the upper side, and one of the back that meets it.
+  std::erase_if(mandible.triangles, [](const Eigen::Vector3i& t) {
+    return t == Eigen::Vector3i(5, 7, 6) || t == Eigen::Vector3i(3, 6, 7);
+  });
+  ASSERT_EQ(mandible.triangles.size(), 10u);
+  const Operated operated = apply_plan(patient, plan_of(patient, {chin_step()}));
+  expect_has(operated.cuts[0].notes[0], "it was wrapped, within 0.");
+  EXPECT_NEAR(operated.cuts[0].volume_mm3, whole, 0.2 * whole);
+  for (const char* name : {"chin", "mandible"})
+    EXPECT_TRUE(inspect(part_named(operated.patient, name)->mesh).closed());
+  // Faces are traced to the triangles that they were wrapped about.
+  const auto& origin = operated.origin.at("chin").triangle;
+  EXPECT_GT(std::count_if(origin.begin(), origin.end(), [](int t) { return t >= 0; }),
+            static_cast<int>(origin.size()) / 3);
+  const TriMesh open = mandible;
+  for (const auto& v : open.vertices) mandible.vertices.emplace_back(v.x(), v.y(), v.z() - 100);
+  for (const auto& t : open.triangles) mandible.triangles.push_back(t.array() + 8);
+  expect_has(plan_refusal(patient, plan_of(patient, {chin_step()})), "it is 2 solids");
 }
 
 TEST(ApplyPlan, AnotherCaseIsRefusedAndEditedLandmarksAreNamed) {
