@@ -7,6 +7,7 @@
 #include <ctime>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
@@ -141,6 +142,30 @@ void remove_other_pictures(const std::filesystem::path& folder,
   }
 }
 
+/// The same check of the patient before the operation; none without a plan.
+std::optional<OperationComparison> comparison_of(const CheckOptions& options,
+                                                 const CommonOptions& common, const Case& uncut,
+                                                 const SimulatorSettings& settings,
+                                                 const Scene& after, const Motion& motion,
+                                                 const ClearanceCheck& check,
+                                                 const Progress& progress) {
+  if (options.motion.plan.empty()) return std::nullopt;
+  const Scene before = make_scene(uncut, settings, progress);
+  const Motion motion_before = motion_of(options.motion, before, common.threads);
+  const ClearanceCheck check_before =
+      check_clearance(before, motion_before,
+                      {.margin_mm = options.margin_mm, .sampling = {options.frames, options.fps}},
+                      settings, progress);
+  return compare_operation(before, motion_before, check_before, after, motion, check);
+}
+
+/// report.json with the comparison as "before_and_after".
+std::string with_comparison(const std::string& report, const OperationComparison& comparison) {
+  auto json = nlohmann::ordered_json::parse(report);
+  json["before_and_after"] = comparison.json();
+  return json.dump(2) + "\n";
+}
+
 int run_check(const CheckOptions& options, const CommonOptions& common) {
   constexpr int violation = 3;
   ProgressBar bar(common);
@@ -151,17 +176,24 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   if (!options.out.empty()) files.emplace(options.out);  // fails before the computation
   Case patient = open_patient(options.motion.patient, common, bar);
   check_motion(options.motion, patient);
+  const std::optional<Case> uncut =
+      options.motion.plan.empty() ? std::nullopt : std::optional(patient);
   const Scene scene = scene_of(options.motion, std::move(patient), settings, bar.callback());
   print_notes(scene, options.motion.patient, common, bar);
   const Motion motion = motion_of(options.motion, scene, common.threads);
   const auto check = check_clearance(
       scene, motion, {.margin_mm = options.margin_mm, .sampling = {options.frames, options.fps}},
       settings, bar.callback());
+  std::optional<OperationComparison> comparison;
+  if (uncut)
+    comparison =
+        comparison_of(options, common, *uncut, settings, scene, motion, check, bar.callback());
   std::vector<std::string> pictures, notes = motion.notes;
   for (const auto& note : notes_on_crowns(scene.patient, check)) notes.push_back(note);
   if (files) pictures = write_pictures(*files, scene, check, common.threads, notes, bar.callback());
   bar.clear();
-  const std::string json = check.json(scene, motion, pictures, notes);
+  std::string json = check.json(scene, motion, pictures, notes);
+  if (comparison) json = with_comparison(json, *comparison);
   if (files) {
     CheckPage page{.patient = scene.patient.name,
                    .motion = motion.name,
@@ -169,7 +201,8 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
                    .notes = scene.contacts.notes(),
                    .program = "Condyle " CONDYLE_VERSION,
                    .date = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr))),
-                   .surfaces = surface_hashes(scene.patient)};
+                   .surfaces = surface_hashes(scene.patient),
+                   .comparison = comparison};
     page.notes.insert(page.notes.end(), notes.begin(), notes.end());
     files->write("pairs.csv", check.pairs_csv);
     files->write("clearance.svg", clearance_svg(check));
@@ -184,6 +217,7 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   if (common.prints_summary()) {
     for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
     fmt::print(stderr, "{}", check.text());
+    if (comparison) fmt::print(stderr, "\n{}", comparison->text());
   }
   return check.violated() ? violation : 0;
 }

@@ -89,9 +89,9 @@ std::string write_picture(const std::filesystem::path& folder, const Case& patie
     const OffscreenContext context;
     if (const auto lacks = default_render_metadata(context).shortfall(); !lacks.empty())
       notes.push_back(lacks);
-    write_png(folder / picture_name,
-              bite_picture(patient, bite, with_jaw_at(patient.bodies, bite.rest.X_CM), film_mm,
-                           threads));
+    write_png(
+        folder / picture_name,
+        bite_picture(patient, bite, with_jaw_at(patient.bodies, bite.rest.X_CM), film_mm, threads));
   } catch (const MachineError& error) {
     notes.push_back(fmt::format("the picture is left out: {}", error.what()));
     return "";
@@ -99,21 +99,37 @@ std::string write_picture(const std::filesystem::path& folder, const Case& patie
   return picture_name;
 }
 
+/// The bite before the operation in one sentence.
+std::string before_text(const Bite& bite) {
+  return fmt::format(
+      "before the operation the bite was {}: {} contact{}, {:.0f} % of the load left, overjet "
+      "{:.1f} mm, overbite {:.1f} mm",
+      bite.stable ? "stable" : "not stable", bite.contacts.size(),
+      bite.contacts.size() == 1 ? "" : "s", 100 * bite.left_fraction, bite.after.overjet_mm,
+      bite.after.overbite_mm);
+}
+
 int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
   constexpr int no_stable_bite = 1;
   ProgressBar bar(common);
   const std::optional<Plan> plan = plan_of(options.plan);
   Case patient = open_patient(options.patient, common, bar);
-  if (plan) patient = operate(patient, *plan).patient;
-  const Start start = parse_start(options.start, patient);
+  std::optional<Bite> before;
   OcclusionSettings settings;
   settings.film_mm = options.film_mm;
   settings.cache = field_cache_folder();
   settings.threads = common.threads;
+  if (plan) {
+    before = BiteFinder(patient, settings, bar.callback())
+                 .find(parse_start(options.start, patient).X_CM, bar.callback());
+    patient = operate(patient, *plan).patient;
+  }
+  const Start start = parse_start(options.start, patient);
   OcclusionReport report{
       patient.name, start.words, settings,
       BiteFinder(patient, settings, bar.callback()).find(start.X_CM, bar.callback())};
   const Bite& bite = report.bite;
+  if (before) report.notes.push_back(before_text(*before));
   if (!options.out.empty()) {
     make_folder(options.out);
     bar.show("drawing", 0.95);

@@ -30,8 +30,7 @@ TriMesh tinted(const TriMesh& mesh, const SurfaceOrigin* origin, const Eigen::Ve
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (origin->made_by[t] == 0) continue;
     for (int& v : result.triangles[t]) {
-      const auto [found, is_new] =
-          on_cut_face.emplace(v, static_cast<int>(result.vertices.size()));
+      const auto [found, is_new] = on_cut_face.emplace(v, static_cast<int>(result.vertices.size()));
       if (is_new) {
         result.vertices.push_back(mesh.vertices[v]);
         result.colors.push_back(spongy_bone);
@@ -60,7 +59,8 @@ TintedBones tinted_bones(const Operated& operated) {
       const auto [found, is_new] =
           tints.emplace(part.body, segment_tints[tints.size() % segment_tints.size()]);
       tint = found->second;
-      if (is_new) bones.keys.push_back({tint, readable_name(operated.patient.bodies[part.body].name)});
+      if (is_new)
+        bones.keys.push_back({tint, readable_name(operated.patient.bodies[part.body].name)});
     }
     bones.parts.back().mesh = tinted(part.mesh, &origin->second, tint);
   }

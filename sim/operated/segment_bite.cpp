@@ -41,8 +41,7 @@ Matrix3d axes_of(const Arch& arch) {
 Pose normal_relation(const Arches& arches) {
   const Matrix3d upper = axes_of(arches.upper);
   const Matrix3d turn = upper * axes_of(arches.lower).transpose();
-  const Vector3d edge =
-      arches.upper.edge + upper * Vector3d(0, overjet_mm, overbite_mm);
+  const Vector3d edge = arches.upper.edge + upper * Vector3d(0, overjet_mm, overbite_mm);
   return {Eigen::Quaterniond(turn), edge - turn * arches.lower.edge};
 }
 

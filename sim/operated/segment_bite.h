@@ -9,11 +9,11 @@ namespace condyle {
 
 /// A segment placed by the final bite.
 struct SegmentBite {
-  Case patient;      // as planned but for the segment, which is at rest
-  BodyPoses at;      // of it, with the segment in the bite
-  Pose X_CS;         // of the segment, from the uncut rest
-  Bite bite;         // of the lower arch on the upper one, at the planned positions of all else
-  Pose start;        // of the lower arch, from which the bite was closed
+  Case patient;       // as planned but for the segment, which is at rest
+  BodyPoses at;       // of it, with the segment in the bite
+  Pose X_CS;          // of the segment, from the uncut rest
+  Bite bite;          // of the lower arch on the upper one, at the planned positions of all else
+  Pose start;         // of the lower arch, from which the bite was closed
   bool lower = true;  // the segment carries the lower arch, not the upper one
 };
 

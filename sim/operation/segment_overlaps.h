@@ -15,7 +15,7 @@ struct SegmentOverlap {
     occlusal,  // teeth of opposing arches
     collision  // anything else
   };
-  std::string a, b;           // names of the parts
+  std::string a, b;            // names of the parts
   std::string body_a, body_b;  // of their bodies
   Kind kind = Kind::collision;
   double depth_mm = 0;  // of the deepest point of either surface in the other

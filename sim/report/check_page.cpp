@@ -39,6 +39,7 @@ class ClearancePage {
     if (!check_.teeth.empty())
       html_ += "<h2>Teeth</h2>\n<figure>\n" + teeth_svg(check_) + "</figure>\n";
     table();
+    if (page_.comparison) html_ += page_.comparison->html();
     explanations();
     return html_.finish();
   }

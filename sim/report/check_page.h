@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/report/clearance.h"
+#include "sim/report/operation_comparison.h"
 
 namespace condyle {
 
@@ -53,6 +55,7 @@ struct CheckPage {
   std::string program = {};                // name and version
   std::string date = {};                   // of the check, UTC
   std::vector<std::string> surfaces = {};  // "mandible 1f0c...": each part, hash of its surface
+  std::optional<OperationComparison> comparison = {};  // with the patient before an operation
 };
 
 /// One HTML page without scripts; only the pictures are separate files.

@@ -7,6 +7,7 @@
 
 #include "sim/frame/part_names.h"
 #include "sim/report/motion_extremes.h"
+#include "sim/report/plots.h"
 
 namespace condyle {
 namespace {
@@ -14,9 +15,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// What a surgeon reads as range of motion; speeds are inputs of a motion.
-constexpr const char* range_of_motion[] = {
-    "opening",  "between_incisors",    "protrusion",           "laterotrusion_left", "laterotrusion_right",
-    "rotation", "left_condyle_travel", "right_condyle_travel", "condyle_asymmetry"};
+constexpr const char* range_of_motion[] = {"opening",
+                                           "between_incisors",
+                                           "protrusion",
+                                           "laterotrusion_left",
+                                           "laterotrusion_right",
+                                           "rotation",
+                                           "left_condyle_travel",
+                                           "right_condyle_travel",
+                                           "condyle_asymmetry"};
 
 /// The motion as prescribed, at the frames of a check.
 MotionSeries prescribed_series(const Scene& scene, const Motion& motion,
@@ -67,9 +74,8 @@ std::string verdict_of(const std::optional<ComparedPair::Clearance>& side) {
 
 Json json_of(const std::optional<ComparedPair::Clearance>& side) {
   if (!side) return nullptr;
-  return {{"least_mm", side->least_mm},
-          {"at_rest_mm", side->at_rest_mm},
-          {"violated", side->violated}};
+  return {
+      {"least_mm", side->least_mm}, {"at_rest_mm", side->at_rest_mm}, {"violated", side->violated}};
 }
 
 }  // namespace
@@ -114,6 +120,32 @@ Json OperationComparison::json() const {
                              {"before", json_of(pair.before)},
                              {"after", json_of(pair.after)}});
   return json;
+}
+
+std::string OperationComparison::html() const {
+  std::string html =
+      "<h2>Before and after the operation</h2>\n<table>\n<tr><th>Range of motion</th>"
+      "<th>Before</th><th>After</th></tr>\n";
+  const auto unit_of = [](const ComparedMeasure& measure, const std::optional<double>& value) {
+    return value ? number(value) + (measure.unit == "deg" ? "°" : " " + measure.unit) : "";
+  };
+  for (const ComparedMeasure& measure : measures)
+    html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                        escaped(display_name(measure.name)), unit_of(measure, measure.before),
+                        unit_of(measure, measure.after));
+  html += "</table>\n<table>\n<tr><th>Least distance</th><th>Before</th><th>After</th></tr>\n";
+  const auto cell = [](const std::optional<ComparedPair::Clearance>& side) -> std::string {
+    if (!side) return "<td></td>";
+    return fmt::format("<td{}>{}</td>", side->violated ? " class=\"bad\"" : "",
+                       side->least_mm < -0.005 ? fmt::format("overlap {:.2f} mm", -side->least_mm)
+                                               : fmt::format("{:.2f} mm", side->least_mm + 0.0));
+  };
+  for (const ComparedPair& pair : pairs)
+    html += fmt::format("<tr><td>{} and {}</td>{}{}</tr>\n", escaped(display_name(pair.a)),
+                        escaped(readable_name(pair.b)), cell(pair.before), cell(pair.after));
+  return html +
+         "</table>\n<p class=\"small\">During the same motion. Overlap of segments of one bone is "
+         "bone that the surgeon trims.</p>\n";
 }
 
 std::string OperationComparison::text() const {

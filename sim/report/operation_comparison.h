@@ -35,6 +35,7 @@ struct OperationComparison {
 
   nlohmann::ordered_json json() const;
   std::string text() const;  // two aligned tables
+  std::string html() const;  // the same for a page, with headings
 };
 
 /// Moves the patient before and after by the same motion, made anew for each. The checks are of

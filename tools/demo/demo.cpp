@@ -51,14 +51,16 @@ void add_demo(Commands& commands) {
   std::string what = "One of:";
   for (const Demo& demo : demos) what += fmt::format("\n{}: {}", demo.name, demo.what);
   command.add_option("NAME", *name, what)->required();
-  command.add_option("--out", options->out,
-                     "Folder for plan.json, segments, pictures, report.html and report.json")
+  command
+      .add_option("--out", options->out,
+                  "Folder for plan.json, segments, pictures, report.html and report.json")
       ->type_name("FOLDER")
       ->required();
   command.add_option("--skull", options->skull, "For vault: mesh of a skull, mm, LPS")
       ->type_name("FILE");
-  command.add_option("--landmarks", options->landmarks,
-                     "Landmarks of that skull (CSV); without them they are estimated")
+  command
+      .add_option("--landmarks", options->landmarks,
+                  "Landmarks of that skull (CSV); without them they are estimated")
       ->type_name("FILE");
 }
 

@@ -21,9 +21,10 @@ int run_genioplasty(const DemoOptions& options, const CommonOptions& common) {
   predicted.threads = common.threads;
   const Prediction prediction = predict(patient, plan, predicted, bar.callback());
 
-  OperationOutput output(options.out, "Genioplasty",
-                         "The chin is cut below the roots and the nerve canals and moved 6 mm "
-                         "forward and 1 mm up. The mouth then opens with the chin in its new place.");
+  OperationOutput output(
+      options.out, "Genioplasty",
+      "The chin is cut below the roots and the nerve canals and moved 6 mm "
+      "forward and 1 mm up. The mouth then opens with the chin in its new place.");
   output.add_operation(plan, prediction.operated, bar.callback());
   output.add_prediction(plan, prediction, bar.callback());
   SimulatorSettings settings;

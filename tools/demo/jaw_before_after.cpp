@@ -78,9 +78,8 @@ int run_jaw_before_after(const DemoOptions& options, const CommonOptions& common
     return Side{std::move(scene), std::move(borders), std::move(shown), std::move(check), {}};
   };
   Side before = prepare(std::nullopt), after = prepare(made.plan);
-  const OperationComparison comparison =
-      compare_operation(before.scene, before.borders, before.check, after.scene, after.borders,
-                        after.check);
+  const OperationComparison comparison = compare_operation(
+      before.scene, before.borders, before.check, after.scene, after.borders, after.check);
   output.json["comparison"] = comparison.json();
 
   output.draw([&] {

@@ -35,9 +35,9 @@ TriMesh with_vertices(TriMesh mesh, const std::vector<Eigen::Vector3f>& vertices
 OperationOutput::Table bones_table(const Operated& operated) {
   OperationOutput::Table table{{"Bone", "Part of", "Volume", "Surface"}, {}};
   for (const BoneSummary& bone : operated_bones(operated))
-    table.rows.push_back({display_name(bone.name), bone.is_segment ? readable_name(bone.parent) : "",
-                          fmt::format("{:.2f} cm³", bone.volume_mm3 / 1000),
-                          bone.closed ? "closed" : "open"});
+    table.rows.push_back(
+        {display_name(bone.name), bone.is_segment ? readable_name(bone.parent) : "",
+         fmt::format("{:.2f} cm³", bone.volume_mm3 / 1000), bone.closed ? "closed" : "open"});
   return table;
 }
 
@@ -100,15 +100,18 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
       write_ply(part.mesh, folder_ / "segments" / (part.name + ".ply"));
   report(progress, "drawing", 0.9);
   draw([&] {
-    add_picture("segments.png", segment_sheet(operated, {.title = title_, .views = std::move(views)}),
+    add_picture("segments.png",
+                segment_sheet(operated, {.title = title_, .views = std::move(views)}),
                 "The bones before and after the operation, with the segments in colours.");
   });
-  add_table("Segments", bones_table(operated),
-            fmt::format("The volumes of the pieces and the saw cuts add up to the bone within {:.1g} %.",
-                        json["volume_error_percent"].get<double>()));
+  add_table(
+      "Segments", bones_table(operated),
+      fmt::format("The volumes of the pieces and the saw cuts add up to the bone within {:.1g} %.",
+                  json["volume_error_percent"].get<double>()));
   body_ += "<h2>Cuts</h2>\n";
   for (const CutReport& cut : operated.cuts) {
-    body_ += "<p><strong>" + escaped(cut.title) + "</strong>, " + escaped(cut.bone) + "</p>\n<ul>\n";
+    body_ +=
+        "<p><strong>" + escaped(cut.title) + "</strong>, " + escaped(cut.bone) + "</p>\n<ul>\n";
     for (const std::string& sentence : cut_sentences(cut, operated.patient.landmarks))
       body_ += "<li>" + escaped(sentence) + "</li>\n";
     body_ += "</ul>\n";
@@ -132,8 +135,7 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
 
 void OperationOutput::add_prediction(const Plan& plan, const Prediction& prediction,
                                      const Progress& progress) {
-  const ClinicalFrame frame =
-      clinical_frame(prediction.operated.patient.landmarks, plan.reference);
+  const ClinicalFrame frame = clinical_frame(prediction.operated.patient.landmarks, plan.reference);
   json["prediction"] = prediction_json(prediction, frame);
   write_ply(with_vertices(prediction.face, prediction.before), folder_ / "face_before.ply");
   write_ply(with_vertices(prediction.face, prediction.after), folder_ / "face_after.ply");
@@ -151,8 +153,9 @@ void OperationOutput::add_prediction(const Plan& plan, const Prediction& predict
 void OperationOutput::add_picture(const std::string& file, const Image& image,
                                   const std::string& caption) {
   write_png(folder_ / file, image);
-  body_ += fmt::format("<figure><img src=\"{0}\" alt=\"{1}\"><figcaption>{1}</figcaption></figure>\n",
-                       file, escaped(caption));
+  body_ +=
+      fmt::format("<figure><img src=\"{0}\" alt=\"{1}\"><figcaption>{1}</figcaption></figure>\n",
+                  file, escaped(caption));
 }
 
 void OperationOutput::add_section(const std::string& heading, const std::string& text) {
@@ -199,9 +202,8 @@ void OperationOutput::finish(bool print_summary) {
     page += "</ul>\n";
   }
   write_file(folder_ / "report.html", page.finish());
-  write_file(folder_ / "report.json", json.dump(2, ' ', false,
-                                                nlohmann::ordered_json::error_handler_t::replace) +
-                                          "\n");
+  write_file(folder_ / "report.json",
+             json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   if (!print_summary) return;
   for (const std::string& note : notes_) fmt::print(stderr, "note: {}\n", note);
   fmt::print(stderr, "results are in {}; the page to read is {}\n", folder_.string(),

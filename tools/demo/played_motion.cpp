@@ -10,8 +10,8 @@
 namespace condyle {
 
 std::size_t PlayedMotion::widest() const {
-  const auto found = std::max_element(
-      frames.begin(), frames.end(), [](const FrameState& a, const FrameState& b) {
+  const auto found =
+      std::max_element(frames.begin(), frames.end(), [](const FrameState& a, const FrameState& b) {
         return a.measures.opening_mm < b.measures.opening_mm;
       });
   return static_cast<std::size_t>(found - frames.begin());
@@ -37,7 +37,8 @@ PlayedMotion play_motion(const Scene& scene, const Motion& motion,
   Playback playback(scene, motion, settings);
   for (int i = 0; i < play.frames; ++i) {
     const double done = static_cast<double>(i) / (play.frames - 1);
-    report(progress, fmt::format("{}: frame {} of {}", scene.patient.name, i + 1, play.frames), done);
+    report(progress, fmt::format("{}: frame {} of {}", scene.patient.name, i + 1, play.frames),
+           done);
     FrameState frame = playback.at(motion.duration_s * done);
     if (scene.tissue) {
       played.unconverged += !frame.tissue.converged;
@@ -61,8 +62,7 @@ void write_film(const std::filesystem::path& folder, const std::vector<Image>& p
                      .frames_per_second = frames_per_second,
                      .film = true,
                      .identity = {{"demo", identity}}});
-  for (std::size_t i = 0; i < pictures.size(); ++i)
-    recorder.add(static_cast<int>(i), pictures[i]);
+  for (std::size_t i = 0; i < pictures.size(); ++i) recorder.add(static_cast<int>(i), pictures[i]);
   recorder.finish();
 }
 

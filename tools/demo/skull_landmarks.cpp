@@ -36,13 +36,12 @@ Landmarks estimate_skull_landmarks(const TriMesh& skull) {
   const double ear = nasion.y() + nasion_to_porion * length;
   const double eye = nasion.y() + orbitale_behind_nasion * length;
   Landmarks landmarks;
-  landmarks.points = {
-      {"nasion", nasion},
-      {"basion", {middle, ear, frankfort - basion_below_porion * length}},
-      {"left_porion", {middle + half_porions * length, ear, frankfort}},
-      {"right_porion", {middle - half_porions * length, ear, frankfort}},
-      {"left_orbitale", {middle + half_orbitales * length, eye, frankfort}},
-      {"right_orbitale", {middle - half_orbitales * length, eye, frankfort}}};
+  landmarks.points = {{"nasion", nasion},
+                      {"basion", {middle, ear, frankfort - basion_below_porion * length}},
+                      {"left_porion", {middle + half_porions * length, ear, frankfort}},
+                      {"right_porion", {middle - half_porions * length, ear, frankfort}},
+                      {"left_orbitale", {middle + half_orbitales * length, eye, frankfort}},
+                      {"right_orbitale", {middle - half_orbitales * length, eye, frankfort}}};
   return landmarks;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "sim/case/landmarks.h"
 #include "engine/mesh/tri_mesh.h"
+#include "sim/case/landmarks.h"
 
 namespace condyle {
 

@@ -52,8 +52,9 @@ VaultPatient delivered_skull(const DemoOptions& options) {
                                     .name = options.skull.stem().string()});
     return result;
   }
-  result.patient = import_meshes(
-      {.files = {{Role::skull, options.skull}}, .landmarks = {}, .name = options.skull.stem().string()});
+  result.patient = import_meshes({.files = {{Role::skull, options.skull}},
+                                  .landmarks = {},
+                                  .name = options.skull.stem().string()});
   result.patient.landmarks = estimate_skull_landmarks(result.patient.find(Role::skull)->mesh);
   result.notes.push_back(
       "nasion, basion, porions and orbitales are estimated from the extents of the skull; "
@@ -110,17 +111,18 @@ int run_vault(const DemoOptions& options, const CommonOptions& common) {
       delivered ? delivered_skull(options) : scaphocephalic_patient(bar.callback());
   Plan plan = begin_plan(patient, "vault");
   plan = with_cut(patient, std::move(plan),
-                  {.osteotomy = "vault_panels", .parameters = {{"columns", 2}, {"height_mm", 88}}, .kerf_mm = 1.2});
+                  {.osteotomy = "vault_panels",
+                   .parameters = {{"columns", 2}, {"height_mm", 88}},
+                   .kerf_mm = 1.2});
   plan = with_move(std::move(plan), "strip", {"down", "5"});
   for (const std::string side : {"left", "right"})
     for (const std::string column : {"_1", "_2"})
-      plan = with_move(std::move(plan), "panel_" + side + column,
-                       {side, "9", "down", "2"});
+      plan = with_move(std::move(plan), "panel_" + side + column, {side, "9", "down", "2"});
   const Operated operated = apply_plan(patient, plan);
   OperationOutput output(
       options.out, "Craniosynostosis: the vault reshaped",
-      std::string(delivered ? "A delivered skull: the vault" :
-                              "A long, narrow skull (scaphocephaly): the vault") +
+      std::string(delivered ? "A delivered skull: the vault"
+                            : "A long, narrow skull (scaphocephaly): the vault") +
           " is cut into a sagittal strip and two parietal panels on each side, which share their "
           "saw cuts. The panels are moved outward and the strip down, so that the vault becomes "
           "broader.");

@@ -14,6 +14,7 @@ namespace condyle {
 void add_plan_new(Commands& commands, CLI::App& plan);
 void add_plan_cut(Commands& commands, CLI::App& plan);
 void add_plan_move(Commands& commands, CLI::App& plan);
+void add_plan_occlude(Commands& commands, CLI::App& plan);
 void add_plan_edit(Commands& commands, CLI::App& plan);  // in plan_cut.cpp
 void add_plan_show(Commands& commands, CLI::App& plan);  // in plan_apply.cpp
 void add_plan_apply(Commands& commands, CLI::App& plan);
