@@ -27,6 +27,24 @@ Eigen::Vector3d center_of(const Case& patient, BodyId body) {
   return box.empty() ? Eigen::Vector3d::Zero() : box.center();
 }
 
+/// How far the displayed face moves in further rounds of an equilibrium that was not reached.
+double change_of_face(const Prediction& prediction, TissueState state, int threads) {
+  constexpr int rounds = 3;
+  const TissueModel& tissue = *prediction.tissue;
+  TissueWarmStart warm;
+  std::vector<Eigen::Vector3f> face;
+  float most = 0;
+  for (int round = 0; round < rounds; ++round) {
+    state = solve_tissue(
+        tissue, state, state.X_CB,
+        {.tolerance_mm = equilibrium_mm, .contact_firmness = 10, .threads = threads}, warm);
+    deform_face(tissue, state, face, threads);
+    for (std::size_t i = 0; i < face.size(); ++i)
+      most = std::max(most, (face[i] - prediction.after[i]).norm());
+  }
+  return most;
+}
+
 }  // namespace
 
 double Prediction::max_displacement_mm() const {
@@ -86,6 +104,8 @@ Prediction predict(const Case& patient, const Plan& plan, const PredictionSettin
                                  std::move(warm));
   }
   deform_face(*prediction.tissue, state, prediction.after, settings.threads);
+  if (!state.converged)
+    prediction.unsettled_mm = change_of_face(prediction, state, settings.threads);
   for (const char* name : soft_landmarks)
     if (const auto rest = patient.landmarks.find(name))
       prediction.points.push_back({name, *rest, carried_point(*prediction.tissue, state, *rest)});

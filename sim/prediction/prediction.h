@@ -35,6 +35,8 @@ struct Prediction {
   TriMesh face;                                // as displayed, with its lips parted, at rest
   std::vector<Eigen::Vector3f> before, after;  // its vertices
   std::vector<SoftPoint> points;
+  /// Largest change of the displayed face in a further round of the solution; 0 where converged.
+  double unsettled_mm = 0;
   double time_s = 0;  // of the solves, without building the tissue
 
   double max_displacement_mm() const;

@@ -100,7 +100,10 @@ std::string prediction_text(const Prediction& prediction, const ClinicalFrame& f
   text += fmt::format(
       "\nthe face moves by at most {:.1f} mm; {} inverted prisms; solved in {:.1f} s{}\n",
       prediction.max_displacement_mm(), prediction.state.inverted_prisms, prediction.time_s,
-      prediction.state.converged ? "" : "; not converged");
+      prediction.state.converged
+          ? ""
+          : fmt::format("; the solution oscillates, and the face with it by at most {:.2f} mm",
+                        prediction.unsettled_mm));
   return text;
 }
 
@@ -108,6 +111,7 @@ Json prediction_json(const Prediction& prediction, const ClinicalFrame& frame) {
   Json json{{"max_displacement_mm", prediction.max_displacement_mm()},
             {"inverted_prisms", prediction.state.inverted_prisms},
             {"converged", prediction.state.converged},
+            {"unsettled_mm", prediction.unsettled_mm},
             {"time_s", prediction.time_s},
             {"points", Json::array()},
             {"ratios", Json::array()}};

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "sim/tissue/model.h"
 
@@ -18,6 +19,17 @@ TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& st
   // can oscillate.
   constexpr double firmness = 10, finer = 0.01;
   constexpr double first_contraction = 0.5, max_contraction = 0.98;
+  // Rounds whose largest displacement does not fall below that of as many rounds before: tissue
+  // oscillates at a sharp edge, and further rounds change nothing.
+  constexpr std::size_t oscillation_rounds = 8;
+  constexpr double no_decrease = 0.95;
+  std::vector<double> displacements;
+  const auto oscillates = [&] {
+    if (displacements.size() < 2 * oscillation_rounds) return false;
+    const auto middle = displacements.end() - oscillation_rounds;
+    return *std::max_element(middle, displacements.end()) >
+           no_decrease * *std::max_element(middle - oscillation_rounds, middle);
+  };
   TissueState reached = state;
   reached.converged = false;
   double before = 0, contraction = first_contraction;
@@ -38,7 +50,8 @@ TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& st
     before = moved;
     reached.converged =
         reached.converged && moved <= tolerance_mm * (1 - std::max(contraction, last));
-    if (reached.converged) break;
+    displacements.push_back(moved);
+    if (reached.converged || oscillates()) break;
   }
   return reached;
 }

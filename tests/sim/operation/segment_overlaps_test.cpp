@@ -14,6 +14,12 @@ Operated operated_with(const ClinicalMove& chin) {
   return apply_plan(patient, plan_of(patient, {chin_step(), MoveStep{"chin", chin}}));
 }
 
+Pose raised(double mm) {
+  Pose X;
+  X.t.z() = mm;
+  return X;
+}
+
 }  // namespace
 
 TEST(SegmentOverlaps, OfPiecesOfOneBoneAreTrimmedAndHaveTheExactVolume) {
@@ -27,7 +33,7 @@ TEST(SegmentOverlaps, OfPiecesOfOneBoneAreTrimmedAndHaveTheExactVolume) {
   EXPECT_NEAR(overlaps[0].volume_mm3, 2 * 100 * 92, 20);
   EXPECT_NEAR(overlaps[0].at.z(), -70, 2.1);
   // Nothing is to be refused.
-  const auto pose = [&](double f) { return Pose{{}, {0, 0, 2.5 * f}}; };
+  const auto pose = [&](double f) { return raised(2.5 * f); };
   EXPECT_EQ(free_fraction(operated, "chin", pose), 1);
 }
 
@@ -41,7 +47,7 @@ TEST(SegmentOverlaps, WithOtherBonesAreCollisionsOfWhichAPartIsFree) {
   });
   ASSERT_NE(hit, overlaps.end());
   EXPECT_NEAR(hit->depth_mm, 45 - 40.25, 0.02);
-  const auto pose = [&](double f) { return Pose{{}, {0, 0, 45 * f}}; };
+  const auto pose = [&](double f) { return raised(45 * f); };
   const double fraction = free_fraction(operated, "chin", pose);
   EXPECT_GT(fraction, 0);
   // The first obstacle is the lowest tooth or the skull.
