@@ -78,6 +78,10 @@ const Part& part_of(const Case& patient, Jaw jaw, const std::string& osteotomy) 
                                          : std::vector{Role::skull};
   for (const Role role : roles)
     if (const Part* part = patient.find(role)) return *part;
+  // After an earlier cut, such as a sagittal split: the piece that carries the teeth.
+  if (const Part* teeth = jaw == Jaw::lower ? patient.find(Role::lower_teeth) : nullptr)
+    for (const Part& part : patient.parts)
+      if (is_bone(part) && part.body == teeth->body) return part;
   throw InputError(fmt::format("{} needs a {}, which the case lacks", osteotomy,
                                jaw == Jaw::lower   ? "mandible"
                                : jaw == Jaw::upper ? "maxilla or skull"

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <map>
+#include <string>
 
 #include "engine/core/error.h"
+#include "sim/phantom/phantom.h"
 #include "sim/prediction/soft_ratios.h"
 #include "tests/support/builtin.h"
 
@@ -60,6 +63,47 @@ TEST(Prediction, AChinThatAdvancesTakesTheSkinAlong) {
     if (name == "pronasale") {
       EXPECT_LT((after - before).norm(), 0.3) << "the nose stays";
     }
+}
+
+/// Ratios of soft to hard tissue by their soft landmark.
+std::map<std::string, double> ratios_of(const Case& patient, const Plan& plan) {
+  const Prediction prediction = predict(patient, plan);
+  EXPECT_EQ(prediction.state.inverted_prisms, 0);
+  EXPECT_LT(prediction.unsettled_mm, 0.1);
+  std::map<std::string, double> ratios;
+  for (const SoftRatio& row : soft_ratios(prediction, clinical_frame(patient.landmarks)))
+    ratios[row.soft] = row.ratio();
+  return ratios;
+}
+
+/// Stripping was fitted on the standard head; the published ranges hold on another.
+TEST(Prediction, OnAnotherHeadStaysNearPublishedRatios) {
+  const Case patient = builtin_patient({.variant = HeadChoice::Variant::standard, .seed = 3});
+  const double forward = ratios_of(patient, chin_plan(patient, 6))["soft_pogonion"];
+  EXPECT_GT(forward, 0.85);  // 0.85 to 1
+  EXPECT_LT(forward, 1.0);
+  Plan plan =
+      with_step(plan_of(patient), CutStep{.osteotomy = "sagittal_split",
+                                          .pieces = {"proximal_left", "proximal_right", "distal"}});
+  plan = with_step(plan, MoveStep{"distal", ClinicalMove{.forward_mm = -5}});
+  const auto setback = ratios_of(patient, plan);
+  // Lower lip, B' and Pog' go back as one.
+  for (const char* soft : {"soft_pogonion", "soft_b_point", "labrale_inferius"}) {
+    EXPECT_GT(setback.at(soft), 0.9) << soft;
+    EXPECT_LT(setback.at(soft), 1.1) << soft;
+  }
+}
+
+/// Without the limits of slivers in distance fields, tissue beside this split folds.
+TEST(Prediction, ASplitOfAClassThreeJawConverges) {
+  const Case patient = builtin_patient({.variant = HeadChoice::Variant::class_iii, .seed = 0});
+  Plan plan =
+      with_step(plan_of(patient), CutStep{.osteotomy = "sagittal_split",
+                                          .pieces = {"proximal_left", "proximal_right", "distal"}});
+  plan = with_step(plan, MoveStep{"distal", ClinicalMove{.forward_mm = -2}});
+  const Prediction prediction = predict(patient, plan);
+  EXPECT_LT(prediction.max_displacement_mm(), 3);
+  EXPECT_LT(prediction.unsettled_mm, 0.1);
 }
 
 TEST(Prediction, OneStepAndTenEndAtTheSameFace) {
