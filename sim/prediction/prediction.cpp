@@ -14,9 +14,10 @@ namespace condyle {
 namespace {
 
 constexpr std::array soft_landmarks{
-    "pronasale",     "subnasale",     "left_alare",       "right_alare",       "labrale_superius",
-    "stomion",       "left_cheilion", "right_cheilion",   "labrale_inferius",  "soft_b_point",
-    "soft_pogonion", "soft_menton",   "left_soft_gonion", "right_soft_gonion", "cervical_point"};
+    "pronasale",      "columella",        "subnasale",         "left_alare",
+    "right_alare",    "labrale_superius", "stomion",           "left_cheilion",
+    "right_cheilion", "labrale_inferius", "soft_b_point",      "soft_pogonion",
+    "soft_menton",    "left_soft_gonion", "right_soft_gonion", "cervical_point"};
 
 bool is_identity(const Pose& pose) { return pose.R.vec().isZero(0) && pose.t.isZero(0); }
 

@@ -2,6 +2,7 @@
 
 #include "engine/collide/distance_field.h"
 #include "sim/phantom/phantom.h"
+#include "sim/prediction/predicted_landmarks.h"
 #include "tools/bite_picture.h"
 #include "tools/common.h"
 #include "tools/demo/class_iii_plan.h"
@@ -48,7 +49,8 @@ int run_class_iii(const DemoOptions& options, const CommonOptions& common) {
       "The upper jaw is moved 4 mm forward, 2 mm up in front and 4 mm up behind after a Le Fort I "
       "osteotomy. After a sagittal split the lower arch is closed on the moved upper one, so that "
       "its setback is a result.");
-  output.add_operation(made.plan, prediction.operated, bar.callback());
+  output.add_operation(made.plan, prediction.operated, bar.callback(),
+                       predicted_landmarks(prediction));
   const Bite& bite = made.bite.bite;
   output.json["bite"] = {{"stable", bite.stable},
                          {"contacts", bite.contacts.size()},

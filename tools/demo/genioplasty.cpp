@@ -3,6 +3,7 @@
 #include "render/plan/picture_grid.h"
 #include "sim/operated/operated_scene.h"
 #include "sim/phantom/phantom.h"
+#include "sim/prediction/predicted_landmarks.h"
 #include "tools/common.h"
 #include "tools/demo/demo.h"
 #include "tools/demo/operation_output.h"
@@ -25,7 +26,7 @@ int run_genioplasty(const DemoOptions& options, const CommonOptions& common) {
       options.out, "Genioplasty",
       "The chin is cut below the roots and the nerve canals and moved 6 mm "
       "forward and 1 mm up. The mouth then opens with the chin in its new place.");
-  output.add_operation(plan, prediction.operated, bar.callback());
+  output.add_operation(plan, prediction.operated, bar.callback(), predicted_landmarks(prediction));
   output.add_prediction(plan, prediction, bar.callback());
   SimulatorSettings settings;
   settings.threads = common.threads;

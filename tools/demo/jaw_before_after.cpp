@@ -36,8 +36,8 @@ void add_comparison(OperationOutput& output, const OperationComparison& comparis
                           tenth_mm(measure.after, unit)});
   }
   output.add_table("Range of motion", range,
-                   "Largest opening, protrusion and laterotrusion to both sides, with the teeth "
-                   "gliding on each other.");
+                   "Opening is the patient's largest; protrusion and laterotrusion of 8 mm were "
+                   "prescribed, with the teeth gliding on each other.");
   OperationOutput::Table pairs{{"Parts", "Before", "After"}, {}};
   for (const ComparedPair& pair : comparison.pairs)
     pairs.rows.push_back({display_name(pair.a) + " and " + readable_name(pair.b),

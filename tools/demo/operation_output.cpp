@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -14,6 +15,7 @@
 #include "sim/case/landmark_files.h"
 #include "sim/frame/part_names.h"
 #include "sim/operation/cut_text.h"
+#include "sim/operation/segment_overlaps.h"
 #include "sim/plan/cephalometry.h"
 #include "sim/plan/plan_file.h"
 #include "sim/prediction/predicted_landmarks.h"
@@ -53,16 +55,47 @@ OperationOutput::Table movements_table(const MovementTable& movements) {
   return table;
 }
 
-OperationOutput::Table cephalometry_table(const std::vector<CephalometricMeasure>& measures) {
+/// Measures of the profile, which the bones alone do not change.
+bool is_soft(const CephalometricMeasure& measure) {
+  return measure.name.find("G-Sn-Pog'") != std::string::npos ||
+         measure.name.starts_with("nasolabial") || measure.name.find(" lip ") != std::string::npos;
+}
+
+std::string signed_number(double value, const char* format) {
+  const std::string text = fmt::format(fmt::runtime(format), value);
+  return text == "-0.0" || text == "+0.0" ? "0.0" : text;
+}
+
+OperationOutput::Table cephalometry_table(const std::vector<CephalometricMeasure>& measures,
+                                          bool has_soft) {
   OperationOutput::Table table{{"Measure", "Before", "After", "Change", "Norm"}, {}};
   for (const CephalometricMeasure& measure : measures) {
-    if (!measure.before || !measure.after) continue;
+    if (!measure.before || !measure.after || (is_soft(measure) && !has_soft)) continue;
     const std::string unit = measure.unit == "deg" ? "°" : " " + measure.unit;
-    table.rows.push_back({measure.name, fmt::format("{:.1f}{}", *measure.before, unit),
-                          fmt::format("{:.1f}{}", *measure.after, unit),
-                          fmt::format("{:+.1f}", *measure.change() + 0.0),
-                          norm_text(measure.norm)});
+    table.rows.push_back({measure.name, signed_number(*measure.before, "{:.1f}") + unit,
+                          signed_number(*measure.after, "{:.1f}") + unit,
+                          signed_number(*measure.change(), "{:+.1f}"), norm_text(measure.norm)});
   }
+  return table;
+}
+
+/// "A point", "soft B point": points that cephalometry names by a letter.
+std::string point_words(std::string words) {
+  for (const auto& [plain, letter] : {std::pair{"a point", "A point"}, {"b point", "B point"}})
+    if (const auto at = words.find(plain); at != std::string::npos)
+      words.replace(at, std::string_view(plain).size(), letter);
+  return words;
+}
+
+OperationOutput::Table overlaps_table(const std::vector<SegmentOverlap>& overlaps) {
+  OperationOutput::Table table{{"Parts", "Depth", "Volume", "Meaning"}, {}};
+  for (const SegmentOverlap& overlap : overlaps)
+    table.rows.push_back({display_name(overlap.a) + " and " + readable_name(overlap.b),
+                          fmt::format("{:.1f} mm", overlap.depth_mm),
+                          fmt::format("{:.0f} mm³", overlap.volume_mm3),
+                          overlap.kind == SegmentOverlap::Kind::trimmed    ? "bone to be trimmed"
+                          : overlap.kind == SegmentOverlap::Kind::occlusal ? "teeth interfere"
+                                                                           : "collision"});
   return table;
 }
 
@@ -71,7 +104,7 @@ OperationOutput::Table ratio_table(const std::vector<SoftRatio>& ratios) {
       {"Soft tissue", "Bone", "Bone moves", "Face moves", "Ratio", "Published"}, {}};
   for (const SoftRatio& ratio : ratios)
     table.rows.push_back(
-        {display_name(ratio.soft), readable_name(ratio.hard),
+        {point_words(display_name(ratio.soft)), point_words(readable_name(ratio.hard)),
          in_words(ratio.hard_mm, "mm forward", "mm back"),
          in_words(ratio.soft_mm, "mm forward", "mm back"), fmt::format("{:.2f}", ratio.ratio()),
          ratio.low && ratio.high ? fmt::format("{:g} to {:g}", *ratio.low, *ratio.high) : ""});
@@ -87,7 +120,8 @@ OperationOutput::OperationOutput(std::filesystem::path folder, std::string title
 }
 
 void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
-                                    const Progress& progress, std::vector<std::string> views) {
+                                    const Progress& progress, const std::optional<Landmarks>& soft,
+                                    std::vector<std::string> views) {
   if (!operated.problems.empty())
     throw InputError(fmt::format("{}", fmt::join(operated.problems, "; ")));
   json = plan_report_json(plan, operated);
@@ -116,6 +150,7 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
       body_ += "<li>" + escaped(sentence) + "</li>\n";
     body_ += "</ul>\n";
   }
+  add_table("Overlap at the planned positions", overlaps_table(segment_overlaps(operated)));
   for (const std::string& note : operated.notes) add_note(note);
   try {
     const ClinicalFrame frame = clinical_frame(operated.patient.landmarks, plan.reference);
@@ -123,11 +158,9 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
     add_table("Movements of the bone",
               movements_table(movement_table(before, frame, operated.patient.bodies,
                                              operated.owners, operated.poses)));
-    add_table("Cephalometry",
-              cephalometry_table(cephalometry(
-                  frame, before, moved_landmarks(before, operated.owners, operated.poses))),
-              "Norms: published means of European adults with one standard deviation. Measures of "
-              "the soft tissue are those of the face before the operation.");
+    const Landmarks planned = soft ? *soft : moved_landmarks(before, operated.owners, operated.poses);
+    add_table("Cephalometry", cephalometry_table(cephalometry(frame, before, planned), !!soft),
+              "Norms: published means of European adults with one standard deviation.");
   } catch (const InputError& error) {
     add_note(fmt::format("tables of movements and cephalometry are left out: {}", error.what()));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -22,8 +23,10 @@ class OperationOutput {
 
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Writes plan, segments and case, and adds the segments' sheet to the page.
+  /// Writes plan, segments and case, and adds the segments' sheet to the page. `soft`: landmarks of
+  /// the predicted face, for cephalometry after the operation; without them it has bone alone.
   void add_operation(const Plan& plan, const Operated& operated, const Progress& progress,
+                     const std::optional<Landmarks>& soft = {},
                      std::vector<std::string> views = {"front", "three-quarter", "left"});
   /// Writes the faces and the sheet of both.
   void add_prediction(const Plan& plan, const Prediction& prediction, const Progress& progress);

@@ -126,7 +126,7 @@ int run_vault(const DemoOptions& options, const CommonOptions& common) {
           " is cut into a sagittal strip and two parietal panels on each side, which share their "
           "saw cuts. The panels are moved outward and the strip down, so that the vault becomes "
           "broader.");
-  output.add_operation(plan, operated, bar.callback(), {"above", "back", "left"});
+  output.add_operation(plan, operated, bar.callback(), {}, {"above", "back", "left"});
   for (const std::string& note : notes) output.add_note(note);
   double whole = 0;
   for (const CutReport& cut : operated.cuts) whole += cut.volume_mm3;
