@@ -69,7 +69,7 @@ Case build_phantom_on(int threads, const Progress& progress) {
            static_cast<double>(++done) / static_cast<double>(jobs.size()));
   });
   Case patient;
-  patient.name = "built-in patient";
+  patient.name = builtin_case_name;
   patient.parts = std::move(parts);
   patient.landmarks = phantom_landmarks(solid);
   patient.canals = phantom_canals(patient.landmarks);

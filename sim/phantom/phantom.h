@@ -8,6 +8,9 @@
 
 namespace condyle {
 
+/// Case::name of the standard head; others have the name that head_name() gives.
+inline constexpr const char* builtin_case_name = "built-in patient";
+
 /// The built-in patient, generated from distance fields: an adult head. Deterministic; about 6 s on
 /// two cores.
 Case build_phantom(const Progress& progress = {});

@@ -50,6 +50,34 @@ TEST(PlanCommand, AGenioplastyFromTheEmptyPlanToTheOperatedCase) {
   EXPECT_TRUE(mentions(condyle({"info", out + "/case"}).out, "body chin: on mandible"));
 }
 
+TEST(PlanCommand, AMoveThatCollidesIsRefusedOrSlides) {
+  const Folder folder;
+  const std::string file = folder / "plan.json";
+  plan({"new", "--out", file});
+  plan({"cut", file, "sagittal_split"});
+  const std::string before = read_text(file);
+  const Outcome refused = condyle({"plan", "move", file, "proximal_left", "up", "12"});
+  EXPECT_EQ(refused.code, 2);
+  for (const char* words :
+       {"skull and proximal_left overlap", "a collision", "of the move is free"})
+    EXPECT_TRUE(mentions(refused.err, words)) << words << "\n" << refused.err;
+  EXPECT_EQ(read_text(file), before);
+  plan({"move", file, "proximal_left", "up", "12", "--slide"});
+  const auto slid = nlohmann::json::parse(read_text(file));
+  const double up = slid["steps"].back()["move"]["up_mm"].get<double>();
+  EXPECT_GT(up, 0.5);
+  EXPECT_LT(up, 5);
+  // Just free: a little more collides.
+  EXPECT_EQ(condyle({"plan", "move", file, "proximal_left", "up", std::to_string(up)}).code, 0);
+  EXPECT_EQ(condyle({"plan", "move", file, "proximal_left", "up", std::to_string(up + 0.1)}).code,
+            2);
+  plan({"move", file, "proximal_left", "up", "12", "--despite-collision"});
+  // Pieces of one bone are trimmed: their overlap is reported, not refused.
+  const Outcome setback = plan({"move", file, "distal", "back", "5"});
+  EXPECT_TRUE(mentions(setback.err, "bone to be trimmed")) << setback.err;
+  EXPECT_EQ(condyle({"plan", "occlude", file, "proximal_left"}).code, 2);
+}
+
 TEST(PlanCommand, WrongInputHasExitCode2AndLeavesThePlan) {
   const Folder folder;
   const std::string file = folder / "plan.json";

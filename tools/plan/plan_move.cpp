@@ -7,7 +7,7 @@
 
 #include "engine/core/error.h"
 #include "sim/operation/segment_overlaps.h"
-#include "sim/phantom/head_shape.h"
+#include "sim/phantom/phantom.h"
 #include "sim/plan/move_words.h"
 #include "sim/plan/plan_file.h"
 #include "tools/plan/plan_command.h"
@@ -41,7 +41,12 @@ ClinicalMove scaled(ClinicalMove move, double fraction) {
 std::optional<Case> case_of(const PlanMoveOptions& options, const Plan& plan,
                             const CommonOptions& common) {
   if (!options.patient.empty()) return open_planned(options.patient, common);
-  if (is_head_name(plan.geometry.name)) return open_planned(plan.geometry.name, common);
+  const std::string& name = plan.geometry.name;
+  if (name == builtin_case_name || is_head_name(name)) {
+    Case head = open_planned(is_head_name(name) ? name : "", common);
+    if (compare_geometry(plan.geometry, geometry_of(head)).match != CaseMatch::other_case)
+      return head;
+  }
   print_plan_notes(common, {"collisions of the move are not checked: give the case with --case"});
   return std::nullopt;
 }

@@ -26,7 +26,11 @@ int run_plan_new(const PlanNewOptions& options, const CommonOptions& common) {
   try {
     print_plan_notes(common, clinical_frame(patient.landmarks, plan.reference).notes);
   } catch (const InputError& error) {
-    print_plan_notes(common, {fmt::format("moves in words are not possible: {}", error.what())});
+    print_plan_notes(
+        common,
+        {fmt::format(
+            "moves in words are not possible: {}. --natural-head takes the case's axes instead",
+            error.what())});
   }
   if (options.out.has_parent_path()) make_folder(options.out.parent_path());
   finish_edit(plan, options.out, "new plan", common);
