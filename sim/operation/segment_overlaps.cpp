@@ -19,15 +19,19 @@ using Eigen::Vector3d;
 
 constexpr double least_overlap_mm = 0.1;
 
-/// The uncut part that a part was made from.
+/// The uncut bone that a part was made from; teeth count with the bone that carries them, so that a
+/// root in a neighbouring piece is trimmed.
 std::string source_of(const Operated& operated, const Part& part) {
+  if (is_teeth(part.role))
+    for (const Part& bone : operated.patient.parts)
+      if (bone.body == part.body && collides(bone.role) && !is_teeth(bone.role))
+        return source_of(operated, bone);
   const auto found = operated.origin.find(part.name);
   return found == operated.origin.end() ? part.name : found->second.part;
 }
 
 SegmentOverlap::Kind kind_of(const Operated& operated, const Part& a, const Part& b) {
   if (is_teeth(a.role) && is_teeth(b.role)) return SegmentOverlap::Kind::occlusal;
-  // Teeth count with the bone that carries them, so that a root in a neighbouring piece is trimmed.
   if (source_of(operated, a) == source_of(operated, b)) return SegmentOverlap::Kind::trimmed;
   return SegmentOverlap::Kind::collision;
 }

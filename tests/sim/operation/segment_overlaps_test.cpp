@@ -55,4 +55,18 @@ TEST(SegmentOverlaps, WithOtherBonesAreCollisionsOfWhichAPartIsFree) {
   EXPECT_TRUE(segment_overlaps(operated, "chin").size() >= 2);
 }
 
+TEST(SegmentOverlaps, TeethCountWithTheBoneThatCarriesThem) {
+  // The upper teeth reach to z = -20 in the skull, which is cut at -10.
+  const Case patient = operable_patient();
+  const Operated operated = apply_plan(
+      patient, plan_of(patient, {maxilla_step(), MoveStep{"maxilla", ClinicalMove{.up_mm = 14}}}));
+  int with_teeth = 0;
+  for (const SegmentOverlap& overlap : segment_overlaps(operated, "maxilla"))
+    if (overlap.a == "upper_teeth" || overlap.b == "upper_teeth") {
+      ++with_teeth;
+      EXPECT_EQ(overlap.kind, SegmentOverlap::Kind::trimmed);
+    }
+  EXPECT_EQ(with_teeth, 1);
+}
+
 }  // namespace condyle::test
