@@ -174,7 +174,7 @@ int run_check(const CheckOptions& options, const CommonOptions& common) {
   settings.contact.far_mm = std::numeric_limits<double>::infinity();  // every distance is plotted
   std::optional<AtomicOutput> files;
   if (!options.out.empty()) files.emplace(options.out);  // fails before the computation
-  Case patient = open_patient(options.motion.patient, common, bar);
+  Case patient = open_patient(case_of(options.motion), common, bar);
   check_motion(options.motion, patient);
   const std::optional<Case> uncut =
       options.motion.plan.empty() ? std::nullopt : std::optional(patient);

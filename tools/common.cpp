@@ -68,6 +68,11 @@ Case open_patient(const std::filesystem::path& folder, const CommonOptions& comm
   });
 }
 
+std::filesystem::path case_of(const std::filesystem::path& given, const std::optional<Plan>& plan) {
+  if (!given.empty() || !plan || !is_head_name(plan->geometry.name)) return given;
+  return plan->geometry.name;
+}
+
 void print_notes(const Scene& scene, const std::filesystem::path& folder,
                  const CommonOptions& common, ProgressBar& bar) {
   if (!common.prints_summary() || (folder.empty() && !common.verbose)) return;

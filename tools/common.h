@@ -9,6 +9,7 @@
 
 #include "render/recording/picture_plan.h"
 #include "render/scene/scene_renderer.h"
+#include "sim/plan/plan.h"
 #include "sim/simulator/simulator.h"
 #include "tools/command.h"
 
@@ -40,6 +41,9 @@ class ProgressBar {
 /// instead of the bar.
 Case open_patient(const std::filesystem::path& folder, const CommonOptions& common,
                   ProgressBar& bar, const Progress& progress = {});
+
+/// The case that is given, or else the built-in head that a plan was made for.
+std::filesystem::path case_of(const std::filesystem::path& given, const std::optional<Plan>& plan);
 
 /// Prints notes on a scene before the computation: surfaces that overlap or are open, and
 /// simplifications of the soft tissue. Those of the built-in patient (no folder) are

@@ -94,6 +94,10 @@ std::optional<Plan> plan_of(const std::filesystem::path& file) {
   return load_plan(file);
 }
 
+std::filesystem::path case_of(const MotionOptions& options) {
+  return case_of(options.patient, plan_of(options.plan));
+}
+
 Scene scene_of(const MotionOptions& options, Case patient, const SimulatorSettings& settings,
                const Progress& progress) {
   return make_scene(std::move(patient), plan_of(options.plan), settings, progress);

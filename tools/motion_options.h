@@ -48,6 +48,8 @@ void check_motion(const MotionOptions& options, const Case& patient);
 void add_plan_file(CLI::App& command, std::filesystem::path& plan);
 /// The plan in a file; none if the path is empty. throws: InputError.
 std::optional<Plan> plan_of(const std::filesystem::path& file);
+/// The case that is given, or else the built-in head that the plan was made for.
+std::filesystem::path case_of(const MotionOptions& options);
 
 /// The scene of the patient, after the operation if there is a plan.
 Scene scene_of(const MotionOptions& options, Case patient, const SimulatorSettings& settings,

@@ -113,7 +113,7 @@ int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
   constexpr int no_stable_bite = 1;
   ProgressBar bar(common);
   const std::optional<Plan> plan = plan_of(options.plan);
-  Case patient = open_patient(options.patient, common, bar);
+  Case patient = open_patient(case_of(options.patient, plan), common, bar);
   std::optional<Bite> before;
   OcclusionSettings settings;
   settings.film_mm = options.film_mm;

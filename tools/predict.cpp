@@ -42,7 +42,7 @@ TriMesh face_at(const Prediction& prediction, const std::vector<Eigen::Vector3f>
 int run_predict(const PredictOptions& options, const CommonOptions& common) {
   ProgressBar bar(common);
   const Plan plan = load_plan(options.plan);
-  const Case patient = open_patient(options.patient, common, bar);
+  const Case patient = open_patient(case_of(options.patient, plan), common, bar);
   PredictionSettings settings;
   settings.threads = common.threads;
   settings.tissue.surface_nodes = options.surface_nodes;

@@ -77,7 +77,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   ProgressBar bar(common);
   auto settings = simulator_settings(options.motion, common);
   settings.face = options.pictures;
-  Case patient = open_patient(options.motion.patient, common, bar);
+  Case patient = open_patient(case_of(options.motion), common, bar);
   check_motion(options.motion, patient);
   std::optional<PicturePlan> plan;
   const bool is_uncut = options.motion.plan.empty();  // else segments may be named

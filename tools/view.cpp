@@ -54,7 +54,7 @@ int run_view(const ViewOptions& options, const CommonOptions& common) {
   if (!kept.trouble().empty())
     window.report_error("Cannot restore the window as it was left", kept.trouble());
   ViewSession session(window, session_settings(options.motion, common));
-  session.open(options.motion.patient);
+  session.open(case_of(options.motion));
   ViewStateFile state(options.state_file);
   while (window.open() || !session.may_close()) {
     session.turn();

@@ -20,11 +20,14 @@ void PatientLoader::start(std::function<Case(const Progress&)> read, std::filesy
 }
 
 void PatientLoader::open(const std::filesystem::path& folder) {
+  const bool builtin = folder.empty() || is_head_name(folder.string());
+  const HeadChoice choice = builtin ? parse_head_name(folder.string()) : HeadChoice{};
   start(
-      [folder](const Progress& progress) {
-        return folder.empty() ? builtin_patient(progress) : load_case(folder);
+      [=](const Progress& progress) {
+        return builtin ? builtin_patient(choice, progress) : load_case(folder);
       },
-      folder, folder.empty() ? "loading the patient" : "loading " + folder.filename().string(),
+      builtin ? std::filesystem::path{} : folder,
+      builtin ? "loading the patient" : "loading " + folder.filename().string(),
       std::exchange(state_.settings.plan, std::nullopt));
 }
 

@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "render/session/view_session.h"
 #include "sim/case/case_io.h"
+#include "sim/phantom/head_shape.h"
 #include "sim/session/patient_files.h"
 
 // One-time requests of the user to a ViewSession.
@@ -36,8 +37,12 @@ std::string title_of_failure(const Request& request) {
 }  // namespace
 
 void ViewSession::open(const fs::path& path) {
-  if (path.empty()) return loader_.open({});
-  state_.try_or_report("Cannot open this", [&] { open_files({path}); });
+  state_.try_or_report("Cannot open this", [&] {
+    if (path.empty() || is_head_name(path.string()))
+      loader_.open(path);
+    else
+      open_files({path});
+  });
 }
 
 void ViewSession::carry_out(const Request& request) {

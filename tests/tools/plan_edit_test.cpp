@@ -93,6 +93,15 @@ TEST_F(PlanEdit, ANewPlanInThePlaceOfAnotherIsUndone) {
   EXPECT_EQ(read_text(file), planned);
 }
 
+TEST_F(PlanEdit, APlanForABuiltInHeadFindsItByItsName) {
+  done({"new", "built-in:seed=3", "--out", file});
+  has_words(done({"cut", file, "genioplasty"}), "chin:");
+  done({"move", file, "chin", "forward", "4"});
+  EXPECT_EQ(apply()["segments"][0]["name"], "chin");
+  const Outcome checked = condyle({"check", "--plan", file, "--motion", "open 5", "--json"});
+  EXPECT_NE(checked.code, 2) << checked.err;
+}
+
 TEST_F(PlanEdit, StepsAreReordered) {
   done({"note", file, "first", "of", "all"});
   has_words(done({"reorder", file, "3", "1"}), "3  note: first of all\n  1  cut genioplasty");

@@ -32,7 +32,7 @@ int run_plan_show(const PlanApplyOptions& options, const CommonOptions& common) 
                                                plan.geometry.name, steps_text(plan)));
     return 0;
   }
-  const Operated operated = apply_plan(open_planned(options.patient, common), plan);
+  const Operated operated = apply_plan(open_planned(options.patient, plan, common), plan);
   if (common.json)
     fmt::print("{}\n", plan_report_json(plan, operated)
                            .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
@@ -77,7 +77,7 @@ void remove_earlier(const std::set<std::string>& earlier, const std::set<std::st
 
 int run_plan_apply(const PlanApplyOptions& options, const CommonOptions& common) {
   const Plan plan = load_plan(options.file);
-  const Operated operated = apply_plan(open_planned(options.patient, common), plan);
+  const Operated operated = apply_plan(open_planned(options.patient, plan, common), plan);
   if (!operated.problems.empty())
     throw InputError(
         fmt::format("{}: {}", options.file.string(), fmt::join(operated.problems, "; ")));

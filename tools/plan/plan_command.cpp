@@ -30,9 +30,10 @@ void add_plan_case(CLI::App& command, std::string& patient, const char* absent) 
       ->type_name("FOLDER|built-in");
 }
 
-Case open_planned(const std::string& patient, const CommonOptions& common) {
+Case open_planned(const std::string& patient, const std::optional<Plan>& plan,
+                  const CommonOptions& common) {
   ProgressBar bar(common);
-  Case opened = open_patient(patient, common, bar);
+  Case opened = open_patient(case_of(patient, plan), common, bar);
   bar.clear();
   return opened;
 }

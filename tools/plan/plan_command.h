@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,10 +32,12 @@ void add_plan_argument(CLI::App& command, std::filesystem::path& file);
 void add_step_argument(CLI::App& command, int& step);
 /// Adds --case, the case of the plan; `absent` says what holds without it.
 void add_plan_case(CLI::App& command, std::string& patient,
-                   const char* absent = "the built-in patient");
+                   const char* absent = "the built-in head that the plan names");
 
-/// The case in the folder, or a built-in head by its name; empty: the built-in patient.
-Case open_planned(const std::string& patient, const CommonOptions& common);
+/// The case in the folder, or a built-in head by its name; empty: the built-in head that the plan
+/// was made for, else the built-in patient.
+Case open_planned(const std::string& patient, const std::optional<Plan>& plan,
+                  const CommonOptions& common);
 
 void print_plan_notes(const CommonOptions& common, const std::vector<std::string>& notes);
 

@@ -103,7 +103,7 @@ int run_plan_cut(const PlanCutOptions& options, const CommonOptions& common) {
   // Refuses an unknown name before the patient is read.
   CutStep step = changed_cut(
       {.osteotomy = options.osteotomy, .kerf_mm = default_kerf_mm(options.osteotomy)}, options);
-  const Case patient = open_planned(options.patient, common);
+  const Case patient = open_planned(options.patient, plan, common);
   if (options.pieces.empty()) step.pieces = own_pieces(apply_plan(patient, plan).patient, step);
   const Plan edited = with_step(plan, step);
   finish_cut(edited, edited.steps.back(), patient, "add", options, common);
@@ -144,7 +144,7 @@ int run_plan_edit(const PlanCutOptions& options, const CommonOptions& common) {
                                      ? "condyle plan move replaces the move of a segment"
                                      : "remove it, and add another"));
   CutStep step = changed_cut(*before, options);
-  const Case patient = open_planned(options.patient, common);
+  const Case patient = open_planned(options.patient, plan, common);
   if (options.pieces.empty())
     name_pieces(step, *before, patient_before(patient, plan, options.step));
   const Plan edited = with_recut(plan, options.step, step);

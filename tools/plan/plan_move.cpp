@@ -40,10 +40,10 @@ ClinicalMove scaled(ClinicalMove move, double fraction) {
 /// The case on which the move is checked; none where the plan's own is unknown.
 std::optional<Case> case_of(const PlanMoveOptions& options, const Plan& plan,
                             const CommonOptions& common) {
-  if (!options.patient.empty()) return open_planned(options.patient, common);
+  if (!options.patient.empty()) return open_planned(options.patient, plan, common);
   const std::string& name = plan.geometry.name;
   if (name == builtin_case_name || is_head_name(name)) {
-    Case head = open_planned(is_head_name(name) ? name : "", common);
+    Case head = open_planned({}, plan, common);
     if (compare_geometry(plan.geometry, geometry_of(head)).match != CaseMatch::other_case)
       return head;
   }
@@ -118,7 +118,7 @@ void add_plan_move(Commands& commands, CLI::App& plan) {
                   "The move: forward, back, left, right, up, down with mm; pitch, roll, yaw with "
                   "degrees; about POINT; POINT up MM in place of a pitch")
       ->required();
-  add_plan_case(command, options->patient, "the built-in head that the plan names");
+  add_plan_case(command, options->patient);
   auto* slide = command.add_flag("--slide", options->slide,
                                  "Of a move that collides add the largest part that is free");
   command

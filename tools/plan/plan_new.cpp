@@ -18,7 +18,7 @@ struct PlanNewOptions {
 };
 
 int run_plan_new(const PlanNewOptions& options, const CommonOptions& common) {
-  const Case patient = open_planned(options.patient, common);
+  const Case patient = open_planned(options.patient, {}, common);
   Plan plan;
   plan.name = !options.name.empty() ? options.name : options.out.stem().string();
   plan.geometry = geometry_of(patient);

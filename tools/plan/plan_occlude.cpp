@@ -30,7 +30,7 @@ int run_plan_occlude(const PlanOccludeOptions& options, const CommonOptions& com
   constexpr int no_stable_bite = 1;
   const Plan plan = load_plan(options.file);
   check_segment(plan, options.segment);
-  const Case patient = open_planned(options.patient, common);
+  const Case patient = open_planned(options.patient, plan, common);
   OcclusionSettings settings;
   settings.threads = common.threads;
   settings.cache = field_cache_folder();
