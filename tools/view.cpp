@@ -40,7 +40,7 @@ WindowOptions window_options(const ViewOptions& options, const Arrangement& kept
 SessionSettings session_settings(const MotionOptions& options, const CommonOptions& common) {
   SessionSettings settings{.motion = options.settings,
                            .muscles = options.muscles,
-                           .plan = plan_of(options.plan),
+                           .plan = options.plan,
                            .respect_contact = options.respect_contact,
                            .simulator = simulator_settings(options, common)};
   if (!options.motion.empty()) settings.first_motion = options.motion;

@@ -2,20 +2,25 @@
 
 #include <utility>
 
+#include "engine/core/error.h"
 #include "sim/case/case_io.h"
 #include "sim/phantom/phantom.h"
+#include "sim/plan/plan_file.h"
 #include "sim/session/patient_files.h"
 
 namespace condyle {
 
 void PatientLoader::start(std::function<Case(const Progress&)> read, std::filesystem::path folder,
-                          std::string words, std::optional<Plan> plan) {
+                          std::string words, std::filesystem::path plan) {
   renewing_.reset();
+  plan_ = plan;
   job_.start([read = std::move(read), folder = std::move(folder), words = std::move(words),
               settings = state_.settings.simulator,
               plan = std::move(plan)](const Progress& progress) {
     report(progress, words, 0);
-    return make_session_patient(read(progress), folder, settings, progress, plan);
+    std::optional<Plan> planned;
+    if (!plan.empty()) planned = load_plan(plan);
+    return make_session_patient(read(progress), folder, settings, progress, planned);
   });
 }
 
@@ -28,7 +33,7 @@ void PatientLoader::open(const std::filesystem::path& folder) {
       },
       builtin ? std::filesystem::path{} : folder,
       builtin ? "loading the patient" : "loading " + folder.filename().string(),
-      std::exchange(state_.settings.plan, std::nullopt));
+      std::exchange(state_.settings.plan, {}));
 }
 
 void PatientLoader::import(const request::Import& request) {
@@ -38,6 +43,11 @@ void PatientLoader::import(const request::Import& request) {
 }
 
 void PatientLoader::renew(std::vector<Landmark> landmarks) {
+  if (!state_.patient->operated->cuts.empty())
+    throw InputError(
+        "landmarks are edited before the operation: undo the steps of the plan, or open the "
+        "patient "
+        "without it");
   start([patient = state_.patient,
          landmarks](const Progress&) { return with_landmarks(patient->scene.patient, landmarks); },
         state_.patient->folder, "making the patient with these landmarks");
@@ -49,7 +59,7 @@ std::optional<PatientLoader::Loaded> PatientLoader::take() {
   auto renewed = std::exchange(renewing_, std::nullopt);
   std::optional<Loaded> loaded;
   state_.try_or_report(renewed ? "Cannot use these landmarks" : "Cannot open the patient", [&] {
-    if (auto patient = job_.take()) loaded = {std::move(*patient), std::move(renewed)};
+    if (auto patient = job_.take()) loaded = {std::move(*patient), std::move(renewed), plan_};
   });
   return loaded;
 }

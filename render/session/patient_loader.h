@@ -18,6 +18,7 @@ class PatientLoader {
   struct Loaded {
     std::shared_ptr<const SessionPatient> patient;
     std::optional<std::vector<Landmark>> renewed;
+    std::filesystem::path plan = {};  // file of its plan; empty: none
   };
 
   explicit PatientLoader(SessionState& state) : state_(state), job_(state.retired, state.waker()) {}
@@ -26,7 +27,8 @@ class PatientLoader {
   void open(const std::filesystem::path& folder);
   /// Imports surfaces, landmarks and muscles with their roles.
   void import(const request::Import& request);
-  /// Rebuilds the session's patient with other landmarks.
+  /// Rebuilds the session's patient with other landmarks. throws: InputError where a plan has been
+  /// applied, from whose uncut bones the landmarks were read.
   void renew(std::vector<Landmark> landmarks);
   void drop() { job_.drop(); }
   const auto& job() const { return job_; }
@@ -35,10 +37,11 @@ class PatientLoader {
 
  private:
   void start(std::function<Case(const Progress&)> read, std::filesystem::path folder,
-             std::string words, std::optional<Plan> plan = {});
+             std::string words, std::filesystem::path plan = {});
 
   SessionState& state_;
   std::optional<std::vector<Landmark>> renewing_;
+  std::filesystem::path plan_;  // of the patient that is being loaded
   Job<std::shared_ptr<const SessionPatient>> job_;
 };
 

@@ -30,7 +30,9 @@ std::string title_of_failure(const Request& request) {
                  [](const request::Cancel&) { return "Cannot cancel this"; },
                  [](const request::Release&) { return "Cannot release this"; },
                  [](const request::SaveCase&) { return "Cannot save the patient"; },
-                 [](const request::UseLandmarks&) { return "Cannot use these landmarks"; }},
+                 [](const request::UseLandmarks&) { return "Cannot use these landmarks"; },
+                 [](const request::EditPlan&) { return "Cannot edit the plan"; },
+                 [](const request::SavePlan&) { return "Cannot save the plan"; }},
       request);
 }
 
@@ -60,6 +62,8 @@ void ViewSession::carry_out(const Request& request) {
       [&](const request::UseLandmarks&) {
         if (state_.patient) loader_.renew(state_.front_end.view().landmarks);
       },
+      [&](const request::EditPlan& edit) { plan_.edit(edit); },
+      [&](const request::SavePlan& saved) { save_plan(saved.file); },
   };
   state_.try_or_report(title_of_failure(request), [&] { std::visit(act, request); });
 }
@@ -99,6 +103,9 @@ void ViewSession::open_file(const fs::path& file) {
   switch (kind_of(file)) {
     case FileKind::patient:
       return loader_.open(fs::is_directory(file) ? file : file.parent_path());
+    case FileKind::plan:
+      if (!state_.patient) throw InputError(file, "", "is a plan; open its patient first");
+      return plan_.open(file);
     case FileKind::motion:
     case FileKind::excitations: {
       const std::string spec =
@@ -118,6 +125,7 @@ void ViewSession::open_file(const fs::path& file) {
 
 void ViewSession::cancel() {
   if (loader_.job().active()) return loader_.drop();
+  if (plan_.checking().active() || plan_.predicting().active()) return plan_.drop();
   release_.drop("it stays where it is");
 }
 
@@ -131,6 +139,13 @@ void ViewSession::save(const fs::path& folder) {
     save_case(with_landmarks(patient->scene.patient, landmarks), folder);
     return Saved{opened, landmarks, folder};
   });
+}
+
+void ViewSession::save_plan(const fs::path& file) {
+  plan_.save(file);
+  state_.scene.plan = plan_.view();
+  state_.front_end.update_scene(state_.scene);
+  state_.front_end.say("Saved the plan as " + file.string());
 }
 
 void ViewSession::take_save() {

@@ -1,5 +1,6 @@
 #include "render/session/view_session.h"
 
+#include <algorithm>
 #include <cctype>
 #include <utility>
 
@@ -11,6 +12,7 @@ namespace condyle {
 ViewSession::ViewSession(FrontEnd& front_end, const SessionSettings& settings)
     : state_{.front_end = front_end, .settings = settings},
       loader_(state_),
+      plan_(state_),
       moving_(state_.retired, state_.waker()),
       readying_(state_.retired, state_.waker()),
       saving_(state_.retired, state_.waker()),
@@ -24,16 +26,12 @@ ViewSession::ViewSession(FrontEnd& front_end, const SessionSettings& settings)
 void ViewSession::take_patient() {
   auto loaded = loader_.take();
   if (!loaded) return;
-  moving_.drop();
-  readying_.drop();
-  release_.drop(loaded->renewed ? "the patient was rebuilt" : "another patient was opened");
-  release_.end();
-  live_.stop();
-  preview_.forget();
-  recording_.forget();
-  state_.motion.reset();
-  if (auto earlier = std::exchange(state_.patient, std::move(loaded->patient)))
-    state_.retired.add(std::move(earlier), nullptr);
+  plan_.drop();
+  install(std::move(loaded->patient),
+          loaded->renewed ? "the patient was rebuilt" : "another patient was opened");
+  state_.try_or_report("Cannot open the plan", [&] {
+    plan_.begin(loaded->plan.empty() ? std::nullopt : std::optional(PlanDocument(loaded->plan)));
+  });
   if (loaded->renewed)
     show_renewed_patient(*loaded->renewed);
   else
@@ -42,6 +40,36 @@ void ViewSession::take_patient() {
     state_.front_end.report_error("Cannot build the soft tissue",
                                   state_.in_words(state_.patient->trouble));
   want_motion(asked_);
+}
+
+/// The patient after an edit of its plan.
+void ViewSession::take_plan() {
+  auto planned = plan_.take();
+  if (!planned) return;
+  const std::string trouble = planned->patient->trouble;
+  std::map<std::string, PartView> earlier;
+  const auto& shown = state_.front_end.view().parts;
+  for (std::size_t i = 0; i < std::min(shown.size(), state_.scene.parts.size()); ++i)
+    earlier[state_.scene.parts[i].name] = shown[i];
+  install(std::move(planned->patient), "the plan was edited");
+  show_planned_patient(earlier);
+  if (!trouble.empty())
+    state_.front_end.report_error("Cannot predict the face", state_.in_words(trouble));
+  want_motion(asked_);
+}
+
+/// Puts a patient in the place of the present one, before it is shown.
+void ViewSession::install(std::shared_ptr<const SessionPatient> patient, std::string_view why) {
+  moving_.drop();
+  readying_.drop();
+  release_.drop(why);
+  release_.end();
+  live_.stop();
+  preview_.forget();
+  recording_.forget();
+  state_.motion.reset();
+  if (auto earlier = std::exchange(state_.patient, std::move(patient)))
+    state_.retired.add(std::move(earlier), nullptr);
 }
 
 void ViewSession::show_renewed_patient(const std::vector<Landmark>& landmarks) {
@@ -69,6 +97,32 @@ void ViewSession::show_new_patient() {
   state_.front_end.show(state_.patient->at_rest);
 }
 
+/// View and edits stay as far as they do not belong to parts that the plan has changed. `earlier`:
+/// how the parts were shown, by name.
+void ViewSession::show_planned_patient(const std::map<std::string, PartView>& earlier) {
+  const ViewState& view = state_.front_end.view();
+  ViewState start;
+  static_cast<PanelChoice&>(start) = view;
+  static_cast<Edits&>(start) = view;
+  start.hands = {};
+  start.opening_mm.reset();
+  start.measured.clear();
+  start.parts.clear();
+  const auto& origin = state_.patient->operated->origin;
+  for (const Part& part : state_.patient->scene.patient.parts) {
+    auto known = earlier.find(part.name);
+    if (const auto cut = origin.find(part.name); known == earlier.end() && cut != origin.end())
+      known = earlier.find(cut->second.part);
+    start.parts.push_back(known == earlier.end() ? PartView{} : known->second);
+  }
+  WindowScene scene = scene_of_patient();
+  scene.recent = state_.scene.recent;
+  state_.scene = std::move(scene);
+  state_.front_end.replace_scene(state_.scene, start, state_.patient);
+  show_scene();
+  state_.front_end.show(state_.patient->at_rest);
+}
+
 bool ViewSession::obeys_contact() const {
   return state_.settings.respect_contact || !state_.motion || !state_.motion->motion.recorded;
 }
@@ -88,6 +142,7 @@ WindowScene ViewSession::scene_of_patient() const {
   scene.motion = asked_;
   scene.muscles = muscle_items(*state_.patient);
   scene.layers = layer_items(*state_.patient);
+  scene.plan = plan_.view();
   return scene;
 }
 
@@ -168,8 +223,9 @@ void ViewSession::show_progress() {
     busy_with_ = std::move(words);
     return true;
   };
-  if (show(loader_.job(), state_.patient != nullptr) || show(moving_, false) ||
-      show(release_.job(), true) || show(saving_, false) || show(readying_, false))
+  if (show(loader_.job(), state_.patient != nullptr) || show(plan_.checking(), true) ||
+      show(moving_, false) || show(release_.job(), true) || show(saving_, false) ||
+      show(plan_.predicting(), true) || show(readying_, false))
     return;
   state_.front_end.show_progress("", 1);
   busy_with_ = recording_.active() ? "recording" : "";
@@ -180,6 +236,7 @@ void ViewSession::turn() {
   for (const Request& request : state_.front_end.take_requests()) carry_out(request);
   state_.retired.sweep();
   take_patient();
+  take_plan();
   if (state_.patient && !loader_.job().active() && !(view.motion == asked_))
     want_motion(view.motion);
   take_motion();

@@ -2,11 +2,13 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "render/session/live_session.h"
 #include "render/session/patient_loader.h"
+#include "render/session/plan_session.h"
 #include "render/session/preview_session.h"
 #include "render/session/recording_session.h"
 #include "render/session/release_session.h"
@@ -49,9 +51,13 @@ class ViewSession {
   void cancel();
   void save(const std::filesystem::path& folder);
   void take_save();
+  void save_plan(const std::filesystem::path& file);
 
   void take_patient();
+  void take_plan();
+  void install(std::shared_ptr<const SessionPatient> patient, std::string_view why);
   void show_new_patient();
+  void show_planned_patient(const std::map<std::string, PartView>& earlier);
   void show_renewed_patient(const std::vector<Landmark>& landmarks);
   void want_motion(const MotionChoice& choice);
   void take_motion();
@@ -70,6 +76,7 @@ class ViewSession {
   std::string busy_with_;
 
   PatientLoader loader_;
+  PlanSession plan_;
   Job<std::shared_ptr<const SessionMotion>> moving_;
   Job<bool> readying_;  // bones to slide
   Job<Saved> saving_;

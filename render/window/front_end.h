@@ -30,6 +30,9 @@ class FrontEnd {
   /// needed.
   virtual void set_scene(const WindowScene& scene, const ViewState& start = {},
                          std::shared_ptr<const void> keeper = {}) = 0;
+  /// Shows the same patient with other parts, after an edit of its plan. The camera stays.
+  virtual void replace_scene(const WindowScene& scene, const ViewState& start,
+                             std::shared_ptr<const void> keeper) = 0;
   /// Shows the same patient rebuilt, with its surfaces in other memory. View and edits stay.
   virtual void renew_scene(const WindowScene& scene, std::shared_ptr<const void> keeper = {}) = 0;
   /// Shows another motion, other texts or lists of the same case; its parts are the same.

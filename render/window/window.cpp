@@ -148,6 +148,13 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
   s.noticed();
 }
 
+void Window::replace_scene(const WindowScene& scene, const ViewState& start,
+                           std::shared_ptr<const void> keeper) {
+  const Camera camera = state_->camera;
+  set_scene(scene, start, std::move(keeper));
+  state_->camera = camera;
+}
+
 bool Window::open() const { return !glfwWindowShouldClose(state_->window); }
 
 void Window::close() { glfwSetWindowShouldClose(state_->window, GLFW_TRUE); }

@@ -77,6 +77,8 @@ class Window : public FrontEnd {
   void draw() override;
 
   /// Shows the same patient rebuilt, with its surfaces in other memory. View and edits stay.
+  void replace_scene(const WindowScene& scene, const ViewState& start,
+                     std::shared_ptr<const void> keeper) override;
   void renew_scene(const WindowScene& scene, std::shared_ptr<const void> keeper = {}) override;
   /// Shows another motion, other texts or lists of the same case; its parts are the same.
   void update_scene(const WindowScene& scene) override;

@@ -86,11 +86,7 @@ SegmentBite find_segment_bite(const Case& patient, const Plan& plan, const std::
 }
 
 Plan with_segment_bite(Plan plan, const std::string& segment, const SegmentBite& found) {
-  const MoveStep move{segment, ExplicitMove{found.X_CS}};
-  for (const PlanStep& step : plan.steps)
-    if (const auto* known = std::get_if<MoveStep>(&step.action))
-      if (known->segment == segment) return with_replaced(std::move(plan), step.id, move);
-  return with_step(std::move(plan), move);
+  return with_move(std::move(plan), {segment, ExplicitMove{found.X_CS}});
 }
 
 }  // namespace condyle

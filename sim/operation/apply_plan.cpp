@@ -173,6 +173,14 @@ Pose planned_pose(const Operated& operated, const Plan& plan, const MoveStep& st
                    point_of(move, step.segment, patient.landmarks, centroid));
 }
 
+Vector3d rotation_point(const Operated& operated, const std::string& segment,
+                        const ClinicalMove& move) {
+  const Case& patient = operated.patient;
+  const auto body = patient.bodies.find(segment);
+  if (!body) throw InputError(fmt::format("\"{}\" does not exist", segment));
+  return point_of(move, segment, patient.landmarks, centroid_of(patient, *body));
+}
+
 Case operated_case(const Operated& operated) {
   Case patient = operated.patient;
   const BodyPoses& at = operated.poses;

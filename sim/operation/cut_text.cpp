@@ -52,15 +52,6 @@ std::string cut_details(const CutStep& step) {
   return text;
 }
 
-std::string step_details(const PlanAction& action) {
-  if (const auto* cut = std::get_if<CutStep>(&action)) return cut_details(*cut);
-  if (const auto* note = std::get_if<NoteStep>(&action)) return note->text;
-  const auto& step = std::get<MoveStep>(action);
-  const auto* move = std::get_if<ClinicalMove>(&step.move);
-  return move ? fmt::format("{}; about {}", move_words(*move), point_name(*move, step.segment))
-              : "as a pose";
-}
-
 }  // namespace
 
 std::vector<std::string> cut_sentences(const CutReport& report, const Landmarks& landmarks) {
@@ -113,6 +104,15 @@ std::vector<BoneSummary> operated_bones(const Operated& operated) {
     if (any) bones.push_back(std::move(bone));
   }
   return bones;
+}
+
+std::string step_details(const PlanAction& action) {
+  if (const auto* cut = std::get_if<CutStep>(&action)) return cut_details(*cut);
+  if (const auto* note = std::get_if<NoteStep>(&action)) return note->text;
+  const auto& step = std::get<MoveStep>(action);
+  const auto* move = std::get_if<ClinicalMove>(&step.move);
+  return move ? fmt::format("{}; about {}", move_words(*move), point_name(*move, step.segment))
+              : "as a pose";
 }
 
 std::string steps_text(const Plan& plan) {

@@ -22,6 +22,10 @@ struct BoneSummary {
 /// Bodies that the plan's cuts made or changed and that have bone, in the order of the tree.
 std::vector<BoneSummary> operated_bones(const Operated& operated);
 
+/// A step besides its title in one line: "makes chin; kerf 0.7 mm", "forward 4.0 mm; about
+/// pogonion".
+std::string step_details(const PlanAction& action);
+
 /// The steps of a plan with their numbers, one a line.
 std::string steps_text(const Plan& plan);
 

@@ -82,6 +82,10 @@ Operated apply_plan(const Case& patient, const Plan& plan);
 /// X_CS of a segment of an operated patient by a move. throws: InputError as apply_plan().
 Pose planned_pose(const Operated& operated, const Plan& plan, const MoveStep& step);
 
+/// The point at rest about which a move turns a segment. throws: InputError as apply_plan().
+Eigen::Vector3d rotation_point(const Operated& operated, const std::string& segment,
+                               const ClinicalMove& move);
+
 /// The patient after the operation: surfaces, landmarks, canals and muscles at their planned
 /// positions, which are its new rest. The face is as before.
 Case operated_case(const Operated& operated);

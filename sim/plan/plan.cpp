@@ -254,6 +254,13 @@ Plan with_replaced(Plan plan, int id, PlanAction action) {
   return plan;
 }
 
+Plan with_move(Plan plan, const MoveStep& move) {
+  for (const PlanStep& step : plan.steps)
+    if (const auto* known = std::get_if<MoveStep>(&step.action))
+      if (known->segment == move.segment) return with_replaced(std::move(plan), step.id, move);
+  return with_step(std::move(plan), move);
+}
+
 Plan without_step(Plan plan, int id) {
   plan.steps.erase(step_with(plan, id));
   check_plan(plan);

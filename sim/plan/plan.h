@@ -112,6 +112,8 @@ std::string step_title(const PlanAction& action);
 // and as check_plan() for the new plan.
 Plan with_step(Plan plan, PlanAction action);  // appended, with a new id
 Plan with_replaced(Plan plan, int id, PlanAction action);
+/// Replaces the segment's move, or appends it where the segment has none.
+Plan with_move(Plan plan, const MoveStep& move);
 Plan without_step(Plan plan, int id);
 Plan with_reordered(Plan plan, int id, std::size_t position);  // 0: first
 /// Replaces a cut. Where it makes as many segments as before under other names, the other steps

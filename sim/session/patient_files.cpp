@@ -63,6 +63,7 @@ FileKind kind_of(const fs::path& path) {
   for (const char* surface : {".stl", ".ply", ".obj", ".glb", ".gltf"})
     if (ending == surface) return FileKind::surface;
   if (lower_case(path.string()).ends_with(".mrk.json")) return FileKind::landmarks;
+  if (ending == ".json") return FileKind::plan;
   if (ending == ".csv") {
     const std::string header = first_line(path);
     if (header.find("max_force_n") != std::string::npos) return FileKind::muscles;

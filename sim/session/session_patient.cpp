@@ -8,6 +8,13 @@
 
 namespace condyle {
 
+Plan empty_plan(const Case& patient) {
+  Plan plan;
+  plan.name = "plan";
+  plan.geometry = geometry_of(patient);
+  return plan;
+}
+
 std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
                                                            std::filesystem::path folder,
                                                            SimulatorSettings settings,
@@ -25,7 +32,11 @@ std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
     }
   };
   auto made = std::make_shared<SessionPatient>(
-      SessionPatient{std::move(folder), build(), {}, {}, std::move(trouble)});
+      SessionPatient{std::move(folder), build(), {}, {}, std::move(trouble), {}, {}, {}});
+  made->operated =
+      std::make_shared<const Operated>(apply_plan(patient, plan ? *plan : empty_plan(patient)));
+  made->overlaps = segment_overlaps(*made->operated);
+  made->uncut = std::make_shared<const Case>(std::move(patient));
   made->at_rest = rest_frame(made->scene);
   carry_face(made->scene, made->at_rest, settings.threads);
   try {

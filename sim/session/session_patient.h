@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/case/muscle.h"
+#include "sim/operation/segment_overlaps.h"
 #include "sim/plan/plan.h"
 #include "sim/simulator/simulator.h"
 
@@ -19,7 +20,13 @@ struct SessionPatient {
   FrameState at_rest;           // with its face
   std::vector<Muscle> muscles;  // the case's, or default ones; none where landmarks are missing
   std::string trouble;          // what had to be omitted, as a sentence
+  std::shared_ptr<const Case> uncut;         // before the operation of the plan
+  std::shared_ptr<const Operated> operated;  // by the plan, which may be empty
+  std::vector<SegmentOverlap> overlaps;      // at the planned positions
 };
+
+/// A plan without steps for a case.
+Plan empty_plan(const Case& patient);
 
 /// Builds the scene of a patient, without soft tissue when the face does not allow any: the bones
 /// can still be moved. `plan`: of the operation after which the patient is shown.

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <optional>
+#include <filesystem>
 #include <string>
 
 #include "sim/dynamics/muscle_motion.h"
-#include "sim/plan/plan.h"
 #include "sim/simulator/simulator.h"
 
 namespace condyle {
@@ -14,8 +13,8 @@ struct SessionSettings {
   std::string first_motion = "opening";  // of the first patient; a name, a file or movements
   MotionSettings motion = {};            // of every motion; choices for one override them
   MuscleMotionSettings muscles = {};
-  std::optional<Plan> plan = std::nullopt;  // of the first patient's operation
-  bool respect_contact = false;  // recorded motion also slides where bones meet
+  std::filesystem::path plan = {};  // file of the first patient's operation; empty: none
+  bool respect_contact = false;     // recorded motion also slides where bones meet
   SimulatorSettings simulator = {};
 };
 

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <map>
@@ -8,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text_list.h"
+#include "sim/operation/edit_cut.h"
 #include "sim/osteotomy/osteotomy.h"
 #include "sim/plan/plan_file.h"
 #include "tools/common.h"
@@ -57,25 +57,13 @@ CutStep changed_cut(CutStep step, const PlanCutOptions& options) {
   return step;
 }
 
-std::vector<std::string> own_pieces(const Case& patient, CutStep step) {
-  step.pieces.clear();
-  std::vector<std::string> names;
-  for (const SegmentRule& rule : place_osteotomy(patient, step).segments)
-    names.push_back(rule.name);
-  return names;
-}
-
 /// Refuses a cut that comes nearer to a root, canal or foramen than any surgeon would.
-void refuse_dangerous(const CutReport& report, const char* verb) {
-  if (report.below_margins) return;
-  std::vector<std::string> dangers;
-  for (const DangerFinding& finding : report.dangers)
-    if (finding.level == DangerLevel::stop) dangers.push_back(danger_text(finding));
-  if (!dangers.empty())
+void refuse_dangerous(const Operated& operated, const PlanStep& step, const char* verb) {
+  if (const std::string dangers = dangers_below_margins(operated, step.id); !dangers.empty())
     throw InputError(
         fmt::format("{} is not {}ed: {}. Change its parameters with --set, or {} it all the same "
                     "with --below-margins",
-                    report.title, verb, fmt::join(dangers, "; "), verb));
+                    step_title(step.action), verb, dangers, verb));
 }
 
 /// Saves the plan unless the step's cut is dangerous, and prints what it cuts. `verb`: "add".
@@ -83,10 +71,9 @@ void finish_cut(const Plan& plan, const PlanStep& step, const Case& patient, con
                 const PlanCutOptions& options, const CommonOptions& common) {
   const Operated operated = apply_plan(patient, plan);
   std::vector<std::string> notes = operated.notes;
+  refuse_dangerous(operated, step, verb);
   for (const CutReport& cut : operated.cuts) {
-    if (cut.step == step.id)
-      refuse_dangerous(cut, verb);
-    else if (cut.is_dangerous() && !cut.below_margins)
+    if (cut.is_dangerous() && !cut.below_margins)
       notes.push_back(
           fmt::format("step {} ({}) lies below the least margins", cut.step, cut.title));
   }
@@ -104,31 +91,10 @@ int run_plan_cut(const PlanCutOptions& options, const CommonOptions& common) {
   CutStep step = changed_cut(
       {.osteotomy = options.osteotomy, .kerf_mm = default_kerf_mm(options.osteotomy)}, options);
   const Case patient = open_planned(options.patient, plan, common);
-  if (options.pieces.empty()) step.pieces = own_pieces(apply_plan(patient, plan).patient, step);
+  if (options.pieces.empty()) step.pieces = segment_names(apply_plan(patient, plan).patient, step);
   const Plan edited = with_step(plan, step);
   finish_cut(edited, edited.steps.back(), patient, "add", options, common);
   return 0;
-}
-
-/// The patient on which a step cuts.
-Case patient_before(const Case& patient, Plan plan, int id) {
-  const auto at = plan.steps.begin() + (&step_of(plan, id) - plan.steps.data());
-  plan.steps.erase(at, plan.steps.end());
-  std::erase_if(plan.steps, [](const PlanStep& step) {
-    return !std::holds_alternative<CutStep>(step.action);  // cuts are made at the uncut rest
-  });
-  return apply_plan(patient, plan).patient;
-}
-
-/// A step whose parameters now make other segments takes their names.
-void name_pieces(CutStep& step, const CutStep& before, const Case& patient) {
-  if (step.osteotomy.empty() || !step.surfaces.empty()) return;
-  const auto names = own_pieces(patient, step);
-  try {
-    if (own_pieces(patient, before) == names) return;
-  } catch (const InputError&) {  // the step was wrong, and is corrected now
-  }
-  step.pieces = names;
 }
 
 int run_plan_edit(const PlanCutOptions& options, const CommonOptions& common) {
@@ -145,9 +111,8 @@ int run_plan_edit(const PlanCutOptions& options, const CommonOptions& common) {
                                      : "remove it, and add another"));
   CutStep step = changed_cut(*before, options);
   const Case patient = open_planned(options.patient, plan, common);
-  if (options.pieces.empty())
-    name_pieces(step, *before, patient_before(patient, plan, options.step));
-  const Plan edited = with_recut(plan, options.step, step);
+  const Plan edited =
+      with_changed_cut(patient, plan, options.step, std::move(step), !options.pieces.empty());
   finish_cut(edited, step_of(edited, options.step), patient, "edit", options, common);
   return 0;
 }

@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
 #include <optional>
 
 #include "engine/core/error.h"
-#include "sim/operation/segment_overlaps.h"
+#include "sim/operation/move_collision.h"
 #include "sim/phantom/phantom.h"
 #include "sim/plan/move_words.h"
 #include "sim/plan/plan_file.h"
@@ -22,20 +21,6 @@ struct PlanMoveOptions {
   std::string patient;
   bool slide = false, despite_collision = false;
 };
-
-Plan with_move(Plan plan, const MoveStep& move) {
-  for (const PlanStep& step : plan.steps)
-    if (const auto* known = std::get_if<MoveStep>(&step.action))
-      if (known->segment == move.segment) return with_replaced(std::move(plan), step.id, move);
-  return with_step(std::move(plan), move);
-}
-
-ClinicalMove scaled(ClinicalMove move, double fraction) {
-  for (double* value : {&move.left_mm, &move.forward_mm, &move.up_mm, &move.roll_deg,
-                        &move.pitch_deg, &move.yaw_deg})
-    *value *= fraction;
-  return move;
-}
 
 /// The case on which the move is checked; none where the plan's own is unknown.
 std::optional<Case> case_of(const PlanMoveOptions& options, const Plan& plan,
@@ -56,35 +41,21 @@ std::optional<Case> case_of(const PlanMoveOptions& options, const Plan& plan,
 MoveStep checked_move(const Case& patient, const Plan& plan, MoveStep move,
                       const PlanMoveOptions& options, const CommonOptions& common) {
   Operated operated = apply_plan(patient, with_move(plan, move));
-  auto overlaps = segment_overlaps(operated, move.segment);
-  const auto collides = [](const SegmentOverlap& overlap) {
-    return overlap.kind == SegmentOverlap::Kind::collision;
-  };
-  const Landmarks& landmarks = patient.landmarks;
-  if (const auto hit = std::find_if(overlaps.begin(), overlaps.end(), collides);
-      hit != overlaps.end() && !options.despite_collision) {
-    const auto& whole = std::get<ClinicalMove>(move.move);
-    const auto pose = [&](double fraction) {
-      const MoveStep part{move.segment, scaled(whole, fraction)};
-      return planned_pose(operated, plan, part);
-    };
-    const double fraction = free_fraction(operated, move.segment, pose);
-    const ClinicalMove free = scaled(whole, fraction);
-    const std::string what =
-        fmt::format("{}; {:.0f} % of the move is free: {}", overlap_text(*hit, landmarks),
-                    100 * fraction, fraction > 0 ? move_words(free) : "nothing");
+  const auto collision =
+      options.despite_collision ? std::nullopt : move_collision(operated, plan, move);
+  if (collision) {
     if (!options.slide)
       throw InputError(fmt::format(
           "move {} is not added: {}. --slide adds the free part, --despite-collision the whole "
           "move",
-          move.segment, what));
-    print_plan_notes(common, {what + "; this part is added"});
-    move.move = free;
+          move.segment, collision->words));
+    print_plan_notes(common, {collision->words + "; this part is added"});
+    move.move = collision->free;
     operated = apply_plan(patient, with_move(plan, move));
-    overlaps = segment_overlaps(operated, move.segment);
   }
   std::vector<std::string> texts;
-  for (const SegmentOverlap& overlap : overlaps) texts.push_back(overlap_text(overlap, landmarks));
+  for (const SegmentOverlap& overlap : segment_overlaps(operated, move.segment))
+    texts.push_back(overlap_text(overlap, patient.landmarks));
   print_plan_notes(common, texts);
   return move;
 }

@@ -26,6 +26,11 @@ struct PanelFormState {
     bool running = false;  // whether a recording ran in the previous pass
   } record;
   std::string landmark_words, case_folder;
+  struct PlanFields {
+    int step = 0;  // selected, by id; 0: none
+    std::string file;
+    bool displacements = false, cephalometry = false;  // unfolded tables
+  } plan;
   std::optional<NumberEntry> number;
   struct OpenFields {
     bool open = false;

@@ -50,13 +50,18 @@ std::string part_name(const WindowScene& scene, int index) {
 }  // namespace
 
 void Panels::Drawing::side_tabs() {
-  constexpr std::array<std::pair<SideTab, const char*>, 3> tabs = {
-      {{SideTab::readings, "Readings"}, {SideTab::motion, "Motion"}, {SideTab::record, "Record"}}};
+  constexpr std::array<std::pair<SideTab, const char*>, 4> tabs = {{{SideTab::readings, "Readings"},
+                                                                    {SideTab::motion, "Motion"},
+                                                                    {SideTab::plan, "Plan"},
+                                                                    {SideTab::record, "Record"}}};
   const float gap = pen.px(4);
-  const float wide = std::floor((ImGui::GetContentRegionAvail().x - 2 * gap) / 3);
+  float words = 0;
+  for (const auto& [tab, label] : tabs) words += text_width(panels.theme_.regular, label);
+  const float margin = std::floor((ImGui::GetContentRegionAvail().x - 3 * gap - words) / 4);
   for (const auto& [tab, label] : tabs) {
     if (tab != SideTab::readings) ImGui::SameLine(0, gap);
-    if (word_button(pen, (std::string("tab:") + label).c_str(), label, {wide, pen.px(26)},
+    if (word_button(pen, (std::string("tab:") + label).c_str(), label,
+                    {text_width(panels.theme_.regular, label) + margin, pen.px(26)},
                     view.tab == tab))
       view.tab = tab;
   }
@@ -67,6 +72,8 @@ void Panels::Drawing::side() {
   side_tabs();
   if (view.tab == SideTab::motion)
     motion();
+  else if (view.tab == SideTab::plan)
+    plan();
   else if (view.tab == SideTab::record)
     record();
   else

@@ -68,6 +68,16 @@ struct Panels::Drawing {
   void motion_choice();
   void motion_muscles();
   void motion_parameters();
+  // panel_plan.cpp
+  void plan();
+  void plan_steps();
+  void plan_step(const PlanStepView& step);
+  void plan_numbers(const PlanStepView& step);
+  void plan_additions();
+  void plan_results();
+  void plan_buttons();
+  bool plan_table(const char* name, const char* title, const std::vector<PlanMeasure>& rows);
+  void edit_plan(PlanEdit edit);
   // panel_record.cpp
   void record();
   float record_label(const char* words);

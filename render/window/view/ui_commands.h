@@ -14,6 +14,7 @@
 #include "render/window/view/record_choice.h"
 #include "sim/choice/file_role.h"
 #include "sim/choice/motion_choice.h"
+#include "sim/choice/plan_view.h"
 #include "sim/frame/frame_state.h"
 #include "sim/frame/part.h"
 
@@ -67,12 +68,23 @@ struct SaveCase {
 };
 /// Rebuilds the simulation with the edited landmarks.
 struct UseLandmarks {};
+/// Edits the plan of the operation.
+struct EditPlan {
+  /// What the user has agreed to.
+  enum class Consent { none, below_margins, whole_move, free_part };
+  PlanEdit edit;
+  Consent consent = Consent::none;
+};
+struct SavePlan {
+  std::filesystem::path file;
+};
 }  // namespace request
 
 using Request =
     std::variant<request::Open, request::Import, request::Record, request::StopRecording,
                  request::ResumeRecording, request::ReplaceRecording, request::Quit,
-                 request::Cancel, request::Release, request::SaveCase, request::UseLandmarks>;
+                 request::Cancel, request::Release, request::SaveCase, request::UseLandmarks,
+                 request::EditPlan, request::SavePlan>;
 
 /// A question to the user before something is done.
 struct Question {

@@ -45,6 +45,7 @@ struct WindowScene {
   std::vector<TreeItem> muscles = {};  // lines of action that can be shown, in the case's order
   std::vector<TreeItem> layers = {};   // sheets of the soft tissue, from the skin inward
   std::vector<std::filesystem::path> recent = {};  // opened before, the last one first
+  PlanView plan = {};                              // of the operation
 };
 
 /// How one part is drawn.
@@ -83,7 +84,7 @@ struct Look {
 enum class LeftTab { parts, look };
 
 /// Content of the right column.
-enum class SideTab { readings, motion, record };
+enum class SideTab { readings, motion, plan, record };
 
 /// Which panels are in use.
 struct PanelChoice {

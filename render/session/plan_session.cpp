@@ -1,0 +1,184 @@
+#include "render/session/plan_session.h"
+
+#include <utility>
+
+#include "engine/collide/distance_field.h"
+#include "engine/core/error.h"
+#include "sim/operated/segment_bite.h"
+#include "sim/operation/edit_cut.h"
+#include "sim/operation/move_collision.h"
+
+namespace condyle {
+namespace {
+
+using Consent = request::EditPlan::Consent;
+
+Question question(std::string title, std::string words, const request::EditPlan& request,
+                  std::vector<std::pair<const char*, Consent>> answers) {
+  Question asked{std::move(title), std::move(words), {{"plan-leave", "Leave the plan as it is"}}};
+  for (const auto& [label, consent] : answers) {
+    request::EditPlan again = request;
+    again.consent = consent;
+    asked.answers.push_back(
+        {consent == Consent::free_part ? "plan-free-part" : "plan-agree", label, again});
+  }
+  return asked;
+}
+
+/// Changes the edit as the user has agreed, or returns what to ask first. `operated`: by the edit.
+std::optional<Question> objection(EditedPlan& edited, Operated& operated, const Case& uncut,
+                                  const request::EditPlan& request) {
+  if (edited.step == 0) return std::nullopt;
+  PlanAction action = step_of(edited.plan, edited.step).action;
+  if (auto* cut = std::get_if<CutStep>(&action)) {
+    const std::string dangers = dangers_below_margins(operated, edited.step);
+    if (dangers.empty()) return std::nullopt;
+    if (request.consent != Consent::below_margins)
+      return question("The cut is too close", dangers + ".", request,
+                      {{"Cut all the same", Consent::below_margins}});
+    cut->below_margins = true;
+  } else if (auto* move = std::get_if<MoveStep>(&action)) {
+    if (request.consent == Consent::whole_move) return std::nullopt;
+    const auto collision = move_collision(operated, edited.plan, *move);
+    if (!collision) return std::nullopt;
+    if (request.consent != Consent::free_part)
+      return question("The segment collides", collision->words + ".", request,
+                      {{"Move by the free part", Consent::free_part},
+                       {"Move all the same", Consent::whole_move}});
+    move->move = collision->free;
+  } else {
+    return std::nullopt;
+  }
+  edited.plan = with_replaced(std::move(edited.plan), edited.step, std::move(action));
+  operated = apply_plan(uncut, edited.plan);
+  return std::nullopt;
+}
+
+}  // namespace
+
+void PlanSession::begin(std::optional<PlanDocument> document) {
+  drop();
+  document_ = document ? std::move(*document) : PlanDocument(empty_plan(*state_.patient->uncut));
+}
+
+void PlanSession::drop() {
+  checking_.drop();
+  predicting_.drop();
+}
+
+HeldSegments PlanSession::held() const {
+  HeldSegments held;
+  if (!state_.newest) return held;
+  const Hands& hands = state_.front_end.view().hands;
+  for (const MovableBody& body : state_.scene.bodies)
+    if (body.roams() && hands.at(body.body))
+      held[state_.patient->scene.patient.bodies[body.body].name] =
+          pose_in(body.parent, body.body, state_.newest->poses);
+  return held;
+}
+
+void PlanSession::edit(const request::EditPlan& request) {
+  if (!state_.patient || !document_) return;
+  Change change;
+  PlanHistory history = document_->history();
+  if (std::holds_alternative<plan_edit::Undo>(request.edit)) {
+    change.kind = Change::Kind::undo;
+    if (!history.undo()) throw InputError("there is no edit of the plan to undo");
+    change.edited.plan = history.plan();
+  } else if (std::holds_alternative<plan_edit::Redo>(request.edit)) {
+    change.kind = Change::Kind::redo;
+    if (!history.redo()) throw InputError("there is no edit of the plan to redo");
+    change.edited.plan = history.plan();
+  } else if (!std::holds_alternative<plan_edit::Occlude>(request.edit)) {
+    change.edited = edited_plan(*state_.patient->uncut, document_->plan(),
+                                *state_.patient->operated, request.edit, held());
+  }
+  start(std::move(change), request);
+}
+
+void PlanSession::open(const std::filesystem::path& file) {
+  Change change{.kind = Change::Kind::open, .edited = {}, .opened = PlanDocument(file)};
+  change.edited.plan = change.opened->plan();
+  start(std::move(change), {});
+}
+
+void PlanSession::start(Change change, const request::EditPlan& request) {
+  predicting_.drop();
+  SimulatorSettings bones = state_.settings.simulator;
+  bones.tissue = bones.face = false;
+  checking_.start([change = std::move(change), request, bones, uncut = state_.patient->uncut,
+                   folder = state_.patient->folder, plan = document_->plan(),
+                   threads = state_.threads()](const Progress& progress) mutable {
+    report(progress, "replaying the plan", 0.2);
+    EditedPlan& edited = change.edited;
+    if (const auto* bite = std::get_if<plan_edit::Occlude>(&request.edit)) {
+      OcclusionSettings settings;
+      settings.threads = threads;
+      settings.cache = field_cache_folder();
+      const SegmentBite found = find_segment_bite(*uncut, plan, bite->segment, settings, progress);
+      if (!found.bite.stable)
+        throw InputError(bite->segment + " is not placed: no stable bite, " +
+                         found.bite.unstable_because);
+      edited = {with_segment_bite(plan, bite->segment, found), "occlude " + bite->segment};
+    }
+    Operated operated = apply_plan(*uncut, edited.plan);
+    if (change.kind == Change::Kind::edit) {
+      if (auto asked = objection(edited, operated, *uncut, request))
+        return Checked{std::move(change), nullptr, std::move(asked)};
+    }
+    Patient patient = make_session_patient(*uncut, folder, bones, progress, edited.plan);
+    return Checked{std::move(change), std::move(patient), {}};
+  });
+}
+
+void PlanSession::accept(Change change) {
+  switch (change.kind) {
+    case Change::Kind::edit:
+      return document_->edit(std::move(change.edited.plan), change.edited.what);
+    case Change::Kind::undo:
+      return document_->undo();
+    case Change::Kind::redo:
+      return document_->redo();
+    case Change::Kind::open:
+      document_ = std::move(change.opened);
+  }
+}
+
+void PlanSession::predict(const SessionPatient& bones) {
+  if (!state_.settings.simulator.tissue || !bones.uncut->find(Role::face)) return;
+  predicting_.start([uncut = bones.uncut, folder = bones.folder, plan = document_->plan(),
+                     settings = state_.settings.simulator](const Progress& progress) {
+    report(progress, "predicting the face", 0);
+    return make_session_patient(*uncut, folder, settings, progress, plan);
+  });
+}
+
+std::optional<PlanSession::Planned> PlanSession::take() {
+  std::optional<Planned> planned;
+  if (checking_.done()) {
+    state_.try_or_report("Cannot edit the plan", [&] {
+      auto checked = checking_.take();
+      if (!checked) return;
+      if (checked->question) return state_.front_end.ask(std::move(*checked->question));
+      accept(std::move(checked->change));
+      predict(*checked->patient);
+      planned = Planned{std::move(checked->patient), false};
+    });
+  } else if (predicting_.done()) {
+    state_.try_or_report("Cannot predict the face", [&] {
+      if (auto patient = predicting_.take()) planned = Planned{std::move(*patient), true};
+    });
+  }
+  return planned;
+}
+
+void PlanSession::save(const std::filesystem::path& file) {
+  if (document_) document_->save_as(file);
+}
+
+PlanView PlanSession::view() const {
+  if (!document_ || !state_.patient) return {};
+  return plan_view(*document_, *state_.patient->operated, state_.patient->overlaps);
+}
+
+}  // namespace condyle

@@ -1,0 +1,268 @@
+#include "sim/session/plan_editing.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "sim/frame/part_names.h"
+#include "sim/operation/cut_text.h"
+#include "sim/operation/edit_cut.h"
+#include "sim/osteotomy/osteotomy.h"
+#include "sim/plan/cephalometry.h"
+#include "sim/plan/clinical_frame.h"
+
+namespace condyle {
+namespace {
+
+constexpr const char* kerf_number = "kerf_mm";
+
+const PlanStep* move_of(const Plan& plan, const std::string& segment) {
+  for (const PlanStep& step : plan.steps)
+    if (const auto* move = std::get_if<MoveStep>(&step.action))
+      if (move->segment == segment) return &step;
+  return nullptr;
+}
+
+double* number_of(ClinicalMove& move, const std::string& name) {
+  const std::map<std::string, double*> numbers = {
+      {"forward_mm", &move.forward_mm}, {"up_mm", &move.up_mm},       {"left_mm", &move.left_mm},
+      {"pitch_deg", &move.pitch_deg},   {"roll_deg", &move.roll_deg}, {"yaw_deg", &move.yaw_deg}};
+  const auto found = numbers.find(name);
+  return found == numbers.end() ? nullptr : found->second;
+}
+
+/// A move as a clinical one: of a pose, that with this pose about the segment's usual point.
+ClinicalMove in_clinical_words(const Operated& operated, const Plan& plan, const MoveStep& step) {
+  if (const auto* move = std::get_if<ClinicalMove>(&step.move)) return *move;
+  const Landmarks& landmarks = operated.patient.landmarks;
+  ClinicalMove usual;
+  usual.about = point_name(usual, step.segment);
+  if (!landmarks.find(usual.about)) usual.about = "centroid";
+  return clinical_move(std::get<ExplicitMove>(step.move).X_CS,
+                       clinical_frame(landmarks, plan.reference),
+                       rotation_point(operated, step.segment, usual), usual.about);
+}
+
+EditedPlan add_osteotomy(const Plan& plan, const Operated& operated, const std::string& name) {
+  CutStep cut{.osteotomy = name, .kerf_mm = default_kerf_mm(name)};
+  cut.pieces = segment_names(operated.patient, cut);
+  EditedPlan edited{with_step(plan, cut), step_title(cut)};
+  edited.step = edited.plan.steps.back().id;
+  return edited;
+}
+
+EditedPlan edited_move(const Plan& plan, const MoveStep& move) {
+  EditedPlan edited{with_move(plan, move), step_title(move)};
+  edited.step = move_of(edited.plan, move.segment)->id;
+  return edited;
+}
+
+EditedPlan set_number(const Case& uncut, const Plan& plan, const Operated& operated,
+                      const plan_edit::SetNumber& edit) {
+  const PlanStep& step = step_of(plan, edit.step);
+  if (const auto* move = std::get_if<MoveStep>(&step.action)) {
+    ClinicalMove changed = in_clinical_words(operated, plan, *move);
+    double* number = number_of(changed, edit.name);
+    if (!number) throw InputError(step_name(step) + " has no " + edit.name);
+    *number = edit.value;
+    return edited_move(plan, {move->segment, changed});
+  }
+  const auto* before = std::get_if<CutStep>(&step.action);
+  if (!before) throw InputError(step_name(step) + " has no " + edit.name);
+  CutStep cut = *before;
+  cut.below_margins = false;  // asked anew
+  if (edit.name == kerf_number)
+    cut.kerf_mm = edit.value;
+  else
+    cut.parameters[edit.name] = edit.value;
+  return {with_changed_cut(uncut, plan, edit.step, cut), "edit " + step_name(step), edit.step};
+}
+
+EditedPlan shifted(const Plan& plan, const plan_edit::Shift& edit) {
+  const PlanStep& step = step_of(plan, edit.step);
+  const auto at = static_cast<std::size_t>(&step - plan.steps.data());
+  if (edit.later ? at + 1 == plan.steps.size() : at == 0)
+    throw InputError(step_name(step) + (edit.later ? " is the last step" : " is the first step"));
+  return {with_reordered(plan, edit.step, edit.later ? at + 1 : at - 1),
+          "reorder " + step_name(step)};
+}
+
+EditedPlan take_positions(Plan plan, const Operated& operated, const HeldSegments& held) {
+  const BodyTree& bodies = operated.patient.bodies;
+  const ClinicalFrame frame = clinical_frame(operated.patient.landmarks, plan.reference);
+  std::vector<std::string> moved;
+  // From the root outward, so that a segment that is itself held goes along with its parent first.
+  for (int b = 1; b < bodies.size(); ++b) {
+    const std::string& name = bodies[BodyId{b}].name;
+    Pose X;
+    bool along = false;
+    for (int a = b; a > 0; a = static_cast<int>(index_of(bodies[BodyId{a}].parent))) {
+      const auto hand = held.find(bodies[BodyId{a}].name);
+      if (hand == held.end()) continue;
+      X = hand->second * X;
+      along = true;
+    }
+    if (!along || (!held.contains(name) && !move_of(plan, name))) continue;
+    MoveStep step{name, ExplicitMove{X * operated.poses[BodyId{b}]}};
+    step.move = in_clinical_words(operated, plan, step);
+    plan = with_move(std::move(plan), step);
+    if (held.contains(name)) moved.push_back(name);
+  }
+  if (moved.empty()) throw InputError("no segment is held by hand");
+  return {std::move(plan), fmt::format("move {} by hand", fmt::join(moved, ", "))};
+}
+
+std::vector<PlanNumber> numbers_of(const CutStep& cut) {
+  std::vector<PlanNumber> numbers;
+  if (cut.osteotomy.empty() || !cut.surfaces.empty()) return numbers;
+  for (const OsteotomyParameter& known : osteotomy_parameters(cut.osteotomy)) {
+    const auto set = cut.parameters.find(known.name);
+    std::string label = known.name;
+    for (const char* unit : {"_mm", "_deg"})
+      if (label.ends_with(unit)) label.resize(label.size() - std::string(unit).size());
+    numbers.push_back({known.name, display_name(label), known.unit, known.meaning, known.low,
+                       known.high, known.standard,
+                       set == cut.parameters.end() ? known.standard : set->second});
+  }
+  numbers.push_back({kerf_number, "Kerf", "mm", "Thickness of the saw cut", 0, max_kerf_mm,
+                     default_kerf_mm(cut.osteotomy), cut.kerf_mm});
+  return numbers;
+}
+
+std::vector<PlanNumber> numbers_of(const Operated& operated, const Plan& plan,
+                                   const MoveStep& step) {
+  ClinicalMove move;
+  try {
+    move = in_clinical_words(operated, plan, step);
+  } catch (const InputError&) {  // no directions, or the segment no longer exists
+    return {};
+  }
+  const std::string about = readable_name(point_name(move, step.segment));
+  std::vector<PlanNumber> numbers = {
+      {"forward_mm", "Forward", "mm", "Advancement of the " + about + "; negative: setback"},
+      {"up_mm", "Up", "mm", "Impaction at the " + about + "; negative: down"},
+      {"left_mm", "Left", "mm", "To the patient's left, of the " + about + "; negative: right"},
+      {"pitch_deg", "Pitch", "deg", "Front down, back up; about the " + about},
+      {"roll_deg", "Roll", "deg", "Cant: the left side down; about the " + about},
+      {"yaw_deg", "Yaw", "deg", "The front to the patient's left; about the " + about}};
+  for (PlanNumber& number : numbers) {
+    number.high = number.unit == "mm" ? max_move_mm : max_turn_deg;
+    number.low = -number.high;
+    number.value = *number_of(move, number.name);
+  }
+  return numbers;
+}
+
+PlanStepView step_view(const Plan& plan, const Operated& operated, const PlanStep& step) {
+  PlanStepView view{.id = step.id, .title = step_title(step.action)};
+  view.details = step_details(step.action);
+  if (const auto* cut = std::get_if<CutStep>(&step.action)) {
+    if (!cut->osteotomy.empty()) view.title = osteotomy_label(cut->osteotomy);
+    view.numbers = numbers_of(*cut);
+    for (const CutReport& report : operated.cuts) {
+      if (report.step != step.id) continue;
+      view.findings = cut_sentences(report, operated.patient.landmarks);
+      view.warns = report.is_dangerous() ||
+                   std::any_of(report.outcomes.begin(), report.outcomes.end(),
+                               [](const CutOutcome& outcome) {
+                                 return !outcome.open_on_purpose && !outcome.through;
+                               });
+    }
+  } else if (const auto* move = std::get_if<MoveStep>(&step.action)) {
+    view.title = "Move " + readable_name(move->segment);
+    view.numbers = numbers_of(operated, plan, *move);
+  }
+  return view;
+}
+
+std::string millimetres(double value, const char* positive, const char* negative) {
+  return std::abs(value) < 0.05 ? std::string() : in_words(value, positive, negative);
+}
+
+void add_tables(PlanView& view, const Plan& plan, const Operated& operated) {
+  const Landmarks& before = operated.patient.landmarks;
+  ClinicalFrame frame;
+  try {
+    frame = clinical_frame(before, plan.reference);
+  } catch (const InputError& error) {
+    view.findings.push_back(fmt::format("no tables: {}", error.what()));
+    return;
+  }
+  const MovementTable table =
+      movement_table(before, frame, operated.patient.bodies, operated.owners, operated.poses);
+  for (const MovementRow& row : table.rows) {
+    if (row.distance_mm() < 0.05) continue;
+    std::string words;
+    for (const std::string& each :
+         {millimetres(-row.back_mm, "forward", "back"), millimetres(row.up_mm, "up", "down"),
+          millimetres(row.left_mm, "left", "right")})
+      if (!each.empty()) words += (words.empty() ? "" : ", ") + each;
+    view.displacements.push_back({row.label, "", words, ""});
+  }
+  for (const CephalometricMeasure& measure :
+       cephalometry(frame, before, moved_landmarks(before, operated.owners, operated.poses))) {
+    if (!measure.before || !measure.after) continue;
+    const auto number = [&](double value) {
+      return fmt::format("{:.1f}{}", value, measure.unit == "deg" ? "\u00b0" : "");
+    };
+    view.cephalometry.push_back(
+        {measure.name, number(*measure.before), number(*measure.after), norm_text(measure.norm)});
+  }
+}
+
+}  // namespace
+
+EditedPlan edited_plan(const Case& uncut, const Plan& plan, const Operated& operated,
+                       const PlanEdit& edit, const HeldSegments& held) {
+  if (const auto* add = std::get_if<plan_edit::AddOsteotomy>(&edit))
+    return add_osteotomy(plan, operated, add->name);
+  if (const auto* add = std::get_if<plan_edit::AddMove>(&edit))
+    return edited_move(plan, {add->segment, ClinicalMove{}});
+  if (const auto* set = std::get_if<plan_edit::SetNumber>(&edit))
+    return set_number(uncut, plan, operated, *set);
+  if (const auto* remove = std::get_if<plan_edit::Remove>(&edit))
+    return {without_step(plan, remove->step), "remove " + step_name(step_of(plan, remove->step))};
+  if (const auto* shift = std::get_if<plan_edit::Shift>(&edit)) return shifted(plan, *shift);
+  if (std::holds_alternative<plan_edit::TakePositions>(edit))
+    return take_positions(plan, operated, held);
+  throw InputError("this edit needs more than the plan");
+}
+
+PlanView plan_view(const PlanDocument& document, const Operated& operated,
+                   const std::vector<SegmentOverlap>& overlaps) {
+  const Plan& plan = document.plan();
+  PlanView view{.name = plan.name, .file = document.file()};
+  for (const PlanStep& step : plan.steps) view.steps.push_back(step_view(plan, operated, step));
+  for (const std::string& name : osteotomy_names())
+    view.osteotomies.push_back({name, osteotomy_label(name)});
+  const BodyTree& bodies = operated.patient.bodies;
+  for (const BoneSummary& bone : operated_bones(operated))
+    if (bone.is_segment && !move_of(plan, bone.name))
+      view.segments.push_back({bone.name, display_name(bone.name)});
+  const JawBodies& jaw = operated.patient.jaw;
+  for (const BodyId arch : {jaw.upper_arch, jaw.lower_arch})
+    if (arch != cranium_body && arch != jaw.left_condyle && arch != jaw.right_condyle)
+      view.arches.push_back({bodies[arch].name, display_name(bodies[arch].name)});
+  view.undo = document.history().undoable().value_or("");
+  view.redo = document.history().redoable().value_or("");
+  for (const SegmentOverlap& overlap : overlaps)
+    view.findings.push_back(overlap_text(overlap, operated.patient.landmarks));
+  view.findings.insert(view.findings.end(), operated.problems.begin(), operated.problems.end());
+  add_tables(view, plan, operated);
+  return view;
+}
+
+std::string osteotomy_label(const std::string& name) {
+  static const std::map<std::string, std::string> labels = {{"le_fort_1", "Le Fort I"},
+                                                            {"le_fort_2", "Le Fort II"},
+                                                            {"le_fort_3", "Le Fort III"},
+                                                            {"inverted_l", "Inverted L"}};
+  const auto known = labels.find(name);
+  return known == labels.end() ? display_name(name) : known->second;
+}
+
+}  // namespace condyle
