@@ -93,7 +93,26 @@ void PlanSession::edit(const request::EditPlan& request) {
     change.edited = edited_plan(*state_.patient->uncut, document_->plan(),
                                 *state_.patient->operated, request.edit, held());
   }
+  if (!change.edited.plan.geometry.parts.empty()) preview(change.edited.plan);
   start(std::move(change), request);
+}
+
+/// Until the patient is replaced, segments go to their new positions as if moved by hand: at once,
+/// along contact, with the face.
+void PlanSession::preview(const Plan& plan) {
+  const auto changed = changed_positions(*state_.patient->operated, document_->plan(), plan);
+  if (changed.empty()) return;
+  state_.front_end.change([&](ViewState& view) {
+    for (const MovableBody& body : state_.scene.bodies)
+      if (body.roams()) view.hands.set(body.body, changed[index_of(body.body)]);
+  });
+}
+
+void PlanSession::end_preview() {
+  state_.front_end.change([&](ViewState& view) {
+    for (const MovableBody& body : state_.scene.bodies)
+      if (body.roams()) view.hands.set(body.body, {});
+  });
 }
 
 void PlanSession::open(const std::filesystem::path& file) {
@@ -164,6 +183,7 @@ std::optional<PlanSession::Planned> PlanSession::take() {
       predict(*checked->patient);
       planned = Planned{std::move(checked->patient), false};
     });
+    if (!planned) end_preview();
   } else if (predicting_.done()) {
     state_.try_or_report("Cannot predict the face", [&] {
       if (auto patient = predicting_.take()) planned = Planned{std::move(*patient), true};
@@ -178,7 +198,13 @@ void PlanSession::save(const std::filesystem::path& file) {
 
 PlanView PlanSession::view() const {
   if (!document_ || !state_.patient) return {};
-  return plan_view(*document_, *state_.patient->operated, state_.patient->overlaps);
+  PlanView view = plan_view(*document_, *state_.patient->operated, state_.patient->overlaps);
+  for (PlanStepView& step : view.steps) {
+    step.details = state_.in_words(std::move(step.details));
+    for (std::string& finding : step.findings) finding = state_.in_words(std::move(finding));
+  }
+  for (std::string& finding : view.findings) finding = state_.in_words(std::move(finding));
+  return view;
 }
 
 }  // namespace condyle

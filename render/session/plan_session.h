@@ -57,6 +57,8 @@ class PlanSession {
     std::optional<Question> question;
   };
 
+  void preview(const Plan& plan);
+  void end_preview();
   void start(Change change, const request::EditPlan& request);
   void accept(Change change);
   void predict(const SessionPatient& bones);

@@ -113,8 +113,9 @@ bool Window::State::lend_context() {
 Window::Window(const WindowOptions& options) : state_(std::make_unique<State>(options)) {}
 Window::~Window() = default;
 
-void Window::set_scene(const WindowScene& scene, const ViewState& start,
-                       std::shared_ptr<const void> keeper) {
+/// Shows other parts, without what the window knows of the earlier ones.
+void Window::change_parts(const WindowScene& scene, const ViewState& start,
+                          std::shared_ptr<const void> keeper) {
   State& s = *state_;
   s.scene = scene;
   s.displayed_face = DisplayedFace(scene.parts);
@@ -138,21 +139,27 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
   s.overlays_due = true;
   s.view.landmarks = scene.landmarks;
   s.view.motion = scene.motion;
+  s.pacing.scene_changed = true;
+}
+
+void Window::set_scene(const WindowScene& scene, const ViewState& start,
+                       std::shared_ptr<const void> keeper) {
+  State& s = *state_;
+  change_parts(scene, start, std::move(keeper));
   s.panels->forget_patient();
   glfwSetWindowTitle(s.window, scene.case_name.empty()
                                    ? s.options.title.c_str()
                                    : (scene.case_name + " - " + s.options.title).c_str());
   s.fit_scale();
   s.set_standard_view(camera_of(Command::reset_view));
-  s.pacing.scene_changed = true;
   s.noticed();
 }
 
 void Window::replace_scene(const WindowScene& scene, const ViewState& start,
                            std::shared_ptr<const void> keeper) {
-  const Camera camera = state_->camera;
-  set_scene(scene, start, std::move(keeper));
-  state_->camera = camera;
+  change_parts(scene, start, std::move(keeper));
+  state_->panels->forget_edits();
+  state_->noticed();
 }
 
 bool Window::open() const { return !glfwWindowShouldClose(state_->window); }

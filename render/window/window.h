@@ -129,6 +129,9 @@ class Window : public FrontEnd {
   Image picture();
 
  private:
+  void change_parts(const WindowScene& scene, const ViewState& start,
+                    std::shared_ptr<const void> keeper);
+
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -214,10 +214,8 @@ void add_tables(PlanView& view, const Plan& plan, const Operated& operated) {
   }
 }
 
-}  // namespace
-
-EditedPlan edited_plan(const Case& uncut, const Plan& plan, const Operated& operated,
-                       const PlanEdit& edit, const HeldSegments& held) {
+EditedPlan unchecked_edit(const Case& uncut, const Plan& plan, const Operated& operated,
+                          const PlanEdit& edit, const HeldSegments& held) {
   if (const auto* add = std::get_if<plan_edit::AddOsteotomy>(&edit))
     return add_osteotomy(plan, operated, add->name);
   if (const auto* add = std::get_if<plan_edit::AddMove>(&edit))
@@ -230,6 +228,48 @@ EditedPlan edited_plan(const Case& uncut, const Plan& plan, const Operated& oper
   if (std::holds_alternative<plan_edit::TakePositions>(edit))
     return take_positions(plan, operated, held);
   throw InputError("this edit needs more than the plan");
+}
+
+}  // namespace
+
+EditedPlan edited_plan(const Case& uncut, const Plan& plan, const Operated& operated,
+                       const PlanEdit& edit, const HeldSegments& held) {
+  EditedPlan edited = unchecked_edit(uncut, plan, operated, edit, held);
+  check_segments(edited.plan, uncut.bodies);
+  return edited;
+}
+
+std::vector<std::optional<Pose>> changed_positions(const Operated& operated, const Plan& before,
+                                                   const Plan& after) {
+  const auto cuts_of = [](const Plan& plan) {
+    std::vector<PlanAction> cuts;
+    for (const PlanStep& step : plan.steps)
+      if (!std::holds_alternative<MoveStep>(step.action) &&
+          !std::holds_alternative<NoteStep>(step.action))
+        cuts.push_back(step.action);
+    return cuts;
+  };
+  if (cuts_of(before) != cuts_of(after)) return {};
+  const BodyTree& bodies = operated.patient.bodies;
+  const auto count = static_cast<std::size_t>(bodies.size());
+  std::vector<Pose> moved(count);  // from the planned positions, in the cranium's frame
+  std::vector<std::optional<Pose>> changed(count);
+  for (std::size_t b = 1; b < count; ++b) {
+    const BodyId body{static_cast<int>(b)};
+    const std::size_t parent = index_of(bodies[body].parent);
+    if (const PlanStep* step = move_of(after, bodies[body].name))
+      moved[b] = planned_pose(operated, after, std::get<MoveStep>(step->action)) *
+                 operated.poses[body].inverse();
+    else if (move_of(before, bodies[body].name))
+      moved[b] =
+          moved[parent] * operated.poses[bodies[body].parent] * operated.poses[body].inverse();
+    else
+      moved[b] = moved[parent];
+    const Pose X_PB = moved[parent].inverse() * moved[b];
+    if (X_PB.t.norm() > 1e-6 || X_PB.R.angularDistance(Eigen::Quaterniond::Identity()) > 1e-9)
+      changed[b] = X_PB;
+  }
+  return changed;
 }
 
 PlanView plan_view(const PlanDocument& document, const Operated& operated,

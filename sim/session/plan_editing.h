@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,12 @@ using HeldSegments = std::map<std::string, Pose>;
 /// allow.
 EditedPlan edited_plan(const Case& uncut, const Plan& plan, const Operated& operated,
                        const PlanEdit& edit, const HeldSegments& held = {});
+
+/// Where the segments of an operated patient go, from their planned positions, by a plan with other
+/// moves: in the frames of their parents, by body; none where they stay. Empty for a plan that also
+/// has other cuts.
+std::vector<std::optional<Pose>> changed_positions(const Operated& operated, const Plan& before,
+                                                   const Plan& after);
 
 /// What a front end shows of a plan: steps with their findings, overlaps, displacements and
 /// cephalometry. `operated`: the plan on its case; `overlaps`: of it.

@@ -53,7 +53,7 @@ std::vector<TreeGroup> groups_of(const PanelInput& input, ViewState& view) {
       {"bones", "Bones", "Skull and jaws"},
       {"teeth", "Teeth", "Both arches"},
       {"soft", "Face and mouth", "Skin, eyes, gums, tongue. The opacity of the skin is set above"},
-      {"free", "Free parts", "Segments and transplants, which a hand can move (key M)"},
+      {"free", "Segments", "Segments and transplants, which a hand can move (key M)"},
       {"muscles", "Muscles",
        "Their lines of action: dark red at rest, bright yellow when fully excited"},
       {"layers", "Soft tissue", "Its layers, each drawn by its outer surface"}};

@@ -211,9 +211,13 @@ bool Panels::takes(Command command) const {
   }
 }
 
-void Panels::forget_patient() {
+void Panels::forget_edits() {
   history_ = {};
   editing_ = false;
+}
+
+void Panels::forget_patient() {
+  forget_edits();
   skin_before_ = 1;
   form_.case_folder.clear();
   form_.landmark_words.clear();

@@ -93,6 +93,8 @@ class Panels {
 
   /// An edit begins: undo restores the present state.
   void remember(const ViewState& view) { history_.remember(view.edits()); }
+  /// Discards the edit history, whose states are of other parts.
+  void forget_edits();
   /// Called for another patient: discards the edit history and the content of fields.
   void forget_patient();
 
