@@ -45,10 +45,10 @@ TEST_F(WindowSession, AGenioplastyIsPlannedByHand) {
   click("body");
   click("body:chin");
   ASSERT_TRUE(wait_for_item("shift:S"));
-  write_into("shift:S", "1.5");
+  write_into("shift:S", "-1.5");  // upward the mandible stops it
   ASSERT_TRUE(wait_for_item("plan-take"));
   click("plan-take");
-  ASSERT_TRUE(wait_until([&](const Json& s) { return idle(s) && move("up_mm") > 1; }, 120));
+  ASSERT_TRUE(wait_until([&](const Json& s) { return idle(s) && move("up_mm") < -1; }, 120));
   EXPECT_NEAR(move("forward_mm"), 6, 0.2);
 
   // A move that collides is not made: the window asks, and can leave the plan as it is.
