@@ -30,7 +30,7 @@ Case bar_with_zones() {
 
 std::vector<DangerFinding> findings_of(const Cut& cut) {
   const Case patient = bar_with_zones();
-  return check_danger_zones(danger_zones(patient),
+  return check_danger_zones(danger_zones(patient, patient.parts[0]),
                             cut_bone(patient.parts[0].mesh, {&cut, 1}).pieces);
 }
 
