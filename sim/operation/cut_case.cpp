@@ -288,6 +288,7 @@ CutReport report_of(const PlanStep& step, const Part& bone, const PlacedOsteotom
   report.kerf_volume_mm3 = cut.kerf_volume_mm3;
   report.turned = cut.turned;
   report.notes = placed.notes;
+  report.rooms = placed.rooms;
   for (const Group& group : groups)
     if (group.pieces > 0)
       report.pieces.push_back(
@@ -331,7 +332,7 @@ void cut_case(Operated& operated, const PlacedOsteotomy& placed, const PlanStep&
   CutReport report = report_of(step, bone, placed, cut, groups);
   report.notes.insert(report.notes.end(), closed.notes.begin(), closed.notes.end());
   report.volume_mm3 = signed_volume(closed.mesh);
-  auto zones = danger_zones(patient, bone);
+  auto zones = danger_zones(patient, bone, !placed.rooms.empty());
   zones.insert(zones.end(), operated.own_zones.begin(), operated.own_zones.end());
   report.dangers = check_danger_zones(zones, cut.pieces);
   refuse_unparted(operated, step, groups);

@@ -67,6 +67,7 @@ std::vector<std::string> cut_sentences(const CutReport& report, const Landmarks&
     sentences.push_back(fmt::format("{} and {} cross in the bone", report.cuts[a], report.cuts[b]));
   for (const DangerFinding& finding : report.dangers)
     if (finding.level != DangerLevel::clear) sentences.push_back(danger_text(finding));
+  sentences.insert(sentences.end(), report.rooms.begin(), report.rooms.end());
   if (const std::string words = margin_words(report); !words.empty()) sentences.push_back(words);
   for (const CutPiece& piece : report.pieces) sentences.push_back(piece_words(piece));
   if (report.kerf_volume_mm3 > 0)
@@ -127,10 +128,9 @@ std::string zones_text(const Plan& plan) {
     text += fmt::format(
         "zone {}: {}, {}{}; cuts are warned of below {:g} mm, refused below {:g} mm\n", zone.name,
         zone_kind_name(zone.kind),
-        zone.triangles.empty()
-            ? fmt::format("a line of {} point{}", zone.points.size(),
-                          zone.points.size() == 1 ? "" : "s")
-            : fmt::format("a surface of {} triangles", zone.triangles.size()),
+        zone.triangles.empty() ? fmt::format("a line of {} point{}", zone.points.size(),
+                                             zone.points.size() == 1 ? "" : "s")
+                               : fmt::format("a surface of {} triangles", zone.triangles.size()),
         zone.radius_mm > 0 ? fmt::format(", radius {:g} mm", zone.radius_mm) : "", margin.warn_mm,
         margin.stop_mm);
   }

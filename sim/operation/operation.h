@@ -39,6 +39,7 @@ struct CutReport {
   int turned = 0;              // triangles of cut faces that face backward
   bool below_margins = false;  // allowed by the step
   std::vector<std::string> notes;
+  std::vector<std::string> rooms;  // between the teeth of interdental cuts
 
   /// Whether the cut comes nearer to a root, canal or foramen than the least margin.
   bool is_dangerous() const;
@@ -48,10 +49,10 @@ struct CutReport {
 
 /// What a trim step removed from its segment.
 struct TrimReport {
-  int step = 0;             // its id in the plan
-  std::string title;        // "trim distal"
-  std::string segment;      // body
-  std::string part;         // the bone that was trimmed
+  int step = 0;         // its id in the plan
+  std::string title;    // "trim distal"
+  std::string segment;  // body
+  std::string part;     // the bone that was trimmed
   struct Share {
     std::string of;         // the segment that keeps its bone
     double volume_mm3 = 0;  // removed beyond its cut faces
@@ -96,23 +97,23 @@ struct Operated {
   std::vector<Pose> X_PB;  // the same in the parents' frames, see placed()
   std::vector<CutReport> cuts;
   std::vector<TrimReport> trims;
-  std::vector<DangerZone> own_zones;            // of the plan
-  std::vector<SawCut> saw_cuts;                 // of all steps, in order
+  std::vector<DangerZone> own_zones;                  // of the plan
+  std::vector<SawCut> saw_cuts;                       // of all steps, in order
   std::map<std::string, std::vector<CutSide>> sides;  // by body, of the first saw cuts; others
                                                       // passed it by
-  LandmarkOwners owners;                        // after the cuts
-  std::vector<MuscleOwners> muscles;            // of the patient's muscles, in their order
-  std::map<std::string, SurfaceOrigin> origin;  // by part, of bones that a cut changed
+  LandmarkOwners owners;                              // after the cuts
+  std::vector<MuscleOwners> muscles;                  // of the patient's muscles, in their order
+  std::map<std::string, SurfaceOrigin> origin;        // by part, of bones that a cut changed
   std::vector<std::string> notes;
   std::vector<std::string> problems;  // steps that could not be done, for people
 };
 
 /// Replays a plan: each cut in order on what the cuts before it left, then of each segment the last
-/// move, then the trims. Teeth, gums, canals and smaller bodies go with the piece that holds most of them. The
-/// empty plan returns the same case. A segment that a cut does not part is listed in `problems`, as
-/// are the steps that need it.
-/// throws: InputError for a plan of another case, what check_plan() and place_osteotomy() refuse,
-/// bone that cannot be closed, and a tooth that a cut divides.
+/// move, then the trims. Teeth, gums, canals and smaller bodies go with the piece that holds most
+/// of them. The empty plan returns the same case. A segment that a cut does not part is listed in
+/// `problems`, as are the steps that need it. throws: InputError for a plan of another case, what
+/// check_plan() and place_osteotomy() refuse, bone that cannot be closed, and a tooth that a cut
+/// divides.
 Operated apply_plan(const Case& patient, const Plan& plan);
 
 /// X_CS of a segment of an operated patient by a move. throws: InputError as apply_plan().

@@ -55,8 +55,8 @@ std::optional<Region> space_of(const Operated& operated, const std::string& othe
   }
   if (!space) return std::nullopt;
   const BodyTree& bodies = operated.patient.bodies;
-  const Pose X_SO = operated.poses[*bodies.find(segment)].inverse() *
-                    operated.poses[*bodies.find(other)];
+  const Pose X_SO =
+      operated.poses[*bodies.find(segment)].inverse() * operated.poses[*bodies.find(other)];
   return moved_region(*space, X_SO);
 }
 
@@ -87,10 +87,9 @@ std::string tooth_in(const Case& patient, BodyId body, const std::vector<Cut>& c
 
 /// Segments of the step that overlap with its own at the planned positions.
 std::vector<std::string> overlapping(const Operated& operated, const TrimStep& step) {
-  const auto found = trimming_segments(operated, step.segment);
   std::vector<std::string> kept;
   for (const std::string& other : step.of)
-    if (std::find(found.begin(), found.end(), other) != found.end()) kept.push_back(other);
+    if (cut_bones_overlap(operated, step.segment, other)) kept.push_back(other);
   return kept;
 }
 
@@ -127,8 +126,8 @@ Trimmed trimmed_bone(const TriMesh& mesh, const std::vector<Cut>& cuts) {
       continue;
     }
     // The trim made it where it touches one of its faces.
-    const bool is_new = std::any_of(piece.wall.begin(), piece.wall.end(),
-                                    [](int wall) { return wall >= 0; });
+    const bool is_new =
+        std::any_of(piece.wall.begin(), piece.wall.end(), [](int wall) { return wall >= 0; });
     if (trimmed.pieces > 0 && is_new && piece.volume_mm3 < sliver_mm3) {
       trimmed.fragments_mm3 += piece.volume_mm3;
       ++trimmed.fragments;
@@ -164,8 +163,8 @@ std::vector<Cut> cuts_of(Operated& operated, const std::vector<std::string>& oth
   for (const std::string& other : others) {
     const auto space = space_of(operated, other, step.segment);
     if (!space) {
-      operated.problems.push_back(fmt::format("{}: no saw cut runs between {} and {}", name,
-                                              step.segment, other));
+      operated.problems.push_back(
+          fmt::format("{}: no saw cut runs between {} and {}", name, step.segment, other));
       continue;
     }
     cuts.push_back({other, *space, {}, 0});
@@ -184,7 +183,8 @@ void replay_trim(Operated& operated, const PlanStep& plan_step) {
   std::vector<std::string> all = step.of;
   all.push_back(step.segment);
   for (const std::string& body : all)
-    if (!bodies.find(body)) return problem("\"" + body + "\" does not exist, so nothing is trimmed");
+    if (!bodies.find(body))
+      return problem("\"" + body + "\" does not exist, so nothing is trimmed");
   const BodyId body = *bodies.find(step.segment);
   Part* bone = bone_of_body(operated, body);
   if (!bone) return problem("no saw cut made bone of \"" + step.segment + "\"");
@@ -244,11 +244,10 @@ void trim_segments(Operated& operated, const Plan& plan) {
 std::vector<std::string> trimming_segments(const Operated& operated, const std::string& segment) {
   std::vector<std::string> others;
   const auto is_bone = [&](const std::string& part) { return operated.origin.contains(part); };
-  for (const SegmentOverlap& overlap : segment_overlaps(operated, segment)) {
+  for (const SegmentOverlap& overlap : body_overlaps(operated, segment)) {
     if (overlap.kind != SegmentOverlap::Kind::trimmed || !is_bone(overlap.a) || !is_bone(overlap.b))
       continue;
     const bool first = overlap.body_a == segment;
-    if (!first && overlap.body_b != segment) continue;
     const std::string& other = first ? overlap.body_b : overlap.body_a;
     if (std::find(others.begin(), others.end(), other) == others.end()) others.push_back(other);
   }
@@ -258,21 +257,21 @@ std::vector<std::string> trimming_segments(const Operated& operated, const std::
 std::vector<std::string> trim_sentences(const TrimReport& report) {
   std::vector<std::string> sentences;
   for (const auto& share : report.shares)
-    sentences.push_back(fmt::format("{:.0f} mm³ removed beyond the cut faces of {}",
-                                    share.volume_mm3, share.of));
+    sentences.push_back(
+        fmt::format("{:.0f} mm³ removed beyond the cut faces of {}", share.volume_mm3, share.of));
   if (report.fragments > 0)
     sentences.push_back(fmt::format("{} loose fragment{} removed, {:.0f} mm³", report.fragments,
                                     report.fragments == 1 ? "" : "s", report.fragments_mm3));
   for (const DangerFinding& finding : report.dangers)
     if (finding.level != DangerLevel::clear) sentences.push_back(danger_text(finding));
   if (report.is_dangerous())
-    sentences.push_back(report.below_margins
-                            ? "lies below the least margins, on request"
-                            : "lies below the least margins, although the step does not ask for it");
-  sentences.push_back(fmt::format("{}: {:.1f} cm³ left{}", report.segment, report.after_mm3 / 1000,
-                                  report.pieces > 1
-                                      ? fmt::format(", {} separate pieces", report.pieces)
-                                      : ""));
+    sentences.push_back(
+        report.below_margins
+            ? "lies below the least margins, on request"
+            : "lies below the least margins, although the step does not ask for it");
+  sentences.push_back(
+      fmt::format("{}: {:.1f} cm³ left{}", report.segment, report.after_mm3 / 1000,
+                  report.pieces > 1 ? fmt::format(", {} separate pieces", report.pieces) : ""));
   sentences.insert(sentences.end(), report.notes.begin(), report.notes.end());
   return sentences;
 }

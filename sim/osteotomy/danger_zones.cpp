@@ -10,6 +10,7 @@
 #include "engine/mesh/measure.h"
 #include "engine/mesh/topology.h"
 #include "engine/mesh/triangle_tree.h"
+#include "sim/osteotomy/interdental.h"
 
 namespace condyle {
 namespace {
@@ -112,7 +113,8 @@ SurfacePoint deepest_inside(const DangerZone& zone, const TriMesh& faces) {
   const auto look = [&](const Eigen::Vector3d& p) {
     if (!box.contains(p, 0)) return;
     const SurfacePoint found = tree.signed_nearest(p);
-    if (found.distance < deepest.distance) deepest = {found.distance, p, Eigen::Vector3d::Zero(), 0};
+    if (found.distance < deepest.distance)
+      deepest = {found.distance, p, Eigen::Vector3d::Zero(), 0};
   };
   for (const auto& t : faces.triangles) {
     for (const int v : t) look(faces.vertices[v]);
@@ -122,11 +124,11 @@ SurfacePoint deepest_inside(const DangerZone& zone, const TriMesh& faces) {
 }
 
 /// Distance of a zone from cut faces; triangle -1: not within reach.
-SurfacePoint distance_of(const DangerZone& zone, const TriMesh& faces, const TriangleTree& tree,
-                         double reach_mm) {
+SurfacePoint distance_of(const DangerZone& zone, const std::vector<Eigen::Vector3d>& points,
+                         const TriMesh& faces, const TriangleTree& tree, double reach_mm) {
   SurfacePoint nearest;
   nearest.distance = reach_mm + zone.radius_mm;
-  for (const auto& p : zone.points) {
+  for (const auto& p : points) {
     const SurfacePoint found = tree.nearest(p, nearest.distance);
     if (found.triangle >= 0 && found.distance < nearest.distance) nearest = found;
   }
@@ -151,11 +153,18 @@ const DangerMargin& DangerMargins::of(ZoneKind kind) const {
   }
 }
 
-std::vector<DangerZone> danger_zones(const Case& patient, const Part& bone,
+std::vector<DangerZone> danger_zones(const Case& patient, const Part& bone, bool roots,
                                      const DangerMargins& margins) {
   std::vector<DangerZone> zones;
   for (const Part& part : patient.parts)
     if (is_teeth(part.role) && part.body == bone.body) add_teeth(part, margins, zones);
+  if (roots && !zones.empty()) {
+    const TriangleTree tree(bone.mesh);
+    for (DangerZone& zone : zones) {
+      ToothPoints tooth = split_tooth(zone.points, tree);
+      zone.root = tooth.root.empty() ? std::move(tooth.crown) : std::move(tooth.root);
+    }
+  }
   for (const Canal& canal : patient.canals)
     if (canal.body == bone.body)
       zones.push_back({.name = spaced(canal.name),
@@ -207,9 +216,10 @@ std::vector<DangerFinding> check_danger_zones(const std::vector<DangerZone>& zon
       const auto& faces = is_between ? between.mesh : others.mesh;
       const auto& tree = is_between ? between_tree : others_tree;
       if (tree.empty()) continue;
-      const SurfacePoint nearest = distance_of(zone, faces, tree, reach_mm);
+      const bool interdental = is_between && !zone.root.empty();
+      const SurfacePoint nearest =
+          distance_of(zone, interdental ? zone.root : zone.points, faces, tree, reach_mm);
       if (nearest.triangle < 0) continue;
-      const bool interdental = is_between && zone.kind == ZoneKind::tooth;
       const DangerMargin& margin = interdental ? margins.interdental : zone.margin;
       const DangerFinding found{zone.name,
                                 zone.kind,
@@ -233,10 +243,9 @@ std::vector<DangerFinding> check_danger_zones(const std::vector<DangerZone>& zon
 std::string danger_text(const DangerFinding& finding) {
   const DangerMargin& margin = finding.margin;
   const std::string distance =
-      finding.distance_mm < 0
-          ? fmt::format("the cut enters it by {:.1f} mm", -finding.distance_mm)
-          : fmt::format("{:.1f} mm from the cut{}", finding.distance_mm,
-                        finding.interdental ? " between the teeth" : "");
+      finding.distance_mm < 0 ? fmt::format("the cut enters it by {:.1f} mm", -finding.distance_mm)
+                              : fmt::format("{:.1f} mm from the cut{}", finding.distance_mm,
+                                            finding.interdental ? " between the teeth" : "");
   switch (finding.level) {
     case DangerLevel::stop:
       return margin.stop_mm > 0 ? fmt::format("{}: {}; at least {:g} mm are needed", finding.zone,

@@ -14,10 +14,10 @@ namespace condyle {
 struct DangerMargin {
   double warn_mm = 0, stop_mm = 0;
 };
-/// Textbook values. `interdental`: of a tooth from a cut that runs between two teeth on purpose,
-/// which leaves at least 1 mm of bone on each root.
+/// Textbook values. `interdental`: of a root from a cut that runs between two teeth on purpose: 1
+/// mm of bone on each, at the very least half of it.
 struct DangerMargins {
-  DangerMargin tooth{5, 3}, canal{2, 0}, foramen{5, 3}, other{5, 3}, interdental{2, 1};
+  DangerMargin tooth{5, 3}, canal{2, 0}, foramen{5, 3}, other{5, 3}, interdental{1, 0.5};
 
   const DangerMargin& of(ZoneKind kind) const;
 };
@@ -30,6 +30,7 @@ struct DangerZone {
   std::vector<Eigen::Vector3d> points;  // of its surface or centre line, at most 0.5 mm apart
   double radius_mm = 0;
   DangerMargin margin = {};
+  std::vector<Eigen::Vector3d> root = {};  // of a tooth, see split_tooth()
   TriMesh solid = {};  // of an own zone with a closed surface: cuts may also lie inside it
 };
 
@@ -45,14 +46,15 @@ struct DangerFinding {
   ZoneKind kind = ZoneKind::tooth;
   double distance_mm = 0;
   DangerMargin margin = {};
-  bool interdental = false;  // of a cut between two teeth
+  bool interdental = false;                      // of a cut between two teeth
   Eigen::Vector3d at = Eigen::Vector3d::Zero();  // on the cut face
   DangerLevel level = DangerLevel::clear;
 };
 
 /// Zones of a bone: the separate teeth and canals of its body, and foramina among the landmarks for
-/// which it is the nearest bone of that jaw.
-std::vector<DangerZone> danger_zones(const Case& patient, const Part& bone,
+/// which it is the nearest bone of that jaw. `roots`: finds those of the teeth, which cuts between
+/// teeth are measured from.
+std::vector<DangerZone> danger_zones(const Case& patient, const Part& bone, bool roots = false,
                                      const DangerMargins& margins = {});
 
 /// A zone of the user's own, which counts for every bone.

@@ -249,8 +249,8 @@ void check_plan(const Plan& plan) {
   std::set<std::string> zones;
   for (const PlanZone& zone : plan.zones) {
     if (const auto found = problem_of(zone))
-      throw InputError(fmt::format("zone \"{}\": {} {}", zone.name.substr(0, 40), found->item,
-                                   found->problem));
+      throw InputError(
+          fmt::format("zone \"{}\": {} {}", zone.name.substr(0, 40), found->item, found->problem));
     if (!zones.insert(zone.name).second)
       throw InputError(fmt::format("the zone \"{}\" occurs twice", zone.name));
   }

@@ -147,8 +147,8 @@ void check_plan(const Plan& plan);
 /// The segments that a step cuts, moves or trims, by name; empty names: those of the osteotomy.
 std::vector<std::string> used_segments(const PlanAction& action);
 
-/// Refuses steps that cut, move or trim what is neither a body of the case nor made by an earlier cut, as
-/// after a cut was removed. throws: InputError naming the step and the segment.
+/// Refuses steps that cut, move or trim what is neither a body of the case nor made by an earlier
+/// cut, as after a cut was removed. throws: InputError naming the step and the segment.
 void check_segments(const Plan& plan, const BodyTree& bodies);
 
 /// A value of a step that is refused: the item's name within it ("surfaces[0].normal").

@@ -254,8 +254,8 @@ PlanZone zone_in(const fs::path& file, const JsonItem& item) {
   if (const auto stop = item.find("stop_mm")) zone.stop_mm = number_in(*stop);
   const auto refuse_length = [](const JsonItem& list, std::size_t most) {
     if (list.size() % 3 != 0 || list.size() > 3 * most)
-      list.refuse(fmt::format("has {} numbers; expected three each for at most {}", list.size(),
-                              most));
+      list.refuse(
+          fmt::format("has {} numbers; expected three each for at most {}", list.size(), most));
   };
   const JsonItem points = item.at("points");
   refuse_length(points, max_zone_points);

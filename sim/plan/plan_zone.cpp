@@ -47,8 +47,8 @@ std::optional<ZoneProblem> problem_of(const PlanZone& zone) {
   if (zone.stop_mm)
     if (auto found = margin_problem("stop_mm", *zone.stop_mm, max_zone_margin_mm)) return found;
   if (zone.warn_mm && zone.stop_mm && *zone.warn_mm < *zone.stop_mm)
-    return ZoneProblem{"warn_mm", fmt::format("is {:g} mm, below stop_mm, {:g}", *zone.warn_mm,
-                                              *zone.stop_mm)};
+    return ZoneProblem{
+        "warn_mm", fmt::format("is {:g} mm, below stop_mm, {:g}", *zone.warn_mm, *zone.stop_mm)};
   if (zone.points.empty() || zone.points.size() > max_zone_points)
     return ZoneProblem{"points", fmt::format("has {} points; expected 1 to {}", zone.points.size(),
                                              max_zone_points)};
@@ -58,8 +58,8 @@ std::optional<ZoneProblem> problem_of(const PlanZone& zone) {
       return ZoneProblem{fmt::format("points[{}]", i),
                          fmt::format("is no position within {:g} mm", most_mm)};
   if (zone.triangles.size() > max_zone_triangles)
-    return ZoneProblem{"triangles", fmt::format("has {}; at most {}", zone.triangles.size(),
-                                                max_zone_triangles)};
+    return ZoneProblem{
+        "triangles", fmt::format("has {}; at most {}", zone.triangles.size(), max_zone_triangles)};
   const int count = static_cast<int>(zone.points.size());
   for (std::size_t i = 0; i < zone.triangles.size(); ++i)
     if (zone.triangles[i].minCoeff() < 0 || zone.triangles[i].maxCoeff() >= count)

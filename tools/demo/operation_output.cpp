@@ -153,8 +153,8 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
     body_ += "</ul>\n";
   }
   for (const TrimReport& trim : operated.trims) {
-    body_ += "<p><strong>" + escaped(trim.title) + "</strong>, " + escaped(trim.part) +
-             "</p>\n<ul>\n";
+    body_ +=
+        "<p><strong>" + escaped(trim.title) + "</strong>, " + escaped(trim.part) + "</p>\n<ul>\n";
     for (const std::string& sentence : trim_sentences(trim))
       body_ += "<li>" + escaped(sentence) + "</li>\n";
     body_ += "</ul>\n";
@@ -167,7 +167,8 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
     add_table("Movements of the bone",
               movements_table(movement_table(before, frame, operated.patient.bodies,
                                              operated.owners, operated.poses)));
-    const Landmarks planned = soft ? *soft : moved_landmarks(before, operated.owners, operated.poses);
+    const Landmarks planned =
+        soft ? *soft : moved_landmarks(before, operated.owners, operated.poses);
     add_table("Cephalometry", cephalometry_table(cephalometry(frame, before, planned), !!soft),
               "Norms: published means of European adults with one standard deviation.");
   } catch (const InputError& error) {

@@ -87,9 +87,10 @@ void add_plan(Commands& commands) {
                                        "condyle plan new --out plan.json\n"
                                        "  condyle plan cut plan.json le_fort_1\n"
                                        "  condyle plan move plan.json maxilla forward 4 up 2");
-  for (const auto add : {add_plan_new, add_plan_cut, add_plan_edit, add_plan_move, add_plan_occlude,
-                         add_plan_trim, add_plan_zone, add_plan_note, add_plan_reorder, add_plan_remove, add_plan_undo,
-                         add_plan_redo, add_plan_show, add_plan_apply, add_plan_compare})
+  for (const auto add :
+       {add_plan_new, add_plan_cut, add_plan_edit, add_plan_move, add_plan_occlude, add_plan_trim,
+        add_plan_zone, add_plan_note, add_plan_reorder, add_plan_remove, add_plan_undo,
+        add_plan_redo, add_plan_show, add_plan_apply, add_plan_compare})
     add(commands, plan);
 }
 

@@ -88,6 +88,7 @@ Json cut_json(const CutReport& cut) {
                               {"slivers", piece.slivers}});
   json["kerf_volume_mm3"] = cut.kerf_volume_mm3;
   json["volume_error_percent"] = cut.volume_error_percent();
+  if (!cut.rooms.empty()) json["interdental_room"] = cut.rooms;
   json["notes"] = cut.notes;
   return json;
 }

@@ -35,16 +35,18 @@ const PlanStep* known_trim(const Plan& plan, const std::string& segment) {
 std::vector<std::string> others_of(const PlanTrimOptions& options, const Operated& operated) {
   const auto found = trimming_segments(operated, options.segment);
   if (found.empty())
-    throw InputError(fmt::format("{} overlaps no other segment of its bone at the planned "
-                                 "positions: there is nothing to trim",
-                                 options.segment));
+    throw InputError(
+        fmt::format("{} overlaps no other segment of its bone at the planned "
+                    "positions: there is nothing to trim",
+                    options.segment));
   if (options.others.empty()) return found;
   const auto others = split_list(options.others);
   for (const std::string& other : others)
     if (std::find(found.begin(), found.end(), other) == found.end())
-      throw InputError(fmt::format("{} and {} do not overlap at the planned positions; {} overlaps "
-                                   "{}",
-                                   options.segment, other, options.segment, fmt::join(found, ", ")));
+      throw InputError(
+          fmt::format("{} and {} do not overlap at the planned positions; {} overlaps "
+                      "{}",
+                      options.segment, other, options.segment, fmt::join(found, ", ")));
   return others;
 }
 
@@ -58,16 +60,17 @@ void check_trim(const Operated& operated, const PlanStep& step) {
     for (const DangerFinding& finding : trim.dangers)
       if (finding.level == DangerLevel::stop) dangers.push_back(danger_text(finding));
     if (!dangers.empty())
-      throw InputError(fmt::format("{} is not added: {}. Trim the other segment, or add it all the "
-                                   "same with --below-margins",
-                                   trim.title, fmt::join(dangers, "; ")));
+      throw InputError(
+          fmt::format("{} is not added: {}. Trim the other segment, or add it all the "
+                      "same with --below-margins",
+                      trim.title, fmt::join(dangers, "; ")));
   }
 }
 
 /// The overlaps of the segment that are left.
 std::vector<std::string> left_overlaps(const Operated& operated, const std::string& segment) {
   std::vector<std::string> texts;
-  for (const SegmentOverlap& overlap : segment_overlaps(operated, segment))
+  for (const SegmentOverlap& overlap : body_overlaps(operated, segment))
     texts.push_back(overlap_text(overlap, operated.patient.landmarks));
   if (texts.empty()) texts.push_back("no overlap of " + segment + " is left");
   return texts;
@@ -77,8 +80,7 @@ int run_plan_trim(const PlanTrimOptions& options, const CommonOptions& common) {
   const Plan plan = load_plan(options.file);
   if (options.segment != "cranium") check_segment(plan, options.segment);
   const auto patient = case_of_plan(options.patient, plan, common);
-  if (!patient)
-    throw InputError("the overlap depends on the bones: give the case with --case");
+  if (!patient) throw InputError("the overlap depends on the bones: give the case with --case");
   const PlanStep* known = known_trim(plan, options.segment);
   const Plan before = known ? without_step(plan, known->id) : plan;
   const TrimStep trim{options.segment, others_of(options, apply_plan(*patient, before)),

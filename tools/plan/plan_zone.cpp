@@ -44,7 +44,7 @@ const Choices<ZoneKind> zone_kinds_by_name = {{"tooth", ZoneKind::tooth},
                                               {"other", ZoneKind::other}};
 
 /// A plan holds the zones itself, and each of its history's values does: they are kept small.
-constexpr int most_triangles = 4000;
+constexpr int most_triangles = 6000;
 
 double largest_distance(const TriMesh& from, const TriMesh& to) {
   const TriangleTree tree(to);
@@ -66,17 +66,16 @@ void read_surface(const PlanZoneOptions& options, const SourceFrame& source, Pla
   drop_degenerate(mesh);
   drop_duplicates(mesh);
   drop_unreferenced(mesh);
-  if (mesh.triangles.empty())
-    throw InputError(options.surface, "", "has no triangle with an area");
+  if (mesh.triangles.empty()) throw InputError(options.surface, "", "has no triangle with an area");
   orient_outward(mesh);
   if (static_cast<int>(mesh.triangles.size()) > most_triangles) {
     const TriMesh full = mesh;
     mesh = simplify(full, most_triangles);
     drop_unreferenced(mesh);
-    notes.push_back(fmt::format(
-        "the surface of {} triangles is stored with {}, at most {:.2f} mm from it",
-        full.triangles.size(), mesh.triangles.size(),
-        std::max(largest_distance(full, mesh), largest_distance(mesh, full))));
+    notes.push_back(
+        fmt::format("the surface of {} triangles is stored with {}, at most {:.2f} mm from it",
+                    full.triangles.size(), mesh.triangles.size(),
+                    std::max(largest_distance(full, mesh), largest_distance(mesh, full))));
   }
   if (mesh.triangles.size() > max_zone_triangles || mesh.vertices.size() > max_zone_points)
     throw InputError(options.surface, "",
@@ -85,34 +84,37 @@ void read_surface(const PlanZoneOptions& options, const SourceFrame& source, Pla
   for (const Vector3d& p : mesh.vertices) zone.points.push_back(rounded(p));
   zone.triangles = mesh.triangles;
   if (!inspect(mesh).closed())
-    notes.push_back("the surface is open: a cut that lies wholly behind it counts by its distance "
-                    "from the surface");
+    notes.push_back(
+        "the surface is open: a cut that lies wholly behind it counts by its distance "
+        "from the surface");
 }
 
 void read_line(const PlanZoneOptions& options, const SourceFrame& source, PlanZone& zone) {
   const LandmarkTable table = read_point_table(options.surface);
   const Eigen::Matrix3d to_lps = source.to_lps_mm();
   if (table.rows.size() > max_zone_points)
-    throw InputError(options.surface, "", fmt::format("has {} points; at most {}",
-                                                      table.rows.size(), max_zone_points));
+    throw InputError(options.surface, "",
+                     fmt::format("has {} points; at most {}", table.rows.size(), max_zone_points));
   for (const LandmarkRow& row : table.rows)
     zone.points.push_back(rounded(table.own_frame ? row.point : Vector3d(to_lps * row.point)));
 }
 
 /// Refuses a zone far from the patient: of other units or axes.
 void check_place(const PlanZone& zone, const Plan& plan, const fs::path& file) {
-  constexpr double beyond_mm = 100;
-  Box patient, own;
+  constexpr double beyond_mm = 200;
+  Box patient;
   for (const auto& [name, p] : plan.geometry.landmarks.points) patient.add(p);
-  for (const Vector3d& p : zone.points) own.add(p);
   if (patient.empty()) return;
-  const Vector3d apart =
-      (own.low - patient.high).cwiseMax(patient.low - own.high).cwiseMax(Vector3d::Zero());
-  if (apart.norm() > beyond_mm)
+  double farthest = 0;
+  for (const Vector3d& p : zone.points) {
+    const Vector3d apart = (p - patient.high).cwiseMax(patient.low - p).cwiseMax(Vector3d::Zero());
+    farthest = std::max(farthest, apart.norm());
+  }
+  if (farthest > beyond_mm)
     throw InputError(file, "",
-                     fmt::format("lies {:.0f} mm from the patient's landmarks: check --units and "
-                                 "--frame (LPS and mm are expected)",
-                                 apart.norm()));
+                     fmt::format("reaches {:.0f} mm beyond the patient's landmarks: check --units "
+                                 "and --frame (mm and LPS are expected)",
+                                 farthest));
 }
 
 PlanZone read_zone(const PlanZoneOptions& options, const Plan& plan, Notes& notes) {
@@ -140,14 +142,12 @@ Notes findings_of(const Plan& plan, const PlanZoneOptions& options, const Common
   });
   if (!cuts) return {};
   const auto patient = case_of_plan(options.patient, plan, common);
-  if (!patient)
-    return {"the plan's cuts are not checked: give the case with --case"};
+  if (!patient) return {"the plan's cuts are not checked: give the case with --case"};
   Notes notes;
   for (const CutReport& cut : apply_plan(*patient, plan).cuts)
     for (const DangerFinding& finding : cut.dangers)
       if (finding.zone == options.name)
-        notes.push_back(
-            fmt::format("step {} ({}): {}", cut.step, cut.title, danger_text(finding)));
+        notes.push_back(fmt::format("step {} ({}): {}", cut.step, cut.title, danger_text(finding)));
   if (notes.empty()) notes.push_back("no cut of the plan comes within 15 mm of it");
   return notes;
 }
@@ -202,11 +202,12 @@ void add_plan_zone(Commands& commands, CLI::App& plan) {
           },
           "What it is, which decides the default margins; default other")
       ->type_name(words_of(zone_kinds_by_name));
-  in_range(command.add_option("--radius", options->radius_mm,
-                              "Radius around the line or surface, mm"),
-           0, max_zone_radius_mm);
-  in_range(command.add_option("--warn", options->warn_mm, "Cuts nearer than this are warned of, mm"),
-           0, max_zone_margin_mm);
+  in_range(
+      command.add_option("--radius", options->radius_mm, "Radius around the line or surface, mm"),
+      0, max_zone_radius_mm);
+  in_range(
+      command.add_option("--warn", options->warn_mm, "Cuts nearer than this are warned of, mm"), 0,
+      max_zone_margin_mm);
   in_range(command.add_option("--stop", options->stop_mm, "Cuts nearer than this are refused, mm"),
            0, max_zone_margin_mm);
   command.add_option("--units", options->units, "Unit of FILE; default mm")
