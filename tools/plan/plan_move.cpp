@@ -39,8 +39,12 @@ MoveStep checked_move(const Case& patient, const Plan& plan, MoveStep move,
     operated = apply_plan(patient, with_move(plan, move));
   }
   std::vector<std::string> texts;
-  for (const SegmentOverlap& overlap : segment_overlaps(operated, move.segment))
+  bool is_trimmed = false;
+  for (const SegmentOverlap& overlap : segment_overlaps(operated, move.segment)) {
     texts.push_back(overlap_text(overlap, patient.landmarks));
+    is_trimmed = is_trimmed || overlap.kind == SegmentOverlap::Kind::trimmed;
+  }
+  if (is_trimmed) texts.push_back("condyle plan trim removes the overlap of one of two segments");
   print_plan_notes(common, texts);
   return move;
 }
