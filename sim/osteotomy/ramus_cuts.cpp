@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/core/error.h"
 #include "sim/osteotomy/danger_zones.h"
@@ -85,17 +86,23 @@ Cut body_cut(Site& site, Side side) {
   const double y = jaw.need("lower_incisal_point").y() + gaps[place - 3] + site["back_mm"];
   if (side == Side::left)
     jaw.notes.push_back("the gaps between the teeth are estimated from the incisal edges");
-  // Across the body: the direction of its lower border.
-  const auto here = jaw.section(side, 1, y - 5, 2, 5), there = jaw.section(side, 1, y + 5, 2, 5),
-             at = jaw.section(side, 1, y, 2, 5);
+  // Across the body: along its outer surface.
+  const auto outer = [&](double at) -> std::optional<Vector3d> {
+    const auto range = jaw.section(side, 1, at, 0, 5);
+    if (!range) return std::nullopt;
+    return side == Side::left ? range->high_at : range->low_at;
+  };
+  const auto here = outer(y - 5), there = outer(y + 5), at = outer(y);
   if (!here || !there || !at)
     throw InputError("body_osteotomy: the jaw has no bone at the cut, " + name_of(side));
-  Vector3d along(sign_of(side) * std::min(std::abs(there->low_at.x() - here->low_at.x()), 8.), 10,
-                 0);
-  along.z() = 0;
-  const Vector3d point(at->low_at.x(), y, at->low_at.z());
-  return {name, jaw.above(point, along, interdental_wall), half_jaw(jaw, side, y - 30, beside_mm),
-          0};
+  // At least so oblique that it passes behind the symphysis.
+  double symphysis = at->y();
+  for (const Vector3d& p : jaw.bone().vertices)
+    if (std::abs(p.x()) < 3) symphysis = std::max(symphysis, p.y() + 1);
+  const double wider = (std::abs(there->x()) - std::abs(here->x())) / 10,
+               needed = (symphysis - at->y()) / std::abs(at->x());
+  const Vector3d along(sign_of(side) * std::clamp(std::max(wider, needed), 0., 2.), 1, 0);
+  return {name, jaw.above(*at, along, interdental_wall), half_jaw(jaw, side, y - 30, beside_mm), 0};
 }
 
 PlacedOsteotomy place_body(Site& site) {

@@ -9,9 +9,9 @@
 
 #include "engine/core/error.h"
 #include "sim/frame/part_names.h"
-#include "sim/operation/trim_segments.h"
 #include "sim/operation/cut_text.h"
 #include "sim/operation/edit_cut.h"
+#include "sim/operation/trim_segments.h"
 #include "sim/osteotomy/osteotomy.h"
 #include "sim/plan/cephalometry.h"
 #include "sim/plan/clinical_frame.h"
