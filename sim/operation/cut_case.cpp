@@ -261,6 +261,17 @@ void trace_faces(Operated& operated, const Part& bone, const ClosedBone& closed,
   }
 }
 
+/// throws: InputError naming a divided tooth, and the room between teeth where it is known.
+void refuse_divided_teeth(const Case& patient, BodyId body, const PlacedOsteotomy& placed) {
+  try {
+    for (const Part& part : patient.parts)
+      if (is_teeth(part.role) && part.body == body) refuse_divided_teeth(part, placed.cuts);
+  } catch (const InputError& error) {
+    if (placed.rooms.empty()) throw;
+    throw InputError(fmt::format("{}; {}", error.what(), fmt::join(placed.rooms, "; ")));
+  }
+}
+
 /// Remembers the saw cuts, and on which side of them each body lies.
 void remember_sides(Operated& operated, const PlacedOsteotomy& placed, int step,
                     const std::string& cut_body, const std::vector<Group>& groups) {
@@ -339,8 +350,7 @@ void cut_case(Operated& operated, const PlacedOsteotomy& placed, const PlanStep&
   const bool met = std::any_of(cut.outcomes.begin(), cut.outcomes.end(),
                                [](const CutOutcome& outcome) { return outcome.meets_bone; });
   if (met) {
-    for (const Part& part : patient.parts)
-      if (is_teeth(part.role) && part.body == bone.body) refuse_divided_teeth(part, placed.cuts);
+    refuse_divided_teeth(patient, bone.body, placed);
     NearestSurface nearest;
     Renamed renamed;
     for (std::size_t g = 0; g < groups.size(); ++g) {

@@ -38,6 +38,11 @@ struct PlanTrim : testing::Test {
     done({"apply", file, "--out", out, "--case", "built-in:class-iii"});
     return nlohmann::json::parse(read_text(out + "/report.json"));
   }
+  static int to_be_trimmed(const nlohmann::json& report) {
+    int count = 0;
+    for (const auto& overlap : report["overlaps"]) count += overlap["kind"] == "trimmed";
+    return count;
+  }
 };
 
 }  // namespace
@@ -48,17 +53,17 @@ TEST_F(PlanTrim, TheOverlapOfASetbackIsTrimmedReportedAndUndone) {
   EXPECT_TRUE(mentions(refused({"trim", file, "distal"}), "there is nothing to trim"));
   done({"move", file, "distal", "back", "5"});
   const std::string untrimmed = read_text(file);
-  ASSERT_EQ(apply()["overlaps"].size(), 2u);
+  ASSERT_EQ(to_be_trimmed(apply()), 2);
   EXPECT_TRUE(mentions(refused({"trim", file, "distl"}), "did you mean \"distal\""));
   EXPECT_TRUE(mentions(refused({"trim", file, "proximal_left", "--of", "proximal_right"}),
                        "do not overlap"));
 
   const std::string text = done({"trim", file, "distal"});
   EXPECT_TRUE(mentions(text, "mm³ removed beyond the cut faces of proximal_left")) << text;
-  EXPECT_TRUE(mentions(text, "no overlap of distal is left")) << text;
+  EXPECT_TRUE(mentions(text, "no overlapping bone of distal is left")) << text;
   EXPECT_EQ(plan()["version"], 2);
   const auto report = apply();
-  EXPECT_TRUE(report["overlaps"].empty());
+  EXPECT_EQ(to_be_trimmed(report), 0);
   ASSERT_EQ(report["trims"].size(), 1u);
   EXPECT_GT(report["trims"][0]["removed_volume_mm3"].get<double>(), 1000);
   EXPECT_LT(report["volume_error_percent"].get<double>(), 1e-6);
@@ -72,11 +77,11 @@ TEST_F(PlanTrim, TheOverlapOfASetbackIsTrimmedReportedAndUndone) {
   // A move afterwards is trimmed as well; the same trim again replaces the first.
   done({"move", file, "distal", "back", "3"});
   const auto less = apply();
-  EXPECT_TRUE(less["overlaps"].empty());
+  EXPECT_EQ(to_be_trimmed(less), 0);
   EXPECT_LT(less["trims"][0]["removed_volume_mm3"], report["trims"][0]["removed_volume_mm3"]);
   done({"trim", file, "distal", "--of", "proximal_left"});
   EXPECT_EQ(plan()["steps"].size(), 3u);
-  EXPECT_EQ(apply()["overlaps"].size(), 1u);
+  EXPECT_EQ(to_be_trimmed(apply()), 1);
   for (int i = 0; i < 3; ++i) done({"undo", file});
   EXPECT_EQ(read_text(file), untrimmed);
 }
@@ -84,7 +89,7 @@ TEST_F(PlanTrim, TheOverlapOfASetbackIsTrimmedReportedAndUndone) {
 TEST_F(PlanTrim, OwnZonesAreStoredCheckedListedAndRemoved) {
   done({"new", "--out", file});
   const std::string empty = read_text(file);
-  write_text(folder / "line.csv", "x_mm,y_mm,z_mm\n-10,-95,-100\n0,-97,-100\n10,-95,-100\n");
+  write_text(folder / "line.csv", "x_mm,y_mm,z_mm\n-10,-88,-81\n0,-88,-81\n10,-88,-81\n");
   done({"zone", file, "vessel", folder / "line.csv", "--radius", "1"});
   fs::remove(folder / "line.csv");  // the plan holds it
   EXPECT_TRUE(

@@ -67,12 +67,13 @@ void check_trim(const Operated& operated, const PlanStep& step) {
   }
 }
 
-/// The overlaps of the segment that are left.
+/// The overlaps with bone of the segment that are left.
 std::vector<std::string> left_overlaps(const Operated& operated, const std::string& segment) {
   std::vector<std::string> texts;
   for (const SegmentOverlap& overlap : body_overlaps(operated, segment))
-    texts.push_back(overlap_text(overlap, operated.patient.landmarks));
-  if (texts.empty()) texts.push_back("no overlap of " + segment + " is left");
+    if (overlap.kind == SegmentOverlap::Kind::trimmed)
+      texts.push_back(overlap_text(overlap, operated.patient.landmarks));
+  if (texts.empty()) texts.push_back("no overlapping bone of " + segment + " is left");
   return texts;
 }
 
