@@ -58,6 +58,25 @@ Region either(Region a, Region b) {
   return Region::combined(Region::Kind::either, std::move(a), std::move(b));
 }
 
+Region opposite(Region region) {
+  using Kind = Region::Kind;
+  for (Region::Node& node : region.nodes_) {
+    if (node.kind == Kind::leaf) {
+      Plane& plane = region.leaves_[node.leaf].plane;
+      plane = {-plane.normal, -plane.offset_mm};
+    } else if (node.kind != Kind::choose) {
+      node.kind = node.kind == Kind::both ? Kind::either : Kind::both;
+    }
+  }
+  return region;
+}
+
+Region Region::with_planes(const std::function<Plane(const Leaf&)>& plane) const {
+  Region region = *this;
+  for (Leaf& leaf : region.leaves_) leaf.plane = plane(leaf);
+  return region;
+}
+
 Region::Answer Region::evaluate(std::span<const Side> sides) const {
   assert(sides.size() == leaves_.size());
   return evaluate(static_cast<int>(nodes_.size()) - 1, sides);

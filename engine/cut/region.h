@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,8 @@ class Region {
   static Region choose(const Plane& plane, Region upper, Region lower);
   friend Region both(Region a, Region b);
   friend Region either(Region a, Region b);
+  /// All that is not in the region. Walls keep their marks.
+  friend Region opposite(Region region);
 
   /// A plane of the region.
   struct Leaf {
@@ -35,6 +38,8 @@ class Region {
     int wall = -1;  // -1: of `choose`
   };
   const std::vector<Leaf>& leaves() const { return leaves_; }
+  /// The region with other planes in the place of its own, such as moved ones.
+  Region with_planes(const std::function<Plane(const Leaf&)>& plane) const;
 
   /// State of a plane in a part of space: on its upper side, its lower side, or not known.
   enum class Side : signed char { lower = 0, upper = 1, unknown = -1 };

@@ -82,7 +82,7 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-LandmarkTable read_csv(const fs::path& file, std::string_view text) {
+LandmarkTable read_csv(const fs::path& file, std::string_view text, bool named) {
   if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
   constexpr std::array<const char*, 4> required = {"name", "x_mm", "y_mm", "z_mm"};
   std::array<std::size_t, 4> column{};
@@ -112,11 +112,11 @@ LandmarkTable read_csv(const fs::path& file, std::string_view text) {
                              fmt::format("the column \"{}\" appears twice", required[w]));
           column[w] = i;
         }
-        if (column[w] == columns)
+        if (column[w] == columns && (w > 0 || named))
           throw InputError(file, where,
                            fmt::format("the column \"{}\" is missing (found: {}); the header must "
-                                       "contain name,x_mm,y_mm,z_mm",
-                                       required[w], in_quotes(line)));
+                                       "contain {}x_mm,y_mm,z_mm",
+                                       required[w], in_quotes(line), named ? "name," : ""));
       }
       continue;
     }
@@ -125,8 +125,8 @@ LandmarkTable read_csv(const fs::path& file, std::string_view text) {
     if (fields.size() != columns)
       throw InputError(file, where,
                        fmt::format("has {} fields, the header has {}", fields.size(), columns));
-    LandmarkRow row{fields[column[0]], {}, where};
-    if (canonical_landmark(row.name).empty())
+    LandmarkRow row{column[0] < columns ? fields[column[0]] : "point", {}, where};
+    if (named && canonical_landmark(row.name).empty())
       throw InputError(file, where, "the name " + in_quotes(row.name) + " has no letter or digit");
     for (int k = 0; k < 3; ++k) {
       const auto& field = fields[column[static_cast<std::size_t>(k) + 1]];
@@ -160,7 +160,7 @@ double sign_to_lps(const fs::path& file, const JsonItem& markup) {
       "the coordinate system " + in_quotes(name) + " is unknown; LPS and RAS are supported");
 }
 
-LandmarkTable read_markups(const fs::path& file, std::string_view text) {
+LandmarkTable read_markups(const fs::path& file, std::string_view text, bool named) {
   const JsonFile json(file, text);
   LandmarkTable table;
   table.own_frame = true;
@@ -177,9 +177,9 @@ LandmarkTable read_markups(const fs::path& file, std::string_view text) {
       if (const auto status = point.find("positionStatus"); status && status->text() != "defined")
         continue;
       LandmarkRow row;
-      row.name = point.at("label").text();
+      if (named || point.find("label")) row.name = point.at("label").text();
       row.where = point.name();
-      if (canonical_landmark(row.name).empty())
+      if (named && canonical_landmark(row.name).empty())
         throw InputError(file, row.where,
                          "the label " + in_quotes(row.name) + " has no letter or digit");
       const JsonItem position = point.at("position");
@@ -195,20 +195,27 @@ LandmarkTable read_markups(const fs::path& file, std::string_view text) {
   return table;
 }
 
-}  // namespace
-
-LandmarkTable read_landmark_table(const fs::path& file) {
+LandmarkTable read_points(const fs::path& file, bool named) {
   if (std::error_code error; fs::is_directory(file, error))
     throw InputError(file, "", "is a folder; give a .csv or .mrk.json file");
   const std::string extension = lower(file.extension().string());
   if (extension != ".csv" && extension != ".json" && extension != ".txt" && extension != ".tsv")
     throw InputError(file, "",
-                     "landmarks are read from .csv (name,x_mm,y_mm,z_mm) and .mrk.json files");
+                     fmt::format("{} are read from .csv ({}x_mm,y_mm,z_mm) and .mrk.json files",
+                                 named ? "landmarks" : "points", named ? "name," : ""));
   const std::string text = read_file(file, max_landmark_bytes);
-  LandmarkTable table = extension == ".json" ? read_markups(file, text) : read_csv(file, text);
-  if (table.rows.empty()) throw InputError(file, "", "contains no landmarks");
+  LandmarkTable table =
+      extension == ".json" ? read_markups(file, text, named) : read_csv(file, text, named);
+  if (table.rows.empty())
+    throw InputError(file, "", named ? "contains no landmarks" : "contains no points");
   return table;
 }
+
+}  // namespace
+
+LandmarkTable read_landmark_table(const fs::path& file) { return read_points(file, true); }
+
+LandmarkTable read_point_table(const fs::path& file) { return read_points(file, false); }
 
 Landmarks name_landmarks(const fs::path& file, const LandmarkTable& table) {
   Landmarks landmarks;

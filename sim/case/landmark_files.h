@@ -23,6 +23,10 @@ struct LandmarkTable {
 /// Reads names and points; those of a .mrk.json in RAS are converted to LPS. throws: InputError.
 LandmarkTable read_landmark_table(const std::filesystem::path& file);
 
+/// The same for points that need no names, such as those of a line: the column `name` may be
+/// absent.
+LandmarkTable read_point_table(const std::filesystem::path& file);
+
 /// Replaces names by canonical ones. throws: InputError when two rows name the same landmark at
 /// different positions.
 Landmarks name_landmarks(const std::filesystem::path& file, const LandmarkTable& table);

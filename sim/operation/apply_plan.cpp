@@ -10,6 +10,7 @@
 #include "sim/operation/cut_case.h"
 #include "sim/operation/operation.h"
 #include "sim/operation/owners.h"
+#include "sim/operation/trim_segments.h"
 #include "sim/osteotomy/osteotomy.h"
 
 namespace condyle {
@@ -149,6 +150,7 @@ Operated apply_plan(const Case& patient, const Plan& plan) {
   check_segments(plan, patient.bodies);
   check_case(patient, plan, operated.notes);
   operated.patient = patient;
+  for (const PlanZone& zone : plan.zones) operated.own_zones.push_back(own_zone(zone));
   for (const PlanStep& step : plan.steps)
     if (std::holds_alternative<CutStep>(step.action)) replay_cut(operated, step);
   const OwnerFinder finder(patient, operated.patient);
@@ -156,6 +158,7 @@ Operated apply_plan(const Case& patient, const Plan& plan) {
   operated.muscles = muscle_owners(patient, finder);
   operated.patient.jaw = jaw_bodies(patient, operated.patient, finder);
   pose_bodies(plan, operated);
+  trim_segments(operated, plan);
   return operated;
 }
 

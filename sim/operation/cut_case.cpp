@@ -30,6 +30,7 @@ struct Group {
   std::vector<int> wall = {};
   double volume_mm3 = 0;
   int pieces = 0, slivers = 0;
+  std::vector<CutSide> sides = {};  // by cut, where all pieces agree
 };
 
 void append(Group& group, const Piece& piece) {
@@ -44,6 +45,9 @@ void append(Group& group, const Piece& piece) {
   add(group.source, piece.source);
   add(group.wall, piece.wall);
   group.volume_mm3 += piece.volume_mm3;
+  if (group.pieces == 0) group.sides = piece.sides;
+  for (std::size_t i = 0; i < group.sides.size(); ++i)
+    if (group.sides[i] != piece.sides[i]) group.sides[i] = CutSide::neither;
   ++group.pieces;
   if (piece.volume_mm3 < sliver_mm3) ++group.slivers;
 }
@@ -257,6 +261,31 @@ void trace_faces(Operated& operated, const Part& bone, const ClosedBone& closed,
   }
 }
 
+/// throws: InputError naming a divided tooth, and the room between teeth where it is known.
+void refuse_divided_teeth(const Case& patient, BodyId body, const PlacedOsteotomy& placed) {
+  try {
+    for (const Part& part : patient.parts)
+      if (is_teeth(part.role) && part.body == body) refuse_divided_teeth(part, placed.cuts);
+  } catch (const InputError& error) {
+    if (placed.rooms.empty()) throw;
+    throw InputError(fmt::format("{}; {}", error.what(), fmt::join(placed.rooms, "; ")));
+  }
+}
+
+/// Remembers the saw cuts, and on which side of them each body lies.
+void remember_sides(Operated& operated, const PlacedOsteotomy& placed, int step,
+                    const std::string& cut_body, const std::vector<Group>& groups) {
+  const std::size_t before = operated.saw_cuts.size();
+  for (const Cut& cut : placed.cuts) operated.saw_cuts.push_back({step, cut});
+  std::vector<CutSide> earlier = operated.sides[cut_body];
+  earlier.resize(before, CutSide::neither);
+  for (const Group& group : groups) {
+    if (group.pieces == 0) continue;
+    auto& sides = operated.sides[group.body] = earlier;
+    sides.insert(sides.end(), group.sides.begin(), group.sides.end());
+  }
+}
+
 CutReport report_of(const PlanStep& step, const Part& bone, const PlacedOsteotomy& placed,
                     const CutResult& cut, const std::vector<Group>& groups) {
   CutReport report;
@@ -270,6 +299,7 @@ CutReport report_of(const PlanStep& step, const Part& bone, const PlacedOsteotom
   report.kerf_volume_mm3 = cut.kerf_volume_mm3;
   report.turned = cut.turned;
   report.notes = placed.notes;
+  report.rooms = placed.rooms;
   for (const Group& group : groups)
     if (group.pieces > 0)
       report.pieces.push_back(
@@ -313,13 +343,14 @@ void cut_case(Operated& operated, const PlacedOsteotomy& placed, const PlanStep&
   CutReport report = report_of(step, bone, placed, cut, groups);
   report.notes.insert(report.notes.end(), closed.notes.begin(), closed.notes.end());
   report.volume_mm3 = signed_volume(closed.mesh);
-  report.dangers = check_danger_zones(danger_zones(patient), cut.pieces);
+  auto zones = danger_zones(patient, bone, !placed.rooms.empty());
+  zones.insert(zones.end(), operated.own_zones.begin(), operated.own_zones.end());
+  report.dangers = check_danger_zones(zones, cut.pieces);
   refuse_unparted(operated, step, groups);
   const bool met = std::any_of(cut.outcomes.begin(), cut.outcomes.end(),
                                [](const CutOutcome& outcome) { return outcome.meets_bone; });
   if (met) {
-    for (const Part& part : patient.parts)
-      if (is_teeth(part.role) && part.body == bone.body) refuse_divided_teeth(part, placed.cuts);
+    refuse_divided_teeth(patient, bone.body, placed);
     NearestSurface nearest;
     Renamed renamed;
     for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -332,6 +363,7 @@ void cut_case(Operated& operated, const PlacedOsteotomy& placed, const PlanStep&
           !is_teeth(part.role))
         nearest.add(part.mesh, 0);
     trace_faces(operated, bone, closed, groups, step.id);
+    remember_sides(operated, placed, step.id, cut_body, groups);
     replace_bone(patient, bone.name, groups);
     const auto pieces = renamed[bone.name];
     divide_teeth(patient, bone.body, groups, nearest, renamed, report.notes);

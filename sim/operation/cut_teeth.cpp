@@ -9,6 +9,8 @@
 #include "engine/core/error.h"
 #include "engine/mesh/repair.h"
 #include "engine/mesh/topology.h"
+#include "sim/osteotomy/danger_zones.h"
+#include "sim/osteotomy/interdental.h"
 
 namespace condyle {
 namespace {
@@ -49,15 +51,22 @@ bool is_above(const Cut& cut, const Vector3d& p, double shift) {
   return cut.above.evaluate(sides).inside;
 }
 
+bool is_interdental(const Cut& cut) {
+  return std::any_of(cut.above.leaves().begin(), cut.above.leaves().end(),
+                     [](const auto& leaf) { return leaf.wall >= interdental_wall; });
+}
+
+/// Whether more of the tooth than a graze lies beyond either wall. Between two teeth, crowns that
+/// touch may reach a little beyond theirs.
 bool divides(const Cut& cut, std::span<const Vector3d> points) {
-  std::size_t above = 0, below = 0, kerf = 0;
+  const double shift = 0.5 * cut.kerf_mm - (is_interdental(cut) ? grazed_crown_mm : 0);
+  std::size_t not_above = 0, not_below = 0;
   for (const Vector3d& p : points) {
     if (!in_reach(cut, p)) continue;
-    const bool upper = is_above(cut, p, cut.kerf_mm / 2);
-    const bool lower = is_above(cut, p, -cut.kerf_mm / 2);
-    ++(upper != lower ? kerf : upper ? above : below);
+    if (!is_above(cut, p, shift)) ++not_above;
+    if (is_above(cut, p, -shift)) ++not_below;
   }
-  const auto parted = static_cast<double>(kerf + std::min(above, below));
+  const auto parted = static_cast<double>(std::min(not_above, not_below));
   return parted > grazed_fraction * static_cast<double>(points.size());
 }
 

@@ -67,6 +67,7 @@ std::vector<std::string> cut_sentences(const CutReport& report, const Landmarks&
     sentences.push_back(fmt::format("{} and {} cross in the bone", report.cuts[a], report.cuts[b]));
   for (const DangerFinding& finding : report.dangers)
     if (finding.level != DangerLevel::clear) sentences.push_back(danger_text(finding));
+  sentences.insert(sentences.end(), report.rooms.begin(), report.rooms.end());
   if (const std::string words = margin_words(report); !words.empty()) sentences.push_back(words);
   for (const CutPiece& piece : report.pieces) sentences.push_back(piece_words(piece));
   if (report.kerf_volume_mm3 > 0)
@@ -94,6 +95,8 @@ std::vector<BoneSummary> operated_bones(const Operated& operated) {
     BoneSummary bone{.name = body.name,
                      .parent = b == 0 ? "" : patient.bodies[body.parent].name,
                      .is_segment = is_made(body.name)};
+    for (const TrimReport& trim : operated.trims)
+      if (trim.segment == body.name) bone.trimmed_mm3 += trim.removed_mm3();
     bool any = false;
     for (const Part& part : patient.parts) {
       if (part.body != BodyId{b} || !operated.origin.contains(part.name)) continue;
@@ -109,10 +112,29 @@ std::vector<BoneSummary> operated_bones(const Operated& operated) {
 std::string step_details(const PlanAction& action) {
   if (const auto* cut = std::get_if<CutStep>(&action)) return cut_details(*cut);
   if (const auto* note = std::get_if<NoteStep>(&action)) return note->text;
+  if (const auto* trim = std::get_if<TrimStep>(&action))
+    return fmt::format("bone that overlaps {}{}", fmt::join(trim->of, ", "),
+                       trim->below_margins ? "; below the least margins on request" : "");
   const auto& step = std::get<MoveStep>(action);
   const auto* move = std::get_if<ClinicalMove>(&step.move);
   return move ? fmt::format("{}; about {}", move_words(*move), point_name(*move, step.segment))
               : "as a pose";
+}
+
+std::string zones_text(const Plan& plan) {
+  std::string text;
+  for (const PlanZone& zone : plan.zones) {
+    const DangerMargin margin = own_zone(zone).margin;
+    text += fmt::format(
+        "zone {}: {}, {}{}; cuts are warned of below {:g} mm, refused below {:g} mm\n", zone.name,
+        zone_kind_name(zone.kind),
+        zone.triangles.empty() ? fmt::format("a line of {} point{}", zone.points.size(),
+                                             zone.points.size() == 1 ? "" : "s")
+                               : fmt::format("a surface of {} triangles", zone.triangles.size()),
+        zone.radius_mm > 0 ? fmt::format(", radius {:g} mm", zone.radius_mm) : "", margin.warn_mm,
+        margin.stop_mm);
+  }
+  return text;
 }
 
 std::string steps_text(const Plan& plan) {

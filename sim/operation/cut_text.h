@@ -18,6 +18,7 @@ struct BoneSummary {
   bool is_segment = false;  // made by the plan
   double volume_mm3 = 0;
   bool closed = true;
+  double trimmed_mm3 = 0;  // removed from it
 };
 /// Bodies that the plan's cuts made or changed and that have bone, in the order of the tree.
 std::vector<BoneSummary> operated_bones(const Operated& operated);
@@ -28,5 +29,8 @@ std::string step_details(const PlanAction& action);
 
 /// The steps of a plan with their numbers, one a line.
 std::string steps_text(const Plan& plan);
+
+/// The plan's own danger zones with their margins, one a line.
+std::string zones_text(const Plan& plan);
 
 }  // namespace condyle

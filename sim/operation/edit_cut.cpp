@@ -52,8 +52,13 @@ std::string dangers_below_margins(const Operated& operated, int step) {
   std::vector<std::string> dangers;
   for (const CutReport& cut : operated.cuts) {
     if (cut.step != step || cut.below_margins) continue;
-    for (const DangerFinding& finding : cut.dangers)
-      if (finding.level == DangerLevel::stop) dangers.push_back(danger_text(finding));
+    bool interdental = false;
+    for (const DangerFinding& finding : cut.dangers) {
+      if (finding.level != DangerLevel::stop) continue;
+      dangers.push_back(danger_text(finding));
+      interdental = interdental || finding.interdental;
+    }
+    if (interdental) dangers.insert(dangers.end(), cut.rooms.begin(), cut.rooms.end());
   }
   return fmt::format("{}", fmt::join(dangers, "; "));
 }

@@ -39,6 +39,7 @@ struct CutReport {
   int turned = 0;              // triangles of cut faces that face backward
   bool below_margins = false;  // allowed by the step
   std::vector<std::string> notes;
+  std::vector<std::string> rooms;  // between the teeth of interdental cuts
 
   /// Whether the cut comes nearer to a root, canal or foramen than the least margin.
   bool is_dangerous() const;
@@ -46,11 +47,42 @@ struct CutReport {
   double volume_error_percent() const;
 };
 
+/// What a trim step removed from its segment.
+struct TrimReport {
+  int step = 0;         // its id in the plan
+  std::string title;    // "trim distal"
+  std::string segment;  // body
+  std::string part;     // the bone that was trimmed
+  struct Share {
+    std::string of;         // the segment that keeps its bone
+    double volume_mm3 = 0;  // removed beyond its cut faces
+  };
+  std::vector<Share> shares;
+  double fragments_mm3 = 0;  // of pieces below sliver_mm3 that it set loose, removed too
+  int fragments = 0;
+  double before_mm3 = 0, after_mm3 = 0;  // volume of the bone
+  int pieces = 1;                        // separate ones that remain
+  std::vector<DangerFinding> dangers;    // zones near the new faces, nearest first
+  bool below_margins = false;            // allowed by the step
+  std::vector<std::string> notes;
+
+  double removed_mm3() const;
+  bool is_dangerous() const;
+  /// Deviation of what remains and was removed from the bone before it, in percent.
+  double volume_error_percent() const;
+};
+
+/// A saw cut that was made, in the cranium's frame at rest.
+struct SawCut {
+  int step = 0;
+  Cut cut;
+};
+
 /// Where the surface of a cut bone comes from.
 struct SurfaceOrigin {
   std::string part;           // of the uncut case
   std::vector<int> triangle;  // of that part, by face; -1 on cut faces and closed holes
-  std::vector<int> made_by;   // id of the step that made a cut face; 0 on the bone's surface
+  std::vector<int> made_by;   // id of the step that made a cut or trimmed face; 0 on the surface
 };
 
 /// Bodies that a muscle connects.
@@ -64,19 +96,24 @@ struct Operated {
   BodyPoses poses;         // planned, from the uncut rest
   std::vector<Pose> X_PB;  // the same in the parents' frames, see placed()
   std::vector<CutReport> cuts;
-  LandmarkOwners owners;                        // after the cuts
-  std::vector<MuscleOwners> muscles;            // of the patient's muscles, in their order
-  std::map<std::string, SurfaceOrigin> origin;  // by part, of bones that a cut changed
+  std::vector<TrimReport> trims;
+  std::vector<DangerZone> own_zones;                  // of the plan
+  std::vector<SawCut> saw_cuts;                       // of all steps, in order
+  std::map<std::string, std::vector<CutSide>> sides;  // by body, of the first saw cuts; others
+                                                      // passed it by
+  LandmarkOwners owners;                              // after the cuts
+  std::vector<MuscleOwners> muscles;                  // of the patient's muscles, in their order
+  std::map<std::string, SurfaceOrigin> origin;        // by part, of bones that a cut changed
   std::vector<std::string> notes;
   std::vector<std::string> problems;  // steps that could not be done, for people
 };
 
 /// Replays a plan: each cut in order on what the cuts before it left, then of each segment the last
-/// move. Teeth, gums, canals and smaller bodies go with the piece that holds most of them. The
-/// empty plan returns the same case. A segment that a cut does not part is listed in `problems`, as
-/// are the steps that need it.
-/// throws: InputError for a plan of another case, what check_plan() and place_osteotomy() refuse,
-/// bone that cannot be closed, and a tooth that a cut divides.
+/// move, then the trims. Teeth, gums, canals and smaller bodies go with the piece that holds most
+/// of them. The empty plan returns the same case. A segment that a cut does not part is listed in
+/// `problems`, as are the steps that need it. throws: InputError for a plan of another case, what
+/// check_plan() and place_osteotomy() refuse, bone that cannot be closed, and a tooth that a cut
+/// divides.
 Operated apply_plan(const Case& patient, const Plan& plan);
 
 /// X_CS of a segment of an operated patient by a move. throws: InputError as apply_plan().

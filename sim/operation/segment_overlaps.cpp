@@ -112,6 +112,35 @@ std::vector<SegmentOverlap> segment_overlaps(const Operated& operated, const std
   return overlaps;
 }
 
+std::vector<SegmentOverlap> body_overlaps(const Operated& operated, const std::string& body) {
+  const BodyTree& bodies = operated.patient.bodies;
+  const auto known = bodies.find(body);
+  if (!known) return {};
+  // Those with a segment's own children are not among the segment's.
+  auto overlaps = segment_overlaps(operated, bodies.subtree(*known).size() == 1 ? body : "");
+  std::erase_if(overlaps, [&](const SegmentOverlap& overlap) {
+    return overlap.body_a != body && overlap.body_b != body;
+  });
+  return overlaps;
+}
+
+bool cut_bones_overlap(const Operated& operated, const std::string& a, const std::string& b) {
+  const BodyTree& bodies = operated.patient.bodies;
+  const auto body_a = bodies.find(a), body_b = bodies.find(b);
+  if (!body_a || !body_b) return false;
+  const Pose &X_CA = operated.poses[*body_a], &X_CB = operated.poses[*body_b];
+  if (bit_identical(X_CA, X_CB)) return false;
+  OverlapSearch search(operated);
+  const auto is_cut = [&](const Part& part) { return operated.origin.contains(part.name); };
+  for (const Part& of_a : operated.patient.parts)
+    for (const Part& of_b : operated.patient.parts)
+      if (of_a.body == *body_a && of_b.body == *body_b && is_cut(of_a) && is_cut(of_b) &&
+          kind_of(operated, of_a, of_b) == SegmentOverlap::Kind::trimmed &&
+          search.depth(of_a, X_CA, of_b, X_CB).depth_mm >= least_overlap_mm)
+        return true;
+  return false;
+}
+
 double free_fraction(const Operated& operated, const std::string& segment,
                      const std::function<Pose(double)>& pose) {
   const BodyTree& bodies = operated.patient.bodies;

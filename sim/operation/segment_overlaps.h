@@ -29,6 +29,13 @@ struct SegmentOverlap {
 std::vector<SegmentOverlap> segment_overlaps(const Operated& operated,
                                              const std::string& segment = {});
 
+/// Overlaps of the parts of one body alone, with those of its children too.
+std::vector<SegmentOverlap> body_overlaps(const Operated& operated, const std::string& body);
+
+/// Whether bones that cuts made, on two bodies, share space at the planned positions: as above
+/// without volumes.
+bool cut_bones_overlap(const Operated& operated, const std::string& a, const std::string& b);
+
 /// The largest fraction of a move, in steps of 0.25 mm and then to 0.01 mm, up to which the segment
 /// collides with nothing (see Kind::collision). `pose`: X_CS of the segment at a fraction from 0 to
 /// 1; all else lies as planned. 1 where the whole move is free.

@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
+#include "engine/mesh/measure.h"
+#include "engine/mesh/topology.h"
 #include "engine/mesh/triangle_tree.h"
+#include "sim/osteotomy/interdental.h"
 
 namespace condyle {
 namespace {
@@ -24,14 +28,31 @@ std::vector<Eigen::Vector3d> dense_points(const std::vector<Eigen::Vector3d>& po
   return points;
 }
 
+/// Points of a surface at most about step_mm apart.
+std::vector<Eigen::Vector3d> dense_points(const PlanZone& zone) {
+  std::vector<Eigen::Vector3d> points = zone.points;
+  for (const Eigen::Vector3i& t : zone.triangles) {
+    const Eigen::Vector3d &a = zone.points[t[0]], u = zone.points[t[1]] - a,
+                          v = zone.points[t[2]] - a;
+    const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
+    const int count = std::clamp(static_cast<int>(std::ceil(longest / step_mm)), 1, 200);
+    for (int i = 0; i <= count; ++i)
+      for (int k = 0; k <= count - i; ++k) points.emplace_back(a + (i * u + k * v) / count);
+  }
+  return points;
+}
+
 std::string spaced(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }
 
-void add_teeth(const Part& part, std::vector<DangerZone>& zones) {
+void add_teeth(const Part& part, const DangerMargins& margins, std::vector<DangerZone>& zones) {
   for (const Tooth& tooth : part.teeth) {
-    DangerZone zone{fmt::format("tooth {}", tooth.fdi), DangerZone::Kind::tooth, {}, 0};
+    DangerZone zone{.name = fmt::format("tooth {}", tooth.fdi),
+                    .kind = ZoneKind::tooth,
+                    .points = {},
+                    .margin = margins.tooth};
     std::vector<int> vertices;
     for (int i = 0; i < tooth.triangle_count; ++i)
       for (const int v : part.mesh.triangles[tooth.first_triangle + i]) vertices.push_back(v);
@@ -42,63 +63,176 @@ void add_teeth(const Part& part, std::vector<DangerZone>& zones) {
   }
 }
 
+/// The body from which the cuts of a plan made this one.
+BodyId uncut_body(const BodyTree& bodies, BodyId body) {
+  while (body != cranium_body && bodies[body].driver == BodyDriver::plan)
+    body = bodies[body].parent;
+  return body;
+}
+
+/// Whether no other piece of the bone's jaw lies nearer to the point.
+bool is_nearest(const Case& patient, const Part& bone, const Eigen::Vector3d& point) {
+  const BodyId jaw = uncut_body(patient.bodies, bone.body);
+  std::vector<const Part*> others;
+  for (const Part& part : patient.parts)
+    if (collides(part.role) && !is_teeth(part.role) && part.body != bone.body &&
+        uncut_body(patient.bodies, part.body) == jaw)
+      others.push_back(&part);
+  if (others.empty()) return true;
+  const double own = TriangleTree(bone.mesh).nearest(point).distance;
+  return std::none_of(others.begin(), others.end(), [&](const Part* part) {
+    const SurfacePoint found = TriangleTree(part->mesh).nearest(point, own);
+    return found.triangle >= 0 && found.distance < own;
+  });
+}
+
+/// Faces that cuts made, as a surface without common vertices.
+struct CutFaces {
+  TriMesh mesh;
+  void add(const Piece& piece, std::size_t face) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (const int v : piece.mesh.triangles[face]) mesh.vertices.push_back(piece.mesh.vertices[v]);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+};
+
+DangerLevel level_of(double distance, const DangerMargin& margin) {
+  return distance < margin.stop_mm   ? DangerLevel::stop
+         : distance < margin.warn_mm ? DangerLevel::warn
+                                     : DangerLevel::clear;
+}
+
+/// The deepest point of cut faces in a closed zone; its distance is negative.
+SurfacePoint deepest_inside(const DangerZone& zone, const TriMesh& faces) {
+  SurfacePoint deepest;
+  deepest.distance = 0;
+  if (zone.solid.empty()) return deepest;
+  const TriangleTree tree(zone.solid);
+  Box box;
+  for (const auto& p : zone.solid.vertices) box.add(p);
+  const auto look = [&](const Eigen::Vector3d& p) {
+    if (!box.contains(p, 0)) return;
+    const SurfacePoint found = tree.signed_nearest(p);
+    if (found.distance < deepest.distance)
+      deepest = {found.distance, p, Eigen::Vector3d::Zero(), 0};
+  };
+  for (const auto& t : faces.triangles) {
+    for (const int v : t) look(faces.vertices[v]);
+    look((faces.vertices[t[0]] + faces.vertices[t[1]] + faces.vertices[t[2]]) / 3);
+  }
+  return deepest;
+}
+
+/// Distance of a zone from cut faces; triangle -1: not within reach.
+SurfacePoint distance_of(const DangerZone& zone, const std::vector<Eigen::Vector3d>& points,
+                         const TriMesh& faces, const TriangleTree& tree, double reach_mm) {
+  SurfacePoint nearest;
+  nearest.distance = reach_mm + zone.radius_mm;
+  for (const auto& p : points) {
+    const SurfacePoint found = tree.nearest(p, nearest.distance);
+    if (found.triangle >= 0 && found.distance < nearest.distance) nearest = found;
+  }
+  if (const SurfacePoint inside = deepest_inside(zone, faces); inside.distance < 0)
+    nearest = inside;
+  nearest.distance -= zone.radius_mm;
+  return nearest;
+}
+
 }  // namespace
 
-const DangerMargin& DangerMargins::of(DangerZone::Kind kind) const {
+const DangerMargin& DangerMargins::of(ZoneKind kind) const {
   switch (kind) {
-    case DangerZone::Kind::canal:
+    case ZoneKind::canal:
       return canal;
-    case DangerZone::Kind::foramen:
+    case ZoneKind::foramen:
       return foramen;
+    case ZoneKind::other:
+      return other;
     default:
       return tooth;
   }
 }
 
-std::vector<DangerZone> danger_zones(const Case& patient) {
+std::vector<DangerZone> danger_zones(const Case& patient, const Part& bone, bool roots,
+                                     const DangerMargins& margins) {
   std::vector<DangerZone> zones;
   for (const Part& part : patient.parts)
-    if (is_teeth(part.role)) add_teeth(part, zones);
-  for (const Canal& canal : patient.canals)
-    zones.push_back({spaced(canal.name), DangerZone::Kind::canal, dense_points(canal.points),
-                     0.5 * canal.diameter_mm});
-  for (const char* side : {"left", "right"})
-    for (const char* foramen : {"mental_foramen", "infraorbital_foramen"}) {
-      const std::string name = std::string(side) + "_" + foramen;
-      if (const auto at = patient.landmarks.find(name))
-        zones.push_back({spaced(name), DangerZone::Kind::foramen, {*at}, 0});
+    if (is_teeth(part.role) && part.body == bone.body) add_teeth(part, margins, zones);
+  if (roots && !zones.empty()) {
+    const TriangleTree tree(bone.mesh);
+    for (DangerZone& zone : zones) {
+      ToothPoints tooth = split_tooth(zone.points, tree);
+      zone.root = tooth.root.empty() ? std::move(tooth.crown) : std::move(tooth.root);
     }
+  }
+  for (const Canal& canal : patient.canals)
+    if (canal.body == bone.body)
+      zones.push_back({.name = spaced(canal.name),
+                       .kind = ZoneKind::canal,
+                       .points = dense_points(canal.points),
+                       .radius_mm = 0.5 * canal.diameter_mm,
+                       .margin = margins.canal});
+  const bool lower = uncut_body(patient.bodies, bone.body) == mandible_body;
+  for (const char* side : {"left", "right"}) {
+    const std::string name =
+        std::string(side) + (lower ? "_mental_foramen" : "_infraorbital_foramen");
+    if (const auto at = patient.landmarks.find(name); at && is_nearest(patient, bone, *at))
+      zones.push_back({.name = spaced(name),
+                       .kind = ZoneKind::foramen,
+                       .points = {*at},
+                       .margin = margins.foramen});
+  }
   return zones;
+}
+
+DangerZone own_zone(const PlanZone& zone, const DangerMargins& margins) {
+  DangerZone made{.name = zone.name,
+                  .kind = zone.kind,
+                  .points = zone.triangles.empty() ? dense_points(zone.points) : dense_points(zone),
+                  .radius_mm = zone.radius_mm,
+                  .margin = margins.of(zone.kind)};
+  if (zone.stop_mm) made.margin.stop_mm = *zone.stop_mm;
+  made.margin.warn_mm = zone.warn_mm.value_or(std::max(made.margin.warn_mm, made.margin.stop_mm));
+  if (!zone.stop_mm) made.margin.stop_mm = std::min(made.margin.stop_mm, made.margin.warn_mm);
+  TriMesh surface{zone.points, zone.triangles, {}};
+  if (!zone.triangles.empty() && inspect(surface).closed()) made.solid = std::move(surface);
+  return made;
 }
 
 std::vector<DangerFinding> check_danger_zones(const std::vector<DangerZone>& zones,
                                               const std::vector<Piece>& pieces,
                                               const DangerMargins& margins, double reach_mm) {
-  TriMesh walls;
+  CutFaces between, others;  // teeth, and all else
   for (const Piece& piece : pieces)
-    for (std::size_t i = 0; i < piece.wall.size(); ++i) {
-      if (piece.wall[i] < 0) continue;
-      const int first = static_cast<int>(walls.vertices.size());
-      for (const int v : piece.mesh.triangles[i]) walls.vertices.push_back(piece.mesh.vertices[v]);
-      walls.triangles.push_back({first, first + 1, first + 2});
-    }
-  const TriangleTree tree(walls);
+    for (std::size_t i = 0; i < piece.wall.size(); ++i)
+      if (piece.wall[i] >= 0)
+        (piece.wall[i] >= interdental_wall && piece.wall[i] != slot_end ? between : others)
+            .add(piece, i);
+  const TriangleTree between_tree(between.mesh), others_tree(others.mesh);
   std::vector<DangerFinding> findings;
-  if (tree.empty()) return findings;
   for (const DangerZone& zone : zones) {
-    SurfacePoint nearest;
-    nearest.distance = reach_mm + zone.radius_mm;
-    for (const auto& p : zone.points) {
-      const SurfacePoint found = tree.nearest(p, nearest.distance);
-      if (found.triangle >= 0 && found.distance < nearest.distance) nearest = found;
+    std::optional<DangerFinding> worst;
+    for (const bool is_between : {false, true}) {
+      const auto& faces = is_between ? between.mesh : others.mesh;
+      const auto& tree = is_between ? between_tree : others_tree;
+      if (tree.empty()) continue;
+      const bool interdental = is_between && !zone.root.empty();
+      const SurfacePoint nearest =
+          distance_of(zone, interdental ? zone.root : zone.points, faces, tree, reach_mm);
+      if (nearest.triangle < 0) continue;
+      const DangerMargin& margin = interdental ? margins.interdental : zone.margin;
+      const DangerFinding found{zone.name,
+                                zone.kind,
+                                nearest.distance,
+                                margin,
+                                interdental,
+                                nearest.point,
+                                level_of(nearest.distance, margin)};
+      if (!worst || found.level > worst->level ||
+          (found.level == worst->level && found.distance_mm < worst->distance_mm))
+        worst = found;
     }
-    if (nearest.triangle < 0) continue;
-    const double distance = nearest.distance - zone.radius_mm;
-    const DangerMargin& margin = margins.of(zone.kind);
-    findings.push_back({zone.name, zone.kind, distance, nearest.point,
-                        distance < margin.stop_mm   ? DangerLevel::stop
-                        : distance < margin.warn_mm ? DangerLevel::warn
-                                                    : DangerLevel::clear});
+    if (worst) findings.push_back(*worst);
   }
   std::stable_sort(
       findings.begin(), findings.end(),
@@ -106,11 +240,12 @@ std::vector<DangerFinding> check_danger_zones(const std::vector<DangerZone>& zon
   return findings;
 }
 
-std::string danger_text(const DangerFinding& finding, const DangerMargins& margins) {
-  const DangerMargin& margin = margins.of(finding.kind);
+std::string danger_text(const DangerFinding& finding) {
+  const DangerMargin& margin = finding.margin;
   const std::string distance =
       finding.distance_mm < 0 ? fmt::format("the cut enters it by {:.1f} mm", -finding.distance_mm)
-                              : fmt::format("{:.1f} mm from the cut", finding.distance_mm);
+                              : fmt::format("{:.1f} mm from the cut{}", finding.distance_mm,
+                                            finding.interdental ? " between the teeth" : "");
   switch (finding.level) {
     case DangerLevel::stop:
       return margin.stop_mm > 0 ? fmt::format("{}: {}; at least {:g} mm are needed", finding.zone,

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "sim/osteotomy/danger_zones.h"
+#include "sim/osteotomy/interdental.h"
 #include "sim/osteotomy/midface.h"
 #include "sim/osteotomy/recipe.h"
 
@@ -84,16 +86,53 @@ std::vector<Plane> within_maxilla(const SurgicalAnatomy& jaw, const Midface& fac
           jaw.plane({0, 0, face.incisal_z - 40}, -Vector3d::UnitZ())};
 }
 
-/// Between lateral incisor and canine at the alveolus.
-Vector3d interdental(SurgicalAnatomy& jaw, Side side) {
-  const auto lateral = jaw.tooth_middle(side == Side::left ? 22 : 12),
-             canine = jaw.tooth_middle(side == Side::left ? 23 : 13);
-  if (lateral && canine) return 0.5 * (*lateral + *canine);
+/// A cut between two teeth, which bends on the palate towards the midline.
+struct PalatalCut {
+  Vector3d gap, outside, bend;  // on the plane between the teeth
+  Vector3d rising;              // the sheet's direction
+};
+
+PalatalCut palatal_cut(const Vector3d& point, const Vector3d& normal, const Vector3d& inward) {
+  constexpr double behind_teeth_mm = 8;
+  Vector3d along = normal.cross(Vector3d::UnitZ()).normalized();
+  if (along.dot(inward) < 0) along = -along;
+  Vector3d rising = normal.cross(along);
+  if (rising.z() < 0) rising = -rising;
+  return {point, point - 60 * along, point + behind_teeth_mm * along, rising};
+}
+
+/// Where a case does not have the teeth by themselves: between lateral incisor and canine.
+Vector3d estimated_gap(SurgicalAnatomy& jaw, Side side) {
   const auto tip = jaw.find("upper_" + name_of(side) + "_canine_tip");
   const Vector3d incisal = jaw.need("upper_incisal_point");
   if (!tip) jaw.notes.push_back("the gap before the " + name_of(side) + " canine is estimated");
   return tip ? Vector3d(tip->x() - 4 * sign_of(side), tip->y() - 2, tip->z())
              : incisal + Vector3d(13 * sign_of(side), 5, 0);
+}
+
+/// Between lateral incisor and canine, or canine and first premolar.
+PalatalCut interdental(Site& site, Side side, const Vector3d& inward) {
+  SurgicalAnatomy& jaw = site.anatomy;
+  const int first = (side == Side::left ? 20 : 10) + static_cast<int>(site["front_teeth"]);
+  if (const auto plane = find_interdental(jaw, first, first + 1)) {
+    jaw.rooms.push_back(room_text(*plane, site.kerf_mm));
+    return palatal_cut(plane->point, plane->normal, inward);
+  }
+  const Vector3d gap = estimated_gap(jaw, side), apex(0, gap.y() + site["palate_mm"], 0);
+  return palatal_cut(gap, Vector3d(gap.x(), gap.y() - apex.y(), 0).cross(Vector3d::UnitZ()),
+                     inward);
+}
+
+/// The midline, between the central incisors.
+Region midline_half(Site& site, const Midface& face) {
+  SurgicalAnatomy& jaw = site.anatomy;
+  const auto plane = find_interdental(jaw, 11, 21);
+  if (!plane) return jaw.above(Vector3d::Zero(), Vector3d::UnitX(), interdental_wall);
+  jaw.rooms.push_back(room_text(*plane, site.kerf_mm));
+  const PalatalCut cut = palatal_cut(plane->point, plane->normal, Vector3d::UnitY());
+  const std::vector<Vector3d> line{cut.outside, cut.bend,
+                                   Vector3d(0, face.back_y + 10, cut.bend.z())};
+  return jaw.sheet(line, cut.rising, Vector3d::UnitX(), interdental_wall);
 }
 
 PlacedOsteotomy place_le_fort_1(Site& site) {
@@ -105,6 +144,8 @@ PlacedOsteotomy place_le_fort_1(Site& site) {
   const double pieces = site["pieces"];
   if (pieces != std::floor(pieces))
     throw InputError(fmt::format("le_fort_1: pieces is {:g}; expected 1, 2 or 3", pieces));
+  if (site["front_teeth"] != std::floor(site["front_teeth"]))
+    throw InputError("le_fort_1: front_teeth must be 2 or 3");
   if (pieces > 1 && site["step_mm"] != 0)
     throw InputError("le_fort_1: a stepped cut has one piece; set pieces to 1 or step_mm to 0");
   if (pieces == 1) {
@@ -114,23 +155,34 @@ PlacedOsteotomy place_le_fort_1(Site& site) {
   auto reach = within_maxilla(jaw, face, site, roof);
   using enum CutSide;
   if (pieces == 2) {
-    placed.cuts.push_back({"midline", jaw.above(Vector3d::Zero(), Vector3d::UnitX(), 0), reach, 0});
+    placed.cuts.push_back({"midline", midline_half(site, face), reach, 0});
     placed.segments = {{"maxilla_left", {above, above}}, {"maxilla_right", {above, below}}};
     return placed;
   }
-  // The front in the angle between two planes that meet on the palate; the rest in the midline.
-  const Vector3d left = interdental(jaw, Side::left), right = interdental(jaw, Side::right);
-  const Vector3d apex(0, 0.5 * (left.y() + right.y()) + site["palate_mm"], 0);
-  const auto plane_to = [&](const Vector3d& gap, double sign, int wall) {
-    const Vector3d along(gap.x(), gap.y() - apex.y(), 0);
-    Vector3d inward = along.cross(Vector3d::UnitZ());
-    if (inward.x() * sign > 0) inward = -inward;
-    return jaw.above(apex, inward, wall);
+  // The front within two sheets that meet on the palate; the rest in the midline.
+  const PalatalCut left = interdental(site, Side::left, {-1, 1, 0}),
+                   right = interdental(site, Side::right, {1, 1, 0});
+  const double front_y = 0.5 * (left.bend.y() + right.bend.y()),
+               gap_y = 0.5 * (left.gap.y() + right.gap.y());
+  const Vector3d apex(0, std::max(front_y + 2, gap_y + site["palate_mm"]),
+                      0.5 * (left.bend.z() + right.bend.z()));
+  const auto within = [&](const PalatalCut& cut, double sign, int wall) {
+    const std::vector<Vector3d> line{cut.outside, cut.bend, apex};
+    return jaw.sheet(line, cut.rising, Vector3d(-sign, 0, 0), wall);
   };
   placed.cuts.push_back(
-      {"interdental", both(plane_to(left, 1, 0), plane_to(right, -1, 1)), reach, 0});
-  reach.push_back(jaw.plane(apex, -Vector3d::UnitY()));
-  placed.cuts.push_back({"midline", jaw.above(Vector3d::Zero(), Vector3d::UnitX(), 0), reach, 0});
+      {"interdental",
+       both(within(left, 1, interdental_wall), within(right, -1, interdental_wall + 2)), reach, 0});
+  // Both sheets and the midline share the line in which they meet.
+  const Vector3d meeting = (apex - left.bend)
+                               .cross(left.rising)
+                               .cross((apex - right.bend).cross(right.rising))
+                               .normalized();
+  Vector3d midline = meeting.cross(Vector3d::UnitY()), front = meeting.cross(Vector3d::UnitX());
+  if (midline.x() < 0) midline = -midline;
+  if (front.y() > 0) front = -front;
+  reach.push_back(jaw.plane(apex, front));
+  placed.cuts.push_back({"midline", jaw.above(apex, midline, 0), reach, 0});
   placed.segments = {{"maxilla_front", {above, above, neither}},
                      {"maxilla_left", {above, below, above}},
                      {"maxilla_right", {above, below, below}}};
@@ -149,6 +201,8 @@ Recipe le_fort_1_recipe() {
        {"back_mm", "mm", "back wall behind the posterior nasal spine", 0.5, -4, 4},
        {"step_mm", "mm", "step down at the zygomatic buttress; 0: straight", 0, 0, 8},
        {"pieces", "", "pieces of the maxilla: 1, 2 (midline) or 3", 1, 1, 3},
+       {"front_teeth", "", "of three pieces, last tooth of the front: 2 lateral incisor, 3 canine",
+        2, 2, 3},
        {"palate_mm", "mm", "where the cuts of three pieces meet, behind the canines", 14, 6, 25}},
       place_le_fort_1};
 }

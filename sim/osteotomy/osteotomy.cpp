@@ -136,6 +136,7 @@ PlacedOsteotomy place_osteotomy(const Case& patient, const CutStep& step) {
   PlacedOsteotomy placed = recipe.place(site);
   placed.part = bone.name;
   placed.notes = site.anatomy.notes;
+  placed.rooms = site.anatomy.rooms;
   for (Cut& cut : placed.cuts) cut.kerf_mm = step.kerf_mm;
   name_segments(placed, step.pieces, recipe.name);
   return placed;

@@ -1,8 +1,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/core/error.h"
+#include "sim/osteotomy/danger_zones.h"
+#include "sim/osteotomy/interdental.h"
 #include "sim/osteotomy/ramus.h"
 #include "sim/osteotomy/recipe.h"
 
@@ -11,9 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// One half of the jaw behind a place.
-std::vector<Plane> half_jaw(const SurgicalAnatomy& jaw, Side side, double front) {
-  return {jaw.plane({8 * sign_of(side), 0, 0}, {-sign_of(side), 0, 0}),
+/// One half of the jaw behind a place, from a distance beside the midline on.
+std::vector<Plane> half_jaw(const SurgicalAnatomy& jaw, Side side, double front,
+                            double beside_mm = 8) {
+  return {jaw.plane({beside_mm * sign_of(side), 0, 0}, {-sign_of(side), 0, 0}),
           jaw.plane({0, front, 0}, -Vector3d::UnitY())};
 }
 
@@ -69,30 +73,36 @@ Cut body_cut(Site& site, Side side) {
   SurgicalAnatomy& jaw = site.anatomy;
   const int place = static_cast<int>(site["behind_tooth"]);
   const int first = (side == Side::left ? 30 : 40) + place;
-  const auto before = jaw.tooth_middle(first), behind = jaw.tooth_middle(first + 1);
-  double y = 0;
-  if (before && behind) {
-    y = 0.5 * (before->y() + behind->y());
-  } else {
-    // Gaps between teeth behind the incisal edges.
-    constexpr double gaps[] = {9.5, 16.5, 23.5, 33};
-    y = jaw.need("lower_incisal_point").y() + gaps[place - 3];
-    if (side == Side::left)
-      jaw.notes.push_back("the gaps between the teeth are estimated from the incisal edges");
+  const std::string name = "body, " + name_of(side);
+  constexpr double beside_mm = 1;  // in front, the cut leaves the bone near the midline
+  if (const auto plane = find_interdental(jaw, first, first + 1)) {
+    jaw.rooms.push_back(room_text(*plane, site.kerf_mm));
+    const Vector3d point = plane->point + Vector3d(0, site["back_mm"], 0);
+    return {name, jaw.above(point, plane->normal, interdental_wall),
+            half_jaw(jaw, side, point.y() - 30, beside_mm), 0};
   }
-  y += site["back_mm"];
-  // Across the body: the direction of its lower border.
-  const auto here = jaw.section(side, 1, y - 5, 2, 5), there = jaw.section(side, 1, y + 5, 2, 5),
-             at = jaw.section(side, 1, y, 2, 5);
+  // Gaps between teeth behind the incisal edges.
+  constexpr double gaps[] = {9.5, 16.5, 23.5, 33};
+  const double y = jaw.need("lower_incisal_point").y() + gaps[place - 3] + site["back_mm"];
+  if (side == Side::left)
+    jaw.notes.push_back("the gaps between the teeth are estimated from the incisal edges");
+  // Across the body: along its outer surface.
+  const auto outer = [&](double at) -> std::optional<Vector3d> {
+    const auto range = jaw.section(side, 1, at, 0, 5);
+    if (!range) return std::nullopt;
+    return side == Side::left ? range->high_at : range->low_at;
+  };
+  const auto here = outer(y - 5), there = outer(y + 5), at = outer(y);
   if (!here || !there || !at)
     throw InputError("body_osteotomy: the jaw has no bone at the cut, " + name_of(side));
-  Vector3d along(sign_of(side) * std::min(std::abs(there->low_at.x() - here->low_at.x()), 8.), 10,
-                 0);
-  if (before && behind) along = *behind - *before;
-  along.z() = 0;
-  const Vector3d through = before && behind ? Vector3d(0.5 * (*before + *behind)) : at->low_at;
-  const Vector3d point(through.x(), y, through.z());
-  return {"body, " + name_of(side), jaw.above(point, along, 0), half_jaw(jaw, side, y - 30), 0};
+  // At least so oblique that it passes behind the symphysis.
+  double symphysis = at->y();
+  for (const Vector3d& p : jaw.bone().vertices)
+    if (std::abs(p.x()) < 3) symphysis = std::max(symphysis, p.y() + 1);
+  const double wider = (std::abs(there->x()) - std::abs(here->x())) / 10,
+               needed = (symphysis - at->y()) / std::abs(at->x());
+  const Vector3d along(sign_of(side) * std::clamp(std::max(wider, needed), 0., 2.), 1, 0);
+  return {name, jaw.above(*at, along, interdental_wall), half_jaw(jaw, side, y - 30, beside_mm), 0};
 }
 
 PlacedOsteotomy place_body(Site& site) {
@@ -123,7 +133,7 @@ Recipe inverted_l_recipe() {
 Recipe body_recipe() {
   return {"body_osteotomy",
           Jaw::lower,
-          {{"behind_tooth", "", "place of the tooth before the cut: 3 canine to 6 first molar", 5,
+          {{"behind_tooth", "", "place of the tooth before the cut: 3 canine to 6 first molar", 3,
             3, 6},
            {"back_mm", "mm", "cut behind the middle of the gap", 0, -6, 6}},
           place_body};

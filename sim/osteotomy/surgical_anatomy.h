@@ -66,6 +66,7 @@ class SurgicalAnatomy {
                                double least_x) const;
 
   std::vector<std::string> notes;  // what was estimated
+  std::vector<std::string> rooms;  // see PlacedOsteotomy
 
  private:
   const Case& patient_;

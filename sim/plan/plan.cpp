@@ -142,6 +142,20 @@ Problem problem_in(const MoveStep& step) {
   return std::nullopt;
 }
 
+Problem problem_in(const TrimStep& step) {
+  if (auto found = name_problem("segment", step.segment)) return found;
+  if (step.of.empty())
+    return StepProblem{"of", "is empty; a trim names the segments that keep their bone"};
+  for (std::size_t i = 0; i < step.of.size(); ++i) {
+    const std::string item = fmt::format("of[{}]", i);
+    if (auto found = name_problem(item, step.of[i])) return found;
+    if (step.of[i] == step.segment) return StepProblem{item, "is the segment that is trimmed"};
+    if (std::count(step.of.begin(), step.of.end(), step.of[i]) > 1)
+      return StepProblem{item, "is named twice"};
+  }
+  return std::nullopt;
+}
+
 Problem problem_in(const NoteStep& note) {
   if (!note.text.empty() && note.text.size() <= max_text) return std::nullopt;
   return StepProblem{
@@ -165,17 +179,14 @@ void check_order(const Plan& plan) {
         if (const auto [known, is_new] = made.try_emplace(piece, i); !is_new)
           refuse_step(plan.steps[i], fmt::format("the piece \"{}\" is already made by {}", piece,
                                                  step_name(plan.steps[known->second])));
-  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
-    const auto* cut = std::get_if<CutStep>(&plan.steps[i].action);
-    const auto* move = std::get_if<MoveStep>(&plan.steps[i].action);
-    if (!cut && !move) continue;
-    const std::string& used = cut ? cut->target : move->segment;
-    const auto maker = made.find(used);
-    // A cut may give one of its pieces the name of what it cuts.
-    if (maker == made.end() || maker->second < i || (cut && maker->second == i)) continue;
-    refuse_step(plan.steps[i], fmt::format("needs \"{}\", which only {} makes", used,
-                                           step_name(plan.steps[maker->second])));
-  }
+  for (std::size_t i = 0; i < plan.steps.size(); ++i)
+    for (const std::string& used : used_segments(plan.steps[i].action)) {
+      const auto maker = made.find(used);
+      // A cut may give one of its pieces the name of what it cuts.
+      if (maker == made.end() || maker->second <= i) continue;
+      refuse_step(plan.steps[i], fmt::format("needs \"{}\", which only {} makes", used,
+                                             step_name(plan.steps[maker->second])));
+    }
 }
 
 }  // namespace
@@ -184,6 +195,7 @@ std::string step_title(const PlanAction& action) {
   if (const auto* cut = std::get_if<CutStep>(&action))
     return "cut " + (cut->osteotomy.empty() ? cut->target : cut->osteotomy);
   if (const auto* move = std::get_if<MoveStep>(&action)) return "move " + move->segment;
+  if (const auto* trim = std::get_if<TrimStep>(&action)) return "trim " + trim->segment;
   return "note";
 }
 
@@ -199,6 +211,17 @@ const PlanStep& step_of(const Plan& plan, int id) {
   throw InputError(fmt::format(
       "the plan has no step {}; {}", id,
       ids.empty() ? "it is empty" : fmt::format("its steps are {}", fmt::join(ids, ", "))));
+}
+
+std::vector<std::string> used_segments(const PlanAction& action) {
+  if (const auto* cut = std::get_if<CutStep>(&action)) return {cut->target};
+  if (const auto* move = std::get_if<MoveStep>(&action)) return {move->segment};
+  std::vector<std::string> used;
+  if (const auto* trim = std::get_if<TrimStep>(&action)) {
+    used = trim->of;
+    used.insert(used.begin(), trim->segment);
+  }
+  return used;
 }
 
 std::optional<StepProblem> problem_of(const PlanAction& action) {
@@ -223,20 +246,27 @@ void check_plan(const Plan& plan) {
       refuse_step(step, found->item.empty() ? found->problem : found->item + " " + found->problem);
   }
   check_order(plan);
+  std::set<std::string> zones;
+  for (const PlanZone& zone : plan.zones) {
+    if (const auto found = problem_of(zone))
+      throw InputError(
+          fmt::format("zone \"{}\": {} {}", zone.name.substr(0, 40), found->item, found->problem));
+    if (!zones.insert(zone.name).second)
+      throw InputError(fmt::format("the zone \"{}\" occurs twice", zone.name));
+  }
 }
 
 void check_segments(const Plan& plan, const BodyTree& bodies) {
   std::vector<std::string> known;
   for (const auto& body : bodies.bodies()) known.push_back(body.name);
   for (const auto& step : plan.steps) {
-    const auto* cut = std::get_if<CutStep>(&step.action);
-    const auto* move = std::get_if<MoveStep>(&step.action);
-    const std::string used = cut ? cut->target : move ? move->segment : "";
-    if (!used.empty() && std::find(known.begin(), known.end(), used) == known.end())
-      refuse_step(step, fmt::format("\"{}\" is neither a body of the case nor made by a cut before "
-                                    "this step{}",
-                                    used, suggestion(used, known)));
-    if (cut) known.insert(known.end(), cut->pieces.begin(), cut->pieces.end());
+    for (const std::string& used : used_segments(step.action))
+      if (!used.empty() && std::find(known.begin(), known.end(), used) == known.end())
+        refuse_step(step, fmt::format("\"{}\" is neither a body of the case nor made by a cut "
+                                      "before this step{}",
+                                      used, suggestion(used, known)));
+    if (const auto* cut = std::get_if<CutStep>(&step.action))
+      known.insert(known.end(), cut->pieces.begin(), cut->pieces.end());
   }
 }
 
@@ -279,6 +309,27 @@ Plan with_reordered(Plan plan, int id, std::size_t position) {
   return plan;
 }
 
+Plan with_zone(Plan plan, PlanZone zone) {
+  const auto known = std::find_if(plan.zones.begin(), plan.zones.end(),
+                                  [&](const PlanZone& each) { return each.name == zone.name; });
+  if (known != plan.zones.end())
+    *known = std::move(zone);
+  else
+    plan.zones.push_back(std::move(zone));
+  check_plan(plan);
+  return plan;
+}
+
+Plan without_zone(Plan plan, const std::string& name) {
+  std::vector<std::string> known;
+  for (const PlanZone& zone : plan.zones) known.push_back(zone.name);
+  if (std::erase_if(plan.zones, [&](const PlanZone& zone) { return zone.name == name; }) == 0)
+    throw InputError(fmt::format(
+        "the plan has no zone \"{}\"{}; {}", name, suggestion(name, known),
+        known.empty() ? "it has none" : fmt::format("it has {}", fmt::join(known, ", "))));
+  return plan;
+}
+
 Plan with_recut(Plan plan, int id, const CutStep& cut) {
   const auto at = step_with(plan, id);
   const auto* known = std::get_if<CutStep>(&at->action);
@@ -291,15 +342,21 @@ Plan with_recut(Plan plan, int id, const CutStep& cut) {
     if (step.id == id) continue;
     auto* later = std::get_if<CutStep>(&step.action);
     auto* move = std::get_if<MoveStep>(&step.action);
-    if (!later && !move) continue;
-    std::string& used = later ? later->target : move->segment;
-    const auto found = renamed.find(used);
-    if (found == renamed.end() || found->second == used) continue;
-    // The point that a move is about by default depends on the segment's name.
-    if (move)
-      if (auto* words = std::get_if<ClinicalMove>(&move->move))
-        words->about = point_name(*words, used);
-    used = found->second;
+    const auto rename = [&](std::string& used) {
+      const auto found = renamed.find(used);
+      if (found == renamed.end() || found->second == used) return;
+      // The point that a move is about by default depends on the segment's name.
+      if (move)
+        if (auto* words = std::get_if<ClinicalMove>(&move->move))
+          words->about = point_name(*words, used);
+      used = found->second;
+    };
+    if (later) rename(later->target);
+    if (move) rename(move->segment);
+    if (auto* trim = std::get_if<TrimStep>(&step.action)) {
+      rename(trim->segment);
+      for (std::string& other : trim->of) rename(other);
+    }
   }
   check_plan(plan);
   return plan;

@@ -13,6 +13,7 @@
 #include "sim/plan/case_geometry.h"
 #include "sim/plan/clinical_frame.h"
 #include "sim/plan/move.h"
+#include "sim/plan/plan_zone.h"
 
 namespace condyle {
 
@@ -80,13 +81,23 @@ struct MoveStep {
   bool operator==(const MoveStep&) const = default;
 };
 
+/// Removes from a segment the bone that lies beyond the cut faces of other segments at the planned
+/// positions. Trims are replayed after all cuts and moves, in their order.
+struct TrimStep {
+  std::string segment = {};
+  std::vector<std::string> of = {};  // the segments that keep their bone
+  bool below_margins = false;        // on request, as for a cut
+
+  bool operator==(const TrimStep&) const = default;
+};
+
 struct NoteStep {
   std::string text = {};
 
   bool operator==(const NoteStep&) const = default;
 };
 
-using PlanAction = std::variant<CutStep, MoveStep, NoteStep>;
+using PlanAction = std::variant<CutStep, MoveStep, TrimStep, NoteStep>;
 
 struct PlanStep {
   int id = 0;  // stays with the step when others are added, removed or reordered
@@ -101,6 +112,7 @@ struct Plan {
   CaseGeometry geometry = {};  // of the case that it was made for
   HeadReference reference = {};
   std::vector<PlanStep> steps = {};
+  std::vector<PlanZone> zones = {};  // the user's own danger zones, at the uncut rest
 
   bool operator==(const Plan&) const = default;
 };
@@ -116,6 +128,10 @@ Plan with_replaced(Plan plan, int id, PlanAction action);
 Plan with_move(Plan plan, const MoveStep& move);
 Plan without_step(Plan plan, int id);
 Plan with_reordered(Plan plan, int id, std::size_t position);  // 0: first
+/// Adds a danger zone, or replaces the one of its name.
+Plan with_zone(Plan plan, PlanZone zone);
+/// throws: InputError for a name that the plan lacks.
+Plan without_zone(Plan plan, const std::string& name);
 /// Replaces a cut. Where it makes as many segments as before under other names, the other steps
 /// follow: what moved or cut the old segment does the same to the new one.
 Plan with_recut(Plan plan, int id, const CutStep& cut);
@@ -124,12 +140,15 @@ Plan with_recut(Plan plan, int id, const CutStep& cut);
 const PlanStep& step_of(const Plan& plan, int id);
 
 /// Refuses what no case could replay: values that are not finite or out of range, cuts without
-/// osteotomy and surfaces, names of pieces that are used twice, and steps that cut or move a
+/// osteotomy and surfaces, names of pieces that are used twice, and steps that cut, move or trim a
 /// segment which a later step makes. throws: InputError naming step, item and value.
 void check_plan(const Plan& plan);
 
-/// Refuses steps that cut or move what is neither a body of the case nor made by an earlier cut, as
-/// after a cut was removed. throws: InputError naming the step and the segment.
+/// The segments that a step cuts, moves or trims, by name; empty names: those of the osteotomy.
+std::vector<std::string> used_segments(const PlanAction& action);
+
+/// Refuses steps that cut, move or trim what is neither a body of the case nor made by an earlier
+/// cut, as after a cut was removed. throws: InputError naming the step and the segment.
 void check_segments(const Plan& plan, const BodyTree& bodies);
 
 /// A value of a step that is refused: the item's name within it ("surfaces[0].normal").

@@ -79,7 +79,27 @@ Json step_json(const MoveStep& step) {
   return {{"move", item}};
 }
 
+Json step_json(const TrimStep& step) {
+  Json item = {{"segment", step.segment}, {"of", step.of}};
+  if (step.below_margins) item["below_margins"] = true;
+  return {{"trim", item}};
+}
+
 Json step_json(const NoteStep& note) { return {{"note", note.text}}; }
+
+/// Points and triangles are flat lists, so that each keeps to one line.
+Json zone_json(const PlanZone& zone) {
+  Json item = {{"name", zone.name}, {"kind", zone_kind_name(zone.kind)}};
+  if (zone.radius_mm > 0) item["radius_mm"] = zone.radius_mm;
+  if (zone.warn_mm) item["warn_mm"] = *zone.warn_mm;
+  if (zone.stop_mm) item["stop_mm"] = *zone.stop_mm;
+  item["points"] = Json::array();
+  for (const Vector3d& p : zone.points)
+    for (const double coordinate : p) item["points"].push_back(coordinate);
+  for (const Eigen::Vector3i& t : zone.triangles)
+    for (const int corner : t) item["triangles"].push_back(corner);
+  return item;
+}
 
 std::string line_of(const Json& value) {
   std::string text;
@@ -162,6 +182,13 @@ std::vector<std::string> texts_in(const JsonItem& list) {
   return texts;
 }
 
+bool below_margins_in(const JsonItem& item) {
+  const auto below = item.find("below_margins");
+  if (!below) return false;
+  if (!below->value().is_boolean()) below->refuse("must be true or false");
+  return below->value().get<bool>();
+}
+
 CutSurface surface_in(const JsonItem& item) {
   const std::string kind = item.at("kind").text();
   if (kind == "plane") {
@@ -203,11 +230,49 @@ CutStep cut_in(const JsonItem& item) {
     for (std::size_t i = 0; i < surfaces->size(); ++i)
       cut.surfaces.push_back(surface_in(surfaces->at(i)));
   cut.pieces = texts_in(item.at("pieces"));
-  if (const auto below = item.find("below_margins")) {
-    if (!below->value().is_boolean()) below->refuse("must be true or false");
-    cut.below_margins = below->value().get<bool>();
-  }
+  cut.below_margins = below_margins_in(item);
   return cut;
+}
+
+TrimStep trim_in(const JsonItem& item) {
+  item.only_keys({"segment", "of", "below_margins"});
+  return {.segment = item.at("segment").text(),
+          .of = texts_in(item.at("of")),
+          .below_margins = below_margins_in(item)};
+}
+
+PlanZone zone_in(const fs::path& file, const JsonItem& item) {
+  item.only_keys({"name", "kind", "radius_mm", "warn_mm", "stop_mm", "points", "triangles"});
+  PlanZone zone{.name = item.at("name").text()};
+  const std::string kind = item.at("kind").text();
+  const auto known = zone_kind_named(kind);
+  if (!known)
+    item.at("kind").refuse("is \"" + kind + "\"; it must be tooth, canal, foramen or other");
+  zone.kind = *known;
+  zone.radius_mm = number_in(item, "radius_mm", 0);
+  if (const auto warn = item.find("warn_mm")) zone.warn_mm = number_in(*warn);
+  if (const auto stop = item.find("stop_mm")) zone.stop_mm = number_in(*stop);
+  const auto refuse_length = [](const JsonItem& list, std::size_t most) {
+    if (list.size() % 3 != 0 || list.size() > 3 * most)
+      list.refuse(
+          fmt::format("has {} numbers; expected three each for at most {}", list.size(), most));
+  };
+  const JsonItem points = item.at("points");
+  refuse_length(points, max_zone_points);
+  for (std::size_t i = 0; i < points.size(); i += 3)
+    zone.points.emplace_back(number_in(points.at(i)), number_in(points.at(i + 1)),
+                             number_in(points.at(i + 2)));
+  if (const auto triangles = item.find("triangles")) {
+    refuse_length(*triangles, max_zone_triangles);
+    const auto corner = [&](std::size_t i) {
+      return triangles->at(i).integer(0, static_cast<int>(max_zone_points));
+    };
+    for (std::size_t i = 0; i < triangles->size(); i += 3)
+      zone.triangles.emplace_back(corner(i), corner(i + 1), corner(i + 2));
+  }
+  if (const auto found = problem_of(zone))
+    throw InputError(file, item.name() + "." + found->item, found->problem);
+  return zone;
 }
 
 MoveStep move_in(const JsonItem& item) {
@@ -231,8 +296,8 @@ MoveStep move_in(const JsonItem& item) {
 }
 
 PlanStep step_in(const fs::path& file, const JsonItem& item) {
-  item.only_keys({"id", "cut", "move", "note"});
-  if (item.value().size() != 2) item.refuse("must have an id and one of cut, move and note");
+  item.only_keys({"id", "cut", "move", "trim", "note"});
+  if (item.value().size() != 2) item.refuse("must have an id and one of cut, move, trim and note");
   PlanStep step{.id = item.at("id").integer(1, 1000000)};
   std::string kind;
   if (const auto cut = item.find("cut")) {
@@ -241,6 +306,9 @@ PlanStep step_in(const fs::path& file, const JsonItem& item) {
   } else if (const auto move = item.find("move")) {
     step.action = move_in(*move);
     kind = "move";
+  } else if (const auto trim = item.find("trim")) {
+    step.action = trim_in(*trim);
+    kind = "trim";
   } else {
     step.action = NoteStep{item.at("note").text()};
     kind = "note";
@@ -309,8 +377,15 @@ void check_format(const JsonItem& root) {
 
 }  // namespace
 
+int version_of(const Plan& plan) {
+  const bool trims = std::any_of(plan.steps.begin(), plan.steps.end(), [](const PlanStep& step) {
+    return std::holds_alternative<TrimStep>(step.action);
+  });
+  return trims || !plan.zones.empty() ? 2 : 1;
+}
+
 std::string plan_json(const Plan& plan) {
-  Json root = {{"format", plan_format}, {"version", plan_version}, {"name", plan.name}};
+  Json root = {{"format", plan_format}, {"version", version_of(plan)}, {"name", plan.name}};
   Json& geometry = root["case"] = {{"name", plan.geometry.name}, {"parts", Json::array()}};
   for (const auto& part : plan.geometry.parts)
     geometry["parts"].push_back(
@@ -326,6 +401,7 @@ std::string plan_json(const Plan& plan) {
     item.update(std::visit([](const auto& action) { return step_json(action); }, step.action));
     root["steps"].push_back(item);
   }
+  for (const PlanZone& zone : plan.zones) root["zones"].push_back(zone_json(zone));
   std::string text;
   put_indented(text, root, 0);
   return text + "\n";
@@ -336,13 +412,16 @@ Plan parse_plan(const fs::path& file, std::string_view text) {
   const JsonItem root = json.root();
   check_format(root);
   check_keys(file, text);
-  root.only_keys({"format", "version", "name", "case", "reference", "steps"});
+  root.only_keys({"format", "version", "name", "case", "reference", "steps", "zones"});
   Plan plan{.name = root.at("name").text(),
             .geometry = geometry_in(root.at("case")),
             .reference = reference_in(root.at("reference")),
             .steps = {}};
   const JsonItem steps = root.at("steps");
   for (std::size_t i = 0; i < steps.size(); ++i) plan.steps.push_back(step_in(file, steps.at(i)));
+  if (const auto zones = root.find("zones"))
+    for (std::size_t i = 0; i < zones->size(); ++i)
+      plan.zones.push_back(zone_in(file, zones->at(i)));
   try {
     check_plan(plan);
   } catch (const InputError& error) {

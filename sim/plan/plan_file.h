@@ -10,7 +10,10 @@ namespace condyle {
 
 /// Format and version stated in a plan file.
 constexpr const char* plan_format = "condyle plan";
-constexpr int plan_version = 1;
+constexpr int plan_version = 2;
+
+/// The version that a plan is written as: 1, which has neither trims nor zones, where it is enough.
+int version_of(const Plan& plan);
 
 /// The text of a plan file: JSON, from which parse_plan() reads each number back to the bit.
 std::string plan_json(const Plan& plan);

@@ -11,6 +11,7 @@
 #include "sim/frame/part_names.h"
 #include "sim/operation/cut_text.h"
 #include "sim/operation/edit_cut.h"
+#include "sim/operation/trim_segments.h"
 #include "sim/osteotomy/osteotomy.h"
 #include "sim/plan/cephalometry.h"
 #include "sim/plan/clinical_frame.h"
@@ -175,6 +176,13 @@ PlanStepView step_view(const Plan& plan, const Operated& operated, const PlanSte
   } else if (const auto* move = std::get_if<MoveStep>(&step.action)) {
     view.title = "Move " + readable_name(move->segment);
     view.numbers = numbers_of(operated, plan, *move);
+  } else if (const auto* trim = std::get_if<TrimStep>(&step.action)) {
+    view.title = "Trim " + readable_name(trim->segment);
+    for (const TrimReport& report : operated.trims) {
+      if (report.step != step.id) continue;
+      view.findings = trim_sentences(report);
+      view.warns = report.is_dangerous();
+    }
   }
   return view;
 }

@@ -16,6 +16,7 @@
 #include "sim/frame/part_names.h"
 #include "sim/operation/cut_text.h"
 #include "sim/operation/segment_overlaps.h"
+#include "sim/operation/trim_segments.h"
 #include "sim/plan/cephalometry.h"
 #include "sim/plan/plan_file.h"
 #include "sim/prediction/predicted_landmarks.h"
@@ -140,13 +141,21 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
   });
   add_table(
       "Segments", bones_table(operated),
-      fmt::format("The volumes of the pieces and the saw cuts add up to the bone within {:.1g} %.",
+      fmt::format("The volumes of the pieces, the saw cuts and the trimmed bone add up to the bone "
+                  "within {:.1g} %.",
                   json["volume_error_percent"].get<double>()));
   body_ += "<h2>Cuts</h2>\n";
   for (const CutReport& cut : operated.cuts) {
     body_ +=
         "<p><strong>" + escaped(cut.title) + "</strong>, " + escaped(cut.bone) + "</p>\n<ul>\n";
     for (const std::string& sentence : cut_sentences(cut, operated.patient.landmarks))
+      body_ += "<li>" + escaped(sentence) + "</li>\n";
+    body_ += "</ul>\n";
+  }
+  for (const TrimReport& trim : operated.trims) {
+    body_ +=
+        "<p><strong>" + escaped(trim.title) + "</strong>, " + escaped(trim.part) + "</p>\n<ul>\n";
+    for (const std::string& sentence : trim_sentences(trim))
       body_ += "<li>" + escaped(sentence) + "</li>\n";
     body_ += "</ul>\n";
   }
@@ -158,7 +167,8 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
     add_table("Movements of the bone",
               movements_table(movement_table(before, frame, operated.patient.bodies,
                                              operated.owners, operated.poses)));
-    const Landmarks planned = soft ? *soft : moved_landmarks(before, operated.owners, operated.poses);
+    const Landmarks planned =
+        soft ? *soft : moved_landmarks(before, operated.owners, operated.poses);
     add_table("Cephalometry", cephalometry_table(cephalometry(frame, before, planned), !!soft),
               "Norms: published means of European adults with one standard deviation.");
   } catch (const InputError& error) {

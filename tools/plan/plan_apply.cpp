@@ -27,9 +27,10 @@ struct PlanApplyOptions {
 int run_plan_show(const PlanApplyOptions& options, const CommonOptions& common) {
   const Plan plan = load_plan(options.file);
   if (options.patient.empty()) {
-    fmt::print("{}", common.json ? plan_json(plan)
-                                 : fmt::format("{}, a plan for {}\n{}", plan.name,
-                                               plan.geometry.name, steps_text(plan)));
+    fmt::print("{}", common.json
+                         ? plan_json(plan)
+                         : fmt::format("{}, a plan for {}\n{}{}", plan.name, plan.geometry.name,
+                                       steps_text(plan), zones_text(plan)));
     return 0;
   }
   const Operated operated = apply_plan(open_planned(options.patient, plan, common), plan);

@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/core/similar_word.h"
 #include "sim/operation/cut_text.h"
+#include "sim/phantom/phantom.h"
 #include "sim/plan/plan_file.h"
 #include "sim/plan/plan_history_file.h"
 #include "tools/commands.h"
@@ -38,6 +39,17 @@ Case open_planned(const std::string& patient, const std::optional<Plan>& plan,
   return opened;
 }
 
+std::optional<Case> case_of_plan(const std::string& patient, const Plan& plan,
+                                 const CommonOptions& common) {
+  if (!patient.empty()) return open_planned(patient, plan, common);
+  const std::string& name = plan.geometry.name;
+  if (name != builtin_case_name && !is_head_name(name)) return std::nullopt;
+  Case head = open_planned({}, plan, common);
+  if (compare_geometry(plan.geometry, geometry_of(head)).match == CaseMatch::other_case)
+    return std::nullopt;
+  return head;
+}
+
 void print_plan_notes(const CommonOptions& common, const std::vector<std::string>& notes) {
   if (!common.prints_summary()) return;
   for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
@@ -46,8 +58,8 @@ void print_plan_notes(const CommonOptions& common, const std::vector<std::string
 void print_edited(const Plan& plan, const fs::path& file, const CommonOptions& common) {
   if (common.json) fmt::print("{}", plan_json(plan));
   if (common.prints_summary())
-    fmt::print(stderr, "{}: {}, {} step{}\n{}", file.string(), plan.name, plan.steps.size(),
-               plan.steps.size() == 1 ? "" : "s", steps_text(plan));
+    fmt::print(stderr, "{}: {}, {} step{}\n{}{}", file.string(), plan.name, plan.steps.size(),
+               plan.steps.size() == 1 ? "" : "s", steps_text(plan), zones_text(plan));
 }
 
 void finish_edit(const Plan& plan, const fs::path& file, const std::string& edit,
@@ -75,9 +87,10 @@ void add_plan(Commands& commands) {
                                        "condyle plan new --out plan.json\n"
                                        "  condyle plan cut plan.json le_fort_1\n"
                                        "  condyle plan move plan.json maxilla forward 4 up 2");
-  for (const auto add : {add_plan_new, add_plan_cut, add_plan_edit, add_plan_move, add_plan_occlude,
-                         add_plan_note, add_plan_reorder, add_plan_remove, add_plan_undo,
-                         add_plan_redo, add_plan_show, add_plan_apply, add_plan_compare})
+  for (const auto add :
+       {add_plan_new, add_plan_cut, add_plan_edit, add_plan_move, add_plan_occlude, add_plan_trim,
+        add_plan_zone, add_plan_note, add_plan_reorder, add_plan_remove, add_plan_undo,
+        add_plan_redo, add_plan_show, add_plan_apply, add_plan_compare})
     add(commands, plan);
 }
 

@@ -15,6 +15,8 @@ namespace condyle {
 void add_plan_new(Commands& commands, CLI::App& plan);
 void add_plan_cut(Commands& commands, CLI::App& plan);
 void add_plan_move(Commands& commands, CLI::App& plan);
+void add_plan_trim(Commands& commands, CLI::App& plan);
+void add_plan_zone(Commands& commands, CLI::App& plan);
 void add_plan_occlude(Commands& commands, CLI::App& plan);
 void add_plan_edit(Commands& commands, CLI::App& plan);  // in plan_cut.cpp
 void add_plan_show(Commands& commands, CLI::App& plan);  // in plan_apply.cpp
@@ -38,6 +40,11 @@ void add_plan_case(CLI::App& command, std::string& patient,
 /// was made for, else the built-in patient.
 Case open_planned(const std::string& patient, const std::optional<Plan>& plan,
                   const CommonOptions& common);
+
+/// The case where it is given, else the built-in head that the plan names; absent where the plan is
+/// for another.
+std::optional<Case> case_of_plan(const std::string& patient, const Plan& plan,
+                                 const CommonOptions& common);
 
 void print_plan_notes(const CommonOptions& common, const std::vector<std::string>& notes);
 

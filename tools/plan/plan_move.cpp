@@ -6,7 +6,6 @@
 
 #include "engine/core/error.h"
 #include "sim/operation/move_collision.h"
-#include "sim/phantom/phantom.h"
 #include "sim/plan/move_words.h"
 #include "sim/plan/plan_file.h"
 #include "tools/plan/plan_command.h"
@@ -21,20 +20,6 @@ struct PlanMoveOptions {
   std::string patient;
   bool slide = false, despite_collision = false;
 };
-
-/// The case on which the move is checked; none where the plan's own is unknown.
-std::optional<Case> case_of(const PlanMoveOptions& options, const Plan& plan,
-                            const CommonOptions& common) {
-  if (!options.patient.empty()) return open_planned(options.patient, plan, common);
-  const std::string& name = plan.geometry.name;
-  if (name == builtin_case_name || is_head_name(name)) {
-    Case head = open_planned({}, plan, common);
-    if (compare_geometry(plan.geometry, geometry_of(head)).match != CaseMatch::other_case)
-      return head;
-  }
-  print_plan_notes(common, {"collisions of the move are not checked: give the case with --case"});
-  return std::nullopt;
-}
 
 /// The move, or the free part of it where it slides. Reports the overlaps that it makes. throws:
 /// InputError for a move that collides.
@@ -54,8 +39,12 @@ MoveStep checked_move(const Case& patient, const Plan& plan, MoveStep move,
     operated = apply_plan(patient, with_move(plan, move));
   }
   std::vector<std::string> texts;
-  for (const SegmentOverlap& overlap : segment_overlaps(operated, move.segment))
+  bool is_trimmed = false;
+  for (const SegmentOverlap& overlap : segment_overlaps(operated, move.segment)) {
     texts.push_back(overlap_text(overlap, patient.landmarks));
+    is_trimmed = is_trimmed || overlap.kind == SegmentOverlap::Kind::trimmed;
+  }
+  if (is_trimmed) texts.push_back("condyle plan trim removes the overlap of one of two segments");
   print_plan_notes(common, texts);
   return move;
 }
@@ -67,8 +56,10 @@ int run_plan_move(const PlanMoveOptions& options, const CommonOptions& common) {
   const Landmarks& landmarks = plan.geometry.landmarks;
   MoveStep move{options.segment, completed_move(written, options.segment, landmarks,
                                                 clinical_frame(landmarks, plan.reference))};
-  if (const auto patient = case_of(options, plan, common))
+  if (const auto patient = case_of_plan(options.patient, plan, common))
     move = checked_move(*patient, plan, std::move(move), options, common);
+  else
+    print_plan_notes(common, {"collisions of the move are not checked: give the case with --case"});
   plan = with_move(std::move(plan), move);
   finish_edit(plan, options.file, step_title(move), common);
   return 0;

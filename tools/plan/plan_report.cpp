@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "sim/operation/cut_text.h"
 #include "sim/operation/segment_overlaps.h"
+#include "sim/operation/trim_segments.h"
 #include "sim/plan/cephalometry.h"
 
 namespace condyle {
@@ -59,6 +60,9 @@ Json danger_json(const DangerFinding& finding) {
                                                            : "clear";
   return {{"zone", finding.zone},
           {"distance_mm", finding.distance_mm},
+          {"warn_mm", finding.margin.warn_mm},
+          {"stop_mm", finding.margin.stop_mm},
+          {"interdental", finding.interdental},
           {"at_mm", {finding.at.x(), finding.at.y(), finding.at.z()}},
           {"level", level}};
 }
@@ -84,7 +88,28 @@ Json cut_json(const CutReport& cut) {
                               {"slivers", piece.slivers}});
   json["kerf_volume_mm3"] = cut.kerf_volume_mm3;
   json["volume_error_percent"] = cut.volume_error_percent();
+  if (!cut.rooms.empty()) json["interdental_room"] = cut.rooms;
   json["notes"] = cut.notes;
+  return json;
+}
+
+Json trim_json(const TrimReport& trim) {
+  Json json = {{"step", trim.step}, {"title", trim.title}, {"segment", trim.segment}};
+  json["removed"] = Json::array();
+  for (const auto& share : trim.shares)
+    json["removed"].push_back({{"beyond_faces_of", share.of}, {"volume_mm3", share.volume_mm3}});
+  json["fragments"] = trim.fragments;
+  json["fragments_volume_mm3"] = trim.fragments_mm3;
+  json["removed_volume_mm3"] = trim.removed_mm3();
+  json["volume_before_mm3"] = trim.before_mm3;
+  json["volume_after_mm3"] = trim.after_mm3;
+  json["separate_pieces"] = trim.pieces;
+  json["danger_zones"] = Json::array();
+  for (const DangerFinding& finding : trim.dangers)
+    json["danger_zones"].push_back(danger_json(finding));
+  json["below_margins"] = trim.below_margins;
+  json["volume_error_percent"] = trim.volume_error_percent();
+  json["notes"] = trim.notes;
   return json;
 }
 
@@ -113,6 +138,12 @@ std::string cut_text(const CutReport& cut, const Landmarks& landmarks) {
   return text;
 }
 
+std::string trim_text(const TrimReport& trim) {
+  std::string text = fmt::format("step {} ({}), {}\n", trim.step, trim.title, trim.part);
+  for (const std::string& sentence : trim_sentences(trim)) text += "  " + sentence + "\n";
+  return text;
+}
+
 }  // namespace
 
 Json plan_report_json(const Plan& plan, const Operated& operated) {
@@ -124,6 +155,7 @@ Json plan_report_json(const Plan& plan, const Operated& operated) {
     if (bone.is_segment) item["parent"] = bone.parent;
     item["volume_mm3"] = bone.volume_mm3;
     item["closed"] = bone.closed;
+    if (bone.trimmed_mm3 > 0) item["trimmed_mm3"] = bone.trimmed_mm3;
     json[bone.is_segment ? "segments" : "remaining"].push_back(std::move(item));
   }
   double error = 0;
@@ -131,6 +163,11 @@ Json plan_report_json(const Plan& plan, const Operated& operated) {
   for (const CutReport& cut : operated.cuts) {
     json["cuts"].push_back(cut_json(cut));
     error = std::max(error, cut.volume_error_percent());
+  }
+  json["trims"] = Json::array();
+  for (const TrimReport& trim : operated.trims) {
+    json["trims"].push_back(trim_json(trim));
+    error = std::max(error, trim.volume_error_percent());
   }
   json["volume_error_percent"] = error;
   json["overlaps"] = Json::array();
@@ -148,10 +185,11 @@ Json plan_report_json(const Plan& plan, const Operated& operated) {
 }
 
 std::string plan_report_text(const Plan& plan, const Operated& operated) {
-  std::string text =
-      fmt::format("{}, a plan for {}\n{}", plan.name, operated.patient.name, steps_text(plan));
+  std::string text = fmt::format("{}, a plan for {}\n{}{}", plan.name, operated.patient.name,
+                                 steps_text(plan), zones_text(plan));
   for (const CutReport& cut : operated.cuts)
     text += "\n" + cut_text(cut, operated.patient.landmarks);
+  for (const TrimReport& trim : operated.trims) text += "\n" + trim_text(trim);
   text += overlaps_text(operated);
   std::string problem;
   if (const auto frame = frame_of(plan, operated, problem))
@@ -168,6 +206,8 @@ std::string cut_report_text(const Operated& operated, int step) {
   std::string text;
   for (const CutReport& cut : operated.cuts)
     if (cut.step == step) text += cut_text(cut, operated.patient.landmarks);
+  for (const TrimReport& trim : operated.trims)
+    if (trim.step == step) text += trim_text(trim);
   return text;
 }
 

@@ -23,10 +23,9 @@ int run_plan_remove(const PlanStepOptions& options, const CommonOptions& common)
   const Plan plan = without_step(before, options.step);
   finish_edit(plan, options.file, "remove " + step_name(step_of(before, options.step)), common);
   for (const PlanStep& step : plan.steps) {
-    const auto* move = std::get_if<MoveStep>(&step.action);
-    if (!move) continue;
+    if (std::holds_alternative<CutStep>(step.action)) continue;
     try {
-      check_segment(plan, move->segment);
+      for (const std::string& segment : used_segments(step.action)) check_segment(plan, segment);
     } catch (const InputError& error) {
       print_plan_notes(common, {step_name(step) + ": " + error.what()});
     }

@@ -14,10 +14,12 @@ Case bar_with_zones() {
   Part bone;
   bone.name = "mandible";
   bone.role = Role::mandible;
+  bone.body = mandible_body;
   bone.mesh = test::box({0, 0, 0}, {40, 10, 20});
   Part teeth;
   teeth.name = "lower_teeth";
   teeth.role = Role::lower_teeth;
+  teeth.body = mandible_body;
   const TriMesh one = test::sphere(2, 2, {12, 5, 18}), two = test::sphere(2, 2, {30, 5, 18});
   teeth.mesh = test::joined(one, two);
   const int count = static_cast<int>(one.triangles.size());
@@ -30,7 +32,7 @@ Case bar_with_zones() {
 
 std::vector<DangerFinding> findings_of(const Cut& cut) {
   const Case patient = bar_with_zones();
-  return check_danger_zones(danger_zones(patient),
+  return check_danger_zones(danger_zones(patient, patient.parts[0]),
                             cut_bone(patient.parts[0].mesh, {&cut, 1}).pieces);
 }
 
@@ -75,6 +77,56 @@ TEST(DangerZones, ACutAboveTheCanalIsWarnedOfByItsMargin) {
 
 TEST(DangerZones, ACutThatMissesTheBoneEndangersNothing) {
   EXPECT_TRUE(findings_of({"off", Region::above({Eigen::Vector3d::UnitX(), 50}), {}, 0}).empty());
+}
+
+TEST(DangerZones, AreThoseOfTheCutBoneAlone) {
+  Case patient = bar_with_zones();
+  Part upper = patient.parts[1];  // an upper tooth beside the cut
+  upper.name = "upper_teeth";
+  upper.role = Role::upper_teeth;
+  upper.body = cranium_body;
+  upper.teeth = {{16, 0, upper.teeth[0].triangle_count}};
+  patient.parts.push_back(upper);
+  patient.landmarks.points["left_infraorbital_foramen"] = {20, 0, 8};
+  const Cut cut{"across", Region::above({Eigen::Vector3d::UnitX(), 20}), {}, 1};
+  const auto pieces = cut_bone(patient.parts[0].mesh, {&cut, 1}).pieces;
+  const auto findings = check_danger_zones(danger_zones(patient, patient.parts[0]), pieces);
+  EXPECT_EQ(findings.size(), 4u);
+  EXPECT_FALSE(named(findings, "tooth 16"));
+  EXPECT_FALSE(named(findings, "left infraorbital foramen"));
+  EXPECT_TRUE(named(findings, "tooth 36"));
+  // After a cut, to the piece: of a foramen the nearest.
+  Part piece = patient.parts[0];
+  piece.name = "far";
+  piece.role = Role::segment;
+  piece.body =
+      patient.bodies.add({.name = "far", .parent = mandible_body, .driver = BodyDriver::plan});
+  piece.mesh = test::box({0, 0, 21}, {40, 10, 30});
+  patient.parts.push_back(piece);
+  EXPECT_TRUE(danger_zones(patient, piece).empty());
+  EXPECT_EQ(danger_zones(patient, patient.parts[0]).size(), 4u);
+}
+
+TEST(DangerZones, OfTheUsersOwnCountWithTheirMargins) {
+  const Cut cut{"across", Region::above({Eigen::Vector3d::UnitX(), 20}), {}, 1};
+  const auto pieces = cut_bone(bar_with_zones().parts[0].mesh, {&cut, 1}).pieces;
+  const auto finding = [&](const PlanZone& zone) {
+    return check_danger_zones({own_zone(zone)}, pieces).at(0);
+  };
+  // A line of radius 1.5 at x = 26; the face is at 20.5.
+  const PlanZone line{.name = "artery", .radius_mm = 1.5, .points = {{26, 5, 0}, {26, 5, 20}}};
+  EXPECT_NEAR(finding(line).distance_mm, 4, 1e-9);
+  EXPECT_EQ(finding(line).level, DangerLevel::warn);
+  PlanZone strict = line;
+  strict.stop_mm = 4.5;
+  EXPECT_EQ(finding(strict).level, DangerLevel::stop);
+  EXPECT_EQ(danger_text(finding(strict)),
+            "artery: 4.0 mm from the cut; at least 4.5 mm are needed");
+  // A large box around the cut: its surface is far away, and the cut lies inside.
+  const TriMesh around = test::box({-20, -20, -20}, {60, 30, 40});
+  const PlanZone tumour{.name = "tumour", .points = around.vertices, .triangles = around.triangles};
+  EXPECT_LT(finding(tumour).distance_mm, -19);
+  EXPECT_EQ(finding(tumour).level, DangerLevel::stop);
 }
 
 }  // namespace

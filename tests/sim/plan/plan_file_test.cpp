@@ -52,6 +52,40 @@ double any_double(std::mt19937_64& random) {
 
 }  // namespace
 
+TEST(PlanFile, TrimsAndZonesNeedVersion2) {
+  EXPECT_EQ(version_of(sample_plan()), 1);
+  const Plan trimmed = with_step(sample_plan(), TrimStep{"chin", {"mandible rest"}, true});
+  EXPECT_EQ(version_of(trimmed), 2);
+  const PlanZone line{.name = "artery", .radius_mm = 1.5, .points = {{0.1, 2, 3}, {4, 5, 1.0 / 3}}};
+  const PlanZone surface{.name = "tumour",
+                         .kind = ZoneKind::tooth,
+                         .warn_mm = 8,
+                         .stop_mm = 6,
+                         .points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                         .triangles = {{0, 1, 2}}};
+  const Plan plan = with_zone(with_zone(trimmed, line), surface);
+  EXPECT_EQ(parse_plan("plan.json", plan_json(plan)), plan);
+  EXPECT_EQ(with_zone(plan, line), plan);  // replaces the one of its name
+  EXPECT_EQ(without_zone(without_zone(plan, "artery"), "tumour"), trimmed);
+  const auto refused = [&](const std::string& from, const std::string& to) {
+    std::string text = plan_json(plan);
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    return parse_refusal(text);
+  };
+  EXPECT_NE(refused("[0, 1, 2]", "[0, 1, 3]").find("zones[1].triangles[0]"), std::string::npos);
+  EXPECT_NE(refused("[0, 1, 2]", "[0, 1]").find("2 numbers"), std::string::npos);
+  EXPECT_NE(refused("\"tooth\"", "\"nerve\"").find("tooth, canal, foramen or other"),
+            std::string::npos);
+  EXPECT_NE(refused("\"radius_mm\": 1.5", "\"radius_mm\": -1").find("radius_mm"),
+            std::string::npos);
+  EXPECT_NE(refused("\"of\": [\"mandible rest\"]", "\"of\": []").find("steps[5].trim.of"),
+            std::string::npos);
+  EXPECT_NE(refused("\"of\": [\"mandible rest\"]", "\"of\": [\"chin\"]").find("of[0]"),
+            std::string::npos);
+}
+
 TEST(PlanFile, ReadsBackAsItWas) {
   const TempFolder folder;
   const Plan plan = sample_plan();
@@ -135,7 +169,7 @@ TEST(PlanFile, AnyPartOfAFileIsRefused) {
 }
 
 TEST(PlanFile, NewerVersionsAndOtherFormatsAreRefused) {
-  expect_refused("\"version\": 1", "\"version\": 2, \"colour\": 3", "version: is 2");
+  expect_refused("\"version\": 1", "\"version\": 3, \"colour\": 3", "version: is 3");
   expect_refused("\"version\": 1", "\"version\": 0", "version: is 0");
   expect_refused("\"version\": 1", "\"version\": 1.5", "version: is 1.5");
   expect_refused("condyle plan", "condyle case", "format: is \"condyle case\"");
