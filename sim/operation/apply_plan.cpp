@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/mesh/measure.h"
 #include "sim/operation/cut_case.h"
+#include "sim/operation/graft_steps.h"
 #include "sim/operation/operation.h"
 #include "sim/operation/owners.h"
 #include "sim/osteotomy/osteotomy.h"
@@ -149,12 +150,16 @@ Operated apply_plan(const Case& patient, const Plan& plan) {
   check_segments(plan, patient.bodies);
   check_case(patient, plan, operated.notes);
   operated.patient = patient;
-  for (const PlanStep& step : plan.steps)
+  for (const PlanStep& step : plan.steps) {
     if (std::holds_alternative<CutStep>(step.action)) replay_cut(operated, step);
+    if (std::holds_alternative<ResectStep>(step.action)) resect_segment(operated, step);
+  }
   const OwnerFinder finder(patient, operated.patient);
   operated.owners = landmark_owners(patient, finder);
   operated.muscles = muscle_owners(patient, finder);
   operated.patient.jaw = jaw_bodies(patient, operated.patient, finder);
+  for (const PlanStep& step : plan.steps)  // what was there owns landmarks and muscles
+    if (std::holds_alternative<GraftStep>(step.action)) place_graft(operated, plan, step);
   pose_bodies(plan, operated);
   return operated;
 }

@@ -8,6 +8,8 @@
 #include "engine/cut/cut.h"
 #include "sim/case/case.h"
 #include "sim/frame/body_poses.h"
+#include "sim/graft/face_contact.h"
+#include "sim/graft/graft.h"
 #include "sim/osteotomy/danger_zones.h"
 #include "sim/plan/movement_table.h"
 #include "sim/plan/plan.h"
@@ -53,6 +55,17 @@ struct SurfaceOrigin {
   std::vector<int> made_by;   // id of the step that made a cut face; 0 on the bone's surface
 };
 
+/// A segment that left the patient.
+struct Resection {
+  int step = 0;  // its id in the plan
+  std::string segment = {};
+  std::vector<Part> parts = {};  // bone, teeth and gums, at the uncut rest
+  TriMesh bone = {};
+  SurfaceOrigin origin = {};  // of the bone
+  double volume_mm3 = 0;
+  std::vector<int> teeth = {};  // FDI numbers
+};
+
 /// Bodies that a muscle connects.
 struct MuscleOwners {
   BodyId origin = cranium_body, insertion = cranium_body;
@@ -64,6 +77,8 @@ struct Operated {
   BodyPoses poses;         // planned, from the uncut rest
   std::vector<Pose> X_PB;  // the same in the parents' frames, see placed()
   std::vector<CutReport> cuts;
+  std::vector<Resection> resections;
+  std::vector<GraftLayout> grafts;
   LandmarkOwners owners;                        // after the cuts
   std::vector<MuscleOwners> muscles;            // of the patient's muscles, in their order
   std::map<std::string, SurfaceOrigin> origin;  // by part, of bones that a cut changed
@@ -71,8 +86,8 @@ struct Operated {
   std::vector<std::string> problems;  // steps that could not be done, for people
 };
 
-/// Replays a plan: each cut in order on what the cuts before it left, then of each segment the last
-/// move. Teeth, gums, canals and smaller bodies go with the piece that holds most of them. The
+/// Replays a plan: each cut and resection in order on what those before it left, then the grafts,
+/// then of each segment the last move. Teeth, gums, canals and smaller bodies go with the piece that holds most of them. The
 /// empty plan returns the same case. A segment that a cut does not part is listed in `problems`, as
 /// are the steps that need it.
 /// throws: InputError for a plan of another case, what check_plan() and place_osteotomy() refuse,

@@ -148,6 +148,32 @@ Problem problem_in(const NoteStep& note) {
       "text", fmt::format("has {} characters; expected 1 to {}", note.text.size(), max_text)};
 }
 
+Problem problem_in(const ResectStep& step) {
+  const auto found = graft_step_problem(step);
+  return found ? Problem({found->first, found->second}) : std::nullopt;
+}
+
+Problem problem_in(const GraftStep& step) {
+  const auto found = graft_step_problem(step);
+  return found ? Problem({found->first, found->second}) : std::nullopt;
+}
+
+/// The names of the bodies that a step makes.
+std::vector<std::string> made_by(const PlanAction& action) {
+  if (const auto* cut = std::get_if<CutStep>(&action)) return cut->pieces;
+  if (const auto* graft = std::get_if<GraftStep>(&action)) return graft_bodies(*graft);
+  return {};
+}
+
+/// The segment that a step needs, other than a cut; null: none.
+template <class Action>
+auto segment_used(Action& action) -> decltype(&std::get<MoveStep>(action).segment) {
+  if (auto* move = std::get_if<MoveStep>(&action)) return &move->segment;
+  if (auto* resection = std::get_if<ResectStep>(&action)) return &resection->segment;
+  if (auto* graft = std::get_if<GraftStep>(&action)) return &graft->replaces;
+  return nullptr;
+}
+
 std::vector<PlanStep>::iterator step_with(Plan& plan, int id) {
   return plan.steps.begin() + (&step_of(plan, id) - plan.steps.data());
 }
@@ -160,21 +186,37 @@ std::vector<PlanStep>::iterator step_with(Plan& plan, int id) {
 void check_order(const Plan& plan) {
   std::map<std::string, std::size_t> made;  // by which step
   for (std::size_t i = 0; i < plan.steps.size(); ++i)
-    if (const auto* cut = std::get_if<CutStep>(&plan.steps[i].action))
-      for (const auto& piece : cut->pieces)
-        if (const auto [known, is_new] = made.try_emplace(piece, i); !is_new)
-          refuse_step(plan.steps[i], fmt::format("the piece \"{}\" is already made by {}", piece,
-                                                 step_name(plan.steps[known->second])));
+    for (const auto& piece : made_by(plan.steps[i].action))
+      if (const auto [known, is_new] = made.try_emplace(piece, i); !is_new)
+        refuse_step(plan.steps[i], fmt::format("the piece \"{}\" is already made by {}", piece,
+                                               step_name(plan.steps[known->second])));
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     const auto* cut = std::get_if<CutStep>(&plan.steps[i].action);
-    const auto* move = std::get_if<MoveStep>(&plan.steps[i].action);
-    if (!cut && !move) continue;
-    const std::string& used = cut ? cut->target : move->segment;
+    const std::string* named = segment_used(plan.steps[i].action);
+    if (!cut && !named) continue;
+    const std::string& used = cut ? cut->target : *named;
     const auto maker = made.find(used);
     // A cut may give one of its pieces the name of what it cuts.
     if (maker == made.end() || maker->second < i || (cut && maker->second == i)) continue;
     refuse_step(plan.steps[i], fmt::format("needs \"{}\", which only {} makes", used,
                                            step_name(plan.steps[maker->second])));
+  }
+}
+
+/// A segment is resected once, and a graft takes the place of a resected one.
+void check_resections(const Plan& plan) {
+  std::map<std::string, std::size_t> resected;  // by which step
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    if (const auto* resection = std::get_if<ResectStep>(&plan.steps[i].action))
+      if (const auto [known, is_new] = resected.try_emplace(resection->segment, i); !is_new)
+        refuse_step(plan.steps[i],
+                    fmt::format("\"{}\" is already resected by {}", resection->segment,
+                                step_name(plan.steps[known->second])));
+    if (const auto* graft = std::get_if<GraftStep>(&plan.steps[i].action))
+      if (!resected.contains(graft->replaces))
+        refuse_step(plan.steps[i], fmt::format("no step before it resects \"{}\", whose place the "
+                                               "graft takes",
+                                               graft->replaces));
   }
 }
 
@@ -184,6 +226,9 @@ std::string step_title(const PlanAction& action) {
   if (const auto* cut = std::get_if<CutStep>(&action))
     return "cut " + (cut->osteotomy.empty() ? cut->target : cut->osteotomy);
   if (const auto* move = std::get_if<MoveStep>(&action)) return "move " + move->segment;
+  if (const auto* resection = std::get_if<ResectStep>(&action))
+    return "resect " + resection->segment;
+  if (const auto* graft = std::get_if<GraftStep>(&action)) return "graft " + graft->name;
   return "note";
 }
 
@@ -223,6 +268,7 @@ void check_plan(const Plan& plan) {
       refuse_step(step, found->item.empty() ? found->problem : found->item + " " + found->problem);
   }
   check_order(plan);
+  check_resections(plan);
 }
 
 void check_segments(const Plan& plan, const BodyTree& bodies) {
@@ -230,13 +276,14 @@ void check_segments(const Plan& plan, const BodyTree& bodies) {
   for (const auto& body : bodies.bodies()) known.push_back(body.name);
   for (const auto& step : plan.steps) {
     const auto* cut = std::get_if<CutStep>(&step.action);
-    const auto* move = std::get_if<MoveStep>(&step.action);
-    const std::string used = cut ? cut->target : move ? move->segment : "";
+    const std::string* named = segment_used(step.action);
+    const std::string used = cut ? cut->target : named ? *named : "";
     if (!used.empty() && std::find(known.begin(), known.end(), used) == known.end())
       refuse_step(step, fmt::format("\"{}\" is neither a body of the case nor made by a cut before "
                                     "this step{}",
                                     used, suggestion(used, known)));
-    if (cut) known.insert(known.end(), cut->pieces.begin(), cut->pieces.end());
+    const auto made = made_by(step.action);
+    known.insert(known.end(), made.begin(), made.end());
   }
 }
 
@@ -284,8 +331,9 @@ Plan with_recut(Plan plan, int id, const CutStep& cut) {
     if (step.id == id) continue;
     auto* later = std::get_if<CutStep>(&step.action);
     auto* move = std::get_if<MoveStep>(&step.action);
-    if (!later && !move) continue;
-    std::string& used = later ? later->target : move->segment;
+    std::string* named = segment_used(step.action);
+    if (!later && !named) continue;
+    std::string& used = later ? later->target : *named;
     const auto found = renamed.find(used);
     if (found == renamed.end() || found->second == used) continue;
     // The point that a move is about by default depends on the segment's name.

@@ -11,6 +11,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "sim/case/json_file.h"
+#include "sim/plan/graft_step_file.h"
 
 namespace condyle {
 namespace {
@@ -80,6 +81,8 @@ Json step_json(const MoveStep& step) {
 }
 
 Json step_json(const NoteStep& note) { return {{"note", note.text}}; }
+Json step_json(const ResectStep& step) { return {{"resect", graft_step_json(step)}}; }
+Json step_json(const GraftStep& step) { return {{"graft", graft_step_json(step)}}; }
 
 std::string line_of(const Json& value) {
   std::string text;
@@ -231,8 +234,9 @@ MoveStep move_in(const JsonItem& item) {
 }
 
 PlanStep step_in(const fs::path& file, const JsonItem& item) {
-  item.only_keys({"id", "cut", "move", "note"});
-  if (item.value().size() != 2) item.refuse("must have an id and one of cut, move and note");
+  item.only_keys({"id", "cut", "move", "note", "resect", "graft"});
+  if (item.value().size() != 2)
+    item.refuse("must have an id and one of cut, move, note, resect and graft");
   PlanStep step{.id = item.at("id").integer(1, 1000000)};
   std::string kind;
   if (const auto cut = item.find("cut")) {
@@ -241,6 +245,12 @@ PlanStep step_in(const fs::path& file, const JsonItem& item) {
   } else if (const auto move = item.find("move")) {
     step.action = move_in(*move);
     kind = "move";
+  } else if (const auto resection = item.find("resect")) {
+    step.action = resect_step_in(*resection);
+    kind = "resect";
+  } else if (const auto graft = item.find("graft")) {
+    step.action = graft_step_in(*graft);
+    kind = "graft";
   } else {
     step.action = NoteStep{item.at("note").text()};
     kind = "note";

@@ -142,6 +142,8 @@ int run_plan_edit(const PlanCutOptions& options, const CommonOptions& common) {
     throw InputError(fmt::format("{} is no cut; {}", step_name(known),
                                  std::holds_alternative<MoveStep>(known.action)
                                      ? "condyle plan move replaces the move of a segment"
+                                 : std::holds_alternative<GraftStep>(known.action)
+                                     ? "condyle plan graft changes a graft of the same name"
                                      : "remove it, and add another"));
   CutStep step = changed_cut(*before, options);
   const Case patient = open_planned(options.patient, plan, common);

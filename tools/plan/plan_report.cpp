@@ -9,6 +9,7 @@
 #include "sim/operation/cut_text.h"
 #include "sim/operation/segment_overlaps.h"
 #include "sim/plan/cephalometry.h"
+#include "tools/plan/graft_report.h"
 
 namespace condyle {
 namespace {
@@ -133,6 +134,7 @@ Json plan_report_json(const Plan& plan, const Operated& operated) {
     error = std::max(error, cut.volume_error_percent());
   }
   json["volume_error_percent"] = error;
+  add_graft_report(json, operated);
   json["overlaps"] = Json::array();
   for (const SegmentOverlap& overlap : segment_overlaps(operated))
     json["overlaps"].push_back(overlap_json(overlap));
@@ -152,6 +154,8 @@ std::string plan_report_text(const Plan& plan, const Operated& operated) {
       fmt::format("{}, a plan for {}\n{}", plan.name, operated.patient.name, steps_text(plan));
   for (const CutReport& cut : operated.cuts)
     text += "\n" + cut_text(cut, operated.patient.landmarks);
+  if (const std::string grafts = graft_report_text(operated); !grafts.empty())
+    text += "\n" + grafts;
   text += overlaps_text(operated);
   std::string problem;
   if (const auto frame = frame_of(plan, operated, problem))
