@@ -108,8 +108,9 @@ double distance_between(const Donor& donor, const Plane& end, double end_mm, con
 DonorCut donor_cut(const Donor& donor, const Plane& along, double at_mm) {
   const Vector3d x = donor.direction(at_mm), z = Vector3d::UnitZ(), y = z.cross(x);
   const double nx = along.normal.dot(x), ny = along.normal.dot(y), nz = along.normal.dot(z);
-  return {at_mm, std::acos(std::clamp(nx, -1., 1.)) * degrees, std::atan2(-ny, nx) * degrees,
-          std::atan2(-nz, nx) * degrees};
+  const double to_plane = -along.distance(donor.axis(at_mm)) / nx;
+  return {at_mm + to_plane, std::acos(std::clamp(nx, -1., 1.)) * degrees,
+          std::atan2(-ny, nx) * degrees, std::atan2(-nz, nx) * degrees};
 }
 
 /// Lays the pieces on the donor.
@@ -228,7 +229,10 @@ GraftPiece cut_piece(const Donor& donor, const DonorLayout::Place& place, const 
                    moved_plane(place.X_CD, place.end)};
     piece.cuts = {donor_cut(donor, place.begin, place.at_mm),
                   donor_cut(donor, place.end, place.end_mm)};
-    piece.length_mm = (donor.axis(place.end_mm) - donor.axis(place.at_mm)).norm();
+    piece.start_mm = place.at_mm;
+    const Vector3d from = donor.axis(place.at_mm);
+    piece.length_mm = -place.end.distance(from) / place.end.normal.dot(x) +
+                      place.begin.distance(from) / place.begin.normal.dot(x);
     piece.volume_mm3 = cut.volume_mm3;
     return piece;
   }

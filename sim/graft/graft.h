@@ -30,7 +30,8 @@ struct GraftPiece {
   Pose X_CD = {};              // of the donor, as this piece lies
   std::array<Plane, 2> faces = {};  // in place; normals out of the piece
   std::array<DonorCut, 2> cuts = {};
-  double length_mm = 0;  // along its axis
+  double start_mm = 0;   // place of its first corner on the donor's axis, as GraftStep::starts_mm
+  double length_mm = 0;  // along its axis, between its faces
   double volume_mm3 = 0;
 };
 

@@ -130,12 +130,12 @@ GraftFaceReport::Level level_of(const FaceContact& contact) {
 }
 
 std::string tilt_words(const DonorCut& cut) {
-  const auto side = [](double degrees, const char* positive, const char* negative) {
-    return fmt::format("{:.1f}° {}", std::abs(degrees), degrees >= 0 ? positive : negative);
+  const auto side = [](const char* name, double degrees) {
+    return fmt::format("{} side {:.1f}° {}", name, std::abs(degrees),
+                       degrees >= 0 ? "ahead" : "behind");
   };
   return fmt::format("at {:.1f} mm, {:.1f}° off square ({}, {})", cut.place_mm, cut.angle_deg,
-                     side(cut.outward_deg, "outer side longer", "outer side shorter"),
-                     side(cut.up_deg, "upper side longer", "upper side shorter"));
+                     side("outer", cut.outward_deg), side("upper", cut.up_deg));
 }
 
 std::string face_words(const GraftFaceReport& face) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "engine/core/error.h"
@@ -36,6 +37,37 @@ std::optional<Vector3d> middle_of(const SurgicalAnatomy& jaw, int place) {
   return jaw.tooth_middle(fdi_at(place));
 }
 
+/// The plane between two teeth that keeps the largest distance from both: turned by up to 40
+/// degrees about the vertical and tilted by up to 15. Its normal points to the second tooth.
+struct Gap {
+  Vector3d point, normal;
+  double width_mm;  // negative: no plane lies between the teeth
+};
+Gap gap_between(const std::vector<Vector3d>& tooth, const std::vector<Vector3d>& neighbour,
+                const Vector3d& from, const Vector3d& to) {
+  Vector3d level = to - from;
+  level.z() = 0;
+  level.normalize();
+  const Vector3d across = level.cross(Vector3d::UnitZ());
+  constexpr double degree = 3.14159265358979323846 / 180, oblique_mm_per_deg = 0.01;
+  Gap best{{}, {}, -1e9};
+  double best_score = -1e9;
+  for (int tilt = -15; tilt <= 15; tilt += 3)
+    for (int turn = -40; turn <= 40; turn += 4) {
+      const Vector3d n = Eigen::AngleAxisd(turn * degree, Vector3d::UnitZ()) *
+                         (Eigen::AngleAxisd(tilt * degree, across) * level);
+      double end = -1e9, begin = 1e9;
+      for (const Vector3d& p : tooth) end = std::max(end, n.dot(p));
+      for (const Vector3d& p : neighbour) begin = std::min(begin, n.dot(p));
+      const double score = begin - end - oblique_mm_per_deg * (std::abs(turn) + std::abs(tilt));
+      if (score <= best_score) continue;
+      best_score = score;
+      const Vector3d middle = 0.5 * (from + to);
+      best = {middle + (0.5 * (begin + end) - n.dot(middle)) * n, n, begin - end};
+    }
+  return best;
+}
+
 /// A cut beside a tooth that is resected, in the gap to its neighbour that stays.
 Cut resection_cut(Site& site, int inner, int step, int wall) {
   SurgicalAnatomy& jaw = site.anatomy;
@@ -45,8 +77,10 @@ Cut resection_cut(Site& site, int inner, int step, int wall) {
         fmt::format("segmental_resection: the case has no tooth {} by itself", fdi_at(inner)));
   Vector3d point, outward;
   if (const auto neighbour = middle_of(jaw, inner + step)) {
-    outward = *neighbour - *tooth;
-    point = 0.5 * (*neighbour + *tooth);
+    const Gap gap = gap_between(jaw.tooth_points(fdi_at(inner)),
+                                jaw.tooth_points(fdi_at(inner + step)), *tooth, *neighbour);
+    outward = gap.normal;
+    point = gap.point;
   } else if (const auto before = middle_of(jaw, inner - step)) {
     outward = *tooth - *before;
     outward.z() = 0;
@@ -62,10 +96,9 @@ Cut resection_cut(Site& site, int inner, int step, int wall) {
                     "direction of the jaw follows",
                     fdi_at(inner)));
   }
-  outward.z() = 0;
   outward.normalize();
   point += site["margin_mm"] * outward;
-  const Vector3d across = outward.cross(Vector3d::UnitZ());
+  const Vector3d across = outward.cross(Vector3d::UnitZ()).normalized();
   constexpr double half_depth_mm = 15, half_width_mm = 22;
   Cut cut{
       fmt::format("resection beside {}", fdi_at(inner)), jaw.above(point, -outward, wall), {}, 0};

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "engine/mesh/topology.h"
+#include "sim/operated/graft_way.h"
 #include "sim/operation/graft_steps.h"
 
 namespace condyle {
@@ -33,6 +34,36 @@ Json face_json(const GraftFaceReport& face) {
           {"level", level}};
 }
 
+Json way_json(const WayIn& way) {
+  Json json = {{"state", state_name(way.state)},
+               {"direction", {way.direction.x(), way.direction.y(), way.direction.z()}},
+               {"directions_examined", way.directions}};
+  const Json at = {way.margin_at.x(), way.margin_at.y(), way.margin_at.z()};
+  if (way.state == WayIn::State::blocked) {
+    json["blocked_after_mm"] = way.blocked_after_mm;
+    json["blocked_by"] = way.blocked_by;
+    json["blocked_at_mm"] = at;
+    return json;
+  }
+  json["length_mm"] = way.length_mm;
+  json["margin_mm"] = way.margin_mm;
+  if (way.margin_part.empty()) return json;
+  json["margin_part"] = way.margin_part;
+  json["margin_after_mm"] = way.margin_after_mm;
+  json["margin_at_mm"] = at;
+  return json;
+}
+
+/// The way in of each graft, in their order.
+std::vector<WayIn> ways_in(const std::vector<Seat>& seats, const Operated& operated) {
+  constexpr int threads = 2;  // the result is the same for any number
+  std::vector<WayIn> ways;
+  if (seats.empty()) return ways;
+  const Case after = operated_case(operated);
+  for (const Seat& seat : seats) ways.push_back(find_way_in(after, seat, threads));
+  return ways;
+}
+
 Json graft_json(const Operated& operated, const GraftLayout& graft) {
   Json json = {
       {"name", graft.step.name},          {"donor", graft.donor_name},
@@ -43,6 +74,7 @@ Json graft_json(const Operated& operated, const GraftLayout& graft) {
     json["pieces"].push_back(
         {{"name", piece.body},
          {"length_mm", piece.length_mm},
+         {"start_mm", piece.start_mm},
          {"volume_mm3", piece.volume_mm3},
          {"closed", inspect(piece.mesh).closed()},
          {"saw_cuts", {donor_cut_json(piece.cuts[0]), donor_cut_json(piece.cuts[1])}}});
@@ -55,16 +87,16 @@ Json graft_json(const Operated& operated, const GraftLayout& graft) {
   return json;
 }
 
-std::string graft_text(const Operated& operated, const GraftLayout& graft) {
+std::string graft_text(const Operated& operated, const GraftLayout& graft, const std::string& way) {
   std::string text = fmt::format("graft {}\n", graft.step.name);
   for (const std::string& sentence : graft_sentences(operated, graft))
     text += "  " + sentence + "\n";
-  return text;
+  return text + "  " + way + "\n";
 }
 
 }  // namespace
 
-void add_graft_report(Json& report, const Operated& operated) {
+void add_graft_report(Json& report, const Plan& plan, const Operated& operated) {
   report["resections"] = Json::array();
   for (const Resection& resection : operated.resections)
     report["resections"].push_back({{"step", resection.step},
@@ -72,11 +104,14 @@ void add_graft_report(Json& report, const Operated& operated) {
                                     {"volume_mm3", resection.volume_mm3},
                                     {"teeth", resection.teeth}});
   report["grafts"] = Json::array();
-  for (const GraftLayout& graft : operated.grafts)
-    report["grafts"].push_back(graft_json(operated, graft));
+  const auto ways = ways_in(graft_seats(operated, plan), operated);
+  for (std::size_t i = 0; i < operated.grafts.size(); ++i) {
+    report["grafts"].push_back(graft_json(operated, operated.grafts[i]));
+    report["grafts"].back()["way_in"] = way_json(ways[i]);
+  }
 }
 
-std::string graft_report_text(const Operated& operated) {
+std::string graft_report_text(const Plan& plan, const Operated& operated) {
   std::string text;
   for (const Resection& resection : operated.resections)
     text +=
@@ -84,13 +119,18 @@ std::string graft_report_text(const Operated& operated) {
                     resection.teeth.empty()
                         ? ""
                         : fmt::format(", with the teeth {}", fmt::join(resection.teeth, ", ")));
-  for (const GraftLayout& graft : operated.grafts) text += graft_text(operated, graft);
+  for (const GraftLayout& graft : operated.grafts)
+    text += graft_report_text(plan, operated, graft.step.name);
   return text;
 }
 
-std::string graft_report_text(const Operated& operated, const std::string& name) {
-  for (const GraftLayout& graft : operated.grafts)
-    if (graft.step.name == name) return graft_text(operated, graft);
+std::string graft_report_text(const Plan& plan, const Operated& operated, const std::string& name) {
+  const auto seats = graft_seats(operated, plan);
+  for (std::size_t i = 0; i < seats.size(); ++i)
+    if (seats[i].name == name) {
+      const std::vector<WayIn> way = ways_in({seats[i]}, operated);
+      return graft_text(operated, operated.grafts[i], way_in_text(way.front(), seats[i]));
+    }
   return "";
 }
 

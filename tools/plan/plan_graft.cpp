@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -59,7 +60,7 @@ int run_plan_resect(const PlanResectOptions& options, const CommonOptions& commo
   const Operated operated = save_applied(plan, patient, options.file, step_title(step), common);
   if (common.prints_summary())
     fmt::print(stderr, "{}{}", options.from ? cut_report_text(operated, cut) : "",
-               graft_report_text(operated));
+               graft_report_text(plan, operated));
   return 0;
 }
 
@@ -124,7 +125,8 @@ int run_plan_graft(const PlanGraftOptions& options, const CommonOptions& common)
   const Plan plan = known ? with_replaced(before, known->id, step) : with_step(before, step);
   const Case patient = open_planned(options.patient, plan, common);
   const Operated operated = save_applied(plan, patient, options.file, step_title(step), common);
-  if (common.prints_summary()) fmt::print(stderr, "{}", graft_report_text(operated, step.name));
+  if (common.prints_summary())
+    fmt::print(stderr, "{}", graft_report_text(plan, operated, step.name));
   return 0;
 }
 

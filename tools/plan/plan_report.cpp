@@ -134,7 +134,7 @@ Json plan_report_json(const Plan& plan, const Operated& operated) {
     error = std::max(error, cut.volume_error_percent());
   }
   json["volume_error_percent"] = error;
-  add_graft_report(json, operated);
+  add_graft_report(json, plan, operated);
   json["overlaps"] = Json::array();
   for (const SegmentOverlap& overlap : segment_overlaps(operated))
     json["overlaps"].push_back(overlap_json(overlap));
@@ -154,7 +154,7 @@ std::string plan_report_text(const Plan& plan, const Operated& operated) {
       fmt::format("{}, a plan for {}\n{}", plan.name, operated.patient.name, steps_text(plan));
   for (const CutReport& cut : operated.cuts)
     text += "\n" + cut_text(cut, operated.patient.landmarks);
-  if (const std::string grafts = graft_report_text(operated); !grafts.empty())
+  if (const std::string grafts = graft_report_text(plan, operated); !grafts.empty())
     text += "\n" + grafts;
   text += overlaps_text(operated);
   std::string problem;
