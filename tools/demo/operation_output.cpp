@@ -130,7 +130,7 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
   save_case(after, folder_ / "case");
   make_folder(folder_ / "segments");
   for (const Part& part : after.parts)
-    if (part.role == Role::segment && operated.origin.contains(part.name))
+    if (is_piece(part.role) && operated.origin.contains(part.name))
       write_ply(part.mesh, folder_ / "segments" / (part.name + ".ply"));
   report(progress, "drawing", 0.9);
   draw([&] {
@@ -158,7 +158,8 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
     add_table("Movements of the bone",
               movements_table(movement_table(before, frame, operated.patient.bodies,
                                              operated.owners, operated.poses)));
-    const Landmarks planned = soft ? *soft : moved_landmarks(before, operated.owners, operated.poses);
+    const Landmarks planned =
+        soft ? *soft : moved_landmarks(before, operated.owners, operated.poses);
     add_table("Cephalometry", cephalometry_table(cephalometry(frame, before, planned), !!soft),
               "Norms: published means of European adults with one standard deviation.");
   } catch (const InputError& error) {
