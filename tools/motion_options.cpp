@@ -9,6 +9,7 @@
 #include "sim/operated/graft_way.h"
 #include "sim/operated/operated_scene.h"
 #include "sim/plan/plan_file.h"
+#include "tools/common.h"
 #include "tools/pair_options.h"
 
 namespace condyle {

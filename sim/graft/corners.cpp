@@ -38,7 +38,8 @@ std::vector<Vector3d> best_corners(const std::vector<Vector3d>& points, int piec
   constexpr double none = std::numeric_limits<double>::infinity();
   const auto cost_of = [&](std::size_t from, std::size_t to) {
     if ((points[to] - points[from]).norm() < least_mm) return none;
-    double sum = 0;
+    constexpr double even_lengths = 1e-6;  // decides where the curve is straight
+    double sum = even_lengths * (points[to] - points[from]).squaredNorm();
     for (std::size_t k = from + 1; k < to; ++k)
       sum += squared_distance(points[k], points[from], points[to]);
     return sum;

@@ -319,7 +319,8 @@ void cut_case(Operated& operated, const PlacedOsteotomy& placed, const PlanStep&
                                [](const CutOutcome& outcome) { return outcome.meets_bone; });
   if (met) {
     for (const Part& part : patient.parts)
-      if (is_teeth(part.role) && part.body == bone.body) refuse_divided_teeth(part, placed.cuts);
+      if (is_teeth(part.role) && part.body == bone.body)
+        refuse_divided_teeth(part, placed.cuts, placed.removed_teeth);
     NearestSurface nearest;
     Renamed renamed;
     for (std::size_t g = 0; g < groups.size(); ++g) {

@@ -19,10 +19,11 @@ struct SegmentRule {
 
 /// An osteotomy in place on a patient's bone: ready to cut.
 struct PlacedOsteotomy {
-  std::string part;                   // name of the bone that is cut
-  std::vector<Cut> cuts;              // in the cranium's frame, at rest
-  std::vector<SegmentRule> segments;  // other pieces stay with the bone's own body
-  std::vector<std::string> notes;     // what was estimated, for people
+  std::string part;                     // name of the bone that is cut
+  std::vector<Cut> cuts;                // in the cranium's frame, at rest
+  std::vector<SegmentRule> segments;    // other pieces stay with the bone's own body
+  std::vector<std::string> notes;       // what was estimated, for people
+  std::vector<int> removed_teeth = {};  // FDI numbers: leave with a segment, and may be divided
 };
 
 /// The segment that a piece belongs to; -1: it stays with the bone's own body.

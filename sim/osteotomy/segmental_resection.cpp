@@ -79,8 +79,11 @@ Cut resection_cut(Site& site, int inner, int step, int wall) {
   if (const auto neighbour = middle_of(jaw, inner + step)) {
     const Gap gap = gap_between(jaw.tooth_points(fdi_at(inner)),
                                 jaw.tooth_points(fdi_at(inner + step)), *tooth, *neighbour);
+    // Crowns touch: the cut keeps clear of the tooth that stays, and may divide the other.
+    constexpr double clear_mm = 0.6;
     outward = gap.normal;
-    point = gap.point;
+    point =
+        gap.point + std::min(0., 0.5 * gap.width_mm - clear_mm - 0.5 * site.kerf_mm) * gap.normal;
   } else if (const auto before = middle_of(jaw, inner - step)) {
     outward = *tooth - *before;
     outward.z() = 0;
@@ -114,6 +117,7 @@ PlacedOsteotomy place_resection(Site& site) {
   if (from > to) std::swap(from, to);
   PlacedOsteotomy placed;
   placed.cuts = {resection_cut(site, from, -1, 0), resection_cut(site, to, 1, 1)};
+  for (int place = from; place <= to; ++place) placed.removed_teeth.push_back(fdi_at(place));
   placed.segments = {{"resected", {CutSide::above, CutSide::above}}};
   return placed;
 }

@@ -70,15 +70,18 @@ TEST(Reconstruction, lays_pieces_that_meet_the_jaw_and_each_other) {
   EXPECT_EQ(bodies[bodies[first].parent].name, "mandible");
   EXPECT_EQ(bodies[second].parent, first);
   for (const Part& part : operated.patient.parts)
-    if (part.role == Role::transplant) EXPECT_TRUE(inspect(part.mesh).closed()) << part.name;
+    if (part.role == Role::transplant) {
+      EXPECT_TRUE(inspect(part.mesh).closed()) << part.name;
+    }
   const auto faces = graft_faces(operated, graft);
   ASSERT_EQ(faces.size(), 3u);
   for (const GraftFaceReport& face : faces) {
     EXPECT_EQ(face.level, GraftFaceReport::Level::good) << face.piece << " to " << face.other;
     EXPECT_GT(face.share, 0.8) << face.piece << " to " << face.other;
   }
-  // The clearance at the jaw, none between the mitred faces.
-  EXPECT_NEAR(faces[0].contact.mean_gap_mm, 0.2, 1e-3);
+  // The clearance at the jaw, more beside the rim of its face; none between the mitred faces.
+  EXPECT_GT(faces[0].contact.mean_gap_mm, 0.2 - 1e-6);
+  EXPECT_LT(faces[0].contact.mean_gap_mm, 0.3);
   EXPECT_NEAR(faces[1].contact.mean_gap_mm, 0, 1e-3);
   EXPECT_NEAR(faces[1].share, 1, 0.02);
   EXPECT_EQ(faces[2].other, "mandible");
@@ -87,13 +90,13 @@ TEST(Reconstruction, lays_pieces_that_meet_the_jaw_and_each_other) {
 
 TEST(Reconstruction, reports_the_gap_where_a_piece_is_moved_away) {
   Plan plan = with_step(resected(), fibula(1));
-  MoveStep away{.segment = "fibula", .move = ExplicitMove{{Eigen::Quaterniond::Identity(), {}}}};
   const GraftLayout graft = apply_plan(builtin(), plan).grafts[0];
-  std::get<ExplicitMove>(away.move).X_CS.t = 1.6 * graft.defect.faces[0].normal;
-  plan = with_step(std::move(plan), away);
+  const Pose shift{Eigen::Quaterniond::Identity(), 1.6 * graft.defect.faces[0].normal};
+  plan = with_step(std::move(plan), MoveStep{.segment = "fibula", .move = ExplicitMove{shift}});
   const Operated operated = apply_plan(builtin(), plan);
   const auto faces = graft_faces(operated, operated.grafts[0]);
-  EXPECT_NEAR(faces[0].contact.mean_gap_mm, 1.8, 0.02);
+  EXPECT_GT(faces[0].contact.mean_gap_mm, 1.8 - 1e-6);
+  EXPECT_LT(faces[0].contact.mean_gap_mm, 1.9);
   EXPECT_EQ(faces[0].level, GraftFaceReport::Level::wide);
   EXPECT_EQ(faces[0].share, 0);
 }
