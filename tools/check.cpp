@@ -18,6 +18,7 @@
 #include "render/output/contact_picture.h"
 #include "render/recording/render_metadata.h"
 #include "sim/frame/part_names.h"
+#include "sim/operated/graft_way.h"
 #include "sim/report/check_page.h"
 #include "tools/commands.h"
 #include "tools/common.h"
@@ -149,7 +150,7 @@ std::optional<OperationComparison> comparison_of(const CheckOptions& options,
                                                  const Scene& after, const Motion& motion,
                                                  const ClearanceCheck& check,
                                                  const Progress& progress) {
-  if (options.motion.plan.empty()) return std::nullopt;
+  if (options.motion.plan.empty() || is_way_in(options.motion.motion)) return std::nullopt;
   const Scene before = make_scene(uncut, settings, progress);
   const Motion motion_before = motion_of(options.motion, before, common.threads);
   const ClearanceCheck check_before =

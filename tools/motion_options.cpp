@@ -3,10 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "engine/core/error.h"
 #include "sim/case/pair_rules.h"
 #include "sim/muscles/default_muscles.h"
+#include "sim/operated/graft_way.h"
 #include "sim/operated/operated_scene.h"
 #include "sim/plan/plan_file.h"
+#include "tools/common.h"
 #include "tools/pair_options.h"
 
 namespace condyle {
@@ -70,11 +73,13 @@ void add_motion(CLI::App& command, MotionOptions& motion) {
   command.add_option("CASE", motion.patient,
                      "Folder with case.json (default: the built-in patient)");
   command
-      .add_option("--motion", motion.motion,
-                  "A built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
-                      "), movements in words (\"open 40; close; protrude 6\") or a file of them "
-                      "(*.motion), a recorded motion, muscles:FILE, or inverse:MOTION (muscles "
-                      "that follow it): condyle help motions, recordings, muscles")
+      .add_option(
+          "--motion", motion.motion,
+          "A built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
+              "), movements in words (\"open 40; close; protrude 6\") or a file of them "
+              "(*.motion), a recorded motion, muscles:FILE, or inverse:MOTION (muscles "
+              "that follow it), or path:GRAFT (the way in of a planned graft): condyle help "
+              "motions, recordings, muscles, grafts")
       ->type_name("MOTION");
   in_range(command.add_option("--duration", motion.settings.duration_s,
                               "Duration of the whole motion, s; default: its own (opening: 3)"),
@@ -139,7 +144,10 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
 }
 
 void check_motion(const MotionOptions& options) {
-  check_motion(options.motion, options.settings, options.muscles);
+  if (!is_way_in(options.motion))
+    check_motion(options.motion, options.settings, options.muscles);
+  else if (options.plan.empty())
+    throw InputError("--motion " + options.motion + ": needs a --plan with a graft");
   plan_of(options.plan);  // refuses a file that is not a plan
 }
 
@@ -148,6 +156,8 @@ void check_motion(const MotionOptions& options, const Case& patient) {
 }
 
 Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
+  if (is_way_in(options.motion))
+    return way_in_motion(options.motion, scene, options.settings.duration_s, threads);
   return motion_of(options.motion, scene.patient, scene.contacts, options.settings, options.muscles,
                    threads);
 }

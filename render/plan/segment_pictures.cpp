@@ -1,5 +1,6 @@
 #include "render/plan/segment_pictures.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 
@@ -20,6 +21,7 @@ const std::array<Eigen::Vector3f, 8> segment_tints{{{0.47f, 0.71f, 0.87f},
                                                     {0.62f, 0.62f, 0.84f},
                                                     {0.66f, 0.78f, 0.42f}}};
 const Eigen::Vector3f spongy_bone{0.70f, 0.36f, 0.28f};
+const Eigen::Vector3f resected_tint{0.80f, 0.45f, 0.42f};
 
 /// The bone in one colour and its cut faces in that of spongy bone, with sharp borders.
 TriMesh tinted(const TriMesh& mesh, const SurfaceOrigin* origin, const Eigen::Vector3f& tint) {
@@ -46,16 +48,32 @@ struct TintedBones {
   std::vector<ColourKey> keys;
 };
 
-TintedBones tinted_bones(const Operated& operated) {
+bool is_graft(const Operated& operated, const Part& part) {
+  return part.role == Role::transplant && operated.origin.contains(part.name);
+}
+
+/// Before the operation the resected bone is there, afterwards the grafts are.
+TintedBones tinted_bones(const Operated& operated, bool after) {
   TintedBones bones;
+  if (!after)
+    for (const Resection& resection : operated.resections)
+      for (Part part : resection.parts) {
+        if (!collides(part.role)) continue;
+        part.body = cranium_body;  // at rest, like all others
+        if (!is_teeth(part.role)) {
+          part.mesh = tinted(part.mesh, nullptr, resected_tint);
+          bones.keys.push_back({resected_tint, readable_name(resection.segment) + ", resected"});
+        }
+        bones.parts.push_back(std::move(part));
+      }
   std::map<BodyId, Eigen::Vector3f> tints;
   for (const Part& part : operated.patient.parts) {
-    if (!collides(part.role)) continue;
+    if (!collides(part.role) || (!after && is_graft(operated, part))) continue;
     bones.parts.push_back(part);
     const auto origin = operated.origin.find(part.name);
     if (origin == operated.origin.end()) continue;
     Eigen::Vector3f tint(0.90f, 0.85f, 0.75f);
-    if (part.role == Role::segment) {
+    if (part.role == Role::segment || is_graft(operated, part)) {
       const auto [found, is_new] =
           tints.emplace(part.body, segment_tints[tints.size() % segment_tints.size()]);
       tint = found->second;
@@ -70,16 +88,22 @@ TintedBones tinted_bones(const Operated& operated) {
 }  // namespace
 
 Image segment_sheet(const Operated& operated, const SegmentPictureSettings& settings) {
-  const TintedBones bones = tinted_bones(operated);
-  SceneRenderer renderer(bones.parts);
+  const TintedBones before_bones = tinted_bones(operated, false),
+                    after_bones = tinted_bones(operated, true);
   PictureSettings picture;
   picture.width = 560;
   picture.height = 600;
   picture.backdrop = Backdrop::light;
   picture.contacts = false;
-  const auto [low, high] = renderer.bounds();
-  PictureGrid grid{settings.title, {{}, {}}, bones.keys, settings.lines};
+  std::vector<ColourKey> keys = after_bones.keys;
+  for (const ColourKey& key : before_bones.keys)
+    if (std::none_of(keys.begin(), keys.end(),
+                     [&](const ColourKey& known) { return known.text == key.text; }))
+      keys.push_back(key);
+  PictureGrid grid{settings.title, {{}, {}}, std::move(keys), settings.lines};
   for (const bool after : {false, true}) {
+    SceneRenderer renderer((after ? after_bones : before_bones).parts);
+    const auto [low, high] = renderer.bounds();
     FrameState frame;
     frame.poses = after ? operated.poses : completed(operated.patient.bodies, {});
     renderer.update(frame);

@@ -64,6 +64,8 @@ struct Motion {
   // X_CH at a time, rest to now, where muscles attach to a hyoid; empty: it is fixed.
   std::function<Pose(double time_s)> hyoid = {};
   std::optional<RecordingFacts> recording = {};  // of a file
+  // X_PB at a time, where the motion moves bodies besides the jaw; empty: they stay.
+  std::function<std::vector<Pose>(double time_s)> pieces = {};
 };
 
 struct MotionSettings {

@@ -9,6 +9,7 @@
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
 #include "sim/muscles/default_muscles.h"
+#include "sim/operated/graft_way.h"
 #include "sim/plan/plan_file.h"
 #include "sim/prediction/prediction.h"
 #include "sim/tissue/planned_rest.h"
@@ -64,6 +65,7 @@ OperatedPatient at_planned_rest(const Case& prepared, const Plan& plan, Operated
   result.plan.notes = result.operated.notes;
   for (const std::string& problem : result.operated.problems) result.plan.notes.push_back(problem);
   result.plan.muscles = changed_lengths(prepared, result.patient);
+  result.plan.seats = graft_seats(result.operated, plan);
   return result;
 }
 

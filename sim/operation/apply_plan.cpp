@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/mesh/measure.h"
 #include "sim/operation/cut_case.h"
+#include "sim/operation/graft_steps.h"
 #include "sim/operation/operation.h"
 #include "sim/operation/owners.h"
 #include "sim/operation/trim_segments.h"
@@ -151,12 +152,16 @@ Operated apply_plan(const Case& patient, const Plan& plan) {
   check_case(patient, plan, operated.notes);
   operated.patient = patient;
   for (const PlanZone& zone : plan.zones) operated.own_zones.push_back(own_zone(zone));
-  for (const PlanStep& step : plan.steps)
+  for (const PlanStep& step : plan.steps) {
     if (std::holds_alternative<CutStep>(step.action)) replay_cut(operated, step);
+    if (std::holds_alternative<ResectStep>(step.action)) resect_segment(operated, step);
+  }
   const OwnerFinder finder(patient, operated.patient);
   operated.owners = landmark_owners(patient, finder);
   operated.muscles = muscle_owners(patient, finder);
   operated.patient.jaw = jaw_bodies(patient, operated.patient, finder);
+  for (const PlanStep& step : plan.steps)  // what was there owns landmarks and muscles
+    if (std::holds_alternative<GraftStep>(step.action)) place_graft(operated, plan, step);
   pose_bodies(plan, operated);
   trim_segments(operated, plan);
   return operated;

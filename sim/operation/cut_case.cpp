@@ -265,7 +265,8 @@ void trace_faces(Operated& operated, const Part& bone, const ClosedBone& closed,
 void refuse_divided_teeth(const Case& patient, BodyId body, const PlacedOsteotomy& placed) {
   try {
     for (const Part& part : patient.parts)
-      if (is_teeth(part.role) && part.body == body) refuse_divided_teeth(part, placed.cuts);
+      if (is_teeth(part.role) && part.body == body)
+        refuse_divided_teeth(part, placed.cuts, placed.removed_teeth);
   } catch (const InputError& error) {
     if (placed.rooms.empty()) throw;
     throw InputError(fmt::format("{}; {}", error.what(), fmt::join(placed.rooms, "; ")));

@@ -108,8 +108,10 @@ std::vector<Vector3d> sample_points(const TriMesh& mesh, std::span<const int> tr
   return points;
 }
 
-void refuse_divided_teeth(const Part& teeth, std::span<const Cut> cuts) {
+void refuse_divided_teeth(const Part& teeth, std::span<const Cut> cuts,
+                          std::span<const int> removed) {
   for (const ArchItem& item : arch_items(teeth)) {
+    if (std::find(removed.begin(), removed.end(), item.fdi) != removed.end()) continue;
     const auto points = sample_points(teeth.mesh, item.triangles, 4 * item.triangles.size());
     for (const Cut& cut : cuts) {
       if (!divides(cut, points)) continue;

@@ -21,8 +21,9 @@ std::vector<Eigen::Vector3d> sample_points(const TriMesh& mesh, std::span<const 
                                            std::size_t most);
 
 /// throws: InputError naming the first tooth of the part through which a cut runs, by its FDI
-/// number or place.
-void refuse_divided_teeth(const Part& teeth, std::span<const Cut> cuts);
+/// number or place. `removed`: numbers of those that may be divided.
+void refuse_divided_teeth(const Part& teeth, std::span<const Cut> cuts,
+                          std::span<const int> removed = {});
 
 /// The items for which `of_item` has this value, as a part with its own vertices and ranges of
 /// teeth; name, role and body are those of the whole.

@@ -84,10 +84,18 @@ std::vector<std::string> cut_sentences(const CutReport& report, const Landmarks&
 std::vector<BoneSummary> operated_bones(const Operated& operated) {
   const Case& patient = operated.patient;
   const auto is_made = [&](const std::string& body) {
-    return std::any_of(operated.cuts.begin(), operated.cuts.end(), [&](const CutReport& cut) {
-      return std::any_of(cut.pieces.begin(), cut.pieces.end(),
-                         [&](const CutPiece& piece) { return piece.body == body && !piece.stays; });
-    });
+    return std::any_of(operated.cuts.begin(), operated.cuts.end(),
+                       [&](const CutReport& cut) {
+                         return std::any_of(cut.pieces.begin(), cut.pieces.end(),
+                                            [&](const CutPiece& piece) {
+                                              return piece.body == body && !piece.stays;
+                                            });
+                       }) ||
+           std::any_of(operated.grafts.begin(), operated.grafts.end(),
+                       [&](const GraftLayout& graft) {
+                         const auto names = graft_bodies(graft.step);
+                         return std::find(names.begin(), names.end(), body) != names.end();
+                       });
   };
   std::vector<BoneSummary> bones;
   for (int b = 0; b < patient.bodies.size(); ++b) {
@@ -112,6 +120,8 @@ std::vector<BoneSummary> operated_bones(const Operated& operated) {
 std::string step_details(const PlanAction& action) {
   if (const auto* cut = std::get_if<CutStep>(&action)) return cut_details(*cut);
   if (const auto* note = std::get_if<NoteStep>(&action)) return note->text;
+  if (std::holds_alternative<ResectStep>(action)) return "with its teeth";
+  if (const auto* graft = std::get_if<GraftStep>(&action)) return graft_step_details(*graft);
   if (const auto* trim = std::get_if<TrimStep>(&action))
     return fmt::format("bone that overlaps {}{}", fmt::join(trim->of, ", "),
                        trim->below_margins ? "; below the least margins on request" : "");

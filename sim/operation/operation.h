@@ -8,6 +8,8 @@
 #include "engine/cut/cut.h"
 #include "sim/case/case.h"
 #include "sim/frame/body_poses.h"
+#include "sim/graft/face_contact.h"
+#include "sim/graft/graft.h"
 #include "sim/osteotomy/danger_zones.h"
 #include "sim/plan/movement_table.h"
 #include "sim/plan/plan.h"
@@ -85,6 +87,17 @@ struct SurfaceOrigin {
   std::vector<int> made_by;   // id of the step that made a cut or trimmed face; 0 on the surface
 };
 
+/// A segment that left the patient.
+struct Resection {
+  int step = 0;  // its id in the plan
+  std::string segment = {};
+  std::vector<Part> parts = {};  // bone, teeth and gums, at the uncut rest
+  TriMesh bone = {};
+  SurfaceOrigin origin = {};  // of the bone
+  double volume_mm3 = 0;
+  std::vector<int> teeth = {};  // FDI numbers
+};
+
 /// Bodies that a muscle connects.
 struct MuscleOwners {
   BodyId origin = cranium_body, insertion = cranium_body;
@@ -97,6 +110,8 @@ struct Operated {
   std::vector<Pose> X_PB;  // the same in the parents' frames, see placed()
   std::vector<CutReport> cuts;
   std::vector<TrimReport> trims;
+  std::vector<Resection> resections;
+  std::vector<GraftLayout> grafts;
   std::vector<DangerZone> own_zones;                  // of the plan
   std::vector<SawCut> saw_cuts;                       // of all steps, in order
   std::map<std::string, std::vector<CutSide>> sides;  // by body, of the first saw cuts; others
@@ -108,12 +123,12 @@ struct Operated {
   std::vector<std::string> problems;  // steps that could not be done, for people
 };
 
-/// Replays a plan: each cut in order on what the cuts before it left, then of each segment the last
-/// move, then the trims. Teeth, gums, canals and smaller bodies go with the piece that holds most
-/// of them. The empty plan returns the same case. A segment that a cut does not part is listed in
-/// `problems`, as are the steps that need it. throws: InputError for a plan of another case, what
-/// check_plan() and place_osteotomy() refuse, bone that cannot be closed, and a tooth that a cut
-/// divides.
+/// Replays a plan: each cut and resection in order on what those before it left, then the grafts,
+/// then of each segment the last move, then the trims. Teeth, gums, canals and smaller bodies go
+/// with the piece that holds most of them. The empty plan returns the same case. A segment that a
+/// cut does not part is listed in `problems`, as are the steps that need it. throws: InputError for
+/// a plan of another case, what check_plan() and place_osteotomy() refuse, bone that cannot be
+/// closed, and a tooth that a cut divides.
 Operated apply_plan(const Case& patient, const Plan& plan);
 
 /// X_CS of a segment of an operated patient by a move. throws: InputError as apply_plan().

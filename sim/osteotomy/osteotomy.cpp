@@ -14,11 +14,19 @@ namespace condyle {
 namespace {
 
 const std::vector<Recipe>& recipes() {
-  static const std::vector<Recipe> all = {
-      le_fort_1_recipe(),      le_fort_2_recipe(),      le_fort_3_recipe(),
-      sagittal_split_recipe(), vertical_ramus_recipe(), inverted_l_recipe(),
-      body_recipe(),           genioplasty_recipe(),    vault_strip_recipe(),
-      vault_panels_recipe(),   barrel_staves_recipe(),  bandeau_recipe()};
+  static const std::vector<Recipe> all = {le_fort_1_recipe(),
+                                          le_fort_2_recipe(),
+                                          le_fort_3_recipe(),
+                                          sagittal_split_recipe(),
+                                          vertical_ramus_recipe(),
+                                          inverted_l_recipe(),
+                                          body_recipe(),
+                                          genioplasty_recipe(),
+                                          vault_strip_recipe(),
+                                          vault_panels_recipe(),
+                                          barrel_staves_recipe(),
+                                          bandeau_recipe(),
+                                          segmental_resection_recipe()};
   return all;
 }
 

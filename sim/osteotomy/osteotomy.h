@@ -24,6 +24,7 @@ struct PlacedOsteotomy {
   std::vector<SegmentRule> segments;    // other pieces stay with the bone's own body
   std::vector<std::string> notes;       // what was estimated, for people
   std::vector<std::string> rooms = {};  // between the teeth of interdental cuts, for people
+  std::vector<int> removed_teeth = {};  // FDI numbers: leave with a segment, and may be divided
 };
 
 /// The segment that a piece belongs to; -1: it stays with the bone's own body.

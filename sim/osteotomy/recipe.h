@@ -36,6 +36,7 @@ Recipe le_fort_1_recipe();
 Recipe vertical_ramus_recipe();
 Recipe inverted_l_recipe();
 Recipe body_recipe();
+Recipe segmental_resection_recipe();
 Recipe le_fort_2_recipe();
 Recipe le_fort_3_recipe();
 Recipe vault_strip_recipe();

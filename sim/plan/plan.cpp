@@ -162,6 +162,38 @@ Problem problem_in(const NoteStep& note) {
       "text", fmt::format("has {} characters; expected 1 to {}", note.text.size(), max_text)};
 }
 
+Problem problem_in(const ResectStep& step) {
+  const auto found = graft_step_problem(step);
+  return found ? Problem({found->first, found->second}) : std::nullopt;
+}
+
+Problem problem_in(const GraftStep& step) {
+  const auto found = graft_step_problem(step);
+  return found ? Problem({found->first, found->second}) : std::nullopt;
+}
+
+/// The names of the bodies that a step makes.
+std::vector<std::string> made_by(const PlanAction& action) {
+  if (const auto* cut = std::get_if<CutStep>(&action)) return cut->pieces;
+  if (const auto* graft = std::get_if<GraftStep>(&action)) return graft_bodies(*graft);
+  return {};
+}
+
+/// The names of the segments that a step needs, in the step.
+template <class Action>
+auto segments_in(Action& action) {
+  std::vector<decltype(&std::get<MoveStep>(action).segment)> used;
+  if (auto* cut = std::get_if<CutStep>(&action)) used = {&cut->target};
+  if (auto* move = std::get_if<MoveStep>(&action)) used = {&move->segment};
+  if (auto* resection = std::get_if<ResectStep>(&action)) used = {&resection->segment};
+  if (auto* graft = std::get_if<GraftStep>(&action)) used = {&graft->replaces};
+  if (auto* trim = std::get_if<TrimStep>(&action)) {
+    used = {&trim->segment};
+    for (auto& other : trim->of) used.push_back(&other);
+  }
+  return used;
+}
+
 std::vector<PlanStep>::iterator step_with(Plan& plan, int id) {
   return plan.steps.begin() + (&step_of(plan, id) - plan.steps.data());
 }
@@ -174,19 +206,36 @@ std::vector<PlanStep>::iterator step_with(Plan& plan, int id) {
 void check_order(const Plan& plan) {
   std::map<std::string, std::size_t> made;  // by which step
   for (std::size_t i = 0; i < plan.steps.size(); ++i)
-    if (const auto* cut = std::get_if<CutStep>(&plan.steps[i].action))
-      for (const auto& piece : cut->pieces)
-        if (const auto [known, is_new] = made.try_emplace(piece, i); !is_new)
-          refuse_step(plan.steps[i], fmt::format("the piece \"{}\" is already made by {}", piece,
-                                                 step_name(plan.steps[known->second])));
+    for (const auto& piece : made_by(plan.steps[i].action))
+      if (const auto [known, is_new] = made.try_emplace(piece, i); !is_new)
+        refuse_step(plan.steps[i], fmt::format("the piece \"{}\" is already made by {}", piece,
+                                               step_name(plan.steps[known->second])));
   for (std::size_t i = 0; i < plan.steps.size(); ++i)
     for (const std::string& used : used_segments(plan.steps[i].action)) {
       const auto maker = made.find(used);
       // A cut may give one of its pieces the name of what it cuts.
-      if (maker == made.end() || maker->second <= i) continue;
+      const bool cuts = std::holds_alternative<CutStep>(plan.steps[i].action);
+      if (maker == made.end() || maker->second < i || (cuts && maker->second == i)) continue;
       refuse_step(plan.steps[i], fmt::format("needs \"{}\", which only {} makes", used,
                                              step_name(plan.steps[maker->second])));
     }
+}
+
+/// A segment is resected once, and a graft takes the place of a resected one.
+void check_resections(const Plan& plan) {
+  std::map<std::string, std::size_t> resected;  // by which step
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    if (const auto* resection = std::get_if<ResectStep>(&plan.steps[i].action))
+      if (const auto [known, is_new] = resected.try_emplace(resection->segment, i); !is_new)
+        refuse_step(plan.steps[i],
+                    fmt::format("\"{}\" is already resected by {}", resection->segment,
+                                step_name(plan.steps[known->second])));
+    if (const auto* graft = std::get_if<GraftStep>(&plan.steps[i].action))
+      if (!resected.contains(graft->replaces))
+        refuse_step(plan.steps[i], fmt::format("no step before it resects \"{}\", whose place the "
+                                               "graft takes",
+                                               graft->replaces));
+  }
 }
 
 }  // namespace
@@ -196,6 +245,9 @@ std::string step_title(const PlanAction& action) {
     return "cut " + (cut->osteotomy.empty() ? cut->target : cut->osteotomy);
   if (const auto* move = std::get_if<MoveStep>(&action)) return "move " + move->segment;
   if (const auto* trim = std::get_if<TrimStep>(&action)) return "trim " + trim->segment;
+  if (const auto* resection = std::get_if<ResectStep>(&action))
+    return "resect " + resection->segment;
+  if (const auto* graft = std::get_if<GraftStep>(&action)) return "graft " + graft->name;
   return "note";
 }
 
@@ -214,13 +266,8 @@ const PlanStep& step_of(const Plan& plan, int id) {
 }
 
 std::vector<std::string> used_segments(const PlanAction& action) {
-  if (const auto* cut = std::get_if<CutStep>(&action)) return {cut->target};
-  if (const auto* move = std::get_if<MoveStep>(&action)) return {move->segment};
   std::vector<std::string> used;
-  if (const auto* trim = std::get_if<TrimStep>(&action)) {
-    used = trim->of;
-    used.insert(used.begin(), trim->segment);
-  }
+  for (const std::string* name : segments_in(action)) used.push_back(*name);
   return used;
 }
 
@@ -254,6 +301,7 @@ void check_plan(const Plan& plan) {
     if (!zones.insert(zone.name).second)
       throw InputError(fmt::format("the zone \"{}\" occurs twice", zone.name));
   }
+  check_resections(plan);
 }
 
 void check_segments(const Plan& plan, const BodyTree& bodies) {
@@ -265,8 +313,8 @@ void check_segments(const Plan& plan, const BodyTree& bodies) {
         refuse_step(step, fmt::format("\"{}\" is neither a body of the case nor made by a cut "
                                       "before this step{}",
                                       used, suggestion(used, known)));
-    if (const auto* cut = std::get_if<CutStep>(&step.action))
-      known.insert(known.end(), cut->pieces.begin(), cut->pieces.end());
+    const auto made = made_by(step.action);
+    known.insert(known.end(), made.begin(), made.end());
   }
 }
 
@@ -340,22 +388,15 @@ Plan with_recut(Plan plan, int id, const CutStep& cut) {
   at->action = cut;
   for (PlanStep& step : plan.steps) {
     if (step.id == id) continue;
-    auto* later = std::get_if<CutStep>(&step.action);
     auto* move = std::get_if<MoveStep>(&step.action);
-    const auto rename = [&](std::string& used) {
-      const auto found = renamed.find(used);
-      if (found == renamed.end() || found->second == used) return;
+    for (std::string* used : segments_in(step.action)) {
+      const auto found = renamed.find(*used);
+      if (found == renamed.end() || found->second == *used) continue;
       // The point that a move is about by default depends on the segment's name.
       if (move)
         if (auto* words = std::get_if<ClinicalMove>(&move->move))
-          words->about = point_name(*words, used);
-      used = found->second;
-    };
-    if (later) rename(later->target);
-    if (move) rename(move->segment);
-    if (auto* trim = std::get_if<TrimStep>(&step.action)) {
-      rename(trim->segment);
-      for (std::string& other : trim->of) rename(other);
+          words->about = point_name(*words, *used);
+      *used = found->second;
     }
   }
   check_plan(plan);

@@ -12,6 +12,7 @@
 #include "sim/frame/body_tree.h"
 #include "sim/plan/case_geometry.h"
 #include "sim/plan/clinical_frame.h"
+#include "sim/plan/graft_step.h"
 #include "sim/plan/move.h"
 #include "sim/plan/plan_zone.h"
 
@@ -97,7 +98,7 @@ struct NoteStep {
   bool operator==(const NoteStep&) const = default;
 };
 
-using PlanAction = std::variant<CutStep, MoveStep, TrimStep, NoteStep>;
+using PlanAction = std::variant<CutStep, MoveStep, TrimStep, NoteStep, ResectStep, GraftStep>;
 
 struct PlanStep {
   int id = 0;  // stays with the step when others are added, removed or reordered

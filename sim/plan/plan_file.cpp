@@ -11,6 +11,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "sim/case/json_file.h"
+#include "sim/plan/graft_step_file.h"
 
 namespace condyle {
 namespace {
@@ -86,6 +87,8 @@ Json step_json(const TrimStep& step) {
 }
 
 Json step_json(const NoteStep& note) { return {{"note", note.text}}; }
+Json step_json(const ResectStep& step) { return {{"resect", graft_step_json(step)}}; }
+Json step_json(const GraftStep& step) { return {{"graft", graft_step_json(step)}}; }
 
 /// Points and triangles are flat lists, so that each keeps to one line.
 Json zone_json(const PlanZone& zone) {
@@ -296,8 +299,9 @@ MoveStep move_in(const JsonItem& item) {
 }
 
 PlanStep step_in(const fs::path& file, const JsonItem& item) {
-  item.only_keys({"id", "cut", "move", "trim", "note"});
-  if (item.value().size() != 2) item.refuse("must have an id and one of cut, move, trim and note");
+  item.only_keys({"id", "cut", "move", "trim", "note", "resect", "graft"});
+  if (item.value().size() != 2)
+    item.refuse("must have an id and one of cut, move, trim, note, resect and graft");
   PlanStep step{.id = item.at("id").integer(1, 1000000)};
   std::string kind;
   if (const auto cut = item.find("cut")) {
@@ -309,6 +313,12 @@ PlanStep step_in(const fs::path& file, const JsonItem& item) {
   } else if (const auto trim = item.find("trim")) {
     step.action = trim_in(*trim);
     kind = "trim";
+  } else if (const auto resection = item.find("resect")) {
+    step.action = resect_step_in(*resection);
+    kind = "resect";
+  } else if (const auto graft = item.find("graft")) {
+    step.action = graft_step_in(*graft);
+    kind = "graft";
   } else {
     step.action = NoteStep{item.at("note").text()};
     kind = "note";

@@ -47,7 +47,8 @@ class MotionSampler {
 
   BodyPoses poses(double time_s) const {
     const BodyTree& bodies = scene_.patient.bodies;
-    return placed(bodies, motion_target_poses(bodies, motion_.target(time_s)));
+    const std::vector<Pose> others = motion_.pieces ? motion_.pieces(time_s) : std::vector<Pose>{};
+    return placed(bodies, motion_target_poses(bodies, motion_.target(time_s), others));
   }
 
   /// Upper bound of the relative displacement of any point of the pair from t0 to t1, mm.

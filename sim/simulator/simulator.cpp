@@ -142,8 +142,8 @@ FrameState Playback::step_to(double time_s, const FrameState& from, TissueWarmSt
   StepInput input{.time_s = time_s, .obey_contact = obey_contact_};
   {
     const StageTimer timer(motion_time, Stage::motion);
-    input.X_PB_target =
-        motion_target_poses(scene_.patient.bodies, motion_.target(time_s), X_PB_target_);
+    input.X_PB_target = motion_target_poses(scene_.patient.bodies, motion_.target(time_s),
+                                            motion_.pieces ? motion_.pieces(time_s) : X_PB_target_);
   }
   FrameState next = step(scene_, from, input, settings_, warm);
   if (motion_.muscles) {

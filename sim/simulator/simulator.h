@@ -8,6 +8,7 @@
 #include "engine/core/progress.h"
 #include "sim/case/case.h"
 #include "sim/contact/contact.h"
+#include "sim/contact/way_in.h"
 #include "sim/frame/frame_state.h"
 #include "sim/motion/motion.h"
 #include "sim/tissue/tissue.h"
@@ -35,13 +36,14 @@ struct ScenePlan {
   std::string name, hash;
   std::vector<std::string> notes = {};
   std::vector<MuscleLengthChange> muscles = {};  // whose length the operation changes
+  std::vector<Seat> seats = {};                  // of its grafts
 };
 
 /// Data that is constant while the jaw moves: the patient and the models built from it.
 struct Scene {
   Case patient;
   ContactModel contacts;
-  std::shared_ptr<const TissueModel> tissue;  // null without a face, or when not requested
+  std::shared_ptr<const TissueModel> tissue;     // null without a face, or when not requested
   std::optional<ScenePlan> plan = std::nullopt;  // none: the patient as in its case
 };
 

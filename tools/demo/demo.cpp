@@ -14,11 +14,12 @@
 namespace condyle {
 namespace {
 
-const std::array<Demo, 4> demos{
+const std::array<Demo, 5> demos{
     {{"class-iii", "both jaws in class III, with the face afterwards", run_class_iii},
      {"jaw-before-after", "jaw movement before and after that operation", run_jaw_before_after},
      {"vault", "a vault with craniosynostosis, cut into panels and reshaped", run_vault},
-     {"genioplasty", "a chin moved forward, with the mouth opening afterwards", run_genioplasty}}};
+     {"genioplasty", "a chin moved forward, with the mouth opening afterwards", run_genioplasty},
+     {"fibula", "a resected jaw rebuilt from three pieces of a fibula", run_fibula}}};
 
 std::vector<std::string> demo_names() {
   std::vector<std::string> names;

@@ -131,7 +131,7 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
   save_case(after, folder_ / "case");
   make_folder(folder_ / "segments");
   for (const Part& part : after.parts)
-    if (part.role == Role::segment && operated.origin.contains(part.name))
+    if (is_piece(part.role) && operated.origin.contains(part.name))
       write_ply(part.mesh, folder_ / "segments" / (part.name + ".ply"));
   report(progress, "drawing", 0.9);
   draw([&] {

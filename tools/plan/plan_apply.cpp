@@ -87,7 +87,7 @@ int run_plan_apply(const PlanApplyOptions& options, const CommonOptions& common)
   save_case(after, options.out / "case");
   std::set<std::string> written;
   for (const Part& part : after.parts)
-    if (part.role == Role::segment && operated.origin.contains(part.name)) {
+    if (is_piece(part.role) && operated.origin.contains(part.name)) {
       const std::string file = "segments/" + part.name + ".ply";
       write_ply(part.mesh, options.out / file);
       written.insert(file);

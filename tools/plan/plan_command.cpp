@@ -72,8 +72,12 @@ void finish_edit(const Plan& plan, const fs::path& file, const std::string& edit
 void check_segment(const Plan& plan, const std::string& segment) {
   std::vector<std::string> known = {"mandible"};
   for (const PlanStep& step : plan.steps)
-    if (const auto* cut = std::get_if<CutStep>(&step.action))
+    if (const auto* cut = std::get_if<CutStep>(&step.action)) {
       known.insert(known.end(), cut->pieces.begin(), cut->pieces.end());
+    } else if (const auto* graft = std::get_if<GraftStep>(&step.action)) {
+      const auto bodies = graft_bodies(*graft);
+      known.insert(known.end(), bodies.begin(), bodies.end());
+    }
   for (const PartGeometry& part : plan.geometry.parts)
     if (part.name.starts_with("segment") || part.name.starts_with("transplant"))
       known.push_back(part.name);
@@ -87,10 +91,10 @@ void add_plan(Commands& commands) {
                                        "condyle plan new --out plan.json\n"
                                        "  condyle plan cut plan.json le_fort_1\n"
                                        "  condyle plan move plan.json maxilla forward 4 up 2");
-  for (const auto add :
-       {add_plan_new, add_plan_cut, add_plan_edit, add_plan_move, add_plan_occlude, add_plan_trim,
-        add_plan_zone, add_plan_note, add_plan_reorder, add_plan_remove, add_plan_undo,
-        add_plan_redo, add_plan_show, add_plan_apply, add_plan_compare})
+  for (const auto add : {add_plan_new, add_plan_cut, add_plan_edit, add_plan_move, add_plan_occlude,
+                         add_plan_trim, add_plan_resect, add_plan_graft, add_plan_zone,
+                         add_plan_note, add_plan_reorder, add_plan_remove, add_plan_undo,
+                         add_plan_redo, add_plan_show, add_plan_apply, add_plan_compare})
     add(commands, plan);
 }
 

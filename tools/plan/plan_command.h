@@ -26,6 +26,8 @@ void add_plan_reorder(Commands& commands, CLI::App& plan);
 void add_plan_note(Commands& commands, CLI::App& plan);
 void add_plan_undo(Commands& commands, CLI::App& plan);
 void add_plan_redo(Commands& commands, CLI::App& plan);  // in plan_undo.cpp
+void add_plan_resect(Commands& commands, CLI::App& plan);
+void add_plan_graft(Commands& commands, CLI::App& plan);  // in plan_graft.cpp
 void add_plan_compare(Commands& commands, CLI::App& plan);
 
 /// Adds the positional PLAN.

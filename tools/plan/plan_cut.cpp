@@ -110,6 +110,8 @@ int run_plan_edit(const PlanCutOptions& options, const CommonOptions& common) {
                                      ? "condyle plan move replaces the move of a segment"
                                  : std::holds_alternative<TrimStep>(known.action)
                                      ? "condyle plan trim replaces the trim of a segment"
+                                 : std::holds_alternative<GraftStep>(known.action)
+                                     ? "condyle plan graft changes a graft of the same name"
                                      : "remove it, and add another"));
   CutStep step = changed_cut(*before, options);
   const Case patient = open_planned(options.patient, plan, common);

@@ -10,6 +10,7 @@
 #include "sim/operation/segment_overlaps.h"
 #include "sim/operation/trim_segments.h"
 #include "sim/plan/cephalometry.h"
+#include "tools/plan/graft_report.h"
 
 namespace condyle {
 namespace {
@@ -170,6 +171,7 @@ Json plan_report_json(const Plan& plan, const Operated& operated) {
     error = std::max(error, trim.volume_error_percent());
   }
   json["volume_error_percent"] = error;
+  add_graft_report(json, plan, operated);
   json["overlaps"] = Json::array();
   for (const SegmentOverlap& overlap : segment_overlaps(operated))
     json["overlaps"].push_back(overlap_json(overlap));
@@ -190,6 +192,8 @@ std::string plan_report_text(const Plan& plan, const Operated& operated) {
   for (const CutReport& cut : operated.cuts)
     text += "\n" + cut_text(cut, operated.patient.landmarks);
   for (const TrimReport& trim : operated.trims) text += "\n" + trim_text(trim);
+  if (const std::string grafts = graft_report_text(plan, operated); !grafts.empty())
+    text += "\n" + grafts;
   text += overlaps_text(operated);
   std::string problem;
   if (const auto frame = frame_of(plan, operated, problem))

@@ -8,8 +8,8 @@
 namespace condyle {
 
 /// What a plan does to its patient, for programs: `segments` (name, parent, volume_mm3, closed),
-/// `remaining`, `volume_error_percent`, `cuts`, `trims`, `overlaps`, `movements`, `cephalometry`,
-/// `notes`, `problems`.
+/// `remaining`, `volume_error_percent`, `cuts`, `trims`, `resections`, `grafts`, `overlaps`,
+/// `movements`, `cephalometry`, `notes`, `problems`.
 nlohmann::ordered_json plan_report_json(const Plan& plan, const Operated& operated);
 
 /// The same for people: steps, cuts, table of displacements, cephalometry.

@@ -1,0 +1,242 @@
+#include "sim/contact/way_in.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "engine/collide/quick_distance.h"
+#include "engine/collide/surface_samples.h"
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "engine/mesh/measure.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double sample_mm = 0.8;
+constexpr float farthest_mm = 4;            // distances beyond are not measured
+constexpr double seat_mm = 2;               // of the way, where the faces are near by intention
+constexpr double blocking_depth_mm = 0.05;  // of samples in other bone
+
+/// The nearest of all else to the graft at one place of its way.
+struct Clearance {
+  double mm = farthest_mm;
+  const std::string* part = nullptr;
+  Vector3d at = Vector3d::Zero();
+};
+
+/// A graft and what lies around it.
+class Surroundings {
+ public:
+  Surroundings(const Case& patient, const std::vector<BodyId>& graft) {
+    const auto moves = [&](const Part& part) {
+      return std::find(graft.begin(), graft.end(), part.body) != graft.end();
+    };
+    for (const Part& part : patient.parts) {
+      if (!collides(part.role) || part.mesh.empty()) continue;
+      if (moves(part)) {
+        const SurfaceSamples samples = sample_surface(
+            part.mesh, {.spacing_mm = sample_mm, .edge_spacing_mm = sample_mm, .region = {}});
+        points_.insert(points_.end(), samples.points.begin(), samples.points.end());
+        box_.add(bounding_box(part.mesh));
+        pieces_.emplace_back(part.mesh);
+      } else {
+        others_.push_back(
+            {part.name, QuickDistance(part.mesh), bounding_box(part.mesh), part.mesh.vertices});
+      }
+    }
+    for (Other& other : others_)  // what the graft cannot reach
+      std::erase_if(other.corners, [&](const Vector3d& p) {
+        return !box_.contains(p, way_length_mm + farthest_mm);
+      });
+  }
+
+  Clearance at(const Vector3d& shift) const {
+    Clearance least;
+    const auto consider = [&](double mm, const Vector3d& p, const Other& other) {
+      if (mm < least.mm) least = {mm, &other.name, p};
+    };
+    Box box{box_.low + shift, box_.high + shift};
+    for (const Other& other : others_) {
+      if ((box.low.array() > other.box.high.array() + farthest_mm).any() ||
+          (other.box.low.array() > box.high.array() + farthest_mm).any())
+        continue;
+      QuickDistance::Start start;
+      for (const Vector3d& p : points_)
+        if (const Vector3d q = p + shift; other.box.contains(q, limit(least)))
+          consider(other.surface.signed_distance(q, limit(least), start), q, other);
+      for (const Vector3d& p : other.corners)
+        if (box.contains(p, limit(least)))
+          for (const QuickDistance& piece : pieces_)
+            consider(piece.signed_distance(p - shift, limit(least), start_of_none()), p, other);
+    }
+    return least;
+  }
+
+ private:
+  struct Other {
+    std::string name;
+    QuickDistance surface;
+    Box box;
+    std::vector<Vector3d> corners;
+  };
+  /// Samples deeper than this beside one that is nearer must not be missed.
+  static float limit(const Clearance& least) {
+    return static_cast<float>(std::max(least.mm, 2 * sample_mm));
+  }
+  static QuickDistance::Start& start_of_none() {
+    thread_local QuickDistance::Start start;
+    start = {};
+    return start;
+  }
+
+  std::vector<Vector3d> points_;
+  std::vector<QuickDistance> pieces_;
+  std::vector<Other> others_;
+  Box box_;
+};
+
+/// A direction brought into the cone of the faces: the part of it that points into bone is removed.
+std::optional<Vector3d> into_cone(Vector3d d, const std::vector<Vector3d>& normals) {
+  constexpr double beside = 1e-6;
+  const Vector3d wish = d;
+  for (const Vector3d& n : normals)
+    if (n.dot(d) < 0) d -= n.dot(d) * n;
+  const bool outside = std::any_of(normals.begin(), normals.end(),
+                                   [&](const Vector3d& n) { return n.dot(d) < -beside; });
+  if (outside && normals.size() == 2) {
+    const Vector3d along = normals[0].cross(normals[1]);
+    d = along.dot(wish) < 0 ? Vector3d(-along) : along;
+  }
+  if (d.norm() < 0.05) return std::nullopt;
+  d.normalize();
+  for (const Vector3d& n : normals)
+    if (n.dot(d) < -1e-3) return std::nullopt;
+  return d;
+}
+
+std::vector<Vector3d> directions_of(const Seat& seat) {
+  std::vector<Vector3d> directions;
+  const auto add = [&](const Vector3d& wish) {
+    const auto d = into_cone(wish.normalized(), seat.face_normals);
+    if (d && std::none_of(directions.begin(), directions.end(),
+                          [&](const Vector3d& known) { return known.dot(*d) > 0.9999; }))
+      directions.push_back(*d);
+  };
+  const Vector3d approach = seat.approach.normalized();
+  add(approach);
+  Vector3d middle = Vector3d::Zero();
+  for (const Vector3d& n : seat.face_normals) middle += n;
+  if (middle.norm() > 0.1) {
+    add(middle);
+    add(middle.normalized() + approach);
+  }
+  constexpr double around_deg[] = {25, 50};
+  const Vector3d u = approach.unitOrthogonal(), v = approach.cross(u);
+  for (const double degrees : around_deg)
+    for (int i = 0; i < 8; ++i) {
+      const double turn = i * std::numbers::pi / 4, tilt = degrees * std::numbers::pi / 180;
+      add(std::cos(tilt) * approach + std::sin(tilt) * (std::cos(turn) * u + std::sin(turn) * v));
+    }
+  return directions;
+}
+
+WayIn examine(const Surroundings& around, const Vector3d& direction) {
+  constexpr double fine_mm = 0.25, fine_part_mm = 10, coarse_mm = 1;
+  WayIn way;
+  way.direction = direction;
+  way.margin_mm = farthest_mm;
+  const double seated = std::min(around.at(Vector3d::Zero()).mm, 0.);
+  for (double s = fine_mm; s <= way_length_mm; s += s < fine_part_mm ? fine_mm : coarse_mm) {
+    const Clearance found = around.at(s * direction);
+    if (found.mm < seated - blocking_depth_mm) {
+      way.blocked_by = *found.part;
+      way.margin_at = found.at;
+      return way;
+    }
+    way.blocked_after_mm = way.length_mm = s;
+    if (s < seat_mm || found.mm >= way.margin_mm) continue;
+    way.margin_mm = found.mm;
+    way.margin_after_mm = s;
+    way.margin_at = found.at;
+    way.margin_part = *found.part;
+  }
+  way.state = way.margin_mm < tight_margin_mm ? WayIn::State::tight : WayIn::State::free;
+  return way;
+}
+
+/// Whether the first way is the better one; of equal ones the earlier stays.
+bool is_better(const WayIn& a, const WayIn& b) {
+  const auto rank = [](const WayIn& way) {
+    return way.state == WayIn::State::free ? 2 : way.state == WayIn::State::tight ? 1 : 0;
+  };
+  if (rank(a) != rank(b)) return rank(a) > rank(b);
+  // Beyond a millimetre more distance is no gain: the approach comes first in the list.
+  constexpr double ample_mm = 1;
+  return a.state == WayIn::State::blocked
+             ? a.blocked_after_mm > b.blocked_after_mm
+             : std::min(a.margin_mm, ample_mm) > std::min(b.margin_mm, ample_mm) + 1e-6;
+}
+
+std::string direction_words(const Vector3d& d) {
+  const char* const names[3][2] = {
+      {"to the right", "to the left"}, {"forward", "backward"}, {"down", "up"}};
+  std::vector<std::pair<double, std::string>> words;
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(d[k]) > 0.3) words.emplace_back(-std::abs(d[k]), names[k][d[k] > 0]);
+  std::stable_sort(words.begin(), words.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i].second;
+  return text;
+}
+
+}  // namespace
+
+WayIn find_way_in(const Case& patient, const Seat& seat, int threads) {
+  std::vector<BodyId> graft;
+  for (const std::string& name : seat.bodies) {
+    const auto body = patient.bodies.find(name);
+    if (!body) throw InputError(fmt::format("the patient has no body \"{}\"", name));
+    graft.push_back(*body);
+  }
+  const Surroundings around(patient, graft);
+  const auto directions = directions_of(seat);
+  std::vector<WayIn> ways(directions.size());
+  parallel_for(directions.size(), threads,
+               [&](std::size_t i) { ways[i] = examine(around, directions[i]); });
+  WayIn best;
+  for (std::size_t i = 0; i < ways.size(); ++i)
+    if (i == 0 || is_better(ways[i], best)) best = ways[i];
+  best.directions = static_cast<int>(directions.size());
+  return best;
+}
+
+std::string state_name(WayIn::State state) {
+  return state == WayIn::State::free ? "free" : state == WayIn::State::tight ? "tight" : "blocked";
+}
+
+std::string way_in_text(const WayIn& way, const Seat& seat) {
+  const std::string where = fmt::format("({:.1f}, {:.1f}, {:.1f})", way.margin_at.x(),
+                                        way.margin_at.y(), way.margin_at.z());
+  if (way.state == WayIn::State::blocked)
+    return fmt::format(
+        "way in of {}: blocked; of {} straight directions the best leads out for "
+        "{:.2f} mm, then {} is in the way at {}",
+        seat.name, way.directions, way.blocked_after_mm, way.blocked_by, where);
+  std::string text = fmt::format("way in of {}: {}, straight (out of its seat {})", seat.name,
+                                 state_name(way.state), direction_words(way.direction));
+  if (way.margin_part.empty())
+    return text + fmt::format("; more than {} mm from all else", static_cast<int>(farthest_mm));
+  return text + fmt::format("; least distance {:.2f} mm, {:.1f} mm from the seat, to {} at {}",
+                            way.margin_mm, way.margin_after_mm, way.margin_part, where);
+}
+
+}  // namespace condyle

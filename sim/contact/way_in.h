@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "engine/math/pose.h"
+#include "sim/case/case.h"
+
+namespace condyle {
+
+/// Where a graft lies, and what bounds its way out.
+struct Seat {
+  std::string name;                 // of the graft
+  std::vector<std::string> bodies;  // its pieces, which move together; the first carries the others
+  std::vector<Eigen::Vector3d> face_normals;  // of the bone's faces at its ends, out of that bone
+  Eigen::Vector3d approach = -Eigen::Vector3d::UnitZ();  // towards the surgeon's hands
+};
+
+/// The straight way of a graft into its seat. Positions are along the way out.
+struct WayIn {
+  enum class State { free, tight, blocked };
+  State state = State::blocked;
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  // out of the seat, unit
+  double length_mm = 0;                                  // that was examined
+  // Least distance of the graft from all else, beyond the first 2 mm; where along the way, at which
+  // place and of which part.
+  double margin_mm = 0, margin_after_mm = 0;
+  Eigen::Vector3d margin_at = Eigen::Vector3d::Zero();  // cranium
+  std::string margin_part = {};
+  // Of a blocked way: how far the graft comes, and the part that stops it.
+  double blocked_after_mm = 0;
+  std::string blocked_by = {};
+  int directions = 0;  // examined
+};
+
+constexpr double tight_margin_mm = 0.3;
+constexpr double way_length_mm = 60;
+
+/// The straight way out of a seat along which the graft keeps the largest distance. A graft between
+/// plane faces can only leave along directions that point out of each face or along it; examined
+/// are the approach brought into this cone, the middle of the cone and directions around both, in
+/// steps of 0.25 mm over the first 10 mm and 1 mm after, against all bone and teeth of other bodies
+/// at rest. Surfaces are compared by exact distances of samples of the graft (0.8 mm) and of
+/// corners of the others.
+/// Bit-identical for any number of threads. throws: InputError for a body that the patient lacks.
+WayIn find_way_in(const Case& patient, const Seat& seat, int threads = 1);
+
+/// "graft: free, straight out down and to the left; at least 0.8 mm from mandible".
+std::string way_in_text(const WayIn& way, const Seat& seat);
+
+/// "free", "tight", "blocked".
+std::string state_name(WayIn::State state);
+
+}  // namespace condyle

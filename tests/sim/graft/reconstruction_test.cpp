@@ -1,0 +1,119 @@
+// A segment of the built-in jaw is resected, and a fibula takes its place.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "engine/core/error.h"
+#include "engine/mesh/topology.h"
+#include "sim/graft/graft.h"
+#include "sim/operation/graft_steps.h"
+#include "sim/operation/operation.h"
+#include "sim/plan/plan_file.h"
+#include "tests/support/builtin.h"
+
+using namespace condyle;
+using condyle::test::builtin;
+
+namespace {
+
+Plan resected() {
+  Plan plan;
+  plan.name = "reconstruction";
+  plan.geometry = geometry_of(builtin());
+  CutStep cut{.osteotomy = "segmental_resection",
+              .parameters = {{"from_tooth", 34}, {"to_tooth", 37}},
+              .kerf_mm = 0.5,
+              .pieces = {"tumour"},
+              .below_margins = true};
+  plan = with_step(std::move(plan), cut);
+  return with_step(std::move(plan), ResectStep{"tumour"});
+}
+
+GraftStep fibula(int pieces) {
+  GraftStep step;
+  step.name = "fibula";
+  step.replaces = "tumour";
+  step.pieces = pieces;
+  return step;
+}
+
+TEST(Reconstruction, removes_the_segment_with_its_teeth_and_leaves_two_hosts) {
+  const Operated operated = apply_plan(builtin(), resected());
+  ASSERT_TRUE(operated.problems.empty()) << operated.problems[0];
+  ASSERT_EQ(operated.resections.size(), 1u);
+  EXPECT_EQ(operated.resections[0].teeth, (std::vector<int>{34, 35, 36, 37}));
+  EXPECT_GT(operated.resections[0].volume_mm3, 3000);
+  EXPECT_FALSE(operated.patient.bodies.find("tumour"));
+  std::set<int> teeth;
+  for (const Part& part : operated.patient.parts) {
+    for (const Tooth& tooth : part.teeth) teeth.insert(tooth.fdi);
+    if (part.name == "mandible") {
+      const Topology found = inspect(part.mesh);
+      EXPECT_TRUE(found.closed());
+      EXPECT_EQ(found.components, 2);
+    }
+  }
+  EXPECT_FALSE(teeth.contains(35));
+  EXPECT_TRUE(teeth.contains(33));
+  EXPECT_TRUE(teeth.contains(45));
+}
+
+TEST(Reconstruction, lays_pieces_that_meet_the_jaw_and_each_other) {
+  const Plan plan = with_step(resected(), fibula(2));
+  const Operated operated = apply_plan(builtin(), plan);
+  ASSERT_TRUE(operated.problems.empty()) << operated.problems[0];
+  ASSERT_EQ(operated.grafts.size(), 1u);
+  const GraftLayout& graft = operated.grafts[0];
+  const BodyTree& bodies = operated.patient.bodies;
+  const BodyId first = *bodies.find("fibula_1"), second = *bodies.find("fibula_2");
+  EXPECT_EQ(bodies[bodies[first].parent].name, "mandible");
+  EXPECT_EQ(bodies[second].parent, first);
+  for (const Part& part : operated.patient.parts)
+    if (part.role == Role::transplant) {
+      EXPECT_TRUE(inspect(part.mesh).closed()) << part.name;
+    }
+  const auto faces = graft_faces(operated, graft);
+  ASSERT_EQ(faces.size(), 3u);
+  for (const GraftFaceReport& face : faces) {
+    EXPECT_EQ(face.level, GraftFaceReport::Level::good) << face.piece << " to " << face.other;
+    EXPECT_GT(face.share, 0.8) << face.piece << " to " << face.other;
+  }
+  // The clearance at the jaw, more beside the rim of its face; none between the mitred faces.
+  EXPECT_GT(faces[0].contact.mean_gap_mm, 0.2 - 1e-6);
+  EXPECT_LT(faces[0].contact.mean_gap_mm, 0.3);
+  EXPECT_NEAR(faces[1].contact.mean_gap_mm, 0, 1e-3);
+  EXPECT_NEAR(faces[1].share, 1, 0.02);
+  EXPECT_EQ(faces[2].other, "mandible");
+  EXPECT_LT(graft.curve_deviation_mm, 3);
+}
+
+TEST(Reconstruction, reports_the_gap_where_a_piece_is_moved_away) {
+  Plan plan = with_step(resected(), fibula(1));
+  const GraftLayout graft = apply_plan(builtin(), plan).grafts[0];
+  const Pose shift{Eigen::Quaterniond::Identity(), 1.6 * graft.defect.faces[0].normal};
+  plan = with_step(std::move(plan), MoveStep{.segment = "fibula", .move = ExplicitMove{shift}});
+  const Operated operated = apply_plan(builtin(), plan);
+  const auto faces = graft_faces(operated, operated.grafts[0]);
+  EXPECT_GT(faces[0].contact.mean_gap_mm, 1.8 - 1e-6);
+  EXPECT_LT(faces[0].contact.mean_gap_mm, 1.9);
+  EXPECT_EQ(faces[0].level, GraftFaceReport::Level::wide);
+  EXPECT_EQ(faces[0].share, 0);
+}
+
+TEST(Reconstruction, is_read_back_from_its_file_and_needs_its_resection) {
+  GraftStep step = fibula(3);
+  step.curve = {{1, 2, 3.25}, {4, 5, 6}, {7, 8, 9}};
+  step.height_mm = 8.5;
+  step.starts_mm = {70, 100, 130};
+  step.approach = "intraoral";
+  const Plan plan = with_step(resected(), step);
+  EXPECT_EQ(parse_plan("plan.json", plan_json(plan)), plan);
+  EXPECT_THROW(without_step(plan, 2), InputError);
+  EXPECT_THROW(with_reordered(plan, 3, 0), InputError);
+  step.pieces = 5;
+  EXPECT_THROW(with_replaced(plan, 3, step), InputError);
+  EXPECT_THROW(with_step(plan, ResectStep{"tumour"}), InputError);
+}
+
+}  // namespace

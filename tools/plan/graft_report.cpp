@@ -1,0 +1,137 @@
+#include "tools/plan/graft_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "engine/mesh/topology.h"
+#include "sim/operated/graft_way.h"
+#include "sim/operation/graft_steps.h"
+
+namespace condyle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json donor_cut_json(const DonorCut& cut) {
+  return {{"place_mm", cut.place_mm},
+          {"angle_deg", cut.angle_deg},
+          {"outward_deg", cut.outward_deg},
+          {"up_deg", cut.up_deg}};
+}
+
+Json face_json(const GraftFaceReport& face) {
+  using Level = GraftFaceReport::Level;
+  const char* level = face.level == Level::good        ? "good"
+                      : face.level == Level::wide      ? "wide"
+                      : face.level == Level::very_wide ? "very_wide"
+                                                       : "open";
+  return {{"piece", face.piece},
+          {"other", face.other},
+          {"area_mm2", face.contact.area_mm2},
+          {"contact_share", face.share},
+          {"mean_gap_mm", face.contact.mean_gap_mm},
+          {"largest_gap_mm", face.contact.largest_gap_mm},
+          {"level", level}};
+}
+
+Json way_json(const WayIn& way) {
+  Json json = {{"state", state_name(way.state)},
+               {"direction", {way.direction.x(), way.direction.y(), way.direction.z()}},
+               {"directions_examined", way.directions}};
+  const Json at = {way.margin_at.x(), way.margin_at.y(), way.margin_at.z()};
+  if (way.state == WayIn::State::blocked) {
+    json["blocked_after_mm"] = way.blocked_after_mm;
+    json["blocked_by"] = way.blocked_by;
+    json["blocked_at_mm"] = at;
+    return json;
+  }
+  json["length_mm"] = way.length_mm;
+  json["margin_mm"] = way.margin_mm;
+  if (way.margin_part.empty()) return json;
+  json["margin_part"] = way.margin_part;
+  json["margin_after_mm"] = way.margin_after_mm;
+  json["margin_at_mm"] = at;
+  return json;
+}
+
+/// The way in of each graft, in their order.
+std::vector<WayIn> ways_in(const std::vector<Seat>& seats, const Operated& operated) {
+  constexpr int threads = 2;  // the result is the same for any number
+  std::vector<WayIn> ways;
+  if (seats.empty()) return ways;
+  const Case after = operated_case(operated);
+  for (const Seat& seat : seats) ways.push_back(find_way_in(after, seat, threads));
+  return ways;
+}
+
+Json graft_json(const Operated& operated, const GraftLayout& graft) {
+  Json json = {
+      {"name", graft.step.name},          {"donor", graft.donor_name},
+      {"replaces", graft.step.replaces},  {"donor_from_mm", graft.donor_from_mm},
+      {"donor_to_mm", graft.donor_to_mm}, {"curve_deviation_mm", graft.curve_deviation_mm}};
+  json["pieces"] = Json::array();
+  for (const GraftPiece& piece : graft.pieces)
+    json["pieces"].push_back(
+        {{"name", piece.body},
+         {"length_mm", piece.length_mm},
+         {"start_mm", piece.start_mm},
+         {"volume_mm3", piece.volume_mm3},
+         {"closed", inspect(piece.mesh).closed()},
+         {"saw_cuts", {donor_cut_json(piece.cuts[0]), donor_cut_json(piece.cuts[1])}}});
+  json["spacing_mm"] = graft.spacing_mm;
+  json["faces"] = Json::array();
+  for (const GraftFaceReport& face : graft_faces(operated, graft))
+    json["faces"].push_back(face_json(face));
+  json["overlaps"] = graft_overlaps(operated, graft);
+  json["warnings"] = graft.warnings;
+  return json;
+}
+
+std::string graft_text(const Operated& operated, const GraftLayout& graft, const std::string& way) {
+  std::string text = fmt::format("graft {}\n", graft.step.name);
+  for (const std::string& sentence : graft_sentences(operated, graft))
+    text += "  " + sentence + "\n";
+  return text + "  " + way + "\n";
+}
+
+}  // namespace
+
+void add_graft_report(Json& report, const Plan& plan, const Operated& operated) {
+  report["resections"] = Json::array();
+  for (const Resection& resection : operated.resections)
+    report["resections"].push_back({{"step", resection.step},
+                                    {"segment", resection.segment},
+                                    {"volume_mm3", resection.volume_mm3},
+                                    {"teeth", resection.teeth}});
+  report["grafts"] = Json::array();
+  const auto ways = ways_in(graft_seats(operated, plan), operated);
+  for (std::size_t i = 0; i < operated.grafts.size(); ++i) {
+    report["grafts"].push_back(graft_json(operated, operated.grafts[i]));
+    report["grafts"].back()["way_in"] = way_json(ways[i]);
+  }
+}
+
+std::string graft_report_text(const Plan& plan, const Operated& operated) {
+  std::string text;
+  for (const Resection& resection : operated.resections)
+    text +=
+        fmt::format("resected: {}, {:.1f} cm³{}\n", resection.segment, resection.volume_mm3 / 1000,
+                    resection.teeth.empty()
+                        ? ""
+                        : fmt::format(", with the teeth {}", fmt::join(resection.teeth, ", ")));
+  for (const GraftLayout& graft : operated.grafts)
+    text += graft_report_text(plan, operated, graft.step.name);
+  return text;
+}
+
+std::string graft_report_text(const Plan& plan, const Operated& operated, const std::string& name) {
+  const auto seats = graft_seats(operated, plan);
+  for (std::size_t i = 0; i < seats.size(); ++i)
+    if (seats[i].name == name) {
+      const std::vector<WayIn> way = ways_in({seats[i]}, operated);
+      return graft_text(operated, operated.grafts[i], way_in_text(way.front(), seats[i]));
+    }
+  return "";
+}
+
+}  // namespace condyle
