@@ -36,7 +36,10 @@ TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& st
   for (int round = 0; round < max_rounds; ++round) {
     TissueState next = solve_tissue(
         model, reached, reached.X_CB,
-        {.tolerance_mm = finer * tolerance_mm, .contact_firmness = firmness, .threads = threads},
+        {.tolerance_mm = finer * tolerance_mm,
+         .contact_firmness = firmness,
+         .relaxed_contact = true,
+         .threads = threads},
         warm);
     if (next.reused) break;
     const double moved = largest_displacement(reached.nodes, next.nodes);

@@ -33,6 +33,9 @@ struct TissueBudget {
   /// Contact stiffness over the default. Stiffer contact needs fewer contact searches to converge,
   /// and more iterations for each.
   double contact_firmness = 1;
+  /// Contacts at sharp edges, as of cut bones, converge where they would oscillate; elsewhere they
+  /// may take a few iterations more.
+  bool relaxed_contact = false;
   int threads = 1;  // the result is bit-identical for any number
 };
 
