@@ -144,6 +144,10 @@ double CutReport::volume_error_percent() const {
 }
 
 Operated apply_plan(const Case& patient, const Plan& plan) {
+  return with_moves(apply_cuts(patient, plan), plan);
+}
+
+Operated apply_cuts(const Case& patient, const Plan& plan) {
   Operated operated;
   check_plan(plan);
   check_segments(plan, patient.bodies);
@@ -155,8 +159,25 @@ Operated apply_plan(const Case& patient, const Plan& plan) {
   operated.owners = landmark_owners(patient, finder);
   operated.muscles = muscle_owners(patient, finder);
   operated.patient.jaw = jaw_bodies(patient, operated.patient, finder);
-  pose_bodies(plan, operated);
+  operated.poses.X_CB.assign(static_cast<std::size_t>(operated.patient.bodies.size()), Pose{});
+  operated.X_PB = in_parents(operated.patient.bodies, operated.poses);
   return operated;
+}
+
+Operated with_moves(Operated cuts, const Plan& plan) {
+  check_plan(plan);
+  pose_bodies(plan, cuts);
+  return cuts;
+}
+
+bool have_same_cuts(const Plan& a, const Plan& b) {
+  const auto cuts_of = [](const Plan& plan) {
+    std::vector<PlanStep> cuts;
+    for (const PlanStep& step : plan.steps)
+      if (std::holds_alternative<CutStep>(step.action)) cuts.push_back(step);
+    return cuts;
+  };
+  return a.name == b.name && a.geometry == b.geometry && cuts_of(a) == cuts_of(b);
 }
 
 Pose planned_pose(const Operated& operated, const Plan& plan, const MoveStep& step) {

@@ -14,14 +14,20 @@ double largest_displacement(const Nodes& from, const Nodes& to) {
 
 TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& state,
                                  double tolerance_mm, int threads, TissueWarmStart warm) {
-  constexpr int max_rounds = 100;
+  return solve_to_equilibrium(model, state, warm,
+                              {.tolerance_mm = tolerance_mm, .threads = threads});
+}
+
+TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& state,
+                                 TissueWarmStart& warm, const SettleSettings& settings) {
+  const auto [tolerance_mm, max_rounds, threads] = settings;
   // Settings of a round. Where tissue slides along a curved surface, soft contact and its normal
   // can oscillate.
   constexpr double firmness = 10, finer = 0.01;
   constexpr double first_contraction = 0.5, max_contraction = 0.98;
   // Rounds whose largest displacement does not fall below that of as many rounds before: tissue
   // oscillates at a sharp edge, and further rounds change nothing.
-  constexpr std::size_t oscillation_rounds = 8;
+  constexpr std::size_t oscillation_rounds = 4;
   constexpr double no_decrease = 0.95;
   std::vector<double> displacements;
   const auto oscillates = [&] {

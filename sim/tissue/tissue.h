@@ -90,6 +90,14 @@ TissueState solve_tissue(const TissueModel& model, const TissueState& previous,
 /// stops when its contact springs are exact to 0.03 mm, which soft sliding tissue can amplify to
 /// tenths of a millimetre. status: `converged` of the result; iterations are of all rounds.
 constexpr double equilibrium_mm = 1e-3;
+struct SettleSettings {
+  double tolerance_mm = equilibrium_mm;
+  int max_rounds = 100;
+  int threads = 1;
+};
+/// `warm` belongs to the solve that gave `state`; it is replaced.
+TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& state,
+                                 TissueWarmStart& warm, const SettleSettings& settings = {});
 TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& state,
                                  double tolerance_mm = equilibrium_mm, int threads = 1,
                                  TissueWarmStart warm = {});
