@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -23,25 +22,7 @@ constexpr std::array soft_landmarks{
 constexpr int step_iterations = 60;
 /// Of the solution to equilibrium. Where the lips roll on each other it may oscillate.
 constexpr int max_rounds = 8;
-/// Of a body's corner, from the last prediction to the next; at most as many steps as from rest.
-constexpr double step_mm = 1;
-
 bool is_identity(const Pose& pose) { return pose.R.vec().isZero(0) && pose.t.isZero(0); }
-
-Box extent_of(const Case& patient, BodyId body) {
-  Box box;
-  for (const Part& part : patient.parts)
-    if (part.body == body) box.add(bounding_box(part.mesh));
-  return box;
-}
-
-Eigen::Vector3d center_of(const Box& box) {
-  return box.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : box.center();
-}
-
-Pose pose_or_rest(const std::vector<Pose>& X_CB, std::size_t body) {
-  return body < X_CB.size() ? X_CB[body] : Pose{};
-}
 
 float largest_distance(const std::vector<Eigen::Vector3f>& a,
                        const std::vector<Eigen::Vector3f>& b) {
@@ -92,7 +73,6 @@ void Predictor::build_whole(const Progress& progress) {
 void Predictor::begin_at_rest() {
   state_ = rest_tissue(*whole_);
   warm_ = {};
-  from_rest_ = true;
 }
 
 const Operated& Predictor::prepare(const Plan& plan, const Progress& progress) {
@@ -108,56 +88,28 @@ const Operated& Predictor::prepare(const Plan& plan, const Progress& progress) {
   build_whole(progress);
   tissue_ =
       operated_tissue(uncut_, whole_, operated_, plan, settings_.stripping, settings_.threads);
-  extent_.clear();
-  for (int b = 0; b < operated_.patient.bodies.size(); ++b)
-    extent_.push_back(extent_of(operated_.patient, BodyId{b}));
   plan_ = plan;
   begin_at_rest();
   return operated_;
 }
 
-/// Moves the bodies from the last poses to these. Whether the tissue follows.
-bool Predictor::move_in_steps(const std::vector<Pose>& planned, const Progress& progress) {
-  const std::vector<Pose> from = state_.X_CB;
-  int steps = settings_.steps;
-  if (!from_rest_) {
-    double most = 0;
-    for (std::size_t b = 0; b < planned.size(); ++b)
-      if (const Box& box = extent_[b]; !box.empty())
-        for (const Eigen::Vector3d& p : {box.low, box.high, box.center()})
-          most = std::max(most, (planned[b] * p - pose_or_rest(from, b) * p).norm());
-    steps = std::min(steps, static_cast<int>(std::ceil(most / step_mm)));
-  }
+/// Moves the bodies from rest to their planned poses and solves for equilibrium.
+void Predictor::move_from_rest(const Progress& progress) {
   const TissueBudget budget{.max_iterations = step_iterations,
                             .relaxed_contact = true,
                             .threads = settings_.threads};
-  for (int step = 1; step <= steps; ++step) {
-    const double fraction = static_cast<double>(step) / steps;
+  for (int step = 1; step <= settings_.steps; ++step) {
+    const double fraction = static_cast<double>(step) / settings_.steps;
     report(progress, "moving the segments", fraction);
-    std::vector<Pose> poses = planned;
-    if (step < steps)
-      for (std::size_t b = 0; b < poses.size(); ++b)
-        poses[b] = interpolate(pose_or_rest(from, b), planned[b], fraction, center_of(extent_[b]));
-    state_ = solve_tissue(*tissue_.model, state_, poses, budget, warm_);
-    if (state_.reused) return false;
-  }
-  return true;
-}
-
-/// The same to equilibrium; from rest where the last state leads nowhere.
-void Predictor::move_to(const std::vector<Pose>& planned, const Progress& progress) {
-  bool moved = move_in_steps(planned, progress);
-  if (!moved && !from_rest_) {
+    state_ = solve_tissue(
+        *tissue_.model, state_,
+        step < settings_.steps ? poses_at(operated_, fraction) : operated_.poses.X_CB, budget,
+        warm_);
+    if (!state_.reused) continue;
     begin_at_rest();
-    moved = move_in_steps(planned, progress);
+    throw MachineError("the face cannot be predicted: the tissue has no solution at " +
+                       std::to_string(100 * step / settings_.steps) + " % of the plan's moves");
   }
-  if (!moved) {
-    begin_at_rest();
-    throw MachineError(
-        "the face cannot be predicted: the tissue has no solution on the way to the planned "
-        "positions");
-  }
-  from_rest_ = false;
   report(progress, "solving the face to equilibrium", 1);
   state_ = solve_to_equilibrium(*tissue_.model, state_, warm_,
                                 {.max_rounds = max_rounds, .threads = settings_.threads});
@@ -174,10 +126,8 @@ Prediction Predictor::predict(const Plan& plan, const Progress& progress) {
 
   const auto start = std::chrono::steady_clock::now();
   const auto& planned = operated_.poses.X_CB;
-  if (std::all_of(planned.begin(), planned.end(), is_identity))
-    begin_at_rest();
-  else
-    move_to(planned, progress);
+  begin_at_rest();
+  if (!std::all_of(planned.begin(), planned.end(), is_identity)) move_from_rest(progress);
   deform_face(*tissue_.model, state_, prediction.after, settings_.threads);
   if (!state_.converged)
     prediction.unsettled_mm = change_of_face(prediction, state_, warm_, settings_.threads);
@@ -197,7 +147,6 @@ MovedFace Predictor::move(const BodyPoses& poses, int max_iterations) {
                          .relaxed_contact = true,
                          .threads = settings_.threads},
                         warm_);
-  from_rest_ = false;
   MovedFace moved{state_, {}};
   deform_face(*tissue_.model, state_, moved.vertices, settings_.threads);
   return moved;

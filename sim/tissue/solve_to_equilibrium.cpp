@@ -27,7 +27,7 @@ TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& st
   constexpr double first_contraction = 0.5, max_contraction = 0.98;
   // Rounds whose largest displacement does not fall below that of as many rounds before: tissue
   // oscillates at a sharp edge, and further rounds change nothing.
-  constexpr std::size_t oscillation_rounds = 4;
+  constexpr std::size_t oscillation_rounds = 8;
   constexpr double no_decrease = 0.95;
   std::vector<double> displacements;
   const auto oscillates = [&] {
