@@ -242,8 +242,8 @@ double plane_error(const std::vector<PointContact>& used, const std::vector<Poin
 
 namespace {
 
-/// Rotates the plane of a contact by a fraction towards `normal`; its gap at x is the contact's over
-/// the steepness.
+/// Rotates the plane of a contact by a fraction towards `normal`; its gap at x is the contact's
+/// over the steepness.
 void lean(const Vector3d& normal, double fraction, PointContact& contact, const Nodes& x) {
   contact.spring.normal = ((1 - fraction) * contact.spring.normal + fraction * normal).normalized();
   contact.spring.offset = contact.spring.along(x) - contact.gap / contact.steepness;
@@ -263,7 +263,7 @@ std::vector<PointContact> with_history(const std::vector<PointContact>& used,
                                        std::vector<PointContact> now, const Nodes& x,
                                        double fraction, bool relaxed) {
   const double same_face = relaxed ? 0.7 : 0.9;  // cosine between the planes
-  constexpr double stale_mm = 0.1;   // a plane is discarded when its point has moved this far
+  constexpr double stale_mm = 0.1;  // a plane is discarded when its point has moved this far
   std::vector<PointContact> both;
   std::size_t i = 0;
   for (auto& contact : now) {
@@ -325,7 +325,7 @@ ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>
   constexpr int undamped_searches = 2;
   ContactSolveResult result;
   ContactLists used = query(x);
-  for (std::size_t i = 0; i < before.size(); ++i) 
+  for (std::size_t i = 0; i < before.size(); ++i)
     used[i] = with_history(before[i], used[i], x, 0, settings.relaxed);
   while (true) {
     set_contacts(used, loads);
@@ -336,8 +336,8 @@ ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>
     const double fraction = result.solves > undamped_searches ? 0.5 : 0.0;
     for (std::size_t i = 0; i < used.size(); ++i) {
       result.error_mm = std::max(result.error_mm, plane_error(used[i], result.contacts[i], x));
-      result.contacts[i] = with_history(used[i], std::move(result.contacts[i]), x, fraction,
-                                        settings.relaxed);
+      result.contacts[i] =
+          with_history(used[i], std::move(result.contacts[i]), x, fraction, settings.relaxed);
       result.gap_mm = std::max(result.gap_mm, gap_left(result.contacts[i], x));
     }
     const auto within = [&](double error_mm, double gap_mm) {

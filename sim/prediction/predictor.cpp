@@ -95,16 +95,15 @@ const Operated& Predictor::prepare(const Plan& plan, const Progress& progress) {
 
 /// Moves the bodies from rest to their planned poses and solves for equilibrium.
 void Predictor::move_from_rest(const Progress& progress) {
-  const TissueBudget budget{.max_iterations = step_iterations,
-                            .relaxed_contact = true,
-                            .threads = settings_.threads};
+  const TissueBudget budget{
+      .max_iterations = step_iterations, .relaxed_contact = true, .threads = settings_.threads};
   for (int step = 1; step <= settings_.steps; ++step) {
     const double fraction = static_cast<double>(step) / settings_.steps;
     report(progress, "moving the segments", fraction);
-    state_ = solve_tissue(
-        *tissue_.model, state_,
-        step < settings_.steps ? poses_at(operated_, fraction) : operated_.poses.X_CB, budget,
-        warm_);
+    state_ =
+        solve_tissue(*tissue_.model, state_,
+                     step < settings_.steps ? poses_at(operated_, fraction) : operated_.poses.X_CB,
+                     budget, warm_);
     if (!state_.reused) continue;
     begin_at_rest();
     throw MachineError("the face cannot be predicted: the tissue has no solution at " +
@@ -142,11 +141,10 @@ Prediction Predictor::predict(const Plan& plan, const Progress& progress) {
 
 MovedFace Predictor::move(const BodyPoses& poses, int max_iterations) {
   if (!plan_) throw InputError("the plan of a prediction must be prepared before segments move");
-  state_ = solve_tissue(*tissue_.model, state_, poses.X_CB,
-                        {.max_iterations = max_iterations,
-                         .relaxed_contact = true,
-                         .threads = settings_.threads},
-                        warm_);
+  state_ = solve_tissue(
+      *tissue_.model, state_, poses.X_CB,
+      {.max_iterations = max_iterations, .relaxed_contact = true, .threads = settings_.threads},
+      warm_);
   MovedFace moved{state_, {}};
   deform_face(*tissue_.model, state_, moved.vertices, settings_.threads);
   return moved;

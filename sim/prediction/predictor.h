@@ -16,11 +16,11 @@ struct MovedFace {
   std::vector<Eigen::Vector3f> vertices;  // of the displayed face
 };
 
-/// Predicts faces of one patient, plan after plan. It keeps the tissue of the uncut patient and that
-/// on the pieces of the last cuts, so that a plan with other moves costs the solution alone.
-/// `predict` gives the face of predict(), bit for bit, whatever came before: lips that press on each
-/// other have several equilibria, and only a path from rest chooses always the same. `move` follows
-/// a segment from the last face.
+/// Predicts faces of one patient, plan after plan. It keeps the tissue of the uncut patient and
+/// that on the pieces of the last cuts, so that a plan with other moves costs the solution alone.
+/// `predict` gives the face of predict(), bit for bit, whatever came before: lips that press on
+/// each other have several equilibria, and only a path from rest chooses always the same. `move`
+/// follows a segment from the last face.
 class Predictor {
  public:
   /// throws: InputError for a case without a face.

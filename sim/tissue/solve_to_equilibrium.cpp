@@ -40,13 +40,12 @@ TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& st
   reached.converged = false;
   double before = 0, contraction = first_contraction;
   for (int round = 0; round < max_rounds; ++round) {
-    TissueState next = solve_tissue(
-        model, reached, reached.X_CB,
-        {.tolerance_mm = finer * tolerance_mm,
-         .contact_firmness = firmness,
-         .relaxed_contact = true,
-         .threads = threads},
-        warm);
+    TissueState next = solve_tissue(model, reached, reached.X_CB,
+                                    {.tolerance_mm = finer * tolerance_mm,
+                                     .contact_firmness = firmness,
+                                     .relaxed_contact = true,
+                                     .threads = threads},
+                                    warm);
     if (next.reused) break;
     const double moved = largest_displacement(reached.nodes, next.nodes);
     // If each round shortens the displacement by a factor, the remaining sum is a geometric series.

@@ -130,10 +130,10 @@ class PredictBench {
 /// A plane across the body of the jaw.
 CutStep plane_step(const Case& patient) {
   const Eigen::Vector3d& point = patient.landmarks.points.at("left_mental_foramen");
-  return {.surfaces = {PlanePatch{point + Eigen::Vector3d(8, 10, 0), Eigen::Vector3d::UnitY(),
-                                  25.0}},
-          .pieces = {"front"},
-          .below_margins = true};
+  return {
+      .surfaces = {PlanePatch{point + Eigen::Vector3d(8, 10, 0), Eigen::Vector3d::UnitY(), 25.0}},
+      .pieces = {"front"},
+      .below_margins = true};
 }
 
 BenchOperation operation_of(std::string name, const Case& patient, const Plan& cut,
@@ -154,8 +154,8 @@ int run_bench_predict(const BenchOptions& options, const CommonOptions& common) 
              maxilla = with_cut(patient, begun, {.osteotomy = "le_fort_1"}),
              split = with_cut(patient, begun, {.osteotomy = "sagittal_split"});
   // The upper jaw 0.5 mm farther forward, the rest as before.
-  const Plan farther = with_move(class_iii.plan, "maxilla",
-                                 {"forward", "4.5", "up", "2", "pns", "up", "4"});
+  const Plan farther =
+      with_move(class_iii.plan, "maxilla", {"forward", "4.5", "up", "2", "pns", "up", "4"});
   bar.clear();
 
   PredictBench bench(options, common);

@@ -14,10 +14,10 @@ namespace {
 /// The chin cut free and moved forward and to the left.
 Plan moved_chin(const Case& patient, double forward_mm, double left_mm = 0, double kerf_mm = 0) {
   Plan plan{.name = "test", .geometry = geometry_of(patient)};
-  plan = with_step(plan,
-                   CutStep{.osteotomy = "genioplasty", .kerf_mm = kerf_mm, .pieces = {"chin"}});
-  return with_step(
-      plan, MoveStep{"chin", ClinicalMove{.left_mm = left_mm, .forward_mm = forward_mm}});
+  plan =
+      with_step(plan, CutStep{.osteotomy = "genioplasty", .kerf_mm = kerf_mm, .pieces = {"chin"}});
+  return with_step(plan,
+                   MoveStep{"chin", ClinicalMove{.left_mm = left_mm, .forward_mm = forward_mm}});
 }
 
 double distance(const std::vector<Eigen::Vector3f>& a, const std::vector<Eigen::Vector3f>& b) {
@@ -31,8 +31,7 @@ TEST(Predictor, ManySmallChangesEndAtTheFaceOfAFreshPrediction) {
   const Case& patient = test::builtin();
   Predictor predictor(patient);
   Prediction last;
-  for (const double mm : {5.0, 5.5, 6.0})
-    last = predictor.predict(moved_chin(patient, mm, 6 - mm));
+  for (const double mm : {5.0, 5.5, 6.0}) last = predictor.predict(moved_chin(patient, mm, 6 - mm));
   const Prediction fresh = predict(patient, moved_chin(patient, 6));
   EXPECT_EQ(last.before, fresh.before);
   EXPECT_GT(fresh.max_displacement_mm(), 3);
