@@ -242,19 +242,28 @@ double plane_error(const std::vector<PointContact>& used, const std::vector<Poin
 
 namespace {
 
-/// Rotates the plane of a contact by a fraction towards `normal`; the gap at x is unchanged.
+/// Rotates the plane of a contact by a fraction towards `normal`; its gap at x is the contact's
+/// over the steepness.
 void lean(const Vector3d& normal, double fraction, PointContact& contact, const Nodes& x) {
   contact.spring.normal = ((1 - fraction) * contact.spring.normal + fraction * normal).normalized();
-  contact.spring.offset = contact.spring.along(x) - contact.gap;
+  contact.spring.offset = contact.spring.along(x) - contact.gap / contact.steepness;
+}
+
+/// Rate of the gap over that of the plane, from the last search to this one.
+double steepness(const PointContact& used, const PointContact& now, const Nodes& x) {
+  constexpr double least_mm = 1e-6, most = 4;
+  const double of_plane = used.spring.gap(x) - used.gap / used.steepness;
+  if (std::abs(of_plane) < least_mm) return used.steepness;
+  return std::clamp((now.gap - used.gap) / of_plane, 1.0, most);
 }
 
 }  // namespace
 
 std::vector<PointContact> with_history(const std::vector<PointContact>& used,
                                        std::vector<PointContact> now, const Nodes& x,
-                                       double fraction) {
-  constexpr double same_face = 0.9;  // cosine between the planes
-  constexpr double stale_mm = 0.1;   // a plane is discarded when its point has moved this far
+                                       double fraction, bool relaxed) {
+  const double same_face = relaxed ? 0.7 : 0.9;  // cosine between the planes
+  constexpr double stale_mm = 0.1;  // a plane is discarded when its point has moved this far
   std::vector<PointContact> both;
   std::size_t i = 0;
   for (auto& contact : now) {
@@ -266,6 +275,7 @@ std::vector<PointContact> with_history(const std::vector<PointContact>& used,
       if (cosine >= same_face) {
         const double force = cosine * used[i].spring.stiffness * used[i].pressed(x);
         both[at].push = std::max(both[at].push, force / both[at].spring.stiffness);
+        if (relaxed && fraction > 0) both[at].steepness = steepness(used[i], both[at], x);
         if (fraction > 0) lean(used[i].spring.normal, fraction, both[at], x);
       } else if ((used[i].at - both[at].at).norm() < stale_mm &&
                  used[i].spring.gap(x) - cosine * both[at].gap > 0) {  // a groove, not an edge
@@ -302,7 +312,7 @@ double gap_left(const std::vector<PointContact>& contacts, const Nodes& x) {
   double most = 0;
   for (const auto& contact : contacts)
     if (contact.push > 0 || contact.pressed(x) > 0)
-      most = std::max(most, std::abs(contact.spring.gap(x)));
+      most = std::max(most, contact.steepness * std::abs(contact.spring.gap(x)));
   return most;
 }
 
@@ -315,7 +325,8 @@ ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>
   constexpr int undamped_searches = 2;
   ContactSolveResult result;
   ContactLists used = query(x);
-  for (std::size_t i = 0; i < before.size(); ++i) used[i] = with_history(before[i], used[i], x);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    used[i] = with_history(before[i], used[i], x, 0, settings.relaxed);
   while (true) {
     set_contacts(used, loads);
     const Solved solved = solve();
@@ -325,7 +336,8 @@ ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>
     const double fraction = result.solves > undamped_searches ? 0.5 : 0.0;
     for (std::size_t i = 0; i < used.size(); ++i) {
       result.error_mm = std::max(result.error_mm, plane_error(used[i], result.contacts[i], x));
-      result.contacts[i] = with_history(used[i], std::move(result.contacts[i]), x, fraction);
+      result.contacts[i] =
+          with_history(used[i], std::move(result.contacts[i]), x, fraction, settings.relaxed);
       result.gap_mm = std::max(result.gap_mm, gap_left(result.contacts[i], x));
     }
     const auto within = [&](double error_mm, double gap_mm) {

@@ -59,6 +59,9 @@ struct PointContact {
   /// Multiplier of the augmented Lagrangian method, as mm of the spring: the force at zero gap.
   /// With it a compliant spring enforces the contact as a stiff one would.
   double push = 0;
+  /// Rate of the gap over that of the plane: at a sharp edge the distance changes faster than along
+  /// the averaged normal. `spring` then has the gap divided by it.
+  double steepness = 1;
 
   /// Contact force at x, mm of its spring.
   double pressed(const Nodes& x) const { return std::max(0.0, push - spring.gap(x)); }
@@ -107,10 +110,11 @@ double plane_error(const std::vector<PointContact>& used, const std::vector<Poin
 /// `now` with the contact forces of `used` at x as multipliers, and with those planes of `used`
 /// that represent another face nearby: in a groove a point must satisfy the planes of both sides,
 /// or it would oscillate. The planes of `now` are rotated by `fraction` (0 to 1) towards those of
-/// `used`.
+/// `used`. `relaxed`: contacts at edges converge where they would oscillate: planes that differ by
+/// up to 45 degrees count as one curved face, and rotated planes get their steepness.
 std::vector<PointContact> with_history(const std::vector<PointContact>& used,
                                        std::vector<PointContact> now, const Nodes& x,
-                                       double fraction = 0);
+                                       double fraction = 0, bool relaxed = false);
 
 /// Moves contacts with their obstacle by X.
 void move_contacts(const Pose& X, std::vector<PointContact>& contacts);
@@ -126,6 +130,7 @@ struct ContactSolveSettings {
   double tolerance_mm = 0.03;  // of spring force, see plane_error
   double gap_mm = 0.03;        // largest distance between a pressed point and its surface
   double rough_mm = 0.1;       // both tolerances once the budget is spent
+  bool relaxed = false;        // see with_history()
 };
 struct ContactSolveResult {
   int solves = 0;

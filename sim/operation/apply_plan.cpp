@@ -146,6 +146,10 @@ double CutReport::volume_error_percent() const {
 }
 
 Operated apply_plan(const Case& patient, const Plan& plan) {
+  return with_moves(apply_cuts(patient, plan), plan);
+}
+
+Operated apply_cuts(const Case& patient, const Plan& plan) {
   Operated operated;
   check_plan(plan);
   check_segments(plan, patient.bodies);
@@ -162,9 +166,34 @@ Operated apply_plan(const Case& patient, const Plan& plan) {
   operated.patient.jaw = jaw_bodies(patient, operated.patient, finder);
   for (const PlanStep& step : plan.steps)  // what was there owns landmarks and muscles
     if (std::holds_alternative<GraftStep>(step.action)) place_graft(operated, plan, step);
-  pose_bodies(plan, operated);
-  trim_segments(operated, plan);
+  operated.poses.X_CB.assign(static_cast<std::size_t>(operated.patient.bodies.size()), Pose{});
+  operated.X_PB = in_parents(operated.patient.bodies, operated.poses);
   return operated;
+}
+
+Operated with_moves(Operated cuts, const Plan& plan) {
+  check_plan(plan);
+  pose_bodies(plan, cuts);
+  trim_segments(cuts, plan);
+  return cuts;
+}
+
+bool have_same_cuts(const Plan& a, const Plan& b) {
+  const auto moves = [](const PlanStep& step) {
+    return std::holds_alternative<MoveStep>(step.action) ||
+           std::holds_alternative<NoteStep>(step.action);
+  };
+  const auto others_of = [&](const Plan& plan) {
+    std::vector<PlanStep> others = plan.steps;
+    std::erase_if(others, moves);
+    return others;
+  };
+  const auto trims = [](const PlanStep& step) {
+    return std::holds_alternative<TrimStep>(step.action);  // what it removes depends on the moves
+  };
+  return a.name == b.name && a.geometry == b.geometry && a.reference == b.reference &&
+         a.zones == b.zones && std::none_of(a.steps.begin(), a.steps.end(), trims) &&
+         others_of(a) == others_of(b);
 }
 
 Pose planned_pose(const Operated& operated, const Plan& plan, const MoveStep& step) {

@@ -131,6 +131,16 @@ struct Operated {
 /// closed, and a tooth that a cut divides.
 Operated apply_plan(const Case& patient, const Plan& plan);
 
+/// The two halves of it. Cuts, resections and grafts alone, with all bodies at rest; the plan is
+/// checked as a whole.
+/// throws: InputError as apply_plan().
+Operated apply_cuts(const Case& patient, const Plan& plan);
+/// What apply_cuts() returned, moved and trimmed by a plan for which have_same_cuts() holds.
+/// throws: InputError as apply_plan().
+Operated with_moves(Operated cuts, const Plan& plan);
+/// Whether plans differ in moves and notes only; false where one has trims, which follow the moves.
+bool have_same_cuts(const Plan& a, const Plan& b);
+
 /// X_CS of a segment of an operated patient by a move. throws: InputError as apply_plan().
 Pose planned_pose(const Operated& operated, const Plan& plan, const MoveStep& step);
 

@@ -201,7 +201,8 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
   const ContactSolveSettings contact_settings{.max_contact_searches = max_contact_rounds,
                                               .tolerance_mm = 3 * budget.tolerance_mm,
                                               .gap_mm = 3 * budget.tolerance_mm,
-                                              .rough_mm = accepted_contact_mm};
+                                              .rough_mm = accepted_contact_mm,
+                                              .relaxed = budget.relaxed_contact};
   FrameSolve solve(model, loads, budget, factor, state);
   ContactSolveResult touching = solve_contact(
       [&](const Nodes& x) {

@@ -14,7 +14,13 @@ double largest_displacement(const Nodes& from, const Nodes& to) {
 
 TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& state,
                                  double tolerance_mm, int threads, TissueWarmStart warm) {
-  constexpr int max_rounds = 100;
+  return solve_to_equilibrium(model, state, warm,
+                              {.tolerance_mm = tolerance_mm, .threads = threads});
+}
+
+TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& state,
+                                 TissueWarmStart& warm, const SettleSettings& settings) {
+  const auto [tolerance_mm, max_rounds, threads] = settings;
   // Settings of a round. Where tissue slides along a curved surface, soft contact and its normal
   // can oscillate.
   constexpr double firmness = 10, finer = 0.01;
@@ -34,10 +40,12 @@ TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& st
   reached.converged = false;
   double before = 0, contraction = first_contraction;
   for (int round = 0; round < max_rounds; ++round) {
-    TissueState next = solve_tissue(
-        model, reached, reached.X_CB,
-        {.tolerance_mm = finer * tolerance_mm, .contact_firmness = firmness, .threads = threads},
-        warm);
+    TissueState next = solve_tissue(model, reached, reached.X_CB,
+                                    {.tolerance_mm = finer * tolerance_mm,
+                                     .contact_firmness = firmness,
+                                     .relaxed_contact = true,
+                                     .threads = threads},
+                                    warm);
     if (next.reused) break;
     const double moved = largest_displacement(reached.nodes, next.nodes);
     // If each round shortens the displacement by a factor, the remaining sum is a geometric series.

@@ -33,6 +33,9 @@ struct TissueBudget {
   /// Contact stiffness over the default. Stiffer contact needs fewer contact searches to converge,
   /// and more iterations for each.
   double contact_firmness = 1;
+  /// Contacts at sharp edges, as of cut bones, converge where they would oscillate; elsewhere they
+  /// may take a few iterations more.
+  bool relaxed_contact = false;
   int threads = 1;  // the result is bit-identical for any number
 };
 
@@ -87,6 +90,14 @@ TissueState solve_tissue(const TissueModel& model, const TissueState& previous,
 /// stops when its contact springs are exact to 0.03 mm, which soft sliding tissue can amplify to
 /// tenths of a millimetre. status: `converged` of the result; iterations are of all rounds.
 constexpr double equilibrium_mm = 1e-3;
+struct SettleSettings {
+  double tolerance_mm = equilibrium_mm;
+  int max_rounds = 100;
+  int threads = 1;
+};
+/// `warm` belongs to the solve that gave `state`; it is replaced.
+TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& state,
+                                 TissueWarmStart& warm, const SettleSettings& settings = {});
 TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& state,
                                  double tolerance_mm = equilibrium_mm, int threads = 1,
                                  TissueWarmStart warm = {});

@@ -49,6 +49,11 @@ void add_bench(Commands& commands) {
                       "condyle bench cut --json", run_bench_cut);
   add_patient(cut, *options);
   in_range(cut.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1, 1000);
+  CLI::App& predict =
+      add("predict", "Cuts previewed, plans applied, and faces predicted, first and after a change",
+          "condyle bench predict --json", run_bench_predict);
+  in_range(predict.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1,
+           1000);
   CLI::App& mesh = add("mesh", "The decimators on the built-in patient's surfaces",
                        "condyle bench mesh --json", run_bench_mesh);
   in_range(mesh.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1, 1000);
