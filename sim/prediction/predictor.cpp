@@ -141,10 +141,12 @@ Prediction Predictor::predict(const Plan& plan, const Progress& progress) {
 
 MovedFace Predictor::move(const BodyPoses& poses, int max_iterations) {
   if (!plan_) throw InputError("the plan of a prediction must be prepared before segments move");
-  state_ = solve_tissue(
-      *tissue_.model, state_, poses.X_CB,
-      {.max_iterations = max_iterations, .relaxed_contact = true, .threads = settings_.threads},
-      warm_);
+  state_ = solve_tissue(*tissue_.model, state_, poses.X_CB,
+                        {.max_iterations = max_iterations,
+                         .contact_firmness = 10,
+                         .relaxed_contact = true,
+                         .threads = settings_.threads},
+                        warm_);
   MovedFace moved{state_, {}};
   deform_face(*tissue_.model, state_, moved.vertices, settings_.threads);
   return moved;

@@ -36,7 +36,8 @@ class Predictor {
   Prediction predict(const Plan& plan, const Progress& progress = {});
 
   /// The face of the prepared plan with its bodies at other poses, from the last face, within a
-  /// number of iterations: for segments that are being dragged. Not settled; predict() then is.
+  /// number of iterations: for segments that are being dragged. Not settled as that of
+  /// predict() is: the inner side of the lips may lie millimetres off.
   /// Where the tissue has no solution, `reused` and the last face.
   MovedFace move(const BodyPoses& poses, int max_iterations = 60);
 
