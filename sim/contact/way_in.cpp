@@ -177,8 +177,8 @@ bool is_better(const WayIn& a, const WayIn& b) {
     return way.state == WayIn::State::free ? 2 : way.state == WayIn::State::tight ? 1 : 0;
   };
   if (rank(a) != rank(b)) return rank(a) > rank(b);
-  // Beyond a millimetre more distance is no gain: the approach comes first in the list.
-  constexpr double ample_mm = 1;
+  // Beyond half a millimetre more distance is no gain: the approach comes first in the list.
+  constexpr double ample_mm = 0.5;
   return a.state == WayIn::State::blocked
              ? a.blocked_after_mm > b.blocked_after_mm
              : std::min(a.margin_mm, ample_mm) > std::min(b.margin_mm, ample_mm) + 1e-6;

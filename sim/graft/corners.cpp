@@ -79,8 +79,12 @@ std::vector<Vector3d> corners_on_curve(const std::vector<Vector3d>& curve, int p
   constexpr int intervals = 60;
   if (curve.size() == static_cast<std::size_t>(pieces) + 1) return curve;
   const auto points = resampled(curve, intervals);
-  auto corners = best_corners(points, pieces, least_mm);
-  return corners.empty() ? best_corners(points, pieces, 0) : corners;
+  // A curve that is too short for the least length is divided almost evenly.
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  for (const double least : {least_mm, 0.9 * length / pieces, 0.5 * length / pieces})
+    if (auto corners = best_corners(points, pieces, least); !corners.empty()) return corners;
+  return best_corners(points, pieces, 0);
 }
 
 double deviation_of(const std::vector<Vector3d>& corners, const std::vector<Vector3d>& curve) {

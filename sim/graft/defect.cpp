@@ -154,6 +154,10 @@ std::vector<Vector3d> curve_between(std::vector<Vector3d> curve, const Defect& d
     // Points behind the face are dropped; the first line is cut or extended to it.
     while (curve.size() > 2 && depth(curve[1]) < 0) curve.erase(curve.begin());
     const double a = depth(curve[0]), b = depth(curve[1]);
+    if (constexpr double at_face_mm = 1; std::abs(a) < at_face_mm) {
+      curve[0] -= a * face.normal;
+      return;
+    }
     constexpr double least_slope = 0.2;
     if (!(b - a > least_slope * (curve[1] - curve[0]).norm()))
       throw InputError(

@@ -279,6 +279,22 @@ std::vector<DonorLayout::Place> find_places(const Donor& donor, const DonorLayou
   return places;
 }
 
+/// Refuses a graft whose end runs beside a face: its cut would be too long and too sharp.
+void check_ends(const GraftLayout& graft) {
+  constexpr double least_cosine = 0.34;  // 70 degrees off square
+  const auto& corners = graft.corners;
+  const Vector3d first = (corners[1] - corners[0]).normalized(),
+                 last = (corners[corners.size() - 2] - corners.back()).normalized();
+  const auto& faces = graft.defect.faces;
+  for (const bool second : {false, true})
+    if (const double cosine = (second ? last : first).dot(faces[second].normal);
+        cosine < least_cosine)
+      throw InputError(fmt::format(
+          "the graft runs {:.0f} degrees off the {} face of the defect; more pieces or another "
+          "curve bring it nearer to square",
+          std::acos(std::clamp(cosine, -1., 1.)) * degrees, second ? "second" : "first"));
+}
+
 }  // namespace
 
 GraftLayout lay_graft(const GraftStep& step, const TriMesh& resected, const Defect& defect) {
@@ -289,6 +305,7 @@ GraftLayout lay_graft(const GraftStep& step, const TriMesh& resected, const Defe
                     : curve_between(step.curve, defect);
   graft.corners = corners_on_curve(graft.curve, step.pieces, least_piece_mm);
   graft.curve_deviation_mm = deviation_of(graft.corners, graft.curve);
+  check_ends(graft);
   const DonorLayout layout(donor, graft);
   const auto places = find_places(donor, layout, graft);
   const auto bodies = graft_bodies(step);

@@ -9,6 +9,7 @@
 #include "engine/core/error.h"
 #include "engine/core/infinity.h"
 #include "engine/mesh/measure.h"
+#include "engine/mesh/repair.h"
 #include "engine/mesh/triangle_tree.h"
 #include "sim/case/edit_bodies.h"
 
@@ -87,6 +88,34 @@ void add_pieces(Operated& operated, const PlanStep& step, const GraftLayout& gra
     for (const std::string& other : touching)
       patient.pair_rules.push_back({piece.body, other, PairPolicy::cut_face, std::nullopt, 0});
     touching.push_back(piece.body);
+  }
+}
+
+/// Gums over resected bone and teeth leave with them: triangles that lie nearer to these than to
+/// what stays with the body.
+void trim_gums(Case& patient, BodyId body, const std::vector<Part>& resected) {
+  const auto nearest = [](const std::vector<TriangleTree>& trees, const Vector3d& p) {
+    double least = infinity;
+    for (const TriangleTree& tree : trees) least = std::min(least, tree.nearest(p, least).distance);
+    return least;
+  };
+  std::vector<TriangleTree> gone, staying;
+  for (const Part& part : resected)
+    if (collides(part.role)) gone.emplace_back(part.mesh);
+  for (const Part& part : patient.parts)
+    if (part.body == body && collides(part.role)) staying.emplace_back(part.mesh);
+  for (Part& gums : patient.parts) {
+    if (gums.body != body || (gums.role != Role::upper_gums && gums.role != Role::lower_gums))
+      continue;
+    const auto goes = [&](const Eigen::Vector3i& t) {
+      const auto& v = gums.mesh.vertices;
+      const Vector3d middle = (v[t[0]] + v[t[1]] + v[t[2]]) / 3;
+      return nearest(gone, middle) < nearest(staying, middle);
+    };
+    const TriMesh whole = gums.mesh;
+    std::erase_if(gums.mesh.triangles, goes);
+    if (gums.mesh.empty()) gums.mesh = whole;  // a part has a surface
+    drop_unreferenced(gums.mesh);
   }
 }
 
@@ -179,11 +208,13 @@ void resect_segment(Operated& operated, const PlanStep& step) {
     operated.origin.erase(origin);
   }
   std::sort(resection.teeth.begin(), resection.teeth.end());
+  const std::string parent = patient.bodies[patient.bodies[*body].parent].name;
   try {
     patient = without_body(std::move(patient), *body);
   } catch (const InputError& error) {
     throw InputError(step_name(step) + ": " + error.what());
   }
+  trim_gums(patient, *patient.bodies.find(parent), resection.parts);
   operated.resections.push_back(std::move(resection));
 }
 

@@ -19,13 +19,13 @@ Plan fibula_plan(const Case& patient) {
   CutStep cut{.osteotomy = "segmental_resection",
               .parameters = {{"from_tooth", 43}, {"to_tooth", 36}},
               .kerf_mm = 0.5,
-              .pieces = {"resected"},
+              .pieces = {"tumour"},
               .below_margins = true};
   plan = with_step(std::move(plan), std::move(cut));
-  plan = with_step(std::move(plan), ResectStep{"resected"});
+  plan = with_step(std::move(plan), ResectStep{"tumour"});
   GraftStep graft;
   graft.name = "fibula";
-  graft.replaces = "resected";
+  graft.replaces = "tumour";
   graft.pieces = 3;
   return with_step(std::move(plan), graft);
 }

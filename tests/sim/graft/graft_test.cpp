@@ -226,6 +226,13 @@ TEST(Grafts, refuse_a_donor_that_is_too_short_and_warn_of_short_pieces) {
   EXPECT_EQ(graft.warnings.size(), 2u);  // two pieces below 20 mm
 }
 
+TEST(Grafts, refuse_a_curve_that_runs_beside_a_face) {
+  const Bar made = bar(60);
+  EXPECT_THROW(
+      lay_graft(graft_step(2, {{60, 0, 0}, {58, -40, 0}, {0, 0, 0}}), made.mesh, defect_of(made)),
+      InputError);
+}
+
 TEST(Corners, lie_on_the_curve_and_keep_the_least_length) {
   std::vector<Vector3d> arc;
   for (int i = 0; i <= 90; ++i)

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "engine/core/error.h"
+#include "engine/mesh/measure.h"
 #include "engine/mesh/topology.h"
 #include "sim/graft/graft.h"
 #include "sim/operation/graft_steps.h"
@@ -54,6 +55,11 @@ TEST(Reconstruction, removes_the_segment_with_its_teeth_and_leaves_two_hosts) {
       EXPECT_EQ(found.components, 2);
     }
   }
+  const auto gums = [](const Case& patient) {
+    return surface_area(patient.find(Role::lower_gums)->mesh);
+  };
+  EXPECT_LT(gums(operated.patient), 0.85 * gums(builtin()));  // four of fourteen teeth
+  EXPECT_GT(gums(operated.patient), 0.5 * gums(builtin()));
   EXPECT_FALSE(teeth.contains(35));
   EXPECT_TRUE(teeth.contains(33));
   EXPECT_TRUE(teeth.contains(45));
