@@ -157,6 +157,8 @@ WayIn examine(const Surroundings& around, const Vector3d& direction) {
     const Clearance found = around.at(s * direction);
     if (found.mm < seated - blocking_depth_mm) {
       way.blocked_by = *found.part;
+      way.margin_part.clear();
+      way.margin_mm = way.margin_after_mm = 0;
       way.margin_at = found.at;
       return way;
     }

@@ -28,7 +28,7 @@ struct WayIn {
   double margin_mm = 0, margin_after_mm = 0;
   Eigen::Vector3d margin_at = Eigen::Vector3d::Zero();  // cranium
   std::string margin_part = {};
-  // Of a blocked way: how far the graft comes, and the part that stops it.
+  // Of a blocked way: how far the graft comes, and the part that stops it, at margin_at.
   double blocked_after_mm = 0;
   std::string blocked_by = {};
   int directions = 0;  // examined

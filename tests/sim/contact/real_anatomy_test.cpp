@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "sim/contact/contact.h"
+#include "tests/support/boxes.h"
 #include "tests/support/real_cases.h"
 
 namespace condyle {
