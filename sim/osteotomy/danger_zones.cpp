@@ -161,7 +161,7 @@ std::vector<DangerZone> danger_zones(const Case& patient, const Part& bone, bool
   if (roots && !zones.empty()) {
     const TriangleTree tree(bone.mesh);
     for (DangerZone& zone : zones) {
-      ToothPoints tooth = split_tooth(zone.points, tree);
+      NeighbourTooth tooth = split_tooth(zone.points, tree);
       zone.root = tooth.root.empty() ? std::move(tooth.crown) : std::move(tooth.root);
     }
   }

@@ -23,7 +23,7 @@ double farthest(const std::vector<Vector3d>& points, const Vector3d& along, doub
 }
 
 /// The best plane of one direction, and its distances.
-InterdentalPlane plane_along(const ToothPoints& first, const ToothPoints& second,
+InterdentalPlane plane_along(const NeighbourTooth& first, const NeighbourTooth& second,
                              const Vector3d& normal) {
   constexpr double none = -1e9;
   // Where the first tooth ends and the second begins.
@@ -49,7 +49,7 @@ double value_of(const InterdentalPlane& plane) {
 
 }  // namespace
 
-ToothPoints split_tooth(std::vector<Vector3d> points, const TriangleTree& bone) {
+NeighbourTooth split_tooth(std::vector<Vector3d> points, const TriangleTree& bone) {
   const auto before = [](const Vector3d& a, const Vector3d& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
   };
@@ -70,7 +70,7 @@ ToothPoints split_tooth(std::vector<Vector3d> points, const TriangleTree& bone) 
                              .normalized();
   double crest = std::numeric_limits<double>::infinity();
   for (const Vector3d& p : inside) crest = std::min(crest, along.dot(p));
-  ToothPoints tooth;
+  NeighbourTooth tooth;
   for (const Vector3d& p : points)
     (along.dot(p) > crest + crest_mm ? tooth.root : tooth.crown).push_back(p);
   return tooth;
@@ -86,8 +86,8 @@ std::optional<InterdentalPlane> find_interdental(const SurgicalAnatomy& jaw, int
   along.normalize();
   const Vector3d across = Vector3d::UnitZ().cross(along);
   const TriangleTree bone(jaw.bone());
-  const ToothPoints a = split_tooth(jaw.tooth_points(first), bone),
-                    b = split_tooth(jaw.tooth_points(second), bone);
+  const NeighbourTooth a = split_tooth(jaw.tooth_points(first), bone),
+                       b = split_tooth(jaw.tooth_points(second), bone);
   const auto plane_at = [&](double turn, double tilt) {
     return plane_along(a, b,
                        (along + std::tan(turn * per_degree) * across +

@@ -17,12 +17,12 @@ constexpr double crest_mm = 3;
 constexpr double grazed_crown_mm = 0.5;
 
 /// Corners of a tooth: its root, more than crest_mm from the crest of the bone, and the rest.
-struct ToothPoints {
+struct NeighbourTooth {
   std::vector<Eigen::Vector3d> root, crown;
 };
 /// The crest is where the first corner lies in the bone, along the tooth from its crown. No root
 /// where fewer than a tenth of the corners lie in the bone.
-ToothPoints split_tooth(std::vector<Eigen::Vector3d> points, const TriangleTree& bone);
+NeighbourTooth split_tooth(std::vector<Eigen::Vector3d> points, const TriangleTree& bone);
 
 /// The plane between two neighbouring teeth that lies farthest from them.
 struct InterdentalPlane {
