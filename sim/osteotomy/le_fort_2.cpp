@@ -142,14 +142,15 @@ PlacedOsteotomy place_le_fort_3(Site& site) {
 }  // namespace
 
 Recipe le_fort_2_recipe() {
-  return {"le_fort_2",
-          Jaw::skull,
-          {{"below_nasion_mm", "mm", "cut through the root of the nose below nasion", 2, -3, 8},
-           {"lacrimal_mm", "mm", "cut of the medial orbital wall behind its margin", 10, 4, 16},
-           {"foramen_margin_mm", "mm", "distance from the infraorbital foramina, about", 8.5, 4, 12},
-           {"above_molar_mm", "mm", "lateral cut above the molar apices", 5, 3, 12},
-           {"back_mm", "mm", "back wall behind the posterior nasal spine", 0.5, -4, 4}},
-          place_le_fort_2};
+  return {
+      "le_fort_2",
+      Jaw::skull,
+      {{"below_nasion_mm", "mm", "cut through the root of the nose below nasion", 2, -3, 8},
+       {"lacrimal_mm", "mm", "cut of the medial orbital wall behind its margin", 10, 4, 16},
+       {"foramen_margin_mm", "mm", "distance from the infraorbital foramina, about", 8.5, 4, 12},
+       {"above_molar_mm", "mm", "lateral cut above the molar apices", 5, 3, 12},
+       {"back_mm", "mm", "back wall behind the posterior nasal spine", 0.5, -4, 4}},
+      place_le_fort_2};
 }
 
 Recipe le_fort_3_recipe() {

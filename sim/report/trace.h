@@ -13,10 +13,9 @@ namespace condyle {
 /// replaces the target in `finish`; until then an earlier trace remains intact.
 class TraceWriter {
  public:
-  /// The pose columns are of the lower arch's body. `muscles`: names in a muscle-driven motion; three
-  /// columns are appended for each, then seven of the pose of each body other than the cranium and
-  /// the lower arch's.
-  /// throws: MachineError when the file cannot be created.
+  /// The pose columns are of the lower arch's body. `muscles`: names in a muscle-driven motion;
+  /// three columns are appended for each, then seven of the pose of each body other than the
+  /// cranium and the lower arch's. throws: MachineError when the file cannot be created.
   explicit TraceWriter(const std::filesystem::path& file,
                        const std::vector<std::string>& muscles = {},
                        const BodyTree& bodies = native_bodies(), const JawBodies& jaw = {});
