@@ -4,8 +4,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "sim/graft/section.h"
@@ -59,8 +62,52 @@ struct DefectPath {
     return (1 + 2 * u) * v * v * from + u * v * v * length * start + u * u * (3 - 2 * u) * to -
            u * u * v * length * end;
   }
-  Vector3d direction(double u) const { return ((1 - u) * start + u * end).normalized(); }
+  /// Turns evenly; between faces that look almost the same way, that of the path itself.
+  Vector3d direction(double u) const {
+    constexpr double least = 0.3, step = 0.01;
+    const Vector3d even = (1 - u) * start + u * end;
+    return even.norm() > least ? even.normalized()
+                               : (point(u + step) - point(u - step)).normalized();
+  }
 };
+
+/// Of a section's lines those that are connected with the one nearest to a point: a plane through
+/// one limb of the jaw may meet the other.
+std::vector<SectionLine> nearest_outline(const std::vector<SectionLine>& lines,
+                                         const Vector3d& point) {
+  constexpr double same_mm = 1e-4;
+  const auto key = [](const Vector3d& p) {
+    return std::array{std::llround(p.x() / same_mm), std::llround(p.y() / same_mm),
+                      std::llround(p.z() / same_mm)};
+  };
+  std::map<std::array<long long, 3>, std::vector<std::size_t>> at;
+  std::size_t nearest = 0;
+  double least = 1e9;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    for (const Vector3d& p : lines[i]) at[key(p)].push_back(i);
+    const double distance = (0.5 * (lines[i][0] + lines[i][1]) - point).norm();
+    if (distance < least) {
+      least = distance;
+      nearest = i;
+    }
+  }
+  std::vector<SectionLine> outline;
+  std::vector<char> taken(lines.size(), 0);
+  std::vector<std::size_t> open;
+  if (!lines.empty()) {
+    open = {nearest};
+    taken[nearest] = 1;
+  }
+  while (!open.empty()) {
+    const std::size_t i = open.back();
+    open.pop_back();
+    outline.push_back(lines[i]);
+    for (const Vector3d& p : lines[i])
+      for (const std::size_t next : at[key(p)])
+        if (!std::exchange(taken[next], 1)) open.push_back(next);
+  }
+  return outline;
+}
 
 /// The point above the lower border of a section, in the middle of its width there; absent where
 /// the plane misses the bone.
@@ -101,10 +148,7 @@ Defect find_defect(const TriMesh& resected, const std::vector<int>& made_by,
     throw InputError(
         fmt::format("the resected segment has {} plane cut face{}; a graft needs two "
                     "between which it lies",
-                    faces.empty()                                    ? 0
-                    : faces.size() > 1 && faces[1].area >= least_mm2 ? faces.size()
-                                                                     : 1,
-                    faces.size() == 1 ? "" : "s"));
+                    faces.empty() ? "no" : "only one", faces.empty() ? "s" : ""));
   Defect defect;
   defect.up = up.normalized();
   for (const int i : {0, 1}) {
@@ -131,7 +175,8 @@ std::vector<Vector3d> border_curve(const TriMesh& resected, const Defect& defect
     const double u = inside + (1 - 2 * inside) * i / stations;
     const Vector3d m = path.direction(u);
     const Vector3d up = (defect.up - defect.up.dot(m) * m).normalized();
-    const auto lines = plane_section(resected, plane_through(path.point(u), m));
+    const auto lines =
+        nearest_outline(plane_section(resected, plane_through(path.point(u), m)), path.point(u));
     if (const auto p = point_in_section(lines, m.cross(up), up, height_mm)) curve.push_back(*p);
   }
   if (curve.size() < 2)

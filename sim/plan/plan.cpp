@@ -307,7 +307,14 @@ void check_plan(const Plan& plan) {
 void check_segments(const Plan& plan, const BodyTree& bodies) {
   std::vector<std::string> known;
   for (const auto& body : bodies.bodies()) known.push_back(body.name);
+  std::map<std::string, std::string> resected;  // by which step
   for (const auto& step : plan.steps) {
+    if (!std::holds_alternative<GraftStep>(step.action))
+      for (const std::string& used : used_segments(step.action))
+        if (const auto gone = resected.find(used); gone != resected.end())
+          refuse_step(step, fmt::format("\"{}\" is resected by {}", used, gone->second));
+    if (const auto* resection = std::get_if<ResectStep>(&step.action))
+      resected[resection->segment] = step_name(step);
     for (const std::string& used : used_segments(step.action))
       if (!used.empty() && std::find(known.begin(), known.end(), used) == known.end())
         refuse_step(step, fmt::format("\"{}\" is neither a body of the case nor made by a cut "
@@ -333,9 +340,9 @@ Plan with_replaced(Plan plan, int id, PlanAction action) {
 }
 
 Plan with_move(Plan plan, const MoveStep& move) {
-  for (const PlanStep& step : plan.steps)
-    if (const auto* known = std::get_if<MoveStep>(&step.action))
-      if (known->segment == move.segment) return with_replaced(std::move(plan), step.id, move);
+  for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step)  // the last one counts
+    if (const auto* known = std::get_if<MoveStep>(&step->action))
+      if (known->segment == move.segment) return with_replaced(std::move(plan), step->id, move);
   return with_step(std::move(plan), move);
 }
 

@@ -388,10 +388,12 @@ void check_format(const JsonItem& root) {
 }  // namespace
 
 int version_of(const Plan& plan) {
-  const bool trims = std::any_of(plan.steps.begin(), plan.steps.end(), [](const PlanStep& step) {
-    return std::holds_alternative<TrimStep>(step.action);
+  const bool recent = std::any_of(plan.steps.begin(), plan.steps.end(), [](const PlanStep& step) {
+    return std::holds_alternative<TrimStep>(step.action) ||
+           std::holds_alternative<ResectStep>(step.action) ||
+           std::holds_alternative<GraftStep>(step.action);
   });
-  return trims || !plan.zones.empty() ? 2 : 1;
+  return recent || !plan.zones.empty() ? 2 : 1;
 }
 
 std::string plan_json(const Plan& plan) {

@@ -70,7 +70,7 @@ void finish_edit(const Plan& plan, const fs::path& file, const std::string& edit
 }
 
 void check_segment(const Plan& plan, const std::string& segment) {
-  std::vector<std::string> known = {"mandible"};
+  std::vector<std::string> known = {"mandible", "cranium"};
   for (const PlanStep& step : plan.steps)
     if (const auto* cut = std::get_if<CutStep>(&step.action)) {
       known.insert(known.end(), cut->pieces.begin(), cut->pieces.end());

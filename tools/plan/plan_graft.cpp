@@ -25,14 +25,34 @@ struct PlanResectOptions {
   std::string patient;
   std::optional<int> from, to;  // teeth
   double kerf_mm = 0.5;
+  bool below_margins = false;
 };
 
+/// Refuses cuts that come too near to a danger zone of the user's own.
+void refuse_own_zones(const Plan& plan, const Operated& operated, int step) {
+  for (const CutReport& cut : operated.cuts)
+    for (const DangerFinding& finding : cut.dangers) {
+      const bool own = std::any_of(plan.zones.begin(), plan.zones.end(),
+                                   [&](const auto& zone) { return zone.name == finding.zone; });
+      if (cut.step == step && own && finding.level == DangerLevel::stop)
+        throw InputError(fmt::format(
+            "{} is not added: {}. Choose other teeth, or add it all the same with --below-margins",
+            cut.title, danger_text(finding)));
+    }
+}
+
 /// Saves an edited plan unless a step of it cannot be done. Returns what it does to the patient.
+/// `zones_of`: id of a cut that keeps clear of the user's own danger zones; 0: none.
 Operated save_applied(const Plan& plan, const Case& patient, const std::filesystem::path& file,
-                      const std::string& edit, const CommonOptions& common) {
+                      const std::string& edit, const CommonOptions& common, int zones_of = 0) {
   Operated operated = apply_plan(patient, plan);
-  if (!operated.problems.empty())
-    throw InputError(fmt::format("{} is not added: {}", edit, fmt::join(operated.problems, "; ")));
+  std::vector<std::string> problems = operated.problems;
+  std::erase_if(problems, [&](const std::string& problem) {
+    return problem.find("(" + edit + ")") == std::string::npos;
+  });
+  if (!problems.empty())
+    throw InputError(fmt::format("{} is not added: {}", edit, fmt::join(problems, "; ")));
+  if (zones_of > 0) refuse_own_zones(plan, operated, zones_of);
   finish_edit(plan, file, edit, common);
   print_plan_notes(common, operated.notes);
   return operated;
@@ -57,7 +77,8 @@ int run_plan_resect(const PlanResectOptions& options, const CommonOptions& commo
   const ResectStep step{options.segment};
   plan = with_step(std::move(plan), step);
   const Case patient = open_planned(options.patient, plan, common);
-  const Operated operated = save_applied(plan, patient, options.file, step_title(step), common);
+  const Operated operated = save_applied(plan, patient, options.file, step_title(step), common,
+                                         options.below_margins ? 0 : cut);
   if (common.prints_summary())
     fmt::print(stderr, "{}{}", options.from ? cut_report_text(operated, cut) : "",
                graft_report_text(plan, operated));
@@ -143,6 +164,8 @@ void add_plan_resect(Commands& commands, CLI::App& plan) {
       .add_option("SEGMENT", options->segment,
                   "A segment of an earlier cut; with --from and --to the name of the new one")
       ->required();
+  command.add_flag("--below-margins", options->below_margins,
+                   "Allow a cut that lies too near to a danger zone of the user's own");
   in_range(command.add_option("--from", options->from,
                               "Cut the lower jaw beside this tooth, the first that is resected "
                               "(FDI number)"),

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text_list.h"
+#include "sim/operation/edit_cut.h"
 #include "sim/operation/segment_overlaps.h"
 #include "sim/operation/trim_segments.h"
 #include "sim/plan/plan_file.h"
@@ -54,17 +55,11 @@ std::vector<std::string> others_of(const PlanTrimOptions& options, const Operate
 void check_trim(const Operated& operated, const PlanStep& step) {
   for (const std::string& problem : operated.problems)
     if (problem.starts_with(step_name(step))) throw InputError(problem);
-  for (const TrimReport& trim : operated.trims) {
-    if (trim.step != step.id || trim.below_margins) continue;
-    std::vector<std::string> dangers;
-    for (const DangerFinding& finding : trim.dangers)
-      if (finding.level == DangerLevel::stop) dangers.push_back(danger_text(finding));
-    if (!dangers.empty())
-      throw InputError(
-          fmt::format("{} is not added: {}. Trim the other segment, or add it all the "
-                      "same with --below-margins",
-                      trim.title, fmt::join(dangers, "; ")));
-  }
+  if (const std::string dangers = dangers_below_margins(operated, step.id); !dangers.empty())
+    throw InputError(
+        fmt::format("{} is not added: {}. Trim the other segment, or add it all the same with "
+                    "--below-margins",
+                    step_title(step.action), dangers));
 }
 
 /// The overlaps with bone of the segment that are left.
@@ -79,7 +74,7 @@ std::vector<std::string> left_overlaps(const Operated& operated, const std::stri
 
 int run_plan_trim(const PlanTrimOptions& options, const CommonOptions& common) {
   const Plan plan = load_plan(options.file);
-  if (options.segment != "cranium") check_segment(plan, options.segment);
+  check_segment(plan, options.segment);
   const auto patient = case_of_plan(options.patient, plan, common);
   if (!patient) throw InputError("the overlap depends on the bones: give the case with --case");
   const PlanStep* known = known_trim(plan, options.segment);
