@@ -116,9 +116,19 @@ SurfacePoint deepest_inside(const DangerZone& zone, const TriMesh& faces) {
     if (found.distance < deepest.distance)
       deepest = {found.distance, p, Eigen::Vector3d::Zero(), 0};
   };
+  constexpr double grid_mm = 0.7;
+  constexpr int most = 80;
   for (const auto& t : faces.triangles) {
-    for (const int v : t) look(faces.vertices[v]);
-    look((faces.vertices[t[0]] + faces.vertices[t[1]] + faces.vertices[t[2]]) / 3);
+    const auto &a = faces.vertices[t[0]], &b = faces.vertices[t[1]], &c = faces.vertices[t[2]];
+    Box of_face;
+    for (const auto* p : {&a, &b, &c}) of_face.add(*p);
+    if ((of_face.low.array() > box.high.array()).any() ||
+        (of_face.high.array() < box.low.array()).any())
+      continue;
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    const int n = std::clamp(static_cast<int>(std::ceil(longest / grid_mm)), 1, most);
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j) look(a + (b - a) * i / n + (c - a) * j / n);
   }
   return deepest;
 }

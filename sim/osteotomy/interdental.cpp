@@ -124,10 +124,9 @@ std::string room_text(const InterdentalPlane& plane, double kerf_mm) {
     return text + "their roots are not known; the cut runs between the crowns";
   text += fmt::format(
       "more than {:g} mm from the crest, their roots leave {:.1f} mm for the cut; {:g} mm of bone "
-      "on "
-      "each{} need {:.1f} mm",
-      crest_mm, std::max(0.0, 2 * plane.root_mm), bone, kerf_mm > 0 ? " and the saw" : "",
-      2 * bone + kerf_mm);
+      "on each root{} {:.1f} mm",
+      crest_mm, std::max(0.0, 2 * plane.root_mm), bone,
+      kerf_mm > 0 ? " and the saw require" : " requires", 2 * bone + kerf_mm);
   if (plane.crown_mm - 0.5 * kerf_mm < 0)
     text += fmt::format("; their crowns touch, and reach up to {:.1f} mm beyond the cut",
                         0.5 * kerf_mm - plane.crown_mm);
