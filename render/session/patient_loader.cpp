@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "engine/core/error.h"
 #include "sim/case/case_io.h"
 #include "sim/phantom/phantom.h"
 #include "sim/plan/plan_file.h"
@@ -43,11 +42,6 @@ void PatientLoader::import(const request::Import& request) {
 }
 
 void PatientLoader::renew(std::vector<Landmark> landmarks) {
-  if (!state_.patient->operated->cuts.empty())
-    throw InputError(
-        "landmarks are edited before the operation: undo the steps of the plan, or open the "
-        "patient "
-        "without it");
   start([patient = state_.patient,
          landmarks](const Progress&) { return with_landmarks(patient->scene.patient, landmarks); },
         state_.patient->folder, "making the patient with these landmarks");

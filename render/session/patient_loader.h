@@ -27,8 +27,7 @@ class PatientLoader {
   void open(const std::filesystem::path& folder);
   /// Imports surfaces, landmarks and muscles with their roles.
   void import(const request::Import& request);
-  /// Rebuilds the session's patient with other landmarks. throws: InputError where a plan has been
-  /// applied, from whose uncut bones the landmarks were read.
+  /// Rebuilds the session's patient with other landmarks.
   void renew(std::vector<Landmark> landmarks);
   void drop() { job_.drop(); }
   const auto& job() const { return job_; }

@@ -7,6 +7,7 @@
 #include "sim/operated/segment_bite.h"
 #include "sim/operation/edit_cut.h"
 #include "sim/operation/move_collision.h"
+#include "sim/plan/plan_file.h"
 
 namespace condyle {
 namespace {
@@ -25,26 +26,40 @@ Question question(std::string title, std::string words, const request::EditPlan&
   return asked;
 }
 
+/// Whether the edit takes long to make, as it places cuts or the bite.
+bool needs_replay(const PlanEdit& edit, const Plan& plan) {
+  if (const auto* set = std::get_if<plan_edit::SetNumber>(&edit))
+    return std::holds_alternative<CutStep>(step_of(plan, set->step).action);
+  return std::holds_alternative<plan_edit::Occlude>(edit) ||
+         std::holds_alternative<plan_edit::AddOsteotomy>(edit) ||
+         std::holds_alternative<plan_edit::Trim>(edit);
+}
+
 /// Changes the edit as the user has agreed, or returns what to ask first. `operated`: by the edit.
 std::optional<Question> objection(EditedPlan& edited, Operated& operated, const Case& uncut,
                                   const request::EditPlan& request) {
   if (edited.step == 0) return std::nullopt;
   PlanAction action = step_of(edited.plan, edited.step).action;
-  if (auto* cut = std::get_if<CutStep>(&action)) {
+  const PlanStep& step = step_of(edited.plan, edited.step);
+  auto* cut = std::get_if<CutStep>(&action);
+  auto* trim = std::get_if<TrimStep>(&action);
+  if (cut || trim) {
+    for (const std::string& problem : operated.problems)
+      if (problem.starts_with(step_name(step))) throw InputError(problem);
     const std::string dangers = dangers_below_margins(operated, edited.step);
     if (dangers.empty()) return std::nullopt;
     if (request.consent != Consent::below_margins)
-      return question("The cut is too close", dangers + ".", request,
-                      {{"Cut all the same", Consent::below_margins}});
-    cut->below_margins = true;
+      return question("The cut lies below the safety margin", dangers + ".", request,
+                      {{"Cut anyway", Consent::below_margins}});
+    (cut ? cut->below_margins : trim->below_margins) = true;
   } else if (auto* move = std::get_if<MoveStep>(&action)) {
     if (request.consent == Consent::whole_move) return std::nullopt;
     const auto collision = move_collision(operated, edited.plan, *move);
     if (!collision) return std::nullopt;
     if (request.consent != Consent::free_part)
       return question("The segment collides", collision->words + ".", request,
-                      {{"Move by the free part", Consent::free_part},
-                       {"Move all the same", Consent::whole_move}});
+                      {{"Make the collision-free part", Consent::free_part},
+                       {"Move anyway", Consent::whole_move}});
     move->move = collision->free;
   } else {
     return std::nullopt;
@@ -58,12 +73,36 @@ std::optional<Question> objection(EditedPlan& edited, Operated& operated, const 
 
 void PlanSession::begin(std::optional<PlanDocument> document) {
   drop();
-  document_ = document ? std::move(*document) : PlanDocument(empty_plan(*state_.patient->uncut));
+  const Plan none = empty_plan(*state_.patient->uncut);
+  draft_ = draft_file(none.geometry);
+  document_ = document ? std::move(*document) : PlanDocument(none, draft_);
+  std::error_code ignored;
+  if (document || draft_.empty() || !std::filesystem::exists(draft_, ignored)) return;
+  state_.front_end.ask({.title = "A plan of this patient was not saved",
+                        .words = "It was kept as a draft, which the next edit replaces.",
+                        .answers = {{"plan-continue", "Continue the plan", request::Open{{draft_}}},
+                                    {"plan-forget", "Begin anew", {}}}});
 }
 
 void PlanSession::drop() {
   checking_.drop();
   predicting_.drop();
+  waiting_.clear();
+  hands_.reset();
+  face_due_ = false;
+}
+
+void PlanSession::cancel() {
+  if (!checking_.active()) return predicting_.drop();
+  checking_.drop();
+  refuse();
+}
+
+/// The edit is not made: all is as before it.
+void PlanSession::refuse() {
+  waiting_.clear();
+  end_preview();
+  if (face_due_) predict(*state_.patient);
 }
 
 HeldSegments PlanSession::held() const {
@@ -79,8 +118,9 @@ HeldSegments PlanSession::held() const {
 
 void PlanSession::edit(const request::EditPlan& request) {
   if (!state_.patient || !document_) return;
+  if (checking_.active()) return waiting_.push_back(request);
   Change change;
-  PlanHistory history = document_->history();
+  PlanHistory history = document_->saved_history();
   if (std::holds_alternative<plan_edit::Undo>(request.edit)) {
     change.kind = Change::Kind::undo;
     if (!history.undo()) throw InputError("there is no edit of the plan to undo");
@@ -89,7 +129,7 @@ void PlanSession::edit(const request::EditPlan& request) {
     change.kind = Change::Kind::redo;
     if (!history.redo()) throw InputError("there is no edit of the plan to redo");
     change.edited.plan = history.plan();
-  } else if (!std::holds_alternative<plan_edit::Occlude>(request.edit)) {
+  } else if (!needs_replay(request.edit, document_->plan())) {
     change.edited = edited_plan(*state_.patient->uncut, document_->plan(),
                                 *state_.patient->operated, request.edit, held());
   }
@@ -102,21 +142,25 @@ void PlanSession::edit(const request::EditPlan& request) {
 void PlanSession::preview(const Plan& plan) {
   const auto changed = changed_positions(*state_.patient->operated, document_->plan(), plan);
   if (changed.empty()) return;
+  hands_ = state_.front_end.view().hands;
   state_.front_end.change([&](ViewState& view) {
     for (const MovableBody& body : state_.scene.bodies)
-      if (body.roams()) view.hands.set(body.body, changed[index_of(body.body)]);
+      if (body.roams() && changed[index_of(body.body)])
+        view.hands.set(body.body, changed[index_of(body.body)]);
   });
 }
 
 void PlanSession::end_preview() {
-  state_.front_end.change([&](ViewState& view) {
-    for (const MovableBody& body : state_.scene.bodies)
-      if (body.roams()) view.hands.set(body.body, {});
-  });
+  if (!hands_) return;
+  state_.front_end.change([&](ViewState& view) { view.hands = *hands_; });
+  hands_.reset();
 }
 
 void PlanSession::open(const std::filesystem::path& file) {
-  Change change{.kind = Change::Kind::open, .edited = {}, .opened = PlanDocument(file)};
+  Change change{
+      .kind = Change::Kind::open,
+      .edited = {},
+      .opened = file == draft_ ? PlanDocument(load_plan(file), draft_) : PlanDocument(file)};
   change.edited.plan = change.opened->plan();
   start(std::move(change), {});
 }
@@ -126,7 +170,8 @@ void PlanSession::start(Change change, const request::EditPlan& request) {
   SimulatorSettings bones = state_.settings.simulator;
   bones.tissue = bones.face = false;
   checking_.start([change = std::move(change), request, bones, uncut = state_.patient->uncut,
-                   folder = state_.patient->folder, plan = document_->plan(),
+                   before = state_.patient->operated, folder = state_.patient->folder,
+                   plan = document_->plan(),
                    threads = state_.threads()](const Progress& progress) mutable {
     report(progress, "replaying the plan", 0.2);
     EditedPlan& edited = change.edited;
@@ -139,6 +184,8 @@ void PlanSession::start(Change change, const request::EditPlan& request) {
         throw InputError(bite->segment + " is not placed: no stable bite, " +
                          found.bite.unstable_because);
       edited = {with_segment_bite(plan, bite->segment, found), "occlude " + bite->segment};
+    } else if (change.kind == Change::Kind::edit && needs_replay(request.edit, plan)) {
+      edited = edited_plan(*uncut, plan, *before, request.edit);
     }
     Operated operated = apply_plan(*uncut, edited.plan);
     if (change.kind == Change::Kind::edit) {
@@ -164,7 +211,8 @@ void PlanSession::accept(Change change) {
 }
 
 void PlanSession::predict(const SessionPatient& bones) {
-  if (!state_.settings.simulator.tissue || !bones.uncut->find(Role::face)) return;
+  face_due_ = state_.settings.simulator.tissue && bones.uncut->find(Role::face);
+  if (!face_due_) return;
   predicting_.start([uncut = bones.uncut, folder = bones.folder, plan = document_->plan(),
                      settings = state_.settings.simulator](const Progress& progress) {
     report(progress, "predicting the face", 0);
@@ -174,19 +222,26 @@ void PlanSession::predict(const SessionPatient& bones) {
 
 std::optional<PlanSession::Planned> PlanSession::take() {
   std::optional<Planned> planned;
-  if (checking_.done()) {
+  if (!checking_.active() && !waiting_.empty()) {
+    const request::EditPlan next = std::move(waiting_.front());
+    waiting_.pop_front();
+    state_.try_or_report("Cannot edit the plan", [&] { edit(next); });
+  } else if (checking_.done()) {
     state_.try_or_report("Cannot edit the plan", [&] {
       auto checked = checking_.take();
       if (!checked) return;
       if (checked->question) return state_.front_end.ask(std::move(*checked->question));
       accept(std::move(checked->change));
+      for (const std::string& note : document_->notes()) state_.front_end.say(note);
+      hands_.reset();
       predict(*checked->patient);
       planned = Planned{std::move(checked->patient), false};
     });
-    if (!planned) end_preview();
+    if (!planned) refuse();
   } else if (predicting_.done()) {
     state_.try_or_report("Cannot predict the face", [&] {
       if (auto patient = predicting_.take()) planned = Planned{std::move(*patient), true};
+      face_due_ = !planned;
     });
   }
   return planned;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
 
@@ -25,7 +26,7 @@ class PlanSession {
 
   /// Begins with the plan of a patient just loaded, or an empty one.
   void begin(std::optional<PlanDocument> document);
-  /// Requests an edit; an earlier one that is still being checked is dropped.
+  /// Requests an edit; one that comes while another is being checked follows it.
   /// throws: InputError for an edit that is impossible.
   void edit(const request::EditPlan& request);
   /// throws: InputError, MachineError as PlanDocument::save_as().
@@ -33,6 +34,10 @@ class PlanSession {
   /// Replays the plan of a file on the session's patient. throws: InputError as load_plan().
   void open(const std::filesystem::path& file);
   void drop();
+  /// Ends what is under way: the plan, and the segments, are as before the edit.
+  void cancel();
+  /// Whether the plan has any step.
+  bool has_steps() const { return document_ && !document_->plan().steps.empty(); }
   /// The patient after the last edit, once it is ready; questions and failures are reported.
   std::optional<Planned> take();
 
@@ -57,6 +62,7 @@ class PlanSession {
     std::optional<Question> question;
   };
 
+  void refuse();
   void preview(const Plan& plan);
   void end_preview();
   void start(Change change, const request::EditPlan& request);
@@ -65,7 +71,11 @@ class PlanSession {
   HeldSegments held() const;
 
   SessionState& state_;
+  std::filesystem::path draft_;  // of the patient's plan before it has a file
   std::optional<PlanDocument> document_;
+  std::deque<request::EditPlan> waiting_;
+  std::optional<Hands> hands_;  // before the preview
+  bool face_due_ = false;       // the patient is shown with the face of an earlier plan
   Job<Checked> checking_;
   Job<Patient> predicting_;
 };

@@ -60,6 +60,10 @@ void ViewSession::carry_out(const Request& request) {
       [&](const request::Release& released) { release_.release(released.body); },
       [&](const request::SaveCase& saved) { save(saved.folder); },
       [&](const request::UseLandmarks&) {
+        if (plan_.has_steps())
+          throw InputError(
+              "landmarks are edited before the operation: undo the steps of the plan, or open the "
+              "patient without it");
         if (state_.patient) loader_.renew(state_.front_end.view().landmarks);
       },
       [&](const request::EditPlan& edit) { plan_.edit(edit); },
@@ -125,7 +129,7 @@ void ViewSession::open_file(const fs::path& file) {
 
 void ViewSession::cancel() {
   if (loader_.job().active()) return loader_.drop();
-  if (plan_.checking().active() || plan_.predicting().active()) return plan_.drop();
+  if (plan_.checking().active() || plan_.predicting().active()) return plan_.cancel();
   release_.drop("it stays where it is");
 }
 

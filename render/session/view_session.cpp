@@ -29,9 +29,11 @@ void ViewSession::take_patient() {
   plan_.drop();
   install(std::move(loaded->patient),
           loaded->renewed ? "the patient was rebuilt" : "another patient was opened");
+  std::optional<PlanDocument> document;
   state_.try_or_report("Cannot open the plan", [&] {
-    plan_.begin(loaded->plan.empty() ? std::nullopt : std::optional(PlanDocument(loaded->plan)));
+    if (!loaded->plan.empty()) document = PlanDocument(loaded->plan);
   });
+  plan_.begin(std::move(document));
   if (loaded->renewed)
     show_renewed_patient(*loaded->renewed);
   else

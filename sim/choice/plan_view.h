@@ -42,6 +42,7 @@ struct PlanView {
   std::vector<NamedItem> osteotomies = {};  // that can be added
   std::vector<NamedItem> segments = {};     // without a move of their own
   std::vector<NamedItem> arches = {};       // segments that carry a dental arch
+  std::vector<NamedItem> trimmed = {};      // segments whose overlap with others can be removed
   std::string undo = {}, redo = {};         // what they would reverse or repeat; empty: nothing
   std::vector<std::string> findings = {};   // overlaps at the planned positions, problems
   std::vector<PlanMeasure> displacements = {}, cephalometry = {};
@@ -73,14 +74,19 @@ struct Shift {
 struct Occlude {
   std::string segment;
 };
+/// Removes the bone of a segment that overlaps other segments of its bone.
+struct Trim {
+  std::string segment;
+};
 /// Makes the positions of the segments that a hand holds those of the plan.
 struct TakePositions {};
 struct Undo {};
 struct Redo {};
 }  // namespace plan_edit
 
-using PlanEdit = std::variant<plan_edit::AddOsteotomy, plan_edit::AddMove, plan_edit::SetNumber,
-                              plan_edit::Remove, plan_edit::Shift, plan_edit::Occlude,
-                              plan_edit::TakePositions, plan_edit::Undo, plan_edit::Redo>;
+using PlanEdit =
+    std::variant<plan_edit::AddOsteotomy, plan_edit::AddMove, plan_edit::SetNumber,
+                 plan_edit::Remove, plan_edit::Shift, plan_edit::Occlude, plan_edit::Trim,
+                 plan_edit::TakePositions, plan_edit::Undo, plan_edit::Redo>;
 
 }  // namespace condyle

@@ -16,7 +16,8 @@ Case patient_before(const Case& uncut, Plan plan, int id) {
   const auto at = plan.steps.begin() + (&step_of(plan, id) - plan.steps.data());
   plan.steps.erase(at, plan.steps.end());
   std::erase_if(plan.steps, [](const PlanStep& step) {
-    return !std::holds_alternative<CutStep>(step.action);  // cuts are made at the uncut rest
+    return !std::holds_alternative<CutStep>(step.action) &&  // cuts are made at the uncut rest
+           !std::holds_alternative<ResectStep>(step.action);
   });
   return apply_plan(uncut, plan).patient;
 }
@@ -59,6 +60,11 @@ std::string dangers_below_margins(const Operated& operated, int step) {
       interdental = interdental || finding.interdental;
     }
     if (interdental) dangers.insert(dangers.end(), cut.rooms.begin(), cut.rooms.end());
+  }
+  for (const TrimReport& trim : operated.trims) {
+    if (trim.step != step || trim.below_margins) continue;
+    for (const DangerFinding& finding : trim.dangers)
+      if (finding.level == DangerLevel::stop) dangers.push_back(danger_text(finding));
   }
   return fmt::format("{}", fmt::join(dangers, "; "));
 }

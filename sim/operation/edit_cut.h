@@ -17,8 +17,8 @@ std::vector<std::string> segment_names(const Case& patient, CutStep step);
 Plan with_changed_cut(const Case& uncut, const Plan& plan, int id, CutStep cut,
                       bool keeps_names = false);
 
-/// The dangers of a cut step below the least margins that the step does not ask for, in one
-/// sentence; empty without one. throws: InputError for a step that is no cut of the plan.
+/// The dangers of a cut or trim step below the least margins that the step does not ask for, in one
+/// sentence; empty without one.
 std::string dangers_below_margins(const Operated& operated, int step);
 
 }  // namespace condyle

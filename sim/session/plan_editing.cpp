@@ -11,6 +11,7 @@
 #include "sim/frame/part_names.h"
 #include "sim/operation/cut_text.h"
 #include "sim/operation/edit_cut.h"
+#include "sim/operation/graft_steps.h"
 #include "sim/operation/trim_segments.h"
 #include "sim/osteotomy/osteotomy.h"
 #include "sim/plan/cephalometry.h"
@@ -22,9 +23,9 @@ namespace {
 constexpr const char* kerf_number = "kerf_mm";
 
 const PlanStep* move_of(const Plan& plan, const std::string& segment) {
-  for (const PlanStep& step : plan.steps)
-    if (const auto* move = std::get_if<MoveStep>(&step.action))
-      if (move->segment == segment) return &step;
+  for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step)  // the last one counts
+    if (const auto* move = std::get_if<MoveStep>(&step->action))
+      if (move->segment == segment) return &*step;
   return nullptr;
 }
 
@@ -70,7 +71,8 @@ EditedPlan set_number(const Case& uncut, const Plan& plan, const Operated& opera
     double* number = number_of(changed, edit.name);
     if (!number) throw InputError(step_name(step) + " has no " + edit.name);
     *number = edit.value;
-    return edited_move(plan, {move->segment, changed});
+    const MoveStep next{move->segment, changed};
+    return {with_replaced(plan, edit.step, next), step_title(next), edit.step};
   }
   const auto* before = std::get_if<CutStep>(&step.action);
   if (!before) throw InputError(step_name(step) + " has no " + edit.name);
@@ -115,6 +117,23 @@ EditedPlan take_positions(Plan plan, const Operated& operated, const HeldSegment
   }
   if (moved.empty()) throw InputError("no segment is held by hand");
   return {std::move(plan), fmt::format("move {} by hand", fmt::join(moved, ", "))};
+}
+
+EditedPlan add_trim(const Plan& plan, const Operated& operated, const std::string& segment) {
+  TrimStep trim{segment, trimming_segments(operated, segment)};
+  if (trim.of.empty())
+    throw InputError(segment + " overlaps no other segment of its bone: there is nothing to trim");
+  for (const PlanStep& step : plan.steps) {
+    const auto* known = std::get_if<TrimStep>(&step.action);
+    if (!known || known->segment != segment) continue;
+    for (const std::string& other : known->of)
+      if (std::find(trim.of.begin(), trim.of.end(), other) == trim.of.end())
+        trim.of.push_back(other);
+    return {with_replaced(plan, step.id, trim), step_title(trim), step.id};
+  }
+  EditedPlan edited{with_step(plan, trim), step_title(trim)};
+  edited.step = edited.plan.steps.back().id;
+  return edited;
 }
 
 std::vector<PlanNumber> numbers_of(const CutStep& cut) {
@@ -173,6 +192,14 @@ PlanStepView step_view(const Plan& plan, const Operated& operated, const PlanSte
                                  return !outcome.open_on_purpose && !outcome.through;
                                });
     }
+  } else if (const auto* resection = std::get_if<ResectStep>(&step.action)) {
+    view.title = "Resect " + readable_name(resection->segment);
+  } else if (const auto* graft = std::get_if<GraftStep>(&step.action)) {
+    view.title = "Graft " + readable_name(graft->name);
+    for (const GraftLayout& layout : operated.grafts)
+      if (layout.step.name == graft->name) view.findings = graft_sentences(operated, layout);
+  } else if (std::holds_alternative<NoteStep>(step.action)) {
+    view.title = "Note";
   } else if (const auto* move = std::get_if<MoveStep>(&step.action)) {
     view.title = "Move " + readable_name(move->segment);
     view.numbers = numbers_of(operated, plan, *move);
@@ -233,6 +260,8 @@ EditedPlan unchecked_edit(const Case& uncut, const Plan& plan, const Operated& o
   if (const auto* remove = std::get_if<plan_edit::Remove>(&edit))
     return {without_step(plan, remove->step), "remove " + step_name(step_of(plan, remove->step))};
   if (const auto* shift = std::get_if<plan_edit::Shift>(&edit)) return shifted(plan, *shift);
+  if (const auto* trim = std::get_if<plan_edit::Trim>(&edit))
+    return add_trim(plan, operated, trim->segment);
   if (std::holds_alternative<plan_edit::TakePositions>(edit))
     return take_positions(plan, operated, held);
   throw InputError("this edit needs more than the plan");
@@ -297,8 +326,14 @@ PlanView plan_view(const PlanDocument& document, const Operated& operated,
       view.arches.push_back({bodies[arch].name, display_name(bodies[arch].name)});
   view.undo = document.history().undoable().value_or("");
   view.redo = document.history().redoable().value_or("");
-  for (const SegmentOverlap& overlap : overlaps)
+  for (const SegmentOverlap& overlap : overlaps) {
     view.findings.push_back(overlap_text(overlap, operated.patient.landmarks));
+    if (overlap.kind != SegmentOverlap::Kind::trimmed) continue;
+    for (const std::string& body : {overlap.body_a, overlap.body_b})
+      if (std::none_of(view.trimmed.begin(), view.trimmed.end(),
+                       [&](const NamedItem& item) { return item.name == body; }))
+        view.trimmed.push_back({body, display_name(body)});
+  }
   view.findings.insert(view.findings.end(), operated.problems.begin(), operated.problems.end());
   add_tables(view, plan, operated);
   return view;

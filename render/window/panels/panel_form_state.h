@@ -29,6 +29,7 @@ struct PanelFormState {
   struct PlanFields {
     int step = 0;  // selected, by id; 0: none
     std::string file;
+    std::filesystem::path known;                       // the plan's file when `file` was filled
     bool displacements = false, cephalometry = false;  // unfolded tables
   } plan;
   std::optional<NumberEntry> number;

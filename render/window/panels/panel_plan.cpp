@@ -145,6 +145,11 @@ void Panels::Drawing::plan_additions() {
   if (const auto name = choice(pen, "plan-occlude", "Final bite of", plan.arches); !name.empty())
     edit_plan(plan_edit::Occlude{name});
   tooltip(pen, "Places a segment that carries one dental arch in maximum intercuspation");
+  if (!plan.trimmed.empty()) {
+    if (const auto name = choice(pen, "plan-trim", "Trim", plan.trimmed); !name.empty())
+      edit_plan(plan_edit::Trim{name});
+    tooltip(pen, "Removes the bone of this segment that overlaps others, as the surgeon burrs it");
+  }
   const bool held = std::any_of(
       input.scene.bodies.begin(), input.scene.bodies.end(),
       [&](const MovableBody& body) { return body.roams() && view.hands.at(body.body); });
@@ -217,7 +222,10 @@ void Panels::Drawing::plan_buttons() {
   ImGui::EndDisabled();
   if (!plan.redo.empty()) tooltip(pen, ("Redo: " + plan.redo).c_str());
   ImGui::SameLine(0, gap);
-  if (form.file.empty()) form.file = plan.file.empty() ? "plan.json" : plan.file.string();
+  if (form.file.empty() || form.known != plan.file) {
+    form.file = plan.file.empty() ? "plan.json" : plan.file.string();
+    form.known = plan.file;
+  }
   const bool there = form.file == plan.file.string();
   ImGui::BeginDisabled(there || plan.steps.empty());
   if (word_button(pen, "plan-save", there ? "Saved" : "Save", size, !there && !plan.steps.empty()))

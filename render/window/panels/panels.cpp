@@ -221,6 +221,7 @@ void Panels::forget_patient() {
   skin_before_ = 1;
   form_.case_folder.clear();
   form_.landmark_words.clear();
+  form_.plan = {};
   form_.parameters.clear();
   form_.excitations.clear();
   form_.number.reset();

@@ -99,6 +99,72 @@ TEST_F(PlanEditing, AnOtherMoveIsADisplacementFromThePlannedPosition) {
   EXPECT_TRUE(changed_positions(now, before, document.plan()).empty()) << "another cut";
 }
 
+TEST_F(PlanEditing, APlanWithoutAFileIsKeptAsADraft) {
+  const test::Folder folder;
+  const std::filesystem::path draft = folder / "drafts/plan.json";
+  document = PlanDocument(empty_plan(uncut()), draft);
+  edit(plan_edit::AddOsteotomy{"genioplasty"});
+  edit(plan_edit::AddMove{"chin"});
+  EXPECT_EQ(load_plan(draft), document.plan());
+  document.undo();
+  EXPECT_EQ(load_plan(draft), document.plan());
+  document.save_as(folder / "plan.json");
+  EXPECT_FALSE(std::filesystem::exists(draft));
+}
+
+TEST_F(PlanEditing, UndoGoesBackBeyondTheFirstSave) {
+  const test::Folder folder;
+  const std::filesystem::path file = folder / "plan.json", other = folder / "other.json";
+  edit(plan_edit::AddOsteotomy{"genioplasty"});
+  const Plan first = document.plan();
+  edit(plan_edit::AddMove{"chin"});
+  document.save_as(file);
+  document.undo();
+  EXPECT_EQ(document.plan(), first);
+  EXPECT_EQ(load_plan(file), first);
+  document.undo();
+  EXPECT_TRUE(load_plan(file).steps.empty());
+  document.redo();
+  document.redo();
+  EXPECT_EQ(document.plan().steps.size(), 2u);
+
+  // Nothing else is overwritten.
+  test::write_text(other, "{}");
+  EXPECT_THROW(document.save_as(other), InputError);
+  EXPECT_EQ(test::read_text(other), "{}");
+  save_plan(first, other);
+  EXPECT_THROW(document.save_as(other), InputError);
+  EXPECT_EQ(load_plan(other), first);
+}
+
+TEST_F(PlanEditing, AnOverlapIsTrimmed) {
+  edit(plan_edit::AddOsteotomy{"sagittal_split"});
+  edit(plan_edit::AddMove{"distal"});
+  edit(plan_edit::SetNumber{2, "forward_mm", -4});
+  const auto overlap = [&] { return segment_overlaps(operated(), "distal"); };
+  ASSERT_FALSE(overlap().empty());
+  edit(plan_edit::Trim{"distal"});
+  EXPECT_TRUE(std::none_of(overlap().begin(), overlap().end(), [](const SegmentOverlap& each) {
+    return each.kind == SegmentOverlap::Kind::trimmed;
+  }));
+  EXPECT_EQ(view().steps[2].title, "Trim distal");
+  EXPECT_FALSE(view().steps[2].findings.empty());
+}
+
+TEST_F(PlanEditing, OfTwoMovesTheLastIsEdited) {
+  chin_forward(4);
+  Plan plan = with_step(document.plan(), document.plan().steps[1].action);
+  document.edit(plan, "second move");
+  edit(plan_edit::SetNumber{3, "forward_mm", 7});
+  const auto forward = [&](std::size_t i) { return number_named(view().steps[i], "forward_mm"); };
+  EXPECT_EQ(forward(1).value, 4);
+  EXPECT_EQ(forward(2).value, 7);
+  EXPECT_NEAR(changed_positions(apply_plan(uncut(), plan), plan,
+                                document.plan())[index_of(*operated().patient.bodies.find("chin"))]
+                  ->t.norm(),
+              3, 1e-9);
+}
+
 TEST_F(PlanEditing, EveryEditIsSavedAndUndoneInTheFile) {
   const test::Folder folder;
   const std::filesystem::path file = folder / "plan.json";
