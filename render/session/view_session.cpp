@@ -53,8 +53,12 @@ void ViewSession::take_plan() {
   const auto& shown = state_.front_end.view().parts;
   for (std::size_t i = 0; i < std::min(shown.size(), state_.scene.parts.size()); ++i)
     earlier[state_.scene.parts[i].name] = shown[i];
+  const std::size_t chosen = state_.front_end.view().chosen;
+  const std::string body = chosen < state_.scene.bodies.size()
+                               ? state_.scene.parts[state_.scene.bodies[chosen].part].name
+                               : "";
   install(std::move(planned->patient), "the plan was edited");
-  show_planned_patient(earlier);
+  show_planned_patient(earlier, body);
   if (!trouble.empty())
     state_.front_end.report_error("Cannot predict the face", state_.in_words(trouble));
   want_motion(asked_);
@@ -100,8 +104,9 @@ void ViewSession::show_new_patient() {
 }
 
 /// View and edits stay as far as they do not belong to parts that the plan has changed. `earlier`:
-/// how the parts were shown, by name.
-void ViewSession::show_planned_patient(const std::map<std::string, PartView>& earlier) {
+/// how the parts were shown, by name; `chosen`: the part of the body with handles.
+void ViewSession::show_planned_patient(const std::map<std::string, PartView>& earlier,
+                                       const std::string& chosen) {
   const ViewState& view = state_.front_end.view();
   ViewState start;
   static_cast<PanelChoice&>(start) = view;
@@ -120,6 +125,9 @@ void ViewSession::show_planned_patient(const std::map<std::string, PartView>& ea
   WindowScene scene = scene_of_patient();
   scene.recent = state_.scene.recent;
   state_.scene = std::move(scene);
+  start.tool = view.tool;
+  for (std::size_t i = 0; i < state_.scene.bodies.size(); ++i)
+    if (state_.scene.parts[state_.scene.bodies[i].part].name == chosen) start.chosen = i;
   state_.front_end.replace_scene(state_.scene, start, state_.patient);
   show_scene();
   state_.front_end.show(state_.patient->at_rest);

@@ -57,7 +57,8 @@ class ViewSession {
   void take_plan();
   void install(std::shared_ptr<const SessionPatient> patient, std::string_view why);
   void show_new_patient();
-  void show_planned_patient(const std::map<std::string, PartView>& earlier);
+  void show_planned_patient(const std::map<std::string, PartView>& earlier,
+                            const std::string& chosen);
   void show_renewed_patient(const std::vector<Landmark>& landmarks);
   void want_motion(const MotionChoice& choice);
   void take_motion();

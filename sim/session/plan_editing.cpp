@@ -173,6 +173,7 @@ std::vector<PlanNumber> numbers_of(const Operated& operated, const Plan& plan,
     number.high = number.unit == "mm" ? max_move_mm : max_turn_deg;
     number.low = -number.high;
     number.value = *number_of(move, number.name);
+    if (std::abs(number.value) < 1e-6) number.value = 0;  // of a pose, up to rounding
   }
   return numbers;
 }

@@ -1,4 +1,6 @@
 // A plan made by hand in the window: osteotomy, move, drag, undo, file.
+#include <algorithm>
+
 #include "window_session.h"
 
 namespace condyle::test {
@@ -46,7 +48,10 @@ TEST_F(WindowSession, AGenioplastyIsPlannedByHand) {
   click("body:chin");
   ASSERT_TRUE(wait_for_item("shift:S"));
   write_into("shift:S", "-1.5");  // upward the mandible stops it
-  ASSERT_TRUE(wait_for_item("plan-take"));
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    return std::any_of(s["body_mm"].begin(), s["body_mm"].end(),
+                       [](const Json& at) { return double(at[2]) < -1.4; });
+  }));
   click("plan-take");
   ASSERT_TRUE(wait_until([&](const Json& s) { return idle(s) && move("up_mm") < -1; }, 120));
   EXPECT_NEAR(move("forward_mm"), 6, 0.2);
