@@ -146,7 +146,7 @@ TEST(PlanCutCommand, OsteotomiesBetweenTeethStateTheirRoom) {
     all.insert(all.end(), {"--kerf", "2"});
     const Outcome refused = condyle(all);
     EXPECT_EQ(refused.code, 2) << refused.err;
-    EXPECT_NE(refused.err.find("need 4.0 mm"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("require 4.0 mm"), std::string::npos) << refused.err;
   }
 }
 

@@ -56,7 +56,7 @@ TEST(Interdental, ThePlaneLiesInTheMiddleOfTheRoom) {
   EXPECT_EQ(
       room_text(*plane, 0.6),
       "teeth 33 and 34: more than 3 mm from the crest, their roots leave 3.0 mm for the cut; 1 "
-      "mm of bone on each and the saw need 2.6 mm");
+      "mm of bone on each root and the saw require 2.6 mm");
   EXPECT_FALSE(find_interdental(jaw, 34, 35));
 }
 
