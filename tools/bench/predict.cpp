@@ -131,6 +131,7 @@ class PredictBench {
 CutStep plane_step(const Case& patient) {
   const Eigen::Vector3d& point = patient.landmarks.points.at("left_mental_foramen");
   return {
+      .target = "mandible",
       .surfaces = {PlanePatch{point + Eigen::Vector3d(8, 10, 0), Eigen::Vector3d::UnitY(), 25.0}},
       .pieces = {"front"},
       .below_margins = true};
