@@ -73,13 +73,13 @@ void add_motion(CLI::App& command, MotionOptions& motion) {
   command.add_option("CASE", motion.patient,
                      "Folder with case.json (default: the built-in patient)");
   command
-      .add_option(
-          "--motion", motion.motion,
-          "A built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
-              "), movements in words (\"open 40; close; protrude 6\") or a file of them "
-              "(*.motion), a recorded motion, muscles:FILE, or inverse:MOTION (muscles "
-              "that follow it), or path:GRAFT (the way in of a planned graft): condyle help "
-              "motions, recordings, muscles, grafts")
+      .add_option("--motion", motion.motion,
+                  "A built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
+                      "), movements in words (\"open 40; close; protrude 6\") or a file of them "
+                      "(*.motion), a recorded motion, muscles:FILE, or inverse:MOTION (muscles "
+                      "that follow it), or path:GRAFT (the insertion path of a planned graft): "
+                      "condyle help "
+                      "motions, recordings, muscles, grafts")
       ->type_name("MOTION");
   in_range(command.add_option("--duration", motion.settings.duration_s,
                               "Duration of the whole motion, s; default: its own (opening: 3)"),

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 constexpr double sample_mm = 0.8;
 constexpr float farthest_mm = 4;            // distances beyond are not measured
-constexpr double seat_mm = 2;               // of the way, where the faces are near by intention
+constexpr double seat_mm = 2;               // of the path, where the faces are near by intention
 constexpr double blocking_depth_mm = 0.05;  // of samples in other bone
 
 /// The nearest of all else to the graft at one place of its way.
@@ -105,14 +105,14 @@ class Surroundings {
 /// A direction brought into the cone of the faces: the part of it that points into bone is removed.
 std::optional<Vector3d> into_cone(Vector3d d, const std::vector<Vector3d>& normals) {
   constexpr double beside = 1e-6;
-  const Vector3d wish = d;
+  const Vector3d preferred = d;
   for (const Vector3d& n : normals)
     if (n.dot(d) < 0) d -= n.dot(d) * n;
   const bool outside = std::any_of(normals.begin(), normals.end(),
                                    [&](const Vector3d& n) { return n.dot(d) < -beside; });
   if (outside && normals.size() == 2) {
     const Vector3d along = normals[0].cross(normals[1]);
-    d = along.dot(wish) < 0 ? Vector3d(-along) : along;
+    d = along.dot(preferred) < 0 ? Vector3d(-along) : along;
   }
   if (d.norm() < 0.05) return std::nullopt;
   d.normalize();
@@ -123,8 +123,8 @@ std::optional<Vector3d> into_cone(Vector3d d, const std::vector<Vector3d>& norma
 
 std::vector<Vector3d> directions_of(const Seat& seat) {
   std::vector<Vector3d> directions;
-  const auto add = [&](const Vector3d& wish) {
-    const auto d = into_cone(wish.normalized(), seat.face_normals);
+  const auto add = [&](const Vector3d& preferred) {
+    const auto d = into_cone(preferred.normalized(), seat.face_normals);
     if (d && std::none_of(directions.begin(), directions.end(),
                           [&](const Vector3d& known) { return known.dot(*d) > 0.9999; }))
       directions.push_back(*d);
@@ -230,11 +230,11 @@ std::string way_in_text(const WayIn& way, const Seat& seat) {
                                         way.margin_at.y(), way.margin_at.z());
   if (way.state == WayIn::State::blocked)
     return fmt::format(
-        "way in of {}: blocked; of {} straight directions the best leads out for "
-        "{:.2f} mm, then {} is in the way at {}",
+        "insertion path of {}: blocked; of {} straight directions the best withdraws the graft by "
+        "{:.2f} mm, where it meets {} at {}",
         seat.name, way.directions, way.blocked_after_mm, way.blocked_by, where);
-  std::string text = fmt::format("way in of {}: {}, straight (out of its seat {})", seat.name,
-                                 state_name(way.state), direction_words(way.direction));
+  std::string text = fmt::format("insertion path of {}: {}, straight (out of its seat {})",
+                                 seat.name, state_name(way.state), direction_words(way.direction));
   if (way.margin_part.empty())
     return text + fmt::format("; more than {} mm from all else", static_cast<int>(farthest_mm));
   return text + fmt::format("; least distance {:.2f} mm, {:.1f} mm from the seat, to {} at {}",

@@ -64,7 +64,7 @@ Motion way_in_motion(const std::string& spec, const Scene& scene, double duratio
   const WayIn way = find_way_in(scene.patient, seat, threads);
   constexpr double default_s = 6;
   Motion motion;
-  motion.name = "way in of " + seat.name;
+  motion.name = "insertion path of " + seat.name;
   motion.duration_s = duration_s > 0 ? duration_s : default_s;
   motion.target = [](double) { return Pose{}; };
   const double half_s = 0.5 * motion.duration_s,

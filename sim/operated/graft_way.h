@@ -12,12 +12,12 @@ namespace condyle {
 /// The seats of a plan's grafts at the planned positions.
 std::vector<Seat> graft_seats(const Operated& operated, const Plan& plan);
 
-/// A graft that leaves its seat along its way in, and returns, with the jaw at rest. A blocked way
-/// ends where it is blocked. `spec`: "path:GRAFT". throws: InputError for a scene without a plan,
-/// and a graft that the plan lacks.
+/// A graft that leaves its seat along its insertion path, and returns, with the jaw at rest. A
+/// blocked path ends where it is blocked. `spec`: "path:GRAFT". throws: InputError for a scene
+/// without a plan, and a graft that the plan lacks.
 Motion way_in_motion(const std::string& spec, const Scene& scene, double duration_s, int threads);
 
-/// Whether a motion is the way of a graft.
+/// Whether a motion is the insertion path of a graft.
 bool is_way_in(const std::string& spec);
 
 }  // namespace condyle

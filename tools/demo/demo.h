@@ -28,7 +28,8 @@ int run_jaw_before_after(const DemoOptions& options, const CommonOptions& common
 int run_vault(const DemoOptions& options, const CommonOptions& common);
 /// Genioplasty, with the mouth opening afterwards.
 int run_genioplasty(const DemoOptions& options, const CommonOptions& common);
-/// A segment of the lower jaw resected, and rebuilt from a fibula; its way in; the mouth opening.
+/// A segment of the lower jaw resected, and rebuilt from a fibula; its insertion path; the mouth
+/// opening.
 int run_fibula(const DemoOptions& options, const CommonOptions& common);
 
 }  // namespace condyle

@@ -53,7 +53,7 @@ OperationOutput::Table saw_table(const GraftLayout& graft) {
 }
 
 /// Pictures of a motion at its start, half way and in its middle.
-Image way_picture(const PlayedMotion& played, const std::string& title) {
+Image path_picture(const PlayedMotion& played, const std::string& title) {
   PictureGrid grid{title, {{}}};
   const std::size_t middle = played.pictures.size() / 2;
   for (const std::size_t frame : {std::size_t{0}, middle / 4, middle / 2, middle})
@@ -85,13 +85,14 @@ int run_fibula(const DemoOptions& options, const CommonOptions& common) {
   settings.step_s = 1.0 / 60;
   const Scene scene = make_operated_scene(patient, plan, settings, bar.callback());
   const Motion way = way_in_motion("path:fibula", scene, 0, common.threads);
-  output.add_section("The way in", way.notes.front());
+  output.add_section("Insertion path", way.notes.front());
   output.draw([&] {
     PlaySettings play;
     play.frames = 25;
     play.skin_opacity = 0;
     const PlayedMotion played = play_motion(scene, way, settings, play, true, bar.callback());
-    output.add_picture("way_in.png", way_picture(played, "The way of the graft out of its seat"),
+    output.add_picture("insertion_path.png",
+                       path_picture(played, "The graft leaves its seat along the insertion path"),
                        "The graft leaves its seat along its way.");
     const Motion opening = make_motion("open; close", scene.patient, scene.contacts);
     const PlayedMotion opened = play_motion(scene, opening, settings, play, true, bar.callback());

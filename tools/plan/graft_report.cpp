@@ -54,7 +54,7 @@ Json way_json(const WayIn& way) {
   return json;
 }
 
-/// The way in of each graft, in their order.
+/// The insertion path of each graft, in their order.
 std::vector<WayIn> ways_in(const std::vector<Seat>& seats, const Operated& operated) {
   constexpr int threads = 2;  // the result is the same for any number
   std::vector<WayIn> ways;

@@ -8,7 +8,7 @@
 namespace condyle {
 
 /// Adds `resections` and `grafts` to a report: pieces with lengths and saw cuts, faces with contact
-/// and gaps, overlaps, warnings, way in.
+/// and gaps, overlaps, warnings, insertion path.
 void add_graft_report(nlohmann::ordered_json& report, const Plan& plan, const Operated& operated);
 
 /// The same for people; empty without resections and grafts.
