@@ -97,7 +97,7 @@ class DistanceField {
     std::bitset<cells * cells * cells> unknown;  // cells across which the sign is discontinuous
   };
   std::size_t slot(int x, int y, int z) const {
-    return static_cast<std::size_t>(x + size_[0] * (y + size_[1] * z));
+XX
   }
   void lay_out(const TriMesh& mesh);
   static void mark_unknown(Brick& brick, double spacing_mm);

@@ -10,24 +10,41 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// What the operation moves: `lower_alone` is the whole lower jaw, and nothing of the upper.
+enum class Moves { any, chin_alone, lower_jaw, lower_alone };
+
 struct PublishedRatio {
   const char *soft, *hard;
   bool forward;
+  Moves moves;
   std::optional<double> low, high;
-  bool chin_alone = false;  // a genioplasty: the range does not hold where the jaw moves
+  const char* source = "";
 };
-// Textbook values of advancements and genioplasties; no range is known for the others.
+// Naoumova 2008: Eur J Orthod 30:359 (42 patients). Kim 2010: Angle Orthod 80:896 (26 patients),
+// whose landmarks are given as parts of soft B', which moves as the bone does.
 const std::array published{
-    PublishedRatio{"pronasale", "a_point", true, 0.2, 0.35},
-    PublishedRatio{"subnasale", "a_point", true, 0.5, 0.6},
-    PublishedRatio{"labrale_superius", "upper_incisal_point", true, {}, {}},
-    PublishedRatio{"labrale_inferius", "lower_incisal_point", true, {}, {}},
-    PublishedRatio{"soft_b_point", "b_point", true, {}, {}},
-    PublishedRatio{"soft_pogonion", "pogonion", true, 0.85, 1.0, true},
-    PublishedRatio{"soft_pogonion", "pogonion", false, 0.6, 0.8, true},
-    PublishedRatio{"soft_b_point", "b_point", false, {}, {}},
-    PublishedRatio{"labrale_inferius", "lower_incisal_point", false, {}, {}},
-    PublishedRatio{"labrale_superius", "upper_incisal_point", false, {}, {}}};
+    PublishedRatio{"pronasale", "a_point", true, Moves::any, 0.2, 0.35, "textbooks"},
+    PublishedRatio{"subnasale", "a_point", true, Moves::any, 0.5, 0.6, "textbooks"},
+    PublishedRatio{"labrale_superius", "upper_incisal_point", true, Moves::any, 0.6, 0.9,
+                   "textbooks"},
+    PublishedRatio{"labrale_superius", "upper_incisal_point", false, Moves::any, {}, {}},
+    PublishedRatio{"soft_pogonion", "pogonion", true, Moves::chin_alone, 0.85, 1.0, "textbooks"},
+    PublishedRatio{"soft_pogonion", "pogonion", false, Moves::chin_alone, 0.6, 0.8, "textbooks"},
+    PublishedRatio{"labrale_inferius", "lower_incisal_point", true, Moves::lower_jaw, 0.6, 0.8,
+                   "textbooks"},
+    PublishedRatio{"soft_b_point", "b_point", true, Moves::lower_jaw, {}, {}},
+    PublishedRatio{"soft_pogonion", "pogonion", true, Moves::lower_jaw, 0.9, 1.0, "textbooks"},
+    PublishedRatio{"labrale_superius", "b_point", false, Moves::lower_alone, 0.15, 0.15,
+                   "Kim 2010"},
+    PublishedRatio{"stomion", "b_point", false, Moves::lower_alone, 0.24, 0.24, "Kim 2010"},
+    PublishedRatio{"left_cheilion", "b_point", false, Moves::lower_alone, 0.51, 0.51, "Kim 2010"},
+    PublishedRatio{"right_cheilion", "b_point", false, Moves::lower_alone, 0.51, 0.51, "Kim 2010"},
+    PublishedRatio{"labrale_inferius", "lower_incisal_point", false, Moves::lower_jaw, 0.6, 1.03,
+                   "textbooks; Kim 2010"},
+    PublishedRatio{"soft_b_point", "b_point", false, Moves::lower_jaw, 0.9, 1.1,
+                   "textbooks; Naoumova 2008"},
+    PublishedRatio{"soft_pogonion", "pogonion", false, Moves::lower_jaw, 0.9, 1.1,
+                   "textbooks; Naoumova 2008"}};
 
 const SoftPoint* find_point(const Prediction& prediction, const std::string& name) {
   for (const SoftPoint& point : prediction.points)
@@ -44,7 +61,15 @@ std::string stripping_text(const Stripping& stripping) {
   if (stripping.on_maxilla > 0)
     text += fmt::format(", {} on the front of the maxilla", stripping.on_maxilla);
   if (stripping.above_chin > 0) text += fmt::format(", {} above the chin", stripping.above_chin);
+  if (stripping.on_chin > 0) text += fmt::format(", {} in part on the chin", stripping.on_chin);
   return text + ")";
+}
+
+std::string literature_text(const SoftRatio& row) {
+  if (!row.low) return "unknown";
+  const std::string range = *row.low < *row.high ? fmt::format("{:g} to {:g}", *row.low, *row.high)
+                                                 : fmt::format("{:g}", *row.low);
+  return fmt::format("{} ({})", range, row.source);
 }
 
 std::string spaced(std::string name) {
@@ -60,8 +85,24 @@ std::vector<SoftRatio> soft_ratios(const Prediction& prediction, const ClinicalF
   const Landmarks& rest = prediction.operated.patient.landmarks;
   const Landmarks moved =
       moved_landmarks(rest, prediction.operated.owners, prediction.operated.poses);
-  const auto b_before = rest.find("b_point"), b_after = moved.find("b_point");
-  const bool jaw_moves = b_before && b_after && (*b_after - *b_before).norm() > least_mm;
+  const auto moves = [&](const char* landmark) {
+    const auto before = rest.find(landmark), after = moved.find(landmark);
+    return before && after && (*after - *before).norm() > least_mm;
+  };
+  const bool lower = moves("b_point"), upper = moves("a_point");
+  const auto is_of = [&](Moves kind) {
+    switch (kind) {
+      case Moves::chin_alone:
+        return !lower;
+      case Moves::lower_jaw:
+        return lower;
+      case Moves::lower_alone:
+        return lower && !upper;
+      case Moves::any:
+        break;
+    }
+    return true;
+  };
   std::vector<SoftRatio> ratios;
   for (const auto& row : published) {
     const auto before = rest.find(row.hard), after = moved.find(row.hard);
@@ -69,10 +110,9 @@ std::vector<SoftRatio> soft_ratios(const Prediction& prediction, const ClinicalF
     if (!before || !after || !soft) continue;
     const double hard_mm = -frame.back.dot(*after - *before);
     if (std::abs(hard_mm) < least_mm || (hard_mm > 0) != row.forward) continue;
-    const bool has_range = row.low && !(row.chin_alone && jaw_moves);
+    if (!is_of(row.moves)) continue;
     ratios.push_back({row.soft, row.hard, hard_mm, -frame.back.dot(soft->after - soft->before),
-                      has_range ? row.low : std::nullopt, has_range ? row.high : std::nullopt,
-                      has_range ? "textbook value" : ""});
+                      row.low, row.high, row.source});
   }
   return ratios;
 }
@@ -92,9 +132,9 @@ std::string prediction_text(const Prediction& prediction, const ClinicalFrame& f
     text += fmt::format("\n{:<20}{:<22}{:>8}{:>8}{:>8}  {}\n", "soft to hard, forward", "  of",
                         "hard mm", "soft mm", "ratio", "literature");
   for (const SoftRatio& row : ratios)
-    text += fmt::format("{:<20}  {:<21}{:>8.1f}{:>8.1f}{:>8.2f}  {}\n", spaced(row.soft),
-                        spaced(row.hard), row.hard_mm, row.soft_mm, row.ratio(),
-                        row.low ? fmt::format("{:g} to {:g}", *row.low, *row.high) : "unknown");
+    text +=
+        fmt::format("{:<20}  {:<21}{:>8.1f}{:>8.1f}{:>8.2f}  {}\n", spaced(row.soft),
+                    spaced(row.hard), row.hard_mm, row.soft_mm, row.ratio(), literature_text(row));
   if (const Stripping& stripping = prediction.stripping; stripping.stripped() > 0)
     text += fmt::format("\n{}\n", stripping_text(stripping));
   text += fmt::format(
@@ -128,10 +168,12 @@ Json prediction_json(const Prediction& prediction, const ClinicalFrame& frame) {
                        {"near_cuts", stripping.near_cuts},
                        {"on_maxilla", stripping.on_maxilla},
                        {"above_chin", stripping.above_chin},
+                       {"on_chin", stripping.on_chin},
                        {"reach_mm", stripping.settings.reach_mm},
                        {"remains_near_cuts", stripping.settings.near_cut},
                        {"remains_on_maxilla", stripping.settings.on_maxilla},
                        {"remains_above_chin", stripping.settings.above_chin},
+                       {"remains_on_chin", stripping.settings.on_chin},
                        {"freed_above_chin_mm", stripping.settings.freed_mm},
                        {"remains_of_septum", stripping.settings.septum}};
   for (const SoftRatio& row : soft_ratios(prediction, frame)) {
@@ -140,7 +182,8 @@ Json prediction_json(const Prediction& prediction, const ClinicalFrame& frame) {
                {"hard_mm", row.hard_mm},
                {"soft_mm", row.soft_mm},
                {"ratio", row.ratio()}};
-    if (row.low) entry["published"] = {{"low", *row.low}, {"high", *row.high}};
+    if (row.low)
+      entry["published"] = {{"low", *row.low}, {"high", *row.high}, {"source", row.source}};
     json["ratios"].push_back(std::move(entry));
   }
   return json;

@@ -97,12 +97,15 @@ Stripping strip(const TissueModel& tissue, const Operated& operated, const Plan&
     if (bone == bones.end()) continue;
     const Eigen::Vector3d& p = mesh.rest[mesh.elements.anchor_node[i]];
     const BodyId owner = bone->owner(p);
-    bool near = false, on_maxilla = false, above_chin = false;
+    bool near = false, on_maxilla = false, above_chin = false, on_chin = false;
     for (const CutSite& site : sites) {
       const bool of_segment = holds(site.segments, owner);
       const bool chin = site.osteotomy == "genioplasty";
       on_maxilla = on_maxilla || (of_segment && site.osteotomy == "le_fort_1");
-      if (of_segment && chin) continue;
+      if (of_segment && chin) {
+        on_chin = true;
+        continue;
+      }
       const double distance = site.faces.nearest(p).distance;
       above_chin = above_chin || (chin && distance < settings.freed_mm);
       near = near || distance < settings.reach_mm;
@@ -115,6 +118,8 @@ Stripping strip(const TissueModel& tissue, const Operated& operated, const Plan&
       strip_to(settings.above_chin, result.above_chin);
     else if (on_maxilla)
       strip_to(settings.on_maxilla, result.on_maxilla);
+    else if (on_chin)
+      strip_to(settings.on_chin, result.on_chin);
     else if (near)
       strip_to(settings.near_cut, result.near_cuts);
   }

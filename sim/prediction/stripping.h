@@ -19,6 +19,7 @@ struct StrippingSettings {
   double on_maxilla = 0.05;   // the same on the whole front of a Le Fort I segment
   double freed_mm = 20;       // from the cut of a genioplasty up to the vestibular incision
   double above_chin = 0.001;  // the fraction that remains there
+  double on_chin = 0.45;      // the fraction that remains on the chin segment, where it is degloved
   double septum = 0.4;        // of the nose over a Le Fort I segment that the septum holds back
 };
 
@@ -27,15 +28,16 @@ struct Stripping {
   StrippingSettings settings;
   std::vector<double> kept;  // of each anchor of the tissue: fraction of its stiffness
   int attachments = 0;       // to bone, before
-  // Number of those stripped near cut lines, on Le Fort I segments, and above chins.
-  int near_cuts = 0, on_maxilla = 0, above_chin = 0;
+  // Number of those stripped near cut lines, on Le Fort I segments, above and on chins.
+  int near_cuts = 0, on_maxilla = 0, above_chin = 0, on_chin = 0;
 
-  int stripped() const { return near_cuts + on_maxilla + above_chin; }
+  int stripped() const { return near_cuts + on_maxilla + above_chin + on_chin; }
 };
 
 /// The attachments that the cuts of a plan strip, moved or not: near a cut line those of both
 /// sides; of a Le Fort I segment the whole front; of a genioplasty the front of the jaw above it,
-/// while periosteum stays on the chin. `cuts`: of the patient of `tissue`, see operated_tissue().
+/// and in part the chin, whose lower border keeps its periosteum. `cuts`: of the patient of
+/// `tissue`, see operated_tissue().
 Stripping strip(const TissueModel& tissue, const Operated& operated, const Plan& plan,
                 std::span<const CutBone> cuts, const StrippingSettings& settings = {});
 
