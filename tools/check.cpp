@@ -18,7 +18,7 @@
 #include "render/output/contact_picture.h"
 #include "render/recording/render_metadata.h"
 #include "sim/frame/part_names.h"
-#include "sim/operated/graft_way.h"
+#include "sim/operated/graft_path.h"
 #include "sim/report/check_page.h"
 #include "tools/commands.h"
 #include "tools/common.h"
@@ -106,15 +106,16 @@ std::vector<std::string> write_pictures(AtomicOutput& files, const Scene& scene,
 std::vector<std::string> notes_on_crowns(const Case& patient, const ClearanceCheck& check) {
   std::vector<std::string> notes;
   if (patient.find(Role::upper_teeth) || patient.find(Role::lower_teeth)) return notes;
-  const auto role = [&](const std::string& name) {
+  const auto body = [&](const std::string& name) {
     const auto part = std::find_if(patient.parts.begin(), patient.parts.end(),
                                    [&](const Part& p) { return p.name == name; });
-    return part->role;
+    return part->body;
   };
-  const Role upper = patient.find(Role::maxilla) ? Role::maxilla : Role::skull;
   for (const auto& pair : check.pairs) {
     if (!pair.violated() || pair.rule.policy != PairPolicy::forbidden) continue;
-    if (std::set{role(pair.a), role(pair.b)} != std::set{upper, Role::mandible}) continue;
+    if (std::set{body(pair.a), body(pair.b)} !=
+        std::set{patient.jaw.upper_arch, patient.jaw.lower_arch})
+      continue;
     notes.push_back(fmt::format(
         "the case has no separate teeth: where crowns on {0} and {1} meet counts as bones that "
         "collide; --pair {0},{1},allowed lets them touch",
@@ -150,7 +151,7 @@ std::optional<OperationComparison> comparison_of(const CheckOptions& options,
                                                  const Scene& after, const Motion& motion,
                                                  const ClearanceCheck& check,
                                                  const Progress& progress) {
-  if (options.motion.plan.empty() || is_way_in(options.motion.motion)) return std::nullopt;
+  if (options.motion.plan.empty() || is_insertion_path(options.motion.motion)) return std::nullopt;
   const Scene before = make_scene(uncut, settings, progress);
   const Motion motion_before = motion_of(options.motion, before, common.threads);
   const ClearanceCheck check_before =

@@ -6,7 +6,7 @@
 #include "engine/core/error.h"
 #include "sim/case/pair_rules.h"
 #include "sim/muscles/default_muscles.h"
-#include "sim/operated/graft_way.h"
+#include "sim/operated/graft_path.h"
 #include "sim/operated/operated_scene.h"
 #include "sim/plan/plan_file.h"
 #include "tools/common.h"
@@ -144,7 +144,7 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
 }
 
 void check_motion(const MotionOptions& options) {
-  if (!is_way_in(options.motion))
+  if (!is_insertion_path(options.motion))
     check_motion(options.motion, options.settings, options.muscles);
   else if (options.plan.empty())
     throw InputError("--motion " + options.motion + ": needs a --plan with a graft");
@@ -156,8 +156,8 @@ void check_motion(const MotionOptions& options, const Case& patient) {
 }
 
 Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
-  if (is_way_in(options.motion))
-    return way_in_motion(options.motion, scene, options.settings.duration_s, threads);
+  if (is_insertion_path(options.motion))
+    return insertion_path_motion(options.motion, scene, options.settings.duration_s, threads);
   return motion_of(options.motion, scene.patient, scene.contacts, options.settings, options.muscles,
                    threads);
 }

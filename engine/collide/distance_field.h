@@ -97,7 +97,7 @@ class DistanceField {
     std::bitset<cells * cells * cells> unknown;  // cells across which the sign is discontinuous
   };
   std::size_t slot(int x, int y, int z) const {
-XX
+    return x + size_[0] * (y + std::size_t(size_[1]) * z);
   }
   void lay_out(const TriMesh& mesh);
   static void mark_unknown(Brick& brick, double spacing_mm);

@@ -69,9 +69,9 @@ SlideLattice::ExitDirection SlideLattice::exit_direction(const Pose& X) {
       overlap.sum_mm -= c.gap;
     }
   }
-  ExitDirection way{false, overlap.depth_mm, Vector3d::Zero()};
-  if (overlap.outward.norm() > 0.02 * overlap.sum_mm) way.direction = overlap.outward.normalized();
-  return way;
+  ExitDirection exit{false, overlap.depth_mm, Vector3d::Zero()};
+  if (overlap.outward.norm() > 0.02 * overlap.sum_mm) exit.direction = overlap.outward.normalized();
+  return exit;
 }
 
 /// A free pose: the body is moved out by a fraction of its depth at a time.
@@ -79,13 +79,13 @@ std::optional<Pose> SlideLattice::moved_out(const Pose& target) {
   Pose X = target;
   Vector3d last = Vector3d::Zero();
   for (int k = 0; k < max_draws; ++k) {
-    const ExitDirection way = exit_direction(X);
-    if (way.free) return X;
-    if (way.direction.isZero()) return std::nullopt;
-    Vector3d out = way.direction;
+    const ExitDirection exit = exit_direction(X);
+    if (exit.free) return X;
+    if (exit.direction.isZero()) return std::nullopt;
+    Vector3d out = exit.direction;
     // Between two walls the directions alternate: their common component leads out.
     if (out.dot(last) < 0) out = (out + last).normalized();
-    X.t += (drawn_fraction * way.depth_mm + free_mm) * out;
+    X.t += (drawn_fraction * exit.depth_mm + free_mm) * out;
     last = out;
   }
   return std::nullopt;
@@ -135,13 +135,13 @@ SlideLattice::Node& SlideLattice::visited(const Key& key) {
   Node& node = place->second;
   if (!fresh) return node;
   const Pose X = place_of(key);
-  const ExitDirection way = exit_direction(X);
-  if (way.free)
+  const ExitDirection exit = exit_direction(X);
+  if (exit.free)
     node = {.solved = true, .found = true, .reached = true, .X = X, .root = X};
-  else if (way.direction.isZero())
+  else if (exit.direction.isZero())
     node = alone(X);
   else
-    node.parent = outer(key, way.direction);
+    node.parent = outer(key, exit.direction);
   return node;
 }
 
@@ -221,9 +221,9 @@ Pose SlideLattice::carried(const Node& node, const Pose& target) const {
   for (const SlideContact& contact : node.contacts)
     rows.push_back(contact_row(contact.point - node.X * model_.pivot_, contact.normal,
                                std::max(0.0, contact.gap_mm), model_.rotation_length_mm_));
-  const Twist way = nearest_allowed(probe_.between(node.X, target), rows, settings).x;
-  const double length = probe_.max_displacement_mm(way);
-  return probe_.moved(node.X, way * std::min(1.0, farthest_carried_mm / length));
+  const Twist step = nearest_allowed(probe_.between(node.X, target), rows, settings).x;
+  const double length = probe_.max_displacement_mm(step);
+  return probe_.moved(node.X, step * std::min(1.0, farthest_carried_mm / length));
 }
 
 /// True where a node has to be solved.
@@ -247,11 +247,11 @@ void SlideLattice::continue_prefetch(int steps) {
 }
 
 /// True while a walk is in progress.
-bool SlideLattice::find_prefetch(const Pose& target, const Twist& way) {
+bool SlideLattice::find_prefetch(const Pose& target, const Twist& step) {
   for (const double frames : ahead_frames) {
     if (prefetch_) return true;
-    if (!(frames * way.norm() < farthest_ahead * cell_mm_)) return false;
-    const Key key = key_of(probe_.moved(target, frames * way));
+    if (!(frames * step.norm() < farthest_ahead * cell_mm_)) return false;
+    const Key key = key_of(probe_.moved(target, frames * step));
     if (!begin_prefetch(outside_, chain_outside(key)) && near_rest(key))
       begin_prefetch(rest_, chain_to_rest(key));
   }
@@ -261,9 +261,9 @@ bool SlideLattice::find_prefetch(const Pose& target, const Twist& way) {
 void SlideLattice::prefetch(const Pose& target, const std::function<bool()>& more) {
   const auto last = std::exchange(last_target_, target);
   if (std::exchange(asked_, false) || !last) return;
-  const Twist way = probe_.between(*last, target);
+  const Twist step = probe_.between(*last, target);
   for (int steps = 0; steps < min_ahead || (more() && steps < max_ahead); ++steps) {
-    if (!find_prefetch(target, way)) return;
+    if (!find_prefetch(target, step)) return;
     continue_prefetch(1);
   }
 }

@@ -77,7 +77,7 @@ class SlideLattice {
   Node solve(Tree& tree, const std::pair<std::vector<Key>, Node>& chain);
   bool begin_prefetch(Tree& tree, const std::pair<std::vector<Key>, Node>& chain);
   void continue_prefetch(int steps);
-  bool find_prefetch(const Pose& target, const Twist& way);
+  bool find_prefetch(const Pose& target, const Twist& step);
 
   const SlidingContact& model_;
   SlideProbe probe_;

@@ -18,7 +18,7 @@ ArchView::ArchView(const std::string& camera, std::span<const Part> parts, const
     }
     for (const auto& v : part.mesh.vertices) {
       if (is_teeth(part.role)) teeth.extend(v);
-      if (part.role == (is_lower ? Role::mandible : Role::maxilla) ||
+      if (part.role == (is_lower ? Role::mandible : Role::maxilla) || is_piece(part.role) ||
           (!is_lower && part.role == Role::skull))
         jaw.extend(v);
     }

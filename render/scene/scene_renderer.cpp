@@ -41,7 +41,7 @@ float front_of_mouth(std::span<const Drawable> drawables) {
     const auto role = drawable.part->role;
     if (drawable.box.isEmpty()) continue;
     if (is_teeth(role)) teeth = std::min(teeth, drawable.box.min().y());
-    if (role == Role::mandible || role == Role::maxilla)
+    if (role == Role::mandible || role == Role::maxilla || is_piece(role))
       jaws = std::min(jaws, drawable.box.min().y());
   }
   return std::isfinite(teeth) ? teeth : std::isfinite(jaws) ? jaws : 0;

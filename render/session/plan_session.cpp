@@ -36,7 +36,7 @@ bool needs_replay(const PlanEdit& edit, const Plan& plan) {
 }
 
 /// Changes the edit as the user has agreed, or returns what to ask first. `operated`: by the edit.
-std::optional<Question> objection(EditedPlan& edited, Operated& operated, const Case& uncut,
+std::optional<Question> objection(EditedPlan& edited, Operated& operated, PlanStages& stages,
                                   const request::EditPlan& request) {
   if (edited.step == 0) return std::nullopt;
   PlanAction action = step_of(edited.plan, edited.step).action;
@@ -65,7 +65,7 @@ std::optional<Question> objection(EditedPlan& edited, Operated& operated, const 
     return std::nullopt;
   }
   edited.plan = with_replaced(std::move(edited.plan), edited.step, std::move(action));
-  operated = apply_plan(uncut, edited.plan);
+  operated = stages.replay(edited.plan);
   return std::nullopt;
 }
 
@@ -86,10 +86,13 @@ void PlanSession::begin(std::optional<PlanDocument> document) {
 
 void PlanSession::drop() {
   checking_.drop();
+  colliding_.drop();
   predicting_.drop();
   waiting_.clear();
   hands_.reset();
-  face_due_ = false;
+  stages_.reset();
+  collides_.reset();
+  stage_ = Stage::face;
 }
 
 void PlanSession::cancel() {
@@ -102,7 +105,16 @@ void PlanSession::cancel() {
 void PlanSession::refuse() {
   waiting_.clear();
   end_preview();
-  if (face_due_) predict(*state_.patient);
+  if (stage_ == Stage::pieces) collide(state_.patient);
+  if (stage_ == Stage::contact) predict(state_.patient);
+}
+
+std::shared_ptr<PlanStages> PlanSession::stages() {
+  if (!stages_) {
+    stages_ = std::make_shared<PlanStages>(*state_.patient, state_.settings.simulator);
+    collides_ = state_.patient;
+  }
+  return stages_;
 }
 
 HeldSegments PlanSession::held() const {
@@ -166,11 +178,10 @@ void PlanSession::open(const std::filesystem::path& file) {
 }
 
 void PlanSession::start(Change change, const request::EditPlan& request) {
+  colliding_.drop();
   predicting_.drop();
-  SimulatorSettings bones = state_.settings.simulator;
-  bones.tissue = bones.face = false;
-  checking_.start([change = std::move(change), request, bones, uncut = state_.patient->uncut,
-                   before = state_.patient->operated, folder = state_.patient->folder,
+  checking_.start([change = std::move(change), request, stages = stages(),
+                   uncut = state_.patient->uncut, before = state_.patient->operated,
                    plan = document_->plan(),
                    threads = state_.threads()](const Progress& progress) mutable {
     report(progress, "replaying the plan", 0.2);
@@ -187,13 +198,13 @@ void PlanSession::start(Change change, const request::EditPlan& request) {
     } else if (change.kind == Change::Kind::edit && needs_replay(request.edit, plan)) {
       edited = edited_plan(*uncut, plan, *before, request.edit);
     }
-    Operated operated = apply_plan(*uncut, edited.plan);
+    Operated operated = stages->replay(edited.plan);
     if (change.kind == Change::Kind::edit) {
-      if (auto asked = objection(edited, operated, *uncut, request))
+      if (auto asked = objection(edited, operated, *stages, request))
         return Checked{std::move(change), nullptr, std::move(asked)};
     }
-    Patient patient = make_session_patient(*uncut, folder, bones, progress, edited.plan);
-    return Checked{std::move(change), std::move(patient), {}};
+    Patient pieces = stages->pieces(edited.plan, std::move(operated));
+    return Checked{std::move(change), std::move(pieces), {}};
   });
 }
 
@@ -210,13 +221,22 @@ void PlanSession::accept(Change change) {
   }
 }
 
-void PlanSession::predict(const SessionPatient& bones) {
-  face_due_ = state_.settings.simulator.tissue && bones.uncut->find(Role::face);
-  if (!face_due_) return;
-  predicting_.start([uncut = bones.uncut, folder = bones.folder, plan = document_->plan(),
-                     settings = state_.settings.simulator](const Progress& progress) {
+void PlanSession::collide(Patient pieces) {
+  colliding_.start([stages = stages(), pieces = std::move(pieces), earlier = collides_,
+                    plan = document_->plan()](const Progress& progress) {
+    return stages->with_contact(*pieces, plan, *earlier, progress);
+  });
+}
+
+void PlanSession::predict(Patient bones) {
+  if (!state_.settings.simulator.tissue || !bones->uncut->find(Role::face)) {
+    stage_ = Stage::face;
+    return;
+  }
+  predicting_.start([stages = stages(), bones = std::move(bones),
+                     plan = document_->plan()](const Progress& progress) {
     report(progress, "predicting the face", 0);
-    return make_session_patient(*uncut, folder, settings, progress, plan);
+    return stages->with_face(*bones, plan, progress);
   });
 }
 
@@ -234,16 +254,24 @@ std::optional<PlanSession::Planned> PlanSession::take() {
       accept(std::move(checked->change));
       for (const std::string& note : document_->notes()) state_.front_end.say(note);
       hands_.reset();
-      predict(*checked->patient);
-      planned = Planned{std::move(checked->patient), false};
+      collide(checked->patient);
+      planned = Planned{std::move(checked->patient), Stage::pieces};
     });
     if (!planned) refuse();
+  } else if (colliding_.done()) {
+    state_.try_or_report("Cannot build the collision models", [&] {
+      auto patient = colliding_.take();
+      if (!patient) return;
+      collides_ = *patient;
+      planned = Planned{*patient, Stage::contact};
+      predict(std::move(*patient));
+    });
   } else if (predicting_.done()) {
     state_.try_or_report("Cannot predict the face", [&] {
-      if (auto patient = predicting_.take()) planned = Planned{std::move(*patient), true};
-      face_due_ = !planned;
+      if (auto patient = predicting_.take()) planned = Planned{std::move(*patient), Stage::face};
     });
   }
+  if (planned) stage_ = planned->stage;
   return planned;
 }
 

@@ -6,22 +6,26 @@
 
 #include "render/session/session_state.h"
 #include "sim/session/plan_editing.h"
+#include "sim/session/plan_stages.h"
 
 namespace condyle {
 
 /// The plan of the session's patient. An edit is replayed and checked in the background; then the
-/// bones are shown as planned, and the face as soon as it is predicted.
+/// pieces are shown as planned, collide as soon as their models are built, and have a face as soon
+/// as it is predicted.
 class PlanSession {
  public:
-  /// A patient after an edit of its plan.
+  /// What a patient after an edit of its plan consists of so far.
+  enum class Stage { pieces, contact, face };
   struct Planned {
     std::shared_ptr<const SessionPatient> patient;
-    bool predicted = false;  // with the face; its parts are then those shown
+    Stage stage = Stage::pieces;
   };
 
   explicit PlanSession(SessionState& state)
       : state_(state),
         checking_(state.retired, state.waker()),
+        colliding_(state.retired, state.waker()),
         predicting_(state.retired, state.waker()) {}
 
   /// Begins with the plan of a patient just loaded, or an empty one.
@@ -42,6 +46,7 @@ class PlanSession {
   std::optional<Planned> take();
 
   const auto& checking() const { return checking_; }
+  const auto& colliding() const { return colliding_; }
   const auto& predicting() const { return predicting_; }
   /// What the front end shows of the plan.
   PlanView view() const;
@@ -55,7 +60,7 @@ class PlanSession {
     EditedPlan edited;
     std::optional<PlanDocument> opened;
   };
-  /// The bones of a changed plan, or what the user is asked before.
+  /// The pieces of a changed plan, or what the user is asked before.
   struct Checked {
     Change change;
     Patient patient;
@@ -67,17 +72,22 @@ class PlanSession {
   void end_preview();
   void start(Change change, const request::EditPlan& request);
   void accept(Change change);
-  void predict(const SessionPatient& bones);
+  void collide(Patient pieces);
+  void predict(Patient bones);
+  /// The stages of the session's patient.
+  std::shared_ptr<PlanStages> stages();
   HeldSegments held() const;
 
   SessionState& state_;
   std::filesystem::path draft_;  // of the patient's plan before it has a file
   std::optional<PlanDocument> document_;
+  std::shared_ptr<PlanStages> stages_;  // null before the first edit
+  Patient collides_;                    // the last patient with contact, whose models are reused
   std::deque<request::EditPlan> waiting_;
   std::optional<Hands> hands_;  // before the preview
-  bool face_due_ = false;       // the patient is shown with the face of an earlier plan
+  Stage stage_ = Stage::face;   // of the session's patient
   Job<Checked> checking_;
-  Job<Patient> predicting_;
+  Job<Patient> colliding_, predicting_;
 };
 
 }  // namespace condyle

@@ -235,7 +235,7 @@ void ViewSession::show_progress() {
   };
   if (show(loader_.job(), state_.patient != nullptr) || show(plan_.checking(), true) ||
       show(moving_, false) || show(release_.job(), true) || show(saving_, false) ||
-      show(plan_.predicting(), true) || show(readying_, false))
+      show(plan_.colliding(), false) || show(plan_.predicting(), true) || show(readying_, false))
     return;
   state_.front_end.show_progress("", 1);
   busy_with_ = recording_.active() ? "recording" : "";

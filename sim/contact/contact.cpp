@@ -195,9 +195,10 @@ ContactSet ContactModel::State::with_complements(ContactSet set) const {
 }
 
 ContactModel::ContactModel(const Case& patient, const ContactSettings& settings,
-                           const ContactModel* earlier)
-    : state_(std::make_unique<State>()) {
-  State& state = *state_;
+                           const ContactModel* earlier) {
+  const auto made = std::make_shared<State>();
+  State& state = *made;
+  state_ = made;
   state.settings = settings;
   check_rules(patient, patient.pair_rules, "the case's rule for");
   check_rules(patient, settings.pair_rules, "the rule for");
@@ -219,8 +220,11 @@ ContactModel::ContactModel(const Case& patient, const ContactSettings& settings,
       std::make_unique<Slider>(patient, state, earlier ? earlier->state_->slider.get() : nullptr);
 }
 
-ContactModel::~ContactModel() = default;
-ContactModel::ContactModel(ContactModel&&) noexcept = default;
+ContactModel ContactModel::none(const BodyTree& bodies) {
+  Case bare;
+  bare.bodies = bodies;
+  return ContactModel(bare);
+}
 
 ContactSet ContactModel::find(const BodyPoses& at, const ContactSet* previous, int threads) const {
   return state_->with_complements(state_->query_all(state_->complete(at), previous, threads));

@@ -26,15 +26,15 @@ struct ContactSettings {
 
 /// The colliders of a case (one BVH per bone, arch or piece) and the pairs of different bodies,
 /// each with its rule and its overlap at rest: the baseline, valid in its neighbourhood (10 mm)
-/// only. Surfaces that were apart at rest may not touch.
+/// only. Surfaces that were apart at rest may not touch. Copies share their data.
 class ContactModel {
  public:
   /// `earlier`: of the patient before an edit; unchanged surfaces and their distance fields are
   /// reused. throws: InputError for rules that do not match the case.
   explicit ContactModel(const Case& patient, const ContactSettings& settings = {},
                         const ContactModel* earlier = nullptr);
-  ~ContactModel();
-  ContactModel(ContactModel&&) noexcept;
+  /// Of a patient whose bodies pass through each other.
+  static ContactModel none(const BodyTree& bodies);
 
   /// Contacts at the poses, warm-started from an earlier answer (may be null). Pairs run on
   /// `threads` threads; bit-identical for any number.
@@ -82,7 +82,7 @@ class ContactModel {
   struct State;
 
  private:
-  std::unique_ptr<State> state_;
+  std::shared_ptr<const State> state_;
 };
 
 }  // namespace condyle

@@ -8,8 +8,9 @@
 
 #include "engine/core/error.h"
 #include "engine/core/hash.h"
+#include "sim/motion/closed_position.h"
 #include "sim/muscles/default_muscles.h"
-#include "sim/operated/graft_way.h"
+#include "sim/operated/graft_path.h"
 #include "sim/plan/plan_file.h"
 #include "sim/prediction/prediction.h"
 #include "sim/tissue/planned_rest.h"
@@ -34,17 +35,6 @@ ScenePlan identity_of(const Plan& plan) {
           .hash = fmt::format("{:016x}", hash_bytes(text.data(), text.size(), hash_start))};
 }
 
-/// The patient with muscles that a plan can move: default ones where the case has none.
-Case with_muscles(Case patient) {
-  if (!patient.muscles.empty()) return patient;
-  try {
-    patient.muscles = muscles_of(patient);
-  } catch (const InputError&) {
-    // Landmarks are missing; a muscle-driven motion reports which.
-  }
-  return patient;
-}
-
 std::vector<MuscleLengthChange> changed_lengths(const Case& before, const Case& after) {
   constexpr double least_mm = 0.05;
   const auto length = [](const Muscle& muscle) {
@@ -56,17 +46,6 @@ std::vector<MuscleLengthChange> changed_lengths(const Case& before, const Case& 
     if (std::abs(is - was) >= least_mm) changes.push_back({before.muscles[i].name, was, is});
   }
   return changes;
-}
-
-/// The patient at the planned positions. `prepared`: of operate(), the uncut one with its muscles.
-OperatedPatient at_planned_rest(const Case& prepared, const Plan& plan, Operated operated) {
-  OperatedPatient result{operated_case(operated), identity_of(plan), std::move(operated)};
-  result.patient.notes = result.operated.patient.notes;
-  result.plan.notes = result.operated.notes;
-  for (const std::string& problem : result.operated.problems) result.plan.notes.push_back(problem);
-  result.plan.muscles = changed_lengths(prepared, result.patient);
-  result.plan.seats = graft_seats(result.operated, plan);
-  return result;
 }
 
 TriMesh displaced(TriMesh mesh, const std::vector<Eigen::Vector3f>& vertices) {
@@ -82,47 +61,79 @@ std::shared_ptr<const TissueModel> planned_tissue(const Prediction& prediction, 
 
 }  // namespace
 
-OperatedPatient operate(const Case& patient, const Plan& plan) {
+Case with_muscles(Case patient) {
+  if (!patient.muscles.empty()) return patient;
+  try {
+    patient.muscles = muscles_of(patient);
+  } catch (const InputError&) {
+    // Landmarks are missing; a muscle-driven motion reports which.
+  }
+  return patient;
+}
+
+OperatedPatient operate(const Case& uncut, const Plan& plan, Operated operated) {
   if (!changes_patient(plan)) {
-    OperatedPatient same{patient, identity_of(plan), apply_plan(patient, plan), false};
+    OperatedPatient same{uncut, identity_of(plan), std::move(operated), false};
     same.plan.notes = same.operated.notes;
     return same;
   }
-  const Case prepared = with_muscles(patient);
-  return at_planned_rest(prepared, plan, apply_plan(prepared, plan));
+  OperatedPatient result{operated_case(operated), identity_of(plan), std::move(operated)};
+  result.patient.notes = result.operated.patient.notes;
+  result.plan.notes = result.operated.notes;
+  for (const std::string& problem : result.operated.problems) result.plan.notes.push_back(problem);
+  result.plan.muscles = changed_lengths(uncut, result.patient);
+  result.plan.seats = graft_seats(result.operated, plan);
+  return result;
+}
+
+OperatedPatient operate(const Case& patient, const Plan& plan) {
+  const Case uncut = changes_patient(plan) ? with_muscles(patient) : patient;
+  return operate(uncut, plan, apply_plan(uncut, plan));
+}
+
+Scene scene_without_contact(const OperatedPatient& after) {
+  Case patient = after.patient;
+  locate_closed_position(patient);
+  ContactModel contacts = ContactModel::none(patient.bodies);
+  return {std::move(patient), std::move(contacts), nullptr, after.plan};
+}
+
+Scene scene_with_contact(const OperatedPatient& after, const SimulatorSettings& settings,
+                         const ContactModel* earlier, const Progress& progress) {
+  report(progress, "building the collision models", 0);
+  Case patient = after.patient;
+  locate_closed_position(patient);
+  ContactModel contacts(patient, settings.contact, earlier);
+  return {std::move(patient), std::move(contacts), nullptr, after.plan};
+}
+
+Scene scene_with_face(const Scene& bones, const Prediction& prediction,
+                      const SimulatorSettings& settings) {
+  Scene scene = bones;
+  for (Part& part : scene.patient.parts)
+    if (part.role == Role::face) part.mesh = displaced(prediction.face, prediction.after);
+  if (settings.tissue) scene.tissue = planned_tissue(prediction, settings.threads);
+  return scene;
 }
 
 Scene make_operated_scene(Case patient, const Plan& plan, const SimulatorSettings& settings,
                           const Progress& progress) {
-  const bool predicts =
-      changes_patient(plan) && patient.find(Role::face) && (settings.tissue || settings.face);
-  std::optional<Prediction> prediction;
-  OperatedPatient after;
-  if (predicts) {
-    const Case prepared = with_muscles(std::move(patient));
-    prediction = predict(
-        prepared, plan,
-        {.tissue = settings.tissue_model, .threads = settings.threads, .stripping = {}}, progress);
-    after = at_planned_rest(prepared, plan, prediction->operated);
-    for (Part& part : after.patient.parts)
-      if (part.role == Role::face) part.mesh = displaced(prediction->face, prediction->after);
-  } else {
-    after = operate(patient, plan);
-  }
-  if (!after.changed) {
+  if (!changes_patient(plan)) {
+    OperatedPatient same = operate(patient, plan);
     Scene scene = make_scene(std::move(patient), settings, progress);
-    scene.plan = std::move(after.plan);
+    scene.plan = std::move(same.plan);
     return scene;
   }
-  SimulatorSettings bones = settings;
-  bones.tissue = false;
-  Scene scene = make_scene(std::move(after.patient), bones, progress);
-  scene.plan = std::move(after.plan);
-  if (prediction && settings.tissue) {
-    report(progress, "solving the tissue along the opening", 0.9);
-    scene.tissue = planned_tissue(*prediction, settings.threads);
-  }
-  return scene;
+  if (!patient.find(Role::face) || !(settings.tissue || settings.face))
+    return scene_with_contact(operate(patient, plan), settings, nullptr, progress);
+  const Case uncut = with_muscles(std::move(patient));
+  const Prediction prediction = predict(
+      uncut, plan, {.tissue = settings.tissue_model, .threads = settings.threads, .stripping = {}},
+      progress);
+  const Scene bones =
+      scene_with_contact(operate(uncut, plan, prediction.operated), settings, nullptr, progress);
+  if (settings.tissue) report(progress, "solving the tissue along the opening", 0.9);
+  return scene_with_face(bones, prediction, settings);
 }
 
 Scene make_scene(Case patient, const std::optional<Plan>& plan, const SimulatorSettings& settings,

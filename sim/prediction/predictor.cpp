@@ -53,8 +53,9 @@ double change_of_face(const Prediction& prediction, TissueState state, TissueWar
 
 }  // namespace
 
-Predictor::Predictor(const Case& patient, PredictionSettings settings)
-    : patient_(patient), uncut_(patient), settings_(std::move(settings)) {
+Predictor::Predictor(const Case& patient, PredictionSettings settings,
+                     std::shared_ptr<const TissueModel> whole)
+    : patient_(patient), uncut_(patient), settings_(std::move(settings)), whole_(std::move(whole)) {
   if (!patient.find(Role::face))
     throw InputError(
         "the patient has no face: its position after the operation cannot be "
@@ -63,11 +64,12 @@ Predictor::Predictor(const Case& patient, PredictionSettings settings)
 }
 
 void Predictor::build_whole(const Progress& progress) {
-  if (whole_) return;
-  TissueSettings of_tissue = settings_.tissue;
-  of_tissue.threads = settings_.threads;
-  whole_ = build_tissue(uncut_, of_tissue, progress);
-  deform_face(*whole_, rest_tissue(*whole_), rest_face_, settings_.threads);
+  if (!whole_) {
+    TissueSettings of_tissue = settings_.tissue;
+    of_tissue.threads = settings_.threads;
+    whole_ = build_tissue(uncut_, of_tissue, progress);
+  }
+  if (rest_face_.empty()) deform_face(*whole_, rest_tissue(*whole_), rest_face_, settings_.threads);
 }
 
 void Predictor::begin_at_rest() {

@@ -23,8 +23,10 @@ struct MovedFace {
 /// follows a segment from the last face.
 class Predictor {
  public:
+  /// `whole`: the tissue of the uncut patient where it is built already, else null.
   /// throws: InputError for a case without a face.
-  explicit Predictor(const Case& patient, PredictionSettings settings = {});
+  explicit Predictor(const Case& patient, PredictionSettings settings = {},
+                     std::shared_ptr<const TissueModel> whole = nullptr);
 
   /// Replays a plan and makes its tissue, the first time also that of the uncut patient; after a
   /// plan with the same cuts it replays the moves alone.

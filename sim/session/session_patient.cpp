@@ -31,14 +31,23 @@ std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
       return make_scene(patient, plan, settings, progress);
     }
   };
-  auto made = std::make_shared<SessionPatient>(
-      SessionPatient{std::move(folder), build(), {}, {}, std::move(trouble), {}, {}, {}});
-  made->operated =
+  Scene scene = build();
+  auto operated =
       std::make_shared<const Operated>(apply_plan(patient, plan ? *plan : empty_plan(patient)));
-  made->overlaps = segment_overlaps(*made->operated);
-  made->uncut = std::make_shared<const Case>(std::move(patient));
+  std::vector<SegmentOverlap> overlaps = segment_overlaps(*operated);
+  return completed_patient({.folder = std::move(folder),
+                            .scene = std::move(scene),
+                            .trouble = std::move(trouble),
+                            .uncut = std::make_shared<const Case>(std::move(patient)),
+                            .operated = std::move(operated),
+                            .overlaps = std::move(overlaps)},
+                           settings.threads);
+}
+
+std::shared_ptr<const SessionPatient> completed_patient(SessionPatient patient, int threads) {
+  auto made = std::make_shared<SessionPatient>(std::move(patient));
   made->at_rest = rest_frame(made->scene);
-  carry_face(made->scene, made->at_rest, settings.threads);
+  carry_face(made->scene, made->at_rest, threads);
   try {
     made->muscles = muscles_of(made->scene.patient);
   } catch (const InputError&) {

@@ -17,12 +17,12 @@ namespace condyle {
 struct SessionPatient {
   std::filesystem::path folder;  // empty: not stored in files
   Scene scene;
-  FrameState at_rest;           // with its face
-  std::vector<Muscle> muscles;  // the case's, or default ones; none where landmarks are missing
-  std::string trouble;          // what had to be omitted, as a sentence
-  std::shared_ptr<const Case> uncut;         // before the operation of the plan
-  std::shared_ptr<const Operated> operated;  // by the plan, which may be empty
-  std::vector<SegmentOverlap> overlaps;      // at the planned positions
+  FrameState at_rest = {};           // with its face
+  std::vector<Muscle> muscles = {};  // the case's, or default ones; none without their landmarks
+  std::string trouble = {};          // what had to be omitted, as a sentence
+  std::shared_ptr<const Case> uncut = nullptr;         // before the operation of the plan
+  std::shared_ptr<const Operated> operated = nullptr;  // by the plan, which may be empty
+  std::vector<SegmentOverlap> overlaps = {};           // at the planned positions
 };
 
 /// A plan without steps for a case.
@@ -36,5 +36,8 @@ std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
                                                            SimulatorSettings settings,
                                                            const Progress& progress,
                                                            const std::optional<Plan>& plan = {});
+
+/// The patient with what follows from its scene: its state at rest and its muscles.
+std::shared_ptr<const SessionPatient> completed_patient(SessionPatient patient, int threads = 2);
 
 }  // namespace condyle

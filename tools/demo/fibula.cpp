@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "render/plan/picture_grid.h"
-#include "sim/operated/graft_way.h"
+#include "sim/operated/graft_path.h"
 #include "sim/operated/operated_scene.h"
 #include "sim/operation/graft_steps.h"
 #include "sim/phantom/phantom.h"
@@ -52,7 +52,7 @@ OperationOutput::Table saw_table(const GraftLayout& graft) {
   return table;
 }
 
-/// Pictures of a motion at its start, half way and in its middle.
+/// Pictures of a motion at its start, halfway and in its middle.
 Image path_picture(const PlayedMotion& played, const std::string& title) {
   PictureGrid grid{title, {{}}};
   const std::size_t middle = played.pictures.size() / 2;
@@ -84,16 +84,16 @@ int run_fibula(const DemoOptions& options, const CommonOptions& common) {
   settings.tissue = false;
   settings.step_s = 1.0 / 60;
   const Scene scene = make_operated_scene(patient, plan, settings, bar.callback());
-  const Motion way = way_in_motion("path:fibula", scene, 0, common.threads);
-  output.add_section("Insertion path", way.notes.front());
+  const Motion path = insertion_path_motion("path:fibula", scene, 0, common.threads);
+  output.add_section("Insertion path", path.notes.front());
   output.draw([&] {
     PlaySettings play;
     play.frames = 25;
     play.skin_opacity = 0;
-    const PlayedMotion played = play_motion(scene, way, settings, play, true, bar.callback());
+    const PlayedMotion played = play_motion(scene, path, settings, play, true, bar.callback());
     output.add_picture("insertion_path.png",
                        path_picture(played, "The graft leaves its seat along the insertion path"),
-                       "The graft leaves its seat along its way.");
+                       "The graft leaves its seat along its path.");
     const Motion opening = make_motion("open; close", scene.patient, scene.contacts);
     const PlayedMotion opened = play_motion(scene, opening, settings, play, true, bar.callback());
     const std::size_t widest = opened.widest();

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "engine/mesh/topology.h"
-#include "sim/operated/graft_way.h"
+#include "sim/operated/graft_path.h"
 #include "sim/operation/graft_steps.h"
 
 namespace condyle {
@@ -34,34 +34,35 @@ Json face_json(const GraftFaceReport& face) {
           {"level", level}};
 }
 
-Json way_json(const WayIn& way) {
-  Json json = {{"state", state_name(way.state)},
-               {"direction", {way.direction.x(), way.direction.y(), way.direction.z()}},
-               {"directions_examined", way.directions}};
-  const Json at = {way.margin_at.x(), way.margin_at.y(), way.margin_at.z()};
-  if (way.state == WayIn::State::blocked) {
-    json["blocked_after_mm"] = way.blocked_after_mm;
-    json["blocked_by"] = way.blocked_by;
+Json path_json(const InsertionPath& path) {
+  Json json = {{"state", state_name(path.state)},
+               {"direction", {path.direction.x(), path.direction.y(), path.direction.z()}},
+               {"directions_examined", path.directions}};
+  const Json at = {path.margin_at.x(), path.margin_at.y(), path.margin_at.z()};
+  if (path.state == InsertionPath::State::blocked) {
+    json["blocked_after_mm"] = path.blocked_after_mm;
+    json["blocked_by"] = path.blocked_by;
     json["blocked_at_mm"] = at;
     return json;
   }
-  json["length_mm"] = way.length_mm;
-  json["margin_mm"] = way.margin_mm;
-  if (way.margin_part.empty()) return json;
-  json["margin_part"] = way.margin_part;
-  json["margin_after_mm"] = way.margin_after_mm;
+  json["length_mm"] = path.length_mm;
+  json["margin_mm"] = path.margin_mm;
+  if (path.margin_part.empty()) return json;
+  json["margin_part"] = path.margin_part;
+  json["margin_after_mm"] = path.margin_after_mm;
   json["margin_at_mm"] = at;
   return json;
 }
 
 /// The insertion path of each graft, in their order.
-std::vector<WayIn> ways_in(const std::vector<Seat>& seats, const Operated& operated) {
+std::vector<InsertionPath> insertion_paths(const std::vector<Seat>& seats,
+                                           const Operated& operated) {
   constexpr int threads = 2;  // the result is the same for any number
-  std::vector<WayIn> ways;
-  if (seats.empty()) return ways;
+  std::vector<InsertionPath> paths;
+  if (seats.empty()) return paths;
   const Case after = operated_case(operated);
-  for (const Seat& seat : seats) ways.push_back(find_way_in(after, seat, threads));
-  return ways;
+  for (const Seat& seat : seats) paths.push_back(find_insertion_path(after, seat, threads));
+  return paths;
 }
 
 Json graft_json(const Operated& operated, const GraftLayout& graft) {
@@ -87,11 +88,12 @@ Json graft_json(const Operated& operated, const GraftLayout& graft) {
   return json;
 }
 
-std::string graft_text(const Operated& operated, const GraftLayout& graft, const std::string& way) {
+std::string graft_text(const Operated& operated, const GraftLayout& graft,
+                       const std::string& path) {
   std::string text = fmt::format("graft {}\n", graft.step.name);
   for (const std::string& sentence : graft_sentences(operated, graft))
     text += "  " + sentence + "\n";
-  return text + "  " + way + "\n";
+  return text + "  " + path + "\n";
 }
 
 }  // namespace
@@ -104,10 +106,10 @@ void add_graft_report(Json& report, const Plan& plan, const Operated& operated) 
                                     {"volume_mm3", resection.volume_mm3},
                                     {"teeth", resection.teeth}});
   report["grafts"] = Json::array();
-  const auto ways = ways_in(graft_seats(operated, plan), operated);
+  const auto paths = insertion_paths(graft_seats(operated, plan), operated);
   for (std::size_t i = 0; i < operated.grafts.size(); ++i) {
     report["grafts"].push_back(graft_json(operated, operated.grafts[i]));
-    report["grafts"].back()["way_in"] = way_json(ways[i]);
+    report["grafts"].back()["insertion_path"] = path_json(paths[i]);
   }
 }
 
@@ -128,8 +130,8 @@ std::string graft_report_text(const Plan& plan, const Operated& operated, const 
   const auto seats = graft_seats(operated, plan);
   for (std::size_t i = 0; i < seats.size(); ++i)
     if (seats[i].name == name) {
-      const std::vector<WayIn> way = ways_in({seats[i]}, operated);
-      return graft_text(operated, operated.grafts[i], way_in_text(way.front(), seats[i]));
+      const std::vector<InsertionPath> path = insertion_paths({seats[i]}, operated);
+      return graft_text(operated, operated.grafts[i], insertion_path_text(path.front(), seats[i]));
     }
   return "";
 }

@@ -31,7 +31,8 @@ Landmark landmark_at(const std::string& name, const Vector3d& at_rest,
   double nearest = std::numeric_limits<double>::infinity();
   const bool of_condyle = name.ends_with("condyle") || name.ends_with("condylion");
   for (std::size_t i = 0; of_condyle && i < parts.size(); ++i)
-    if (parts[i].role == Role::mandible) look(parts, i, at_rest, nearest, landmark);
+    if (parts[i].role == Role::mandible || is_piece(parts[i].role))
+      look(parts, i, at_rest, nearest, landmark);
   if (nearest < std::numeric_limits<double>::infinity()) return landmark;
   for (std::size_t i = 0; i < parts.size(); ++i) look(parts, i, at_rest, nearest, landmark);
   return landmark;

@@ -1,4 +1,4 @@
-#include "sim/contact/way_in.h"
+#include "sim/contact/insertion_path.h"
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ constexpr float farthest_mm = 4;            // distances beyond are not measured
 constexpr double seat_mm = 2;               // of the path, where the faces are near by intention
 constexpr double blocking_depth_mm = 0.05;  // of samples in other bone
 
-/// The nearest of all else to the graft at one place of its way.
+/// The nearest of all else to the graft at one place of its path.
 struct Clearance {
   double mm = farthest_mm;
   const std::string* part = nullptr;
@@ -53,7 +53,7 @@ class Surroundings {
     }
     for (Other& other : others_)  // what the graft cannot reach
       std::erase_if(other.corners, [&](const Vector3d& p) {
-        return !box_.contains(p, way_length_mm + farthest_mm);
+        return !box_.contains(p, path_length_mm + farthest_mm);
       });
   }
 
@@ -147,41 +147,44 @@ std::vector<Vector3d> directions_of(const Seat& seat) {
   return directions;
 }
 
-WayIn examine(const Surroundings& around, const Vector3d& direction) {
+InsertionPath examine(const Surroundings& around, const Vector3d& direction) {
   constexpr double fine_mm = 0.25, fine_part_mm = 10, coarse_mm = 1;
-  WayIn way;
-  way.direction = direction;
-  way.margin_mm = farthest_mm;
+  InsertionPath path;
+  path.direction = direction;
+  path.margin_mm = farthest_mm;
   const double seated = std::min(around.at(Vector3d::Zero()).mm, 0.);
-  for (double s = fine_mm; s <= way_length_mm; s += s < fine_part_mm ? fine_mm : coarse_mm) {
+  for (double s = fine_mm; s <= path_length_mm; s += s < fine_part_mm ? fine_mm : coarse_mm) {
     const Clearance found = around.at(s * direction);
     if (found.mm < seated - blocking_depth_mm) {
-      way.blocked_by = *found.part;
-      way.margin_part.clear();
-      way.margin_mm = way.margin_after_mm = 0;
-      way.margin_at = found.at;
-      return way;
+      path.blocked_by = *found.part;
+      path.margin_part.clear();
+      path.margin_mm = path.margin_after_mm = 0;
+      path.margin_at = found.at;
+      return path;
     }
-    way.blocked_after_mm = way.length_mm = s;
-    if (s < seat_mm || found.mm >= way.margin_mm) continue;
-    way.margin_mm = found.mm;
-    way.margin_after_mm = s;
-    way.margin_at = found.at;
-    way.margin_part = *found.part;
+    path.blocked_after_mm = path.length_mm = s;
+    if (s < seat_mm || found.mm >= path.margin_mm) continue;
+    path.margin_mm = found.mm;
+    path.margin_after_mm = s;
+    path.margin_at = found.at;
+    path.margin_part = *found.part;
   }
-  way.state = way.margin_mm < tight_margin_mm ? WayIn::State::tight : WayIn::State::free;
-  return way;
+  path.state =
+      path.margin_mm < tight_margin_mm ? InsertionPath::State::tight : InsertionPath::State::free;
+  return path;
 }
 
-/// Whether the first way is the better one; of equal ones the earlier stays.
-bool is_better(const WayIn& a, const WayIn& b) {
-  const auto rank = [](const WayIn& way) {
-    return way.state == WayIn::State::free ? 2 : way.state == WayIn::State::tight ? 1 : 0;
+/// Whether the first path is the better one; of equal ones the earlier stays.
+bool is_better(const InsertionPath& a, const InsertionPath& b) {
+  const auto rank = [](const InsertionPath& path) {
+    return path.state == InsertionPath::State::free    ? 2
+           : path.state == InsertionPath::State::tight ? 1
+                                                       : 0;
   };
   if (rank(a) != rank(b)) return rank(a) > rank(b);
   // Beyond half a millimetre more distance is no gain: the approach comes first in the list.
   constexpr double ample_mm = 0.5;
-  return a.state == WayIn::State::blocked
+  return a.state == InsertionPath::State::blocked
              ? a.blocked_after_mm > b.blocked_after_mm
              : std::min(a.margin_mm, ample_mm) > std::min(b.margin_mm, ample_mm) + 1e-6;
 }
@@ -202,7 +205,7 @@ std::string direction_words(const Vector3d& d) {
 
 }  // namespace
 
-WayIn find_way_in(const Case& patient, const Seat& seat, int threads) {
+InsertionPath find_insertion_path(const Case& patient, const Seat& seat, int threads) {
   std::vector<BodyId> graft;
   for (const std::string& name : seat.bodies) {
     const auto body = patient.bodies.find(name);
@@ -211,34 +214,37 @@ WayIn find_way_in(const Case& patient, const Seat& seat, int threads) {
   }
   const Surroundings around(patient, graft);
   const auto directions = directions_of(seat);
-  std::vector<WayIn> ways(directions.size());
+  std::vector<InsertionPath> paths(directions.size());
   parallel_for(directions.size(), threads,
-               [&](std::size_t i) { ways[i] = examine(around, directions[i]); });
-  WayIn best;
-  for (std::size_t i = 0; i < ways.size(); ++i)
-    if (i == 0 || is_better(ways[i], best)) best = ways[i];
+               [&](std::size_t i) { paths[i] = examine(around, directions[i]); });
+  InsertionPath best;
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    if (i == 0 || is_better(paths[i], best)) best = paths[i];
   best.directions = static_cast<int>(directions.size());
   return best;
 }
 
-std::string state_name(WayIn::State state) {
-  return state == WayIn::State::free ? "free" : state == WayIn::State::tight ? "tight" : "blocked";
+std::string state_name(InsertionPath::State state) {
+  return state == InsertionPath::State::free    ? "free"
+         : state == InsertionPath::State::tight ? "tight"
+                                                : "blocked";
 }
 
-std::string way_in_text(const WayIn& way, const Seat& seat) {
-  const std::string where = fmt::format("({:.1f}, {:.1f}, {:.1f})", way.margin_at.x(),
-                                        way.margin_at.y(), way.margin_at.z());
-  if (way.state == WayIn::State::blocked)
+std::string insertion_path_text(const InsertionPath& path, const Seat& seat) {
+  const std::string where = fmt::format("({:.1f}, {:.1f}, {:.1f})", path.margin_at.x(),
+                                        path.margin_at.y(), path.margin_at.z());
+  if (path.state == InsertionPath::State::blocked)
     return fmt::format(
         "insertion path of {}: blocked; of {} straight directions the best withdraws the graft by "
         "{:.2f} mm, where it meets {} at {}",
-        seat.name, way.directions, way.blocked_after_mm, way.blocked_by, where);
-  std::string text = fmt::format("insertion path of {}: {}, straight (out of its seat {})",
-                                 seat.name, state_name(way.state), direction_words(way.direction));
-  if (way.margin_part.empty())
+        seat.name, path.directions, path.blocked_after_mm, path.blocked_by, where);
+  std::string text =
+      fmt::format("insertion path of {}: {}, straight (out of its seat {})", seat.name,
+                  state_name(path.state), direction_words(path.direction));
+  if (path.margin_part.empty())
     return text + fmt::format("; more than {} mm from all else", static_cast<int>(farthest_mm));
   return text + fmt::format("; least distance {:.2f} mm, {:.1f} mm from the seat, to {} at {}",
-                            way.margin_mm, way.margin_after_mm, way.margin_part, where);
+                            path.margin_mm, path.margin_after_mm, path.margin_part, where);
 }
 
 }  // namespace condyle

@@ -1,5 +1,5 @@
-// The straight way of a block into a gap between two walls.
-#include "sim/contact/way_in.h"
+// The straight path of a block into a gap between two walls.
+#include "sim/contact/insertion_path.h"
 
 #include <gtest/gtest.h>
 
@@ -36,24 +36,24 @@ Seat seat() {
           .approach = {0.3, 0, -1}};
 }
 
-TEST(WayIn, leads_along_parallel_walls_and_is_free_where_they_are_far) {
-  const WayIn way = find_way_in(walled_block(0.8), seat());
-  EXPECT_EQ(way.state, WayIn::State::free);
-  EXPECT_NEAR(way.direction.x(), 0, 1e-9);  // the approach without its part into the wall
-  EXPECT_LT(way.direction.z(), -0.99);
-  EXPECT_NEAR(way.margin_mm, 0.8, 1e-3);
-  EXPECT_NEAR(way.length_mm, way_length_mm, 1);
+TEST(InsertionPath, leads_along_parallel_walls_and_is_free_where_they_are_far) {
+  const InsertionPath path = find_insertion_path(walled_block(0.8), seat());
+  EXPECT_EQ(path.state, InsertionPath::State::free);
+  EXPECT_NEAR(path.direction.x(), 0, 1e-9);  // the approach without its part into the wall
+  EXPECT_LT(path.direction.z(), -0.99);
+  EXPECT_NEAR(path.margin_mm, 0.8, 1e-3);
+  EXPECT_NEAR(path.length_mm, path_length_mm, 1);
 }
 
-TEST(WayIn, is_tight_where_the_walls_are_near) {
-  const WayIn way = find_way_in(walled_block(0.2), seat());
-  EXPECT_EQ(way.state, WayIn::State::tight);
-  EXPECT_NEAR(way.margin_mm, 0.2, 1e-3);
-  EXPECT_TRUE(way.margin_part == "mandible" || way.margin_part == "wall");
-  EXPECT_NE(way_in_text(way, seat()).find("tight"), std::string::npos);
+TEST(InsertionPath, is_tight_where_the_walls_are_near) {
+  const InsertionPath path = find_insertion_path(walled_block(0.2), seat());
+  EXPECT_EQ(path.state, InsertionPath::State::tight);
+  EXPECT_NEAR(path.margin_mm, 0.2, 1e-3);
+  EXPECT_TRUE(path.margin_part == "mandible" || path.margin_part == "wall");
+  EXPECT_NE(insertion_path_text(path, seat()).find("tight"), std::string::npos);
 }
 
-TEST(WayIn, is_blocked_by_what_closes_the_gap_after_the_distance_to_it) {
+TEST(InsertionPath, is_blocked_by_what_closes_the_gap_after_the_distance_to_it) {
   Case patient = walled_block(0.5);
   // A sleeve around the block, open nowhere.
   patient.add_piece({"floor", Role::segment, box({-60, -60, -30}, {60, 60, -13}), {}},
@@ -61,23 +61,24 @@ TEST(WayIn, is_blocked_by_what_closes_the_gap_after_the_distance_to_it) {
   patient.add_piece({"front", Role::segment, box({-60, -60, -12}, {60, -12, 29}), {}},
                     mandible_body);
   patient.add_piece({"back", Role::segment, box({-60, 12, -12}, {60, 60, 29}), {}}, mandible_body);
-  const WayIn way = find_way_in(patient, seat());
-  EXPECT_EQ(way.state, WayIn::State::blocked);
-  EXPECT_FALSE(way.blocked_by.empty());
-  EXPECT_GT(way.blocked_after_mm, 3.9);
-  EXPECT_LT(way.blocked_after_mm, 9);
-  EXPECT_EQ(way.margin_part, "");
+  const InsertionPath path = find_insertion_path(patient, seat());
+  EXPECT_EQ(path.state, InsertionPath::State::blocked);
+  EXPECT_FALSE(path.blocked_by.empty());
+  EXPECT_GT(path.blocked_after_mm, 3.9);
+  EXPECT_LT(path.blocked_after_mm, 9);
+  EXPECT_EQ(path.margin_part, "");
 }
 
-TEST(WayIn, is_the_same_for_any_number_of_threads) {
+TEST(InsertionPath, is_the_same_for_any_number_of_threads) {
   const Case patient = walled_block(0.4);
-  const WayIn one = find_way_in(patient, seat(), 1), four = find_way_in(patient, seat(), 4);
+  const InsertionPath one = find_insertion_path(patient, seat(), 1),
+                      four = find_insertion_path(patient, seat(), 4);
   EXPECT_EQ(one.direction, four.direction);
   EXPECT_EQ(one.margin_mm, four.margin_mm);
   EXPECT_EQ(one.margin_at, four.margin_at);
   Seat missing = seat();
   missing.bodies = {"graft"};
-  EXPECT_THROW(find_way_in(patient, missing), InputError);
+  EXPECT_THROW(find_insertion_path(patient, missing), InputError);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "sim/operated/graft_way.h"
+#include "sim/operated/graft_path.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::string_view way_prefix = "path:";
+constexpr std::string_view path_prefix = "path:";
 
 const Seat& seat_named(const Scene& scene, const std::string& name) {
   if (!scene.plan || scene.plan->seats.empty())
@@ -57,27 +57,29 @@ std::vector<Seat> graft_seats(const Operated& operated, const Plan& plan) {
   return seats;
 }
 
-bool is_way_in(const std::string& spec) { return spec.starts_with(way_prefix); }
+bool is_insertion_path(const std::string& spec) { return spec.starts_with(path_prefix); }
 
-Motion way_in_motion(const std::string& spec, const Scene& scene, double duration_s, int threads) {
-  const Seat& seat = seat_named(scene, spec.substr(way_prefix.size()));
-  const WayIn way = find_way_in(scene.patient, seat, threads);
+Motion insertion_path_motion(const std::string& spec, const Scene& scene, double duration_s,
+                             int threads) {
+  const Seat& seat = seat_named(scene, spec.substr(path_prefix.size()));
+  const InsertionPath path = find_insertion_path(scene.patient, seat, threads);
   constexpr double default_s = 6;
   Motion motion;
   motion.name = "insertion path of " + seat.name;
   motion.duration_s = duration_s > 0 ? duration_s : default_s;
   motion.target = [](double) { return Pose{}; };
   const double half_s = 0.5 * motion.duration_s,
-               far_mm = way.state == WayIn::State::blocked ? way.blocked_after_mm : way.length_mm;
+               far_mm = path.state == InsertionPath::State::blocked ? path.blocked_after_mm
+                                                                    : path.length_mm;
   const BodyId first = *scene.patient.bodies.find(seat.bodies.front());
   motion.pieces = [=, count = scene.patient.bodies.size()](double time_s) {
     const double s = 1 - std::min(std::abs(time_s - half_s) / half_s, 1.);
     std::vector<Pose> X_PB(static_cast<std::size_t>(count));
-    X_PB[index_of(first)].t = s * far_mm * way.direction;
+    X_PB[index_of(first)].t = s * far_mm * path.direction;
     return X_PB;
   };
   motion.phases = {{"out of the seat", 0, half_s}, {"into the seat", half_s, motion.duration_s}};
-  motion.notes.push_back(way_in_text(way, seat));
+  motion.notes.push_back(insertion_path_text(path, seat));
   return motion;
 }
 
