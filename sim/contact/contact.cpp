@@ -18,6 +18,7 @@ namespace {
 
 constexpr int build_threads = 2;
 constexpr double deep_start_mm = 0.5;
+constexpr double least_noted_mm = 0.005;
 constexpr double mixed_bones_mm = 3;  // crowns of one patient overlap by up to 1.2 mm
 
 bool is_finite(const Pose& X) {
@@ -81,7 +82,7 @@ std::string deep_start_note(const ColliderPair& pair, const Case& patient, doubl
 /// Overlap at rest becomes the pairs' baseline; a complement monitors the surface outside it.
 void find_baseline(ContactModel::State& state, const Case& patient) {
   const BodyPoses at_rest = completed(state.bodies, {});
-  state.rest = state.query_all(at_rest, nullptr, 1);
+  state.rest = state.query_all(at_rest, nullptr, build_threads);
   state.mixed.assign(state.bodies.bodies().size(), false);
   for (std::size_t i = 0; i < state.pairs.size(); ++i) {
     ColliderPair& pair = state.pairs[i];
@@ -93,16 +94,18 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
     if (!rest.touching) continue;
     const TriMesh& mesh = patient.parts[static_cast<std::size_t>(rest.part_b)].mesh;
     const bool mixed = state.in_joint(pair) && rest.depth_mm > mixed_bones_mm;
-    state.notes.push_back(fmt::format(
-        "{} and {} overlap by {:.2f} mm at rest{}: taken as the baseline, only deeper contact "
-        "counts",
-        patient.parts[static_cast<std::size_t>(rest.part_a)].name,
-        patient.parts[static_cast<std::size_t>(rest.part_b)].name, rest.depth_mm,
-        mixed ? ", more than jaws of one patient do (check that both are of the same patient, unit "
+    if (rest.depth_mm >= least_noted_mm)
+      state.notes.push_back(fmt::format(
+          "{} and {} overlap by {:.2f} mm at rest{}: taken as the baseline, only deeper contact "
+          "counts",
+          patient.parts[static_cast<std::size_t>(rest.part_a)].name,
+          patient.parts[static_cast<std::size_t>(rest.part_b)].name, rest.depth_mm,
+          mixed
+              ? ", more than jaws of one patient do (check that both are of the same patient, unit "
                 "and frame; until then the jaw stops where they meet and does not slide)"
               : ""));
     if (mixed) state.mixed[index_of(pair.b->body)] = true;
-    if (!state.in_joint(pair) && rest.depth_mm > deep_start_mm)
+    if (state.settings.advise_exits && !state.in_joint(pair) && rest.depth_mm > deep_start_mm)
       state.notes.push_back(deep_start_note(pair, patient, rest.depth_mm));
     const TriMesh away = away_from_overlap(mesh, overlap_at_rest(pair));
     if (away.empty()) continue;
@@ -124,7 +127,7 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
     for (const auto& collider : state.colliders) surfaces.push_back(&collider->surface);
     state.broadphase.emplace(surfaces);
   }
-  state.rest = state.query_all(at_rest, &state.rest, 1);
+  state.rest = state.query_all(at_rest, &state.rest, build_threads);
 }
 
 }  // namespace

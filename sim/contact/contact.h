@@ -22,6 +22,9 @@ struct ContactSettings {
   // For pairs that no joint connects and that are farther apart than this, only a lower bound of
   // the distance is computed (PairContact::distance_is_bound); infinite: every distance is exact.
   double far_mm = 30;
+  // Note how a part that starts deep inside another could be moved clear of it: takes seconds, and
+  // is no advice for segments of a plan.
+  bool advise_exits = true;
 };
 
 /// The colliders of a case (one BVH per bone, arch or piece) and the pairs of different bodies,

@@ -103,7 +103,9 @@ Scene scene_with_contact(const OperatedPatient& after, const SimulatorSettings& 
   report(progress, "building the collision models", 0);
   Case patient = after.patient;
   locate_closed_position(patient);
-  ContactModel contacts(patient, settings.contact, earlier);
+  ContactSettings of_contact = settings.contact;
+  of_contact.advise_exits = false;
+  ContactModel contacts(patient, of_contact, earlier);
   return {std::move(patient), std::move(contacts), nullptr, after.plan};
 }
 
