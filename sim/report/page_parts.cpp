@@ -1,5 +1,6 @@
 #include "sim/report/page_parts.h"
 
+#include "engine/core/html_text.h"
 #include "sim/report/plots.h"
 
 namespace condyle {

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/html_text.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "render/gl/gl_context.h"
 #include "render/plan/face_pictures.h"
