@@ -42,9 +42,9 @@ struct ExportOptions {
   std::string write = "stl,ply,glb,markups,transforms,page";
   std::string title = {};
   double at_s = 0;
-  double fps = 30;
-  int triangles = 30000;
-  double face_opacity = 0.4;
+  double fps = 60;
+  int triangles = 20000;
+  double face_opacity = 0.5;
 };
 
 std::set<std::string> kinds_of(const std::string& list) {
@@ -145,23 +145,22 @@ class ExportFiles {
   }
 
   void write_motion(const Exported& data, const std::set<std::string>& kinds) {
-    const MovingPatient moving =
+    MovingPatient moving =
         moving_patient(data.scene.patient.bodies, data.scene.patient.parts, data.frames,
                        {.most_triangles = options_.triangles,
                         .generator = "Condyle " CONDYLE_VERSION,
                         .motion = motion_word(options_.motion.motion)});
-    const std::string glb = glb_bytes(moving.scene);
     Json facts = {{"frames", data.frames.size()},
                   {"face_keys", moving.keys},
                   {"face_key_error_mm", moving.key_error_mm}};
     if (kinds.contains("glb")) {
-      files_.write("patient.glb", glb);
+      files_.write("patient.glb", glb_bytes(moving.scene));
       list("patient.glb", facts);
     }
     if (!kinds.contains("page")) return;
     PatientPage page{.title = options_.title,
                      .subtitle = subtitle(data),
-                     .glb = glb,
+                     .glb = {},
                      .times_s = {},
                      .opening_mm = {},
                      .phases = {},
@@ -179,6 +178,9 @@ class ExportFiles {
         page.phases.push_back({phase.name, phase.start_s, phase.end_s});
     page.hashes = {{"Case", index_["case_hash"].get<std::string>()}};
     if (data.operated) page.hashes.push_back({"Plan", index_["plan_hash"].get<std::string>()});
+    for (GltfNode& node : moving.scene.nodes)
+      if (node.surface) node.surface->normals.clear();  // the page computes its own
+    page.glb = glb_bytes(moving.scene);
     const std::string html = patient_page(page);
     facts["bytes"] = html.size();
     files_.write("page.html", html);
@@ -329,14 +331,14 @@ void add_export(Commands& commands) {
                               "taken, s; default 0, its start"),
            0, 3600);
   in_range(
-      command.add_option("--fps", options->fps, "Frames of the animation per second; default 30"),
+      command.add_option("--fps", options->fps, "Frames of the animation per second; default 60"),
       1, 120);
   in_range(command.add_option("--triangles", options->triangles,
-                              "Triangles of each surface in GLB and page, about; default 30000"),
+                              "Triangles of each surface in GLB and page, about; default 20000"),
            500, 5000000);
   command.add_option("--title", options->title, "Heading of the page")->type_name("TEXT");
   in_range(command.add_option("--face", options->face_opacity,
-                              "Opacity of the face when the page is opened; default 0.4"),
+                              "Opacity of the face when the page is opened; default 0.5"),
            0, 1);
   add_pairs(command, options->motion);
   add_sliding(command, options->motion);

@@ -75,10 +75,9 @@ class GlbWriter {
         refuse("track", track.poses.size(), scene_.motion->times_s.size());
   }
 
-  /// Appends plain values to the buffer, aligned; returns the accessor.
+  /// Appends plain values to the buffer, aligned; returns their view.
   template <class T>
-  int add_accessor(const std::vector<T>& values, int component, int type, std::size_t count,
-                   int target, bool normalized = false) {
+  int add_view(const std::vector<T>& values, int target) {
     auto& bytes = model_.buffers.front().data;
     bytes.resize((bytes.size() + 3) / 4 * 4);
     tinygltf::BufferView view;
@@ -89,8 +88,15 @@ class GlbWriter {
     const auto* first = reinterpret_cast<const unsigned char*>(values.data());
     bytes.insert(bytes.end(), first, first + view.byteLength);
     model_.bufferViews.push_back(std::move(view));
+    return static_cast<int>(model_.bufferViews.size()) - 1;
+  }
+
+  /// The same; returns an accessor of all of them.
+  template <class T>
+  int add_accessor(const std::vector<T>& values, int component, int type, std::size_t count,
+                   int target, bool normalized = false) {
     tinygltf::Accessor accessor;
-    accessor.bufferView = static_cast<int>(model_.bufferViews.size()) - 1;
+    accessor.bufferView = add_view(values, target);
     accessor.componentType = component;
     accessor.type = type;
     accessor.count = count;
@@ -131,13 +137,48 @@ class GlbWriter {
                         colors.size(), TINYGLTF_TARGET_ARRAY_BUFFER, true);
   }
 
-  int add_triangles(const std::vector<Eigen::Vector3i>& triangles) {
-    std::vector<std::uint32_t> values;
+  template <class T>
+  int add_indices(const std::vector<Eigen::Vector3i>& triangles, int component) {
+    std::vector<T> values;
     values.reserve(3 * triangles.size());
     for (const auto& t : triangles)
-      for (int k = 0; k < 3; ++k) values.push_back(static_cast<std::uint32_t>(t[k]));
-    return add_accessor(values, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR,
-                        values.size(), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+      for (int k = 0; k < 3; ++k) values.push_back(static_cast<T>(t[k]));
+    return add_accessor(values, component, TINYGLTF_TYPE_SCALAR, values.size(),
+                        TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+  }
+  int add_triangles(const GltfSurface& surface) {
+    if (surface.vertices.size() < 65535)
+      return add_indices<std::uint16_t>(surface.triangles, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+    return add_indices<std::uint32_t>(surface.triangles, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+  }
+
+  /// Displacements, of which only those of vertices that move are stored.
+  int add_target(const std::vector<Vector3f>& target) {
+    std::vector<std::uint32_t> moved;
+    std::vector<float> values;
+    Eigen::AlignedBox3f box(Vector3f::Zero().eval());
+    for (std::size_t v = 0; v < target.size(); ++v) {
+      if (target[v].isZero(0)) continue;
+      moved.push_back(static_cast<std::uint32_t>(v));
+      values.insert(values.end(), {target[v].x(), target[v].y(), target[v].z()});
+      box.extend(target[v]);
+    }
+    if (moved.empty() || 2 * moved.size() > target.size()) return add_points(target, true);
+    tinygltf::Accessor accessor;
+    accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+    accessor.type = TINYGLTF_TYPE_VEC3;
+    accessor.count = target.size();
+    accessor.minValues = numbers(box.min().cast<double>().eval());
+    accessor.maxValues = numbers(box.max().cast<double>().eval());
+    accessor.sparse.isSparse = true;
+    accessor.sparse.count = static_cast<int>(moved.size());
+    accessor.sparse.indices.bufferView = add_view(moved, 0);
+    accessor.sparse.indices.byteOffset = 0;
+    accessor.sparse.indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    accessor.sparse.values.bufferView = add_view(values, 0);
+    accessor.sparse.values.byteOffset = 0;
+    model_.accessors.push_back(std::move(accessor));
+    return static_cast<int>(model_.accessors.size()) - 1;
   }
 
   int add_mesh(const std::string& name, const GltfSurface& surface) {
@@ -157,9 +198,9 @@ class GlbWriter {
     if (!surface.normals.empty())
       primitive.attributes["NORMAL"] = add_points(surface.normals, false);
     if (!surface.colors.empty()) primitive.attributes["COLOR_0"] = add_colors(surface.colors);
-    primitive.indices = add_triangles(surface.triangles);
+    primitive.indices = add_triangles(surface);
     for (const auto& target : surface.targets)
-      primitive.targets.push_back({{"POSITION", add_points(target, true)}});
+      primitive.targets.push_back({{"POSITION", add_target(target)}});
     tinygltf::Mesh mesh;
     mesh.name = name;
     mesh.weights.assign(surface.targets.size(), 0.0);

@@ -18,6 +18,7 @@ using Eigen::Vector3f;
 using Points = std::vector<Vector3f>;
 
 constexpr int shade_directions = 48, shade_threads = 2;
+constexpr float still_mm = 0.02f;  // shifts of the face below this are left out
 
 Points floats(const std::vector<Eigen::Vector3d>& points) {
   Points result;
@@ -219,7 +220,7 @@ class PatientComposer {
     }
     const ShapeKeys keys = choose_shape_keys(faces, motion.times_s, settings_.key_error_mm);
     result_.keys = keys.frames.size();
-    result_.key_error_mm = keys.error_mm;
+    result_.key_error_mm = keys.frames.size() > 1 ? keys.error_mm + still_mm : keys.error_mm;
     if (keys.frames.size() > 1)
       for (const std::size_t f : keys.frames) motion.key_times_s.push_back(motion.times_s[f]);
 
@@ -228,10 +229,14 @@ class PatientComposer {
     set_shapes(face, faces, keys);
     add_node({.name = drawn.part->name, .surface = std::move(face), .extras = {{"kind", "face"}}});
     if (!lining || lining->triangles.empty()) return;
+    const Selection kept = used_by(coarser(lining->rest, lining->triangles,
+                                           settings_.most_triangles / 8, settings_.simplified_mm),
+                                   lining->rest.size());
+    for (Points& places : linings) places = kept.of(places);
     GltfSurface inside{.vertices = {},
                        .normals = {},
-                       .colors = lining_colors(*lining),
-                       .triangles = lining->triangles,
+                       .colors = kept.of(lining_colors(*lining)),
+                       .triangles = kept.triangles,
                        .roughness = 0.4f,
                        .two_sided = true};
     set_shapes(inside, linings, keys);
@@ -245,7 +250,10 @@ class PatientComposer {
     vertex_normals(surface.vertices, surface.triangles, surface.normals);
     for (std::size_t k = 1; k < keys.frames.size(); ++k) {
       Points target = shapes[keys.frames[k]];
-      for (std::size_t v = 0; v < target.size(); ++v) target[v] -= surface.vertices[v];
+      for (std::size_t v = 0; v < target.size(); ++v) {
+        target[v] -= surface.vertices[v];
+        if (target[v].norm() < still_mm) target[v].setZero();
+      }
       surface.targets.push_back(std::move(target));
     }
   }

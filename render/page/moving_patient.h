@@ -11,7 +11,7 @@
 namespace condyle {
 
 struct MovingPatientSettings {
-  int most_triangles = 30000;     // of each surface
+  int most_triangles = 20000;     // of each surface
   double simplified_mm = 0.2;     // deviation of simplified surfaces, about
   double key_error_mm = 0.25;     // of the face between its keys
   std::string generator = {};     // program and version

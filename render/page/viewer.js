@@ -1,5 +1,5 @@
 // Shows the GLB file of the page in WebGL 2, without any library and without a network.
-// Only what Condyle writes is read: float positions, 32-bit indices, 16-bit colours, linear tracks.
+// Only what Condyle writes is read: float positions, sparse targets, 16-bit colours, linear tracks.
 (function () {
 "use strict";
 const $ = (id) => document.getElementById(id);
@@ -18,9 +18,15 @@ function readGlb(buffer) {
   const types = { 5126: Float32Array, 5125: Uint32Array, 5123: Uint16Array };
   const widths = { SCALAR: 1, VEC3: 3, VEC4: 4 };
   json.values = (index) => {
-    const accessor = json.accessors[index], place = json.bufferViews[accessor.bufferView];
-    return new types[accessor.componentType](
-        buffer, start + (place.byteOffset || 0), accessor.count * widths[accessor.type]);
+    const accessor = json.accessors[index], width = widths[accessor.type];
+    const list = (view, type, count) =>
+        new types[type](buffer, start + (json.bufferViews[view].byteOffset || 0), count);
+    if (!accessor.sparse) return list(accessor.bufferView, accessor.componentType, accessor.count * width);
+    const all = new types[accessor.componentType](accessor.count * width), some = accessor.sparse;
+    const indices = list(some.indices.bufferView, some.indices.componentType, some.count);
+    const values = list(some.values.bufferView, accessor.componentType, some.count * width);
+    indices.forEach((each, i) => { for (let k = 0; k < width; ++k) all[width * each + k] = values[width * i + k]; });
+    return all;
   };
   return json;
 }
@@ -81,7 +87,8 @@ vec3 display(vec3 v) {
 }
 void main() {
   vec3 N = normalize(n), V = normalize(-p), base = c;
-  if (!gl_FrontFacing) { N = -N; if (hollow) base = inside; }
+  // At silhouettes simplified triangles may face backward while the surface does not.
+  if (!gl_FrontFacing && dot(N, V) < 0.0) { N = -N; if (hollow) base = inside; }
   vec3 key = normalize(vec3(-0.45, 0.55, 0.75)), fill = normalize(vec3(0.8, 0.1, 0.45));
   float d = max(0.0, (dot(N, key) + 0.18) / 1.18), f = max(0.0, dot(N, fill));
   float sky = 0.5 + 0.5 * N.y;
@@ -139,13 +146,14 @@ class Surface {
     this.kind = (node.extras || {}).kind || "bone";
     this.body = body;
     this.hollow = !!material.doubleSided;
-    this.roughness = material.pbrMetallicRoughness.roughnessFactor;
+    this.roughness = material.pbrMetallicRoughness.roughnessFactor ?? 1;
     this.places = glb.values(primitive.attributes.POSITION);
     this.indices = glb.values(primitive.indices);
+    this.indexType = this.indices instanceof Uint16Array ? gl.UNSIGNED_SHORT : gl.UNSIGNED_INT;
     this.targets = (primitive.targets || []).map((target) => glb.values(target.POSITION));
     this.keyShapes = new Map();
     const count = this.places.length / 3, colors = new Float32Array(3 * count);
-    const base = material.pbrMetallicRoughness.baseColorFactor;
+    const base = material.pbrMetallicRoughness.baseColorFactor || [1, 1, 1, 1];
     const own = "COLOR_0" in primitive.attributes ? glb.values(primitive.attributes.COLOR_0) : null;
     for (let v = 0; v < count; ++v)
       for (let k = 0; k < 3; ++k) colors[3 * v + k] = base[k] * (own ? own[4 * v + k] / 65535 : 1);
@@ -262,7 +270,7 @@ function eyeMatrix() {
   const back = [Math.sin(a) * Math.cos(e), -Math.cos(a) * Math.cos(e), Math.sin(e)];
   const right = unit(cross([0, 0, 1], back)), up = cross(back, right);
   const aspect = canvas.width / canvas.height;
-  const distance = 0.86 * radius / Math.sin(fov / 2) / Math.min(1, aspect) / camera.zoom;
+  const distance = 0.76 * radius / Math.sin(fov / 2) / Math.min(1, aspect) / camera.zoom;
   const eye = camera.target.map((value, k) => value + distance * back[k]);
   return { matrix: [right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0,
                     -dot(right, eye), -dot(up, eye), -dot(back, eye), 1], distance, right, up };
@@ -285,7 +293,7 @@ function drawSurface(surface, opacity) {
   gl.uniform1f(at.roughness, surface.roughness);
   gl.uniform1i(at.hollow, surface.hollow ? 1 : 0);
   gl.bindVertexArray(surface.array);
-  gl.drawElements(gl.TRIANGLES, surface.indices.length, gl.UNSIGNED_INT, 0);
+  gl.drawElements(gl.TRIANGLES, surface.indices.length, surface.indexType, 0);
 }
 function draw() {
   const scale = Math.min(window.devicePixelRatio || 1, 2);

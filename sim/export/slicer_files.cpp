@@ -60,8 +60,8 @@ std::string itk_transform(const Pose& X) {
       "#Insight Transform File V1.0\n#Transform 0\nTransform: AffineTransform_double_3_3\n"
       "Parameters:";
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) text += fmt::format(" {}", R(i, j));
-  for (int i = 0; i < 3; ++i) text += fmt::format(" {}", inverse.t[i]);
+    for (int j = 0; j < 3; ++j) text += fmt::format(" {}", R(i, j) + 0.0);
+  for (int i = 0; i < 3; ++i) text += fmt::format(" {}", inverse.t[i] + 0.0);
   return text + "\nFixedParameters: 0 0 0\n";
 }
 
