@@ -70,7 +70,7 @@ int run_program(int argc, char** argv) {
   add_common(app, common);
   Commands commands(app);
   for (const auto add : {add_view, add_record, add_run, add_check, add_occlude, add_release,
-                         add_import, add_plan, add_predict, add_compare, add_export, add_demo,
+                         add_import, add_plan, add_predict, add_compare, add_report, add_export, add_demo,
                          add_info, add_help, add_phantom, add_sample, add_bench})
     add(commands);
 

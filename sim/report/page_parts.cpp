@@ -8,7 +8,7 @@ namespace {
 
 const char* const style = R"(<style>
 body { font: 15px/1.45 sans-serif; color: #222; background: #fff; max-width: 1080px; margin: 24px auto; padding: 0 16px; }
-h1 { font-size: 24px; margin: 0 0 4px; } h2 { font-size: 18px; margin: 28px 0 8px; }
+h1 { font-size: 24px; margin: 0 0 4px; } h2 { font-size: 18px; margin: 28px 0 8px; } h3 { font-size: 15px; margin: 18px 0 6px; }
 .verdict { border: 2px solid #222; border-radius: 6px; padding: 12px 16px; margin: 16px 0; font-size: 18px; }
 .bad { border-color: #b2182b; } .good { border-color: #2166ac; }
 .bad strong, td.bad { color: #b2182b; } .good strong { color: #2166ac; }
@@ -19,9 +19,10 @@ ol.worst > li { margin: 8px 0; }
 figure { margin: 16px 0; } img, svg { max-width: 100%; height: auto; } figcaption { color: #444; font-size: 14px; }
 .small { color: #555; font-size: 13px; } li { margin: 2px 0; }
 @media print {
-  @page { margin: 15mm; }
+  @page { size: A4; margin: 15mm 14mm 16mm; @bottom-right { content: counter(page) " / " counter(pages); font: 8pt sans-serif; color: #666; }
+    @bottom-left { content: "For research and education, not for clinical use"; font: 8pt sans-serif; color: #666; } }
   body { font-size: 10pt; max-width: none; margin: 0; padding: 0; }
-  figure, tr, li, .verdict { break-inside: avoid; } h2 { break-after: avoid; }
+  figure, tr, li, .verdict { break-inside: avoid; } h2, h3 { break-after: avoid; } thead { display: table-header-group; }
   .verdict, th, td { print-color-adjust: exact; }
 }
 </style>
