@@ -32,7 +32,7 @@ struct ReportOptions {
   std::filesystem::path patient, plan, out;
   std::string title = {};
   std::string motion = "open; close; protrude 8; close; left 8; close; right 8; close";
-  bool predicts = true, moves = true, shows_notes = false;
+  bool predicts = true, moves = true, measures_clearance = false, shows_notes = false;
 };
 
 struct MovedSide {
@@ -45,6 +45,7 @@ struct MovedSide {
 OperationComparison compared_motion(const ReportOptions& options, const Case& patient,
                                     const Plan& plan, const CommonOptions& common,
                                     const Progress& progress) {
+  constexpr double fps = 15;
   SimulatorSettings settings;
   settings.threads = common.threads;
   settings.tissue = false;
@@ -52,8 +53,11 @@ OperationComparison compared_motion(const ReportOptions& options, const Case& pa
   const auto side = [&](const std::optional<Plan>& operation) {
     Scene scene = make_scene(patient, operation, settings, progress);
     Motion motion = make_motion(options.motion, scene.patient, scene.contacts);
-    ClearanceCheck check =
-        check_clearance(scene, motion, {.sampling = {.fps = 15}}, settings, progress);
+    ClearanceCheck check;
+    if (options.measures_clearance)
+      check = check_clearance(scene, motion, {.sampling = {.fps = fps}}, settings, progress);
+    else
+      for (int i = 0; i / fps <= motion.duration_s; ++i) check.time_s.push_back(i / fps);
     return MovedSide{std::move(scene), std::move(motion), std::move(check)};
   };
   const MovedSide before = side(std::nullopt), after = side(plan);
@@ -180,6 +184,9 @@ void add_report(Commands& commands) {
           "--motion", options->motion,
           "Movements that are compared before and after the operation; default " + options->motion)
       ->type_name("MOTION");
+  command.add_flag("--clearances", options->measures_clearance,
+                   "Also measure the least distances of bones and teeth in these movements, which "
+                   "takes minutes");
   command.add_flag_callback(
       "--no-motion", [options] { options->moves = false; }, "Leave out the range of motion");
   command.add_flag_callback(

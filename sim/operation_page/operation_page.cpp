@@ -47,11 +47,17 @@ std::string pose_words(const MoveStep& step, const Operated& operated, const Cli
   try {
     const Eigen::Vector3d point = rotation_point(operated, step.segment, none);
     return move_words(clinical_move(std::get<ExplicitMove>(step.move).X_CS, frame, point)) +
-           ", placed by hand or by the bite; measured at " +
+           ", placed by hand or by the bite; measured at its " +
            readable_name(point_name(none, step.segment));
   } catch (const InputError&) {
     return "placed by hand or by the bite";
   }
+}
+
+/// With a capital at the start; "G-Sn-Pog'" stays.
+std::string capitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 class OperationPageWriter {
@@ -77,7 +83,7 @@ class OperationPageWriter {
     head();
     key_figures();
     steps();
-    pictures(page_.bones);
+    pictures(page_.bones, "wide");
     movements();
     table("Cephalometry", cephalometry_table(measures_, page_.prediction != nullptr),
           "* outside its norm. Norms: published means of European adults with one standard "
@@ -108,12 +114,12 @@ class OperationPageWriter {
     if (!below.empty()) html_.add("<p class=\"small\">{}</p>\n", escaped(below));
   }
 
-  void pictures(const std::vector<PagePicture>& all) {
+  void pictures(const std::vector<PagePicture>& all, const char* kind = "") {
     for (const PagePicture& picture : all)
       html_.add(
-          "<figure><img src=\"data:image/png;base64,{}\" alt=\"{}\"><figcaption>{}"
+          "<figure><img class=\"{}\" src=\"data:image/png;base64,{}\" alt=\"{}\"><figcaption>{}"
           "</figcaption></figure>\n",
-          base64(picture.png), escaped(picture.caption), escaped(picture.caption));
+          kind, base64(picture.png), escaped(picture.caption), escaped(picture.caption));
   }
 
   const CephalometricMeasure* measure(const char* name) const {
@@ -129,7 +135,7 @@ class OperationPageWriter {
       if (const auto* each = measure(name);
           each && (page_.prediction || std::string_view(name).find("facial") != 0)) {
         const std::string unit = each->unit == "deg" ? "°" : " " + each->unit;
-        figures.rows.push_back({display_name(each->name),
+        figures.rows.push_back({capitalised(each->name),
                                 fmt::format("{:.1f}{}", *each->before + 0.0, unit),
                                 fmt::format("{:.1f}{}", *each->after + 0.0, unit)});
       }
@@ -244,10 +250,11 @@ class OperationPageWriter {
 
   void motion() {
     if (!page_.motion) return;
-    table(
-        "Range of motion", range_of_motion_table(*page_.motion),
-        "The same movements before and after the operation, as simulated: the largest opening, "
-        "then protrusion and laterotrusion of at most 8 mm with the teeth gliding on each other.");
+    table("Range of motion", range_of_motion_table(*page_.motion),
+          "In the same movements of the bones before and after the operation. Opening is the "
+          "largest; "
+          "protrusion and laterotrusion go as far as prescribed, unless bones or teeth stop them.");
+    if (page_.motion->pairs.empty()) return;
     html_.add(
         "<h3>Least distance of bones and teeth during these movements</h3>\n{}"
         "<p class=\"small\">Overlap of segments of one bone is bone that the surgeon trims."
@@ -342,7 +349,7 @@ std::string step_sentence(const PlanStep& step, const Operated& operated) {
     for (const auto& [name, value] : cut->parameters)
       text += fmt::format(", {} {:g}", readable_name(name), value);
     if (!cut->pieces.empty())
-      text += fmt::format("; frees {}", fmt::join(readable(cut->pieces), ", "));
+      text += fmt::format("; segments: {}", fmt::join(readable(cut->pieces), ", "));
     if (cut->below_margins) text += "; below the least margins on request";
     return text;
   }

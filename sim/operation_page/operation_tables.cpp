@@ -10,6 +10,7 @@
 #include "engine/core/html_text.h"
 #include "sim/frame/part_names.h"
 #include "sim/operation/cut_text.h"
+#include "sim/osteotomy/osteotomy_label.h"
 #include "sim/plan/move.h"
 
 namespace condyle {
@@ -46,13 +47,28 @@ std::string clearance_words(const std::optional<ComparedPair::Clearance>& side) 
                                  : fmt::format("{:.2f} mm", side->least_mm + 0.0);
 }
 
+/// "Le Fort I" of "cut le_fort_1".
+std::string cut_words(const std::string& title) {
+  constexpr std::string_view cut = "cut ";
+  return title.starts_with(cut) ? osteotomy_label(title.substr(cut.size())) : display_name(title);
+}
+
+/// An angle in words without the blank before its sign.
+std::string angle_words(double degrees, const char* positive, const char* negative) {
+  std::string words = in_words(degrees, positive, negative);
+  if (const auto blank = words.find(" °"); blank != std::string::npos) words.erase(blank, 1);
+  return words;
+}
+
 }  // namespace
 
 std::string table_html(const PageTable& table) {
   if (table.rows.empty()) return "";
-  std::string html = "<table>\n<tr>";
+  constexpr std::size_t short_rows = 14;  // such a table is printed on one page
+  std::string html = table.rows.size() <= short_rows ? "<table class=\"short\">\n<thead><tr>"
+                                                     : "<table>\n<thead><tr>";
   for (const std::string& cell : table.head) html += "<th>" + escaped(cell) + "</th>";
-  html += "</tr>\n";
+  html += "</tr></thead>\n";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     const bool bad = std::find(table.marked.begin(), table.marked.end(), r) != table.marked.end();
     html += "<tr>";
@@ -128,9 +144,9 @@ PageTable rotations_table(const MovementTable& movements) {
         std::abs(row.roll_deg) < least_deg)
       continue;
     table.rows.push_back({display_name(row.body),
-                          in_words(row.pitch_deg, "° front down", "° front up"),
-                          in_words(row.yaw_deg, "° front to the left", "° front to the right"),
-                          in_words(row.roll_deg, "° left side down", "° right side down")});
+                          angle_words(row.pitch_deg, "° front down", "° front up"),
+                          angle_words(row.yaw_deg, "° front to the left", "° front to the right"),
+                          angle_words(row.roll_deg, "° left side down", "° right side down")});
   }
   return table;
 }
@@ -162,10 +178,10 @@ PageTable dangers_table(const Operated& operated) {
   };
   for (const CutReport& cut : operated.cuts)
     for (const DangerFinding& finding : cut.dangers)
-      if (finding.level != DangerLevel::clear) add(finding, readable_name(cut.title));
+      if (finding.level != DangerLevel::clear) add(finding, cut_words(cut.title));
   for (const TrimReport& trim : operated.trims)
     for (const DangerFinding& finding : trim.dangers)
-      if (finding.level != DangerLevel::clear) add(finding, readable_name(trim.title));
+      if (finding.level != DangerLevel::clear) add(finding, display_name(trim.title));
   return table;
 }
 

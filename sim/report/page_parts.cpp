@@ -19,10 +19,15 @@ ol.worst > li { margin: 8px 0; }
 figure { margin: 16px 0; } img, svg { max-width: 100%; height: auto; } figcaption { color: #444; font-size: 14px; }
 .small { color: #555; font-size: 13px; } li { margin: 2px 0; }
 @media print {
-  @page { size: A4; margin: 15mm 14mm 16mm; @bottom-right { content: counter(page) " / " counter(pages); font: 8pt sans-serif; color: #666; }
-    @bottom-left { content: "For research and education, not for clinical use"; font: 8pt sans-serif; color: #666; } }
-  body { font-size: 10pt; max-width: none; margin: 0; padding: 0; }
-  figure, tr, li, .verdict { break-inside: avoid; } h2, h3 { break-after: avoid; } thead { display: table-header-group; }
+  @page { size: A4; margin: 14mm 14mm 16mm;
+    @bottom-left { content: "For research and education, not for clinical use"; font: 8pt sans-serif; color: #666; }
+    @bottom-right { content: counter(page) " / " counter(pages); font: 8pt sans-serif; color: #666; } }
+  body { font-size: 9.5pt; max-width: none; margin: 0; padding: 0; }
+  h1 { font-size: 17pt; } h2 { font-size: 12.5pt; margin: 14pt 0 4pt; } h3 { font-size: 10.5pt; margin: 10pt 0 3pt; }
+  table { font-size: 8.5pt; } th, td { padding: 2pt 5pt; } .small, figcaption { font-size: 8pt; }
+  .verdict { padding: 6pt 10pt; margin: 6pt 0; font-size: 11pt; }
+  figure { margin: 6pt 0; } img { max-height: 205mm; } img.wide { max-height: 128mm; }
+  figure, tr, li, .verdict, table.short { break-inside: avoid; } h2, h3, thead { break-after: avoid; }
   .verdict, th, td { print-color-adjust: exact; }
 }
 </style>
