@@ -270,7 +270,7 @@ function eyeMatrix() {
   const back = [Math.sin(a) * Math.cos(e), -Math.cos(a) * Math.cos(e), Math.sin(e)];
   const right = unit(cross([0, 0, 1], back)), up = cross(back, right);
   const aspect = canvas.width / canvas.height;
-  const distance = 0.76 * radius / Math.sin(fov / 2) / Math.min(1, aspect) / camera.zoom;
+  const distance = 0.83 * radius / Math.sin(fov / 2) / Math.min(1, aspect) / camera.zoom;
   const eye = camera.target.map((value, k) => value + distance * back[k]);
   return { matrix: [right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0,
                     -dot(right, eye), -dot(up, eye), -dot(back, eye), 1], distance, right, up };
