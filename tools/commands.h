@@ -15,6 +15,8 @@ void add_import(Commands& commands);
 void add_plan(Commands& commands);
 void add_predict(Commands& commands);
 void add_compare(Commands& commands);
+void add_report(Commands& commands);
+void add_export(Commands& commands);
 void add_demo(Commands& commands);  // in demo/demo.cpp
 void add_info(Commands& commands);
 void add_help(Commands& commands);

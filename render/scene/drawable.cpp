@@ -6,6 +6,7 @@
 
 #include "engine/core/hash.h"
 #include "engine/mesh/triangle_tree.h"
+#include "render/face/shade_layers.h"
 #include "render/mesh/ambient_occlusion.h"
 #include "render/mesh/cut_cover.h"
 #include "render/mesh/vertex_normals.h"
@@ -17,29 +18,6 @@ namespace {
 
 constexpr int occlusion_directions = 48;
 constexpr int bake_threads = 2;
-
-/// Ambient shade: bones of each body shade each other, at rest the other body too; the eyes lie
-/// under the lids; the face is shaded by itself alone, since bones under it are invisible. Other
-/// bodies have arbitrary poses: they neither cast nor receive shade from others.
-void set_layers(const Part& part, BodyId lower_jaw, OcclusionSurface& surface) {
-  enum { cranium, mandible, face, others };
-  const Role role = part.role;
-  if (role == Role::face) {
-    surface.layer = face;
-    surface.alone = surface.together = 1u << face;
-  } else if (role == Role::eyes) {
-    surface.layer = cranium;
-    surface.alone = 1u << cranium;
-    surface.together = 1u << cranium | 1u << face;
-  } else if (part.body != cranium_body && part.body != lower_jaw) {
-    surface.layer = others;
-    surface.alone = surface.together = 1u << others;
-  } else {
-    surface.layer = part.body == lower_jaw ? mandible : cranium;
-    surface.alone = 1u << surface.layer;
-    surface.together = 1u << cranium | 1u << mandible;
-  }
-}
 
 /// 0 to 1 by the position in a lattice of 1 mm cells; deterministic.
 float lattice(int x, int y, int z) {
@@ -88,7 +66,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     for (const auto& v : parts[p]->mesh.vertices) positions.push_back(v.cast<float>());
     vertex_normals(positions, parts[p]->mesh.triangles, normals);
     surfaces[p] = {positions, normals, parts[p]->mesh.triangles};
-    set_layers(*parts[p], lower_jaw, surfaces[p]);
+    set_shade_layers(*parts[p], lower_jaw, surfaces[p]);
   }
   const auto occlusion = bake_occlusion(surfaces, occlusion_directions, bake_threads);
 

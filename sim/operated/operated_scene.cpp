@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "engine/core/error.h"
-#include "engine/core/hash.h"
 #include "sim/motion/closed_position.h"
 #include "sim/muscles/default_muscles.h"
 #include "sim/operated/graft_path.h"
@@ -29,11 +28,7 @@ bool changes_patient(const Plan& plan) {
   });
 }
 
-ScenePlan identity_of(const Plan& plan) {
-  const std::string text = plan_json(plan);
-  return {.name = plan.name,
-          .hash = fmt::format("{:016x}", hash_bytes(text.data(), text.size(), hash_start))};
-}
+ScenePlan identity_of(const Plan& plan) { return {.name = plan.name, .hash = plan_hash(plan)}; }
 
 std::vector<MuscleLengthChange> changed_lengths(const Case& before, const Case& after) {
   constexpr double least_mm = 0.05;
@@ -114,6 +109,8 @@ Scene scene_with_face(const Scene& bones, const Prediction& prediction,
   Scene scene = bones;
   for (Part& part : scene.patient.parts)
     if (part.role == Role::face) part.mesh = displaced(prediction.face, prediction.after);
+  for (const SoftPoint& point : prediction.points)
+    scene.patient.landmarks.points[point.landmark] = point.after;
   if (settings.tissue) scene.tissue = planned_tissue(prediction, settings.threads);
   return scene;
 }

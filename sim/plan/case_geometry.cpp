@@ -48,6 +48,15 @@ CaseGeometry geometry_of(const Case& patient) {
   return geometry;
 }
 
+std::string geometry_hash(const CaseGeometry& geometry) {
+  std::uint64_t h = hash_start;
+  for (const PartGeometry& part : geometry.parts)
+    h = hash_bytes(&part.hash, sizeof part.hash, hash_bytes(part.name.data(), part.name.size(), h));
+  for (const auto& [name, point] : geometry.landmarks.points)
+    h = hash_bytes(point.data(), 3 * sizeof(double), hash_bytes(name.data(), name.size(), h));
+  return fmt::format("{:016x}", h);
+}
+
 CaseComparison compare_geometry(const CaseGeometry& planned, const CaseGeometry& present) {
   CaseComparison result;
   for (const auto& part : planned.parts) {

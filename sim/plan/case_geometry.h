@@ -27,6 +27,9 @@ struct CaseGeometry {
 
 CaseGeometry geometry_of(const Case& patient);
 
+/// Hash of surfaces and landmarks, without the name of the case: 16 hexadecimal digits.
+std::string geometry_hash(const CaseGeometry& geometry);
+
 enum class CaseMatch { same, landmarks_edited, other_case };
 
 /// How a case differs from the one that a plan was made for.

@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/hash.h"
 #include "sim/case/json_file.h"
 #include "sim/plan/graft_step_file.h"
 
@@ -417,6 +418,11 @@ std::string plan_json(const Plan& plan) {
   std::string text;
   put_indented(text, root, 0);
   return text + "\n";
+}
+
+std::string plan_hash(const Plan& plan) {
+  const std::string text = plan_json(plan);
+  return fmt::format("{:016x}", hash_bytes(text.data(), text.size()));
 }
 
 Plan parse_plan(const fs::path& file, std::string_view text) {

@@ -18,6 +18,9 @@ int version_of(const Plan& plan);
 /// The text of a plan file: JSON, from which parse_plan() reads each number back to the bit.
 std::string plan_json(const Plan& plan);
 
+/// Hash of plan_json(): 16 hexadecimal digits.
+std::string plan_hash(const Plan& plan);
+
 /// throws: InputError naming the file, the item and its value: text that is no JSON or only part of
 /// it, another format, a newer version, unknown keys, and whatever check_plan() refuses.
 Plan parse_plan(const std::filesystem::path& file, std::string_view text);

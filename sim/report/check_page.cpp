@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/core/html_text.h"
 #include "sim/frame/part_names.h"
 #include "sim/report/page_parts.h"
 #include "sim/report/plots.h"

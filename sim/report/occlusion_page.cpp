@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/core/html_text.h"
 #include "sim/report/occlusion_report.h"
 #include "sim/report/page_parts.h"
 #include "sim/report/plots.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/html_text.h"
 #include "sim/frame/part_names.h"
 #include "sim/report/motion_extremes.h"
 #include "sim/report/plots.h"

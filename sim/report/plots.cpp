@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/core/html_text.h"
 #include "sim/frame/covered_curves.h"
 #include "sim/frame/label_placement.h"
 
@@ -79,27 +80,6 @@ std::vector<LabelPlacement::Point> places_of(const Curve& curve, const auto& px,
 }
 
 }  // namespace
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  return safe;
-}
 
 namespace {
 

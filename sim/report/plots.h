@@ -7,9 +7,6 @@
 
 namespace condyle {
 
-/// Text for SVG and HTML.
-std::string escaped(const std::string& text);
-
 /// A line plot as SVG text: axes with ticks and units, a legend, Okabe-Ito colours.
 std::string plot_svg(const std::vector<Curve>& curves, const PlotSettings& settings);
 

@@ -14,6 +14,7 @@
 #include "sim/operation/graft_steps.h"
 #include "sim/operation/trim_segments.h"
 #include "sim/osteotomy/osteotomy.h"
+#include "sim/osteotomy/osteotomy_label.h"
 #include "sim/plan/cephalometry.h"
 #include "sim/plan/clinical_frame.h"
 
@@ -338,15 +339,6 @@ PlanView plan_view(const PlanDocument& document, const Operated& operated,
   view.findings.insert(view.findings.end(), operated.problems.begin(), operated.problems.end());
   add_tables(view, plan, operated);
   return view;
-}
-
-std::string osteotomy_label(const std::string& name) {
-  static const std::map<std::string, std::string> labels = {{"le_fort_1", "Le Fort I"},
-                                                            {"le_fort_2", "Le Fort II"},
-                                                            {"le_fort_3", "Le Fort III"},
-                                                            {"inverted_l", "Inverted L"}};
-  const auto known = labels.find(name);
-  return known == labels.end() ? display_name(name) : known->second;
 }
 
 }  // namespace condyle

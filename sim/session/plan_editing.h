@@ -42,7 +42,4 @@ std::vector<std::optional<Pose>> changed_positions(const Operated& operated, con
 PlanView plan_view(const PlanDocument& document, const Operated& operated,
                    const std::vector<SegmentOverlap>& overlaps);
 
-/// "Le Fort I" of "le_fort_1".
-std::string osteotomy_label(const std::string& name);
-
 }  // namespace condyle

@@ -48,6 +48,7 @@ const std::vector<Library> libraries = {
     {"Eigen/", {"engine", "sim", "render", "tools"}, true, ""},
     {"fmt/", {"engine", "sim", "render", "tools"}, true, "fmt::fmt"},
     {"nlohmann/", {"engine", "sim", "render", "tools"}, true, "nlohmann_json::nlohmann_json"},
+    {"tiny_gltf.h", {"engine/gltf"}, false, "TinyGLTF::TinyGLTF"},
     {"tbb/", {"engine/core"}, false, "TBB::tbb"},
     {"meshoptimizer.h", {"engine/mesh"}, false, "meshoptimizer::meshoptimizer"},
     {"fcl/", {"engine/collide"}, false, "fcl"},

@@ -30,8 +30,8 @@ Plan fibula_plan(const Case& patient) {
   return with_step(std::move(plan), graft);
 }
 
-OperationOutput::Table faces_table(const Operated& operated, const GraftLayout& graft) {
-  OperationOutput::Table table{{"face", "in contact, %", "mean gap, mm", "largest gap, mm"}, {}};
+PageTable faces_table(const Operated& operated, const GraftLayout& graft) {
+  PageTable table{{"face", "in contact, %", "mean gap, mm", "largest gap, mm"}, {}};
   for (const GraftFaceReport& face : graft_faces(operated, graft))
     table.rows.push_back({face.piece + " to " + face.other, fmt::format("{:.0f}", 100 * face.share),
                           fmt::format("{:.2f}", face.contact.mean_gap_mm),
@@ -39,10 +39,10 @@ OperationOutput::Table faces_table(const Operated& operated, const GraftLayout& 
   return table;
 }
 
-OperationOutput::Table saw_table(const GraftLayout& graft) {
-  OperationOutput::Table table{{"piece", "length, mm", "cut at, mm", "degrees off square",
-                                "cut at, mm", "degrees off square"},
-                               {}};
+PageTable saw_table(const GraftLayout& graft) {
+  PageTable table{{"piece", "length, mm", "cut at, mm", "degrees off square", "cut at, mm",
+                   "degrees off square"},
+                  {}};
   for (const GraftPiece& piece : graft.pieces)
     table.rows.push_back({piece.body, fmt::format("{:.1f}", piece.length_mm),
                           fmt::format("{:.1f}", piece.cuts[0].place_mm),

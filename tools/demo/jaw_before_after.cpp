@@ -18,31 +18,11 @@ constexpr const char* border_movements =
     "open; close; protrude 8; close; left 8; close; right 8; close";
 constexpr const char* shown_movement = "open 35; close";
 
-std::string tenth_mm(const std::optional<double>& value, const std::string& unit) {
-  return value ? fmt::format("{:.1f} {}", *value + 0.0, unit) : "";
-}
-
-std::string clearance_text_of(const std::optional<ComparedPair::Clearance>& side) {
-  if (!side) return "";
-  return side->least_mm < 0 ? fmt::format("overlap {:.2f} mm", -side->least_mm)
-                            : fmt::format("{:.2f} mm", side->least_mm);
-}
-
 void add_comparison(OperationOutput& output, const OperationComparison& comparison) {
-  OperationOutput::Table range{{"Range of motion", "Before", "After"}, {}};
-  for (const ComparedMeasure& measure : comparison.measures) {
-    const std::string unit = measure.unit == "deg" ? "°" : measure.unit;
-    range.rows.push_back({display_name(measure.name), tenth_mm(measure.before, unit),
-                          tenth_mm(measure.after, unit)});
-  }
-  output.add_table("Range of motion", range,
+  output.add_table("Range of motion", range_of_motion_table(comparison),
                    "Opening is the patient's largest; protrusion and laterotrusion of 8 mm were "
                    "prescribed, with the teeth gliding on each other.");
-  OperationOutput::Table pairs{{"Parts", "Before", "After"}, {}};
-  for (const ComparedPair& pair : comparison.pairs)
-    pairs.rows.push_back({display_name(pair.a) + " and " + readable_name(pair.b),
-                          clearance_text_of(pair.before), clearance_text_of(pair.after)});
-  output.add_table("Least distance during these movements", pairs,
+  output.add_table("Least distance during these movements", clearances_table(comparison),
                    "Overlap of the proximal and distal segments is bone that the surgeon trims.");
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/html_text.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "render/gl/gl_context.h"
 #include "render/plan/face_pictures.h"
@@ -28,88 +29,9 @@
 namespace condyle {
 namespace {
 
-using Row = std::vector<std::string>;
-
 TriMesh with_vertices(TriMesh mesh, const std::vector<Eigen::Vector3f>& vertices) {
   for (std::size_t i = 0; i < vertices.size(); ++i) mesh.vertices[i] = vertices[i].cast<double>();
   return mesh;
-}
-
-OperationOutput::Table bones_table(const Operated& operated) {
-  OperationOutput::Table table{{"Bone", "Part of", "Volume", "Surface"}, {}};
-  for (const BoneSummary& bone : operated_bones(operated))
-    table.rows.push_back(
-        {display_name(bone.name), bone.is_segment ? readable_name(bone.parent) : "",
-         fmt::format("{:.2f} cm³", bone.volume_mm3 / 1000), bone.closed ? "closed" : "open"});
-  return table;
-}
-
-OperationOutput::Table movements_table(const MovementTable& movements) {
-  OperationOutput::Table table{{"Point", "Right-left", "Back-forward", "Down-up", "Distance"}, {}};
-  const auto mm = [](double value, const char* positive, const char* negative) {
-    return in_words(value, positive, negative);
-  };
-  for (const MovementRow& row : movements.rows)
-    table.rows.push_back({row.label, mm(row.left_mm, "left", "right"),
-                          mm(row.back_mm, "back", "forward"), mm(row.up_mm, "up", "down"),
-                          fmt::format("{:.1f} mm", row.distance_mm())});
-  return table;
-}
-
-/// Measures of the profile, which the bones alone do not change.
-bool is_soft(const CephalometricMeasure& measure) {
-  return measure.name.find("G-Sn-Pog'") != std::string::npos ||
-         measure.name.starts_with("nasolabial") || measure.name.find(" lip ") != std::string::npos;
-}
-
-std::string signed_number(double value, const char* format) {
-  const std::string text = fmt::format(fmt::runtime(format), value);
-  return text == "-0.0" || text == "+0.0" ? "0.0" : text;
-}
-
-OperationOutput::Table cephalometry_table(const std::vector<CephalometricMeasure>& measures,
-                                          bool has_soft) {
-  OperationOutput::Table table{{"Measure", "Before", "After", "Change", "Norm"}, {}};
-  for (const CephalometricMeasure& measure : measures) {
-    if (!measure.before || !measure.after || (is_soft(measure) && !has_soft)) continue;
-    const std::string unit = measure.unit == "deg" ? "°" : " " + measure.unit;
-    table.rows.push_back({measure.name, signed_number(*measure.before, "{:.1f}") + unit,
-                          signed_number(*measure.after, "{:.1f}") + unit,
-                          signed_number(*measure.change(), "{:+.1f}"), norm_text(measure.norm)});
-  }
-  return table;
-}
-
-/// "A point", "soft B point": points that cephalometry names by a letter.
-std::string point_words(std::string words) {
-  for (const auto& [plain, letter] : {std::pair{"a point", "A point"}, {"b point", "B point"}})
-    if (const auto at = words.find(plain); at != std::string::npos)
-      words.replace(at, std::string_view(plain).size(), letter);
-  return words;
-}
-
-OperationOutput::Table overlaps_table(const std::vector<SegmentOverlap>& overlaps) {
-  OperationOutput::Table table{{"Parts", "Depth", "Volume", "Meaning"}, {}};
-  for (const SegmentOverlap& overlap : overlaps)
-    table.rows.push_back({display_name(overlap.a) + " and " + readable_name(overlap.b),
-                          fmt::format("{:.1f} mm", overlap.depth_mm),
-                          fmt::format("{:.0f} mm³", overlap.volume_mm3),
-                          overlap.kind == SegmentOverlap::Kind::trimmed    ? "bone to be trimmed"
-                          : overlap.kind == SegmentOverlap::Kind::occlusal ? "teeth interfere"
-                                                                           : "collision"});
-  return table;
-}
-
-OperationOutput::Table ratio_table(const std::vector<SoftRatio>& ratios) {
-  OperationOutput::Table table{
-      {"Soft tissue", "Bone", "Bone moves", "Face moves", "Ratio", "Published"}, {}};
-  for (const SoftRatio& ratio : ratios)
-    table.rows.push_back(
-        {point_words(display_name(ratio.soft)), point_words(readable_name(ratio.hard)),
-         in_words(ratio.hard_mm, "mm forward", "mm back"),
-         in_words(ratio.soft_mm, "mm forward", "mm back"), fmt::format("{:.2f}", ratio.ratio()),
-         ratio.low && ratio.high ? fmt::format("{:g} to {:g}", *ratio.low, *ratio.high) : ""});
-  return table;
 }
 
 }  // namespace
@@ -205,18 +127,10 @@ void OperationOutput::add_section(const std::string& heading, const std::string&
   body_ += "<h2>" + escaped(heading) + "</h2>\n<p>" + escaped(text) + "</p>\n";
 }
 
-void OperationOutput::add_table(const std::string& heading, const Table& table,
+void OperationOutput::add_table(const std::string& heading, const PageTable& table,
                                 const std::string& below) {
   if (table.rows.empty()) return;
-  body_ += "<h2>" + escaped(heading) + "</h2>\n<table>\n<tr>";
-  for (const std::string& cell : table.head) body_ += "<th>" + escaped(cell) + "</th>";
-  body_ += "</tr>\n";
-  for (const Row& row : table.rows) {
-    body_ += "<tr>";
-    for (const std::string& cell : row) body_ += "<td>" + escaped(cell) + "</td>";
-    body_ += "</tr>\n";
-  }
-  body_ += "</table>\n";
+  body_ += "<h2>" + escaped(heading) + "</h2>\n" + table_html(table);
   if (!below.empty()) body_ += "<p class=\"small\">" + escaped(below) + "</p>\n";
 }
 

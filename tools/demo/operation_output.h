@@ -9,6 +9,7 @@
 
 #include "engine/core/progress.h"
 #include "render/image/image.h"
+#include "sim/operation_page/operation_tables.h"
 #include "sim/prediction/prediction.h"
 
 namespace condyle {
@@ -34,11 +35,7 @@ class OperationOutput {
   void add_picture(const std::string& file, const Image& image, const std::string& caption);
   /// A heading with a paragraph.
   void add_section(const std::string& heading, const std::string& text);
-  struct Table {
-    std::vector<std::string> head;
-    std::vector<std::vector<std::string>> rows;
-  };
-  void add_table(const std::string& heading, const Table& table, const std::string& below = "");
+  void add_table(const std::string& heading, const PageTable& table, const std::string& below = "");
   void add_link(const std::string& file, const std::string& text);
   void add_note(const std::string& note);
   /// Runs a function that draws, if drawing is possible.
