@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "sim/frame/body_poses.h"
 #include "sim/occlusion/occlusion.h"
 #include "sim/plan/plan.h"
 
