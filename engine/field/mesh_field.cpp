@@ -216,8 +216,7 @@ void sweep(SampledField& field, Sweep direction, int threads) {
   });
 }
 
-void remove_thin(SampledField& field, double radius_mm, double tolerance_mm,
-                 const std::vector<char>& applies, int threads) {
+void remove_thin(SampledField& field, double radius_mm, double tolerance_mm, int threads) {
   const double step = field.axes[0][1] - field.axes[0][0];
   // A ball is centred on a sample, half a diagonal at most from where it fits best.
   const double least = radius_mm - 0.5 * step;
@@ -241,8 +240,7 @@ void remove_thin(SampledField& field, double radius_mm, double tolerance_mm,
       for (int k = 0; k < size.z(); ++k) {
         const std::size_t at = field.index(i, j, k);
         const float value = before.values[at];
-        if (value >= allowed || value <= least_depth || (!applies.empty() && !applies[at]))
-          continue;
+        if (value >= 0 || value <= least_depth) continue;
         float nearest = static_cast<float>(radius_mm);  // beyond every ball
         for (const Neighbour& n : around) {
           const int a = i + n.i, b = j + n.j, c = k + n.k;

@@ -19,10 +19,9 @@ enum class Sweep { up, down };
 /// (up) or above it (down).
 void sweep(SampledField& field, Sweep direction, int threads = 1);
 
-/// Removes what is thinner than about twice `radius_mm` where `applies` is set: a sample stays
-/// where a ball of this radius fits into the solid no farther than `tolerance_mm` away. Values of
-/// the field must be true depths up to the radius. `applies`: one per sample, or empty for all.
-void remove_thin(SampledField& field, double radius_mm, double tolerance_mm,
-                 const std::vector<char>& applies, int threads = 1);
+/// Removes what is thinner than about twice `radius_mm`: a sample stays where a ball of this radius
+/// fits into the solid no farther than `tolerance_mm` away. Values of the field must be true depths
+/// up to the radius.
+void remove_thin(SampledField& field, double radius_mm, double tolerance_mm, int threads = 1);
 
 }  // namespace condyle

@@ -44,6 +44,7 @@ struct PrintSettings {
   Eigen::Vector3d seat = Eigen::Vector3d::UnitZ();
   double gap_mm = 0.1;
   double grip_mm = 0.4;
+  double thin_mm = 1;  // crevices narrower than this are not printed
 };
 
 /// closed, pieces, volume and walls. Deterministic for any number of threads.

@@ -123,6 +123,13 @@ PrintMeasure measure_print(const TriMesh& appliance, const TriMesh& support,
   const TriangleTree on(support), printed(appliance);
   const Box box = bounding_box(appliance);
   const Vector3d out = -settings.seat;
+  // A ball that a wall of the appliance holds does not reach it.
+  const double ball = settings.gap_mm + 0.5 * settings.thin_mm;
+  const auto is_crevice = [&](const Face& face) {
+    const Vector3d center = face.center + ball * face.normal;
+    return on.nearest(center).distance < ball - 0.02 ||
+           -printed.signed_distance(center) < 0.5 * settings.thin_mm - 0.1;
+  };
   struct Sample {
     double fit = -1, area = 0;
     bool relieved = false;
@@ -140,7 +147,7 @@ PrintMeasure measure_print(const TriMesh& appliance, const TriMesh& support,
     if (on.signed_distance(face.center + 0.5 * settings.gap_mm * face.normal) < 0) return;
     const Vector3d q = face.center + settings.gap_mm * face.normal;
     samples[t] = {printed.nearest(face.center).distance, face.area,
-                  depth_on_way(on, q, out) > settings.grip_mm - 0.05};
+                  is_crevice(face) || depth_on_way(on, q, out) > settings.grip_mm - 0.05};
   });
   std::vector<double> fits;
   double sum = 0, area = 0;

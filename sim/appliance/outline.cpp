@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double tip_cell_mm = 3, tip_smoothing_mm = 6, crown_slack_mm = 5;
 constexpr double above_others_mm = 1;  // a cell whose lowest point is no tip but a gap or a fossa
-constexpr double closing_mm = 6,
+constexpr double closing_mm = 9, opening_mm = 2.5;  // radii of the outline, inward and outward
                  opening_mm = 2;     // radii of the outline's bends, inward and outward
 constexpr double spine_half_mm = 4;  // of the plate where teeth are missing
 constexpr float far_away = 1e12f;
@@ -235,7 +235,7 @@ FlatGrid plate_outline(const std::vector<ArchCrowns>& arches, double depth_mm, d
   for (std::size_t i = 0; i < distance.values.size(); ++i)
     distance.values[i] = inside.values[i] > 0 ? -inside.values[i]
                                               : distance.values[i] - static_cast<float>(opening_mm);
-  smooth(distance, 0.6);
+  smooth(distance, 1);
   return distance;
 }
 

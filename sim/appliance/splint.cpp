@@ -28,7 +28,7 @@ using Eigen::Vector3d;
 constexpr double rounding_mm = 2.4;     // of the plate's edges
 constexpr double most_tilt_deg = 12;    // of an insertion from the occlusal plane's normal
 constexpr double thin_radius_mm = 0.5;  // walls are about twice as thick at least
-constexpr double thin_tolerance_mm = 0.2;
+constexpr double thin_tolerance_mm = 0.12;
 constexpr double grid_margin_mm = 0.8;
 constexpr double shortest_across_mm = 25, shortest_along_mm = 12;  // of an arch, one tooth is not
 constexpr double print_thickness_slack_mm = 0.1;  // prints come nearer by the grid's error
@@ -142,12 +142,8 @@ class SplintField {
     parallel_for(axes_[0].size(), settings_.threads, [&](std::size_t layer) {
       const int i = static_cast<int>(layer);
       for (int j = 0; j < size.y(); ++j) {
-        bool covered = false;  // by teeth, from the roots' side
-        for (int n = 0; n < size.z(); ++n) {
-          const int k = arch.upper ? size.z() - 1 - n : n;
+        for (int k = 0; k < size.z(); ++k) {
           const std::size_t at = field_.index(i, j, k);
-          if (distance.values[at] < 0) covered = true;
-          if (covered) occlusal_[at] = 1;
           if (field_.values[at] > far_mm) continue;
           const double solid = std::min(distance.values[at] - settings_.gap_mm,
                                         relief(field_.position(i, j, k)) + settings_.grip_mm);
@@ -158,10 +154,7 @@ class SplintField {
   }
 
   TriMesh surface() {
-    // Prints between cusps stay whole; walls and edges must not be thin.
-    std::vector<char> applies(occlusal_.size());
-    for (std::size_t i = 0; i < applies.size(); ++i) applies[i] = !occlusal_[i];
-    remove_thin(field_, thin_radius_mm, thin_tolerance_mm, applies, settings_.threads);
+    remove_thin(field_, thin_radius_mm, thin_tolerance_mm, settings_.threads);
     return isosurface(field_);
   }
 
@@ -190,7 +183,6 @@ class SplintField {
   void make_plate() {
     field_ = {axes_, {}};
     field_.values.resize(axes_[0].size() * axes_[1].size() * axes_[2].size());
-    occlusal_.assign(field_.values.size(), 0);
     const Eigen::Vector3i size = field_.size();
     parallel_for(axes_[0].size(), settings_.threads, [&](std::size_t layer) {
       const int i = static_cast<int>(layer);
@@ -217,7 +209,6 @@ class SplintField {
   Box box_;
   std::array<GridAxis, 3> axes_;
   SampledField field_;
-  std::vector<char> occlusal_;  // samples that teeth cover on the way to the bite
 };
 
 /// Least distance between what is printed by the upper and by the lower arch.
@@ -296,7 +287,8 @@ Splint make_splint(const SplintArches& arches, const SplintSettings& settings,
                                        {.on = arch->arch.name,
                                         .seat = arch->seat,
                                         .gap_mm = settings.gap_mm,
-                                        .grip_mm = settings.grip_mm},
+                                        .grip_mm = settings.grip_mm,
+                                        .thin_mm = 2 * thin_radius_mm},
                                        settings.threads);
     print.tilt_deg = arch->tilt_deg;
     print.seat = R.transpose() * arch->seat;
