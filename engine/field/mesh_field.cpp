@@ -203,6 +203,24 @@ SampledField mesh_field(const TriMesh& mesh, const std::array<GridAxis, 3>& axes
   return field;
 }
 
+double even_value(const SampledField& field, const Vector3d& p) {
+  std::array<int, 3> cell;
+  std::array<double, 3> part;
+  for (int a = 0; a < 3; ++a) {
+    const GridAxis& axis = field.axes[static_cast<std::size_t>(a)];
+    const int last = static_cast<int>(axis.size()) - 2;
+    const double u = std::clamp((p[a] - axis[0]) / (axis[1] - axis[0]), 0.0, last + 1.0);
+    cell[static_cast<std::size_t>(a)] = std::min(static_cast<int>(u), last);
+    part[static_cast<std::size_t>(a)] = u - cell[static_cast<std::size_t>(a)];
+  }
+  const std::size_t along_y = field.axes[2].size(), along_x = along_y * field.axes[1].size();
+  const float* v = &field.values[field.index(cell[0], cell[1], cell[2])];
+  const auto line = [&](std::size_t at) { return v[at] + part[2] * (v[at + 1] - v[at]); };
+  const double near = line(0) + part[1] * (line(along_y) - line(0));
+  const double far = line(along_x) + part[1] * (line(along_x + along_y) - line(along_x));
+  return near + part[0] * (far - near);
+}
+
 void sweep(SampledField& field, Sweep direction, int threads) {
   const std::size_t columns = field.axes[1].size(), height = field.axes[2].size();
   parallel_for(field.axes[0].size(), threads, [&](std::size_t i) {

@@ -13,6 +13,9 @@ namespace condyle {
 SampledField mesh_field(const TriMesh& mesh, const std::array<GridAxis, 3>& axes, double band_mm,
                         int threads = 1);
 
+/// Trilinear value of an evenly spaced field: as its own operator, several times as fast.
+double even_value(const SampledField& field, const Eigen::Vector3d& p);
+
 enum class Sweep { up, down };
 
 /// The field of a solid that was moved along z, out of the grid: the least value below each sample

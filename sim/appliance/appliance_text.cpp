@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -94,6 +95,64 @@ Json splint_json(const Splint& splint, const SplintSettings& settings) {
                       {"wall_mm", settings.wall_mm},           {"gap_mm", settings.gap_mm},
                       {"grip_mm", settings.grip_mm},           {"voxel_mm", settings.voxel_mm}};
   json["notes"] = splint.notes;
+  return json;
+}
+
+std::string guide_text(const Guide& guide, const GuideSettings& settings) {
+  double least = 1e9, most = 0, wall = 1e9;
+  for (const GuideSlot& slot : guide.slots) {
+    least = std::min(least, slot.width_min_mm);
+    most = std::max(most, slot.width_max_mm);
+    wall = std::min(wall, slot.wall_min_mm);
+  }
+  std::string text = fmt::format(
+      "saw: {}, blade {:.2f} mm ({}); bone {:.1f} mm thick in its direction\n"
+      "slot: {} piece{}, {:.0f} of {:.0f} mm of the cut on this side; width {:.2f} to {:.2f} mm "
+      "(intended {:.2f}); walls {:.2f} mm at least\n",
+      settings.saw.name, settings.saw.blade_mm, settings.saw.source, guide.bone_mm,
+      guide.slots.size(), guide.slots.size() == 1 ? "" : "s", guide.led_mm, guide.line_mm, least,
+      most, guide.slot_mm, wall);
+  if (!guide.holes.empty()) {
+    text += fmt::format("screw holes: {}, diameter", guide.holes.size());
+    for (const ScrewHole& hole : guide.holes) text += fmt::format(" {:.2f}", hole.diameter_mm);
+    text += " mm\n";
+  }
+  return text + measure_text(guide.measure, settings.grip_mm);
+}
+
+Json guide_json(const Guide& guide, const GuideSettings& settings) {
+  Json slots = Json::array(), holes = Json::array();
+  for (const GuideSlot& slot : guide.slots)
+    slots.push_back({{"from", point_json(slot.from)},
+                     {"to", point_json(slot.to)},
+                     {"length_mm", slot.length_mm},
+                     {"width_min_mm", slot.width_min_mm},
+                     {"width_max_mm", slot.width_max_mm},
+                     {"wall_min_mm", slot.wall_min_mm}});
+  for (const ScrewHole& hole : guide.holes)
+    holes.push_back({{"point", point_json(hole.point)},
+                     {"axis", point_json(hole.axis)},
+                     {"diameter_mm", hole.diameter_mm}});
+  Json json{{"on", guide.on},
+            {"saw", settings.saw.name},
+            {"blade_mm", settings.saw.blade_mm},
+            {"slot_mm", guide.slot_mm},
+            {"bone_mm", guide.bone_mm},
+            {"cut_length_mm", guide.line_mm},
+            {"slot_length_mm", guide.led_mm},
+            {"slots", slots},
+            {"holes", holes}};
+  json.update(measure_json(guide.measure));
+  json["settings"] = {{"tolerance_mm", settings.tolerance_mm},
+                      {"reach_mm", settings.reach_mm},
+                      {"shell_mm", settings.shell_mm},
+                      {"height_mm", settings.height_mm},
+                      {"slot_wall_mm", settings.slot_wall_mm},
+                      {"hole_mm", settings.hole_mm},
+                      {"gap_mm", settings.gap_mm},
+                      {"grip_mm", settings.grip_mm},
+                      {"voxel_mm", settings.voxel_mm}};
+  json["notes"] = guide.notes;
   return json;
 }
 

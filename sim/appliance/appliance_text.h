@@ -3,6 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "sim/appliance/guide.h"
 #include "sim/appliance/splint.h"
 
 namespace condyle {
@@ -11,6 +12,9 @@ namespace condyle {
 std::string splint_text(const Splint& splint, const SplintSettings& settings);
 /// The same as numbers: mm, degrees, mm^2, mm^3; directions are unit vectors of the cranium.
 nlohmann::ordered_json splint_json(const Splint& splint, const SplintSettings& settings);
+
+std::string guide_text(const Guide& guide, const GuideSettings& settings);
+nlohmann::ordered_json guide_json(const Guide& guide, const GuideSettings& settings);
 
 /// Lines and values that splints and guides share.
 std::string measure_text(const ApplianceMeasure& measure, double grip_mm);

@@ -75,24 +75,6 @@ ReliefField::ReliefField(const TriMesh& on, const Vector3d& seat, const Box& box
   sweep(field_, Sweep::up, threads);
 }
 
-double ReliefField::operator()(const Vector3d& p) const {
-  const Vector3d q = R_FG_ * p;
-  std::array<int, 3> cell;
-  std::array<double, 3> part;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const GridAxis& axis = field_.axes[a];
-    const int last = static_cast<int>(axis.size()) - 2;
-    const double u =
-        std::clamp((q[static_cast<int>(a)] - axis[0]) / (axis[1] - axis[0]), 0.0, last + 1.0);
-    cell[a] = std::min(static_cast<int>(u), last);
-    part[a] = u - cell[a];
-  }
-  const std::size_t along_y = field_.axes[2].size(), along_x = along_y * field_.axes[1].size();
-  const float* v = &field_.values[field_.index(cell[0], cell[1], cell[2])];
-  const auto line = [&](std::size_t at) { return v[at] + part[2] * (v[at + 1] - v[at]); };
-  const double near = line(0) + part[1] * (line(along_y) - line(0));
-  const double far = line(along_x) + part[1] * (line(along_x + along_y) - line(along_x));
-  return near + part[0] * (far - near);
-}
+double ReliefField::operator()(const Vector3d& p) const { return even_value(field_, R_FG_ * p); }
 
 }  // namespace condyle

@@ -91,4 +91,27 @@ void write_splint_picture(const Splint& splint, const Case& patient, const Pictu
              file);
 }
 
+void write_guide_picture(const Guide& guide, const Case& patient, const PictureText& text,
+                         const std::filesystem::path& file) {
+  std::vector<Part> bones;
+  BodyId body = cranium_body;
+  for (const Part& part : patient.parts)
+    if (part.name == guide.on) body = part.body;
+  for (const Part& part : patient.parts)
+    if (collides(part.role) && part.body == body) bones.push_back(part);
+  const Vector3d out = -guide.measure.prints.at(0).seat;
+  const Vector3d up =
+      std::abs(out.z()) < 0.8 ? Vector3d(Vector3d::UnitZ()) : Vector3d(-Vector3d::UnitY());
+  const Vector3d right = up.cross(out).normalized();
+  const Vector3d beside = (out + 0.9 * right + 0.4 * up).normalized();
+  draw_sheet(guide.mesh,
+             {text.title,
+              {{"on the bone, as it is seated", bones, out, up, 1.35},
+               {"on the bone, from beside", bones, beside, up, 1.35},
+               {"outer side", {}, out, up},
+               {"side of the bone", {}, -out, up}},
+              lines_of(text.lines)},
+             file);
+}
+
 }  // namespace condyle

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/appliance/guide.h"
 #include "sim/appliance/splint.h"
 #include "sim/case/case.h"
 #include "tools/command.h"
@@ -33,5 +34,10 @@ struct PictureText {
 /// lower arch in its bite. throws: MachineError.
 void write_splint_picture(const Splint& splint, const Case& patient, const PictureText& text,
                           const std::filesystem::path& file);
+
+/// The guide on its bone from its own side and from beside, and alone from both sides.
+/// throws: MachineError.
+void write_guide_picture(const Guide& guide, const Case& patient, const PictureText& text,
+                         const std::filesystem::path& file);
 
 }  // namespace condyle
