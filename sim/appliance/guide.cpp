@@ -9,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "engine/core/units.h"
 #include "engine/field/isosurface.h"
 #include "engine/field/mesh_field.h"
 #include "engine/field/smooth.h"
@@ -23,8 +24,12 @@ using Eigen::Vector3d;
 
 constexpr double guide_rounding_mm = 1.6;
 constexpr double guide_thin_mm = 1, guide_thin_tolerance_mm = 0.12;
-constexpr double coarse_mm = 0.5;  // samples of the outer face and of undercuts
+constexpr double coarse_mm = 0.4;  // samples of the outer face and of undercuts
 constexpr double guide_margin_mm = 0.8;
+constexpr double coarse_error_mm = 0.08;  // of undercuts found by them
+constexpr double wrap_mm = 7;             // of the shell, below the edge of the cut as it is seated
+constexpr double hole_ring_mm = 1.3;      // of shell around a screw hole
+constexpr double bar_radius_mm = 2.2, bar_lift_mm = 3.5;
 constexpr double teeth_margin_mm = 0.5;
 constexpr double tower_end_mm = 2.5;  // of the slot's walls beyond its ends
 constexpr double tower_depth_mm = 3;  // of those below the edge of the cut, where bone falls away
@@ -68,9 +73,9 @@ TriMesh in_view(TriMesh mesh, const Matrix3d& R) {
 /// Shell, walls, slots and holes on one grid with z along the way out.
 class GuideField {
  public:
-  GuideField(const TriMesh& bone, const SlotPlan& plan, const std::vector<ScrewHole>& holes,
-             const Matrix3d& R, const GuideSettings& settings)
-      : settings_(settings), plan_(plan), holes_(holes), R_(R), half_slot_(0.5 * slot_mm()) {
+  GuideField(const TriMesh& bone, const SlotPlan& plan, const Matrix3d& R,
+             const GuideSettings& settings)
+      : settings_(settings), plan_(plan), R_(R), half_slot_(0.5 * slot_mm()) {
     for (const Vector3d& p : plan.points) points_.push_back(R * p);
     for (const Vector3d& p : points_) box_.add(p);
     constexpr double shift = 0.0137;  // not on planes of symmetry
@@ -90,6 +95,36 @@ class GuideField {
     for_samples([&](const Vector3d& p, float& value) {
       if (value < 1)
         value = std::max(value, static_cast<float>(teeth_margin_mm - even_value(field, p)));
+    });
+  }
+
+  /// Whether the shell surrounds a hole of its bone at a point, all in the cranium's axes.
+  bool has_shell(const Vector3d& point, const Vector3d& axis) const {
+    const Vector3d u = axis.unitOrthogonal(), v = axis.cross(u);
+    const double radius = 0.5 * settings_.hole_mm + hole_ring_mm;
+    for (int i = 0; i < 12; ++i) {
+      const double angle = 30 * i * degree;
+      const Vector3d ring = point + radius * (std::cos(angle) * u + std::sin(angle) * v);
+      // Bent bone has its shell higher or lower.
+      double least = 1;
+      for (double height = 0; height <= settings_.shell_mm; height += 0.25)
+        least = std::min(least, even_value(field_, R_ * (ring + height * axis)));
+      if (least > -0.4) return false;
+    }
+    return true;
+  }
+
+  void drill(const std::vector<ScrewHole>& holes) {
+    const Matrix3d back = R_.transpose();
+    for_samples([&](const Vector3d& p, float& value) {
+      if (value >= 0.5) return;
+      const Vector3d q = back * p;
+      for (const ScrewHole& hole : holes) {
+        const Vector3d d = q - hole.point;
+        const double along = d.dot(hole.axis), radius = 0.5 * hole.diameter_mm;
+        if (std::abs(along) > settings_.shell_mm + 4) continue;
+        value = std::max(value, static_cast<float>(radius - (d - along * hole.axis).norm()));
+      }
     });
   }
 
@@ -128,10 +163,15 @@ class GuideField {
     });
   }
 
-  double to_line(const Vector3d& p) const {
-    double least = 1e30;
-    for (const Vector3d& q : points_) least = std::min(least, (q - p).squaredNorm());
-    return std::sqrt(least);
+  /// Distance from the edge of the shell by the nearest point of the line: beside and below it.
+  double beyond_reach(const Vector3d& p) const {
+    double least = 1e30, height = 0;
+    for (const Vector3d& q : points_)
+      if (const double d2 = (q - p).squaredNorm(); d2 < least) {
+        least = d2;
+        height = q.z();
+      }
+    return std::max(std::sqrt(least) - settings_.reach_mm, height - wrap_mm - p.z());
   }
 
   /// Walls that lead the saw, and the slots between them: distances from both.
@@ -160,43 +200,43 @@ class GuideField {
     return lead;
   }
 
-  double hole_at(const Vector3d& p) const {
+  /// Bars between parts of the guide, raised from the bone.
+  double bar_at(const Vector3d& p) const {
     double least = 1e9;
-    for (const ScrewHole& hole : holes_) {
-      const Vector3d d = p - hole.point;
-      const double along = d.dot(hole.axis);
-      if (std::abs(along) > settings_.shell_mm + 4) continue;
-      least = std::min(least, (d - along * hole.axis).norm() - 0.5 * hole.diameter_mm);
+    const Vector3d lift = bar_lift_mm * plan_.out;
+    for (const SlotPlan::Bar& bar : plan_.bars) {
+      const Vector3d a = bar.from + lift, ab = bar.to - bar.from;
+      // A bar reaches into both parts.
+      const double length = ab.norm(), s = std::clamp((p - a).dot(ab) / length, -3.0, length + 3);
+      least = std::min(least, (p - a - s / length * ab).norm() - bar_radius_mm);
     }
     return least;
   }
 
   void fill() {
     const double gap = settings_.gap_mm, thick = gap + settings_.shell_mm;
+    const double relief_error = std::min(coarse_error_mm, gap);
     const Matrix3d back = R_.transpose();
     for_samples([&](const Vector3d& p, float& value) {
-      const double swept = even_value(swept_, p) + settings_.grip_mm;
+      const double swept = even_value(swept_, p) + settings_.grip_mm - relief_error;
       const double print = gap - value;  // fine distance of the bone
       const double inner = std::max(print, -swept);
       if (inner > 1) {
         value = 1;
         return;
       }
-      const double outer = std::min(even_value(outer_, p), swept + gap) - thick;
+      const double outer = even_value(outer_, p) - thick;
       const Vector3d q = back * p;
       double shell = outer;
-      if (outer < 1) shell = smooth_max(outer, to_line(p) - settings_.reach_mm, guide_rounding_mm);
+      if (outer < 1) shell = smooth_max(outer, beyond_reach(p), guide_rounding_mm);
       const Lead lead = lead_at(q);
-      const double body = smooth_min(shell, lead.walls, 1);
-      double result = std::max({body, inner, -lead.slots});
-      if (result < 1) result = std::max(result, -hole_at(q));
-      value = static_cast<float>(std::min(result, 1.0));
+      const double body = smooth_min(smooth_min(shell, lead.walls, 1), bar_at(q), 1);
+      value = static_cast<float>(std::min(std::max({body, inner, -lead.slots}), 1.0));
     });
   }
 
   const GuideSettings& settings_;
   const SlotPlan& plan_;
-  const std::vector<ScrewHole>& holes_;
   Matrix3d R_;
   double half_slot_;
   std::vector<Vector3d> points_;
@@ -206,12 +246,22 @@ class GuideField {
 };
 
 /// Widths of a slot and its walls on the finished surface, at several heights.
-GuideSlot measure_slot(const TriangleTree& tree, const SlotRun& run, const SlotRun::Slot& slot,
-                       const GuideSettings& settings) {
+GuideSlot measure_slot(const TriangleTree& tree, const SlotPlan& plan, const SlotRun& run,
+                       const SlotRun::Slot& slot, const GuideSettings& settings) {
+  // Where slots of two walls meet there is no width.
+  const auto meets_other = [&](const Vector3d& p) {
+    for (const SlotRun& other : plan.runs)
+      for (const SlotRun::Slot& each : other.slots)
+        if (&other != &run && std::abs(other.across.dot(p) - other.w0) < 1.5 &&
+            other.along.dot(p) > each.low - 1 && other.along.dot(p) < each.high + 1)
+          return true;
+    return false;
+  };
   GuideSlot measured{run.point(slot.low), run.point(slot.high), slot.high - slot.low, 1e9, 0, 1e9};
   for (double t = slot.low + 0.75; t < slot.high - 0.7; t += 0.5)
     for (const double height : {0.5 * settings.shell_mm, 0.7 * settings.height_mm}) {
       const Vector3d p = run.point(t) + height * run.outward;
+      if (meets_other(p)) continue;
       const auto one = tree.ray_cast(p, run.across, 5), two = tree.ray_cast(p, -run.across, 5);
       if (!one || !two) continue;
       const double width = one->distance + two->distance;
@@ -254,13 +304,17 @@ Guide make_guide(const GuideSupport& support, const CutLine& line, const GuideSe
   guide.bone_mm = plan.bone_mm;
   guide.line_mm = plan.line_mm;
   guide.led_mm = plan.led_mm;
-  guide.holes = plan_holes(support, bone_tree, plan, settings, guide.notes);
 
   report(progress, "forming the guide", 0.2);
   const Matrix3d R = view_axes(plan.out);
   const TriMesh bone = in_view(support.bone, R);
-  GuideField field(bone, plan, guide.holes, R, settings);
+  GuideField field(bone, plan, R, settings);
   field.spare(in_view(support.teeth, R));
+  guide.holes = plan_holes(
+      support, bone_tree, plan, settings,
+      [&](const Vector3d& p, const Vector3d& axis) { return field.has_shell(p, axis); },
+      guide.notes);
+  field.drill(guide.holes);
   TriMesh mesh = field.surface();
   guide.dropped_pieces = keep_one_piece(mesh);
   if (mesh.empty()) throw InputError("no guide fits on the bone beside " + line.title);
@@ -281,7 +335,7 @@ Guide make_guide(const GuideSupport& support, const CutLine& line, const GuideSe
   const TriangleTree tree(guide.mesh);
   for (const SlotRun& run : plan.runs)
     for (const SlotRun::Slot& slot : run.slots)
-      guide.slots.push_back(measure_slot(tree, run, slot, settings));
+      guide.slots.push_back(measure_slot(tree, plan, run, slot, settings));
   for (ScrewHole& hole : guide.holes) measure_hole(tree, settings, hole);
   return guide;
 }

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 constexpr double tip_cell_mm = 3, tip_smoothing_mm = 6, crown_slack_mm = 5;
 constexpr double above_others_mm = 1;  // a cell whose lowest point is no tip but a gap or a fossa
 constexpr double closing_mm = 9, opening_mm = 2.5;  // radii of the outline, inward and outward
-constexpr double spine_half_mm = 4;  // of the plate where teeth are missing
+constexpr double spine_half_mm = 4;                 // of the plate where teeth are missing
 constexpr float far_away = 1e12f;
 
 /// Squared distances along one line to the nearest of its parabolas.

@@ -22,10 +22,12 @@ constexpr double free_way_mm = 80;
 constexpr int direction_count = 240, most_samples = 160;
 constexpr double from_behind = 0.35;  // back component of a way out that no one would use
 constexpr double joint_mm = 1.5;      // gaps of a run, and distance of runs that meet at a bend
-constexpr double shortest_run_mm = 3, end_inset_mm = 2.5;
+constexpr double shortest_run_mm = 6, end_inset_mm = 2.5;
+constexpr double joined_mm = 8;  // shells of runs that are nearer grow together
+constexpr double shortest_slot_mm = 3;
 constexpr double longest_slot_mm = 24, bridge_mm = 3;
 constexpr double screw_mm = 6;  // length in the bone
-constexpr double screw_margin_mm = 1.5, hole_margin_mm = 3;
+constexpr double screw_margin_mm = 1.5;
 constexpr double pair_mm = 8;  // of two holes on one side
 
 bool is_wanted(const CutEdge& edge, GuideSide side) {
@@ -40,9 +42,23 @@ bool is_accessible(const TriangleTree& bone, const CutLine& line, const CutEdge&
          !bone.ray_cast(edge.point + 0.1 * edge.normal, out, free_way_mm);
 }
 
-std::vector<Vector3d> candidate_directions() {
-  std::vector<Vector3d> directions = {-Vector3d::UnitY(), Vector3d::UnitX(), -Vector3d::UnitX(),
-                                      -Vector3d::UnitZ(), Vector3d::UnitZ()};
+/// A guide for both sides comes from the midsagittal plane.
+bool is_on_both_sides(const std::vector<CutEdge>& edges) {
+  double left = 0, whole = 0;
+  for (const CutEdge& edge : edges) {
+    whole += edge.length_mm;
+    if (edge.point.x() > 0) left += edge.length_mm;
+  }
+  return left > 0.25 * whole && left < 0.75 * whole;
+}
+
+std::vector<Vector3d> candidate_directions(bool midsagittal) {
+  std::vector<Vector3d> directions;
+  if (midsagittal) {
+    for (int elevation = -90; elevation <= 90; elevation += 5)
+      directions.push_back({0, -std::cos(elevation * degree), std::sin(elevation * degree)});
+    return directions;
+  }
   // Spread evenly by the golden angle.
   for (int i = 0; i < direction_count; ++i) {
     const double z = 1 - (2 * i + 1.0) / direction_count, angle = i * 137.50776405 * degree;
@@ -56,19 +72,16 @@ std::vector<Vector3d> candidate_directions() {
 Vector3d choose_direction(const TriangleTree& bone, const CutLine& line,
                           const std::vector<CutEdge>& edges) {
   const std::size_t step = std::max<std::size_t>(1, edges.size() / most_samples);
-  constexpr double named_bonus = 1.05;  // a direction with a name, unless another shows more
   Vector3d best = -Vector3d::UnitY();
   double most = -1;
-  const auto directions = candidate_directions();
-  for (std::size_t i = 0; i < directions.size(); ++i) {
+  for (const Vector3d& direction : candidate_directions(is_on_both_sides(edges))) {
     double score = 0;
     for (std::size_t e = 0; e < edges.size(); e += step)
-      if (is_accessible(bone, line, edges[e], directions[i]))
-        score += edges[e].length_mm * edges[e].normal.dot(directions[i]);
-    if (i < 5) score *= named_bonus;
+      if (is_accessible(bone, line, edges[e], direction))
+        score += edges[e].length_mm * edges[e].normal.dot(direction);
     if (score > most) {
       most = score;
-      best = directions[i];
+      best = direction;
     }
   }
   return best;
@@ -125,7 +138,7 @@ void divide(const std::vector<SlotRun>& runs, SlotRun& run) {
   if (!goes_on(runs, run, low)) low += end_inset_mm;
   if (!goes_on(runs, run, high)) high -= end_inset_mm;
   const double length = high - low;
-  if (length < shortest_run_mm) return;
+  if (length < shortest_slot_mm) return;
   const int count =
       static_cast<int>(std::ceil((length + bridge_mm) / (longest_slot_mm + bridge_mm)));
   const double each = (length - (count - 1) * bridge_mm) / count;
@@ -139,6 +152,35 @@ double median_of(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::infinity();
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
   return values[values.size() / 2];
+}
+
+/// Joins groups of runs that are far from each other, nearest first.
+std::vector<SlotPlan::Bar> find_bars(const std::vector<SlotRun>& runs) {
+  std::vector<std::size_t> group(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) group[i] = i;
+  std::vector<SlotPlan::Bar> bars;
+  while (true) {
+    SlotPlan::Bar best;
+    double least = 1e9;
+    std::size_t from = 0, to = 0;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      for (std::size_t j = i + 1; j < runs.size(); ++j) {
+        if (group[i] == group[j]) continue;
+        for (const double s : runs[i].t)
+          for (const double t : runs[j].t) {
+            const Vector3d a = runs[i].point(s), b = runs[j].point(t);
+            if (const double d = (a - b).norm(); d < least) {
+              least = d;
+              best = {a, b};
+              from = group[i];
+              to = group[j];
+            }
+          }
+      }
+    if (least == 1e9) return bars;
+    if (least > joined_mm) bars.push_back(best);
+    std::replace(group.begin(), group.end(), to, from);
+  }
 }
 
 /// Depth of the bone below the points of the runs, in the wall's plane.
@@ -166,21 +208,6 @@ Beside beside(const SlotPlan& plan, const Vector3d& p) {
     if (distance < nearest.distance) nearest = {&run, t, run.across.dot(p) - run.w0, distance};
   }
   return nearest;
-}
-
-/// Whether bone faces the guide at a point and around it.
-bool is_open_ground(const TriangleTree& bone, const Vector3d& p, const Vector3d& normal,
-                    const Vector3d& out) {
-  const Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
-  for (int i = 0; i < 8; ++i) {
-    const double angle = i * 45 * degree;
-    const Vector3d q = p + 3 * (std::cos(angle) * u + std::sin(angle) * v);
-    const SurfacePoint near = bone.nearest(q, 1.5);
-    if (near.triangle < 0 || bone.pseudonormal(near).dot(out) < 0.5 ||
-        bone.ray_cast(near.point + 0.1 * bone.pseudonormal(near), out, free_way_mm))
-      return false;
-  }
-  return true;
 }
 
 bool is_dangerous(const std::vector<DangerZone>& dangers, const Vector3d& p, const Vector3d& in) {
@@ -221,13 +248,14 @@ SlotPlan plan_slots(const TriangleTree& bone, const CutLine& line, const GuideSe
     throw InputError(
         fmt::format("{}: no slot leads a saw from this side: at least {} mm of the cut "
                     "must face it; try --from and --side",
-                    line.title, shortest_run_mm + 2 * end_inset_mm));
+                    line.title, shortest_slot_mm + 2 * end_inset_mm));
   for (const SlotRun& run : plan.runs) {
     plan.line_mm += run.t.back() - run.t.front();
     for (const SlotRun::Slot& slot : run.slots) plan.led_mm += slot.high - slot.low;
     for (double t = run.t.front(); t < run.t.back(); t += 0.7) plan.points.push_back(run.point(t));
     plan.points.push_back(run.point(run.t.back()));
   }
+  plan.bars = find_bars(plan.runs);
   plan.bone_mm = bone_depth(bone, plan.runs);
   if (settings.saw.blade_mm >= plan.bone_mm)
     throw InputError(
@@ -236,31 +264,31 @@ SlotPlan plan_slots(const TriangleTree& bone, const CutLine& line, const GuideSe
   return plan;
 }
 
-std::vector<ScrewHole> plan_holes(const GuideSupport& support, const TriangleTree& bone,
-                                  const SlotPlan& plan, const GuideSettings& settings,
-                                  std::vector<std::string>& notes) {
+std::vector<ScrewHole> plan_holes(
+    const GuideSupport& support, const TriangleTree& bone, const SlotPlan& plan,
+    const GuideSettings& settings,
+    const std::function<bool(const Vector3d&, const Vector3d&)>& has_shell,
+    std::vector<std::string>& notes) {
   std::vector<ScrewHole> holes;
   if (settings.hole_mm == 0) return holes;
   const double nearest = 0.5 * settings.saw.blade_mm + settings.tolerance_mm +
-                         settings.slot_wall_mm + 0.5 * settings.hole_mm + 0.7,
-               farthest = settings.reach_mm - hole_margin_mm;
+                         settings.slot_wall_mm + 0.5 * settings.hole_mm + 1.2;
   struct Candidate {
     Vector3d point, axis;
     double along;  // seen from the way out
     bool above;
   };
   std::vector<Candidate> candidates;
-  const Vector3d across_view = std::abs(plan.out.x()) < 0.8 ? Vector3d::UnitX() : Vector3d::UnitY();
+  const Vector3d across_view = plan.runs.front().along;
   for (const auto& t : support.bone.triangles) {
     const Vector3d &a = support.bone.vertices[t[0]], &b = support.bone.vertices[t[1]],
                    &c = support.bone.vertices[t[2]];
     const Vector3d p = (a + b + c) / 3, normal = (b - a).cross(c - a).normalized();
-    if (!(normal.dot(plan.out) > 0.75)) continue;
+    if (!(normal.dot(plan.out) > 0.7)) continue;
     const Beside at = beside(plan, p);
-    if (at.distance < nearest || at.distance > farthest || std::abs(at.w) < nearest) continue;
-    // The next slot must not cross it, either.
-    if (bone.ray_cast(p + 0.1 * normal, plan.out, free_way_mm) ||
-        !is_open_ground(bone, p, normal, plan.out) || is_dangerous(support.dangers, p, -normal))
+    if (at.distance < nearest || at.distance > settings.reach_mm || std::abs(at.w) < nearest ||
+        bone.ray_cast(p + 0.1 * normal, plan.out, free_way_mm) ||
+        is_dangerous(support.dangers, p, -normal) || !has_shell(p, normal))
       continue;
     candidates.push_back({p, normal, across_view.dot(p), at.w > 0});
   }
@@ -272,19 +300,16 @@ std::vector<ScrewHole> plan_holes(const GuideSupport& support, const TriangleTre
         if (!high || each.along > high->along) high = &each;
       }
     int made = 0;
-    if (low) {
-      holes.push_back({low->point, low->axis, settings.hole_mm});
-      ++made;
-    }
-    if (high && (high->point - low->point).norm() > pair_mm) {
-      holes.push_back({high->point, high->axis, settings.hole_mm});
+    for (const Candidate* each : {low, high}) {
+      if (!each || (made == 1 && (each->point - low->point).norm() < pair_mm)) continue;
+      holes.push_back({each->point, each->axis, settings.hole_mm});
       ++made;
     }
     if (made < 2)
-      notes.push_back(
-          fmt::format("{} for {} screw{} on the side of {} of the cut: two hold a guide",
-                      made == 0 ? "no room" : "room", made == 0 ? "a" : "one", "",
-                      above ? "the upper wall" : "the lower wall"));
+      notes.push_back(fmt::format(
+          "one side of the cut has room for {} of two screws: the shell there is small, or roots, "
+          "canals and foramina are near",
+          made));
   }
   return holes;
 }

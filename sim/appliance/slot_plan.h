@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,10 @@ struct SlotPlan {
   Eigen::Vector3d out = -Eigen::Vector3d::UnitY();  // unit: the guide leaves this way
   std::vector<Eigen::Vector3d> points;              // of the line, accessible
   std::vector<SlotRun> runs;
+  struct Bar {
+    Eigen::Vector3d from, to;
+  };
+  std::vector<Bar> bars;  // between runs that no bone joins: points on the bone
   double line_mm = 0, led_mm = 0;
   double bone_mm = 0;
 };
@@ -40,10 +45,13 @@ struct SlotPlan {
 /// where no slot leads the saw from there.
 SlotPlan plan_slots(const TriangleTree& bone, const CutLine& line, const GuideSettings& settings);
 
-/// Points on both sides of the slots where a screw hole has bone below and shell around it, and
-/// keeps away from dangers. `diameter_mm` is the intended one.
-std::vector<ScrewHole> plan_holes(const GuideSupport& support, const TriangleTree& bone,
-                                  const SlotPlan& plan, const GuideSettings& settings,
-                                  std::vector<std::string>& notes);
+/// Two points on each side of the slots for screw holes: bone faces the guide, screws keep away
+/// from dangers, and `has_shell` holds for the point and the axis. `diameter_mm` is the intended
+/// one. Adds a note where there is no room.
+std::vector<ScrewHole> plan_holes(
+    const GuideSupport& support, const TriangleTree& bone, const SlotPlan& plan,
+    const GuideSettings& settings,
+    const std::function<bool(const Eigen::Vector3d&, const Eigen::Vector3d&)>& has_shell,
+    std::vector<std::string>& notes);
 
 }  // namespace condyle
