@@ -27,7 +27,7 @@ constexpr double guide_thin_mm = 1, guide_thin_tolerance_mm = 0.12;
 constexpr double coarse_mm = 0.4;  // samples of the outer face and of undercuts
 constexpr double guide_margin_mm = 0.8;
 constexpr double coarse_error_mm = 0.08;  // of undercuts found by them
-constexpr double wrap_mm = 7;             // of the shell, below the edge of the cut as it is seated
+constexpr double wrap_mm = 5.5;           // of the shell, below the edge of the cut as it is seated
 constexpr double hole_ring_mm = 1.3;      // of shell around a screw hole
 constexpr double bar_radius_mm = 2.2, bar_lift_mm = 3.5;
 constexpr double teeth_margin_mm = 0.5;
@@ -185,7 +185,7 @@ class GuideField {
       if (across > half_slot_ + settings_.slot_wall_mm + 1) continue;
       const double t = run.along.dot(p);
       if (t < run.t.front() - 4 || t > run.t.back() + 4) continue;
-      const double above = run.outward.dot(p) - run.surface(t);
+      const double above = run.outward.dot(p) - run.even_surface(t);
       for (const SlotRun::Slot& slot : run.slots) {
         const double beyond =
             std::abs(t - 0.5 * (slot.low + slot.high)) - 0.5 * (slot.high - slot.low);
@@ -259,7 +259,7 @@ GuideSlot measure_slot(const TriangleTree& tree, const SlotPlan& plan, const Slo
   };
   GuideSlot measured{run.point(slot.low), run.point(slot.high), slot.high - slot.low, 1e9, 0, 1e9};
   for (double t = slot.low + 0.75; t < slot.high - 0.7; t += 0.5)
-    for (const double height : {0.5 * settings.shell_mm, 0.7 * settings.height_mm}) {
+    for (const double height : {0.5 * settings.height_mm, 0.7 * settings.height_mm}) {
       const Vector3d p = run.point(t) + height * run.outward;
       if (meets_other(p)) continue;
       const auto one = tree.ray_cast(p, run.across, 5), two = tree.ray_cast(p, -run.across, 5);

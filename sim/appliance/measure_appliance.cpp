@@ -71,23 +71,25 @@ double quantile(std::vector<double> values, double fraction) {
 
 void measure_walls(const TriMesh& mesh, int threads, ApplianceMeasure& measure) {
   const TriangleTree tree(mesh);
-  std::vector<double> wall(mesh.triangles.size(), -1);
-  for_runs(mesh.triangles.size(), threads, [&](std::size_t t) {
-    const Face face = face_of(mesh, t);
-    if (face.area == 0) return;
-    const auto hit = tree.ray_cast(face.center - 1e-4 * face.normal, -face.normal, 30);
+  // Normals of corners: those of single triangles, some of which are slivers, are not reliable.
+  const std::vector<Vector3d> normals = vertex_normals(mesh);
+  std::vector<double> wall(mesh.vertices.size(), -1);
+  for_runs(mesh.vertices.size(), threads, [&](std::size_t v) {
+    const auto hit = tree.ray_cast(mesh.vertices[v] - 1e-3 * normals[v], -normals[v], 30);
     if (!hit) return;
-    const Face other = face_of(mesh, static_cast<std::size_t>(hit->triangle));
-    if (other.normal.dot(face.normal) < facing_cos) wall[t] = hit->distance;
+    Vector3d other = Vector3d::Zero();
+    for (int c = 0; c < 3; ++c)
+      other += hit->barycentric[c] * normals[mesh.triangles[hit->triangle][c]];
+    if (other.dot(normals[v]) < facing_cos) wall[v] = hit->distance + 1e-3;
   });
   std::vector<double> walls;
   measure.wall_min_mm = 1e9;
-  for (std::size_t t = 0; t < wall.size(); ++t) {
-    if (wall[t] < 0) continue;
-    walls.push_back(wall[t]);
-    if (wall[t] < measure.wall_min_mm) {
-      measure.wall_min_mm = wall[t];
-      measure.wall_at = face_of(mesh, t).center;
+  for (std::size_t v = 0; v < wall.size(); ++v) {
+    if (wall[v] < 0) continue;
+    walls.push_back(wall[v]);
+    if (wall[v] < measure.wall_min_mm) {
+      measure.wall_min_mm = wall[v];
+      measure.wall_at = mesh.vertices[v];
     }
   }
   if (walls.empty()) measure.wall_min_mm = 0;

@@ -23,6 +23,7 @@ constexpr int direction_count = 240, most_samples = 160;
 constexpr double from_behind = 0.35;  // back component of a way out that no one would use
 constexpr double joint_mm = 1.5;      // gaps of a run, and distance of runs that meet at a bend
 constexpr double shortest_run_mm = 6, end_inset_mm = 2.5;
+constexpr double smoothing_mm = 4;
 constexpr double joined_mm = 8;  // shells of runs that are nearer grow together
 constexpr double shortest_slot_mm = 3;
 constexpr double longest_slot_mm = 24, bridge_mm = 3;
@@ -87,6 +88,21 @@ Vector3d choose_direction(const TriangleTree& bone, const CutLine& line,
   return best;
 }
 
+/// Heights with the mean of their neighbours along the run, weighted by nearness.
+std::vector<double> smoothed(const SlotRun& run) {
+  std::vector<double> even(run.h.size());
+  for (std::size_t i = 0; i < even.size(); ++i) {
+    double sum = 0, weights = 0;
+    for (std::size_t j = 0; j < even.size(); ++j) {
+      const double weight = std::max(0.0, 1 - std::abs(run.t[j] - run.t[i]) / smoothing_mm);
+      sum += weight * run.h[j];
+      weights += weight;
+    }
+    even[i] = sum / weights;
+  }
+  return even;
+}
+
 /// Runs of neighbouring points along each wall.
 std::vector<SlotRun> find_runs(const CutLine& line, const std::vector<CutEdge>& edges,
                                const Vector3d& out) {
@@ -104,6 +120,7 @@ std::vector<SlotRun> find_runs(const CutLine& line, const std::vector<CutEdge>& 
         points.push_back({run.along.dot(edge.point), run.outward.dot(edge.point)});
     std::sort(points.begin(), points.end());
     const auto finish = [&] {
+      run.even_h = smoothed(run);
       if (!run.t.empty() && run.t.back() - run.t.front() >= shortest_run_mm) runs.push_back(run);
       run.t.clear();
       run.h.clear();
@@ -221,13 +238,13 @@ bool is_dangerous(const std::vector<DangerZone>& dangers, const Vector3d& p, con
 
 }  // namespace
 
-double SlotRun::surface(double at) const {
+double SlotRun::height(const std::vector<double>& heights, double at) const {
   const auto above = std::upper_bound(t.begin(), t.end(), at);
-  if (above == t.begin()) return h.front();
-  if (above == t.end()) return h.back();
+  if (above == t.begin()) return heights.front();
+  if (above == t.end()) return heights.back();
   const auto i = static_cast<std::size_t>(above - t.begin());
   const double part = (at - t[i - 1]) / (t[i] - t[i - 1]);
-  return h[i - 1] + part * (h[i] - h[i - 1]);
+  return heights[i - 1] + part * (heights[i] - heights[i - 1]);
 }
 
 SlotPlan plan_slots(const TriangleTree& bone, const CutLine& line, const GuideSettings& settings) {

@@ -16,16 +16,21 @@ struct SlotRun {
   Eigen::Vector3d along, outward, across;  // unit, orthogonal
   double w0 = 0;                           // of the wall's plane
   std::vector<double> t, h;                // of its points on the bone, t increasing
+  std::vector<double> even_h;              // smoothed, for the walls
   struct Slot {
     double low, high;  // t
   };
   std::vector<Slot> slots;
 
   /// Height of the bone's surface at t.
-  double surface(double at) const;
+  double surface(double at) const { return height(h, at); }
+  double even_surface(double at) const { return height(even_h, at); }
   Eigen::Vector3d point(double at) const {
     return at * along + surface(at) * outward + w0 * across;
   }
+
+ private:
+  double height(const std::vector<double>& heights, double at) const;
 };
 
 /// What a guide leads, seen from the side that it comes from.

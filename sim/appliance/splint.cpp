@@ -29,6 +29,7 @@ constexpr double rounding_mm = 2.4;     // of the plate's edges
 constexpr double most_tilt_deg = 12;    // of an insertion from the occlusal plane's normal
 constexpr double thin_radius_mm = 0.5;  // walls are about twice as thick at least
 constexpr double thin_tolerance_mm = 0.12;
+constexpr double relief_error_mm = 0.05;
 constexpr double grid_margin_mm = 0.8;
 constexpr double shortest_across_mm = 25, shortest_along_mm = 12;  // of an arch, one tooth is not
 constexpr double print_thickness_slack_mm = 0.1;  // prints come nearer by the grid's error
@@ -138,6 +139,8 @@ class SplintField {
     const SampledField distance = mesh_field(arch.mesh, axes_, band, settings_.threads);
     const ReliefField relief(arch.mesh, arch.seat, box_, settings_.voxel_mm, band,
                              settings_.threads);
+    // The grip, less the error of the samples on turned axes.
+    const double held_mm = settings_.grip_mm - std::min(relief_error_mm, settings_.gap_mm);
     const Eigen::Vector3i size = field_.size();
     parallel_for(axes_[0].size(), settings_.threads, [&](std::size_t layer) {
       const int i = static_cast<int>(layer);
@@ -146,7 +149,7 @@ class SplintField {
           const std::size_t at = field_.index(i, j, k);
           if (field_.values[at] > far_mm) continue;
           const double solid = std::min(distance.values[at] - settings_.gap_mm,
-                                        relief(field_.position(i, j, k)) + settings_.grip_mm);
+                                        relief(field_.position(i, j, k)) + held_mm);
           field_.values[at] = std::max(field_.values[at], static_cast<float>(-solid));
         }
       }
