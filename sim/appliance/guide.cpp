@@ -81,7 +81,9 @@ class GuideField {
     constexpr double shift = 0.0137;  // not on planes of symmetry
     const double around = settings.reach_mm + guide_margin_mm + shift;
     box_.low -= Vector3d::Constant(around);
-    box_.high += Vector3d(around, around, settings.height_mm + guide_margin_mm + shift);
+    // The walls of a slot may lean.
+    const double top = settings.height_mm + half_slot_ + settings.slot_wall_mm;
+    box_.high += Vector3d(around, around, top + guide_margin_mm + shift);
     axes_ = even_grid({box_.low, box_.high}, settings.voxel_mm);
     sample_bone(bone);
     fill();

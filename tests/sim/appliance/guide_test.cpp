@@ -29,6 +29,7 @@ GuideSettings with_saw(const std::string& saw, double voxel_mm) {
 const Plan& chin_plan() {
   static const Plan plan = [] {
     Plan made;
+    made.name = "chin";
     made.geometry = geometry_of(class_iii_head());
     return with_step(made, CutStep{.osteotomy = "genioplasty", .pieces = {"chin"}});
   }();
@@ -99,12 +100,19 @@ TEST(Guide, ItsSlotsLeadTheSawInThePlaneOfTheCut) {
       EXPECT_LT(off, 1e-6);
       EXPECT_LT(TriangleTree(chin_support().bone).nearest(end).distance, 0.3);
     }
-    // A blade that stands in the middle of the slot touches nothing.
-    const Vector3d middle = 0.5 * (slot.from + slot.to), out = -guide.measure.prints[0].seat;
-    int free = 0;
+    // A blade that stands in the slot touches nothing.
+    const Plane& wall = *std::min_element(
+        chin_line().walls.begin(), chin_line().walls.end(), [&](const Plane& a, const Plane& b) {
+          return std::abs(a.distance(slot.from)) + std::abs(a.distance(slot.to)) <
+                 std::abs(b.distance(slot.from)) + std::abs(b.distance(slot.to));
+        });
+    const Vector3d out = -guide.measure.prints[0].seat;
+    const Vector3d in_plane = (out - out.dot(wall.normal) * wall.normal).normalized();
+    const Vector3d along = (slot.to - slot.from).normalized();
     for (double height = 3; height < 6; height += 0.5)
-      if (tree.winding_number(middle + height * out) < 0.5) ++free;
-    EXPECT_GE(free, 4);
+      for (const double side : {-0.2, 0., 0.2})
+        EXPECT_LT(tree.winding_number(slot.from + along + height * in_plane + side * wall.normal),
+                  0.5);
   }
   EXPECT_NEAR(length, guide.led_mm, 1e-9);
   EXPECT_GT(guide.led_mm, 0.7 * guide.line_mm);

@@ -10,7 +10,8 @@ namespace condyle::test {
 
 /// A built-in head, made once a program.
 inline const Case& class_iii_head() {
-  static const Case patient = builtin_patient(HeadChoice{.variant = HeadVariant::class_iii});
+  static const Case patient =
+      builtin_patient(HeadChoice{.variant = HeadChoice::Variant::class_iii});
   return patient;
 }
 
