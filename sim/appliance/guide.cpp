@@ -28,6 +28,7 @@ constexpr double coarse_mm = 0.4;  // samples of the outer face and of undercuts
 constexpr double guide_margin_mm = 0.8;
 constexpr double coarse_error_mm = 0.08;  // of undercuts found by them
 constexpr double wrap_mm = 5.5;           // of the shell, below the edge of the cut as it is seated
+constexpr float nothing_near = 1;         // value of samples without anything of the guide
 constexpr double hole_ring_mm = 1.3;      // of shell around a screw hole
 constexpr double bar_radius_mm = 2.2, bar_lift_mm = 3.5;
 constexpr double teeth_margin_mm = 0.5;
@@ -215,11 +216,43 @@ class GuideField {
     return least;
   }
 
+  /// Columns of samples in which the guide may lie.
+  std::vector<char> columns_near() const {
+    const double reach = settings_.reach_mm + guide_margin_mm, step = settings_.voxel_mm;
+    const std::size_t rows = axes_[1].size();
+    std::vector<char> near(axes_[0].size() * rows, 0);
+    const auto mark = [&](const Vector3d& p) {
+      const int half = static_cast<int>(reach / step);
+      const int x = static_cast<int>((p.x() - axes_[0][0]) / step),
+                y = static_cast<int>((p.y() - axes_[1][0]) / step);
+      for (int i = std::max(0, x - half); i <= std::min<int>(axes_[0].size() - 1, x + half); ++i)
+        for (int j = std::max(0, y - half); j <= std::min<int>(rows - 1, y + half); ++j)
+          if ((i - x) * (i - x) + (j - y) * (j - y) <= half * half) near[i * rows + j] = 1;
+    };
+    for (const Vector3d& p : points_) mark(p);
+    for (const SlotPlan::Bar& bar : plan_.bars)
+      for (int i = 0; i <= 20; ++i) mark(R_ * (bar.from + 0.05 * i * (bar.to - bar.from)));
+    return near;
+  }
+
   void fill() {
     const double gap = settings_.gap_mm, thick = gap + settings_.shell_mm;
     const double relief_error = std::min(coarse_error_mm, gap);
     const Matrix3d back = R_.transpose();
+    constexpr float skipped = 100;
+    const std::vector<char> near = columns_near();
+    const std::size_t rows = axes_[1].size();
+    parallel_for(axes_[0].size(), settings_.threads, [&](std::size_t i) {
+      for (std::size_t j = 0; j < rows; ++j)
+        if (!near[i * rows + j])
+          std::fill_n(&field_.values[field_.index(static_cast<int>(i), static_cast<int>(j), 0)],
+                      axes_[2].size(), skipped);
+    });
     for_samples([&](const Vector3d& p, float& value) {
+      if (value == skipped) {
+        value = nothing_near;
+        return;
+      }
       const double swept = even_value(swept_, p) + settings_.grip_mm - relief_error;
       const double print = gap - value;  // fine distance of the bone
       const double inner = std::max(print, -swept);
@@ -229,10 +262,15 @@ class GuideField {
       }
       const double outer = even_value(outer_, p) - thick;
       const Vector3d q = back * p;
+      const Lead lead = lead_at(q);
+      const double bar = bar_at(q);
+      if (outer > 1 && lead.walls > 1 && bar > 1) {
+        value = 1;
+        return;
+      }
       double shell = outer;
       if (outer < 1) shell = smooth_max(outer, beyond_reach(p), guide_rounding_mm);
-      const Lead lead = lead_at(q);
-      const double body = smooth_min(smooth_min(shell, lead.walls, 1), bar_at(q), 1);
+      const double body = smooth_min(smooth_min(shell, lead.walls, 1), bar, 1);
       value = static_cast<float>(std::min(std::max({body, inner, -lead.slots}), 1.0));
     });
   }
