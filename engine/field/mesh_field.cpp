@@ -80,7 +80,13 @@ void raster_distance(const RasterTriangle& triangle, double band, int i, Sampled
     }
     const SampleRange samples(field.axes[2], low, high);
     float* row = &field.values[field.index(i, j, 0)];
+    const double base = triangle.normal.x() * (x - triangle.a.x()) +
+                        triangle.normal.y() * (y - triangle.a.y()) -
+                        triangle.normal.z() * triangle.a.z();
     for (int k = samples.first; k <= samples.last; ++k) {
+      // Its plane is farther away than another triangle.
+      const double height = base + triangle.normal.z() * field.axes[2][static_cast<std::size_t>(k)];
+      if (height * height >= row[k]) continue;
       const double squared =
           triangle.squared_distance({x, y, field.axes[2][static_cast<std::size_t>(k)]});
       row[k] = std::min(row[k], static_cast<float>(squared));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/mesh/tri_mesh.h"
+#include "engine/mesh/triangle_tree.h"
 
 namespace condyle {
 
@@ -47,12 +48,13 @@ struct PrintSettings {
   double thin_mm = 1;  // crevices narrower than this are not printed
 };
 
-/// closed, pieces, volume and walls. Deterministic for any number of threads.
-ApplianceMeasure measure_appliance(const TriMesh& mesh, int threads);
+/// Closed, pieces, volume and walls. `tree`: of the same mesh, as below. Deterministic for any
+/// number of threads.
+ApplianceMeasure measure_appliance(const TriMesh& mesh, const TriangleTree& tree, int threads);
 
 /// Fit, overlap and undercut of an appliance on the closed surface that it was made for.
-PrintMeasure measure_print(const TriMesh& appliance, const TriMesh& support,
-                           const PrintSettings& settings, int threads);
+PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& appliance_tree,
+                           const TriMesh& support, const PrintSettings& settings, int threads);
 
 /// Keeps the largest piece and drops cavities. Returns the number of dropped pieces.
 int keep_one_piece(TriMesh& mesh);

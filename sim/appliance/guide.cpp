@@ -285,8 +285,17 @@ class GuideField {
   SampledField field_, outer_, swept_;
 };
 
+/// Rays in the cranium's axes on a surface in the axes of the guide.
+struct TurnedTree {
+  const TriangleTree& tree;
+  Matrix3d R;
+  std::optional<SurfacePoint> ray_cast(const Vector3d& p, const Vector3d& d, double reach) const {
+    return tree.ray_cast(R * p, R * d, reach);
+  }
+};
+
 /// Widths of a slot and its walls on the finished surface, at several heights.
-GuideSlot measure_slot(const TriangleTree& tree, const SlotPlan& plan, const SlotRun& run,
+GuideSlot measure_slot(const TurnedTree& tree, const SlotPlan& plan, const SlotRun& run,
                        const SlotRun::Slot& slot, const GuideSettings& settings) {
   // Where slots of two walls meet there is no width.
   const auto meets_other = [&](const Vector3d& p) {
@@ -319,7 +328,7 @@ GuideSlot measure_slot(const TriangleTree& tree, const SlotPlan& plan, const Slo
   return measured;
 }
 
-void measure_hole(const TriangleTree& tree, const GuideSettings& settings, ScrewHole& hole) {
+void measure_hole(const TurnedTree& tree, const GuideSettings& settings, ScrewHole& hole) {
   const Vector3d p = hole.point + (settings.gap_mm + 0.5 * settings.shell_mm) * hole.axis;
   const Vector3d u = hole.axis.unitOrthogonal(), v = hole.axis.cross(u);
   double least = 1e9;
@@ -360,9 +369,10 @@ Guide make_guide(const GuideSupport& support, const CutLine& line, const GuideSe
   if (mesh.empty()) throw InputError("no guide fits on the bone beside " + line.title);
 
   report(progress, "measuring the guide", 0.7);
-  guide.measure = measure_appliance(mesh, settings.threads);
+  const TriangleTree tree(mesh);
+  guide.measure = measure_appliance(mesh, tree, settings.threads);
   guide.measure.wall_at = R.transpose() * guide.measure.wall_at;
-  PrintMeasure print = measure_print(mesh, bone,
+  PrintMeasure print = measure_print(mesh, tree, bone,
                                      {.on = support.name,
                                       .seat = -Vector3d::UnitZ(),
                                       .gap_mm = settings.gap_mm,
@@ -372,11 +382,10 @@ Guide make_guide(const GuideSupport& support, const CutLine& line, const GuideSe
   print.seat = -plan.out;
   guide.measure.prints.push_back(std::move(print));
   guide.mesh = in_view(std::move(mesh), R.transpose());
-  const TriangleTree tree(guide.mesh);
   for (const SlotRun& run : plan.runs)
     for (const SlotRun::Slot& slot : run.slots)
-      guide.slots.push_back(measure_slot(tree, plan, run, slot, settings));
-  for (ScrewHole& hole : guide.holes) measure_hole(tree, settings, hole);
+      guide.slots.push_back(measure_slot({tree, R}, plan, run, slot, settings));
+  for (ScrewHole& hole : guide.holes) measure_hole({tree, R}, settings, hole);
   return guide;
 }
 

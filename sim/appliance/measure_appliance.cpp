@@ -69,8 +69,8 @@ double quantile(std::vector<double> values, double fraction) {
   return values[at];
 }
 
-void measure_walls(const TriMesh& mesh, int threads, ApplianceMeasure& measure) {
-  const TriangleTree tree(mesh);
+void measure_walls(const TriMesh& mesh, const TriangleTree& tree, int threads,
+                   ApplianceMeasure& measure) {
   // Normals of corners: those of single triangles, some of which are slivers, are not reliable.
   const std::vector<Vector3d> normals = vertex_normals(mesh);
   std::vector<double> wall(mesh.vertices.size(), -1);
@@ -104,7 +104,7 @@ void check_voxel(double voxel_mm) {
                                least_voxel_mm, largest_voxel_mm));
 }
 
-ApplianceMeasure measure_appliance(const TriMesh& mesh, int threads) {
+ApplianceMeasure measure_appliance(const TriMesh& mesh, const TriangleTree& tree, int threads) {
   ApplianceMeasure measure;
   const Topology topology = inspect(mesh);
   measure.closed = topology.closed();
@@ -113,16 +113,16 @@ ApplianceMeasure measure_appliance(const TriMesh& mesh, int threads) {
   measure.volume_mm3 = topology.volume_mm3;
   const Vector3d size = bounding_box(mesh).size();
   for (int i = 0; i < 3; ++i) measure.size_mm[i] = size[i];
-  measure_walls(mesh, threads, measure);
+  measure_walls(mesh, tree, threads, measure);
   return measure;
 }
 
-PrintMeasure measure_print(const TriMesh& appliance, const TriMesh& support,
-                           const PrintSettings& settings, int threads) {
+PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& printed,
+                           const TriMesh& support, const PrintSettings& settings, int threads) {
   PrintMeasure measure;
   measure.on = settings.on;
   measure.seat = settings.seat;
-  const TriangleTree on(support), printed(appliance);
+  const TriangleTree on(support);
   const Box box = bounding_box(appliance);
   const Vector3d out = -settings.seat;
   // A ball that a wall of the appliance holds does not reach it.

@@ -282,11 +282,12 @@ Splint make_splint(const SplintArches& arches, const SplintSettings& settings,
   if (mesh.empty()) throw InputError("no splint fits between the arches: they leave no room");
 
   report(progress, "measuring the splint", 0.7);
+  const TriangleTree tree(mesh);
   splint.thickness_mm = print_thickness(mesh, upper.mesh, lower.mesh, settings.gap_mm,
                                         settings.voxel_mm, settings.threads);
-  splint.measure = measure_appliance(mesh, settings.threads);
+  splint.measure = measure_appliance(mesh, tree, settings.threads);
   for (const PlacedArch* arch : {&upper, &lower}) {
-    PrintMeasure print = measure_print(mesh, arch->mesh,
+    PrintMeasure print = measure_print(mesh, tree, arch->mesh,
                                        {.on = arch->arch.name,
                                         .seat = arch->seat,
                                         .gap_mm = settings.gap_mm,
