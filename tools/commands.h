@@ -13,6 +13,8 @@ void add_occlude(Commands& commands);
 void add_release(Commands& commands);
 void add_import(Commands& commands);
 void add_plan(Commands& commands);
+void add_splint(Commands& commands);  // in appliance/, as is the next
+void add_guide(Commands& commands);
 void add_predict(Commands& commands);
 void add_compare(Commands& commands);
 void add_report(Commands& commands);

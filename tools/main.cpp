@@ -70,8 +70,9 @@ int run_program(int argc, char** argv) {
   add_common(app, common);
   Commands commands(app);
   for (const auto add : {add_view, add_record, add_run, add_check, add_occlude, add_release,
-                         add_import, add_plan, add_predict, add_compare, add_report, add_export, add_demo,
-                         add_info, add_help, add_phantom, add_sample, add_bench})
+                         add_import, add_plan, add_splint, add_guide, add_predict, add_compare,
+                         add_report, add_export, add_demo, add_info, add_help, add_phantom,
+                         add_sample, add_bench})
     add(commands);
 
   // Pages of the manual may have the names of commands.

@@ -28,7 +28,8 @@ bool is_below(const std::string& path, const std::string& folder) {
 /// The target whose folder holds this file; the files of one folder are one module. The commands in
 /// folders of tools are part of the program.
 std::string target_of(const std::map<std::string, Module>& all, const std::string& folder) {
-  static const std::set<std::string> of_the_program = {"tools/bench", "tools/plan", "tools/demo"};
+  static const std::set<std::string> of_the_program = {"tools/bench", "tools/plan", "tools/demo",
+                                                       "tools/appliance"};
   const std::string own = of_the_program.contains(folder) ? "tools" : folder;
   for (const auto& [target, module] : all)
     if (module.folder == own) return target;

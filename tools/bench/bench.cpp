@@ -54,6 +54,10 @@ void add_bench(Commands& commands) {
           "condyle bench predict --json", run_bench_predict);
   in_range(predict.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1,
            1000);
+  CLI::App& appliances = add("appliances", "Splints and cutting guides of the class III plan",
+                             "condyle bench appliances --json", run_bench_appliances);
+  in_range(appliances.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1,
+           1000);
   CLI::App& mesh = add("mesh", "The decimators on the built-in patient's surfaces",
                        "condyle bench mesh --json", run_bench_mesh);
   in_range(mesh.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1, 1000);

@@ -29,7 +29,7 @@ struct BenchOperation {
   Plan plan, changed;
 };
 
-struct Measured {
+struct MeasuredTimes {
   std::vector<double> wall, cpu;
   void add(const Stopwatch& watch) {
     wall.push_back(watch.wall_ms());
@@ -49,7 +49,7 @@ class PredictBench {
   /// Time until the pieces of a cut are there to be drawn.
   void preview(const std::string& name, const std::string& what, const Case& patient,
                const CutStep& step, double goal_ms) {
-    Measured measured;
+    MeasuredTimes measured;
     for (int i = 0; i <= options_.repeats; ++i) {
       const Stopwatch watch;
       const PlacedOsteotomy placed = place_osteotomy(patient, step);
@@ -61,7 +61,7 @@ class PredictBench {
   }
 
   void predict(const BenchOperation& operation) {
-    Measured applied, first, changed, settled;
+    MeasuredTimes applied, first, changed, settled;
     PredictionSettings settings;
     settings.threads = common_.threads;
     Prediction begun, moved;
@@ -95,7 +95,7 @@ class PredictBench {
   }
 
  private:
-  void add_row(const std::string& name, const std::string& operation, const Measured& measured,
+  void add_row(const std::string& name, const std::string& operation, const MeasuredTimes& measured,
                double goal_ms, const Prediction* prediction = nullptr) {
     const Quantiles times = quantiles(measured.wall);
     Json row{{"name", name},

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "engine/cut/region.h"
+#include "sim/operation/operation.h"
+
+namespace condyle {
+
+/// Where a wall of a saw cut leaves the bone: a short piece of its border, cranium at rest.
+struct CutEdge {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    // its middle
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // of the bone's surface there
+  double length_mm = 0;
+  int wall = 0;  // index into CutLine::walls
+};
+
+/// The lines in which a cut step leaves a bone.
+struct CutLine {
+  int step = 0;
+  std::string title;         // "cut le_fort_1"
+  std::string bone;          // part of the uncut case
+  std::vector<Plane> walls;  // in the middle of the kerf
+  std::vector<CutEdge> edges;
+};
+
+/// The lines of a cut of the plan. `cut`: number of its step, name of its osteotomy, or of a
+/// segment that it makes. throws: InputError for a cut that the plan lacks or has more than once,
+/// listing those that it has, and one that meets no bone.
+CutLine find_cut_line(const Operated& operated, const Plan& plan, const std::string& cut);
+
+}  // namespace condyle

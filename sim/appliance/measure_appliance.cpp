@@ -1,0 +1,208 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "engine/mesh/measure.h"
+#include "engine/mesh/repair.h"
+#include "engine/mesh/topology.h"
+#include "engine/mesh/triangle_tree.h"
+#include "sim/appliance/appliance.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t run_length = 256;
+constexpr double longest_way_mm = 15;  // out of undercuts
+constexpr double chord_step_mm = 0.1;
+constexpr double facing_cos = -0.7;  // of the normals of two sides of a wall
+constexpr double near_mm = 0.6;      // an appliance farther away than this leaves a point uncovered
+
+template <class Body>
+void for_runs(std::size_t count, int threads, const Body& body) {
+  parallel_for((count + run_length - 1) / run_length, threads, [&](std::size_t run) {
+    const std::size_t end = std::min(count, (run + 1) * run_length);
+    for (std::size_t i = run * run_length; i < end; ++i) body(i);
+  });
+}
+
+struct Face {
+  Vector3d center, normal;  // unit
+  double area = 0;          // 0: degenerate
+};
+
+Face face_of(const TriMesh& mesh, std::size_t t) {
+  const auto& v = mesh.triangles[t];
+  const Vector3d &a = mesh.vertices[static_cast<std::size_t>(v[0])],
+                 &b = mesh.vertices[static_cast<std::size_t>(v[1])],
+                 &c = mesh.vertices[static_cast<std::size_t>(v[2])];
+  const Vector3d n = (b - a).cross(c - a);
+  const double length = n.norm();
+  return {(a + b + c) / 3, length > 0 ? Vector3d(n / length) : Vector3d::Zero(), 0.5 * length};
+}
+
+/// The deepest point within the support on the way of p along `out`, mm; 0 where the way is free.
+double depth_on_way(const TriangleTree& support, const Vector3d& p, const Vector3d& out) {
+  double deepest = 0, from = 0;
+  while (from < longest_way_mm) {
+    const auto entry = support.ray_cast(p + from * out, out, longest_way_mm - from);
+    if (!entry) break;
+    const double in = from + entry->distance + 1e-4;
+    const auto exit = support.ray_cast(p + in * out, out, longest_way_mm);
+    const double end = exit ? in + exit->distance : in;
+    for (double at = in; at < end; at += chord_step_mm)
+      deepest = std::max(deepest, -support.signed_distance(p + at * out));
+    from = end + 1e-4;
+  }
+  return deepest;
+}
+
+double quantile(std::vector<double> values, double fraction) {
+  if (values.empty()) return 0;
+  const auto at = static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+void measure_walls(const TriMesh& mesh, const TriangleTree& tree, int threads,
+                   ApplianceMeasure& measure) {
+  // Normals of corners: those of single triangles, some of which are slivers, are not reliable.
+  const std::vector<Vector3d> normals = vertex_normals(mesh);
+  std::vector<double> wall(mesh.vertices.size(), -1);
+  for_runs(mesh.vertices.size(), threads, [&](std::size_t v) {
+    const auto hit = tree.ray_cast(mesh.vertices[v] - 1e-3 * normals[v], -normals[v], 30);
+    if (!hit) return;
+    Vector3d other = Vector3d::Zero();
+    for (int c = 0; c < 3; ++c)
+      other += hit->barycentric[c] * normals[mesh.triangles[hit->triangle][c]];
+    if (other.dot(normals[v]) < facing_cos) wall[v] = hit->distance + 1e-3;
+  });
+  std::vector<double> walls;
+  measure.wall_min_mm = 1e9;
+  for (std::size_t v = 0; v < wall.size(); ++v) {
+    if (wall[v] < 0) continue;
+    walls.push_back(wall[v]);
+    if (wall[v] < measure.wall_min_mm) {
+      measure.wall_min_mm = wall[v];
+      measure.wall_at = mesh.vertices[v];
+    }
+  }
+  if (walls.empty()) measure.wall_min_mm = 0;
+  measure.wall_p5_mm = quantile(std::move(walls), 0.05);
+}
+
+}  // namespace
+
+void check_voxel(double voxel_mm) {
+  if (voxel_mm >= least_voxel_mm && voxel_mm <= largest_voxel_mm) return;
+  throw InputError(fmt::format("voxel {} mm: splints and guides are made at {} to {} mm", voxel_mm,
+                               least_voxel_mm, largest_voxel_mm));
+}
+
+ApplianceMeasure measure_appliance(const TriMesh& mesh, const TriangleTree& tree, int threads) {
+  ApplianceMeasure measure;
+  const Topology topology = inspect(mesh);
+  measure.closed = topology.closed();
+  measure.pieces = topology.components;
+  measure.triangles = static_cast<int>(mesh.triangles.size());
+  measure.volume_mm3 = topology.volume_mm3;
+  const Vector3d size = bounding_box(mesh).size();
+  for (int i = 0; i < 3; ++i) measure.size_mm[i] = size[i];
+  measure_walls(mesh, tree, threads, measure);
+  return measure;
+}
+
+PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& printed,
+                           const TriMesh& support, const PrintSettings& settings, int threads) {
+  PrintMeasure measure;
+  measure.on = settings.on;
+  measure.seat = settings.seat;
+  const TriangleTree on(support);
+  const Box box = bounding_box(appliance);
+  const Vector3d out = -settings.seat;
+  // A ball that a wall of the appliance holds does not reach it.
+  const double ball = settings.gap_mm + 0.5 * settings.thin_mm;
+  const auto is_crevice = [&](const Face& face) {
+    const Vector3d center = face.center + ball * face.normal;
+    return on.nearest(center).distance < ball - 0.02 ||
+           -printed.signed_distance(center) < 0.5 * settings.thin_mm - 0.1;
+  };
+  struct Sample {
+    double fit = -1, area = 0;
+    bool relieved = false;
+  };
+  std::vector<Sample> samples(support.triangles.size());
+  for_runs(support.triangles.size(), threads, [&](std::size_t t) {
+    const Face face = face_of(support, t);
+    if (face.area == 0 || !box.contains(face.center)) return;
+    // Covered: the appliance lies in front of it.
+    const auto front = printed.ray_cast(face.center, face.normal, near_mm);
+    if (!front ||
+        face_of(appliance, static_cast<std::size_t>(front->triangle)).normal.dot(face.normal) > 0)
+      return;
+    // Not within other teeth.
+    if (on.signed_distance(face.center + 0.5 * settings.gap_mm * face.normal) < 0) return;
+    const Vector3d q = face.center + settings.gap_mm * face.normal;
+    samples[t] = {printed.nearest(face.center).distance, face.area,
+                  is_crevice(face) || depth_on_way(on, q, out) > settings.grip_mm - 0.05};
+  });
+  std::vector<double> fits;
+  double sum = 0, area = 0;
+  for (const Sample& sample : samples) {
+    if (sample.fit < 0) continue;
+    if (sample.relieved) {
+      measure.relieved_mm2 += sample.area;
+      continue;
+    }
+    fits.push_back(sample.fit);
+    area += sample.area;
+    sum += sample.area * sample.fit;
+    measure.fit_max_mm = std::max(measure.fit_max_mm, sample.fit);
+  }
+  measure.area_mm2 = area;
+  measure.fit_mean_mm = area > 0 ? sum / area : 0;
+  measure.fit_p95_mm = quantile(std::move(fits), 0.95);
+
+  struct Way {
+    double overlap = 0, undercut = 0;
+  };
+  std::vector<Way> ways(appliance.vertices.size());
+  for_runs(appliance.vertices.size(), threads, [&](std::size_t v) {
+    const Vector3d& p = appliance.vertices[v];
+    const SurfacePoint near = on.signed_nearest(p, near_mm);
+    const double overlap = near.triangle < 0 ? 0 : std::max(0.0, -near.distance);
+    ways[v] = {overlap, depth_on_way(on, p, out)};
+  });
+  for (const Way& way : ways) {
+    measure.overlap_mm = std::max(measure.overlap_mm, way.overlap);
+    measure.undercut_mm = std::max(measure.undercut_mm, way.undercut);
+  }
+  return measure;
+}
+
+int keep_one_piece(TriMesh& mesh) {
+  const Components components = find_components(mesh);
+  if (components.count <= 1) return 0;
+  std::vector<double> volume(static_cast<std::size_t>(components.count), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& v = mesh.triangles[t];
+    volume[static_cast<std::size_t>(components.of_triangle[t])] +=
+        mesh.vertices[static_cast<std::size_t>(v[0])].dot(
+            mesh.vertices[static_cast<std::size_t>(v[1])].cross(
+                mesh.vertices[static_cast<std::size_t>(v[2])]));
+  }
+  const auto largest = std::max_element(volume.begin(), volume.end()) - volume.begin();
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    if (components.of_triangle[t] == largest) mesh.triangles[kept++] = mesh.triangles[t];
+  mesh.triangles.resize(kept);
+  drop_unreferenced(mesh);
+  return components.count - 1;
+}
+
+}  // namespace condyle
