@@ -30,7 +30,6 @@ constexpr double coarse_error_mm = 0.08;  // of undercuts found by them
 constexpr double wrap_mm = 5.5;           // of the shell, below the edge of the cut as it is seated
 constexpr float nothing_near = 1;         // value of samples without anything of the guide
 constexpr double hole_ring_mm = 1.3;      // of shell around a screw hole
-constexpr double bar_radius_mm = 2.2, bar_lift_mm = 3.5;
 constexpr double teeth_margin_mm = 0.5;
 constexpr double tower_end_mm = 2.5;  // of the slot's walls beyond its ends
 constexpr double tower_depth_mm = 3;  // of those below the edge of the cut, where bone falls away
@@ -83,7 +82,8 @@ class GuideField {
     const double around = settings.reach_mm + guide_margin_mm + shift;
     box_.low -= Vector3d::Constant(around);
     // The walls of a slot may lean.
-    const double top = settings.height_mm + half_slot_ + settings.slot_wall_mm;
+    double top = settings.height_mm + half_slot_ + settings.slot_wall_mm;
+    for (const SlotPlan::Bar& bar : plan.bars) top = std::max(top, bar.lift_mm + 3);
     box_.high += Vector3d(around, around, top + guide_margin_mm + shift);
     axes_ = even_grid({box_.low, box_.high}, settings.voxel_mm);
     sample_bone(bone);
@@ -206,12 +206,17 @@ class GuideField {
   /// Bars between parts of the guide, raised from the bone.
   double bar_at(const Vector3d& p) const {
     double least = 1e9;
-    const Vector3d lift = bar_lift_mm * plan_.out;
+    const auto capsule = [&](const Vector3d& a, const Vector3d& b, double beyond) {
+      const Vector3d ab = b - a;
+      const double length = ab.norm();
+      const double t = std::clamp((p - a).dot(ab) / length, -beyond, length + beyond);
+      least = std::min(least, (p - a - t / length * ab).norm() - SlotPlan::bar_radius_mm);
+    };
     for (const SlotPlan::Bar& bar : plan_.bars) {
-      const Vector3d a = bar.from + lift, ab = bar.to - bar.from;
-      // A bar reaches into both parts.
-      const double length = ab.norm(), s = std::clamp((p - a).dot(ab) / length, -3.0, length + 3);
-      least = std::min(least, (p - a - s / length * ab).norm() - bar_radius_mm);
+      const Vector3d a = bar.from + bar.lift_mm * plan_.out, b = bar.to + bar.lift_mm * plan_.out;
+      capsule(a, b, 3);  // it reaches into both parts
+      capsule(bar.from, a, 0);
+      capsule(bar.to, b, 0);
     }
     return least;
   }
@@ -385,6 +390,12 @@ Guide make_guide(const GuideSupport& support, const CutLine& line, const GuideSe
   for (const SlotRun& run : plan.runs)
     for (const SlotRun::Slot& slot : run.slots)
       guide.slots.push_back(measure_slot({tree, R}, plan, run, slot, settings));
+  for (const GuideSlot& slot : guide.slots)
+    if (slot.width_max_mm == 0)
+      throw InputError(fmt::format(
+          "the parts of a guide for {} do not hang together from this side: make one for each side "
+          "(--side left, --side right), or choose --from",
+          line.title));
   for (ScrewHole& hole : guide.holes) measure_hole({tree, R}, settings, hole);
   return guide;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/units.h"
@@ -24,7 +25,8 @@ constexpr double from_behind = 0.35;  // back component of a way out that no one
 constexpr double joint_mm = 1.5;      // gaps of a run, and distance of runs that meet at a bend
 constexpr double shortest_run_mm = 6, end_inset_mm = 2.5;
 constexpr double smoothing_mm = 4;
-constexpr double joined_mm = 8;  // shells of runs that are nearer grow together
+constexpr double island_fraction = 0.4;  // of the longest group of runs
+constexpr double joined_mm = 8;          // shells of runs that are nearer grow together
 constexpr double shortest_slot_mm = 3;
 constexpr double longest_slot_mm = 24, bridge_mm = 3;
 constexpr double screw_mm = 6;  // length in the bone
@@ -140,14 +142,38 @@ std::vector<SlotRun> find_runs(const CutLine& line, const std::vector<CutEdge>& 
   return runs;
 }
 
+bool ends_at(const SlotRun& run, const Vector3d& end) {
+  return (run.point(run.t.front()) - end).norm() < 2 * joint_mm ||
+         (run.point(run.t.back()) - end).norm() < 2 * joint_mm;
+}
+
+bool meet(const SlotRun& a, const SlotRun& b) {
+  return ends_at(a, b.point(b.t.front())) || ends_at(a, b.point(b.t.back()));
+}
+
 /// Whether another run goes on where one ends.
 bool goes_on(const std::vector<SlotRun>& runs, const SlotRun& run, double at) {
-  const Vector3d end = run.point(at);
-  for (const SlotRun& other : runs)
-    if (&other != &run)
-      for (const double t : {other.t.front(), other.t.back()})
-        if ((other.point(t) - end).norm() < 2 * joint_mm) return true;
-  return false;
+  return std::any_of(runs.begin(), runs.end(), [&](const SlotRun& other) {
+    return &other != &run && ends_at(other, run.point(at));
+  });
+}
+
+/// Drops short groups of runs that meet, such as the back of the nasal cavity seen through it.
+void drop_islands(std::vector<SlotRun>& runs) {
+  std::vector<std::size_t> group(runs.size());
+  std::vector<double> length(runs.size(), 0);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    group[i] = i;
+    for (std::size_t j = 0; j < i; ++j)
+      if (meet(runs[i], runs[j])) std::replace(group.begin(), group.end(), group[j], group[i]);
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    length[group[i]] += runs[i].t.back() - runs[i].t.front();
+  const double longest = length.empty() ? 0 : *std::max_element(length.begin(), length.end());
+  std::vector<SlotRun> kept;
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (length[group[i]] > island_fraction * longest) kept.push_back(runs[i]);
+  runs = std::move(kept);
 }
 
 void divide(const std::vector<SlotRun>& runs, SlotRun& run) {
@@ -198,6 +224,21 @@ std::vector<SlotPlan::Bar> find_bars(const std::vector<SlotRun>& runs) {
     if (least > joined_mm) bars.push_back(best);
     std::replace(group.begin(), group.end(), to, from);
   }
+}
+
+/// Raises a bar until it clears the bone between its ends.
+void lift(SlotPlan::Bar& bar, const TriangleTree& bone, const Vector3d& out) {
+  constexpr double highest_mm = 20, clearance_mm = 0.5;
+  const auto is_free = [&] {
+    for (double s = 0.2; s < 0.81; s += 0.05) {
+      const Vector3d p = bar.from + s * (bar.to - bar.from) + bar.lift_mm * out;
+      if (bone.signed_distance(p) < SlotPlan::bar_radius_mm + clearance_mm ||
+          bone.ray_cast(p, out, free_way_mm))
+        return false;
+    }
+    return true;
+  };
+  while (bar.lift_mm < highest_mm && !is_free()) bar.lift_mm += 0.5;
 }
 
 /// Depth of the bone below the points of the runs, in the wall's plane.
@@ -259,6 +300,7 @@ SlotPlan plan_slots(const TriangleTree& bone, const CutLine& line, const GuideSe
   for (const CutEdge& edge : wanted)
     if (is_accessible(bone, line, edge, plan.out)) seen.push_back(edge);
   plan.runs = find_runs(line, seen, plan.out);
+  drop_islands(plan.runs);
   for (SlotRun& run : plan.runs) divide(plan.runs, run);
   std::erase_if(plan.runs, [](const SlotRun& run) { return run.slots.empty(); });
   if (plan.runs.empty())
@@ -273,6 +315,7 @@ SlotPlan plan_slots(const TriangleTree& bone, const CutLine& line, const GuideSe
     plan.points.push_back(run.point(run.t.back()));
   }
   plan.bars = find_bars(plan.runs);
+  for (SlotPlan::Bar& bar : plan.bars) lift(bar, bone, plan.out);
   plan.bone_mm = bone_depth(bone, plan.runs);
   if (settings.saw.blade_mm >= plan.bone_mm)
     throw InputError(

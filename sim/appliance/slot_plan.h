@@ -40,7 +40,9 @@ struct SlotPlan {
   std::vector<SlotRun> runs;
   struct Bar {
     Eigen::Vector3d from, to;
+    double lift_mm = 3.5;  // along the way out, over what lies between
   };
+  static constexpr double bar_radius_mm = 2.2;
   std::vector<Bar> bars;  // between runs that no bone joins: points on the bone
   double line_mm = 0, led_mm = 0;
   double bone_mm = 0;
