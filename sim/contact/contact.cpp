@@ -248,6 +248,54 @@ bool taken_at(const ContactModel::State& state, const ContactSet* set, const Bod
 /// one from this pose.
 bool is_one_joint(const ContactModel::State& state) { return state.bodies.size() == 2; }
 
+PairContact carried(PairContact found, const Pose& X) {
+  for (ContactPoint& contact : found.contacts) {
+    contact.point = X * contact.point;
+    contact.normal = X.R * contact.normal;
+  }
+  found.witness_a = X * found.witness_a;
+  found.witness_b = X * found.witness_b;
+  return found;
+}
+
+/// The pairs whose bodies were moved as one: a move does not measure them, and their answers stay
+/// behind.
+class CarriedPairs {
+ public:
+  explicit CarriedPairs(const ContactModel::State& state)
+      : state_(state), carried_(state.count(), false) {}
+
+  void note(const BodyMove& move, const BodyPoses& reached) {
+    if (bit_identical(move.from(), reached[move.body])) return;
+    for (std::size_t i = 0; i < carried_.size(); ++i) {
+      const ColliderPair& pair = state_.pair_or_complement(i);
+      if (move.concerns(pair))
+        carried_[i] = false;
+      else if (move.moves[index_of(pair.a->body)])
+        carried_[i] = true;
+    }
+  }
+
+  /// Brings the answers to the poses, for all of which `set.at` stands. Where two bodies lie as at
+  /// rest, so does their answer, whatever came between.
+  void bring_along(ContactSet& set) const {
+    for (std::size_t i = 0; i < carried_.size(); ++i) {
+      if (!carried_[i]) continue;
+      const ColliderPair& pair = state_.pair_or_complement(i);
+      const Pose &X_CA = set.at[pair.a->body], &X_CB = set.at[pair.b->body];
+      PairContact& found = state_.slot(set, i);
+      found = bit_identical(X_CA, X_CB)
+                  ? carried(state_.slot(state_.rest, i), X_CA)
+                  : query_pair(pair, X_CA, X_CB, {found.triangle_a, found.triangle_b},
+                               state_.full_query(i));
+    }
+  }
+
+ private:
+  const ContactModel::State& state_;
+  std::vector<bool> carried_;
+};
+
 }  // namespace
 
 ContactModel::Slide ContactModel::stop_at_contact(const BodyPoses& from, const Pose& target,
@@ -264,6 +312,9 @@ ContactModel::Slide ContactModel::stop_at_contact(const BodyPoses& from, const P
   const BodyMove move = make_move(state, start, body, target);
   const MoveResult reached = stop(state, move, set, exact, threads);
   set.at = move.poses_at(reached.X_CD);
+  CarriedPairs pairs(state);
+  pairs.note(move, set.at);
+  pairs.bring_along(set);
   BodyPoses there = set.at;
   return {std::move(there), reached.stopped, state.with_complements(std::move(set))};
 }
@@ -288,6 +339,7 @@ ContactModel::Slide ContactModel::slide(const BodyPoses& from, std::span<const P
   const bool near = is_one_joint(state) && state.fits(previous);
   ContactSet set = exact || near ? *previous : state.query_all(at, previous, threads);
   exact = exact || !near;
+  CarriedPairs pairs(state);
   for (int b = 1; b < state.bodies.size(); ++b) {
     const BodyId body{b};
     // Relative to the pose that the parent reached.
@@ -298,11 +350,13 @@ ContactModel::Slide ContactModel::slide(const BodyPoses& from, std::span<const P
     const BodyMove move = make_move(state, at, body, to);
     const MoveResult reached = slide_move(state, move, set, exact, bound_far, threads);
     at = move.poses_at(reached.X_CD);
+    pairs.note(move, at);
     exact = true;
     result.stopped |= reached.stopped;
   }
   if (!bound_far) state.measure_bounds(at, set);
   set.at = at;
+  pairs.bring_along(set);
   result.contacts = state.with_complements(std::move(set));
   return result;
 }

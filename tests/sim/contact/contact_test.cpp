@@ -164,6 +164,35 @@ TEST(ContactModel, BodiesMovedTogetherStopAtTheSurface) {
   EXPECT_GT(stopped, 6);
 }
 
+/// Contacts between two bodies that move as one lie where the bodies are, not where they were.
+TEST(ContactModel, ContactsBetweenBodiesMovedAsOneMoveAlong) {
+  Case patient = two_bones(test::box({-40, -40, 30}, {40, 40, 40}), test::sphere(3, 10));
+  const BodyId piece = patient.bodies.add({.name = "piece", .parent = mandible_body});
+  patient.parts.push_back(
+      {"piece", Role::segment, test::sphere(3, 10, {0, -19, 0}, 0.05), {}, piece});
+  const ContactModel model(patient);
+  const Pose turned{Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 2) / 3)),
+                    {3, 5, -20}};
+  for (const Pose& X_piece : {Pose{}, shift(0.2, 0, 0)}) {
+    const auto slide = model.slide({}, target_poses(turned, {X_piece}), &model.at_rest());
+    const auto further =
+        model.slide(slide.at, target_poses(shift(0, 0, -8) * turned, {X_piece}), &slide.contacts);
+    const auto stop = model.stop_at_contact(slide.at, shift(0, 0, -8) * turned, &slide.contacts);
+    for (const auto* moved : {&slide, &further, &stop}) {
+      const ContactSet exact = model.find(moved->at, nullptr);
+      ASSERT_EQ(moved->contacts.pairs.size(), exact.pairs.size());
+      for (std::size_t i = 0; i < exact.pairs.size(); ++i) {
+        const PairContact &x = moved->contacts.pairs[i], &y = exact.pairs[i];
+        EXPECT_EQ(x.touching, y.touching);
+        EXPECT_LT((x.witness_a - y.witness_a).norm(), 1e-9);
+        ASSERT_EQ(x.contacts.size(), y.contacts.size());
+        for (std::size_t k = 0; k < x.contacts.size(); ++k)
+          EXPECT_LT((x.contacts[k].point - y.contacts[k].point).norm(), 1e-9);
+      }
+    }
+  }
+}
+
 TEST(ContactModel, AJumpDoesNotPassThroughAThinWall) {
   const ContactModel model(two_bones(thin_plate(), test::sphere(3, 10)));
   for (const double jump : {22.0, 45.0, 300.0}) {
