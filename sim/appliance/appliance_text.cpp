@@ -40,7 +40,7 @@ std::string direction_text(const Eigen::Vector3d& direction) {
 
 std::string measure_text(const ApplianceMeasure& measure, double grip_mm) {
   std::string text = fmt::format(
-      "surface: {}, {} piece{}, {} triangles, {:.1f} cm3, {:.0f} x {:.0f} x {:.0f} mm\n"
+      "surface: {}, {} piece{}, {} triangles, {:.1f} cm³, {:.0f} x {:.0f} x {:.0f} mm\n"
       "smallest wall: {:.2f} mm; 95 % of walls are at least {:.2f} mm\n",
       measure.closed ? "closed" : "NOT closed", measure.pieces, measure.pieces == 1 ? "" : "s",
       measure.triangles, measure.volume_mm3 / 1000, measure.size_mm[0], measure.size_mm[1],
@@ -49,7 +49,7 @@ std::string measure_text(const ApplianceMeasure& measure, double grip_mm) {
     text += fmt::format(
         "{}: seated {} ({:.0f} degrees from the normal); fit {:.2f} mm at most, {:.2f} mm mean, "
         "over "
-        "{:.0f} mm2; overlap {:.2f} mm; undercut {:.2f} mm, grip {:.2f} mm; {:.0f} mm2 relieved\n",
+        "{:.0f} mm²; overlap {:.2f} mm; undercut {:.2f} mm, grip {:.2f} mm; {:.0f} mm² relieved\n",
         print.on, direction_text(print.seat), print.tilt_deg, print.fit_max_mm, print.fit_mean_mm,
         print.area_mm2, print.overlap_mm, print.undercut_mm, grip_mm, print.relieved_mm2);
   return text;
