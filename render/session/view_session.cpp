@@ -148,7 +148,7 @@ WindowScene ViewSession::scene_of_patient() const {
                     .bodies = movable_bodies(patient.parts, patient.bodies)};
   scene.case_folder = state_.patient->folder;
   scene.landmarks = scene.landmarks_in_use = landmarks_of(patient);
-  scene.motions = motion_names();
+  scene.motions = motion_names(state_.patient->scene);
   scene.motion = asked_;
   scene.muscles = muscle_items(*state_.patient);
   scene.layers = layer_items(*state_.patient);

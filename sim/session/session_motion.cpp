@@ -9,6 +9,7 @@
 #include "engine/core/temporary_path.h"
 #include "sim/dynamics/muscle_motion.h"
 #include "sim/motion/measure_pose.h"
+#include "sim/operated/graft_path.h"
 #include "sim/session/motion_settings.h"
 #include "sim/session/muscle_groups.h"
 
@@ -26,6 +27,9 @@ Motion make(const MotionChoice& choice, const Scene& scene, const SessionSetting
     motion.name = "by muscles";
     return motion;
   }
+  if (is_insertion_path(choice.spec))
+    return insertion_path_motion(choice.spec, scene, options.motion.duration_s,
+                                 options.simulator.threads);
   MotionSettings settings = options.motion;
   for (const auto& [name, value] : choice.parameters)
     if (const auto* parameter = motion_parameter(name))
@@ -66,11 +70,13 @@ Motion opening_of(const MotionChoice& choice, const Motion& motion, const Scene&
 
 }  // namespace
 
-std::vector<std::string> motion_names() {
+std::vector<std::string> motion_names(const Scene& scene) {
   std::vector<std::string> names = builtin_motions();
   if (std::find(names.begin(), names.end(), "opening") == names.end())
     names.insert(names.begin(), "opening");
   names.emplace_back(by_hand);
+  if (scene.plan)
+    for (const Seat& seat : scene.plan->seats) names.push_back("path:" + seat.name);
   return names;
 }
 

@@ -20,8 +20,9 @@ struct SessionMotion {
   std::vector<ExcitationSetting> excitations;
 };
 
-/// Names to choose from; "by-muscles" is a motion whose muscles are excited by hand.
-std::vector<std::string> motion_names();
+/// Names to choose from; "by-muscles" is a motion whose muscles are excited by hand, "path:NAME"
+/// the insertion path of a graft.
+std::vector<std::string> motion_names(const Scene& scene);
 
 /// Makes the motion that was chosen. throws: InputError.
 SessionMotion make_session_motion(const MotionChoice& choice, const SessionPatient& patient,

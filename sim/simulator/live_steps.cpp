@@ -41,7 +41,9 @@ StepInput LiveSteps::input(const LiveTarget& target, double time_s, bool shown) 
   const Pose X_CM =
       opening_mm ? opening_.target(opening_times_.time_of(*opening_mm)) : motion_.target(time_s);
   StepInput input{.time_s = time_s,
-                  .X_PB_target = motion_target_poses(scene_.patient.bodies, X_CM, X_PB_moved_),
+                  .X_PB_target = motion_target_poses(
+                      scene_.patient.bodies, X_CM,
+                      motion_.pieces && !opening_mm ? motion_.pieces(time_s) : X_PB_moved_),
                   .obey_contact = target.request.obey_contact};
   input.bound_far = !shown;
   for (std::size_t b = 0; b < X_PB_moved_.size(); ++b)
@@ -65,7 +67,8 @@ TeleportStart::Asked LiveSteps::asked(const LiveTarget& target, const StepInput&
                              std::vector<bool>(X_PB_moved_.size())};
   for (std::size_t b = 0; b < X_PB_moved_.size(); ++b)
     asked.follows_motion[b] =
-        !target.X_PB_held[b] && scene_.patient.bodies.moved_by_motion(BodyId{static_cast<int>(b)});
+        !target.X_PB_held[b] &&
+        (motion_.pieces || scene_.patient.bodies.moved_by_motion(BodyId{static_cast<int>(b)}));
   return asked;
 }
 
