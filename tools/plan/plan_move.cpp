@@ -34,6 +34,9 @@ MoveStep checked_move(const Case& patient, const Plan& plan, MoveStep move,
           "move {} is not added: {}. --slide adds the free part, --despite-collision the whole "
           "move",
           move.segment, collision->words));
+    if (collision->free_fraction <= 0)
+      throw InputError(fmt::format("move {} is not added: {}, so there is no part to slide",
+                                   move.segment, collision->words));
     print_plan_notes(common, {collision->words + "; this part is added"});
     move.move = collision->free;
     operated = apply_plan(patient, with_move(plan, move));

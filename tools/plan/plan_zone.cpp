@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "engine/core/error.h"
@@ -26,6 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 using Notes = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
 
 struct PlanZoneOptions {
   fs::path file;  // of the plan
@@ -155,9 +157,13 @@ Notes findings_of(const Plan& plan, const PlanZoneOptions& options, const Common
 int run_plan_zone(const PlanZoneOptions& options, const CommonOptions& common) {
   Plan plan = load_plan(options.file);
   if (options.name.empty()) {
-    fmt::print("{}", common.json          ? plan_json(plan)
-                     : plan.zones.empty() ? "the plan has no zones of its own\n"
-                                          : zones_text(plan));
+    if (common.json) {
+      Json zones = Json::parse(plan_json(plan)).value("zones", Json::array());
+      fmt::print("{}\n", zones.dump(1));
+    } else {
+      fmt::print("{}",
+                 plan.zones.empty() ? "the plan has no zones of its own\n" : zones_text(plan));
+    }
     return 0;
   }
   if (options.remove) {
