@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,14 +12,16 @@ namespace condyle {
 
 /// How an appliance lies on teeth or bone, measured on its finished surface.
 struct PrintMeasure {
-  std::string on;                                   // "upper teeth", "mandible"
-  Eigen::Vector3d seat = Eigen::Vector3d::UnitZ();  // direction of insertion, unit, cranium
-  double tilt_deg = 0;                              // of it from the arch's or bone's own normal
-  double area_mm2 = 0;                              // of teeth or bone that the print covers
+  std::string on;                                          // "upper teeth", "mandible"
+  Eigen::Vector3d seat = Eigen::Vector3d::UnitZ();         // direction of insertion, unit, cranium
+  std::optional<double> tilt_deg;                          // of it from the arch's occlusal normal
+  double area_mm2 = 0;                                     // of teeth or bone that the print covers
   double fit_max_mm = 0, fit_p95_mm = 0, fit_mean_mm = 0;  // distance from it to the print
-  double overlap_mm = 0;    // deepest point of the appliance in teeth or bone; 0: none
-  double undercut_mm = 0;   // deepest passage of the appliance through them on its way out
-  double relieved_mm2 = 0;  // area beside undercuts, where the print was widened
+  double overlap_mm = 0;   // deepest point of the appliance in teeth or bone; 0: none
+  double undercut_mm = 0;  // deepest passage of the appliance through them on its way out
+  // Areas that do not count for the fit: undercuts and crevices of teeth or bone, where the print
+  // was widened; its rounded rims; and what it lies in front of, but more than 0.6 mm away.
+  double relieved_mm2 = 0, rim_mm2 = 0, not_reached_mm2 = 0;
 };
 
 /// A printable surface, measured again after it was made.
@@ -56,7 +59,7 @@ ApplianceMeasure measure_appliance(const TriMesh& mesh, const TriangleTree& tree
 PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& appliance_tree,
                            const TriMesh& support, const PrintSettings& settings, int threads);
 
-/// Keeps the largest piece and drops cavities. Returns the number of dropped pieces.
-int keep_one_piece(TriMesh& mesh);
+/// Keeps the largest piece and drops cavities. Returns the volume of the largest other piece, mm³.
+double keep_one_piece(TriMesh& mesh);
 
 }  // namespace condyle

@@ -16,14 +16,16 @@ Json point_json(const Eigen::Vector3d& p) { return Json::array({p.x(), p.y(), p.
 Json print_json(const PrintMeasure& print) {
   return {{"on", print.on},
           {"insertion_direction", point_json(print.seat)},
-          {"tilt_deg", print.tilt_deg},
+          {"tilt_deg", print.tilt_deg ? Json(*print.tilt_deg) : Json()},
           {"fit_mean_mm", print.fit_mean_mm},
           {"fit_p95_mm", print.fit_p95_mm},
           {"fit_max_mm", print.fit_max_mm},
           {"overlap_mm", print.overlap_mm},
           {"undercut_mm", print.undercut_mm},
           {"print_area_mm2", print.area_mm2},
-          {"relieved_area_mm2", print.relieved_mm2}};
+          {"relieved_area_mm2", print.relieved_mm2},
+          {"rim_area_mm2", print.rim_mm2},
+          {"not_reached_area_mm2", print.not_reached_mm2}};
 }
 
 }  // namespace
@@ -47,11 +49,14 @@ std::string measure_text(const ApplianceMeasure& measure, double grip_mm) {
       measure.size_mm[2], measure.wall_min_mm, measure.wall_p5_mm);
   for (const PrintMeasure& print : measure.prints)
     text += fmt::format(
-        "{}: seated {} ({:.0f} degrees from the normal); fit {:.2f} mm at most, {:.2f} mm mean, "
-        "over "
-        "{:.0f} mm²; overlap {:.2f} mm; undercut {:.2f} mm, grip {:.2f} mm; {:.0f} mm² relieved\n",
-        print.on, direction_text(print.seat), print.tilt_deg, print.fit_max_mm, print.fit_mean_mm,
-        print.area_mm2, print.overlap_mm, print.undercut_mm, grip_mm, print.relieved_mm2);
+        "{}: seated {}{}; fit {:.2f} mm at most, 95 % within {:.2f} mm, over {:.0f} mm² (rims "
+        "{:.0f}, "
+        "relieved {:.0f}, not reached {:.0f} mm²); overlap {:.2f} mm; undercut {:.2f} mm, grip "
+        "{:.2f} mm\n",
+        print.on, direction_text(print.seat),
+        print.tilt_deg ? fmt::format(" ({:.0f} degrees from the normal)", *print.tilt_deg) : "",
+        print.fit_max_mm, print.fit_p95_mm, print.area_mm2, print.rim_mm2, print.relieved_mm2,
+        print.not_reached_mm2, print.overlap_mm, print.undercut_mm, grip_mm);
   return text;
 }
 

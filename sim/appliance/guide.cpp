@@ -23,6 +23,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double guide_rounding_mm = 1.6;
+constexpr double crumb_mm3 = 20;  // a loose part that is smaller is left out without a note
 constexpr double guide_thin_mm = 1, guide_thin_tolerance_mm = 0.12;
 constexpr double coarse_mm = 0.4;  // samples of the outer face and of undercuts
 constexpr double guide_margin_mm = 0.8;
@@ -370,8 +371,11 @@ Guide make_guide(const GuideSupport& support, const CutLine& line, const GuideSe
       guide.notes);
   field.drill(guide.holes);
   TriMesh mesh = field.surface();
-  guide.dropped_pieces = keep_one_piece(mesh);
+  const double dropped_mm3 = keep_one_piece(mesh);
   if (mesh.empty()) throw InputError("no guide fits on the bone beside " + line.title);
+  if (dropped_mm3 > crumb_mm3)
+    guide.notes.push_back(fmt::format(
+        "a part of {:.0f} mm³ that is not connected to the guide is left out", dropped_mm3));
 
   report(progress, "measuring the guide", 0.7);
   const TriangleTree tree(mesh);
@@ -393,10 +397,12 @@ Guide make_guide(const GuideSupport& support, const CutLine& line, const GuideSe
   for (const GuideSlot& slot : guide.slots)
     if (slot.width_max_mm == 0)
       throw InputError(fmt::format(
-          "the parts of a guide for {} do not hang together from this side: make one for each side "
+          "the parts of a guide for {} are not connected on this side: make one for each side "
           "(--side left, --side right), or choose --from",
           line.title));
   for (ScrewHole& hole : guide.holes) measure_hole({tree, R}, settings, hole);
+  if (std::erase_if(guide.holes, [](const ScrewHole& hole) { return hole.diameter_mm == 0; }) > 0)
+    guide.notes.push_back("screw holes that the guide does not surround are left out");
   return guide;
 }
 

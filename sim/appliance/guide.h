@@ -62,7 +62,6 @@ struct Guide {
   double line_mm = 0, led_mm = 0;  // length of the cut on this side of the bone, and of its slots
   std::vector<GuideSlot> slots;
   std::vector<ScrewHole> holes;
-  int dropped_pieces = 0;
   std::vector<std::string> notes;
 };
 

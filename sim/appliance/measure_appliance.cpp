@@ -21,6 +21,7 @@ constexpr std::size_t run_length = 256;
 constexpr double longest_way_mm = 15;  // out of undercuts
 constexpr double chord_step_mm = 0.1;
 constexpr double facing_cos = -0.7;  // of the normals of two sides of a wall
+constexpr double far_mm = 2;         // nor is a point beyond this beside the print
 constexpr double near_mm = 0.6;      // an appliance farther away than this leaves a point uncovered
 
 template <class Body>
@@ -128,35 +129,48 @@ PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& printed
   // A ball that a wall of the appliance holds does not reach it.
   const double ball = settings.gap_mm + 0.5 * settings.thin_mm;
   const auto is_crevice = [&](const Face& face) {
-    const Vector3d center = face.center + ball * face.normal;
-    return on.nearest(center).distance < ball - 0.02 ||
-           -printed.signed_distance(center) < 0.5 * settings.thin_mm - 0.1;
+    return on.nearest(face.center + ball * face.normal).distance < ball - 0.02;
   };
   struct Sample {
     double fit = -1, area = 0;
-    bool relieved = false;
+    bool relieved = false, beyond = false;
   };
   std::vector<Sample> samples(support.triangles.size());
   for_runs(support.triangles.size(), threads, [&](std::size_t t) {
     const Face face = face_of(support, t);
     if (face.area == 0 || !box.contains(face.center)) return;
+    // Not within other teeth.
+    if (on.signed_distance(face.center + 0.5 * settings.gap_mm * face.normal) < 0) return;
     // Covered: the appliance lies in front of it.
-    const auto front = printed.ray_cast(face.center, face.normal, near_mm);
+    const auto front = printed.ray_cast(face.center, face.normal, far_mm);
     if (!front ||
         face_of(appliance, static_cast<std::size_t>(front->triangle)).normal.dot(face.normal) > 0)
       return;
-    // Not within other teeth.
-    if (on.signed_distance(face.center + 0.5 * settings.gap_mm * face.normal) < 0) return;
     const Vector3d q = face.center + settings.gap_mm * face.normal;
     samples[t] = {printed.nearest(face.center).distance, face.area,
-                  is_crevice(face) || depth_on_way(on, q, out) > settings.grip_mm - 0.05};
+                  is_crevice(face) || depth_on_way(on, q, out) > settings.grip_mm - 0.05,
+                  front->distance > near_mm};
+  });
+  // The rims of the print are rounded, as walls there are.
+  TriMesh uncovered{support.vertices, {}, {}};
+  for (std::size_t t = 0; t < samples.size(); ++t)
+    if (samples[t].fit < 0 || samples[t].beyond)
+      uncovered.triangles.push_back(support.triangles[t]);
+  const TriangleTree bare(uncovered);
+  std::vector<char> at_rim(samples.size(), 0);
+  for_runs(samples.size(), threads, [&](std::size_t t) {
+    if (samples[t].fit >= 0 && !samples[t].beyond)
+      at_rim[t] = bare.nearest(face_of(support, t).center, ball).triangle >= 0;
   });
   std::vector<double> fits;
   double sum = 0, area = 0;
-  for (const Sample& sample : samples) {
+  for (std::size_t t = 0; t < samples.size(); ++t) {
+    const Sample& sample = samples[t];
     if (sample.fit < 0) continue;
-    if (sample.relieved) {
-      measure.relieved_mm2 += sample.area;
+    if (sample.relieved || sample.beyond || at_rim[t]) {
+      (sample.relieved ? measure.relieved_mm2
+       : sample.beyond ? measure.not_reached_mm2
+                       : measure.rim_mm2) += sample.area;
       continue;
     }
     fits.push_back(sample.fit);
@@ -185,7 +199,7 @@ PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& printed
   return measure;
 }
 
-int keep_one_piece(TriMesh& mesh) {
+double keep_one_piece(TriMesh& mesh) {
   const Components components = find_components(mesh);
   if (components.count <= 1) return 0;
   std::vector<double> volume(static_cast<std::size_t>(components.count), 0);
@@ -197,12 +211,15 @@ int keep_one_piece(TriMesh& mesh) {
                 mesh.vertices[static_cast<std::size_t>(v[2])]));
   }
   const auto largest = std::max_element(volume.begin(), volume.end()) - volume.begin();
+  double next = 0;
+  for (std::size_t i = 0; i < volume.size(); ++i)
+    if (static_cast<std::ptrdiff_t>(i) != largest) next = std::max(next, volume[i] / 6);
   std::size_t kept = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     if (components.of_triangle[t] == largest) mesh.triangles[kept++] = mesh.triangles[t];
   mesh.triangles.resize(kept);
   drop_unreferenced(mesh);
-  return components.count - 1;
+  return next;
 }
 
 }  // namespace condyle

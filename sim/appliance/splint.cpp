@@ -26,6 +26,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double rounding_mm = 2.4;     // of the plate's edges
+constexpr double crumb_mm3 = 20;        // a loose part that is smaller is left out
 constexpr double most_tilt_deg = 12;    // of an insertion from the occlusal plane's normal
 constexpr double thin_radius_mm = 0.5;  // walls are about twice as thick at least
 constexpr double thin_tolerance_mm = 0.12;
@@ -278,13 +279,25 @@ Splint make_splint(const SplintArches& arches, const SplintSettings& settings,
   field.print(upper);
   field.print(lower);
   TriMesh mesh = field.surface();
-  splint.dropped_pieces = keep_one_piece(mesh);
+  const double dropped_mm3 = keep_one_piece(mesh);
   if (mesh.empty()) throw InputError("no splint fits between the arches: they leave no room");
+  if (dropped_mm3 > crumb_mm3)
+    throw InputError(fmt::format(
+        "the splint is not of one piece: a part of {:.0f} mm³ is not connected to the rest; less "
+        "depth or more width of the wall connects it",
+        dropped_mm3));
 
   report(progress, "measuring the splint", 0.7);
   const TriangleTree tree(mesh);
   splint.thickness_mm = print_thickness(mesh, upper.mesh, lower.mesh, settings.gap_mm,
                                         settings.voxel_mm, settings.threads);
+  if (!std::isfinite(splint.thickness_mm))
+    throw InputError("the splint does not cover both arches: one of them leaves no impression");
+  if (splint.thickness_mm < settings.thickness_mm - 0.01)
+    splint.notes.push_back(
+        fmt::format("{:.2f} mm thick between cusps, less than the {:g} mm that "
+                    "were requested",
+                    splint.thickness_mm, settings.thickness_mm));
   splint.measure = measure_appliance(mesh, tree, settings.threads);
   for (const PlacedArch* arch : {&upper, &lower}) {
     PrintMeasure print = measure_print(mesh, tree, arch->mesh,

@@ -45,7 +45,6 @@ struct Splint {
   double clearance_before_mm = 0, clearance_mm = 0;  // between the arches; negative: overlap
   double thickness_mm = 0;  // least distance between the prints, measured on the surface
   ApplianceMeasure measure;
-  int dropped_pieces = 0;
   std::vector<std::string> notes;
 };
 

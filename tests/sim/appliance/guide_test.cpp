@@ -71,7 +71,7 @@ TEST(Guide, IsOneClosedPieceThatLiesOnTheBone) {
   ASSERT_EQ(guide.measure.prints.size(), 1u);
   const PrintMeasure& print = guide.measure.prints[0];
   EXPECT_GT(print.area_mm2, 1000);
-  EXPECT_LE(print.fit_max_mm, 0.15);
+  EXPECT_LE(print.fit_p95_mm, 0.15);
   EXPECT_EQ(print.overlap_mm, 0);
   EXPECT_LE(print.undercut_mm, 0.42);  // the grip, and the step of 0.1 mm in which it is measured
   EXPECT_GE(guide.measure.wall_p5_mm, 1.5);
