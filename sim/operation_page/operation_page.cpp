@@ -28,10 +28,22 @@ std::optional<ClinicalFrame> frame_of(const OperationPage& page, std::string& pr
   }
 }
 
+/// Without a name that stands as a word of its own.
 std::string without(std::string text, const std::string& name) {
+  constexpr std::string_view instead = "the case";
   if (name.empty()) return text;
-  for (auto at = text.find(name); at != std::string::npos; at = text.find(name, at))
-    text.replace(at, name.size(), "the case");
+  const auto in_word = [&](std::size_t at) {
+    return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) ||
+                                text[at] == '_' || static_cast<unsigned char>(text[at]) > 127);
+  };
+  for (auto at = text.find(name); at != std::string::npos; at = text.find(name, at)) {
+    if ((at > 0 && in_word(at - 1)) || in_word(at + name.size())) {
+      at += name.size();
+      continue;
+    }
+    text.replace(at, name.size(), instead);
+    at += instead.size();
+  }
   return text;
 }
 
@@ -221,8 +233,18 @@ class OperationPageWriter {
   void dangers() {
     html_ += "<h2>Danger zones</h2>\n";
     const PageTable dangers = dangers_table(operated_);
-    if (dangers.rows.empty())
-      html_ += "<p>Every cut keeps its distance from teeth, nerve canals and foramina.</p>\n";
+    const bool any_known = std::any_of(operated_.cuts.begin(), operated_.cuts.end(),
+                                       [](const CutReport& cut) { return !cut.dangers.empty(); });
+    if (operated_.cuts.empty())
+      html_ += "<p>The plan has no cut.</p>\n";
+    else if (!any_known)
+      html_ +=
+          "<p>No tooth, nerve canal or foramen is known near the cuts: the case may lack "
+          "them.</p>\n";
+    else if (dangers.rows.empty())
+      html_ +=
+          "<p>Every cut keeps its distance from the teeth, nerve canals and foramina that the "
+          "case has.</p>\n";
     else
       html_ += table_html(dangers);
   }
@@ -292,9 +314,9 @@ class OperationPageWriter {
 
   /// A sentence with readable names, without those of case and plan.
   std::string cleaned(std::string text) const {
-    text = without(std::move(text), operated_.patient.name);
-    text = without(std::move(text), page_.plan.name);
-    text = without(std::move(text), page_.plan.geometry.name);
+    for (const std::string& name :
+         {operated_.patient.name, page_.plan.name, page_.plan.geometry.name})
+      if (!operated_.patient.bodies.find(name)) text = without(std::move(text), name);
     return with_readable_names(std::move(text), names());
   }
   std::vector<std::string> cleaned(std::vector<std::string> texts) const {
