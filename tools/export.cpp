@@ -59,12 +59,21 @@ std::set<std::string> kinds_of(const std::string& list) {
   return kinds;
 }
 
-/// A name that is valid on every file system.
-std::string file_name_of(std::string name) {
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
-  return name;
-}
+/// Names that are valid on every file system, each used once.
+class FileNames {
+ public:
+  std::string of(std::string name) {
+    for (char& c : name)
+      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
+    const std::string plain = name.empty() ? "_" : name;
+    std::string free = plain;
+    for (int i = 2; !used_.insert(free).second; ++i) free = fmt::format("{}_{}", plain, i);
+    return free;
+  }
+
+ private:
+  std::set<std::string> used_;
+};
 
 /// The motion in the file's animation. The name of a file stays out of what is passed on.
 std::string motion_word(const std::string& spec) {
@@ -110,8 +119,9 @@ class ExportFiles {
   }
 
   void write_surfaces(const Exported& data, const std::set<std::string>& kinds) {
+    FileNames names;
     for (const PosedSurface& surface : posed_surfaces(data.scene, data.frame)) {
-      const std::string name = file_name_of(surface.name);
+      const std::string name = names.of(surface.name);
       Json facts = {{"part", surface.name},
                     {"vertices", surface.mesh.vertices.size()},
                     {"triangles", surface.mesh.triangles.size()},
@@ -137,8 +147,9 @@ class ExportFiles {
   }
 
   void write_transforms(const Exported& data) {
+    FileNames names;
     for (const MovedBody& body : moved_bodies(data.scene, data.frame, data.operated)) {
-      const std::string file = file_name_of(body.name) + ".tfm";
+      const std::string file = names.of(body.name) + ".tfm";
       files_.write(file, itk_transform(body.X));
       list(file, {{"body", body.name}});
     }
@@ -209,6 +220,7 @@ std::set<std::string> listed_files(const fs::path& folder) {
   if (!fs::is_regular_file(folder / index_file, none)) return names;
   try {
     const Json index = Json::parse(read_file(folder / index_file));
+    if (!index.at("program").get<std::string>().starts_with("Condyle")) return {};
     for (const Json& file : index.at("files")) names.insert(file.at("file").get<std::string>());
   } catch (const std::exception&) {
     return {};  // not ours, or damaged: then nothing is removed
@@ -253,7 +265,7 @@ int run_export(const ExportOptions& options, const CommonOptions& common) {
   if (moves) check_motion(options.motion);
   ProgressBar bar(common);
   auto settings = simulator_settings(options.motion, common);
-  settings.face = true;
+  settings.face = settings.tissue;
   settings.step_s = 1.0 / 60;
   const std::set<std::string> earlier = listed_files(options.out);
   AtomicOutput files(options.out);  // fails before the computation

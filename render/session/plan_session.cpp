@@ -259,13 +259,16 @@ std::optional<PlanSession::Planned> PlanSession::take() {
     });
     if (!planned) refuse();
   } else if (colliding_.done()) {
+    bool failed = true;
     state_.try_or_report("Cannot build the collision models", [&] {
       auto patient = colliding_.take();
+      failed = false;
       if (!patient) return;
       collides_ = *patient;
       planned = Planned{*patient, Stage::contact};
       predict(std::move(*patient));
     });
+    if (failed) predict(state_.patient);
   } else if (predicting_.done()) {
     state_.try_or_report("Cannot predict the face", [&] {
       if (auto patient = predicting_.take()) planned = Planned{std::move(*patient), Stage::face};

@@ -11,8 +11,7 @@ PlanStages::PlanStages(const SessionPatient& patient, SimulatorSettings settings
       uncut_(patient.uncut),
       prepared_(with_muscles(*patient.uncut)),
       settings_(std::move(settings)) {
-  const bool is_uncut = patient.operated->cuts.empty() && patient.operated->grafts.empty();
-  if (is_uncut) whole_ = patient.scene.tissue;
+  if (!patient.scene.plan) whole_ = patient.scene.tissue;
 }
 
 Operated PlanStages::replay(const Plan& plan) {
