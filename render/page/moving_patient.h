@@ -18,7 +18,7 @@ struct MovingPatientSettings {
   std::string motion = "motion";  // name of the animation
 };
 
-/// A patient as a scene for glb_bytes(), with what was measured on the way.
+/// A patient as a scene for glb_bytes(), with what was measured of it.
 struct MovingPatient {
   GltfScene scene;
   std::size_t keys = 0;     // shapes of the face; 0 without a face

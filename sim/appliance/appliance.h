@@ -18,7 +18,7 @@ struct PrintMeasure {
   double area_mm2 = 0;                                     // of teeth or bone that the print covers
   double fit_max_mm = 0, fit_p95_mm = 0, fit_mean_mm = 0;  // distance from it to the print
   double overlap_mm = 0;   // deepest point of the appliance in teeth or bone; 0: none
-  double undercut_mm = 0;  // deepest passage of the appliance through them on its way out
+  double undercut_mm = 0;  // deepest passage of the appliance through them on its withdrawal
   // Areas that do not count for the fit: undercuts and crevices of teeth or bone, where the print
   // was widened; its rounded rims; and what it lies in front of, but more than 0.6 mm away.
   double relieved_mm2 = 0, rim_mm2 = 0, not_reached_mm2 = 0;

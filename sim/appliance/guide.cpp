@@ -71,7 +71,7 @@ TriMesh in_view(TriMesh mesh, const Matrix3d& R) {
   return mesh;
 }
 
-/// Shell, walls, slots and holes on one grid with z along the way out.
+/// Shell, walls, slots and holes on one grid with z along the withdrawal path.
 class GuideField {
  public:
   GuideField(const TriMesh& bone, const SlotPlan& plan, const Matrix3d& R,
@@ -91,7 +91,7 @@ class GuideField {
     fill();
   }
 
-  /// Keeps away from teeth, and from the way past them.
+  /// Keeps away from teeth, and from the path past them.
   void spare(const TriMesh& teeth) {
     if (teeth.empty()) return;
     SampledField field = coarse_field(teeth, teeth_margin_mm + 1);
@@ -140,7 +140,7 @@ class GuideField {
  private:
   double slot_mm() const { return settings_.saw.blade_mm + 2 * settings_.tolerance_mm; }
 
-  /// Coarse samples that reach beyond all of the bone on the way out.
+  /// Coarse samples that reach beyond all of the bone on the withdrawal path.
   SampledField coarse_field(const TriMesh& mesh, double band_mm) const {
     Box box = box_;
     const Box whole = bounding_box(mesh);
@@ -153,7 +153,7 @@ class GuideField {
     field_ = mesh_field(bone, axes_, fine_band, settings_.threads);
     outer_ = coarse_field(bone, settings_.gap_mm + settings_.shell_mm + 1.5);
     swept_ = outer_;
-    // The guide leaves upward: what lies above a sample is on its way.
+    // The guide leaves upward: what lies above a sample is on its path.
     sweep(swept_, Sweep::down, settings_.threads);
   }
 

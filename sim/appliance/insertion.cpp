@@ -71,7 +71,7 @@ ReliefField::ReliefField(const TriMesh& on, const Vector3d& seat, const Box& box
                                c & 2 ? box.high.y() : box.low.y(),
                                c & 4 ? box.high.z() : box.low.z()));
   field_ = mesh_field(turned, even_grid({reach.low, reach.high}, voxel_mm), band_mm, threads);
-  // Out of the grid against the seat: what lies below a sample is on its way.
+  // Out of the grid against the seat: what lies below a sample is on its path.
   sweep(field_, Sweep::up, threads);
 }
 

@@ -13,8 +13,8 @@ namespace condyle {
 Eigen::Vector3d find_insertion(const TriMesh& surface, const std::vector<char>& counts,
                                const Eigen::Vector3d& about, double most_tilt_deg);
 
-/// What a print leaves free of teeth or bone: the least distance on the way out, less the grip. Its
-/// grid has z along the direction of insertion.
+/// What a print leaves free of teeth or bone: the least distance on the withdrawal path, less the
+/// grip. Its grid has z along the direction of insertion.
 class ReliefField {
  public:
   /// `on` in the coordinates of a grid G, as is `seat`; it is sampled within `box`.

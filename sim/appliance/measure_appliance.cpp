@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t run_length = 256;
-constexpr double longest_way_mm = 15;  // out of undercuts
+constexpr double longest_path_mm = 15;  // out of undercuts
 constexpr double chord_step_mm = 0.1;
 constexpr double facing_cos = -0.7;  // of the normals of two sides of a wall
 constexpr double far_mm = 2;         // nor is a point beyond this beside the print
@@ -47,14 +47,14 @@ Face face_of(const TriMesh& mesh, std::size_t t) {
   return {(a + b + c) / 3, length > 0 ? Vector3d(n / length) : Vector3d::Zero(), 0.5 * length};
 }
 
-/// The deepest point within the support on the way of p along `out`, mm; 0 where the way is free.
-double depth_on_way(const TriangleTree& support, const Vector3d& p, const Vector3d& out) {
+/// The deepest point within the support on the path of p along `out`, mm; 0 where the path is free.
+double depth_along_path(const TriangleTree& support, const Vector3d& p, const Vector3d& out) {
   double deepest = 0, from = 0;
-  while (from < longest_way_mm) {
-    const auto entry = support.ray_cast(p + from * out, out, longest_way_mm - from);
+  while (from < longest_path_mm) {
+    const auto entry = support.ray_cast(p + from * out, out, longest_path_mm - from);
     if (!entry) break;
     const double in = from + entry->distance + 1e-4;
-    const auto exit = support.ray_cast(p + in * out, out, longest_way_mm);
+    const auto exit = support.ray_cast(p + in * out, out, longest_path_mm);
     const double end = exit ? in + exit->distance : in;
     for (double at = in; at < end; at += chord_step_mm)
       deepest = std::max(deepest, -support.signed_distance(p + at * out));
@@ -148,7 +148,7 @@ PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& printed
       return;
     const Vector3d q = face.center + settings.gap_mm * face.normal;
     samples[t] = {printed.nearest(face.center).distance, face.area,
-                  is_crevice(face) || depth_on_way(on, q, out) > settings.grip_mm - 0.05,
+                  is_crevice(face) || depth_along_path(on, q, out) > settings.grip_mm - 0.05,
                   front->distance > near_mm};
   });
   // The rims of the print are rounded, as walls there are.
@@ -182,19 +182,19 @@ PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& printed
   measure.fit_mean_mm = area > 0 ? sum / area : 0;
   measure.fit_p95_mm = quantile(std::move(fits), 0.95);
 
-  struct Way {
+  struct Passage {
     double overlap = 0, undercut = 0;
   };
-  std::vector<Way> ways(appliance.vertices.size());
+  std::vector<Passage> passages(appliance.vertices.size());
   for_runs(appliance.vertices.size(), threads, [&](std::size_t v) {
     const Vector3d& p = appliance.vertices[v];
     const SurfacePoint near = on.signed_nearest(p, near_mm);
     const double overlap = near.triangle < 0 ? 0 : std::max(0.0, -near.distance);
-    ways[v] = {overlap, depth_on_way(on, p, out)};
+    passages[v] = {overlap, depth_along_path(on, p, out)};
   });
-  for (const Way& way : ways) {
-    measure.overlap_mm = std::max(measure.overlap_mm, way.overlap);
-    measure.undercut_mm = std::max(measure.undercut_mm, way.undercut);
+  for (const Passage& passage : passages) {
+    measure.overlap_mm = std::max(measure.overlap_mm, passage.overlap);
+    measure.undercut_mm = std::max(measure.undercut_mm, passage.undercut);
   }
   return measure;
 }

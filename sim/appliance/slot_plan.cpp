@@ -17,11 +17,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double least_facing = 0.25;  // cosine of a bone's normal with the way out
-constexpr double most_slant = 0.75;  // of a wall's normal with the way out: 41 degrees to the wall
-constexpr double free_way_mm = 80;
+constexpr double least_facing = 0.25;  // cosine of a bone's normal with the withdrawal path
+constexpr double most_slant =
+    0.75;  // of a wall's normal with the withdrawal path: 41 degrees to the wall
+constexpr double free_path_mm = 80;
 constexpr int direction_count = 240, most_samples = 160;
-constexpr double from_behind = 0.35;  // back component of a way out that no one would use
+constexpr double from_behind = 0.35;  // back component of a withdrawal that no one would use
 constexpr double joint_mm = 1.5;      // gaps of a run, and distance of runs that meet at a bend
 constexpr double shortest_run_mm = 6, end_inset_mm = 2.5;
 constexpr double smoothing_mm = 4;
@@ -42,7 +43,7 @@ bool is_accessible(const TriangleTree& bone, const CutLine& line, const CutEdge&
                    const Vector3d& out) {
   return edge.normal.dot(out) > least_facing &&
          std::abs(line.walls[edge.wall].normal.dot(out)) < most_slant &&
-         !bone.ray_cast(edge.point + 0.1 * edge.normal, out, free_way_mm);
+         !bone.ray_cast(edge.point + 0.1 * edge.normal, out, free_path_mm);
 }
 
 /// A guide for both sides comes from the midsagittal plane.
@@ -233,7 +234,7 @@ void lift(SlotPlan::Bar& bar, const TriangleTree& bone, const Vector3d& out) {
     for (double s = 0.2; s < 0.81; s += 0.05) {
       const Vector3d p = bar.from + s * (bar.to - bar.from) + bar.lift_mm * out;
       if (bone.signed_distance(p) < SlotPlan::bar_radius_mm + clearance_mm ||
-          bone.ray_cast(p, out, free_way_mm))
+          bone.ray_cast(p, out, free_path_mm))
         return false;
     }
     return true;
@@ -335,7 +336,7 @@ std::vector<ScrewHole> plan_holes(
                          settings.slot_wall_mm + 0.5 * settings.hole_mm + 1.2;
   struct Candidate {
     Vector3d point, axis;
-    double along;  // seen from the way out
+    double along;  // seen along the withdrawal path
     bool above;
   };
   std::vector<Candidate> candidates;
@@ -347,7 +348,7 @@ std::vector<ScrewHole> plan_holes(
     if (!(normal.dot(plan.out) > 0.7)) continue;
     const Beside at = beside(plan, p);
     if (at.distance < nearest || at.distance > settings.reach_mm || std::abs(at.w) < nearest ||
-        bone.ray_cast(p + 0.1 * normal, plan.out, free_way_mm) ||
+        bone.ray_cast(p + 0.1 * normal, plan.out, free_path_mm) ||
         is_dangerous(support.dangers, p, -normal) || !has_shell(p, normal))
       continue;
     candidates.push_back({p, normal, across_view.dot(p), at.w > 0});

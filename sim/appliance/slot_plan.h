@@ -35,12 +35,13 @@ struct SlotRun {
 
 /// What a guide leads, seen from the side that it comes from.
 struct SlotPlan {
-  Eigen::Vector3d out = -Eigen::Vector3d::UnitY();  // unit: the guide leaves this way
-  std::vector<Eigen::Vector3d> points;              // of the line, accessible
+  Eigen::Vector3d out =
+      -Eigen::Vector3d::UnitY();        // unit: direction in which the guide is withdrawn
+  std::vector<Eigen::Vector3d> points;  // of the line, accessible
   std::vector<SlotRun> runs;
   struct Bar {
     Eigen::Vector3d from, to;
-    double lift_mm = 3.5;  // along the way out, over what lies between
+    double lift_mm = 3.5;  // along the withdrawal path, over what lies between
   };
   static constexpr double bar_radius_mm = 2.2;
   std::vector<Bar> bars;  // between runs that no bone joins: points on the bone

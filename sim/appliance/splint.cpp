@@ -103,7 +103,7 @@ PlacedArch place(const SplintArch& arch, bool upper, const Matrix3d& R, const Po
                     "at least {:.0f} and {:.0f} mm, with teeth on both sides",
                     arch.name, std::max(0.0, right - left), std::max(0.0, back - front),
                     shortest_across_mm, shortest_along_mm));
-  // The surface within the print counts for the way out.
+  // The surface within the print counts for the withdrawal path.
   std::vector<char> counts(placed.mesh.triangles.size());
   for (std::size_t t = 0; t < counts.size(); ++t) {
     const auto& v = placed.mesh.triangles[t];

@@ -26,11 +26,11 @@ struct GuideOptions {
 
 const Choices<GuideSide> sides = {
     {"both", GuideSide::both}, {"left", GuideSide::left}, {"right", GuideSide::right}};
-const Choices<Eigen::Vector3d> ways = {{"front", -Eigen::Vector3d::UnitY()},
-                                       {"left", Eigen::Vector3d::UnitX()},
-                                       {"right", -Eigen::Vector3d::UnitX()},
-                                       {"below", -Eigen::Vector3d::UnitZ()},
-                                       {"above", Eigen::Vector3d::UnitZ()}};
+const Choices<Eigen::Vector3d> views = {{"front", -Eigen::Vector3d::UnitY()},
+                                        {"left", Eigen::Vector3d::UnitX()},
+                                        {"right", -Eigen::Vector3d::UnitX()},
+                                        {"below", -Eigen::Vector3d::UnitZ()},
+                                        {"above", Eigen::Vector3d::UnitZ()}};
 
 std::string saw_words() {
   std::string words;
@@ -43,7 +43,7 @@ int run_guide(const GuideOptions& options, const CommonOptions& common) {
   settings.threads = common.threads;
   settings.saw = find_saw(options.saw);
   settings.side = chosen(sides, "--side", options.side);
-  if (!options.from.empty()) settings.from = chosen(ways, "--from", options.from);
+  if (!options.from.empty()) settings.from = chosen(views, "--from", options.from);
   check_files(options.files);
   const Plan plan = load_plan(options.plan);
   const Case patient = open_planned(options.patient, plan, common);
@@ -95,7 +95,7 @@ void add_guide(Commands& commands) {
   command
       .add_option("--from", options->from,
                   "Where the guide comes from; default the direction that shows most of the cut")
-      ->type_name(words_of(ways));
+      ->type_name(words_of(views));
   add_appliance_files(command, options->files);
   begin_group(command, "Shape");
   GuideSettings& settings = options->settings;
