@@ -75,10 +75,15 @@ void LiveSession::update(const ViewState& view, const std::optional<Pose>& X_CM_
   request(view, X_CM_released);
   const bool is_new = take_frame(view);
   if (!state_.newest) return state_.front_end.draw();
-  if (OverlayInputs inputs = OverlayInputs::of(view, paths); is_new || inputs != overlaid_) {
-    state_.front_end.show_overlays(
-        view_overlays(*state_.patient, state_.motion->motion, *state_.newest, view, paths));
-    overlaid_ = std::move(inputs);
+  const OverlayInputs inputs = OverlayInputs::of(view, paths);
+  const SessionOverlayInputs own = SessionOverlayInputs::of(state_, view);
+  if (is_new || inputs != overlaid_ || !(own == overlaid_by_session_)) {
+    Overlays shown =
+        view_overlays(*state_.patient, state_.motion->motion, *state_.newest, view, paths);
+    add_session_overlays(state_, view, shown);
+    state_.front_end.show_overlays(std::move(shown));
+    overlaid_ = inputs;
+    overlaid_by_session_ = own;
   }
   show(view, is_new);
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "render/session/session_overlays.h"
 #include "render/session/session_state.h"
 #include "render/session/view_overlays.h"
 #include "sim/contact/live_distances.h"
@@ -33,6 +34,7 @@ class LiveSession {
   SessionState& state_;
   Hands applied_;  // targets sent to the simulation
   std::optional<OverlayInputs> overlaid_;
+  SessionOverlayInputs overlaid_by_session_;
   bool map_sent_ = false, coloured_ = false;
   std::shared_ptr<LiveDistances> distances_;
   std::shared_ptr<LiveSimulation> simulation_;

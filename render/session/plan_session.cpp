@@ -29,9 +29,13 @@ Question question(std::string title, std::string words, const request::EditPlan&
 /// Whether the edit takes long to make, as it places cuts or the bite.
 bool needs_replay(const PlanEdit& edit, const Plan& plan) {
   if (const auto* set = std::get_if<plan_edit::SetNumber>(&edit))
-    return std::holds_alternative<CutStep>(step_of(plan, set->step).action);
+    return !std::holds_alternative<MoveStep>(step_of(plan, set->step).action);
   return std::holds_alternative<plan_edit::Occlude>(edit) ||
          std::holds_alternative<plan_edit::AddOsteotomy>(edit) ||
+         std::holds_alternative<plan_edit::DrawCut>(edit) ||
+         std::holds_alternative<plan_edit::MovePoint>(edit) ||
+         std::holds_alternative<plan_edit::Resect>(edit) ||
+         std::holds_alternative<plan_edit::Graft>(edit) ||
          std::holds_alternative<plan_edit::Trim>(edit);
 }
 
@@ -88,6 +92,9 @@ void PlanSession::drop() {
   checking_.drop();
   colliding_.drop();
   predicting_.drop();
+  splinting_.drop();
+  state_.splint.reset();
+  cutting_.drop();
   waiting_.clear();
   hands_.reset();
   stages_.reset();
@@ -135,10 +142,12 @@ void PlanSession::edit(const request::EditPlan& request) {
   PlanHistory history = document_->saved_history();
   if (std::holds_alternative<plan_edit::Undo>(request.edit)) {
     change.kind = Change::Kind::undo;
+    change.edited.what = history.undoable().value_or("");
     if (!history.undo()) throw InputError("there is no edit of the plan to undo");
     change.edited.plan = history.plan();
   } else if (std::holds_alternative<plan_edit::Redo>(request.edit)) {
     change.kind = Change::Kind::redo;
+    change.edited.what = history.redoable().value_or("");
     if (!history.redo()) throw InputError("there is no edit of the plan to redo");
     change.edited.plan = history.plan();
   } else if (!needs_replay(request.edit, document_->plan())) {
@@ -213,9 +222,11 @@ void PlanSession::accept(Change change) {
     case Change::Kind::edit:
       return document_->edit(std::move(change.edited.plan), change.edited.what);
     case Change::Kind::undo:
-      return document_->undo();
+      document_->undo();
+      return state_.front_end.say("Undone: " + state_.in_words(change.edited.what));
     case Change::Kind::redo:
-      return document_->redo();
+      document_->redo();
+      return state_.front_end.say("Redone: " + state_.in_words(change.edited.what));
     case Change::Kind::open:
       document_ = std::move(change.opened);
   }
@@ -278,6 +289,44 @@ std::optional<PlanSession::Planned> PlanSession::take() {
   return planned;
 }
 
+void PlanSession::preview_cut(const std::optional<PlanEdit>& edit) {
+  if (state_.patient && document_) cutting_.preview(document_->plan(), edit);
+}
+
+void PlanSession::show_handles(int step) {
+  if (state_.patient && document_) cutting_.show_handles(document_->plan(), step);
+}
+
+void PlanSession::make_splint(const std::string& choice) {
+  if (!state_.patient || !document_) return;
+  if (splinting_.active()) return state_.front_end.say("A splint is being made");
+  const std::filesystem::path& file = document_->file();
+  const auto folder = file.empty() ? std::filesystem::current_path()
+                                   : std::filesystem::absolute(file).parent_path();
+  splinting_.start([choice, folder, operated = state_.patient->operated,
+                    threads = state_.threads()](const Progress& progress) {
+    report(progress, "making the splint", 0);
+    return make_session_splint(*operated, choice, folder, threads, progress);
+  });
+}
+
+bool PlanSession::take_splint() {
+  if (!splinting_.done()) return false;
+  bool is_new = false;
+  state_.try_or_report("Cannot make the splint", [&] {
+    auto made = splinting_.take();
+    if (!made) return;
+    state_.splint = std::move(*made);
+    state_.front_end.say("Saved " + state_.splint->file.lexically_normal().string());
+    is_new = true;
+  });
+  return is_new;
+}
+
+void PlanSession::renew_handles() {
+  if (document_) cutting_.renew(document_->plan());
+}
+
 void PlanSession::save(const std::filesystem::path& file) {
   if (document_) document_->save_as(file);
 }
@@ -289,6 +338,10 @@ PlanView PlanSession::view() const {
     step.details = state_.in_words(std::move(step.details));
     for (std::string& finding : step.findings) finding = state_.in_words(std::move(finding));
   }
+  if (state_.splint) view.splint_findings = state_.splint->findings;
+  view.handles_of = state_.scene.plan.handles_of;
+  view.handles = state_.scene.plan.handles;
+  view.preview = state_.scene.plan.preview;
   for (std::string& finding : view.findings) finding = state_.in_words(std::move(finding));
   return view;
 }

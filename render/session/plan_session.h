@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "render/session/cut_preview_session.h"
 #include "render/session/session_state.h"
 #include "sim/session/plan_editing.h"
 #include "sim/session/plan_stages.h"
@@ -26,7 +27,9 @@ class PlanSession {
       : state_(state),
         checking_(state.retired, state.waker()),
         colliding_(state.retired, state.waker()),
-        predicting_(state.retired, state.waker()) {}
+        predicting_(state.retired, state.waker()),
+        splinting_(state.retired, state.waker()),
+        cutting_(state) {}
 
   /// Begins with the plan of a patient just loaded, or an empty one.
   void begin(std::optional<PlanDocument> document);
@@ -40,6 +43,16 @@ class PlanSession {
   void drop();
   /// Ends what is under way: the plan, and the segments, are as before the edit.
   void cancel();
+  /// Shows what an edit of a cut would do, until there is none.
+  void preview_cut(const std::optional<PlanEdit>& edit);
+  void show_handles(int step);
+  /// Takes finished previews and handles; returns whether the scene has changed.
+  bool take_preview() { return cutting_.take(); }
+  /// Makes a splint at the planned positions, saves and shows it.
+  void make_splint(const std::string& choice);
+  bool take_splint();  // returns whether there is a new one
+  /// After the patient was replaced.
+  void renew_handles();
   /// Whether the plan has any step.
   bool has_steps() const { return document_ && !document_->plan().steps.empty(); }
   /// The patient after the last edit, once it is ready; questions and failures are reported.
@@ -48,6 +61,10 @@ class PlanSession {
   const auto& checking() const { return checking_; }
   const auto& colliding() const { return colliding_; }
   const auto& predicting() const { return predicting_; }
+  const auto& splinting() const { return splinting_; }
+  HeadReference reference() const {
+    return document_ ? document_->plan().reference : HeadReference{};
+  }
   /// What the front end shows of the plan.
   PlanView view() const;
 
@@ -88,6 +105,8 @@ class PlanSession {
   Stage stage_ = Stage::face;   // of the session's patient
   Job<Checked> checking_;
   Job<Patient> colliding_, predicting_;
+  Job<std::shared_ptr<const SessionSplint>> splinting_;
+  CutPreviewSession cutting_;
 };
 
 }  // namespace condyle

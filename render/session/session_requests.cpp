@@ -32,6 +32,10 @@ std::string title_of_failure(const Request& request) {
                  [](const request::SaveCase&) { return "Cannot save the patient"; },
                  [](const request::UseLandmarks&) { return "Cannot use these landmarks"; },
                  [](const request::EditPlan&) { return "Cannot edit the plan"; },
+                 [](const request::PreviewCut&) { return "Cannot preview the cut"; },
+                 [](const request::ShowHandles&) { return "Cannot show handles"; },
+                 [](const request::MakeSplint&) { return "Cannot make the splint"; },
+                 [](const request::HideSplint&) { return "Cannot hide the splint"; },
                  [](const request::SavePlan&) { return "Cannot save the plan"; }},
       request);
 }
@@ -67,6 +71,10 @@ void ViewSession::carry_out(const Request& request) {
         if (state_.patient) loader_.renew(state_.front_end.view().landmarks);
       },
       [&](const request::EditPlan& edit) { plan_.edit(edit); },
+      [&](const request::PreviewCut& preview) { plan_.preview_cut(preview.edit); },
+      [&](const request::ShowHandles& shown) { plan_.show_handles(shown.step); },
+      [&](const request::MakeSplint& splint) { plan_.make_splint(splint.choice); },
+      [&](const request::HideSplint&) { state_.splint.reset(); },
       [&](const request::SavePlan& saved) { save_plan(saved.file); },
   };
   state_.try_or_report(title_of_failure(request), [&] { std::visit(act, request); });

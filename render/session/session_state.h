@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,8 +9,16 @@
 #include "sim/session/job.h"
 #include "sim/session/session_motion.h"
 #include "sim/session/session_patient.h"
+#include "sim/session/session_splint.h"
 
 namespace condyle {
+
+/// What is drawn of a cut before it is made, in the cranium's frame at the shown rest.
+struct CutOverlay {
+  BodyId body = cranium_body;  // that carries it
+  LineSet rims;
+  std::map<std::string, GlassSheet> sheets;
+};
 
 /// State shared by the components of a session: the front end, and the loaded patient.
 struct SessionState {
@@ -20,6 +29,8 @@ struct SessionState {
   std::shared_ptr<const SessionMotion> motion = {};    // none before the patient's first
   WindowScene scene = {};                              // as the front end shows it
   std::optional<FrameState> newest = {};               // the newest frame
+  std::shared_ptr<const CutOverlay> cut_overlay = {};  // none: no cut is being drawn
+  std::shared_ptr<const SessionSplint> splint = {};    // shown; none: no splint
   RetiredWork retired = {};
 
   int threads() const { return settings.simulator.threads; }

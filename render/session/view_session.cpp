@@ -4,8 +4,11 @@
 #include <cctype>
 #include <utility>
 
+#include "engine/core/error.h"
 #include "render/recording/distance_drawing.h"
 #include "render/session/view_overlays.h"
+#include "sim/frame/part_names.h"
+#include "sim/plan/clinical_frame.h"
 
 namespace condyle {
 
@@ -58,7 +61,9 @@ void ViewSession::take_plan() {
                                ? state_.scene.parts[state_.scene.bodies[chosen].part].name
                                : "";
   install(std::move(planned->patient), "the plan was edited");
-  show_planned_patient(earlier, body);
+  show_planned_patient(earlier, body, planned->stage == PlanSession::Stage::pieces);
+  plan_.renew_handles();
+  show_scene();
   if (!trouble.empty())
     state_.front_end.report_error("Cannot predict the face", state_.in_words(trouble));
   want_motion(asked_);
@@ -104,9 +109,10 @@ void ViewSession::show_new_patient() {
 }
 
 /// View and edits stay as far as they do not belong to parts that the plan has changed. `earlier`:
-/// how the parts were shown, by name; `chosen`: the part of the body with handles.
+/// how the parts were shown, by name; `chosen`: the part of the body with handles; `new_parts`: the
+/// bones are cut or lie otherwise than before.
 void ViewSession::show_planned_patient(const std::map<std::string, PartView>& earlier,
-                                       const std::string& chosen) {
+                                       const std::string& chosen, bool new_parts) {
   const ViewState& view = state_.front_end.view();
   ViewState start;
   static_cast<PanelChoice&>(start) = view;
@@ -126,6 +132,13 @@ void ViewSession::show_planned_patient(const std::map<std::string, PartView>& ea
   scene.recent = state_.scene.recent;
   state_.scene = std::move(scene);
   start.tool = view.tool;
+  if (new_parts) {
+    start.drawn_cut = {};
+    if (start.tool == Tool::cut) start.tool = Tool::look;
+  } else {
+    start.selected = view.selected;
+    start.held_handle = view.held_handle;
+  }
   for (std::size_t i = 0; i < state_.scene.bodies.size(); ++i)
     if (state_.scene.parts[state_.scene.bodies[i].part].name == chosen) start.chosen = i;
   state_.front_end.replace_scene(state_.scene, start, state_.patient);
@@ -137,6 +150,24 @@ bool ViewSession::obeys_contact() const {
   return state_.settings.respect_contact || !state_.motion || !state_.motion->motion.recorded;
 }
 
+/// Segments move along clinical axes, about the point that their moves are named by.
+void ViewSession::use_clinical_axes(std::vector<MovableBody>& bodies) const {
+  const Operated& operated = *state_.patient->operated;
+  try {
+    const ClinicalFrame frame = clinical_frame(operated.patient.landmarks, plan_.reference());
+    for (MovableBody& body : bodies) {
+      if (!body.roams()) continue;
+      body.axes << frame.left, frame.back, frame.up;
+      const std::string& segment = operated.patient.bodies[body.body].name;
+      const std::string point = point_name({}, segment);
+      if (!operated.patient.landmarks.find(point)) continue;
+      body.center = operated.poses[body.body] * rotation_point(operated, segment, {});
+      body.point = readable_name(point);
+    }
+  } catch (const InputError&) {  // without these landmarks they keep the axes of the case
+  }
+}
+
 WindowScene ViewSession::scene_of_patient() const {
   const Case& patient = state_.patient->scene.patient;
   const DistanceMapSettings map_settings{.pair_rules =
@@ -146,6 +177,7 @@ WindowScene ViewSession::scene_of_patient() const {
                     .distance_colours = distance_colours({.near_mm = map_settings.reach_mm}),
                     .distance_remarks = distance_remarks(patient),
                     .bodies = movable_bodies(patient.parts, patient.bodies)};
+  use_clinical_axes(scene.bodies);
   scene.case_folder = state_.patient->folder;
   scene.landmarks = scene.landmarks_in_use = landmarks_of(patient);
   scene.motions = motion_names(state_.patient->scene);
@@ -153,6 +185,8 @@ WindowScene ViewSession::scene_of_patient() const {
   scene.muscles = muscle_items(*state_.patient);
   scene.layers = layer_items(*state_.patient);
   scene.plan = plan_.view();
+  if (auto before = before_operation(*state_.patient))
+    scene.before = std::make_shared<const FrameState>(std::move(*before));
   return scene;
 }
 
@@ -235,7 +269,8 @@ void ViewSession::show_progress() {
   };
   if (show(loader_.job(), state_.patient != nullptr) || show(plan_.checking(), true) ||
       show(moving_, false) || show(release_.job(), true) || show(saving_, false) ||
-      show(plan_.colliding(), false) || show(plan_.predicting(), true) || show(readying_, false))
+      show(plan_.splinting(), false) || show(plan_.colliding(), false) ||
+      show(plan_.predicting(), true) || show(readying_, false))
     return;
   state_.front_end.show_progress("", 1);
   busy_with_ = recording_.active() ? "recording" : "";
@@ -247,6 +282,11 @@ void ViewSession::turn() {
   state_.retired.sweep();
   take_patient();
   take_plan();
+  if (plan_.take_splint()) {
+    state_.scene.plan = plan_.view();
+    show_scene();
+  }
+  if (plan_.take_preview()) show_scene();
   if (state_.patient && !loader_.job().active() && !(view.motion == asked_))
     want_motion(view.motion);
   take_motion();

@@ -58,7 +58,7 @@ class ViewSession {
   void install(std::shared_ptr<const SessionPatient> patient, std::string_view why);
   void show_new_patient();
   void show_planned_patient(const std::map<std::string, PartView>& earlier,
-                            const std::string& chosen);
+                            const std::string& chosen, bool new_parts);
   void show_renewed_patient(const std::vector<Landmark>& landmarks);
   void want_motion(const MotionChoice& choice);
   void take_motion();
@@ -66,6 +66,7 @@ class ViewSession {
   void prepare_sliding();
   bool obeys_contact() const;
   WindowScene scene_of_patient() const;
+  void use_clinical_axes(std::vector<MovableBody>& bodies) const;
   void show_scene();  // again, after changes
   void show_progress();
 

@@ -122,7 +122,7 @@ void Window::change_parts(const WindowScene& scene, const ViewState& start,
   s.view = start;
   s.view.fit(scene);
   s.render_request = {.number = s.render_request.number};
-  s.comparison.frame.reset();
+  s.comparison.frame = scene.before;
   s.comparison.by_hand = false;
   s.comparison.values.reset();
   s.cannot_draw = false;

@@ -69,6 +69,7 @@ void Window::State::on_key(int key, int scancode, int mods) {
     key = GLFW_KEY_A + (name[0] - 'a');
   else if (name && (name[0] == '+' || name[0] == '=' || name[0] == '-') && name[1] == 0)
     key = name[0] == '-' ? GLFW_KEY_MINUS : GLFW_KEY_EQUAL;
+  if (mods == 0 && choose_axis(key)) return;
   const auto command = command_of({.key = key,
                                    .shift = (mods & GLFW_MOD_SHIFT) != 0,
                                    .ctrl = (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER)) != 0});
@@ -89,10 +90,18 @@ bool Window::State::over_view(double x, double y) const {
 void Window::State::on_button(int button, bool down, int mods) {
   input.mouse.pressed(button, down, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0);
   const MouseMoment& now = input.mouse.now();
+  if (down && mods == 0 && over_view(now.x, now.y)) input.clicks.press(button, {now.x, now.y});
   if (down && button == GLFW_MOUSE_BUTTON_LEFT && mods == 0 && over_view(now.x, now.y) &&
-      (grip_body({now.x, now.y}) || set_point({now.x, now.y})))
+      (grip_handle({now.x, now.y}) || grip_body({now.x, now.y}) || set_point({now.x, now.y})))
     return;
+  if (!down && button == GLFW_MOUSE_BUTTON_LEFT && view.held_handle) {
+    input.clicks = {};
+    return release_handle();
+  }
   if (!down && button == GLFW_MOUSE_BUTTON_LEFT) input.held.reset();
+  if (!down)
+    if (const auto click = input.clicks.release(button, {now.x, now.y}, glfwGetTime()))
+      on_click(*click);
   if (down && input.drag == CameraDrag::none && !input.held && over_view(now.x, now.y)) {
     input.drag = drag_of({.left = button == GLFW_MOUSE_BUTTON_LEFT,
                           .middle = button == GLFW_MOUSE_BUTTON_MIDDLE,
@@ -109,10 +118,9 @@ void Window::State::on_button(int button, bool down, int mods) {
 void Window::State::on_move(double x, double y) {
   const MouseMoment before = input.mouse.now();
   input.mouse.moved(x, y);
-  if (input.held) {
-    move_body({x, y});
-    return;
-  }
+  input.clicks.moved({x, y});
+  if (view.held_handle) return move_handle({x, y});
+  if (input.held) return move_body({x, y});
   if (input.drag == CameraDrag::none) return;
   camera = dragged(camera, input.drag, {before.x, before.y}, {x, y}, view_rect(), zoom);
   pacing.scene_changed = true;
@@ -138,6 +146,9 @@ void Window::State::run(Command command) {
       comparison.by_hand = comparison.frame != nullptr;
       comparison.values = render_request.values;
       pacing.scene_changed = true;
+      break;
+    case Command::focus_selected:
+      if (view.selected) focus(*view.selected);
       break;
     case Command::toggle_theme:
       arrangement.light = !arrangement.light;

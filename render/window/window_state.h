@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "render/window/glfw_session.h"
+#include "render/window/input/clicks.h"
 #include "render/window/input/gizmos.h"
 #include "render/window/input/mouse_queue.h"
 #include "render/window/input/picking.h"
@@ -63,8 +64,10 @@ struct WindowInput {
   std::deque<KeyMoment> keys;
   CameraDrag drag = CameraDrag::none;
   int drag_button = -1;
+  ClickDetector clicks;
   std::optional<Held> held;
-  std::vector<std::filesystem::path> dropped;  // onto the window, not taken yet
+  Eigen::Vector2d gripped_at = Eigen::Vector2d::Zero();  // where a handle of a cut was gripped
+  std::vector<std::filesystem::path> dropped;            // onto the window, not taken yet
 
   bool waits() const { return mouse.waiting() || !keys.empty(); }
 };
@@ -138,10 +141,6 @@ struct Window::State {
   void on_move(double x, double y);
   void on_wheel(double clicks);
   bool over_view(double x, double y) const;
-  bool set_point(const Eigen::Vector2d& at);
-  bool grip_body(const Eigen::Vector2d& at);
-  void move_body(const Eigen::Vector2d& at);
-  std::optional<PickedPoint> surface_under(const Eigen::Vector2d& at, bool with_face) const;
   void run(Command command);
   void note_size();
   void set_standard_view(std::string_view name);
@@ -158,6 +157,24 @@ struct Window::State {
     }
   }
   void noticed() { pacing.noticed(); }
+
+  // window_picking.cpp
+  std::optional<PickedPoint> surface_under(const Eigen::Vector2d& at, bool with_face) const;
+  void on_click(const ClickDetector::Click& click);
+  void focus(std::size_t part);
+
+  // window_cutting.cpp
+  std::optional<Eigen::Vector3d> cut_point(const Eigen::Vector2d& at, std::size_t part) const;
+  void add_cut_point(const Eigen::Vector2d& at);
+  bool grip_handle(const Eigen::Vector2d& at);
+  void move_handle(const Eigen::Vector2d& at);
+  void release_handle();
+
+  // window_moving.cpp
+  bool set_point(const Eigen::Vector2d& at);
+  bool grip_body(const Eigen::Vector2d& at);
+  void move_body(const Eigen::Vector2d& at);
+  bool choose_axis(int key);
 
   // window_drawing.cpp
   std::pair<int, int> size() const;

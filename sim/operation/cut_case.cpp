@@ -308,6 +308,30 @@ CutReport report_of(const PlanStep& step, const Part& bone, const PlacedOsteotom
   return report;
 }
 
+/// Gives what the bone carried to its pieces, which have replaced it.
+void divide_soft_parts(Operated& operated, const Part& bone, const std::string& cut_body,
+                       const std::vector<Group>& groups, std::vector<std::string>& notes) {
+  Case& patient = operated.patient;
+  NearestSurface nearest;
+  Renamed renamed;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (groups[g].pieces == 0) continue;
+    nearest.add(groups[g].mesh, static_cast<int>(g));
+    renamed[bone.name].push_back(groups[g].part);
+  }
+  for (const Part& part : patient.parts) {  // other bones of the body hold their teeth
+    const bool is_piece = std::any_of(groups.begin(), groups.end(),
+                                      [&](const Group& group) { return group.part == part.name; });
+    if (part.body == bone.body && !is_piece && collides(part.role) && !is_teeth(part.role))
+      nearest.add(part.mesh, 0);
+  }
+  const auto pieces = renamed[bone.name];
+  divide_teeth(patient, bone.body, groups, nearest, renamed, notes);
+  assign_soft_parts(patient, bone.body, groups, nearest);
+  assign_bodies(patient, cut_body, groups, nearest);
+  rewrite_rules(patient, renamed, pieces);
+}
+
 void refuse_unparted(Operated& operated, const PlanStep& step, const std::vector<Group>& groups) {
   for (const Group& group : groups)
     if (group.pieces == 0 && !group.stays)
@@ -332,7 +356,8 @@ std::vector<std::string> segment_names(const PlacedOsteotomy& placed, const CutS
   return names;
 }
 
-void cut_case(Operated& operated, const PlacedOsteotomy& placed, const PlanStep& step) {
+void cut_case(Operated& operated, const PlacedOsteotomy& placed, const PlanStep& step,
+              CutScope scope) {
   Case& patient = operated.patient;
   const Part bone = bone_of(patient, placed.part);
   const std::string cut_body = patient.bodies[bone.body].name;
@@ -352,25 +377,10 @@ void cut_case(Operated& operated, const PlacedOsteotomy& placed, const PlanStep&
                                [](const CutOutcome& outcome) { return outcome.meets_bone; });
   if (met) {
     refuse_divided_teeth(patient, bone.body, placed);
-    NearestSurface nearest;
-    Renamed renamed;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      if (groups[g].pieces == 0) continue;
-      nearest.add(groups[g].mesh, static_cast<int>(g));
-      renamed[bone.name].push_back(groups[g].part);
-    }
-    for (const Part& part : patient.parts)  // other bones of the body hold their teeth
-      if (part.body == bone.body && part.name != bone.name && collides(part.role) &&
-          !is_teeth(part.role))
-        nearest.add(part.mesh, 0);
     trace_faces(operated, bone, closed, groups, step.id);
     remember_sides(operated, placed, step.id, cut_body, groups);
     replace_bone(patient, bone.name, groups);
-    const auto pieces = renamed[bone.name];
-    divide_teeth(patient, bone.body, groups, nearest, renamed, report.notes);
-    assign_soft_parts(patient, bone.body, groups, nearest);
-    assign_bodies(patient, cut_body, groups, nearest);
-    rewrite_rules(patient, renamed, pieces);
+    if (scope == CutScope::all) divide_soft_parts(operated, bone, cut_body, groups, report.notes);
   }
   operated.cuts.push_back(std::move(report));
 }

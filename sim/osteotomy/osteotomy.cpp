@@ -67,8 +67,12 @@ bool is_bone(const Part& part) {
          is_piece(part.role);
 }
 
-/// A bone of that name, or of the body of that name.
-const Part& target_part(const Case& patient, const std::string& target) {
+/// A bone of that name, or of the body of that name: the preferred one, where it is there.
+const Part& target_part(const Case& patient, const std::string& target,
+                        const std::string& preferred) {
+  for (const auto& part : patient.parts)
+    if (is_bone(part) && part.name == preferred && patient.bodies[part.body].name == target)
+      return part;
   for (const auto& part : patient.parts)
     if (is_bone(part) && part.name == target) return part;
   for (const auto& part : patient.parts)
@@ -134,11 +138,12 @@ double default_kerf_mm(const std::string& osteotomy) { return recipe_named(osteo
 PlacedOsteotomy place_osteotomy(const Case& patient, const CutStep& step) {
   if (const auto problem = problem_of(step); problem && problem->item != "pieces")
     throw InputError(problem->item + " " + problem->problem);
-  if (step.osteotomy.empty()) return place_surfaces(step, target_part(patient, step.target).name);
+  if (step.osteotomy.empty())
+    return place_surfaces(step, target_part(patient, step.target, step.bone).name);
   const Recipe& recipe = recipe_named(step.osteotomy);
   auto values = values_of(recipe, step);
   const Part& bone = step.target.empty() ? part_of(patient, recipe.jaw, recipe.name)
-                                         : target_part(patient, step.target);
+                                         : target_part(patient, step.target, step.bone);
   if (!step.surfaces.empty()) return place_surfaces(step, bone.name);
   Site site{SurgicalAnatomy(patient, bone), std::move(values), step.kerf_mm};
   PlacedOsteotomy placed = recipe.place(site);

@@ -56,6 +56,7 @@ using CutSurface = std::variant<PlanePatch, BentSheet>;
 struct CutStep {
   std::string osteotomy = {};  // such as "le_fort_1"; empty: the surfaces alone
   std::string target = {};     // body or segment that is cut; empty: that of the osteotomy
+  std::string bone = {};       // its part that is cut, where it has several; empty: the first
   std::map<std::string, double> parameters = {};
   double kerf_mm = 0;
   std::vector<CutSurface> surfaces = {};

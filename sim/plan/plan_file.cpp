@@ -53,6 +53,7 @@ Json step_json(const CutStep& cut) {
   Json item = Json::object();
   if (!cut.osteotomy.empty()) item["osteotomy"] = cut.osteotomy;
   if (!cut.target.empty()) item["target"] = cut.target;
+  if (!cut.bone.empty()) item["bone"] = cut.bone;
   if (!cut.parameters.empty()) item["parameters"] = cut.parameters;
   item["kerf_mm"] = cut.kerf_mm;
   for (const auto& surface : cut.surfaces)
@@ -221,9 +222,11 @@ CutSurface surface_in(const JsonItem& item) {
 }
 
 CutStep cut_in(const JsonItem& item) {
-  item.only_keys(
-      {"osteotomy", "target", "parameters", "kerf_mm", "surfaces", "pieces", "below_margins"});
-  CutStep cut{.osteotomy = text_in(item, "osteotomy"), .target = text_in(item, "target")};
+  item.only_keys({"osteotomy", "target", "bone", "parameters", "kerf_mm", "surfaces", "pieces",
+                  "below_margins"});
+  CutStep cut{.osteotomy = text_in(item, "osteotomy"),
+              .target = text_in(item, "target"),
+              .bone = text_in(item, "bone")};
   if (const auto parameters = item.find("parameters")) {
     if (!parameters->value().is_object()) parameters->refuse("must be an object {...}");
     for (const auto& [name, value] : parameters->value().items())

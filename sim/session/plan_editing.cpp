@@ -9,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "sim/frame/part_names.h"
+#include "sim/graft/donor.h"
 #include "sim/operation/cut_text.h"
 #include "sim/operation/edit_cut.h"
 #include "sim/operation/graft_steps.h"
@@ -17,11 +18,15 @@
 #include "sim/osteotomy/osteotomy_label.h"
 #include "sim/plan/cephalometry.h"
 #include "sim/plan/clinical_frame.h"
+#include "sim/session/drawn_cut.h"
+#include "sim/session/session_splint.h"
 
 namespace condyle {
 namespace {
 
 constexpr const char* kerf_number = "kerf_mm";
+constexpr const char* depth_number = "depth_mm";  // of a drawn cut
+constexpr double max_depth_mm = 200;
 
 const PlanStep* move_of(const Plan& plan, const std::string& segment) {
   for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step)  // the last one counts
@@ -58,10 +63,52 @@ EditedPlan add_osteotomy(const Plan& plan, const Operated& operated, const std::
   return edited;
 }
 
+EditedPlan add_drawn_cut(const Plan& plan, const Operated& operated,
+                         const plan_edit::DrawCut& drawing) {
+  const CutStep cut = drawn_cut(operated, drawing);
+  EditedPlan edited{with_step(plan, cut), "draw a cut of " + readable_name(drawing.part)};
+  edited.step = edited.plan.steps.back().id;
+  return edited;
+}
+
+EditedPlan move_point(const Case& uncut, const Plan& plan, const Operated& operated,
+                      const plan_edit::MovePoint& edit) {
+  const PlanStep& step = step_of(plan, edit.step);
+  const auto* cut = std::get_if<CutStep>(&step.action);
+  if (!cut) throw InputError(step_name(step) + " has no points");
+  CutStep changed = with_point(operated, *cut, edit);
+  changed.below_margins = false;  // asked anew
+  return {with_changed_cut(uncut, plan, edit.step, changed), "edit " + step_name(step), edit.step};
+}
+
+/// The sheet of a cut that was drawn; null of others.
+template <class Cut>
+auto* drawn_sheet(Cut& cut) {
+  return cut.surfaces.size() == 1 ? std::get_if<BentSheet>(&cut.surfaces.front()) : nullptr;
+}
+
 EditedPlan edited_move(const Plan& plan, const MoveStep& move) {
   EditedPlan edited{with_move(plan, move), step_title(move)};
   edited.step = move_of(edited.plan, move.segment)->id;
   return edited;
+}
+
+EditedPlan set_graft_number(const Plan& plan, const PlanStep& step, GraftStep graft,
+                            const plan_edit::SetNumber& edit) {
+  const std::map<std::string, double*> numbers = {{"roll_deg", &graft.roll_deg},
+                                                  {"kerf_mm", &graft.kerf_mm},
+                                                  {"spacing_mm", &graft.spacing_mm},
+                                                  {"clearance_mm", &graft.clearance_mm}};
+  const auto number = numbers.find(edit.name);
+  if (edit.name == "pieces") {
+    graft.pieces = static_cast<int>(std::lround(edit.value));
+    graft.starts_mm.clear();  // they were those of other pieces
+  } else if (number != numbers.end()) {
+    *number->second = edit.value;
+  } else {
+    throw InputError(step_name(step) + " has no " + edit.name);
+  }
+  return {with_replaced(plan, step.id, graft), "edit " + step_name(step), step.id};
 }
 
 EditedPlan set_number(const Case& uncut, const Plan& plan, const Operated& operated,
@@ -75,12 +122,17 @@ EditedPlan set_number(const Case& uncut, const Plan& plan, const Operated& opera
     const MoveStep next{move->segment, changed};
     return {with_replaced(plan, edit.step, next), step_title(next), edit.step};
   }
+  if (const auto* graft = std::get_if<GraftStep>(&step.action))
+    return set_graft_number(plan, step, *graft, edit);
   const auto* before = std::get_if<CutStep>(&step.action);
   if (!before) throw InputError(step_name(step) + " has no " + edit.name);
   CutStep cut = *before;
   cut.below_margins = false;  // asked anew
+  BentSheet* sheet = drawn_sheet(cut);
   if (edit.name == kerf_number)
     cut.kerf_mm = edit.value;
+  else if (edit.name == depth_number && sheet)
+    sheet->depth_mm = edit.value;
   else
     cut.parameters[edit.name] = edit.value;
   return {with_changed_cut(uncut, plan, edit.step, cut), "edit " + step_name(step), edit.step};
@@ -137,8 +189,51 @@ EditedPlan add_trim(const Plan& plan, const Operated& operated, const std::strin
   return edited;
 }
 
+EditedPlan add_step(const Plan& plan, const PlanAction& action) {
+  EditedPlan edited{with_step(plan, action), step_title(action)};
+  edited.step = edited.plan.steps.back().id;
+  return edited;
+}
+
+EditedPlan add_graft(const Plan& plan, const plan_edit::Graft& edit) {
+  GraftStep graft{.donor = edit.donor, .replaces = edit.segment};
+  const auto is_taken = [&](const std::string& name) {
+    return std::any_of(plan.steps.begin(), plan.steps.end(), [&](const PlanStep& step) {
+      const auto* known = std::get_if<GraftStep>(&step.action);
+      return known && known->name == name;
+    });
+  };
+  for (int i = 2; is_taken(graft.name); ++i) graft.name = fmt::format("graft{}", i);
+  return add_step(plan, graft);
+}
+
+std::vector<PlanNumber> numbers_of(const GraftStep& graft) {
+  const GraftStep standard;
+  std::vector<PlanNumber> numbers = {
+      {"pieces", "Pieces", "", "Separate pieces with mitred faces", 1, max_graft_pieces,
+       double(standard.pieces), double(graft.pieces)},
+      {"roll_deg", "Roll", "deg", "Of the donor about its own axis", -180, 180, standard.roll_deg,
+       graft.roll_deg},
+      {"kerf_mm", "Kerf", "mm", "Of the saw on the donor", 0, max_kerf_mm, standard.kerf_mm,
+       graft.kerf_mm},
+      {"spacing_mm", "Spacing", "mm", "Between neighbouring saw cuts on the donor", 0, 30,
+       standard.spacing_mm, graft.spacing_mm},
+      {"clearance_mm", "Clearance", "mm", "Between the graft's end faces and the bone", 0, 5,
+       standard.clearance_mm, graft.clearance_mm}};
+  return numbers;
+}
+
 std::vector<PlanNumber> numbers_of(const CutStep& cut) {
   std::vector<PlanNumber> numbers;
+  if (const BentSheet* sheet = drawn_sheet(cut)) {
+    numbers.push_back(
+        {depth_number, "Depth", "mm",
+         "Of the saw cut, from its deepest drawn point along the direction of the view "
+         "in which it was drawn",
+         0.5, max_depth_mm, sheet->depth_mm, sheet->depth_mm});
+    numbers.push_back(
+        {kerf_number, "Kerf", "mm", "Thickness of the saw cut", 0, max_kerf_mm, 0, cut.kerf_mm});
+  }
   if (cut.osteotomy.empty() || !cut.surfaces.empty()) return numbers;
   for (const OsteotomyParameter& known : osteotomy_parameters(cut.osteotomy)) {
     const auto set = cut.parameters.find(known.name);
@@ -183,8 +278,10 @@ PlanStepView step_view(const Plan& plan, const Operated& operated, const PlanSte
   PlanStepView view{.id = step.id, .title = step_title(step.action)};
   view.details = step_details(step.action);
   if (const auto* cut = std::get_if<CutStep>(&step.action)) {
-    if (!cut->osteotomy.empty()) view.title = osteotomy_label(cut->osteotomy);
+    view.title = cut->osteotomy.empty() ? "Cut of " + readable_name(cut->target)
+                                        : osteotomy_label(cut->osteotomy);
     view.numbers = numbers_of(*cut);
+    view.is_cut = true;
     for (const CutReport& report : operated.cuts) {
       if (report.step != step.id) continue;
       view.findings = cut_sentences(report, operated.patient.landmarks);
@@ -198,6 +295,7 @@ PlanStepView step_view(const Plan& plan, const Operated& operated, const PlanSte
     view.title = "Resect " + readable_name(resection->segment);
   } else if (const auto* graft = std::get_if<GraftStep>(&step.action)) {
     view.title = "Graft " + readable_name(graft->name);
+    view.numbers = numbers_of(*graft);
     for (const GraftLayout& layout : operated.grafts)
       if (layout.step.name == graft->name) view.findings = graft_sentences(operated, layout);
   } else if (std::holds_alternative<NoteStep>(step.action)) {
@@ -251,10 +349,28 @@ void add_tables(PlanView& view, const Plan& plan, const Operated& operated) {
   }
 }
 
+/// What can be resected, and replaced by a graft.
+void add_graft_choices(PlanView& view, const Plan& plan, const Operated& operated) {
+  for (const BoneSummary& bone : operated_bones(operated))
+    if (bone.is_segment && !move_of(plan, bone.name))
+      view.resectable.push_back({bone.name, display_name(bone.name)});
+  for (const Resection& resection : operated.resections)
+    if (std::none_of(operated.grafts.begin(), operated.grafts.end(), [&](const GraftLayout& graft) {
+          return graft.step.replaces == resection.segment;
+        }))
+      view.replaceable.push_back({resection.segment, display_name(resection.segment)});
+  for (const std::string& donor : donor_names())
+    view.donors.push_back({donor, display_name(donor)});
+}
+
 EditedPlan unchecked_edit(const Case& uncut, const Plan& plan, const Operated& operated,
                           const PlanEdit& edit, const HeldSegments& held) {
   if (const auto* add = std::get_if<plan_edit::AddOsteotomy>(&edit))
     return add_osteotomy(plan, operated, add->name);
+  if (const auto* drawing = std::get_if<plan_edit::DrawCut>(&edit))
+    return add_drawn_cut(plan, operated, *drawing);
+  if (const auto* move = std::get_if<plan_edit::MovePoint>(&edit))
+    return move_point(uncut, plan, operated, *move);
   if (const auto* add = std::get_if<plan_edit::AddMove>(&edit))
     return edited_move(plan, {add->segment, ClinicalMove{}});
   if (const auto* set = std::get_if<plan_edit::SetNumber>(&edit))
@@ -262,6 +378,9 @@ EditedPlan unchecked_edit(const Case& uncut, const Plan& plan, const Operated& o
   if (const auto* remove = std::get_if<plan_edit::Remove>(&edit))
     return {without_step(plan, remove->step), "remove " + step_name(step_of(plan, remove->step))};
   if (const auto* shift = std::get_if<plan_edit::Shift>(&edit)) return shifted(plan, *shift);
+  if (const auto* resect = std::get_if<plan_edit::Resect>(&edit))
+    return add_step(plan, ResectStep{resect->segment});
+  if (const auto* graft = std::get_if<plan_edit::Graft>(&edit)) return add_graft(plan, *graft);
   if (const auto* trim = std::get_if<plan_edit::Trim>(&edit))
     return add_trim(plan, operated, trim->segment);
   if (std::holds_alternative<plan_edit::TakePositions>(edit))
@@ -336,6 +455,8 @@ PlanView plan_view(const PlanDocument& document, const Operated& operated,
                        [&](const NamedItem& item) { return item.name == body; }))
         view.trimmed.push_back({body, display_name(body)});
   }
+  add_graft_choices(view, plan, operated);
+  view.splints = splint_choices(operated);
   view.findings.insert(view.findings.end(), operated.problems.begin(), operated.problems.end());
   add_tables(view, plan, operated);
   return view;

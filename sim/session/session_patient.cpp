@@ -1,5 +1,6 @@
 #include "sim/session/session_patient.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -54,6 +55,23 @@ std::shared_ptr<const SessionPatient> completed_patient(SessionPatient patient, 
     // They were not requested; a muscle-driven motion states what is missing.
   }
   return made;
+}
+
+std::optional<FrameState> before_operation(const SessionPatient& patient) {
+  const auto& planned = patient.operated->poses.X_CB;
+  const Pose rest;
+  if (std::all_of(planned.begin(), planned.end(),
+                  [&](const Pose& X) { return bit_identical(X, rest); }))
+    return std::nullopt;
+  FrameState before = patient.at_rest;
+  before.contacts = {};
+  for (std::size_t b = 0; b < std::min(planned.size(), before.poses.X_CB.size()); ++b)
+    before.poses.X_CB[b] = planned[b].inverse();
+  if (const Part* face = patient.uncut->find(Role::face)) {
+    before.face.clear();
+    for (const Eigen::Vector3d& p : face->mesh.vertices) before.face.push_back(p.cast<float>());
+  }
+  return before;
 }
 
 }  // namespace condyle

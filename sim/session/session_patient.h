@@ -37,6 +37,10 @@ std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
                                                            const Progress& progress,
                                                            const std::optional<Plan>& plan = {});
 
+/// The patient before the operation, as a frame of the operated one: all bodies where they were,
+/// and the face as it was. Absent where nothing was moved.
+std::optional<FrameState> before_operation(const SessionPatient& patient);
+
 /// The patient with what follows from its scene: its state at rest and its muscles.
 std::shared_ptr<const SessionPatient> completed_patient(SessionPatient patient, int threads = 2);
 

@@ -64,10 +64,10 @@ std::vector<GizmoHandle> gizmo_handles(const GizmoView& view) {
   for (const Grip grip : arrows)
     all.push_back({grip,
                    {place(view.center),
-                    place(view.center + view.arrow_px * mm * Vector3d::Unit(axis_of(grip)))}});
+                    place(view.center + view.arrow_px * mm * view.axes.col(axis_of(grip)))}});
   for (const Grip grip : rings) {
     const int axis = axis_of(grip);
-    const Vector3d u = Vector3d::Unit((axis + 1) % 3), v = Vector3d::Unit((axis + 2) % 3);
+    const Vector3d u = view.axes.col((axis + 1) % 3), v = view.axes.col((axis + 2) % 3);
     constexpr int pieces = 48;
     GizmoHandle ring{grip, {}};
     for (int i = 0; i <= pieces; ++i) {
@@ -109,7 +109,7 @@ Pose gripped(const GizmoView& view, Grip grip, const Pose& start, const Vector2d
     const Vector3d shift = mm * (moved.x() * axes.row(0) - moved.y() * axes.row(1)).transpose();
     return {start.R, start.t + shift};
   }
-  const Vector3d axis = Vector3d::Unit(axis_of(grip));
+  const Vector3d axis = view.axes.col(axis_of(grip));
   const Vector2d center = screen_place(view.camera, view.view, view.center);
   if (std::find(arrows.begin(), arrows.end(), grip) != arrows.end()) {
     // Pixels per mm along the axis; an arrow toward the eye moves at most tenfold.

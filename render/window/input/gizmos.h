@@ -11,14 +11,15 @@
 namespace condyle {
 
 /// The handle by which a body is gripped: the body itself (moves in the plane of the picture), an
-/// arrow along an axis of the patient, or a ring about one.
+/// arrow along an axis, or a ring about one.
 enum class Grip { body, left, back, up, turn_left, turn_back, turn_up };
 
 /// Handles around a body's centre; their size on the screen does not depend on the zoom.
 struct GizmoView {
   Camera camera;
   ViewRect view;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // in the cranium's frame, now
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();    // in the cranium's frame, now
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  // columns: left, back, up
   double arrow_px = 78, ring_px = 58;
 };
 

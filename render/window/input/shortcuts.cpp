@@ -33,7 +33,9 @@ constexpr std::array bindings = {
     Binding{GLFW_KEY_I, Command::view_below, Command::view_above},
     Binding{GLFW_KEY_K, Command::toggle_skin, Command::toggle_skin},
     Binding{GLFW_KEY_D, Command::toggle_distances, Command::toggle_distances},
+    Binding{GLFW_KEY_F, Command::focus_selected, Command::focus_selected},
     Binding{GLFW_KEY_M, Command::toggle_move, Command::toggle_measure},
+    Binding{GLFW_KEY_C, Command::toggle_cut, Command::toggle_cut},
     Binding{GLFW_KEY_N, Command::toggle_measure, Command::toggle_measure},
     Binding{GLFW_KEY_B, Command::toggle_landmarks, Command::toggle_landmarks},
     Binding{GLFW_KEY_G, Command::toggle_plots, Command::toggle_plots},
@@ -51,6 +53,8 @@ constexpr std::array mouse_lines = {
     HelpLine{"middle drag, Shift+left", "move the picture"},
     HelpLine{"wheel, right drag", "nearer, farther"},
     HelpLine{"Ctrl+left", "roll the picture"},
+    HelpLine{"click, double click", "select a part, focus it (F)"},
+    HelpLine{"right click a part", "hide, glass, measure, cut, move"},
     HelpLine{"Ctrl+click a slider", "type its number"},
 };
 constexpr std::array view_lines = {
@@ -68,6 +72,8 @@ constexpr std::array move_lines = {
     HelpLine{"M", "move bones, on and off"},
     HelpLine{"drag a bone", "move it; it slides on contact"},
     HelpLine{"drag an arrow, a ring", "along or about one axis"},
+    HelpLine{"X Y Z while dragging", "left, back or up alone"},
+    HelpLine{"Ctrl while dragging", "steps of 0.5 mm and 1\u00b0"},
     HelpLine{"Release, in its panel", "joints and muscles, or bone, move it"},
 };
 constexpr std::array window_lines = {
@@ -85,6 +91,7 @@ constexpr std::array show_lines = {
     HelpLine{"K", "skin on, off"},
     HelpLine{"D", "distances on, off"},
     HelpLine{"N, Shift+M", "measure: click points"},
+    HelpLine{"C", "draw a cut: click points, Enter"},
     HelpLine{"B", "landmarks: choose, click"},
     HelpLine{"G", "plots on, off"},
 };

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "render/window/view/part_menu.h"
 #include "render/window/view/ui_commands.h"
+#include "render/window/view/view_state.h"
 
 namespace condyle {
 
@@ -48,6 +50,8 @@ struct PanelFormState {
     /// The selected files, in the order of the list.
     std::vector<std::filesystem::path> chosen_files() const;
   } files;
+  std::optional<PartMenu> part_menu;
+  DrawnCut previewed_cut;  // whose preview was requested
   std::optional<Question> question;
   std::optional<request::Import> import;  // surfaces that wait for their roles
 };

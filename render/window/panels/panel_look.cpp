@@ -100,7 +100,9 @@ void Panels::Drawing::look_comparison() {
   tick_box(pen, "ghost", "Ghost of the rest state", look.ghost);
   tooltip(pen, "What has moved, as it was at rest, in blue glass");
   tick_box(pen, "wipe", "Two states with a wipe", look.wipe);
-  tooltip(pen, "At the left the kept state (at first: rest), at the right the present one");
+  tooltip(pen,
+          "At the left the kept state (at first: before the operation, or rest), at the right the "
+          "present one");
   if (look.wipe) {
     named_slider(pen, "wipe-at", "Place, from the left",
                  fmt::format("{:.0f} %", 100 * look.wipe_at), look.wipe_at,

@@ -109,6 +109,7 @@ void Panels::Drawing::moving() {
   begin_panel(pen, "move", layout.tool);
   heading(pen, "Move", view.obey_contact ? "slides on contact" : "Stop at contact is off");
   body_choice(body);
+  if (!body.point.empty()) text(panels.theme_.small, palette().text_dim, "about the " + body.point);
   body_placement(body);
   body_buttons(body);
   end_panel();
@@ -117,7 +118,8 @@ void Panels::Drawing::moving() {
 /// The handles, on the picture.
 void Panels::Drawing::gizmo(const MovableBody& body) {
   const Theme& theme = panels.theme_;
-  GizmoView gizmo_view{input.camera, layout.view, input.frame->poses[body.body] * body.center};
+  GizmoView gizmo_view{input.camera, layout.view, input.frame->poses[body.body] * body.center,
+                       body.is_skull() ? body.axes : input.frame->poses[body.parent].R * body.axes};
   gizmo_view.arrow_px *= theme.scale;
   gizmo_view.ring_px *= theme.scale;
   const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -182,8 +184,8 @@ void Panels::Drawing::body_placement(const MovableBody& body) {
   const Pose reached =
       body.is_skull() ? view.hands.X_RC(X_CM) : pose_in(body.parent, body.body, input.frame->poses);
   const std::optional<Pose> hand = view.hands.of(body);
-  Placement target = placement_of(hand.value_or(reached), body.center);
-  const Placement there = placement_of(reached, body.center);
+  Placement target = placement_of(hand.value_or(reached), body.center, body.axes);
+  const Placement there = placement_of(reached, body.center, body.axes);
   Shortfall shortfall;
   if (hand)
     shortfall = {(target.shift_mm - there.shift_mm).norm(),
@@ -208,7 +210,7 @@ void Panels::Drawing::body_placement(const MovableBody& body) {
     tooltip(pen, turn_tips[k]);
   }
   ImGui::PopStyleVar(2);
-  if (edited) view.move(body, pose_at(target, body.center), X_CM);
+  if (edited) view.move(body, pose_at(target, body.center, body.axes), X_CM);
   body_state(body, hand.has_value(), shortfall);
 }
 

@@ -66,8 +66,10 @@ void Panels::Drawing::plan_steps() {
             "No steps yet. Add an osteotomy, then move the segments that it makes.");
   for (const PlanStepView& step : steps) {
     const bool chosen = form.step == step.id;
-    if (select_row(fmt::format("{}  {}##step{}", step.id, step.title, step.id), chosen))
+    if (select_row(fmt::format("{}  {}##step{}", step.id, step.title, step.id), chosen)) {
       form.step = chosen ? 0 : step.id;
+      panels.request(request::ShowHandles{step.is_cut ? form.step : 0});
+    }
     pen.mark(fmt::format("plan-step:{}", step.id), step.title);
     if (step.warns) {
       ImGui::SameLine();
@@ -150,6 +152,7 @@ void Panels::Drawing::plan_additions() {
       edit_plan(plan_edit::Trim{name});
     tooltip(pen, "Removes the bone of this segment that overlaps others, as the surgeon burrs it");
   }
+  plan_graft_additions();
   const bool held = std::any_of(
       input.scene.bodies.begin(), input.scene.bodies.end(),
       [&](const MovableBody& body) { return body.roams() && view.hands.at(body.body); });
@@ -161,6 +164,40 @@ void Panels::Drawing::plan_additions() {
   tooltip(pen, "Segments that were dragged (key M) get these positions in the plan");
 }
 
+void Panels::Drawing::plan_graft_additions() {
+  const PlanView& plan = input.scene.plan;
+  if (!plan.resectable.empty()) {
+    if (const auto name = choice(pen, "plan-resect", "Resect", plan.resectable); !name.empty())
+      edit_plan(plan_edit::Resect{name});
+    tooltip(pen, "Removes a segment with the teeth that it carries");
+  }
+  for (const NamedItem& resected : plan.replaceable) {
+    const std::string label = "Graft for " + resected.label;
+    if (const auto donor =
+            choice(pen, ("plan-graft:" + resected.name).c_str(), label.c_str(), plan.donors);
+        !donor.empty())
+      edit_plan(plan_edit::Graft{resected.name, donor});
+    tooltip(pen,
+            "Bone from a donor in the place of the resected segment; then choose the number of "
+            "pieces");
+  }
+}
+
+void Panels::Drawing::plan_splints() {
+  const PlanView& plan = input.scene.plan;
+  if (plan.splints.empty()) return;
+  if (const auto name = choice(pen, "plan-splint", "Make a splint", plan.splints); !name.empty())
+    panels.request(request::MakeSplint{name});
+  tooltip(pen, "Between the arches at their planned positions; saved as STL beside the plan");
+  if (plan.splint_findings.empty()) return;
+  for (const std::string& finding : plan.splint_findings)
+    wrapped(panels.theme_.small, palette().text_dim, finding);
+  pen.mark("splint-findings", plan.splint_findings.front());
+  if (word_button(pen, "splint-hide", "Hide the splint",
+                  {ImGui::GetContentRegionAvail().x, pen.px(plan_row_high)}, false))
+    panels.request(request::HideSplint{});
+}
+
 /// Overlaps, and tables that unfold.
 void Panels::Drawing::plan_results() {
   const Theme& theme = panels.theme_;
@@ -169,6 +206,7 @@ void Panels::Drawing::plan_results() {
   if (plan.steps.empty()) return;
   heading(pen, "Result");
   for (const std::string& finding : plan.findings) wrapped(theme.small, palette().warning, finding);
+  plan_splints();
   if (plan_table("displacements", "Displacement of bone", plan.displacements))
     form.displacements = !form.displacements;
   if (form.displacements)

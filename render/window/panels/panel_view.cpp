@@ -145,7 +145,7 @@ void Panels::Drawing::view_signs() {
       list.AddText(theme.small, high, {std::round(x), y}, palette().divider, words);
       pen.items.push_back({item, "view", {x, y, wide, high}, words});
     };
-    name("wipe:before", input.kept ? "kept" : "at rest", true);
+    name("wipe:before", input.kept ? "kept" : input.scene.before ? "before" : "at rest", true);
     name("wipe:now", "now", false);
     pen.items.push_back({"wipe:line", "view", {wiped_at - 1.0, r.y, 2, r.height}});
   }

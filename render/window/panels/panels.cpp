@@ -59,6 +59,16 @@ void Panels::say(const std::string& sentence) {
   said_until_ = -1;  // the clock is ImGui's: set at the next drawing
 }
 
+void Panels::request(Request request) {
+  const auto is_preview = [](const Request& each) {
+    return std::holds_alternative<request::PreviewCut>(each);
+  };
+  if (is_preview(request) && !requests_.empty() && is_preview(requests_.back()))
+    requests_.back() = std::move(request);
+  else
+    requests_.push_back(std::move(request));
+}
+
 void Panels::answer(std::size_t which) {
   if (auto& request = form_.question->answers.at(which).request)
     requests_.push_back(std::move(*request));
@@ -144,12 +154,31 @@ bool Panels::run_tool(Command command, const WindowScene& scene, ViewState& view
       return toggle(Tool::measure);
     case Command::toggle_landmarks:
       return toggle(Tool::landmarks);
+    case Command::toggle_cut:
+      return toggle(Tool::cut);
+    case Command::accept:
+      if (view.tool != Tool::cut || dialog_open() || list_unfolded()) return false;
+      accept_cut(scene, view);
+      return true;
+    case Command::close_dialog:
+      if (view.tool != Tool::cut || dialog_open() || list_unfolded()) return false;
+      if (view.drawn_cut.points.empty()) return toggle(Tool::cut);
+      remember(view);
+      view.drawn_cut = {};
+      return true;
     case Command::undo:
-      if (!undo(view, true)) say("Nothing to undo");
+    case Command::redo: {
+      // Settings changed since the last edit of the plan come first.
+      const bool back = command == Command::undo;
+      if (undo(view, back)) return true;
+      if ((back ? scene.plan.undo : scene.plan.redo).empty())
+        say(back ? "Nothing to undo" : "Nothing to redo");
+      else if (back)
+        request(request::EditPlan{plan_edit::Undo{}});
+      else
+        request(request::EditPlan{plan_edit::Redo{}});
       return true;
-    case Command::redo:
-      if (!undo(view, false)) say("Nothing to redo");
-      return true;
+    }
     default:
       return false;
   }
@@ -222,6 +251,7 @@ void Panels::forget_patient() {
   form_.case_folder.clear();
   form_.landmark_words.clear();
   form_.plan = {};
+  form_.part_menu.reset();
   form_.parameters.clear();
   form_.excitations.clear();
   form_.number.reset();
@@ -296,6 +326,8 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
   if (view.tool == Tool::move && !preparing) drawing.moving();
   if (!preparing) drawing.measuring();
   if (view.tool == Tool::landmarks && !preparing) drawing.landmarks();
+  if (!preparing) drawing.cutting();
+  if (!preparing) drawing.part_menu();
   drawing.view_signs();
   drawing.dialogs();
   ImGui::PopFont();
@@ -316,6 +348,9 @@ void Panels::Drawing::top_bar() {
       ToolButton{"move-tool", "Move",
                  "Move the jaw and free bones by hand; they slide on contact. Key M",
                  Command::toggle_move, view.tool == Tool::move, !input.scene.bodies.empty()},
+      ToolButton{"cut-tool", "Cut",
+                 "Draw a saw cut on a bone; it becomes a step of the plan. Key C",
+                 Command::toggle_cut, view.tool == Tool::cut},
       ToolButton{"measure-tool", "Measure",
                  "Distances, angles and areas between points on bone, teeth and skin. Key N",
                  Command::toggle_measure, view.tool == Tool::measure},

@@ -73,6 +73,12 @@ struct Trouble {
   bool operator==(const Trouble&) const = default;
 };
 
+/// The number of a plan's selected step that a handle changes; null: it places a point.
+const PlanNumber* number_of(const PlanView& plan, const PlanHandle& handle);
+
+/// The edit of the plan that the drawn cut requests; none before its second point.
+std::optional<PlanEdit> drawn_cut_edit(const WindowScene& scene, const ViewState& view);
+
 /// Panels of the window, drawn into the current ImGui frame (between NewFrame and Render). They
 /// depend on neither GLFW nor GL, so tests draw them with scripted input.
 class Panels {
@@ -115,9 +121,18 @@ class Panels {
 
   /// Asks for the roles of surfaces.
   void ask_roles(request::Import import) { form_.import = std::move(import); }
+  /// Opens the menu of a part.
+  void open_part_menu(const PartMenu& menu) { form_.part_menu = menu; }
   /// Asks in a box; the answer is a request.
   void ask(Question question) { form_.question = std::move(question); }
   const Question* question() const { return form_.question ? &*form_.question : nullptr; }
+  /// Adds a request; of successive previews the last one counts.
+  void request(Request request);
+  /// Whether the handles of the plan's selected step are shown.
+  bool shows_handles(const ViewState& view) const {
+    return shown_ && view.tab == SideTab::plan &&
+           (view.tool == Tool::look || view.tool == Tool::cut);
+  }
   /// One-time requests since the last call.
   std::vector<Request> take_requests() { return std::exchange(requests_, {}); }
 
@@ -166,6 +181,7 @@ class Panels {
   double said_until_ = 0;
   EditHistory<Edits> history_;
   bool undo(ViewState& view, bool back);
+  void accept_cut(const WindowScene& scene, const ViewState& view);
   void remember_edits(const Edits& before, const ViewState& view);
   bool undone_ = false;     // in this pass
   bool fold_list_ = false;  // fold the open list in the next pass

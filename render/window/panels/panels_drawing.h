@@ -42,11 +42,25 @@ struct Panels::Drawing {
   void plots();       // panel_plots.cpp
   void edges();       // splitters.cpp: between panels, to resize them
   void view_signs();  // panel_view.cpp: letters at the edges, cube, progress
+  void cutting();     // panel_cut.cpp: the drawn cut, and handles of the plan
+  void part_menu();   // panel_part_menu.cpp
   void dialogs();     // panel_dialogs.cpp
   void question_dialog();
   void key_hint(const char* words);
 
  private:
+  // panel_cut.cpp
+  void preview_drawn_cut();
+  void drawn_cut_line();
+  void plan_handles();
+  void cut_panel();
+  void cut_numbers(DrawnCut& drawn);
+  void cut_findings();
+  void cut_buttons(DrawnCut& drawn);
+  // panel_part_menu.cpp
+  bool menu_row(const char* name, const char* label, bool enabled = true);
+  void part_menu_looks(std::size_t which);
+  void part_menu_tools(const PartMenu& menu);
   // panel_move.cpp
   void gizmo(const MovableBody& body);
   void body_choice(const MovableBody& body);
@@ -73,6 +87,8 @@ struct Panels::Drawing {
   void plan_steps();
   void plan_step(const PlanStepView& step);
   void plan_numbers(const PlanStepView& step);
+  void plan_graft_additions();
+  void plan_splints();
   void plan_additions();
   void plan_results();
   void plan_buttons();

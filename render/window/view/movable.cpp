@@ -121,21 +121,29 @@ bool Hands::operator==(const Hands& other) const {
   return jaw == other.jaw && same(X_RM, other.X_RM);
 }
 
-Placement placement_of(const Pose& pose, const Vector3d& center) {
-  const Eigen::Matrix3d R = pose.R.toRotationMatrix();
+Placement placement_of(const Pose& pose, const Vector3d& center, const Eigen::Matrix3d& axes) {
+  const Eigen::Matrix3d R = axes.transpose() * pose.R.toRotationMatrix() * axes;
   const double pitch = std::atan2(R(2, 1), R(2, 2)),
                roll = std::atan2(-R(2, 0), std::hypot(R(2, 1), R(2, 2))),
                yaw = std::atan2(R(1, 0), R(0, 0));
-  return {.shift_mm = pose * center - center,
+  return {.shift_mm = axes.transpose() * (pose * center - center),
           .turn_deg = Vector3d(pitch, roll, yaw) * 180 / std::numbers::pi};
 }
 
-Pose pose_at(const Placement& placement, const Vector3d& center) {
+Pose pose_at(const Placement& placement, const Vector3d& center, const Eigen::Matrix3d& axes) {
   const Vector3d a = placement.turn_deg * std::numbers::pi / 180;
-  const Eigen::Quaterniond R = Eigen::AngleAxisd(a.z(), Vector3d::UnitZ()) *
-                               Eigen::AngleAxisd(a.y(), Vector3d::UnitY()) *
-                               Eigen::AngleAxisd(a.x(), Vector3d::UnitX());
-  return {R, center + placement.shift_mm - R * center};
+  const Eigen::Quaterniond R = Eigen::AngleAxisd(a.z(), axes.col(2)) *
+                               Eigen::AngleAxisd(a.y(), axes.col(1)) *
+                               Eigen::AngleAxisd(a.x(), axes.col(0));
+  return {R, center + axes * placement.shift_mm - R * center};
+}
+
+Pose snapped(const Pose& pose, const MovableBody& body) {
+  constexpr double step_mm = 0.5, step_deg = 1;
+  Placement placement = placement_of(pose, body.center, body.axes);
+  placement.shift_mm = step_mm * (placement.shift_mm / step_mm).array().round();
+  placement.turn_deg = step_deg * (placement.turn_deg / step_deg).array().round();
+  return pose_at(placement, body.center, body.axes);
 }
 
 }  // namespace condyle

@@ -19,8 +19,11 @@ struct MovableBody {
   BodyId body = mandible_body;
   BodyId parent = cranium_body;  // in whose frame it is moved; of the cranium: none
   bool follows_motion = true;    // unless held by hand
-  Eigen::Vector3d center =
-      Eigen::Vector3d::Zero();  // of its box at rest; it turns about this point
+  // It turns about this point at rest: the middle of its box, or a named one.
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  std::string point = {};  // its name, for people; empty: the middle
+  // Directions of its moves, as columns: left, back, up.
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
 
   bool is_skull() const { return body == cranium_body; }
   bool roams() const { return !is_skull() && !follows_motion; }
@@ -65,14 +68,19 @@ struct Hands {
   bool operator==(const Hands& other) const;
 };
 
-/// A pose as readable numbers: displacement of the body's centre to the left, back and up, mm, and
-/// rotations about these axes through it, deg: first about left, then back, then up.
+/// A pose as readable numbers: displacement of the body's centre along its axes, to the left, back
+/// and up, mm, and rotations about these axes through it, deg: first about left, then back, then
+/// up.
 struct Placement {
   Eigen::Vector3d shift_mm = Eigen::Vector3d::Zero();
   Eigen::Vector3d turn_deg = Eigen::Vector3d::Zero();
 };
-Placement placement_of(const Pose& pose, const Eigen::Vector3d& center);
-Pose pose_at(const Placement& placement, const Eigen::Vector3d& center);
+Placement placement_of(const Pose& pose, const Eigen::Vector3d& center,
+                       const Eigen::Matrix3d& axes = Eigen::Matrix3d::Identity());
+Pose pose_at(const Placement& placement, const Eigen::Vector3d& center,
+             const Eigen::Matrix3d& axes = Eigen::Matrix3d::Identity());
+/// The pose with its numbers rounded to half a millimetre and a whole degree.
+Pose snapped(const Pose& pose, const MovableBody& body);
 
 /// Whether both are bit-identical, or none.
 bool same(const std::optional<Pose>& a, const std::optional<Pose>& b);

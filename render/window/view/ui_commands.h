@@ -75,6 +75,20 @@ struct EditPlan {
   PlanEdit edit;
   Consent consent = Consent::none;
 };
+/// Shows what an edit of a cut would do; none: no longer.
+struct PreviewCut {
+  std::optional<PlanEdit> edit;
+};
+/// Shows the handles of a step of the plan; 0: none.
+struct ShowHandles {
+  int step = 0;
+};
+/// Makes a splint of the plan and saves it beside the plan.
+struct MakeSplint {
+  std::string choice;  // see PlanView
+};
+/// Removes the splint from the picture.
+struct HideSplint {};
 struct SavePlan {
   std::filesystem::path file;
 };
@@ -84,7 +98,8 @@ using Request =
     std::variant<request::Open, request::Import, request::Record, request::StopRecording,
                  request::ResumeRecording, request::ReplaceRecording, request::Quit,
                  request::Cancel, request::Release, request::SaveCase, request::UseLandmarks,
-                 request::EditPlan, request::SavePlan>;
+                 request::EditPlan, request::PreviewCut, request::ShowHandles, request::MakeSplint,
+                 request::HideSplint, request::SavePlan>;
 
 /// A question to the user before something is done.
 struct Question {

@@ -23,6 +23,8 @@ bool ViewState::simulates_tissue(const WindowScene& scene) const {
 void ViewState::fit(const WindowScene& scene) {
   constexpr PartView muscle{.shown = false}, layer{.shown = false, .opacity = 0.5};
   parts.resize(scene.parts.size());
+  if (selected && *selected >= scene.parts.size()) selected.reset();
+  if (drawn_cut.part && *drawn_cut.part >= scene.parts.size()) drawn_cut = {};
   muscles.resize(scene.muscles.size(), muscle);
   layers.resize(scene.layers.size(), layer);
 }

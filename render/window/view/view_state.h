@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 #include "render/window/view/measuring.h"
 #include "render/window/view/movable.h"
 #include "render/window/view/ui_commands.h"
+#include "sim/frame/frame_state.h"
 #include "sim/frame/part.h"
 
 namespace condyle {
@@ -46,6 +48,7 @@ struct WindowScene {
   std::vector<TreeItem> layers = {};   // sheets of the soft tissue, from the skin inward
   std::vector<std::filesystem::path> recent = {};  // opened before, the last one first
   PlanView plan = {};                              // of the operation
+  std::shared_ptr<const FrameState> before = {};   // the operation; none without moves
 };
 
 /// How one part is drawn.
@@ -55,9 +58,28 @@ struct PartView {
   bool operator==(const PartView&) const = default;
 };
 
-/// Function of the left button in the picture: turn it, move bodies, set points to measure or place
-/// landmarks.
-enum class Tool { look, move, measure, landmarks };
+/// Function of the left button in the picture: turn it, move bodies, set points to measure, place
+/// landmarks, or draw a cut.
+enum class Tool { look, move, measure, landmarks, cut };
+
+/// A saw cut that is being drawn on a bone: points in order, extruded along a direction into the
+/// bone. Points and direction in the cranium's frame, where the bone is at rest.
+struct DrawnCut {
+  std::optional<std::size_t> part = {};                  // the bone; none before the first point
+  std::vector<Eigen::Vector3d> points = {};              // mm
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitY();  // of the view at the first point
+  double depth_mm = 0;                                   // 0: through the first wall of bone
+  double kerf_mm = 0;
+  bool operator==(const DrawnCut&) const = default;
+};
+
+/// A handle that is being dragged: a point of the drawn cut, or one of the plan's (see PlanHandle).
+struct HeldHandle {
+  bool is_drawn = false;
+  std::size_t index = 0;                         // of its kind
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  // as far as it was dragged
+  double value = 0;                              // of its number
+};
 
 /// Additions to the surfaces in the picture, and their cuts.
 struct Look {
@@ -106,6 +128,7 @@ struct Edits {
   std::optional<double> opening_mm = {};   // target, instead of the motion's pose
   Hands hands = {};                        // targets of bodies held by hand
   std::vector<Landmark> landmarks = {};    // as edited; initially the scene's
+  DrawnCut drawn_cut = {};                 // by the tool for cuts
   MotionChoice motion = {};                // requested; initially the scene's
   Look look = {};
   double skin_opacity = 1;                    // of parts with the role `face`, on top of their own
@@ -127,6 +150,8 @@ struct ViewState : Edits, PanelChoice {
   Tool tool = Tool::look;                    // function of the left button
   std::size_t chosen = 0;                    // index of the body with handles
   std::optional<std::size_t> landmark = {};  // to be placed by the next click
+  std::optional<std::size_t> selected = {};  // part that was clicked
+  std::optional<HeldHandle> held_handle = {};
 
   const Edits& edits() const { return *this; }
   /// Whether the jaw is held by hand instead of following the motion.

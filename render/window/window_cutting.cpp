@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <cmath>
+
+#include "render/window/window_state.h"
+#include "sim/frame/body_poses.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double handle_reach_px = 10;
+
+bool can_be_cut(const Part& part) { return collides(part.role) && !is_teeth(part.role); }
+
+/// The point under the mouse at the depth of another one.
+Vector3d point_beside(const Camera& camera, const ViewRect& rect, const Vector2d& mouse,
+                      const Vector3d& other) {
+  const GizmoView view{camera, rect, other};
+  return other + gripped(view, Grip::body, {}, screen_place(camera, rect, other), mouse).t;
+}
+
+/// The vertex of a mesh that appears nearest to the mouse.
+Vector3d nearest_on_screen(const TriMesh& mesh, const Pose& X_CB, const Camera& camera,
+                           const ViewRect& rect, const Vector2d& mouse) {
+  Vector3d nearest = X_CB * mesh.vertices.front();
+  double least = 1e300;
+  for (const Vector3d& v : mesh.vertices) {
+    const Vector3d p = X_CB * v;
+    const double distance = (screen_place(camera, rect, p) - mouse).squaredNorm();
+    if (distance < least) {
+      least = distance;
+      nearest = p;
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
+/// The place of a cut's point under the mouse: on the bone, or beside it at the depth of its
+/// nearest edge; in the frame in which the bone is at rest. None where another part is in front.
+std::optional<Vector3d> Window::State::cut_point(const Vector2d& at, std::size_t part) const {
+  const Part& bone = scene.parts[part];
+  if (bone.mesh.vertices.empty()) return std::nullopt;
+  const Pose X_CB = pose_of(bone, frame()->poses);
+  const auto found = surface_under(at, true);
+  if (found && found->surface == part) return X_CB.inverse() * found->place;
+  if (found && scene.parts[found->surface].role == Role::face) return std::nullopt;
+  const Vector3d edge = nearest_on_screen(bone.mesh, X_CB, seen(), view_rect(), at);
+  return X_CB.inverse() * point_beside(seen(), view_rect(), at, edge);
+}
+
+/// Adds a point to the drawn cut; the first one chooses the bone and the direction of the saw.
+void Window::State::add_cut_point(const Vector2d& at) {
+  if (!frame()) return;
+  DrawnCut drawn = view.drawn_cut;
+  const auto found = surface_under(at, true);
+  if (found && scene.parts[found->surface].role == Role::face)
+    return panels->say("The skin is in front of the bone; key K hides it");
+  if (!drawn.part) {
+    if (!found || !can_be_cut(scene.parts[found->surface]))
+      return panels->say(found ? "Cuts are drawn on bone" : "Begin on the bone that is cut");
+    drawn.part = found->surface;
+  }
+  const auto place = cut_point(at, *drawn.part);
+  if (!place) return;
+  if (drawn.points.empty()) {
+    const Pose X_CB = pose_of(scene.parts[*drawn.part], frame()->poses);
+    drawn.direction = -(X_CB.R.inverse() * seen().direction).normalized();
+  }
+  drawn.points.push_back(*place);
+  panels->remember(view);
+  view.drawn_cut = std::move(drawn);
+  pacing.frames_due = 3;
+}
+
+/// Grips a point of the drawn cut, else a handle of the plan's selected step. Returns whether one
+/// is held.
+bool Window::State::grip_handle(const Vector2d& at) {
+  if (!frame() || (view.tool != Tool::cut && view.tool != Tool::look)) return false;
+  double nearest = handle_reach_px * panels->theme().scale;
+  std::optional<HeldHandle> held;
+  const auto offer = [&](const HeldHandle& handle, const Vector3d& place) {
+    const double distance = (screen_place(seen(), view_rect(), place) - at).norm();
+    if (distance >= nearest) return;
+    nearest = distance;
+    held = handle;
+  };
+  if (view.tool == Tool::cut && view.drawn_cut.part) {
+    const Pose X_CB = pose_of(scene.parts[*view.drawn_cut.part], frame()->poses);
+    for (std::size_t i = 0; i < view.drawn_cut.points.size(); ++i)
+      offer({.is_drawn = true, .index = i, .at = view.drawn_cut.points[i]},
+            X_CB * view.drawn_cut.points[i]);
+  }
+  if (panels->shows_handles(view))
+    for (std::size_t i = 0; i < scene.plan.handles.size(); ++i) {
+      const PlanHandle& handle = scene.plan.handles[i];
+      offer({.index = i, .at = handle.at, .value = handle.value},
+            frame()->poses[handle.body] * handle.at);
+    }
+  if (!held) return false;
+  if (held->is_drawn) panels->remember(view);
+  view.held_handle = held;
+  input.gripped_at = at;
+  return true;
+}
+
+void Window::State::move_handle(const Vector2d& at) {
+  HeldHandle& held = *view.held_handle;
+  pacing.frames_due = 3;
+  if (held.is_drawn) {
+    if (!view.drawn_cut.part || held.index >= view.drawn_cut.points.size()) return;
+    if (const auto place = cut_point(at, *view.drawn_cut.part))
+      view.drawn_cut.points[held.index] = held.at = *place;
+    return;
+  }
+  if (held.index >= scene.plan.handles.size()) return;
+  const PlanHandle& handle = scene.plan.handles[held.index];
+  const Pose& X_CB = frame()->poses[handle.body];
+  const int step = scene.plan.handles_of;
+  if (const PlanNumber* number = number_of(scene.plan, handle)) {
+    const Vector3d from = X_CB * handle.at;
+    const Vector2d per_unit = screen_place(seen(), view_rect(), from + X_CB.R * handle.per_unit) -
+                              screen_place(seen(), view_rect(), from);
+    constexpr double least_px = 0.5;  // seen along the axis, it would run away from the mouse
+    const double change = (at - input.gripped_at).dot(per_unit) /
+                          std::max(per_unit.squaredNorm(), least_px * least_px);
+    const double value =
+        std::clamp(std::round(10 * (handle.value + change)) / 10, number->low, number->high);
+    if (value == held.value) return;
+    held.value = value;
+    held.at = handle.at + (value - handle.value) * handle.per_unit;
+    panels->request(request::PreviewCut{plan_edit::SetNumber{step, handle.number, value}});
+    return;
+  }
+  std::optional<Vector3d> place;
+  for (std::size_t part = 0; part < scene.parts.size() && !place; ++part)
+    if (scene.parts[part].body == handle.body && can_be_cut(scene.parts[part]))
+      place = cut_point(at, part);
+  if (!place) return;
+  held.at = *place;
+  panels->request(
+      request::PreviewCut{plan_edit::MovePoint{step, handle.surface, handle.point, *place}});
+}
+
+/// A handle of the plan that was dragged changes its step.
+void Window::State::release_handle() {
+  const auto held = std::exchange(view.held_handle, std::nullopt);
+  pacing.frames_due = 3;
+  if (!held || held->is_drawn || held->index >= scene.plan.handles.size()) return;
+  const PlanHandle& handle = scene.plan.handles[held->index];
+  if (held->at == handle.at) return;
+  const int step = scene.plan.handles_of;
+  panels->request(request::PreviewCut{});
+  if (handle.number.empty())
+    panels->request(
+        request::EditPlan{plan_edit::MovePoint{step, handle.surface, handle.point, held->at}});
+  else
+    panels->request(request::EditPlan{plan_edit::SetNumber{step, handle.number, held->value}});
+}
+
+}  // namespace condyle
