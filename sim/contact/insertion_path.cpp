@@ -8,99 +8,19 @@
 #include <numbers>
 #include <optional>
 
-#include "engine/collide/quick_distance.h"
-#include "engine/collide/surface_samples.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "engine/mesh/measure.h"
+#include "sim/contact/graft_surroundings.h"
+#include "sim/contact/turned_path.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double sample_mm = 0.8;
-constexpr float farthest_mm = 4;            // distances beyond are not measured
+constexpr double farthest_mm = GraftSurroundings::farthest_mm;
 constexpr double seat_mm = 2;               // of the path, where the faces are near by intention
 constexpr double blocking_depth_mm = 0.05;  // of samples in other bone
-
-/// The nearest of all else to the graft at one place of its path.
-struct Clearance {
-  double mm = farthest_mm;
-  const std::string* part = nullptr;
-  Vector3d at = Vector3d::Zero();
-};
-
-/// A graft and what lies around it.
-class Surroundings {
- public:
-  Surroundings(const Case& patient, const std::vector<BodyId>& graft) {
-    const auto moves = [&](const Part& part) {
-      return std::find(graft.begin(), graft.end(), part.body) != graft.end();
-    };
-    for (const Part& part : patient.parts) {
-      if (!collides(part.role) || part.mesh.empty()) continue;
-      if (moves(part)) {
-        const SurfaceSamples samples = sample_surface(
-            part.mesh, {.spacing_mm = sample_mm, .edge_spacing_mm = sample_mm, .region = {}});
-        points_.insert(points_.end(), samples.points.begin(), samples.points.end());
-        box_.add(bounding_box(part.mesh));
-        pieces_.emplace_back(part.mesh);
-      } else {
-        others_.push_back(
-            {part.name, QuickDistance(part.mesh), bounding_box(part.mesh), part.mesh.vertices});
-      }
-    }
-    for (Other& other : others_)  // what the graft cannot reach
-      std::erase_if(other.corners, [&](const Vector3d& p) {
-        return !box_.contains(p, path_length_mm + farthest_mm);
-      });
-  }
-
-  Clearance at(const Vector3d& shift) const {
-    Clearance least;
-    const auto consider = [&](double mm, const Vector3d& p, const Other& other) {
-      if (mm < least.mm) least = {mm, &other.name, p};
-    };
-    Box box{box_.low + shift, box_.high + shift};
-    for (const Other& other : others_) {
-      if ((box.low.array() > other.box.high.array() + farthest_mm).any() ||
-          (other.box.low.array() > box.high.array() + farthest_mm).any())
-        continue;
-      QuickDistance::Start start;
-      for (const Vector3d& p : points_)
-        if (const Vector3d q = p + shift; other.box.contains(q, limit(least)))
-          consider(other.surface.signed_distance(q, limit(least), start), q, other);
-      for (const Vector3d& p : other.corners)
-        if (box.contains(p, limit(least)))
-          for (const QuickDistance& piece : pieces_)
-            consider(piece.signed_distance(p - shift, limit(least), start_of_none()), p, other);
-    }
-    return least;
-  }
-
- private:
-  struct Other {
-    std::string name;
-    QuickDistance surface;
-    Box box;
-    std::vector<Vector3d> corners;
-  };
-  /// Samples deeper than this beside one that is nearer must not be missed.
-  static float limit(const Clearance& least) {
-    return static_cast<float>(std::max(least.mm, 2 * sample_mm));
-  }
-  static QuickDistance::Start& start_of_none() {
-    thread_local QuickDistance::Start start;
-    start = {};
-    return start;
-  }
-
-  std::vector<Vector3d> points_;
-  std::vector<QuickDistance> pieces_;
-  std::vector<Other> others_;
-  Box box_;
-};
 
 /// A direction brought into the cone of the faces: the part of it that points into bone is removed.
 std::optional<Vector3d> into_cone(Vector3d d, const std::vector<Vector3d>& normals) {
@@ -147,14 +67,14 @@ std::vector<Vector3d> directions_of(const Seat& seat) {
   return directions;
 }
 
-InsertionPath examine(const Surroundings& around, const Vector3d& direction) {
+InsertionPath examine(const GraftSurroundings& around, const Vector3d& direction) {
   constexpr double fine_mm = 0.25, fine_part_mm = 10, coarse_mm = 1;
   InsertionPath path;
   path.direction = direction;
   path.margin_mm = farthest_mm;
-  const double seated = std::min(around.at(Vector3d::Zero()).mm, 0.);
+  const double seated = std::min(around.at({}).mm, 0.);
   for (double s = fine_mm; s <= path_length_mm; s += s < fine_part_mm ? fine_mm : coarse_mm) {
-    const Clearance found = around.at(s * direction);
+    const Clearance found = around.at({Eigen::Quaterniond::Identity(), s * direction});
     if (found.mm < seated - blocking_depth_mm) {
       path.blocked_by = *found.part;
       path.margin_part.clear();
@@ -168,6 +88,33 @@ InsertionPath examine(const Surroundings& around, const Vector3d& direction) {
     path.margin_after_mm = s;
     path.margin_at = found.at;
     path.margin_part = *found.part;
+  }
+  path.state =
+      path.margin_mm < tight_margin_mm ? InsertionPath::State::tight : InsertionPath::State::free;
+  return path;
+}
+
+/// Measures a path with turns.
+InsertionPath examine_turned(const GraftSurroundings& around, const std::vector<Pose>& poses,
+                             int threads) {
+  InsertionPath path;
+  path.poses = poses;
+  path.margin_mm = farthest_mm;
+  std::vector<Clearance> found(poses.size());
+  parallel_for(poses.size(), threads, [&](std::size_t i) { found[i] = around.at(poses[i]); });
+  constexpr double first_mm = 10;  // whose direction is that of the path
+  bool is_out = false;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const Vector3d shift = poses[i] * around.middle() - around.middle();
+    path.length_mm += (poses[i] * around.middle() - poses[i - 1] * around.middle()).norm();
+    path.turn_deg = std::max(path.turn_deg, rotation_angle(poses[i]) * 180 / std::numbers::pi);
+    if (shift.norm() < first_mm || i == 1) path.direction = shift.normalized();
+    is_out = is_out || around.displacement(poses[i]) >= seat_mm;
+    if (!is_out || found[i].mm >= path.margin_mm) continue;
+    path.margin_mm = found[i].mm;
+    path.margin_after_mm = path.length_mm;
+    path.margin_at = found[i].at;
+    path.margin_part = *found[i].part;
   }
   path.state =
       path.margin_mm < tight_margin_mm ? InsertionPath::State::tight : InsertionPath::State::free;
@@ -212,7 +159,7 @@ InsertionPath find_insertion_path(const Case& patient, const Seat& seat, int thr
     if (!body) throw InputError(fmt::format("the patient has no body \"{}\"", name));
     graft.push_back(*body);
   }
-  const Surroundings around(patient, graft);
+  const GraftSurroundings around(patient, graft, path_length_mm);
   const auto directions = directions_of(seat);
   std::vector<InsertionPath> paths(directions.size());
   parallel_for(directions.size(), threads,
@@ -221,7 +168,17 @@ InsertionPath find_insertion_path(const Case& patient, const Seat& seat, int thr
   for (std::size_t i = 0; i < paths.size(); ++i)
     if (i == 0 || is_better(paths[i], best)) best = paths[i];
   best.directions = static_cast<int>(directions.size());
-  return best;
+  if (best.state != InsertionPath::State::blocked) return best;
+  const TurnedPath turned =
+      find_turned_path(patient, seat, graft, directions, path_length_mm, threads);
+  best.poses_examined = turned.examined;
+  best.searched_mm = turned.farthest_mm;
+  if (turned.poses.empty()) return best;
+  InsertionPath found = examine_turned(around, turned.poses, threads);
+  found.directions = best.directions;
+  found.poses_examined = turned.examined;
+  found.searched_mm = turned.farthest_mm;
+  return found;
 }
 
 std::string state_name(InsertionPath::State state) {
@@ -236,13 +193,17 @@ std::string insertion_path_text(const InsertionPath& path, const Seat& seat) {
   if (path.state == InsertionPath::State::blocked)
     return fmt::format(
         "insertion path of {}: blocked; of {} straight directions the best withdraws the graft by "
-        "{:.2f} mm, where it meets {} at {}",
-        seat.name, path.directions, path.blocked_after_mm, path.blocked_by, where);
-  std::string text =
-      fmt::format("insertion path of {}: {}, straight (out of its seat {})", seat.name,
-                  state_name(path.state), direction_words(path.direction));
+        "{:.2f} mm, where it meets {} at {}; turned in {} examined poses it comes {:.1f} mm far",
+        seat.name, path.directions, path.blocked_after_mm, path.blocked_by, where,
+        path.poses_examined, path.searched_mm);
+  std::string text = fmt::format(
+      "insertion path of {}: {}, {} (out of its seat {})", seat.name, state_name(path.state),
+      path.turns() ? fmt::format("turned by up to {:.0f} degrees over {:.0f} mm", path.turn_deg,
+                                 path.length_mm)
+                   : "straight",
+      direction_words(path.direction));
   if (path.margin_part.empty())
-    return text + fmt::format("; more than {} mm from all else", static_cast<int>(farthest_mm));
+    return text + fmt::format("; more than {:g} mm from all else", farthest_mm);
   return text + fmt::format("; least distance {:.2f} mm, {:.1f} mm from the seat, to {} at {}",
                             path.margin_mm, path.margin_after_mm, path.margin_part, where);
 }

@@ -6,18 +6,11 @@
 
 #include "engine/math/pose.h"
 #include "sim/case/case.h"
+#include "sim/contact/seat.h"
 
 namespace condyle {
 
-/// Where a graft lies, and what bounds its path out.
-struct Seat {
-  std::string name;                 // of the graft
-  std::vector<std::string> bodies;  // its pieces, which move together; the first carries the others
-  std::vector<Eigen::Vector3d> face_normals;  // of the bone's faces at its ends, out of that bone
-  Eigen::Vector3d approach = -Eigen::Vector3d::UnitZ();  // towards the surgeon's hands
-};
-
-/// The straight path of a graft into its seat. Positions are along the path out.
+/// The path of a graft into its seat. Positions are along the path out, of the graft's middle.
 struct InsertionPath {
   enum class State { free, tight, blocked };
   State state = State::blocked;
@@ -32,21 +25,33 @@ struct InsertionPath {
   double blocked_after_mm = 0;
   std::string blocked_by = {};
   int directions = 0;  // examined
+  // Of a path on which the graft turns: its displacements from the seat, the first none. Empty: the
+  // path is straight.
+  std::vector<Pose> poses = {};
+  double turn_deg = 0;  // the largest
+  // Of the search for such a path, 0 where a straight one was found: poses examined, and how far
+  // the graft's middle came.
+  int poses_examined = 0;
+  double searched_mm = 0;
+
+  bool turns() const { return !poses.empty(); }
 };
 
 constexpr double tight_margin_mm = 0.3;
 constexpr double path_length_mm = 60;
 
-/// The straight path out of a seat along which the graft keeps the largest distance. A graft
-/// between plane faces can only leave along directions that point out of each face or along it;
-/// examined are the approach brought into this cone, the middle of the cone and directions around
-/// both, in steps of 0.25 mm over the first 10 mm and 1 mm after, against all bone and teeth of
-/// other bodies at rest. Surfaces are compared by exact distances of samples of the graft (0.8 mm)
-/// and of corners of the others. Bit-identical for any number of threads. throws: InputError for a
-/// body that the patient lacks.
+/// The path out of a seat. First the straight path along which the graft keeps the largest
+/// distance. A graft between plane faces can only leave along directions that point out of each
+/// face or along it; examined are the approach brought into this cone, the middle of the cone and
+/// directions around both, in steps of 0.25 mm over the first 10 mm and 1 mm after, against all
+/// bone and teeth of other bodies at rest. Surfaces are compared by exact distances of samples of
+/// the graft (0.8 mm) and of corners of the others. Where all straight paths are blocked, a path
+/// with turns is searched (find_turned_path()). Bit-identical for any number of threads. throws:
+/// InputError for a body that the patient lacks.
 InsertionPath find_insertion_path(const Case& patient, const Seat& seat, int threads = 1);
 
-/// "graft: free, straight out down and to the left; at least 0.8 mm from mandible".
+/// "insertion path of graft: free, straight (out of its seat down and to the left); least distance
+/// 0.80 mm, ...".
 std::string insertion_path_text(const InsertionPath& path, const Seat& seat);
 
 /// "free", "tight", "blocked".

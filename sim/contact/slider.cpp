@@ -2,29 +2,27 @@
 
 #include <algorithm>
 
+#include "sim/contact/sliding_settings.h"
+
 namespace condyle {
 namespace {
 
+using Resolution = SlidingResolution;
+
 constexpr double reach_mm = 20;  // of the other bodies beyond their boxes at rest
-constexpr double tooth_spacing_mm = 0.25, roaming_spacing_mm = 0.3, jaw_spacing_mm = 0.4,
-                 cranium_spacing_mm = 0.5;
 constexpr double band_mm = 1;
-constexpr double tooth_sample_mm = 0.4, bone_sample_mm = 0.6;
 // For guided pairs: fields reach little farther than twice the gap. Larger gaps are kept by exact
 // distances alone.
 constexpr double widest_gap_mm = 4;
-// Half of what the exact surfaces allow: then they seldom disagree.
-constexpr double slop_mm = 0.01;
-constexpr double fade_mm = 2;  // distance from rest over which the overlap at rest fades
 // Between samples along a path, for points as far from the centre as those of a jaw.
 constexpr double coverage_step_mm = 5, turning_mm = 80;
 constexpr double exit_distances_mm[] = {4, 8, 16};
 constexpr std::size_t max_settings = 24;
 
 double spacing_of(const BodyTree& bodies, const Part& part) {
-  if (is_teeth(part.role)) return tooth_spacing_mm;
-  if (bodies.roams(part.body)) return roaming_spacing_mm;
-  return part.body == cranium_body ? cranium_spacing_mm : jaw_spacing_mm;
+  if (is_teeth(part.role)) return Resolution::tooth_spacing_mm;
+  if (bodies.roams(part.body)) return Resolution::roaming_spacing_mm;
+  return part.body == cranium_body ? Resolution::cranium_spacing_mm : Resolution::jaw_spacing_mm;
 }
 
 }  // namespace
@@ -54,7 +52,8 @@ Slider::Slider(const Case& patient, const ContactModel::State& state, Slider* ea
       field.region->low.array() -= reach_mm;
       field.region->high.array() += reach_mm;
     }
-    surface.settings.samples.spacing_mm = is_teeth(part.role) ? tooth_sample_mm : bone_sample_mm;
+    surface.settings.samples.spacing_mm =
+        is_teeth(part.role) ? Resolution::tooth_sample_mm : Resolution::bone_sample_mm;
     surface.settings.cache = field_cache_folder();
     surface.coverage = field_coverage(collider->surface.box(), field.region);
     surfaces_.push_back(std::move(surface));
@@ -130,8 +129,9 @@ std::unique_ptr<SlidingContact> Slider::make_contact(BodyId body) const {
   }
   auto contact = std::make_unique<SlidingContact>(
       std::move(fixed), std::move(moving), pairs,
-      SlideSettings{.friction = state_.settings.friction, .slop_mm = slop_mm, .pivot = {}});
-  contact->allow_overlap_at({}, fade_mm);
+      SlideSettings{
+          .friction = state_.settings.friction, .slop_mm = Resolution::slop_mm, .pivot = {}});
+  contact->allow_overlap_at({}, Resolution::fade_mm);
   return contact;
 }
 

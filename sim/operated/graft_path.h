@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/contact/insertion_path.h"
 #include "sim/motion/motion.h"
 #include "sim/operation/operation.h"
 #include "sim/simulator/simulator.h"

@@ -8,7 +8,7 @@
 #include "engine/core/progress.h"
 #include "sim/case/case.h"
 #include "sim/contact/contact.h"
-#include "sim/contact/insertion_path.h"
+#include "sim/contact/seat.h"
 #include "sim/frame/frame_state.h"
 #include "sim/motion/motion.h"
 #include "sim/tissue/tissue.h"
