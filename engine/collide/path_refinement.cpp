@@ -13,13 +13,15 @@ using Eigen::Vector3d;
 constexpr double step_mm = 0.25;   // between examined poses, of any point of the body
 constexpr double depth_mm = 0.02;  // tolerated, as in contact
 constexpr double spacing_mm = 3;   // between poses of the finished path
-constexpr int shortcuts = 150, rounds = 30;
+constexpr int shortcuts = 80, rounds = 12;
+constexpr double first_pace_mm = 1, slower = 0.85;
 
 }  // namespace
 
 bool PathChecker::is_free(const Pose& X) {
   ++examined_;
-  return !probe_.overlaps_at(X, depth_mm);
+  probe_.look_at(X, 0);
+  return probe_.deepest_gap() >= -depth_mm;
 }
 
 int PathChecker::steps_between(const Pose& from, const Pose& to, double step) const {
@@ -76,14 +78,19 @@ class Refinement {
   std::vector<Pose> run() {
     for (int i = 0; i < shortcuts && poses_.size() > 2; ++i) shorten();
     divide();
-    double pace_mm = 1;
-    for (int round = 0; round < rounds; ++round, pace_mm *= 0.93)
-      for (std::size_t i = 1; i + 1 < poses_.size(); ++i) move(i, pace_mm);
+    double pace_mm = first_pace_mm;
+    for (int round = 0; round < rounds; ++round, pace_mm *= slower)
+      for (std::size_t i = 1; i + 1 < poses_.size(); ++i)
+        if (std::min(gap_[i - 1], gap_[i]) < margin_mm_) widen(i, pace_mm);
+    for (int i = 0; i < shortcuts && poses_.size() > 2; ++i) shorten();
     return std::move(poses_);
   }
 
  private:
-  /// A straight move between two places of the path, where it is free.
+  double gap(const Pose& from, const Pose& to) { return checker_.least_gap(from, to, margin_mm_); }
+
+  /// A straight move between two places of the path, where it is free, and once gaps are known as
+  /// wide as what it replaces.
   void shorten() {
     const auto place = [&](std::size_t& line) {
       line = random_.index(poses_.size() - 1);
@@ -96,12 +103,19 @@ class Refinement {
       std::swap(i, k);
       std::swap(a, b);
     }
-    if (checker_.free_part(a, b) < 1) return;
-    std::vector<Pose> next(poses_.begin(), poses_.begin() + static_cast<long>(i) + 1);
-    next.push_back(a);
-    next.push_back(b);
-    next.insert(next.end(), poses_.begin() + static_cast<long>(k) + 1, poses_.end());
-    poses_ = std::move(next);
+    const auto at = [](auto& list, std::size_t n) { return list.begin() + static_cast<long>(n); };
+    double found = 0;
+    if (gap_.empty()) {
+      if (checker_.free_part(a, b) < 1) return;
+    } else {
+      found = gap(a, b);
+      if (found < *std::min_element(at(gap_, i), at(gap_, k) + 1)) return;
+      const double before = gap_[i], after = gap_[k];
+      gap_.erase(at(gap_, i), at(gap_, k) + 1);
+      gap_.insert(at(gap_, i), {before, found, after});
+    }
+    poses_.erase(at(poses_, i) + 1, at(poses_, k) + 1);
+    poses_.insert(at(poses_, i) + 1, {a, b});
   }
 
   void divide() {
@@ -116,35 +130,27 @@ class Refinement {
       fine.push_back(poses_[i]);
     }
     poses_ = std::move(fine);
+    for (std::size_t i = 1; i < poses_.size(); ++i) gap_.push_back(gap(poses_[i - 1], poses_[i]));
   }
 
-  /// Moves one pose where the gap grows, or where the path is shorter at the same gap.
-  void move(std::size_t i, double pace_mm) {
+  /// Moves one pose by chance where the gap beside it grows.
+  void widen(std::size_t i, double pace_mm) {
     const Pose &before = poses_[i - 1], &after = poses_[i + 1];
-    const auto value = [&](const Pose& X, double at_least) {
-      const double first = checker_.least_gap(before, X, margin_mm_);
-      return first < at_least ? first : std::min(first, checker_.least_gap(X, after, margin_mm_));
-    };
-    const auto length = [&](const Pose& X) {
-      return checker_.distance(before, X) + checker_.distance(X, after);
-    };
-    const Pose middle = interpolate(before, after, 0.5, checker_.pivot());
-    const double gap = value(poses_[i], -1);
+    const double least = std::min(gap_[i - 1], gap_[i]);
     const Pose shaken = checker_.placed(
         poses_[i], pace_mm * random_.uniform() * random_.direction(),
         pace_mm / checker_.rotation_length_mm() * random_.uniform() * random_.direction());
-    const Pose nearer = interpolate(poses_[i], middle, 0.5, checker_.pivot());
-    for (const Pose& X : {shaken, nearer}) {
-      const double found = value(X, gap);
-      constexpr double same_mm = 1e-3;
-      if (found > gap + same_mm || (found >= gap && length(X) < length(poses_[i]) - same_mm)) {
-        poses_[i] = X;
-        return;
-      }
-    }
+    const double first = gap(before, shaken);
+    if (first <= least) return;
+    const double second = gap(shaken, after);
+    if (second <= least) return;
+    poses_[i] = shaken;
+    gap_[i - 1] = first;
+    gap_[i] = second;
   }
 
   std::vector<Pose> poses_;
+  std::vector<double> gap_;  // from each pose to the next, at most the margin; empty: unknown
   PathChecker& checker_;
   PathRandom& random_;
   double margin_mm_;

@@ -11,11 +11,11 @@ namespace condyle {
 struct PathSearchSettings {
   // Straight directions along which the body is moved more often than along others; unit.
   std::vector<Eigen::Vector3d> directions = {};
-  double reach_mm = 70;     // of the pivot from the start
-  double turn_rad = 2.4;    // of the body from the start
-  double extend_mm = 5;     // longest move between two poses of the tree
-  int max_poses = 1000000;  // to be examined before the search gives up
-  double margin_mm = 0.5;   // more distance than this is no gain
+  double reach_mm = 70;    // of the pivot from the start
+  double turn_rad = 2.4;   // of the body from the start
+  double extend_mm = 5;    // longest move between two poses of the tree
+  int max_poses = 20'000;  // to be examined before the search gives up
+  double margin_mm = 0.5;  // more distance than this is no gain
   std::uint64_t seed = 1;
 };
 

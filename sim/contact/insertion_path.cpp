@@ -192,9 +192,15 @@ std::string insertion_path_text(const InsertionPath& path, const Seat& seat) {
                                         path.margin_at.y(), path.margin_at.z());
   if (path.state == InsertionPath::State::blocked)
     return fmt::format(
-        "insertion path of {}: blocked; of {} straight directions the best withdraws the graft by "
-        "{:.2f} mm, where it meets {} at {}; turned in {} examined poses it comes {:.1f} mm far",
-        seat.name, path.directions, path.blocked_after_mm, path.blocked_by, where,
+        "insertion path of {}: blocked; {}; on paths with turns ({} poses examined) its middle "
+        "comes "
+        "{:.1f} mm from the seat",
+        seat.name,
+        path.blocked_by.empty()
+            ? "no straight direction leads out between the faces of the bone"
+            : fmt::format("of {} straight directions the best withdraws the graft by {:.2f} mm, "
+                          "where it meets {} at {}",
+                          path.directions, path.blocked_after_mm, path.blocked_by, where),
         path.poses_examined, path.searched_mm);
   std::string text = fmt::format(
       "insertion path of {}: {}, {} (out of its seat {})", seat.name, state_name(path.state),

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <functional>
 
 #include "engine/core/error.h"
 #include "engine/core/similar_word.h"
@@ -34,6 +35,26 @@ Vector3d approach_of(const GraftLayout& graft, const ClinicalFrame& frame) {
   const Vector3d outward = frame.up.cross(faces[1].point - faces[0].point).normalized();
   constexpr double sideways = 0.7;
   return (graft.step.approach == "intraoral" ? frame.up : frame.down()) + sideways * outward;
+}
+
+/// Displacement of the graft at a fraction of the path: evenly along it. The jaw is at rest.
+std::function<Pose(double s)> displacement_along(const InsertionPath& path) {
+  if (!path.turns()) {
+    const double far_mm =
+        path.state == InsertionPath::State::blocked ? path.blocked_after_mm : path.length_mm;
+    return [far_mm, direction = path.direction](double s) {
+      Pose X;
+      X.t = s * far_mm * direction;
+      return X;
+    };
+  }
+  // The poses lie evenly along the path: no point of the graft moves by more than half a
+  // millimetre between them.
+  return [poses = path.poses](double s) {
+    const double at = s * static_cast<double>(poses.size() - 1);
+    const auto before = std::min(static_cast<std::size_t>(at), poses.size() - 2);
+    return interpolate(poses[before], poses[before + 1], at - static_cast<double>(before));
+  };
 }
 
 }  // namespace
@@ -68,14 +89,13 @@ Motion insertion_path_motion(const std::string& spec, const Scene& scene, double
   motion.name = "insertion path of " + seat.name;
   motion.duration_s = duration_s > 0 ? duration_s : default_s;
   motion.target = [](double) { return Pose{}; };
-  const double half_s = 0.5 * motion.duration_s,
-               far_mm = path.state == InsertionPath::State::blocked ? path.blocked_after_mm
-                                                                    : path.length_mm;
+  const double half_s = 0.5 * motion.duration_s;
   const BodyId first = *scene.patient.bodies.find(seat.bodies.front());
-  motion.pieces = [=, count = scene.patient.bodies.size()](double time_s) {
+  motion.pieces = [=, along = displacement_along(path),
+                   count = scene.patient.bodies.size()](double time_s) {
     const double s = 1 - std::min(std::abs(time_s - half_s) / half_s, 1.);
     std::vector<Pose> X_PB(static_cast<std::size_t>(count));
-    X_PB[index_of(first)].t = s * far_mm * path.direction;
+    X_PB[index_of(first)] = along(s);
     return X_PB;
   };
   motion.phases = {{"out of the seat", 0, half_s}, {"into the seat", half_s, motion.duration_s}};
