@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double step_mm = 0.25;   // between examined poses, of any point of the body
+constexpr double step_mm = 0.5;    // between examined poses, of any point of the body
 constexpr double depth_mm = 0.02;  // tolerated, as in contact
 constexpr double spacing_mm = 3;   // between poses of the finished path
 constexpr int shortcuts = 80, rounds = 12;

@@ -180,15 +180,16 @@ PathSearch TreeSearch::run(const Pose& start, const std::vector<Pose>& goals) {
 
 }  // namespace
 
-PathSearch find_path(const SlidingContact& contact, const Pose& start,
+PathSearch find_path(const SlidingContact& contact, const SlidingContact& finer, const Pose& start,
                      const std::vector<Pose>& goals, const PathSearchSettings& settings) {
   PathChecker checker(contact);
   PathSearch found = TreeSearch(checker, settings).run(start, goals);
-  if (!found.poses.empty()) {
-    PathRandom random(settings.seed + 1);
-    found.poses = refined_path(std::move(found.poses), checker, random, settings.margin_mm);
-  }
   found.examined = checker.examined();
+  if (found.poses.empty()) return found;
+  PathChecker fine(finer);
+  PathRandom random(settings.seed + 1);
+  found.poses = refined_path(std::move(found.poses), fine, random, settings.margin_mm);
+  found.examined += fine.examined();
   return found;
 }
 

@@ -30,10 +30,11 @@ struct PathSearch {
 /// (SlidingContact): RRT-Connect, whose moves slide along obstacles, then shortened and moved away
 /// from obstacles where that brings a sample farther away, up to the margin. Between successive
 /// poses of the path the body moves as interpolate() does about the contact's pivot, which was
-/// examined in steps of a quarter millimetre. Depends on its arguments alone.
+/// examined in steps of half a millimetre. Depends on its arguments alone.
 /// source: Kuffner and LaValle, RRT-Connect, ICRA 2000; the sliding moves are those of
 /// Zhang and Manocha, An efficient retraction-based RRT planner, ICRA 2008.
-PathSearch find_path(const SlidingContact& contact, const Pose& start,
+/// `finer`: the contact that the found path is shortened and widened by.
+PathSearch find_path(const SlidingContact& contact, const SlidingContact& finer, const Pose& start,
                      const std::vector<Pose>& goals, const PathSearchSettings& settings = {});
 
 }  // namespace condyle

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "engine/collide/path_search.h"
 #include "engine/mesh/measure.h"
@@ -17,16 +18,35 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Coarser than those of contact, which verifies the result: a third of the time.
-constexpr double searched_tooth_mm = 0.6, searched_bone_mm = 1;
-constexpr int searches = 3, poses_of_search = 20'000;
-constexpr double followed_step_mm = 0.5, followed_mm = 0.1;
+// Of the samples that the search moves by, which contact verifies: a fifth of the time.
+constexpr double searched_sample_mm = 1.5, searched_edge_mm = 0.5, searched_rise_mm = 0.1;
+constexpr int searches = 2, poses_of_search = 20'000;
+constexpr double followed_step_mm = 1, followed_mm = 0.1;
 
 /// The graft and what it may meet, prepared for contact.
 struct Surfaces {
-  std::vector<std::shared_ptr<const ContactSurface>> fixed, moving;
+  std::vector<std::shared_ptr<const ContactSurface>> fixed, moving, coarse_fixed, coarse_moving;
   Box graft;
 };
+
+ContactSurface coarse(const DistanceField& field, const TriMesh& mesh) {
+  return {field, sample_surface(mesh, {.spacing_mm = searched_sample_mm,
+                                       .edge_rise_mm = searched_rise_mm,
+                                       .edge_spacing_mm = searched_edge_mm,
+                                       .region = field.settings().region})};
+}
+
+SlidingContact contact_of(const std::vector<std::shared_ptr<const ContactSurface>>& fixed,
+                          const std::vector<std::shared_ptr<const ContactSurface>>& moving,
+                          const std::optional<Eigen::Vector3d>& pivot, double rotation_length_mm) {
+  SlideSettings settings;
+  settings.slop_mm = SlidingResolution::slop_mm;
+  settings.rotation_length_mm = rotation_length_mm;
+  settings.pivot = pivot;
+  SlidingContact contact(fixed, moving, settings);
+  contact.allow_overlap_at({}, SlidingResolution::fade_mm);
+  return contact;
+}
 
 Surfaces surfaces_near(const Case& patient, const std::vector<BodyId>& graft, double length_mm,
                        int threads) {
@@ -48,11 +68,15 @@ Surfaces surfaces_near(const Case& patient, const std::vector<BodyId>& graft, do
                                 : is_teeth(part.role) ? SlidingResolution::tooth_spacing_mm
                                                       : SlidingResolution::jaw_spacing_mm;
     if (!moves(part)) settings.field.region = region;
-    settings.samples.spacing_mm = is_teeth(part.role) ? searched_tooth_mm : searched_bone_mm;
+    settings.samples.spacing_mm = is_teeth(part.role) ? SlidingResolution::tooth_sample_mm
+                                                      : SlidingResolution::bone_sample_mm;
     settings.cache = field_cache_folder();
     (moves(part) ? near.moving : near.fixed)
         .push_back(std::make_shared<const ContactSurface>(
             make_contact_surface(part.mesh, settings, threads)));
+    (moves(part) ? near.coarse_moving : near.coarse_fixed)
+        .push_back(std::make_shared<const ContactSurface>(
+            coarse((moves(part) ? near.moving : near.fixed).back()->field, part.mesh)));
   }
   return near;
 }
@@ -118,12 +142,12 @@ TurnedPath find_turned_path(const Case& patient, const Seat& seat, const std::ve
                             int threads) {
   TurnedPath result;
   const Surfaces near = surfaces_near(patient, graft, length_mm, threads);
-  SlidingContact contact(near.fixed, near.moving,
-                         SlideSettings{.slop_mm = SlidingResolution::slop_mm, .pivot = {}});
-  contact.allow_overlap_at({}, SlidingResolution::fade_mm);
+  const SlidingContact contact = contact_of(near.fixed, near.moving, std::nullopt, 0),
+                       rough = contact_of(near.coarse_fixed, near.coarse_moving, contact.pivot(),
+                                          contact.rotation_length_mm());
   std::unique_ptr<const ContactModel> contacts;
   for (int search = 0; search < searches; ++search) {
-    const PathSearch found = find_path(contact, {}, goals_of(seat, directions, length_mm),
+    const PathSearch found = find_path(rough, contact, {}, goals_of(seat, directions, length_mm),
                                        {.directions = directions,
                                         .reach_mm = 1.2 * length_mm,
                                         .max_poses = poses_of_search,

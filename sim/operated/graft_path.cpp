@@ -48,7 +48,7 @@ std::function<Pose(double s)> displacement_along(const InsertionPath& path) {
       return X;
     };
   }
-  // The poses lie evenly along the path: no point of the graft moves by more than half a
+  // The poses lie evenly along the path: no point of the graft moves by more than a
   // millimetre between them.
   return [poses = path.poses](double s) {
     const double at = s * static_cast<double>(poses.size() - 1);

@@ -111,6 +111,8 @@ TEST(InsertionPath, is_blocked_by_what_closes_the_gap_after_the_distance_to_it) 
                     mandible_body);
   patient.add_piece({"front", Role::segment, box({-60, -60, -12}, {60, -12, 29}), {}},
                     mandible_body);
+  patient.add_piece({"roof", Role::segment, box({-60, -11.5, 11}, {60, 11.5, 29}), {}},
+                    mandible_body);
   patient.add_piece({"back", Role::segment, box({-60, 12, -12}, {60, 60, 29}), {}}, mandible_body);
   const InsertionPath path = find_insertion_path(patient, seat());
   EXPECT_EQ(path.state, InsertionPath::State::blocked);
@@ -120,8 +122,8 @@ TEST(InsertionPath, is_blocked_by_what_closes_the_gap_after_the_distance_to_it) 
   EXPECT_EQ(path.margin_part, "");
   // Nor does any turn lead out of the sleeve: the search ends, and states how far it came.
   EXPECT_FALSE(path.turns());
-  EXPECT_GE(path.poses_examined, 60000);
-  EXPECT_LT(path.poses_examined, 80000);
+  EXPECT_GE(path.poses_examined, 40000);
+  EXPECT_LT(path.poses_examined, 42000);
   EXPECT_GT(path.searched_mm, 1);
   EXPECT_LT(path.searched_mm, 20);
   EXPECT_NE(insertion_path_text(path, seat()).find("paths with turns"), std::string::npos);
@@ -135,7 +137,7 @@ TEST(InsertionPath, tilts_under_an_overhang_that_blocks_every_straight_direction
   EXPECT_GE(path.margin_mm, tight_margin_mm);
   EXPECT_GT(path.turn_deg, 5);
   EXPECT_LT(path.turn_deg, 60);
-  EXPECT_LT(path.poses_examined, 60000);
+  EXPECT_LT(path.poses_examined, 40000);
   EXPECT_TRUE(path.poses.front().t.isZero());
   EXPECT_NEAR(path.poses.back().t.norm(), path_length_mm, 0.2);
   EXPECT_LT(rotation_angle(path.poses.back()), 0.01);
@@ -170,7 +172,7 @@ TEST(InsertionPath, is_blocked_by_an_overhang_that_is_too_wide) {
   EXPECT_EQ(path.state, InsertionPath::State::blocked);
   EXPECT_FALSE(path.turns());
   EXPECT_EQ(path.blocked_by, "lip");
-  EXPECT_NEAR(path.blocked_after_mm, 1, 0.3);  // the room above the lip
+  EXPECT_NEAR(path.blocked_after_mm, 1.25, 0.3);  // the room above the lip, along a slope
 }
 
 TEST(InsertionPath, is_the_same_for_any_number_of_threads) {
