@@ -295,11 +295,34 @@ void check_ends(const GraftLayout& graft) {
           std::acos(std::clamp(cosine, -1., 1.)) * degrees, second ? "second" : "first"));
 }
 
+/// Refuses a gap that the clearances fill, and bone thinner than the saw.
+void check_room(const GraftLayout& graft, const Donor& donor) {
+  const GraftStep& step = graft.step;
+  const auto& faces = graft.defect.faces;
+  const double gap = (faces[1].point - faces[0].point).norm();
+  if (gap <= 2 * step.clearance_mm)
+    throw InputError(fmt::format(
+        "the gap is {:.1f} mm wide; {:g} mm of clearance at both ends leave no room for a graft",
+        gap, step.clearance_mm));
+  if (const double thin = std::min(donor.height_mm, donor.width_mm); thin <= step.kerf_mm)
+    throw InputError(fmt::format("{} is {:.2f} mm thick, no thicker than the saw of {:g} mm",
+                                 donor.name, thin, step.kerf_mm));
+}
+
+void check_length(const GraftPiece& piece, const GraftStep& step) {
+  if (piece.length_mm <= step.kerf_mm)
+    throw InputError(fmt::format(
+        "{} would be {:.2f} mm long, no longer than the saw of {:g} mm is thick; the gap is too "
+        "small for {} piece{}",
+        piece.body, piece.length_mm, step.kerf_mm, step.pieces, step.pieces == 1 ? "" : "s"));
+}
+
 }  // namespace
 
 GraftLayout lay_graft(const GraftStep& step, const TriMesh& resected, const Defect& defect) {
   const Donor donor = make_donor(step);
   GraftLayout graft{.step = step, .donor_name = donor.name, .defect = defect};
+  check_room(graft, donor);
   graft.curve = step.curve.empty()
                     ? border_curve(resected, defect, step.height_mm.value_or(donor.height_mm / 2))
                     : curve_between(step.curve, defect);
@@ -311,6 +334,7 @@ GraftLayout lay_graft(const GraftStep& step, const TriMesh& resected, const Defe
   const auto bodies = graft_bodies(step);
   for (std::size_t i = 0; i < places.size(); ++i) {
     graft.pieces.push_back(cut_piece(donor, places[i], bodies[i]));
+    check_length(graft.pieces.back(), step);
     if (const double length = graft.pieces.back().length_mm; length < least_piece_mm)
       graft.warnings.push_back(
           fmt::format("{} is {:.1f} mm long; pieces below {:g} mm may lose "

@@ -226,6 +226,61 @@ TEST(Grafts, refuse_a_donor_that_is_too_short_and_warn_of_short_pieces) {
   EXPECT_EQ(graft.warnings.size(), 2u);  // two pieces below 20 mm
 }
 
+/// The reason for which a graft is refused.
+std::string refusal(const GraftStep& step, const Bar& made) {
+  try {
+    lay_graft(step, made.mesh, defect_of(made));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Grafts, refuse_a_gap_without_room_and_bone_thinner_than_the_saw) {
+  GraftStep step = graft_step(1);
+  step.clearance_mm = 5;
+  EXPECT_NE(refusal(step, bar(8)).find("leave no room for a graft"), std::string::npos)
+      << refusal(step, bar(8));
+  step.clearance_mm = 0.2;
+  step.kerf_mm = 2;
+  EXPECT_NE(refusal(step, bar(2)).find("1.60 mm long, no longer than the saw of 2 mm"),
+            std::string::npos)
+      << refusal(step, bar(2));
+  const condyle::test::Folder folder;
+  step.donor = folder / "plate.ply";
+  write_ply(box({0, 0, 0}, {80, 1.5, 20}), step.donor);
+  EXPECT_NE(refusal(step, bar(60)).find("1.50 mm thick, no thicker than the saw of 2 mm"),
+            std::string::npos)
+      << refusal(step, bar(60));
+  step.kerf_mm = 0.5;
+  EXPECT_EQ(refusal(step, bar(60)), "");
+}
+
+TEST(Grafts, of_a_users_bone_are_cut_into_one_to_four_pieces) {
+  const condyle::test::Folder folder;
+  const Bar made = bar(100);
+  for (int pieces = 1; pieces <= max_graft_pieces; ++pieces) {
+    GraftStep step =
+        graft_step(pieces, {{100, 0, 0}, {75, -9, 0}, {50, -12, 2}, {25, -9, 0}, {0, 0, 0}});
+    step.donor = folder / "bone.ply";
+    write_ply(box({0, 0, 0}, {14, 12, 200}), step.donor);
+    step.donor_shape = donor_shape(step.donor);
+    const GraftLayout graft = lay_graft(step, made.mesh, defect_of(made));
+    ASSERT_EQ(graft.pieces.size(), static_cast<std::size_t>(pieces));
+    ASSERT_EQ(graft.spacing_mm.size(), static_cast<std::size_t>(pieces - 1));
+    for (const double spacing : graft.spacing_mm) EXPECT_NEAR(spacing, 0.5, 1e-3);
+    double volume = 0;
+    for (const GraftPiece& piece : graft.pieces) {
+      EXPECT_TRUE(inspect(piece.mesh).closed()) << piece.body;
+      volume += piece.volume_mm3;
+    }
+    double axis = 0;
+    for (std::size_t i = 1; i < graft.corners.size(); ++i)
+      axis += (graft.corners[i] - graft.corners[i - 1]).norm();
+    EXPECT_NEAR(volume, 14 * 12 * axis, 0.02 * volume) << pieces;  // end faces are oblique
+  }
+}
+
 TEST(Grafts, refuse_a_curve_that_runs_beside_a_face) {
   const Bar made = bar(60);
   EXPECT_THROW(

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "engine/core/error.h"
 #include "engine/mesh/measure.h"
@@ -105,6 +106,24 @@ TEST(Reconstruction, reports_the_gap_where_a_piece_is_moved_away) {
   EXPECT_LT(faces[0].contact.mean_gap_mm, 1.9);
   EXPECT_EQ(faces[0].level, GraftFaceReport::Level::wide);
   EXPECT_EQ(faces[0].share, 0);
+}
+
+TEST(Reconstruction, warns_where_the_gap_is_one_at_which_bone_does_not_unite) {
+  using Level = GraftFaceReport::Level;
+  const Plan plan = with_step(resected(), fibula(1));
+  const GraftLayout graft = apply_plan(builtin(), plan).grafts[0];
+  for (const auto& [shift_mm, level, words] :
+       {std::tuple(2.8, Level::very_wide, "bone is not expected to unite"),
+        std::tuple(9.0, Level::open, "not united")}) {
+    const Pose shift{Eigen::Quaterniond::Identity(), shift_mm * graft.defect.faces[0].normal};
+    const Operated operated = apply_plan(
+        builtin(), with_step(plan, MoveStep{.segment = "fibula", .move = ExplicitMove{shift}}));
+    EXPECT_EQ(graft_faces(operated, operated.grafts[0])[0].level, level) << shift_mm;
+    const auto sentences = graft_sentences(operated, operated.grafts[0]);
+    EXPECT_TRUE(std::any_of(sentences.begin(), sentences.end(), [&](const std::string& sentence) {
+      return sentence.find(words) != std::string::npos;
+    })) << shift_mm;
+  }
 }
 
 TEST(Reconstruction, is_read_back_from_its_file_and_needs_its_resection) {
