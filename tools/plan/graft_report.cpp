@@ -38,6 +38,17 @@ Json path_json(const InsertionPath& path) {
   Json json = {{"state", state_name(path.state)},
                {"direction", {path.direction.x(), path.direction.y(), path.direction.z()}},
                {"directions_examined", path.directions}};
+  if (path.poses_examined > 0) {
+    json["poses_examined"] = path.poses_examined;
+    json["searched_mm"] = path.searched_mm;
+  }
+  if (path.turns()) {
+    json["turn_deg"] = path.turn_deg;
+    json["poses"] = Json::array();
+    for (const Pose& X : path.poses)
+      json["poses"].push_back({{"translation_mm", {X.t.x(), X.t.y(), X.t.z()}},
+                               {"quaternion_wxyz", {X.R.w(), X.R.x(), X.R.y(), X.R.z()}}});
+  }
   const Json at = {path.margin_at.x(), path.margin_at.y(), path.margin_at.z()};
   if (path.state == InsertionPath::State::blocked) {
     json["blocked_after_mm"] = path.blocked_after_mm;
