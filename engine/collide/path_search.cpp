@@ -3,13 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
-#include <random>
 
 #include "engine/collide/path_refinement.h"
-#include "engine/collide/slide_probe.h"
-#include "engine/collide/slide_walk.h"
 #include "engine/core/infinity.h"
 
 namespace condyle {
