@@ -279,4 +279,34 @@ void remove_thin(SampledField& field, double radius_mm, double tolerance_mm, int
   });
 }
 
+void remove_thin_within(SampledField& field, const Box& box, double radius_mm, double tolerance_mm,
+                        int threads) {
+  const double step = field.axes[0][1] - field.axes[0][0];
+  const double margin = radius_mm + tolerance_mm + 2 * step;
+  SampledField part;
+  std::array<int, 3> first;
+  for (int a = 0; a < 3; ++a) {
+    const GridAxis& axis = field.axes[static_cast<std::size_t>(a)];
+    const SampleRange range(axis, box.low[a] - margin, box.high[a] + margin);
+    if (range.last <= range.first) return;
+    first[static_cast<std::size_t>(a)] = range.first;
+    part.axes[static_cast<std::size_t>(a)].assign(axis.begin() + range.first,
+                                                  axis.begin() + range.last + 1);
+  }
+  const Eigen::Vector3i size = part.size();
+  const auto row = [&](SampledField& of, int i, int j, int k) {
+    return of.values.begin() + static_cast<std::ptrdiff_t>(of.index(i, j, k));
+  };
+  part.values.resize(part.axes[0].size() * part.axes[1].size() * part.axes[2].size());
+  for (int i = 0; i < size.x(); ++i)
+    for (int j = 0; j < size.y(); ++j)
+      std::copy_n(row(field, first[0] + i, first[1] + j, first[2]), size.z(), row(part, i, j, 0));
+  remove_thin(part, radius_mm, tolerance_mm, threads);
+  for (int i = 0; i < size.x(); ++i)
+    for (int j = 0; j < size.y(); ++j)
+      for (int k = 0; k < size.z(); ++k)
+        if (box.contains(part.position(i, j, k)))
+          *row(field, first[0] + i, first[1] + j, first[2] + k) = *row(part, i, j, k);
+}
+
 }  // namespace condyle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine/field/sampled_field.h"
+#include "engine/mesh/measure.h"
 #include "engine/mesh/tri_mesh.h"
 
 namespace condyle {
@@ -26,5 +27,8 @@ void sweep(SampledField& field, Sweep direction, int threads = 1);
 /// fits into the solid no farther than `tolerance_mm` away. Values of the field must be true depths
 /// up to the radius.
 void remove_thin(SampledField& field, double radius_mm, double tolerance_mm, int threads = 1);
+/// The same for the samples of an evenly spaced field within a box alone.
+void remove_thin_within(SampledField& field, const Box& box, double radius_mm, double tolerance_mm,
+                        int threads = 1);
 
 }  // namespace condyle

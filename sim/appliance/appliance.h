@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,16 +40,16 @@ struct ApplianceMeasure {
 /// Voxels outside of these would give a surface that is too coarse, or fields too large.
 constexpr double least_voxel_mm = 0.1, largest_voxel_mm = 0.6;
 
-/// throws: InputError naming the value.
-void check_voxel(double voxel_mm);
-
 /// Seats the appliance's surface on what carries it.
 struct PrintSettings {
   std::string on;
   Eigen::Vector3d seat = Eigen::Vector3d::UnitZ();
   double gap_mm = 0.1;
-  double grip_mm = 0.4;
-  double thin_mm = 1;  // crevices narrower than this are not printed
+  double held_mm = 0.35;  // deeper undercuts are not printed
+  double thin_mm = 1;     // nor are crevices narrower than this
+  /// Distance from the body that the print was taken out of, negative inside: beside its borders
+  /// are the rims of the print. Empty: rims lie beside what the appliance does not cover.
+  std::function<double(const Eigen::Vector3d&)> body = {};
 };
 
 /// Closed, pieces, volume and walls. `tree`: of the same mesh, as below. Deterministic for any
@@ -58,6 +59,29 @@ ApplianceMeasure measure_appliance(const TriMesh& mesh, const TriangleTree& tree
 /// Fit, overlap and undercut of an appliance on the closed surface that it was made for.
 PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& appliance_tree,
                            const TriMesh& support, const PrintSettings& settings, int threads);
+
+/// What a print lies on, in the axes of the appliance's grid.
+struct PrintedOn {
+  const TriMesh& support;
+  PrintSettings settings;
+};
+/// All of it for an appliance in the axes R of its grid; points and directions of the result are
+/// the cranium's.
+ApplianceMeasure measure_in_axes(const TriMesh& mesh, const TriangleTree& tree,
+                                 const Eigen::Matrix3d& R, const std::vector<PrintedOn>& prints,
+                                 int threads);
+
+/// A wall that is thinner than another, and the middle of it.
+struct ThinWall {
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  double thickness_mm = 0;
+};
+/// Where the thickness between facing walls is below `least_mm`, thinnest first.
+std::vector<ThinWall> find_thin_walls(const TriMesh& mesh, const TriangleTree& tree,
+                                      double least_mm, int threads);
+
+/// A loose part that is smaller is left out without a note.
+constexpr double crumb_mm3 = 20;
 
 /// Keeps the largest piece and drops cavities. Returns the volume of the largest other piece, mm³.
 double keep_one_piece(TriMesh& mesh);

@@ -28,6 +28,44 @@ Json print_json(const PrintMeasure& print) {
           {"not_reached_area_mm2", print.not_reached_mm2}};
 }
 
+Json gaps_json(const std::vector<SlotGap>& gaps) {
+  Json json = Json::array();
+  for (const SlotGap& gap : gaps)
+    json.push_back({{"from", point_json(gap.from)},
+                    {"to", point_json(gap.to)},
+                    {"length_mm", gap.length_mm},
+                    {"walls", gap.both ? 0 : 1}});
+  return json;
+}
+
+std::string other_bones_text(const Guide& guide) {
+  std::string text;
+  for (const CrossedBone& bone : guide.bones)
+    if (bone.name != guide.on)
+      text += fmt::format("{}{} ({:.0f} mm)", text.empty() ? "" : ", ", bone.name, bone.length_mm);
+  return text.empty() ? text
+                      : "; the cut also passes through " + text + ", which --on makes a guide for";
+}
+
+/// Where walls are missing, longest first.
+std::string gaps_text(const Guide& guide) {
+  constexpr std::size_t most_named = 4;
+  std::vector<SlotGap> gaps;
+  for (const GuideSlot& slot : guide.slots)
+    gaps.insert(gaps.end(), slot.gaps.begin(), slot.gaps.end());
+  std::stable_sort(gaps.begin(), gaps.end(),
+                   [](const SlotGap& a, const SlotGap& b) { return a.length_mm > b.length_mm; });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(gaps.size(), most_named); ++i) {
+    const Eigen::Vector3d middle = 0.5 * (gaps[i].from + gaps[i].to);
+    text += fmt::format("{}{} for {:.1f} mm at ({:.0f}, {:.0f}, {:.0f})", i == 0 ? "" : ", ",
+                        gaps[i].both ? "both walls" : "one wall", gaps[i].length_mm, middle.x(),
+                        middle.y(), middle.z());
+  }
+  if (gaps.size() > most_named) text += fmt::format(", {} more", gaps.size() - most_named);
+  return text.empty() ? text : "; missing: " + text;
+}
+
 }  // namespace
 
 std::string direction_text(const Eigen::Vector3d& direction) {
@@ -96,9 +134,7 @@ Json splint_json(const Splint& splint, const SplintSettings& settings) {
             {"lower_arch_translation_mm", point_json(splint.X_lower.t)},
             {"thickness_mm", splint.thickness_mm}};
   json.update(measure_json(splint.measure));
-  json["settings"] = {{"thickness_mm", settings.thickness_mm}, {"depth_mm", settings.depth_mm},
-                      {"wall_mm", settings.wall_mm},           {"gap_mm", settings.gap_mm},
-                      {"grip_mm", settings.grip_mm},           {"voxel_mm", settings.voxel_mm}};
+  json["settings"] = lengths_json<Json>(settings, splint_lengths);
   json["notes"] = splint.notes;
   return json;
 }
@@ -106,17 +142,21 @@ Json splint_json(const Splint& splint, const SplintSettings& settings) {
 std::string guide_text(const Guide& guide, const GuideSettings& settings) {
   double least = 1e9, most = 0, wall = 1e9;
   for (const GuideSlot& slot : guide.slots) {
+    if (slot.width_max_mm == 0) continue;
     least = std::min(least, slot.width_min_mm);
     most = std::max(most, slot.width_max_mm);
     wall = std::min(wall, slot.wall_min_mm);
   }
   std::string text = fmt::format(
+      "bone: {}{}\n"
       "saw: {}, blade {:.2f} mm ({}); bone {:.1f} mm thick in its direction\n"
       "slot: {} piece{}, {:.0f} of {:.0f} mm of the cut on this side; width {:.2f} to {:.2f} mm "
-      "(intended {:.2f}); walls {:.2f} mm at least\n",
-      settings.saw.name, settings.saw.blade_mm, settings.saw.source, guide.bone_mm,
-      guide.slots.size(), guide.slots.size() == 1 ? "" : "s", guide.led_mm, guide.line_mm, least,
-      most, guide.slot_mm, wall);
+      "(intended {:.2f}); walls {:.2f} mm at least\n"
+      "guided between two walls: {:.0f} mm{}\n",
+      guide.on, other_bones_text(guide), settings.saw.name, settings.saw.blade_mm,
+      settings.saw.source, guide.bone_mm, guide.slots.size(), guide.slots.size() == 1 ? "" : "s",
+      guide.led_mm, guide.line_mm, least, most, guide.slot_mm, wall, guide.guided_mm,
+      gaps_text(guide));
   if (!guide.holes.empty()) {
     text += fmt::format("screw holes: {}, diameter", guide.holes.size());
     for (const ScrewHole& hole : guide.holes) text += fmt::format(" {:.2f}", hole.diameter_mm);
@@ -126,11 +166,15 @@ std::string guide_text(const Guide& guide, const GuideSettings& settings) {
 }
 
 Json guide_json(const Guide& guide, const GuideSettings& settings) {
-  Json slots = Json::array(), holes = Json::array();
+  Json slots = Json::array(), holes = Json::array(), bones = Json::array();
+  for (const CrossedBone& bone : guide.bones)
+    bones.push_back({{"name", bone.name}, {"cut_length_mm", bone.length_mm}});
   for (const GuideSlot& slot : guide.slots)
     slots.push_back({{"from", point_json(slot.from)},
                      {"to", point_json(slot.to)},
                      {"length_mm", slot.length_mm},
+                     {"guided_mm", slot.guided_mm},
+                     {"missing_walls", gaps_json(slot.gaps)},
                      {"width_min_mm", slot.width_min_mm},
                      {"width_max_mm", slot.width_max_mm},
                      {"wall_min_mm", slot.wall_min_mm}});
@@ -139,24 +183,18 @@ Json guide_json(const Guide& guide, const GuideSettings& settings) {
                      {"axis", point_json(hole.axis)},
                      {"diameter_mm", hole.diameter_mm}});
   Json json{{"on", guide.on},
+            {"bones", bones},
             {"saw", settings.saw.name},
             {"blade_mm", settings.saw.blade_mm},
             {"slot_mm", guide.slot_mm},
             {"bone_mm", guide.bone_mm},
             {"cut_length_mm", guide.line_mm},
             {"slot_length_mm", guide.led_mm},
+            {"guided_length_mm", guide.guided_mm},
             {"slots", slots},
             {"holes", holes}};
   json.update(measure_json(guide.measure));
-  json["settings"] = {{"tolerance_mm", settings.tolerance_mm},
-                      {"reach_mm", settings.reach_mm},
-                      {"shell_mm", settings.shell_mm},
-                      {"height_mm", settings.height_mm},
-                      {"slot_wall_mm", settings.slot_wall_mm},
-                      {"hole_mm", settings.hole_mm},
-                      {"gap_mm", settings.gap_mm},
-                      {"grip_mm", settings.grip_mm},
-                      {"voxel_mm", settings.voxel_mm}};
+  json["settings"] = lengths_json<Json>(settings, guide_lengths);
   json["notes"] = guide.notes;
   return json;
 }

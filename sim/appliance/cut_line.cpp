@@ -6,7 +6,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/similar_word.h"
@@ -44,7 +46,7 @@ const PlanStep& find_cut_step(const Plan& plan, const std::string& cut) {
   return *found.front();
 }
 
-/// Collects the borders of cut faces of one step.
+/// Collects the borders of cut faces of one step, by bone.
 class LineReader {
  public:
   LineReader(const Operated& operated, CutLine& line) : line_(line) {
@@ -55,7 +57,6 @@ class LineReader {
   }
 
   void read(const TriMesh& bone, const SurfaceOrigin& origin) {
-    bool meets = false;
     for (const Edge& edge : find_edges_of(bone)) {
       if (edge.count != 2) continue;
       const int a = edges_.sides[edge.first].triangle, b = edges_.sides[edge.first + 1].triangle;
@@ -66,11 +67,33 @@ class LineReader {
       const Vector3d p = bone.vertices[edge.low], q = bone.vertices[edge.high];
       const int wall = wall_of(normal_of(bone, face), 0.5 * (p + q));
       if (wall < 0 || (q - p).norm() < 1e-6) continue;
-      line_.edges.push_back({0.5 * (p + q), normal_of(bone, outside), (q - p).norm(), wall});
-      meets = true;
+      edges_of_[origin.part].push_back(
+          {0.5 * (p + q), normal_of(bone, outside), (q - p).norm(), wall});
     }
-    if (meets) line_.bone = origin.part;
   }
+
+  /// The edges of one bone, that with the longest line where `on` is empty.
+  void choose(const std::string& on) {
+    for (const auto& [name, edges] : edges_of_) {
+      double length = 0;  // both borders of the kerf have edges
+      for (const CutEdge& edge : edges) length += 0.5 * edge.length_mm;
+      line_.bones.push_back({name, length});
+    }
+    std::stable_sort(
+        line_.bones.begin(), line_.bones.end(),
+        [](const CrossedBone& a, const CrossedBone& b) { return a.length_mm > b.length_mm; });
+    line_.bone = on.empty() ? line_.bones.front().name : on;
+    const auto found = edges_of_.find(line_.bone);
+    if (found != edges_of_.end()) {
+      line_.edges = std::move(found->second);
+      return;
+    }
+    std::vector<std::string> names;
+    for (const CrossedBone& bone : line_.bones) names.push_back(bone.name);
+    throw InputError(fmt::format("{} does not pass through a bone \"{}\"; it passes through {}",
+                                 line_.title, on, fmt::join(names, ", ")));
+  }
+  bool empty() const { return edges_of_.empty(); }
 
  private:
   struct WallPlane {
@@ -105,13 +128,17 @@ class LineReader {
   CutLine& line_;
   std::vector<WallPlane> planes_;
   EdgeList edges_;
+  std::map<std::string, std::vector<CutEdge>> edges_of_;
 };
 
 }  // namespace
 
-CutLine find_cut_line(const Operated& operated, const Plan& plan, const std::string& cut) {
+CutLine find_cut_line(const Operated& operated, const Plan& plan, const std::string& cut,
+                      const std::string& on) {
   const PlanStep& step = find_cut_step(plan, cut);
-  CutLine line{step.id, step_title(step.action), {}, {}, {}};
+  CutLine line;
+  line.step = step.id;
+  line.title = step_title(step.action);
   LineReader reader(operated, line);
   for (const Part& part : operated.patient.parts)
     if (const auto origin = operated.origin.find(part.name);
@@ -119,8 +146,9 @@ CutLine find_cut_line(const Operated& operated, const Plan& plan, const std::str
       reader.read(part.mesh, origin->second);
   for (const Resection& resection : operated.resections)
     reader.read(resection.bone, resection.origin);
-  if (line.edges.empty())
+  if (reader.empty())
     throw InputError(fmt::format("{} leaves no line on the surface of a bone", step_name(step)));
+  reader.choose(on);
   return line;
 }
 

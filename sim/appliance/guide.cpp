@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -13,6 +14,7 @@
 #include "engine/field/isosurface.h"
 #include "engine/field/mesh_field.h"
 #include "engine/field/smooth.h"
+#include "sim/appliance/grid_frame.h"
 #include "sim/appliance/slot_plan.h"
 #include "sim/operation/closed_bone.h"
 
@@ -23,9 +25,12 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double guide_rounding_mm = 1.6;
-constexpr double crumb_mm3 = 20;  // a loose part that is smaller is left out without a note
-constexpr double guide_thin_mm = 1, guide_thin_tolerance_mm = 0.12;
-constexpr double coarse_mm = 0.4;  // samples of the outer face and of undercuts
+constexpr double least_wall_mm = 1;
+// Rounded ends of a wall are thinner than its middle.
+constexpr double guide_thin_mm = 1.3, guide_thin_tolerance_mm = 0.12;
+constexpr int most_trims = 4;
+constexpr double trim_mm = 0.6, more_trim_mm = 0.2;  // beyond half of a thin wall, each time more
+constexpr double coarse_mm = 0.4;                    // samples of the outer face and of undercuts
 constexpr double guide_margin_mm = 0.8;
 constexpr double coarse_error_mm = 0.08;  // of undercuts found by them
 constexpr double wrap_mm = 5.5;           // of the shell, below the edge of the cut as it is seated
@@ -35,40 +40,25 @@ constexpr double teeth_margin_mm = 0.5;
 constexpr double tower_end_mm = 2.5;  // of the slot's walls beyond its ends
 constexpr double tower_depth_mm = 3;  // of those below the edge of the cut, where bone falls away
 
+double slot_width_mm(const GuideSettings& settings) {
+  return settings.saw.blade_mm + 2 * settings.tolerance_mm;
+}
+
 void check_guide_settings(const GuideSettings& settings) {
-  check_voxel(settings.voxel_mm);
-  const auto check = [](const char* name, double value, double low, double high) {
-    if (!(value >= low && value <= high))
-      throw InputError(fmt::format("{} {} mm: it is from {} to {} mm", name, value, low, high));
-  };
-  check("tolerance", settings.tolerance_mm, 0, 1);
-  check("reach", settings.reach_mm, 6, 25);
-  check("shell", settings.shell_mm, 1.2, 6);
-  check("height", settings.height_mm, 2, 20);
-  check("slot wall", settings.slot_wall_mm, 1.2, 5);
-  if (settings.hole_mm != 0) check("hole", settings.hole_mm, 1, 4);
-  check("gap", settings.gap_mm, 0, 0.5);
-  check("grip", settings.grip_mm, 0, 1);
-  const double slot = settings.saw.blade_mm + 2 * settings.tolerance_mm;
+  check_lengths(settings, guide_lengths);
+  if (settings.hole_mm > 0 && settings.hole_mm < 1)
+    throw InputError(
+        fmt::format("hole {} mm: it is 0 for none, or from 1 to 4 mm", settings.hole_mm));
+  const double slot = slot_width_mm(settings);
   if (settings.voxel_mm > 0.5 * slot)
     throw InputError(
         fmt::format("voxel {} mm is too coarse for a slot of {:.2f} mm: it is at most {:.2f} mm",
                     settings.voxel_mm, slot, 0.5 * slot));
 }
 
-Matrix3d view_axes(const Vector3d& out) {
-  const Vector3d x = std::abs(out.x()) < 0.8 ? Vector3d::UnitX() : Vector3d::UnitY();
-  Matrix3d R;
-  R.row(2) = out.transpose();
-  R.row(0) = (x - x.dot(out) * out).normalized().transpose();
-  R.row(1) = R.row(2).cross(R.row(0));
-  return R;
-}
-
-TriMesh in_view(TriMesh mesh, const Matrix3d& R) {
-  for (Vector3d& p : mesh.vertices) p = R * p;
-  mesh.colors.clear();
-  return mesh;
+/// The grip, less the error of the coarse samples.
+double guide_held_mm(const GuideSettings& settings) {
+  return settings.grip_mm - std::min(coarse_error_mm, settings.gap_mm);
 }
 
 /// Shell, walls, slots and holes on one grid with z along the withdrawal path.
@@ -76,16 +66,15 @@ class GuideField {
  public:
   GuideField(const TriMesh& bone, const SlotPlan& plan, const Matrix3d& R,
              const GuideSettings& settings)
-      : settings_(settings), plan_(plan), R_(R), half_slot_(0.5 * slot_mm()) {
+      : settings_(settings), plan_(plan), R_(R), half_slot_(0.5 * slot_width_mm(settings)) {
     for (const Vector3d& p : plan.points) points_.push_back(R * p);
     for (const Vector3d& p : points_) box_.add(p);
-    constexpr double shift = 0.0137;  // not on planes of symmetry
-    const double around = settings.reach_mm + guide_margin_mm + shift;
+    const double around = settings.reach_mm + guide_margin_mm + grid_shift_mm;
     box_.low -= Vector3d::Constant(around);
     // The walls of a slot may lean.
     double top = settings.height_mm + half_slot_ + settings.slot_wall_mm;
     for (const SlotPlan::Bar& bar : plan.bars) top = std::max(top, bar.lift_mm + 3);
-    box_.high += Vector3d(around, around, top + guide_margin_mm + shift);
+    box_.high += Vector3d(around, around, top + guide_margin_mm + grid_shift_mm);
     axes_ = even_grid({box_.low, box_.high}, settings.voxel_mm);
     sample_bone(bone);
     fill();
@@ -96,7 +85,7 @@ class GuideField {
     if (teeth.empty()) return;
     SampledField field = coarse_field(teeth, teeth_margin_mm + 1);
     sweep(field, Sweep::down, settings_.threads);
-    for_samples([&](const Vector3d& p, float& value) {
+    change([&](const Vector3d& p, float& value) {
       if (value < 1)
         value = std::max(value, static_cast<float>(teeth_margin_mm - even_value(field, p)));
     });
@@ -120,7 +109,7 @@ class GuideField {
 
   void drill(const std::vector<ScrewHole>& holes) {
     const Matrix3d back = R_.transpose();
-    for_samples([&](const Vector3d& p, float& value) {
+    change([&](const Vector3d& p, float& value) {
       if (value >= 0.5) return;
       const Vector3d q = back * p;
       for (const ScrewHole& hole : holes) {
@@ -132,14 +121,32 @@ class GuideField {
     });
   }
 
-  TriMesh surface() {
+  void remove_thin_walls() {
     remove_thin(field_, 0.5 * guide_thin_mm, guide_thin_tolerance_mm, settings_.threads);
-    return isosurface(field_);
   }
 
- private:
-  double slot_mm() const { return settings_.saw.blade_mm + 2 * settings_.tolerance_mm; }
+  /// Takes out walls that are still thin, such as necks between two places where a ball fits.
+  void trim(const std::vector<ThinWall>& walls, double trimmed_mm) {
+    std::vector<Box> boxes;
+    for (const ThinWall& wall : walls) {
+      const double radius = 0.5 * wall.thickness_mm + trimmed_mm;
+      const Box around = box_about(wall.at, radius + 2);
+      take_out_ball(wall.at, radius);
+      const auto near = std::find_if(boxes.begin(), boxes.end(),
+                                     [&](const Box& box) { return box.contains(wall.at); });
+      if (near == boxes.end())
+        boxes.push_back(around);
+      else
+        near->add(around);
+    }
+    for (const Box& box : boxes)
+      remove_thin_within(field_, box, 0.5 * guide_thin_mm, guide_thin_tolerance_mm,
+                         settings_.threads);
+  }
 
+  TriMesh surface() const { return isosurface(field_); }
+
+ private:
   /// Coarse samples that reach beyond all of the bone on the withdrawal path.
   SampledField coarse_field(const TriMesh& mesh, double band_mm) const {
     Box box = box_;
@@ -157,14 +164,39 @@ class GuideField {
     sweep(swept_, Sweep::down, settings_.threads);
   }
 
+  static Box box_about(const Vector3d& p, double half) {
+    Box box;
+    box.add(p - Vector3d::Constant(half));
+    box.add(p + Vector3d::Constant(half));
+    return box;
+  }
+
+  void take_out_ball(const Vector3d& center, double radius) {
+    // Values around it become depths below its surface.
+    const double reach = radius + 0.5 * guide_thin_mm + settings_.voxel_mm;
+    Eigen::Vector3i low, high;
+    for (int a = 0; a < 3; ++a) {
+      const GridAxis& axis = axes_[static_cast<std::size_t>(a)];
+      const auto at = [&](double x) {
+        return std::clamp(static_cast<int>(std::lround((x - axis[0]) / settings_.voxel_mm)), 0,
+                          static_cast<int>(axis.size()) - 1);
+      };
+      low[a] = at(center[a] - reach);
+      high[a] = at(center[a] + reach);
+    }
+    for (int i = low.x(); i <= high.x(); ++i)
+      for (int j = low.y(); j <= high.y(); ++j)
+        for (int k = low.z(); k <= high.z(); ++k) {
+          float& value = field_.values[field_.index(i, j, k)];
+          const double distance = (field_.position(i, j, k) - center).norm();
+          value = std::max(value, static_cast<float>(radius - distance));
+        }
+  }
+
   template <class Body>
-  void for_samples(const Body& body) {
-    parallel_for(axes_[0].size(), settings_.threads, [&](std::size_t layer) {
-      const int i = static_cast<int>(layer);
-      for (int j = 0; j < static_cast<int>(axes_[1].size()); ++j)
-        for (int k = 0; k < static_cast<int>(axes_[2].size()); ++k)
-          body(field_.position(i, j, k), field_.values[field_.index(i, j, k)]);
-    });
+  void change(const Body& body) {
+    for_samples(field_, settings_.threads,
+                [&](const Vector3d& p, std::size_t at) { body(p, field_.values[at]); });
   }
 
   /// Distance from the edge of the shell by the nearest point of the line: beside and below it.
@@ -243,7 +275,7 @@ class GuideField {
 
   void fill() {
     const double gap = settings_.gap_mm, thick = gap + settings_.shell_mm;
-    const double relief_error = std::min(coarse_error_mm, gap);
+    const double held = guide_held_mm(settings_);
     const Matrix3d back = R_.transpose();
     constexpr float skipped = 100;
     const std::vector<char> near = columns_near();
@@ -254,12 +286,12 @@ class GuideField {
           std::fill_n(&field_.values[field_.index(static_cast<int>(i), static_cast<int>(j), 0)],
                       axes_[2].size(), skipped);
     });
-    for_samples([&](const Vector3d& p, float& value) {
+    change([&](const Vector3d& p, float& value) {
       if (value == skipped) {
         value = nothing_near;
         return;
       }
-      const double swept = even_value(swept_, p) + settings_.grip_mm - relief_error;
+      const double swept = even_value(swept_, p) + held;
       const double print = gap - value;  // fine distance of the bone
       const double inner = std::max(print, -swept);
       if (inner > 1) {
@@ -300,36 +332,64 @@ struct TurnedTree {
   }
 };
 
-/// Widths of a slot and its walls on the finished surface, at several heights.
-GuideSlot measure_slot(const TurnedTree& tree, const SlotPlan& plan, const SlotRun& run,
-                       const SlotRun::Slot& slot, const GuideSettings& settings) {
-  // Where slots of two walls meet there is no width.
-  const auto meets_other = [&](const Vector3d& p) {
-    for (const SlotRun& other : plan.runs)
-      for (const SlotRun::Slot& each : other.slots)
-        if (&other != &run && std::abs(other.across.dot(p) - other.w0) < 1.5 &&
-            other.along.dot(p) > each.low - 1 && other.along.dot(p) < each.high + 1)
-          return true;
-    return false;
-  };
-  GuideSlot measured{run.point(slot.low), run.point(slot.high), slot.high - slot.low, 1e9, 0, 1e9};
-  for (double t = slot.low + 0.75; t < slot.high - 0.7; t += 0.5)
+constexpr double slot_step_mm = 0.5;
+
+/// What rays across a slot meet on the finished surface.
+struct SlotSection {
+  double width = 0, wall = 1e9;
+  int walls = 0;  // that lead the blade, of two
+};
+SlotSection section_of(const TurnedTree& tree, const SlotRun& run, const Vector3d& p,
+                       double slot_mm) {
+  SlotSection section;
+  for (const double sense : {1., -1.}) {
+    const Vector3d across = sense * run.across;
+    const auto hit = tree.ray_cast(p, across, slot_mm);
+    if (!hit) continue;
+    ++section.walls;
+    section.width += hit->distance;
+    if (const auto exit = tree.ray_cast(p + (hit->distance + 1e-3) * across, across, 20))
+      section.wall = std::min(section.wall, exit->distance);
+  }
+  return section;
+}
+
+/// Widths of a slot and its walls on the finished surface, at two heights.
+GuideSlot measure_slot(const TurnedTree& tree, const SlotRun& run, const SlotRun::Slot& slot,
+                       const GuideSettings& settings) {
+  GuideSlot measured;
+  measured.from = run.point(slot.low);
+  measured.to = run.point(slot.high);
+  measured.length_mm = slot.high - slot.low;
+  measured.width_min_mm = measured.wall_min_mm = 1e9;
+  const int count = std::max(1, static_cast<int>(std::lround(measured.length_mm / slot_step_mm)));
+  const double step = measured.length_mm / count;
+  for (int i = 0; i < count; ++i) {
+    const double t = slot.low + (i + 0.5) * step;
+    int walls = 2;
     for (const double height : {0.5 * settings.height_mm, 0.7 * settings.height_mm}) {
-      const Vector3d p = run.point(t) + height * run.outward;
-      if (meets_other(p)) continue;
-      const auto one = tree.ray_cast(p, run.across, 5), two = tree.ray_cast(p, -run.across, 5);
-      if (!one || !two) continue;
-      const double width = one->distance + two->distance;
-      if (width > 5) continue;
-      measured.width_min_mm = std::min(measured.width_min_mm, width);
-      measured.width_max_mm = std::max(measured.width_max_mm, width);
-      for (const double sense : {1., -1.}) {
-        const Vector3d in = sense * run.across;
-        const double at = (sense > 0 ? one : two)->distance + 1e-3;
-        if (const auto exit = tree.ray_cast(p + at * in, in, 20))
-          measured.wall_min_mm = std::min(measured.wall_min_mm, exit->distance);
-      }
+      const SlotSection section =
+          section_of(tree, run, run.point(t) + height * run.outward, slot_width_mm(settings));
+      walls = std::min(walls, section.walls);
+      // The rounded ends of a slot are no width.
+      if (section.walls < 2 || t < slot.low + 0.75 || t > slot.high - 0.75) continue;
+      measured.width_min_mm = std::min(measured.width_min_mm, section.width);
+      measured.width_max_mm = std::max(measured.width_max_mm, section.width);
+      measured.wall_min_mm = std::min(measured.wall_min_mm, section.wall);
     }
+    if (walls == 2) {
+      measured.guided_mm += step;
+      continue;
+    }
+    const Vector3d from = run.point(t - 0.5 * step), to = run.point(t + 0.5 * step);
+    if (auto& gaps = measured.gaps; !gaps.empty() && gaps.back().both == (walls == 0) &&
+                                    (gaps.back().to - from).norm() < 0.1 * step) {
+      gaps.back().to = to;
+      gaps.back().length_mm += step;
+    } else {
+      gaps.push_back({from, to, step, walls == 0});
+    }
+  }
   if (measured.width_max_mm == 0) measured.width_min_mm = measured.wall_min_mm = 0;
   return measured;
 }
@@ -345,6 +405,75 @@ void measure_hole(const TurnedTree& tree, const GuideSettings& settings, ScrewHo
   hole.diameter_mm = least < 1e9 ? least : 0;
 }
 
+/// What a guide is made of: surfaces in the cranium's axes, and the bone in those of the grid.
+struct GuideParts {
+  const GuideSupport& support;
+  const CutLine& line;
+  const GuideSettings& settings;
+  const TriangleTree& bone_tree;
+  Matrix3d R;
+  TriMesh bone;
+};
+
+/// A surface in the axes of its grid.
+struct GuideSurface {
+  TriMesh mesh;
+  std::optional<TriangleTree> tree;
+  std::vector<ScrewHole> holes;
+  std::vector<std::string> notes;
+};
+
+GuideSurface form_guide(const GuideParts& parts, const SlotPlan& plan) {
+  const GuideSettings& settings = parts.settings;
+  GuideSurface made;
+  GuideField field(parts.bone, plan, parts.R, settings);
+  field.spare(in_axes(parts.support.teeth, parts.R));
+  made.holes = plan_holes(
+      parts.support, parts.bone_tree, plan, settings,
+      [&](const Vector3d& p, const Vector3d& axis) { return field.has_shell(p, axis); },
+      made.notes);
+  field.drill(made.holes);
+  field.remove_thin_walls();
+  for (int trims = 0;; ++trims) {
+    made.mesh = field.surface();
+    const double dropped_mm3 = keep_one_piece(made.mesh);
+    if (made.mesh.empty()) throw InputError("no guide fits on the bone beside " + parts.line.title);
+    made.tree.emplace(made.mesh);
+    const std::vector<ThinWall> thin =
+        find_thin_walls(made.mesh, *made.tree, least_wall_mm, settings.threads);
+    if (thin.empty()) {
+      if (dropped_mm3 > crumb_mm3)
+        made.notes.push_back(fmt::format(
+            "a part of {:.0f} mm³ that is not connected to the guide is left out", dropped_mm3));
+      return made;
+    }
+    if (trims == most_trims) {
+      const Vector3d at = parts.R.transpose() * thin.front().at;
+      throw InputError(fmt::format(
+          "the guide for {} has a wall of {:.2f} mm at ({:.0f}, {:.0f}, {:.0f}), less than the "
+          "{:g} "
+          "mm that it needs: another --from, less --reach or a thicker --shell may avoid it",
+          parts.line.title, thin.front().thickness_mm, at.x(), at.y(), at.z(), least_wall_mm));
+    }
+    field.trim(thin, trim_mm + trims * more_trim_mm);
+  }
+}
+
+/// Widths of all slots. Returns whether each has walls somewhere.
+bool measure_slots(const TurnedTree& tree, const SlotPlan& plan, const GuideSettings& settings,
+                   Guide& guide) {
+  guide.slots.clear();
+  guide.guided_mm = 0;
+  bool all = true;
+  for (const SlotRun& run : plan.runs)
+    for (const SlotRun::Slot& slot : run.slots) {
+      guide.slots.push_back(measure_slot(tree, run, slot, settings));
+      guide.guided_mm += guide.slots.back().guided_mm;
+      all = all && guide.slots.back().width_max_mm > 0;
+    }
+  return all;
+}
+
 }  // namespace
 
 Guide make_guide(const GuideSupport& support, const CutLine& line, const GuideSettings& settings,
@@ -353,62 +482,51 @@ Guide make_guide(const GuideSupport& support, const CutLine& line, const GuideSe
   report(progress, "finding the slots", 0);
   Guide guide;
   guide.on = support.name;
-  guide.slot_mm = settings.saw.blade_mm + 2 * settings.tolerance_mm;
+  guide.bones = line.bones;
+  guide.slot_mm = slot_width_mm(settings);
   const TriangleTree bone_tree(support.bone);
-  const SlotPlan plan = plan_slots(bone_tree, line, settings);
+  SlotPlan plan = plan_slots(bone_tree, support.frame, line, settings);
   guide.bone_mm = plan.bone_mm;
   guide.line_mm = plan.line_mm;
   guide.led_mm = plan.led_mm;
 
   report(progress, "forming the guide", 0.2);
-  const Matrix3d R = view_axes(plan.out);
-  const TriMesh bone = in_view(support.bone, R);
-  GuideField field(bone, plan, R, settings);
-  field.spare(in_view(support.teeth, R));
-  guide.holes = plan_holes(
-      support, bone_tree, plan, settings,
-      [&](const Vector3d& p, const Vector3d& axis) { return field.has_shell(p, axis); },
-      guide.notes);
-  field.drill(guide.holes);
-  TriMesh mesh = field.surface();
-  const double dropped_mm3 = keep_one_piece(mesh);
-  if (mesh.empty()) throw InputError("no guide fits on the bone beside " + line.title);
-  if (dropped_mm3 > crumb_mm3)
-    guide.notes.push_back(fmt::format(
-        "a part of {:.0f} mm³ that is not connected to the guide is left out", dropped_mm3));
+  const Matrix3d R = axes_along(plan.out);
+  const GuideParts parts{support, line, settings, bone_tree, R, in_axes(support.bone, R)};
+  GuideSurface made = form_guide(parts, plan);
+  bool leads = measure_slots({*made.tree, R}, plan, settings, guide);
+  if (!leads && join_with_bars(plan, bone_tree)) {
+    made = form_guide(parts, plan);
+    leads = measure_slots({*made.tree, R}, plan, settings, guide);
+  }
+  if (!leads)
+    throw InputError(fmt::format(
+        "the parts of a guide for {} are not connected on this side: make one for each side "
+        "(--side left, --side right), or choose --from",
+        line.title));
 
   report(progress, "measuring the guide", 0.7);
-  const TriangleTree tree(mesh);
-  guide.measure = measure_appliance(mesh, tree, settings.threads);
-  guide.measure.wall_at = R.transpose() * guide.measure.wall_at;
-  PrintMeasure print = measure_print(mesh, tree, bone,
-                                     {.on = support.name,
-                                      .seat = -Vector3d::UnitZ(),
-                                      .gap_mm = settings.gap_mm,
-                                      .grip_mm = settings.grip_mm,
-                                      .thin_mm = guide_thin_mm},
-                                     settings.threads);
-  print.seat = -plan.out;
-  guide.measure.prints.push_back(std::move(print));
-  guide.mesh = in_view(std::move(mesh), R.transpose());
-  for (const SlotRun& run : plan.runs)
-    for (const SlotRun::Slot& slot : run.slots)
-      guide.slots.push_back(measure_slot({tree, R}, plan, run, slot, settings));
-  for (const GuideSlot& slot : guide.slots)
-    if (slot.width_max_mm == 0)
-      throw InputError(fmt::format(
-          "the parts of a guide for {} are not connected on this side: make one for each side "
-          "(--side left, --side right), or choose --from",
-          line.title));
-  for (ScrewHole& hole : guide.holes) measure_hole({tree, R}, settings, hole);
+  guide.measure = measure_in_axes(made.mesh, *made.tree, R,
+                                  {{parts.bone,
+                                    {.on = support.name,
+                                     .seat = -Vector3d::UnitZ(),
+                                     .gap_mm = settings.gap_mm,
+                                     .held_mm = guide_held_mm(settings),
+                                     .thin_mm = guide_thin_mm}}},
+                                  settings.threads);
+  guide.holes = std::move(made.holes);
+  guide.notes = std::move(made.notes);
+  for (ScrewHole& hole : guide.holes) measure_hole({*made.tree, R}, settings, hole);
   if (std::erase_if(guide.holes, [](const ScrewHole& hole) { return hole.diameter_mm == 0; }) > 0)
     guide.notes.push_back("screw holes that the guide does not surround are left out");
+  guide.mesh = in_axes(std::move(made.mesh), R.transpose());
   return guide;
 }
 
 GuideSupport guide_support(const Case& patient, const Plan& plan, const CutLine& line,
                            std::vector<std::string>& notes) {
-  GuideSupport support{line.bone, {}, {}, {}};
+  GuideSupport support;
+  support.name = line.bone;
   BodyId body = cranium_body;
   for (const Part& part : patient.parts)
     if (part.name == line.bone) {
@@ -420,15 +538,15 @@ GuideSupport guide_support(const Case& patient, const Plan& plan, const CutLine&
     }
   if (support.bone.empty())
     throw InputError(fmt::format("{} is not a bone of the case", line.bone));
+  try {
+    support.frame = clinical_frame(patient.landmarks, plan.reference);
+  } catch (const InputError& error) {
+    notes.push_back(fmt::format("left and right by the axes of the case: {}", error.what()));
+  }
   for (const PlanZone& zone : plan.zones) support.dangers.push_back(own_zone(zone));
   for (const Part& part : patient.parts) {
     if (!is_teeth(part.role) || part.body != body) continue;
-    const TriMesh teeth = closed_bone(part).mesh;
-    const int first = static_cast<int>(support.teeth.vertices.size());
-    support.teeth.vertices.insert(support.teeth.vertices.end(), teeth.vertices.begin(),
-                                  teeth.vertices.end());
-    for (const auto& t : teeth.triangles)
-      support.teeth.triangles.emplace_back(t.x() + first, t.y() + first, t.z() + first);
+    append(support.teeth, closed_bone(part).mesh);
   }
   return support;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,7 +9,9 @@
 #include "sim/appliance/appliance.h"
 #include "sim/appliance/cut_line.h"
 #include "sim/appliance/saws.h"
+#include "sim/appliance/shape_lengths.h"
 #include "sim/osteotomy/danger_zones.h"
+#include "sim/plan/clinical_frame.h"
 
 namespace condyle {
 
@@ -27,10 +30,29 @@ struct GuideSettings {
   double grip_mm = 0.4;        // deepest undercut that the shell holds
   double voxel_mm = 0.2;
   GuideSide side = GuideSide::both;
-  /// Where it comes from, unit, cranium; absent: the direction that shows most of the cut.
+  /// Where it comes from, unit, clinical frame (left, back, up); absent: the direction that shows
+  /// most of the cut.
   std::optional<Eigen::Vector3d> from = {};
   int threads = 1;
 };
+
+inline constexpr std::array guide_lengths{
+    ShapeLength<GuideSettings>{"tolerance", &GuideSettings::tolerance_mm, 0, 1,
+                               "Room at each side of the blade"},
+    ShapeLength<GuideSettings>{"reach", &GuideSettings::reach_mm, 6, 25,
+                               "Width of the shell on each side of the cut"},
+    ShapeLength<GuideSettings>{"shell", &GuideSettings::shell_mm, 1.2, 6, "Thickness of the shell"},
+    ShapeLength<GuideSettings>{"height", &GuideSettings::height_mm, 2, 20,
+                               "Height of the slot's walls"},
+    ShapeLength<GuideSettings>{"slot-wall", &GuideSettings::slot_wall_mm, 1.2, 5,
+                               "Thickness of the slot's walls"},
+    ShapeLength<GuideSettings>{"hole", &GuideSettings::hole_mm, 0, 4,
+                               "Diameter of the screw holes, 0 for none"},
+    ShapeLength<GuideSettings>{"gap", &GuideSettings::gap_mm, 0, 0.5, "Gap between bone and shell"},
+    ShapeLength<GuideSettings>{"grip", &GuideSettings::grip_mm, 0, 1,
+                               "Deepest undercut that the shell holds"},
+    ShapeLength<GuideSettings>{"voxel", &GuideSettings::voxel_mm, least_voxel_mm, largest_voxel_mm,
+                               "Spacing of the samples"}};
 
 /// What a guide lies on, at rest: closed surfaces, cranium.
 struct GuideSupport {
@@ -38,12 +60,22 @@ struct GuideSupport {
   TriMesh bone;
   TriMesh teeth;                         // that it keeps away from; may be empty
   std::vector<DangerZone> dangers = {};  // that screws keep away from
+  ClinicalFrame frame = {};              // sides of the patient, and directions
+};
+
+/// A piece of a slot along which the finished surface lacks a wall.
+struct SlotGap {
+  Eigen::Vector3d from, to;  // on the bone
+  double length_mm = 0;
+  bool both = false;  // walls; else one
 };
 
 /// A straight piece of the slot, and its width between the walls of the finished surface.
 struct GuideSlot {
   Eigen::Vector3d from, to;  // on the bone
   double length_mm = 0;
+  double guided_mm = 0;       // of it with walls on both sides of the blade
+  std::vector<SlotGap> gaps;  // the rest
   double width_min_mm = 0, width_max_mm = 0;
   double wall_min_mm = 0;  // thinnest of its walls
 };
@@ -56,10 +88,12 @@ struct ScrewHole {
 struct Guide {
   TriMesh mesh;  // cranium at rest, mm
   std::string on;
+  std::vector<CrossedBone> bones;  // that the cut passes through, as in CutLine
   ApplianceMeasure measure;
-  double slot_mm = 0;              // intended width
-  double bone_mm = 0;              // thickness of the bone in the saw's direction, median
-  double line_mm = 0, led_mm = 0;  // length of the cut on this side of the bone, and of its slots
+  double slot_mm = 0;  // intended width
+  double bone_mm = 0;  // thickness of the bone in the saw's direction, median
+  // Length of the cut on this side of the bone, of its slots, and of those between two walls.
+  double line_mm = 0, led_mm = 0, guided_mm = 0;
   std::vector<GuideSlot> slots;
   std::vector<ScrewHole> holes;
   std::vector<std::string> notes;
@@ -67,7 +101,7 @@ struct Guide {
 
 /// A shell on the bone about a cut, with slots for the saw, walls that lead it, and screw holes.
 /// Deterministic for any number of threads. throws: InputError for settings out of range, a saw
-/// thicker than the bone, and a cut that no slot can lead from there.
+/// thicker than the bone, a cut that no slot can lead from there, and walls below 1 mm.
 Guide make_guide(const GuideSupport& support, const CutLine& line, const GuideSettings& settings,
                  const Progress& progress = {});
 

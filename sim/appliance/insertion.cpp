@@ -6,6 +6,7 @@
 
 #include "engine/core/units.h"
 #include "engine/mesh/measure.h"
+#include "sim/appliance/grid_frame.h"
 
 namespace condyle {
 namespace {
@@ -16,15 +17,6 @@ using Eigen::Vector3d;
 constexpr double tilt_step_deg = 2;
 // A direction far from the middle must be better by this fraction of the whole area per degree.
 constexpr double cost_per_degree = 2e-4;
-
-Matrix3d axes_along(const Vector3d& z) {
-  Matrix3d R;
-  const Vector3d x = (std::abs(z.x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY());
-  R.row(2) = z.transpose();
-  R.row(0) = (x - x.dot(z) * z).normalized().transpose();
-  R.row(1) = R.row(2).cross(R.row(0));
-  return R;
-}
 
 }  // namespace
 
@@ -63,8 +55,7 @@ Vector3d find_insertion(const TriMesh& surface, const std::vector<char>& counts,
 ReliefField::ReliefField(const TriMesh& on, const Vector3d& seat, const Box& box, double voxel_mm,
                          double band_mm, int threads)
     : R_FG_(axes_along(seat)) {
-  TriMesh turned = on;
-  for (Vector3d& p : turned.vertices) p = R_FG_ * p;
+  const TriMesh turned = in_axes(on, R_FG_);
   Box reach;
   for (int c = 0; c < 8; ++c)
     reach.add(R_FG_ * Vector3d(c & 1 ? box.high.x() : box.low.x(),

@@ -1,10 +1,7 @@
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/repair.h"
@@ -47,6 +44,18 @@ Face face_of(const TriMesh& mesh, std::size_t t) {
   return {(a + b + c) / 3, length > 0 ? Vector3d(n / length) : Vector3d::Zero(), 0.5 * length};
 }
 
+/// The least distance of the support from p on its path along `out`, mm; `enough` where it is more.
+double clearance_on_path(const TriangleTree& support, const Vector3d& p, const Vector3d& out,
+                         double enough) {
+  double least = enough;
+  for (double at = 0; at < longest_path_mm;) {
+    const double distance = support.signed_distance(p + at * out);
+    least = std::min(least, distance);
+    at += std::max(chord_step_mm, distance - enough);
+  }
+  return least;
+}
+
 /// The deepest point within the support on the path of p along `out`, mm; 0 where the path is free.
 double depth_along_path(const TriangleTree& support, const Vector3d& p, const Vector3d& out) {
   double deepest = 0, from = 0;
@@ -70,26 +79,37 @@ double quantile(std::vector<double> values, double fraction) {
   return values[at];
 }
 
-void measure_walls(const TriMesh& mesh, const TriangleTree& tree, int threads,
-                   ApplianceMeasure& measure) {
+/// The wall at a corner: from it along its normal to a facing side.
+struct CornerWall {
+  double mm = -1;  // none
+  Vector3d middle = Vector3d::Zero();
+};
+std::vector<CornerWall> corner_walls(const TriMesh& mesh, const TriangleTree& tree, int threads) {
   // Normals of corners: those of single triangles, some of which are slivers, are not reliable.
   const std::vector<Vector3d> normals = vertex_normals(mesh);
-  std::vector<double> wall(mesh.vertices.size(), -1);
+  std::vector<CornerWall> walls(mesh.vertices.size());
   for_runs(mesh.vertices.size(), threads, [&](std::size_t v) {
     const auto hit = tree.ray_cast(mesh.vertices[v] - 1e-3 * normals[v], -normals[v], 30);
     if (!hit) return;
     Vector3d other = Vector3d::Zero();
     for (int c = 0; c < 3; ++c)
       other += hit->barycentric[c] * normals[mesh.triangles[hit->triangle][c]];
-    if (other.dot(normals[v]) < facing_cos) wall[v] = hit->distance + 1e-3;
+    if (other.dot(normals[v]) < facing_cos)
+      walls[v] = {hit->distance + 1e-3, 0.5 * (mesh.vertices[v] + hit->point)};
   });
+  return walls;
+}
+
+void measure_walls(const TriMesh& mesh, const TriangleTree& tree, int threads,
+                   ApplianceMeasure& measure) {
+  const std::vector<CornerWall> corners = corner_walls(mesh, tree, threads);
   std::vector<double> walls;
   measure.wall_min_mm = 1e9;
-  for (std::size_t v = 0; v < wall.size(); ++v) {
-    if (wall[v] < 0) continue;
-    walls.push_back(wall[v]);
-    if (wall[v] < measure.wall_min_mm) {
-      measure.wall_min_mm = wall[v];
+  for (std::size_t v = 0; v < corners.size(); ++v) {
+    if (corners[v].mm < 0) continue;
+    walls.push_back(corners[v].mm);
+    if (corners[v].mm < measure.wall_min_mm) {
+      measure.wall_min_mm = corners[v].mm;
       measure.wall_at = mesh.vertices[v];
     }
   }
@@ -98,12 +118,6 @@ void measure_walls(const TriMesh& mesh, const TriangleTree& tree, int threads,
 }
 
 }  // namespace
-
-void check_voxel(double voxel_mm) {
-  if (voxel_mm >= least_voxel_mm && voxel_mm <= largest_voxel_mm) return;
-  throw InputError(fmt::format("voxel {} mm: splints and guides are made at {} to {} mm", voxel_mm,
-                               least_voxel_mm, largest_voxel_mm));
-}
 
 ApplianceMeasure measure_appliance(const TriMesh& mesh, const TriangleTree& tree, int threads) {
   ApplianceMeasure measure;
@@ -126,10 +140,14 @@ PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& printed
   const TriangleTree on(support);
   const Box box = bounding_box(appliance);
   const Vector3d out = -settings.seat;
-  // A ball that a wall of the appliance holds does not reach it.
-  const double ball = settings.gap_mm + 0.5 * settings.thin_mm;
-  const auto is_crevice = [&](const Face& face) {
-    return on.nearest(face.center + ball * face.normal).distance < ball - 0.02;
+  // A ball as thick as the least wall, against the face: where it does not fit between teeth or
+  // bone, or cannot leave them with what the print holds, the print was widened.
+  const double radius = 0.5 * settings.thin_mm, ball = settings.gap_mm + radius;
+  const double leaves = radius - settings.held_mm;
+  const auto is_relieved = [&](const Face& face) {
+    const Vector3d center = face.center + ball * face.normal;
+    return on.nearest(center).distance < ball - 0.02 ||
+           clearance_on_path(on, center, out, leaves) < leaves;
   };
   struct Sample {
     double fit = -1, area = 0;
@@ -146,21 +164,21 @@ PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& printed
     if (!front ||
         face_of(appliance, static_cast<std::size_t>(front->triangle)).normal.dot(face.normal) > 0)
       return;
-    const Vector3d q = face.center + settings.gap_mm * face.normal;
-    samples[t] = {printed.nearest(face.center).distance, face.area,
-                  is_crevice(face) || depth_along_path(on, q, out) > settings.grip_mm - 0.05,
+    samples[t] = {printed.nearest(face.center).distance, face.area, is_relieved(face),
                   front->distance > near_mm};
   });
   // The rims of the print are rounded, as walls there are.
   TriMesh uncovered{support.vertices, {}, {}};
   for (std::size_t t = 0; t < samples.size(); ++t)
-    if (samples[t].fit < 0 || samples[t].beyond)
+    if (samples[t].fit < 0 || (samples[t].beyond && !samples[t].relieved))
       uncovered.triangles.push_back(support.triangles[t]);
   const TriangleTree bare(uncovered);
   std::vector<char> at_rim(samples.size(), 0);
   for_runs(samples.size(), threads, [&](std::size_t t) {
-    if (samples[t].fit >= 0 && !samples[t].beyond)
-      at_rim[t] = bare.nearest(face_of(support, t).center, ball).triangle >= 0;
+    if (samples[t].fit < 0 || samples[t].beyond) return;
+    const Face face = face_of(support, t);
+    at_rim[t] = settings.body ? settings.body(face.center + ball * face.normal) > -radius
+                              : bare.nearest(face.center, ball).triangle >= 0;
   });
   std::vector<double> fits;
   double sum = 0, area = 0;
@@ -197,6 +215,29 @@ PrintMeasure measure_print(const TriMesh& appliance, const TriangleTree& printed
     measure.undercut_mm = std::max(measure.undercut_mm, passage.undercut);
   }
   return measure;
+}
+
+ApplianceMeasure measure_in_axes(const TriMesh& mesh, const TriangleTree& tree,
+                                 const Eigen::Matrix3d& R, const std::vector<PrintedOn>& prints,
+                                 int threads) {
+  ApplianceMeasure measure = measure_appliance(mesh, tree, threads);
+  measure.wall_at = R.transpose() * measure.wall_at;
+  for (const PrintedOn& each : prints) {
+    measure.prints.push_back(measure_print(mesh, tree, each.support, each.settings, threads));
+    measure.prints.back().seat = R.transpose() * each.settings.seat;
+  }
+  return measure;
+}
+
+std::vector<ThinWall> find_thin_walls(const TriMesh& mesh, const TriangleTree& tree,
+                                      double least_mm, int threads) {
+  std::vector<ThinWall> thin;
+  for (const CornerWall& wall : corner_walls(mesh, tree, threads))
+    if (wall.mm >= 0 && wall.mm < least_mm) thin.push_back({wall.middle, wall.mm});
+  std::stable_sort(thin.begin(), thin.end(), [](const ThinWall& a, const ThinWall& b) {
+    return a.thickness_mm < b.thickness_mm;
+  });
+  return thin;
 }
 
 double keep_one_piece(TriMesh& mesh) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "engine/mesh/measure.h"
 
@@ -17,7 +18,8 @@ constexpr double tip_cell_mm = 3, tip_smoothing_mm = 6, crown_slack_mm = 5;
 constexpr double above_others_mm = 1;  // a cell whose lowest point is no tip but a gap or a fossa
 constexpr double closing_mm = 9, opening_mm = 2.5;  // radii of the outline, inward and outward
 constexpr double spine_half_mm = 4;                 // of the plate where teeth are missing
-constexpr float far_away = 1e12f;
+constexpr float far_away = 1e12f, no_surface = 1e6f;
+constexpr double fossa_slack_mm = 0.5;  // of a plate beyond the floor of a fossa
 
 /// Squared distances along one line to the nearest of its parabolas.
 /// source: Felzenszwalb and Huttenlocher, Distance Transforms of Sampled Functions, 2012
@@ -124,6 +126,36 @@ void cover_spine(FlatGrid& grid) {
   const FlatGrid band = distance_to(line, [](float v) { return v > 0; });
   for (std::size_t i = 0; i < grid.values.size(); ++i)
     if (band.values[i] < spine_half_mm) grid.values[i] = 1;
+}
+
+/// Height of the first surface of an arch over each sample, times `sense`; no_surface: none.
+FlatGrid first_surface(const FlatGrid& grid, const TriMesh& arch, float sense) {
+  FlatGrid first = grid;
+  std::fill(first.values.begin(), first.values.end(), no_surface);
+  for (const auto& v : arch.triangles) {
+    const Vector3d &a = arch.vertices[v[0]], &b = arch.vertices[v[1]], &c = arch.vertices[v[2]];
+    const Vector3d n = (b - a).cross(c - a);
+    if (n.z() == 0) continue;
+    const auto cell = [&](double value, int axis) {
+      return (value - grid.low[axis]) / grid.step_mm;
+    };
+    const Vector3d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    const int last_i = std::min(grid.columns - 1, static_cast<int>(std::floor(cell(high.x(), 0)))),
+              last_j = std::min(grid.rows - 1, static_cast<int>(std::floor(cell(high.y(), 1))));
+    for (int j = std::max(0, static_cast<int>(std::ceil(cell(low.y(), 1)))); j <= last_j; ++j)
+      for (int i = std::max(0, static_cast<int>(std::ceil(cell(low.x(), 0)))); i <= last_i; ++i) {
+        const Vector2d p = grid.low + grid.step_mm * Vector2d(i, j);
+        const auto side = [&](const Vector3d& from, const Vector3d& to) {
+          return (to.x() - from.x()) * (p.y() - from.y()) -
+                 (to.y() - from.y()) * (p.x() - from.x());
+        };
+        const double s = side(a, b), t = side(b, c), u = side(c, a);
+        if (!((s >= 0 && t >= 0 && u >= 0) || (s <= 0 && t <= 0 && u <= 0))) continue;
+        const double z = a.z() - (n.x() * (p.x() - a.x()) + n.y() * (p.y() - a.y())) / n.z();
+        first.at(i, j) = std::min(first.at(i, j), sense * static_cast<float>(z));
+      }
+  }
+  return first;
 }
 
 /// The mean over a square, twice.
@@ -236,6 +268,52 @@ FlatGrid plate_outline(const std::vector<ArchCrowns>& arches, double depth_mm, d
                                               : distance.values[i] - static_cast<float>(opening_mm);
   smooth(distance, 1);
   return distance;
+}
+
+void fill_fossae(FlatGrid& face, const TriMesh& arch, bool down, double most_mm) {
+  const float sense = down ? 1 : -1;
+  const FlatGrid first = first_surface(face, arch, sense);
+  constexpr char tooth = 0, open = 1, outside = 2, fossa = 3;
+  std::vector<char> kind(face.values.size());
+  const auto beyond = [&](std::size_t at) { return first.values[at] - sense * face.values[at]; };
+  for (std::size_t at = 0; at < kind.size(); ++at) kind[at] = beyond(at) > 0 ? open : tooth;
+  const int columns = face.columns, rows = face.rows;
+  // Cells that are reached from one without a tooth in front of it.
+  const auto spread = [&](std::size_t from, char as, std::vector<std::size_t>& reached) {
+    reached.assign(1, from);
+    kind[from] = as;
+    for (std::size_t next = 0; next < reached.size(); ++next) {
+      const int i = static_cast<int>(reached[next]) % columns,
+                j = static_cast<int>(reached[next]) / columns;
+      for (const auto& [di, dj] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+        if (i + di < 0 || j + dj < 0 || i + di >= columns || j + dj >= rows) continue;
+        const std::size_t to = static_cast<std::size_t>(j + dj) * columns + (i + di);
+        if (kind[to] != open) continue;
+        kind[to] = as;
+        reached.push_back(to);
+      }
+    }
+  };
+  std::vector<std::size_t> cells;
+  for (std::size_t at = 0; at < kind.size(); ++at)
+    if (kind[at] == open && first.values[at] >= no_surface) spread(at, outside, cells);
+  FlatGrid raised = face;
+  for (std::size_t at = 0; at < kind.size(); ++at) {
+    if (kind[at] != open) continue;
+    spread(at, fossa, cells);
+    double deepest = 0;
+    for (const std::size_t cell : cells)
+      deepest = std::max(deepest, static_cast<double>(beyond(cell)));
+    const double by = std::min(deepest + fossa_slack_mm, most_mm);
+    for (const std::size_t cell : cells)  // and the teeth around it
+      for (const int i : {-1, 0, 1})
+        for (const int j : {-columns, 0, columns}) {
+          const std::size_t to = cell + i + j;
+          if (to < raised.values.size())
+            raised.values[to] = face.values[to] + sense * static_cast<float>(by);
+        }
+  }
+  face = std::move(raised);
 }
 
 }  // namespace condyle

@@ -44,4 +44,8 @@ struct ArchCrowns {
 FlatGrid plate_outline(const std::vector<ArchCrowns>& arches, double depth_mm, double wall_mm,
                        double step_mm);
 
+/// Moves the face of a plate toward the arch where teeth enclose a fossa that is deeper than the
+/// print, by `most_mm` at most, so that the plate fills it. `face`: z of that side of the plate.
+void fill_fossae(FlatGrid& face, const TriMesh& arch, bool down, double most_mm);
+
 }  // namespace condyle

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "sim/appliance/grid_frame.h"
 #include "sim/occlusion/arches.h"
 #include "sim/operation/closed_bone.h"
 
@@ -21,11 +22,7 @@ SplintArch splint_arch(const Case& patient, const Arch& arch, Role teeth,
   const auto add = [&](const Part& part) {
     const ClosedBone closed = closed_bone(part);
     for (const std::string& note : closed.notes) notes.push_back(note);
-    const int first = static_cast<int>(made.mesh.vertices.size());
-    made.mesh.vertices.insert(made.mesh.vertices.end(), closed.mesh.vertices.begin(),
-                              closed.mesh.vertices.end());
-    for (const auto& t : closed.mesh.triangles)
-      made.mesh.triangles.emplace_back(t.x() + first, t.y() + first, t.z() + first);
+    append(made.mesh, closed.mesh);
   };
   if (!is_teeth(arch.part->role)) {
     add(*arch.part);

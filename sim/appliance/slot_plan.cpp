@@ -27,15 +27,15 @@ constexpr double joint_mm = 1.5;      // gaps of a run, and distance of runs tha
 constexpr double shortest_run_mm = 6, end_inset_mm = 2.5;
 constexpr double smoothing_mm = 4;
 constexpr double island_fraction = 0.4;  // of the longest group of runs
-constexpr double joined_mm = 8;          // shells of runs that are nearer grow together
+constexpr double near_runs_mm = 8;       // shells of runs that are nearer grow together
 constexpr double shortest_slot_mm = 3;
 constexpr double longest_slot_mm = 24, bridge_mm = 3;
 constexpr double screw_mm = 6;  // length in the bone
 constexpr double screw_margin_mm = 1.5;
 constexpr double pair_mm = 8;  // of two holes on one side
 
-bool is_wanted(const CutEdge& edge, GuideSide side) {
-  return side == GuideSide::both || (edge.point.x() > 0) == (side == GuideSide::left);
+bool is_left_of_middle(const ClinicalFrame& frame, const CutEdge& edge) {
+  return frame.left.dot(edge.point - frame.origin) > 0;
 }
 
 /// Whether a saw reaches the edge from this side.
@@ -47,15 +47,16 @@ bool is_accessible(const TriangleTree& bone, const CutLine& line, const CutEdge&
 }
 
 /// A guide for both sides comes from the midsagittal plane.
-bool is_on_both_sides(const std::vector<CutEdge>& edges) {
+bool is_on_both_sides(const ClinicalFrame& frame, const std::vector<CutEdge>& edges) {
   double left = 0, whole = 0;
   for (const CutEdge& edge : edges) {
     whole += edge.length_mm;
-    if (edge.point.x() > 0) left += edge.length_mm;
+    if (is_left_of_middle(frame, edge)) left += edge.length_mm;
   }
   return left > 0.25 * whole && left < 0.75 * whole;
 }
 
+/// In the clinical frame.
 std::vector<Vector3d> candidate_directions(bool midsagittal) {
   std::vector<Vector3d> directions;
   if (midsagittal) {
@@ -73,12 +74,13 @@ std::vector<Vector3d> candidate_directions(bool midsagittal) {
   return directions;
 }
 
-Vector3d choose_direction(const TriangleTree& bone, const CutLine& line,
+Vector3d choose_direction(const TriangleTree& bone, const ClinicalFrame& frame, const CutLine& line,
                           const std::vector<CutEdge>& edges) {
   const std::size_t step = std::max<std::size_t>(1, edges.size() / most_samples);
   Vector3d best = -Vector3d::UnitY();
   double most = -1;
-  for (const Vector3d& direction : candidate_directions(is_on_both_sides(edges))) {
+  for (const Vector3d& candidate : candidate_directions(is_on_both_sides(frame, edges))) {
+    const Vector3d direction = frame.vector(candidate);
     double score = 0;
     for (std::size_t e = 0; e < edges.size(); e += step)
       if (is_accessible(bone, line, edges[e], direction))
@@ -198,15 +200,33 @@ double median_of(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Joins groups of runs that are far from each other, nearest first.
-std::vector<SlotPlan::Bar> find_bars(const std::vector<SlotRun>& runs) {
+/// A short bar between two runs that has little bone in front of it: points deep in a cavity would
+/// need it to be raised far.
+SlotPlan::Bar bar_between(const SlotRun& one, const SlotRun& two, const Vector3d& out) {
+  constexpr double depth_weight = 2;
+  SlotPlan::Bar best;
+  double least = 1e300;
+  for (const double s : one.t)
+    for (const double t : two.t) {
+      const Vector3d a = one.point(s), b = two.point(t);
+      const double cost = (a - b).norm() - depth_weight * std::min(out.dot(a), out.dot(b));
+      if (cost < least) {
+        least = cost;
+        best = {a, b};
+      }
+    }
+  return best;
+}
+
+/// Joins groups of runs that are farther from each other than this, nearest first.
+std::vector<SlotPlan::Bar> find_bars(const std::vector<SlotRun>& runs, const Vector3d& out,
+                                     double joined_mm) {
   std::vector<std::size_t> group(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) group[i] = i;
   std::vector<SlotPlan::Bar> bars;
   while (true) {
-    SlotPlan::Bar best;
     double least = 1e9;
-    std::size_t from = 0, to = 0;
+    std::size_t from = 0, to = 0, one = 0, two = 0;
     for (std::size_t i = 0; i < runs.size(); ++i)
       for (std::size_t j = i + 1; j < runs.size(); ++j) {
         if (group[i] == group[j]) continue;
@@ -215,14 +235,15 @@ std::vector<SlotPlan::Bar> find_bars(const std::vector<SlotRun>& runs) {
             const Vector3d a = runs[i].point(s), b = runs[j].point(t);
             if (const double d = (a - b).norm(); d < least) {
               least = d;
-              best = {a, b};
+              one = i;
+              two = j;
               from = group[i];
               to = group[j];
             }
           }
       }
     if (least == 1e9) return bars;
-    if (least > joined_mm) bars.push_back(best);
+    if (least > joined_mm) bars.push_back(bar_between(runs[one], runs[two], out));
     std::replace(group.begin(), group.end(), to, from);
   }
 }
@@ -289,15 +310,19 @@ double SlotRun::height(const std::vector<double>& heights, double at) const {
   return heights[i - 1] + part * (heights[i] - heights[i - 1]);
 }
 
-SlotPlan plan_slots(const TriangleTree& bone, const CutLine& line, const GuideSettings& settings) {
+SlotPlan plan_slots(const TriangleTree& bone, const ClinicalFrame& frame, const CutLine& line,
+                    const GuideSettings& settings) {
   std::vector<CutEdge> wanted, seen;
   for (const CutEdge& edge : line.edges)
-    if (is_wanted(edge, settings.side)) wanted.push_back(edge);
+    if (settings.side == GuideSide::both ||
+        is_left_of_middle(frame, edge) == (settings.side == GuideSide::left))
+      wanted.push_back(edge);
   if (wanted.empty())
     throw InputError(fmt::format("{} does not reach the {} side", line.title,
                                  settings.side == GuideSide::left ? "left" : "right"));
   SlotPlan plan;
-  plan.out = settings.from ? *settings.from : choose_direction(bone, line, wanted);
+  plan.out =
+      settings.from ? frame.vector(*settings.from) : choose_direction(bone, frame, line, wanted);
   for (const CutEdge& edge : wanted)
     if (is_accessible(bone, line, edge, plan.out)) seen.push_back(edge);
   plan.runs = find_runs(line, seen, plan.out);
@@ -315,7 +340,7 @@ SlotPlan plan_slots(const TriangleTree& bone, const CutLine& line, const GuideSe
     for (double t = run.t.front(); t < run.t.back(); t += 0.7) plan.points.push_back(run.point(t));
     plan.points.push_back(run.point(run.t.back()));
   }
-  plan.bars = find_bars(plan.runs);
+  plan.bars = find_bars(plan.runs, plan.out, near_runs_mm);
   for (SlotPlan::Bar& bar : plan.bars) lift(bar, bone, plan.out);
   plan.bone_mm = bone_depth(bone, plan.runs);
   if (settings.saw.blade_mm >= plan.bone_mm)
@@ -323,6 +348,14 @@ SlotPlan plan_slots(const TriangleTree& bone, const CutLine& line, const GuideSe
         fmt::format("saw {}: its blade of {} mm is thicker than the bone at {}, {:.2f} mm",
                     settings.saw.name, settings.saw.blade_mm, line.title, plan.bone_mm));
   return plan;
+}
+
+bool join_with_bars(SlotPlan& plan, const TriangleTree& bone) {
+  std::vector<SlotPlan::Bar> bars = find_bars(plan.runs, plan.out, 2 * joint_mm);
+  if (bars.size() <= plan.bars.size()) return false;
+  plan.bars = std::move(bars);
+  for (SlotPlan::Bar& bar : plan.bars) lift(bar, bone, plan.out);
+  return true;
 }
 
 std::vector<ScrewHole> plan_holes(

@@ -51,7 +51,12 @@ struct SlotPlan {
 
 /// Chooses the side and divides the line into slots with bridges between them. throws: InputError
 /// where no slot leads the saw from there.
-SlotPlan plan_slots(const TriangleTree& bone, const CutLine& line, const GuideSettings& settings);
+SlotPlan plan_slots(const TriangleTree& bone, const ClinicalFrame& frame, const CutLine& line,
+                    const GuideSettings& settings);
+
+/// Adds bars between runs that were left to grow together. Returns whether there are more than
+/// before.
+bool join_with_bars(SlotPlan& plan, const TriangleTree& bone);
 
 /// Two points on each side of the slots for screw holes: bone faces the guide, screws keep away
 /// from dangers, and `has_shell` holds for the point and the axis. `diameter_mm` is the intended

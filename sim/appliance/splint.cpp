@@ -16,6 +16,7 @@
 #include "engine/field/smooth.h"
 #include "engine/mesh/triangle_tree.h"
 #include "sim/appliance/bite_opening.h"
+#include "sim/appliance/grid_frame.h"
 #include "sim/appliance/insertion.h"
 #include "sim/appliance/outline.h"
 
@@ -25,22 +26,15 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double rounding_mm = 2.4;     // of the plate's edges
-constexpr double crumb_mm3 = 20;        // a loose part that is smaller is left out
-constexpr double most_tilt_deg = 12;    // of an insertion from the occlusal plane's normal
-constexpr double thin_radius_mm = 0.5;  // walls are about twice as thick at least
+constexpr double rounding_mm = 2.4;   // of the plate's edges
+constexpr double most_tilt_deg = 12;  // of an insertion from the occlusal plane's normal
+constexpr double thin_radius_mm = 0.5, printed_radius_mm = 0.4;
 constexpr double thin_tolerance_mm = 0.12;
+constexpr double most_fossa_mm = 2;  // of the plate in fossae, beyond the depth of the prints
 constexpr double relief_error_mm = 0.05;
 constexpr double grid_margin_mm = 0.8;
 constexpr double shortest_across_mm = 25, shortest_along_mm = 12;  // of an arch, one tooth is not
 constexpr double print_thickness_slack_mm = 0.1;  // prints come nearer by the grid's error
-
-/// Angle-free copy of a mesh in grid axes.
-TriMesh turned(TriMesh mesh, const Matrix3d& R, const Pose& X = {}) {
-  for (Vector3d& p : mesh.vertices) p = R * (X * p);
-  mesh.colors.clear();
-  return mesh;
-}
 
 /// One arch in the grid's axes: x left, y back, z up.
 struct PlacedArch {
@@ -71,22 +65,14 @@ Matrix3d axes_of(const SplintArches& arches, const Pose& X_lower) {
 }
 
 void check_settings(const SplintSettings& settings) {
-  check_voxel(settings.voxel_mm);
-  const auto check = [](const char* name, double value, double low, double high) {
-    if (!(value >= low && value <= high))
-      throw InputError(fmt::format("{} {} mm: it is from {} to {} mm", name, value, low, high));
-  };
-  check("thickness", settings.thickness_mm, 0.5, 10);
-  check("depth", settings.depth_mm, 0.5, 6);
-  check("wall", settings.wall_mm, 1.2, 6);
-  check("gap", settings.gap_mm, 0, 0.5);
-  check("grip", settings.grip_mm, 0, 1);
-  if (settings.opening_mm) check("opening", *settings.opening_mm, -15, 25);
+  check_lengths(settings, splint_lengths);
+  if (const auto& opening = settings.opening_mm; opening && !(*opening >= -15 && *opening <= 25))
+    throw InputError(fmt::format("opening {} mm: it is from -15 to 25 mm", *opening));
 }
 
 PlacedArch place(const SplintArch& arch, bool upper, const Matrix3d& R, const Pose& X,
                  double depth_mm) {
-  PlacedArch placed{arch, upper, turned(arch.mesh, R, X), {}, Vector3d::UnitZ()};
+  PlacedArch placed{arch, upper, in_axes(arch.mesh, R, X), {}, Vector3d::UnitZ()};
   const double level = (R * (X * ((arch.edge + arch.molars[0] + arch.molars[1]) / 3))).z();
   placed.tips = find_tips(placed.mesh, level, upper);
   double left = 1e9, right = -1e9, front = 1e9, back = -1e9;
@@ -118,6 +104,11 @@ PlacedArch place(const SplintArch& arch, bool upper, const Matrix3d& R, const Po
   return placed;
 }
 
+/// The grip, less the error of the samples on turned axes.
+double held_mm(const SplintSettings& settings) {
+  return settings.grip_mm - std::min(relief_error_mm, settings.gap_mm);
+}
+
 /// The plate and the prints, sampled on one grid.
 class SplintField {
  public:
@@ -126,12 +117,16 @@ class SplintField {
     outline_ = plate_outline({{upper.mesh, upper.tips, true}, {lower.mesh, lower.tips, false}},
                              settings.depth_mm, settings.wall_mm, settings.voxel_mm);
     find_heights(upper, lower);
-    // Not on planes of symmetry, where corners of meshes lie.
-    constexpr double shift = 0.0137;
-    box_.low.array() -= grid_margin_mm + shift;
-    box_.high.array() += grid_margin_mm + shift;
+    box_.low.array() -= grid_margin_mm + grid_shift_mm;
+    box_.high.array() += grid_margin_mm + grid_shift_mm;
     axes_ = even_grid({box_.low, box_.high}, settings.voxel_mm);
     make_plate();
+  }
+
+  /// Distance from the plate without prints, negative inside.
+  double plate(const Vector3d& p) const {
+    return rounded(outline_(p.x(), p.y()), p.z() - top_(p.x(), p.y()),
+                   bottom_(p.x(), p.y()) - p.z());
   }
 
   /// Takes the print of an arch out of the plate.
@@ -140,25 +135,17 @@ class SplintField {
     const SampledField distance = mesh_field(arch.mesh, axes_, band, settings_.threads);
     const ReliefField relief(arch.mesh, arch.seat, box_, settings_.voxel_mm, band,
                              settings_.threads);
-    // The grip, less the error of the samples on turned axes.
-    const double held_mm = settings_.grip_mm - std::min(relief_error_mm, settings_.gap_mm);
-    const Eigen::Vector3i size = field_.size();
-    parallel_for(axes_[0].size(), settings_.threads, [&](std::size_t layer) {
-      const int i = static_cast<int>(layer);
-      for (int j = 0; j < size.y(); ++j) {
-        for (int k = 0; k < size.z(); ++k) {
-          const std::size_t at = field_.index(i, j, k);
-          if (field_.values[at] > far_mm) continue;
-          const double solid = std::min(distance.values[at] - settings_.gap_mm,
-                                        relief(field_.position(i, j, k)) + held_mm);
-          field_.values[at] = std::max(field_.values[at], static_cast<float>(-solid));
-        }
-      }
+    const double held = held_mm(settings_);
+    for_samples(field_, settings_.threads, [&](const Vector3d& p, std::size_t at) {
+      float& value = field_.values[at];
+      if (value > far_mm) return;
+      const double solid = std::min(distance.values[at] - settings_.gap_mm, relief(p) + held);
+      value = std::max(value, static_cast<float>(-solid));
     });
   }
 
   TriMesh surface() {
-    remove_thin(field_, thin_radius_mm, thin_tolerance_mm, settings_.threads);
+    remove_thin(field_, printed_radius_mm, thin_tolerance_mm, settings_.threads);
     return isosurface(field_);
   }
 
@@ -166,6 +153,10 @@ class SplintField {
   static constexpr float far_mm = 1;
   double band_mm() const {
     return std::max(settings_.grip_mm, thin_radius_mm) + settings_.gap_mm + 2 * settings_.voxel_mm;
+  }
+
+  static double rounded(double side, double above, double below) {
+    return smooth_max(smooth_max(side, above, rounding_mm), below, rounding_mm);
   }
 
   void find_heights(const PlacedArch& upper, const PlacedArch& lower) {
@@ -179,8 +170,15 @@ class SplintField {
                      bottom = lower.tips(x, y) - settings_.depth_mm;
         top_.at(i, j) = static_cast<float>(top);
         bottom_.at(i, j) = static_cast<float>(bottom);
-        box_.add(Vector3d(x, y, top));
-        box_.add(Vector3d(x, y, bottom));
+      }
+    fill_fossae(top_, upper.mesh, true, most_fossa_mm);
+    fill_fossae(bottom_, lower.mesh, false, most_fossa_mm);
+    for (int j = 0; j < outline_.rows; ++j)
+      for (int i = 0; i < outline_.columns; ++i) {
+        if (outline_.at(i, j) > grid_margin_mm) continue;
+        const Eigen::Vector2d p = outline_.low + outline_.step_mm * Eigen::Vector2d(i, j);
+        box_.add(Vector3d(p.x(), p.y(), top_.at(i, j)));
+        box_.add(Vector3d(p.x(), p.y(), bottom_.at(i, j)));
       }
   }
 
@@ -201,8 +199,7 @@ class SplintField {
         const double top = top_(p.x(), p.y()), bottom = bottom_(p.x(), p.y());
         for (int k = 0; k < size.z(); ++k) {
           const double z = axes_[2][static_cast<std::size_t>(k)];
-          column[k] = static_cast<float>(
-              smooth_max(smooth_max(side, z - top, rounding_mm), bottom - z, rounding_mm));
+          column[k] = static_cast<float>(rounded(side, z - top, bottom - z));
         }
       }
     });
@@ -298,21 +295,19 @@ Splint make_splint(const SplintArches& arches, const SplintSettings& settings,
         fmt::format("{:.2f} mm thick between cusps, less than the {:g} mm that "
                     "were requested",
                     splint.thickness_mm, settings.thickness_mm));
-  splint.measure = measure_appliance(mesh, tree, settings.threads);
-  for (const PlacedArch* arch : {&upper, &lower}) {
-    PrintMeasure print = measure_print(mesh, tree, arch->mesh,
-                                       {.on = arch->arch.name,
-                                        .seat = arch->seat,
-                                        .gap_mm = settings.gap_mm,
-                                        .grip_mm = settings.grip_mm,
-                                        .thin_mm = 2 * thin_radius_mm},
-                                       settings.threads);
-    print.tilt_deg = arch->tilt_deg;
-    print.seat = R.transpose() * arch->seat;
-    splint.measure.prints.push_back(std::move(print));
-  }
-  splint.measure.wall_at = R.transpose() * splint.measure.wall_at;
-  splint.mesh = turned(std::move(mesh), R.transpose());
+  std::vector<PrintedOn> prints;
+  for (const PlacedArch* arch : {&upper, &lower})
+    prints.push_back({arch->mesh,
+                      {.on = arch->arch.name,
+                       .seat = arch->seat,
+                       .gap_mm = settings.gap_mm,
+                       .held_mm = held_mm(settings),
+                       .thin_mm = 2 * thin_radius_mm,
+                       .body = [&](const Vector3d& p) { return field.plate(p); }}});
+  splint.measure = measure_in_axes(mesh, tree, R, prints, settings.threads);
+  splint.measure.prints[0].tilt_deg = upper.tilt_deg;
+  splint.measure.prints[1].tilt_deg = lower.tilt_deg;
+  splint.mesh = in_axes(std::move(mesh), R.transpose());
   return splint;
 }
 

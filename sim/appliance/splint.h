@@ -8,6 +8,7 @@
 #include "engine/core/progress.h"
 #include "engine/math/pose.h"
 #include "sim/appliance/appliance.h"
+#include "sim/appliance/shape_lengths.h"
 
 namespace condyle {
 
@@ -36,6 +37,19 @@ struct SplintSettings {
   std::optional<double> opening_mm = {};  // at the incisors, by the hinge; absent: what is needed
   int threads = 1;
 };
+
+inline constexpr std::array splint_lengths{
+    ShapeLength<SplintSettings>{"thickness", &SplintSettings::thickness_mm, 0.5, 10,
+                                "Least thickness between cusps"},
+    ShapeLength<SplintSettings>{"depth", &SplintSettings::depth_mm, 0.5, 6,
+                                "Depth of the prints from the tips of the teeth"},
+    ShapeLength<SplintSettings>{"wall", &SplintSettings::wall_mm, 1.2, 6, "Width beside the teeth"},
+    ShapeLength<SplintSettings>{"gap", &SplintSettings::gap_mm, 0, 0.5,
+                                "Gap between teeth and print"},
+    ShapeLength<SplintSettings>{"grip", &SplintSettings::grip_mm, 0, 1,
+                                "Deepest undercut that the print holds"},
+    ShapeLength<SplintSettings>{"voxel", &SplintSettings::voxel_mm, least_voxel_mm,
+                                largest_voxel_mm, "Spacing of the samples"}};
 
 /// An occlusal splint between two arches.
 struct Splint {

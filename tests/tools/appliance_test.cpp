@@ -1,6 +1,9 @@
 // The commands splint and guide: files, reports, pictures and bad input.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -44,6 +47,21 @@ struct Appliance : testing::Test {
     const long count = byte(80) + 256L * byte(81) + 65536L * byte(82) + 16777216L * byte(83);
     return 84 + 50 * count == static_cast<long>(text.size()) ? count : -1;
   }
+  /// The triangles of a binary STL for which keep(number, corner, corner of the first one) holds.
+  static std::string some_triangles(const std::string& stl, const auto& keep) {
+    std::string kept = stl.substr(0, 84);
+    std::uint32_t count = 0;
+    float first[3], corner[3];
+    std::memcpy(first, &stl[84 + 12], sizeof first);
+    for (long t = 0; 84 + 50 * (t + 1) <= static_cast<long>(stl.size()); ++t) {
+      std::memcpy(corner, &stl[84 + 50 * t + 12], sizeof corner);
+      if (!keep(t, corner, first)) continue;
+      kept += stl.substr(84 + 50 * t, 50);
+      ++count;
+    }
+    std::memcpy(&kept[80], &count, sizeof count);
+    return kept;
+  }
 };
 
 }  // namespace
@@ -67,6 +85,8 @@ TEST_F(Appliance, ASplintAndAGuideAreWrittenMeasuredAndDrawn) {
       done({"guide", plan, "--cut", "chin", "--saw", "piezo", "--voxel", "0.4", "--out", ply});
   EXPECT_TRUE(mentions(guide.err, "saw: piezo, blade 0.55 mm")) << guide.err;
   EXPECT_TRUE(mentions(guide.err, "closed, 1 piece")) << guide.err;
+  EXPECT_TRUE(mentions(guide.err, "bone: mandible\n")) << guide.err;
+  EXPECT_TRUE(mentions(guide.err, "guided between two walls: ")) << guide.err;
   EXPECT_TRUE(read_text(ply).starts_with("ply"));
 }
 
@@ -91,6 +111,8 @@ TEST_F(Appliance, BadInputIsRefusedAndNothingIsLost) {
   EXPECT_TRUE(mentions(refused(with(guide, {"--cut", "chin", "--saw", "sagital"})),
                        "did you mean \"sagittal\""));
   EXPECT_TRUE(mentions(refused(with(guide, {"--cut", "chin", "--saw", "9"})), "blades are"));
+  EXPECT_TRUE(mentions(refused(with(guide, {"--cut", "chin", "--on", "skull"})),
+                       "it passes through mandible"));
   EXPECT_EQ(read_text(out), "kept");
   // A full disk.
   Limits full;
@@ -104,6 +126,37 @@ TEST_F(Appliance, APlanThatMovesNothingNeedsNoSplint) {
   EXPECT_TRUE(mentions(refused({"splint", plan, "--out", out}), "moves no dental arch"));
   EXPECT_TRUE(mentions(refused({"guide", plan, "--cut", "chin", "--out", out}), "has no cut"));
   EXPECT_FALSE(fs::exists(out));
+}
+
+TEST_F(Appliance, AnArchOfOneToothIsRefusedAndAnOpenOneIsClosedOrRefused) {
+  done({"sample", "--out", folder / "sample"});
+  const std::string upper = read_text(folder / "sample/upper.stl");
+  const auto import = [&](const std::string& name) {
+    const std::string patient = folder / name;
+    done({"import", "meshes", "--skull", folder / "sample/skull.stl", "--mandible",
+          folder / "sample/jaw.stl", "--upper-teeth", folder / (name + ".stl"), "--lower-teeth",
+          folder / "sample/lower.stl", "--landmarks", folder / "sample/marks.csv", "--units", "mm",
+          "--frame", "LPS", "--out", patient});
+    const std::string file = folder / (name + ".json");
+    done({"plan", "new", "--case", patient, "--out", file});
+    done({"plan", "move", file, "mandible", "forward", "1", "--case", patient});
+    return std::vector<std::string>{"splint",  file,  "--case", patient,
+                                    "--voxel", "0.4", "--out",  out};
+  };
+  write_text(folder / "one.stl",
+             some_triangles(upper, [](long, const float* p, const float* first) {
+               return std::hypot(p[0] - first[0], p[1] - first[1], p[2] - first[2]) < 4;
+             }));
+  const std::string one = refused(import("one"));
+  EXPECT_TRUE(mentions(one, "the teeth extend")) << one;
+  EXPECT_FALSE(fs::exists(out));
+  // Every fortieth triangle is missing.
+  write_text(folder / "open.stl",
+             some_triangles(upper, [](long t, const float*, const float*) { return t % 40 != 7; }));
+  const Outcome open = condyle(import("open"));
+  EXPECT_TRUE(open.code == 0 || open.code == 2) << open.code << open.err;
+  EXPECT_EQ(fs::exists(out), open.code == 0);
+  EXPECT_TRUE(mentions(open.err, "closed") || mentions(open.err, "open")) << open.err;
 }
 
 }  // namespace condyle::test

@@ -11,6 +11,7 @@
 #include "engine/mesh_io/mesh_files.h"
 #include "render/gl/gl_context.h"
 #include "render/plan/appliance_pictures.h"
+#include "tools/plan/plan_command.h"
 
 namespace condyle {
 namespace {
@@ -66,11 +67,27 @@ void check_files(const ApplianceFiles& files) {
     throw InputError(files.picture, "", "pictures are written as .png");
 }
 
-void write_appliance(const TriMesh& mesh, const ApplianceFiles& files) {
+void add_length(CLI::App& command, const std::string& name, double& value_mm, const char* what,
+                double low, double high) {
+  in_range(
+      command.add_option("--" + name, value_mm, fmt::format("{}; default {} mm", what, value_mm)),
+      low, high);
+}
+
+void finish_appliance(const TriMesh& mesh, const ApplianceReport& report,
+                      const ApplianceFiles& files, const CommonOptions& common) {
   if (extension_of(files.out) == ".ply")
     write_ply(mesh, files.out);
   else
     write_stl(mesh, files.out);
+  print_plan_notes(common, report.notes);
+  if (!files.picture.empty())
+    report.draw({report.title + " of " + report.plan, report.text}, files.picture);
+  if (common.json)
+    fmt::print("{}\n",
+               report.json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  if (common.prints_summary())
+    fmt::print(stderr, "{}: {}\n{}", files.out.string(), report.title, report.text);
 }
 
 void write_splint_picture(const Splint& splint, const Case& patient, const PictureText& text,

@@ -19,13 +19,14 @@ namespace {
 
 struct GuideOptions {
   std::filesystem::path plan;
-  std::string patient, cut, saw = "sagittal", side = "both", from;
+  std::string patient, cut, on, saw = "sagittal", side = "both", from;
   GuideSettings settings;
   ApplianceFiles files;
 };
 
 const Choices<GuideSide> sides = {
     {"both", GuideSide::both}, {"left", GuideSide::left}, {"right", GuideSide::right}};
+// In the clinical frame: left, back, up.
 const Choices<Eigen::Vector3d> views = {{"front", -Eigen::Vector3d::UnitY()},
                                         {"left", Eigen::Vector3d::UnitX()},
                                         {"right", -Eigen::Vector3d::UnitX()},
@@ -47,28 +48,28 @@ int run_guide(const GuideOptions& options, const CommonOptions& common) {
   check_files(options.files);
   const Plan plan = load_plan(options.plan);
   const Case patient = open_planned(options.patient, plan, common);
-  const CutLine line = find_cut_line(apply_cuts(patient, plan), plan, options.cut);
+  const CutLine line = find_cut_line(apply_cuts(patient, plan), plan, options.cut, options.on);
   ProgressBar bar(common);
   std::vector<std::string> notes;
   const GuideSupport support = guide_support(patient, plan, line, notes);
   Guide guide = make_guide(support, line, settings, bar.callback());
   bar.clear();
   guide.notes.insert(guide.notes.begin(), notes.begin(), notes.end());
-  write_appliance(guide.mesh, options.files);
-  print_plan_notes(common, guide.notes);
-  const std::string title = "guide for " + line.title;
-  if (!options.files.picture.empty())
-    write_guide_picture(guide, patient, {title + " of " + plan.name, guide_text(guide, settings)},
-                        options.files.picture);
-  if (common.json) {
-    nlohmann::ordered_json json{
-        {"cut", line.title}, {"step", line.step}, {"file", options.files.out.string()}};
-    json.update(guide_json(guide, settings));
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-  }
-  if (common.prints_summary())
-    fmt::print(stderr, "{}: {}\n{}", options.files.out.string(), title,
-               guide_text(guide, settings));
+  const ApplianceReport report{"guide for " + line.title,
+                               plan.name,
+                               guide_text(guide, settings),
+                               guide.notes,
+                               [&] {
+                                 nlohmann::ordered_json json{{"cut", line.title},
+                                                             {"step", line.step},
+                                                             {"file", options.files.out.string()}};
+                                 json.update(guide_json(guide, settings));
+                                 return json;
+                               }(),
+                               [&](const PictureText& text, const std::filesystem::path& file) {
+                                 write_guide_picture(guide, patient, text, file);
+                               }};
+  finish_appliance(guide.mesh, report, options.files, common);
   return 0;
 }
 
@@ -87,6 +88,10 @@ void add_guide(Commands& commands) {
                   "The cut: number of its step, its osteotomy, or a segment that it makes")
       ->required();
   command
+      .add_option("--on", options->on,
+                  "The bone, where the cut passes through several; default that with most of it")
+      ->type_name("BONE");
+  command
       .add_option("--saw", options->saw,
                   "The saw by name, or its blade's thickness; default sagittal")
       ->type_name(saw_words());
@@ -97,21 +102,7 @@ void add_guide(Commands& commands) {
                   "Where the guide comes from; default the direction that shows most of the cut")
       ->type_name(words_of(views));
   add_appliance_files(command, options->files);
-  begin_group(command, "Shape");
-  GuideSettings& settings = options->settings;
-  const auto add = [&](const char* name, double& value, const char* what, double low, double high) {
-    in_range(command.add_option(name, value, fmt::format("{}; default {} mm", what, value)), low,
-             high);
-  };
-  add("--tolerance", settings.tolerance_mm, "Room at each side of the blade", 0, 1);
-  add("--reach", settings.reach_mm, "Width of the shell on each side of the cut", 6, 25);
-  add("--shell", settings.shell_mm, "Thickness of the shell", 1.2, 6);
-  add("--height", settings.height_mm, "Height of the slot's walls", 2, 20);
-  add("--slot-wall", settings.slot_wall_mm, "Thickness of the slot's walls", 1.2, 5);
-  add("--hole", settings.hole_mm, "Diameter of the screw holes, 0 for none", 0, 4);
-  add("--gap", settings.gap_mm, "Gap between bone and shell", 0, 0.5);
-  add("--grip", settings.grip_mm, "Deepest undercut that the shell holds", 0, 1);
-  add("--voxel", settings.voxel_mm, "Spacing of the samples", least_voxel_mm, largest_voxel_mm);
+  add_lengths(command, options->settings, guide_lengths);
 }
 
 }  // namespace condyle

@@ -1,9 +1,6 @@
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "sim/appliance/appliance_text.h"
 #include "sim/appliance/plan_arches.h"
@@ -35,30 +32,22 @@ int run_splint(const SplintOptions& options, const CommonOptions& common) {
   SplintSettings settings = options.settings;
   settings.threads = common.threads;
   if (options.has_opening->count() > 0) settings.opening_mm = options.opening_mm;
-  check_voxel(settings.voxel_mm);
   check_files(options.files);
   const Plan plan = load_plan(options.plan);
   const Operated operated = apply_plan(open_planned(options.patient, plan, common), plan);
   ProgressBar bar(common);
   const Splint splint = make_splint(splint_arches(operated, kind, first), settings, bar.callback());
   bar.clear();
-  write_appliance(splint.mesh, options.files);
-  print_plan_notes(common, splint.notes);
-  const std::string title = options.kind + " splint";
-  if (!options.files.picture.empty())
-    write_splint_picture(splint, patient_at_stage(operated, kind, first),
-                         {title + " of " + plan.name, splint_text(splint, settings)},
-                         options.files.picture);
-  if (common.json) {
-    nlohmann::ordered_json json{{"kind", options.kind}};
-    if (kind == SplintKind::intermediate) json["first"] = options.first;
-    json["file"] = options.files.out.string();
-    json.update(splint_json(splint, settings));
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-  }
-  if (common.prints_summary())
-    fmt::print(stderr, "{}: {}\n{}", options.files.out.string(), title,
-               splint_text(splint, settings));
+  ApplianceReport report{options.kind + " splint",      plan.name,
+                         splint_text(splint, settings), splint.notes,
+                         {{"kind", options.kind}},      {}};
+  if (kind == SplintKind::intermediate) report.json["first"] = options.first;
+  report.json["file"] = options.files.out.string();
+  report.json.update(splint_json(splint, settings));
+  report.draw = [&](const PictureText& text, const std::filesystem::path& file) {
+    write_splint_picture(splint, patient_at_stage(operated, kind, first), text, file);
+  };
+  finish_appliance(splint.mesh, report, options.files, common);
   return 0;
 }
 
@@ -79,18 +68,7 @@ void add_splint(Commands& commands) {
   command.add_option("--first", options->first, "The jaw that an intermediate splint moves first")
       ->type_name(words_of(first_jaws));
   add_appliance_files(command, options->files);
-  begin_group(command, "Shape");
-  SplintSettings& settings = options->settings;
-  const auto add = [&](const char* name, double& value, const char* what, double low, double high) {
-    in_range(command.add_option(name, value, fmt::format("{}; default {} mm", what, value)), low,
-             high);
-  };
-  add("--thickness", settings.thickness_mm, "Least thickness between cusps", 0.5, 10);
-  add("--depth", settings.depth_mm, "Depth of the prints from the tips of the teeth", 0.5, 6);
-  add("--wall", settings.wall_mm, "Width beside the teeth", 1.2, 6);
-  add("--gap", settings.gap_mm, "Gap between teeth and print", 0, 0.5);
-  add("--grip", settings.grip_mm, "Deepest undercut that the print holds", 0, 1);
-  add("--voxel", settings.voxel_mm, "Spacing of the samples", least_voxel_mm, largest_voxel_mm);
+  add_lengths(command, options->settings, splint_lengths);
   options->has_opening = in_range(
       command.add_option("--opening", options->opening_mm,
                          "Opening of the bite at the incisors by the hinge, mm; default what the "

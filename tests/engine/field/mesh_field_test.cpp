@@ -107,4 +107,24 @@ TEST(RemoveThin, KeepsTheFacesOfAThickPlateWhereTheyAre) {
     EXPECT_NEAR(even_value(thick, p), even_value(before, p), 1e-6);
 }
 
+TEST(RemoveThin, WithinABoxItChangesTheSamplesThereAlone) {
+  SampledField whole = box_field({4, 4, 0.3}, 6), part = whole;
+  const SampledField before = whole;
+  remove_thin(whole, 0.5, 0.1);
+  Box box;
+  box.add(Vector3d(-1.05, -2.05, -1));
+  box.add(Vector3d(1.05, 2.05, 1));
+  remove_thin_within(part, box, 0.5, 0.1);
+  int changed = 0;
+  for (int i = 0; i < part.size().x(); ++i)
+    for (int j = 0; j < part.size().y(); ++j)
+      for (int k = 0; k < part.size().z(); ++k) {
+        const std::size_t at = part.index(i, j, k);
+        const SampledField& like = box.contains(part.position(i, j, k)) ? whole : before;
+        ASSERT_EQ(part.values[at], like.values[at]) << i << " " << j << " " << k;
+        changed += part.values[at] != before.values[at];
+      }
+  EXPECT_GT(changed, 50);
+}
+
 }  // namespace condyle::test

@@ -74,12 +74,14 @@ TEST(Guide, IsOneClosedPieceThatLiesOnTheBone) {
   EXPECT_LE(print.fit_p95_mm, 0.15);
   EXPECT_EQ(print.overlap_mm, 0);
   EXPECT_LE(print.undercut_mm, 0.42);  // the grip, and the step of 0.1 mm in which it is measured
+  EXPECT_GE(guide.measure.wall_min_mm, 1);
   EXPECT_GE(guide.measure.wall_p5_mm, 1.5);
   const TriangleTree bone(chin_support().bone);
   double nearest = 1e9;
   for (const Vector3d& p : guide.mesh.vertices)
     nearest = std::min(nearest, bone.signed_distance(p));
-  EXPECT_GT(nearest, 0.1 - 0.03);
+  // The gap, less what cells of 0.2 mm round off at an edge of the bone: a fifth of a cell.
+  EXPECT_GT(nearest, 0.1 - 0.2 / 5);
 }
 
 TEST(Guide, ItsSlotsLeadTheSawInThePlaneOfTheCut) {
@@ -118,6 +120,37 @@ TEST(Guide, ItsSlotsLeadTheSawInThePlaneOfTheCut) {
   EXPECT_GT(guide.led_mm, 0.7 * guide.line_mm);
 }
 
+TEST(Guide, StatesHowMuchOfTheCutLiesBetweenTwoWalls) {
+  const Guide& guide = chin_guide();
+  double guided = 0;
+  for (const GuideSlot& slot : guide.slots) {
+    double missing = 0;
+    for (const SlotGap& gap : slot.gaps) missing += gap.length_mm;
+    EXPECT_NEAR(slot.guided_mm + missing, slot.length_mm, 1e-9);
+    guided += slot.guided_mm;
+  }
+  EXPECT_NEAR(guide.guided_mm, guided, 1e-9);
+  EXPECT_GT(guide.guided_mm, 0.9 * guide.led_mm);
+  // A plane that a tooth crosses has no walls there: the guide keeps away from it.
+  GuideSupport beside_tooth = chin_support();
+  const Vector3d middle = 0.5 * (guide.slots[1].from + guide.slots[1].to);
+  beside_tooth.teeth = {};
+  for (const double z : {-1., 1.})
+    for (const double y : {-6., 6.})
+      for (const double x : {-1., 1.})
+        beside_tooth.teeth.vertices.push_back(middle + Vector3d(x, y, 8 * z));
+  beside_tooth.teeth.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                  {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  GuideSettings settings = with_saw("sagittal", 0.4);
+  const Guide whole = make_guide(chin_support(), chin_line(), settings);
+  const Guide parted = make_guide(beside_tooth, chin_line(), settings);
+  EXPECT_LT(parted.guided_mm, whole.guided_mm - 1.5);
+  int gaps = 0;
+  for (const GuideSlot& slot : parted.slots)
+    for (const SlotGap& gap : slot.gaps) gaps += gap.length_mm > 1;
+  EXPECT_GT(gaps, 0);
+}
+
 TEST(Guide, HasFourScrewHolesInTheShell) {
   const Guide& guide = chin_guide();
   ASSERT_EQ(guide.holes.size(), 4u);
@@ -145,6 +178,68 @@ TEST(Guide, BothSidesOfTheUpperJawAreJoined) {
   // It comes from the front, in the midsagittal plane.
   EXPECT_NEAR(guide.measure.prints[0].seat.x(), 0, 1e-9);
   EXPECT_GT(guide.measure.prints[0].seat.y(), 0.8);
+}
+
+TEST(Guide, TheStandardHeadGetsOneForBothSidesByDefault) {
+  const Case patient = builtin_patient();
+  Plan plan;
+  plan.name = "upper jaw";
+  plan.geometry = geometry_of(patient);
+  plan = with_step(plan, CutStep{.osteotomy = "le_fort_1", .pieces = {"maxilla"}});
+  const CutLine line = find_cut_line(apply_cuts(patient, plan), plan, "maxilla");
+  std::vector<std::string> notes;
+  const Guide guide =
+      make_guide(guide_support(patient, plan, line, notes), line, with_saw("sagittal", 0.4));
+  EXPECT_TRUE(guide.measure.closed);
+  EXPECT_EQ(guide.measure.pieces, 1);
+  EXPECT_GE(guide.measure.wall_min_mm, 1);  // no hooks at the piriform rim
+  EXPECT_GT(guide.guided_mm, 0.8 * guide.led_mm);
+  EXPECT_LT(bounding_box(guide.mesh).low.x(), -30);
+  EXPECT_GT(bounding_box(guide.mesh).high.x(), 30);
+}
+
+TEST(Guide, LeftAndRightAreThePatientsWhereTheCaseLiesBesideItsAxes) {
+  Case patient = class_iii_head();
+  const Vector3d aside(70, 0, 0);
+  for (Part& part : patient.parts)
+    for (Vector3d& p : part.mesh.vertices) p += aside;
+  for (auto& [name, p] : patient.landmarks.points) p += aside;
+  patient.canals.clear();
+  Plan plan;
+  plan.name = "aside";
+  plan.geometry = geometry_of(patient);
+  plan = with_step(plan, CutStep{.osteotomy = "le_fort_1", .pieces = {"maxilla"}});
+  const CutLine line = find_cut_line(apply_cuts(patient, plan), plan, "maxilla");
+  std::vector<std::string> notes;
+  const GuideSupport support = guide_support(patient, plan, line, notes);
+  EXPECT_NEAR(support.frame.left.dot(support.frame.origin), 70, 1);
+  GuideSettings settings = with_saw("sagittal", 0.4);
+  settings.side = GuideSide::right;  // all of it at x > 0
+  const Guide guide = make_guide(support, line, settings);
+  EXPECT_LT(bounding_box(guide.mesh).high.x(), 75);
+  EXPECT_GT(bounding_box(guide.mesh).low.x(), 5);
+}
+
+TEST(Guide, TheBoneIsChosenWhereACutPassesThroughSeveral) {
+  // The maxilla as if it had been another bone before the cut.
+  Operated cuts = apply_cuts(class_iii_head(), two_jaw_plan());
+  for (auto& [part, origin] : cuts.origin)
+    for (const Part& piece : cuts.patient.parts)
+      if (piece.name == part && cuts.patient.bodies[piece.body].name == "maxilla")
+        origin.part = "upper jaw";
+  const CutLine line = find_cut_line(cuts, two_jaw_plan(), "le_fort_1");
+  ASSERT_EQ(line.bones.size(), 2u);
+  EXPECT_EQ(line.bone, line.bones[0].name);
+  EXPECT_GE(line.bones[0].length_mm, line.bones[1].length_mm);
+  const std::string other = line.bones[1].name;
+  const CutLine chosen = find_cut_line(cuts, two_jaw_plan(), "le_fort_1", other);
+  EXPECT_EQ(chosen.bone, other);
+  EXPECT_FALSE(chosen.edges.empty());
+  const std::string text =
+      why_no_guide([&] { find_cut_line(cuts, two_jaw_plan(), "le_fort_1", "mandible"); });
+  EXPECT_NE(text.find("does not pass through a bone \"mandible\"; it passes through"),
+            std::string::npos)
+      << text;
 }
 
 TEST(Guide, OneSideOfASplitHasItsOwn) {
