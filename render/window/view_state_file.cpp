@@ -93,6 +93,8 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
   json["case"] = {{"name", window.scene().case_name},
                   {"folder", window.scene().case_folder.string()}};
   json["notes"] = window.scene().notes;
+  json["drawn_points"] = view.drawn_cut.points.size();
+  if (view.selected) json["selected"] = window.scene().parts[*view.selected].name;
   json["recent"] = nlohmann::json::array();
   for (const auto& path : window.scene().recent) json["recent"].push_back(path.string());
   if (const std::string trouble = window.trouble(); !trouble.empty()) json["trouble"] = trouble;

@@ -59,6 +59,8 @@ void Window::State::add_cut_point(const Vector2d& at) {
   const auto found = surface_under(at, true);
   if (found && scene.parts[found->surface].role == Role::face)
     return panels->say("The skin is in front of the bone; key K hides it");
+  if (!drawn.part && !found && view.selected && can_be_cut(scene.parts[*view.selected]))
+    drawn.part = view.selected;
   if (!drawn.part) {
     if (!found || !can_be_cut(scene.parts[found->surface]))
       return panels->say(found ? "Cuts are drawn on bone" : "Begin on the bone that is cut");

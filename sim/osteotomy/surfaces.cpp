@@ -73,7 +73,7 @@ PlacedOsteotomy place_surfaces(const CutStep& step, const std::string& part) {
   const std::size_t count = step.surfaces.size();
   for (std::size_t i = 0; i < count; ++i) {
     Cut cut = std::visit([](const auto& surface) { return cut_of(surface); }, step.surfaces[i]);
-    cut.name = fmt::format("surface {}", i + 1);
+    cut.name = count == 1 ? "cut" : fmt::format("surface {}", i + 1);
     cut.kerf_mm = step.kerf_mm;
     placed.cuts.push_back(std::move(cut));
   }

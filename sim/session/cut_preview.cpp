@@ -150,7 +150,8 @@ CutPreview CutPreviewer::preview(const Plan& plan, int id) {
         std::any_of(report.outcomes.begin(), report.outcomes.end(), [](const CutOutcome& outcome) {
           return !outcome.open_on_purpose && !outcome.through;
         });
-    if (bones.problems.size() > problems) preview.words.problem = bones.problems.back();
+    if (bones.problems.size() > problems)
+      preview.words.problem = "the cut does not part a piece from the bone";
     for (const CutPiece& piece : report.pieces)
       for (const Part& part : bones.patient.parts) {
         const auto origin = bones.origin.find(part.name);
@@ -180,7 +181,8 @@ std::vector<PlanHandle> CutPreviewer::number_handles(const Plan& plan, int id) {
     for (const Part& part : bones.patient.parts)
       if (part.name == bone) body = part.body;
     for (const OsteotomyParameter& parameter : osteotomy_parameters(cut.osteotomy)) {
-      if (parameter.unit.empty()) continue;  // a number of pieces, or a choice
+      // A number of pieces or a choice; a margin, which moves a cut only where it holds it back.
+      if (parameter.unit.empty() || parameter.name.ends_with("_margin_mm")) continue;
       // Larger, or smaller where that is impossible or danger zones keep the cut in its place.
       const auto set = cut.parameters.find(parameter.name);
       const double value = set == cut.parameters.end() ? parameter.standard : set->second;

@@ -66,5 +66,82 @@ TEST_F(WindowSession, AGenioplastyIsPlannedByHand) {
   EXPECT_EQ(read_text(file), before);
 }
 
+TEST_F(WindowSession, APartIsPickedAndCutWithTheMouse) {
+  const std::string file = folder_ / "plan.json";
+  start({"--motion", "rest", "--no-tissue"});
+  ASSERT_TRUE(wait_until(idle, 180));
+  EXPECT_TRUE(press("k"));
+  EXPECT_TRUE(press("a"));
+  const auto place = [&](double right, double down) {  // of the height of the view, from its middle
+    const std::array<double, 4> view = state()["view"];
+    return std::pair(view[0] + view[2] / 2 + right * view[3], view[1] + (0.5 + down) * view[3]);
+  };
+  const auto press_at = [&](double right, double down, const char* button) {
+    const auto [x, y] = place(right, down);
+    EXPECT_TRUE(xdotool({"mousemove", px(x), px(y), "click", button}));
+  };
+  constexpr double chin = 0.14;
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["picture_finished"] == true; }));
+  press_at(0, chin, "3");
+  ASSERT_TRUE(wait_for_item("part-menu"));
+  see("menu");
+  click("menu:hide");
+  const auto shown = [](const Json& s) {
+    return std::count_if(s["edits"]["parts"].begin(), s["edits"]["parts"].end(),
+                         [](const Json& opacity) { return double(opacity) > 0; });
+  };
+  const auto all = std::ptrdiff_t(state()["edits"]["parts"].size());
+  ASSERT_TRUE(wait_until([&](const Json& s) { return shown(s) == all - 1; }));
+  EXPECT_TRUE(press("ctrl+z"));
+  ASSERT_TRUE(wait_until([&](const Json& s) { return shown(s) == all; }));
+
+  press_at(0, chin, "3");
+  click("menu:cut");
+  ASSERT_TRUE(wait_for_item("cut-add"));
+  // From beside the bone across the chin to beside the bone.
+  for (const auto& [right, down] : {std::pair{-0.19, 0.10}, {0.0, chin}, {0.19, 0.10}}) {
+    const std::size_t before = state()["drawn_points"];
+    press_at(right, down, "1");
+    ASSERT_TRUE(wait_until([&](const Json& s) { return s["drawn_points"] == before + 1; }));
+  }
+  ASSERT_TRUE(wait_for_item("cut-findings"));
+  see("drawn");
+  const std::size_t uncut = state()["edits"]["parts"].size();
+  click("tab:Plan");
+  EXPECT_TRUE(press("Return"));
+  const auto is_made = [](const Json& s) { return s["items"].contains("plan-step:1"); };
+  ASSERT_TRUE(wait_until(
+      [&](const Json& s) { return is_made(s) || s["items"].contains("plan-agree"); }, 120));
+  if (!is_made(state())) click("plan-agree");  // near the canals
+  ASSERT_TRUE(wait_until([&](const Json& s) { return idle(s) && is_made(s); }, 120));
+  EXPECT_EQ(state()["edits"]["parts"].size(), uncut + 1);
+  write_into("plan-file", file);
+  click("plan-save");
+  ASSERT_TRUE(wait_until([&](const Json&) { return fs::exists(file); }));
+
+  // A point of the cut is dragged by its handle.
+  click("plan-step:1");
+  ASSERT_TRUE(wait_for_item("handle:point-2"));
+  const auto polyline = [&] {
+    return Json::parse(read_text(file))["steps"][0]["cut"]["surfaces"][0]["polyline"];
+  };
+  const Json before = polyline();
+  const auto handle = rect("handle:point-2");
+  drag(handle[0] + 4, handle[1] + 4, handle[0] + 4, handle[1] + 10);
+  ASSERT_TRUE(wait_until(
+      [&](const Json& s) {
+        return s["items"].contains("plan-agree") || (idle(s) && polyline() != before);
+      },
+      120));
+  if (state()["items"].contains("plan-agree")) click("plan-agree");
+  ASSERT_TRUE(wait_until([&](const Json& s) { return idle(s) && polyline() != before; }, 120));
+  EXPECT_LT(double(polyline()[1][2]), double(before[1][2])) << "downward";
+  see("dragged");
+
+  // Ctrl+Z takes the last edit of the plan back, and says so.
+  EXPECT_TRUE(press("ctrl+z"));
+  ASSERT_TRUE(wait_until([&](const Json& s) { return idle(s) && polyline() == before; }, 120));
+}
+
 }  // namespace
 }  // namespace condyle::test

@@ -188,7 +188,7 @@ void Panels::Drawing::cut_buttons(DrawnCut& drawn) {
   ImGui::BeginDisabled(drawn.points.empty());
   if (word_button(pen, "cut-back", "Remove point", half, false)) drawn.points.pop_back();
   ImGui::SameLine(0, pen.px(button_gap));
-  if (word_button(pen, "cut-clear", "Clear", half, false)) drawn = {};
+  if (word_button(pen, "cut-clear", "Clear", half, false)) drawn.points.clear();
   ImGui::EndDisabled();
 }
 

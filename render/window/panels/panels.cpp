@@ -164,7 +164,7 @@ bool Panels::run_tool(Command command, const WindowScene& scene, ViewState& view
       if (view.tool != Tool::cut || dialog_open() || list_unfolded()) return false;
       if (view.drawn_cut.points.empty()) return toggle(Tool::cut);
       remember(view);
-      view.drawn_cut = {};
+      view.drawn_cut.points.clear();
       return true;
     case Command::undo:
     case Command::redo: {
