@@ -16,6 +16,7 @@ void Panels::Drawing::part_menu() {
   if (menu->part() >= input.scene.parts.size()) return menu.reset();
   constexpr const char* name = "##part-menu";
   if (!menu->shown) {
+    if (ImGui::IsAnyMouseDown()) return;  // a press that the panels have yet to see would close it
     ImGui::OpenPopup(name);
     ImGui::SetNextWindowPos({static_cast<float>(menu->x), static_cast<float>(menu->y)});
     menu->shown = true;
