@@ -54,8 +54,7 @@ void CutPreviewSession::preview(const Plan& plan, const std::optional<PlanEdit>&
     return start_waiting();
   }
   state_.cut_overlay.reset();
-  if (std::exchange(state_.scene.plan.preview, std::nullopt))
-    state_.front_end.update_scene(state_.scene);
+  if (std::exchange(state_.scene.plan.preview, std::nullopt)) state_.show_plan();
 }
 
 void CutPreviewSession::show_handles(const Plan& plan, int step) {
@@ -64,7 +63,7 @@ void CutPreviewSession::show_handles(const Plan& plan, int step) {
   if (step != state_.scene.plan.handles_of) {
     state_.scene.plan.handles.clear();
     state_.scene.plan.handles_of = 0;
-    state_.front_end.update_scene(state_.scene);
+    state_.show_plan();
   }
   if (step == 0) return;
   handles_ = Work{plan, std::nullopt, step};
@@ -118,7 +117,11 @@ CutPreviewSession::Done CutPreviewSession::make(const Work& work, CutPreviewer& 
     done.handles_of = work.step;
     const auto& cut = std::get<CutStep>(step_of(work.plan, work.step).action);
     done.handles = point_handles(operated, cut);
-    for (PlanHandle handle : previewer.number_handles(work.plan, work.step)) {
+    std::string name;
+    for (PlanHandle handle : previewer.number_handles(work.plan, work.step, name)) {
+      const auto body = operated.patient.bodies.find(name);
+      if (!body) break;
+      handle.body = *body;
       // It was found at the uncut rest.
       const Pose& X_CB = operated.poses[handle.body];
       handle.at = X_CB * handle.at;

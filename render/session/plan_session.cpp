@@ -218,6 +218,8 @@ void PlanSession::start(Change change, const request::EditPlan& request) {
 }
 
 void PlanSession::accept(Change change) {
+  splinting_.drop();  // splints are of the plan as it was
+  state_.splint.reset();
   switch (change.kind) {
     case Change::Kind::edit:
       return document_->edit(std::move(change.edited.plan), change.edited.what);
@@ -321,6 +323,12 @@ bool PlanSession::take_splint() {
     is_new = true;
   });
   return is_new;
+}
+
+void PlanSession::hide_splint() {
+  state_.splint.reset();
+  state_.scene.plan.splint_findings.clear();
+  state_.show_plan();
 }
 
 void PlanSession::renew_handles() {

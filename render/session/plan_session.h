@@ -50,6 +50,7 @@ class PlanSession {
   bool take_preview() { return cutting_.take(); }
   /// Makes a splint at the planned positions, saves and shows it.
   void make_splint(const std::string& choice);
+  void hide_splint();
   bool take_splint();  // returns whether there is a new one
   /// After the patient was replaced.
   void renew_handles();

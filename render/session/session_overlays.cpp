@@ -43,8 +43,8 @@ GlassSheet selection_sheet(const SessionPatient& patient, const FrameState& fram
 void add_session_overlays(const SessionState& state, const ViewState& view, Overlays& shown) {
   if (state.splint) shown.sheets["splint"] = splint_sheet(*state.splint);
   if (state.cut_overlay) add_cut(*state.cut_overlay, *state.newest, shown);
-  if (view.selected)
-    shown.sheets["selected"] = selection_sheet(*state.patient, *state.newest, *view.selected);
+  if (const auto selected = visible_selection(view))
+    shown.sheets["selected"] = selection_sheet(*state.patient, *state.newest, *selected);
 }
 
 }  // namespace condyle

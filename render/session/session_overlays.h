@@ -11,6 +11,13 @@ namespace condyle {
 /// before it is made, the splint made last.
 void add_session_overlays(const SessionState& state, const ViewState& view, Overlays& shown);
 
+/// The selected part, unless it is hidden.
+inline std::optional<std::size_t> visible_selection(const ViewState& view) {
+  if (!view.selected || *view.selected >= view.parts.size()) return std::nullopt;
+  const PartView& part = view.parts[*view.selected];
+  return part.shown && part.opacity > 0 ? view.selected : std::nullopt;
+}
+
 /// What determines them; equal while nothing changes.
 struct SessionOverlayInputs {
   std::optional<std::size_t> selected = {};
@@ -19,7 +26,7 @@ struct SessionOverlayInputs {
   bool operator==(const SessionOverlayInputs&) const = default;
 
   static SessionOverlayInputs of(const SessionState& state, const ViewState& view) {
-    return {view.selected, state.cut_overlay, state.splint};
+    return {visible_selection(view), state.cut_overlay, state.splint};
   }
 };
 

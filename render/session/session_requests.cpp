@@ -74,7 +74,7 @@ void ViewSession::carry_out(const Request& request) {
       [&](const request::PreviewCut& preview) { plan_.preview_cut(preview.edit); },
       [&](const request::ShowHandles& shown) { plan_.show_handles(shown.step); },
       [&](const request::MakeSplint& splint) { plan_.make_splint(splint.choice); },
-      [&](const request::HideSplint&) { state_.splint.reset(); },
+      [&](const request::HideSplint&) { plan_.hide_splint(); },
       [&](const request::SavePlan& saved) { save_plan(saved.file); },
   };
   state_.try_or_report(title_of_failure(request), [&] { std::visit(act, request); });

@@ -33,6 +33,11 @@ struct SessionState {
   std::shared_ptr<const SessionSplint> splint = {};    // shown; none: no splint
   RetiredWork retired = {};
 
+  /// Shows what has changed of the scene's plan; the requested motion stays.
+  void show_plan() {
+    scene.motion = front_end.view().motion;
+    front_end.update_scene(scene);
+  }
   int threads() const { return settings.simulator.threads; }
   /// The callback with which background work reports news.
   auto waker() const {

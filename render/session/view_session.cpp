@@ -54,8 +54,14 @@ void ViewSession::take_plan() {
   const std::string trouble = planned->patient->trouble;
   std::map<std::string, PartView> earlier;
   const auto& shown = state_.front_end.view().parts;
-  for (std::size_t i = 0; i < std::min(shown.size(), state_.scene.parts.size()); ++i)
-    earlier[state_.scene.parts[i].name] = shown[i];
+  drawn_parts_.clear();
+  for (std::size_t i = 0; i < std::min(shown.size(), state_.scene.parts.size()); ++i) {
+    const Part& part = state_.scene.parts[i];
+    earlier[part.name] = shown[i];
+    drawn_parts_.push_back(
+        {part.name, part.mesh.vertices.size(),
+         part.mesh.vertices.empty() ? Eigen::Vector3d::Zero().eval() : part.mesh.vertices.front()});
+  }
   const std::size_t chosen = state_.front_end.view().chosen;
   const std::string body = chosen < state_.scene.bodies.size()
                                ? state_.scene.parts[state_.scene.bodies[chosen].part].name
@@ -108,6 +114,19 @@ void ViewSession::show_new_patient() {
   state_.front_end.show(state_.patient->at_rest);
 }
 
+/// The part of the drawn cut in the present patient; none where that bone was cut or lies
+/// elsewhere.
+std::optional<std::size_t> ViewSession::drawn_part_now(const DrawnCut& drawn) const {
+  if (!drawn.part || *drawn.part >= drawn_parts_.size()) return std::nullopt;
+  const auto& [name, vertices, corner] = drawn_parts_[*drawn.part];
+  const auto& parts = state_.patient->scene.patient.parts;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (parts[i].name == name && parts[i].mesh.vertices.size() == vertices && vertices > 0 &&
+        parts[i].mesh.vertices.front() == corner)
+      return i;
+  return std::nullopt;
+}
+
 /// View and edits stay as far as they do not belong to parts that the plan has changed. `earlier`:
 /// how the parts were shown, by name; `chosen`: the part of the body with handles; `new_parts`: the
 /// bones are cut or lie otherwise than before.
@@ -128,20 +147,24 @@ void ViewSession::show_planned_patient(const std::map<std::string, PartView>& ea
       known = earlier.find(cut->second.part);
     start.parts.push_back(known == earlier.end() ? PartView{} : known->second);
   }
+  const auto drawn_on = drawn_part_now(view.drawn_cut);
   WindowScene scene = scene_of_patient();
   scene.recent = state_.scene.recent;
   state_.scene = std::move(scene);
   start.tool = view.tool;
   if (new_parts) {
-    start.drawn_cut = {};
-    if (start.tool == Tool::cut) start.tool = Tool::look;
+    start.drawn_cut.part = drawn_on;
+    if (!drawn_on) {  // the bone was cut or has moved
+      start.drawn_cut = {};
+      if (start.tool == Tool::cut) start.tool = Tool::look;
+    }
   } else {
     start.selected = view.selected;
     start.held_handle = view.held_handle;
   }
   for (std::size_t i = 0; i < state_.scene.bodies.size(); ++i)
     if (state_.scene.parts[state_.scene.bodies[i].part].name == chosen) start.chosen = i;
-  state_.front_end.replace_scene(state_.scene, start, state_.patient);
+  state_.front_end.replace_scene(state_.scene, start, state_.patient, new_parts);
   show_scene();
   state_.front_end.show(state_.patient->at_rest);
 }
@@ -200,7 +223,7 @@ void ViewSession::show_scene() {
   shown.motion = asked_;
   if (state_.motion) {
     const Motion& motion = state_.motion->motion;
-    shown.motion = state_.motion->choice;
+    if (!moving_.active()) shown.motion = state_.motion->choice;
     shown.motion_name = motion.name;
     shown.duration_s = motion.duration_s;
     shown.max_opening_mm = state_.motion->widest_mm;
@@ -282,11 +305,9 @@ void ViewSession::turn() {
   state_.retired.sweep();
   take_patient();
   take_plan();
-  if (plan_.take_splint()) {
-    state_.scene.plan = plan_.view();
-    show_scene();
-  }
-  if (plan_.take_preview()) show_scene();
+  const bool has_splint = plan_.take_splint();
+  if (has_splint) state_.scene.plan = plan_.view();
+  if (plan_.take_preview() || has_splint) state_.show_plan();
   if (state_.patient && !loader_.job().active() && !(view.motion == asked_))
     want_motion(view.motion);
   take_motion();

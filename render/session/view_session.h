@@ -65,12 +65,21 @@ class ViewSession {
   void keep_motion();
   void prepare_sliding();
   bool obeys_contact() const;
+  std::optional<std::size_t> drawn_part_now(const DrawnCut& drawn) const;
   WindowScene scene_of_patient() const;
   void use_clinical_axes(std::vector<MovableBody>& bodies) const;
   void show_scene();  // again, after changes
   void show_progress();
 
+  /// A part of the patient before an edit of its plan.
+  struct EarlierPart {
+    std::string name;
+    std::size_t vertices = 0;
+    Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // its first vertex
+  };
+
   SessionState state_;
+  std::vector<EarlierPart> drawn_parts_;
   RecentFiles recent_;
   int opened_ = 0;      // number of patients so far; a rebuilt one is the same
   MotionChoice asked_;  // the motion in preparation, or the last one

@@ -30,9 +30,10 @@ class FrontEnd {
   /// needed.
   virtual void set_scene(const WindowScene& scene, const ViewState& start = {},
                          std::shared_ptr<const void> keeper = {}) = 0;
-  /// Shows the same patient with other parts, after an edit of its plan. The camera stays.
+  /// Shows the same patient after an edit of its plan. The camera stays, and unless parts or their
+  /// planned positions are `new_parts`, the history of edits.
   virtual void replace_scene(const WindowScene& scene, const ViewState& start,
-                             std::shared_ptr<const void> keeper) = 0;
+                             std::shared_ptr<const void> keeper, bool new_parts) = 0;
   /// Shows the same patient rebuilt, with its surfaces in other memory. View and edits stay.
   virtual void renew_scene(const WindowScene& scene, std::shared_ptr<const void> keeper = {}) = 0;
   /// Shows another motion, other texts or lists of the same case; its parts are the same.

@@ -156,9 +156,9 @@ void Window::set_scene(const WindowScene& scene, const ViewState& start,
 }
 
 void Window::replace_scene(const WindowScene& scene, const ViewState& start,
-                           std::shared_ptr<const void> keeper) {
+                           std::shared_ptr<const void> keeper, bool new_parts) {
   change_parts(scene, start, std::move(keeper));
-  state_->panels->forget_edits();
+  if (new_parts) state_->panels->forget_edits();
   state_->noticed();
 }
 

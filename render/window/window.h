@@ -78,7 +78,7 @@ class Window : public FrontEnd {
 
   /// Shows the same patient rebuilt, with its surfaces in other memory. View and edits stay.
   void replace_scene(const WindowScene& scene, const ViewState& start,
-                     std::shared_ptr<const void> keeper) override;
+                     std::shared_ptr<const void> keeper, bool new_parts) override;
   void renew_scene(const WindowScene& scene, std::shared_ptr<const void> keeper = {}) override;
   /// Shows another motion, other texts or lists of the same case; its parts are the same.
   void update_scene(const WindowScene& scene) override;

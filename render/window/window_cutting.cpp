@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/window/window_state.h"
 #include "sim/frame/body_poses.h"
@@ -12,7 +13,10 @@ using Eigen::Vector3d;
 
 constexpr double handle_reach_px = 10;
 
-bool can_be_cut(const Part& part) { return collides(part.role) && !is_teeth(part.role); }
+/// Transplants are shaped by their own steps.
+bool can_be_cut(const Part& part) {
+  return collides(part.role) && !is_teeth(part.role) && part.role != Role::transplant;
+}
 
 /// The point under the mouse at the depth of another one.
 Vector3d point_beside(const Camera& camera, const ViewRect& rect, const Vector2d& mouse,
@@ -21,18 +25,22 @@ Vector3d point_beside(const Camera& camera, const ViewRect& rect, const Vector2d
   return other + gripped(view, Grip::body, {}, screen_place(camera, rect, other), mouse).t;
 }
 
-/// The vertex of a mesh that appears nearest to the mouse.
+/// Of the vertices of a mesh that appear nearest to the mouse, the one nearest to the eye.
 Vector3d nearest_on_screen(const TriMesh& mesh, const Pose& X_CB, const Camera& camera,
                            const ViewRect& rect, const Vector2d& mouse) {
+  constexpr double tolerance_px = 3;
+  const Vector3d toward = picture_axes(camera).row(2);
+  std::vector<double> distance;
+  for (const Vector3d& v : mesh.vertices)
+    distance.push_back((screen_place(camera, rect, X_CB * v) - mouse).norm());
+  const double least = *std::min_element(distance.begin(), distance.end());
   Vector3d nearest = X_CB * mesh.vertices.front();
-  double least = 1e300;
-  for (const Vector3d& v : mesh.vertices) {
-    const Vector3d p = X_CB * v;
-    const double distance = (screen_place(camera, rect, p) - mouse).squaredNorm();
-    if (distance < least) {
-      least = distance;
-      nearest = p;
-    }
+  double front = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    const Vector3d p = X_CB * mesh.vertices[i];
+    if (distance[i] > least + tolerance_px || toward.dot(p) <= front) continue;
+    front = toward.dot(p);
+    nearest = p;
   }
   return nearest;
 }
@@ -40,14 +48,18 @@ Vector3d nearest_on_screen(const TriMesh& mesh, const Pose& X_CB, const Camera& 
 }  // namespace
 
 /// The place of a cut's point under the mouse: on the bone, or beside it at the depth of its
-/// nearest edge; in the frame in which the bone is at rest. None where another part is in front.
+/// nearest edge; in the frame in which the bone is at rest. None where the skin is in front.
 std::optional<Vector3d> Window::State::cut_point(const Vector2d& at, std::size_t part) const {
   const Part& bone = scene.parts[part];
   if (bone.mesh.vertices.empty()) return std::nullopt;
   const Pose X_CB = pose_of(bone, frame()->poses);
-  const auto found = surface_under(at, true);
-  if (found && found->surface == part) return X_CB.inverse() * found->place;
-  if (found && scene.parts[found->surface].role == Role::face) return std::nullopt;
+  if (const auto found = surface_under(at, true);
+      found && scene.parts[found->surface].role == Role::face)
+    return std::nullopt;
+  // Teeth and other bones in front do not count.
+  const PickableSurface surface{&bone.mesh, X_CB};
+  if (const auto found = pick_point(seen(), view_rect(), at, {&surface, 1}))
+    return X_CB.inverse() * found->place;
   const Vector3d edge = nearest_on_screen(bone.mesh, X_CB, seen(), view_rect(), at);
   return X_CB.inverse() * point_beside(seen(), view_rect(), at, edge);
 }
@@ -63,7 +75,7 @@ void Window::State::add_cut_point(const Vector2d& at) {
     drawn.part = view.selected;
   if (!drawn.part) {
     if (!found || !can_be_cut(scene.parts[found->surface]))
-      return panels->say(found ? "Cuts are drawn on bone" : "Begin on the bone that is cut");
+      return panels->say(found ? "Cuts are drawn on bone" : "Click the bone to be cut first");
     drawn.part = found->surface;
   }
   const auto place = cut_point(at, *drawn.part);

@@ -89,6 +89,12 @@ InsertionPath examine(const GraftSurroundings& around, const Vector3d& direction
     path.margin_at = found.at;
     path.margin_part = *found.part;
   }
+  if (path.margin_mm < -blocking_depth_mm) {
+    path.state = InsertionPath::State::blocked;
+    path.blocked_after_mm = path.margin_after_mm;
+    path.blocked_by = path.margin_part;
+    return path;
+  }
   path.state =
       path.margin_mm < tight_margin_mm ? InsertionPath::State::tight : InsertionPath::State::free;
   return path;
@@ -192,9 +198,8 @@ std::string insertion_path_text(const InsertionPath& path, const Seat& seat) {
                                         path.margin_at.y(), path.margin_at.z());
   if (path.state == InsertionPath::State::blocked)
     return fmt::format(
-        "insertion path of {}: blocked; {}; on paths with turns ({} poses examined) its middle "
-        "comes "
-        "{:.1f} mm from the seat",
+        "insertion path of {}: blocked; {}; on paths with turns ({} poses examined) its centre "
+        "moves {:.1f} mm away from the seat",
         seat.name,
         path.blocked_by.empty()
             ? "no straight direction leads out between the faces of the bone"

@@ -320,8 +320,9 @@ void divide_soft_parts(Operated& operated, const Part& bone, const std::string& 
     renamed[bone.name].push_back(groups[g].part);
   }
   for (const Part& part : patient.parts) {  // other bones of the body hold their teeth
-    const bool is_piece = std::any_of(groups.begin(), groups.end(),
-                                      [&](const Group& group) { return group.part == part.name; });
+    const bool is_piece = std::any_of(groups.begin(), groups.end(), [&](const Group& group) {
+      return group.pieces > 0 && group.part == part.name;
+    });
     if (part.body == bone.body && !is_piece && collides(part.role) && !is_teeth(part.role))
       nearest.add(part.mesh, 0);
   }

@@ -151,7 +151,7 @@ CutPreview CutPreviewer::preview(const Plan& plan, int id) {
           return !outcome.open_on_purpose && !outcome.through;
         });
     if (bones.problems.size() > problems)
-      preview.words.problem = "the cut does not part a piece from the bone";
+      preview.words.problem = "the cut does not separate a piece of the bone";
     for (const CutPiece& piece : report.pieces)
       for (const Part& part : bones.patient.parts) {
         const auto origin = bones.origin.find(part.name);
@@ -167,7 +167,7 @@ CutPreview CutPreviewer::preview(const Plan& plan, int id) {
   return preview;
 }
 
-std::vector<PlanHandle> CutPreviewer::number_handles(const Plan& plan, int id) {
+std::vector<PlanHandle> CutPreviewer::number_handles(const Plan& plan, int id, std::string& body) {
   constexpr double step = 2, least_mm = 0.2;  // of the number; displacement for one unit
   std::vector<PlanHandle> handles;
   const auto cut = std::get<CutStep>(step_of(plan, id).action);
@@ -177,9 +177,8 @@ std::vector<PlanHandle> CutPreviewer::number_handles(const Plan& plan, int id) {
     const TriMesh now = cut_faces(bones, cut);
     if (now.empty()) return handles;
     const std::string bone = place_osteotomy(bones.patient, cut).part;
-    BodyId body = cranium_body;
     for (const Part& part : bones.patient.parts)
-      if (part.name == bone) body = part.body;
+      if (part.name == bone) body = bones.patient.bodies[part.body].name;
     for (const OsteotomyParameter& parameter : osteotomy_parameters(cut.osteotomy)) {
       // A number of pieces or a choice; a margin, which moves a cut only where it holds it back.
       if (parameter.unit.empty() || parameter.name.ends_with("_margin_mm")) continue;
@@ -190,8 +189,7 @@ std::vector<PlanHandle> CutPreviewer::number_handles(const Plan& plan, int id) {
         if (value + 2 * change > parameter.high || value + 2 * change < parameter.low) continue;
         const auto effect = effect_of(now, bones, cut, parameter.name, value, change, handles);
         if (!effect || effect->per_unit.norm() < least_mm) continue;
-        handles.push_back({.body = body,
-                           .at = effect->at,
+        handles.push_back({.at = effect->at,
                            .number = parameter.name,
                            .per_unit = effect->per_unit,
                            .value = value + effect->held_back});

@@ -34,7 +34,8 @@ class CutPreviewer {
 
   /// Handles of a named osteotomy's numbers: where a cut face moves farthest with a number. Numbers
   /// that move it by less than 0.2 mm a unit have none. Places at the uncut rest.
-  std::vector<PlanHandle> number_handles(const Plan& plan, int step);
+  /// `body`: name of the body that carries them; their own numbers are not set.
+  std::vector<PlanHandle> number_handles(const Plan& plan, int step, std::string& body);
 
  private:
   const Operated& before(const Plan& plan, int step);

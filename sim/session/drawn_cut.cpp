@@ -17,6 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double near_mm = 12;     // bone farther behind the line is another wall
 constexpr double beyond_mm = 1.5;  // a cut ends so far behind the bone that it divides
 
 const Part& drawn_part(const Operated& operated, const std::string& name) {
@@ -45,7 +46,7 @@ double depth_of_wall(const TriMesh& bone, const BentSheet& sheet) {
   for (const Vector3d& sample : samples_of(sheet.polyline)) {
     const Vector3d from = sample - sheet.overhang_mm * into;
     const auto in = tree.ray_cast(from, into);
-    if (!in) continue;
+    if (!in || in->distance > sheet.overhang_mm + near_mm) continue;  // beside the near wall
     const double past = in->distance + 1e-3;
     if (const auto out = tree.ray_cast(from + past * into, into))
       end = std::max(end, into.dot(from) + past + out->distance);
@@ -79,7 +80,7 @@ void take_smaller_piece(const Operated& operated, CutStep& cut) {
 CutStep drawn_cut(const Operated& operated, const plan_edit::DrawCut& drawing) {
   if (drawing.points.size() < 2)
     throw InputError(
-        fmt::format("a cut needs two points or more; {} drawn", drawing.points.size()));
+        fmt::format("a cut needs at least two points; {} drawn", drawing.points.size()));
   const Part& bone = drawn_part(operated, drawing.part);
   const Pose X_BC = operated.poses[bone.body].inverse();
   BentSheet sheet;

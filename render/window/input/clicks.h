@@ -5,8 +5,8 @@
 
 namespace condyle {
 
-/// Tells clicks from drags: a button that is released within `reach_px` of where it was pressed is
-/// a click, and a second one there within `double_s` a double click.
+/// Distinguishes clicks from drags: a button that is released within `reach_px` of where it was
+/// pressed is a click, and a second one there within `double_s` a double click.
 class ClickDetector {
  public:
   static constexpr double reach_px = 4, double_s = 0.4;

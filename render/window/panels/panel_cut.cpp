@@ -34,10 +34,13 @@ std::optional<PlanEdit> drawn_cut_edit(const WindowScene& scene, const ViewState
 }
 
 void Panels::accept_cut(const WindowScene& scene, const ViewState& view) {
-  if (const auto edit = drawn_cut_edit(scene, view))
+  const auto edit = drawn_cut_edit(scene, view);
+  if (edit && form_.requested_cut == view.drawn_cut) return;  // it is being made
+  form_.requested_cut = view.drawn_cut;
+  if (edit)
     request(request::EditPlan{*edit});
   else
-    say("A cut needs two points or more");
+    say("A cut needs at least two points");
 }
 
 void Panels::Drawing::cutting() {
@@ -159,7 +162,7 @@ void Panels::Drawing::cut_numbers(DrawnCut& drawn) {
   };
   row("cut-kerf", "Kerf", drawn.kerf_mm, largest_kerf_mm, "Thickness of the saw cut");
   row("cut-depth", "Depth", drawn.depth_mm, largest_depth_mm,
-      "From the deepest point; 0: through the first wall of bone");
+      "Below the deepest point; 0 cuts through the first wall of bone");
 }
 
 void Panels::Drawing::cut_findings() {
@@ -181,7 +184,7 @@ void Panels::Drawing::cut_buttons(DrawnCut& drawn) {
   const auto edit = drawn_cut_edit(input.scene, view);
   ImGui::BeginDisabled(!edit);
   if (word_button(pen, "cut-add", "Add to the plan", {whole, high}, edit.has_value()))
-    panels.request(request::EditPlan{*edit});
+    panels.accept_cut(input.scene, view);
   ImGui::EndDisabled();
   tooltip(pen, "The smaller piece becomes a segment. Enter");
   const ImVec2 half = {width_of_each(pen, whole, 2), high};

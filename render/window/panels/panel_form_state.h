@@ -51,7 +51,8 @@ struct PanelFormState {
     std::vector<std::filesystem::path> chosen_files() const;
   } files;
   std::optional<PartMenu> part_menu;
-  DrawnCut previewed_cut;  // whose preview was requested
+  DrawnCut previewed_cut;                 // whose preview was requested
+  std::optional<DrawnCut> requested_cut;  // to become a step of the plan
   std::optional<Question> question;
   std::optional<request::Import> import;  // surfaces that wait for their roles
 };

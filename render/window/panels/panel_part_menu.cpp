@@ -62,10 +62,11 @@ void Panels::Drawing::part_menu_tools(const PartMenu& menu) {
     view.tool = Tool::measure;
     view.measured = {menu.point};
   }
-  const bool is_bone = collides(part.role) && !is_teeth(part.role);
+  const bool is_bone = collides(part.role) && !is_teeth(part.role) && part.role != Role::transplant;
   if (menu_row("cut", "Draw a cut", is_bone)) {
     view.tool = Tool::cut;
-    view.drawn_cut = {.part = menu.part()};
+    view.drawn_cut.part = menu.part();
+    view.drawn_cut.points.clear();
   }
   const auto body = movable_body_of(input.scene.bodies, input.scene.parts, menu.part());
   if (menu_row("move", "Move", body.has_value())) {

@@ -30,6 +30,20 @@ constexpr std::array<ViewButton, 6> view_buttons = {{
     {"I", Command::view_below, "From below (inferior). Key I or Shift with keypad 7"},
 }};
 
+/// What two states of the settings differ in, for people.
+const char* edit_name(const Edits& a, const Edits& b) {
+  if (!(a.hands == b.hands) || a.opening_mm != b.opening_mm) return "a move by hand";
+  if (!(a.drawn_cut == b.drawn_cut)) return "a point of the cut";
+  if (a.measured != b.measured) return "a measured point";
+  if (a.landmarks != b.landmarks) return "a landmark";
+  if (!(a.motion == b.motion)) return "the motion";
+  if (a.parts != b.parts || a.muscles != b.muscles || a.layers != b.layers ||
+      a.skin_opacity != b.skin_opacity)
+    return "what is shown";
+  if (!(a.look == b.look)) return "the look";
+  return "a setting";
+}
+
 }  // namespace
 
 std::string motion_title(const WindowScene& scene) {
@@ -50,6 +64,7 @@ void Panels::set_light(bool light) {
 }
 
 void Panels::report_error(const Trouble& trouble) {
+  form_.requested_cut.reset();
   // An error repeated in every frame is shown once.
   if (errors_.empty() || errors_.back() != trouble) errors_.push_back(trouble);
 }
@@ -73,6 +88,7 @@ void Panels::answer(std::size_t which) {
   if (auto& request = form_.question->answers.at(which).request)
     requests_.push_back(std::move(*request));
   form_.question.reset();
+  form_.requested_cut.reset();
 }
 
 bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
@@ -171,6 +187,10 @@ bool Panels::run_tool(Command command, const WindowScene& scene, ViewState& view
       // Settings changed since the last edit of the plan come first.
       const bool back = command == Command::undo;
       if (undo(view, back)) return true;
+      if (view.tool == Tool::cut && !view.drawn_cut.points.empty()) {
+        if (back) view.drawn_cut.points.pop_back();
+        return true;
+      }
       if ((back ? scene.plan.undo : scene.plan.redo).empty())
         say(back ? "Nothing to undo" : "Nothing to redo");
       else if (back)
@@ -241,6 +261,8 @@ bool Panels::takes(Command command) const {
 }
 
 void Panels::forget_edits() {
+  form_.part_menu.reset();
+  form_.requested_cut.reset();
   history_ = {};
   editing_ = false;
 }
@@ -261,8 +283,10 @@ void Panels::forget_patient() {
 }
 
 bool Panels::undo(ViewState& view, bool back) {
-  Edits now = view.edits();
+  const Edits before = view.edits();
+  Edits now = before;
   if (!(back ? history_.undo(now) : history_.redo(now))) return false;
+  say(std::string(back ? "Undone: " : "Redone: ") + edit_name(before, now));
   view.set_edits(std::move(now));
   undone_ = true;
   return true;

@@ -5,7 +5,7 @@
 namespace condyle {
 namespace {
 
-TEST(ClickDetector, TellsClicksFromDrags) {
+TEST(ClickDetector, DistinguishesClicksFromDrags) {
   ClickDetector clicks;
   clicks.press(0, {100, 100});
   const auto click = clicks.release(0, {102, 101}, 1.0);
