@@ -52,6 +52,11 @@ struct PanelFormState {
   } files;
   std::optional<PartMenu> part_menu;
   DrawnCut previewed_cut;  // whose preview was requested
+  struct SessionFields {
+    bool open = false;
+    std::string path;
+    bool accepted = false;  // Enter: save
+  } session;
   std::optional<Question> question;
   std::optional<request::Import> import;  // surfaces that wait for their roles
 };
