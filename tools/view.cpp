@@ -4,10 +4,14 @@
 #include <cstdio>
 #include <memory>
 
+#include "engine/core/error.h"
+#include "render/session/saved/session_file.h"
 #include "render/session/view_session.h"
 #include "render/window/settings/kept_arrangement.h"
 #include "render/window/view_state_file.h"
 #include "render/window/window.h"
+#include "sim/session/patient_files.h"
+#include "sim/session/videos_folder.h"
 #include "tools/commands.h"
 #include "tools/common.h"
 #include "tools/motion_options.h"
@@ -25,7 +29,13 @@ struct ViewOptions {
 
 /// The stored arrangement of the window, overridden by the command line.
 WindowOptions window_options(const ViewOptions& options, const Arrangement& kept) {
-  WindowOptions window{.title = "Condyle", .arrangement = kept, .default_scale = options.ui_scale};
+  const VideosFolder videos = videos_folder();
+  WindowOptions window{.title = "Condyle",
+                       .arrangement = kept,
+                       .default_scale = options.ui_scale,
+                       .recording_folder = videos.folder,
+                       .recording_folder_name = videos.what,
+                       .file_dialog = !FileDialog::program().empty()};
   Arrangement& start = window.arrangement;
   window.fit_screen = options.size.empty();
   if (!options.size.empty()) {
@@ -47,14 +57,27 @@ SessionSettings session_settings(const MotionOptions& options, const CommonOptio
   return settings;
 }
 
+/// The path to open. throws: InputError for a session that cannot be opened, before there is a
+/// window.
+std::filesystem::path path_to_open(const MotionOptions& options) {
+  const std::filesystem::path file = options.patient;
+  std::error_code ignored;
+  if (kind_of(file) != FileKind::session) return case_of(options);
+  check_session_files(load_session(file), file);
+  if (!options.motion.empty()) throw InputError("--motion: " + file.string() + " has a motion");
+  if (!options.plan.empty()) throw InputError("--plan: " + file.string() + " has its plan");
+  return file;
+}
+
 int run_view(const ViewOptions& options, const CommonOptions& common) {
+  const std::filesystem::path path = path_to_open(options.motion);
   KeptArrangement kept;
   Window window(window_options(options, kept.arrangement()));
   kept.begin(window.arrangement());
   if (!kept.trouble().empty())
     window.report_error("Cannot restore the window as it was left", kept.trouble());
   ViewSession session(window, session_settings(options.motion, common));
-  session.open(case_of(options.motion));
+  session.begin(path);
   ViewStateFile state(options.state_file);
   while (window.open() || !session.may_close()) {
     session.turn();
@@ -62,6 +85,7 @@ int run_view(const ViewOptions& options, const CommonOptions& common) {
     state.update(window, session.frame(), session.busy_with());
   }
   kept.update(window.arrangement(), true);
+  session.end();
   if (const std::string words = session.stop_recording(); !words.empty())
     fmt::print(stderr, "condyle: {}\n", words);
   return 0;
@@ -76,8 +100,8 @@ void add_view(Commands& commands) {
                    [options](const CommonOptions& common) { return run_view(*options, common); });
   add_motion(command, options->motion);
   command.get_option("CASE")->description(
-      "Folder with case.json, or of loose surfaces, whose roles the window asks (default: the "
-      "built-in patient)");
+      "Folder with case.json, or of loose surfaces, whose roles the window asks, or a session that "
+      "the window has saved (default: the built-in patient)");
   begin_group(command, "Window");
   in_range(command.add_option("--ui-scale", options->ui_scale,
                               "Size of the panels; default as they were left, at first by the "

@@ -10,16 +10,23 @@
 namespace condyle {
 
 void PatientLoader::start(std::function<Case(const Progress&)> read, std::filesystem::path folder,
-                          std::string words, std::filesystem::path plan) {
+                          std::string words, PatientSource source, std::filesystem::path plan) {
   renewing_.reset();
-  plan_ = plan;
+  opens_session_ = false;
   job_.start([read = std::move(read), folder = std::move(folder), words = std::move(words),
-              settings = state_.settings.simulator,
+              settings = state_.settings.simulator, source = std::move(source),
               plan = std::move(plan)](const Progress& progress) {
     report(progress, words, 0);
     std::optional<Plan> planned;
     if (!plan.empty()) planned = load_plan(plan);
-    return make_session_patient(read(progress), folder, settings, progress, planned);
+    Loaded loaded{
+        .patient = make_session_patient(read(progress), folder, settings, progress, planned),
+        .renewed = {},
+        .plan = plan,
+        .source = source};
+    loaded.geometry = geometry_of(*loaded.patient->uncut);
+    loaded.source_landmarks = loaded.geometry.landmarks;
+    return loaded;
   });
 }
 
@@ -32,19 +39,25 @@ void PatientLoader::open(const std::filesystem::path& folder) {
       },
       builtin ? std::filesystem::path{} : folder,
       builtin ? "loading the patient" : "loading " + folder.filename().string(),
+      builtin ? PatientSource{BuiltInSource{head_name(choice)}}
+              : PatientSource{FolderSource{std::filesystem::absolute(folder)}},
       std::exchange(state_.settings.plan, {}));
 }
 
 void PatientLoader::import(const request::Import& request) {
+  SurfaceSource source{.units = request.units, .frame = request.frame};
+  for (const FileRole& one : request.files)
+    if (!one.role.empty())
+      source.surfaces.push_back({std::filesystem::absolute(one.file), one.role});
   start([request](
             const Progress&) { return import_files(request.files, request.units, request.frame); },
-        {}, "reading the surfaces");
+        {}, "reading the surfaces", std::move(source));
 }
 
 void PatientLoader::renew(std::vector<Landmark> landmarks) {
   start([patient = state_.patient,
          landmarks](const Progress&) { return with_landmarks(patient->scene.patient, landmarks); },
-        state_.patient->folder, "making the patient with these landmarks");
+        state_.patient->folder, "making the patient with these landmarks", state_.source);
   renewing_ = std::move(landmarks);
 }
 
@@ -52,9 +65,11 @@ std::optional<PatientLoader::Loaded> PatientLoader::take() {
   if (!job_.done()) return {};
   auto renewed = std::exchange(renewing_, std::nullopt);
   std::optional<Loaded> loaded;
-  state_.try_or_report(renewed ? "Cannot use these landmarks" : "Cannot open the patient", [&] {
-    if (auto patient = job_.take()) loaded = {std::move(*patient), std::move(renewed), plan_};
-  });
+  const char* title = renewed          ? "Cannot use these landmarks"
+                      : opens_session_ ? "Cannot open the session"
+                                       : "Cannot open the patient";
+  state_.try_or_report(title, [&] { loaded = job_.take(); });
+  if (loaded) loaded->renewed = std::move(renewed);
   return loaded;
 }
 

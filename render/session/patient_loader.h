@@ -11,6 +11,13 @@
 
 namespace condyle {
 
+/// A session read from its file.
+struct OpenedSession {
+  std::filesystem::path file;
+  SavedSession saved;
+  std::vector<std::string> notes = {};  // sentences on what had to be left out
+};
+
 /// Loads patients concurrently with a session.
 class PatientLoader {
  public:
@@ -19,6 +26,10 @@ class PatientLoader {
     std::shared_ptr<const SessionPatient> patient;
     std::optional<std::vector<Landmark>> renewed;
     std::filesystem::path plan = {};  // file of its plan; empty: none
+    PatientSource source = {};
+    Landmarks source_landmarks = {};
+    CaseGeometry geometry = {};  // before the operation
+    std::optional<OpenedSession> opened = {};
   };
 
   explicit PatientLoader(SessionState& state) : state_(state), job_(state.retired, state.waker()) {}
@@ -27,6 +38,8 @@ class PatientLoader {
   void open(const std::filesystem::path& folder);
   /// Imports surfaces, landmarks and muscles with their roles.
   void import(const request::Import& request);
+  /// Loads the patient of a session with its plan; what does not fit is left out and noted.
+  void open_session(const std::filesystem::path& file);
   /// Rebuilds the session's patient with other landmarks.
   void renew(std::vector<Landmark> landmarks);
   void drop() { job_.drop(); }
@@ -36,13 +49,19 @@ class PatientLoader {
 
  private:
   void start(std::function<Case(const Progress&)> read, std::filesystem::path folder,
-             std::string words, std::filesystem::path plan = {});
+             std::string words, PatientSource source, std::filesystem::path plan = {});
 
   SessionState& state_;
   std::optional<std::vector<Landmark>> renewing_;
-  std::filesystem::path plan_;  // of the patient that is being loaded
-  Job<std::shared_ptr<const SessionPatient>> job_;
+  bool opens_session_ = false;
+  Job<Loaded> job_;
 };
+
+/// Reads a session and loads its patient. throws: InputError if either cannot be read; a plan that
+/// cannot be applied is left out and noted.
+PatientLoader::Loaded load_saved_patient(const std::filesystem::path& file,
+                                         const SimulatorSettings& settings,
+                                         const Progress& progress);
 
 /// The patient's case with other landmarks.
 Case with_landmarks(Case patient, const std::vector<Landmark>& landmarks);

@@ -75,17 +75,22 @@ std::optional<Question> objection(EditedPlan& edited, Operated& operated, PlanSt
 
 }  // namespace
 
-void PlanSession::begin(std::optional<PlanDocument> document) {
+void PlanSession::begin(std::optional<PlanDocument> document, const std::optional<Plan>& stored) {
   drop();
   const Plan none = empty_plan(*state_.patient->uncut);
   draft_ = draft_file(none.geometry);
-  document_ = document ? std::move(*document) : PlanDocument(none, draft_);
+  document_ = document ? std::move(*document) : PlanDocument(stored.value_or(none), draft_);
   std::error_code ignored;
   if (document || draft_.empty() || !std::filesystem::exists(draft_, ignored)) return;
-  state_.front_end.ask({.title = "A plan of this patient was not saved",
-                        .words = "It was kept as a draft, which the next edit replaces.",
-                        .answers = {{"plan-continue", "Continue the plan", request::Open{{draft_}}},
-                                    {"plan-forget", "Begin anew", {}}}});
+  if (stored && is_plan_in(draft_, *stored)) return;
+  state_.front_end.ask(
+      {.title = "A plan of this patient was not saved",
+       .words = stored ? "It was kept as a draft, which differs from the plan of the session. The "
+                         "next edit replaces it."
+                       : "It was kept as a draft, which the next edit replaces.",
+       .answers = {{"plan-continue", stored ? "Open the draft" : "Continue the plan",
+                    request::Open{{draft_}}},
+                   {"plan-forget", stored ? "Keep the session's plan" : "Begin anew", {}}}});
 }
 
 void PlanSession::drop() {

@@ -31,8 +31,9 @@ class PlanSession {
         splinting_(state.retired, state.waker()),
         cutting_(state) {}
 
-  /// Begins with the plan of a patient just loaded, or an empty one.
-  void begin(std::optional<PlanDocument> document);
+  /// Begins with the plan of a patient just loaded, or an empty one. `stored`: a plan without a
+  /// file, of a session.
+  void begin(std::optional<PlanDocument> document, const std::optional<Plan>& stored = {});
   /// Requests an edit; one that comes while another is being checked follows it.
   /// throws: InputError for an edit that is impossible.
   void edit(const request::EditPlan& request);
@@ -66,6 +67,9 @@ class PlanSession {
   HeadReference reference() const {
     return document_ ? document_->plan().reference : HeadReference{};
   }
+  const PlanDocument* document() const { return document_ ? &*document_ : nullptr; }
+  /// What a hand held before segments were moved to preview an edit; none: there is no preview.
+  const std::optional<Hands>& hands_before_preview() const { return hands_; }
   /// What the front end shows of the plan.
   PlanView view() const;
 

@@ -36,7 +36,10 @@ std::string title_of_failure(const Request& request) {
                  [](const request::ShowHandles&) { return "Cannot show handles"; },
                  [](const request::MakeSplint&) { return "Cannot make the splint"; },
                  [](const request::HideSplint&) { return "Cannot hide the splint"; },
-                 [](const request::SavePlan&) { return "Cannot save the plan"; }},
+                 [](const request::SavePlan&) { return "Cannot save the plan"; },
+                 [](const request::SaveSession&) { return "Cannot save the session"; },
+                 [](const request::Recover&) { return "Cannot recover the session"; },
+                 [](const request::Browse&) { return "Cannot show the file dialog"; }},
       request);
 }
 
@@ -49,6 +52,50 @@ void ViewSession::open(const fs::path& path) {
     else
       open_files({path});
   });
+}
+
+void ViewSession::begin(const fs::path& path) {
+  first_path_ = path;
+  bool asks = false;
+  state_.try_or_report("Cannot recover a session", [&] { asks = saving_session_.begin(); });
+  if (!asks) open(path);
+}
+
+void ViewSession::recover(const request::Recover& answer) {
+  if (saving_session_.recover(answer)) return;
+  if (saving_session_.recovering())
+    loader_.open_session(answer.file);
+  else
+    open(first_path_);
+}
+
+/// The session that was saved at the user's request.
+void ViewSession::take_saved_session() {
+  if (loader_.job().active()) return;
+  const auto saved = saving_session_.update();
+  if (!saved) return;
+  state_.session = *saved;
+  recent_.add(*saved);
+  state_.scene.session = *saved;
+  state_.scene.recent = recent_.list();
+  state_.front_end.update_scene(state_.scene);
+  state_.front_end.say("Saved the session as " + saved->string());
+}
+
+/// What the user has chosen in the dialog of the desktop.
+void ViewSession::take_chosen_files() {
+  const auto answer = dialog_.take();
+  if (!answer) return;
+  using Purpose = request::Browse::Purpose;
+  if (!answer->trouble.empty())
+    return state_.front_end.report_error("The file dialog failed",
+                                         answer->trouble + ". Type the path instead.");
+  if (answer->files.empty()) return;
+  const fs::path& file = answer->files.front();
+  if (answer->asked.purpose == Purpose::open) carry_out(request::Open{answer->files});
+  // The dialog has asked before it replaces a file.
+  if (answer->asked.purpose == Purpose::save_session) carry_out(request::SaveSession{file, true});
+  if (answer->asked.purpose == Purpose::record_folder) state_.front_end.set_record_folder(file);
 }
 
 void ViewSession::carry_out(const Request& request) {
@@ -76,6 +123,12 @@ void ViewSession::carry_out(const Request& request) {
       [&](const request::MakeSplint& splint) { plan_.make_splint(splint.choice); },
       [&](const request::HideSplint&) { plan_.hide_splint(); },
       [&](const request::SavePlan& saved) { save_plan(saved.file); },
+      [&](const request::SaveSession& saved) { saving_session_.save(saved); },
+      [&](const request::Recover& answer) { recover(answer); },
+      [&](const request::Browse& asked) {
+        if (dialog_.open()) return state_.front_end.say("A file dialog is open already");
+        dialog_.show(asked);
+      },
   };
   state_.try_or_report(title_of_failure(request), [&] { std::visit(act, request); });
 }
@@ -115,6 +168,8 @@ void ViewSession::open_file(const fs::path& file) {
   switch (kind_of(file)) {
     case FileKind::patient:
       return loader_.open(fs::is_directory(file) ? file : file.parent_path());
+    case FileKind::session:
+      return loader_.open_session(file);
     case FileKind::plan:
       if (!state_.patient) throw InputError(file, "", "is a plan; open its patient first");
       return plan_.open(file);
@@ -129,9 +184,10 @@ void ViewSession::open_file(const fs::path& file) {
           true);
     }
     default:
-      throw InputError(file, "",
-                       "cannot be opened: it is no case folder, no motion (CSV, .motion, .mot, "
-                       ".sto, .trc) and no surface (STL, PLY, OBJ, glTF)");
+      throw InputError(
+          file, "",
+          "cannot be opened: it is no session, no case folder, no motion (CSV, .motion, .mot, "
+          ".sto, .trc) and no surface (STL, PLY, OBJ, glTF)");
   }
 }
 
@@ -168,6 +224,12 @@ void ViewSession::take_save() {
     WindowScene& shown = state_.scene;
     recent_.add(saved->folder);
     if (saved->opened == opened_) {
+      if (!plan_.has_steps()) {  // else the folder has the patient after the operation
+        state_.source = FolderSource{fs::absolute(saved->folder)};
+        state_.source_landmarks.points.clear();
+        for (const Landmark& one : saved->landmarks)
+          state_.source_landmarks.points[one.name] = one.at_rest;
+      }
       shown.landmarks = saved->landmarks;
       shown.case_folder = saved->folder;
     } else if (!shown.case_folder.empty()) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "render/session/saved/saved_session.h"
 #include "render/window/front_end.h"
 #include "sim/session/job.h"
 #include "sim/session/session_motion.h"
@@ -32,6 +33,11 @@ struct SessionState {
   std::shared_ptr<const CutOverlay> cut_overlay = {};  // none: no cut is being drawn
   std::shared_ptr<const SessionSplint> splint = {};    // shown; none: no splint
   RetiredWork retired = {};
+  // The files behind the patient, as a session refers to them:
+  PatientSource source = {};
+  Landmarks source_landmarks = {};     // as those files have them
+  CaseGeometry geometry = {};          // of the patient before the operation
+  std::filesystem::path session = {};  // its own file; empty: not saved
 
   /// Shows what has changed of the scene's plan; the requested motion stays.
   void show_plan() {

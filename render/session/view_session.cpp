@@ -1,5 +1,7 @@
 #include "render/session/view_session.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <utility>
@@ -22,25 +24,34 @@ ViewSession::ViewSession(FrontEnd& front_end, const SessionSettings& settings)
       preview_(state_),
       recording_(state_),
       release_(state_),
-      live_(state_) {
+      live_(state_),
+      saving_session_(state_, plan_) {
   asked_.spec = settings.first_motion;
 }
 
 void ViewSession::take_patient() {
+  if (!loader_.job().done()) return;
   auto loaded = loader_.take();
-  if (!loaded) return;
+  if (!loaded) {
+    if (!saving_session_.recovering()) return;
+    saving_session_.recovery_failed();
+    return open(first_path_);
+  }
   plan_.drop();
+  if (!loaded->renewed) state_.source_landmarks = std::move(loaded->source_landmarks);
+  state_.source = std::move(loaded->source);
+  state_.geometry = std::move(loaded->geometry);
   install(std::move(loaded->patient),
           loaded->renewed ? "the patient was rebuilt" : "another patient was opened");
   std::optional<PlanDocument> document;
   state_.try_or_report("Cannot open the plan", [&] {
     if (!loaded->plan.empty()) document = PlanDocument(loaded->plan);
   });
-  plan_.begin(std::move(document));
+  plan_.begin(std::move(document), loaded->opened ? loaded->opened->saved.draft : std::nullopt);
   if (loaded->renewed)
     show_renewed_patient(*loaded->renewed);
   else
-    show_new_patient();
+    show_new_patient(loaded->opened ? &*loaded->opened : nullptr);
   if (!state_.patient->trouble.empty())
     state_.front_end.report_error("Cannot build the soft tissue",
                                   state_.in_words(state_.patient->trouble));
@@ -102,14 +113,23 @@ void ViewSession::show_renewed_patient(const std::vector<Landmark>& landmarks) {
   state_.front_end.renew_scene(shown, state_.patient);
 }
 
-void ViewSession::show_new_patient() {
+void ViewSession::show_new_patient(const OpenedSession* opened) {
   // The first motion of the settings is for the first patient; another one opens the mouth first.
   if (++opened_ > 1) asked_ = {.spec = "opening", .parameters = {}, .excitations = {}};
-  if (!state_.patient->folder.empty()) recent_.add(state_.patient->folder);
+  if (opened) asked_ = opened->saved.view.motion;
+  saving_session_.patient_shown(opened, opened_ == 1);
+  resumed_.reset();
+  const std::filesystem::path& own =
+      state_.session.empty() ? state_.patient->folder : state_.session;
+  if (!own.empty()) recent_.add(own);
   state_.scene = scene_of_patient();
-  ViewState start;
-  static_cast<PanelChoice&>(start) = state_.front_end.view();  // the panels in use stay
-  state_.front_end.set_scene(state_.scene, start, state_.patient);
+  if (opened) {
+    show_opened_session(*opened);
+  } else {
+    ViewState start;
+    static_cast<PanelChoice&>(start) = state_.front_end.view();  // the panels in use stay
+    state_.front_end.set_scene(state_.scene, start, state_.patient);
+  }
   show_scene();
   state_.front_end.show(state_.patient->at_rest);
 }
@@ -125,6 +145,35 @@ std::optional<std::size_t> ViewSession::drawn_part_now(const DrawnCut& drawn) co
         parts[i].mesh.vertices.front() == corner)
       return i;
   return std::nullopt;
+}
+
+void ViewSession::show_opened_session(const OpenedSession& opened) {
+  state_.settings.plan.clear();  // of the first patient, instead of which a session was recovered
+  std::vector<std::string> left_out;
+  ViewState start = fitted_view(opened.saved, state_.scene, left_out);
+  resumed_ = start;
+  start.playing = false;  // until the motion is there
+  state_.front_end.set_scene(state_.scene, start, state_.patient);
+  state_.front_end.change([&](ViewState& view) { view.landmarks = start.landmarks; });
+  state_.front_end.set_camera(opened.saved.camera);
+  std::string words;
+  for (const std::string& note : opened.notes) words += (words.empty() ? "" : "\n") + note;
+  if (!left_out.empty())
+    words += fmt::format("{}Left out: {}.", words.empty() ? "" : "\n", fmt::join(left_out, "; "));
+  if (!words.empty())
+    state_.front_end.report_error("The session does not fit its patient any more",
+                                  state_.in_words(words));
+}
+
+/// What an opened session says of the motion, once that is there.
+void ViewSession::resume_view() {
+  if (!resumed_) return;
+  state_.front_end.change([&](ViewState& view) {
+    view.obey_contact = resumed_->obey_contact;
+    view.time_s = std::min(resumed_->time_s, state_.motion->motion.duration_s);
+    view.playing = resumed_->playing && state_.motion->motion.duration_s > 0;
+  });
+  resumed_.reset();
 }
 
 /// View and edits stay as far as they do not belong to parts that the plan has changed. `earlier`:
@@ -202,6 +251,7 @@ WindowScene ViewSession::scene_of_patient() const {
                     .bodies = movable_bodies(patient.parts, patient.bodies)};
   use_clinical_axes(scene.bodies);
   scene.case_folder = state_.patient->folder;
+  scene.session = state_.session;
   scene.landmarks = scene.landmarks_in_use = landmarks_of(patient);
   scene.motions = motion_names(state_.patient->scene);
   scene.motion = asked_;
@@ -267,6 +317,7 @@ void ViewSession::take_motion() {
     view.obey_contact = obeys_contact();
     view.playing = was_playing && state_.motion->motion.duration_s > 0;
   });
+  resume_view();
   prepare_sliding();
 }
 
@@ -316,6 +367,8 @@ void ViewSession::turn() {
   recording_.update();
   release_.update();
   take_save();
+  take_saved_session();
+  take_chosen_files();
   show_progress();
   if (live_.running())
     live_.update(view, release_.X_CM(), preview_.paths());

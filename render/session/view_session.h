@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "render/session/file_dialog.h"
 #include "render/session/live_session.h"
 #include "render/session/patient_loader.h"
 #include "render/session/plan_session.h"
 #include "render/session/preview_session.h"
 #include "render/session/recording_session.h"
 #include "render/session/release_session.h"
+#include "render/session/saving_session.h"
 #include "sim/session/recent_files.h"
 
 namespace condyle {
@@ -23,8 +25,11 @@ class ViewSession {
   /// The front end must outlive the session.
   ViewSession(FrontEnd& front_end, const SessionSettings& settings);
 
-  /// Opens a path as if it were dropped onto the front end; the built-in patient if it is empty.
-  void open(const std::filesystem::path& path);
+  /// Begins: opens a path as if it were dropped onto the front end; the built-in patient if it is
+  /// empty. If a session can be recovered, the user is asked before.
+  void begin(const std::filesystem::path& path);
+  /// Ends as the user asked: there is nothing to recover.
+  void end() { saving_session_.end(); }
   /// One turn: carries out requests, takes finished results, draws the picture.
   void turn();
 
@@ -45,6 +50,7 @@ class ViewSession {
   };
 
   // session_requests.cpp:
+  void open(const std::filesystem::path& path);
   void carry_out(const Request& request);
   void open_files(const std::vector<std::filesystem::path>& files);
   void open_file(const std::filesystem::path& file);
@@ -52,11 +58,16 @@ class ViewSession {
   void save(const std::filesystem::path& folder);
   void take_save();
   void save_plan(const std::filesystem::path& file);
+  void recover(const request::Recover& answer);
+  void take_chosen_files();
+  void take_saved_session();
 
   void take_patient();
   void take_plan();
   void install(std::shared_ptr<const SessionPatient> patient, std::string_view why);
-  void show_new_patient();
+  void show_new_patient(const OpenedSession* opened);
+  void show_opened_session(const OpenedSession& opened);
+  void resume_view();
   void show_planned_patient(const std::map<std::string, PartView>& earlier,
                             const std::string& chosen, bool new_parts);
   void show_renewed_patient(const std::vector<Landmark>& landmarks);
@@ -85,6 +96,8 @@ class ViewSession {
   MotionChoice asked_;  // the motion in preparation, or the last one
   std::shared_ptr<const SessionPatient> ready_for_;  // whose bones are, or are being, prepared
   std::string busy_with_;
+  std::filesystem::path first_path_;  // that begin() was asked to open
+  std::optional<ViewState> resumed_;  // of an opened session, until its motion is there
 
   PatientLoader loader_;
   PlanSession plan_;
@@ -95,6 +108,8 @@ class ViewSession {
   RecordingSession recording_;
   ReleaseSession release_;
   LiveSession live_;
+  SavingSession saving_session_;
+  FileDialog dialog_;
 };
 
 }  // namespace condyle

@@ -65,6 +65,12 @@ class FrontEnd {
   /// Asks a question whose answers are requests.
   virtual void ask(Question question) = 0;
 
+  /// The camera in the world's frame.
+  virtual const Camera& camera() const = 0;
+  virtual void set_camera(const Camera& camera) = 0;
+  /// Puts a folder that the user has chosen into the field for recordings.
+  virtual void set_record_folder(const std::filesystem::path& folder) = 0;
+
   /// Keeps the front end open after the user has closed it, to ask a question.
   virtual void keep_open() = 0;
   virtual void close() = 0;

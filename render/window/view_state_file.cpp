@@ -72,24 +72,38 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
   };
   const ViewState& view = window.view();
   const PictureStatistics& pictures = window.pictures();
-  nlohmann::json json = {{"busy_with", busy_with},
-                         {"playing", view.playing},
-                         {"time_s", view.time_s},
-                         {"motion", view.motion.spec},
-                         {"tool", static_cast<int>(view.tool)},
-                         {"measured", view.measured.size()},
-                         {"landmarks", view.landmarks.size()},
-                         {"skin_opacity", view.skin_opacity},
-                         {"muscles_shown", shown(view.muscles)},
-                         {"layers_shown", shown(view.layers)},
-                         {"camera_direction", list(window.camera().direction)},
-                         {"pictures_per_second", pictures.pictures_per_second},
-                         {"picture_ms", pictures.picture_ms},
-                         {"render_scale", pictures.render_scale},
-                         {"samples", pictures.samples},
-                         {"picture_finished", pictures.finished},
-                         {"longest_away_ms", std::round(pictures.longest_away_ms)}};
+  nlohmann::json json = {
+      {"busy_with", busy_with},
+      {"playing", view.playing},
+      {"time_s", view.time_s},
+      {"motion", view.motion.spec},
+      {"tool", static_cast<int>(view.tool)},
+      {"measured", view.measured.size()},
+      {"landmarks", view.landmarks.size()},
+      {"skin_opacity", view.skin_opacity},
+      {"muscles_shown", shown(view.muscles)},
+      {"layers_shown", shown(view.layers)},
+      {"camera_direction", list(window.camera().direction)},
+      {"camera",
+       {{"target_mm", list(window.camera().target)},
+        {"up", list(window.camera().up)},
+        {"distance_mm", window.camera().distance_mm}}},
+      {"speed", view.speed},
+      {"loop", view.loop},
+      {"panels",
+       {static_cast<int>(view.tab), static_cast<int>(view.left_tab), view.plots, view.plot_set}},
+      {"session", window.scene().session.string()},
+      {"pictures_per_second", pictures.pictures_per_second},
+      {"picture_ms", pictures.picture_ms},
+      {"render_scale", pictures.render_scale},
+      {"samples", pictures.samples},
+      {"picture_finished", pictures.finished},
+      {"longest_away_ms", std::round(pictures.longest_away_ms)}};
   json["edits"] = edits_of(view);
+  json["measured_points"] = nlohmann::json::array();
+  for (const PinnedPoint& point : view.measured)
+    json["measured_points"].push_back({point.part, point.triangle.x(), point.triangle.y(),
+                                       point.triangle.z(), list(point.barycentric)});
   json["case"] = {{"name", window.scene().case_name},
                   {"folder", window.scene().case_folder.string()}};
   json["notes"] = window.scene().notes;

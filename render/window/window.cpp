@@ -324,6 +324,10 @@ void Window::set_camera(const Camera& camera) {
   state_->camera = camera;
   state_->pacing.scene_changed = true;
 }
+void Window::set_record_folder(const std::filesystem::path& folder) {
+  state_->panels->set_record_folder(folder);
+  state_->noticed();
+}
 const PictureStatistics& Window::pictures() const { return state_->pacing.pictures; }
 const std::vector<DrawnItem>& Window::items() const { return state_->panels->items(); }
 ViewRect Window::view_rect() const { return state_->view_rect(); }

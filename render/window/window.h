@@ -26,7 +26,10 @@ struct WindowOptions {
   // Scale of panels and text, times the screen's own scale; Ctrl+0 restores it. None: 1, more on
   // screens with small pixels.
   std::optional<double> default_scale = {};
-  std::filesystem::path picture_folder = ".";  // for F12 and recordings
+  std::filesystem::path picture_folder = ".";    // for F12
+  std::filesystem::path recording_folder = ".";  // in which recordings get folders of their own
+  std::string recording_folder_name = {};        // "your videos folder"
+  bool file_dialog = false;                      // the desktop has one
 };
 
 /// The window on a case. It states its requests in a ViewState and shows the frames it is given.
@@ -116,8 +119,9 @@ class Window : public FrontEnd {
   std::string trouble() const;
   /// The present text at the foot; empty for none.
   const std::string& said() const;
-  const Camera& camera() const;
-  void set_camera(const Camera& camera);
+  const Camera& camera() const override;
+  void set_camera(const Camera& camera) override;
+  void set_record_folder(const std::filesystem::path& folder) override;
   const PictureStatistics& pictures() const;
   /// Panels and their controls, as last drawn, in screen coordinates of the window.
   const std::vector<DrawnItem>& items() const;

@@ -217,7 +217,9 @@ void Window::State::interface_frame() {
       .recording_what = work.recording,
       .recording_fraction = work.recording_fraction,
       .unfinished = work.unfinished,
-      .picture_folder = options.picture_folder};
+      .recording_folder = options.recording_folder,
+      .recording_folder_name = options.recording_folder_name,
+      .file_dialog = options.file_dialog};
   const std::vector<Command> commands = panels->draw(shown, view, w, h);
   ImGui::Render();
   io.KeyCtrl = ctrl_of_keys;

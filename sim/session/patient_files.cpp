@@ -26,12 +26,14 @@ std::string first_line(const fs::path& file) {
   return {};
 }
 
-/// Whether the beginning of a JSON file states the format of plans.
-bool is_plan(const fs::path& file) {
+/// The kind of a JSON file by the format that its beginning states.
+FileKind json_kind(const fs::path& file) {
   std::ifstream stream(file);
   std::string start(200, ' ');
   stream.read(start.data(), static_cast<std::streamsize>(start.size()));
-  return start.find("\"condyle plan\"") != std::string::npos;
+  if (start.find("\"condyle plan\"") != std::string::npos) return FileKind::plan;
+  if (start.find("\"condyle session\"") != std::string::npos) return FileKind::session;
+  return FileKind::unknown;
 }
 
 /// Whether a patient has at most one part of this role.
@@ -71,7 +73,9 @@ FileKind kind_of(const fs::path& path) {
   for (const char* surface : {".stl", ".ply", ".obj", ".glb", ".gltf"})
     if (ending == surface) return FileKind::surface;
   if (lower_case(path.string()).ends_with(".mrk.json")) return FileKind::landmarks;
-  if (ending == ".json" && is_plan(path)) return FileKind::plan;
+  if (ending == ".condyle-session") return FileKind::session;
+  if (ending == ".json")
+    if (const FileKind kind = json_kind(path); kind != FileKind::unknown) return kind;
   if (ending == ".csv") {
     const std::string header = first_line(path);
     if (header.find("max_force_n") != std::string::npos) return FileKind::muscles;

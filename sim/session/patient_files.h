@@ -10,7 +10,17 @@
 namespace condyle {
 
 /// The kind of a dropped or opened file, by its name and first line.
-enum class FileKind { patient, motion, excitations, surface, landmarks, muscles, plan, unknown };
+enum class FileKind {
+  patient,
+  motion,
+  excitations,
+  surface,
+  landmarks,
+  muscles,
+  plan,
+  session,
+  unknown
+};
 FileKind kind_of(const std::filesystem::path& path);
 
 /// Whether a patient can be imported from such files.

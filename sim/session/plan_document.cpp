@@ -29,15 +29,15 @@ PlanHistory history_beside(const std::filesystem::path& file) {
   return PlanHistory(std::move(plan));
 }
 
-bool holds(const std::filesystem::path& file, const Plan& plan) {
+}  // namespace
+
+bool is_plan_in(const std::filesystem::path& file, const Plan& plan) {
   try {
     return load_plan(file) == plan;
   } catch (const InputError&) {
     return false;
   }
 }
-
-}  // namespace
 
 PlanDocument::PlanDocument(const std::filesystem::path& file)
     : history_(history_beside(file)), file_(file) {}
@@ -72,7 +72,7 @@ PlanHistory PlanDocument::saved_history() const {
 
 void PlanDocument::save_as(const std::filesystem::path& file) {
   std::error_code ignored;
-  if (std::filesystem::exists(file, ignored) && !holds(file, history_.plan()))
+  if (std::filesystem::exists(file, ignored) && !is_plan_in(file, history_.plan()))
     throw InputError(file, "", "exists and is not this plan: choose another name");
   const std::string plan = checked_plan_json(history_.plan(), file);
   if (file.has_parent_path()) make_folder(file.parent_path());

@@ -47,6 +47,9 @@ class PlanDocument {
   std::vector<std::string> notes_;
 };
 
+/// Whether a file holds this plan.
+bool is_plan_in(const std::filesystem::path& file, const Plan& plan);
+
 /// Where the draft of a case's plan is kept, by the case's geometry; empty where the user has no
 /// folder of settings.
 std::filesystem::path draft_file(const CaseGeometry& geometry);

@@ -89,10 +89,11 @@ const Library* library_of(const std::string& header) {
 }
 
 /// The modules that combine simulation and drawing: a recording renders a simulated motion, a
-/// session shows a simulation in a front end, pictures of a plan show its segments and the
-/// predicted face. All other drawing reads frames alone.
+/// session shows a simulation in a front end and is saved with its plan, pictures of a plan show
+/// its segments and the predicted face. All other drawing reads frames alone.
 bool joins_sim_and_render(const std::string& folder) {
-  return folder == "render/recording" || folder == "render/session" || folder == "render/plan";
+  return folder == "render/recording" || is_below(folder, "render/session") ||
+         folder == "render/plan";
 }
 
 /// Whether the layer `from` may link the module in `folder`.

@@ -31,6 +31,7 @@ class WindowSession : public testing::Test {
     display_ = std::make_unique<TestDisplay>();
     ASSERT_TRUE(display_->running());
     setenv("XDG_CONFIG_HOME", (folder_ / "config").c_str(), 1);
+    setenv("XDG_STATE_HOME", (folder_ / "states").c_str(), 1);
     for (const auto& entry : fs::directory_iterator(kept_pictures()))  // of an earlier run
       if (entry.path().filename().string().starts_with(test_name() + "-")) fs::remove(entry.path());
   }
@@ -40,6 +41,7 @@ class WindowSession : public testing::Test {
       waitpid(program_, nullptr, 0);
     }
     unsetenv("XDG_CONFIG_HOME");
+    unsetenv("XDG_STATE_HOME");
   }
   void start(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {program_file().string(), "--threads", "1", "view"});
@@ -89,6 +91,16 @@ class WindowSession : public testing::Test {
   }
   pid_t program() const { return program_; }
   static bool press(const std::string& key) { return xdotool({"key", key}); }
+  void kill_at_once() {
+    kill(program_, SIGKILL);
+    waitpid(std::exchange(program_, -1), nullptr, 0);
+    fs::remove(folder_ / "state.json");
+  }
+  /// Leaves the program running, for another one to be started; it is killed with the last handle.
+  pid_t set_aside() {
+    fs::remove(folder_ / "state.json");
+    return std::exchange(program_, -1);
+  }
   int wait_for_end() {
     int status = 0;
     for (int i = 0; i < 400; ++i) {

@@ -78,7 +78,8 @@ constexpr std::array move_lines = {
 };
 constexpr std::array window_lines = {
     HelpLine{"Ctrl+Z, Ctrl+Y", "undo, redo: settings and moves"},
-    HelpLine{"Ctrl+O", "open a patient or a motion"},
+    HelpLine{"Ctrl+O", "open a session, patient or motion"},
+    HelpLine{"Ctrl+S", "save the session; Shift: elsewhere"},
     HelpLine{"Tab", "panels on, off"},
     HelpLine{"T", "dark or light panels and view"},
     HelpLine{"Ctrl+=  -  0", "larger, smaller, default panels"},
@@ -107,6 +108,8 @@ std::optional<Command> command_of(const KeyPress& press) {
   if (press.ctrl) {
     if (press.key == GLFW_KEY_Q) return Command::quit;
     if (press.key == GLFW_KEY_O) return Command::open_files;
+    if (press.key == GLFW_KEY_S)
+      return press.shift ? Command::save_session_as : Command::save_session;
     if (press.key == GLFW_KEY_Y || (press.key == GLFW_KEY_Z && press.shift)) return Command::redo;
     if (press.key == GLFW_KEY_Z) return Command::undo;
     if (press.key == GLFW_KEY_EQUAL || press.key == GLFW_KEY_KP_ADD) return Command::larger_panels;

@@ -36,6 +36,8 @@ enum class Command {
   toggle_landmarks,
   toggle_plots,
   open_files,
+  save_session,     // in its file, if there is one
+  save_session_as,  // in a file to be named
   keep_state,
   undo,
   redo,

@@ -133,6 +133,7 @@ void Panels::Drawing::dialogs() {
   auto& import = panels.form_.import;
   const bool asks = import && !error && !question,
              opens = files.open && !asks && !error && !question;
+  const bool saves = panels.form_.session.open && !asks && !opens && !error && !question;
   if ((asks || ImGui::IsPopupOpen("import")) &&
       begin_dialog(pen, "import", pen.px(560), display_width, display_height)) {
     if (asks) import_dialog();
@@ -145,7 +146,13 @@ void Panels::Drawing::dialogs() {
     if (!opens || !files.open) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
   }
-  const bool help = panels.help_open_ && !error && !question && !asks && !opens;
+  if ((saves || ImGui::IsPopupOpen("session")) &&
+      begin_dialog(pen, "session", pen.px(560), display_width, display_height)) {
+    if (saves) session_dialog();
+    if (!saves || !panels.form_.session.open) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+  }
+  const bool help = panels.help_open_ && !saves && !error && !question && !asks && !opens;
   if ((help || ImGui::IsPopupOpen("help")) &&
       begin_dialog(pen, "help", pen.px(820), display_width, display_height)) {
     if (help) {

@@ -50,7 +50,7 @@ void list_folder(PanelFormState::OpenFields& fields) {
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return std::tolower(c); });
     for (const char* known : {".stl", ".ply", ".obj", ".glb", ".gltf", ".csv", ".motion", ".mot",
-                              ".sto", ".trc", ".raw", ".txt", ".json"})
+                              ".sto", ".trc", ".raw", ".txt", ".json", ".condyle-session"})
       if (ending == known && (ending != ".json" || name.ends_with(".mrk.json")))
         fields.files.push_back(it->path());
   }
@@ -153,10 +153,11 @@ void Panels::Drawing::open_dialog() {
   folder_list(column, chosen);
   ImGui::PopStyleColor();
   const char* help[] = {
-      "A patient's folder, a motion (CSV, .motion, .mot, .trc ...), or a patient's surfaces (STL, "
-      "PLY, OBJ, glTF) and",
-      "landmarks, several at once: Ctrl+click adds one, Shift+click all up to it. All can also be "
-      "dropped on the window"};
+      "A session, a patient's folder, a motion (CSV, .motion, .mot, .trc ...), or a patient's "
+      "surfaces (STL, PLY, OBJ,",
+      "glTF) and landmarks, several at once: Ctrl+click adds one, Shift+click all up to it. All "
+      "can "
+      "also be dropped here"};
   for (const char* line : help) text(panels.theme_.small, palette().text_dim, line);
   open_path(chosen);
   if (!chosen.files.empty()) panels.requests_.push_back(request::Open{chosen.files});
@@ -231,14 +232,14 @@ void Panels::Drawing::folder_list(float column, OpenChoice& chosen) {
 /// The field for a path, and the buttons.
 void Panels::Drawing::open_path(OpenChoice& chosen) {
   PanelFormState::OpenFields& fields = panels.form_.files;
-  const float button = pen.px(96), gap = pen.px(list_gap);
+  const float button = pen.px(96), gap = pen.px(list_gap), buttons = input.file_dialog ? 3 : 2;
   const std::vector<fs::path> listed = fields.chosen_files();
   const std::string hint = listed.empty()       ? "path of a file or folder"
                            : listed.size() == 1 ? listed.front().filename().string()
                                                 : fmt::format("{} files are chosen", listed.size());
   const bool entered =
       text_field(pen, "open-path", fields.path,
-                 ImGui::GetContentRegionAvail().x - 2 * button - 2 * gap, hint.c_str());
+                 ImGui::GetContentRegionAvail().x - buttons * (button + gap), hint.c_str());
   if (!fields.path.empty()) fields.chosen.clear();
   ImGui::SameLine(0, gap);
   const bool go = word_button(
@@ -255,6 +256,15 @@ void Panels::Drawing::open_path(OpenChoice& chosen) {
     } else {
       chosen.files = {typed};
     }
+  }
+  if (input.file_dialog) {
+    ImGui::SameLine(0, gap);
+    if (word_button(pen, "open-browse", "Browse...", {button, ImGui::GetFrameHeight()}, false)) {
+      panels.requests_.push_back(
+          request::Browse{request::Browse::Purpose::open, fields.folder / ""});
+      chosen.close = true;
+    }
+    tooltip(pen, "The file dialog of the desktop");
   }
   ImGui::SameLine(0, gap);
   chosen.close |= word_button(pen, "close-open", "Close", {button, ImGui::GetFrameHeight()}, false);

@@ -53,6 +53,11 @@ struct PanelFormState {
   std::optional<PartMenu> part_menu;
   DrawnCut previewed_cut;                 // whose preview was requested
   std::optional<DrawnCut> requested_cut;  // to become a step of the plan
+  struct SessionFields {
+    bool open = false;
+    std::string path;
+    bool accepted = false;  // Enter: save
+  } session;
   std::optional<Question> question;
   std::optional<request::Import> import;  // surfaces that wait for their roles
 };

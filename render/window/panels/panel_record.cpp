@@ -217,9 +217,29 @@ void Panels::Drawing::record_folder() {
   PanelFormState::RecordFields& fields = panels.form_.record;
   if (fields.running && !input.recording && !panels.question()) fields.folder.clear();
   fields.running = input.recording;
-  if (fields.folder.empty()) fields.folder = next_recording_folder(input.picture_folder).string();
-  text_field(pen, "record-folder", fields.folder, record_label("Folder"), "folder of the pictures");
+  if (fields.folder.empty()) fields.folder = next_recording_folder(input.recording_folder).string();
+  const float browse = input.file_dialog ? pen.px(28 + button_gap) : 0;
+  text_field(pen, "record-folder", fields.folder, record_label("Folder") - browse,
+             "folder of the pictures");
   tooltip(pen, fields.folder.c_str());
+  if (input.file_dialog) {
+    ImGui::SameLine(0, pen.px(button_gap));
+    if (word_button(pen, "record-browse", "...", {pen.px(28), ImGui::GetFrameHeight()}, false))
+      panels.requests_.push_back(
+          request::Browse{request::Browse::Purpose::record_folder, input.recording_folder / ""});
+    tooltip(pen, "Choose a folder in the file dialog of the desktop");
+  }
+  if (input.recording_folder_name.empty() ||
+      std::filesystem::path(fields.folder).parent_path() != input.recording_folder)
+    return;
+  record_label("");
+  const std::string where = "in " + input.recording_folder_name;
+  text(pen.theme.small, palette().text_dim, where);
+  pen.mark("record-where", where);
+  tooltip(
+      pen,
+      "A new folder in the user's videos folder: XDG_VIDEOS_DIR of user-dirs.dirs, else ~/Videos "
+      "where it exists, else the home folder");
 }
 
 void Panels::Drawing::record_progress() {

@@ -93,7 +93,7 @@ void Panels::answer(std::size_t which) {
 
 bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
   return run_playing(command, scene, view) || run_showing(command, scene, view) ||
-         run_tool(command, scene, view) || run_dialog(command);
+         run_tool(command, scene, view) || run_session(command, scene) || run_dialog(command);
 }
 
 bool Panels::run_playing(Command command, const WindowScene& scene, ViewState& view) {
@@ -219,6 +219,8 @@ bool Panels::run_dialog(Command command) {
         errors_.pop_front();
       } else if (form_.question) {
         answer(0);
+      } else if (form_.session.open && !form_.import) {
+        form_.session.accepted = true;
       } else if (form_.files.open && !form_.import) {
         form_.files.accepted = !form_.files.chosen.empty();
       } else if (help_open_ && !form_.import) {
@@ -231,9 +233,12 @@ bool Panels::run_dialog(Command command) {
       } else if (!errors_.empty()) {
         errors_.pop_front();
       } else if (form_.question) {
+        if (auto& request = form_.question->unanswered) requests_.push_back(std::move(*request));
         form_.question.reset();
       } else if (form_.import) {
         form_.import.reset();
+      } else if (form_.session.open) {
+        form_.session.open = false;
       } else if (form_.files.open) {
         form_.files.open = false;
       } else {
@@ -400,10 +405,18 @@ void Panels::Drawing::top_bar() {
   const float open_width = width_of("Open");
   if (word_button(pen, "open-files", "Open", {open_width, side}, false))
     panels.run(Command::open_files, input.scene, view);
-  tooltip(pen, "A patient, a motion or surfaces; they can also be dropped on the window. Ctrl+O");
+  tooltip(pen,
+          "A session, a patient, a motion or surfaces; they can also be dropped on the window. "
+          "Ctrl+O");
+  ImGui::SameLine(0, gap);
+  const float save_width = width_of("Save");
+  if (word_button(pen, "save-session", "Save", {save_width, side}, false))
+    panels.run(Command::save_session_as, input.scene, view);
+  tooltip(pen,
+          "Saves the session: patient, plan, view, measures. Ctrl+S saves in the same file again");
 
   // Names, as far as space permits.
-  const float from = pen.px(26) + open_width;
+  const float from = pen.px(26) + open_width + gap + save_width;
   const float room = right - buttons - from - wide_gap;
   const std::string name = fitted(theme.bold, input.scene.case_name, room * 0.6f);
   ImGui::SetCursorPos({from, (static_cast<float>(layout.top.height) - theme.bold->FontSize) / 2});

@@ -43,8 +43,10 @@ struct PanelInput {
   bool recording = false;  // whether a recording is running
   std::string recording_what = {};
   double recording_fraction = 0;
-  std::string unfinished = {};                 // sentence on a recording that can be resumed
-  std::filesystem::path picture_folder = ".";  // of pictures and recordings
+  std::string unfinished = {};  // sentence on a recording that can be resumed
+  std::filesystem::path recording_folder = ".";
+  std::string recording_folder_name = {};  // "your videos folder"
+  bool file_dialog = false;                // the desktop has one
 };
 
 /// A panel, or a control in it, as last drawn. Names: panels "top", "left", "right",
@@ -133,11 +135,15 @@ class Panels {
     return shown_ && view.tab == SideTab::plan &&
            (view.tool == Tool::look || view.tool == Tool::cut);
   }
+  void set_record_folder(const std::filesystem::path& folder) {
+    form_.record.folder = folder.string();
+  }
   /// One-time requests since the last call.
   std::vector<Request> take_requests() { return std::exchange(requests_, {}); }
 
   bool dialog_open() const {
-    return help_open_ || !errors_.empty() || form_.question || form_.files.open || form_.import;
+    return help_open_ || !errors_.empty() || form_.question || form_.files.open || form_.import ||
+           form_.session.open;
   }
   /// Whether something will appear or disappear with time: a sentence, a tooltip.
   bool talking() const { return !said_.empty() || tooltip_.due; }
@@ -167,6 +173,7 @@ class Panels {
   bool run_showing(Command command, const WindowScene& scene, ViewState& view);
   bool run_tool(Command command, const WindowScene& scene, ViewState& view);
   bool run_dialog(Command command);
+  bool run_session(Command command, const WindowScene& scene);  // panel_session.cpp
   Theme theme_;
   bool shown_ = true, help_open_ = false;
   PanelSizes sizes_;

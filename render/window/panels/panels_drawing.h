@@ -46,6 +46,7 @@ struct Panels::Drawing {
   void part_menu();   // panel_part_menu.cpp
   void dialogs();     // panel_dialogs.cpp
   void question_dialog();
+  void session_dialog();  // panel_session.cpp
   void key_hint(const char* words);
 
  private:

@@ -92,6 +92,23 @@ struct HideSplint {};
 struct SavePlan {
   std::filesystem::path file;
 };
+/// Saves the state of the window: patient, plan, view.
+struct SaveSession {
+  std::filesystem::path file;
+  bool replace = false;  // agreed: another file of this name
+};
+/// What becomes of the session that a window autosaved before it was killed.
+struct Recover {
+  enum class Answer { open, discard, later };
+  Answer answer = Answer::later;
+  std::filesystem::path file;
+};
+/// Shows the file dialog of the desktop.
+struct Browse {
+  enum class Purpose { open, save_session, record_folder };
+  Purpose purpose = Purpose::open;
+  std::filesystem::path start;  // the file or folder that it shows first
+};
 }  // namespace request
 
 using Request =
@@ -99,7 +116,8 @@ using Request =
                  request::ResumeRecording, request::ReplaceRecording, request::Quit,
                  request::Cancel, request::Release, request::SaveCase, request::UseLandmarks,
                  request::EditPlan, request::PreviewCut, request::ShowHandles, request::MakeSplint,
-                 request::HideSplint, request::SavePlan>;
+                 request::HideSplint, request::SavePlan, request::SaveSession, request::Recover,
+                 request::Browse>;
 
 /// A question to the user before something is done.
 struct Question {
@@ -108,7 +126,8 @@ struct Question {
     std::optional<Request> request = {};  // none: nothing is done
   };
   std::string title, words;
-  std::vector<Answer> answers;  // Enter chooses the first, which loses nothing; Esc none
+  std::vector<Answer> answers;             // Enter chooses the first, which loses nothing; Esc none
+  std::optional<Request> unanswered = {};  // for Esc; none: nothing is done
 };
 
 }  // namespace condyle

@@ -49,6 +49,7 @@ struct WindowScene {
   std::vector<std::filesystem::path> recent = {};  // opened before, the last one first
   PlanView plan = {};                              // of the operation
   std::shared_ptr<const FrameState> before = {};   // the operation; none without moves
+  std::filesystem::path session = {};              // file of the session; empty: not saved
 };
 
 /// How one part is drawn.
