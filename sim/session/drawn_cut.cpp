@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double near_mm = 12;     // bone farther behind the line is another wall
+constexpr double gap_mm = 5;       // between walls of bone
 constexpr double beyond_mm = 1.5;  // a cut ends so far behind the bone that it divides
 
 const Part& drawn_part(const Operated& operated, const std::string& name) {
@@ -43,13 +43,23 @@ double depth_of_wall(const TriMesh& bone, const BentSheet& sheet) {
   const Vector3d into = sheet.direction.normalized();
   double start = -std::numeric_limits<double>::infinity(), end = start;
   for (const Vector3d& p : sheet.polyline) start = std::max(start, into.dot(p));
+  struct Wall {
+    double in = 0, out = 0;  // along the direction
+  };
+  std::vector<Wall> walls;
   for (const Vector3d& sample : samples_of(sheet.polyline)) {
     const Vector3d from = sample - sheet.overhang_mm * into;
     const auto in = tree.ray_cast(from, into);
-    if (!in || in->distance > sheet.overhang_mm + near_mm) continue;  // beside the near wall
+    if (!in) continue;
     const double past = in->distance + 1e-3;
     if (const auto out = tree.ray_cast(from + past * into, into))
-      end = std::max(end, into.dot(from) + past + out->distance);
+      walls.push_back({into.dot(from) + in->distance, into.dot(from) + past + out->distance});
+  }
+  // What begins far behind all that is nearer is another wall, such as the other side of the jaw.
+  std::sort(walls.begin(), walls.end(), [](const Wall& a, const Wall& b) { return a.in < b.in; });
+  for (const Wall& wall : walls) {
+    if (end > -std::numeric_limits<double>::infinity() && wall.in > end + gap_mm) break;
+    end = std::max(end, wall.out);
   }
   if (!(end > start)) {
     for (const Vector3d& v : bone.vertices) end = std::max(end, into.dot(v));

@@ -133,7 +133,7 @@ TEST_F(WindowSession, FilesAreDroppedAndLandmarksPlacedRenamedAndSaved) {
   reported("choose as the unit of lengths m.");
   write_text(folder_ / "README.md", "# Notes\n");
   EXPECT_TRUE(drop_files("Condyle", {folder_ / "README.md"}));
-  reported("README.md: cannot be opened: it is no case folder");
+  reported("README.md: cannot be opened: it is no session, no case folder");
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }

@@ -14,23 +14,27 @@ void Panels::Drawing::part_menu() {
   auto& menu = panels.form_.part_menu;
   if (!menu) return;
   if (menu->part() >= input.scene.parts.size()) return menu.reset();
-  constexpr const char* name = "##part-menu";
-  if (!menu->shown) {
-    if (ImGui::IsAnyMouseDown()) return;  // a press that the panels have yet to see would close it
-    ImGui::OpenPopup(name);
-    ImGui::SetNextWindowPos({static_cast<float>(menu->x), static_cast<float>(menu->y)});
-    menu->shown = true;
-  }
-  if (!ImGui::BeginPopup(name)) return menu.reset();
+  if (!menu->shown && ImGui::IsAnyMouseDown()) return;  // the press of the click that opened it
+  ImGui::SetNextWindowPos({static_cast<float>(menu->x), static_cast<float>(menu->y)});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, pen.px(10, 8));
+  ImGui::Begin("##part-menu", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+  if (!menu->shown) ImGui::SetWindowFocus();
+  const bool leaves = menu->shown && !ImGui::IsWindowHovered() &&
+                      (ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1));
+  menu->shown = true;
   const Part& part = input.scene.parts[menu->part()];
   text(panels.theme_.bold, palette().text, display_name(part.name));
   ImGui::Separator();
-  part_menu_looks(menu->part());
+  const bool looked = part_menu_looks(menu->part());
   ImGui::Separator();
-  part_menu_tools(*menu);
+  const bool done = part_menu_tools(*menu) || looked || leaves;
   const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
   pen.items.push_back({"part-menu", "", {at.x, at.y, size.x, size.y}, display_name(part.name)});
-  ImGui::EndPopup();
+  ImGui::End();
+  ImGui::PopStyleVar();
+  if (done) menu.reset();
 }
 
 bool Panels::Drawing::menu_row(const char* name, const char* label, bool enabled) {
@@ -39,40 +43,50 @@ bool Panels::Drawing::menu_row(const char* name, const char* label, bool enabled
   return chosen;
 }
 
-void Panels::Drawing::part_menu_looks(std::size_t which) {
+/// Returns whether something was chosen, as does the next.
+bool Panels::Drawing::part_menu_looks(std::size_t which) {
   PartView& drawn = view.parts[which];
   // The skin has an opacity of its own, which everything else of the window uses.
   const bool is_face = input.scene.parts[which].role == Role::face;
   double& opacity = is_face ? view.skin_opacity : drawn.opacity;
-  if (menu_row("hide", "Hide")) drawn.shown = false;
-  const bool solid = opacity > 0.5;
-  if (menu_row("glass", solid ? "Glass" : "Opaque")) opacity = solid ? glass : opaque;
-  if (menu_row("alone", "Show alone"))
+  const bool hide = menu_row("hide", "Hide");
+  if (hide) drawn.shown = false;
+  const bool solid = opacity > 0.5, glass_chosen = menu_row("glass", solid ? "Glass" : "Opaque");
+  if (glass_chosen) opacity = solid ? glass : opaque;
+  const bool alone = menu_row("alone", "Show alone");
+  if (alone)
     for (std::size_t i = 0; i < view.parts.size(); ++i) view.parts[i].shown = i == which;
   bool any_hidden = false;
   for (const PartView& each : view.parts) any_hidden |= !each.shown;
-  if (menu_row("show-all", "Show all parts", any_hidden))
+  const bool all = menu_row("show-all", "Show all parts", any_hidden);
+  if (all)
     for (PartView& each : view.parts) each.shown = true;
-  if (menu_row("focus", "Focus")) commands.push_back(Command::focus_selected);
+  const bool focus = menu_row("focus", "Focus");
+  if (focus) commands.push_back(Command::focus_selected);
+  return hide || glass_chosen || alone || all || focus;
 }
 
-void Panels::Drawing::part_menu_tools(const PartMenu& menu) {
+bool Panels::Drawing::part_menu_tools(const PartMenu& menu) {
   const Part& part = input.scene.parts[menu.part()];
-  if (menu_row("measure", "Measure from here")) {
+  const bool measure = menu_row("measure", "Measure from here");
+  if (measure) {
     view.tool = Tool::measure;
     view.measured = {menu.point};
   }
   const bool is_bone = collides(part.role) && !is_teeth(part.role) && part.role != Role::transplant;
-  if (menu_row("cut", "Draw a cut", is_bone)) {
+  const bool cut = menu_row("cut", "Draw a cut", is_bone);
+  if (cut) {
     view.tool = Tool::cut;
     view.drawn_cut.part = menu.part();
     view.drawn_cut.points.clear();
   }
   const auto body = movable_body_of(input.scene.bodies, input.scene.parts, menu.part());
-  if (menu_row("move", "Move", body.has_value())) {
+  const bool move = menu_row("move", "Move", body.has_value());
+  if (move) {
     view.tool = Tool::move;
     view.chosen = *body;
   }
+  return measure || cut || move;
 }
 
 }  // namespace condyle

@@ -30,6 +30,33 @@ constexpr std::array<ViewButton, 6> view_buttons = {{
     {"I", Command::view_below, "From below (inferior). Key I or Shift with keypad 7"},
 }};
 
+/// A button of the top bar that chooses a tool.
+struct ToolButton {
+  const char* item;
+  const char* label;
+  const char* tip;
+  Command command;
+  bool on, there = true;
+};
+
+std::array<ToolButton, 5> tool_buttons(const PanelInput& input, const ViewState& view) {
+  return {{ToolButton{"move-tool", "Move",
+                      "Move the jaw and free bones by hand; they slide on contact. Key M",
+                      Command::toggle_move, view.tool == Tool::move, !input.scene.bodies.empty()},
+           ToolButton{"cut-tool", "Cut",
+                      "Draw a saw cut on a bone; it becomes a step of the plan. Key C",
+                      Command::toggle_cut, view.tool == Tool::cut},
+           ToolButton{"measure-tool", "Measure",
+                      "Distances, angles and areas between points on bone, teeth and skin. Key N",
+                      Command::toggle_measure, view.tool == Tool::measure},
+           ToolButton{"landmarks-tool", "Landmarks",
+                      "Named points of the patient: place, rename, save. Key B",
+                      Command::toggle_landmarks, view.tool == Tool::landmarks},
+           ToolButton{"plots-tool", "Plots",
+                      "Posselt, axiography, opening, clearance and more, as the motion runs. Key G",
+                      Command::toggle_plots, view.plots}}};
+}
+
 /// What two states of the settings differ in, for people.
 const char* edit_name(const Edits& a, const Edits& b) {
   if (!(a.hands == b.hands) || a.opening_mm != b.opening_mm) return "a move by hand";
@@ -92,6 +119,10 @@ void Panels::answer(std::size_t which) {
 }
 
 bool Panels::run(Command command, const WindowScene& scene, ViewState& view) {
+  if (command == Command::close_dialog && form_.part_menu) {
+    form_.part_menu.reset();
+    return true;
+  }
   return run_playing(command, scene, view) || run_showing(command, scene, view) ||
          run_tool(command, scene, view) || run_session(command, scene) || run_dialog(command);
 }
@@ -366,29 +397,7 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
 
 void Panels::Drawing::top_bar() {
   const Theme& theme = panels.theme_;
-  struct ToolButton {
-    const char* item;
-    const char* label;
-    const char* tip;
-    Command command;
-    bool on, there = true;
-  };
-  const std::array tools = {
-      ToolButton{"move-tool", "Move",
-                 "Move the jaw and free bones by hand; they slide on contact. Key M",
-                 Command::toggle_move, view.tool == Tool::move, !input.scene.bodies.empty()},
-      ToolButton{"cut-tool", "Cut",
-                 "Draw a saw cut on a bone; it becomes a step of the plan. Key C",
-                 Command::toggle_cut, view.tool == Tool::cut},
-      ToolButton{"measure-tool", "Measure",
-                 "Distances, angles and areas between points on bone, teeth and skin. Key N",
-                 Command::toggle_measure, view.tool == Tool::measure},
-      ToolButton{"landmarks-tool", "Landmarks",
-                 "Named points of the patient: place, rename, save. Key B",
-                 Command::toggle_landmarks, view.tool == Tool::landmarks},
-      ToolButton{"plots-tool", "Plots",
-                 "Posselt, axiography, opening, clearance and more, as the motion runs. Key G",
-                 Command::toggle_plots, view.plots}};
+  const auto tools = tool_buttons(input, view);
   begin_panel(pen, "top", layout.top);
   const float side = pen.px(30), gap = pen.px(5), wide_gap = pen.px(16);
   const float y = (static_cast<float>(layout.top.height) - side) / 2;

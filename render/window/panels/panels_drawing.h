@@ -60,8 +60,8 @@ struct Panels::Drawing {
   void cut_buttons(DrawnCut& drawn);
   // panel_part_menu.cpp
   bool menu_row(const char* name, const char* label, bool enabled = true);
-  void part_menu_looks(std::size_t which);
-  void part_menu_tools(const PartMenu& menu);
+  bool part_menu_looks(std::size_t which);
+  bool part_menu_tools(const PartMenu& menu);
   // panel_move.cpp
   void gizmo(const MovableBody& body);
   void body_choice(const MovableBody& body);
