@@ -325,30 +325,5 @@ TEST_F(WindowSaving, TheDialogSavesASessionAndChoosesAFolder) {
   quit();
 }
 
-TEST_F(WindowSaving, TheRealDialogOfTheDesktopOpensASession) {
-  if (!has_program("zenity")) GTEST_SKIP() << "zenity is not installed";
-  open_patient();
-  EXPECT_TRUE(press("ctrl+s"));
-  const std::string file = folder_ / "my.condyle-session";
-  write_into("session-path", file);
-  ASSERT_TRUE(wait_until([&](const Json& s) { return s["session"] == file; }));
-  EXPECT_TRUE(press("l"));
-  EXPECT_TRUE(press("ctrl+o"));
-  click("open-browse");
-  ASSERT_TRUE(xdotool(
-      {"search", "--sync", "--onlyvisible", "--name", "Open a session", "windowfocus", "--sync"}));
-  see("zenity");
-  EXPECT_TRUE(xdotool({"type", "--delay", "40", file}));
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  see("zenity-typed");
-  EXPECT_TRUE(press("Return"));
-  EXPECT_TRUE(wait_until([](const Json& s) {
-    return idle(s) && double(s["camera_direction"][0]) < 0.9;
-  })) << "the camera of the session";
-  EXPECT_LT(double(state()["longest_away_ms"]), 800);
-  EXPECT_TRUE(xdotool({"search", "--name", "Condyle", "windowfocus"}));
-  quit();
-}
-
 }  // namespace
 }  // namespace condyle::test
