@@ -28,7 +28,7 @@ class SavingProcess {
     if (process_ == 0) {
       AutosaveFolder own(ending, folder);
       test::write_text(own.file(), text);
-      [[maybe_unused]] const auto told = ::write(ends[1], "x", 1);
+      [[maybe_unused]] const auto written = ::write(ends[1], "x", 1);
       for (;;) ::pause();
     }
     char written = 0;
