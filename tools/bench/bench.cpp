@@ -54,6 +54,9 @@ void add_bench(Commands& commands) {
           "condyle bench predict --json", run_bench_predict);
   in_range(predict.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1,
            1000);
+  CLI::App& drag = add("drag", "Segments of the class III plan dragged, free and blocked",
+                       "condyle bench drag --json", run_bench_drag);
+  in_range(drag.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1, 1000);
   CLI::App& appliances = add("appliances", "Splints and cutting guides of the class III plan",
                              "condyle bench appliances --json", run_bench_appliances);
   in_range(appliances.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1,

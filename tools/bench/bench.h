@@ -21,6 +21,7 @@ int run_bench_tissue(const BenchOptions& options, const CommonOptions& common);
 int run_bench_collide(const BenchOptions& options, const CommonOptions& common);
 int run_bench_cut(const BenchOptions& options, const CommonOptions& common);
 int run_bench_predict(const BenchOptions& options, const CommonOptions& common);
+int run_bench_drag(const BenchOptions& options, const CommonOptions& common);
 int run_bench_appliances(const BenchOptions& options, const CommonOptions& common);
 int run_bench_mesh(const BenchOptions& options, const CommonOptions& common);
 
