@@ -78,7 +78,7 @@ std::optional<Question> objection(EditedPlan& edited, Operated& operated, PlanSt
 void PlanSession::begin(std::optional<PlanDocument> document, const std::optional<Plan>& stored) {
   drop();
   const Plan none = empty_plan(*state_.patient->uncut);
-  draft_ = draft_file(none.geometry);
+  draft_ = state_.settings.keeps_files ? draft_file(none.geometry) : std::filesystem::path{};
   document_ = document ? std::move(*document) : PlanDocument(stored.value_or(none), draft_);
   std::error_code ignored;
   if (document || draft_.empty() || !std::filesystem::exists(draft_, ignored)) return;
@@ -307,9 +307,9 @@ void PlanSession::show_handles(int step) {
 void PlanSession::make_splint(const std::string& choice) {
   if (!state_.patient || !document_) return;
   if (splinting_.active()) return state_.front_end.say("A splint is being made");
-  const std::filesystem::path& file = document_->file();
-  const auto folder = file.empty() ? std::filesystem::current_path()
-                                   : std::filesystem::absolute(file).parent_path();
+  if (document_->file().empty())
+    throw InputError("save the plan first: the splint is saved beside it");
+  const auto folder = std::filesystem::absolute(document_->file()).parent_path();
   splinting_.start([choice, folder, operated = state_.patient->operated,
                     threads = state_.threads()](const Progress& progress) {
     report(progress, "making the splint", 0);

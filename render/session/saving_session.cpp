@@ -47,6 +47,7 @@ fs::path with_session_ending(fs::path file) {
 }  // namespace
 
 bool SavingSession::begin() {
+  if (!state_.settings.keeps_files) return false;
   folder_.emplace(session_ending);
   orphans_ = folder_->take_orphans();
   return ask();

@@ -4,13 +4,19 @@
 
 #include <algorithm>
 
+#include "engine/core/error.h"
 #include "render/recording/anatomy_drawing.h"
 #include "render/recording/overlay_drawing.h"
+#include "sim/frame/body_poses.h"
+#include "sim/frame/part_names.h"
 #include "sim/muscles/muscle_names.h"
+#include "sim/plan/clinical_frame.h"
 #include "sim/tissue/model.h"
 
 namespace condyle {
 namespace {
+
+const Eigen::Vector3f mirror_color{0.93f, 0.62f, 0.83f};
 
 std::string sided(const Muscle& muscle) {
   const char side = muscle.name.empty() ? ' ' : muscle.name.front();
@@ -18,7 +24,44 @@ std::string sided(const Muscle& muscle) {
   return words + (side == 'l' ? ", left" : side == 'r' ? ", right" : "");
 }
 
+/// The mirror image of a part as it lies now.
+GlassSheet mirror_sheet(const Part& part, const Pose& X_CP,
+                        const Eigen::Hyperplane<double, 3>& plane) {
+  GlassSheet sheet{.color = mirror_color, .opacity = 0.45f};
+  sheet.positions.reserve(part.mesh.vertices.size());
+  for (const Eigen::Vector3d& p : part.mesh.vertices) {
+    const Eigen::Vector3d here = X_CP * p;
+    sheet.positions.push_back(
+        (here - 2 * plane.signedDistance(here) * plane.normal()).cast<float>());
+  }
+  sheet.triangles.reserve(part.mesh.triangles.size());
+  for (const Eigen::Vector3i& t : part.mesh.triangles)  // a mirror turns them over
+    sheet.triangles.emplace_back(t.x(), t.z(), t.y());
+  return sheet;
+}
+
+void add_mirror_image(const SessionPatient& patient, const FrameState& frame,
+                      const std::string& name, Overlays& shown) {
+  const Case& now = patient.scene.patient;
+  const auto part = std::find_if(now.parts.begin(), now.parts.end(),
+                                 [&](const Part& one) { return one.name == name; });
+  const auto plane = midsagittal_plane(patient);
+  if (part == now.parts.end() || part->role == Role::face || !plane) return;
+  shown.sheets["mirror image"] = mirror_sheet(*part, pose_of(*part, frame.poses), *plane);
+  shown.key.push_back(
+      {"Mirror image: " + display_name(name), {mirror_color}, KeyEntry::Mark::sheet});
+}
+
 }  // namespace
+
+std::optional<Eigen::Hyperplane<double, 3>> midsagittal_plane(const SessionPatient& patient) {
+  try {
+    const ClinicalFrame frame = clinical_frame(patient.operated->patient.landmarks);
+    return Eigen::Hyperplane<double, 3>(frame.left, frame.origin);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
 
 Overlays view_overlays(const SessionPatient& patient, const Motion& motion, const FrameState& frame,
                        const ViewState& view, const std::shared_ptr<const LineSet>& paths) {
@@ -48,6 +91,7 @@ Overlays view_overlays(const SessionPatient& patient, const Motion& motion, cons
     if (view.muscles[m].shown)
       shown.lines["muscle " + patient.muscles[m].name] =
           muscle_line(patient.muscles[m], motion, frame, view.muscles[m].opacity);
+  if (!look.mirrored.empty()) add_mirror_image(patient, frame, look.mirrored, shown);
   return shown;
 }
 

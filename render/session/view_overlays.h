@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <memory>
+#include <optional>
 
 #include "render/scene/shown_overlays.h"
 #include "render/window/view/view_state.h"
@@ -11,7 +13,8 @@
 namespace condyle {
 
 /// Overlays of a view at one frame: axes, paths of the motion, elements of the tissue, lines of
-/// action of muscles. `paths`: of incisor and condyles; none: not known yet.
+/// action of muscles, the mirror image of a part. `paths`: of incisor and condyles; none: not known
+/// yet.
 Overlays view_overlays(const SessionPatient& patient, const Motion& motion, const FrameState& frame,
                        const ViewState& view, const std::shared_ptr<const LineSet>& paths);
 
@@ -19,15 +22,20 @@ Overlays view_overlays(const SessionPatient& patient, const Motion& motion, cons
 struct OverlayInputs {
   bool springs = false, prisms = false, bone_springs = false, axes = false, paths = false;
   std::vector<PartView> muscles = {}, layers = {};
+  std::string mirrored = {};
   std::shared_ptr<const LineSet> known_paths = {};
   bool operator==(const OverlayInputs&) const = default;
 
   static OverlayInputs of(const ViewState& view, std::shared_ptr<const LineSet> paths) {
     const Look& look = view.look;
-    return {look.springs, look.prisms,  look.bone_springs, look.axes,
-            look.paths,   view.muscles, view.layers,       std::move(paths)};
+    return {look.springs, look.prisms, look.bone_springs, look.axes,       look.paths,
+            view.muscles, view.layers, look.mirrored,     std::move(paths)};
   }
 };
+
+/// The midsagittal plane of the plan's landmarks, in the cranium's frame; none where they are
+/// missing.
+std::optional<Eigen::Hyperplane<double, 3>> midsagittal_plane(const SessionPatient& patient);
 
 /// Entries of the tree for a patient's muscles, and for the layers of the soft tissue.
 std::vector<TreeItem> muscle_items(const SessionPatient& patient);

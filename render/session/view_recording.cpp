@@ -75,8 +75,10 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
     shown["kept"] = {kept->state_hash,
                      pose(kept->poses[subject.patient->scene.patient.jaw.lower_arch])};
   const auto overlaid = OverlayInputs::of(subject.view, subject.paths);
-  const auto& [springs, prisms, bone_springs, axes, paths, muscles, layers, known] = overlaid;
-  shown["overlays"] = {springs, prisms, bone_springs, axes, paths, parts(muscles), parts(layers)};
+  const auto& [springs, prisms, bone_springs, axes, paths, muscles, layers, mirrored, known] =
+      overlaid;
+  shown["overlays"] = {springs, prisms,         bone_springs,  axes,
+                       paths,   parts(muscles), parts(layers), mirrored};
   if (paths && known)
     shown["paths"] = {lists(known->ends), lists(known->colors), lists(known->dots)};
   for (const Pose& X_PB : hand_poses(subject)) shown["bodies"].push_back(pose(X_PB));

@@ -16,6 +16,7 @@ namespace condyle {
 
 ViewSession::ViewSession(FrontEnd& front_end, const SessionSettings& settings)
     : state_{.front_end = front_end, .settings = settings},
+      recent_(settings.keeps_files ? settings_file("recent") : std::filesystem::path{}),
       loader_(state_),
       plan_(state_),
       moving_(state_.retired, state_.waker()),
@@ -250,6 +251,7 @@ WindowScene ViewSession::scene_of_patient() const {
                     .distance_remarks = distance_remarks(patient),
                     .bodies = movable_bodies(patient.parts, patient.bodies)};
   use_clinical_axes(scene.bodies);
+  scene.has_midsagittal_plane = midsagittal_plane(*state_.patient).has_value();
   scene.case_folder = state_.patient->folder;
   scene.session = state_.session;
   scene.landmarks = scene.landmarks_in_use = landmarks_of(patient);

@@ -21,7 +21,7 @@ nlohmann::json edits_of(const ViewState& view) {
   // Complete: a new field of Look does not compile until it is added here.
   const auto& [clip, clip_skin, clip_from, clip_fraction, cut_away, cut_at, cut_radius_mm, ghost,
                wireframe, patches, paths, axes, springs, prisms, bone_springs, displacement,
-               scale_bar, side_letters, wipe, wipe_at] = view.look;
+               scale_bar, side_letters, wipe, wipe_at, mirrored] = view.look;
   return {{"clip", clip},
           {"clip_from", std::string(1, clip_from)},
           {"clip_share", clip_fraction},
@@ -32,6 +32,7 @@ nlohmann::json edits_of(const ViewState& view) {
           {"ghost", ghost},
           {"wipe", wipe},
           {"wipe_at", wipe_at},
+          {"mirrored", mirrored},
           {"distances", view.distances},
           {"patches", patches},
           {"displacement", displacement},

@@ -11,6 +11,7 @@
 #include "render/camera/camera.h"
 #include "render/image/image.h"
 #include "render/window/front_end.h"
+#include "render/window/input/input_event.h"
 #include "render/window/panels/panels.h"
 #include "render/window/picture/render_request.h"
 #include "render/window/settings/arrangement.h"
@@ -129,6 +130,13 @@ class Window : public FrontEnd {
   ViewRect view_rect() const;
   /// The arrangement that the user has chosen.
   Arrangement arrangement() const;
+  /// From now on the user's mouse and keyboard are ignored, except Esc, which ends the replay;
+  /// handle() receives the input instead. A pointer is drawn.
+  void begin_replay();
+  void end_replay();
+  /// False before the replay and after its end, also by Esc.
+  bool replaying() const;
+  void handle(const InputEvent& event);
   /// Draws now, including the finished 3-D picture, and returns the whole window.
   Image picture();
 

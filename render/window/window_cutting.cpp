@@ -13,11 +13,6 @@ using Eigen::Vector3d;
 
 constexpr double handle_reach_px = 10;
 
-/// Transplants are shaped by their own steps.
-bool can_be_cut(const Part& part) {
-  return collides(part.role) && !is_teeth(part.role) && part.role != Role::transplant;
-}
-
 /// The point under the mouse at the depth of another one.
 Vector3d point_beside(const Camera& camera, const ViewRect& rect, const Vector2d& mouse,
                       const Vector3d& other) {
@@ -115,7 +110,6 @@ bool Window::State::grip_handle(const Vector2d& at) {
             frame()->poses[handle.body] * handle.at);
     }
   if (!held) return false;
-  if (held->is_drawn) panels->remember(view);
   view.held_handle = held;
   input.gripped_at = at;
   return true;
@@ -126,8 +120,11 @@ void Window::State::move_handle(const Vector2d& at) {
   pacing.frames_due = 3;
   if (held.is_drawn) {
     if (!view.drawn_cut.part || held.index >= view.drawn_cut.points.size()) return;
-    if (const auto place = cut_point(at, *view.drawn_cut.part))
-      view.drawn_cut.points[held.index] = held.at = *place;
+    const auto place = cut_point(at, *view.drawn_cut.part);
+    if (!place) return;
+    if (!held.moved) panels->remember(view);
+    held.moved = true;
+    view.drawn_cut.points[held.index] = held.at = *place;
     return;
   }
   if (held.index >= scene.plan.handles.size()) return;

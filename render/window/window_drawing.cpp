@@ -229,7 +229,6 @@ void Window::State::interface_frame() {
 
 /// Text for the part under the mouse and its distance, while distances are shown.
 std::string Window::State::hover_text() const {
-  constexpr double seen_through = 0.5;  // paler surfaces do not obstruct picking
   const MouseMoment& now = input.mouse.now();
   if (!view.distances || !render_request.values || !render_request.map ||
       input.drag != CameraDrag::none || !over_view(now.x, now.y))

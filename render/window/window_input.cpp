@@ -15,13 +15,13 @@ constexpr double attentive_s = 0.5;  // after an event, results may arrive witho
 
 void Window::State::install_callbacks() {
   glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int mods) {
-    catch_errors(w, [&](State& s) { s.on_button(button, action == GLFW_PRESS, mods); });
+    catch_user(w, [&](State& s) { s.on_button(button, action == GLFW_PRESS, mods); });
   });
   glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
-    catch_errors(w, [&](State& s) { s.on_move(x, y); });
+    catch_user(w, [&](State& s) { s.on_move(x, y); });
   });
   glfwSetScrollCallback(window, [](GLFWwindow* w, double, double clicks) {
-    catch_errors(w, [&](State& s) { s.on_wheel(clicks); });
+    catch_user(w, [&](State& s) { s.on_wheel(clicks); });
   });
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) {
     catch_errors(w, [](State& s) {
@@ -43,15 +43,19 @@ void Window::State::install_callbacks() {
 /// panels, so that their order is preserved.
 void Window::State::install_key_callbacks() {
   glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
-    catch_errors(w, [&](State& s) {
+    catch_user(w, [&](State& s) {
       if (action != GLFW_REPEAT && key >= 0 && key <= GLFW_KEY_LAST &&
           (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput))
         s.input.keys.push_back({key, action == GLFW_PRESS, mods});
     });
-    if (action != GLFW_RELEASE) catch_errors(w, [&](State& s) { s.on_key(key, scancode, mods); });
+    if (action == GLFW_RELEASE) return;
+    catch_errors(w, [&](State& s) {
+      if (!s.input.replayed) return s.on_key(key, scancode, mods);
+      if (key == GLFW_KEY_ESCAPE) s.input.replayed = false;
+    });
   });
   glfwSetCharCallback(window, [](GLFWwindow* w, unsigned letter) {
-    catch_errors(w, [&](State& s) {
+    catch_user(w, [&](State& s) {
       if (ImGui::GetIO().WantTextInput) s.input.keys.push_back({.letter = letter});
     });
   });

@@ -6,11 +6,6 @@
 #include "sim/frame/body_poses.h"
 
 namespace condyle {
-namespace {
-
-constexpr double seen_through = 0.5;  // paler surfaces do not obstruct picking
-
-}  // namespace
 
 /// The visible surface at that position; its number is the part's.
 std::optional<PickedPoint> Window::State::surface_under(const Eigen::Vector2d& at,

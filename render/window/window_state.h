@@ -68,6 +68,7 @@ struct WindowInput {
   std::optional<Held> held;
   Eigen::Vector2d gripped_at = Eigen::Vector2d::Zero();  // where a handle of a cut was gripped
   std::vector<std::filesystem::path> dropped;            // onto the window, not taken yet
+  bool replayed = false;                                 // the events are those of a replay
 
   bool waits() const { return mouse.waiting() || !keys.empty(); }
 };
@@ -145,6 +146,13 @@ struct Window::State {
   void note_size();
   void set_standard_view(std::string_view name);
   void wait_for_events();
+  /// The same for the user's mouse and keyboard, which a replay takes the place of.
+  template <class Work>
+  static void catch_user(GLFWwindow* w, Work&& handle) {
+    catch_errors(w, [&](State& state) {
+      if (!state.input.replayed) handle(state);
+    });
+  }
   /// GLFW is C: nothing may be thrown through it.
   template <class Work>
   static void catch_errors(GLFWwindow* w, Work&& handle) {
@@ -157,6 +165,13 @@ struct Window::State {
     }
   }
   void noticed() { pacing.noticed(); }
+
+  // window_replay.cpp
+  void take_event(const input_event::Pointer& event) { on_move(event.x, event.y); }
+  void take_event(const input_event::Button& event) { on_button(event.button, event.down, 0); }
+  void take_event(const input_event::Wheel& event);
+  void take_event(const input_event::Key& event);
+  void take_event(const input_event::Letter& event);
 
   // window_picking.cpp
   std::optional<PickedPoint> surface_under(const Eigen::Vector2d& at, bool with_face) const;
@@ -202,6 +217,7 @@ inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+constexpr double seen_through = 0.5;             // paler surfaces do not obstruct picking
 constexpr double picture_interval_s = 1.0 / 60;  // minimum interval between pictures
 
 }  // namespace condyle

@@ -139,6 +139,13 @@ bool CutReport::is_dangerous() const {
   });
 }
 
+bool CutReport::needs_attention() const {
+  return is_dangerous() ||
+         std::any_of(outcomes.begin(), outcomes.end(), [](const CutOutcome& outcome) {
+           return !outcome.open_on_purpose && !outcome.through;
+         });
+}
+
 double CutReport::volume_error_percent() const {
   double sum = kerf_volume_mm3;
   for (const CutPiece& piece : pieces) sum += piece.volume_mm3;

@@ -45,6 +45,8 @@ struct CutReport {
 
   /// Whether the cut comes nearer to a root, canal or foramen than the least margin.
   bool is_dangerous() const;
+  /// Whether the cut is dangerous, or does not go through though it should.
+  bool needs_attention() const;
   /// Deviation of the pieces and the kerf from the bone, in percent of it.
   double volume_error_percent() const;
 };

@@ -145,11 +145,7 @@ CutPreview CutPreviewer::preview(const Plan& plan, int id) {
     cut_case(bones, place_osteotomy(bones.patient, cut), step, CutScope::bone);
     const CutReport& report = bones.cuts.back();
     preview.words.findings = cut_sentences(report, bones.patient.landmarks);
-    preview.words.warns =
-        report.is_dangerous() ||
-        std::any_of(report.outcomes.begin(), report.outcomes.end(), [](const CutOutcome& outcome) {
-          return !outcome.open_on_purpose && !outcome.through;
-        });
+    preview.words.warns = report.needs_attention();
     if (bones.problems.size() > problems)
       preview.words.problem = "the cut does not separate a piece of the bone";
     for (const CutPiece& piece : report.pieces)

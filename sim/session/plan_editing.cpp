@@ -285,11 +285,7 @@ PlanStepView step_view(const Plan& plan, const Operated& operated, const PlanSte
     for (const CutReport& report : operated.cuts) {
       if (report.step != step.id) continue;
       view.findings = cut_sentences(report, operated.patient.landmarks);
-      view.warns = report.is_dangerous() ||
-                   std::any_of(report.outcomes.begin(), report.outcomes.end(),
-                               [](const CutOutcome& outcome) {
-                                 return !outcome.open_on_purpose && !outcome.through;
-                               });
+      view.warns = report.needs_attention();
     }
   } else if (const auto* resection = std::get_if<ResectStep>(&step.action)) {
     view.title = "Resect " + readable_name(resection->segment);

@@ -15,6 +15,9 @@ struct SessionSettings {
   MuscleMotionSettings muscles = {};
   std::filesystem::path plan = {};  // file of the first patient's operation; empty: none
   bool respect_contact = false;     // recorded motion also slides where bones meet
+  // Whether drafts of plans, autosaved sessions and the list of recent files are kept in the user's
+  // folders.
+  bool keeps_files = true;
   SimulatorSettings simulator = {};
 };
 

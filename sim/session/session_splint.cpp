@@ -50,6 +50,8 @@ std::shared_ptr<const SessionSplint> make_session_splint(const Operated& operate
   std::istringstream lines(splint_text(splint, settings));
   for (std::string line; std::getline(lines, line);)
     if (!line.empty()) made->findings.push_back(line);
+  if (kind == SplintKind::intermediate)
+    made->findings.push_back("It lies between the arches after the first move, not as planned.");
   made->findings.insert(made->findings.end(), splint.notes.begin(), splint.notes.end());
   return made;
 }

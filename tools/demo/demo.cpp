@@ -14,12 +14,14 @@
 namespace condyle {
 namespace {
 
-const std::array<Demo, 5> demos{
+const std::array<Demo, 6> demos{
     {{"class-iii", "both jaws in class III, with the face afterwards", run_class_iii},
      {"jaw-before-after", "jaw movement before and after that operation", run_jaw_before_after},
      {"vault", "a vault with craniosynostosis, cut into panels and reshaped", run_vault},
      {"genioplasty", "a chin moved forward, with the mouth opening afterwards", run_genioplasty},
-     {"fibula", "a resected jaw rebuilt from three pieces of a fibula", run_fibula}}};
+     {"fibula", "a resected jaw rebuilt from three pieces of a fibula", run_fibula},
+     {"bimaxillary-by-hand", "both jaws planned in the window by mouse and keyboard",
+      run_by_hand}}};
 
 std::vector<std::string> demo_names() {
   std::vector<std::string> names;
@@ -46,7 +48,7 @@ void add_demo(Commands& commands) {
   const auto options = std::make_shared<DemoOptions>();
   const auto name = std::make_shared<std::string>();
   CLI::App& command = commands.add(
-      "demo", "Repeat a published operation on a built-in patient",
+      "demo", "Repeat an operation on a built-in patient",
       "condyle demo class-iii --out out/class-iii",
       [options, name](const CommonOptions& common) { return run_demo(*name, *options, common); });
   std::string what = "One of:";

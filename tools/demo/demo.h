@@ -31,5 +31,8 @@ int run_genioplasty(const DemoOptions& options, const CommonOptions& common);
 /// A segment of the lower jaw resected, and rebuilt from a fibula; its insertion path; the mouth
 /// opening.
 int run_fibula(const DemoOptions& options, const CommonOptions& common);
+/// A replayed list of mouse and keyboard steps in the window: from an empty plan of both jaws to a
+/// saved one with splints. throws: MachineError without a display.
+int run_by_hand(const DemoOptions& options, const CommonOptions& common);
 
 }  // namespace condyle

@@ -40,6 +40,9 @@ class Reader {
   void index(const char* name, Index& value, int most) {
     if (const auto item = find(name)) value = static_cast<std::size_t>(item->integer(0, most));
   }
+  void text(const char* name, std::string& value) {
+    if (const auto item = find(name)) value = item->text();
+  }
   void letter(const char* name, char& value, const std::string& known);
   template <class Choice, std::size_t n>
   void choice(const char* name, Choice& value, const std::array<const char*, n>& known) {

@@ -33,6 +33,7 @@ class Writer {
   void index(const char* name, const std::optional<std::size_t>& value, std::size_t) {
     if (value) object_[name] = *value;
   }
+  void text(const char* name, const std::string& value) { object_[name] = value; }
   void letter(const char* name, char value, const char*) { object_[name] = std::string(1, value); }
   template <class Choice, std::size_t n>
   void choice(const char* name, Choice value, const std::array<const char*, n>& known) {

@@ -29,7 +29,8 @@ struct PanelFormState {
   } record;
   std::string landmark_words, case_folder;
   struct PlanFields {
-    int step = 0;  // selected, by id; 0: none
+    int step = 0;          // selected, by id; 0: none
+    int with_handles = 0;  // whose handles were requested
     std::string file;
     std::filesystem::path known;                       // the plan's file when `file` was filled
     bool displacements = false, cephalometry = false;  // unfolded tables

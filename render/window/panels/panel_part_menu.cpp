@@ -61,9 +61,13 @@ bool Panels::Drawing::part_menu_looks(std::size_t which) {
   const bool all = menu_row("show-all", "Show all parts", any_hidden);
   if (all)
     for (PartView& each : view.parts) each.shown = true;
+  const bool mirrored = view.look.mirrored == input.scene.parts[which].name;
+  const bool mirror = menu_row("mirror", mirrored ? "Hide the mirror image" : "Mirror image",
+                               mirrored || (input.scene.has_midsagittal_plane && !is_face));
+  if (mirror) view.look.mirrored = mirrored ? "" : input.scene.parts[which].name;
   const bool focus = menu_row("focus", "Focus");
   if (focus) commands.push_back(Command::focus_selected);
-  return hide || glass_chosen || alone || all || focus;
+  return hide || glass_chosen || alone || all || mirror || focus;
 }
 
 bool Panels::Drawing::part_menu_tools(const PartMenu& menu) {
@@ -73,8 +77,7 @@ bool Panels::Drawing::part_menu_tools(const PartMenu& menu) {
     view.tool = Tool::measure;
     view.measured = {menu.point};
   }
-  const bool is_bone = collides(part.role) && !is_teeth(part.role) && part.role != Role::transplant;
-  const bool cut = menu_row("cut", "Draw a cut", is_bone);
+  const bool cut = menu_row("cut", "Draw a cut", can_be_cut(part));
   if (cut) {
     view.tool = Tool::cut;
     view.drawn_cut.part = menu.part();

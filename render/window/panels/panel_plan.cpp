@@ -2,6 +2,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "render/window/panels/panels_drawing.h"
 
@@ -64,12 +65,12 @@ void Panels::Drawing::plan_steps() {
   if (steps.empty())
     wrapped(theme.small, palette().text_dim,
             "No steps yet. Add an osteotomy, then move the segments that it makes.");
+  int with_handles = 0;
   for (const PlanStepView& step : steps) {
     const bool chosen = form.step == step.id;
-    if (select_row(fmt::format("{}  {}##step{}", step.id, step.title, step.id), chosen)) {
+    if (chosen && step.is_cut) with_handles = step.id;
+    if (select_row(fmt::format("{}  {}##step{}", step.id, step.title, step.id), chosen))
       form.step = chosen ? 0 : step.id;
-      panels.request(request::ShowHandles{step.is_cut ? form.step : 0});
-    }
     pen.mark(fmt::format("plan-step:{}", step.id), step.title);
     if (step.warns) {
       ImGui::SameLine();
@@ -81,6 +82,8 @@ void Panels::Drawing::plan_steps() {
       text(theme.small, palette().text_dim,
            fitted(theme.small, "    " + step.details, ImGui::GetContentRegionAvail().x));
   }
+  if (std::exchange(form.with_handles, with_handles) != with_handles)
+    panels.request(request::ShowHandles{with_handles});
 }
 
 /// The selected step: its numbers, what it does, and buttons.

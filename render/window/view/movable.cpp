@@ -22,6 +22,10 @@ std::optional<std::size_t> naming_part(std::span<const Part> parts, BodyId body)
 
 }  // namespace
 
+bool can_be_cut(const Part& part) {
+  return collides(part.role) && !is_teeth(part.role) && part.role != Role::transplant;
+}
+
 std::vector<MovableBody> movable_bodies(std::span<const Part> parts, const BodyTree& bodies) {
   std::vector<MovableBody> jaws, others;
   for (int b = 1; b < bodies.size(); ++b) {

@@ -29,6 +29,9 @@ struct MovableBody {
   bool roams() const { return !is_skull() && !follows_motion; }
 };
 
+/// Whether a saw cut can be drawn on it. Transplants are shaped by their own steps.
+bool can_be_cut(const Part& part);
+
 /// The bodies that a motion drives first, then the skull, then the others in their order.
 std::vector<MovableBody> movable_bodies(std::span<const Part> parts, const BodyTree& bodies);
 

@@ -50,6 +50,7 @@ struct WindowScene {
   PlanView plan = {};                              // of the operation
   std::shared_ptr<const FrameState> before = {};   // the operation; none without moves
   std::filesystem::path session = {};              // file of the session; empty: not saved
+  bool has_midsagittal_plane = false;  // landmarks define one, by which parts can be mirrored
 };
 
 /// How one part is drawn.
@@ -80,6 +81,7 @@ struct HeldHandle {
   std::size_t index = 0;                         // of its kind
   Eigen::Vector3d at = Eigen::Vector3d::Zero();  // as far as it was dragged
   double value = 0;                              // of its number
+  bool moved = false;                            // since it was gripped
 };
 
 /// Additions to the surfaces in the picture, and their cuts.
@@ -98,8 +100,9 @@ struct Look {
   bool springs = false, prisms = false, bone_springs = false;  // of the soft tissue
   bool displacement = false;  // the skin coloured by its displacement from rest
   bool scale_bar = true, letters = true;
-  bool wipe = false;     // the kept state at the left, the present one at the right
-  double wipe_at = 0.5;  // fraction of the width
+  bool wipe = false;          // the kept state at the left, the present one at the right
+  double wipe_at = 0.5;       // fraction of the width
+  std::string mirrored = {};  // part whose mirror image is shown; empty: none
   bool operator==(const Look&) const = default;
 };
 

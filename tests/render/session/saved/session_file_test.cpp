@@ -52,7 +52,7 @@ struct SavedScene : testing::Test {
     // Complete: a new field does not compile until it is changed here.
     auto& [clip, clip_skin, clip_from, clip_fraction, cut_away, cut_at, cut_radius_mm, ghost,
            wireframe, patches, paths, axes, springs, prisms, bone_springs, displacement, scale_bar,
-           side_letters, wipe, wipe_at] = view.look;
+           side_letters, wipe, wipe_at, mirrored] = view.look;
     for (bool* flag :
          {&clip, &clip_skin, &cut_away, &ghost, &wireframe, &patches, &paths, &axes, &springs,
           &prisms, &bone_springs, &displacement, &scale_bar, &side_letters, &wipe})
@@ -62,6 +62,7 @@ struct SavedScene : testing::Test {
     cut_at = Look::Window::mouth;
     cut_radius_mm = 12.5;
     wipe_at = 0.1;
+    mirrored = "mandible";
     auto& [obey_contact, mark_contacts, shadows, distances, measured_points, opening_mm, hands,
            landmarks, drawn_cut, motion, look, skin_opacity, skin_to_return, shown_parts, muscles,
            layers] = static_cast<Edits&>(view);
