@@ -115,7 +115,7 @@ Passes::Passes()
   constexpr int side = SkinDetail::side;
   glBindTexture(GL_TEXTURE_3D, skin_detail_);
   glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA8, side, side, side, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-               make_skin_detail().rgba.data());
+               skin_detail().rgba.data());
   glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
   glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glGenerateMipmap(GL_TEXTURE_3D);

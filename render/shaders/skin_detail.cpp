@@ -43,8 +43,6 @@ float cells_height(const Eigen::Vector3f& place, int cells) {
   return std::min((second - nearest) / 0.35f, 1.f);
 }
 
-}  // namespace
-
 SkinDetail make_skin_detail() {
   // Two sizes of cells, neither a multiple of the other.
   constexpr int large = 17, small = 26;
@@ -82,6 +80,13 @@ SkinDetail make_skin_detail() {
         texel[3] = byte(height[at(x, y, z)] - mean);
       }
   return detail;
+}
+
+}  // namespace
+
+const SkinDetail& skin_detail() {
+  static const SkinDetail made = make_skin_detail();
+  return made;
 }
 
 }  // namespace condyle

@@ -13,7 +13,7 @@ struct SkinDetail {
   std::vector<std::uint8_t> rgba;
 };
 
-/// Deterministic.
-SkinDetail make_skin_detail();
+/// Deterministic; made at the first call.
+const SkinDetail& skin_detail();
 
 }  // namespace condyle

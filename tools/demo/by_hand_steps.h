@@ -40,17 +40,19 @@ wait plan-step:5
 key l
 key m
 choose body chin
-drag handle:P -12 0
+drag handle:P -6 0
 picture 4-chin
 click plan-take
 wait plan-step:6
 key m
 
 say Splints for the operation
+wheel plan-osteotomy 20
 choose plan-splint intermediate-upper
 wait splint-findings
 choose plan-splint final
 wait splint-findings
+click skin:off
 picture 5-splint
 )";
 

@@ -193,9 +193,10 @@ void Panels::Drawing::plan_splints() {
     panels.request(request::MakeSplint{name});
   tooltip(pen, "Between the arches at their planned positions; saved as STL beside the plan");
   if (plan.splint_findings.empty()) return;
-  for (const std::string& finding : plan.splint_findings)
+  for (const std::string& finding : plan.splint_findings) {
     wrapped(panels.theme_.small, palette().text_dim, finding);
-  pen.mark("splint-findings", plan.splint_findings.front());
+    if (&finding == &plan.splint_findings.front()) pen.mark("splint-findings", finding);
+  }
   if (word_button(pen, "splint-hide", "Hide the splint",
                   {ImGui::GetContentRegionAvail().x, pen.px(plan_row_high)}, false))
     panels.request(request::HideSplint{});
