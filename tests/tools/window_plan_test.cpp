@@ -95,6 +95,16 @@ TEST_F(WindowSession, APartIsPickedAndCutWithTheMouse) {
   EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(wait_until([&](const Json& s) { return shown(s) == all; }));
 
+  // Its mirror image lies over it as glass.
+  see("whole");
+  press_at(0, chin, "3");
+  click("menu:mirror");
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["edits"]["mirrored"] == "mandible"; }));
+  EXPECT_GT(see("mirrored"), 0.01);
+  press_at(0, chin, "3");
+  click("menu:mirror");
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["edits"]["mirrored"] == ""; }));
+
   press_at(0, chin, "3");
   click("menu:cut");
   ASSERT_TRUE(wait_for_item("cut-add"));
