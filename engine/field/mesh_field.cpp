@@ -66,10 +66,15 @@ struct SampleRange {
 /// Lowers the squared distances of one layer of samples, x = axes[0][i], to those of a triangle.
 void raster_distance(const RasterTriangle& triangle, double band, int i, SampledField& field) {
   const double x = field.axes[0][static_cast<std::size_t>(i)];
+  const double beside = std::max({0.0, triangle.low.x() - x, x - triangle.high.x()});
   const SampleRange rows(field.axes[1], triangle.low.y() - band, triangle.high.y() + band);
   for (int j = rows.first; j <= rows.last; ++j) {
     const double y = field.axes[1][static_cast<std::size_t>(j)];
-    double low = triangle.low.z() - band, high = triangle.high.z() + band;
+    const double behind = std::max({0.0, triangle.low.y() - y, y - triangle.high.y()});
+    const double left = band * band - beside * beside - behind * behind;
+    if (left < 0) continue;
+    const double reach = std::sqrt(left);
+    double low = triangle.low.z() - reach, high = triangle.high.z() + reach;
     if (const double n = triangle.normal.z(); std::abs(n) > 1e-6) {
       // Samples within the band of the triangle's plane.
       const double middle = triangle.a.z() - (triangle.normal.x() * (x - triangle.a.x()) +

@@ -150,8 +150,8 @@ void InputReplay::begin(const InputStep& step) {
       click(step.item);
       await("writing");
       send(event::Key{named_key("ctrl+a")});
-      for (const char letter : step.words) {
-        send(event::Letter{static_cast<unsigned char>(letter)});
+      for (const unsigned letter : letters_of(step.words)) {
+        send(event::Letter{letter});
         pause(letter_s);
       }
       send(event::Key{named_key("Return")});

@@ -161,6 +161,7 @@ void Window::State::interface_frame() {
   const MouseMoment& moment = input.mouse_shown;
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(moment.x), static_cast<float>(moment.y)};
+  io.MouseDrawCursor = input.replayed;
   for (std::size_t i = 0; i < moment.down.size(); ++i) io.MouseDown[i] = moment.down[i];
   if (!input.keys.empty()) {
     const WindowInput::KeyMoment next = input.keys.front();

@@ -14,6 +14,7 @@
 #include "engine/field/isosurface.h"
 #include "engine/field/mesh_field.h"
 #include "engine/field/smooth.h"
+#include "engine/mesh/repair.h"
 #include "sim/appliance/grid_frame.h"
 #include "sim/appliance/slot_plan.h"
 #include "sim/operation/closed_bone.h"
@@ -126,7 +127,8 @@ class GuideField {
   }
 
   /// Takes out walls that are still thin, such as necks between two places where a ball fits.
-  void trim(const std::vector<ThinWall>& walls, double trimmed_mm) {
+  /// Returns boxes outside which the guide is as before.
+  std::vector<Box> trim(const std::vector<ThinWall>& walls, double trimmed_mm) {
     std::vector<Box> boxes;
     for (const ThinWall& wall : walls) {
       const double radius = 0.5 * wall.thickness_mm + trimmed_mm;
@@ -142,6 +144,7 @@ class GuideField {
     for (const Box& box : boxes)
       remove_thin_within(field_, box, 0.5 * guide_thin_mm, guide_thin_tolerance_mm,
                          settings_.threads);
+    return boxes;
   }
 
   TriMesh surface() const { return isosurface(field_); }
@@ -423,6 +426,31 @@ struct GuideSurface {
   std::vector<std::string> notes;
 };
 
+constexpr double around_trimmed_mm = 1, beside_trimmed_mm = 2.5;
+
+bool is_in_any(const std::vector<Box>& boxes, const Vector3d& p, double margin_mm) {
+  return std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
+    return ((box.low.array() - margin_mm) < p.array()).all() &&
+           (p.array() < (box.high.array() + margin_mm)).all();
+  });
+}
+
+/// The thin walls in and about the boxes alone.
+std::vector<ThinWall> thin_walls_within(const TriMesh& mesh, const std::vector<Box>& boxes,
+                                        int threads) {
+  // The surface ends outside the boxes, where its normals are wrong.
+  TriMesh near{mesh.vertices, {}, {}};
+  for (const Eigen::Vector3i& t : mesh.triangles)
+    if (is_in_any(boxes, mesh.vertices[static_cast<std::size_t>(t[0])], beside_trimmed_mm))
+      near.triangles.push_back(t);
+  drop_unreferenced(near);
+  if (near.empty()) return {};
+  std::vector<ThinWall> walls = find_thin_walls(near, TriangleTree(near), least_wall_mm, threads);
+  std::erase_if(
+      walls, [&](const ThinWall& wall) { return !is_in_any(boxes, wall.at, around_trimmed_mm); });
+  return walls;
+}
+
 GuideSurface form_guide(const GuideParts& parts, const SlotPlan& plan) {
   const GuideSettings& settings = parts.settings;
   GuideSurface made;
@@ -434,13 +462,17 @@ GuideSurface form_guide(const GuideParts& parts, const SlotPlan& plan) {
       made.notes);
   field.drill(made.holes);
   field.remove_thin_walls();
+  std::vector<Box> trimmed;
   for (int trims = 0;; ++trims) {
     made.mesh = field.surface();
     const double dropped_mm3 = keep_one_piece(made.mesh);
     if (made.mesh.empty()) throw InputError("no guide fits on the bone beside " + parts.line.title);
-    made.tree.emplace(made.mesh);
-    const std::vector<ThinWall> thin =
-        find_thin_walls(made.mesh, *made.tree, least_wall_mm, settings.threads);
+    std::vector<ThinWall> thin;
+    if (trims > 0) thin = thin_walls_within(made.mesh, trimmed, settings.threads);
+    if (thin.empty()) {  // by the whole surface
+      made.tree.emplace(made.mesh);
+      thin = find_thin_walls(made.mesh, *made.tree, least_wall_mm, settings.threads);
+    }
     if (thin.empty()) {
       if (dropped_mm3 > crumb_mm3)
         made.notes.push_back(fmt::format(
@@ -455,7 +487,7 @@ GuideSurface form_guide(const GuideParts& parts, const SlotPlan& plan) {
           "mm that it needs: another --from, less --reach or a thicker --shell may avoid it",
           parts.line.title, thin.front().thickness_mm, at.x(), at.y(), at.z(), least_wall_mm));
     }
-    field.trim(thin, trim_mm + trims * more_trim_mm);
+    trimmed = field.trim(thin, trim_mm + trims * more_trim_mm);
   }
 }
 

@@ -17,6 +17,7 @@ using Eigen::Vector3d;
 constexpr std::size_t run_length = 256;
 constexpr double longest_path_mm = 15;  // out of undercuts
 constexpr double chord_step_mm = 0.1;
+constexpr double thickest_mm = 30;   // of measured walls
 constexpr double facing_cos = -0.7;  // of the normals of two sides of a wall
 constexpr double far_mm = 2;         // nor is a point beyond this beside the print
 constexpr double near_mm = 0.6;      // an appliance farther away than this leaves a point uncovered
@@ -79,17 +80,18 @@ double quantile(std::vector<double> values, double fraction) {
   return values[at];
 }
 
-/// The wall at a corner: from it along its normal to a facing side.
+/// The wall at a corner: from it along its normal to a facing side at most `reach_mm` away.
 struct CornerWall {
   double mm = -1;  // none
   Vector3d middle = Vector3d::Zero();
 };
-std::vector<CornerWall> corner_walls(const TriMesh& mesh, const TriangleTree& tree, int threads) {
+std::vector<CornerWall> corner_walls(const TriMesh& mesh, const TriangleTree& tree, double reach_mm,
+                                     int threads) {
   // Normals of corners: those of single triangles, some of which are slivers, are not reliable.
   const std::vector<Vector3d> normals = vertex_normals(mesh);
   std::vector<CornerWall> walls(mesh.vertices.size());
   for_runs(mesh.vertices.size(), threads, [&](std::size_t v) {
-    const auto hit = tree.ray_cast(mesh.vertices[v] - 1e-3 * normals[v], -normals[v], 30);
+    const auto hit = tree.ray_cast(mesh.vertices[v] - 1e-3 * normals[v], -normals[v], reach_mm);
     if (!hit) return;
     Vector3d other = Vector3d::Zero();
     for (int c = 0; c < 3; ++c)
@@ -102,7 +104,7 @@ std::vector<CornerWall> corner_walls(const TriMesh& mesh, const TriangleTree& tr
 
 void measure_walls(const TriMesh& mesh, const TriangleTree& tree, int threads,
                    ApplianceMeasure& measure) {
-  const std::vector<CornerWall> corners = corner_walls(mesh, tree, threads);
+  const std::vector<CornerWall> corners = corner_walls(mesh, tree, thickest_mm, threads);
   std::vector<double> walls;
   measure.wall_min_mm = 1e9;
   for (std::size_t v = 0; v < corners.size(); ++v) {
@@ -232,7 +234,7 @@ ApplianceMeasure measure_in_axes(const TriMesh& mesh, const TriangleTree& tree,
 std::vector<ThinWall> find_thin_walls(const TriMesh& mesh, const TriangleTree& tree,
                                       double least_mm, int threads) {
   std::vector<ThinWall> thin;
-  for (const CornerWall& wall : corner_walls(mesh, tree, threads))
+  for (const CornerWall& wall : corner_walls(mesh, tree, least_mm, threads))
     if (wall.mm >= 0 && wall.mm < least_mm) thin.push_back({wall.middle, wall.mm});
   std::stable_sort(thin.begin(), thin.end(), [](const ThinWall& a, const ThinWall& b) {
     return a.thickness_mm < b.thickness_mm;

@@ -86,6 +86,26 @@ std::vector<InputStep> parse_input_steps(const std::string& text, const std::str
   return steps;
 }
 
+std::vector<unsigned> letters_of(const std::string& utf8) {
+  std::vector<unsigned> letters;
+  for (std::size_t i = 0; i < utf8.size();) {
+    const auto first = static_cast<unsigned char>(utf8[i++]);
+    const int length = first < 0x80   ? 1
+                       : first < 0xc0 ? 0
+                       : first < 0xe0 ? 2
+                       : first < 0xf0 ? 3
+                                      : 4;
+    unsigned letter = length <= 1 ? first : first & (0x7fu >> length);
+    bool whole = length > 0;
+    for (int k = 1; k < length && whole; ++k) {
+      whole = i < utf8.size() && (static_cast<unsigned char>(utf8[i]) & 0xc0) == 0x80;
+      if (whole) letter = letter << 6 | (static_cast<unsigned char>(utf8[i++]) & 0x3f);
+    }
+    letters.push_back(whole ? letter : 0xfffd);
+  }
+  return letters;
+}
+
 NamedKey named_key(const std::string& name) {
   NamedKey named;
   std::string rest = name;

@@ -41,6 +41,9 @@ struct InputStep {
 /// throws: InputError naming the line and the word.
 std::vector<InputStep> parse_input_steps(const std::string& text, const std::string& name);
 
+/// The letters of a text in UTF-8, as Unicode numbers them; a damaged one is U+FFFD.
+std::vector<unsigned> letters_of(const std::string& utf8);
+
 /// A key with its modifiers.
 struct NamedKey {
   int key = 0;  // as GLFW numbers it

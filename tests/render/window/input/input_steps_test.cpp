@@ -55,6 +55,14 @@ TEST(InputSteps, AWrongStepIsRefusedWithItsLine) {
   EXPECT_EQ(words_of("key hyper+q").rfind("my.steps, line 2: \"hyper+q\" is no key", 0), 0u);
 }
 
+TEST(InputSteps, TextsAreUnicode) {
+  EXPECT_EQ(letters_of("jö€"), (std::vector<unsigned>{'j', 0xf6, 0x20ac}));
+  EXPECT_EQ(letters_of("\U0001f9b7"), std::vector<unsigned>{0x1f9b7});
+  EXPECT_EQ(letters_of("a\xff"
+                       "b\xc3"),
+            (std::vector<unsigned>{'a', 0xfffd, 'b', 0xfffd}));
+}
+
 TEST(InputSteps, KeysHaveTheirUsualNames) {
   EXPECT_EQ(named_key("m").key, GLFW_KEY_M);
   EXPECT_EQ(named_key("0").key, GLFW_KEY_0);
