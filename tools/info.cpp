@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "engine/mesh/topology.h"
 #include "engine/mesh_io/mesh_files.h"
+#include "engine/volume/volume_files.h"
 #include "sim/case/case_io.h"
 #include "sim/dynamics/body_mass.h"
 #include "sim/phantom/head_shape.h"
@@ -85,7 +87,50 @@ std::string line(const Json& mesh) {
       high[2].get<double>() - low[2].get<double>());
 }
 
+Json describe(const Volume& volume) {
+  const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
+  const auto list = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
+  Json json{{"size", volume.size},
+            {"spacing_mm", list(volume.spacing_mm)},
+            {"origin_mm", list(volume.origin)},
+            {"lowest_hu", *low},
+            {"highest_hu", *high}};
+  for (int a = 0; a < 3; ++a) {
+    json["axes"].push_back(list(volume.axes.col(a)));
+    json["extent_mm"].push_back(volume.size[static_cast<std::size_t>(a)] * volume.spacing_mm[a]);
+  }
+  return json;
+}
+
+/// The direction in which most of an axis points.
+char letter_of(const Eigen::Vector3d& axis) {
+  int most = 0;
+  axis.cwiseAbs().maxCoeff(&most);
+  return (axis[most] > 0 ? "LPS" : "RAI")[most];
+}
+
+std::string line(const Volume& volume) {
+  const Json json = describe(volume);
+  const Eigen::Vector3d& spacing = volume.spacing_mm;
+  std::string letters;
+  for (int a = 0; a < 3; ++a) letters += letter_of(volume.axes.col(a));
+  return fmt::format(
+      "{} x {} x {} values, {:.3g} x {:.3g} x {:.3g} mm apart, {:.0f} x {:.0f} x {:.0f} mm in all; "
+      "axes toward {}; {} to {} HU",
+      volume.size[0], volume.size[1], volume.size[2], spacing.x(), spacing.y(), spacing.z(),
+      json["extent_mm"][0].get<double>(), json["extent_mm"][1].get<double>(),
+      json["extent_mm"][2].get<double>(), letters, json["lowest_hu"].get<int>(),
+      json["highest_hu"].get<int>());
+}
+
 int run_info(const std::filesystem::path& what, const CommonOptions& common) {
+  if (is_volume_file(what) && !std::filesystem::is_directory(what)) {
+    const Volume volume = read_volume(what);
+    fmt::print("{}\n", common.json
+                           ? describe(volume).dump(2, ' ', false, Json::error_handler_t::replace)
+                           : what.string() + ": " + line(volume));
+    return 0;
+  }
   if (!what.empty() && !is_head_name(what.string()) && !std::filesystem::is_directory(what)) {
     const Json mesh = describe(read_mesh(what));
     fmt::print("{}\n", common.json ? mesh.dump(2, ' ', false, Json::error_handler_t::replace)
@@ -133,11 +178,13 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
 
 void add_info(Commands& commands) {
   const auto what = std::make_shared<std::filesystem::path>();
-  CLI::App& command =
-      commands.add("info", "Describe a case or a surface file", "condyle info mycase --json",
-                   [what](const CommonOptions& common) { return run_info(*what, common); });
-  command.add_option("CASE|FILE", *what,
-                     "Case folder or surface file (default: the built-in patient)");
+  CLI::App& command = commands.add(
+      "info", "Describe a case, a surface file or a scanned volume", "condyle info mycase --json",
+      [what](const CommonOptions& common) { return run_info(*what, common); });
+  command.add_option(
+      "CASE|FILE", *what,
+      "Case folder, surface file or volume (.nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz; default: the "
+      "built-in patient)");
 }
 
 }  // namespace condyle

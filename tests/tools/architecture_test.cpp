@@ -58,7 +58,7 @@ const std::vector<Library> libraries = {
     {"stb/", {"engine/mesh_io", "render/image"}, false, ""},
     {"png.h", {"render/image"}, false, "PNG::PNG"},
     {"libdeflate.h", {"render/image"}, false, "PkgConfig::deflate"},
-    {"zlib.h", {"render/output"}, false, "ZLIB::ZLIB"},
+    {"zlib.h", {"engine/volume", "render/output"}, false, "ZLIB::ZLIB"},
     {"epoxy/", {"render/gl", "render/window"}, true, "PkgConfig::epoxy"},
     {"GLFW/", {"render/window"}, true, "glfw"},
     {"imgui", {"render/window"}, true, "PkgConfig::imgui"},

@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/program.h"
 
@@ -115,6 +116,28 @@ TEST(BadCase, RefusedWithTheReason) {
   expect_refused({"info", good}, 2, {"case.json"});
   write_text(good + "/case.json", json);
   EXPECT_EQ(condyle({"info", good}).code, 0);
+}
+
+TEST(Volumes, AreDescribedOrRefused) {
+  const Folder folder;
+  const std::string header =
+      "NRRD0004\ntype: short\ndimension: 3\nspace: LPS\nsizes: 2 3 4\n"
+      "space directions: (0.5,0,0) (0,0.6,0) (0,0,-2)\nendian: little\nencoding: raw\n"
+      "space origin: (1,2,3)\n\n";
+  std::string values(48, '\0');
+  values[0] = 100;
+  write_text(folder / "scan.nrrd", header + values);
+  const auto described = condyle({"info", folder / "scan.nrrd"});
+  EXPECT_EQ(described.code, 0);
+  EXPECT_EQ(described.out,
+            folder / "scan.nrrd" +
+                ": 2 x 3 x 4 values, 0.5 x 0.6 x 2 mm apart, 1 x 2 x 8 mm in all; axes toward LPI; "
+                "0 to 100 HU\n");
+  const auto json = nlohmann::json::parse(condyle({"info", folder / "scan.nrrd", "--json"}).out);
+  EXPECT_EQ(json["size"], nlohmann::json({2, 3, 4}));
+  EXPECT_EQ(json["axes"][2], nlohmann::json({0, 0, -1}));
+  write_text(folder / "half.nrrd", header + values.substr(0, 20));
+  expect_refused({"info", folder / "half.nrrd"}, 2, {"half.nrrd", "20 bytes", "48"});
 }
 
 TEST(BadMotion, RefusedWithFileLineAndValue) {

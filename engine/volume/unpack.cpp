@@ -1,0 +1,78 @@
+#include "engine/volume/unpack.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/core/error.h"
+
+namespace condyle {
+namespace {
+
+constexpr std::size_t largest_ratio = 1032;  // of deflate
+constexpr int any_header = 15 + 32;          // the largest window; gzip or zlib
+
+class Inflater {
+ public:
+  Inflater(std::string_view packed, const std::filesystem::path& file)
+      : left_(packed), file_(file) {
+    if (inflateInit2(&stream_, any_header) != Z_OK)
+      throw MachineError("no memory to decompress " + file.string());
+  }
+  ~Inflater() { inflateEnd(&stream_); }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+
+  /// Fills the buffer as far as the stream goes. Returns how many bytes were written.
+  std::size_t fill(char* buffer, std::size_t size) {
+    constexpr std::size_t most = std::numeric_limits<uInt>::max();
+    std::size_t written = 0;
+    while (written < size && !ended_) {
+      const std::size_t in = std::min(left_.size(), most), out = std::min(size - written, most);
+      stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(left_.data()));
+      stream_.avail_in = static_cast<uInt>(in);
+      stream_.next_out = reinterpret_cast<Bytef*>(buffer + written);
+      stream_.avail_out = static_cast<uInt>(out);
+      const int status = inflate(&stream_, Z_NO_FLUSH);
+      left_.remove_prefix(in - stream_.avail_in);
+      written += out - stream_.avail_out;
+      ended_ = status == Z_STREAM_END;
+      if (status == Z_BUF_ERROR || (status == Z_OK && in == 0)) break;  // it ends early
+      if (status != Z_OK && status != Z_STREAM_END)
+        throw InputError(file_, "", "its compressed data is damaged");
+    }
+    return written;
+  }
+
+ private:
+  std::string_view left_;
+  const std::filesystem::path& file_;
+  z_stream stream_{};
+  bool ended_ = false;
+};
+
+}  // namespace
+
+std::string unpack(std::string_view packed, std::size_t size, const std::filesystem::path& file) {
+  const std::string promised = std::to_string(size) + " bytes that its header states";
+  if (size / largest_ratio > packed.size())
+    throw InputError(file, "", "its compressed data is too short for the " + promised);
+  std::string content(size, '\0');
+  Inflater inflater(packed, file);
+  if (inflater.fill(content.data(), size) < size)
+    throw InputError(file, "", "its compressed data ends before the " + promised);
+  char more = 0;
+  if (inflater.fill(&more, 1) > 0)
+    throw InputError(file, "", "its compressed data holds more than the " + promised);
+  return content;
+}
+
+std::string unpack_start(std::string_view packed, std::size_t size,
+                         const std::filesystem::path& file) {
+  std::string content(size, '\0');
+  content.resize(Inflater(packed, file).fill(content.data(), size));
+  return content;
+}
+
+}  // namespace condyle

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace condyle {
+
+/// The content of a gzip or zlib stream, which must have `size` bytes. A size that no stream of
+/// this length can have is refused before memory is requested. throws: InputError naming the file
+/// for a damaged stream, one that ends early, and one that holds more.
+std::string unpack(std::string_view packed, std::size_t size, const std::filesystem::path& file);
+
+/// The first `size` bytes of the content, or all if there are fewer.
+std::string unpack_start(std::string_view packed, std::size_t size,
+                         const std::filesystem::path& file);
+
+}  // namespace condyle

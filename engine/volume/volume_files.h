@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "engine/volume/volume.h"
+
+namespace condyle {
+
+/// Whether the name ends as that of a volume: .nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz.
+bool is_volume_file(const std::filesystem::path& file);
+
+/// Reads a volume in NRRD, MetaImage or NIfTI-1 format. Values are rounded to whole Hounsfield
+/// units and limited to 16 bits. The axes may be in any order and sense; they are perpendicular.
+/// throws: InputError naming the file, the item and its value: geometry that is absent, zero,
+/// sheared or not that of a patient; formats, encodings and types that are not read; data that is
+/// shorter or longer than the header states. Memory is requested only for data that is there.
+Volume read_volume(const std::filesystem::path& file);
+
+}  // namespace condyle

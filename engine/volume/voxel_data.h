@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/volume/volume.h"
+
+namespace condyle {
+
+enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+std::size_t bytes_of(VoxelType type);
+
+/// How values are stored.
+struct VoxelCoding {
+  VoxelType type = VoxelType::int16;
+  bool big_endian = false;
+  double slope = 1, intercept = 0;  // Hounsfield units = slope * value + intercept
+};
+
+/// Number of bytes of so many values. throws: InputError for a size below 2 along an axis, and for
+/// more than 2^31 values.
+std::size_t byte_count(const std::array<int, 3>& size, VoxelType type,
+                       const std::filesystem::path& file);
+
+/// throws: InputError unless the data has as many bytes as the header states.
+void check_length(std::size_t bytes, std::size_t promised, const std::filesystem::path& file);
+
+/// Values in whole Hounsfield units, limited to 16 bits; not-a-number is the least.
+std::vector<std::int16_t> decoded(std::string_view bytes, const VoxelCoding& coding);
+
+/// Takes axes, spacing and origin from the steps between neighbours, columns in LPS, mm.
+/// throws: InputError for steps that are zero, not finite or not perpendicular.
+void set_geometry(Volume& volume, const Eigen::Matrix3d& steps, const Eigen::Vector3d& origin,
+                  const std::filesystem::path& file, const std::string& item);
+
+/// A file in the folder of the header, by its name there. throws: InputError for a name that leads
+/// elsewhere.
+std::filesystem::path data_file_beside(const std::filesystem::path& header,
+                                       const std::string& name);
+
+/// The number that a text states. throws: InputError naming file and item.
+double number_in(const std::string& text, const std::filesystem::path& file,
+                 const std::string& item);
+int count_in(const std::string& text, const std::filesystem::path& file, const std::string& item);
+
+/// Without blanks at both ends.
+std::string trimmed(const std::string& text);
+std::string lower_case(std::string text);
+
+}  // namespace condyle
