@@ -1,5 +1,9 @@
 #include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <initializer_list>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "engine/core/error.h"
@@ -33,7 +37,7 @@ Fields meta_fields(const std::string& content, const fs::path& file, std::size_t
     if (line.empty()) continue;
     const auto equal = line.find('=');
     if (equal == std::string::npos)
-      throw InputError(file, "header", "\"" + line.substr(0, 60) + "\" is no field");
+      throw InputError(file, "header", "\"" + line.substr(0, 60) + "\" is not a field");
     fields[lower_case(trimmed(line.substr(0, equal)))] = trimmed(line.substr(equal + 1));
   }
   return fields;
@@ -63,11 +67,19 @@ std::array<double, count> numbers_in(const std::string& text, const fs::path& fi
   return numbers;
 }
 
-bool is_true(const Fields& fields, std::initializer_list<const char*> names) {
+/// Whether the first field that is there says so; none: `otherwise`.
+bool is_true(const Fields& fields, std::initializer_list<const char*> names, const char* shown,
+             std::optional<bool> otherwise, const fs::path& file) {
   for (const char* name : names)
-    if (const auto found = fields.find(name); found != fields.end())
-      return lower_case(found->second) == "true" || found->second == "1";
-  return false;
+    if (const auto found = fields.find(name); found != fields.end()) {
+      const std::string word = lower_case(found->second);
+      if (word == "true" || word == "1") return true;
+      if (word == "false" || word == "0") return false;
+      throw InputError(file, shown,
+                       "\"" + found->second.substr(0, 60) + "\" is neither True nor False");
+    }
+  if (!otherwise) throw InputError(file, shown, "is missing in the header");
+  return *otherwise;
 }
 
 VoxelType meta_type(const std::string& text, const fs::path& file) {
@@ -94,13 +106,7 @@ Volume read_meta_image(const fs::path& file) {
       channels != fields.end() && channels->second != "1")
     throw InputError(file, "ElementNumberOfChannels", "is " + channels->second + "; it must be 1");
   Volume volume;
-  std::istringstream sizes(required(fields, {"dimsize"}, "DimSize", file));
-  std::string word;
-  for (int& n : volume.size) {
-    if (!(sizes >> word)) throw InputError(file, "DimSize", "has fewer than 3 numbers");
-    n = count_in(word, file, "DimSize");
-  }
-  if (sizes >> word) throw InputError(file, "DimSize", "has more than 3 numbers");
+  volume.size = sizes_in(required(fields, {"dimsize"}, "DimSize", file), file, "DimSize");
   const auto spacing = numbers_in<3>(required(fields, {"elementspacing"}, "ElementSpacing", file),
                                      file, "ElementSpacing");
   // Each three numbers are the direction of an axis.
@@ -110,16 +116,29 @@ Volume read_meta_image(const fs::path& file) {
   const auto origin = numbers_in<3>(
       required(fields, {"offset", "position", "origin"}, "Offset", file), file, "Offset");
   Eigen::Matrix3d steps;
-  for (int a = 0; a < 3; ++a)
+  for (int a = 0; a < 3; ++a) {
+    const auto first = static_cast<std::size_t>(3 * a);
+    if (!(spacing[static_cast<std::size_t>(a)] > 0))
+      throw InputError(file, "ElementSpacing", "is not positive along each axis");
+    if (const double length = std::hypot(turn[first], turn[first + 1], turn[first + 2]);
+        !(std::abs(length - 1) < 1e-3))
+      throw InputError(file, "TransformMatrix", "a direction does not have length 1");
     for (int c = 0; c < 3; ++c)
       steps(c, a) =
-          turn[static_cast<std::size_t>(3 * a + c)] * spacing[static_cast<std::size_t>(a)];
+          turn[first + static_cast<std::size_t>(c)] * spacing[static_cast<std::size_t>(a)];
+  }
   set_geometry(volume, steps, {origin[0], origin[1], origin[2]}, file, "TransformMatrix");
 
-  const VoxelCoding coding{meta_type(required(fields, {"elementtype"}, "ElementType", file), file),
-                           is_true(fields, {"binarydatabyteordermsb", "elementbyteordermsb"})};
-  if (!is_true(fields, {"binarydata"}))
+  VoxelCoding coding;
+  coding.type = meta_type(required(fields, {"elementtype"}, "ElementType", file), file);
+  if (bytes_of(coding.type) > 1)
+    coding.big_endian = is_true(fields, {"binarydatabyteordermsb", "elementbyteordermsb"},
+                                "BinaryDataByteOrderMSB", std::nullopt, file);
+  if (!is_true(fields, {"binarydata"}, "BinaryData", false, file))
     throw InputError(file, "BinaryData", "must be True: numbers as text are not read");
+  if (const auto skipped = fields.find("headersize");
+      skipped != fields.end() && skipped->second != "0")
+    throw InputError(file, "HeaderSize", "is " + skipped->second + ": skipped data is not read");
   const std::size_t promised = byte_count(volume.size, coding.type, file);
   const std::string& name = fields.at("elementdatafile");
   fs::path source = file;
@@ -129,7 +148,7 @@ Volume read_meta_image(const fs::path& file) {
     begin = 0;
   }
   const std::string_view data = std::string_view(content).substr(begin);
-  if (is_true(fields, {"compresseddata"})) {
+  if (is_true(fields, {"compresseddata"}, "CompressedData", false, file)) {
     volume.values = decoded(unpack(data, promised, source), coding);
   } else {
     check_length(data.size(), promised, source);

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -72,7 +73,7 @@ VoxelType nifti_type(int datatype, const fs::path& file) {
 /// Millimetres of the unit in which lengths are stated.
 double unit_mm(int units, const fs::path& file) {
   switch (units & 7) {
-    case 0:  // not stated: by custom millimetres
+    case 0:  // not stated; millimetres by convention
     case 2:
       return 1;
     case 1:
@@ -104,10 +105,12 @@ Lattice by_rows(const Header& header) {
 Lattice by_quaternion(const Header& header, const fs::path& file) {
   const Eigen::Vector3d v(header.real(256), header.real(260), header.real(264));
   const double rest = 1 - v.squaredNorm();
-  if (!(rest > -1e-5)) throw InputError(file, "quatern", "is no rotation");
+  if (!(rest > -1e-5)) throw InputError(file, "quatern", "is not a rotation");
   // Below that it is rounding of a half turn, as in the source.
   const double w = rest < 1e-7 ? 0 : std::sqrt(rest);
   const Eigen::Quaterniond turn = Eigen::Quaterniond(w, v.x(), v.y(), v.z()).normalized();
+  for (const std::size_t at : {80, 84, 88})
+    if (!(header.real(at) > 0)) throw InputError(file, "pixdim", "is not positive along each axis");
   const double sense = header.real(76) < 0 ? -1 : 1;
   Lattice lattice;
   lattice.steps = turn.toRotationMatrix();
@@ -142,14 +145,21 @@ Volume read_nifti(const fs::path& file) {
     coding.slope = slope;
     coding.intercept = intercept;
   }
-  if (header.whole(254) <= 0 && header.whole(252) <= 0)
+  // Codes above 2 are positions in a template, whose size is not the patient's.
+  const auto of_patient = [&](std::size_t code) {
+    return header.whole(code) == 1 || header.whole(code) == 2;
+  };
+  const bool rows = of_patient(254);
+  if (!rows && !of_patient(252))
     throw InputError(file, "sform_code, qform_code",
-                     "neither is set, so that the directions of the axes are unknown");
-  const Lattice lattice = header.whole(254) > 0 ? by_rows(header) : by_quaternion(header, file);
+                     header.whole(254) > 2 || header.whole(252) > 2
+                         ? "the volume is aligned to a template, not to the patient"
+                         : "neither is set, so that the directions of the axes are unknown");
+  const Lattice lattice = rows ? by_rows(header) : by_quaternion(header, file);
   const double unit = unit_mm(header.number<std::uint8_t>(123), file);
   const Eigen::Vector3d to_lps(-unit, -unit, unit);
   set_geometry(volume, to_lps.asDiagonal() * lattice.steps, to_lps.cwiseProduct(lattice.origin),
-               file, header.whole(254) > 0 ? "srow" : "pixdim");
+               file, rows ? "srow" : "pixdim");
 
   const std::size_t promised = byte_count(volume.size, coding.type, file);
   const double offset = header.real(108);

@@ -1,6 +1,5 @@
 #include <Eigen/Core>
 #include <map>
-#include <optional>
 #include <sstream>
 
 #include "engine/core/error.h"
@@ -41,7 +40,7 @@ Fields nrrd_fields(const std::string& content, const fs::path& file, std::size_t
     if (line[0] != '#') {
       const auto colon = line.find(':');
       if (colon == std::string::npos)
-        throw InputError(file, "header", "\"" + line.substr(0, 60) + "\" is no field");
+        throw InputError(file, "header", "\"" + line.substr(0, 60) + "\" is not a field");
       if (line.compare(colon, 2, ":=") != 0) {
         std::string name = lower_case(line.substr(0, colon));
         std::erase(name, ' ');
@@ -61,20 +60,34 @@ const std::string& required(const Fields& fields, const char* name, const char* 
 }
 
 VoxelType nrrd_type(const std::string& text, const fs::path& file) {
-  static const std::map<std::string, VoxelType> known = {
-      {"int8", VoxelType::int8},           {"int8_t", VoxelType::int8},
-      {"signed char", VoxelType::int8},    {"uint8", VoxelType::uint8},
-      {"uint8_t", VoxelType::uint8},       {"uchar", VoxelType::uint8},
-      {"unsigned char", VoxelType::uint8}, {"int16", VoxelType::int16},
-      {"int16_t", VoxelType::int16},       {"short", VoxelType::int16},
-      {"short int", VoxelType::int16},     {"signed short", VoxelType::int16},
-      {"uint16", VoxelType::uint16},       {"uint16_t", VoxelType::uint16},
-      {"ushort", VoxelType::uint16},       {"unsigned short", VoxelType::uint16},
-      {"int32", VoxelType::int32},         {"int32_t", VoxelType::int32},
-      {"int", VoxelType::int32},           {"signed int", VoxelType::int32},
-      {"uint32", VoxelType::uint32},       {"uint32_t", VoxelType::uint32},
-      {"uint", VoxelType::uint32},         {"unsigned int", VoxelType::uint32},
-      {"float", VoxelType::float32},       {"double", VoxelType::float64}};
+  static const std::map<std::string, VoxelType> known = {{"int8", VoxelType::int8},
+                                                         {"int8_t", VoxelType::int8},
+                                                         {"signed char", VoxelType::int8},
+                                                         {"uint8", VoxelType::uint8},
+                                                         {"uint8_t", VoxelType::uint8},
+                                                         {"uchar", VoxelType::uint8},
+                                                         {"unsigned char", VoxelType::uint8},
+                                                         {"int16", VoxelType::int16},
+                                                         {"int16_t", VoxelType::int16},
+                                                         {"short", VoxelType::int16},
+                                                         {"short int", VoxelType::int16},
+                                                         {"signed short", VoxelType::int16},
+                                                         {"signed short int", VoxelType::int16},
+                                                         {"unsigned short int", VoxelType::uint16},
+                                                         {"uint16", VoxelType::uint16},
+                                                         {"uint16_t", VoxelType::uint16},
+                                                         {"ushort", VoxelType::uint16},
+                                                         {"unsigned short", VoxelType::uint16},
+                                                         {"int32", VoxelType::int32},
+                                                         {"int32_t", VoxelType::int32},
+                                                         {"int", VoxelType::int32},
+                                                         {"signed int", VoxelType::int32},
+                                                         {"uint32", VoxelType::uint32},
+                                                         {"uint32_t", VoxelType::uint32},
+                                                         {"uint", VoxelType::uint32},
+                                                         {"unsigned int", VoxelType::uint32},
+                                                         {"float", VoxelType::float32},
+                                                         {"double", VoxelType::float64}};
   const auto found = known.find(lower_case(text));
   if (found == known.end()) throw InputError(file, "type", "\"" + text + "\" is not read");
   return found->second;
@@ -83,7 +96,8 @@ VoxelType nrrd_type(const std::string& text, const fs::path& file) {
 /// "(0.9,0,0)".
 Eigen::Vector3d vector_in(std::string text, const fs::path& file, const std::string& item) {
   if (text.size() < 2 || text.front() != '(' || text.back() != ')')
-    throw InputError(file, item, "\"" + text.substr(0, 60) + "\" is no vector such as (0.5,0,0)");
+    throw InputError(file, item,
+                     "\"" + text.substr(0, 60) + "\" is not a vector such as (0.5,0,0)");
   std::istringstream words(text.substr(1, text.size() - 2));
   Eigen::Vector3d vector;
   std::string word;
@@ -111,6 +125,11 @@ Eigen::Vector3d to_lps(const std::string& space, const fs::path& file) {
 
 void read_geometry(const Fields& fields, const fs::path& file, Volume& volume) {
   const Eigen::Vector3d sense = to_lps(required(fields, "space", "space", file), file);
+  // By definition lengths have the unit that is stated here.
+  if (const auto units = fields.find("spaceunits");
+      units != fields.end() && units->second != R"("mm" "mm" "mm")")
+    throw InputError(file, "space units",
+                     units->second.substr(0, 60) + " is not read; it must be \"mm\" \"mm\" \"mm\"");
   std::istringstream words(required(fields, "spacedirections", "space directions", file));
   Eigen::Matrix3d steps;
   std::string word;
@@ -118,13 +137,13 @@ void read_geometry(const Fields& fields, const fs::path& file, Volume& volume) {
     // Blanks may follow the commas.
     std::string vector;
     while (vector.find(')') == std::string::npos && words >> word) {
-      vector += word;
+      vector += (vector.empty() ? "" : " ") + word;
       if (vector == "none") throw InputError(file, "space directions", "an axis has none");
     }
     steps.col(a) = sense.cwiseProduct(vector_in(vector, file, "space directions"));
   }
-  std::string origin = required(fields, "spaceorigin", "space origin", file);
-  std::erase(origin, ' ');
+  if (words >> word) throw InputError(file, "space directions", "has more than 3 vectors");
+  const std::string& origin = required(fields, "spaceorigin", "space origin", file);
   set_geometry(volume, steps, sense.cwiseProduct(vector_in(origin, file, "space origin")), file,
                "space directions");
 }
@@ -139,13 +158,7 @@ Volume read_nrrd(const fs::path& file) {
       count_in(dimension, file, "dimension") != 3)
     throw InputError(file, "dimension", "is " + dimension + "; a volume has 3");
   Volume volume;
-  std::istringstream sizes(required(fields, "sizes", "sizes", file));
-  std::string word;
-  for (int& n : volume.size) {
-    if (!(sizes >> word)) throw InputError(file, "sizes", "has fewer than 3 numbers");
-    n = count_in(word, file, "sizes");
-  }
-  if (sizes >> word) throw InputError(file, "sizes", "has more than 3 numbers");
+  volume.size = sizes_in(required(fields, "sizes", "sizes", file), file, "sizes");
   VoxelCoding coding;
   coding.type = nrrd_type(required(fields, "type", "type", file), file);
   if (bytes_of(coding.type) > 1) {

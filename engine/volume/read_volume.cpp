@@ -1,9 +1,7 @@
-#include <algorithm>
-#include <cctype>
-
 #include "engine/core/error.h"
 #include "engine/volume/volume_files.h"
 #include "engine/volume/volume_readers.h"
+#include "engine/volume/voxel_data.h"
 
 namespace condyle {
 namespace {
@@ -11,9 +9,7 @@ namespace {
 using Reader = Volume (*)(const std::filesystem::path&);
 
 Reader reader_of(const std::filesystem::path& file) {
-  std::string name = file.filename().string();
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = lower_case(file.filename().string());
   for (const char* ending : {".nrrd", ".nhdr"})
     if (name.ends_with(ending)) return read_nrrd;
   for (const char* ending : {".mha", ".mhd"})
@@ -30,9 +26,10 @@ bool is_volume_file(const std::filesystem::path& file) { return reader_of(file) 
 Volume read_volume(const std::filesystem::path& file) {
   const Reader reader = reader_of(file);
   if (!reader)
-    throw InputError(file, "",
-                     "is no volume by its name: it must end in .nrrd, .nhdr, .mha, .mhd, .nii or "
-                     ".nii.gz");
+    throw InputError(
+        file, "",
+        "does not have the extension of a volume: it must end in .nrrd, .nhdr, .mha, .mhd, .nii or "
+        ".nii.gz");
   return reader(file);
 }
 

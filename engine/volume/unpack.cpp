@@ -37,13 +37,21 @@ class Inflater {
       const int status = inflate(&stream_, Z_NO_FLUSH);
       left_.remove_prefix(in - stream_.avail_in);
       written += out - stream_.avail_out;
-      ended_ = status == Z_STREAM_END;
+      if (status == Z_MEM_ERROR) throw MachineError("no memory to decompress " + file_.string());
+      if (status == Z_STREAM_END) {
+        // Members of a gzip file follow one another.
+        ended_ = !left_.starts_with("\x1f\x8b");
+        if (!ended_) inflateReset(&stream_);
+        continue;
+      }
       if (status == Z_BUF_ERROR || (status == Z_OK && in == 0)) break;  // it ends early
-      if (status != Z_OK && status != Z_STREAM_END)
-        throw InputError(file_, "", "its compressed data is damaged");
+      if (status != Z_OK) throw InputError(file_, "", "its compressed data is damaged");
     }
     return written;
   }
+
+  /// Whether the stream has ended, its checksum was right, and nothing follows.
+  bool complete() const { return ended_ && left_.empty(); }
 
  private:
   std::string_view left_;
@@ -65,6 +73,8 @@ std::string unpack(std::string_view packed, std::size_t size, const std::filesys
   char more = 0;
   if (inflater.fill(&more, 1) > 0)
     throw InputError(file, "", "its compressed data holds more than the " + promised);
+  if (!inflater.complete())
+    throw InputError(file, "", "its compressed data does not end with its checksum");
   return content;
 }
 

@@ -9,7 +9,7 @@ namespace condyle {
 
 /// The content of a gzip or zlib stream, which must have `size` bytes. A size that no stream of
 /// this length can have is refused before memory is requested. throws: InputError naming the file
-/// for a damaged stream, one that ends early, and one that holds more.
+/// for a damaged stream, one that ends early, and one that holds more or is followed by more.
 std::string unpack(std::string_view packed, std::size_t size, const std::filesystem::path& file);
 
 /// The first `size` bytes of the content, or all if there are fewer.

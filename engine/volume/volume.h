@@ -8,7 +8,7 @@
 
 namespace condyle {
 
-/// A lattice of values in space: Hounsfield units of a computed tomography.
+/// A lattice of values in space: Hounsfield units of a CT scan.
 struct Volume {
   std::array<int, 3> size = {0, 0, 0};                   // along each axis of the lattice
   Eigen::Vector3d spacing_mm = Eigen::Vector3d::Ones();  // between neighbours along each axis

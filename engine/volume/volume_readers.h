@@ -1,11 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "engine/volume/volume.h"
 
-// The formats of read_volume(). Only for this module.
+// The formats of read_volume(), with its errors. Only for this module.
 namespace condyle {
 
 Volume read_nrrd(const std::filesystem::path& file);

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <limits>
 #include <numbers>
+#include <sstream>
 
 #include "engine/core/error.h"
 
@@ -17,6 +18,7 @@ namespace condyle {
 namespace {
 
 constexpr std::size_t most_values = std::size_t{1} << 31;
+constexpr double least_spacing_mm = 1e-3, most_spacing_mm = 100;
 constexpr double most_shear = 1e-3;  // cosine between two axes: 0.06 degrees
 
 template <class Stored>
@@ -113,7 +115,9 @@ void set_geometry(Volume& volume, const Eigen::Matrix3d& steps, const Eigen::Vec
     throw InputError(file, item, "a number is not finite");
   for (int a = 0; a < 3; ++a) {
     volume.spacing_mm[a] = steps.col(a).norm();
-    if (!(volume.spacing_mm[a] > 0)) throw InputError(file, item, "a spacing is zero");
+    if (volume.spacing_mm[a] == 0) throw InputError(file, item, "a spacing is zero");
+    if (!(volume.spacing_mm[a] >= least_spacing_mm && volume.spacing_mm[a] <= most_spacing_mm))
+      throw InputError(file, item, "a spacing is not between 0.001 and 100 mm");
     volume.axes.col(a) = steps.col(a) / volume.spacing_mm[a];
   }
   for (int a = 0; a < 3; ++a) {
@@ -145,7 +149,7 @@ double number_in(const std::string& text, const std::filesystem::path& file,
   const char* end = text.data() + text.size();
   const auto result = std::from_chars(text.data(), end, value);
   if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value))
-    throw InputError(file, item, "\"" + text.substr(0, 60) + "\" is no number");
+    throw InputError(file, item, "\"" + text.substr(0, 60) + "\" is not a number");
   return value;
 }
 
@@ -154,8 +158,21 @@ int count_in(const std::string& text, const std::filesystem::path& file, const s
   const char* end = text.data() + text.size();
   const auto result = std::from_chars(text.data(), end, value);
   if (result.ec != std::errc() || result.ptr != end)
-    throw InputError(file, item, "\"" + text.substr(0, 60) + "\" is no whole number below 2^31");
+    throw InputError(file, item, "\"" + text.substr(0, 60) + "\" is not a whole number below 2^31");
   return value;
+}
+
+std::array<int, 3> sizes_in(const std::string& text, const std::filesystem::path& file,
+                            const std::string& item) {
+  std::array<int, 3> sizes;
+  std::istringstream words(text);
+  std::string word;
+  for (int& n : sizes) {
+    if (!(words >> word)) throw InputError(file, item, "has fewer than 3 numbers");
+    n = count_in(word, file, item);
+  }
+  if (words >> word) throw InputError(file, item, "has more than 3 numbers");
+  return sizes;
 }
 
 std::string trimmed(const std::string& text) {

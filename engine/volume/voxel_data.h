@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +13,7 @@
 namespace condyle {
 
 enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+/// Size of one value.
 std::size_t bytes_of(VoxelType type);
 
 /// How values are stored.
@@ -21,19 +23,20 @@ struct VoxelCoding {
   double slope = 1, intercept = 0;  // Hounsfield units = slope * value + intercept
 };
 
-/// Number of bytes of so many values. throws: InputError for a size below 2 along an axis, and for
-/// more than 2^31 values.
+/// Number of bytes of a volume of this size. throws: InputError for a size below 2 along an axis,
+/// and for more than 2^31 values.
 std::size_t byte_count(const std::array<int, 3>& size, VoxelType type,
                        const std::filesystem::path& file);
 
 /// throws: InputError unless the data has as many bytes as the header states.
 void check_length(std::size_t bytes, std::size_t promised, const std::filesystem::path& file);
 
-/// Values in whole Hounsfield units, limited to 16 bits; not-a-number is the least.
+/// Values in whole Hounsfield units, limited to 16 bits; NaN becomes -32768.
 std::vector<std::int16_t> decoded(std::string_view bytes, const VoxelCoding& coding);
 
 /// Takes axes, spacing and origin from the steps between neighbours, columns in LPS, mm.
-/// throws: InputError for steps that are zero, not finite or not perpendicular.
+/// throws: InputError for steps that are not perpendicular, and for spacings that are not finite or
+/// not between 0.001 and 100 mm.
 void set_geometry(Volume& volume, const Eigen::Matrix3d& steps, const Eigen::Vector3d& origin,
                   const std::filesystem::path& file, const std::string& item);
 
@@ -45,7 +48,12 @@ std::filesystem::path data_file_beside(const std::filesystem::path& header,
 /// The number that a text states. throws: InputError naming file and item.
 double number_in(const std::string& text, const std::filesystem::path& file,
                  const std::string& item);
+/// The same for a whole number below 2^31.
 int count_in(const std::string& text, const std::filesystem::path& file, const std::string& item);
+
+/// The three numbers of values that a text states. throws: InputError naming file and item.
+std::array<int, 3> sizes_in(const std::string& text, const std::filesystem::path& file,
+                            const std::string& item);
 
 /// Without blanks at both ends.
 std::string trimmed(const std::string& text);

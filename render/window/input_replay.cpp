@@ -1,6 +1,7 @@
 #include "render/window/input_replay.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -63,7 +64,7 @@ const DrawnItem* InputReplay::item(const std::string& name) const {
 double InputReplay::waited_s() const { return elapsed_s(std::max(began_, busy_at_)); }
 
 void InputReplay::settle() {
-  actions_.push_back([this](bool) { return elapsed_s(busy_at_) > settled_s; });
+  actions_.push_back([this](bool busy) { return !busy && waited_s() > settled_s; });
 }
 
 void InputReplay::await(const std::string& name) {

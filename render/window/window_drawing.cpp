@@ -162,6 +162,7 @@ void Window::State::interface_frame() {
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(moment.x), static_cast<float>(moment.y)};
   io.MouseDrawCursor = input.replayed;
+  if (input.replayed) io.MouseWheel = std::exchange(input.replayed_wheel, 0.f);
   for (std::size_t i = 0; i < moment.down.size(); ++i) io.MouseDown[i] = moment.down[i];
   if (!input.keys.empty()) {
     const WindowInput::KeyMoment next = input.keys.front();

@@ -11,6 +11,15 @@ namespace {
 constexpr double idle_wait_s = 0.25;
 constexpr double attentive_s = 0.5;  // after an event, results may arrive without wake()
 
+/// The key by the letter or sign that is printed on it, regardless of the layout.
+int printed_key(int key, int scancode) {
+  const char* name = glfwGetKeyName(key, scancode);
+  if (!name || name[0] == 0 || name[1] != 0) return key;
+  if (name[0] >= 'a' && name[0] <= 'z') return GLFW_KEY_A + (name[0] - 'a');
+  if (name[0] == '+' || name[0] == '=') return GLFW_KEY_EQUAL;
+  return name[0] == '-' ? GLFW_KEY_MINUS : key;
+}
+
 }  // namespace
 
 void Window::State::install_callbacks() {
@@ -50,8 +59,8 @@ void Window::State::install_key_callbacks() {
     });
     if (action == GLFW_RELEASE) return;
     catch_errors(w, [&](State& s) {
-      if (!s.input.replayed) return s.on_key(key, scancode, mods);
-      if (key == GLFW_KEY_ESCAPE) s.input.replayed = false;
+      if (!s.input.replayed) return s.on_key(printed_key(key, scancode), mods);
+      if (key == GLFW_KEY_ESCAPE) s.end_replay();
     });
   });
   glfwSetCharCallback(window, [](GLFWwindow* w, unsigned letter) {
@@ -61,18 +70,12 @@ void Window::State::install_key_callbacks() {
   });
 }
 
-void Window::State::on_key(int key, int scancode, int mods) {
+void Window::State::on_key(int key, int mods) {
   // Keys typed into a field are not commands; Esc, the F keys and Ctrl+Q are.
   const bool command_anyway = key == GLFW_KEY_ESCAPE ||
                               (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12) ||
                               (key == GLFW_KEY_Q && (mods & GLFW_MOD_CONTROL) != 0);
   if (ImGui::GetIO().WantTextInput && !command_anyway) return;
-  // Letters are taken as printed on the keys, regardless of the layout.
-  if (const char* name = glfwGetKeyName(key, scancode);
-      name && name[0] >= 'a' && name[0] <= 'z' && name[1] == 0)
-    key = GLFW_KEY_A + (name[0] - 'a');
-  else if (name && (name[0] == '+' || name[0] == '=' || name[0] == '-') && name[1] == 0)
-    key = name[0] == '-' ? GLFW_KEY_MINUS : GLFW_KEY_EQUAL;
   if (mods == 0 && choose_axis(key)) return;
   const auto command = command_of({.key = key,
                                    .shift = (mods & GLFW_MOD_SHIFT) != 0,

@@ -69,6 +69,7 @@ struct WindowInput {
   Eigen::Vector2d gripped_at = Eigen::Vector2d::Zero();  // where a handle of a cut was gripped
   std::vector<std::filesystem::path> dropped;            // onto the window, not taken yet
   bool replayed = false;                                 // the events are those of a replay
+  float replayed_wheel = 0;                              // clicks that the panels have not received
 
   bool waits() const { return mouse.waiting() || !keys.empty(); }
 };
@@ -137,7 +138,7 @@ struct Window::State {
   // window_input.cpp
   void install_callbacks();
   void install_key_callbacks();
-  void on_key(int key, int scancode, int mods);
+  void on_key(int key, int mods);
   void on_button(int button, bool down, int mods);
   void on_move(double x, double y);
   void on_wheel(double clicks);
@@ -146,7 +147,7 @@ struct Window::State {
   void note_size();
   void set_standard_view(std::string_view name);
   void wait_for_events();
-  /// The same for the user's mouse and keyboard, which a replay takes the place of.
+  /// catch_errors() for the user's mouse and keyboard, which are ignored during a replay.
   template <class Work>
   static void catch_user(GLFWwindow* w, Work&& handle) {
     catch_errors(w, [&](State& state) {
@@ -167,6 +168,7 @@ struct Window::State {
   void noticed() { pacing.noticed(); }
 
   // window_replay.cpp
+  void end_replay();
   void take_event(const input_event::Pointer& event) { on_move(event.x, event.y); }
   void take_event(const input_event::Button& event) { on_button(event.button, event.down, 0); }
   void take_event(const input_event::Wheel& event);

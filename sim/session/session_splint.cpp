@@ -51,7 +51,8 @@ std::shared_ptr<const SessionSplint> make_session_splint(const Operated& operate
   for (std::string line; std::getline(lines, line);)
     if (!line.empty()) made->findings.push_back(line);
   if (kind == SplintKind::intermediate)
-    made->findings.push_back("It lies between the arches after the first move, not as planned.");
+    made->findings.push_back(
+        "It fits the arches after the first move, not at their final positions.");
   made->findings.insert(made->findings.end(), splint.notes.begin(), splint.notes.end());
   return made;
 }

@@ -13,8 +13,10 @@ namespace {
 
 std::string with_folder(std::string text, const std::filesystem::path& folder) {
   const std::string variable = "{out}";
-  for (auto at = text.find(variable); at != std::string::npos; at = text.find(variable, at))
-    text.replace(at, variable.size(), folder.string());
+  const std::string name = folder.string();
+  for (auto at = text.find(variable); at != std::string::npos;
+       at = text.find(variable, at + name.size()))
+    text.replace(at, variable.size(), name);
   return text;
 }
 
@@ -32,8 +34,7 @@ int run_by_hand(const DemoOptions& options, const CommonOptions& common) {
   ViewSession session(window, settings);
   session.begin(by_hand_patient);
   if (common.prints_summary())
-    fmt::print(stderr,
-               "planning in the window; Esc ends the replay and leaves the window to you\n");
+    fmt::print(stderr, "planning in the window; Esc ends the replay and gives the window to you\n");
   InputReplay replay(window, parse_input_steps(text, "the list of steps"), out);
   for (bool replaying = true; window.open();) {
     session.turn();

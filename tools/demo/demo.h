@@ -14,7 +14,7 @@ struct DemoOptions {
   std::filesystem::path landmarks;  // of that skull; empty: estimated
 };
 
-/// One of the published cases that the program repeats on built-in patients.
+/// An operation that the program repeats on a built-in patient.
 struct Demo {
   std::string name, what;
   int (*run)(const DemoOptions& options, const CommonOptions& common);

@@ -2,7 +2,7 @@
 
 #include <GLFW/glfw3.h>
 
-#include <array>
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -45,7 +45,7 @@ InputStep parse_step(const std::string& line) {
   if (known == kinds().end()) {
     std::vector<std::string> names;
     for (const auto& [name, value] : kinds()) names.push_back(name);
-    throw InputError("\"" + kind + "\" is no step" + suggestion(kind, names));
+    throw InputError("\"" + kind + "\" is not a step" + suggestion(kind, names));
   }
   InputStep step{.kind = known->second};
   if (names_an_item(step.kind) && !(words >> step.item))
@@ -57,7 +57,11 @@ InputStep parse_step(const std::string& line) {
     throw InputError("\"" + kind + "\" needs " +
                      (step.kind == Kind::drag ? "two numbers, pixels to the right and down"
                                               : "a number of clicks"));
+  if (step.kind == Kind::wheel && (step.down != std::round(step.down) || std::abs(step.down) > 100))
+    throw InputError("\"wheel\" needs a whole number of at most 100 clicks");
   step.words = rest_of(words);
+  if (step.kind == Kind::picture && step.words.find('/') != std::string::npos)
+    throw InputError("a picture has a name without a folder, not \"" + step.words + "\"");
   if (has_words(step.kind) && step.words.empty())
     throw InputError("\"" + kind + "\" needs words after it");
   if (!has_words(step.kind) && !step.words.empty())
@@ -101,7 +105,7 @@ std::vector<unsigned> letters_of(const std::string& utf8) {
       whole = i < utf8.size() && (static_cast<unsigned char>(utf8[i]) & 0xc0) == 0x80;
       if (whole) letter = letter << 6 | (static_cast<unsigned char>(utf8[i++]) & 0x3f);
     }
-    letters.push_back(whole ? letter : 0xfffd);
+    letters.push_back(whole && letter <= 0x10ffff ? letter : 0xfffd);
   }
   return letters;
 }
@@ -130,7 +134,7 @@ NamedKey named_key(const std::string& name) {
   } else if (rest.size() == 1 && rest[0] >= '0' && rest[0] <= '9') {
     named.key = GLFW_KEY_0 + (rest[0] - '0');
   } else {
-    throw InputError("\"" + name + "\" is no key; keys are called a, 5, Return, Escape, ctrl+z");
+    throw InputError("\"" + name + "\" is not a key; keys are called a, 5, Return, Escape, ctrl+z");
   }
   return named;
 }

@@ -65,9 +65,12 @@ bool Panels::Drawing::part_menu_looks(std::size_t which) {
   const bool mirror = menu_row("mirror", mirrored ? "Hide the mirror image" : "Mirror image",
                                mirrored || (input.scene.has_midsagittal_plane && !is_face));
   if (mirror) view.look.mirrored = mirrored ? "" : input.scene.parts[which].name;
+  const bool other = !view.look.mirrored.empty() && !mirrored && !mirror;
+  const bool unmirror = other && menu_row("mirror-off", "Hide the other mirror image");
+  if (unmirror) view.look.mirrored.clear();
   const bool focus = menu_row("focus", "Focus");
   if (focus) commands.push_back(Command::focus_selected);
-  return hide || glass_chosen || alone || all || mirror || focus;
+  return hide || glass_chosen || alone || all || mirror || unmirror || focus;
 }
 
 bool Panels::Drawing::part_menu_tools(const PartMenu& menu) {

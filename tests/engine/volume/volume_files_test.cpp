@@ -19,7 +19,7 @@ namespace {
 
 constexpr int wide = 5, high = 4, deep = 3;
 
-/// -1024, -1000, ... so that order and sign count.
+/// From -1024 in uneven steps, so that order and sign count.
 std::vector<std::int16_t> some_values() {
   std::vector<std::int16_t> values;
   for (int i = 0; i < wide * high * deep; ++i)
@@ -101,7 +101,6 @@ std::string nifti_header(const NiftiChoice& choice = {}) {
     for (std::size_t i = 0; i < 12; ++i) put(280 + 4 * i, rows[i]);
   } else {
     put(252, std::int16_t{1});
-    // Columns -x, -z, -y of RAS: determinant 1 * ... is left to Eigen below.
     Eigen::Matrix3d R;
     R << -1, 0, 0, 0, 0, -1, 0, -1, 0;
     const double sense = R.determinant();
@@ -187,6 +186,32 @@ TEST_F(VolumeFiles, AreReadWithTheirGeometry) {
   }
 }
 
+TEST_F(VolumeFiles, AQuaternionMayTurnAndMirror) {
+  const Eigen::Quaterniond q =
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.9, Eigen::Vector3d(1, -2, 0.5).normalized()));
+  ASSERT_GT(q.w(), 0);
+  const Eigen::Vector3d steps(0.5, 0.6, 2), origin(10, -20, 30);
+  for (const double mirror : {1.0, -1.0}) {
+    std::string header = nifti_header({.by_rows = false});
+    const auto put = [&](std::size_t at, double value) {
+      const auto stored = static_cast<float>(value);
+      std::memcpy(header.data() + at, &stored, sizeof stored);
+    };
+    put(76, mirror);
+    for (int a = 0; a < 3; ++a) {
+      const auto place = 4 * static_cast<std::size_t>(a);
+      put(256 + place, q.vec()[a]);
+      put(268 + place, origin[a]);
+    }
+    const Volume volume = read("turned.nii", header + bytes_of_values<std::int16_t>());
+    // By the definition: RAS = R (i dx, j dy, qfac k dz) + offset.
+    const Eigen::Vector3d ras = q * Eigen::Vector3d(3 * 0.5, 2 * 0.6, mirror * 2) + origin;
+    EXPECT_LT((volume.position(3, 2, 1) - Eigen::Vector3d(-ras.x(), -ras.y(), ras.z())).norm(),
+              1e-5);
+    EXPECT_LT((volume.spacing_mm - steps).norm(), 1e-6);
+  }
+}
+
 TEST_F(VolumeFiles, DataMayLieBesideItsHeader) {
   write_file(folder_ / "values.raw", bytes_of_values<std::int16_t>());
   expect_the_lattice(read("a.nhdr", replaced(nrrd_header, "\n\n", "\ndata file: values.raw\n")));
@@ -236,7 +261,7 @@ TEST_F(VolumeFiles, GeometryIsNeverTakenFromADefault) {
   };
   EXPECT_EQ(directions("(0,0,0) (0,0,-0.6) (0,2,0)"), "space directions: a spacing is zero");
   EXPECT_EQ(directions("(0.5,0,0) none (0,2,0)"), "space directions: an axis has none");
-  EXPECT_EQ(directions("(0.5,0,0) (0,nan,0) (0,2,0)"), "space directions: \"nan\" is no number");
+  EXPECT_EQ(directions("(0.5,0,0) (0,nan,0) (0,2,0)"), "space directions: \"nan\" is not a number");
   EXPECT_EQ(directions("(0.5,0,0) (0,0.6,0) (0,0.67,2)"),
             "space directions: the axes are sheared by 18.5 degrees, as by a tilted gantry: "
             "resample the scan");
@@ -245,13 +270,36 @@ TEST_F(VolumeFiles, GeometryIsNeverTakenFromADefault) {
   EXPECT_EQ(
       refusal("b.mha", replaced(meta_header, "TransformMatrix = 1 0 0 0 0 -1 0 1 0\n", "") + raw),
       "TransformMatrix: is missing in the header");
-  EXPECT_EQ(refusal("c.mha", replaced(meta_header, "0.5 0.6 2", "0.5 0 2") + raw),
-            "TransformMatrix: a spacing is zero");
+  for (const char* spacing : {"0.5 0 2", "0.5 -0.6 2"})
+    EXPECT_EQ(refusal("c.mha", replaced(meta_header, "0.5 0.6 2", spacing) + raw),
+              "ElementSpacing: is not positive along each axis");
+  EXPECT_EQ(refusal("d.mha", replaced(meta_header, "1 0 0 0 0 -1", "2 0 0 0 0 -1") + raw),
+            "TransformMatrix: a direction does not have length 1");
+  EXPECT_EQ(refusal("e.mha", replaced(meta_header, "MSB = False", "MSB = T") + raw),
+            "BinaryDataByteOrderMSB: \"T\" is neither True nor False");
+  EXPECT_EQ(refusal("f.mha", replaced(meta_header, "BinaryDataByteOrderMSB = False\n", "") + raw),
+            "BinaryDataByteOrderMSB: is missing in the header");
+  EXPECT_EQ(refusal("c.nrrd", replaced(nrrd_header, "kinds: domain domain domain",
+                                       "space units: \"cm\" \"cm\" \"cm\"") +
+                                  raw),
+            "space units: \"cm\" \"cm\" \"cm\" is not read; it must be \"mm\" \"mm\" \"mm\"");
+  EXPECT_EQ(directions("(0.5,0,0) (0,0.6,0) (0,0,2) (1,0,0)"),
+            "space directions: has more than 3 vectors");
+  EXPECT_EQ(directions("(0.5,0,0) (0,0.6,0) (0,0,1e200)"),
+            "space directions: a spacing is not between 0.001 and 100 mm");
+  EXPECT_EQ(directions("(0. 5,0,0) (0,0.6,0) (0,0,2)"),
+            "space directions: \"0. 5\" is not a number");
   std::string unset = nifti_header() + raw;
   unset[254] = 0;
   EXPECT_EQ(refusal("a.nii", unset),
             "sform_code, qform_code: neither is set, so that the directions of the axes are "
             "unknown");
+  unset[254] = 4;
+  EXPECT_EQ(refusal("b.nii", unset),
+            "sform_code, qform_code: the volume is aligned to a template, not to the patient");
+  std::string mirrored = nifti_header({.by_rows = false}) + raw;
+  mirrored[83] = static_cast<char>(mirrored[83] | 0x80);  // the sign of the first spacing
+  EXPECT_EQ(refusal("c.nii", mirrored), "pixdim: is not positive along each axis");
 }
 
 TEST_F(VolumeFiles, PromisesAreComparedWithTheDataBeforeMemoryIsRequested) {
@@ -273,7 +321,13 @@ TEST_F(VolumeFiles, PromisesAreComparedWithTheDataBeforeMemoryIsRequested) {
   EXPECT_EQ(refusal("e.nrrd", gzip + packed(raw, 31).substr(0, 40)),
             "its compressed data ends before the 120 bytes that its header states");
   EXPECT_EQ(refusal("f.nrrd", gzip + "no stream"), "its compressed data is damaged");
-  // 20 GiB out of a file of one KiB.
+  const std::string stream = packed(raw, 31);
+  const std::string no_end = "its compressed data does not end with its checksum";
+  EXPECT_EQ(refusal("j.nrrd", gzip + stream.substr(0, stream.size() - 4)), no_end);
+  EXPECT_EQ(refusal("k.nrrd", gzip + stream + "more"), no_end);
+  // Members that follow one another are one content.
+  expect_the_lattice(read("l.nrrd", gzip + packed(half, 31) + packed(raw.substr(half.size()), 31)));
+  // 4 GiB out of a small file.
   const std::string vast = replaced(gzip, "sizes: 5 4 3", "sizes: 2048 1024 1024");
   EXPECT_EQ(refusal("g.nrrd", vast + packed(std::string(1024, 'x'), 31)),
             "its compressed data is too short for the 4294967296 bytes that its header states");

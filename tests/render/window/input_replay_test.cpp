@@ -4,6 +4,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+
 #include "engine/core/error.h"
 #include "tests/render/window/panel_stage.h"
 #include "tests/support/display.h"
@@ -92,6 +97,43 @@ TEST_F(Replayed, EscEndsItAndTheUsersOwnInputIsIgnoredBefore) {
   EXPECT_TRUE(xdotool({"key", "m"}));
   for (int i = 0; i < 20; ++i) turn_window();
   EXPECT_EQ(window_->view().tool, Tool::move);
+}
+
+TEST_F(Replayed, EscInADragReleasesTheButton) {
+  ASSERT_TRUE(perform("key m"));
+  InputReplay replay(*window_, parse_input_steps("drag handle:S 0 -60", "list"), folder_);
+  const auto moved = [&] {
+    const auto hand = window_->view().hands.at(mandible_body);
+    return hand ? hand->t.norm() : 0.0;
+  };
+  for (int turn = 0; turn < 2000 && moved() == 0 && replay.turn(false); ++turn) turn_window();
+  ASSERT_GT(moved(), 0);
+  EXPECT_TRUE(xdotool({"key", "Escape"}));
+  for (int i = 0; i < 20; ++i) turn_window();
+  EXPECT_FALSE(replay.turn(false));
+  const double there = moved();
+  EXPECT_TRUE(xdotool({"mousemove", "700", "200", "mousemove", "500", "500"}));
+  for (int i = 0; i < 20; ++i) turn_window();
+  EXPECT_EQ(moved(), there) << "the user's pointer drags nothing";
+}
+
+TEST_F(Replayed, WorkThatBeginsLaterIsAwaited) {
+  InputReplay replay(*window_, parse_input_steps("key m\nkey m", "list"), folder_);
+  const auto start = std::chrono::steady_clock::now();
+  const auto elapsed_s = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  // The first key opens the tool; work begins 0.3 s later and takes 2 s.
+  double opened_s = -1, closed_s = -1;
+  while (closed_s < 0 && elapsed_s() < 60) {
+    const bool busy = opened_s >= 0 && elapsed_s() > opened_s + 0.3 && elapsed_s() < opened_s + 2.3;
+    replay.turn(busy);
+    turn_window();
+    const bool open = window_->view().tool == Tool::move;
+    if (open && opened_s < 0) opened_s = elapsed_s();
+    if (!open && opened_s >= 0) closed_s = elapsed_s();
+  }
+  EXPECT_GT(closed_s, opened_s + 2.3);
 }
 
 }  // namespace

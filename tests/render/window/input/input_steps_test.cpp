@@ -44,15 +44,19 @@ TEST(InputSteps, AWrongStepIsRefusedWithItsLine) {
     return "accepted";
   };
   EXPECT_EQ(words_of("clik tab:Plan"),
-            "my.steps, line 2: \"clik\" is no step (did you mean \"click\"?)");
+            "my.steps, line 2: \"clik\" is not a step (did you mean \"click\"?)");
   EXPECT_EQ(words_of("click"), "my.steps, line 2: \"click\" needs the name of an item");
   EXPECT_EQ(words_of("choose plan-move"), "my.steps, line 2: \"choose\" needs words after it");
   EXPECT_EQ(words_of("drag handle:P 3"),
             "my.steps, line 2: \"drag\" needs two numbers, pixels to the right and down");
   EXPECT_EQ(words_of("wheel list five"), "my.steps, line 2: \"wheel\" needs a number of clicks");
+  EXPECT_EQ(words_of("wheel list 1e9"),
+            "my.steps, line 2: \"wheel\" needs a whole number of at most 100 clicks");
+  EXPECT_EQ(words_of("picture ../x"),
+            "my.steps, line 2: a picture has a name without a folder, not \"../x\"");
   EXPECT_EQ(words_of("click tab:Plan twice"),
             "my.steps, line 2: \"click\" does not take \"twice\"");
-  EXPECT_EQ(words_of("key hyper+q").rfind("my.steps, line 2: \"hyper+q\" is no key", 0), 0u);
+  EXPECT_EQ(words_of("key hyper+q").rfind("my.steps, line 2: \"hyper+q\" is not a key", 0), 0u);
 }
 
 TEST(InputSteps, TextsAreUnicode) {
