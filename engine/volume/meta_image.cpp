@@ -18,19 +18,15 @@ namespace condyle {
 namespace {
 
 namespace fs = std::filesystem;
-using Fields = std::map<std::string, std::string>;
-
-constexpr std::size_t longest_meta_header = std::size_t{1} << 16;
-
 /// The fields of the header by their names in lower case, the last one naming the data; `end` is
 /// where data in the same file begins.
-Fields meta_fields(const std::string& content, const fs::path& file, std::size_t& end) {
-  Fields fields;
+HeaderFields meta_fields(const std::string& content, const fs::path& file, std::size_t& end) {
+  HeaderFields fields;
   end = 0;
   while (!fields.contains("elementdatafile")) {
     const auto stop = content.find('\n', end);
     if (end >= content.size() ||
-        (stop == std::string::npos ? content.size() : stop) > longest_meta_header)
+        (stop == std::string::npos ? content.size() : stop) > longest_header)
       throw InputError(file, "ElementDataFile", "is missing in the header");
     const std::string line = trimmed(content.substr(end, stop - end));
     end = stop == std::string::npos ? content.size() : stop + 1;
@@ -41,14 +37,6 @@ Fields meta_fields(const std::string& content, const fs::path& file, std::size_t
     fields[lower_case(trimmed(line.substr(0, equal)))] = trimmed(line.substr(equal + 1));
   }
   return fields;
-}
-
-/// The value of the first name that is there; `names` in lower case, the usual one first.
-const std::string& required(const Fields& fields, std::initializer_list<const char*> names,
-                            const char* shown, const fs::path& file) {
-  for (const char* name : names)
-    if (const auto found = fields.find(name); found != fields.end()) return found->second;
-  throw InputError(file, shown, "is missing in the header");
 }
 
 template <std::size_t count>
@@ -68,8 +56,8 @@ std::array<double, count> numbers_in(const std::string& text, const fs::path& fi
 }
 
 /// Whether the first field that is there says so; none: `otherwise`.
-bool is_true(const Fields& fields, std::initializer_list<const char*> names, const char* shown,
-             std::optional<bool> otherwise, const fs::path& file) {
+bool is_true(const HeaderFields& fields, std::initializer_list<const char*> names,
+             const char* shown, std::optional<bool> otherwise, const fs::path& file) {
   for (const char* name : names)
     if (const auto found = fields.find(name); found != fields.end()) {
       const std::string word = lower_case(found->second);
@@ -98,7 +86,7 @@ VoxelType meta_type(const std::string& text, const fs::path& file) {
 Volume read_meta_image(const fs::path& file) {
   std::string content = read_file(file);
   std::size_t begin = 0;
-  const Fields fields = meta_fields(content, file, begin);
+  const HeaderFields fields = meta_fields(content, file, begin);
   if (const std::string& dimension = required(fields, {"ndims"}, "NDims", file);
       count_in(dimension, file, "NDims") != 3)
     throw InputError(file, "NDims", "is " + dimension + "; a volume has 3");

@@ -14,20 +14,16 @@ namespace condyle {
 namespace {
 
 namespace fs = std::filesystem;
-using Fields = std::map<std::string, std::string>;
-
-constexpr std::size_t longest_nrrd_header = std::size_t{1} << 16;
-
 /// The fields of the header by their names in lower case without blanks; `end` is where the data
 /// begins.
-Fields nrrd_fields(const std::string& content, const fs::path& file, std::size_t& end) {
-  Fields fields;
+HeaderFields nrrd_fields(const std::string& content, const fs::path& file, std::size_t& end) {
+  HeaderFields fields;
   end = 0;
   for (bool first = true;; first = false) {
     const auto stop = content.find('\n', end);
-    if (stop == std::string::npos || stop > longest_nrrd_header) {
+    if (stop == std::string::npos || stop > longest_header) {
       // A header without data may end with its last line.
-      if (first || stop != std::string::npos || content.size() > longest_nrrd_header)
+      if (first || stop != std::string::npos || content.size() > longest_header)
         throw InputError(file, "", "its header does not end");
     }
     const std::string line = trimmed(content.substr(end, stop - end));
@@ -50,13 +46,6 @@ Fields nrrd_fields(const std::string& content, const fs::path& file, std::size_t
     if (end == content.size()) break;
   }
   return fields;
-}
-
-const std::string& required(const Fields& fields, const char* name, const char* shown,
-                            const fs::path& file) {
-  const auto found = fields.find(name);
-  if (found == fields.end()) throw InputError(file, shown, "is missing in the header");
-  return found->second;
 }
 
 VoxelType nrrd_type(const std::string& text, const fs::path& file) {
@@ -123,14 +112,14 @@ Eigen::Vector3d to_lps(const std::string& space, const fs::path& file) {
                        "right-anterior-superior or left-anterior-superior");
 }
 
-void read_geometry(const Fields& fields, const fs::path& file, Volume& volume) {
-  const Eigen::Vector3d sense = to_lps(required(fields, "space", "space", file), file);
+void read_geometry(const HeaderFields& fields, const fs::path& file, Volume& volume) {
+  const Eigen::Vector3d sense = to_lps(required(fields, {"space"}, "space", file), file);
   // By definition lengths have the unit that is stated here.
   if (const auto units = fields.find("spaceunits");
       units != fields.end() && units->second != R"("mm" "mm" "mm")")
     throw InputError(file, "space units",
                      units->second.substr(0, 60) + " is not read; it must be \"mm\" \"mm\" \"mm\"");
-  std::istringstream words(required(fields, "spacedirections", "space directions", file));
+  std::istringstream words(required(fields, {"spacedirections"}, "space directions", file));
   Eigen::Matrix3d steps;
   std::string word;
   for (int a = 0; a < 3; ++a) {
@@ -143,7 +132,7 @@ void read_geometry(const Fields& fields, const fs::path& file, Volume& volume) {
     steps.col(a) = sense.cwiseProduct(vector_in(vector, file, "space directions"));
   }
   if (words >> word) throw InputError(file, "space directions", "has more than 3 vectors");
-  const std::string& origin = required(fields, "spaceorigin", "space origin", file);
+  const std::string& origin = required(fields, {"spaceorigin"}, "space origin", file);
   set_geometry(volume, steps, sense.cwiseProduct(vector_in(origin, file, "space origin")), file,
                "space directions");
 }
@@ -153,16 +142,16 @@ void read_geometry(const Fields& fields, const fs::path& file, Volume& volume) {
 Volume read_nrrd(const fs::path& file) {
   std::string content = read_file(file);
   std::size_t begin = 0;
-  const Fields fields = nrrd_fields(content, file, begin);
-  if (const std::string& dimension = required(fields, "dimension", "dimension", file);
+  const HeaderFields fields = nrrd_fields(content, file, begin);
+  if (const std::string& dimension = required(fields, {"dimension"}, "dimension", file);
       count_in(dimension, file, "dimension") != 3)
     throw InputError(file, "dimension", "is " + dimension + "; a volume has 3");
   Volume volume;
-  volume.size = sizes_in(required(fields, "sizes", "sizes", file), file, "sizes");
+  volume.size = sizes_in(required(fields, {"sizes"}, "sizes", file), file, "sizes");
   VoxelCoding coding;
-  coding.type = nrrd_type(required(fields, "type", "type", file), file);
+  coding.type = nrrd_type(required(fields, {"type"}, "type", file), file);
   if (bytes_of(coding.type) > 1) {
-    const std::string endian = lower_case(required(fields, "endian", "endian", file));
+    const std::string endian = lower_case(required(fields, {"endian"}, "endian", file));
     if (endian != "little" && endian != "big")
       throw InputError(file, "endian", "\"" + endian + "\" is neither little nor big");
     coding.big_endian = endian == "big";
@@ -172,7 +161,7 @@ Volume read_nrrd(const fs::path& file) {
       throw InputError(file, skip, "\"" + found->second + "\": skipped data is not read");
   read_geometry(fields, file, volume);
   const std::size_t promised = byte_count(volume.size, coding.type, file);
-  const std::string encoding = lower_case(required(fields, "encoding", "encoding", file));
+  const std::string encoding = lower_case(required(fields, {"encoding"}, "encoding", file));
   if (encoding != "raw" && encoding != "gzip" && encoding != "gz")
     throw InputError(file, "encoding", "\"" + encoding + "\" is not read; raw and gzip are");
   fs::path source = file;

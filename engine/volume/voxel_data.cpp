@@ -10,6 +10,7 @@
 #include <cstring>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <sstream>
 
 #include "engine/core/error.h"
@@ -38,6 +39,16 @@ void decode(std::string_view bytes, const VoxelCoding& coding, std::vector<std::
   }
 }
 
+/// The number that the whole text states; none for another text.
+template <class Number>
+std::optional<Number> parsed(const std::string& text) {
+  Number value = 0;
+  const char* end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, value);
+  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  return value;
+}
+
 }  // namespace
 
 std::size_t bytes_of(VoxelType type) {
@@ -53,6 +64,13 @@ std::size_t bytes_of(VoxelType type) {
     default:
       return 4;
   }
+}
+
+const std::string& required(const HeaderFields& fields, std::initializer_list<const char*> names,
+                            const char* shown, const std::filesystem::path& file) {
+  for (const char* name : names)
+    if (const auto found = fields.find(name); found != fields.end()) return found->second;
+  throw InputError(file, shown, "is missing in the header");
 }
 
 std::size_t byte_count(const std::array<int, 3>& size, VoxelType type,
@@ -145,21 +163,17 @@ std::filesystem::path data_file_beside(const std::filesystem::path& header,
 
 double number_in(const std::string& text, const std::filesystem::path& file,
                  const std::string& item) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value))
+  const auto value = parsed<double>(text);
+  if (!value || !std::isfinite(*value))
     throw InputError(file, item, "\"" + text.substr(0, 60) + "\" is not a number");
-  return value;
+  return *value;
 }
 
 int count_in(const std::string& text, const std::filesystem::path& file, const std::string& item) {
-  int value = 0;
-  const char* end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end)
+  const auto value = parsed<int>(text);
+  if (!value)
     throw InputError(file, item, "\"" + text.substr(0, 60) + "\" is not a whole number below 2^31");
-  return value;
+  return *value;
 }
 
 std::array<int, 3> sizes_in(const std::string& text, const std::filesystem::path& file,

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +24,15 @@ struct VoxelCoding {
   bool big_endian = false;
   double slope = 1, intercept = 0;  // Hounsfield units = slope * value + intercept
 };
+
+/// The fields of a text header by their names in lower case.
+using HeaderFields = std::map<std::string, std::string>;
+constexpr std::size_t longest_header = std::size_t{1} << 16;  // bytes
+
+/// The value of the first of the names that is there; `shown`: the usual one, as it is written.
+/// throws: InputError if none is there.
+const std::string& required(const HeaderFields& fields, std::initializer_list<const char*> names,
+                            const char* shown, const std::filesystem::path& file);
 
 /// Number of bytes of a volume of this size. throws: InputError for a size below 2 along an axis,
 /// and for more than 2^31 values.
