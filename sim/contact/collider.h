@@ -48,6 +48,9 @@ struct ColliderPair {
   PairPolicy policy = PairPolicy::forbidden;
   bool apart_at_rest = true;
   double rest_depth_mm = 0;
+  // false for two segments that overlap as planned: what overlaps is trimmed in surgery, so it is
+  // measured but does not stop a move
+  bool obstructs = true;
   double min_distance_mm = 0;  // distance that a guided pair keeps: its gap, or less where it was
                                // less at rest
 };

@@ -6,10 +6,10 @@
 
 namespace condyle {
 
-std::vector<std::size_t> concerned_pairs(const ContactModel::State& state, const BodyMove& move) {
+std::vector<std::size_t> obstructing_pairs(const ContactModel::State& state, const BodyMove& move) {
   std::vector<std::size_t> list;
   for (std::size_t i = 0; i < state.count(); ++i)
-    if (move.concerns(state.pair_or_complement(i))) list.push_back(i);
+    if (move.obstructed_by(state.pair_or_complement(i))) list.push_back(i);
   return list;
 }
 
@@ -55,7 +55,7 @@ BodyMove make_move(const ContactModel::State& state, BodyPoses at, BodyId body,
 
 MoveResult stop(const ContactModel::State& state, const BodyMove& move, ContactSet& set, bool exact,
                 int threads) {
-  const auto pairs = concerned_pairs(state, move);
+  const auto pairs = obstructing_pairs(state, move);
   const auto query_pairs = [&](const Pose& X_CD, const ContactSet& warm) {
     std::vector<PairContact> found(pairs.size());
     parallel_for(pairs.size(), threads, [&](std::size_t k) {

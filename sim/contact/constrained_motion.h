@@ -19,8 +19,9 @@ struct BodyMove {
 
   const Pose& from() const { return at[body]; }
   BodyPoses poses_at(const Pose& X_CD) const;
-  bool concerns(const ColliderPair& pair) const {
-    return moves[index_of(pair.a->body)] != moves[index_of(pair.b->body)];
+  /// Whether the pair has one moving side, and may stop it.
+  bool obstructed_by(const ColliderPair& pair) const {
+    return pair.obstructs && moves[index_of(pair.a->body)] != moves[index_of(pair.b->body)];
   }
 };
 
@@ -33,7 +34,7 @@ struct MoveResult {
 };
 
 /// Straight motion up to the first contact that is deeper than at rest or at the start. `set` is
-/// taken at the start if `exact`, else near it; on return the pairs concerned are those at the end.
+/// taken at the start if `exact`, else near it; on return the pairs that may stop the move are those at the end.
 /// Guards are not included, before or after.
 MoveResult stop(const ContactModel::State& state, const BodyMove& move, ContactSet& set, bool exact,
                 int threads);
@@ -43,8 +44,8 @@ MoveResult stop(const ContactModel::State& state, const BodyMove& move, ContactS
 MoveResult slide_move(const ContactModel::State& state, const BodyMove& move, ContactSet& set,
                       bool exact, bool bound_far, int threads);
 
-/// Pairs and complements with one moving side.
-std::vector<std::size_t> concerned_pairs(const ContactModel::State& state, const BodyMove& move);
+/// Pairs and complements that may stop the move.
+std::vector<std::size_t> obstructing_pairs(const ContactModel::State& state, const BodyMove& move);
 
 /// The swept pair from the move's start to a pose.
 SweptPair swept_pair(const ContactModel::State& state, const BodyMove& move,

@@ -56,7 +56,7 @@ void build_pairs(ContactModel::State& state, const Case& patient) {
       const auto rule = rule_for(patient, state.settings.pair_rules,
                                  patient.parts[static_cast<std::size_t>(a->part)],
                                  patient.parts[static_cast<std::size_t>(b->part)]);
-      state.pairs.push_back({a.get(), b.get(), rule.policy, true, 0, 0});
+      state.pairs.push_back({.a = a.get(), .b = b.get(), .policy = rule.policy});
       state.rules.push_back(rule);
     }
 }
@@ -79,6 +79,25 @@ std::string deep_start_note(const ColliderPair& pair, const Case& patient, doubl
                      shift.x(), shift.y(), shift.z());
 }
 
+PairContact carried(PairContact found, const Pose& X) {
+  for (ContactPoint& contact : found.contacts) {
+    contact.point = X * contact.point;
+    contact.normal = X.R * contact.normal;
+  }
+  found.witness_a = X * found.witness_a;
+  found.witness_b = X * found.witness_b;
+  return found;
+}
+
+/// Whether the two are segments of one bone that overlap at the planned positions.
+bool is_trimmed(const ColliderPair& pair, const Case& patient) {
+  const auto grafted = [&](const Collider& one) {
+    return patient.parts[static_cast<std::size_t>(one.part)].role == Role::transplant;
+  };
+  return pair.policy == PairPolicy::cut_face && pair.rest_depth_mm > deep_mm && !grafted(*pair.a) &&
+         !grafted(*pair.b);
+}
+
 /// Overlap at rest becomes the pairs' baseline; a complement monitors the surface outside it.
 void find_baseline(ContactModel::State& state, const Case& patient) {
   const BodyPoses at_rest = completed(state.bodies, {});
@@ -91,6 +110,7 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
     pair.rest_depth_mm = rest.rest_depth_mm = rest.depth_mm;
     if (pair.policy == PairPolicy::guided)
       pair.min_distance_mm = std::min(state.rules[i].gap_mm, rest.distance_mm);
+    pair.obstructs = !is_trimmed(pair, patient);
     if (!rest.touching) continue;
     const TriMesh& mesh = patient.parts[static_cast<std::size_t>(rest.part_b)].mesh;
     const bool mixed = state.in_joint(pair) && rest.depth_mm > mixed_bones_mm;
@@ -114,7 +134,10 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
                  std::make_shared<const ColliderShape>(away)}));
     state.colliders.back()->whole = &pair.b->solid;
     state.colliders.back()->part_tree = std::make_unique<const TriangleTree>(away);
-    const ColliderPair complement{pair.a, state.colliders.back().get(), pair.policy, true, 0, 0};
+    const ColliderPair complement{.a = pair.a,
+                                  .b = state.colliders.back().get(),
+                                  .policy = pair.policy,
+                                  .obstructs = pair.obstructs};
     if (query_pair(complement, {}, {}, {}, {.need_depth = false}).touching)
       continue;  // entirely inside at rest: nothing remains
     state.complements.push_back(complement);
@@ -128,6 +151,7 @@ void find_baseline(ContactModel::State& state, const Case& patient) {
     state.broadphase.emplace(surfaces);
   }
   state.rest = state.query_all(at_rest, &state.rest, build_threads);
+  state.rest_known = true;
 }
 
 }  // namespace
@@ -165,11 +189,13 @@ ContactSet ContactModel::State::query_all(const BodyPoses& at, const ContactSet*
   const std::vector<bool> far = far_pairs(at);
   parallel_for(count(), threads, [&](std::size_t i) {
     const ColliderPair& pair = pair_or_complement(i);
-    if (far[i])
+    const Pose &X_CA = at[pair.a->body], &X_CB = at[pair.b->body];
+    if (rest_known && bit_identical(X_CA, X_CB))
+      slot(set, i) = carried(slot(rest, i), X_CA);
+    else if (far[i])
       slot(set, i) = far_apart(pair, settings.far_mm);
     else
-      slot(set, i) =
-          query_pair(pair, at[pair.a->body], at[pair.b->body], start(previous, i), full_query(i));
+      slot(set, i) = query_pair(pair, X_CA, X_CB, start(previous, i), full_query(i));
   });
   return set;
 }
@@ -248,18 +274,8 @@ bool taken_at(const ContactModel::State& state, const ContactSet* set, const Bod
 /// one from this pose.
 bool is_one_joint(const ContactModel::State& state) { return state.bodies.size() == 2; }
 
-PairContact carried(PairContact found, const Pose& X) {
-  for (ContactPoint& contact : found.contacts) {
-    contact.point = X * contact.point;
-    contact.normal = X.R * contact.normal;
-  }
-  found.witness_a = X * found.witness_a;
-  found.witness_b = X * found.witness_b;
-  return found;
-}
-
-/// The pairs whose bodies were moved as one: a move does not measure them, and their answers stay
-/// behind.
+/// The pairs that a move changes but does not measure: of bodies that were moved as one, whose
+/// answers stay behind, and of segments that overlap as planned.
 class CarriedPairs {
  public:
   explicit CarriedPairs(const ContactModel::State& state)
@@ -269,18 +285,21 @@ class CarriedPairs {
     if (bit_identical(move.from(), reached[move.body])) return;
     for (std::size_t i = 0; i < carried_.size(); ++i) {
       const ColliderPair& pair = state_.pair_or_complement(i);
-      if (move.concerns(pair))
+      if (move.obstructed_by(pair))
         carried_[i] = false;
-      else if (move.moves[index_of(pair.a->body)])
+      else if (move.moves[index_of(pair.a->body)] || move.moves[index_of(pair.b->body)])
         carried_[i] = true;
     }
   }
 
   /// Brings the answers to the poses, for all of which `set.at` stands. Where two bodies lie as at
   /// rest, so does their answer, whatever came between.
-  void bring_along(ContactSet& set) const {
-    for (std::size_t i = 0; i < carried_.size(); ++i) {
-      if (!carried_[i]) continue;
+  void bring_along(ContactSet& set, int threads) const {
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < carried_.size(); ++i)
+      if (carried_[i]) all.push_back(i);
+    parallel_for(all.size(), threads, [&](std::size_t k) {
+      const std::size_t i = all[k];
       const ColliderPair& pair = state_.pair_or_complement(i);
       const Pose &X_CA = set.at[pair.a->body], &X_CB = set.at[pair.b->body];
       PairContact& found = state_.slot(set, i);
@@ -288,7 +307,7 @@ class CarriedPairs {
                   ? carried(state_.slot(state_.rest, i), X_CA)
                   : query_pair(pair, X_CA, X_CB, {found.triangle_a, found.triangle_b},
                                state_.full_query(i));
-    }
+    });
   }
 
  private:
@@ -314,7 +333,7 @@ ContactModel::Slide ContactModel::stop_at_contact(const BodyPoses& from, const P
   set.at = move.poses_at(reached.X_CD);
   CarriedPairs pairs(state);
   pairs.note(move, set.at);
-  pairs.bring_along(set);
+  pairs.bring_along(set, threads);
   BodyPoses there = set.at;
   return {std::move(there), reached.stopped, state.with_complements(std::move(set))};
 }
@@ -356,7 +375,7 @@ ContactModel::Slide ContactModel::slide(const BodyPoses& from, std::span<const P
   }
   if (!bound_far) state.measure_bounds(at, set);
   set.at = at;
-  pairs.bring_along(set);
+  pairs.bring_along(set, threads);
   result.contacts = state.with_complements(std::move(set));
   return result;
 }

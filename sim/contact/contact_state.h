@@ -24,6 +24,7 @@ struct ContactModel::State {
   std::optional<Broadphase> broadphase;    // of the colliders, where bodies roam
   std::unique_ptr<Slider> slider;
   ContactSet rest;
+  bool rest_known = false;  // bodies that lie as at rest to each other need no query
   std::vector<bool> mixed;  // per body: overlaps its joint at rest more than in one patient
   std::vector<std::string> notes;
 

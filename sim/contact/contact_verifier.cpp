@@ -25,7 +25,7 @@ ContactVerifier::ContactVerifier(const ContactModel::State& state, const BodyMov
       set_(set),
       bound_far_(bound_far),
       threads_(threads),
-      pairs_(concerned_pairs(state, move)) {
+      pairs_(obstructing_pairs(state, move)) {
   for (const std::size_t i : pairs_) {
     const ColliderPair& pair = state_.pair_or_complement(i);
     deep_at_rest_ |= pair.rest_depth_mm > deep_mm;

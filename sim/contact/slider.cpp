@@ -121,7 +121,7 @@ std::unique_ptr<SlidingContact> Slider::make_contact(BodyId body) const {
   }
   std::vector<SlidePair> pairs;
   for (const auto& pair : state_.pairs) {
-    if (!move.concerns(pair) || pair.min_distance_mm > widest_gap_mm) continue;
+    if (!move.obstructed_by(pair) || pair.min_distance_mm > widest_gap_mm) continue;
     int a = place[static_cast<std::size_t>(pair.a->number)],
         b = place[static_cast<std::size_t>(pair.b->number)];
     if (move.moves[index_of(pair.a->body)]) std::swap(a, b);
@@ -140,7 +140,7 @@ std::optional<Pose> Slider::find_outside(BodyId body) const {
   Eigen::Vector3d out = Eigen::Vector3d::Zero();  // sum of the exit directions
   for (std::size_t i = 0; i < state_.pairs.size(); ++i) {
     const ColliderPair& pair = state_.pairs[i];
-    if (!move.concerns(pair) || pair.rest_depth_mm <= deep_mm) continue;
+    if (!move.obstructed_by(pair) || pair.rest_depth_mm <= deep_mm) continue;
     const double sign = move.moves[index_of(pair.a->body)] ? -1 : 1;
     for (const ContactPoint& contact : state_.rest.pairs[i].contacts) out += sign * contact.normal;
   }
@@ -171,7 +171,7 @@ bool Slider::covers(const BodyMove& move) const {
     at.push_back(move.poses_at(
         interpolate(move.from(), move.target, static_cast<double>(i) / steps, pivot(move.body))));
   return std::none_of(state_.pairs.begin(), state_.pairs.end(), [&](const ColliderPair& pair) {
-    if (!move.concerns(pair)) return false;
+    if (!move.obstructed_by(pair)) return false;
     const FieldCoverage &a = *of[static_cast<std::size_t>(pair.a->number)],
                         &b = *of[static_cast<std::size_t>(pair.b->number)];
     if ((a.thin && b.thin) || pair.min_distance_mm > widest_gap_mm) return true;

@@ -106,5 +106,72 @@ TEST(RestOverlap, CondylesOfARealJawPushedUpAreAsDeepAsIfNothingOverlapped) {
               0.01 * apart.max_penetration_mm());
 }
 
+/// A segment of the mandible that overlaps it by 1 mm as planned, and a maxilla 3 mm above both.
+Case with_planned_overlap() {
+  Case patient = test::two_bones(test::box({-40, -40, 13}, {40, 40, 30}),
+                                 test::box({-40, -40, -20}, {0, 40, 10}));
+  const BodyId segment = patient.bodies.add(
+      {.name = "segment", .parent = mandible_body, .driver = BodyDriver::plan});
+  patient.parts.push_back(
+      {"segment", Role::segment, test::box({-1, -30, -20}, {30, 30, 10}), {}, segment});
+  return patient;
+}
+
+TEST(RestOverlap, OfSegmentsThatAreTrimmedIsMeasuredButDoesNotStopADrag) {
+  const ContactModel model(with_planned_overlap());
+  const auto drag = [&](const Pose& X) {
+    return model.slide({}, test::target_poses({}, {X}), nullptr);
+  };
+  const auto pair = [](const ContactSet& set) {
+    for (const PairContact& one : set.pairs)
+      if (one.part_a == 1 && one.part_b == 2) return one;
+    ADD_FAILURE() << "the pair is missing";
+    return PairContact{};
+  };
+  const ContactModel::Slide deeper = drag(test::shift(-2, 0, 0));
+  EXPECT_FALSE(deeper.stopped);
+  EXPECT_NEAR(pair(deeper.contacts).depth_mm, 3, 1e-6);
+  EXPECT_NEAR(pair(deeper.contacts).rest_depth_mm, 1, 1e-6);
+  EXPECT_NEAR(deeper.contacts.max_penetration_mm(), 2, 1e-6);
+  EXPECT_EQ(pair(model.find(deeper.at, nullptr)).depth_mm, pair(deeper.contacts).depth_mm);
+
+  const ContactModel::Slide up = drag(test::shift(-2, 0, 5));  // against the maxilla
+  EXPECT_TRUE(up.stopped);
+  EXPECT_NEAR(up.at[BodyId{2}].t.z(), 3, 0.03);
+  EXPECT_NEAR(up.at[BodyId{2}].t.x(), -2, 0.03);
+
+  const ContactModel::Slide away = drag(test::shift(2, 0, 0));
+  EXPECT_FALSE(away.stopped);
+  EXPECT_FALSE(pair(away.contacts).touching);
+  EXPECT_NEAR(pair(away.contacts).distance_mm, 1, 1e-6);
+
+  Case grafted = with_planned_overlap();
+  grafted.parts.back().role = Role::transplant;
+  grafted.pair_rules.push_back({"mandible", "segment", PairPolicy::cut_face, std::nullopt, 0});
+  const ContactModel::Slide held = ContactModel(grafted).slide(
+      {}, test::target_poses({}, {test::shift(-2, 0, 0)}), nullptr);
+  EXPECT_TRUE(held.stopped);
+}
+
+/// The jaw carries the segment: their answer is the one at rest, moved.
+TEST(RestOverlap, OfBodiesThatMoveAsOneIsCarriedAlong) {
+  const ContactModel model(with_planned_overlap());
+  const Pose X{Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX())), {1, 2, -9}};
+  const ContactSet moved = model.find(with_jaw_at(with_planned_overlap().bodies, X), nullptr);
+  ASSERT_EQ(moved.pairs.size(), model.at_rest().pairs.size());
+  bool compared = false;
+  for (std::size_t i = 0; i < moved.pairs.size(); ++i) {
+    const PairContact &now = moved.pairs[i], &rest = model.at_rest().pairs[i];
+    if (now.part_a != 1) continue;
+    EXPECT_EQ(now.depth_mm, rest.depth_mm);
+    ASSERT_EQ(now.contacts.size(), rest.contacts.size());
+    ASSERT_FALSE(now.contacts.empty());
+    EXPECT_LT((now.contacts[0].point - X * rest.contacts[0].point).norm(), 1e-9);
+    EXPECT_LT((now.witness_a - X * rest.witness_a).norm(), 1e-9);
+    compared = true;
+  }
+  EXPECT_TRUE(compared);
+}
+
 }  // namespace
 }  // namespace condyle
