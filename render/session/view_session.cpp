@@ -290,8 +290,11 @@ void ViewSession::show_scene() {
 void ViewSession::want_motion(const MotionChoice& choice) {
   asked_ = choice;
   moving_.start([patient = state_.patient, choice,
-                 settings = state_.settings](const Progress& progress) {
+                 settings = state_.settings](const Progress& progress) mutable {
     report(progress, "preparing the motion", 0.5);
+    settings.motion.progress = [&](std::string_view, double) {
+      report(progress, "preparing the motion", 0.5);
+    };
     return std::make_shared<const SessionMotion>(make_session_motion(choice, *patient, settings));
   });
 }

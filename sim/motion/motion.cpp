@@ -153,7 +153,7 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
   const auto joints = std::make_shared<const JawJoints>(
       patient, parameters, aside ? JointReach::aside : JointReach::straight, threads);
   std::vector<std::string> notes;
-  const OpeningLimits limits = opening_limits(*joints, contacts, parameters, notes);
+  const OpeningLimits limits = opening_limits(*joints, contacts, parameters, notes, settings.progress);
   // "open 50" raises the limit as "set opening 50" does, where no opening was set; a plain "open"
   // is unaffected.
   OpeningLimits reach = limits;
@@ -167,7 +167,7 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
     notes = {fmt::format("open {:.6g} is requested; by default this jaw opens to {:.1f} mm",
                          *open->amount, max_mm)};
     try {
-      reach = opening_limits(*joints, contacts, farther, notes);
+      reach = opening_limits(*joints, contacts, farther, notes, settings.progress);
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", open->where, error.what()));
     }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/progress.h"
 #include "engine/math/pose.h"
 #include "sim/case/case.h"
 #include "sim/contact/contact.h"
@@ -71,6 +72,8 @@ struct Motion {
 struct MotionSettings {
   MotionParameters parameters = {};  // take precedence over those of the case
   double duration_s = 0;             // of the whole motion; 0: its natural duration
+  // Reported while the opening that the bones permit is searched; an exception cancels.
+  Progress progress = {};
 };
 
 /// Names of the built-in motions.

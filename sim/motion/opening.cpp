@@ -78,11 +78,13 @@ bool crushes(const JawJoints& joints, const Pose& X_CM, double min_ratio, Triang
 
 /// The largest rotation up to `end` that is reached without contact of bone.
 double free_rotation(const OpeningPath& path, double end, double min_gap,
-                     const ContactModel& contacts) {
+                     const ContactModel& contacts, const Progress& progress) {
   constexpr int steps = 120;
   ContactSet last = contacts.at_rest();
   TrianglePair left, right;
   for (int i = 1; i <= steps; ++i) {
+    report(progress, "searching the opening that the bones permit",
+           static_cast<double>(i - 1) / steps);
     const Pose X_CM = path.joints.pose(path.inputs(end * i / steps));
     if (crushes(path.joints, X_CM, min_gap, left, right)) return end * (i - 1) / steps;
     last = contacts.find(BodyPoses(X_CM), &last, 2);
@@ -128,7 +130,8 @@ bool bones_free(const Case& patient, const ContactModel& contacts, const Pose& X
 }
 
 OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contacts,
-                             const MotionParameters& parameters, std::vector<std::string>& notes) {
+                             const MotionParameters& parameters, std::vector<std::string>& notes,
+                             const Progress& progress) {
   const auto& asked = parameters.opening_mm;
   const Target target = asked
                             ? Target{true, *asked}
@@ -145,7 +148,7 @@ OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contac
   for (const Coupling& coupling : couplings_to_try(parameters, joints.closed_theta())) {
     const OpeningPath path{joints, coupling};
     Choice choice{coupling, path.theta_for(target)};
-    choice.free_end = free_rotation(path, choice.end, min_gap, contacts);
+    choice.free_end = free_rotation(path, choice.end, min_gap, contacts, progress);
     choice.free_mm = path.travel_mm(choice.free_end, target);
     if (!best || choice.free_mm > best->free_mm + 1e-9) best = choice;
     if (choice.free_end == choice.end && choice.free_mm > target.mm - 1e-6) break;

@@ -15,8 +15,10 @@ namespace condyle {
 /// deg/mm) and Travers 2000; displacement after Woelfel (51.2 mm), where the joint is estimated
 /// after Travers (46.6 mm). throws: InputError when the requested opening needs too large a
 /// rotation.
+/// `progress`: an exception from it cancels.
 OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contacts,
-                             const MotionParameters& parameters, std::vector<std::string>& notes);
+                             const MotionParameters& parameters, std::vector<std::string>& notes,
+                             const Progress& progress = {});
 
 /// Whether bones other than teeth that are apart at rest are apart at the pose.
 bool bones_free(const Case& patient, const ContactModel& contacts, const Pose& X_CM);

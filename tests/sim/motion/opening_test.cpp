@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "engine/core/error.h"
 #include "sim/motion/condylar_kinematics.h"
 #include "sim/motion/joint_surfaces.h"
@@ -43,6 +45,17 @@ TEST(Opening, OpensToItsTargetAndClosesAgain) {
     EXPECT_EQ(motion.target(time).t.norm(), 0);
     EXPECT_EQ(rotation_angle(motion.target(time)), 0);
   }
+}
+
+TEST(Opening, IsCancelledByItsProgress) {
+  const Case patient = free_jaw();
+  int reports = 0;
+  MotionSettings settings;
+  settings.progress = [&](std::string_view, double) {
+    if (++reports == 3) throw std::runtime_error("cancelled");
+  };
+  EXPECT_THROW(opening_of(patient, settings), std::runtime_error);
+  EXPECT_EQ(reports, 3);
 }
 
 TEST(Opening, StaysInTheBandsOfAdults) {
