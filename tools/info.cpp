@@ -14,6 +14,7 @@
 #include "sim/phantom/head_shape.h"
 #include "tools/commands.h"
 #include "tools/common.h"
+#include "tools/series_list.h"
 
 namespace condyle {
 namespace {
@@ -138,6 +139,12 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
     return 0;
   }
   ProgressBar bar(common);
+  if (holds_dicom(what)) {
+    const CtFolder folder(what, common.threads, bar.callback());
+    bar.clear();
+    print_series(folder, what, common);
+    return 0;
+  }
   const Case patient = open_patient(what, common, bar);
   bar.clear();
   Json json = {{"name", patient.name},
@@ -179,12 +186,12 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
 void add_info(Commands& commands) {
   const auto what = std::make_shared<std::filesystem::path>();
   CLI::App& command = commands.add(
-      "info", "Describe a case, a surface file or a scanned volume", "condyle info mycase --json",
+      "info", "Describe a case, a surface file or a scan", "condyle info mycase --json",
       [what](const CommonOptions& common) { return run_info(*what, common); });
   command.add_option(
       "CASE|FILE", *what,
-      "Case folder, surface file or volume (.nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz; default: the "
-      "built-in patient)");
+      "Case folder, surface file, folder of a CT scan (DICOM) or volume (.nrrd, .nhdr, .mha, .mhd, "
+      ".nii, .nii.gz; default: the built-in patient)");
 }
 
 }  // namespace condyle

@@ -11,13 +11,16 @@ namespace condyle {
 namespace {
 
 constexpr std::size_t largest_ratio = 1032;  // of deflate
-constexpr int any_header = 15 + 32;          // the largest window; gzip or zlib
+constexpr int largest_window = 15;
+constexpr int any_header = largest_window + 32;   // gzip or zlib
+constexpr int no_header = -largest_window;        // raw deflate
+constexpr int gzip_header = largest_window + 16;
 
 class Inflater {
  public:
-  Inflater(std::string_view packed, const std::filesystem::path& file)
+  Inflater(std::string_view packed, const std::filesystem::path& file, int header = any_header)
       : left_(packed), file_(file) {
-    if (inflateInit2(&stream_, any_header) != Z_OK)
+    if (inflateInit2(&stream_, header) != Z_OK)
       throw MachineError("no memory to decompress " + file.string());
   }
   ~Inflater() { inflateEnd(&stream_); }
@@ -50,6 +53,8 @@ class Inflater {
     return written;
   }
 
+  /// Whether the stream has ended.
+  bool ended() const { return ended_; }
   /// Whether the stream has ended, its checksum was right, and nothing follows.
   bool complete() const { return ended_ && left_.empty(); }
 
@@ -83,6 +88,46 @@ std::string unpack_start(std::string_view packed, std::size_t size,
   std::string content(size, '\0');
   content.resize(Inflater(packed, file).fill(content.data(), size));
   return content;
+}
+
+std::string unpack_deflate(std::string_view packed, std::size_t most,
+                           const std::filesystem::path& file) {
+  constexpr std::size_t block = std::size_t{1} << 20;
+  Inflater inflater(packed, file, no_header);
+  std::string content;
+  while (!inflater.ended()) {
+    const std::size_t begin = content.size();
+    content.resize(begin + block);
+    const std::size_t written = inflater.fill(content.data() + begin, block);
+    content.resize(begin + written);
+    if (content.size() > most)
+      throw InputError(file, "",
+                       "its compressed data holds more than " + std::to_string(most) + " bytes");
+    if (written < block && !inflater.ended())
+      throw InputError(file, "", "its compressed data ends early");
+  }
+  return content;
+}
+
+std::string pack_gzip(std::string_view bytes) {
+  constexpr std::size_t most = std::numeric_limits<uInt>::max(), block = std::size_t{1} << 20;
+  z_stream stream{};
+  if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, gzip_header, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw MachineError("no memory to compress a volume");
+  std::string packed;
+  for (int status = Z_OK; status != Z_STREAM_END;) {
+    const std::size_t in = std::min(bytes.size(), most), begin = packed.size();
+    packed.resize(begin + block);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream.avail_in = static_cast<uInt>(in);
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data() + begin);
+    stream.avail_out = static_cast<uInt>(block);
+    status = deflate(&stream, in == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
+    bytes.remove_prefix(in - stream.avail_in);
+    packed.resize(begin + block - stream.avail_out);
+  }
+  deflateEnd(&stream);
+  return packed;
 }
 
 }  // namespace condyle

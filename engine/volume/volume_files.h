@@ -17,4 +17,10 @@ bool is_volume_file(const std::filesystem::path& file);
 /// is requested of the memory, the largest ratio of its compression.
 Volume read_volume(const std::filesystem::path& file);
 
+enum class NrrdEncoding { raw, gzip };
+
+/// Writes the volume in NRRD format, LPS. throws: MachineError naming the file.
+void write_nrrd(const Volume& volume, const std::filesystem::path& file,
+                NrrdEncoding encoding = NrrdEncoding::gzip);
+
 }  // namespace condyle

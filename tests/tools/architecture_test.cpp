@@ -59,6 +59,7 @@ const std::vector<Library> libraries = {
     {"png.h", {"render/image"}, false, "PNG::PNG"},
     {"libdeflate.h", {"render/image"}, false, "PkgConfig::deflate"},
     {"zlib.h", {"engine/volume", "render/output"}, false, "ZLIB::ZLIB"},
+    {"gdcm", {"engine/dicom"}, false, "gdcmMSFF"},
     {"epoxy/", {"render/gl", "render/window"}, true, "PkgConfig::epoxy"},
     {"GLFW/", {"render/window"}, true, "glfw"},
     {"imgui", {"render/window"}, true, "PkgConfig::imgui"},

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+#include "engine/dicom/ct_folder.h"
+
+namespace condyle {
+
+/// The volume of a folder with a DICOM series, or of a file in NRRD, MetaImage or NIfTI-1 format,
+/// in Hounsfield units, LPS. throws: InputError, as CtFolder and read_volume().
+CtVolume ct_volume(const std::filesystem::path& what, const CtRequest& request = {},
+                   const Progress& progress = {});
+
+/// Whether the file holds DICOM.
+bool is_dicom_file(const std::filesystem::path& file);
+
+}  // namespace condyle
