@@ -126,10 +126,10 @@ void add_meshes(Commands& commands, CLI::App& import) {
 }  // namespace
 
 void add_import(Commands& commands) {
-  CLI::App& import =
-      commands.add_parent("import", "Make a case from your files",
-                          "condyle import meshes --mandible jaw.stl --maxilla maxilla.stl --out mycase\n"
-                          "  condyle import ct scan --list");
+  CLI::App& import = commands.add_parent(
+      "import", "Make a case from your files",
+      "condyle import meshes --mandible jaw.stl --maxilla maxilla.stl --out mycase\n"
+      "  condyle import ct scan --list");
   add_meshes(commands, import);
   add_import_ct(commands, import);
 }

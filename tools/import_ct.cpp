@@ -38,11 +38,13 @@ int list_series(const CtImportOptions& options, const CommonOptions& common) {
 int run_import_ct(const CtImportOptions& options, const CommonOptions& common) {
   if (options.list) return list_series(options, common);
   if (!options.out.empty())
-    throw InputError("--out: import ct does not make a case yet; it lists the series (--list) and "
-                     "writes the volume (--volume-out FILE.nrrd)");
+    throw InputError(
+        "--out: import ct does not make a case yet; it lists the series (--list) and "
+        "writes the volume (--volume-out FILE.nrrd)");
   if (options.volume_out.empty())
-    throw InputError("import ct needs --list or --volume-out FILE.nrrd. See condyle import ct "
-                     "--help");
+    throw InputError(
+        "import ct needs --list or --volume-out FILE.nrrd. See condyle import ct "
+        "--help");
   check_volume_name(options.volume_out);
   CtRequest request = options.request;
   request.threads = common.threads;

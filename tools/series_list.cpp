@@ -49,9 +49,9 @@ Json described(const CtSeries& series) {
 
 std::string facts_of(const CtSeries& series) {
   const Eigen::Vector3d extent = series.extent_mm();
-  std::string facts = fmt::format("{}, {} slice{} of {} x {}", series_kind_name(series.kind),
-                                  series.slices, series.slices == 1 ? "" : "s", series.columns,
-                                  series.rows);
+  std::string facts =
+      fmt::format("{}, {} slice{} of {} x {}", series_kind_name(series.kind), series.slices,
+                  series.slices == 1 ? "" : "s", series.columns, series.rows);
   if (series.step_mm > 0)
     facts += fmt::format(", {:.3g} x {:.3g} x {:.3g} mm apart, {:.0f} x {:.0f} x {:.0f} mm in all",
                          series.column_spacing_mm, series.row_spacing_mm, series.step_mm,
@@ -69,12 +69,9 @@ void print_series(const CtFolder& folder, const std::filesystem::path& path,
   const auto [chosen, reason] = default_of(folder);
   if (common.json) {
     const CtFileCounts& counts = folder.counts();
-    Json json = {{"folder", path.string()},
-                 {"files", counts.files},
-                 {"slices", counts.slices},
-                 {"default", chosen == 0 ? Json(nullptr) : Json(chosen)},
-                 {"notes", folder.notes()},
-                 {"series", Json::array()}};
+    Json json = {{"folder", path.string()}, {"files", counts.files},
+                 {"slices", counts.slices}, {"default", chosen == 0 ? Json(nullptr) : Json(chosen)},
+                 {"notes", folder.notes()}, {"series", Json::array()}};
     for (const CtSeries& series : folder.series()) json["series"].push_back(described(series));
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     return;
@@ -85,8 +82,7 @@ void print_series(const CtFolder& folder, const std::filesystem::path& path,
                facts_of(series));
     for (const std::string& note : series.notes) fmt::print("      note: {}\n", note);
     for (const std::string& problem : series.problems) fmt::print("      refused: {}\n", problem);
-    if (!series.uneven.empty())
-      fmt::print("      refused unless resampled: {}\n", series.uneven);
+    if (!series.uneven.empty()) fmt::print("      refused unless resampled: {}\n", series.uneven);
   }
   for (const std::string& note : folder.notes()) fmt::print("  note: {}\n", note);
   fmt::print("{}\n", chosen > 0 ? "* is taken by default" : reason);

@@ -54,8 +54,8 @@ PlaneFrame plane_frame(const std::vector<SliceHeader>& slices, const StackGeomet
 
 /// Checks what will be requested of the memory.
 void check_memory(const std::vector<SliceHeader>& slices, const PlaneFrame& frame) {
-  const double values = static_cast<double>(frame.columns) * frame.rows *
-                        static_cast<double>(slices.size());
+  const double values =
+      static_cast<double>(frame.columns) * frame.rows * static_cast<double>(slices.size());
   if (values > static_cast<double>(most_values))
     throw DicomDamage(fmt::format("has {} slices of {} x {} values: more than 2147483648",
                                   slices.size(), frame.columns, frame.rows));
@@ -93,8 +93,8 @@ void shift_slice(const std::vector<std::int16_t>& in, const SlicePixels& pixels,
 
 /// Slices at even heights, each between its two neighbours.
 void resample_heights(Volume& volume, const StackGeometry& stack, int threads) {
-  const std::size_t plane = static_cast<std::size_t>(volume.size[0]) *
-                            static_cast<std::size_t>(volume.size[1]);
+  const std::size_t plane =
+      static_cast<std::size_t>(volume.size[0]) * static_cast<std::size_t>(volume.size[1]);
   const double last = stack.height_mm.back();
   const auto count = static_cast<std::size_t>(std::floor(last / stack.step_mm + 1e-6)) + 1;
   if (static_cast<double>(count) * static_cast<double>(plane) > static_cast<double>(most_values))
@@ -158,8 +158,8 @@ Volume assemble_volume(const std::vector<SliceHeader>& slices, const StackGeomet
     const std::size_t count = std::min(chunk, slices.size() - begin);
     parallel_for(count, threads, [&](std::size_t i) {
       const std::size_t k = begin + i;
-      problems[k] = place_slice(slices[k], stack.shift_mm[k], stack, frame,
-                                volume.values.data() + k * plane);
+      problems[k] =
+          place_slice(slices[k], stack.shift_mm[k], stack, frame, volume.values.data() + k * plane);
     });
     for (std::size_t k = begin; k < begin + count; ++k)
       if (!problems[k].empty()) throw DicomDamage(problems[k]);

@@ -23,8 +23,8 @@ std::vector<fs::path> files_below(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) throw InputError(folder, "", "is not a folder");
   std::vector<fs::path> files;
-  fs::recursive_directory_iterator entry(
-      folder, fs::directory_options::skip_permission_denied, error);
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied,
+                                         error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
     std::error_code ignored;
     if (entry.depth() >= deepest_folder) entry.disable_recursion_pending();
@@ -157,6 +157,7 @@ void CtFolder::add_series(const SliceGroup& group) {
   one.column_spacing_mm = first.column_spacing_mm;
   one.row_spacing_mm = first.row_spacing_mm;
   one.step_mm = geometry.step_mm;
+  if (!geometry.height_mm.empty()) one.length_mm = geometry.height_mm.back() + geometry.step_mm;
   one.notes = group.notes;
   if (const std::string problem = kind_problem(one.kind, one.modality); !problem.empty())
     one.problems.push_back(problem);
@@ -214,22 +215,29 @@ int CtFolder::default_series(bool resample) const {
     if (!best || values(one) > values(*best)) best = &one;
   }
   if (patients.size() > 1)
-    throw InputError(folder_, "",
-                     fmt::format("holds series of {} patients: choose one by its number",
-                                 patients.size()));
+    throw InputError(
+        folder_, "",
+        fmt::format("holds series of {} patients: choose one by its number", patients.size()));
   if (best) return best->number;
   if (series_.empty())
-    throw InputError(folder_, "", fmt::format("holds no DICOM image among {}",
-                                              counted(counts_.files, "file", "files")));
+    throw InputError(
+        folder_, "",
+        fmt::format("holds no DICOM image among {}", counted(counts_.files, "file", "files")));
+  constexpr int most_reasons = 8;
   std::string reasons;
-  for (const CtSeries& one : series_)
-    reasons += fmt::format("\n  series {} {}", one.number,
+  for (const CtSeries& one : series_) {
+    if (one.number > most_reasons) {
+      reasons += "; and so on";
+      break;
+    }
+    reasons += fmt::format("{} series {} {}", one.number > 1 ? ";" : "", one.number,
                            !one.problems.empty() ? one.problems.front()
                            : !one.readable(resample)
                                ? "is uneven: " + one.uneven
                                : fmt::format("has a step of {:.3g} mm, above {:.0f} mm: it is read "
                                              "when chosen by its number",
                                              one.step_mm, most_step_mm));
+  }
   throw InputError(folder_, "", "no series can be taken by default:" + reasons);
 }
 

@@ -25,13 +25,14 @@ struct CtSeries {
   int slices = 0, rows = 0, columns = 0;
   double column_spacing_mm = 0, row_spacing_mm = 0;  // between columns, between rows
   double step_mm = 0;                                // between slices, along their normal
+  double length_mm = 0;                              // of all slices, along their normal
   double tilt_degrees = 0;
   std::vector<std::string> notes;     // what is left out or corrected
   std::vector<std::string> problems;  // why it is refused
   std::string uneven;                 // why it is refused unless resampled; empty: it is even
 
   Eigen::Vector3d extent_mm() const {
-    return {columns * column_spacing_mm, rows * row_spacing_mm, slices * step_mm};
+    return {columns * column_spacing_mm, rows * row_spacing_mm, length_mm};
   }
   bool readable(bool resample) const { return problems.empty() && (resample || uneven.empty()); }
 };

@@ -30,15 +30,16 @@ struct ElementHeader {
 bool is_type(char a, char b) { return a >= 'A' && a <= 'Z' && b >= 'A' && b <= 'Z'; }
 
 bool has_long_length(std::string_view type) {
-  static constexpr std::array<std::string_view, 12> types = {
-      "OB", "OD", "OF", "OL", "OV", "OW", "SQ", "UC", "UN", "UR", "UT", "SV"};
+  static constexpr std::array<std::string_view, 12> types = {"OB", "OD", "OF", "OL", "OV", "OW",
+                                                             "SQ", "UC", "UN", "UR", "UT", "SV"};
   return std::find(types.begin(), types.end(), type) != types.end() || type == "UV";
 }
 
 ElementHeader element_at(DicomBytes& bytes, std::uint64_t at, const TransferSyntax& syntax) {
   const bool big = syntax.big_endian;
   std::string_view head = bytes.read(at, 8);
-  ElementHeader element{dicom_number(head.substr(0, 2), big) << 16 | dicom_number(head.substr(2, 2), big)};
+  ElementHeader element{dicom_number(head.substr(0, 2), big) << 16 |
+                        dicom_number(head.substr(2, 2), big)};
   if (syntax.implicit_vr || element.tag >> 16 == 0xfffe) {
     element.length = dicom_number(head.substr(4, 4), big);
     element.value = at + 8;
@@ -169,8 +170,8 @@ std::optional<DicomBytes> open_dicom(const std::filesystem::path& file) {
   if (bytes.size() > most_inflated) throw DicomDamage("is too large");
   std::string content(bytes.read(0, static_cast<std::size_t>(begin)));
   try {
-    content += unpack_deflate(
-        bytes.read(begin, static_cast<std::size_t>(bytes.size() - begin)), most_inflated, {});
+    content += unpack_deflate(bytes.read(begin, static_cast<std::size_t>(bytes.size() - begin)),
+                              most_inflated, {});
   } catch (const InputError&) {
     throw DicomDamage("has damaged compressed data");
   }
@@ -200,7 +201,8 @@ std::vector<PixelLocation> pixel_fragments(DicomBytes& bytes, std::uint64_t begi
   for (std::uint64_t at = begin;;) {
     const ElementHeader element = element_at(bytes, at, explicit_little_endian);
     if (element.tag == end_of_sequence) return fragments;
-    if (element.tag != item || element.length == undefined || !bytes.has(element.value, element.length))
+    if (element.tag != item || element.length == undefined ||
+        !bytes.has(element.value, element.length))
       throw DicomDamage("has compressed pixels that end early");
     if (!table) fragments.push_back({element.value, element.length, true});
     table = false;

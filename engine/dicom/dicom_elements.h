@@ -24,8 +24,8 @@ using DicomValues = std::map<std::uint32_t, std::string>;
 /// Where the pixels are stored.
 struct PixelLocation {
   std::uint64_t begin = 0;
-  std::uint64_t length = 0;   // as the file states; unknown where `fragments`
-  bool fragments = false;     // compressed
+  std::uint64_t length = 0;  // as the file states; unknown where `fragments`
+  bool fragments = false;    // compressed
 };
 
 struct DicomElements {

@@ -28,8 +28,7 @@ StreamSize jpeg_size(std::string_view stream) {
     const bool frame = (marker >= 0xffc0 && marker <= 0xffcf && marker != 0xffc4 &&
                         marker != 0xffc8 && marker != 0xffcc) ||
                        marker == 0xfff7;
-    if (frame)
-      return {big(stream, at + 5, 2), big(stream, at + 7, 2), big(stream, at + 9, 1)};
+    if (frame) return {big(stream, at + 5, 2), big(stream, at + 7, 2), big(stream, at + 9, 1)};
     at += 2 + big(stream, at + 2, 2);
   }
 }
@@ -92,9 +91,9 @@ gdcm::Bitmap bitmap_of(const std::vector<std::string>& fragments, const SlicePix
 std::string decompressed(const std::vector<std::string>& fragments, const SlicePixels& pixels) {
   silence_gdcm();
   const auto size = stream_size(fragments.at(0), pixels.syntax->uid);
-  if (size && (size->rows != static_cast<std::uint32_t>(pixels.rows) ||
-               size->columns != static_cast<std::uint32_t>(pixels.columns) ||
-               size->components != 1))
+  if (size &&
+      (size->rows != static_cast<std::uint32_t>(pixels.rows) ||
+       size->columns != static_cast<std::uint32_t>(pixels.columns) || size->components != 1))
     throw DicomDamage("holds compressed pixels of another size than its header states");
   std::string buffer;
   try {

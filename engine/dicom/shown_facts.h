@@ -5,8 +5,8 @@
 
 namespace condyle {
 
-// Texts of a header may hold names of people, whatever their field is meant for. Only words that are
-// known are shown.
+// Texts of a header may hold names of people, whatever their field is meant for. Only words that
+// are known are shown.
 
 /// "CT", "MR" and so on; "other" for an unknown text.
 std::string shown_modality(std::string_view text);

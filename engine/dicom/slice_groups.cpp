@@ -12,8 +12,8 @@
 namespace condyle {
 namespace {
 
-constexpr double equal_direction = 1e-4;   // difference of cosines
-constexpr double equal_spacing = 1e-4;     // relative
+constexpr double equal_direction = 1e-4;  // difference of cosines
+constexpr double equal_spacing = 1e-4;    // relative
 constexpr double equal_height_mm = 1e-3;
 
 /// Numbers of the files of a group, which are in the order of their names.
@@ -87,11 +87,11 @@ void take_odd_slices(std::vector<Members>& stacks, std::size_t largest, Members&
                      [&](const SliceHeader& slice) { return fills_a_gap(slice, main); }))
       continue;
     for (SliceHeader& slice : other) {
-      slice.problem = fmt::format(
-          "has {} x {} pixels of {:g} x {:g} mm, the others {} x {} of {:g} x {:g} mm",
-          slice.pixels.columns, slice.pixels.rows, slice.column_spacing_mm, slice.row_spacing_mm,
-          main.front().pixels.columns, main.front().pixels.rows, main.front().column_spacing_mm,
-          main.front().row_spacing_mm);
+      slice.problem =
+          fmt::format("has {} x {} pixels of {:g} x {:g} mm, the others {} x {} of {:g} x {:g} mm",
+                      slice.pixels.columns, slice.pixels.rows, slice.column_spacing_mm,
+                      slice.row_spacing_mm, main.front().pixels.columns, main.front().pixels.rows,
+                      main.front().column_spacing_mm, main.front().row_spacing_mm);
       bad.push_back(slice);
     }
     other.clear();
@@ -106,14 +106,13 @@ void report_bad(Members& stack, const Members& bad, SliceGroup& group) {
   const auto by_name = [](const SliceHeader& a, const SliceHeader& b) { return a.place < b.place; };
   std::sort(all.begin(), all.end(), by_name);
   for (SliceHeader& slice : stack)
-    slice.number = static_cast<int>(std::lower_bound(all.begin(), all.end(), slice, by_name) -
-                                    all.begin()) +
-                   1;
+    slice.number =
+        static_cast<int>(std::lower_bound(all.begin(), all.end(), slice, by_name) - all.begin()) +
+        1;
   std::size_t named = 0;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (!all[i].problem.empty() && named++ < most_named)
-      group.problems.push_back(
-          fmt::format("file {} of {} {}", i + 1, all.size(), all[i].problem));
+      group.problems.push_back(fmt::format("file {} of {} {}", i + 1, all.size(), all[i].problem));
   if (named > most_named)
     group.problems.push_back(fmt::format("so have {} more files", named - most_named));
 }
@@ -143,9 +142,8 @@ std::size_t drop_doubled(Members& sorted, const Eigen::Vector3d& normal) {
 std::size_t first_at_one_position(const Members& sorted) {
   const Eigen::Vector3d normal = normal_of(sorted.front());
   std::size_t i = 1;
-  while (i < sorted.size() && height_along(sorted[i], normal) -
-                                      height_along(sorted[i - 1], normal) >
-                                  equal_height_mm)
+  while (i < sorted.size() &&
+         height_along(sorted[i], normal) - height_along(sorted[i - 1], normal) > equal_height_mm)
     ++i;
   return i;
 }
@@ -165,8 +163,8 @@ void add_stack(SliceGroup group, std::vector<SliceGroup>& groups) {
     return;
   }
   if (const std::size_t dropped = drop_doubled(slices, normal_of(slices.front())); dropped > 0)
-    group.notes.push_back(fmt::format("{} doubled file{} left out", dropped,
-                                      dropped == 1 ? " was" : "s were"));
+    group.notes.push_back(
+        fmt::format("{} doubled file{} left out", dropped, dropped == 1 ? " was" : "s were"));
   const std::size_t at = first_at_one_position(slices);
   if (at == slices.size()) {
     groups.push_back(std::move(group));
@@ -189,8 +187,7 @@ void add_stack(SliceGroup group, std::vector<SliceGroup>& groups) {
   }
   for (Members& part : parts) {
     SliceGroup one{std::move(part), group.notes, group.problems};
-    one.notes.push_back(
-        "separated by image type or acquisition from slices at the same positions");
+    one.notes.push_back("separated by image type or acquisition from slices at the same positions");
     groups.push_back(std::move(one));
   }
 }

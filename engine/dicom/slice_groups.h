@@ -7,7 +7,8 @@
 
 namespace condyle {
 
-/// The slices of one stack: of one series, patient, kernel, frame of reference, size and orientation.
+/// The slices of one stack: of one series, patient, kernel, frame of reference, size and
+/// orientation.
 struct SliceGroup {
   std::vector<SliceHeader> slices;    // from the lowest position along row x column
   std::vector<std::string> notes;     // what was left out or separated

@@ -14,33 +14,21 @@
 namespace condyle {
 namespace {
 
-constexpr std::uint32_t image_type_tag = dicom_tag(0x0008, 0x0008),
-                        instance_tag = dicom_tag(0x0008, 0x0018),
-                        modality_tag = dicom_tag(0x0008, 0x0060),
-                        manufacturer_tag = dicom_tag(0x0008, 0x0070),
-                        patient_tag = dicom_tag(0x0010, 0x0020),
-                        thickness_tag = dicom_tag(0x0018, 0x0050),
-                        kvp_tag = dicom_tag(0x0018, 0x0060),
-                        kernel_tag = dicom_tag(0x0018, 0x1210),
-                        study_tag = dicom_tag(0x0020, 0x000d),
-                        series_tag = dicom_tag(0x0020, 0x000e),
-                        series_number_tag = dicom_tag(0x0020, 0x0011),
-                        acquisition_tag = dicom_tag(0x0020, 0x0012),
-                        position_tag = dicom_tag(0x0020, 0x0032),
-                        orientation_tag = dicom_tag(0x0020, 0x0037),
-                        frame_tag = dicom_tag(0x0020, 0x0052),
-                        samples_tag = dicom_tag(0x0028, 0x0002),
-                        frames_tag = dicom_tag(0x0028, 0x0008),
-                        rows_tag = dicom_tag(0x0028, 0x0010),
-                        columns_tag = dicom_tag(0x0028, 0x0011),
-                        spacing_tag = dicom_tag(0x0028, 0x0030),
-                        allocated_tag = dicom_tag(0x0028, 0x0100),
-                        stored_tag = dicom_tag(0x0028, 0x0101),
-                        high_bit_tag = dicom_tag(0x0028, 0x0102),
-                        sign_tag = dicom_tag(0x0028, 0x0103),
-                        padding_tag = dicom_tag(0x0028, 0x0120),
-                        intercept_tag = dicom_tag(0x0028, 0x1052),
-                        slope_tag = dicom_tag(0x0028, 0x1053);
+constexpr std::uint32_t
+    image_type_tag = dicom_tag(0x0008, 0x0008),
+    instance_tag = dicom_tag(0x0008, 0x0018), modality_tag = dicom_tag(0x0008, 0x0060),
+    manufacturer_tag = dicom_tag(0x0008, 0x0070), patient_tag = dicom_tag(0x0010, 0x0020),
+    thickness_tag = dicom_tag(0x0018, 0x0050), kvp_tag = dicom_tag(0x0018, 0x0060),
+    kernel_tag = dicom_tag(0x0018, 0x1210), study_tag = dicom_tag(0x0020, 0x000d),
+    series_tag = dicom_tag(0x0020, 0x000e), series_number_tag = dicom_tag(0x0020, 0x0011),
+    acquisition_tag = dicom_tag(0x0020, 0x0012), position_tag = dicom_tag(0x0020, 0x0032),
+    orientation_tag = dicom_tag(0x0020, 0x0037), frame_tag = dicom_tag(0x0020, 0x0052),
+    samples_tag = dicom_tag(0x0028, 0x0002), frames_tag = dicom_tag(0x0028, 0x0008),
+    rows_tag = dicom_tag(0x0028, 0x0010), columns_tag = dicom_tag(0x0028, 0x0011),
+    spacing_tag = dicom_tag(0x0028, 0x0030), allocated_tag = dicom_tag(0x0028, 0x0100),
+    stored_tag = dicom_tag(0x0028, 0x0101), high_bit_tag = dicom_tag(0x0028, 0x0102),
+    sign_tag = dicom_tag(0x0028, 0x0103), padding_tag = dicom_tag(0x0028, 0x0120),
+    intercept_tag = dicom_tag(0x0028, 0x1052), slope_tag = dicom_tag(0x0028, 0x1053);
 
 const std::vector<std::uint32_t> read_tags = {
     image_type_tag, instance_tag,      modality_tag,    manufacturer_tag, patient_tag,
@@ -171,8 +159,7 @@ std::string check_pixels(DicomBytes& bytes, const DicomElements& elements, Slice
     }
     return "";
   }
-  const std::uint64_t held =
-      std::min(bytes.size() - pixels.location.begin, pixels.location.length);
+  const std::uint64_t held = std::min(bytes.size() - pixels.location.begin, pixels.location.length);
   if (held < stated) return fmt::format("states {}, {} bytes, and holds {}", size, stated, held);
   // A byte may follow that makes the length even.
   if (pixels.location.length > stated + 1)

@@ -33,7 +33,7 @@ struct SliceHeader {
   int place = 0;               // of the file in the folder, by name
   int number = 0;              // of the file in its series, by name, from 1
   SlicePixels pixels;
-  std::optional<Eigen::Vector3d> position;             // of the first pixel's centre, mm, LPS
+  std::optional<Eigen::Vector3d> position;              // of the first pixel's centre, mm, LPS
   Eigen::Vector3d along_row = Eigen::Vector3d::Zero();  // unit directions, LPS; zero: not usable
   Eigen::Vector3d along_column = Eigen::Vector3d::Zero();
   double column_spacing_mm = 0, row_spacing_mm = 0;  // between columns, between rows

@@ -16,8 +16,7 @@ std::vector<std::string> stored_pixels(const SliceHeader& slice) {
   auto bytes = open_dicom(slice.file);
   if (!bytes) throw DicomDamage("cannot be read");
   const PixelLocation& location = slice.pixels.location;
-  if (!location.fragments)
-    return {std::string(bytes->read(location.begin, slice.pixels.bytes()))};
+  if (!location.fragments) return {std::string(bytes->read(location.begin, slice.pixels.bytes()))};
   std::vector<std::string> stored;
   for (const PixelLocation& fragment : pixel_fragments(*bytes, location.begin))
     stored.emplace_back(bytes->read(fragment.begin, static_cast<std::size_t>(fragment.length)));
@@ -27,7 +26,8 @@ std::vector<std::string> stored_pixels(const SliceHeader& slice) {
 /// Hounsfield units of stored bits, for each bit pattern that 16 bits can have.
 class HounsfieldTable {
  public:
-  explicit HounsfieldTable(const SlicePixels& pixels) : units_(std::size_t{1} << pixels.bits_allocated) {
+  explicit HounsfieldTable(const SlicePixels& pixels)
+      : units_(std::size_t{1} << pixels.bits_allocated) {
     const int above = 31 - pixels.high_bit, below = 32 - pixels.bits_stored;
     for (std::size_t bits = 0; bits < units_.size(); ++bits) {
       const std::uint32_t left = static_cast<std::uint32_t>(bits) << above;

@@ -11,11 +11,11 @@
 namespace condyle {
 namespace {
 
-constexpr double most_uneven = 0.01;          // of the step
-constexpr double rounding_mm = 0.0101;        // of positions written with two decimals
-constexpr double most_drift = 0.25;           // of the step, against an even grid
+constexpr double most_uneven = 0.01;    // of the step
+constexpr double rounding_mm = 0.0101;  // of positions written with two decimals
+constexpr double most_drift = 0.25;     // of the step, against an even grid
 constexpr double least_tilt_degrees = 0.5;
-constexpr double most_shift = 0.5;            // pixels
+constexpr double most_shift = 0.5;  // pixels
 constexpr double same_position_mm = 1e-3;
 
 /// The median of the steps between different positions; there is one.
@@ -37,7 +37,7 @@ std::string gap_words(const StackGeometry& stack, std::size_t i) {
   if (whole >= 2 && std::abs(difference - whole * stack.step_mm) <= 0.05 * stack.step_mm)
     return whole == 2 ? "a slice is missing " + place
                       : fmt::format("{:.0f} slices are missing {}", whole - 1, place);
-  return fmt::format("the step is {:.4g} mm {}, and {:.4g} mm elsewhere", difference, place,
+  return fmt::format("the step is {:.4g} mm {}, where the median is {:.4g} mm", difference, place,
                      stack.step_mm);
 }
 
@@ -52,14 +52,16 @@ void find_uneven(StackGeometry& stack, const std::vector<double>& steps) {
     if (found++ == 0) stack.uneven = gap_words(stack, i + 1);
   }
   if (found > 1)
-    stack.uneven += fmt::format("; uneven at {} places, with steps from {:.4g} to {:.4g} mm", found,
-                                lowest, highest);
+    stack.uneven = fmt::format(
+        "the slices are uneven at {} places, with steps from {:.4g} to {:.4g} "
+        "mm; the first: {}",
+        found, lowest, highest, stack.uneven);
   if (found > 0) return;
   const double even = stack.height_mm.back() / static_cast<double>(steps.size());
   for (std::size_t i = 0; i < stack.height_mm.size(); ++i)
     if (std::abs(stack.height_mm[i] - even * static_cast<double>(i)) > most_drift * even) {
-      stack.uneven = fmt::format("the steps change from {:.4g} to {:.4g} mm along the stack", lowest,
-                                 highest);
+      stack.uneven =
+          fmt::format("the steps change from {:.4g} to {:.4g} mm along the stack", lowest, highest);
       return;
     }
 }
@@ -74,23 +76,21 @@ StackGeometry stack_geometry(const std::vector<SliceHeader>& slices) {
   std::vector<double> steps;
   double largest_shift = 0;
   for (const SliceHeader& slice : slices) {
-    const Eigen::Vector3d from_first =
-        slice.position.value_or(*first.position) - *first.position;
+    const Eigen::Vector3d from_first = slice.position.value_or(*first.position) - *first.position;
     stack.height_mm.push_back(stack.normal.dot(from_first));
     stack.shift_mm.emplace_back(first.along_row.dot(from_first),
                                 first.along_column.dot(from_first));
-    largest_shift = std::max({largest_shift,
-                              std::abs(stack.shift_mm.back().x()) / first.column_spacing_mm,
-                              std::abs(stack.shift_mm.back().y()) / first.row_spacing_mm});
+    largest_shift =
+        std::max({largest_shift, std::abs(stack.shift_mm.back().x()) / first.column_spacing_mm,
+                  std::abs(stack.shift_mm.back().y()) / first.row_spacing_mm});
     if (stack.height_mm.size() > 1)
       steps.push_back(stack.height_mm.back() - stack.height_mm[stack.height_mm.size() - 2]);
   }
-  if (std::none_of(steps.begin(), steps.end(),
-                   [](double step) { return step > same_position_mm; }))
+  if (std::none_of(steps.begin(), steps.end(), [](double step) { return step > same_position_mm; }))
     return stack;
   stack.step_mm = median_step(steps);
-  stack.tilt_degrees = std::atan2(stack.shift_mm.back().norm(), stack.height_mm.back()) * 180 /
-                       std::numbers::pi;
+  stack.tilt_degrees =
+      std::atan2(stack.shift_mm.back().norm(), stack.height_mm.back()) * 180 / std::numbers::pi;
   stack.sheared = stack.tilt_degrees > least_tilt_degrees || largest_shift > most_shift;
   find_uneven(stack, steps);
   return stack;

@@ -43,8 +43,9 @@ const TransferSyntax& implicit_little_endian = syntaxes[0];
 const TransferSyntax& explicit_little_endian = syntaxes[1];
 
 const TransferSyntax* transfer_syntax(std::string_view uid) {
-  const auto* const found = std::find_if(std::begin(syntaxes), std::end(syntaxes),
-                                         [&](const TransferSyntax& each) { return uid == each.uid; });
+  const auto* const found =
+      std::find_if(std::begin(syntaxes), std::end(syntaxes),
+                   [&](const TransferSyntax& each) { return uid == each.uid; });
   return found == std::end(syntaxes) ? nullptr : found;
 }
 

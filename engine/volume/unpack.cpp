@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t largest_ratio = 1032;  // of deflate
 constexpr int largest_window = 15;
-constexpr int any_header = largest_window + 32;   // gzip or zlib
-constexpr int no_header = -largest_window;        // raw deflate
+constexpr int any_header = largest_window + 32;  // gzip or zlib
+constexpr int no_header = -largest_window;       // raw deflate
 constexpr int gzip_header = largest_window + 16;
 
 class Inflater {

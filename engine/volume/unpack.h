@@ -16,9 +16,9 @@ std::string unpack(std::string_view packed, std::size_t size, const std::filesys
 std::string unpack_start(std::string_view packed, std::size_t size,
                          const std::filesystem::path& file);
 
-/// The content of a raw deflate stream, which has no header and no checksum; bytes after its end are
-/// ignored. throws: InputError naming the file for a damaged stream, one that ends early, and one
-/// with more than `most` bytes.
+/// The content of a raw deflate stream, which has no header and no checksum; bytes after its end
+/// are ignored. throws: InputError naming the file for a damaged stream, one that ends early, and
+/// one with more than `most` bytes.
 std::string unpack_deflate(std::string_view packed, std::size_t most,
                            const std::filesystem::path& file);
 

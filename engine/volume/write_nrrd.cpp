@@ -19,8 +19,7 @@ void write_nrrd(const Volume& volume, const std::filesystem::path& file, NrrdEnc
   static_assert(std::endian::native == std::endian::little);
   std::string directions;
   for (int a = 0; a < 3; ++a)
-    directions +=
-        (a > 0 ? " " : "") + nrrd_vector(volume.axes.col(a) * volume.spacing_mm[a]);
+    directions += (a > 0 ? " " : "") + nrrd_vector(volume.axes.col(a) * volume.spacing_mm[a]);
   std::string content = fmt::format(
       "NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\n"
       "sizes: {} {} {}\nspace directions: {}\nkinds: domain domain domain\nendian: little\n"

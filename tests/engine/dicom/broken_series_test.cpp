@@ -38,9 +38,7 @@ constexpr std::uint32_t patient_tag = dicom_tag(0x0010, 0x0020),
 #define EXPECT_NAMES(message, words) \
   EXPECT_NE((message).find(words), std::string::npos) << (message)
 
-std::string us(int number) {
-  return {static_cast<char>(number), static_cast<char>(number >> 8)};
-}
+std::string us(int number) { return {static_cast<char>(number), static_cast<char>(number >> 8)}; }
 
 std::string decimals(const Eigen::Vector3d& v) {
   char text[80];
@@ -95,10 +93,10 @@ TEST(BrokenSeries, UnevenStepsAreRefusedAboveOnePercent) {
     SeriesFiles series;
     const Volume volume = small_volume();
     for (std::size_t k = 5; k < 9; ++k)
-      set_element(series[k], position_tag,
-                  decimals(volume.position(0, 0, static_cast<double>(k)) +
-                           Eigen::Vector3d(0, 0, mm)),
-                  "DS");
+      set_element(
+          series[k], position_tag,
+          decimals(volume.position(0, 0, static_cast<double>(k)) + Eigen::Vector3d(0, 0, mm)),
+          "DS");
     series.save();
     return CtFolder(series.path()).series()[0].uneven;
   };
@@ -280,9 +278,8 @@ TEST(BrokenSeries, AHeaderThatStatesMoreThanTheFileHoldsIsRefused) {
       },
       "states 65535 x 65535 pixels, 8589672450 bytes, and holds 960");
   // A length that no file can have.
-  expect_refused(
-      [](std::string& file) { file.replace(file.size() - 964, 4, "\xf0\xff\xff\xff"); },
-      "960 bytes, and that it holds 4294967280");
+  expect_refused([](std::string& file) { file.replace(file.size() - 964, 4, "\xf0\xff\xff\xff"); },
+                 "960 bytes, and that it holds 4294967280");
 }
 
 TEST(BrokenSeries, OtherEncodingsAreNamed) {
@@ -312,7 +309,8 @@ TEST(BrokenSeries, ASliceOfAnotherSizeIsNamed) {
   for (const std::size_t k : {std::size_t{0}, std::size_t{5}, std::size_t{8}}) {
     SeriesFiles mixed;
     std::string odd = other[0];
-    for (const std::uint32_t tag : {series_tag, dicom_tag(0x0020, 0x000d), dicom_tag(0x0020, 0x0052)})
+    for (const std::uint32_t tag :
+         {series_tag, dicom_tag(0x0020, 0x000d), dicom_tag(0x0020, 0x0052)})
       set_element(odd, tag, element(mixed[k], tag), "UI");
     set_element(odd, position_tag, element(mixed[k], position_tag), "DS");
     mixed[k] = odd;

@@ -42,7 +42,10 @@ std::string encoded(const std::string& file, gdcm::TransferSyntax::TSType syntax
 std::string deflated(std::string file) {
   const std::uint32_t syntax = dicom_tag(0x0002, 0x0010);
   set_element(file, syntax, "1.2.840.10008.1.2.1.99", "UI");
-  const std::size_t begin = file.find(std::string("\x08\x00\x08\x00" "CS", 6));
+  const std::size_t begin =
+      file.find(std::string("\x08\x00\x08\x00"
+                            "CS",
+                            6));
   z_stream stream{};
   EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY), Z_OK);
   std::string out(file.size() + 100, '\0');
@@ -123,13 +126,17 @@ TEST(EncodedSeries, DeflatedFilesAreRead) {
 TEST(EncodedSeries, FilesWithoutPreambleAreRead) {
   SeriesFiles series;
   for (std::string& file : series.files())
-    file = file.substr(file.find(std::string("\x08\x00\x08\x00" "CS", 6)));
+    file =
+        file.substr(file.find(std::string("\x08\x00\x08\x00"
+                                          "CS",
+                                          6)));
   EXPECT_EQ(read_back(series).values, small_volume().values);
 }
 
 TEST(EncodedSeries, ObliqueAxesAreWrittenAndRead) {
   Volume oblique = small_volume();
-  oblique.axes = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
+  oblique.axes =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
   SeriesFiles series(oblique);
   const Volume read = read_back(series);
   // Numbers of a header have 16 characters: 13 digits of a direction.
@@ -142,11 +149,12 @@ TEST(EncodedSeries, AnyNumberOfThreadsGivesTheSameBits) {
   Volume volume = small_volume();
   SeriesFiles series(volume);
   for (std::size_t k = 0; k < 9; ++k) {
-    const Eigen::Vector3d at = volume.position(0, 0.37 * static_cast<double>(k), static_cast<double>(k));
-    set_element(series[k], dicom_tag(0x0020, 0x0032),
-                std::to_string(at.x()) + "\\" + std::to_string(at.y()) + "\\" +
-                    std::to_string(at.z()),
-                "DS");
+    const Eigen::Vector3d at =
+        volume.position(0, 0.37 * static_cast<double>(k), static_cast<double>(k));
+    set_element(
+        series[k], dicom_tag(0x0020, 0x0032),
+        std::to_string(at.x()) + "\\" + std::to_string(at.y()) + "\\" + std::to_string(at.z()),
+        "DS");
   }
   series.save();
   const CtVolume one = CtFolder(series.path(), 1).read({.threads = 1}),

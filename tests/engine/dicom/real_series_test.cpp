@@ -64,7 +64,8 @@ TEST(RealSeries, BrokenCopiesAreRefused) {
     std::filesystem::create_directory(to);
     for (const auto& entry : std::filesystem::directory_iterator(path)) {
       std::string bytes = read_file(entry.path());
-      if (entry.path().filename() == missing) bytes.resize(bytes.size() - std::min(cut, bytes.size()));
+      if (entry.path().filename() == missing)
+        bytes.resize(bytes.size() - std::min(cut, bytes.size()));
       if (!bytes.empty()) write_file(to / entry.path().filename(), bytes);
     }
     return test::refusal(CtFolder(to), {.series = 1});

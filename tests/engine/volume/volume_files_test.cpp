@@ -246,6 +246,27 @@ TEST_F(VolumeFiles, ValuesOfAnyTypeBecomeHounsfieldUnits) {
     EXPECT_NEAR(scaled.values[i], 0.5 * some_values()[i] - 3, 0.51);
 }
 
+TEST_F(VolumeFiles, WrittenVolumesAreReadBackBitForBit) {
+  Volume written;
+  written.size = {wide, high, deep};
+  written.values = some_values();
+  written.values[3] = -32768;
+  written.spacing_mm = {0.1 + 0.2, 1.0 / 3, 1e-3};
+  written.axes = Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  written.origin = {-1e-7, 123.456, 1e5 / 7};
+  for (const NrrdEncoding encoding : {NrrdEncoding::raw, NrrdEncoding::gzip}) {
+    const auto file = folder_ / "written.nrrd";
+    write_nrrd(written, file, encoding);
+    const Volume back = read_volume(file);
+    EXPECT_EQ(back.size, written.size);
+    EXPECT_EQ(back.values, written.values);
+    EXPECT_EQ(back.origin, written.origin);
+    // The file has the product of both.
+    EXPECT_LT((back.axes - written.axes).norm(), 1e-15);
+    EXPECT_LT((back.spacing_mm - written.spacing_mm).norm(), 1e-15);
+  }
+}
+
 TEST_F(VolumeFiles, GeometryIsNeverTakenFromADefault) {
   const std::string raw = bytes_of_values<std::int16_t>();
   const auto nrrd_without = [&](const std::string& line) {
