@@ -19,7 +19,7 @@ constexpr std::uint32_t pixel_data = dicom_tag(0x7fe0, 0x0010),
                         syntax_uid = dicom_tag(0x0002, 0x0010);
 constexpr int deepest_sequence = 32;
 constexpr std::size_t longest_value = 4096;  // of those that are kept
-constexpr std::size_t most_inflated = std::size_t{1} << 30;
+constexpr std::size_t most_inflated = std::size_t{1} << 28;
 
 struct ElementHeader {
   std::uint32_t tag = 0, length = 0;
@@ -123,7 +123,7 @@ std::uint64_t read_meta(DicomBytes& bytes, std::uint64_t at, std::string& uid) {
   return at;
 }
 
-/// The syntax of a file that does not state any.
+/// The syntax by the form of the first element.
 const TransferSyntax& likely_syntax(DicomBytes& bytes, std::uint64_t at) {
   if (!bytes.has(at, 8)) return implicit_little_endian;
   const std::string_view head = bytes.read(at, 8);
@@ -187,7 +187,11 @@ DicomElements read_elements(DicomBytes& bytes, const std::vector<std::uint32_t>&
     const std::uint64_t begin = read_meta(bytes, *first, uid);
     found.syntax = transfer_syntax(uid);
     found.known_syntax = found.syntax || uid.empty();
-    if (!found.syntax) found.syntax = &likely_syntax(bytes, begin);
+    const TransferSyntax& likely = likely_syntax(bytes, begin);
+    // Some files state the one of these two that they do not have.
+    const bool either =
+        found.syntax == &implicit_little_endian || found.syntax == &explicit_little_endian;
+    if (!found.syntax || either) found.syntax = &likely;
     read_values(bytes, begin, tags, found);
   } catch (const DicomDamage& damage) {
     found.damage = damage.what();

@@ -4,9 +4,10 @@
 #include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
 
-#include <exception>
-#include <mutex>
+#include <algorithm>
 #include <optional>
+
+#include "engine/dicom/isolated.h"
 
 namespace condyle {
 namespace {
@@ -53,13 +54,20 @@ std::optional<StreamSize> stream_size(std::string_view stream, std::string_view 
   return jpeg_size(stream);
 }
 
-void silence_gdcm() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    gdcm::Trace::DebugOff();
-    gdcm::Trace::WarningOff();
-    gdcm::Trace::ErrorOff();
-  });
+/// Compares the stream's own size with that of the header, and looks for its end.
+void check_stream(const std::vector<std::string>& fragments, const SlicePixels& pixels) {
+  constexpr std::size_t most_padding = 16;
+  const auto size = stream_size(fragments.at(0), pixels.syntax->uid);
+  if (!size) return;
+  if (size->rows != static_cast<std::uint32_t>(pixels.rows) ||
+      size->columns != static_cast<std::uint32_t>(pixels.columns) || size->components != 1)
+    throw DicomDamage("holds compressed pixels of another size than its header states");
+  const std::string_view last = fragments.back();
+  const std::string_view first = fragments.front();
+  const bool bare = first.starts_with("\xff\x4f") || first.starts_with("\xff\xd8");
+  if (bare && last.substr(last.size() - std::min(last.size(), most_padding)).find("\xff\xd9") ==
+                  std::string_view::npos)
+    throw DicomDamage("has compressed pixels that end early");
 }
 
 gdcm::Bitmap bitmap_of(const std::vector<std::string>& fragments, const SlicePixels& pixels) {
@@ -89,25 +97,20 @@ gdcm::Bitmap bitmap_of(const std::vector<std::string>& fragments, const SlicePix
 }  // namespace
 
 std::string decompressed(const std::vector<std::string>& fragments, const SlicePixels& pixels) {
-  silence_gdcm();
-  const auto size = stream_size(fragments.at(0), pixels.syntax->uid);
-  if (size &&
-      (size->rows != static_cast<std::uint32_t>(pixels.rows) ||
-       size->columns != static_cast<std::uint32_t>(pixels.columns) || size->components != 1))
-    throw DicomDamage("holds compressed pixels of another size than its header states");
-  std::string buffer;
-  try {
+  check_stream(fragments, pixels);
+  // On damaged data GDCM 3.0 crashes (RLE), fails assertions and prints (JPEG).
+  const auto result = run_isolated(pixels.bytes(), [&](char* buffer) {
+    gdcm::Trace::DebugOff();
+    gdcm::Trace::WarningOff();
+    gdcm::Trace::ErrorOff();
     const gdcm::Bitmap bitmap = bitmap_of(fragments, pixels);
-    if (bitmap.GetBufferLength() != pixels.bytes())
-      throw DicomDamage("states a layout of pixels that is not read");
-    buffer.resize(pixels.bytes());
-    if (!bitmap.GetBuffer(buffer.data())) throw DicomDamage("holds damaged compressed pixels");
-  } catch (const DicomDamage&) {
-    throw;
-  } catch (const std::exception&) {  // of GDCM and its codecs
+    return bitmap.GetBufferLength() == pixels.bytes() && bitmap.GetBuffer(buffer);
+  });
+  // Its JPEG decoder goes on after it has found an error.
+  if (!result || result->messages.find("Corrupt") != std::string::npos ||
+      result->messages.find("Premature end") != std::string::npos)
     throw DicomDamage("holds damaged compressed pixels");
-  }
-  return buffer;
+  return result->output;
 }
 
 }  // namespace condyle

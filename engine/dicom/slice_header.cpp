@@ -150,8 +150,7 @@ std::string check_pixels(DicomBytes& bytes, const DicomElements& elements, Slice
   if (elements.syntax->compressed != pixels.location.fragments)
     return "holds pixels in another form than it states";
   if (pixels.location.fragments) {
-    if (stated > largest_slice)
-      return fmt::format("states {}, more than are read of a compressed slice", size);
+    if (stated > largest_slice) return fmt::format("states {}, more than are read", size);
     try {
       if (pixel_fragments(bytes, pixels.location.begin).empty()) return "holds no pixels";
     } catch (const DicomDamage& damage) {
@@ -165,6 +164,7 @@ std::string check_pixels(DicomBytes& bytes, const DicomElements& elements, Slice
   if (pixels.location.length > stated + 1)
     return fmt::format("states {}, {} bytes, and that it holds {}", size, stated,
                        pixels.location.length);
+  if (stated > largest_slice) return fmt::format("states {}, more than are read", size);
   return "";
 }
 

@@ -75,38 +75,55 @@ TEST_P(Encoding, GivesTheValuesOfTheSeries) {
   EXPECT_LT((read.origin - small_volume().origin).norm(), 1e-9);
 }
 
+/// CT has 12 bits, signed or not; 16 are allocated.
+TEST_P(Encoding, GivesTheValuesOfTwelveBits) {
+  for (const bool is_signed : {false, true}) {
+    SeriesFiles series;
+    for (std::string& file : series.files()) {
+      for (const auto& [tag, value] : {std::pair{dicom_tag(0x0028, 0x0101), 12},
+                                       {dicom_tag(0x0028, 0x0102), 11},
+                                       {dicom_tag(0x0028, 0x0103), int{is_signed}}})
+        set_element(file, tag, std::string{static_cast<char>(value), '\0'}, "US");
+      set_element(file, dicom_tag(0x0028, 0x1052), is_signed ? "0" : "-1024", "DS");
+      if (is_signed)  // stored values are Hounsfield units
+        for (std::size_t at = file.size() - 960; at < file.size(); at += 2)
+          file[at + 1] = static_cast<char>(file[at + 1] - 4);
+      file = encoded(file, GetParam());
+    }
+    EXPECT_EQ(read_back(series).values, small_volume().values) << is_signed;
+  }
+}
+
 TEST_P(Encoding, DamagedDataIsRefusedOrReadWithoutACrash) {
   SeriesFiles series;
-  const std::string whole = encoded(series[4], GetParam());
-  std::mt19937 random(7);
+  for (std::string& file : series.files()) file = encoded(file, GetParam());
+  series.save();
+  const std::string whole = series[4];
   const bool big_endian = GetParam() == gdcm::TransferSyntax::ExplicitVRBigEndian;
   const std::size_t pixels = whole.find(big_endian ? std::string("\x7f\xe0\x00\x10", 4)
                                                    : std::string("\xe0\x7f\x10\x00", 4));
   ASSERT_NE(pixels, std::string::npos);
+  std::mt19937 random(7);
+  const auto place = [&] { return pixels + 8 + random() % (whole.size() - pixels - 8); };
   int refused = 0;
-  for (int i = 0; i < 60; ++i) {
-    SeriesFiles broken;
-    for (std::string& file : broken.files()) file = encoded(file, GetParam());
-    std::string& file = broken[4];
-    const std::size_t at = pixels + 8 + random() % (file.size() - pixels - 8);
+  for (int i = 0; i < 30; ++i) {
+    std::string file = whole;
     if (i % 3 == 0)
-      file.resize(at);
+      file.resize(place());
     else
-      for (int n = 0; n < 4; ++n)
-        file[pixels + 8 + random() % (file.size() - pixels - 8)] = static_cast<char>(random());
-    broken.save();
+      for (int n = 0; n < 4; ++n) file[place()] = static_cast<char>(random());
+    series.add("s104", file);
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout();
     try {
-      CtFolder(broken.path()).read({.series = 1});
+      CtFolder(series.path()).read({.series = 1});
     } catch (const InputError&) {
       ++refused;
     }
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-    if (i == 20 && HasFailure()) break;
   }
-  EXPECT_GE(refused, 20);  // all that are cut
+  EXPECT_GE(refused, 10);  // all that are cut
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -120,6 +137,13 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(EncodedSeries, DeflatedFilesAreRead) {
   SeriesFiles series;
   for (std::string& file : series.files()) file = deflated(file);
+  EXPECT_EQ(read_back(series).values, small_volume().values);
+}
+
+TEST(EncodedSeries, AWrongLittleEndianSyntaxIsRecognized) {
+  SeriesFiles series;
+  for (std::string& file : series.files())
+    set_element(file, dicom_tag(0x0002, 0x0010), "1.2.840.10008.1.2", "UI");
   EXPECT_EQ(read_back(series).values, small_volume().values);
 }
 
@@ -166,18 +190,18 @@ TEST(EncodedSeries, AnyNumberOfThreadsGivesTheSameBits) {
 /// No byte of a header that is changed or missing ends the program or takes memory.
 TEST(EncodedSeries, DamagedHeadersAreReportedOrRead) {
   SeriesFiles series;
+  series.save();
   std::mt19937 random(11);
   int refused = 0;
   for (int i = 0; i < 300; ++i) {
-    SeriesFiles broken;
-    std::string& file = broken[4];
+    std::string file = series[4];
     if (i % 2 == 0)
       file.resize(random() % (file.size() - 962));
     else
       file[128 + random() % (file.size() - 1088)] = static_cast<char>(random());
-    broken.save();
+    series.add("s104", file);
     try {
-      const CtFolder folder(broken.path());
+      const CtFolder folder(series.path());
       folder.read({.series = 1});
     } catch (const InputError& error) {
       ++refused;
