@@ -176,6 +176,18 @@ TEST(BrokenSeries, TwoPatientsUnderOneIdentifierAreTwoSeries) {
   EXPECT_EQ(folder.read({.series = 2}).volume.size[2], 4);
 }
 
+TEST(BrokenSeries, TwoStudiesOrFramesOfReferenceAreTwoSeries) {
+  for (const std::uint32_t tag : {dicom_tag(0x0020, 0x000d), dicom_tag(0x0020, 0x0052)}) {
+    SeriesFiles series;
+    for (std::size_t k = 0; k < 4; ++k) set_element(series[k], tag, "1.2.3", "UI");
+    series.save();
+    const CtFolder folder(series.path());
+    ASSERT_EQ(folder.series().size(), 2u);
+    EXPECT_EQ(folder.series()[0].notes.size(), 1u);
+    EXPECT_EQ(folder.default_series(false), 2);
+  }
+}
+
 TEST(BrokenSeries, TwoKernelsUnderOneIdentifierAreTwoSeries) {
   SeriesFiles series, sharp(small_volume(), {.kernel = "BONE"});
   for (std::size_t k = 0; k < 9; ++k) {

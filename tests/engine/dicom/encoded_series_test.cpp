@@ -96,9 +96,10 @@ TEST_P(Encoding, GivesTheValuesOfTwelveBits) {
 
 TEST_P(Encoding, DamagedDataIsRefusedOrReadWithoutACrash) {
   SeriesFiles series;
+  series.files().resize(3);
   for (std::string& file : series.files()) file = encoded(file, GetParam());
   series.save();
-  const std::string whole = series[4];
+  const std::string whole = series[1];
   const bool big_endian = GetParam() == gdcm::TransferSyntax::ExplicitVRBigEndian;
   const std::size_t pixels = whole.find(big_endian ? std::string("\x7f\xe0\x00\x10", 4)
                                                    : std::string("\xe0\x7f\x10\x00", 4));
@@ -112,7 +113,7 @@ TEST_P(Encoding, DamagedDataIsRefusedOrReadWithoutACrash) {
       file.resize(place());
     else
       for (int n = 0; n < 4; ++n) file[place()] = static_cast<char>(random());
-    series.add("s104", file);
+    series.add("s101", file);
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout();
     try {

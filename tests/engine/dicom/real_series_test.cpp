@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
-#include "engine/core/files.h"
 #include "engine/dicom/ct_volume.h"
 #include "tests/engine/dicom/series_files.h"
 #include "tests/support/places.h"
@@ -53,27 +52,6 @@ TEST(RealSeries, AScoutIsRefused) {
   NEED(path);
   const CtFolder folder(path);
   EXPECT_NE(test::refusal(folder).find("scout"), std::string::npos);
-}
-
-TEST(RealSeries, BrokenCopiesAreRefused) {
-  const auto path = real("philips-5mm");
-  NEED(path);
-  const test::Folder copies;
-  const auto copy_without = [&](const std::string& missing, std::size_t cut) {
-    const std::filesystem::path to = copies.path() / (missing + std::to_string(cut));
-    std::filesystem::create_directory(to);
-    for (const auto& entry : std::filesystem::directory_iterator(path)) {
-      std::string bytes = read_file(entry.path());
-      if (entry.path().filename() == missing)
-        bytes.resize(bytes.size() - std::min(cut, bytes.size()));
-      if (!bytes.empty()) write_file(to / entry.path().filename(), bytes);
-    }
-    return test::refusal(CtFolder(to), {.series = 1});
-  };
-  EXPECT_NE(copy_without("I150", 1 << 30).find("a slice is missing between slices"),
-            std::string::npos);
-  EXPECT_NE(copy_without("I150", 262144).find("512 x 512 pixels, 524288 bytes, and holds"),
-            std::string::npos);
 }
 
 }  // namespace
