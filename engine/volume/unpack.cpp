@@ -109,25 +109,23 @@ std::string unpack_deflate(std::string_view packed, std::size_t most,
   return content;
 }
 
-std::string pack_gzip(std::string_view bytes) {
+void append_gzip(std::string& content, std::string_view bytes) {
   constexpr std::size_t most = std::numeric_limits<uInt>::max(), block = std::size_t{1} << 20;
   z_stream stream{};
   if (deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, gzip_header, 8, Z_DEFAULT_STRATEGY) != Z_OK)
     throw MachineError("no memory to compress a volume");
-  std::string packed;
   for (int status = Z_OK; status != Z_STREAM_END;) {
-    const std::size_t in = std::min(bytes.size(), most), begin = packed.size();
-    packed.resize(begin + block);
+    const std::size_t in = std::min(bytes.size(), most), begin = content.size();
+    content.resize(begin + block);
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
     stream.avail_in = static_cast<uInt>(in);
-    stream.next_out = reinterpret_cast<Bytef*>(packed.data() + begin);
+    stream.next_out = reinterpret_cast<Bytef*>(content.data() + begin);
     stream.avail_out = static_cast<uInt>(block);
     status = deflate(&stream, in == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
     bytes.remove_prefix(in - stream.avail_in);
-    packed.resize(begin + block - stream.avail_out);
+    content.resize(begin + block - stream.avail_out);
   }
   deflateEnd(&stream);
-  return packed;
 }
 
 }  // namespace condyle

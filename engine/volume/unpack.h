@@ -22,7 +22,7 @@ std::string unpack_start(std::string_view packed, std::size_t size,
 std::string unpack_deflate(std::string_view packed, std::size_t most,
                            const std::filesystem::path& file);
 
-/// The bytes as a gzip stream, compressed quickly.
-std::string pack_gzip(std::string_view bytes);
+/// Appends the bytes as a gzip stream, compressed quickly.
+void append_gzip(std::string& content, std::string_view bytes);
 
 }  // namespace condyle

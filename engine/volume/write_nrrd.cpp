@@ -28,7 +28,10 @@ void write_nrrd(const Volume& volume, const std::filesystem::path& file, NrrdEnc
       encoding == NrrdEncoding::gzip ? "gzip" : "raw", nrrd_vector(volume.origin));
   const std::string_view bytes(reinterpret_cast<const char*>(volume.values.data()),
                                volume.values.size() * sizeof(volume.values[0]));
-  content += encoding == NrrdEncoding::gzip ? pack_gzip(bytes) : std::string(bytes);
+  if (encoding == NrrdEncoding::gzip)
+    append_gzip(content, bytes);
+  else
+    content += bytes;
   write_file(file, content);
 }
 
