@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <limits>
+
+#include "engine/core/parallel.h"
+#include "engine/segmentation/half_way.h"
+#include "engine/segmentation/lattice_surface.h"
+#include "engine/volume/blur.h"
+
+namespace condyle {
+namespace {
+
+constexpr int margin_voxels = 3;
+constexpr std::int16_t full = 1000;      // of the blurred difference between a bone and the others
+constexpr double border_blur_voxels = 0.8;
+
+/// The voxels of a label with a margin, in coordinates of the bone's box.
+VoxelBox box_of_label(const BoneVoxels& bone, VoxelLabel label) {
+  std::array<int, 3> low, high = {-1, -1, -1};
+  low.fill(std::numeric_limits<int>::max());
+  std::size_t q = 0;
+  for (int k = 0; k < bone.box.size[2]; ++k)
+    for (int j = 0; j < bone.box.size[1]; ++j)
+      for (int i = 0; i < bone.box.size[0]; ++i, ++q) {
+        if (bone.label[q] != label) continue;
+        const std::array<int, 3> at = {i, j, k};
+        for (std::size_t a = 0; a < 3; ++a) {
+          low[a] = std::min(low[a], at[a]);
+          high[a] = std::max(high[a], at[a]);
+        }
+      }
+  if (high[0] < 0) return {};
+  VoxelBox box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    box.low[a] = low[a];
+    box.size[a] = high[a] - low[a] + 1;
+  }
+  return box.grown(margin_voxels).within({{0, 0, 0}, bone.box.size});
+}
+
+/// Threshold minus value; between the bone and others, the middle between their voxels.
+std::vector<float> bone_values(const BoneVoxels& bone, VoxelLabel label, const VoxelBox& part,
+                               int threads) {
+  std::vector<std::int16_t> side(part.count());
+  std::vector<float> values(part.count());
+  const auto place = [&](int i, int j, int k) {
+    return bone.box.index(part.low[0] + i, part.low[1] + j, part.low[2] + k);
+  };
+  parallel_for(static_cast<std::size_t>(part.size[2]), threads, [&](std::size_t slice) {
+    const int k = static_cast<int>(slice);
+    for (int j = 0; j < part.size[1]; ++j)
+      for (int i = 0; i < part.size[0]; ++i) {
+        const VoxelLabel here = bone.label[place(i, j, k)];
+        side[part.index(i, j, k)] = here == label     ? full
+                                    : here == no_bone ? std::int16_t{0}
+                                                      : static_cast<std::int16_t>(-full);
+      }
+  });
+  blur(side, part.size, border_blur_voxels, threads);
+  parallel_for(static_cast<std::size_t>(part.size[2]), threads, [&](std::size_t slice) {
+    const int k = static_cast<int>(slice);
+    for (int j = 0; j < part.size[1]; ++j)
+      for (int i = 0; i < part.size[0]; ++i) {
+        const std::size_t q = part.index(i, j, k), at = place(i, j, k);
+        const auto below = static_cast<float>(bone.threshold_hu - bone.smooth[at]);
+        // A voxel of the bone stays inside, another one outside, whatever surrounds it.
+        const auto apart = static_cast<float>(-side[q]);
+        if (bone.label[at] == label)
+          values[q] = std::max(below, std::min(apart, -1.0f));
+        else
+          values[q] = std::max(below, std::max(apart, bone.label[at] == no_bone ? below : 1.0f));
+        const bool border = i == 0 || j == 0 || k == 0 || i + 1 == part.size[0] ||
+                            j + 1 == part.size[1] || k + 1 == part.size[2];
+        if (border) values[q] = std::max(values[q], 1.0f);
+      }
+  });
+  return values;
+}
+
+}  // namespace
+
+ScanSurface bone_surface(const Volume& volume, const BoneVoxels& bone, VoxelLabel label,
+                         const SurfaceOptions& options, const Progress& progress) {
+  report(progress, "finding the surface", 0);
+  ScanSurface surface;
+  const VoxelBox part = box_of_label(bone, label);
+  if (part.empty()) return surface;
+  VoxelBox in_volume = part;
+  for (std::size_t a = 0; a < 3; ++a) in_volume.low[a] += bone.box.low[a];
+  surface.mesh =
+      lattice_surface(volume, in_volume, bone_values(bone, label, part, options.threads),
+                      options.least_piece_mm3);
+  report(progress, "finding the surface", 1);
+  surface.moved_fraction = move_to_half_way(
+      surface.mesh, volume, {.threshold_hu = bone.threshold_hu, .threads = options.threads},
+      progress);
+  decimate_surface(surface, options, progress);
+  return surface;
+}
+
+}  // namespace condyle

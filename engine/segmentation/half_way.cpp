@@ -1,0 +1,155 @@
+#include "engine/segmentation/half_way.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/core/infinity.h"
+#include "engine/core/parallel.h"
+#include "engine/mesh/measure.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double step_voxels = 0.25;
+constexpr int reach_steps = 12;  // three voxels each way
+constexpr double farthest_voxels = 1.5;
+constexpr int averaging_rounds = 6;
+constexpr float undecided_weight = 1e-3f;
+constexpr std::size_t chunk = 4096;  // vertices that a thread takes at a time
+
+/// Trilinear values of a volume; the border value continues beyond it.
+class VolumeValues {
+ public:
+  explicit VolumeValues(const Volume& volume) : volume_(volume) {}
+  double operator()(const Vector3d& p) const {
+    const Vector3d at = (volume_.axes.transpose() * (p - volume_.origin))
+                            .cwiseQuotient(volume_.spacing_mm);
+    std::array<int, 3> low;
+    std::array<double, 3> part;
+    for (int a = 0; a < 3; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      const double c = std::clamp(at[a], 0.0, volume_.size[axis] - 1.0);
+      low[axis] = std::min(static_cast<int>(c), volume_.size[axis] - 2);
+      part[axis] = c - low[axis];
+    }
+    const std::int16_t* v = volume_.values.data() + volume_.index(low[0], low[1], low[2]);
+    const std::size_t row = static_cast<std::size_t>(volume_.size[0]),
+                      slice = row * static_cast<std::size_t>(volume_.size[1]);
+    const auto along = [&](const std::int16_t* u) { return u[0] + part[0] * (u[1] - u[0]); };
+    const auto face = [&](const std::int16_t* u) {
+      return along(u) + part[1] * (along(u + row) - along(u));
+    };
+    return face(v) + part[2] * (face(v + slice) - face(v));
+  }
+  /// Length of a voxel along a direction: that of the ellipsoid with the voxel's axes.
+  double step_mm(const Vector3d& direction) const {
+    return (volume_.axes.transpose() * direction).cwiseProduct(volume_.spacing_mm).norm();
+  }
+
+ private:
+  const Volume& volume_;
+};
+
+using Profile = std::array<double, 2 * reach_steps + 1>;  // from inside to outside
+
+/// Place of the half-way level in steps from the middle; infinite without one.
+double half_way_place(const Profile& profile, const HalfWayOptions& options) {
+  double inside = -infinity, outside = infinity;
+  for (int q = 0; q <= reach_steps; ++q) {
+    const double value = profile[static_cast<std::size_t>(reach_steps - q)];
+    if (value > inside)
+      inside = value;
+    else if (value < inside - (inside - options.threshold_hu) / 3 - options.drop_hu)
+      break;
+  }
+  for (int q = 0; q <= reach_steps; ++q) {
+    const double value = profile[static_cast<std::size_t>(reach_steps + q)];
+    if (value < outside)
+      outside = value;
+    else if (value > outside + options.rise_hu)
+      break;
+  }
+  const double level = 0.5 * (inside + outside);
+  double best = infinity;
+  for (int q = -reach_steps; q < reach_steps; ++q) {
+    const double a = profile[static_cast<std::size_t>(q + reach_steps)],
+                 b = profile[static_cast<std::size_t>(q + reach_steps + 1)];
+    if (a < level || b >= level) continue;
+    const double place = q + (a - level) / (a - b);
+    if (std::abs(place) < std::abs(best)) best = place;
+  }
+  return best;
+}
+
+/// The neighbours of each vertex in a closed surface.
+struct VertexNeighbours {
+  std::vector<int> first, vertex;
+
+  explicit VertexNeighbours(const TriMesh& mesh) {
+    first.assign(mesh.vertices.size() + 1, 0);
+    for (const auto& t : mesh.triangles)
+      for (int c = 0; c < 3; ++c) ++first[static_cast<std::size_t>(t[c]) + 1];
+    for (std::size_t v = 1; v < first.size(); ++v) first[v] += first[v - 1];
+    vertex.resize(3 * mesh.triangles.size());
+    std::vector<int> next(first.begin(), first.end() - 1);
+    for (const auto& t : mesh.triangles)
+      for (int c = 0; c < 3; ++c)
+        vertex[static_cast<std::size_t>(next[static_cast<std::size_t>(t[c])]++)] = t[(c + 1) % 3];
+  }
+};
+
+template <class Body>
+void for_vertices(std::size_t count, int threads, const Body& body) {
+  parallel_for((count + chunk - 1) / chunk, threads, [&](std::size_t c) {
+    for (std::size_t v = c * chunk; v < std::min(count, (c + 1) * chunk); ++v) body(v);
+  });
+}
+
+}  // namespace
+
+double move_to_half_way(TriMesh& mesh, const Volume& volume, const HalfWayOptions& options,
+                        const Progress& progress) {
+  report(progress, "moving the surface to the half-way level", 0);
+  const std::size_t count = mesh.vertices.size();
+  const std::vector<Vector3d> normals = vertex_normals(mesh);
+  const VolumeValues values(volume);
+  std::vector<float> move(count, 0), weight(count, undecided_weight);
+  for_vertices(count, options.threads, [&](std::size_t v) {
+    const double voxel_mm = values.step_mm(normals[v]);
+    Profile profile;
+    for (int q = -reach_steps; q <= reach_steps; ++q)
+      profile[static_cast<std::size_t>(q + reach_steps)] =
+          values(mesh.vertices[v] + normals[v] * (q * step_voxels * voxel_mm));
+    const double place = half_way_place(profile, options) * step_voxels;
+    if (!(std::abs(place) < farthest_voxels)) return;
+    move[v] = static_cast<float>(place);
+    weight[v] = 1;
+  });
+  report(progress, "moving the surface to the half-way level", 0.6);
+  std::size_t decided = 0;
+  for (const float w : weight) decided += w == 1;
+  const VertexNeighbours neighbours(mesh);
+  std::vector<float> averaged(count);
+  for (int round = 0; round < averaging_rounds; ++round) {
+    for_vertices(count, options.threads, [&](std::size_t v) {
+      float sum = weight[v] * move[v], weights = weight[v];
+      for (int n = neighbours.first[v]; n < neighbours.first[v + 1]; ++n) {
+        const auto other = static_cast<std::size_t>(neighbours.vertex[static_cast<std::size_t>(n)]);
+        sum += weight[other] * move[other];
+        weights += weight[other];
+      }
+      averaged[v] = sum / weights;
+    });
+    move.swap(averaged);
+  }
+  for_vertices(count, options.threads, [&](std::size_t v) {
+    mesh.vertices[v] += normals[v] * (move[v] * values.step_mm(normals[v]));
+  });
+  report(progress, "moving the surface to the half-way level", 1);
+  return count == 0 ? 0 : static_cast<double>(decided) / static_cast<double>(count);
+}
+
+}  // namespace condyle

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/mesh/tri_mesh.h"
+#include "engine/segmentation/scan_surfaces.h"
+
+namespace condyle {
+
+/// The zero surface of values in a box of voxels, negative inside; positive at the border of the
+/// box. Closed and oriented outward, mm. Pieces of less than `least_mm3` are dropped, and so are
+/// cavities. Only for this module.
+TriMesh lattice_surface(const Volume& volume, const VoxelBox& box, std::vector<float> values,
+                        double least_mm3);
+
+/// Decimates the surface and measures the error.
+void decimate_surface(ScanSurface& surface, const SurfaceOptions& options,
+                      const Progress& progress);
+
+}  // namespace condyle

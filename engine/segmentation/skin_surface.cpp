@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "engine/segmentation/half_way.h"
+#include "engine/segmentation/lattice_surface.h"
+#include "engine/volume/blur.h"
+
+namespace condyle {
+namespace {
+
+constexpr double skin_blur_voxels = 0.6;
+constexpr std::int16_t air_hu = -1000;
+constexpr double least_skin_mm3 = 20000;  // of a piece
+
+/// The voxels of the head with a margin, one beyond the volume at most.
+VoxelBox box_of_head(const Volume& volume, const HeadRegion& head) {
+  std::array<int, 3> low, high = {-1, -1, -1};
+  low.fill(std::numeric_limits<int>::max());
+  std::size_t c = 0;
+  for (int k = 0; k < head.size[2]; ++k)
+    for (int j = 0; j < head.size[1]; ++j)
+      for (int i = 0; i < head.size[0]; ++i, ++c) {
+        if (!head.head[c]) continue;
+        const std::array<int, 3> at = {i, j, k};
+        for (std::size_t a = 0; a < 3; ++a) {
+          low[a] = std::min(low[a], at[a]);
+          high[a] = std::max(high[a], at[a]);
+        }
+      }
+  VoxelBox box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    box.low[a] = (low[a] - 1) * head.cell[a];
+    box.size[a] = (high[a] + 2) * head.cell[a] - box.low[a];
+  }
+  return box.within(whole_box(volume).grown(1));
+}
+
+/// The scan without what lies around the head, and with cavities filled: as if the head were one
+/// solid.
+Volume solid_head(const Volume& volume, const TissueLevels& levels, const HeadRegion& head,
+                  const VoxelBox& box, int threads) {
+  Volume solid;
+  solid.size = box.size;
+  solid.spacing_mm = volume.spacing_mm;
+  solid.axes = volume.axes;
+  solid.origin = box.position(volume, 0, 0, 0);
+  solid.values.assign(box.count(), air_hu);
+  const auto soft = static_cast<std::int16_t>(std::lround(levels.soft));
+  const double cell_mm =
+      (volume.spacing_mm.array() *
+       Eigen::Array3d(head.cell[0], head.cell[1], head.cell[2])).matrix().norm();
+  const double limit = HeadRegion::crease_depth_mm;
+  parallel_for(static_cast<std::size_t>(box.size[2]), threads, [&](std::size_t slice) {
+    const int z = box.low[2] + static_cast<int>(slice);
+    if (z < 0 || z >= volume.size[2]) return;
+    for (int j = 0; j < box.size[1]; ++j) {
+      const int y = box.low[1] + j;
+      if (y < 0 || y >= volume.size[1]) continue;
+      for (int i = 0; i < box.size[0]; ++i) {
+        const int x = box.low[0] + i;
+        if (x < 0 || x >= volume.size[0]) continue;
+        const std::int16_t value = volume.at(x, y, z);
+        const std::size_t c = head.cell_of(x, y, z);
+        std::int16_t& out = solid.values[solid.index(i, j, static_cast<int>(slice))];
+        if (head.head[c] && value > levels.skin()) {
+          out = value;
+          continue;
+        }
+        const double at_cell = head.outer_mm[c];
+        const bool deep = at_cell > limit + cell_mm ||
+                          (at_cell > limit - cell_mm && head.outer_distance(x, y, z) > limit);
+        if (deep)
+          out = std::max(value, soft);
+        else if (value <= levels.skin())
+          out = value;
+        else
+          out = air_hu;  // table, head rest
+      }
+    }
+  });
+  return solid;
+}
+
+}  // namespace
+
+ScanSurface skin_surface(const Volume& volume, const TissueLevels& levels, const HeadRegion& head,
+                         const std::string& name, const SurfaceOptions& options,
+                         const Progress& progress) {
+  if (!head.has_outside)
+    throw InputError(fmt::format(
+        "{}: no air around the head: its skin lies outside the field of view", name));
+  report(progress, "finding the skin", 0);
+  const VoxelBox box = box_of_head(volume, head);
+  const Volume solid = solid_head(volume, levels, head, box, options.threads);
+  report(progress, "finding the skin", 0.3);
+  std::vector<std::int16_t> smooth = solid.values;
+  blur(smooth, box.size, skin_blur_voxels, options.threads);
+  std::vector<float> values(smooth.size());
+  const auto level = static_cast<float>(levels.skin());
+  const int nx = box.size[0], ny = box.size[1], nz = box.size[2];
+  parallel_for(static_cast<std::size_t>(nz), options.threads, [&](std::size_t slice) {
+    const int k = static_cast<int>(slice);
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        const std::size_t q = box.index(i, j, k);
+        const bool border =
+            i == 0 || j == 0 || k == 0 || i + 1 == nx || j + 1 == ny || k + 1 == nz;
+        values[q] = border ? 1000 : level - smooth[q];
+      }
+  });
+  std::vector<std::int16_t>().swap(smooth);
+  report(progress, "finding the skin", 0.5);
+  ScanSurface surface;
+  surface.mesh = lattice_surface(
+      volume, box, std::move(values),
+      std::max(options.least_piece_mm3, least_skin_mm3));
+  report(progress, "finding the skin", 1);
+  surface.moved_fraction = move_to_half_way(
+      surface.mesh, solid,
+      {.threshold_hu = levels.skin(), .rise_hu = 300, .drop_hu = 200, .threads = options.threads},
+      progress);
+  decimate_surface(surface, options, progress);
+  return surface;
+}
+
+}  // namespace condyle
