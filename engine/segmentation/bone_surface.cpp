@@ -10,7 +10,7 @@ namespace condyle {
 namespace {
 
 constexpr int margin_voxels = 3;
-constexpr std::int16_t full = 1000;      // of the blurred difference between a bone and the others
+constexpr std::int16_t whole_side = 1000;      // of the blurred difference between a bone and the others
 constexpr double border_blur_voxels = 0.8;
 
 /// The voxels of a label with a margin, in coordinates of the bone's box.
@@ -50,9 +50,9 @@ std::vector<float> bone_values(const BoneVoxels& bone, VoxelLabel label, const V
     for (int j = 0; j < part.size[1]; ++j)
       for (int i = 0; i < part.size[0]; ++i) {
         const VoxelLabel here = bone.label[place(i, j, k)];
-        side[part.index(i, j, k)] = here == label     ? full
+        side[part.index(i, j, k)] = here == label     ? whole_side
                                     : here == no_bone ? std::int16_t{0}
-                                                      : static_cast<std::int16_t>(-full);
+                                                      : static_cast<std::int16_t>(-whole_side);
       }
   });
   blur(side, part.size, border_blur_voxels, threads);

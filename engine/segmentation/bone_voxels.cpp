@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "engine/segmentation/metal_streaks.h"
 #include "engine/segmentation/voxel_pieces.h"
 #include "engine/volume/blur.h"
 
@@ -17,6 +18,7 @@ namespace {
 constexpr double blur_voxels = 0.6;
 constexpr double air_in_cavity_hu = -200;  // a cavity with a lower mean holds air, not marrow
 constexpr double largest_marrow_mm3 = 50000;
+constexpr double smallest_cavity_mm3 = 60;  // smaller ones are noise, or metal out of range
 constexpr std::int16_t beyond_hu = -1024;
 
 /// Voxels around the cells of the head that are brighter on average than soft tissue.
@@ -27,7 +29,7 @@ VoxelBox bright_box(const Volume& volume, const HeadRegion& head, double above_h
   for (int k = 0; k < head.size[2]; ++k)
     for (int j = 0; j < head.size[1]; ++j)
       for (int i = 0; i < head.size[0]; ++i, ++c) {
-        if (head.mean[c] < above_hu || !head.head[c]) continue;
+        if (head.mean[c] < above_hu || head.head[c] != 1) continue;
         const std::array<int, 3> at = {i, j, k};
         for (std::size_t a = 0; a < 3; ++a) {
           low[a] = std::min(low[a], at[a]);
@@ -107,7 +109,7 @@ std::size_t drop_specks(BoneVoxels& bone, double least_voxels) {
 }
 
 /// Fills marrow that bone encloses: its walls are no surface of the bone.
-void fill_marrow(BoneVoxels& bone, double most_voxels) {
+void fill_marrow(BoneVoxels& bone, double voxel_mm3) {
   const VoxelPieces pieces =
       find_pieces(bone.label, bone.box.size, no_bone, Connectivity::faces);
   std::vector<double> sum(pieces.voxels.size(), 0);
@@ -119,7 +121,9 @@ void fill_marrow(BoneVoxels& bone, double most_voxels) {
   for_runs(pieces, bone.box.size[0], [&](std::size_t q, const VoxelRun& run) {
     const auto piece = static_cast<std::size_t>(run.piece);
     const auto voxels = static_cast<double>(pieces.voxels[piece]);
-    if (pieces.at_border[piece] || voxels > most_voxels || sum[piece] < air_in_cavity_hu * voxels)
+    const bool holds_air = sum[piece] < air_in_cavity_hu * voxels;
+    if (pieces.at_border[piece] || voxels * voxel_mm3 > largest_marrow_mm3 ||
+        (holds_air && voxels * voxel_mm3 > smallest_cavity_mm3))
       return;
     for (int i = 0; i <= run.last - run.first; ++i) {
       const std::size_t at = q + static_cast<std::size_t>(i);
@@ -147,10 +151,12 @@ BoneVoxels find_bone(const Volume& volume, const TissueLevels& levels, const Hea
   report(progress, "finding bone", 0.4);
   mark_bright(head, bone, options.threads);
   report(progress, "finding bone", 0.6);
+  bone.metal = find_metal(volume, bone);
+  if (bone.metal) drop_streaks(volume, *bone.metal, bone, options.threads);
   const double voxel_mm3 = volume.spacing_mm.prod();
   if (drop_specks(bone, options.least_piece_mm3 / voxel_mm3) == 0) throw none();
   report(progress, "finding bone", 0.8);
-  fill_marrow(bone, largest_marrow_mm3 / voxel_mm3);
+  fill_marrow(bone, voxel_mm3);
   report(progress, "finding bone", 1);
   return bone;
 }

@@ -18,8 +18,11 @@ using Size = std::array<int, 3>;
 
 constexpr double cell_mm = 2;
 constexpr double core_depth_mm = 4;    // tissue deeper than this is the core of the head
-constexpr double close_mm = 6;         // from the core: what belongs to the head for certain
+constexpr double close_mm = 5;         // from the core: what belongs to the head for certain
 constexpr double longest_part_mm = 32;  // from the core: ears and nose, but no table
+// Tissue fills about two thirds of the cells of an ear, a sheet of a head rest none.
+constexpr int full_cell_hu = -150;
+constexpr double least_full_fraction = 0.3;
 constexpr double opening_mm = 6;       // openings narrower than twice this are bridged
 constexpr double least_head_cm3 = 100;
 
@@ -100,49 +103,113 @@ void mark_head(HeadRegion& region, const Mask& solid, const Mask& core,
     (from_core[c] <= close_mm ? region.head : farther)[c] = 1;
   }
   const VoxelPieces parts = find_pieces(farther, region.size, 1, Connectivity::faces);
+  std::vector<std::size_t> full(parts.voxels.size(), 0);  // cells that tissue fills
   std::vector<float> most(parts.voxels.size(), 0), least(parts.voxels.size(), no_feature);
   for_cells(parts, region.size, [&](std::size_t c, std::size_t part) {
     most[part] = std::max(most[part], from_core[c]);
     least[part] = std::min(least[part], from_core[c]);
+    full[part] += region.mean[c] > full_cell_hu;
   });
   const double touching_mm = close_mm + cell_size_mm.maxCoeff();
   for_cells(parts, region.size, [&](std::size_t c, std::size_t part) {
-    if (most[part] <= longest_part_mm && least[part] <= touching_mm) region.head[c] = 1;
+    const bool thick = static_cast<double>(full[part]) >=
+                       least_full_fraction * static_cast<double>(parts.voxels[part]);
+    if (thick && most[part] <= longest_part_mm && least[part] <= touching_mm) region.head[c] = 1;
   });
 }
 
+/// Marks the cells next to the head that are not solid: its surface runs through some of them.
+void mark_edge(HeadRegion& region, const Mask& solid) {
+  const auto [nx, ny, nz] = region.size;
+  const auto at = [&](int i, int j, int k) {
+    return (static_cast<std::size_t>(k) * static_cast<std::size_t>(ny) +
+            static_cast<std::size_t>(j)) *
+               static_cast<std::size_t>(nx) +
+           static_cast<std::size_t>(i);
+  };
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) {
+        if (region.head[at(i, j, k)] != 1) continue;
+        for (int z = std::max(k - 1, 0); z <= std::min(k + 1, nz - 1); ++z)
+          for (int y = std::max(j - 1, 0); y <= std::min(j + 1, ny - 1); ++y)
+            for (int x = std::max(i - 1, 0); x <= std::min(i + 1, nx - 1); ++x) {
+              std::uint8_t& near = region.head[at(x, y, z)];
+              if (near == 0 && !solid[at(x, y, z)]) near = 2;
+            }
+      }
+}
+
+/// A lattice that is longer at both ends of an axis; the border values continue there.
+struct LongerLattice {
+  Size size;            // of the original
+  std::size_t axis;     // that is longer
+  int margin;           // at each end
+  Size longer = size;
+
+  LongerLattice(const Size& original, std::size_t along, int by)
+      : size(original), axis(along), margin(by) {
+    longer[axis] += 2 * margin;
+  }
+  std::size_t count() const {
+    return static_cast<std::size_t>(longer[0]) * static_cast<std::size_t>(longer[1]) *
+           static_cast<std::size_t>(longer[2]);
+  }
+  std::array<int, 3> place(std::size_t c) const {
+    const auto row = static_cast<std::size_t>(longer[0]),
+               rows = static_cast<std::size_t>(longer[1]);
+    return {static_cast<int>(c % row), static_cast<int>(c / row % rows),
+            static_cast<int>(c / (row * rows))};
+  }
+  /// The original cell whose value a cell has.
+  std::size_t original(std::size_t c) const {
+    std::array<int, 3> at = place(c);
+    at[axis] = std::clamp(at[axis] - margin, 0, size[axis] - 1);
+    return (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(size[1]) +
+            static_cast<std::size_t>(at[1])) *
+               static_cast<std::size_t>(size[0]) +
+           static_cast<std::size_t>(at[0]);
+  }
+};
+
 /// Air and things around the head, from the sides of the scan: the neck ends at its lower end, and
-/// airways with it.
+/// airways with it. The scan goes on beyond its ends, so that air above the head counts.
 void mark_outside(const Volume& volume, HeadRegion& region, const Eigen::Vector3d& cell_size_mm,
                   int threads) {
-  const std::size_t count = region.head.size();
-  std::vector<float> from_head = distances_from(
-      region.size, cell_size_mm, threads, [&](std::size_t c) { return region.head[c] != 0; });
+  Eigen::Index along_body = 0;
+  volume.axes.row(2).cwiseAbs().maxCoeff(&along_body);
+  const auto upward = static_cast<std::size_t>(along_body);
+  const LongerLattice lattice(
+      region.size, upward,
+      static_cast<int>(std::ceil((opening_mm + 2) / cell_size_mm[along_body])) + 1);
+  const std::size_t count = lattice.count();
+  const std::vector<float> from_head =
+      distances_from(lattice.longer, cell_size_mm, threads,
+                     [&](std::size_t c) { return region.head[lattice.original(c)] == 1; });
   Mask away(count, 0);
   for (std::size_t c = 0; c < count; ++c) away[c] = from_head[c] > opening_mm;
-  const VoxelPieces parts = find_pieces(away, region.size, 1, Connectivity::faces);
-  Eigen::Index upward = 0;  // the axis of the lattice along the body
-  volume.axes.row(2).cwiseAbs().maxCoeff(&upward);
+  const VoxelPieces parts = find_pieces(away, lattice.longer, 1, Connectivity::faces);
   std::vector<std::uint8_t> at_side(parts.voxels.size(), 0);
-  const auto size = region.size;
-  for_cells(parts, size, [&](std::size_t c, std::size_t part) {
-    const auto row = static_cast<std::size_t>(size[0]), rows = static_cast<std::size_t>(size[1]);
-    const std::array<std::size_t, 3> at = {c % row, c / row % rows, c / (row * rows)};
+  for_cells(parts, lattice.longer, [&](std::size_t c, std::size_t part) {
+    const auto at = lattice.place(c);
     for (std::size_t a = 0; a < 3; ++a)
-      if (static_cast<Eigen::Index>(a) != upward &&
-          (at[a] == 0 || at[a] + 1 == static_cast<std::size_t>(size[a])))
-        at_side[part] = 1;
+      if (a != upward && (at[a] == 0 || at[a] + 1 == lattice.longer[a])) at_side[part] = 1;
   });
   std::size_t largest = 0;
   for (std::size_t part = 0; part < at_side.size(); ++part)
     if (at_side[part]) largest = std::max(largest, parts.voxels[part]);
   Mask outer(count, 0);
-  for_cells(parts, size, [&](std::size_t c, std::size_t part) {
+  for_cells(parts, lattice.longer, [&](std::size_t c, std::size_t part) {
     outer[c] = at_side[part] && 10 * parts.voxels[part] >= largest;
   });
   region.has_outside = largest > 0;
-  region.outer_mm = distances_from(region.size, cell_size_mm, threads,
-                                   [&](std::size_t c) { return outer[c] != 0; });
+  const std::vector<float> outer_mm = distances_from(
+      lattice.longer, cell_size_mm, threads, [&](std::size_t c) { return outer[c] != 0; });
+  region.outer_mm.resize(region.head.size());
+  for (std::size_t c = 0; c < count; ++c) {
+    const int at = lattice.place(c)[upward] - lattice.margin;
+    if (at >= 0 && at < region.size[upward]) region.outer_mm[lattice.original(c)] = outer_mm[c];
+  }
 }
 
 }  // namespace
@@ -210,6 +277,7 @@ HeadRegion find_head(const Volume& volume, const TissueLevels& levels, const std
   report(progress, "finding the head", 0.6);
   mark_head(region, solid, core, cell_size_mm, threads);
   mark_outside(volume, region, cell_size_mm, threads);
+  mark_edge(region, solid);
   report(progress, "finding the head", 1);
   return region;
 }

@@ -16,7 +16,7 @@ struct HeadRegion {
   std::array<int, 3> cell = {1, 1, 1};  // voxels along each axis of a cell
   std::array<int, 3> size = {0, 0, 0};  // cells
   std::vector<std::int16_t> mean;       // HU
-  std::vector<std::uint8_t> head;       // whether a cell is tissue of the head
+  std::vector<std::uint8_t> head;       // 1: tissue of the head; 2: air next to it; 0: others
   std::vector<float> outer_mm;          // distance of a cell from the air around the head
   bool has_outside = false;             // whether there is air around the head
 

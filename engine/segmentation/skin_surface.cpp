@@ -8,6 +8,7 @@
 #include "engine/core/parallel.h"
 #include "engine/segmentation/half_way.h"
 #include "engine/segmentation/lattice_surface.h"
+#include "engine/segmentation/metal_streaks.h"
 #include "engine/volume/blur.h"
 
 namespace condyle {
@@ -89,14 +90,18 @@ Volume solid_head(const Volume& volume, const TissueLevels& levels, const HeadRe
 }  // namespace
 
 ScanSurface skin_surface(const Volume& volume, const TissueLevels& levels, const HeadRegion& head,
-                         const std::string& name, const SurfaceOptions& options,
+                         const std::optional<MetalSlab>& metal, const std::string& name,
+                         const SurfaceOptions& options,
                          const Progress& progress) {
   if (!head.has_outside)
     throw InputError(fmt::format(
         "{}: no air around the head: its skin lies outside the field of view", name));
   report(progress, "finding the skin", 0);
   const VoxelBox box = box_of_head(volume, head);
-  const Volume solid = solid_head(volume, levels, head, box, options.threads);
+  Volume solid = solid_head(volume, levels, head, box, options.threads);
+  if (metal)
+    trim_streaks(*metal, levels.skin(), static_cast<std::int16_t>(std::lround(levels.soft)),
+                 box.low[static_cast<std::size_t>(metal->axis)], solid, options.threads);
   report(progress, "finding the skin", 0.3);
   std::vector<std::int16_t> smooth = solid.values;
   blur(smooth, box.size, skin_blur_voxels, options.threads);

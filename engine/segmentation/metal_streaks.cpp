@@ -1,0 +1,177 @@
+#include "engine/segmentation/metal_streaks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/parallel.h"
+#include "engine/segmentation/distance_map.h"
+
+namespace condyle {
+namespace {
+
+constexpr int metal_hu = 2900;  // enamel is darker
+constexpr int least_saturated_hu = 2000, saturation_slack_hu = 30;
+constexpr double least_metal_mm2 = 4, longest_slab_mm = 40, beyond_mm = 1;
+constexpr double beside_bone_mm = 4, beside_head_mm = 3, spike_mm = 5, within_head_mm = 4;
+constexpr float streak_reach_mm = 50;
+constexpr std::int16_t streak_air_hu = -1000;
+
+/// A slice of a lattice across an axis: places of its pixels.
+struct SliceLattice {
+  std::array<std::size_t, 2> axes;  // in the slice
+  std::size_t axis;
+  std::array<int, 3> size;  // of the flat lattice
+  Eigen::Vector3d spacing_mm;
+
+  SliceLattice(int across, const std::array<int, 3>& whole, const Eigen::Vector3d& spacing)
+      : axes{across == 0 ? 1u : 0u, across == 2 ? 1u : 2u},
+        axis(static_cast<std::size_t>(across)),
+        size{whole[axes[0]], whole[axes[1]], 1},
+        spacing_mm(spacing[static_cast<int>(axes[0])], spacing[static_cast<int>(axes[1])], 1) {}
+  std::size_t pixels() const {
+    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
+  }
+  /// Place in the whole lattice of a pixel of a slice.
+  std::array<int, 3> place(std::size_t pixel, int slice) const {
+    std::array<int, 3> at;
+    at[axes[0]] = static_cast<int>(pixel) % size[0];
+    at[axes[1]] = static_cast<int>(pixel) / size[0];
+    at[axis] = slice;
+    return at;
+  }
+};
+
+/// Squared distances from the pixels that hold, mm^2.
+template <class Holds>
+std::vector<float> flat_distances(const SliceLattice& lattice, const Holds& holds) {
+  std::vector<float> map(lattice.pixels());
+  for (std::size_t p = 0; p < map.size(); ++p) map[p] = holds(p) ? 0 : no_feature;
+  make_squared_distances(map, lattice.size, lattice.spacing_mm, 1);
+  return map;
+}
+
+double square(double x) { return x * x; }
+
+/// Steps along the axes of a lattice from its first voxel to a place.
+Eigen::Vector3d lattice_steps(const Volume& volume, const Eigen::Vector3d& origin,
+                              const Eigen::Vector3d& p) {
+  return (volume.axes.transpose() * (p - origin)).cwiseQuotient(volume.spacing_mm);
+}
+
+/// Squared distances in a slice from the metal of all slices, mm^2. `origin`: the first voxel.
+std::vector<float> metal_distances(const SliceLattice& lattice, const MetalSlab& slab,
+                                   const Volume& volume, const Eigen::Vector3d& origin) {
+  std::vector<std::uint8_t> metal(lattice.pixels(), 0);
+  for (const Eigen::Vector3d& place : slab.places) {
+    const Eigen::Vector3d at = lattice_steps(volume, origin, place);
+    std::array<int, 2> pixel;
+    for (std::size_t a = 0; a < 2; ++a)
+      pixel[a] = std::clamp(static_cast<int>(std::lround(at[static_cast<int>(lattice.axes[a])])), 0,
+                            lattice.size[a] - 1);
+    metal[static_cast<std::size_t>(pixel[1]) * static_cast<std::size_t>(lattice.size[0]) +
+          static_cast<std::size_t>(pixel[0])] = 1;
+  }
+  return flat_distances(lattice, [&](std::size_t p) { return metal[p] != 0; });
+}
+
+bool is_bone(VoxelLabel label) { return label != no_bone && label != other_bone; }
+
+}  // namespace
+
+std::optional<MetalSlab> find_metal(const Volume& volume, const BoneVoxels& bone) {
+  int level = metal_hu;
+  const int saturated = *std::max_element(volume.values.begin(), volume.values.end());
+  if (saturated < metal_hu && saturated >= least_saturated_hu)
+    level = saturated - saturation_slack_hu;  // the scanner's range ends there
+  Eigen::Index upward = 0;
+  volume.axes.row(2).cwiseAbs().maxCoeff(&upward);
+  const SliceLattice lattice(static_cast<int>(upward), bone.box.size, volume.spacing_mm);
+  const double pixel_mm2 = lattice.spacing_mm.prod();
+  MetalSlab slab{static_cast<int>(upward), -1, -1, {}};
+  for (int slice = 0; slice < bone.box.size[lattice.axis]; ++slice) {
+    std::vector<Eigen::Vector3d> places;
+    for (std::size_t p = 0; p < lattice.pixels(); ++p) {
+      const auto at = lattice.place(p, slice);
+      const std::size_t q = bone.box.index(at[0], at[1], at[2]);
+      if (is_bone(bone.label[q]) && volume.at(bone.box.low[0] + at[0], bone.box.low[1] + at[1],
+                                              bone.box.low[2] + at[2]) >= level)
+        places.push_back(bone.box.position(volume, at[0], at[1], at[2]));
+    }
+    if (static_cast<double>(places.size()) * pixel_mm2 < least_metal_mm2) continue;
+    if (slab.first < 0) slab.first = slice;
+    slab.last = slice;
+    slab.places.insert(slab.places.end(), places.begin(), places.end());
+  }
+  const double step_mm = volume.spacing_mm[upward];
+  if (slab.first < 0 || (slab.last - slab.first) * step_mm > longest_slab_mm) return std::nullopt;
+  const int beyond = static_cast<int>(std::ceil(beyond_mm / step_mm));
+  slab.first += bone.box.low[lattice.axis] - beyond;
+  slab.last += bone.box.low[lattice.axis] + beyond;
+  return slab;
+}
+
+void drop_streaks(const Volume& volume, const MetalSlab& slab, BoneVoxels& bone, int threads) {
+  const SliceLattice lattice(slab.axis, bone.box.size, volume.spacing_mm);
+  const int before = slab.first - bone.box.low[lattice.axis] - 1,
+            after = slab.last - bone.box.low[lattice.axis] + 1,
+            slices = bone.box.size[lattice.axis];
+  const auto label = [&](std::size_t pixel, int slice) -> VoxelLabel& {
+    const auto at = lattice.place(pixel, slice);
+    return bone.label[bone.box.index(at[0], at[1], at[2])];
+  };
+  const std::vector<float> beside = flat_distances(lattice, [&](std::size_t p) {
+    return (before >= 0 && is_bone(label(p, before))) ||
+           (after < slices && is_bone(label(p, after)));
+  });
+  const Eigen::Vector3d origin = bone.box.position(volume, 0, 0, 0);
+  const std::vector<float> from_metal =
+      metal_distances(lattice, slab, volume, origin);
+  const int first = std::max(before + 1, 0), last = std::min(after, slices);
+  parallel_for(static_cast<std::size_t>(std::max(0, last - first)), threads, [&](std::size_t s) {
+    for (std::size_t p = 0; p < beside.size(); ++p) {
+      VoxelLabel& here = label(p, first + static_cast<int>(s));
+      if (is_bone(here) && beside[p] > square(beside_bone_mm) &&
+          from_metal[p] < square(streak_reach_mm))
+        here = other_bone;
+    }
+  });
+}
+
+void trim_streaks(const MetalSlab& slab, double level_hu, std::int16_t soft_hu, int first_slice,
+                  Volume& solid, int threads) {
+  const SliceLattice lattice(slab.axis, solid.size, solid.spacing_mm);
+  const std::vector<float> from_metal = metal_distances(lattice, slab, solid, solid.origin);
+  const int before = slab.first - first_slice - 1, after = slab.last - first_slice + 1;
+  const int slices = solid.size[lattice.axis];
+  const auto value = [&](std::size_t pixel, int slice) -> std::int16_t& {
+    const auto at = lattice.place(pixel, slice);
+    return solid.values[solid.index(at[0], at[1], at[2])];
+  };
+  const auto above_level = [&](std::size_t p, int slice) {
+    return slice >= 0 && slice < slices && value(p, slice) > level_hu;
+  };
+  const std::vector<float> outside = flat_distances(lattice, [&](std::size_t p) {
+    return above_level(p, before) || above_level(p, after);
+  });
+  const std::vector<float> inside = flat_distances(lattice, [&](std::size_t p) {
+    return !above_level(p, before) || !above_level(p, after);
+  });
+  const int first = std::max(before + 1, 0), last = std::min(after, slices);
+  parallel_for(static_cast<std::size_t>(std::max(0, last - first)), threads, [&](std::size_t s) {
+    const int slice = first + static_cast<int>(s);
+    const std::vector<float> depth =
+        flat_distances(lattice, [&](std::size_t p) { return value(p, slice) <= level_hu; });
+    const std::vector<float> from_core =
+        flat_distances(lattice, [&](std::size_t p) { return depth[p] > square(spike_mm); });
+    for (std::size_t p = 0; p < outside.size(); ++p) {
+      if (from_metal[p] > square(streak_reach_mm)) continue;
+      // The core grown by its depth and a little more is the head without what is narrow.
+      if (outside[p] > square(beside_head_mm) && from_core[p] > square(spike_mm + 1))
+        value(p, slice) = streak_air_hu;
+      else if (inside[p] > square(within_head_mm))
+        value(p, slice) = std::max(value(p, slice), soft_hu);
+    }
+  });
+}
+
+}  // namespace condyle

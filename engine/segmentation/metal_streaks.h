@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/segmentation/bone_voxels.h"
+
+// Streaks from metal. Only for this module.
+namespace condyle {
+
+/// The slices with metal in the bone, and 2 mm beyond; none without metal, and none where it spans
+/// more than 40 mm.
+std::optional<MetalSlab> find_metal(const Volume& volume, const BoneVoxels& bone);
+
+/// Gives what is bright in the slab, not farther than 50 mm from the metal, and farther than 4 mm
+/// from the bone above and below it, seen along the axis, the label of what is no bone.
+void drop_streaks(const Volume& volume, const MetalSlab& slab, BoneVoxels& bone, int threads);
+
+/// Repairs the outline of the head in the slab where it is farther than 3 mm outside or 4 mm inside
+/// of that above and below: streaks narrower than 10 mm become air, dents get `soft_hu`.
+/// `level_hu`: of the outline; `first_slice`: of `solid`, counted in the volume.
+void trim_streaks(const MetalSlab& slab, double level_hu, std::int16_t soft_hu, int first_slice,
+                  Volume& solid, int threads);
+
+}  // namespace condyle
