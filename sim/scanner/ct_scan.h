@@ -42,4 +42,7 @@ struct CtScan {
 /// The head as a CT scanner sees it. Bit-identical for any number of threads.
 CtScan scan_ct(const ScannedHead& head, const CtSettings& settings, const Progress& progress = {});
 
+/// Adds white noise of a standard deviation, limited as scanners store values.
+void add_noise(double sigma_hu, std::uint64_t seed, int threads, Volume& volume);
+
 }  // namespace condyle

@@ -1,11 +1,13 @@
 #include "sim/scanner/disturbances.h"
 
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "engine/core/parallel.h"
+#include "sim/scanner/ct_scan.h"
 
 namespace condyle {
 namespace {
@@ -17,11 +19,6 @@ std::uint64_t scrambled(std::uint64_t x) {  // source: splitmix64, Steele et al.
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
   return x ^ (x >> 31);
-}
-
-/// A number from 0 to 1 by its place in a sequence.
-double uniform(std::uint64_t seed, std::uint64_t place) {
-  return static_cast<double>(scrambled(scrambled(seed) + place) >> 11) * 0x1p-53;
 }
 
 /// A normal number by its place: the sum of twelve uniform ones of 16 bits, without any function
@@ -82,6 +79,10 @@ double with_filling(const Filling& filling, const Vector3d& p, double hu) {
 
 }  // namespace
 
+double uniform_number(std::uint64_t seed, std::uint64_t place) {
+  return static_cast<double>(scrambled(scrambled(seed) + place) >> 11) * 0x1p-53;
+}
+
 void draw_table(const ScannedHead& head, int threads, Volume& volume) {
   constexpr double plastic_hu = 250, foam_hu = -880, rail_hu = 1500;
   constexpr double rest_radius = 95, foam_mm = 1, plastic_mm = 3;
@@ -108,9 +109,9 @@ void draw_fillings(const ScannedHead& head, std::uint64_t seed, int threads, Vol
   for (std::size_t f = 0; f < fillings.size(); ++f) {
     fillings[f].center = centers[f];
     for (std::size_t n = 0; n < fillings[f].angle.size(); ++n) {
-      fillings[f].angle[n] = std::numbers::pi * uniform(seed + 5, 100 * f + 2 * n);
+      fillings[f].angle[n] = std::numbers::pi * uniform_number(seed + 5, 100 * f + 2 * n);
       fillings[f].strength_hu[n] =
-          strongest_hu * (2 * uniform(seed + 5, 100 * f + 2 * n + 1) - 1);
+          strongest_hu * (2 * uniform_number(seed + 5, 100 * f + 2 * n + 1) - 1);
     }
   }
   for_voxels(volume, threads, [&](const Vector3d& p, std::int16_t& value) {

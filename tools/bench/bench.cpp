@@ -61,6 +61,11 @@ void add_bench(Commands& commands) {
                              "condyle bench appliances --json", run_bench_appliances);
   in_range(appliances.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1,
            1000);
+  CLI::App& import = add("import", "Scans of the built-in head segmented, beside the truth",
+                         "condyle bench import --json", run_bench_import);
+  import.add_option("--only", options->part,
+                    "Measure one scan (plain, \"flat voxels\", blurred, fillings, table, \"dark "
+                    "marrow\", \"teeth touch\", turned) or the time; default all");
   CLI::App& mesh = add("mesh", "The decimators on the built-in patient's surfaces",
                        "condyle bench mesh --json", run_bench_mesh);
   in_range(mesh.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1, 1000);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "tools/command.h"
@@ -11,6 +12,7 @@ struct BenchOptions {
   std::filesystem::path patient;                    // case folder; empty: the built-in patient
   int repeats = 3;                                  // whole openings
   std::vector<int> sizes = {10000, 50000, 100000};  // nodes of larger tissues
+  std::string part;                                 // of the measurements; empty: all
 };
 
 // Each returns the program's exit code.
@@ -23,6 +25,7 @@ int run_bench_cut(const BenchOptions& options, const CommonOptions& common);
 int run_bench_predict(const BenchOptions& options, const CommonOptions& common);
 int run_bench_drag(const BenchOptions& options, const CommonOptions& common);
 int run_bench_appliances(const BenchOptions& options, const CommonOptions& common);
+int run_bench_import(const BenchOptions& options, const CommonOptions& common);
 int run_bench_mesh(const BenchOptions& options, const CommonOptions& common);
 
 }  // namespace condyle
