@@ -16,7 +16,8 @@ using Eigen::Vector3d;
 constexpr double step_voxels = 0.25;
 constexpr int reach_steps = 12;  // three voxels each way
 constexpr double farthest_voxels = 1.5;
-constexpr int averaging_rounds = 6;
+constexpr int averaging_rounds = 3;
+constexpr int passes = 2;  // the second one has better normals
 constexpr float undecided_weight = 1e-3f;
 constexpr std::size_t chunk = 4096;  // vertices that a thread takes at a time
 
@@ -108,48 +109,76 @@ void for_vertices(std::size_t count, int threads, const Body& body) {
   });
 }
 
+/// Moves of all vertices of a surface.
+class HalfWayPass {
+ public:
+  HalfWayPass(TriMesh& mesh, const Volume& volume, const HalfWayOptions& options)
+      : mesh_(mesh),
+        values_(volume),
+        options_(options),
+        normals_(vertex_normals(mesh)),
+        move_(mesh.vertices.size(), 0),
+        weight_(mesh.vertices.size(), undecided_weight) {}
+
+  /// Finds the moves, in voxels. Returns the fraction of vertices that have one.
+  double find() {
+    for_vertices(move_.size(), options_.threads, [&](std::size_t v) {
+      const double voxel_mm = values_.step_mm(normals_[v]);
+      Profile profile;
+      for (int q = -reach_steps; q <= reach_steps; ++q)
+        profile[static_cast<std::size_t>(q + reach_steps)] =
+            values_(mesh_.vertices[v] + normals_[v] * (q * step_voxels * voxel_mm));
+      const double place = half_way_place(profile, options_) * step_voxels;
+      if (!(std::abs(place) < farthest_voxels)) return;
+      move_[v] = static_cast<float>(place);
+      weight_[v] = 1;
+    });
+    std::size_t decided = 0;
+    for (const float w : weight_) decided += w == 1;
+    return move_.empty() ? 0 : static_cast<double>(decided) / static_cast<double>(move_.size());
+  }
+  void average(const VertexNeighbours& neighbours) {
+    std::vector<float> averaged(move_.size());
+    for_vertices(move_.size(), options_.threads, [&](std::size_t v) {
+      float sum = weight_[v] * move_[v], weights = weight_[v];
+      for (int n = neighbours.first[v]; n < neighbours.first[v + 1]; ++n) {
+        const auto other = static_cast<std::size_t>(neighbours.vertex[static_cast<std::size_t>(n)]);
+        sum += weight_[other] * move_[other];
+        weights += weight_[other];
+      }
+      averaged[v] = sum / weights;
+    });
+    move_.swap(averaged);
+  }
+  void apply() {
+    for_vertices(move_.size(), options_.threads, [&](std::size_t v) {
+      mesh_.vertices[v] += normals_[v] * (move_[v] * values_.step_mm(normals_[v]));
+    });
+  }
+
+ private:
+  TriMesh& mesh_;
+  VolumeValues values_;
+  const HalfWayOptions& options_;
+  std::vector<Vector3d> normals_;
+  std::vector<float> move_, weight_;
+};
+
 }  // namespace
 
 double move_to_half_way(TriMesh& mesh, const Volume& volume, const HalfWayOptions& options,
                         const Progress& progress) {
-  report(progress, "moving the surface to the half-way level", 0);
-  const std::size_t count = mesh.vertices.size();
-  const std::vector<Vector3d> normals = vertex_normals(mesh);
-  const VolumeValues values(volume);
-  std::vector<float> move(count, 0), weight(count, undecided_weight);
-  for_vertices(count, options.threads, [&](std::size_t v) {
-    const double voxel_mm = values.step_mm(normals[v]);
-    Profile profile;
-    for (int q = -reach_steps; q <= reach_steps; ++q)
-      profile[static_cast<std::size_t>(q + reach_steps)] =
-          values(mesh.vertices[v] + normals[v] * (q * step_voxels * voxel_mm));
-    const double place = half_way_place(profile, options) * step_voxels;
-    if (!(std::abs(place) < farthest_voxels)) return;
-    move[v] = static_cast<float>(place);
-    weight[v] = 1;
-  });
-  report(progress, "moving the surface to the half-way level", 0.6);
-  std::size_t decided = 0;
-  for (const float w : weight) decided += w == 1;
   const VertexNeighbours neighbours(mesh);
-  std::vector<float> averaged(count);
-  for (int round = 0; round < averaging_rounds; ++round) {
-    for_vertices(count, options.threads, [&](std::size_t v) {
-      float sum = weight[v] * move[v], weights = weight[v];
-      for (int n = neighbours.first[v]; n < neighbours.first[v + 1]; ++n) {
-        const auto other = static_cast<std::size_t>(neighbours.vertex[static_cast<std::size_t>(n)]);
-        sum += weight[other] * move[other];
-        weights += weight[other];
-      }
-      averaged[v] = sum / weights;
-    });
-    move.swap(averaged);
+  double decided = 0;
+  for (int pass = 0; pass < passes; ++pass) {
+    report(progress, "moving the surface to the half-way level", 1.0 * pass / passes);
+    HalfWayPass moves(mesh, volume, options);
+    decided = moves.find();
+    for (int round = 0; round < averaging_rounds; ++round) moves.average(neighbours);
+    moves.apply();
   }
-  for_vertices(count, options.threads, [&](std::size_t v) {
-    mesh.vertices[v] += normals[v] * (move[v] * values.step_mm(normals[v]));
-  });
   report(progress, "moving the surface to the half-way level", 1);
-  return count == 0 ? 0 : static_cast<double>(decided) / static_cast<double>(count);
+  return decided;
 }
 
 }  // namespace condyle

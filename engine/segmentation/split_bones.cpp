@@ -11,6 +11,7 @@
 #include "engine/core/parallel.h"
 #include "engine/field/mesh_field.h"
 #include "engine/segmentation/distance_map.h"
+#include "engine/volume/lines.h"
 
 namespace condyle {
 namespace {
@@ -20,8 +21,10 @@ using Eigen::Vector3d;
 constexpr double margin_per_error = 1.25;
 constexpr double inside_mm = 0.5;  // this far outside still counts as inside a surface
 constexpr double field_step_mm = 1.5;
-constexpr int depth_steps = 512;      // buckets of the queue
-constexpr double step_voxels = 0.1;   // depth of one bucket, in steps of the finest axis
+constexpr int deepest = 512, darkest = 128;  // buckets of the queue for depth and for gaps
+constexpr int bucket_count = deepest + darkest;
+constexpr double step_voxels = 0.1;  // depth of one bucket, in steps of the finest axis
+constexpr double gap_mm = 1, gap_hu = 10;  // width of a gap, and darkness of one bucket
 constexpr double point_reach_mm = 4;  // of a point to the nearest bone
 
 Box box_of(const Volume& volume, const VoxelBox& box) {
@@ -93,23 +96,23 @@ bool seed_ball(const Volume& volume, const BoneVoxels& bone, const Vector3d& cen
   return found;
 }
 
-/// Priority queue of voxels by depth, deepest first; voxels of one bucket in order of arrival.
-class DepthQueue {
+/// Priority queue of voxels by bucket; voxels of one bucket in order of arrival.
+class FloodQueue {
  public:
   struct Entry {
     std::uint32_t voxel;
     VoxelLabel label;
   };
-  DepthQueue() : buckets_(depth_steps) {}
+  FloodQueue() : buckets_(bucket_count) {}
   void push(int bucket, const Entry& entry) {
-    buckets_[static_cast<std::size_t>(std::clamp(bucket, current_, depth_steps - 1))].push_back(
+    buckets_[static_cast<std::size_t>(std::clamp(bucket, current_, bucket_count - 1))].push_back(
         entry);
   }
   template <class Take>
   void run(const Take& take, const Progress& progress) {
-    for (current_ = 0; current_ < depth_steps; ++current_) {
+    for (current_ = 0; current_ < bucket_count; ++current_) {
       if (current_ % 16 == 0)
-        report(progress, "splitting bones", 0.3 + 0.7 * current_ / depth_steps);
+        report(progress, "splitting bones", 0.3 + 0.7 * current_ / bucket_count);
       auto& bucket = buckets_[static_cast<std::size_t>(current_)];
       for (std::size_t e = 0; e < bucket.size(); ++e) {
         const Entry entry = bucket[e];
@@ -124,18 +127,55 @@ class DepthQueue {
   int current_ = 0;
 };
 
-/// Bucket of each voxel of bone: 0 is the deepest.
-std::vector<std::uint16_t> depth_buckets(const Volume& volume, const BoneVoxels& bone,
+/// Replaces each value by the largest (or smallest) within `reach` steps along each axis.
+template <class Better>
+void keep_extremes(std::vector<std::int16_t>& values, const std::array<int, 3>& size,
+                   const std::array<int, 3>& reach, int threads, const Better& better) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    change_lines(
+        values, size, static_cast<int>(axis), threads,
+        [&](float* line, std::size_t n) {
+          thread_local std::vector<float> before;
+          before.assign(line, line + n);
+          const auto r = static_cast<std::size_t>(reach[axis]);
+          for (std::size_t q = 0; q < n; ++q)
+            for (std::size_t other = q > r ? q - r : 0; other <= std::min(q + r, n - 1); ++other)
+              line[q] = better(line[q], before[other]);
+        },
+        [](float value) { return static_cast<std::int16_t>(value); });
+}
+
+/// How much darker each voxel is than what surrounds it on both sides: the closing by a cube of
+/// 1 mm minus the value. Gaps between bones are dark.
+std::vector<std::int16_t> gap_darkness(const Volume& volume, const BoneVoxels& bone, int threads) {
+  std::array<int, 3> reach;
+  for (std::size_t a = 0; a < 3; ++a)
+    reach[a] = std::max(1, static_cast<int>(std::lround(gap_mm / volume.spacing_mm[static_cast<int>(a)])));
+  std::vector<std::int16_t> closed = bone.smooth;
+  keep_extremes(closed, bone.box.size, reach, threads,
+                [](float a, float b) { return std::max(a, b); });
+  keep_extremes(closed, bone.box.size, reach, threads,
+                [](float a, float b) { return std::min(a, b); });
+  for (std::size_t q = 0; q < closed.size(); ++q)
+    closed[q] = static_cast<std::int16_t>(closed[q] - bone.smooth[q]);
+  return closed;
+}
+
+/// Bucket of each voxel of bone: 0 is the deepest; gaps come later.
+std::vector<std::uint16_t> flood_buckets(const Volume& volume, const BoneVoxels& bone,
                                          int threads) {
   std::vector<float> depth(bone.box.count());
   for (std::size_t q = 0; q < depth.size(); ++q)
     depth[q] = bone.label[q] == no_bone || bone.label[q] == other_bone ? 0 : no_feature;
   make_squared_distances(depth, bone.box.size, volume.spacing_mm, threads);
   const double step_mm = step_voxels * volume.spacing_mm.minCoeff();
+  const std::vector<std::int16_t> gap = gap_darkness(volume, bone, threads);
   std::vector<std::uint16_t> buckets(depth.size());
-  for (std::size_t q = 0; q < depth.size(); ++q)
-    buckets[q] = static_cast<std::uint16_t>(
-        depth_steps - 1 - std::min<double>(depth_steps - 1, std::sqrt(depth[q]) / step_mm));
+  for (std::size_t q = 0; q < depth.size(); ++q) {
+    const double shallow = deepest - 1 - std::min(deepest - 1.0, std::sqrt(depth[q]) / step_mm);
+    const double dark = std::min<double>(darkest, gap[q] / gap_hu);
+    buckets[q] = static_cast<std::uint16_t>(shallow + dark);
+  }
   return buckets;
 }
 
@@ -169,7 +209,7 @@ void split_bones(const Volume& volume, const std::vector<VoxelLabel>& seeds, Bon
   assert(seeds.size() == bone.box.count());
   assert(seeds.size() < std::numeric_limits<std::uint32_t>::max());
   report(progress, "splitting bones", 0);
-  const std::vector<std::uint16_t> bucket = depth_buckets(volume, bone, threads);
+  const std::vector<std::uint16_t> bucket = flood_buckets(volume, bone, threads);
   report(progress, "splitting bones", 0.3);
   const auto row = static_cast<std::int64_t>(bone.box.size[0]);
   const std::int64_t slice = row * bone.box.size[1];
@@ -178,7 +218,7 @@ void split_bones(const Volume& volume, const std::vector<VoxelLabel>& seeds, Bon
   constexpr VoxelLabel waiting = 255;  // bone without a label yet
   for (auto& label : bone.label)
     if (label != no_bone && label != other_bone) label = waiting;
-  DepthQueue queue;
+  FloodQueue queue;
   const auto spread = [&](std::uint32_t voxel, VoxelLabel label) {
     for (const std::int64_t step : steps) {
       const auto next = static_cast<std::size_t>(voxel + step);
@@ -192,7 +232,7 @@ void split_bones(const Volume& volume, const std::vector<VoxelLabel>& seeds, Bon
     if (seeds[q] != no_bone && bone.label[q] == seeds[q])
       spread(static_cast<std::uint32_t>(q), seeds[q]);
   queue.run(
-      [&](const DepthQueue::Entry& entry) {
+      [&](const FloodQueue::Entry& entry) {
         if (bone.label[entry.voxel] != waiting) return;
         bone.label[entry.voxel] = entry.label;
         spread(entry.voxel, entry.label);

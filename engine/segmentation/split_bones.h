@@ -36,8 +36,10 @@ std::vector<VoxelLabel> seed_labels(const Volume& volume, const BoneVoxels& bone
                                     const SeedOptions& options = {},
                                     const Progress& progress = {});
 
-/// Splits bone by a watershed on the depth inside it, from the seeds: voxels get the label of the
-/// seed that reaches them through the deepest bone. Pieces without a seed become `other_bone`.
+/// Splits bone by a watershed from the seeds: voxels get the label of the seed that reaches them
+/// through the deepest bone and past the faintest gaps: 0.1 voxels of depth count as much as 10 HU
+/// of a gap. Pieces without a seed become `other_bone`. source: `condyle bench import`; depth alone
+/// exchanges up to ten times as many voxels.
 void split_bones(const Volume& volume, const std::vector<VoxelLabel>& seeds, BoneVoxels& bone,
                  int threads, const Progress& progress = {});
 

@@ -77,17 +77,17 @@ class Waves {
 }  // namespace
 
 SurfaceErrors surface_errors(const TriMesh& found, const Volume& volume,
-                             const std::function<double(const Vector3d&)>& true_distance,
-                             int threads) {
-  std::vector<Vector3d> inside;
-  for (const Vector3d& p : found.vertices)
-    if (well_inside(volume, p)) inside.push_back(p);
+                             const TrueDistance& true_distance, int threads) {
+  std::vector<std::size_t> inside;
+  for (std::size_t v = 0; v < found.vertices.size(); ++v)
+    if (well_inside(volume, found.vertices[v])) inside.push_back(v);
   SurfaceErrors errors;
   errors.samples = std::min(inside.size(), most_samples);
   if (errors.samples == 0) return errors;
   std::vector<double> d(errors.samples);
   parallel_for(d.size(), threads, [&](std::size_t n) {
-    d[n] = true_distance(inside[n * inside.size() / d.size()]);
+    const std::size_t v = inside[n * inside.size() / d.size()];
+    d[n] = true_distance(v, found.vertices[v]);
   });
   for (double& value : d) {
     errors.bias_mm += value / static_cast<double>(d.size());

@@ -18,10 +18,12 @@ struct SurfaceErrors {
   double bias_mm = 0;  // mean of the signed distances; positive: outside the true surface
 };
 
+/// The signed distance from the true surface, mm, of a vertex by its number and place.
+using TrueDistance = std::function<double(std::size_t vertex, const Eigen::Vector3d& p)>;
+
 /// Of at most 15000 vertices that lie at least three voxels inside the field of view.
 SurfaceErrors surface_errors(const TriMesh& found, const Volume& volume,
-                             const std::function<double(const Eigen::Vector3d&)>& true_distance,
-                             int threads);
+                             const TrueDistance& true_distance, int threads);
 
 /// Voxels above the threshold whose truth is one of the two bones, by their labels.
 struct SplitErrors {

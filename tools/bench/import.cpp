@@ -168,15 +168,26 @@ class ImportBench {
       const SurfaceOptions all{.target_triangles = 0, .threads = threads};
       const ScanSurface upper = bone_surface(volume, bone, skull_label, all),
                         lower = bone_surface(volume, bone, mandible_label, all);
+      TriMesh both = upper.mesh;  // vertices alone
+      both.vertices.insert(both.vertices.end(), lower.mesh.vertices.begin(),
+                           lower.mesh.vertices.end());
+      const std::size_t uppers = upper.mesh.vertices.size();
+      add_surface("import.bone", "bone", what, noise_hu, volume,
+                  surface_errors(both, volume,
+                                 [&](std::size_t v, const auto& p) {
+                                   return v < uppers ? head.upper_bone(p) : head.lower_bone(p);
+                                 },
+                                 threads));
       add_surface("import.bone", "skull", what, noise_hu, volume,
                   surface_errors(upper.mesh, volume,
-                                 [&](const auto& p) { return head.upper_bone(p); }, threads));
+                                 [&](std::size_t, const auto& p) { return head.upper_bone(p); },
+                                 threads));
       add_surface("import.bone", "mandible", what, noise_hu, volume,
                   surface_errors(lower.mesh, volume,
-                                 [&](const auto& p) { return head.lower_bone(p); }, threads));
+                                 [&](std::size_t, const auto& p) { return head.lower_bone(p); }, threads));
       const ScanSurface skin = skin_surface(volume, levels, region, bone.metal, "scan", all);
       add_surface("import.face", "skin", what, noise_hu, volume,
-                  surface_errors(skin.mesh, volume, [&](const auto& p) { return head.skin(p); },
+                  surface_errors(skin.mesh, volume, [&](std::size_t, const auto& p) { return head.skin(p); },
                                  threads));
     }
   }
@@ -199,9 +210,10 @@ class ImportBench {
     added["median_mm"] = errors.median_mm;
     added["bias_mm"] = errors.bias_mm;
     added["samples"] = errors.samples;
+    const bool whole = std::string(part) == "bone";  // the goals are for both bones together
     if (face) {
       added["goal_median_mm"] = 0.3;
-    } else {
+    } else if (whole) {
       added["goal_median_voxel"] = usual ? 0.15 : 0.3;
       added["goal_p95_voxel"] = usual ? 0.5 : 0.8;
     }
@@ -209,7 +221,11 @@ class ImportBench {
       fmt::print(stderr, "  {:<14}{:<14}{:>9.2f}{:>9.0f}  {:<9}{:.3f} {:.3f} ({}); {:.3f} mm; {:+.3f}\n",
                  name, what.name, voxel_mm, noise_hu, part, errors.median_mm / voxel_mm,
                  errors.p95_mm / voxel_mm,
-                 face ? "0.3 mm" : usual ? "0.15 0.5" : "0.3 0.8", errors.median_mm,
+                 face    ? "0.3 mm"
+                 : !whole ? "part"
+                 : usual  ? "0.15 0.5"
+                          : "0.3 0.8",
+                 errors.median_mm,
                  errors.bias_mm);
     results_.push_back(std::move(added));
   }

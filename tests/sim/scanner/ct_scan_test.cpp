@@ -60,12 +60,14 @@ TEST(CtScan, ValuesFollowTheTissues) {
       for (int i = 0; i < scan.volume.size[0]; i += 5) {
         const Vector3d p = scan.volume.position(i, j, k);
         const ScanTissue tissue = scan.truth[scan.volume.index(i, j, k)];
-        if (std::abs(head.skin(p)) > 0.1)
+        if (std::abs(head.skin(p)) > 0.1) {
           EXPECT_EQ(head.skin(p) > 0, tissue == ScanTissue::outside) << p.transpose();
-        if (std::abs(head.lower_bone(p)) > 0.1 && head.upper_bone(p) > 0.1)
+        }
+        if (std::abs(head.lower_bone(p)) > 0.1 && head.upper_bone(p) > 0.1) {
           EXPECT_EQ(head.lower_bone(p) < 0, tissue == ScanTissue::mandible ||
                                                 tissue == ScanTissue::lower_teeth)
               << p.transpose();
+        }
       }
 }
 
