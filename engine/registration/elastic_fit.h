@@ -1,0 +1,39 @@
+#pragma once
+
+#include "engine/registration/deformation.h"
+#include "engine/registration/fit_surface.h"
+
+namespace condyle {
+
+struct ElasticFitSettings {
+  ScaleRange scale{0.8, 1.25};
+  int similarity_rounds = 25;
+  int affine_rounds = 12;
+  double affine_pull = 0.02;  // towards the similarity
+  std::vector<double> reaches_mm = {220, 130, 80, 50};
+  int rounds = 5;  // of each reach
+  double stiffness = 0.6;
+  double tangential = 0.1;
+  int max_controls = 600;
+  MatchSettings match;
+};
+
+/// A template carried onto a target.
+struct ElasticFit {
+  AffineMap similarity;
+  Deformation deformation;
+  std::vector<Eigen::Vector3d> vertices;  // of the template's mesh, carried
+  double rms_mm = 0;                      // of the pairs that count
+};
+
+/// Trimmed iterative closest points in both directions from `start`, ever the nearer pairs.
+AffineMap fit_similarity(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
+                         const ElasticFitSettings& settings, const OtherDistance& other = {});
+
+/// Similarity, then affine map, then smooth displacements from coarse to fine. Deterministic: the
+/// same bits for any number of threads.
+/// source: Besl and McKay 1992; Amberg et al., CVPR 2007, for the order from stiff to soft
+ElasticFit fit_elastic(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
+                       const ElasticFitSettings& settings, const OtherDistance& other = {});
+
+}  // namespace condyle

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+
+namespace condyle {
+
+/// x -> matrix * x + offset. mm.
+struct AffineMap {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return matrix * p + offset; }
+  AffineMap inverse() const;
+};
+
+/// A weighted pair of points that a map shall bring together.
+struct PointPair {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+  double weight = 1;
+};
+
+struct ScaleRange {
+  double low = 1, high = 1;  // equal: the scale is fixed
+};
+
+/// Rotation, scale and translation with the least sum of squares. Absent for fewer than three
+/// pairs, or points on a line. source: Umeyama, IEEE PAMI 13, 1991
+std::optional<AffineMap> similarity_fit(std::span<const PointPair> pairs, const ScaleRange& scale);
+
+/// The affine map with the least sum of squares, pulled towards `prior`: `pull` is the share of the
+/// pairs' weight with which the prior counts. Absent where the pairs determine none.
+std::optional<AffineMap> affine_fit(std::span<const PointPair> pairs, const AffineMap& prior,
+                                    double pull);
+
+}  // namespace condyle
