@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 std::vector<PointPair> pairs_of(const std::vector<SurfaceMatch>& matches) {
   std::vector<PointPair> pairs;
   pairs.reserve(matches.size());
-  for (const auto& match : matches) pairs.push_back({match.from, match.to, match.weight});
+  for (const auto& match : matches) pairs.push_back({match.from, match.to, match.weight, match.normal});
   return pairs;
 }
 
@@ -22,22 +22,55 @@ double rms_of(const std::vector<SurfaceMatch>& matches) {
   return matches.empty() ? 0 : std::sqrt(sum / static_cast<double>(matches.size()));
 }
 
-AffineMap fit_affine(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
-                     const ElasticFitSettings& settings, const OtherDistance& other) {
+AffineMap refine_affine(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
+                        int rounds, const MatchSettings& settings, double pull,
+                        const OtherDistances& other) {
   AffineMap map = start;
-  for (int k = 0; k < settings.affine_rounds; ++k) {
-    const auto pairs = pairs_of(match_surfaces(moving, map, target, settings.match, other));
-    const auto next = affine_fit(pairs, start, settings.affine_pull);
+  MatchSettings match = settings;
+  for (int k = 0; k < rounds; ++k) {
+    match.soft_mm = 8 + static_cast<double>(k) / rounds * (settings.soft_mm - 8);
+    const auto next =
+        affine_fit(pairs_of(match_surfaces(moving, map, target, match, other)), map, pull);
     if (!next) break;
     map = *next;
   }
   return map;
 }
 
+/// The best of affine maps from several starts: heads differ in their proportions, and teeth look
+/// like their neighbours.
+AffineMap fit_affine(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
+                     const ElasticFitSettings& settings, const OtherDistances& other) {
+  constexpr double near_mm = 2.5;
+  constexpr int rough_rounds = 10;
+  MatchSettings rough = settings.match;
+  rough.stride = 3;
+  Vector3d center = Vector3d::Zero();
+  for (const auto& sample : moving.samples)
+    center += sample.point / static_cast<double>(moving.samples.size());
+  AffineMap best = start;
+  double most = -1;
+  for (const auto& variation : settings.variations) {
+    AffineMap map = start;
+    map.matrix = start.matrix * variation;
+    map.offset = start * center - map.matrix * center;
+    map = refine_affine(moving, target, map, rough_rounds, rough, settings.affine_pull, other);
+    const double share =
+        explained_share(target, map, moving, near_mm, rough.threads, rough.stride) +
+        explained_share(moving, map.inverse(), target, near_mm, rough.threads, rough.stride);
+    if (share > most) {
+      most = share;
+      best = map;
+    }
+  }
+  return refine_affine(moving, target, best, settings.affine_rounds, settings.match,
+                       settings.affine_pull, other);
+}
+
 }  // namespace
 
 AffineMap fit_similarity(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
-                         const ElasticFitSettings& settings, const OtherDistance& other) {
+                         const ElasticFitSettings& settings, const OtherDistances& other) {
   AffineMap map = start;
   MatchSettings match = settings.match;
   for (int k = 0; k < settings.similarity_rounds; ++k) {
@@ -52,7 +85,7 @@ AffineMap fit_similarity(const FitSurface& moving, const FitSurface& target, con
 }
 
 ElasticFit fit_elastic(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
-                       const ElasticFitSettings& settings, const OtherDistance& other) {
+                       const ElasticFitSettings& settings, const OtherDistances& other) {
   ElasticFit fit;
   fit.similarity = fit_similarity(moving, target, start, settings, other);
   fit.deformation.affine = fit_affine(moving, target, fit.similarity, settings, other);

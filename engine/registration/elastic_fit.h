@@ -8,8 +8,9 @@ namespace condyle {
 struct ElasticFitSettings {
   ScaleRange scale{0.8, 1.25};
   int similarity_rounds = 25;
-  int affine_rounds = 12;
-  double affine_pull = 0.02;  // towards the similarity
+  int affine_rounds = 10;
+  double affine_pull = 0.004;  // towards the map before
+  std::vector<Eigen::Matrix3d> variations = {Eigen::Matrix3d::Identity()};  // starts of the affine map
   std::vector<double> reaches_mm = {220, 130, 80, 50};
   int rounds = 5;  // of each reach
   double stiffness = 0.6;
@@ -28,12 +29,12 @@ struct ElasticFit {
 
 /// Trimmed iterative closest points in both directions from `start`, ever the nearer pairs.
 AffineMap fit_similarity(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
-                         const ElasticFitSettings& settings, const OtherDistance& other = {});
+                         const ElasticFitSettings& settings, const OtherDistances& other = {});
 
 /// Similarity, then affine map, then smooth displacements from coarse to fine. Deterministic: the
 /// same bits for any number of threads.
 /// source: Besl and McKay 1992; Amberg et al., CVPR 2007, for the order from stiff to soft
 ElasticFit fit_elastic(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
-                       const ElasticFitSettings& settings, const OtherDistance& other = {});
+                       const ElasticFitSettings& settings, const OtherDistances& other = {});
 
 }  // namespace condyle

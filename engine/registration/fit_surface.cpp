@@ -42,15 +42,23 @@ void append(std::vector<SurfaceMatch>& matches, std::vector<std::optional<Surfac
     if (match) matches.push_back(*match);
 }
 
-std::optional<SurfaceMatch> forward_match(int sample, const Vector3d& from, const Vector3d& now,
+std::optional<SurfaceMatch> forward_match(int sample, double weight, const Vector3d& from, const Vector3d& now,
                                           const Vector3d& normal, const FitSurface& target,
                                           const MatchSettings& settings) {
   const auto pair = target.pairs.find(now, normal);
   if (!pair || pair->normal.dot(normal) < settings.cos_normals) return std::nullopt;
-  return SurfaceMatch{sample, from, now, pair->point, pair->normal, std::abs(pair->distance), 1};
+  return SurfaceMatch{sample, from, now, pair->point, pair->normal, std::abs(pair->distance), weight};
 }
 
 }  // namespace
+
+OtherDistances distances_to(const TriangleTree& other, const FitSurface& target, int threads) {
+  OtherDistances distances(target.samples.size());
+  parallel_for(distances.size(), threads, [&](std::size_t i) {
+    distances[i] = other.nearest(target.samples[i].point).distance;
+  });
+  return distances;
+}
 
 FitSurface::FitSurface(TriMesh surface, int sample_count, int threads)
     : mesh(std::move(surface)),
@@ -59,21 +67,23 @@ FitSurface::FitSurface(TriMesh surface, int sample_count, int threads)
 
 std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving, const AffineMap& map,
                                          const FitSurface& target, const MatchSettings& settings,
-                                         const OtherDistance& other) {
+                                         const OtherDistances& other) {
   const AffineMap back = map.inverse();
   const Eigen::Matrix3d turn = back.matrix.transpose(), turn_back = map.matrix.transpose();
-  std::vector<std::optional<SurfaceMatch>> found(moving.samples.size());
-  parallel_for(found.size(), settings.threads, [&](std::size_t i) {
+  std::vector<std::optional<SurfaceMatch>> found(moving.samples.size() / settings.stride);
+  parallel_for(found.size(), settings.threads, [&](std::size_t k) {
+    const std::size_t i = k * settings.stride;
     const auto& sample = moving.samples[i];
-    found[i] = forward_match(static_cast<int>(i), sample.point, map * sample.point,
+    found[k] = forward_match(static_cast<int>(i), moving.weight_of(sample.triangle), sample.point, map * sample.point,
                              (turn * sample.normal).normalized(), target, settings);
   });
   std::vector<SurfaceMatch> matches;
   append(matches, found);
   trim(matches, 0, settings);
-  found.assign(target.samples.size(), std::nullopt);
+  found.assign(target.samples.size() / settings.stride, std::nullopt);
   const TriangleTree& tree = moving.pairs.tree();
-  parallel_for(found.size(), settings.threads, [&](std::size_t i) {
+  parallel_for(found.size(), settings.threads, [&](std::size_t k) {
+    const std::size_t i = k * settings.stride;
     const auto& sample = target.samples[i];
     const SurfacePoint near = tree.nearest(back * sample.point);
     const Vector3d normal = (turn_back * sample.normal).normalized();
@@ -81,8 +91,8 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving, const AffineM
       return;
     const Vector3d now = map * near.point;
     const double distance = (now - sample.point).norm();
-    if (other && other(sample.point) < distance) return;
-    found[i] = SurfaceMatch{-1, near.point, now, sample.point, sample.normal, distance, 1};
+    if (!other.empty() && other[i] < distance) return;
+    found[k] = SurfaceMatch{-1, near.point, now, sample.point, sample.normal, distance, moving.weight_of(near.triangle)};
   });
   const std::size_t first = matches.size();
   append(matches, found);
@@ -94,7 +104,7 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving,
                                          const std::vector<Vector3d>& carried,
                                          const TriangleTree& tree, const FitSurface& target,
                                          const MatchSettings& settings,
-                                         const OtherDistance& other) {
+                                         const OtherDistances& other) {
   std::vector<std::optional<SurfaceMatch>> found(moving.samples.size());
   const auto at = [&](int triangle, int corner) -> const Vector3d& {
     return carried[static_cast<std::size_t>(
@@ -105,7 +115,7 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving,
     const Vector3d &a = at(sample.triangle, 0), &b = at(sample.triangle, 1),
                    &c = at(sample.triangle, 2);
     const Vector3d &share = sample.barycentric, now = share[0] * a + share[1] * b + share[2] * c;
-    found[i] = forward_match(static_cast<int>(i), sample.point, now,
+    found[i] = forward_match(static_cast<int>(i), moving.weight_of(sample.triangle), sample.point, now,
                              (b - a).cross(c - a).normalized(), target, settings);
   });
   std::vector<SurfaceMatch> matches;
@@ -118,9 +128,9 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving,
     if (near.triangle < 0) return;
     const Vector3d &a = at(near.triangle, 0), &b = at(near.triangle, 1), &c = at(near.triangle, 2);
     if ((b - a).cross(c - a).normalized().dot(sample.normal) < settings.cos_normals) return;
-    if (other && other(sample.point) < near.distance) return;
+    if (!other.empty() && other[i] < near.distance) return;
     found[i] = SurfaceMatch{-1,           near.point,    near.point, sample.point,
-                            sample.normal, near.distance, 1};
+                            sample.normal, near.distance, moving.weight_of(near.triangle)};
   });
   const std::size_t first = matches.size();
   append(matches, found);
@@ -129,15 +139,15 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving,
 }
 
 double explained_share(const FitSurface& target, const AffineMap& map, const FitSurface& moving,
-                       double near_mm, int threads) {
+                       double near_mm, int threads, std::size_t stride) {
   constexpr double cos_normals = 0.5;
-  if (target.samples.empty()) return 0;
+  if (target.samples.size() < stride) return 0;
   const AffineMap back = map.inverse();
   const double scale = std::cbrt(std::abs(back.matrix.determinant()));
   const TriangleTree& tree = moving.pairs.tree();
-  std::vector<char> near(target.samples.size());
+  std::vector<char> near(target.samples.size() / stride);
   parallel_for(near.size(), threads, [&](std::size_t i) {
-    const auto& sample = target.samples[i];
+    const auto& sample = target.samples[i * stride];
     const SurfacePoint found = tree.nearest(back * sample.point, near_mm * scale);
     if (found.triangle < 0) return;
     const Vector3d normal = (map.matrix.transpose() * sample.normal).normalized();

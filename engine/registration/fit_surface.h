@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -17,6 +16,11 @@ struct FitSurface {
   TriMesh mesh;
   SurfacePairs pairs;
   std::vector<SurfaceSample> samples;  // that can be seen from outside
+  std::vector<float> weights;          // of pairs on each triangle; empty: 1
+
+  double weight_of(int triangle) const {
+    return weights.empty() ? 1 : weights[static_cast<std::size_t>(triangle)];
+  }
 };
 
 /// A point of the template and its partner on the target.
@@ -35,27 +39,31 @@ struct MatchSettings {
   double farthest_mm = 30;
   double soft_mm = 4;         // a pair at this distance counts half
   double cos_normals = 0.4;   // normals of partners agree at least so far
+  std::size_t stride = 1;     // 4: every fourth sample of both surfaces
   int threads = 2;
 };
 
-/// Distance of a point of the target to what else could have caused it, such as the other bone.
-using OtherDistance = std::function<double(const Eigen::Vector3d&)>;
+/// Distance of each sample of the target to what else could have caused it, such as the other bone;
+/// samples that lie nearer to that than to the template have no partner. Empty: nothing else.
+using OtherDistances = std::vector<double>;
+
+OtherDistances distances_to(const TriangleTree& other, const FitSurface& target, int threads);
 
 /// Pairs in both directions under an affine map from template to target.
 std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving, const AffineMap& map,
                                          const FitSurface& target, const MatchSettings& settings,
-                                         const OtherDistance& other = {});
+                                         const OtherDistances& other = {});
 
 /// Pairs in both directions for a template whose vertices were carried; `tree` is theirs.
 std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving,
                                          const std::vector<Eigen::Vector3d>& carried,
                                          const TriangleTree& tree, const FitSurface& target,
                                          const MatchSettings& settings,
-                                         const OtherDistance& other = {});
+                                         const OtherDistances& other = {});
 
 /// Share of the target's samples that lie within `near_mm` of the template under a map, with
 /// agreeing normals.
 double explained_share(const FitSurface& target, const AffineMap& map, const FitSurface& moving,
-                       double near_mm, int threads);
+                       double near_mm, int threads, std::size_t stride = 1);
 
 }  // namespace condyle

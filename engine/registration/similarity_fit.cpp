@@ -62,21 +62,35 @@ std::optional<AffineMap> similarity_fit(std::span<const PointPair> pairs, const 
 
 std::optional<AffineMap> affine_fit(std::span<const PointPair> pairs, const AffineMap& prior,
                                     double pull) {
+  using Vector12 = Eigen::Matrix<double, 12, 1>;
+  using Matrix12 = Eigen::Matrix<double, 12, 12>;
+  constexpr double tangential = 0.1;
   const Means means = means_of(pairs);
-  if (pairs.size() < 4 || !(means.weight > 0)) return std::nullopt;
-  Matrix3d from_from = Matrix3d::Zero(), to_from = Matrix3d::Zero();
+  if (pairs.size() < 12 || !(means.weight > 0)) return std::nullopt;
+  // Unknowns: the change of the matrix, column by column, then that of the offset.
+  Matrix12 normal = Matrix12::Zero();
+  Vector12 right = Vector12::Zero();
+  double spread = 0;
   for (const auto& pair : pairs) {
     const Vector3d from = pair.from - means.from;
-    from_from += pair.weight * from * from.transpose();
-    to_from += pair.weight * (pair.to - means.to) * from.transpose();
+    const Vector3d missing = pair.to - prior * pair.from;
+    const Matrix3d metric = pair.weight * (tangential * Matrix3d::Identity() +
+                                           (1 - tangential) * pair.normal * pair.normal.transpose());
+    const Eigen::Vector4d x(from.x(), from.y(), from.z(), 1);
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) normal.block<3, 3>(3 * i, 3 * j) += x[i] * x[j] * metric;
+      right.segment<3>(3 * i) += x[i] * (metric * missing);
+    }
+    spread += pair.weight * from.squaredNorm() / 3;
   }
-  const Matrix3d held = pull * from_from.trace() / 3 * Matrix3d::Identity();
-  const Eigen::LDLT<Matrix3d> factor(from_from + held);
+  normal.diagonal().head<9>().array() += pull * spread;
+  const Eigen::LDLT<Matrix12> factor(normal);
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) return std::nullopt;
-  AffineMap fit;
-  fit.matrix = factor.solve((to_from + prior.matrix * held).transpose()).transpose();
-  fit.offset = means.to - fit.matrix * means.from;
-  if (!fit.matrix.allFinite()) return std::nullopt;
+  const Vector12 change = factor.solve(right);
+  if (!change.allFinite()) return std::nullopt;
+  AffineMap fit = prior;
+  for (int i = 0; i < 3; ++i) fit.matrix.col(i) += change.segment<3>(3 * i);
+  fit.offset += change.tail<3>() - (fit.matrix - prior.matrix) * means.from;
   return fit;
 }
 

@@ -20,6 +20,7 @@ struct PointPair {
   Eigen::Vector3d from = Eigen::Vector3d::Zero();
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
   double weight = 1;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // unit, of the surface at `to`
 };
 
 struct ScaleRange {
@@ -30,8 +31,9 @@ struct ScaleRange {
 /// pairs, or points on a line. source: Umeyama, IEEE PAMI 13, 1991
 std::optional<AffineMap> similarity_fit(std::span<const PointPair> pairs, const ScaleRange& scale);
 
-/// The affine map with the least sum of squares, pulled towards `prior`: `pull` is the share of the
-/// pairs' weight with which the prior counts. Absent where the pairs determine none.
+/// The affine map with the least sum of squared distances along the normals, plus a tenth of those
+/// along the planes, pulled towards `prior`: `pull` is the share of the pairs' weight with which the
+/// prior counts. Absent where the pairs determine none.
 std::optional<AffineMap> affine_fit(std::span<const PointPair> pairs, const AffineMap& prior,
                                     double pull);
 

@@ -47,10 +47,6 @@ Targets prepared(const AnatomyScan& scan, int threads) {
   return targets;
 }
 
-OtherDistance distance_to(const TriangleTree& tree) {
-  return [&tree](const Vector3d& p) { return tree.nearest(p).distance; };
-}
-
 /// Share of a part's samples that have a partner in the target under a map.
 double covered_share(const FitSurface& moving, const AffineMap& map, const FitSurface& target,
                      double near, int threads) {
@@ -61,7 +57,7 @@ double covered_share(const FitSurface& moving, const AffineMap& map, const FitSu
 /// for scans with the mouth more or less open.
 AffineMap jaw_start(const FitSurface& moving, const FitSurface& target, const AffineMap& skull_map,
                     const Case& model, const ElasticFitSettings& settings,
-                    const OtherDistance& other) {
+                    const OtherDistances& other) {
   constexpr double forward_mm_per_deg = 0.25, near_mm = 3;
   const Vector3d left = model.landmarks.points.at("left_condyle"),
                  right = model.landmarks.points.at("right_condyle");
@@ -88,12 +84,26 @@ AffineMap jaw_start(const FitSurface& moving, const FitSurface& target, const Af
   return best;
 }
 
+/// Proportions and turns about the vertical axis with which the affine map starts.
+std::vector<Eigen::Matrix3d> head_variations() {
+  std::vector<Eigen::Matrix3d> all;
+  for (const double deep : {1.0, 0.93, 1.07})
+    for (const double high : {1.0, 0.93, 1.07})
+      all.push_back(Vector3d(1, deep, high).asDiagonal());
+  for (const double deep : {1.0, 0.93})
+    for (const double turn_deg : {-6.0, 6.0})
+      all.push_back(Eigen::AngleAxisd(turn_deg * degree, Vector3d::UnitZ()) *
+                    Eigen::Matrix3d(Vector3d(1, deep, 1).asDiagonal()));
+  return all;
+}
+
 class Fitter {
  public:
   Fitter(const AnatomyScan& scan, const Case& model, const AnatomyFitSettings& settings,
          const Progress& progress)
       : scan_(scan), model_(model), settings_(settings), progress_(progress) {
     elastic_.match.threads = settings.threads;
+    elastic_.variations = head_variations();
   }
 
   AnatomyFit run() {
@@ -169,15 +179,13 @@ void Fitter::fit_skull() {
   part.role = Role::skull;
   part.moving = &template_->skull;
   part.target = targets_.for_skull();
-  OtherDistance other;
+  OtherDistances other;
   AffineMap start = start_.map;
   TriMesh jaw = template_->mandible.mesh;
-  std::optional<TriangleTree> jaw_tree;
   if (!targets_.skull) {
     start = fit_similarity(template_->whole, *part.target, start, elastic_);
     for (auto& v : jaw.vertices) v = start * v;
-    jaw_tree.emplace(jaw);
-    other = distance_to(*jaw_tree);
+    other = distances_to(TriangleTree(jaw), *part.target, settings_.threads);
   }
   part.fit = fit_elastic(*part.moving, *part.target, start, elastic_, other);
   measure_errors(part, settings_.threads);
@@ -194,15 +202,13 @@ void Fitter::fit_jaw() {
   part.role = Role::mandible;
   part.moving = &template_->mandible;
   part.target = target;
-  OtherDistance other;
+  OtherDistances other;
   AffineMap start = start_.map;
   TriMesh skull = template_->skull.mesh;
-  std::optional<TriangleTree> skull_tree;
   if (skull_) {
     if (!targets_.mandible) {
       skull.vertices = skull_->fit.vertices;
-      skull_tree.emplace(skull);
-      other = distance_to(*skull_tree);
+      other = distances_to(TriangleTree(skull), *target, settings_.threads);
     }
     start = jaw_start(*part.moving, *target, skull_->fit.similarity, model_, elastic_, other);
   }

@@ -52,7 +52,7 @@ AffineMap settle(const FitSurface& moving, const std::vector<SurfaceSample>& sca
       const auto& c = tree.corners(found.triangle);
       const Vector3d normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
       if (normal.dot(back.matrix * sample.normal) < 0.3 * size) continue;
-      pairs.push_back({sample.point, found.point, 1});
+      pairs.push_back({sample.point, found.point, 1, normal});
       distances.push_back(found.distance);
     }
     if (pairs.size() < 10) break;

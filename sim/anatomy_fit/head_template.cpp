@@ -19,6 +19,17 @@ TriMesh coarse(const Case& model, Role role, int triangles) {
   return mesh;
 }
 
+/// The brain case is large and smooth: each of its points tells little.
+void weigh(FitSurface& surface) {
+  constexpr float vault = 0.3f, crowns = 0.5f;
+  for (const auto& t : surface.mesh.triangles) {
+    const Eigen::Vector3d& p = surface.mesh.vertices[static_cast<std::size_t>(t[0])];
+    const bool smooth = p.z() > 45 || (p.z() > 0 && p.y() > -40);
+    const bool teeth = p.z() < -38 && p.z() > -62 && p.y() < -40;
+    surface.weights.push_back(smooth ? vault : teeth ? crowns : 1);
+  }
+}
+
 TriMesh skull_of(const Case& model) {
   TriMesh mesh = coarse(model, Role::skull, 16000);
   append_surface(mesh, coarse(model, Role::upper_teeth, 5000));
@@ -47,9 +58,11 @@ void append_surface(TriMesh& mesh, const TriMesh& other) {
 }
 
 HeadTemplate::HeadTemplate(const Case& model, int threads)
-    : skull(skull_of(model), 5000, threads),
-      mandible(jaw_of(model), 3000, threads),
-      whole(both(model), 4000, threads) {}
+    : skull(skull_of(model), 6000, threads),
+      mandible(jaw_of(model), 3500, threads),
+      whole(both(model), 5000, threads) {
+  for (FitSurface* surface : {&skull, &mandible, &whole}) weigh(*surface);
+}
 
 FitSurface template_skin(const Case& model, int threads) {
   return {coarse(model, Role::face, 16000), 4000, threads};
