@@ -23,14 +23,15 @@ double rms_of(const std::vector<SurfaceMatch>& matches) {
 }
 
 AffineMap refine_affine(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
-                        int rounds, const MatchSettings& settings, double pull,
+                        int rounds, const MatchSettings& settings,
+                        const AffineStiffness& stiffness,
                         const OtherDistances& other) {
   AffineMap map = start;
   MatchSettings match = settings;
   for (int k = 0; k < rounds; ++k) {
     match.soft_mm = 8 + static_cast<double>(k) / rounds * (settings.soft_mm - 8);
     const auto next =
-        affine_fit(pairs_of(match_surfaces(moving, map, target, match, other)), map, pull);
+        affine_step(pairs_of(match_surfaces(moving, map, target, match, other)), map, stiffness);
     if (!next) break;
     map = *next;
   }
@@ -54,7 +55,7 @@ AffineMap fit_affine(const FitSurface& moving, const FitSurface& target, const A
     AffineMap map = start;
     map.matrix = start.matrix * variation;
     map.offset = start * center - map.matrix * center;
-    map = refine_affine(moving, target, map, rough_rounds, rough, settings.affine_pull, other);
+    map = refine_affine(moving, target, map, rough_rounds, rough, settings.affine, other);
     const double share =
         explained_share(target, map, moving, near_mm, rough.threads, rough.stride) +
         explained_share(moving, map.inverse(), target, near_mm, rough.threads, rough.stride);
@@ -64,7 +65,7 @@ AffineMap fit_affine(const FitSurface& moving, const FitSurface& target, const A
     }
   }
   return refine_affine(moving, target, best, settings.affine_rounds, settings.match,
-                       settings.affine_pull, other);
+                       settings.affine, other);
 }
 
 }  // namespace

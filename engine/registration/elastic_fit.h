@@ -9,7 +9,7 @@ struct ElasticFitSettings {
   ScaleRange scale{0.8, 1.25};
   int similarity_rounds = 25;
   int affine_rounds = 10;
-  double affine_pull = 0.004;  // towards the map before
+  AffineStiffness affine;
   std::vector<Eigen::Matrix3d> variations = {Eigen::Matrix3d::Identity()};  // starts of the affine map
   std::vector<double> reaches_mm = {220, 130, 80, 50};
   int rounds = 5;  // of each reach

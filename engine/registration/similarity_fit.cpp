@@ -60,38 +60,57 @@ std::optional<AffineMap> similarity_fit(std::span<const PointPair> pairs, const 
   return fit;
 }
 
-std::optional<AffineMap> affine_fit(std::span<const PointPair> pairs, const AffineMap& prior,
-                                    double pull) {
+std::optional<AffineMap> affine_step(std::span<const PointPair> pairs, const AffineMap& map,
+                                     const AffineStiffness& stiffness) {
   using Vector12 = Eigen::Matrix<double, 12, 1>;
   using Matrix12 = Eigen::Matrix<double, 12, 12>;
   constexpr double tangential = 0.1;
   const Means means = means_of(pairs);
   if (pairs.size() < 12 || !(means.weight > 0)) return std::nullopt;
-  // Unknowns: the change of the matrix, column by column, then that of the offset.
+  // The map becomes matrix * (1 + strain): unknown are the strain, column by column, and the motion
+  // of the centre.
   Matrix12 normal = Matrix12::Zero();
   Vector12 right = Vector12::Zero();
   double spread = 0;
   for (const auto& pair : pairs) {
     const Vector3d from = pair.from - means.from;
-    const Vector3d missing = pair.to - prior * pair.from;
-    const Matrix3d metric = pair.weight * (tangential * Matrix3d::Identity() +
-                                           (1 - tangential) * pair.normal * pair.normal.transpose());
+    const Vector3d missing = pair.to - map * pair.from;
+    const Matrix3d metric = pair.weight * map.matrix.transpose() *
+                            (tangential * Matrix3d::Identity() +
+                             (1 - tangential) * pair.normal * pair.normal.transpose()) *
+                            map.matrix;
+    const Vector3d pulled = metric * map.matrix.inverse() * missing;
     const Eigen::Vector4d x(from.x(), from.y(), from.z(), 1);
     for (int i = 0; i < 4; ++i) {
       for (int j = 0; j < 4; ++j) normal.block<3, 3>(3 * i, 3 * j) += x[i] * x[j] * metric;
-      right.segment<3>(3 * i) += x[i] * (metric * missing);
+      right.segment<3>(3 * i) += x[i] * pulled;
     }
     spread += pair.weight * from.squaredNorm() / 3;
   }
-  normal.diagonal().head<9>().array() += pull * spread;
+  normal.diagonal().head<9>().array() += stiffness.change * spread;
+  const Eigen::JacobiSVD<Matrix3d> svd(map.matrix, Eigen::ComputeFullV);
+  const Matrix3d stretch =
+      svd.matrixV() * svd.singularValues().asDiagonal() * svd.matrixV().transpose();
+  const double size = svd.singularValues().mean();
+  for (int i = 0; i < 3; ++i)
+    for (int j = i + 1; j < 3; ++j) {
+      const double held = spread * (i == 0 ? stiffness.asymmetry : stiffness.shear);
+      const int ij = 3 * j + i, ji = 3 * i + j;  // unknown numbers of strain(i, j), strain(j, i)
+      for (const int a : {ij, ji}) {
+        for (const int b : {ij, ji}) normal(a, b) += 0.25 * held;
+        right[a] -= 0.5 * held * stretch(i, j) / size;
+      }
+    }
   const Eigen::LDLT<Matrix12> factor(normal);
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) return std::nullopt;
   const Vector12 change = factor.solve(right);
   if (!change.allFinite()) return std::nullopt;
-  AffineMap fit = prior;
-  for (int i = 0; i < 3; ++i) fit.matrix.col(i) += change.segment<3>(3 * i);
-  fit.offset += change.tail<3>() - (fit.matrix - prior.matrix) * means.from;
-  return fit;
+  Matrix3d strain;
+  for (int i = 0; i < 3; ++i) strain.col(i) = change.segment<3>(3 * i);
+  AffineMap next;
+  next.matrix = map.matrix * (Matrix3d::Identity() + strain);
+  next.offset = map * means.from + map.matrix * change.tail<3>() - next.matrix * means.from;
+  return next;
 }
 
 }  // namespace condyle

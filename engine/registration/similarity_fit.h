@@ -31,10 +31,16 @@ struct ScaleRange {
 /// pairs, or points on a line. source: Umeyama, IEEE PAMI 13, 1991
 std::optional<AffineMap> similarity_fit(std::span<const PointPair> pairs, const ScaleRange& scale);
 
-/// The affine map with the least sum of squared distances along the normals, plus a tenth of those
-/// along the planes, pulled towards `prior`: `pull` is the share of the pairs' weight with which the
-/// prior counts. Absent where the pairs determine none.
-std::optional<AffineMap> affine_fit(std::span<const PointPair> pairs, const AffineMap& prior,
-                                    double pull);
+/// How strongly an affine map resists, as a share of the pairs' weight.
+struct AffineStiffness {
+  double change = 0.004;     // against every change
+  double asymmetry = 0.3;    // against shear of x with y or z: bodies are alike on both sides
+  double shear = 0.03;       // against shear of y with z
+};
+
+/// A map nearer to the least sum of squared distances along the normals, plus a tenth of those along
+/// the planes: one step from `map`. Absent where the pairs determine none.
+std::optional<AffineMap> affine_step(std::span<const PointPair> pairs, const AffineMap& map,
+                                     const AffineStiffness& stiffness);
 
 }  // namespace condyle
