@@ -94,8 +94,8 @@ ElasticFit fit_elastic(const FitSurface& moving, const FitSurface& target, const
   TriMesh mesh = moving.mesh;
   parallel_for(mesh.vertices.size(), threads,
                [&](std::size_t i) { mesh.vertices[i] = fit.deformation.affine * mesh.vertices[i]; });
-  for (const double reach : settings.reaches_mm)
-    for (int k = 0; k < settings.rounds; ++k) {
+  for (const auto& level : settings.levels)
+    for (int k = 0; k < level.rounds; ++k) {
       const TriangleTree tree = moving.pairs.tree().moved(mesh);
       const auto matches =
           match_surfaces(moving, mesh.vertices, tree, target, settings.match, other);
@@ -105,10 +105,10 @@ ElasticFit fit_elastic(const FitSurface& moving, const FitSurface& target, const
       for (const auto& match : matches)
         pulls.push_back({match.now, match.to, match.normal, match.weight});
       if (pulls.empty()) return fit;
-      DisplacementLayer layer(pulls, {.reach_mm = reach,
-                                      .spacing_mm = 0.18 * reach,
+      DisplacementLayer layer(pulls, {.reach_mm = level.reach_mm,
+                                      .spacing_mm = 0.18 * level.reach_mm,
                                       .max_controls = settings.max_controls,
-                                      .stiffness = settings.stiffness,
+                                      .stiffness = settings.stiffness / level.softness,
                                       .tangential = settings.tangential});
       parallel_for(mesh.vertices.size(), threads,
                    [&](std::size_t i) { mesh.vertices[i] = layer(mesh.vertices[i]); });

@@ -11,8 +11,12 @@ struct ElasticFitSettings {
   int affine_rounds = 10;
   AffineStiffness affine;
   std::vector<Eigen::Matrix3d> variations = {Eigen::Matrix3d::Identity()};  // starts of the affine map
-  std::vector<double> reaches_mm = {220, 130, 80, 50};
-  int rounds = 5;  // of each reach
+  struct Level {
+    double reach_mm;
+    int rounds;
+    double softness;  // divides the stiffness
+  };
+  std::vector<Level> levels = {{220, 5, 3}, {130, 4, 3}, {80, 3, 1.5}, {50, 3, 1}};
   double stiffness = 0.6;
   double tangential = 0.1;
   int max_controls = 600;

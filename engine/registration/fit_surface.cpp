@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/infinity.h"
 #include "engine/core/parallel.h"
 
 namespace condyle {
@@ -55,7 +56,10 @@ std::optional<SurfaceMatch> forward_match(int sample, double weight, const Vecto
 OtherDistances distances_to(const TriangleTree& other, const FitSurface& target, int threads) {
   OtherDistances distances(target.samples.size());
   parallel_for(distances.size(), threads, [&](std::size_t i) {
-    distances[i] = other.nearest(target.samples[i].point).distance;
+    const auto& sample = target.samples[i];
+    const SurfacePoint near = other.nearest(sample.point);
+    const bool alike = near.triangle >= 0 && normal_at(other, near.triangle).dot(sample.normal) > 0.3;
+    distances[i] = alike ? near.distance : infinity;
   });
   return distances;
 }

@@ -43,8 +43,8 @@ struct MatchSettings {
   int threads = 2;
 };
 
-/// Distance of each sample of the target to what else could have caused it, such as the other bone;
-/// samples that lie nearer to that than to the template have no partner. Empty: nothing else.
+/// Distance of each sample of the target to what else could have caused it, such as the other bone
+/// (infinite where that faces another direction); samples that lie nearer to that than to the template have no partner. Empty: nothing else.
 using OtherDistances = std::vector<double>;
 
 OtherDistances distances_to(const TriangleTree& other, const FitSurface& target, int threads);

@@ -34,7 +34,7 @@ std::optional<AffineMap> similarity_fit(std::span<const PointPair> pairs, const 
 /// How strongly an affine map resists, as a share of the pairs' weight.
 struct AffineStiffness {
   double change = 0.004;     // against every change
-  double asymmetry = 0.3;    // against shear of x with y or z: bodies are alike on both sides
+  double asymmetry = 1;      // against shear of x with y or z: bodies are alike on both sides
   double shear = 0.03;       // against shear of y with z
 };
 
