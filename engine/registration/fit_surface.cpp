@@ -142,10 +142,9 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving,
   return matches;
 }
 
-double explained_share(const FitSurface& target, const AffineMap& map, const FitSurface& moving,
+std::vector<char> explained_samples(const FitSurface& target, const AffineMap& map, const FitSurface& moving,
                        double near_mm, int threads, std::size_t stride) {
   constexpr double cos_normals = 0.5;
-  if (target.samples.size() < stride) return 0;
   const AffineMap back = map.inverse();
   const double scale = std::cbrt(std::abs(back.matrix.determinant()));
   const TriangleTree& tree = moving.pairs.tree();
@@ -157,6 +156,13 @@ double explained_share(const FitSurface& target, const AffineMap& map, const Fit
     const Vector3d normal = (map.matrix.transpose() * sample.normal).normalized();
     near[i] = normal_at(tree, found.triangle).dot(normal) > cos_normals ? 1 : 0;
   });
+  return near;
+}
+
+double explained_share(const FitSurface& target, const AffineMap& map, const FitSurface& moving,
+                       double near_mm, int threads, std::size_t stride) {
+  const auto near = explained_samples(target, map, moving, near_mm, threads, stride);
+  if (near.empty()) return 0;
   return static_cast<double>(std::count(near.begin(), near.end(), 1)) /
          static_cast<double>(near.size());
 }

@@ -61,8 +61,11 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving,
                                          const MatchSettings& settings,
                                          const OtherDistances& other = {});
 
-/// Share of the target's samples that lie within `near_mm` of the template under a map, with
-/// agreeing normals.
+/// Which of the target's samples, every `stride`-th of them, lie within `near_mm` of the template
+/// under a map, with agreeing normals.
+std::vector<char> explained_samples(const FitSurface& target, const AffineMap& map,
+                                    const FitSurface& moving, double near_mm, int threads,
+                                    std::size_t stride = 1);
 double explained_share(const FitSurface& target, const AffineMap& map, const FitSurface& moving,
                        double near_mm, int threads, std::size_t stride = 1);
 

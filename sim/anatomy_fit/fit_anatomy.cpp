@@ -21,8 +21,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double least_explained = 0.5;
-constexpr double least_jaw = 0.12;  // share of the lower jaw that must be there
+constexpr double least_explained = 0.5, least_detail = 0.5;
+constexpr double least_jaw = 0.45;  // share of the lower jaw that must be there
 
 /// The surfaces of a scan, and how each bone of the template is fitted to them.
 struct Targets {
@@ -116,6 +116,7 @@ class Fitter {
     fit_skull();
     report(progress_, "fitting the lower jaw", 0.55);
     fit_jaw();
+    judge();
     report(progress_, "fitting the skin", 0.75);
     fit_skin();
     report(progress_, "finding the landmarks", 0.85);
@@ -126,6 +127,9 @@ class Fitter {
 
  private:
   void place();
+  void judge();
+  void note();
+  void refuse_unless(double explained, double least) const;
   void fit_skull();
   void fit_jaw();
   void fit_skin();
@@ -164,13 +168,61 @@ void Fitter::place() {
       start_ = find_start(template_->mandible, *target, settings_.threads);
     }
   }
-  result_.explained = start_.explained;
   result_.frame = start_.frame;
-  if (start_.explained < least_explained)
-    throw InputError(scan_.source, "",
-                     fmt::format("the built-in head explains only {:.0f} % of the surface: this is no "
-                                 "skull and no lower jaw",
-                                 100 * start_.explained));
+  refuse_unless(start_.explained, 0.3);
+}
+
+/// throws: InputError when too little of the bone looks like the template.
+void Fitter::refuse_unless(double explained, double least) const {
+  if (explained >= least) return;
+  throw InputError(scan_.source, "",
+                   fmt::format("the built-in head explains {:.0f} % of the bone's surface, too little: "
+                               "this is no skull and no lower jaw",
+                               100 * explained));
+}
+
+/// Share of the part's detailed surface, without brain case and crowns, within the scan's box that
+/// has a partner before the fine deformation, which could imitate anything.
+double detail_covered(const FittedPart& part, int threads) {
+  constexpr double near_mm = 4, border_mm = 5;
+  constexpr std::size_t fewest = 100;
+  const FitSurface& moving = *part.moving;
+  const AffineMap& map = part.fit.deformation.affine;
+  const auto near = explained_samples(moving, map.inverse(), *part.target, near_mm, threads);
+  const Box box = bounding_box(part.target->mesh);
+  std::size_t inside = 0, covered = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const auto& sample = moving.samples[i];
+    if (moving.weight_of(sample.triangle) < 1 || !box.contains(map * sample.point, -border_mm))
+      continue;
+    ++inside;
+    covered += near[i] ? 1 : 0;
+  }
+  return inside < fewest ? 0 : static_cast<double>(covered) / static_cast<double>(inside);
+}
+
+/// Whether the scan is what it is taken for. throws: InputError.
+void Fitter::judge() {
+  constexpr double near_mm = 4;
+  std::size_t near_count = 0, all_count = 0;
+  for (const FitSurface* target : {targets_.for_skull(), targets_.for_jaw()}) {
+    if (!target) continue;
+    std::vector<char> any(target->samples.size());
+    for (const auto* part : {&skull_, &jaw_}) {
+      if (!*part || (*part)->target != target) continue;
+      const auto near = explained_samples(*target, (*part)->fit.deformation.affine,
+                                          *(*part)->moving, near_mm, settings_.threads);
+      for (std::size_t i = 0; i < any.size(); ++i) any[i] |= near[i];
+    }
+    near_count += static_cast<std::size_t>(std::count(any.begin(), any.end(), 1));
+    all_count += any.size();
+  }
+  result_.explained = static_cast<double>(near_count) / static_cast<double>(std::max<std::size_t>(1, all_count));
+  refuse_unless(result_.explained, least_explained);
+  double detail = 0;
+  for (const auto* part : {&skull_, &jaw_})
+    if (*part) detail = std::max(detail, detail_covered(**part, settings_.threads));
+  refuse_unless(detail, least_detail);
 }
 
 void Fitter::fit_skull() {
@@ -240,7 +292,25 @@ void Fitter::carry_part(const Part& part, const FittedPart& fitted) {
   result_.parts.push_back(std::move(carried));
 }
 
+/// What a person should know about the scan.
+void Fitter::note() {
+  if (result_.frame == ScanFrame::face_behind)
+    result_.notes.push_back(
+        "the face looks towards +y: these are RAS coordinates taken for LPS (a turn), or the y axis is "
+        "reversed, and then left and right are exchanged");
+  if (result_.frame == ScanFrame::upside_down || result_.frame == ScanFrame::turned_over)
+    result_.notes.push_back(
+        "the head is upside down: the z axis is reversed; if only that axis is, left and right are "
+        "exchanged");
+  if (!skull_) result_.notes.push_back("no skull in the scan: the lower jaw alone was fitted");
+  if (!jaw_ && targets_.for_jaw()) result_.notes.push_back("no lower jaw in the scan, or too little of it");
+  if (jaw_ && jaw_->covered < 0.6)
+    result_.notes.push_back(
+        fmt::format("the scan has {:.0f} % of the lower jaw", 100 * jaw_->covered));
+}
+
 void Fitter::finish() {
+  note();
   const auto take = [&](const std::optional<FittedPart>& part, PartFit& fit) {
     if (!part) return;
     fit = {true, part->fit.rms_mm, part->covered};

@@ -48,6 +48,21 @@ TriMesh both(const Case& model) {
   return mesh;
 }
 
+/// Whether rays along the normals meet the surface again more often than rays against them: on a
+/// solid that faces outward, all rays against the normals do. Holds for open surfaces as well.
+bool faces_inward(const TriMesh& surface) {
+  constexpr int rays = 400;
+  constexpr double lift_mm = 0.05;
+  const TriangleTree tree(surface);
+  int along = 0, against = 0;
+  for (const auto& sample : sample_surface(surface, rays)) {
+    const Eigen::Vector3d lift = lift_mm * sample.normal;
+    along += tree.ray_cast(sample.point + lift, sample.normal) ? 1 : 0;
+    against += tree.ray_cast(sample.point - lift, -sample.normal) ? 1 : 0;
+  }
+  return along > against;
+}
+
 }  // namespace
 
 void append_surface(TriMesh& mesh, const TriMesh& other) {
@@ -78,8 +93,11 @@ FitSurface scanned_surface(TriMesh surface, int samples, int threads, const std:
   if (static_cast<int>(surface.triangles.size()) > most_triangles)
     surface = simplify(surface, most_triangles);
   drop_unreferenced(surface);
-  FitSurface prepared(std::move(surface), samples, threads);
-  return prepared;
+  if (faces_inward(surface))
+    throw InputError(source, "",
+                     "the surface faces inward: it was mirrored, so that left and right are exchanged, "
+                     "or its triangles are reversed");
+  return {std::move(surface), samples, threads};
 }
 
 }  // namespace condyle
