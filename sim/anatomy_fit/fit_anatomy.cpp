@@ -256,16 +256,21 @@ void Fitter::fit_jaw() {
   part.target = target;
   OtherDistances other;
   AffineMap start = start_.map;
-  TriMesh skull = template_->skull.mesh;
+  ElasticFitSettings settings = elastic_;
+  std::optional<TriangleTree> skull_tree;
   if (skull_) {
+    const double scale = std::cbrt(skull_->fit.similarity.matrix.determinant());
+    settings.scale = {0.85 * scale, 1.15 * scale};
     if (!targets_.mandible) {
+      TriMesh skull = template_->skull.mesh;
       skull.vertices = skull_->fit.vertices;
-      other = distances_to(TriangleTree(skull), *target, settings_.threads);
+      skull_tree.emplace(skull);
+      other = distances_to(*skull_tree, *target, settings_.threads);
     }
-    start = jaw_start(*part.moving, *target, skull_->fit.similarity, model_, elastic_, other);
+    start = jaw_start(*part.moving, *target, skull_->fit.similarity, model_, settings, other);
   }
-  part.fit = fit_elastic(*part.moving, *target, start, elastic_, other);
-  measure_errors(part, settings_.threads);
+  part.fit = fit_elastic(*part.moving, *target, start, settings, other);
+  measure_errors(part, settings_.threads, skull_tree ? &*skull_tree : nullptr);
   has_jaw_ = part.covered >= least_jaw;
   if (has_jaw_) jaw_ = std::move(part);
 }

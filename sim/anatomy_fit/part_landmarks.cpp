@@ -16,15 +16,17 @@ using Eigen::Vector3d;
 
 constexpr double near_mm = 4;  // a sample this far from the scan is not covered by it
 
-float error_at(const FitSurface& target, const Vector3d& p, const Vector3d& normal) {
+float error_at(const FitSurface& target, const Vector3d& p, const Vector3d& normal,
+               const TriangleTree* other = nullptr) {
   const auto pair = target.pairs.find(p, normal);
   if (!pair || std::abs(pair->distance) > near_mm) return -1;
+  if (other && other->nearest(pair->point).distance < std::abs(pair->distance)) return -1;
   return static_cast<float>(std::abs(pair->distance));
 }
 
 }  // namespace
 
-void measure_errors(FittedPart& part, int threads) {
+void measure_errors(FittedPart& part, int threads, const TriangleTree* other) {
   const auto& samples = part.moving->samples;
   part.error_mm.assign(samples.size(), -1);
   parallel_for(samples.size(), threads, [&](std::size_t i) {
@@ -35,7 +37,7 @@ void measure_errors(FittedPart& part, int threads) {
                    &c = part.fit.vertices[static_cast<std::size_t>(t[2])];
     const Vector3d& share = sample.barycentric;
     part.error_mm[i] = error_at(*part.target, share[0] * a + share[1] * b + share[2] * c,
-                                (b - a).cross(c - a).normalized());
+                                (b - a).cross(c - a).normalized(), other);
   });
   const auto covered =
       std::count_if(part.error_mm.begin(), part.error_mm.end(), [](float e) { return e >= 0; });

@@ -15,8 +15,9 @@ struct FittedPart {
   double covered = 0;           // share of the samples with something near
 };
 
-/// Distances of the samples of a fitted part to the scan.
-void measure_errors(FittedPart& part, int threads);
+/// Distances of the samples of a fitted part to the scan; what lies nearer to `other`, the other
+/// bone as fitted, is not a partner.
+void measure_errors(FittedPart& part, int threads, const TriangleTree* other = nullptr);
 
 /// Distance of carried points to the scan; negative where nothing with an agreeing normal is near.
 std::vector<float> errors_of(const TriMesh& carried, const FitSurface& target, int threads);
