@@ -30,22 +30,34 @@ double dot(const std::vector<Vector3d>& a, const std::vector<Vector3d>& b) {
 }  // namespace
 
 std::int64_t DisplacementLayer::cell_of(const Vector3d& p, int dx, int dy, int dz) const {
-  const auto at = [&](double x) { return static_cast<std::int64_t>(std::floor(x / reach_)); };
+  const double size = reach_ / 2;
+  const auto at = [&](double x) { return static_cast<std::int64_t>(std::floor(x / size)); };
   return key_of(at(p.x()) + dx, at(p.y()) + dy, at(p.z()) + dz);
+}
+
+void DisplacementLayer::add_center(const Vector3d& p) {
+  for (int dx = -2; dx <= 2; ++dx)
+    for (int dy = -2; dy <= 2; ++dy)
+      for (int dz = -2; dz <= 2; ++dz)
+        cells_[cell_of(p, dx, dy, dz)].push_back(static_cast<int>(centers_.size()));
+  centers_.push_back(p);
+}
+
+/// Calls visit(control, kernel value) for every control point that moves p.
+template <class Visit>
+void DisplacementLayer::visit_near(const Vector3d& p, const Visit& visit) const {
+  const auto cell = cells_.find(cell_of(p, 0, 0, 0));
+  if (cell == cells_.end()) return;
+  for (const int c : cell->second) {
+    const double square = (p - centers_[static_cast<std::size_t>(c)]).squaredNorm();
+    if (square < reach_ * reach_) visit(c, bump(std::sqrt(square) / reach_));
+  }
 }
 
 DisplacementLayer::Row DisplacementLayer::row_of(const Vector3d& p) const {
   Row row;
-  for (int dx = -1; dx <= 1; ++dx)
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dz = -1; dz <= 1; ++dz) {
-        const auto cell = cells_.find(cell_of(p, dx, dy, dz));
-        if (cell == cells_.end()) continue;
-        for (const int c : cell->second) {
-          const double square = (p - centers_[static_cast<std::size_t>(c)]).squaredNorm();
-          if (square < reach_ * reach_) row.emplace_back(c, bump(std::sqrt(square) / reach_));
-        }
-      }
+  row.reserve(64);
+  visit_near(p, [&](int c, double value) { row.emplace_back(c, value); });
   return row;
 }
 
@@ -63,29 +75,21 @@ void DisplacementLayer::choose_centers(std::span<const Pull> pulls, const LayerS
   for (std::size_t k = 0; k < count; ++k) {
     at = (at + 7919) % count;
     const Vector3d& p = pulls[count % 7919 == 0 ? k : at].point;
-    bool apart = true;
-    for (int dx = -1; dx <= 1 && apart; ++dx)
-      for (int dy = -1; dy <= 1 && apart; ++dy)
-        for (int dz = -1; dz <= 1 && apart; ++dz) {
-          const auto cell = cells_.find(cell_of(p, dx, dy, dz));
-          if (cell == cells_.end()) continue;
-          for (const int c : cell->second)
-            if ((p - centers_[static_cast<std::size_t>(c)]).squaredNorm() < nearest) {
-              apart = false;
-              break;
-            }
-        }
+    const auto cell = cells_.find(cell_of(p, 0, 0, 0));
+    const bool apart = cell == cells_.end() ||
+                       std::none_of(cell->second.begin(), cell->second.end(), [&](int c) {
+                         return (p - centers_[static_cast<std::size_t>(c)]).squaredNorm() < nearest;
+                       });
     if (!apart) continue;
-    cells_[cell_of(p, 0, 0, 0)].push_back(static_cast<int>(centers_.size()));
-    centers_.push_back(p);
+    add_center(p);
     if (static_cast<int>(centers_.size()) >= settings.max_controls) break;
   }
   moves_.assign(centers_.size(), Vector3d::Zero());
 }
 
 void DisplacementLayer::solve(std::span<const Pull> pulls, const LayerSettings& settings) {
-  constexpr int most_iterations = 60;
-  constexpr double small = 1e-5;
+  constexpr int most_iterations = 30;
+  constexpr double small = 1e-4;
   const std::size_t controls = centers_.size();
   if (controls == 0) return;
   std::vector<Row> rows(pulls.size()), kernel(controls);
@@ -147,7 +151,7 @@ void DisplacementLayer::solve(std::span<const Pull> pulls, const LayerSettings& 
 
 Vector3d DisplacementLayer::operator()(const Vector3d& p) const {
   Vector3d moved = p;
-  for (const auto& [c, value] : row_of(p)) moved += value * moves_[static_cast<std::size_t>(c)];
+  visit_near(p, [&](int c, double value) { moved += value * moves_[static_cast<std::size_t>(c)]; });
   return moved;
 }
 

@@ -10,7 +10,7 @@
 
 namespace condyle {
 
-/// A wish of one point: to move onto a plane, and less strongly onto a point of it.
+/// Where one point shall go: onto a plane, and less strongly onto a point of it.
 struct Pull {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   // where it is now
   Eigen::Vector3d target = Eigen::Vector3d::Zero();  // where it shall go
@@ -34,19 +34,21 @@ class DisplacementLayer {
 
   Eigen::Vector3d operator()(const Eigen::Vector3d& p) const;  // displaced point
 
-  /// The displaced points of many and, on the way, of directions tangential at them.
   int controls() const { return static_cast<int>(centers_.size()); }
 
  private:
   using Row = std::vector<std::pair<int, double>>;  // control, kernel value
   Row row_of(const Eigen::Vector3d& p) const;
   std::int64_t cell_of(const Eigen::Vector3d& p, int dx, int dy, int dz) const;
+  void add_center(const Eigen::Vector3d& p);
+  template <class Visit>
+  void visit_near(const Eigen::Vector3d& p, const Visit& visit) const;
   void choose_centers(std::span<const Pull> pulls, const LayerSettings& settings);
   void solve(std::span<const Pull> pulls, const LayerSettings& settings);
 
   double reach_ = 0;
   std::vector<Eigen::Vector3d> centers_, moves_;
-  std::unordered_map<std::int64_t, std::vector<int>> cells_;
+  std::unordered_map<std::int64_t, std::vector<int>> cells_;  // controls that may reach a cell
 };
 
 /// An affine map followed by smooth displacements.

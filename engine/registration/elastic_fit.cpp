@@ -45,7 +45,7 @@ AffineMap fit_affine(const FitSurface& moving, const FitSurface& target, const A
   constexpr double near_mm = 2.5;
   constexpr int rough_rounds = 10;
   MatchSettings rough = settings.match;
-  rough.stride = 3;
+  rough.stride = 4;
   Vector3d center = Vector3d::Zero();
   for (const auto& sample : moving.samples)
     center += sample.point / static_cast<double>(moving.samples.size());
@@ -77,6 +77,7 @@ AffineMap fit_similarity(const FitSurface& moving, const FitSurface& target, con
   for (int k = 0; k < settings.similarity_rounds; ++k) {
     const double share = static_cast<double>(k) / settings.similarity_rounds;
     match.soft_mm = 12 + share * (settings.match.soft_mm - 12);
+    match.stride = share < 0.7 ? 4 : 2;
     const auto next =
         similarity_fit(pairs_of(match_surfaces(moving, map, target, match, other)), settings.scale);
     if (!next) break;
@@ -97,8 +98,9 @@ ElasticFit fit_elastic(const FitSurface& moving, const FitSurface& target, const
   for (const auto& level : settings.levels)
     for (int k = 0; k < level.rounds; ++k) {
       const TriangleTree tree = moving.pairs.tree().moved(mesh);
-      const auto matches =
-          match_surfaces(moving, mesh.vertices, tree, target, settings.match, other);
+      MatchSettings thinned = settings.match;
+      thinned.stride = level.stride;
+      const auto matches = match_surfaces(moving, mesh.vertices, tree, target, thinned, other);
       fit.rms_mm = rms_of(matches);
       std::vector<Pull> pulls;
       pulls.reserve(matches.size());

@@ -69,6 +69,11 @@ void add_bench(Commands& commands) {
   CLI::App& mesh = add("mesh", "The decimators on the built-in patient's surfaces",
                        "condyle bench mesh --json", run_bench_mesh);
   in_range(mesh.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1, 1000);
+  CLI::App& landmarks =
+      add("landmarks", "Landmarks proposed by fitting the built-in patient to other heads",
+          "condyle bench landmarks --heads 2 --json", run_bench_landmarks);
+  in_range(landmarks.add_option("--heads", options->heads, "Heads of each scan; default 10"), 1,
+           1000);
 }
 
 }  // namespace condyle

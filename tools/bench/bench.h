@@ -10,6 +10,7 @@ namespace condyle {
 
 struct BenchOptions {
   std::filesystem::path patient;                    // case folder; empty: the built-in patient
+  int heads = 10;                                   // of each kind of scan
   int repeats = 3;                                  // whole openings
   std::vector<int> sizes = {10000, 50000, 100000};  // nodes of larger tissues
   std::string part;                                 // of the measurements; empty: all
@@ -27,5 +28,6 @@ int run_bench_drag(const BenchOptions& options, const CommonOptions& common);
 int run_bench_appliances(const BenchOptions& options, const CommonOptions& common);
 int run_bench_import(const BenchOptions& options, const CommonOptions& common);
 int run_bench_mesh(const BenchOptions& options, const CommonOptions& common);
+int run_bench_landmarks(const BenchOptions& options, const CommonOptions& common);
 
 }  // namespace condyle
