@@ -2,10 +2,16 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
 #include "engine/dicom/ct_volume.h"
 #include "engine/volume/volume_files.h"
+#include "sim/case/case_format.h"
+#include "sim/case/case_io.h"
+#include "sim/case/landmark_files.h"
+#include "sim/ct_case/ct_case.h"
+#include "sim/phantom/phantom.h"
 #include "tools/commands.h"
 #include "tools/common.h"
 #include "tools/series_list.h"
@@ -18,6 +24,10 @@ struct CtImportOptions {
   CtRequest request;
   bool list = false;
   std::filesystem::path out, volume_out;
+  // Of the case.
+  CtCaseRequest make;
+  bool no_face = false;
+  std::filesystem::path seeds, landmarks;
 };
 
 void check_volume_name(const std::filesystem::path& file) {
@@ -35,23 +45,93 @@ int list_series(const CtImportOptions& options, const CommonOptions& common) {
   return 0;
 }
 
+/// Points in the skull and in the lower jaw.
+std::vector<SeedPoint> read_seeds(const std::filesystem::path& file) {
+  std::vector<SeedPoint> seeds;
+  if (file.empty()) return seeds;
+  for (const LandmarkRow& row : read_landmark_table(file).rows) {
+    if (row.name != "skull" && row.name != "mandible")
+      throw InputError(file, row.where,
+                       "\"" + row.name.substr(0, 40) +
+                           "\" is no bone; a seed is in the skull or in the mandible");
+    seeds.push_back({row.point, row.name == "skull" ? skull_label : mandible_label});
+  }
+  return seeds;
+}
+
+nlohmann::ordered_json json_of(const CtCase& made, const CtVolume& ct,
+                               const std::filesystem::path& out) {
+  nlohmann::ordered_json json = {{"case", out.string()},
+                                 {"name", made.patient.name},
+                                 {"series", ct.series},
+                                 {"threshold_hu", made.threshold_hu}};
+  for (const auto& part : made.patient.parts)
+    json["parts"].push_back({{"name", part.name},
+                             {"role", role_name(part.role)},
+                             {"triangles", part.mesh.triangles.size()},
+                             {"teeth", part.teeth.size()}});
+  for (const auto& one : made.decimation)
+    json["decimation"].push_back({{"part", one.part},
+                                  {"median_mm", one.median_mm},
+                                  {"p95_mm", one.p95_mm},
+                                  {"max_mm", one.max_mm}});
+  for (const auto& [name, mark] : made.fit.landmarks) {
+    nlohmann::ordered_json row = {{"name", name},
+                                  {"point", {mark.point.x(), mark.point.y(), mark.point.z()}},
+                                  {"uncertainty_mm", mark.uncertainty_mm},
+                                  {"doubtful", mark.doubtful},
+                                  {"outside_scan", mark.outside_scan}};
+    if (!mark.reason.empty()) row["reason"] = mark.reason;
+    json["landmarks"].push_back(std::move(row));
+  }
+  json["notes"] = made.patient.notes;
+  return json;
+}
+
+int make_case(const CtImportOptions& options, const CtVolume& ct, const CommonOptions& common,
+              ProgressBar& bar) {
+  CtCaseRequest request = options.make;
+  request.face = !options.no_face;
+  request.threads = common.threads;
+  request.seeds = read_seeds(options.seeds);
+  if (request.name.empty()) request.name = (options.out / "").parent_path().filename().string();
+  Landmarks corrected;
+  if (!options.landmarks.empty()) corrected = read_landmarks(options.landmarks);
+  CtCase made = case_of_ct(ct.volume, builtin_patient(bar.callback()), request, bar.callback());
+  for (const auto& [name, point] : corrected.points) made.patient.landmarks.points[name] = point;
+  made.patient.notes.insert(made.patient.notes.begin(), ct.notes.begin(), ct.notes.end());
+  bar.show("writing", 1);
+  save_case(made.patient, options.out);
+  bar.clear();
+  if (common.json)
+    fmt::print("{}\n", json_of(made, ct, options.out)
+                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  if (common.prints_summary()) {
+    for (const auto& note : made.patient.notes) fmt::print(stderr, "note: {}\n", note);
+    const bool moves = made.patient.find(Role::mandible) != nullptr;
+    fmt::print(stderr, "{}: {} parts, {} landmarks. Next: condyle {} {}{}\n", options.out.string(),
+               made.patient.parts.size(), made.patient.landmarks.points.size(),
+               moves ? "record" : "view", options.out.string(),
+               moves ? " --motion opening --out out --film" : "");
+  }
+  return 0;
+}
+
 int run_import_ct(const CtImportOptions& options, const CommonOptions& common) {
   if (options.list) return list_series(options, common);
-  if (!options.out.empty())
+  if (options.out.empty() && options.volume_out.empty())
     throw InputError(
-        "--out: import ct does not make a case yet; it lists the series (--list) and "
-        "writes the volume (--volume-out FILE.nrrd)");
-  if (options.volume_out.empty())
-    throw InputError(
-        "import ct needs --list or --volume-out FILE.nrrd. See condyle import ct "
-        "--help");
-  check_volume_name(options.volume_out);
+        "import ct needs --out FOLDER for the case, --volume-out FILE.nrrd for the volume, or --list");
+  if (!options.volume_out.empty()) check_volume_name(options.volume_out);
   CtRequest request = options.request;
   request.threads = common.threads;
   ProgressBar bar(common);
   const CtVolume ct = ct_volume(options.scan, request, bar.callback());
-  bar.show("writing", 0);
-  write_nrrd(ct.volume, options.volume_out);
+  if (!options.volume_out.empty()) {
+    bar.show("writing", 0);
+    write_nrrd(ct.volume, options.volume_out);
+  }
+  if (!options.out.empty()) return make_case(options, ct, common, bar);
   bar.clear();
   if (common.prints_summary()) {
     for (const std::string& note : ct.notes) fmt::print(stderr, "note: {}\n", note);
@@ -69,6 +149,7 @@ void add_import_ct(Commands& commands, CLI::App& import) {
   CLI::App& command = commands.add_below(
       import, "ct", "From a CT scan: DICOM, NRRD, MetaImage or NIfTI-1",
       "condyle import ct scan --list\n"
+      "  condyle import ct scan --out patient\n"
       "  condyle import ct scan --series 2 --volume-out scan.nrrd",
       [options](const CommonOptions& common) { return run_import_ct(*options, common); });
   command
@@ -76,6 +157,20 @@ void add_import_ct(Commands& commands, CLI::App& import) {
                   "Folder with DICOM series, or a volume (.nrrd, .nhdr, .mha, .mhd, .nii, .nii.gz)")
       ->required();
   command.add_option("--out", options->out, "Folder of the new case")->type_name("FOLDER");
+  command.add_option("--name", options->make.name, "Name of the case; default: that of the folder");
+  in_range(command.add_option("--threshold", options->make.threshold_hu,
+                              "Least Hounsfield units of bone; default: from the histogram"),
+           -500, 3000);
+  command
+      .add_option("--seeds", options->seeds,
+                  "Points that part the jaws (CSV name,x_mm,y_mm,z_mm; the names are skull and "
+                  "mandible)")
+      ->type_name("FILE");
+  command
+      .add_option("--landmarks", options->landmarks,
+                  "Landmarks that replace the proposed ones (CSV or .mrk.json, as import meshes)")
+      ->type_name("FILE");
+  command.add_flag("--no-face", options->no_face, "Leave the skin out");
   command.add_flag("--list", options->list, "List the series of the folder, and stop");
   in_range(command.add_option("--series", options->request.series,
                               "The series to read; default: the largest CT with a step of at most "

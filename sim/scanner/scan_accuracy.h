@@ -2,14 +2,13 @@
 
 #include <functional>
 
+#include "engine/segmentation/head_labels.h"
 #include "engine/segmentation/split_bones.h"
 #include "sim/scanner/ct_scan.h"
 
 namespace condyle {
 
 // What was found in a scan of the built-in patient, compared with the truth.
-
-constexpr VoxelLabel skull_label = 1, mandible_label = 2;
 
 /// Distances of a found surface's vertices from the true one, absolute, mm.
 struct SurfaceErrors {

@@ -6,7 +6,7 @@
 
 #include "sim/anatomy_fit/anatomy_fit.h"
 #include "sim/phantom/phantom.h"
-#include "tools/bench/baseline/scanned_head.h"
+#include "tools/bench/baseline/head_surfaces.h"
 #include "tools/bench/bench.h"
 
 namespace condyle {
@@ -18,10 +18,10 @@ using Json = nlohmann::ordered_json;
 struct LandmarkScan {
   const char* name;
   HeadPopulation population;
-  AnatomyScan (*scan)(const ScannedHead& head);
+  AnatomyScan (*scan)(const HeadSurfaces& head);
 };
 
-AnatomyScan cut_scan(const ScannedHead& head, double low_mm, double high_mm) {
+AnatomyScan cut_scan(const HeadSurfaces& head, double low_mm, double high_mm) {
   AnatomyScan scan;
   scan.bone = scanned_between(head.bone(), head, low_mm, high_mm);
   return scan;
@@ -29,21 +29,21 @@ AnatomyScan cut_scan(const ScannedHead& head, double low_mm, double high_mm) {
 
 constexpr double no_limit_mm = 1000, orbits_mm = 45, chin_mm = -62;
 
-AnatomyScan whole_scan(const ScannedHead& head) {
+AnatomyScan whole_scan(const HeadSurfaces& head) {
   return cut_scan(head, -no_limit_mm, no_limit_mm);
 }
-AnatomyScan scan_below_orbits(const ScannedHead& head) {
+AnatomyScan scan_below_orbits(const HeadSurfaces& head) {
   return cut_scan(head, -no_limit_mm, orbits_mm);
 }
-AnatomyScan scan_above_chin(const ScannedHead& head) {
+AnatomyScan scan_above_chin(const HeadSurfaces& head) {
   return cut_scan(head, chin_mm, no_limit_mm);
 }
-AnatomyScan scan_with_skin(const ScannedHead& head) {
+AnatomyScan scan_with_skin(const HeadSurfaces& head) {
   AnatomyScan scan = whole_scan(head);
   scan.skin = head.skin;
   return scan;
 }
-AnatomyScan scan_of_jaw(const ScannedHead& head) {
+AnatomyScan scan_of_jaw(const HeadSurfaces& head) {
   AnatomyScan scan;
   scan.mandible = head.mandible;
   return scan;
@@ -69,7 +69,7 @@ Json landmark_row(const LandmarkScan& kind, const Case& model, int heads, int th
   std::vector<double> errors, doubtful, seconds, cpu_seconds;
   int outside = 0;
   for (int seed = 1; seed <= heads; ++seed) {
-    const ScannedHead head =
+    const HeadSurfaces head =
         scanned_head(model, kind.population, static_cast<std::uint64_t>(seed));
     AnatomyScan scan = kind.scan(head);
     const Stopwatch watch;

@@ -14,7 +14,7 @@
 #include "engine/mesh_io/mesh_files.h"
 #include "sim/phantom/phantom.h"
 #include "tests/support/places.h"
-#include "tools/bench/baseline/scanned_head.h"
+#include "tools/bench/baseline/head_surfaces.h"
 
 namespace condyle {
 namespace {
@@ -31,7 +31,7 @@ struct Errors {
   int sure = 0, doubtful = 0;
 };
 
-Errors errors_of(const AnatomyFit& fit, const ScannedHead& head) {
+Errors errors_of(const AnatomyFit& fit, const HeadSurfaces& head) {
   Errors errors;
   std::vector<double> all;
   for (const auto& [name, mark] : fit.landmarks) {
@@ -86,7 +86,7 @@ std::string refusal(const AnatomyScan& scan) {
 }  // namespace
 
 TEST(AnatomyFit, FindsLandmarksOfBoneAndSkinThatAreNotSeparated) {
-  const ScannedHead head = scanned_head(model(), HeadPopulation::warped, 1);
+  const HeadSurfaces head = scanned_head(model(), HeadPopulation::warped, 1);
   AnatomyScan scan;
   scan.bone = head.bone();
   scan.skin = head.skin;
@@ -105,7 +105,7 @@ TEST(AnatomyFit, FindsLandmarksOfBoneAndSkinThatAreNotSeparated) {
 }
 
 TEST(AnatomyFit, MarksWhatAScanFromTheTeethToTheOrbitsLacks) {
-  const ScannedHead head = scanned_head(model(), HeadPopulation::warped, 2);
+  const HeadSurfaces head = scanned_head(model(), HeadPopulation::warped, 2);
   AnatomyScan scan;
   scan.bone = scanned_between(head.bone(), head, -70, 45);
   const AnatomyFit fit = fit_anatomy(scan, model());
@@ -119,7 +119,7 @@ TEST(AnatomyFit, MarksWhatAScanFromTheTeethToTheOrbitsLacks) {
 }
 
 TEST(AnatomyFit, FindsAJawByItselfWithTheSameBitsOnAnyNumberOfThreads) {
-  const ScannedHead head = scanned_head(model(), HeadPopulation::seeded, 3);
+  const HeadSurfaces head = scanned_head(model(), HeadPopulation::seeded, 3);
   AnatomyScan scan;
   scan.bone = head.mandible;  // not said to be a lower jaw
   const AnatomyFit fit = fit_anatomy(scan, model(), {.threads = 2}),
@@ -134,7 +134,7 @@ TEST(AnatomyFit, FindsAJawByItselfWithTheSameBitsOnAnyNumberOfThreads) {
 }
 
 TEST(AnatomyFit, ASkullWithoutAJawHasNoLandmarksOfAJaw) {
-  const ScannedHead head = scanned_head(model(), HeadPopulation::seeded, 4);
+  const HeadSurfaces head = scanned_head(model(), HeadPopulation::seeded, 4);
   AnatomyScan scan;
   scan.bone = head.skull;
   // RAS coordinates: turned about the vertical axis.

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <numbers>
 
+#include "engine/core/units.h"
 #include "engine/rigid/rigid_world.h"
 #include "tools/bench/baseline/tissue_target.h"
 
@@ -18,7 +18,6 @@ using Eigen::Vector3d;
 
 constexpr double density_kg_mm3 = 1.9e-6, gravity_mm_s2 = 9810, step_s = 1e-3;
 constexpr double friction = 0.5;
-constexpr double degree = std::numbers::pi / 180;
 const Vector3d plank(4, 6, 20), block(14, 10, 10), ground(120, 60, 6);  // sizes
 constexpr int planks = 4;
 

@@ -1,4 +1,4 @@
-#include "tools/bench/baseline/scanned_head.h"
+#include "tools/bench/baseline/head_surfaces.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -83,16 +83,16 @@ void append_mesh(TriMesh& mesh, const TriMesh& other) {
 
 }  // namespace
 
-TriMesh ScannedHead::bone() const {
+TriMesh HeadSurfaces::bone() const {
   TriMesh both = skull;
   append_mesh(both, mandible);
   return both;
 }
 
-ScannedHead scanned_head(const Case& model, HeadPopulation population, std::uint64_t seed) {
+HeadSurfaces scanned_head(const Case& model, HeadPopulation population, std::uint64_t seed) {
   constexpr double noise_mm = 0.15;
   HeadNoise noise(1000 + seed);
-  ScannedHead head;
+  HeadSurfaces head;
   head.X_SH.R = AngleAxisd(8 * degree * noise.normal(), Vector3d::UnitX()) *
                 AngleAxisd(4 * degree * noise.normal(), Vector3d::UnitY()) *
                 AngleAxisd(4 * degree * noise.normal(), Vector3d::UnitZ());
@@ -123,7 +123,7 @@ ScannedHead scanned_head(const Case& model, HeadPopulation population, std::uint
   return head;
 }
 
-TriMesh scanned_between(const TriMesh& mesh, const ScannedHead& head, double low_mm,
+TriMesh scanned_between(const TriMesh& mesh, const HeadSurfaces& head, double low_mm,
                         double high_mm) {
   const double low = (head.X_SH * Vector3d(0, -60, low_mm)).z(),
                high = (head.X_SH * Vector3d(0, -60, high_mm)).z();

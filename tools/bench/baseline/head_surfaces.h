@@ -10,7 +10,7 @@ namespace condyle {
 
 /// Surfaces of a head as from a scanner, with the landmarks' true places. Triangles are not those
 /// of the built-in patient, vertices have noise, and the head is turned and displaced.
-struct ScannedHead {
+struct HeadSurfaces {
   TriMesh skull, mandible, skin;  // bones with their teeth
   std::map<std::string, Eigen::Vector3d> truth;
   Pose X_SH;  // from the head's frame to the scanner's
@@ -24,10 +24,10 @@ enum class HeadPopulation {
 };
 
 /// seed: from 1. turned by 8 degrees and displaced by 20 mm (standard deviations); noise 0.15 mm.
-ScannedHead scanned_head(const Case& model, HeadPopulation population, std::uint64_t seed);
+HeadSurfaces scanned_head(const Case& model, HeadPopulation population, std::uint64_t seed);
 
 /// What a scan from `low_mm` to `high_mm` in the head's height contains, cut level in the scanner.
-TriMesh scanned_between(const TriMesh& mesh, const ScannedHead& head, double low_mm,
+TriMesh scanned_between(const TriMesh& mesh, const HeadSurfaces& head, double low_mm,
                         double high_mm);
 
 }  // namespace condyle

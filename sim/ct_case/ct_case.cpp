@@ -1,0 +1,240 @@
+#include "sim/ct_case/ct_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "engine/segmentation/scan_surfaces.h"
+#include "sim/case/import_checks.h"
+#include "sim/case/soft_landmarks.h"
+#include "sim/ct_case/tooth_voxels.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr int fitted_triangles = 120000;  // of the surfaces that the template is fitted to
+constexpr double least_template_error_mm = 1, most_template_error_mm = 3;
+constexpr double least_tooth_mm3 = 20;
+
+/// A stage of the work as a part of the whole.
+Progress part_of(const Progress& whole, double from, double to) {
+  if (!whole) return {};
+  return [&whole, from, to](std::string_view what, double fraction) {
+    whole(what, from + (to - from) * std::clamp(fraction, 0.0, 1.0));
+  };
+}
+
+void append_mesh(TriMesh& mesh, const TriMesh& other) {
+  const Eigen::Vector3i offset = Eigen::Vector3i::Constant(static_cast<int>(mesh.vertices.size()));
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& t : other.triangles) mesh.triangles.push_back(t + offset);
+}
+
+const TriMesh& carried_mesh(const AnatomyFit& fit, Role role) {
+  static const TriMesh none;
+  const CarriedPart* found = fit.find(role);
+  return found ? found->part.mesh : none;
+}
+
+/// Bone of the template with its teeth.
+SeedSurface seed_surface(const AnatomyFit& fit, Role bone, Role teeth, VoxelLabel label) {
+  SeedSurface surface{carried_mesh(fit, bone), label};
+  append_mesh(surface.mesh, carried_mesh(fit, teeth));
+  return surface;
+}
+
+/// From the axes of the scan to LPS.
+Matrix3d to_lps(ScanFrame frame) {
+  Vector3d signs(1, 1, 1);
+  if (frame == ScanFrame::face_behind) signs = {-1, -1, 1};
+  if (frame == ScanFrame::upside_down) signs = {1, -1, -1};
+  if (frame == ScanFrame::turned_over) signs = {-1, 1, -1};
+  return signs.asDiagonal();
+}
+
+/// The segmentation of one scan, in steps.
+class CtSegmentation {
+ public:
+  CtSegmentation(const Volume& volume, const Case& model, const CtCaseRequest& request)
+      : volume_(volume), model_(model), request_(request) {}
+
+  CtCase run(const Progress& progress) {
+    find_tissue(part_of(progress, 0, 0.3));
+    fit_template(part_of(progress, 0.3, 0.55));
+    part_bones(part_of(progress, 0.55, 0.7));
+    add_bones(part_of(progress, 0.7, 0.95));
+    add_face();
+    add_landmarks();
+    made_.threshold_hu = bone_.threshold_hu;
+    for (const std::string& note : made_.fit.notes) patient().notes.push_back(note);
+    turn_to_lps();
+    patient().name = request_.name;
+    estimate_landmarks(patient());
+    estimate_profile_landmarks(patient());
+    return std::move(made_);
+  }
+
+ private:
+  Case& patient() { return made_.patient; }
+  SurfaceOptions surface_options(int triangles) const {
+    return {.target_triangles = triangles, .threads = request_.threads};
+  }
+
+  void find_tissue(const Progress& progress) {
+    levels_ = tissue_levels(volume_, request_.source);
+    head_ = find_head(volume_, levels_, request_.source, request_.threads,
+                      part_of(progress, 0, 0.3));
+    BoneOptions options{.threads = request_.threads};
+    if (request_.threshold_hu) options.threshold_hu = *request_.threshold_hu;
+    bone_ = find_bone(volume_, levels_, head_, request_.source, options,
+                      part_of(progress, 0.3, 0.6));
+    whole_ = bone_surface(volume_, bone_, skull_label, surface_options(fitted_triangles),
+                          part_of(progress, 0.6, 0.8));
+    if (head_.has_outside && request_.face)
+      skin_ = skin_surface(volume_, levels_, head_, bone_.metal, request_.source,
+                           surface_options(request_.face_triangles), part_of(progress, 0.8, 1));
+  }
+
+  void fit_template(const Progress& progress) {
+    AnatomyScan scan;
+    scan.bone = whole_.mesh;
+    scan.skin = skin_.mesh;
+    scan.source = request_.source;
+    made_.fit = fit_anatomy(scan, model_, {.threads = request_.threads}, progress);
+  }
+
+  bool has_mandible() const { return made_.fit.mandible.present; }
+  bool has_skull() const { return made_.fit.skull.present; }
+
+  void part_bones(const Progress& progress) {
+    const AnatomyFit& fit = made_.fit;
+    const bool by_hand = !request_.seeds.empty();
+    if (!has_skull() && !by_hand) {
+      std::replace(bone_.label.begin(), bone_.label.end(), skull_label, mandible_label);
+    } else if (has_mandible() || by_hand) {
+      std::vector<SeedSurface> surfaces;
+      if (has_skull())
+        surfaces.push_back(seed_surface(fit, Role::skull, Role::upper_teeth, skull_label));
+      if (has_mandible())
+        surfaces.push_back(seed_surface(fit, Role::mandible, Role::lower_teeth, mandible_label));
+      const double error = std::clamp(std::max(fit.skull.rms_mm, fit.mandible.rms_mm),
+                                      least_template_error_mm, most_template_error_mm);
+      const auto seeds =
+          seed_labels(volume_, bone_, surfaces, request_.seeds,
+                      {.template_error_mm = error, .threads = request_.threads},
+                      part_of(progress, 0, 0.4));
+      split_bones(volume_, seeds, bone_, request_.threads, part_of(progress, 0.4, 0.9));
+    }
+    if (has_skull())
+      label_teeth(volume_, carried_mesh(fit, Role::upper_teeth), carried_mesh(fit, Role::skull),
+                  skull_label, upper_teeth_label, bone_, request_.threads);
+    if (has_mandible())
+      label_teeth(volume_, carried_mesh(fit, Role::lower_teeth), carried_mesh(fit, Role::mandible),
+                  mandible_label, lower_teeth_label, bone_, request_.threads);
+  }
+
+  void keep(ScanSurface surface, Part part) {
+    made_.decimation.push_back({part.name, surface.decimation_median_mm, surface.decimation_p95_mm,
+                                surface.decimation_max_mm});
+    patient().parts.push_back(std::move(part));
+  }
+
+  void add_bones(const Progress& progress) {
+    struct Wanted {
+      VoxelLabel label;
+      Role role;
+      const char* name;
+      int triangles;
+    };
+    constexpr int tooth_triangles = 60000;
+    const Wanted all[] = {
+        {skull_label, Role::skull, "skull", request_.skull_triangles},
+        {mandible_label, Role::mandible, "mandible", request_.mandible_triangles},
+        {upper_teeth_label, Role::upper_teeth, "upper-teeth", tooth_triangles},
+        {lower_teeth_label, Role::lower_teeth, "lower-teeth", tooth_triangles}};
+    int done = 0;
+    for (const Wanted& wanted : all) {
+      SurfaceOptions options = surface_options(wanted.triangles);
+      if (is_teeth(wanted.role)) options.least_piece_mm3 = least_tooth_mm3;
+      ScanSurface surface = bone_surface(volume_, bone_, wanted.label, options,
+                                         part_of(progress, 0.25 * done, 0.25 * (done + 1)));
+      ++done;
+      if (surface.mesh.empty()) continue;
+      TriMesh mesh = std::move(surface.mesh);
+      const CarriedPart* carried = made_.fit.find(wanted.role);
+      Part part = is_teeth(wanted.role) && carried
+                      ? teeth_part(std::move(mesh), carried->part)
+                      : Part{wanted.name, wanted.role, std::move(mesh), {}, default_body(wanted.role)};
+      part.name = wanted.name;
+      keep(std::move(surface), std::move(part));
+    }
+    if (!patient().find(Role::mandible))
+      patient().notes.push_back("the scan shows no lower jaw: nothing moves with it");
+  }
+
+  void add_face() {
+    if (skin_.mesh.empty()) {
+      patient().notes.push_back(request_.face
+                                    ? "the scan shows no air around the head: there is no face"
+                                    : "no face was requested");
+      return;
+    }
+    TriMesh mesh = std::move(skin_.mesh);
+    keep(std::move(skin_), {"face", Role::face, std::move(mesh), {}, default_body(Role::face)});
+  }
+
+  void add_landmarks() {
+    std::string doubtful;
+    int outside = 0, kept = 0;
+    for (const auto& [name, mark] : made_.fit.landmarks) {
+      if (mark.outside_scan) {
+        ++outside;
+        continue;
+      }
+      patient().landmarks.points[name] = mark.point;
+      ++kept;
+      if (mark.doubtful) doubtful += (doubtful.empty() ? "" : ", ") + name;
+    }
+    patient().notes.push_back(
+        fmt::format("{} landmarks are proposed by fitting the built-in patient{}", kept,
+                    outside > 0 ? fmt::format(", {} lie outside the scan", outside) : ""));
+    if (!doubtful.empty())
+      patient().notes.push_back("doubtful landmarks, to be checked: " + doubtful);
+    patient().canals = made_.fit.canals;
+  }
+
+  void turn_to_lps() {
+    const Matrix3d R = to_lps(made_.fit.frame);
+    if (R.isIdentity()) return;
+    for (Part& part : patient().parts)
+      for (auto& v : part.mesh.vertices) v = R * v;
+    for (auto& [name, point] : patient().landmarks.points) point = R * point;
+    for (auto& [name, mark] : made_.fit.landmarks) mark.point = R * mark.point;
+    for (Canal& canal : patient().canals)
+      for (auto& p : canal.points) p = R * p;
+    patient().notes.push_back("the scan was turned to LPS: its face looked elsewhere than its axes say");
+  }
+
+  const Volume& volume_;
+  const Case& model_;
+  const CtCaseRequest& request_;
+  TissueLevels levels_;
+  HeadRegion head_;
+  BoneVoxels bone_;
+  ScanSurface whole_, skin_;
+  CtCase made_;
+};
+
+}  // namespace
+
+CtCase case_of_ct(const Volume& volume, const Case& model, const CtCaseRequest& request,
+                  const Progress& progress) {
+  return CtSegmentation(volume, model, request).run(progress);
+}
+
+}  // namespace condyle
