@@ -17,7 +17,7 @@ struct ElasticFitSettings {
     double softness;     // divides the stiffness
     std::size_t stride;  // 3: every third sample
   };
-  std::vector<Level> levels = {{220, 5, 3, 3}, {130, 4, 3, 2}, {80, 3, 1.5, 1}, {50, 2, 1, 1}};
+  std::vector<Level> levels = {{220, 6, 5, 3}, {130, 7, 5, 2}, {80, 4, 2, 1}, {50, 2, 1, 1}};
   double stiffness = 0.6;
   double tangential = 0.1;
   int max_controls = 600;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/core/units.h"
 #include "engine/mesh/repair.h"
 #include "engine/mesh/simplify.h"
 #include "sim/phantom/phantom.h"
