@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/core/units.h"
 #include "engine/mesh/repair.h"
 #include "engine/mesh/simplify.h"
 #include "sim/phantom/phantom.h"
