@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,7 +15,7 @@
 namespace condyle {
 namespace {
 
-constexpr double skin_blur_voxels = 0.6;
+constexpr double skin_blur_voxels = 0.6, lattice_step_mm = 0.95;
 constexpr std::int16_t air_hu = -1000;
 constexpr double least_skin_mm3 = 20000;  // of a piece
 
@@ -87,6 +88,41 @@ Volume solid_head(const Volume& volume, const TissueLevels& levels, const HeadRe
   return solid;
 }
 
+/// Level minus the blurred scan on a lattice with steps of about 0.9 mm, on which the skin has all
+/// its detail; the surface gets its place from the scan itself later.
+std::vector<float> skin_values(const Volume& solid, double level, int threads, Volume& lattice) {
+  std::array<int, 3> stride;
+  lattice.spacing_mm = solid.spacing_mm;
+  lattice.axes = solid.axes;
+  lattice.origin = solid.origin;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    stride[a] = std::max(1, static_cast<int>(lattice_step_mm / solid.spacing_mm[axis]));
+    lattice.size[a] = (solid.size[a] - 1) / stride[a] + 2;
+    lattice.spacing_mm[axis] *= stride[a];
+  }
+  std::vector<std::int16_t> smooth = solid.values;
+  blur(smooth, solid.size, skin_blur_voxels * *std::min_element(stride.begin(), stride.end()),
+       threads);
+  const auto [nx, ny, nz] = lattice.size;
+  std::vector<float> values(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) *
+                            static_cast<std::size_t>(nz));
+  parallel_for(static_cast<std::size_t>(nz), threads, [&](std::size_t slice) {
+    const int k = static_cast<int>(slice);
+    for (int j = 0; j < lattice.size[1]; ++j)
+      for (int i = 0; i < lattice.size[0]; ++i) {
+        const std::array<int, 3> at = {i * stride[0], j * stride[1], k * stride[2]};
+        bool border = false;
+        for (std::size_t a = 0; a < 3; ++a)
+          border = border || at[a] == 0 || at[a] + 1 >= solid.size[a];
+        values[lattice.index(i, j, k)] =
+            border ? 1000
+                   : static_cast<float>(level - smooth[solid.index(at[0], at[1], at[2])]);
+      }
+  });
+  return values;
+}
+
 }  // namespace
 
 ScanSurface skin_surface(const Volume& volume, const TissueLevels& levels, const HeadRegion& head,
@@ -103,26 +139,12 @@ ScanSurface skin_surface(const Volume& volume, const TissueLevels& levels, const
     trim_streaks(*metal, levels.skin(), static_cast<std::int16_t>(std::lround(levels.soft)),
                  box.low[static_cast<std::size_t>(metal->axis)], solid, options.threads);
   report(progress, "finding the skin", 0.3);
-  std::vector<std::int16_t> smooth = solid.values;
-  blur(smooth, box.size, skin_blur_voxels, options.threads);
-  std::vector<float> values(smooth.size());
-  const auto level = static_cast<float>(levels.skin());
-  const int nx = box.size[0], ny = box.size[1], nz = box.size[2];
-  parallel_for(static_cast<std::size_t>(nz), options.threads, [&](std::size_t slice) {
-    const int k = static_cast<int>(slice);
-    for (int j = 0; j < ny; ++j)
-      for (int i = 0; i < nx; ++i) {
-        const std::size_t q = box.index(i, j, k);
-        const bool border =
-            i == 0 || j == 0 || k == 0 || i + 1 == nx || j + 1 == ny || k + 1 == nz;
-        values[q] = border ? 1000 : level - smooth[q];
-      }
-  });
-  std::vector<std::int16_t>().swap(smooth);
+  Volume lattice;  // of the surface
+  std::vector<float> values = skin_values(solid, levels.skin(), options.threads, lattice);
   report(progress, "finding the skin", 0.5);
   ScanSurface surface;
   surface.mesh = lattice_surface(
-      volume, box, std::move(values),
+      lattice, whole_box(lattice), std::move(values),
       std::max(options.least_piece_mm3, least_skin_mm3));
   report(progress, "finding the skin", 1);
   surface.moved_fraction = move_to_half_way(

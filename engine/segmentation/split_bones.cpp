@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 constexpr double margin_per_error = 1.25;
 constexpr double inside_mm = 0.5;  // this far outside still counts as inside a surface
-constexpr double field_step_mm = 1.5;
+constexpr double field_step_mm = 2;
 constexpr int deepest = 512, darkest = 128;  // buckets of the queue for depth and for gaps
 constexpr int bucket_count = deepest + darkest;
 constexpr double step_voxels = 0.1;  // depth of one bucket, in steps of the finest axis
@@ -47,7 +47,7 @@ void seed_from_surfaces(const Volume& volume, const BoneVoxels& bone,
     report(progress, "placing seeds", 0.7 * static_cast<double>(fields.size()) /
                                           static_cast<double>(surfaces.size()));
     fields.push_back(
-        mesh_field(surface.mesh, grid, 2 * margin + 2 * field_step_mm, options.threads));
+        mesh_field(surface.mesh, grid, 2 * margin + field_step_mm, options.threads));
   }
   report(progress, "placing seeds", 0.7);
   parallel_for(static_cast<std::size_t>(bone.box.size[2]), options.threads, [&](std::size_t k) {

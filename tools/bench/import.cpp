@@ -52,7 +52,11 @@ std::vector<BenchScan> bench_scans(int threads) {
   };
   vary("blurred").point_spread = 0.9;
   vary("fillings").fillings = true;
-  vary("table").table = true;
+  CtSettings& table = vary("table");  // behind the whole head
+  table.table = true;
+  table.spacing_mm = {1, 1, 1};
+  table.field_of_view.low.x() = -105;
+  table.field_of_view.high = {105, 145, 12};
   vary("dark marrow").dark_marrow = true;
   vary("teeth touch");
   scans.back().tooth_growth_mm = 0.1;
