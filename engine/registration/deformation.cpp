@@ -76,10 +76,10 @@ void DisplacementLayer::choose_centers(std::span<const Pull> pulls, const LayerS
     at = (at + 7919) % count;
     const Vector3d& p = pulls[count % 7919 == 0 ? k : at].point;
     const auto cell = cells_.find(cell_of(p, 0, 0, 0));
-    const bool apart = cell == cells_.end() ||
-                       std::none_of(cell->second.begin(), cell->second.end(), [&](int c) {
-                         return (p - centers_[static_cast<std::size_t>(c)]).squaredNorm() < nearest;
-                       });
+    const bool apart =
+        cell == cells_.end() || std::none_of(cell->second.begin(), cell->second.end(), [&](int c) {
+          return (p - centers_[static_cast<std::size_t>(c)]).squaredNorm() < nearest;
+        });
     if (!apart) continue;
     add_center(p);
     if (static_cast<int>(centers_.size()) >= settings.max_controls) break;
@@ -101,9 +101,8 @@ void DisplacementLayer::solve(std::span<const Pull> pulls, const LayerSettings& 
   for (std::size_t c = 0; c < controls; ++c) kernel[c] = row_of(centers_[c]);
   const double stiffness = settings.stiffness * weight / static_cast<double>(controls);
   const auto weighted = [&](const Pull& pull, const Vector3d& d) {
-    return Vector3d(pull.weight *
-                    (settings.tangential * d +
-                     (1 - settings.tangential) * pull.normal.dot(d) * pull.normal));
+    return Vector3d(pull.weight * (settings.tangential * d +
+                                   (1 - settings.tangential) * pull.normal.dot(d) * pull.normal));
   };
   const auto add_to = [](std::vector<Vector3d>& sum, const Row& row, const Vector3d& d) {
     for (const auto& [c, value] : row) sum[static_cast<std::size_t>(c)] += value * d;

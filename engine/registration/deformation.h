@@ -19,8 +19,8 @@ struct Pull {
 };
 
 struct LayerSettings {
-  double reach_mm = 100;    // a control point moves what lies within this distance
-  double spacing_mm = 20;   // of the control points
+  double reach_mm = 100;   // a control point moves what lies within this distance
+  double spacing_mm = 20;  // of the control points
   int max_controls = 600;
   double stiffness = 0.6;   // resistance to displacement
   double tangential = 0.1;  // weight of the distance along the plane; 1: point to point

@@ -12,7 +12,8 @@ using Eigen::Vector3d;
 std::vector<PointPair> pairs_of(const std::vector<SurfaceMatch>& matches) {
   std::vector<PointPair> pairs;
   pairs.reserve(matches.size());
-  for (const auto& match : matches) pairs.push_back({match.from, match.to, match.weight, match.normal});
+  for (const auto& match : matches)
+    pairs.push_back({match.from, match.to, match.weight, match.normal});
   return pairs;
 }
 
@@ -23,8 +24,7 @@ double rms_of(const std::vector<SurfaceMatch>& matches) {
 }
 
 AffineMap refine_affine(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
-                        int rounds, const MatchSettings& settings,
-                        const AffineStiffness& stiffness,
+                        int rounds, const MatchSettings& settings, const AffineStiffness& stiffness,
                         const OtherDistances& other) {
   AffineMap map = start;
   MatchSettings match = settings;
@@ -43,9 +43,9 @@ AffineMap refine_affine(const FitSurface& moving, const FitSurface& target, cons
 AffineMap fit_affine(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
                      const ElasticFitSettings& settings, const OtherDistances& other) {
   constexpr double near_mm = 2.5;
-  constexpr int rough_rounds = 10;
+  constexpr int rough_rounds = 7;
   MatchSettings rough = settings.match;
-  rough.stride = 4;
+  rough.stride = 6;
   Vector3d center = Vector3d::Zero();
   for (const auto& sample : moving.samples)
     center += sample.point / static_cast<double>(moving.samples.size());
@@ -86,15 +86,21 @@ AffineMap fit_similarity(const FitSurface& moving, const FitSurface& target, con
   return map;
 }
 
-ElasticFit fit_elastic(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
+ElasticFit fit_stiffly(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
                        const ElasticFitSettings& settings, const OtherDistances& other) {
   ElasticFit fit;
   fit.similarity = fit_similarity(moving, target, start, settings, other);
   fit.deformation.affine = fit_affine(moving, target, fit.similarity, settings, other);
+  return fit;
+}
+
+void add_displacements(ElasticFit& fit, const FitSurface& moving, const FitSurface& target,
+                       const ElasticFitSettings& settings, const OtherDistances& other) {
   const int threads = settings.match.threads;
   TriMesh mesh = moving.mesh;
-  parallel_for(mesh.vertices.size(), threads,
-               [&](std::size_t i) { mesh.vertices[i] = fit.deformation.affine * mesh.vertices[i]; });
+  parallel_for(mesh.vertices.size(), threads, [&](std::size_t i) {
+    mesh.vertices[i] = fit.deformation.affine * mesh.vertices[i];
+  });
   for (const auto& level : settings.levels)
     for (int k = 0; k < level.rounds; ++k) {
       const TriangleTree tree = moving.pairs.tree().moved(mesh);
@@ -106,7 +112,7 @@ ElasticFit fit_elastic(const FitSurface& moving, const FitSurface& target, const
       pulls.reserve(matches.size());
       for (const auto& match : matches)
         pulls.push_back({match.now, match.to, match.normal, match.weight});
-      if (pulls.empty()) return fit;
+      if (pulls.empty()) break;
       DisplacementLayer layer(pulls, {.reach_mm = level.reach_mm,
                                       .spacing_mm = 0.18 * level.reach_mm,
                                       .max_controls = settings.max_controls,
@@ -119,7 +125,6 @@ ElasticFit fit_elastic(const FitSurface& moving, const FitSurface& target, const
   const TriangleTree tree = moving.pairs.tree().moved(mesh);
   fit.rms_mm = rms_of(match_surfaces(moving, mesh.vertices, tree, target, settings.match, other));
   fit.vertices = std::move(mesh.vertices);
-  return fit;
 }
 
 }  // namespace condyle

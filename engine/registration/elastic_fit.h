@@ -10,7 +10,8 @@ struct ElasticFitSettings {
   int similarity_rounds = 25;
   int affine_rounds = 10;
   AffineStiffness affine;
-  std::vector<Eigen::Matrix3d> variations = {Eigen::Matrix3d::Identity()};  // starts of the affine map
+  std::vector<Eigen::Matrix3d> variations = {
+      Eigen::Matrix3d::Identity()};  // starts of the affine map
   struct Level {
     double reach_mm;
     int rounds;
@@ -36,10 +37,14 @@ struct ElasticFit {
 AffineMap fit_similarity(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
                          const ElasticFitSettings& settings, const OtherDistances& other = {});
 
-/// Similarity, then affine map, then smooth displacements from coarse to fine. Deterministic: the
+/// Similarity, then the affine map: without displacements.
+ElasticFit fit_stiffly(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
+                       const ElasticFitSettings& settings, const OtherDistances& other = {});
+
+/// Adds smooth displacements, from coarse to fine, to a stiff fit. Deterministic, as all here: the
 /// same bits for any number of threads.
 /// source: Besl and McKay 1992; Amberg et al., CVPR 2007, for the order from stiff to soft
-ElasticFit fit_elastic(const FitSurface& moving, const FitSurface& target, const AffineMap& start,
+void add_displacements(ElasticFit& fit, const FitSurface& moving, const FitSurface& target,
                        const ElasticFitSettings& settings, const OtherDistances& other = {});
 
 }  // namespace condyle

@@ -23,7 +23,8 @@ void trim(std::vector<SurfaceMatch>& matches, std::size_t first, const MatchSett
   std::vector<double> distances;
   for (std::size_t i = first; i < matches.size(); ++i) distances.push_back(matches[i].distance);
   if (distances.empty()) return;
-  const auto last = static_cast<std::size_t>(settings.kept * (static_cast<double>(distances.size()) - 1));
+  const auto last =
+      static_cast<std::size_t>(settings.kept * (static_cast<double>(distances.size()) - 1));
   std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(last),
                    distances.end());
   const double limit = std::min(distances[last], settings.farthest_mm);
@@ -43,12 +44,13 @@ void append(std::vector<SurfaceMatch>& matches, std::vector<std::optional<Surfac
     if (match) matches.push_back(*match);
 }
 
-std::optional<SurfaceMatch> forward_match(int sample, double weight, const Vector3d& from, const Vector3d& now,
-                                          const Vector3d& normal, const FitSurface& target,
-                                          const MatchSettings& settings) {
+std::optional<SurfaceMatch> forward_match(int sample, double weight, const Vector3d& from,
+                                          const Vector3d& now, const Vector3d& normal,
+                                          const FitSurface& target, const MatchSettings& settings) {
   const auto pair = target.pairs.find(now, normal);
   if (!pair || pair->normal.dot(normal) < settings.cos_normals) return std::nullopt;
-  return SurfaceMatch{sample, from, now, pair->point, pair->normal, std::abs(pair->distance), weight};
+  return SurfaceMatch{sample, from, now, pair->point, pair->normal, std::abs(pair->distance),
+                      weight};
 }
 
 }  // namespace
@@ -58,7 +60,8 @@ OtherDistances distances_to(const TriangleTree& other, const FitSurface& target,
   parallel_for(distances.size(), threads, [&](std::size_t i) {
     const auto& sample = target.samples[i];
     const SurfacePoint near = other.nearest(sample.point);
-    const bool alike = near.triangle >= 0 && normal_at(other, near.triangle).dot(sample.normal) > 0.3;
+    const bool alike =
+        near.triangle >= 0 && normal_at(other, near.triangle).dot(sample.normal) > 0.3;
     distances[i] = alike ? near.distance : infinity;
   });
   return distances;
@@ -78,8 +81,9 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving, const AffineM
   parallel_for(found.size(), settings.threads, [&](std::size_t k) {
     const std::size_t i = k * settings.stride;
     const auto& sample = moving.samples[i];
-    found[k] = forward_match(static_cast<int>(i), moving.weight_of(sample.triangle), sample.point, map * sample.point,
-                             (turn * sample.normal).normalized(), target, settings);
+    found[k] =
+        forward_match(static_cast<int>(i), moving.weight_of(sample.triangle), sample.point,
+                      map * sample.point, (turn * sample.normal).normalized(), target, settings);
   });
   std::vector<SurfaceMatch> matches;
   append(matches, found);
@@ -96,7 +100,13 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving, const AffineM
     const Vector3d now = map * near.point;
     const double distance = (now - sample.point).norm();
     if (!other.empty() && other[i] < distance) return;
-    found[k] = SurfaceMatch{-1, near.point, now, sample.point, sample.normal, distance, moving.weight_of(near.triangle)};
+    found[k] = SurfaceMatch{-1,
+                            near.point,
+                            now,
+                            sample.point,
+                            sample.normal,
+                            distance,
+                            moving.weight_of(near.triangle)};
   });
   const std::size_t first = matches.size();
   append(matches, found);
@@ -119,8 +129,8 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving,
     const Vector3d &a = at(sample.triangle, 0), &b = at(sample.triangle, 1),
                    &c = at(sample.triangle, 2);
     const Vector3d &share = sample.barycentric, now = share[0] * a + share[1] * b + share[2] * c;
-    found[i] = forward_match(static_cast<int>(i), moving.weight_of(sample.triangle), sample.point, now,
-                             (b - a).cross(c - a).normalized(), target, settings);
+    found[i] = forward_match(static_cast<int>(i), moving.weight_of(sample.triangle), sample.point,
+                             now, (b - a).cross(c - a).normalized(), target, settings);
   });
   std::vector<SurfaceMatch> matches;
   append(matches, found);
@@ -133,8 +143,13 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving,
     const Vector3d &a = at(near.triangle, 0), &b = at(near.triangle, 1), &c = at(near.triangle, 2);
     if ((b - a).cross(c - a).normalized().dot(sample.normal) < settings.cos_normals) return;
     if (!other.empty() && other[i] < near.distance) return;
-    found[i] = SurfaceMatch{-1,           near.point,    near.point, sample.point,
-                            sample.normal, near.distance, moving.weight_of(near.triangle)};
+    found[i] = SurfaceMatch{-1,
+                            near.point,
+                            near.point,
+                            sample.point,
+                            sample.normal,
+                            near.distance,
+                            moving.weight_of(near.triangle)};
   });
   const std::size_t first = matches.size();
   append(matches, found);
@@ -142,8 +157,9 @@ std::vector<SurfaceMatch> match_surfaces(const FitSurface& moving,
   return matches;
 }
 
-std::vector<char> explained_samples(const FitSurface& target, const AffineMap& map, const FitSurface& moving,
-                       double near_mm, int threads, std::size_t stride) {
+std::vector<char> explained_samples(const FitSurface& target, const AffineMap& map,
+                                    const FitSurface& moving, double near_mm, int threads,
+                                    std::size_t stride) {
   constexpr double cos_normals = 0.5;
   const AffineMap back = map.inverse();
   const double scale = std::cbrt(std::abs(back.matrix.determinant()));

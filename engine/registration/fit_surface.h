@@ -25,7 +25,7 @@ struct FitSurface {
 
 /// A point of the template and its partner on the target.
 struct SurfaceMatch {
-  int sample = -1;   // of the template's samples; -1: the pair was found from the target
+  int sample = -1;  // of the template's samples; -1: the pair was found from the target
   Eigen::Vector3d from = Eigen::Vector3d::Zero();    // on the template as given
   Eigen::Vector3d now = Eigen::Vector3d::Zero();     // the same point carried
   Eigen::Vector3d to = Eigen::Vector3d::Zero();      // on the target
@@ -35,16 +35,17 @@ struct SurfaceMatch {
 };
 
 struct MatchSettings {
-  double kept = 0.9;          // share of the pairs, the nearest ones, that count
+  double kept = 0.9;  // share of the pairs, the nearest ones, that count
   double farthest_mm = 30;
-  double soft_mm = 4;         // a pair at this distance counts half
-  double cos_normals = 0.4;   // normals of partners agree at least so far
-  std::size_t stride = 1;     // 4: every fourth sample of both surfaces
+  double soft_mm = 4;        // a pair at this distance counts half
+  double cos_normals = 0.4;  // normals of partners agree at least so far
+  std::size_t stride = 1;    // 4: every fourth sample of both surfaces
   int threads = 2;
 };
 
 /// Distance of each sample of the target to what else could have caused it, such as the other bone
-/// (infinite where that faces another direction); samples that lie nearer to that than to the template have no partner. Empty: nothing else.
+/// (infinite where that faces another direction); samples that lie nearer to that than to the
+/// template have no partner. Empty: nothing else.
 using OtherDistances = std::vector<double>;
 
 OtherDistances distances_to(const TriangleTree& other, const FitSurface& target, int threads);

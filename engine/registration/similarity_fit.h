@@ -33,13 +33,13 @@ std::optional<AffineMap> similarity_fit(std::span<const PointPair> pairs, const 
 
 /// How strongly an affine map resists, as a share of the pairs' weight.
 struct AffineStiffness {
-  double change = 0.004;     // against every change
-  double asymmetry = 1;      // against shear of x with y or z: bodies are alike on both sides
-  double shear = 0.03;       // against shear of y with z
+  double change = 0.004;  // against every change
+  double asymmetry = 1;   // against shear of x with y or z: bodies are alike on both sides
+  double shear = 0.03;    // against shear of y with z
 };
 
-/// A map nearer to the least sum of squared distances along the normals, plus a tenth of those along
-/// the planes: one step from `map`. Absent where the pairs determine none.
+/// A map nearer to the least sum of squared distances along the normals, plus a tenth of those
+/// along the planes: one step from `map`. Absent where the pairs determine none.
 std::optional<AffineMap> affine_step(std::span<const PointPair> pairs, const AffineMap& map,
                                      const AffineStiffness& stiffness);
 

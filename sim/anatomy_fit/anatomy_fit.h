@@ -15,7 +15,7 @@ namespace condyle {
 struct AnatomyScan {
   TriMesh bone;  // skull and lower jaw that are not separated, or one of them
   TriMesh skull, mandible;
-  TriMesh skin;  // where there is one
+  TriMesh skin;                 // where there is one
   std::string source = "scan";  // for messages
 };
 
@@ -42,10 +42,10 @@ struct PartFit {
 };
 
 enum class ScanFrame {
-  lps,           // as expected
-  face_behind,   // turned about the vertical axis: RAS coordinates, taken for LPS
-  upside_down,   // turned about the transverse axis
-  turned_over    // turned about the sagittal axis
+  lps,          // as expected
+  face_behind,  // turned about the vertical axis: RAS coordinates, taken for LPS
+  upside_down,  // turned about the transverse axis
+  turned_over   // turned about the sagittal axis
 };
 
 struct AnatomyFit {

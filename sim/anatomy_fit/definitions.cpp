@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
 
-/// The farthest point of the surface in a direction, in the frame of the Frankfort plane. `profile`:
-/// along the midline only. x: of the left one of a pair.
+/// The farthest point of the surface in a direction, in the frame of the Frankfort plane.
+/// `profile`: along the midline only. x: of the left one of a pair.
 struct Definition {
   const char* name;
   Vector3d direction;
@@ -84,8 +84,8 @@ Vector3d gonion_direction(const Points& points, const std::string& side) {
   return (across - across.dot(line) * line).normalized();
 }
 
-/// The mean of the vertices that lie about farthest along `direction`, preferring those near `p`: on
-/// flat surfaces the point hardly moves, on pointed ones it goes to the tip.
+/// The mean of the vertices that lie about farthest along `direction`, preferring those near `p`:
+/// on flat surfaces the point hardly moves, on pointed ones it goes to the tip.
 Vector3d farthest(const std::vector<Vector3d>& patch, const Vector3d& p,
                   const Vector3d& direction) {
   constexpr double prefer_mm = 20, spread_mm = 0.1;
@@ -115,8 +115,7 @@ class Definer {
     const bool plane_known = marks.count("left_porion") != 0 && !marks["left_porion"].doubtful &&
                              !marks["right_porion"].doubtful && !marks["left_orbitale"].doubtful &&
                              !marks["right_orbitale"].doubtful;
-    if (plane_known)
-      axes_ = frankfort(carried_) * frankfort(model.landmarks.points).transpose();
+    if (plane_known) axes_ = frankfort(carried_) * frankfort(model.landmarks.points).transpose();
   }
 
   void apply() {

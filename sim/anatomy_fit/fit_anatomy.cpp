@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double least_explained = 0.5, least_detail = 0.5;
+constexpr double least_explained = 0.5, least_detail = 0.44;
 constexpr double least_jaw = 0.45;  // share of the lower jaw that must be there
 
 /// The surfaces of a scan, and how each bone of the template is fitted to them.
@@ -36,7 +36,8 @@ Targets prepared(const AnatomyScan& scan, int threads) {
   Targets targets;
   const auto take = [&](std::optional<FitSurface>& to, const TriMesh& mesh, int samples,
                         const char* what) {
-    if (!mesh.empty()) to.emplace(scanned_surface(mesh, samples, threads, scan.source + ": " + what));
+    if (!mesh.empty())
+      to.emplace(scanned_surface(mesh, samples, threads, scan.source + ": " + what));
   };
   take(targets.bone, scan.bone, 9000, "bone");
   take(targets.skull, scan.skull, 6000, "skull");
@@ -88,13 +89,32 @@ AffineMap jaw_start(const FitSurface& moving, const FitSurface& target, const Af
 std::vector<Eigen::Matrix3d> head_variations() {
   std::vector<Eigen::Matrix3d> all;
   for (const double deep : {1.0, 0.93, 1.07})
-    for (const double high : {1.0, 0.93, 1.07})
-      all.push_back(Vector3d(1, deep, high).asDiagonal());
+    for (const double high : {1.0, 0.93, 1.07}) all.push_back(Vector3d(1, deep, high).asDiagonal());
   for (const double deep : {1.0, 0.93})
     for (const double turn_deg : {-6.0, 6.0})
       all.push_back(Eigen::AngleAxisd(turn_deg * degree, Vector3d::UnitZ()) *
                     Eigen::Matrix3d(Vector3d(1, deep, 1).asDiagonal()));
   return all;
+}
+
+/// Share of the part's detailed surface, without brain case and crowns, within the scan's box that
+/// has a partner before the fine deformation, which could imitate anything.
+double detail_covered(const FittedPart& part, int threads) {
+  constexpr double near_mm = 4, border_mm = 5;
+  constexpr std::size_t fewest = 100;
+  const FitSurface& moving = *part.moving;
+  const AffineMap& map = part.fit.deformation.affine;
+  const auto near = explained_samples(moving, map.inverse(), *part.target, near_mm, threads);
+  const Box box = bounding_box(part.target->mesh);
+  std::size_t inside = 0, covered = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const auto& sample = moving.samples[i];
+    if (moving.weight_of(sample.triangle) < 1 || !box.contains(map * sample.point, -border_mm))
+      continue;
+    ++inside;
+    covered += near[i] ? 1 : 0;
+  }
+  return inside < fewest ? 0 : static_cast<double>(covered) / static_cast<double>(inside);
 }
 
 class Fitter {
@@ -162,7 +182,8 @@ void Fitter::place() {
   }
   start_ = find_start(*moving, *target, settings_.threads);
   if (moving == &template_->whole) {
-    const double covered = covered_share(template_->skull, start_.map, *target, 6, settings_.threads);
+    const double covered =
+        covered_share(template_->skull, start_.map, *target, 6, settings_.threads);
     if (covered < 0.08) {  // a lower jaw by itself
       has_skull_ = false;
       start_ = find_start(template_->mandible, *target, settings_.threads);
@@ -175,30 +196,11 @@ void Fitter::place() {
 /// throws: InputError when too little of the bone looks like the template.
 void Fitter::refuse_unless(double explained, double least) const {
   if (explained >= least) return;
-  throw InputError(scan_.source, "",
-                   fmt::format("the built-in head explains {:.0f} % of the bone's surface, too little: "
-                               "this is no skull and no lower jaw",
-                               100 * explained));
-}
-
-/// Share of the part's detailed surface, without brain case and crowns, within the scan's box that
-/// has a partner before the fine deformation, which could imitate anything.
-double detail_covered(const FittedPart& part, int threads) {
-  constexpr double near_mm = 4, border_mm = 5;
-  constexpr std::size_t fewest = 100;
-  const FitSurface& moving = *part.moving;
-  const AffineMap& map = part.fit.deformation.affine;
-  const auto near = explained_samples(moving, map.inverse(), *part.target, near_mm, threads);
-  const Box box = bounding_box(part.target->mesh);
-  std::size_t inside = 0, covered = 0;
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    const auto& sample = moving.samples[i];
-    if (moving.weight_of(sample.triangle) < 1 || !box.contains(map * sample.point, -border_mm))
-      continue;
-    ++inside;
-    covered += near[i] ? 1 : 0;
-  }
-  return inside < fewest ? 0 : static_cast<double>(covered) / static_cast<double>(inside);
+  throw InputError(
+      scan_.source, "",
+      fmt::format("the built-in head explains {:.0f} % of the bone's surface, too little: "
+                  "this is no skull and no lower jaw",
+                  100 * explained));
 }
 
 /// Whether the scan is what it is taken for. throws: InputError.
@@ -217,12 +219,9 @@ void Fitter::judge() {
     near_count += static_cast<std::size_t>(std::count(any.begin(), any.end(), 1));
     all_count += any.size();
   }
-  result_.explained = static_cast<double>(near_count) / static_cast<double>(std::max<std::size_t>(1, all_count));
+  result_.explained =
+      static_cast<double>(near_count) / static_cast<double>(std::max<std::size_t>(1, all_count));
   refuse_unless(result_.explained, least_explained);
-  double detail = 0;
-  for (const auto* part : {&skull_, &jaw_})
-    if (*part) detail = std::max(detail, detail_covered(**part, settings_.threads));
-  refuse_unless(detail, least_detail);
 }
 
 void Fitter::fit_skull() {
@@ -239,7 +238,9 @@ void Fitter::fit_skull() {
     for (auto& v : jaw.vertices) v = start * v;
     other = distances_to(TriangleTree(jaw), *part.target, settings_.threads);
   }
-  part.fit = fit_elastic(*part.moving, *part.target, start, elastic_, other);
+  part.fit = fit_stiffly(*part.moving, *part.target, start, elastic_, other);
+  refuse_unless(detail_covered(part, settings_.threads), least_detail);
+  add_displacements(part.fit, *part.moving, *part.target, elastic_, other);
   measure_errors(part, settings_.threads);
   skull_ = std::move(part);
 }
@@ -269,7 +270,10 @@ void Fitter::fit_jaw() {
     }
     start = jaw_start(*part.moving, *target, skull_->fit.similarity, model_, settings, other);
   }
-  part.fit = fit_elastic(*part.moving, *target, start, settings, other);
+  part.fit = fit_stiffly(*part.moving, *target, start, settings, other);
+  if (!skull_ || targets_.mandible)
+    refuse_unless(detail_covered(part, settings_.threads), least_detail);
+  add_displacements(part.fit, *part.moving, *target, settings, other);
   measure_errors(part, settings_.threads, skull_tree ? &*skull_tree : nullptr);
   has_jaw_ = part.covered >= least_jaw;
   if (has_jaw_) jaw_ = std::move(part);
@@ -283,7 +287,8 @@ void Fitter::fit_skin() {
   part.moving = &*skin_template_;
   part.target = &*targets_.skin;
   const AffineMap start = skull_ ? skull_->fit.similarity : jaw_->fit.similarity;
-  part.fit = fit_elastic(*part.moving, *part.target, start, elastic_);
+  part.fit = fit_stiffly(*part.moving, *part.target, start, elastic_);
+  add_displacements(part.fit, *part.moving, *part.target, elastic_);
   measure_errors(part, settings_.threads);
   skin_ = std::move(part);
 }
@@ -301,14 +306,16 @@ void Fitter::carry_part(const Part& part, const FittedPart& fitted) {
 void Fitter::note() {
   if (result_.frame == ScanFrame::face_behind)
     result_.notes.push_back(
-        "the face looks towards +y: these are RAS coordinates taken for LPS (a turn), or the y axis is "
+        "the face looks towards +y: these are RAS coordinates taken for LPS (a turn), or the y "
+        "axis is "
         "reversed, and then left and right are exchanged");
   if (result_.frame == ScanFrame::upside_down || result_.frame == ScanFrame::turned_over)
     result_.notes.push_back(
         "the head is upside down: the z axis is reversed; if only that axis is, left and right are "
         "exchanged");
   if (!skull_) result_.notes.push_back("no skull in the scan: the lower jaw alone was fitted");
-  if (!jaw_ && targets_.for_jaw()) result_.notes.push_back("no lower jaw in the scan, or too little of it");
+  if (!jaw_ && targets_.for_jaw())
+    result_.notes.push_back("no lower jaw in the scan, or too little of it");
   if (jaw_ && jaw_->covered < 0.6)
     result_.notes.push_back(
         fmt::format("the scan has {:.0f} % of the lower jaw", 100 * jaw_->covered));

@@ -58,7 +58,8 @@ AffineMap settle(const FitSurface& moving, const std::vector<SurfaceSample>& sca
     if (pairs.size() < 10) break;
     auto sorted = distances;
     std::sort(sorted.begin(), sorted.end());
-    const double limit = sorted[static_cast<std::size_t>(kept * static_cast<double>(sorted.size() - 1))];
+    const double limit =
+        sorted[static_cast<std::size_t>(kept * static_cast<double>(sorted.size() - 1))];
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const double far = distances[i] / 8;
       pairs[i].weight = distances[i] > limit ? 0 : 1 / (1 + far * far);
@@ -112,11 +113,10 @@ std::vector<Candidate> candidates(const FitSurface& moving, const FitSurface& ta
     return AngleAxisd(deg * degree, axis).toRotationMatrix();
   };
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
-  const std::array<Turn, 4> frames = {Turn{ScanFrame::lps, Matrix3d::Identity()},
-                                      Turn{ScanFrame::face_behind, about(180, z)},
-                                      Turn{ScanFrame::upside_down, about(180, x)},
-                                      Turn{ScanFrame::turned_over, about(180, y)}};
-  const std::array<Matrix3d, 9> tilts = {about(0, x),  about(-15, x), about(15, x),
+  const std::array<Turn, 4> frames = {
+      Turn{ScanFrame::lps, Matrix3d::Identity()}, Turn{ScanFrame::face_behind, about(180, z)},
+      Turn{ScanFrame::upside_down, about(180, x)}, Turn{ScanFrame::turned_over, about(180, y)}};
+  const std::array<Matrix3d, 9> tilts = {about(0, x),   about(-15, x), about(15, x),
                                          about(-30, x), about(30, x),  about(-15, y),
                                          about(15, y),  about(-20, z), about(20, z)};
   const Box scan = inner_box(target.samples, Matrix3d::Identity());

@@ -94,9 +94,10 @@ FitSurface scanned_surface(TriMesh surface, int samples, int threads, const std:
     surface = simplify(surface, most_triangles);
   drop_unreferenced(surface);
   if (faces_inward(surface))
-    throw InputError(source, "",
-                     "the surface faces inward: it was mirrored, so that left and right are exchanged, "
-                     "or its triangles are reversed");
+    throw InputError(
+        source, "",
+        "the surface faces inward: it was mirrored, so that left and right are exchanged, "
+        "or its triangles are reversed");
   return {std::move(surface), samples, threads};
 }
 

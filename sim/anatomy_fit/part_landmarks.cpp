@@ -41,14 +41,16 @@ void measure_errors(FittedPart& part, int threads, const TriangleTree* other) {
   });
   const auto covered =
       std::count_if(part.error_mm.begin(), part.error_mm.end(), [](float e) { return e >= 0; });
-  part.covered = samples.empty() ? 0 : static_cast<double>(covered) / static_cast<double>(samples.size());
+  part.covered =
+      samples.empty() ? 0 : static_cast<double>(covered) / static_cast<double>(samples.size());
 }
 
 std::vector<float> errors_of(const TriMesh& carried, const FitSurface& target, int threads) {
   const std::vector<Vector3d> normals = vertex_normals(carried);
   std::vector<float> errors(carried.vertices.size());
-  parallel_for(errors.size(), threads,
-               [&](std::size_t i) { errors[i] = error_at(target, carried.vertices[i], normals[i]); });
+  parallel_for(errors.size(), threads, [&](std::size_t i) {
+    errors[i] = error_at(target, carried.vertices[i], normals[i]);
+  });
   return errors;
 }
 
@@ -79,8 +81,9 @@ std::map<std::string, ProposedLandmark> carried_landmarks(const FittedPart& part
     if (share < least_cover) {
       mark.doubtful = true;
       mark.outside_scan = share == 0;
-      mark.reason = share == 0 ? "the scan has no surface near it"
-                               : fmt::format("the scan has {:.0f} % of the surface near it", 100 * share);
+      mark.reason = share == 0
+                        ? "the scan has no surface near it"
+                        : fmt::format("the scan has {:.0f} % of the surface near it", 100 * share);
       mark.uncertainty_mm += 4 * (1 - share);
     }
     all[name] = mark;

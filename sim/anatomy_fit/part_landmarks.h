@@ -23,6 +23,7 @@ void measure_errors(FittedPart& part, int threads, const TriangleTree* other = n
 std::vector<float> errors_of(const TriMesh& carried, const FitSurface& target, int threads);
 
 /// The landmarks that belong to a part, carried, with the fit's local error.
-std::map<std::string, ProposedLandmark> carried_landmarks(const FittedPart& part, const Case& model);
+std::map<std::string, ProposedLandmark> carried_landmarks(const FittedPart& part,
+                                                          const Case& model);
 
 }  // namespace condyle
