@@ -121,7 +121,8 @@ int run_import_ct(const CtImportOptions& options, const CommonOptions& common) {
   if (options.list) return list_series(options, common);
   if (options.out.empty() && options.volume_out.empty())
     throw InputError(
-        "import ct needs --out FOLDER for the case, --volume-out FILE.nrrd for the volume, or --list");
+        "import ct needs --out FOLDER for the case, --volume-out FILE.nrrd for the volume, or "
+        "--list");
   if (!options.volume_out.empty()) check_volume_name(options.volume_out);
   CtRequest request = options.request;
   request.threads = common.threads;

@@ -10,7 +10,8 @@ namespace condyle {
 namespace {
 
 constexpr int margin_voxels = 3;
-constexpr std::int16_t whole_side = 1000;      // of the blurred difference between a bone and the others
+constexpr std::int16_t whole_side =
+    1000;  // of the blurred difference between a bone and the others
 constexpr double border_blur_voxels = 0.8;
 
 /// The voxels of a label with a margin, in coordinates of the bone's box.
@@ -86,13 +87,12 @@ ScanSurface bone_surface(const Volume& volume, const BoneVoxels& bone, VoxelLabe
   if (part.empty()) return surface;
   VoxelBox in_volume = part;
   for (std::size_t a = 0; a < 3; ++a) in_volume.low[a] += bone.box.low[a];
-  surface.mesh =
-      lattice_surface(volume, in_volume, bone_values(bone, label, part, options.threads),
-                      options.least_piece_mm3);
+  surface.mesh = lattice_surface(volume, in_volume, bone_values(bone, label, part, options.threads),
+                                 options.least_piece_mm3);
   report(progress, "finding the surface", 1);
-  surface.moved_fraction = move_to_half_way(
-      surface.mesh, volume, {.threshold_hu = bone.threshold_hu, .threads = options.threads},
-      progress);
+  surface.moved_fraction =
+      move_to_half_way(surface.mesh, volume,
+                       {.threshold_hu = bone.threshold_hu, .threads = options.threads}, progress);
   decimate_surface(surface, options, progress);
   return surface;
 }

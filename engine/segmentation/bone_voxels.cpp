@@ -19,7 +19,7 @@ constexpr double blur_voxels = 0.6;
 constexpr double air_in_cavity_hu = -200;  // a cavity with a lower mean holds air, not marrow
 constexpr double largest_marrow_mm3 = 50000;
 constexpr double largest_cut_marrow_mm3 = 5000;  // of marrow that the end of the scan cuts open
-constexpr double smallest_cavity_mm3 = 60;  // smaller ones are noise, or metal out of range
+constexpr double smallest_cavity_mm3 = 60;       // smaller ones are noise, or metal out of range
 constexpr std::int16_t beyond_hu = -1024;
 
 /// Voxels around the cells of the head that are brighter on average than soft tissue.
@@ -53,18 +53,18 @@ std::vector<std::int16_t> blurred_box(const Volume& volume, const VoxelBox& box,
   std::vector<std::int16_t> values(inside.count());
   for (int k = 0; k < inside.size[2]; ++k)
     for (int j = 0; j < inside.size[1]; ++j)
-      std::copy_n(volume.values.data() +
-                      volume.index(inside.low[0], inside.low[1] + j, inside.low[2] + k),
-                  inside.size[0], values.data() + inside.index(0, j, k));
+      std::copy_n(
+          volume.values.data() + volume.index(inside.low[0], inside.low[1] + j, inside.low[2] + k),
+          inside.size[0], values.data() + inside.index(0, j, k));
   blur(values, inside.size, blur_voxels, threads);
   if (inside.size == box.size) return values;
   std::vector<std::int16_t> padded(box.count(), beyond_hu);
   for (int k = 0; k < inside.size[2]; ++k)
     for (int j = 0; j < inside.size[1]; ++j)
-      std::copy_n(values.data() + inside.index(0, j, k), inside.size[0],
-                  padded.data() + box.index(inside.low[0] - box.low[0],
-                                            inside.low[1] + j - box.low[1],
-                                            inside.low[2] + k - box.low[2]));
+      std::copy_n(
+          values.data() + inside.index(0, j, k), inside.size[0],
+          padded.data() + box.index(inside.low[0] - box.low[0], inside.low[1] + j - box.low[1],
+                                    inside.low[2] + k - box.low[2]));
   return padded;
 }
 
@@ -78,9 +78,9 @@ void mark_bright(const HeadRegion& head, BoneVoxels& bone, int threads) {
       for (int i = 1; i + 1 < bone.box.size[0]; ++i) {
         const std::size_t q = bone.box.index(i, j, k);
         if (bone.smooth[q] <= bone.threshold_hu) continue;
-        bone.label[q] =
-            head.holds(bone.box.low[0] + i, bone.box.low[1] + j, bone.box.low[2] + k) ? 1
-                                                                                      : other_bone;
+        bone.label[q] = head.holds(bone.box.low[0] + i, bone.box.low[1] + j, bone.box.low[2] + k)
+                            ? 1
+                            : other_bone;
       }
   });
 }
@@ -90,9 +90,9 @@ template <class Change>
 void for_runs(const VoxelPieces& pieces, int row_size, const Change& change) {
   for (std::size_t row = 0; row + 1 < pieces.row_start.size(); ++row)
     for (std::size_t r = pieces.row_start[row]; r < pieces.row_start[row + 1]; ++r)
-      change(row * static_cast<std::size_t>(row_size) +
-                 static_cast<std::size_t>(pieces.runs[r].first),
-             pieces.runs[r]);
+      change(
+          row * static_cast<std::size_t>(row_size) + static_cast<std::size_t>(pieces.runs[r].first),
+          pieces.runs[r]);
 }
 
 /// Gives small pieces of bone the label of what is no bone. Returns the number of voxels kept.
@@ -109,8 +109,8 @@ std::size_t drop_specks(BoneVoxels& bone, double least_voxels) {
   return kept;
 }
 
-/// Fills marrow that bone encloses, or bone and the end of the scan: its walls are no surface of the
-/// bone.
+/// Fills marrow that bone encloses, or bone and the end of the scan: its walls are no surface of
+/// the bone.
 void fill_marrow(const VoxelBox& inside, double voxel_mm3, BoneVoxels& bone) {
   // A cavity at the end of the scan ends there: it is not joined with the outside.
   std::vector<VoxelLabel> within(inside.count());
@@ -160,8 +160,8 @@ BoneVoxels find_bone(const Volume& volume, const TissueLevels& levels, const Hea
   bone.threshold_hu = options.threshold_hu > 0 ? options.threshold_hu : levels.low_bone();
   bone.box = bright_box(volume, head, 0.5 * (levels.soft + bone.threshold_hu));
   const auto none = [&] {
-    return InputError(fmt::format("{}: no bone above {:.0f} HU in the head", name,
-                                  bone.threshold_hu));
+    return InputError(
+        fmt::format("{}: no bone above {:.0f} HU in the head", name, bone.threshold_hu));
   };
   if (bone.box.empty()) throw none();
   bone.smooth = blurred_box(volume, bone.box, options.threads);

@@ -17,8 +17,8 @@ constexpr VoxelLabel other_bone = 254;  // bright, but of none of the bones: spe
 
 /// Neighbouring slices of a scan in which metal, such as fillings, throws streaks.
 struct MetalSlab {
-  int axis = 2;             // of the lattice, that of the slices
-  int first = 0, last = 0;  // slices of the volume
+  int axis = 2;                         // of the lattice, that of the slices
+  int first = 0, last = 0;              // slices of the volume
   std::vector<Eigen::Vector3d> places;  // of metal, mm
 };
 
@@ -39,7 +39,8 @@ struct BoneOptions {
 };
 
 /// Bone of the head: thin bone keeps its walls, specks, streaks, table and head rest are left out,
-/// marrow that is enclosed is filled. `name`: the scan in messages. throws: InputError when there is none.
+/// marrow that is enclosed is filled. `name`: the scan in messages. throws: InputError when there
+/// is none.
 BoneVoxels find_bone(const Volume& volume, const TissueLevels& levels, const HeadRegion& head,
                      const std::string& name, const BoneOptions& options = {},
                      const Progress& progress = {});

@@ -26,8 +26,8 @@ class VolumeValues {
  public:
   explicit VolumeValues(const Volume& volume) : volume_(volume) {}
   double operator()(const Vector3d& p) const {
-    const Vector3d at = (volume_.axes.transpose() * (p - volume_.origin))
-                            .cwiseQuotient(volume_.spacing_mm);
+    const Vector3d at =
+        (volume_.axes.transpose() * (p - volume_.origin)).cwiseQuotient(volume_.spacing_mm);
     std::array<int, 3> low;
     std::array<double, 3> part;
     for (int a = 0; a < 3; ++a) {

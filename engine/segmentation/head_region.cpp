@@ -17,13 +17,13 @@ using Mask = std::vector<std::uint8_t>;
 using Size = std::array<int, 3>;
 
 constexpr double cell_mm = 2;
-constexpr double core_depth_mm = 4;    // tissue deeper than this is the core of the head
-constexpr double close_mm = 5;         // from the core: what belongs to the head for certain
+constexpr double core_depth_mm = 4;     // tissue deeper than this is the core of the head
+constexpr double close_mm = 5;          // from the core: what belongs to the head for certain
 constexpr double longest_part_mm = 32;  // from the core: ears and nose, but no table
 // Tissue fills about two thirds of the cells of an ear, a sheet of a head rest none.
 constexpr int full_cell_hu = -150;
 constexpr double least_full_fraction = 0.3;
-constexpr double opening_mm = 6;       // openings narrower than twice this are bridged
+constexpr double opening_mm = 6;  // openings narrower than twice this are bridged
 constexpr double least_head_cm3 = 100;
 
 void average_cells(const Volume& volume, HeadRegion& region, int threads) {
@@ -142,9 +142,9 @@ void mark_edge(HeadRegion& region, const Mask& solid) {
 
 /// A lattice that is longer at both ends of an axis; the border values continue there.
 struct LongerLattice {
-  Size size;            // of the original
-  std::size_t axis;     // that is longer
-  int margin;           // at each end
+  Size size;         // of the original
+  std::size_t axis;  // that is longer
+  int margin;        // at each end
   Size longer = size;
 
   LongerLattice(const Size& original, std::size_t along, int by)
@@ -203,8 +203,8 @@ void mark_outside(const Volume& volume, HeadRegion& region, const Eigen::Vector3
     outer[c] = at_side[part] && 10 * parts.voxels[part] >= largest;
   });
   region.has_outside = largest > 0;
-  const std::vector<float> outer_mm = distances_from(
-      lattice.longer, cell_size_mm, threads, [&](std::size_t c) { return outer[c] != 0; });
+  const std::vector<float> outer_mm = distances_from(lattice.longer, cell_size_mm, threads,
+                                                     [&](std::size_t c) { return outer[c] != 0; });
   region.outer_mm.resize(region.head.size());
   for (std::size_t c = 0; c < count; ++c) {
     const int at = lattice.place(c)[upward] - lattice.margin;
@@ -263,8 +263,8 @@ HeadRegion find_head(const Volume& volume, const TissueLevels& levels, const std
   Mask solid(region.mean.size());
   for (std::size_t c = 0; c < solid.size(); ++c) solid[c] = region.mean[c] > levels.skin();
   report(progress, "finding the head", 0.3);
-  const std::vector<float> depth = distances_from(region.size, cell_size_mm, threads,
-                                                  [&](std::size_t c) { return !solid[c]; });
+  const std::vector<float> depth =
+      distances_from(region.size, cell_size_mm, threads, [&](std::size_t c) { return !solid[c]; });
   std::size_t cells = 0;
   const Mask core = largest_part(
       region.size, solid.size(), [&](std::size_t c) { return depth[c] > core_depth_mm; }, cells);

@@ -124,8 +124,7 @@ void drop_streaks(const Volume& volume, const MetalSlab& slab, BoneVoxels& bone,
            (after < slices && is_bone(label(p, after)));
   });
   const Eigen::Vector3d origin = bone.box.position(volume, 0, 0, 0);
-  const std::vector<float> from_metal =
-      metal_distances(lattice, slab, volume, origin);
+  const std::vector<float> from_metal = metal_distances(lattice, slab, volume, origin);
   const int first = std::max(before + 1, 0), last = std::min(after, slices);
   parallel_for(static_cast<std::size_t>(std::max(0, last - first)), threads, [&](std::size_t s) {
     for (std::size_t p = 0; p < beside.size(); ++p) {
@@ -150,12 +149,10 @@ void trim_streaks(const MetalSlab& slab, double level_hu, std::int16_t soft_hu, 
   const auto above_level = [&](std::size_t p, int slice) {
     return slice >= 0 && slice < slices && value(p, slice) > level_hu;
   };
-  const std::vector<float> outside = flat_distances(lattice, [&](std::size_t p) {
-    return above_level(p, before) || above_level(p, after);
-  });
-  const std::vector<float> inside = flat_distances(lattice, [&](std::size_t p) {
-    return !above_level(p, before) || !above_level(p, after);
-  });
+  const std::vector<float> outside = flat_distances(
+      lattice, [&](std::size_t p) { return above_level(p, before) || above_level(p, after); });
+  const std::vector<float> inside = flat_distances(
+      lattice, [&](std::size_t p) { return !above_level(p, before) || !above_level(p, after); });
   const int first = std::max(before + 1, 0), last = std::min(after, slices);
   parallel_for(static_cast<std::size_t>(std::max(0, last - first)), threads, [&](std::size_t s) {
     const int slice = first + static_cast<int>(s);

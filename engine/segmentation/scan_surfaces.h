@@ -27,10 +27,10 @@ ScanSurface bone_surface(const Volume& volume, const BoneVoxels& bone, VoxelLabe
                          const SurfaceOptions& options = {}, const Progress& progress = {});
 
 /// The skin's outer surface: mouth, nose and airways are closed; where the scan ends, a flat face
-/// closes it. Streaks from `metal` are cut off. `name`: the scan in messages. throws: InputError when there is no air around the head.
+/// closes it. Streaks from `metal` are cut off. `name`: the scan in messages. throws: InputError
+/// when there is no air around the head.
 ScanSurface skin_surface(const Volume& volume, const TissueLevels& levels, const HeadRegion& head,
                          const std::optional<MetalSlab>& metal, const std::string& name,
-                         const SurfaceOptions& options = {},
-                         const Progress& progress = {});
+                         const SurfaceOptions& options = {}, const Progress& progress = {});
 
 }  // namespace condyle

@@ -54,8 +54,9 @@ Volume solid_head(const Volume& volume, const TissueLevels& levels, const HeadRe
   solid.values.assign(box.count(), air_hu);
   const auto soft = static_cast<std::int16_t>(std::lround(levels.soft));
   const double cell_mm =
-      (volume.spacing_mm.array() *
-       Eigen::Array3d(head.cell[0], head.cell[1], head.cell[2])).matrix().norm();
+      (volume.spacing_mm.array() * Eigen::Array3d(head.cell[0], head.cell[1], head.cell[2]))
+          .matrix()
+          .norm();
   const double limit = HeadRegion::crease_depth_mm;
   parallel_for(static_cast<std::size_t>(box.size[2]), threads, [&](std::size_t slice) {
     const int z = box.low[2] + static_cast<int>(slice);
@@ -116,8 +117,7 @@ std::vector<float> skin_values(const Volume& solid, double level, int threads, V
         for (std::size_t a = 0; a < 3; ++a)
           border = border || at[a] == 0 || at[a] + 1 >= solid.size[a];
         values[lattice.index(i, j, k)] =
-            border ? 1000
-                   : static_cast<float>(level - smooth[solid.index(at[0], at[1], at[2])]);
+            border ? 1000 : static_cast<float>(level - smooth[solid.index(at[0], at[1], at[2])]);
       }
   });
   return values;
@@ -127,11 +127,10 @@ std::vector<float> skin_values(const Volume& solid, double level, int threads, V
 
 ScanSurface skin_surface(const Volume& volume, const TissueLevels& levels, const HeadRegion& head,
                          const std::optional<MetalSlab>& metal, const std::string& name,
-                         const SurfaceOptions& options,
-                         const Progress& progress) {
+                         const SurfaceOptions& options, const Progress& progress) {
   if (!head.has_outside)
-    throw InputError(fmt::format(
-        "{}: no air around the head: its skin lies outside the field of view", name));
+    throw InputError(
+        fmt::format("{}: no air around the head: its skin lies outside the field of view", name));
   report(progress, "finding the skin", 0);
   const VoxelBox box = box_of_head(volume, head);
   Volume solid = solid_head(volume, levels, head, box, options.threads);
@@ -143,9 +142,8 @@ ScanSurface skin_surface(const Volume& volume, const TissueLevels& levels, const
   std::vector<float> values = skin_values(solid, levels.skin(), options.threads, lattice);
   report(progress, "finding the skin", 0.5);
   ScanSurface surface;
-  surface.mesh = lattice_surface(
-      lattice, whole_box(lattice), std::move(values),
-      std::max(options.least_piece_mm3, least_skin_mm3));
+  surface.mesh = lattice_surface(lattice, whole_box(lattice), std::move(values),
+                                 std::max(options.least_piece_mm3, least_skin_mm3));
   report(progress, "finding the skin", 1);
   surface.moved_fraction = move_to_half_way(
       surface.mesh, solid,

@@ -23,9 +23,9 @@ constexpr double inside_mm = 0.5;  // this far outside still counts as inside a 
 constexpr double field_step_mm = 2;
 constexpr int deepest = 512, darkest = 128;  // buckets of the queue for depth and for gaps
 constexpr int bucket_count = deepest + darkest;
-constexpr double step_voxels = 0.1;  // depth of one bucket, in steps of the finest axis
+constexpr double step_voxels = 0.1;        // depth of one bucket, in steps of the finest axis
 constexpr double gap_mm = 1, gap_hu = 10;  // width of a gap, and darkness of one bucket
-constexpr double point_reach_mm = 4;  // of a point to the nearest bone
+constexpr double point_reach_mm = 4;       // of a point to the nearest bone
 
 Box box_of(const Volume& volume, const VoxelBox& box) {
   Box around;
@@ -44,10 +44,9 @@ void seed_from_surfaces(const Volume& volume, const BoneVoxels& bone,
   const auto grid = even_grid({around.low, around.high}, field_step_mm);
   std::vector<SampledField> fields;
   for (const SeedSurface& surface : surfaces) {
-    report(progress, "placing seeds", 0.7 * static_cast<double>(fields.size()) /
-                                          static_cast<double>(surfaces.size()));
-    fields.push_back(
-        mesh_field(surface.mesh, grid, 2 * margin + field_step_mm, options.threads));
+    report(progress, "placing seeds",
+           0.7 * static_cast<double>(fields.size()) / static_cast<double>(surfaces.size()));
+    fields.push_back(mesh_field(surface.mesh, grid, 2 * margin + field_step_mm, options.threads));
   }
   report(progress, "placing seeds", 0.7);
   parallel_for(static_cast<std::size_t>(bone.box.size[2]), options.threads, [&](std::size_t k) {
@@ -74,14 +73,16 @@ void seed_from_surfaces(const Volume& volume, const BoneVoxels& bone,
 /// Marks the bone around a point. Returns whether there is any.
 bool seed_ball(const Volume& volume, const BoneVoxels& bone, const Vector3d& center, double radius,
                VoxelLabel label, std::vector<VoxelLabel>& seeds) {
-  const Vector3d at = (volume.axes.transpose() * (center - volume.origin))
-                          .cwiseQuotient(volume.spacing_mm);
+  const Vector3d at =
+      (volume.axes.transpose() * (center - volume.origin)).cwiseQuotient(volume.spacing_mm);
   std::array<int, 3> low, high;
   for (int a = 0; a < 3; ++a) {
     const auto axis = static_cast<std::size_t>(a);
     const double reach = radius / volume.spacing_mm[a] + 1, local = at[a] - bone.box.low[axis];
-    low[axis] = static_cast<int>(std::clamp(std::floor(local - reach), 0.0, 1.0 * bone.box.size[axis]));
-    high[axis] = static_cast<int>(std::clamp(std::ceil(local + reach), -1.0, bone.box.size[axis] - 1.0));
+    low[axis] =
+        static_cast<int>(std::clamp(std::floor(local - reach), 0.0, 1.0 * bone.box.size[axis]));
+    high[axis] =
+        static_cast<int>(std::clamp(std::ceil(local + reach), -1.0, bone.box.size[axis] - 1.0));
   }
   bool found = false;
   for (int k = low[2]; k <= high[2]; ++k)
@@ -150,7 +151,8 @@ void keep_extremes(std::vector<std::int16_t>& values, const std::array<int, 3>& 
 std::vector<std::int16_t> gap_darkness(const Volume& volume, const BoneVoxels& bone, int threads) {
   std::array<int, 3> reach;
   for (std::size_t a = 0; a < 3; ++a)
-    reach[a] = std::max(1, static_cast<int>(std::lround(gap_mm / volume.spacing_mm[static_cast<int>(a)])));
+    reach[a] =
+        std::max(1, static_cast<int>(std::lround(gap_mm / volume.spacing_mm[static_cast<int>(a)])));
   std::vector<std::int16_t> closed = bone.smooth;
   keep_extremes(closed, bone.box.size, reach, threads,
                 [](float a, float b) { return std::max(a, b); });
@@ -186,8 +188,7 @@ std::vector<VoxelLabel> seed_labels(const Volume& volume, const BoneVoxels& bone
                                     const std::vector<SeedPoint>& points,
                                     const SeedOptions& options, const Progress& progress) {
   std::vector<VoxelLabel> seeds(bone.box.count(), no_bone);
-  if (!surfaces.empty())
-    seed_from_surfaces(volume, bone, surfaces, options, progress, seeds);
+  if (!surfaces.empty()) seed_from_surfaces(volume, bone, surfaces, options, progress, seeds);
   for (std::size_t n = 0; n < points.size(); ++n) {
     const SeedPoint& point = points[n];
     bool found = false;
@@ -195,10 +196,11 @@ std::vector<VoxelLabel> seed_labels(const Volume& volume, const BoneVoxels& bone
          radius += options.point_radius_mm)
       found = seed_ball(volume, bone, point.position, radius, point.label, seeds);
     if (!found)
-      throw InputError(fmt::format("seed point {} at ({:.1f}, {:.1f}, {:.1f}) mm: no bone above "
-                                   "{:.0f} HU within {:g} mm",
-                                   n + 1, point.position.x(), point.position.y(),
-                                   point.position.z(), bone.threshold_hu, point_reach_mm));
+      throw InputError(
+          fmt::format("seed point {} at ({:.1f}, {:.1f}, {:.1f}) mm: no bone above "
+                      "{:.0f} HU within {:g} mm",
+                      n + 1, point.position.x(), point.position.y(), point.position.z(),
+                      bone.threshold_hu, point_reach_mm));
   }
   report(progress, "placing seeds", 1);
   return seeds;

@@ -33,8 +33,7 @@ struct SeedOptions {
 std::vector<VoxelLabel> seed_labels(const Volume& volume, const BoneVoxels& bone,
                                     const std::vector<SeedSurface>& surfaces,
                                     const std::vector<SeedPoint>& points,
-                                    const SeedOptions& options = {},
-                                    const Progress& progress = {});
+                                    const SeedOptions& options = {}, const Progress& progress = {});
 
 /// Splits bone by a watershed from the seeds: voxels get the label of the seed that reaches them
 /// through the deepest bone and past the faintest gaps: 0.1 voxels of depth count as much as 10 HU

@@ -11,7 +11,7 @@
 namespace condyle {
 namespace {
 
-constexpr int lowest = -1100, highest = 3100;  // HU; beyond: padding and metal
+constexpr int lowest = -1100, highest = 3100;             // HU; beyond: padding and metal
 constexpr double least_soft = 0.01, least_bone = 0.0005;  // fractions of the volume
 
 class Histogram {

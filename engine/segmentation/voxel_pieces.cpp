@@ -27,8 +27,7 @@ void join_rows(const VoxelPieces& pieces, std::size_t row, std::size_t other, in
 
 void find_runs(const std::vector<std::uint8_t>& mask, const Size& size, std::uint8_t value,
                VoxelPieces& pieces) {
-  const std::size_t rows =
-      static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]);
+  const std::size_t rows = static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]);
   pieces.row_start.reserve(rows + 1);
   for (std::size_t row = 0; row < rows; ++row) {
     pieces.row_start.push_back(pieces.runs.size());
@@ -45,8 +44,8 @@ void find_runs(const std::vector<std::uint8_t>& mask, const Size& size, std::uin
 
 }  // namespace
 
-VoxelPieces find_pieces(const std::vector<std::uint8_t>& mask, const Size& size,
-                        std::uint8_t value, Connectivity connectivity) {
+VoxelPieces find_pieces(const std::vector<std::uint8_t>& mask, const Size& size, std::uint8_t value,
+                        Connectivity connectivity) {
   VoxelPieces pieces;
   find_runs(mask, size, value, pieces);
   DisjointSets sets(pieces.runs.size());

@@ -34,8 +34,8 @@ struct MoveResult {
 };
 
 /// Straight motion up to the first contact that is deeper than at rest or at the start. `set` is
-/// taken at the start if `exact`, else near it; on return the pairs that may stop the move are those at the end.
-/// Guards are not included, before or after.
+/// taken at the start if `exact`, else near it; on return the pairs that may stop the move are
+/// those at the end. Guards are not included, before or after.
 MoveResult stop(const ContactModel::State& state, const BodyMove& move, ContactSet& set, bool exact,
                 int threads);
 

@@ -87,12 +87,12 @@ class CtSegmentation {
 
   void find_tissue(const Progress& progress) {
     levels_ = tissue_levels(volume_, request_.source);
-    head_ = find_head(volume_, levels_, request_.source, request_.threads,
-                      part_of(progress, 0, 0.3));
+    head_ =
+        find_head(volume_, levels_, request_.source, request_.threads, part_of(progress, 0, 0.3));
     BoneOptions options{.threads = request_.threads};
     if (request_.threshold_hu) options.threshold_hu = *request_.threshold_hu;
-    bone_ = find_bone(volume_, levels_, head_, request_.source, options,
-                      part_of(progress, 0.3, 0.6));
+    bone_ =
+        find_bone(volume_, levels_, head_, request_.source, options, part_of(progress, 0.3, 0.6));
     whole_ = bone_surface(volume_, bone_, skull_label, surface_options(fitted_triangles),
                           part_of(progress, 0.6, 0.8));
     if (head_.has_outside && request_.face)
@@ -124,10 +124,9 @@ class CtSegmentation {
         surfaces.push_back(seed_surface(fit, Role::mandible, Role::lower_teeth, mandible_label));
       const double error = std::clamp(std::max(fit.skull.rms_mm, fit.mandible.rms_mm),
                                       least_template_error_mm, most_template_error_mm);
-      const auto seeds =
-          seed_labels(volume_, bone_, surfaces, request_.seeds,
-                      {.template_error_mm = error, .threads = request_.threads},
-                      part_of(progress, 0, 0.4));
+      const auto seeds = seed_labels(volume_, bone_, surfaces, request_.seeds,
+                                     {.template_error_mm = error, .threads = request_.threads},
+                                     part_of(progress, 0, 0.4));
       split_bones(volume_, seeds, bone_, request_.threads, part_of(progress, 0.4, 0.9));
     }
     if (has_skull())
@@ -152,11 +151,10 @@ class CtSegmentation {
       int triangles;
     };
     constexpr int tooth_triangles = 60000;
-    const Wanted all[] = {
-        {skull_label, Role::skull, "skull", request_.skull_triangles},
-        {mandible_label, Role::mandible, "mandible", request_.mandible_triangles},
-        {upper_teeth_label, Role::upper_teeth, "upper-teeth", tooth_triangles},
-        {lower_teeth_label, Role::lower_teeth, "lower-teeth", tooth_triangles}};
+    const Wanted all[] = {{skull_label, Role::skull, "skull", request_.skull_triangles},
+                          {mandible_label, Role::mandible, "mandible", request_.mandible_triangles},
+                          {upper_teeth_label, Role::upper_teeth, "upper-teeth", tooth_triangles},
+                          {lower_teeth_label, Role::lower_teeth, "lower-teeth", tooth_triangles}};
     int done = 0;
     for (const Wanted& wanted : all) {
       SurfaceOptions options = surface_options(wanted.triangles);
@@ -167,9 +165,10 @@ class CtSegmentation {
       if (surface.mesh.empty()) continue;
       TriMesh mesh = std::move(surface.mesh);
       const CarriedPart* carried = made_.fit.find(wanted.role);
-      Part part = is_teeth(wanted.role) && carried
-                      ? teeth_part(std::move(mesh), carried->part)
-                      : Part{wanted.name, wanted.role, std::move(mesh), {}, default_body(wanted.role)};
+      Part part =
+          is_teeth(wanted.role) && carried
+              ? teeth_part(std::move(mesh), carried->part)
+              : Part{wanted.name, wanted.role, std::move(mesh), {}, default_body(wanted.role)};
       part.name = wanted.name;
       keep(std::move(surface), std::move(part));
     }
@@ -217,7 +216,8 @@ class CtSegmentation {
     for (auto& [name, mark] : made_.fit.landmarks) mark.point = R * mark.point;
     for (Canal& canal : patient().canals)
       for (auto& p : canal.points) p = R * p;
-    patient().notes.push_back("the scan was turned to LPS: its face looked elsewhere than its axes say");
+    patient().notes.push_back(
+        "the scan was turned to LPS: its face looked elsewhere than its axes say");
   }
 
   const Volume& volume_;

@@ -35,10 +35,11 @@ struct CtCase {
   std::vector<Decimation> decimation;
 };
 
-/// Makes a patient of a CT scan: bone and skin are segmented, the built-in patient `model` is fitted
-/// to them and gives the seeds that part the lower jaw from the skull and the crowns from both, and
-/// the landmarks. Turned scans are brought to LPS. `notes` of the patient list what was found and
-/// what is doubtful. throws: InputError where the scan shows no head, or seeds lie outside bone.
+/// Makes a patient of a CT scan: bone and skin are segmented, the built-in patient `model` is
+/// fitted to them and gives the seeds that part the lower jaw from the skull and the crowns from
+/// both, and the landmarks. Turned scans are brought to LPS. `notes` of the patient list what was
+/// found and what is doubtful. throws: InputError where the scan shows no head, or seeds lie
+/// outside bone.
 CtCase case_of_ct(const Volume& volume, const Case& model, const CtCaseRequest& request,
                   const Progress& progress = {});
 

@@ -33,21 +33,24 @@ void label_teeth(const Volume& volume, const TriMesh& template_teeth, const TriM
         const Vector3d p = bone.box.position(volume, i, j, k);
         if (!box.contains(p)) continue;
         const double to_teeth = teeth.signed_distance(p);
-        if (to_teeth < around_teeth_mm && to_teeth < around.signed_distance(p))
-          label = teeth_label;
+        if (to_teeth < around_teeth_mm && to_teeth < around.signed_distance(p)) label = teeth_label;
       }
   });
 }
 
 Part teeth_part(TriMesh mesh, const Part& template_teeth) {
-  Part part{template_teeth.name, template_teeth.role, std::move(mesh), {},
+  Part part{template_teeth.name,
+            template_teeth.role,
+            std::move(mesh),
+            {},
             default_body(template_teeth.role)};
   if (part.mesh.empty() || template_teeth.teeth.empty()) return part;
   const TriangleTree tree(template_teeth.mesh);
   const auto tooth_of = [&](const Eigen::Vector3i& t) {
-    const Vector3d middle =
-        (part.mesh.vertices[static_cast<std::size_t>(t[0])] + part.mesh.vertices[static_cast<std::size_t>(t[1])] +
-         part.mesh.vertices[static_cast<std::size_t>(t[2])]) / 3;
+    const Vector3d middle = (part.mesh.vertices[static_cast<std::size_t>(t[0])] +
+                             part.mesh.vertices[static_cast<std::size_t>(t[1])] +
+                             part.mesh.vertices[static_cast<std::size_t>(t[2])]) /
+                            3;
     const int nearest = tree.nearest(middle).triangle;
     const auto& teeth = template_teeth.teeth;
     const auto found = std::find_if(teeth.begin(), teeth.end(), [&](const Tooth& tooth) {
@@ -63,7 +66,8 @@ Part teeth_part(TriMesh mesh, const Part& template_teeth) {
     const int first = static_cast<int>(part.mesh.triangles.size());
     part.mesh.triangles.insert(part.mesh.triangles.end(), of_tooth[i].begin(), of_tooth[i].end());
     if (i < template_teeth.teeth.size() && !of_tooth[i].empty())
-      part.teeth.push_back({template_teeth.teeth[i].fdi, first, static_cast<int>(of_tooth[i].size())});
+      part.teeth.push_back(
+          {template_teeth.teeth[i].fdi, first, static_cast<int>(of_tooth[i].size())});
   }
   return part;
 }

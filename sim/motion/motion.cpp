@@ -153,7 +153,8 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
   const auto joints = std::make_shared<const JawJoints>(
       patient, parameters, aside ? JointReach::aside : JointReach::straight, threads);
   std::vector<std::string> notes;
-  const OpeningLimits limits = opening_limits(*joints, contacts, parameters, notes, settings.progress);
+  const OpeningLimits limits =
+      opening_limits(*joints, contacts, parameters, notes, settings.progress);
   // "open 50" raises the limit as "set opening 50" does, where no opening was set; a plain "open"
   // is unaffected.
   OpeningLimits reach = limits;

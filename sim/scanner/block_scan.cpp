@@ -85,8 +85,8 @@ class BlockPainter {
   }
   double marrow(const Vector3d& p) const {
     if (!settings_.dark_marrow) return marrow_hu;
-    return 150 + 100 * std::sin(0.9 * p.x()) * std::sin(0.8 * p.y() + 1) *
-                     std::sin(0.7 * p.z() + 2);
+    return 150 +
+           100 * std::sin(0.9 * p.x()) * std::sin(0.8 * p.y() + 1) * std::sin(0.7 * p.z() + 2);
   }
   void paint_bone(const FieldRecipe& recipe, const BlockPlaces& block, ScanTissue tissue) {
     if (!sample_block(recipe, block, cortex + voxel_mm_, values_)) return;

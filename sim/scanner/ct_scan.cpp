@@ -31,8 +31,8 @@ Volume empty_volume(const CtSettings& settings) {
         std::max(2, static_cast<int>(std::floor(extent[a] / settings.spacing_mm[a])) + 1);
     middle[a] = 0.5 * (volume.size[axis] - 1);
   }
-  volume.origin = settings.field_of_view.center() -
-                  volume.axes * volume.spacing_mm.cwiseProduct(middle);
+  volume.origin =
+      settings.field_of_view.center() - volume.axes * volume.spacing_mm.cwiseProduct(middle);
   volume.values.assign(static_cast<std::size_t>(volume.size[0]) *
                            static_cast<std::size_t>(volume.size[1]) *
                            static_cast<std::size_t>(volume.size[2]),

@@ -1,6 +1,5 @@
 #include "sim/scanner/disturbances.h"
 
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -103,9 +102,9 @@ void draw_table(const ScannedHead& head, int threads, Volume& volume) {
 void draw_fillings(const ScannedHead& head, std::uint64_t seed, int threads, Volume& volume) {
   constexpr double strongest_hu = 700;
   std::array<Filling, 3> fillings;
-  const std::array<Vector3d, 3> centers = {
-      head.place(HeadMap::mandible, {24, -50, -52}), head.place(HeadMap::mandible, {-23, -52, -53}),
-      head.place(HeadMap::skull, {25, -55, -49})};
+  const std::array<Vector3d, 3> centers = {head.place(HeadMap::mandible, {24, -50, -52}),
+                                           head.place(HeadMap::mandible, {-23, -52, -53}),
+                                           head.place(HeadMap::skull, {25, -55, -49})};
   for (std::size_t f = 0; f < fillings.size(); ++f) {
     fillings[f].center = centers[f];
     for (std::size_t n = 0; n < fillings[f].angle.size(); ++n) {

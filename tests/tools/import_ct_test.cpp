@@ -82,9 +82,9 @@ TEST(ImportCt, BadInputIsRefusedInOneLine) {
   const Folder folder;
   write_ct_series(scanned_block(), folder.path() / "scan");
   const std::string scan = folder / "scan", out = folder / "volume.nrrd";
-  expect_one_line(condyle({"import", "ct", scan}), "--list or --volume-out");
+  expect_one_line(condyle({"import", "ct", scan}), "needs --out FOLDER");
   expect_one_line(condyle({"import", "ct", scan, "--out", folder / "case"}),
-                  "does not make a case");
+                  "the scan: ");
   expect_one_line(condyle({"import", "ct", scan, "--volume-out", folder / "a.txt"}), ".nrrd");
   expect_one_line(condyle({"import", "ct", folder / "absent", "--volume-out", out}),
                   "no such file");

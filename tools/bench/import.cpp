@@ -116,8 +116,7 @@ class ImportBench {
     const TissueLevels levels = tissue_levels(volume, "scan");
     const HeadRegion region = find_head(volume, levels, "scan", common_.threads);
     BoneVoxels bone = find_bone(volume, levels, region, "scan", {.threads = common_.threads});
-    split_bones(volume,
-                seed_labels(volume, bone, surfaces, {}, {.threads = common_.threads}), bone,
+    split_bones(volume, seed_labels(volume, bone, surfaces, {}, {.threads = common_.threads}), bone,
                 common_.threads);
     const double split_s = watch.wall_ms() / 1000;
     std::size_t triangles = 0;
@@ -177,22 +176,25 @@ class ImportBench {
                            lower.mesh.vertices.end());
       const std::size_t uppers = upper.mesh.vertices.size();
       add_surface("import.bone", "bone", what, noise_hu, volume,
-                  surface_errors(both, volume,
-                                 [&](std::size_t v, const auto& p) {
-                                   return v < uppers ? head.upper_bone(p) : head.lower_bone(p);
-                                 },
-                                 threads));
+                  surface_errors(
+                      both, volume,
+                      [&](std::size_t v, const auto& p) {
+                        return v < uppers ? head.upper_bone(p) : head.lower_bone(p);
+                      },
+                      threads));
       add_surface("import.bone", "skull", what, noise_hu, volume,
-                  surface_errors(upper.mesh, volume,
-                                 [&](std::size_t, const auto& p) { return head.upper_bone(p); },
-                                 threads));
+                  surface_errors(
+                      upper.mesh, volume,
+                      [&](std::size_t, const auto& p) { return head.upper_bone(p); }, threads));
       add_surface("import.bone", "mandible", what, noise_hu, volume,
-                  surface_errors(lower.mesh, volume,
-                                 [&](std::size_t, const auto& p) { return head.lower_bone(p); }, threads));
+                  surface_errors(
+                      lower.mesh, volume,
+                      [&](std::size_t, const auto& p) { return head.lower_bone(p); }, threads));
       const ScanSurface skin = skin_surface(volume, levels, region, bone.metal, "scan", all);
       add_surface("import.face", "skin", what, noise_hu, volume,
-                  surface_errors(skin.mesh, volume, [&](std::size_t, const auto& p) { return head.skin(p); },
-                                 threads));
+                  surface_errors(
+                      skin.mesh, volume, [&](std::size_t, const auto& p) { return head.skin(p); },
+                      threads));
     }
   }
 
@@ -222,15 +224,15 @@ class ImportBench {
       added["goal_p95_voxel"] = usual ? 0.5 : 0.8;
     }
     if (!common_.quiet)
-      fmt::print(stderr, "  {:<14}{:<14}{:>9.2f}{:>9.0f}  {:<9}{:.3f} {:.3f} ({}); {:.3f} mm; {:+.3f}\n",
+      fmt::print(stderr,
+                 "  {:<14}{:<14}{:>9.2f}{:>9.0f}  {:<9}{:.3f} {:.3f} ({}); {:.3f} mm; {:+.3f}\n",
                  name, what.name, voxel_mm, noise_hu, part, errors.median_mm / voxel_mm,
                  errors.p95_mm / voxel_mm,
-                 face    ? "0.3 mm"
+                 face     ? "0.3 mm"
                  : !whole ? "part"
                  : usual  ? "0.15 0.5"
                           : "0.3 0.8",
-                 errors.median_mm,
-                 errors.bias_mm);
+                 errors.median_mm, errors.bias_mm);
     results_.push_back(std::move(added));
   }
   void add_split(const BenchScan& what, double noise_hu, double error_mm,

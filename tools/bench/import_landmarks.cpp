@@ -112,8 +112,8 @@ int run_bench_landmarks(const BenchOptions& options, const CommonOptions& common
     fmt::print(stderr, "  {:<26}{:>6}{:>10.2f}{:>8.2f}{:>8.2f}{:>8}{:>10}{:>8.1f}{:>8.1f}\n",
                kind.name, options.heads, row["median_mm"].get<double>(),
                row["p95_mm"].get<double>(), row["worst_mm"].get<double>(),
-               row["landmarks"].get<int>(), row["doubtful"].get<int>(),
-               row["median"].get<double>(), row["cpu_median"].get<double>());
+               row["landmarks"].get<int>(), row["doubtful"].get<int>(), row["median"].get<double>(),
+               row["cpu_median"].get<double>());
   }
   if (common.json) fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
   return 0;

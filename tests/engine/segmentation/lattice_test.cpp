@@ -32,8 +32,8 @@ TEST(DistanceMap, EqualsThePlainSearch) {
       for (int i = 0; i < size[0]; ++i, ++q) {
         double nearest = 1e9;
         for (const auto& f : features)
-          nearest = std::min(nearest,
-                             (f - step.cwiseProduct(Eigen::Vector3d(i, j, k))).squaredNorm());
+          nearest =
+              std::min(nearest, (f - step.cwiseProduct(Eigen::Vector3d(i, j, k))).squaredNorm());
         EXPECT_NEAR(map[q], nearest, 1e-4);
       }
   std::vector<float> none(map.size(), no_feature);

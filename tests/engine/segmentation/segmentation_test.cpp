@@ -70,8 +70,8 @@ void expect_bones_right(const CtScan& scan, const Segmented& segments) {
   TriMesh both;  // vertices alone
   std::size_t uppers = 0;
   for (const VoxelLabel label : {skull_label, mandible_label}) {
-    const ScanSurface surface = bone_surface(volume, segments.bone, label,
-                                             {.target_triangles = 0, .threads = threads});
+    const ScanSurface surface =
+        bone_surface(volume, segments.bone, label, {.target_triangles = 0, .threads = threads});
     const Topology topology = inspect(surface.mesh);
     EXPECT_TRUE(topology.closed());
     EXPECT_GT(topology.volume_mm3, 10000);
@@ -110,9 +110,7 @@ Volume uniform_volume(std::int16_t hu) {
   return volume;
 }
 
-TEST(Segmentation, FindsBothBonesWithinTheGoals) {
-  expect_bones_right(jaw_scan(), jaw_segments());
-}
+TEST(Segmentation, FindsBothBonesWithinTheGoals) { expect_bones_right(jaw_scan(), jaw_segments()); }
 
 TEST(Segmentation, WorksOnTurnedAxesAndFlatVoxels) {
   CtSettings settings = jaw_scan_settings();
@@ -128,9 +126,8 @@ TEST(Segmentation, WorksOnTurnedAxesAndFlatVoxels) {
 TEST(Segmentation, FindsTheSkin) {
   const Volume& volume = jaw_scan().volume;
   const Segmented& segments = jaw_segments();
-  const ScanSurface skin = skin_surface(volume, segments.levels, segments.head,
-                                        segments.bone.metal, "scan",
-                                        {.target_triangles = 20000, .threads = threads});
+  const ScanSurface skin = skin_surface(volume, segments.levels, segments.head, segments.bone.metal,
+                                        "scan", {.target_triangles = 20000, .threads = threads});
   EXPECT_TRUE(inspect(skin.mesh).closed());
   EXPECT_EQ(inspect(skin.mesh).components, 1);  // no cavity
   const ScannedHead head;
@@ -142,9 +139,8 @@ TEST(Segmentation, FindsTheSkin) {
 }
 
 TEST(Segmentation, DecimationKeepsSurfacesClosedAndReportsItsError) {
-  const ScanSurface surface =
-      bone_surface(jaw_scan().volume, jaw_segments().bone, mandible_label,
-                   {.target_triangles = 20000, .threads = threads});
+  const ScanSurface surface = bone_surface(jaw_scan().volume, jaw_segments().bone, mandible_label,
+                                           {.target_triangles = 20000, .threads = threads});
   EXPECT_GT(surface.found_triangles, 40000u);
   EXPECT_LE(surface.mesh.triangles.size(), 20500u);
   EXPECT_TRUE(inspect(surface.mesh).closed());
@@ -175,8 +171,7 @@ TEST(Segmentation, TableAndStreaksAreNoBone) {
       for (int i = 1; i + 1 < box.size[0]; ++i) {
         const VoxelLabel label = segments.bone.label[box.index(i, j, k)];
         if (label == no_bone) continue;
-        const std::size_t q =
-            volume.index(box.low[0] + i, box.low[1] + j, box.low[2] + k);
+        const std::size_t q = volume.index(box.low[0] + i, box.low[1] + j, box.low[2] + k);
         if (label == other_bone) {
           ++dropped;
           continue;
@@ -192,9 +187,8 @@ TEST(Segmentation, TableAndStreaksAreNoBone) {
   EXPECT_EQ(outside, 0);
   EXPECT_LT(far, 10);  // streaks end beside the teeth
 
-  const ScanSurface skin = skin_surface(volume, segments.levels, segments.head,
-                                        segments.bone.metal, "scan",
-                                        {.target_triangles = 0, .threads = threads});
+  const ScanSurface skin = skin_surface(volume, segments.levels, segments.head, segments.bone.metal,
+                                        "scan", {.target_triangles = 0, .threads = threads});
   double back = 0;
   for (const Vector3d& p : skin.mesh.vertices) back = std::max(back, head.skin(p));
   EXPECT_LT(back, 8);  // the foam below the head may count, the table not
@@ -232,12 +226,10 @@ TEST(Segmentation, PointsDecideAndMustLieNearBone) {
   const Volume& volume = jaw_scan().volume;
   BoneVoxels bone = jaw_segments().bone;
   // Two points in each bone, without a template.
-  const std::vector<SeedPoint> points = {{{0, -82, -84}, mandible_label},
-                                         {{46, -22, -50}, mandible_label},
-                                         {{-46, -22, -50}, mandible_label},
-                                         {{0, -78, -34}, skull_label},
-                                         {{27, -52, -36}, skull_label},
-                                         {{-27, -52, -36}, skull_label}};
+  const std::vector<SeedPoint> points = {
+      {{0, -82, -84}, mandible_label},   {{46, -22, -50}, mandible_label},
+      {{-46, -22, -50}, mandible_label}, {{0, -78, -34}, skull_label},
+      {{27, -52, -36}, skull_label},     {{-27, -52, -36}, skull_label}};
   for (auto& label : bone.label)
     if (label != no_bone && label != other_bone) label = 1;
   const auto seeds = seed_labels(volume, bone, {}, points);

@@ -64,8 +64,8 @@ TEST(CtScan, ValuesFollowTheTissues) {
           EXPECT_EQ(head.skin(p) > 0, tissue == ScanTissue::outside) << p.transpose();
         }
         if (std::abs(head.lower_bone(p)) > 0.1 && head.upper_bone(p) > 0.1) {
-          EXPECT_EQ(head.lower_bone(p) < 0, tissue == ScanTissue::mandible ||
-                                                tissue == ScanTissue::lower_teeth)
+          EXPECT_EQ(head.lower_bone(p) < 0,
+                    tissue == ScanTissue::mandible || tissue == ScanTissue::lower_teeth)
               << p.transpose();
         }
       }

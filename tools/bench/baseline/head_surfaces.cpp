@@ -49,8 +49,8 @@ class SmoothWaves {
   explicit SmoothWaves(HeadNoise& noise) {
     scale_ = Vector3d::Ones() + 0.05 * noise.vector();
     for (std::size_t i = 0; i < waves_.size(); ++i) {
-      waves_[i].number = noise.vector().normalized() * 2 * std::numbers::pi /
-                         (60 + 30 * static_cast<double>(i));
+      waves_[i].number =
+          noise.vector().normalized() * 2 * std::numbers::pi / (60 + 30 * static_cast<double>(i));
       waves_[i].phase = 2 * std::numbers::pi * noise.uniform();
       waves_[i].size = 2 / std::sqrt(6 * 1.5) * noise.vector();
     }
@@ -99,8 +99,7 @@ HeadSurfaces scanned_head(const Case& model, HeadPopulation population, std::uin
   head.X_SH.t = 20 * noise.vector();
   const SmoothWaves waves(noise);
   const bool warped = population == HeadPopulation::warped;
-  const Case patient =
-      warped ? model : reshaped_head(model, {HeadChoice::Variant::standard, seed});
+  const Case patient = warped ? model : reshaped_head(model, {HeadChoice::Variant::standard, seed});
   const auto place = [&](const Vector3d& p, bool lower) -> Vector3d {
     return head.X_SH * (warped ? waves(p, lower) : p);
   };
