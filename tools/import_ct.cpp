@@ -92,6 +92,7 @@ int make_case(const CtImportOptions& options, const CtVolume& ct, const CommonOp
               ProgressBar& bar) {
   CtCaseRequest request = options.make;
   request.face = !options.no_face;
+  request.source = options.scan.string();
   request.threads = common.threads;
   request.seeds = read_seeds(options.seeds);
   if (request.name.empty()) request.name = (options.out / "").parent_path().filename().string();

@@ -84,7 +84,7 @@ TEST(ImportCt, BadInputIsRefusedInOneLine) {
   const std::string scan = folder / "scan", out = folder / "volume.nrrd";
   expect_one_line(condyle({"import", "ct", scan}), "needs --out FOLDER");
   expect_one_line(condyle({"import", "ct", scan, "--out", folder / "case"}),
-                  "the scan: ");
+                  scan + ": ");
   expect_one_line(condyle({"import", "ct", scan, "--volume-out", folder / "a.txt"}), ".nrrd");
   expect_one_line(condyle({"import", "ct", folder / "absent", "--volume-out", out}),
                   "no such file");
