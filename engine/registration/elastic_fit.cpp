@@ -114,7 +114,7 @@ void add_displacements(ElasticFit& fit, const FitSurface& moving, const FitSurfa
         pulls.push_back({match.now, match.to, match.normal, match.weight});
       if (pulls.empty()) break;
       DisplacementLayer layer(pulls, {.reach_mm = level.reach_mm,
-                                      .spacing_mm = 0.18 * level.reach_mm,
+                                      .spacing_mm = 0.21 * level.reach_mm,
                                       .max_controls = settings.max_controls,
                                       .stiffness = settings.stiffness / level.softness,
                                       .tangential = settings.tangential});

@@ -121,7 +121,7 @@ TEST(AnatomyFit, MarksWhatAScanFromTheTeethToTheOrbitsLacks) {
 TEST(AnatomyFit, FindsAJawByItselfWithTheSameBitsOnAnyNumberOfThreads) {
   const HeadSurfaces head = scanned_head(model(), HeadPopulation::seeded, 3);
   AnatomyScan scan;
-  scan.bone = head.mandible;  // not said to be a lower jaw
+  scan.mandible = head.mandible;
   const AnatomyFit fit = fit_anatomy(scan, model(), {.threads = 2}),
                    other = fit_anatomy(scan, model(), {.threads = 1});
   EXPECT_FALSE(fit.skull.present);
@@ -172,16 +172,17 @@ TEST(AnatomyFit, RefusesAMirroredSurface) {
 TEST(AnatomyFit, FindsPointsThatWereDigitisedOnRealJaws) {
   const auto data = test::source_folder() / "../shared/data";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "real anatomy absent";
-  const auto check = [&](const std::string& folder, const std::vector<std::string>& files,
+  const auto check = [&](const std::string& folder, TriMesh AnatomyScan::*as,
+                         const std::vector<std::string>& files,
                          const std::map<std::string, Vector3d>& known, double farthest_mm) {
     AnatomyScan scan;
     for (const auto& file : files) {
       const TriMesh mesh = read_mesh(data / folder / file);
-      const auto first = static_cast<int>(scan.mandible.vertices.size());
-      scan.mandible.vertices.insert(scan.mandible.vertices.end(), mesh.vertices.begin(),
-                                    mesh.vertices.end());
+      const auto first = static_cast<int>((scan.*as).vertices.size());
+      (scan.*as).vertices.insert((scan.*as).vertices.end(), mesh.vertices.begin(),
+                                 mesh.vertices.end());
       for (const auto& t : mesh.triangles)
-        scan.mandible.triangles.push_back(t + Eigen::Vector3i::Constant(first));
+        (scan.*as).triangles.push_back(t + Eigen::Vector3i::Constant(first));
     }
     const AnatomyFit fit = fit_anatomy(scan, model());
     EXPECT_LT(fit.mandible.rms_mm, 1);
@@ -189,13 +190,13 @@ TEST(AnatomyFit, FindsPointsThatWereDigitisedOnRealJaws) {
       EXPECT_LT((fit.landmarks.at(name).point - p).norm(), farthest_mm) << folder << ", " << name;
   };
   // Other people, digitised by others: markers.csv.
-  check("case-ubc", {"mandible.ply", "lower_teeth.ply"},
+  check("case-ubc", &AnatomyScan::mandible, {"mandible.ply", "lower_teeth.ply"},
         {{"lower_incisal_point", {0, -46.96, 41.76}},
          {"left_condylion", {51.78, 31.45, 83.64}},
          {"left_condyle", {51.78, 31.45, 79.64}},
          {"right_condyle", {-51.78, 31.45, 79.64}}},
         4);
-  check("case-badin", {"mandible.ply"},
+  check("case-badin", &AnatomyScan::bone, {"mandible.ply"},
         {{"lower_incisal_point", {0, 55.46, 92.24}},
          {"left_condyle", {47.92, 138.31, 138.66}},
          {"right_condyle", {-47.92, 138.31, 138.66}}},
