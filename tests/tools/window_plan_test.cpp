@@ -81,7 +81,9 @@ TEST_F(WindowSession, APartIsPickedAndCutWithTheMouse) {
     EXPECT_TRUE(xdotool({"mousemove", px(x), px(y), "click", button}));
   };
   constexpr double chin = 0.14;
-  ASSERT_TRUE(wait_until([](const Json& s) { return s["picture_finished"] == true; }));
+  ASSERT_TRUE(wait_until([](const Json& s) {  // the camera has turned to the front
+    return double(s["camera_direction"][1]) < -0.9999 && s["picture_finished"] == true;
+  }));
   press_at(0, chin, "3");
   ASSERT_TRUE(wait_for_item("part-menu"));
   see("menu");
