@@ -158,6 +158,9 @@ void Window::State::interface_frame() {
   // clicked before, and a click on a button beside the field requires its complete text.
   const bool look_at_mouse = input.keys.empty();
   if (look_at_mouse) input.mouse_shown = input.mouse.take();
+  // The panels have received the press and the release of the click that opens a menu.
+  if (input.menu && !input.mouse.waiting())
+    panels->open_part_menu(*std::exchange(input.menu, std::nullopt));
   const MouseMoment& moment = input.mouse_shown;
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(moment.x), static_cast<float>(moment.y)};

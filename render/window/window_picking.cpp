@@ -52,8 +52,7 @@ void Window::State::on_click(const ClickDetector::Click& click) {
   pacing.frames_due = 3;
   if (!found) return;
   if (!left)
-    panels->open_part_menu(
-        {{found->surface, found->triangle, found->barycentric}, click.at.x(), click.at.y()});
+    input.menu = {{found->surface, found->triangle, found->barycentric}, click.at.x(), click.at.y()};
   else if (click.is_double)
     focus(found->surface);
 }

@@ -21,6 +21,7 @@
 #include "render/window/picture/picture_texture.h"
 #include "render/window/picture/quality.h"
 #include "render/window/picture/render_thread.h"
+#include "render/window/view/part_menu.h"
 #include "render/window/window.h"
 
 struct ImGuiContext;
@@ -65,6 +66,7 @@ struct WindowInput {
   CameraDrag drag = CameraDrag::none;
   int drag_button = -1;
   ClickDetector clicks;
+  std::optional<PartMenu> menu;  // to be opened
   std::optional<Held> held;
   Eigen::Vector2d gripped_at = Eigen::Vector2d::Zero();  // where a handle of a cut was gripped
   std::vector<std::filesystem::path> dropped;            // onto the window, not taken yet

@@ -14,7 +14,6 @@ void Panels::Drawing::part_menu() {
   auto& menu = panels.form_.part_menu;
   if (!menu) return;
   if (menu->part() >= input.scene.parts.size()) return menu.reset();
-  if (!menu->shown && ImGui::IsAnyMouseDown()) return;  // the press of the click that opened it
   ImGui::SetNextWindowPos({static_cast<float>(menu->x), static_cast<float>(menu->y)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, pen.px(10, 8));
   ImGui::Begin("##part-menu", nullptr,
