@@ -81,7 +81,7 @@ TriMesh simplify(const TriMesh& mesh, int target_triangles) {
 
 std::vector<Eigen::Vector3i> coarser(std::span<const Eigen::Vector3f> positions,
                                      std::span<const Eigen::Vector3i> triangles,
-                                     int target_triangles, double error_mm) {
+                                     int target_triangles, double error_mm, Rims rims) {
   assert(error_mm >= 0);
   std::vector<Eigen::Vector3i> result(triangles.begin(), triangles.end());
   if (static_cast<int>(triangles.size()) <= target_triangles) return result;
@@ -94,7 +94,9 @@ std::vector<Eigen::Vector3i> coarser(std::span<const Eigen::Vector3f> positions,
   const float extent = meshopt_simplifyScale(at, positions.size(), stride);
   kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), at, positions.size(),
                                stride, 3 * static_cast<std::size_t>(std::max(target_triangles, 1)),
-                               static_cast<float>(error_mm) / std::max(extent, 1e-6f), 0, nullptr));
+                               static_cast<float>(error_mm) / std::max(extent, 1e-6f),
+                               rims == Rims::fixed ? unsigned{meshopt_SimplifyLockBorder} : 0u,
+                               nullptr));
   result.clear();
   for (std::size_t i = 0; i + 2 < kept.size(); i += 3)
     result.emplace_back(static_cast<int>(kept[i]), static_cast<int>(kept[i + 1]),

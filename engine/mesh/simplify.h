@@ -13,10 +13,15 @@ namespace condyle {
 /// manifold: where the edge collapses would break it, the result keeps more triangles.
 TriMesh simplify(const TriMesh& mesh, int target_triangles);
 
+/// What becomes of the open rims of a surface.
+enum class Rims { coarser, fixed };
+
 /// Coarser triangles on the same vertices, about `target_triangles`, with a deviation of at most
-/// about `error_mm`; the given ones when there are few enough. Rims stay.
+/// about `error_mm`; the given ones when there are few enough. Rims keep their shape; fixed ones
+/// keep their vertices too.
 std::vector<Eigen::Vector3i> coarser(std::span<const Eigen::Vector3f> positions,
                                      std::span<const Eigen::Vector3i> triangles,
-                                     int target_triangles, double error_mm);
+                                     int target_triangles, double error_mm,
+                                     Rims rims = Rims::coarser);
 
 }  // namespace condyle

@@ -2,10 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "engine/core/parallel.h"
 #include "engine/field/isosurface.h"
+#include "engine/mesh/measure.h"
 #include "engine/mesh/repair.h"
 #include "engine/mesh/simplify.h"
 #include "engine/mesh/topology.h"
@@ -15,6 +17,7 @@ namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
+using Eigen::Vector3i;
 
 GridAxis steps(int count) {
   GridAxis axis(static_cast<std::size_t>(count));
@@ -41,6 +44,88 @@ void drop_small_pieces(TriMesh& mesh, double least_mm3) {
   drop_unreferenced(mesh);
 }
 
+/// Removes pairs of triangles back to back, which collapsed edges leave: flaps without thickness.
+void cancel_flat_pairs(std::vector<Vector3i>& triangles) {
+  std::vector<std::array<int, 4>> keys(triangles.size());
+  for (std::size_t t = 0; t < keys.size(); ++t) {
+    std::copy_n(triangles[t].data(), 3, keys[t].begin());
+    std::sort(keys[t].begin(), keys[t].begin() + 3);
+    keys[t][3] = static_cast<int>(t);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<char> gone(keys.size(), 0);
+  for (std::size_t n = 0; n + 1 < keys.size(); ++n)
+    if (std::equal(keys[n].begin(), keys[n].begin() + 3, keys[n + 1].begin())) {
+      gone[static_cast<std::size_t>(keys[n][3])] = gone[static_cast<std::size_t>(keys[n + 1][3])] =
+          1;
+      ++n;
+    }
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (!gone[t]) triangles[kept++] = triangles[t];
+  triangles.resize(kept);
+}
+
+/// Vertices at edges that have other than two triangles in opposite directions.
+std::vector<int> open_vertices(const TriMesh& mesh) {
+  const EdgeList edges = find_edges(mesh);
+  std::vector<int> vertices;
+  for (const Edge& edge : edges.edges) {
+    const EdgeSide* side = edges.sides.data() + edge.first;
+    if (edge.count == 2 && side[0].forward != side[1].forward) continue;
+    vertices.push_back(edge.low);
+    vertices.push_back(edge.high);
+  }
+  return vertices;
+}
+
+/// Marks the triangles within some rings of neighbours of the vertices.
+void mark_around(const TriMesh& mesh, const std::vector<int>& vertices, int rings,
+                 std::vector<char>& marked) {
+  std::vector<char> near(mesh.vertices.size(), 0);
+  for (const int v : vertices) near[static_cast<std::size_t>(v)] = 1;
+  for (int ring = 0; ring < rings; ++ring) {
+    std::vector<char> next = near;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      bool touches = false;
+      for (int c = 0; c < 3; ++c)
+        touches = touches || near[static_cast<std::size_t>(mesh.triangles[t][c])];
+      if (!touches) continue;
+      marked[t] = 1;
+      for (int c = 0; c < 3; ++c) next[static_cast<std::size_t>(mesh.triangles[t][c])] = 1;
+    }
+    near.swap(next);
+  }
+}
+
+/// About so many triangles, closed: where collapsed edges would open the surface, its triangles
+/// stay as they are. Empty when that does not succeed.
+TriMesh decimated_closed(const TriMesh& mesh, int target) {
+  constexpr int rounds = 6;
+  const Vector3d middle = bounding_box(mesh).center();
+  std::vector<Eigen::Vector3f> positions;
+  for (const Vector3d& p : mesh.vertices) positions.push_back((p - middle).cast<float>());
+  std::vector<char> kept(mesh.triangles.size(), 0);
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Vector3i> free, result;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      (kept[t] ? result : free).push_back(mesh.triangles[t]);
+    const int left = std::max(target - static_cast<int>(result.size()), target / 4);
+    const auto coarse =
+        coarser(positions, free, left, bounding_box(mesh).size().norm(), Rims::fixed);
+    result.insert(result.end(), coarse.begin(), coarse.end());
+    cancel_flat_pairs(result);
+    TriMesh decimated{mesh.vertices, std::move(result), {}};
+    const std::vector<int> open = open_vertices(decimated);
+    if (open.empty()) {
+      drop_unreferenced(decimated);
+      return decimated;
+    }
+    mark_around(mesh, open, 3 + round, kept);
+  }
+  return {};
+}
+
 }  // namespace
 
 TriMesh lattice_surface(const Volume& volume, const VoxelBox& box, std::vector<float> values,
@@ -60,7 +145,10 @@ void decimate_surface(ScanSurface& surface, const SurfaceOptions& options,
   surface.found_triangles = surface.mesh.triangles.size();
   if (options.target_triangles <= 0 || surface.mesh.triangles.empty()) return;
   report(progress, "decimating", 0);
-  TriMesh coarse = simplify(surface.mesh, options.target_triangles);
+  TriMesh coarse;
+  if (static_cast<int>(surface.mesh.triangles.size()) > options.target_triangles)
+    coarse = decimated_closed(surface.mesh, options.target_triangles);
+  if (coarse.empty()) coarse = simplify(surface.mesh, options.target_triangles);
   report(progress, "decimating", 0.8);
   const TriangleTree tree(coarse);
   constexpr std::size_t every = 7;
