@@ -28,6 +28,7 @@ void add_bench(Commands& commands);  // in bench/bench.cpp
 
 /// Adds `import ct`.
 void add_import_ct(Commands& commands, CLI::App& import);
+void add_import_face(Commands& commands, CLI::App& import);
 
 /// Prints a page of the manual; without a subject their list. throws: InputError.
 int run_help(const std::string& subject);

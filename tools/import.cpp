@@ -132,6 +132,7 @@ void add_import(Commands& commands) {
       "  condyle import ct scan --list");
   add_meshes(commands, import);
   add_import_ct(commands, import);
+  add_import_face(commands, import);
 }
 
 }  // namespace condyle

@@ -17,6 +17,7 @@
 #include "engine/core/files.h"
 #include "engine/mesh/triangle_tree.h"
 #include "engine/mesh_io/mesh_files.h"
+#include "engine/mesh_io/picture_files.h"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -45,28 +46,50 @@ std::optional<std::array<std::uint32_t, 2>> png_sides(std::string_view bytes) {
   return std::array{number(16), number(20)};
 }
 
-void decode(const fs::path& file, std::string_view bytes, Texture& texture) {
-  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
-  const int size = static_cast<int>(std::min<std::size_t>(bytes.size(), INT32_MAX));
-  int channels = 0;
+const stbi_uc* data_of(std::string_view bytes) {
+  return reinterpret_cast<const stbi_uc*>(bytes.data());
+}
+int size_of(std::string_view bytes) {
+  return static_cast<int>(std::min<std::size_t>(bytes.size(), INT32_MAX));
+}
+
+/// Refuses what is no picture, or a very large one, before its pixels are decoded.
+void check_picture(const fs::path& file, std::string_view bytes) {
   const auto check_sides = [&](std::uint32_t width, std::uint32_t height) {
     if (width > max_side || height > max_side)
-      throw InputError(file, "texture",
+      throw InputError(file, "picture",
                        fmt::format("is too large: {}x{}; at most {} pixels a side, make it smaller",
                                    width, height, max_side));
   };
   if (const auto sides = png_sides(bytes)) check_sides((*sides)[0], (*sides)[1]);
-  if (!stbi_info_from_memory(data, size, &texture.width, &texture.height, &channels))
-    throw InputError(file, "texture", "is no JPEG or PNG picture, or is damaged");
-  check_sides(static_cast<std::uint32_t>(texture.width),
-              static_cast<std::uint32_t>(texture.height));
+  int width = 0, height = 0, channels = 0;
+  if (!stbi_info_from_memory(data_of(bytes), size_of(bytes), &width, &height, &channels))
+    throw InputError(file, "picture", "is no JPEG or PNG picture, or is damaged");
+  check_sides(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height));
+}
+
+[[noreturn]] void refuse_damaged(const fs::path& file) {
+  throw InputError(file, "picture", std::string("is damaged (") + stbi_failure_reason() + ")");
+}
+
+ColourPicture decode(const fs::path& file, std::string_view bytes) {
+  check_picture(file, bytes);
+  ColourPicture picture;
+  int channels = 0;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-      stbi_load_from_memory(data, size, &texture.width, &texture.height, &channels, 3),
+      stbi_load_from_memory(data_of(bytes), size_of(bytes), &picture.width, &picture.height,
+                            &channels, 3),
       stbi_image_free);
-  if (!pixels)
-    throw InputError(file, "texture", std::string("is damaged (") + stbi_failure_reason() + ")");
-  const std::size_t count = std::size_t{3} * texture.width * texture.height;
-  texture.rgb.assign(pixels.get(), pixels.get() + count);
+  if (!pixels) refuse_damaged(file);
+  picture.rgb.assign(pixels.get(), pixels.get() + std::size_t{3} * picture.width * picture.height);
+  return picture;
+}
+
+void lay_picture(const fs::path& file, std::string_view bytes, Texture& texture) {
+  ColourPicture picture = decode(file, bytes);
+  texture.width = picture.width;
+  texture.height = picture.height;
+  texture.rgb = std::move(picture.rgb);
 }
 
 /// The one textured surface of a GLB that read_mesh has accepted.
@@ -271,17 +294,38 @@ std::optional<Texture> read_texture(const fs::path& file) {
       return std::nullopt;  // the surface can be read without it
     }
     if (picture.empty()) return std::nullopt;
-    decode(file, picture, texture);
+    lay_picture(file, picture, texture);
   } else if (extension == ".obj") {
     const fs::path picture = read_obj_texture(file, read_file(file, max_texture_bytes), texture);
     if (picture.empty() || texture.corners.empty()) return std::nullopt;
-    decode(picture, read_file(picture, max_texture_bytes), texture);
+    lay_picture(picture, read_file(picture, max_texture_bytes), texture);
   } else {
     return std::nullopt;
   }
   for (const auto& corner : texture.corners)
     if (!corner.allFinite()) return std::nullopt;
   return texture;
+}
+
+ColourPicture read_colour_picture(const fs::path& file) {
+  return decode(file, read_file(file, max_texture_bytes));
+}
+
+GreyPicture read_grey_picture(const fs::path& file) {
+  const std::string bytes = read_file(file, max_texture_bytes);
+  check_picture(file, bytes);
+  if (!stbi_is_16_bit_from_memory(data_of(bytes), size_of(bytes)))
+    throw InputError(file, "", "has 8 bits a pixel; depths need a PNG of 16 bits");
+  GreyPicture picture;
+  int channels = 0;
+  const std::unique_ptr<stbi_us, void (*)(void*)> pixels(
+      stbi_load_16_from_memory(data_of(bytes), size_of(bytes), &picture.width, &picture.height,
+                               &channels, 1),
+      stbi_image_free);
+  if (!pixels) refuse_damaged(file);
+  picture.values.assign(pixels.get(),
+                        pixels.get() + std::size_t{1} * picture.width * picture.height);
+  return picture;
 }
 
 void paint(TriMesh& mesh, const Texture& texture, const Eigen::Affine3d& to_mesh) {

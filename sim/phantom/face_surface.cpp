@@ -81,9 +81,9 @@ double importance(const Vector3d& p) {
          120 * (bump(0, -112, -18, 17) + bump(28, -86, 35, 16)) + 60 * bump(78, 10, 0, 30);
 }
 
-/// Natural asymmetry: the nose leans to the left and the chin to the right, the left brow is higher
-/// and the left ear lower. Lips and lids, which must fit, are unchanged.
-Vector3d uneven(const Vector3d& p) {
+}  // namespace
+
+Vector3d uneven_face(const Vector3d& p) {
   const auto near = [&](const Vector3d& c, const Vector3d& r) {
     return std::exp(-((p - c).cwiseQuotient(r)).squaredNorm());
   };
@@ -91,8 +91,6 @@ Vector3d uneven(const Vector3d& p) {
                  1.1 * near({0, -110, -14}, {16, 22, 18}) - 1.2 * near({0, -95, -88}, {26, 24, 15}),
                  0, 1.1 * near({32, -84, 38}, {22, 16, 11}) - 0.9 * near({78, 8, 0}, {14, 26, 34}));
 }
-
-}  // namespace
 
 TriMesh face_surface() {
   const std::array<GridAxis, 3> grid = {graded_axis(0, 115, .85, 0, 46, .55),
@@ -114,7 +112,7 @@ TriMesh face_surface() {
                         std::abs(p.z() - lip_line(left.x(), p.y())) < 12;
     face.colors.push_back(lining ? Eigen::Vector3f(.48f, .20f, .20f) : skin_color(p));
   }
-  for (auto& p : face.vertices) p = uneven(p);
+  for (auto& p : face.vertices) p = uneven_face(p);
   return face;
 }
 

@@ -24,6 +24,11 @@ Part teeth_part(const PhantomSolid& solid, bool upper);
 /// behind the lips with an open border. With colours.
 TriMesh face_surface();
 
+/// Natural asymmetry of the skin, which is symmetric as a solid: the nose leans to the left and the
+/// chin to the right, the left brow is higher and the left ear lower. Lips and lids, which must
+/// fit, are unchanged. mm
+Eigen::Vector3d uneven_face(const Eigen::Vector3d& p);
+
 /// Both eyeballs and the lashes before them, closed, with colours.
 TriMesh eyes_surface();
 /// Adds lashes along both lids to the left eye, each a closed strand.

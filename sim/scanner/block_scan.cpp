@@ -27,7 +27,7 @@ class BlockPainter {
         voxel_mm_(voxel_mm),
         skull_(places(HeadMap::skull, points, size)),
         mandible_(head.is_reshaped() ? places(HeadMap::mandible, points, size) : skull_),
-        skin_(head.is_reshaped() ? places(HeadMap::skin, points, size) : skull_) {
+        skin_(places(HeadMap::skin, points, size)) {
     scan_.hu.assign(points.size(), static_cast<float>(air_hu));
     scan_.tissue.assign(points.size(), ScanTissue::outside);
   }
@@ -51,8 +51,7 @@ class BlockPainter {
   BlockPlaces places(HeadMap map, const std::vector<Vector3d>& points,
                      const std::array<int, 3>& size) const {
     std::vector<Vector3d> there = points;
-    if (head_.is_reshaped())
-      for (auto& p : there) p = head_.standard_place(map, p);
+    for (auto& p : there) p = head_.standard_place(map, p);
     return {std::move(there), size};
   }
   /// The part of a voxel that lies inside, by the distance at its centre.

@@ -7,29 +7,12 @@
 
 #include "engine/core/parallel.h"
 #include "sim/scanner/ct_scan.h"
+#include "sim/scanner/scanner_noise.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
-
-std::uint64_t scrambled(std::uint64_t x) {  // source: splitmix64, Steele et al. 2014
-  x += 0x9e3779b97f4a7c15ull;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-  return x ^ (x >> 31);
-}
-
-/// A normal number by its place: the sum of twelve uniform ones of 16 bits, without any function
-/// whose last bit depends on the machine.
-double normal(std::uint64_t seed, std::uint64_t place) {
-  std::uint64_t sum = 0;
-  for (std::uint64_t part = 0; part < 3; ++part) {
-    const std::uint64_t bits = scrambled(seed + 3 * place + part);
-    for (int shift = 0; shift < 64; shift += 16) sum += bits >> shift & 0xffff;
-  }
-  return (static_cast<double>(sum) + 6) * 0x1p-16 - 6;
-}
 
 /// Calls change(p, value) for each voxel with its position.
 template <class Change>
@@ -78,10 +61,6 @@ double with_filling(const Filling& filling, const Vector3d& p, double hu) {
 
 }  // namespace
 
-double uniform_number(std::uint64_t seed, std::uint64_t place) {
-  return static_cast<double>(scrambled(scrambled(seed) + place) >> 11) * 0x1p-53;
-}
-
 void draw_table(const ScannedHead& head, int threads, Volume& volume) {
   constexpr double plastic_hu = 250, foam_hu = -880, rail_hu = 1500;
   constexpr double rest_radius = 95, foam_mm = 1, plastic_mm = 3;
@@ -122,12 +101,11 @@ void draw_fillings(const ScannedHead& head, std::uint64_t seed, int threads, Vol
 
 void add_noise(double sigma_hu, std::uint64_t seed, int threads, Volume& volume) {
   if (sigma_hu <= 0) return;
-  const std::uint64_t start = scrambled(seed);
   const std::size_t slice =
       static_cast<std::size_t>(volume.size[0]) * static_cast<std::size_t>(volume.size[1]);
   parallel_for(static_cast<std::size_t>(volume.size[2]), threads, [&](std::size_t k) {
     for (std::size_t q = k * slice; q < (k + 1) * slice; ++q)
-      volume.values[q] = stored_hu(volume.values[q] + sigma_hu * normal(start, q));
+      volume.values[q] = stored_hu(volume.values[q] + sigma_hu * normal_number(seed, q));
   });
 }
 

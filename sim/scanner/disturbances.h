@@ -26,7 +26,4 @@ void draw_table(const ScannedHead& head, int threads, Volume& volume);
 /// Fillings of metal in two lower molars and an upper one, with streaks in their slices.
 void draw_fillings(const ScannedHead& head, std::uint64_t seed, int threads, Volume& volume);
 
-/// A number from 0 to 1 by its place in a sequence.
-double uniform_number(std::uint64_t seed, std::uint64_t place);
-
 }  // namespace condyle

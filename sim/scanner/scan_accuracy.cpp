@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "engine/core/parallel.h"
-#include "sim/scanner/disturbances.h"
+#include "sim/scanner/scanner_noise.h"
 
 namespace condyle {
 namespace {

@@ -5,6 +5,7 @@
 #include "sim/phantom/head_warp.h"
 #include "sim/phantom/phantom.h"
 #include "sim/phantom/shifted_bite.h"
+#include "sim/phantom/surfaces.h"
 
 namespace condyle {
 namespace {
@@ -39,14 +40,15 @@ ScannedHead::ScannedHead(ScannedHead&&) noexcept = default;
 ScannedHead& ScannedHead::operator=(ScannedHead&&) noexcept = default;
 
 Vector3d ScannedHead::place(HeadMap map, const Vector3d& p) const {
-  if (!warp_) return p;
-  return map == HeadMap::skull      ? warp_->skull(p)
-         : map == HeadMap::mandible ? warp_->mandible(p)
-                                    : warp_->skin(p);
+  const Vector3d q = map == HeadMap::skin ? uneven_face(p) : p;
+  if (!warp_) return q;
+  return map == HeadMap::skull      ? warp_->skull(q)
+         : map == HeadMap::mandible ? warp_->mandible(q)
+                                    : warp_->skin(q);
 }
 
 Vector3d ScannedHead::standard_place(HeadMap map, const Vector3d& p) const {
-  if (!warp_) return p;
+  if (!warp_ && map != HeadMap::skin) return p;
   // The displacement changes slowly from place to place: each round reduces the error several
   // times.
   constexpr int rounds = 8;
