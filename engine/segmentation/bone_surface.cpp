@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "engine/core/parallel.h"
+#include "engine/mesh/unfold.h"
 #include "engine/segmentation/half_way.h"
 #include "engine/segmentation/lattice_surface.h"
 #include "engine/volume/blur.h"
@@ -93,6 +94,7 @@ ScanSurface bone_surface(const Volume& volume, const BoneVoxels& bone, VoxelLabe
   surface.moved_fraction =
       move_to_half_way(surface.mesh, volume,
                        {.threshold_hu = bone.threshold_hu, .threads = options.threads}, progress);
+  unfold(surface.mesh, {.most_mm = 0.5 * volume.spacing_mm.minCoeff()});
   decimate_surface(surface, options, progress);
   return surface;
 }

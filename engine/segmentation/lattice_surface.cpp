@@ -11,6 +11,7 @@
 #include "engine/mesh/repair.h"
 #include "engine/mesh/simplify.h"
 #include "engine/mesh/topology.h"
+#include "engine/mesh/unfold.h"
 #include "engine/mesh/triangle_tree.h"
 
 namespace condyle {
@@ -149,6 +150,7 @@ void decimate_surface(ScanSurface& surface, const SurfaceOptions& options,
   if (static_cast<int>(surface.mesh.triangles.size()) > options.target_triangles)
     coarse = decimated_closed(surface.mesh, options.target_triangles);
   if (coarse.empty()) coarse = simplify(surface.mesh, options.target_triangles);
+  unfold(coarse);
   report(progress, "decimating", 0.8);
   const TriangleTree tree(coarse);
   constexpr std::size_t every = 7;

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "engine/mesh/unfold.h"
 #include "engine/segmentation/half_way.h"
 #include "engine/segmentation/lattice_surface.h"
 #include "engine/segmentation/metal_streaks.h"
@@ -149,6 +150,7 @@ ScanSurface skin_surface(const Volume& volume, const TissueLevels& levels, const
       surface.mesh, solid,
       {.threshold_hu = levels.skin(), .rise_hu = 300, .drop_hu = 200, .threads = options.threads},
       progress);
+  unfold(surface.mesh, {.most_mm = 0.5 * volume.spacing_mm.minCoeff()});
   decimate_surface(surface, options, progress);
   return surface;
 }
