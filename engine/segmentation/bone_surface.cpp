@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "engine/core/parallel.h"
@@ -78,6 +79,30 @@ std::vector<float> bone_values(const BoneVoxels& bone, VoxelLabel label, const V
   return values;
 }
 
+/// Vertices that have moved into, or beside, voxels of the other bone return to where they were:
+/// surfaces of bones that touch do not pass through each other.
+void return_from_other_bone(const Volume& volume, const BoneVoxels& bone, VoxelLabel label,
+                            const std::vector<Eigen::Vector3d>& before, int threads,
+                            TriMesh& mesh) {
+  const auto is_other = [&](int i, int j, int k) {
+    const std::array<int, 3> at = {i - bone.box.low[0], j - bone.box.low[1], k - bone.box.low[2]};
+    for (std::size_t a = 0; a < 3; ++a)
+      if (at[a] < 0 || at[a] >= bone.box.size[a]) return false;
+    const VoxelLabel here = bone.label[bone.box.index(at[0], at[1], at[2])];
+    return here != label && here != no_bone;
+  };
+  parallel_for(before.size(), threads, [&](std::size_t v) {
+    const Eigen::Vector3d q = (volume.axes.transpose() * (mesh.vertices[v] - volume.origin))
+                                  .cwiseQuotient(volume.spacing_mm);
+    const Eigen::Vector3i low = q.array().floor().cast<int>();
+    for (int corner = 0; corner < 8; ++corner)
+      if (is_other(low.x() + (corner & 1), low.y() + (corner >> 1 & 1), low.z() + (corner >> 2))) {
+        mesh.vertices[v] = before[v];
+        return;
+      }
+  });
+}
+
 }  // namespace
 
 ScanSurface bone_surface(const Volume& volume, const BoneVoxels& bone, VoxelLabel label,
@@ -91,9 +116,11 @@ ScanSurface bone_surface(const Volume& volume, const BoneVoxels& bone, VoxelLabe
   surface.mesh = lattice_surface(volume, in_volume, bone_values(bone, label, part, options.threads),
                                  options.least_piece_mm3);
   report(progress, "finding the surface", 1);
+  const std::vector<Eigen::Vector3d> before = surface.mesh.vertices;
   surface.moved_fraction =
       move_to_half_way(surface.mesh, volume,
                        {.threshold_hu = bone.threshold_hu, .threads = options.threads}, progress);
+  return_from_other_bone(volume, bone, label, before, options.threads, surface.mesh);
   unfold(surface.mesh, {.most_mm = 0.5 * volume.spacing_mm.minCoeff()});
   decimate_surface(surface, options, progress);
   return surface;
