@@ -19,7 +19,7 @@ constexpr double spike_mm = 3, widest_hole_mm = 15, longest_pixels = 4, steepest
 /// Neighbours in a map: columns wrap round a full turn.
 class Neighbours {
  public:
-  explicit Neighbours(const DepthMap& map)
+  explicit Neighbours(const FaceDepthMap& map)
       : width_(map.width), height_(map.height), turns_(map.is_full_turn()) {}
   /// Index of the sample beside another; -1 beyond the border.
   int at(int column, int row) const {
@@ -38,7 +38,7 @@ class Neighbours {
   bool turns_;
 };
 
-int drop_spikes(DepthMap& map) {
+int drop_spikes(FaceDepthMap& map) {
   const Neighbours beside(map);
   const std::vector<float> before = map.depth_mm;
   int dropped = 0;
@@ -69,7 +69,7 @@ struct Gap {
 };
 
 /// Adds to a gap all missing samples that are connected with its first one.
-void grow(const DepthMap& map, const Neighbours& beside, std::vector<bool>& seen, Gap& gap) {
+void grow(const FaceDepthMap& map, const Neighbours& beside, std::vector<bool>& seen, Gap& gap) {
   for (std::size_t n = 0; n < gap.samples.size(); ++n)
     for (const int next : beside.around(gap.samples[n])) {
       if (next < 0) {
@@ -83,7 +83,7 @@ void grow(const DepthMap& map, const Neighbours& beside, std::vector<bool>& seen
     }
 }
 
-std::vector<Gap> gaps_of(const DepthMap& map) {
+std::vector<Gap> gaps_of(const FaceDepthMap& map) {
   const Neighbours beside(map);
   std::vector<bool> seen(map.depth_mm.size(), false);
   std::vector<Gap> gaps;
@@ -98,13 +98,13 @@ std::vector<Gap> gaps_of(const DepthMap& map) {
 }
 
 /// Size of a pixel at a depth, mm: the larger of its sides.
-double pixel_size(const DepthMap& map, double depth) {
-  if (map.kind == DepthMap::Kind::plane) return map.pixel_mm;
+double pixel_size(const FaceDepthMap& map, double depth) {
+  if (map.kind == FaceDepthMap::Kind::plane) return map.pixel_mm;
   return std::max(std::abs(map.angle(1) - map.angle(0)) * depth, map.height_mm / map.height);
 }
 
 /// Largest extent of a gap, by the depths at its rim.
-double width_of(const DepthMap& map, const Gap& gap) {
+double width_of(const FaceDepthMap& map, const Gap& gap) {
   const Neighbours beside(map);
   Eigen::AlignedBox3d box;
   for (const int sample : gap.samples)
@@ -117,7 +117,7 @@ double width_of(const DepthMap& map, const Gap& gap) {
 }
 
 /// Depths that continue those around the gap smoothly: each is the mean of its neighbours.
-void fill(DepthMap& map, const Gap& gap) {
+void fill(FaceDepthMap& map, const Gap& gap) {
   constexpr int rounds = 300;
   constexpr double settled_mm = 1e-4;
   const Neighbours beside(map);
@@ -145,7 +145,7 @@ void fill(DepthMap& map, const Gap& gap) {
   }
 }
 
-void fill_holes(DepthMap& map, DepthMapRepair& repair) {
+void fill_holes(FaceDepthMap& map, DepthMapRepair& repair) {
   for (const Gap& gap : gaps_of(map)) {
     if (gap.at_border || width_of(map, gap) > widest_hole_mm) continue;
     fill(map, gap);
@@ -155,7 +155,7 @@ void fill_holes(DepthMap& map, DepthMapRepair& repair) {
 }
 
 /// Bilinear, at a place of the depth map.
-Eigen::Vector3f colour_at(const DepthMap& map, int column, int row) {
+Eigen::Vector3f colour_at(const FaceDepthMap& map, int column, int row) {
   const double x = (column + 0.5) * map.colour_width / map.width - 0.5;
   const double y = (row + 0.5) * map.colour_height / map.height - 0.5;
   const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
@@ -178,7 +178,8 @@ Eigen::Vector3f colour_at(const DepthMap& map, int column, int row) {
 /// Triangles between the samples that have a depth.
 class Triangulation {
  public:
-  Triangulation(const DepthMap& map, const std::vector<Vector3d>& places, DepthMapRepair& repair)
+  Triangulation(const FaceDepthMap& map, const std::vector<Vector3d>& places,
+                DepthMapRepair& repair)
       : map_(map), places_(places), repair_(repair) {}
 
   std::vector<Eigen::Vector3i> take() {
@@ -211,7 +212,7 @@ class Triangulation {
     }
   }
   void triangle(Eigen::Vector3i t, int column) {
-    if (map_.kind == DepthMap::Kind::cylinder && map_.angle_to_deg < map_.angle_from_deg)
+    if (map_.kind == FaceDepthMap::Kind::cylinder && map_.angle_to_deg < map_.angle_from_deg)
       std::swap(t[1], t[2]);
     if (!known(t[0]) || !known(t[1]) || !known(t[2])) return;
     static const double least_cosine = std::cos(steepest_deg * std::numbers::pi / 180);
@@ -228,7 +229,7 @@ class Triangulation {
       triangles_.push_back(t);
   }
 
-  const DepthMap& map_;
+  const FaceDepthMap& map_;
   const std::vector<Vector3d>& places_;
   DepthMapRepair& repair_;
   std::vector<Eigen::Vector3i> triangles_;
@@ -236,34 +237,34 @@ class Triangulation {
 
 }  // namespace
 
-bool DepthMap::is_full_turn() const {
+bool FaceDepthMap::is_full_turn() const {
   return kind == Kind::cylinder && std::abs(angle_to_deg - angle_from_deg) > 360 - 1e-6;
 }
 
-double DepthMap::angle(double column) const {
+double FaceDepthMap::angle(double column) const {
   return (angle_from_deg + (column + 0.5) * (angle_to_deg - angle_from_deg) / width) *
          std::numbers::pi / 180;
 }
 
-double DepthMap::row_height(double row) const {
+double FaceDepthMap::row_height(double row) const {
   const double step = kind == Kind::plane ? pixel_mm : height_mm / height;
   return (0.5 * height - row - 0.5) * step;
 }
 
-Vector3d DepthMap::place(double column, double row, double depth) const {
+Vector3d FaceDepthMap::place(double column, double row, double depth) const {
   if (kind == Kind::plane)
     return {(column + 0.5 - 0.5 * width) * pixel_mm, -depth, row_height(row)};
   const double a = angle(column);
   return {depth * std::sin(a), -depth * std::cos(a), row_height(row)};
 }
 
-Vector3d DepthMap::towards_scanner(double column) const {
+Vector3d FaceDepthMap::towards_scanner(double column) const {
   if (kind == Kind::plane) return -Vector3d::UnitY();
   const double a = angle(column);
   return {std::sin(a), -std::cos(a), 0};
 }
 
-TriMesh surface_of(DepthMap map, DepthMapRepair& repair) {
+TriMesh surface_of(FaceDepthMap map, DepthMapRepair& repair) {
   repair.spikes += drop_spikes(map);
   fill_holes(map, repair);
   TriMesh mesh;

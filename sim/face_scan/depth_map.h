@@ -14,7 +14,7 @@ namespace condyle {
 /// Cylinder: columns run about the z axis, the depth is the distance from it: x = r sin(a),
 /// y = -r cos(a). Plane: the depth is towards the scanner, y = -depth. In both the rows run down,
 /// and the middle of the map is at z = 0 (and x = 0).
-struct DepthMap {
+struct FaceDepthMap {
   enum class Kind { cylinder, plane };
 
   Kind kind = Kind::cylinder;
@@ -53,6 +53,6 @@ struct DepthMapRepair {
 /// median of its 5 x 5 neighbours is dropped; holes up to 15 mm across are filled; triangles that
 /// are longer than four pixels or steeper than 80 degrees to their ray are left out. Welded; empty
 /// where the map holds no triangle.
-TriMesh surface_of(DepthMap map, DepthMapRepair& repair);
+TriMesh surface_of(FaceDepthMap map, DepthMapRepair& repair);
 
 }  // namespace condyle

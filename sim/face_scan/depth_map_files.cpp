@@ -26,7 +26,7 @@ fs::path file_beside(const fs::path& description, const JsonItem& name) {
   return description.parent_path() / file;
 }
 
-void read_colours(const fs::path& file, DepthMap& map) {
+void read_colours(const fs::path& file, FaceDepthMap& map) {
   ColourPicture picture = read_colour_picture(file);
   const double across = static_cast<double>(picture.width) / map.width;
   const double down = static_cast<double>(picture.height) / map.height;
@@ -40,7 +40,7 @@ void read_colours(const fs::path& file, DepthMap& map) {
   map.rgb = std::move(picture.rgb);
 }
 
-void read_shape(const JsonItem& root, DepthMap& map) {
+void read_shape(const JsonItem& root, FaceDepthMap& map) {
   const std::string kind = root.at("kind").text();
   const auto number = [&](const char* name, double low, double high, double missing) {
     const auto item = root.find(name);
@@ -48,14 +48,14 @@ void read_shape(const JsonItem& root, DepthMap& map) {
   };
   if (kind == "plane") {
     root.only_keys({"kind", "depth", "colour", "unit_mm", "offset_mm", "invalid", "pixel_mm"});
-    map.kind = DepthMap::Kind::plane;
+    map.kind = FaceDepthMap::Kind::plane;
     map.pixel_mm = root.at("pixel_mm").number(0.01, 10);
     return;
   }
   if (kind != "cylinder") root.at("kind").refuse("is no kind of depth map: cylinder or plane");
   root.only_keys({"kind", "depth", "colour", "unit_mm", "offset_mm", "invalid", "angle_from_deg",
                   "angle_to_deg", "height_mm"});
-  map.kind = DepthMap::Kind::cylinder;
+  map.kind = FaceDepthMap::Kind::cylinder;
   map.angle_from_deg = number("angle_from_deg", -720, 720, -180);
   map.angle_to_deg = number("angle_to_deg", -720, 720, 180);
   map.height_mm = root.at("height_mm").number(1, 2000);
@@ -66,11 +66,11 @@ void read_shape(const JsonItem& root, DepthMap& map) {
 
 }  // namespace
 
-DepthMap read_depth_map(const fs::path& description) {
+FaceDepthMap read_depth_map(const fs::path& description) {
   constexpr std::size_t longest_text = 1 << 20;
   const JsonFile json(description, read_file(description, longest_text));
   const JsonItem root = json.root();
-  DepthMap map;
+  FaceDepthMap map;
   read_shape(root, map);
   const double unit_mm = root.at("unit_mm").number(1e-6, 1000);
   const auto offset = root.find("offset_mm"), invalid = root.find("invalid");
@@ -92,14 +92,14 @@ DepthMap read_depth_map(const fs::path& description) {
           fmt::format("makes a depth of {:.6g} mm of the number {}; at most "
                       "{} mm",
                       depth, value, largest_depth_mm));
-    const bool none = value == nothing || (map.kind == DepthMap::Kind::cylinder && depth <= 0);
+    const bool none = value == nothing || (map.kind == FaceDepthMap::Kind::cylinder && depth <= 0);
     map.depth_mm.push_back(none ? std::nanf("") : static_cast<float>(depth));
   }
   if (const auto colour = root.find("colour")) read_colours(file_beside(description, *colour), map);
   return map;
 }
 
-void write_depth_map(const DepthMap& map, const fs::path& description) {
+void write_depth_map(const FaceDepthMap& map, const fs::path& description) {
   constexpr double unit_mm = 0.01;
   const std::string name = description.stem().string();
   double least = 0;
@@ -114,7 +114,7 @@ void write_depth_map(const DepthMap& map, const fs::path& description) {
                        fmt::format("of {:.6g} mm does not fit into the map", depth));
     depths.values.push_back(static_cast<std::uint16_t>(number));
   }
-  const bool cylinder = map.kind == DepthMap::Kind::cylinder;
+  const bool cylinder = map.kind == FaceDepthMap::Kind::cylinder;
   nlohmann::ordered_json json = {{"kind", cylinder ? "cylinder" : "plane"},
                                  {"depth", name + "-depth.png"},
                                  {"unit_mm", unit_mm},

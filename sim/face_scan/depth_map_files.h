@@ -15,10 +15,10 @@ namespace condyle {
 ///   angle_from_deg, angle_to_deg, height_mm   of a cylinder (default -180, 180; no default)
 ///   pixel_mm        of a plane
 /// throws: InputError naming file, item and value.
-DepthMap read_depth_map(const std::filesystem::path& description);
+FaceDepthMap read_depth_map(const std::filesystem::path& description);
 
 /// Writes the description and the pictures beside it, NAME-depth.png and NAME-colour.png, depths in
 /// hundredths of a millimetre. throws: MachineError; InputError for depths that do not fit.
-void write_depth_map(const DepthMap& map, const std::filesystem::path& description);
+void write_depth_map(const FaceDepthMap& map, const std::filesystem::path& description);
 
 }  // namespace condyle

@@ -46,10 +46,10 @@ int drop_small_pieces(TriMesh& mesh) {
 }
 
 TriMesh mesh_of_map(const fs::path& file, std::vector<std::string>& notes) {
-  DepthMap map = read_depth_map(file);
+  FaceDepthMap map = read_depth_map(file);
   notes.push_back(fmt::format(
       "face scan: {} depth map of {} x {} pixels, {}",
-      map.kind == DepthMap::Kind::plane ? "planar" : "cylindrical", map.width, map.height,
+      map.kind == FaceDepthMap::Kind::plane ? "planar" : "cylindrical", map.width, map.height,
       map.rgb.empty() ? "no colours"
                       : fmt::format("colours {} x {}", map.colour_width, map.colour_height)));
   DepthMapRepair repair;

@@ -64,7 +64,7 @@ struct Sample {
 
 class LaserScanner {
  public:
-  LaserScanner(TriMesh surface, const LaserSettings& settings, const DepthMap& map)
+  LaserScanner(TriMesh surface, const LaserSettings& settings, const FaceDepthMap& map)
       : surface_(std::move(surface)),
         tree_(surface_),
         normals_(vertex_normals(surface_)),
@@ -103,7 +103,7 @@ class LaserScanner {
   TriangleTree tree_;
   std::vector<Vector3d> normals_;
   const LaserSettings& settings_;
-  const DepthMap& map_;
+  const FaceDepthMap& map_;
 };
 
 }  // namespace
@@ -111,7 +111,7 @@ class LaserScanner {
 LaserScan scan_laser(const Case& patient, const LaserSettings& settings) {
   LaserScan scan;
   scan.X_SC = placed_in_scanner(patient, settings.seed);
-  DepthMap& map = scan.map;
+  FaceDepthMap& map = scan.map;
   map.width = map.colour_width = settings.columns;
   map.height = map.colour_height = settings.rows;
   map.height_mm = settings.height_mm;

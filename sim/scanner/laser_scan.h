@@ -20,7 +20,7 @@ struct LaserSettings {
 
 /// A cylindrical laser scan of a patient's face.
 struct LaserScan {
-  DepthMap map;
+  FaceDepthMap map;
   Pose X_SC;  // the patient in the scanner's frame
 };
 

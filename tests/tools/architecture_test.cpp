@@ -56,7 +56,7 @@ const std::vector<Library> libraries = {
     {"bt", {"tools/bench/baseline"}, false, "PkgConfig::bullet"},
     {"Bullet", {"engine/rigid", "tools/bench/baseline"}, false, "PkgConfig::bullet"},
     {"stb/", {"engine/mesh_io", "render/image"}, false, ""},
-    {"png.h", {"render/image"}, false, "PNG::PNG"},
+    {"png.h", {"engine/mesh_io", "render/image"}, false, "PNG::PNG"},
     {"libdeflate.h", {"render/image"}, false, "PkgConfig::deflate"},
     {"zlib.h", {"engine/volume", "render/output"}, false, "ZLIB::ZLIB"},
     {"gdcm", {"engine/dicom"}, false, "gdcmMSFF"},

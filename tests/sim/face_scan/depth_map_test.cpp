@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 using nlohmann::json;
 
 /// A vertical cylinder of 80 mm radius, scanned all round.
-DepthMap cylinder_map(int width = 180, int height = 60) {
-  DepthMap map;
+FaceDepthMap cylinder_map(int width = 180, int height = 60) {
+  FaceDepthMap map;
   map.width = map.colour_width = width;
   map.height = map.colour_height = height;
   map.height_mm = 120;
@@ -33,9 +33,9 @@ DepthMap cylinder_map(int width = 180, int height = 60) {
   return map;
 }
 
-DepthMap plane_map() {
-  DepthMap map;
-  map.kind = DepthMap::Kind::plane;
+FaceDepthMap plane_map() {
+  FaceDepthMap map;
+  map.kind = FaceDepthMap::Kind::plane;
   map.width = 40;
   map.height = 30;
   map.pixel_mm = 2;
@@ -45,7 +45,7 @@ DepthMap plane_map() {
   return map;
 }
 
-TEST(DepthMap, AFullTurnIsAClosedBandThatFacesOutward) {
+TEST(FaceDepthMap, AFullTurnIsAClosedBandThatFacesOutward) {
   DepthMapRepair repair;
   const TriMesh mesh = surface_of(cylinder_map(), repair);
   const Topology found = inspect(mesh);
@@ -61,15 +61,15 @@ TEST(DepthMap, AFullTurnIsAClosedBandThatFacesOutward) {
   EXPECT_NEAR(bounding_box(mesh).size().z(), 118, 1e-9);
 }
 
-TEST(DepthMap, AngleZeroIsTheNoseAndAnglesRunToTheLeft) {
-  const DepthMap map = cylinder_map();
+TEST(FaceDepthMap, AngleZeroIsTheNoseAndAnglesRunToTheLeft) {
+  const FaceDepthMap map = cylinder_map();
   const double middle = 0.5 * map.width - 0.5, quarter = 0.75 * map.width - 0.5;
   EXPECT_LT((map.place(middle, 0, 80) - Vector3d(0, -80, 59)).norm(), 1e-9);
   EXPECT_LT((map.place(quarter, 59, 80) - Vector3d(80, 0, -59)).norm(), 1e-9);
 }
 
-TEST(DepthMap, AScannerThatTurnsTheOtherDirectionGivesTheSameSurface) {
-  DepthMap map = cylinder_map();
+TEST(FaceDepthMap, AScannerThatTurnsTheOtherDirectionGivesTheSameSurface) {
+  FaceDepthMap map = cylinder_map();
   std::swap(map.angle_from_deg, map.angle_to_deg);
   DepthMapRepair repair;
   const TriMesh mesh = surface_of(map, repair);
@@ -78,8 +78,8 @@ TEST(DepthMap, AScannerThatTurnsTheOtherDirectionGivesTheSameSurface) {
   EXPECT_GT(normals[0].dot(Vector3d(mesh.vertices[0].x(), mesh.vertices[0].y(), 0)), 70);
 }
 
-TEST(DepthMap, SpikesAreDroppedAndSmallHolesFilled) {
-  DepthMap map = cylinder_map();
+TEST(FaceDepthMap, SpikesAreDroppedAndSmallHolesFilled) {
+  FaceDepthMap map = cylinder_map();
   const auto at = [&](int column, int row) -> float& {
     return map.depth_mm[static_cast<std::size_t>(row * map.width + column)];
   };
@@ -99,8 +99,8 @@ TEST(DepthMap, SpikesAreDroppedAndSmallHolesFilled) {
   for (const auto& v : mesh.vertices) EXPECT_NEAR(std::hypot(v.x(), v.y()), 80, 0.01);
 }
 
-TEST(DepthMap, AStepInDepthIsNoSurface) {
-  DepthMap map = plane_map();
+TEST(FaceDepthMap, AStepInDepthIsNoSurface) {
+  FaceDepthMap map = plane_map();
   for (int row = 0; row < map.height; ++row)
     for (int column = 20; column < map.width; ++column)
       map.depth_mm[static_cast<std::size_t>(row * map.width + column)] += 60;
@@ -137,10 +137,10 @@ class DepthMapFiles : public testing::Test {
 };
 
 TEST_F(DepthMapFiles, WhatIsWrittenIsRead) {
-  for (DepthMap map : {cylinder_map(), plane_map()}) {
+  for (FaceDepthMap map : {cylinder_map(), plane_map()}) {
     map.depth_mm[7] = std::nanf("");
     write_depth_map(map, file_);
-    const DepthMap read = read_depth_map(file_);
+    const FaceDepthMap read = read_depth_map(file_);
     ASSERT_EQ(read.depth_mm.size(), map.depth_mm.size());
     for (std::size_t i = 0; i < map.depth_mm.size(); ++i) {
       EXPECT_EQ(std::isnan(read.depth_mm[i]), i == 7);
@@ -186,7 +186,7 @@ TEST_F(DepthMapFiles, PicturesThatDoNotFitAreRefused) {
 }
 
 TEST_F(DepthMapFiles, ColoursMayBeFiner) {
-  DepthMap map = cylinder_map();
+  FaceDepthMap map = cylinder_map();
   map.colour_width *= 2;
   map.colour_height *= 2;
   map.rgb.assign(map.rgb.size() * 4, 200);
@@ -198,7 +198,7 @@ TEST_F(DepthMapFiles, ColoursMayBeFiner) {
 }
 
 TEST_F(DepthMapFiles, AMapWithoutADepthIsNoFace) {
-  DepthMap map = cylinder_map();
+  FaceDepthMap map = cylinder_map();
   for (float& depth : map.depth_mm) depth = std::nanf("");
   write_depth_map(map, file_);
   EXPECT_THROW(read_face_scan(file_), InputError);

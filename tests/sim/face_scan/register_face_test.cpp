@@ -175,7 +175,7 @@ TEST(FaceRegistration, AnOpenMouthIsNoted) {
 
 TEST(FaceRegistration, AnotherThingIsRefused) {
   FaceScan ball;
-  DepthMap map;
+  FaceDepthMap map;
   map.width = 80;
   map.height = 40;
   map.height_mm = 120;
