@@ -33,11 +33,11 @@ std::vector<RankedPose> race(const OrientedPoints& points, const SurfacePairs& s
 }  // namespace
 
 OrientedPoints OrientedPoints::thinned(std::size_t count) const {
-  const std::size_t step = std::max<std::size_t>(1, size() / std::max<std::size_t>(1, count));
+  if (size() <= count) return *this;
   OrientedPoints kept;
-  for (std::size_t i = 0; i < size(); i += step) {
-    kept.points.push_back(points[i]);
-    kept.normals.push_back(normals[i]);
+  for (std::size_t i = 0; i < count; ++i) {
+    kept.points.push_back(points[i * size() / count]);
+    kept.normals.push_back(normals[i * size() / count]);
   }
   return kept;
 }

@@ -205,7 +205,7 @@ ArchFit fit_arch(const DentalScan& scan, const ArchTarget& target, const ArchFit
       fit.points == 0 ? 1 : 1 - static_cast<double>(best.fit.pairs) / fit.points;
   fit.halves_mm = halves_difference(crowns.points, target, fit.X_CS, settings);
   fit.mirrored_mm = fit_anyhow(mirrored(crowns), target, settings).residual_mm;
-  if (request.opposing)
+  if (request.opposing && fit.mean_mm > good_fit_mm)
     fit.exchanged_mm = std::min(fit_anyhow(sides[0], *request.opposing, settings).residual_mm,
                                 fit_anyhow(sides[1], *request.opposing, settings).residual_mm);
   return fit;

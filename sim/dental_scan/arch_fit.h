@@ -55,7 +55,7 @@ struct ArchFit {
   double halves_mm = 0;      // greatest distance, at the marks, of the fits of the left and right
                              // half alone
   double mirrored_mm = 0;    // mean_mm of the scan's mirror image
-  std::optional<double> exchanged_mm = {};  // mean_mm on the opposing arch, where there is one
+  std::optional<double> exchanged_mm = {};  // mean_mm on the opposing arch, where this is not good
   double picks_mm = 0;                      // greatest distance of picked points
 };
 

@@ -9,6 +9,7 @@
 #include "engine/math/pose.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/repair.h"
+#include "engine/mesh/topology.h"
 #include "sim/case/case.h"
 
 namespace condyle::test {
@@ -22,12 +23,19 @@ inline TriMesh carried(TriMesh mesh, const Pose& X) {
   return mesh;
 }
 
-/// Cut level with the gum: the occlusal 7 mm.
+/// Cut at the gum: the occlusal 7 mm of each tooth.
 inline TriMesh cut_at_gum(const TriMesh& mesh, bool upper, double height_mm = 7) {
-  const Box box = bounding_box(mesh);
-  std::vector<double> values;
-  for (const auto& v : mesh.vertices)
-    values.push_back((upper ? v.z() - box.low.z() : box.high.z() - v.z()) - height_mm);
+  const Components teeth = find_components(mesh);
+  std::vector<double> top(static_cast<std::size_t>(teeth.count), -1e9), values;
+  std::vector<int> tooth_of(mesh.vertices.size());
+  const auto height = [&](int v) { return (upper ? -1 : 1) * mesh.vertices[v].z(); };
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const int v : mesh.triangles[t]) {
+      tooth_of[v] = teeth.of_triangle[t];
+      top[tooth_of[v]] = std::max(top[tooth_of[v]], height(v));
+    }
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v)
+    values.push_back(top[tooth_of[v]] - height(v) - height_mm);
   return clipped(mesh, values);
 }
 
